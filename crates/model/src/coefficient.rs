@@ -1,0 +1,160 @@
+//! The names of coefficients: `Axis_factors`, spelled one way.
+//!
+//! Factors stand in the order u, v, r, phi, p, delta, n, then those a law adds; a factor to a power is repeated, an
+//! absolute value is written `|v|` and follows the plain factor: `X_uu`, `Y_vvr`, `N_v|v|`, `X_udeltadelta`, `Y_0`.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// An axis of the equations of motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema)]
+pub enum Axis {
+    /// Surge force.
+    X,
+    /// Sway force.
+    Y,
+    /// Roll moment.
+    K,
+    /// Yaw moment.
+    N,
+}
+
+impl Axis {
+    /// Every axis, in the order in which mass matrices list them.
+    pub const ALL: [Self; 4] = [Self::X, Self::Y, Self::K, Self::N];
+
+    /// The velocity that this axis accelerates.
+    pub fn velocity(self) -> &'static str {
+        match self {
+            Self::X => "u",
+            Self::Y => "v",
+            Self::K => "p",
+            Self::N => "r",
+        }
+    }
+
+    /// Whether the force changes sign when the ship is mirrored port to starboard.
+    pub fn is_odd(self) -> bool {
+        self != Self::X
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{self:?}")
+    }
+}
+
+/// The factors every law knows, in their order.
+pub const STANDARD_FACTORS: [&str; 7] = ["u", "v", "r", "phi", "p", "delta", "n"];
+
+/// One factor of a name.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Factor {
+    /// Place in the law's order of factors.
+    rank: usize,
+    /// Whether it is written `|x|`.
+    pub absolute: bool,
+    /// Its symbol.
+    pub symbol: String,
+}
+
+/// A coefficient's name, taken apart.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CoefficientName {
+    /// The axis on which it acts.
+    pub axis: Axis,
+    /// The factors that multiply it, in canonical order; none for a constant such as `Y_0`.
+    pub factors: Vec<Factor>,
+}
+
+impl CoefficientName {
+    /// Reads a name; `extra` are the factors that the law adds to the standard ones, in its order.
+    ///
+    /// # Errors
+    /// Says what is wrong and, where it can tell, how the name is spelled here.
+    pub fn parse(name: &str, extra: &[&str]) -> Result<Self, String> {
+        let help = "a coefficient is written Axis_factors, such as X_uu, Y_vvr, N_v|v| or Y_0";
+        let (axis, rest) = name.split_once('_').ok_or_else(|| format!("`{name}`: {help}"))?;
+        let axis = Axis::ALL.into_iter().find(|a| a.to_string() == axis);
+        let axis = axis.ok_or_else(|| format!("`{name}`: the axis must be X, Y, K or N; {help}"))?;
+        let mut factors = if rest == "0" { Vec::new() } else { split(rest, extra).map_err(|e| format!("`{name}`: {e}; {help}"))? };
+        let as_written = factors.clone();
+        factors.sort();
+        let canonical = Self { axis, factors };
+        if canonical.factors == as_written { Ok(canonical) } else { Err(format!("`{name}` is spelled `{canonical}` here")) }
+    }
+
+    /// Whether the term changes sign with that symbol.
+    pub fn is_odd_in(&self, symbol: &str) -> bool {
+        self.factors.iter().filter(|f| !f.absolute && f.symbol == symbol).count() % 2 == 1
+    }
+}
+
+impl fmt::Display for CoefficientName {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{}_", self.axis)?;
+        if self.factors.is_empty() {
+            return out.write_str("0");
+        }
+        self.factors.iter().try_for_each(|f| if f.absolute { write!(out, "|{}|", f.symbol) } else { out.write_str(&f.symbol) })
+    }
+}
+
+fn split(mut rest: &str, extra: &[&str]) -> Result<Vec<Factor>, String> {
+    let mut factors = Vec::new();
+    while !rest.is_empty() {
+        let absolute = rest.starts_with('|');
+        let inner = rest.strip_prefix('|').unwrap_or(rest);
+        let (rank, symbol) = longest_symbol(inner, extra).ok_or_else(|| format!("no factor starts at `{rest}`"))?;
+        rest = &inner[symbol.len()..];
+        if absolute {
+            rest = rest.strip_prefix('|').ok_or_else(|| format!("`|{symbol}` lacks its closing bar"))?;
+        }
+        factors.push(Factor { rank, absolute, symbol: symbol.to_owned() });
+    }
+    if factors.is_empty() { Err("it has no factors".into()) } else { Ok(factors) }
+}
+
+/// The longest known symbol that `text` starts with, so that `phi` is not read as `p`.
+fn longest_symbol<'a>(text: &str, extra: &[&'a str]) -> Option<(usize, &'a str)>
+where
+    'static: 'a,
+{
+    let known = STANDARD_FACTORS.iter().copied().chain(extra.iter().copied()).enumerate();
+    known.filter(|(_, symbol)| text.starts_with(symbol)).max_by_key(|(_, symbol)| symbol.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn canonical(name: &str) -> Result<String, String> {
+        CoefficientName::parse(name, &["T", "beta", "c", "zeta"]).map(|n| n.to_string())
+    }
+
+    #[test]
+    fn canonical_names_read_back() {
+        for name in ["X_uu", "Y_vvr", "N_v|v|", "X_udeltadelta", "Y_0", "K_vphiphi", "N_p", "Y_deltac|c|", "N_T", "Y_urzeta"] {
+            assert_eq!(canonical(name).as_deref(), Ok(name));
+        }
+    }
+
+    #[test]
+    fn another_spelling_is_refused_with_the_right_one() {
+        assert!(canonical("Y_vu").unwrap_err().contains("`Y_uv`"));
+        assert!(canonical("Y_|v|v").unwrap_err().contains("`Y_v|v|`"));
+        assert!(canonical("X_deltau").unwrap_err().contains("`X_udelta`"));
+        assert!(canonical("Q_u").unwrap_err().contains("axis"));
+        assert!(canonical("Xu").unwrap_err().contains("Axis_factors"));
+        assert!(canonical("X_uw").unwrap_err().contains("`w`"));
+        assert!(canonical("X_|u").unwrap_err().contains("bar"));
+    }
+
+    #[test]
+    fn parity_counts_plain_factors_only() {
+        let name = CoefficientName::parse("Y_v|v|delta", &[]).unwrap();
+        assert!(name.is_odd_in("v") && name.is_odd_in("delta") && !name.is_odd_in("r"));
+    }
+}

@@ -1,0 +1,76 @@
+//! What is wrong with a file, and where.
+
+use std::fmt;
+
+/// A refusal of a model file: which file, line and field, and why.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub struct FileError {
+    /// Name of the file, or of what was sent instead of one.
+    pub file: String,
+    /// Line, counted from 1, where it could be told.
+    pub line: Option<usize>,
+    /// Dotted path of the field; empty where the file as a whole is at fault.
+    pub field: String,
+    /// What is wrong and what would be right.
+    pub message: String,
+}
+
+impl fmt::Display for FileError {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(&self.file)?;
+        if let Some(line) = self.line {
+            write!(out, ":{line}")?;
+        }
+        if self.field.is_empty() { write!(out, ": {}", self.message) } else { write!(out, ": {}: {}", self.field, self.message) }
+    }
+}
+
+/// Turns messages about fields into errors that know file and line.
+pub(crate) struct Blame<'a> {
+    file: &'a str,
+    text: &'a str,
+}
+
+impl<'a> Blame<'a> {
+    pub(crate) fn new(file: &'a str, text: &'a str) -> Self {
+        Self { file, text }
+    }
+
+    /// Deserialises the text; the parser's own line and column survive.
+    pub(crate) fn read<T: serde::de::DeserializeOwned>(&self) -> Result<T, FileError> {
+        serde_yaml::from_str(self.text).map_err(|error| FileError {
+            file: self.file.to_owned(),
+            line: error.location().map(|location| location.line()),
+            field: String::new(),
+            message: error.to_string(),
+        })
+    }
+
+    /// An error at a dotted field; the line is that of the path's keys, each looked for below the one before.
+    pub(crate) fn at(&self, field: &str, message: impl Into<String>) -> FileError {
+        FileError { file: self.file.to_owned(), line: self.line_of(field), field: field.to_owned(), message: message.into() }
+    }
+
+    fn line_of(&self, field: &str) -> Option<usize> {
+        let mut found = None;
+        for key in field.split('.') {
+            let start = found.map_or(0, |line: usize| line);
+            let names_key = |line: &str| key_position(line, key);
+            match self.text.lines().enumerate().skip(start.saturating_sub(usize::from(start > 0))).find(|(_, line)| names_key(line)) {
+                Some((index, _)) => found = Some(index + 1),
+                None => break,
+            }
+        }
+        found
+    }
+}
+
+/// Whether the line has `key:` as a whole word (quoted or not), or lists it as `- key` or in brackets.
+fn key_position(line: &str, key: &str) -> bool {
+    line.match_indices(key).any(|(at, _)| {
+        let before = line[..at].chars().next_back();
+        let after = line[at + key.len()..].chars().next();
+        let boundary = |c: Option<char>| c.is_none_or(|c| !c.is_alphanumeric() && c != '_' && c != '|');
+        boundary(before) && boundary(after) && !line[..at].contains('#')
+    })
+}

@@ -1,0 +1,93 @@
+//! The dimension of a formula, or what is wrong with it.
+
+use super::syntax::{Expr, Function};
+use crate::units::Dimension;
+
+/// The dimension of `expr` when `lookup` knows that of every name.
+///
+/// # Errors
+/// Names the unknown name, or the two sides that do not go together.
+pub fn dimension_of(expr: &Expr, lookup: &dyn Fn(&str) -> Option<Dimension>) -> Result<Dimension, String> {
+    let of = |e: &Expr| dimension_of(e, lookup);
+    match expr {
+        Expr::Number(_) => Ok(Dimension::NONE),
+        Expr::Name(name) => lookup(name).ok_or_else(|| format!("unknown name `{name}`")),
+        Expr::Negate(a) => of(a),
+        Expr::Add(a, b) | Expr::Subtract(a, b) => same(a, of(a)?, b, of(b)?),
+        Expr::Multiply(a, b) => Ok(of(a)? + of(b)?),
+        Expr::Divide(a, b) => Ok(of(a)? - of(b)?),
+        Expr::Power(a, b) => power(of(a)?, b, of(b)?),
+        Expr::Call(function, arguments) => call(*function, arguments, lookup),
+        Expr::If(_, parts) => {
+            same(&parts[0], of(&parts[0])?, &parts[1], of(&parts[1])?)?;
+            same(&parts[2], of(&parts[2])?, &parts[3], of(&parts[3])?)
+        }
+    }
+}
+
+fn power(base: Dimension, exponent: &Expr, of_exponent: Dimension) -> Result<Dimension, String> {
+    if of_exponent != Dimension::NONE {
+        return Err(format!("an exponent must be a pure number, not {of_exponent}"));
+    }
+    match exponent.value(&|_| None) {
+        Some(number) => Ok(base.pow(number)),
+        None if base == Dimension::NONE => Ok(base),
+        None => Err(format!("{base} can only be raised to a number, not to a formula")),
+    }
+}
+
+fn call(function: Function, arguments: &[Expr], lookup: &dyn Fn(&str) -> Option<Dimension>) -> Result<Dimension, String> {
+    let first = dimension_of(&arguments[0], lookup)?;
+    match function {
+        Function::Abs => Ok(first),
+        Function::Sqrt => Ok(first.pow(0.5)),
+        Function::Sign => Ok(Dimension::NONE),
+        Function::Min | Function::Max | Function::Atan2 => {
+            let common = same(&arguments[0], first, &arguments[1], dimension_of(&arguments[1], lookup)?)?;
+            Ok(if function == Function::Atan2 { Dimension::NONE } else { common })
+        }
+        _ if first == Dimension::NONE => Ok(first),
+        _ => Err(format!("{function:?} needs a pure number or an angle, not {first}")),
+    }
+}
+
+/// Both sides of a sum or comparison must agree; a literal zero goes with anything.
+fn same(a: &Expr, of_a: Dimension, b: &Expr, of_b: Dimension) -> Result<Dimension, String> {
+    let zero = |e: &Expr| matches!(e, Expr::Number(number) if *number == 0.0);
+    if of_a == of_b || zero(b) {
+        Ok(of_a)
+    } else if zero(a) {
+        Ok(of_b)
+    } else {
+        Err(format!("adds or compares {of_a} with {of_b}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::parse;
+    use super::*;
+
+    fn check(text: &str) -> Result<Dimension, String> {
+        let lookup = |name: &str| match name {
+            "u" => Some(Dimension::SPEED),
+            "r" => Some(Dimension::RATE),
+            "L" => Some(Dimension::LENGTH),
+            _ => None,
+        };
+        dimension_of(&parse(text).expect("readable"), &lookup)
+    }
+
+    #[test]
+    fn the_prime_system_is_dimensionless() {
+        assert_eq!(check("r*L/sqrt(u^2 + (r*L)^2)"), Ok(Dimension::NONE));
+        assert_eq!(check("if(u > 0, u, 0)"), Ok(Dimension::SPEED));
+    }
+
+    #[test]
+    fn wrong_units_are_refused() {
+        assert!(check("u + r").unwrap_err().contains("m s^-1"));
+        assert!(check("sin(u)").unwrap_err().contains("Sin"));
+        assert!(check("u + w").unwrap_err().contains("`w`"));
+    }
+}

@@ -1,0 +1,9 @@
+//! Formulas of laws and effects: parsed once, checked for units, lowered later by the dynamics.
+
+mod dimension;
+mod parse;
+mod syntax;
+
+pub use dimension::dimension_of;
+pub use parse::parse;
+pub use syntax::{Comparison, Expr, Function, builtin, constant};

@@ -1,0 +1,142 @@
+//! Text to syntax tree, with winnow's expression combinator.
+
+use winnow::ascii::{float, multispace0};
+use winnow::combinator::{
+    Infix, Prefix, alt, cut_err, delimited, dispatch, empty, expression, fail, peek, preceded, separated, terminated,
+};
+use winnow::error::{ContextError, ErrMode, StrContext, StrContextValue};
+use winnow::prelude::*;
+use winnow::token::{any, one_of, take_while};
+
+use super::syntax::{Comparison, Expr, Function};
+
+type Result<T> = winnow::Result<T, ErrMode<ContextError>>;
+
+/// Parses one formula.
+///
+/// # Errors
+/// Says at which character the formula stops making sense, and what was expected there.
+pub fn parse(text: &str) -> std::result::Result<Expr, String> {
+    let parsed = delimited(multispace0, sum, multispace0).parse(text);
+    parsed.map_err(|error| {
+        let rest: String = text.chars().skip(text[..error.offset()].chars().count()).take(12).collect();
+        let place = if rest.is_empty() { "its end".into() } else { format!("`{rest}`") };
+        let expected = error.inner().to_string().replace('\n', ", ");
+        let expected = if expected.is_empty() { String::new() } else { format!(": {expected}") };
+        format!("formula `{text}` cannot be read from {place}{expected}")
+    })
+}
+
+fn boxed(a: Expr, b: Expr, make: fn(Box<Expr>, Box<Expr>) -> Expr) -> Expr {
+    make(Box::new(a), Box::new(b))
+}
+
+/// Binding powers: sums 1, products 3, unary minus 5, powers 7 (to the right), so `-u^2` is `-(u^2)`.
+fn sum(input: &mut &str) -> Result<Expr> {
+    expression(delimited(multispace0, operand, multispace0))
+        .prefix(preceded(
+            multispace0,
+            dispatch! { any;
+                '-' => empty.value(Prefix(5, |_: &mut &str, a| Ok(Expr::Negate(Box::new(a))))),
+                '+' => empty.value(Prefix(5, |_: &mut &str, a| Ok(a))),
+                _ => fail,
+            },
+        ))
+        .infix(dispatch! { any;
+            '+' => empty.value(Infix::Left(1, |_: &mut &str, a, b| Ok(boxed(a, b, Expr::Add)))),
+            '-' => empty.value(Infix::Left(1, |_: &mut &str, a, b| Ok(boxed(a, b, Expr::Subtract)))),
+            '*' => empty.value(Infix::Left(3, |_: &mut &str, a, b| Ok(boxed(a, b, Expr::Multiply)))),
+            '/' => empty.value(Infix::Left(3, |_: &mut &str, a, b| Ok(boxed(a, b, Expr::Divide)))),
+            '^' => empty.value(Infix::Right(7, |_: &mut &str, a, b| Ok(boxed(a, b, Expr::Power)))),
+            _ => fail,
+        })
+        .parse_next(input)
+}
+
+fn operand(input: &mut &str) -> Result<Expr> {
+    alt((number, delimited('(', sum, cut_err(')').context(expected("a closing parenthesis"))), name_or_call))
+        .context(expected("a number, a name or a parenthesis"))
+        .parse_next(input)
+}
+
+fn expected(what: &'static str) -> StrContext {
+    StrContext::Expected(StrContextValue::Description(what))
+}
+
+fn number(input: &mut &str) -> Result<Expr> {
+    // `float` would also take a sign, `inf` and `nan`: a sign is an operator here, the others are names.
+    preceded(peek(one_of(('0'..='9', '.'))), float).map(Expr::Number).parse_next(input)
+}
+
+fn identifier<'a>(input: &mut &'a str) -> Result<&'a str> {
+    (one_of(('a'..='z', 'A'..='Z', '_')), take_while(0.., ('a'..='z', 'A'..='Z', '0'..='9', '_'))).take().parse_next(input)
+}
+
+fn name_or_call(input: &mut &str) -> Result<Expr> {
+    let name = identifier.parse_next(input)?;
+    if peek((multispace0::<_, ErrMode<ContextError>>, '(')).parse_next(input).is_err() {
+        return Ok(Expr::Name(name.to_owned()));
+    }
+    if name == "if" {
+        return cut_err(condition).parse_next(input);
+    }
+    let Some((function, count)) = Function::by_name(name) else {
+        return cut_err(fail.context(expected("a known function"))).parse_next(input);
+    };
+    let arguments: Vec<Expr> = cut_err(delimited((multispace0, '('), separated(1.., sum, ','), ')')).parse_next(input)?;
+    if arguments.len() != count {
+        return cut_err(fail.context(expected("as many arguments as the function takes"))).parse_next(input);
+    }
+    Ok(Expr::Call(function, arguments))
+}
+
+/// `(a < b, c, d)`
+fn condition(input: &mut &str) -> Result<Expr> {
+    let compare = alt((
+        "<=".value(Comparison::LessOrEqual),
+        ">=".value(Comparison::GreaterOrEqual),
+        "<".value(Comparison::Less),
+        ">".value(Comparison::Greater),
+    ))
+    .context(expected("a comparison"));
+    let (left, comparison, right) = preceded((multispace0, '('), (sum, compare, sum)).parse_next(input)?;
+    let (then, otherwise) =
+        (preceded(',', sum), preceded(',', terminated(sum, ')'))).context(expected("two alternatives")).parse_next(input)?;
+    Ok(Expr::If(comparison, Box::new([left, right, then, otherwise])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(text: &str) -> f64 {
+        let lookup = |name: &str| (name == "u").then_some(3.0);
+        parse(text).unwrap_or_else(|e| panic!("{e}")).value(&lookup).unwrap()
+    }
+
+    #[test]
+    fn precedence_is_that_of_mathematics() {
+        assert_eq!(value("1 + 2*u^2"), 19.0);
+        assert_eq!(value("-u^2"), -9.0);
+        assert_eq!(value("2^3^2"), 512.0);
+        assert_eq!(value("8/4/2"), 1.0);
+        assert_eq!(value("2 - -u"), 5.0);
+        assert_eq!(value("0.605e0/304.8*304.8"), 0.605);
+    }
+
+    #[test]
+    fn functions_and_conditions() {
+        assert_eq!(value("if(u >= 3, max(1, u), 0)"), 3.0);
+        assert_eq!(value("abs(-u) + sign(-u)"), 2.0);
+        assert!((value("atan2(1, 0)") - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    }
+
+    #[test]
+    fn errors_name_the_place() {
+        assert!(parse("u + ").unwrap_err().contains("its end"));
+        assert!(parse("u + (v").unwrap_err().contains("closing parenthesis"));
+        assert!(parse("foo(u)").unwrap_err().contains("known function"));
+        assert!(parse("atan2(u)").unwrap_err().contains("arguments"));
+        assert!(parse("u v").is_err());
+    }
+}

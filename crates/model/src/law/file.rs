@@ -1,0 +1,121 @@
+//! The shape of a law's YAML file.
+
+use std::collections::BTreeMap;
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::coefficient::Axis;
+use crate::source::Source;
+
+/// A law as its file writes it; see `models/laws/README.md`.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LawFile {
+    /// Always `law`.
+    pub kind: LawKind,
+    /// Name in the zoo: lower case, digits, hyphens.
+    pub name: String,
+    /// One line for people.
+    pub title: String,
+    /// Publications by key.
+    pub sources: BTreeMap<String, Source>,
+    /// What the law takes from outside: `delta`, `n`, `depth`, ...
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, InputFile>")]
+    pub inputs: IndexMap<String, InputFile>,
+    /// Nonlinear parameters.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, ParameterFile>")]
+    pub parameters: IndexMap<String, ParameterFile>,
+    /// Intermediate values, each a formula of earlier ones.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, String>")]
+    pub values: IndexMap<String, String>,
+    /// What each factor of a coefficient's name stands for.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, String>")]
+    pub factors: IndexMap<String, String>,
+    /// The right-hand sides by axis.
+    pub axes: BTreeMap<Axis, AxisFile>,
+    /// The mass matrix: axis, then the axis whose acceleration it multiplies.
+    pub mass: BTreeMap<Axis, BTreeMap<Axis, String>>,
+    /// Rates of `x`, `y`, `psi`, `phi` where they are not those of motion in the horizontal plane.
+    #[serde(default)]
+    pub kinematics: BTreeMap<String, String>,
+    /// Parameters that change places when the ship is mirrored.
+    #[serde(default)]
+    pub mirrors: BTreeMap<String, String>,
+}
+
+/// The word `law`.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum LawKind {
+    /// The only one.
+    Law,
+}
+
+/// An input as its file writes it.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InputFile {
+    /// Its unit.
+    pub unit: String,
+    /// Its value where nobody gives one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub default: Option<f64>,
+}
+
+/// A parameter as its file writes it.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ParameterFile {
+    /// Its unit; `1` for a pure number.
+    pub unit: String,
+    /// What it means.
+    pub meaning: String,
+    /// How it follows from particulars.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<String>,
+    /// `approach_speed` for the speed about which the law is expanded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub role: Option<ParameterRole>,
+}
+
+/// What a parameter may stand for besides itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ParameterRole {
+    /// The speed about which the law is expanded.
+    ApproachSpeed,
+}
+
+/// One axis as its file writes it.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AxisFile {
+    /// Multiplies every term.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<String>,
+    /// Coefficients: a name alone stands for the product of its factors, `{name: formula}` for that formula.
+    #[serde(default)]
+    pub terms: Vec<TermFile>,
+    /// What is added as it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest: Option<String>,
+    /// Whether a vessel may add further terms that the factors can spell.
+    #[serde(default)]
+    pub open: bool,
+}
+
+/// One term as its file writes it.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum TermFile {
+    /// The product of the factors that the name spells.
+    Name(String),
+    /// A regressor of its own.
+    Formula(BTreeMap<String, String>),
+}

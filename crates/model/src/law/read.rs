@@ -1,0 +1,192 @@
+//! From a law's file to a checked law.
+
+use std::collections::BTreeMap;
+
+use indexmap::IndexMap;
+
+use super::file::{AxisFile, LawFile, ParameterFile, ParameterRole, TermFile};
+use super::{AxisLaw, Input, Law, Parameter, STATES, axis_dimension, symmetry};
+use crate::coefficient::{Axis, CoefficientName};
+use crate::error::{Blame, FileError};
+use crate::formula::{self, Expr};
+use crate::name::check_slug;
+use crate::particulars;
+use crate::units::{Dimension, Unit};
+
+pub(super) fn read(file: &str, text: &str) -> Result<Law, FileError> {
+    let blame = Blame::new(file, text);
+    let raw: LawFile = blame.read()?;
+    check_slug(&raw.name).map_err(|e| blame.at("name", e))?;
+    let mut law = Law {
+        name: raw.name,
+        title: raw.title,
+        sources: raw.sources,
+        inputs: IndexMap::new(),
+        parameters: IndexMap::new(),
+        values: IndexMap::new(),
+        factors: IndexMap::new(),
+        axes: BTreeMap::new(),
+        mass: BTreeMap::new(),
+        kinematics: BTreeMap::new(),
+        mirrors: raw.mirrors,
+    };
+    let reader = Reader { blame: &blame };
+    for (name, input) in &raw.inputs {
+        let unit = Unit::parse(&input.unit).map_err(|e| blame.at(&format!("inputs.{name}"), e))?;
+        law.inputs.insert(name.clone(), Input { dimension: unit.dimension, default: input.default });
+    }
+    for (name, parameter) in &raw.parameters {
+        law.parameters.insert(name.clone(), reader.parameter(name, parameter)?);
+    }
+    reader.values(&mut law, &raw.values)?;
+    for (symbol, formula) in &raw.factors {
+        let expr = reader.formula(&law, &format!("factors.{symbol}"), formula, None)?;
+        law.factors.insert(symbol.clone(), expr);
+    }
+    for (axis, raw_axis) in &raw.axes {
+        let read = reader.axis(&law, *axis, raw_axis)?;
+        law.axes.insert(*axis, read);
+    }
+    reader.terms(&mut law, &raw.axes)?;
+    reader.mass(&mut law, &raw.mass)?;
+    reader.kinematics(&mut law, &raw.kinematics)?;
+    symmetry::check(&law).map_err(|(field, message)| blame.at(&field, message))?;
+    Ok(law)
+}
+
+struct Reader<'a> {
+    blame: &'a Blame<'a>,
+}
+
+impl Reader<'_> {
+    fn parameter(&self, name: &str, raw: &ParameterFile) -> Result<Parameter, FileError> {
+        let field = format!("parameters.{name}");
+        let unit = Unit::parse(&raw.unit).map_err(|e| self.blame.at(&field, e))?;
+        let from = raw.from.as_deref().map(formula::parse).transpose().map_err(|e| self.blame.at(&field, e))?;
+        if let Some(from) = &from {
+            self.check_from(&field, from, unit.dimension)?;
+        }
+        Ok(Parameter {
+            dimension: unit.dimension,
+            unit: raw.unit.clone(),
+            meaning: raw.meaning.clone(),
+            from,
+            is_approach_speed: raw.role == Some(ParameterRole::ApproachSpeed),
+        })
+    }
+
+    /// A derivation may use particulars only; a bare number takes the parameter's unit.
+    fn check_from(&self, field: &str, from: &Expr, wanted: Dimension) -> Result<(), FileError> {
+        if from.names().is_empty() {
+            return Ok(());
+        }
+        let found = formula::dimension_of(from, &particulars::dimension).map_err(|e| self.blame.at(field, e))?;
+        if found == wanted { Ok(()) } else { Err(self.blame.at(field, format!("`from` gives {found}, the parameter is {wanted}"))) }
+    }
+
+    fn values(&self, law: &mut Law, raw: &IndexMap<String, String>) -> Result<(), FileError> {
+        for (name, formula) in raw {
+            let field = format!("values.{name}");
+            let taken = STATES.iter().any(|(state, _)| state == name) || law.dimension(name).is_some();
+            if taken {
+                return Err(self.blame.at(&field, "this name is already a state, input, parameter or particular"));
+            }
+            let expr = self.formula(law, &field, formula, None)?;
+            law.values.insert(name.clone(), expr);
+        }
+        Ok(())
+    }
+
+    /// Parses a formula and checks its names and its dimension.
+    fn formula(&self, law: &Law, field: &str, text: &str, wanted: Option<Dimension>) -> Result<Expr, FileError> {
+        let expr = formula::parse(text).map_err(|e| self.blame.at(field, e))?;
+        let found = formula::dimension_of(&expr, &|n| law.dimension(n)).map_err(|e| self.blame.at(field, format!("`{text}` {e}")))?;
+        match wanted {
+            Some(wanted) if wanted != found && expr != Expr::Number(0.0) => {
+                Err(self.blame.at(field, format!("`{text}` has the dimension {found}; {wanted} is needed")))
+            }
+            _ => Ok(expr),
+        }
+    }
+
+    fn axis(&self, law: &Law, axis: Axis, raw: &AxisFile) -> Result<AxisLaw, FileError> {
+        let path = format!("axes.{axis}");
+        let scale = raw.scale.as_deref().unwrap_or("1");
+        let rest = raw.rest.as_deref().unwrap_or("0");
+        Ok(AxisLaw {
+            scale: self.formula(law, &format!("{path}.scale"), scale, None)?,
+            terms: IndexMap::new(),
+            rest: self.formula(law, &format!("{path}.rest"), rest, Some(axis_dimension(axis)))?,
+            open: raw.open,
+        })
+    }
+
+    fn terms(&self, law: &mut Law, raw: &BTreeMap<Axis, AxisFile>) -> Result<(), FileError> {
+        for (axis, raw_axis) in raw {
+            for term in &raw_axis.terms {
+                let (name, expr) = self.term(law, *axis, term)?;
+                let axis_law = law.axes.get_mut(axis).ok_or_else(|| self.blame.at("axes", "an axis was lost"))?;
+                if axis_law.terms.insert(name.clone(), expr).is_some() {
+                    return Err(self.blame.at(&format!("axes.{axis}.terms.{name}"), "is listed twice"));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn term(&self, law: &Law, axis: Axis, raw: &TermFile) -> Result<(String, Expr), FileError> {
+        let name = match raw {
+            TermFile::Name(name) => name,
+            TermFile::Formula(map) if map.len() == 1 => map.keys().next().unwrap_or(&law.name),
+            TermFile::Formula(_) => return Err(self.blame.at(&format!("axes.{axis}.terms"), "write one `{name: formula}` an entry")),
+        };
+        let field = format!("axes.{axis}.terms.{name}");
+        let parsed = CoefficientName::parse(name, &law.extra_factors()).map_err(|e| self.blame.at(&field, e))?;
+        if parsed.axis != axis {
+            return Err(self.blame.at(&field, format!("acts on {} but is listed under {axis}", parsed.axis)));
+        }
+        let expr = match raw {
+            TermFile::Name(_) => law.product(&parsed).map_err(|e| self.blame.at(&field, e))?,
+            TermFile::Formula(map) => self.formula(law, &field, &map[name], None)?,
+        };
+        Ok((name.clone(), expr))
+    }
+
+    fn mass(&self, law: &mut Law, raw: &BTreeMap<Axis, BTreeMap<Axis, String>>) -> Result<(), FileError> {
+        for (row, columns) in raw {
+            for (column, formula) in columns {
+                let field = format!("mass.{row}.{column}");
+                if !law.axes.contains_key(row) || !law.axes.contains_key(column) {
+                    return Err(self.blame.at(&field, "the law has no such axis"));
+                }
+                let wanted = axis_dimension(*row) - acceleration_dimension(*column);
+                law.mass.insert((*row, *column), self.formula(law, &field, formula, Some(wanted))?);
+            }
+            if !columns.contains_key(row) {
+                return Err(self.blame.at(&format!("mass.{row}"), "lacks its own acceleration"));
+            }
+        }
+        match law.axes.keys().find(|axis| !raw.contains_key(axis)) {
+            Some(axis) => Err(self.blame.at("mass", format!("has no row for {axis}"))),
+            None => Ok(()),
+        }
+    }
+
+    fn kinematics(&self, law: &mut Law, raw: &BTreeMap<String, String>) -> Result<(), FileError> {
+        for (name, formula) in raw {
+            let field = format!("kinematics.{name}");
+            let wanted = match name.as_str() {
+                "x" | "y" => Dimension::SPEED,
+                "psi" | "phi" => Dimension::RATE,
+                _ => return Err(self.blame.at(&field, "only x, y, psi and phi have a kinematic rate")),
+            };
+            law.kinematics.insert(name.clone(), self.formula(law, &field, formula, Some(wanted))?);
+        }
+        Ok(())
+    }
+}
+
+fn acceleration_dimension(axis: Axis) -> Dimension {
+    let velocity = if matches!(axis, Axis::X | Axis::Y) { Dimension::SPEED } else { Dimension::RATE };
+    velocity - Dimension::TIME
+}

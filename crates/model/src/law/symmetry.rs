@@ -1,0 +1,104 @@
+//! Port/starboard symmetry: mirrored motion must give mirrored forces.
+
+use std::collections::BTreeMap;
+
+use super::Law;
+use crate::coefficient::{Axis, CoefficientName};
+use crate::formula::Expr;
+
+/// States and inputs that change sign in the mirror.
+const ODD: [&str; 6] = ["v", "r", "p", "phi", "psi", "delta"];
+
+/// A few states well apart from zero and from each other, in SI.
+const POINTS: [[f64; 8]; 3] = [
+    // u, v, r, p, phi, psi, delta, n
+    [5.0, 0.7, 0.011, 0.004, 0.05, 0.3, 0.2, 1.2],
+    [3.0, -0.4, 0.007, -0.003, 0.02, -0.4, 0.1, 0.8],
+    [8.0, 1.1, -0.009, 0.002, -0.03, 0.8, -0.3, 1.7],
+];
+const AT: [&str; 8] = ["u", "v", "r", "p", "phi", "psi", "delta", "n"];
+
+/// Checks every term and rest; a term whose name says that it is a bias (`Y_0`, `N_u`) must be one.
+pub(super) fn check(law: &Law) -> Result<(), (String, String)> {
+    for (first, second) in &law.mirrors {
+        let second = second.trim_start_matches('-');
+        if !law.parameters.contains_key(first) || !law.parameters.contains_key(second) {
+            return Err((format!("mirrors.{first}"), "both must be parameters of the law".into()));
+        }
+    }
+    for (axis, axis_law) in &law.axes {
+        check_parity(law, &axis_law.rest, axis.is_odd(), &format!("axes.{axis}.rest"))?;
+        for (name, term) in &axis_law.terms {
+            let field = format!("axes.{axis}.terms.{name}");
+            check_parity(law, term, spelled_parity(law, name, *axis), &field)?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether the factors that a name spells make an odd product in the mirror.
+fn spelled_parity(law: &Law, name: &str, axis: Axis) -> bool {
+    let Ok(parsed) = CoefficientName::parse(name, &law.extra_factors()) else { return axis.is_odd() };
+    let odd = |expr: &Expr| is_odd(law, expr).unwrap_or(false);
+    let odd_factors = parsed.factors.iter().filter(|f| !f.absolute && law.factors.get(&f.symbol).is_some_and(odd));
+    odd_factors.count() % 2 == 1
+}
+
+fn check_parity(law: &Law, expr: &Expr, odd: bool, field: &str) -> Result<(), (String, String)> {
+    let vanishes = POINTS.iter().all(|point| at(law, expr, point, false) == Some(0.0));
+    if vanishes || is_odd(law, expr) == Some(odd) {
+        return Ok(());
+    }
+    let wanted = if odd { "change its sign" } else { "stay as it is" };
+    let message = format!("breaks the port/starboard symmetry: mirrored (v, r, p, phi, delta with other signs) it should {wanted}");
+    Err((field.to_owned(), message))
+}
+
+/// Whether the formula is odd (`Some(true)`), even (`Some(false)`) or neither in the mirror.
+fn is_odd(law: &Law, expr: &Expr) -> Option<bool> {
+    let parity = |sign: f64| {
+        POINTS.iter().all(|point| match (at(law, expr, point, false), at(law, expr, point, true)) {
+            (Some(here), Some(there)) => (here - sign * there).abs() <= 1e-9 * (here.abs() + there.abs()),
+            _ => true,
+        })
+    };
+    match (parity(1.0), parity(-1.0)) {
+        (true, _) => Some(false),
+        (false, true) => Some(true),
+        _ => None,
+    }
+}
+
+fn at(law: &Law, expr: &Expr, point: &[f64; 8], mirrored: bool) -> Option<f64> {
+    let mut known: BTreeMap<&str, f64> = AT.iter().copied().zip(point.iter().copied()).collect();
+    if mirrored {
+        for name in ODD {
+            known.entry(name).and_modify(|value| *value = -*value).or_insert(0.0);
+        }
+    }
+    lookup(law, expr, &known, mirrored)
+}
+
+fn lookup(law: &Law, expr: &Expr, known: &BTreeMap<&str, f64>, mirrored: bool) -> Option<f64> {
+    expr.value(&|name| {
+        let nested = |e: &Expr| lookup(law, e, known, mirrored);
+        known.get(name).copied().or_else(|| law.values.get(name).and_then(nested)).or_else(|| Some(stand_in(law, name, mirrored)))
+    })
+}
+
+/// Any number will do for particulars and parameters, as long as different names have different ones.
+fn stand_in(law: &Law, name: &str, mirrored: bool) -> f64 {
+    if let Some((value, _)) = crate::formula::builtin(name) {
+        return value;
+    }
+    let twin = if mirrored { twin(law, name) } else { None };
+    let name = twin.unwrap_or(name);
+    let (sign, name) = name.strip_prefix('-').map_or((1.0, name), |positive| (-1.0, positive));
+    let hash = name.bytes().fold(7_u32, |hash, byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)));
+    sign * (0.2 + f64::from(hash % 997) / 997.0)
+}
+
+/// What a parameter becomes in the mirror: another one (`gamma_R_minus`), or its own opposite (`-c_Pr`).
+fn twin<'a>(law: &'a Law, name: &str) -> Option<&'a str> {
+    law.mirrors.iter().find_map(|(a, b)| if a == name { Some(b.as_str()) } else { (b == name).then_some(a.as_str()) })
+}

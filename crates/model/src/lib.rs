@@ -1,0 +1,23 @@
+//! The vocabulary: ships, particulars, laws and their formulas, coefficients, trials, versions.
+//!
+//! No I/O and no async: text goes in, checked values come out, and every refusal names file, line and field.
+
+pub mod coefficient;
+mod error;
+pub mod formula;
+pub mod law;
+pub mod model;
+pub mod name;
+pub mod particulars;
+pub mod quantity;
+pub mod source;
+pub mod trial;
+pub mod units;
+pub mod vessel;
+pub mod zoo;
+
+pub use error::FileError;
+pub use law::Law;
+pub use model::Model;
+pub use vessel::Vessel;
+pub use zoo::Zoo;

@@ -1,0 +1,214 @@
+//! A model: a law with coefficients for one ship, in canonical signs, as it is stored, exchanged and simulated.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::coefficient::CoefficientName;
+use crate::error::{Blame, FileError};
+use crate::law::Law;
+use crate::particulars::{self, Particulars};
+use crate::quantity::Quantity;
+use crate::source::Source;
+use crate::trial::RudderSign;
+use crate::vessel::{PublishedModelFile, Status, Steering, Vessel};
+
+/// A model document. Positive rudder turns the ship to starboard; parameters and coefficients are in the law's units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Model {
+    /// Always `model`.
+    pub kind: ModelKind,
+    /// Its name, `ship/model`.
+    pub name: String,
+    /// The ship it is of.
+    pub ship: String,
+    /// The law of motion.
+    pub law: String,
+    /// How far its figures can be trusted.
+    pub status: Status,
+    /// A remark.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+    /// Publications by key.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub sources: BTreeMap<String, Source>,
+    /// The approach speed it belongs to, m/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_m_s: Option<f64>,
+    /// The propeller revolutions at that speed, 1/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub revolutions_rps: Option<f64>,
+    /// The steering gear.
+    #[serde(default)]
+    pub steering: Steering,
+    /// Particulars of the ship, SI.
+    pub particulars: Particulars,
+    /// Nonlinear parameters of the law.
+    pub parameters: BTreeMap<String, Quantity>,
+    /// Coefficients of the law.
+    pub coefficients: BTreeMap<String, Quantity>,
+}
+
+/// The word `model`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ModelKind {
+    /// The only one.
+    Model,
+}
+
+/// The source key of what follows from particulars by the law's own formula.
+pub const DERIVED: &str = "derived-from-particulars";
+
+impl Model {
+    /// Reads and checks a model document against its law.
+    ///
+    /// # Errors
+    /// Names file, line and field of the first thing that is wrong.
+    pub fn parse(file: &str, text: &str, law_of: &dyn Fn(&str) -> Option<Law>) -> Result<Self, FileError> {
+        let blame = Blame::new(file, text);
+        let model: Self = blame.read()?;
+        let law = law_of(&model.law).ok_or_else(|| blame.at("law", format!("there is no law `{}`", model.law)))?;
+        particulars::check(&model.particulars).map_err(|(name, e)| blame.at(&format!("particulars.{name}"), e))?;
+        model.check(&law).map_err(|(field, e)| blame.at(&field, e))?;
+        Ok(model)
+    }
+
+    /// A published model of a vessel, converted to canonical signs; the first one where no name is given.
+    ///
+    /// # Errors
+    /// Says which model, parameter or coefficient is missing or unknown.
+    pub fn published(vessel: &Vessel, name: Option<&str>, law: &Law) -> Result<Self, FileError> {
+        let blame = Blame::new(vessel.name(), "");
+        let raw = published_file(vessel, name).map_err(|e| blame.at("models", e))?;
+        let path = |section: &str| format!("models.{}.{section}", raw.name);
+        let keys = vessel.source_keys();
+        let section = |what: &str, section: &crate::quantity::Section| {
+            section.resolve(&keys).map_err(|(name, e)| blame.at(&format!("{}.{name}", path(what)), e))
+        };
+        let mut model = Self {
+            kind: ModelKind::Model,
+            name: format!("{}/{}", vessel.name(), raw.name),
+            ship: vessel.name().to_owned(),
+            law: raw.law.clone(),
+            status: raw.status,
+            note: raw.note.clone(),
+            sources: vessel.file.sources.clone(),
+            speed_m_s: raw.speed_m_s,
+            revolutions_rps: raw.revolutions_rps,
+            steering: raw.steering.clone(),
+            particulars: vessel.particulars.clone(),
+            parameters: section("parameters", &raw.parameters)?,
+            coefficients: section("coefficients", &raw.coefficients)?,
+        };
+        model.fill_parameters(law);
+        model.check(law).map_err(|(field, e)| blame.at(&format!("models.{}.{field}", raw.name), e))?;
+        if vessel.file.conventions.rudder_positive == RudderSign::PortTurn {
+            model.flip_rudder(law);
+        }
+        Ok(model)
+    }
+
+    /// This model carried over to another ship: the same coefficients in the law's own scaling, her particulars, and
+    /// every parameter that the law derives from particulars recomputed for her. `approach_speed_m_s` replaces the speed
+    /// about which the law is expanded, which belongs to the trials.
+    pub fn transferred(&self, law: &Law, ship: &str, particulars: &Particulars, approach_speed_m_s: Option<f64>) -> Self {
+        let mut model = self.clone();
+        model.name = format!("{ship}/{}", self.law);
+        model.ship = ship.to_owned();
+        model.status = Status::Transferred;
+        model.note = Some(format!("carried over from {}", self.name));
+        model.particulars = particulars.clone();
+        for name in law.parameters.keys() {
+            if let Some(value) = law.derived_parameter(name, particulars) {
+                model.parameters.insert(name.clone(), Quantity::new(value, DERIVED));
+            }
+        }
+        if let Some(speed) = approach_speed_m_s {
+            model.set_approach_speed(law, speed);
+        }
+        model
+    }
+
+    /// Sets the speed about which the law is expanded, m/s.
+    pub fn set_approach_speed(&mut self, law: &Law, speed_m_s: f64) {
+        self.speed_m_s = Some(speed_m_s);
+        if let Some(name) = law.approach_speed_parameter() {
+            self.parameters.insert(name.to_owned(), Quantity::new(speed_m_s, "approach-speed"));
+        }
+    }
+
+    /// The value of a coefficient; zero where the model does not have it.
+    pub fn coefficient(&self, name: &str) -> f64 {
+        self.coefficients.get(name).map_or(0.0, |quantity| quantity.value)
+    }
+
+    /// Checks that the law knows every name and that every parameter has a value.
+    ///
+    /// # Errors
+    /// The field at fault and what is wrong with it.
+    pub fn check(&self, law: &Law) -> Result<(), (String, String)> {
+        for name in self.coefficients.keys() {
+            law.regressor(name).map_err(|e| (format!("coefficients.values.{name}"), e))?;
+        }
+        let unknown = self.parameters.keys().find(|name| !law.parameters.contains_key(*name));
+        if let Some(name) = unknown {
+            let known: Vec<&str> = law.parameters.keys().map(String::as_str).collect();
+            let message = format!("law `{}` has no such parameter; it has {}", law.name, known.join(", "));
+            return Err((format!("parameters.values.{name}"), message));
+        }
+        let values = self.parameters.iter().chain(&self.coefficients);
+        if let Some((name, quantity)) = values.into_iter().find(|(_, quantity)| !quantity.value.is_finite()) {
+            return Err((format!("values.{name}"), format!("{} is not a finite number", quantity.value)));
+        }
+        match law.parameters.iter().find(|(name, _)| !self.parameters.contains_key(*name)) {
+            Some((name, parameter)) => Err((format!("parameters.values.{name}"), missing_parameter(name, parameter))),
+            None => Ok(()),
+        }
+    }
+
+    fn fill_parameters(&mut self, law: &Law) {
+        for (name, parameter) in &law.parameters {
+            if self.parameters.contains_key(name) {
+                continue;
+            }
+            let value = if parameter.is_approach_speed { self.speed_m_s } else { None };
+            let value = value.or_else(|| law.derived_parameter(name, &self.particulars));
+            if let Some(value) = value {
+                self.parameters.insert(name.clone(), Quantity::new(value, DERIVED));
+            }
+        }
+    }
+
+    /// Turns coefficients that count positive rudder to port into canonical ones.
+    fn flip_rudder(&mut self, law: &Law) {
+        let extra = law.extra_factors();
+        for (name, quantity) in &mut self.coefficients {
+            if CoefficientName::parse(name, &extra).is_ok_and(|parsed| parsed.is_odd_in("delta")) {
+                quantity.value = -quantity.value;
+            }
+        }
+    }
+}
+
+fn missing_parameter(name: &str, parameter: &crate::law::Parameter) -> String {
+    let derivation = match &parameter.from {
+        Some(from) => format!(" or the particulars it follows from: {}", from.names().into_iter().collect::<Vec<_>>().join(", ")),
+        None => String::new(),
+    };
+    format!("give `{name}` ({}, unit {}){derivation}", parameter.meaning, parameter.unit)
+}
+
+fn published_file<'a>(vessel: &'a Vessel, name: Option<&str>) -> Result<&'a PublishedModelFile, String> {
+    let models = &vessel.file.models;
+    if models.is_empty() {
+        return Err(format!("`{}` is known by particulars only; refine a source model against her trials", vessel.name()));
+    }
+    let Some(name) = name else { return Ok(&models[0]) };
+    models.iter().find(|model| model.name == name).ok_or_else(|| {
+        let known: Vec<&str> = models.iter().map(|model| model.name.as_str()).collect();
+        format!("`{}` has no model `{name}`; she has {}", vessel.name(), known.join(", "))
+    })
+}

@@ -1,0 +1,142 @@
+//! The particulars of a ship: what a file may state about her, with units in the names.
+
+use std::collections::BTreeMap;
+
+use crate::quantity::Quantity;
+use crate::units::Dimension;
+
+/// Particulars by name, in SI.
+pub type Particulars = BTreeMap<String, Quantity>;
+
+const AREA: Dimension = Dimension::new(0.0, 2.0, 0.0);
+const VOLUME: Dimension = Dimension::new(0.0, 3.0, 0.0);
+const DENSITY: Dimension = Dimension::new(1.0, -3.0, 0.0);
+const MASS: Dimension = Dimension::new(1.0, 0.0, 0.0);
+
+/// Name, dimension, smallest and largest value that is believed.
+const KNOWN: &[(&str, Dimension, f64, f64)] = &[
+    ("lpp_m", Dimension::LENGTH, 0.3, 600.0),
+    ("loa_m", Dimension::LENGTH, 0.3, 700.0),
+    ("beam_m", Dimension::LENGTH, 0.03, 100.0),
+    ("depth_moulded_m", Dimension::LENGTH, 0.01, 60.0),
+    ("draught_m", Dimension::LENGTH, 0.01, 40.0),
+    ("draught_fore_m", Dimension::LENGTH, 0.0, 40.0),
+    ("draught_aft_m", Dimension::LENGTH, 0.0, 40.0),
+    ("displacement_m3", VOLUME, 1e-4, 2e6),
+    ("mass_kg", MASS, 0.1, 2e9),
+    ("block_coefficient", Dimension::NONE, 0.2, 1.0),
+    ("x_g_m", Dimension::LENGTH, -60.0, 60.0),
+    ("gm_m", Dimension::LENGTH, -5.0, 40.0),
+    ("kg_m", Dimension::LENGTH, 0.0, 60.0),
+    ("km_m", Dimension::LENGTH, 0.0, 100.0),
+    ("kb_m", Dimension::LENGTH, 0.0, 40.0),
+    ("yaw_gyradius_ratio", Dimension::NONE, 0.1, 0.5),
+    ("roll_gyradius_ratio", Dimension::NONE, 0.1, 0.8),
+    ("service_speed_m_s", Dimension::SPEED, 0.01, 40.0),
+    ("rudder_area_m2", AREA, 1e-5, 300.0),
+    ("rudder_height_m", Dimension::LENGTH, 1e-3, 30.0),
+    ("rudder_aspect_ratio", Dimension::NONE, 0.2, 6.0),
+    ("propeller_diameter_m", Dimension::LENGTH, 1e-3, 15.0),
+    ("propeller_blades", Dimension::NONE, 2.0, 9.0),
+    ("propeller_pitch_ratio", Dimension::NONE, 0.1, 3.0),
+    ("frontal_area_m2", AREA, 1e-3, 5000.0),
+    ("lateral_area_m2", AREA, 1e-3, 20000.0),
+    ("water_density_kg_m3", DENSITY, 900.0, 1100.0),
+];
+
+/// The particulars that formulas may use without the ship stating them.
+const DEFAULTS: &[(&str, f64)] = &[("water_density_kg_m3", 1025.0)];
+
+/// The dimension of a particular.
+pub fn dimension(name: &str) -> Option<Dimension> {
+    KNOWN.iter().find(|(known, ..)| *known == name).map(|&(_, dimension, ..)| dimension)
+}
+
+/// The names that may be used.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    KNOWN.iter().map(|&(name, ..)| name)
+}
+
+/// Checks names and ranges, and that the numbers of one ship go together.
+///
+/// # Errors
+/// Names the particular at fault and what is believed of it.
+pub fn check(particulars: &Particulars) -> Result<(), (String, String)> {
+    for (name, quantity) in particulars {
+        let Some(&(_, _, low, high)) = KNOWN.iter().find(|(known, ..)| known == name) else {
+            let known: Vec<&str> = names().collect();
+            return Err((name.clone(), format!("unknown particular; known: {}", known.join(", "))));
+        };
+        if !(low..=high).contains(&quantity.value) {
+            return Err((name.clone(), format!("{} is outside {low} to {high}; is the unit right?", quantity.value)));
+        }
+    }
+    check_block_coefficient(particulars)
+}
+
+/// Displacement and block coefficient must tell the same story.
+fn check_block_coefficient(particulars: &Particulars) -> Result<(), (String, String)> {
+    let of = |name: &str| particulars.get(name).map(|q| q.value);
+    let (Some(c_b), Some(volume), Some(l), Some(b), Some(t)) =
+        (of("block_coefficient"), of("displacement_m3"), of("lpp_m"), of("beam_m"), of("draught_m"))
+    else {
+        return Ok(());
+    };
+    let from_volume = volume / (l * b * t);
+    if (from_volume / c_b - 1.0).abs() > 0.08 {
+        let message = format!("{c_b} contradicts displacement_m3 / (lpp_m beam_m draught_m) = {from_volume:.3}");
+        return Err(("block_coefficient".into(), message));
+    }
+    Ok(())
+}
+
+/// A particular's value, stated, derived from others, or by default.
+pub fn value(particulars: &Particulars, name: &str) -> Option<f64> {
+    let stated = |name: &str| particulars.get(name).map(|q| q.value);
+    let default = |name: &str| DEFAULTS.iter().find(|(known, _)| *known == name).map(|&(_, value)| value);
+    stated(name).or_else(|| derived(name, &stated)).or_else(|| default(name))
+}
+
+/// What follows from other particulars.
+fn derived(name: &str, stated: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
+    let density = stated("water_density_kg_m3").unwrap_or(DEFAULTS[0].1);
+    let box_volume = || Some(stated("lpp_m")? * stated("beam_m")? * stated("draught_m")?);
+    let volume = || stated("displacement_m3").or_else(|| Some(stated("mass_kg")? / density));
+    match name {
+        "displacement_m3" => volume().or_else(|| Some(stated("block_coefficient")? * box_volume()?)),
+        "block_coefficient" => Some(volume()? / box_volume()?),
+        "mass_kg" => Some(value_or(stated, "displacement_m3", box_volume)? * density),
+        "rudder_height_m" => Some((stated("rudder_area_m2")? * stated("rudder_aspect_ratio")?).sqrt()),
+        "rudder_aspect_ratio" => Some(stated("rudder_height_m")?.powi(2) / stated("rudder_area_m2")?),
+        _ => None,
+    }
+}
+
+fn value_or(stated: &dyn Fn(&str) -> Option<f64>, name: &str, box_volume: impl Fn() -> Option<f64>) -> Option<f64> {
+    stated(name).or_else(|| Some(stated("block_coefficient")? * box_volume()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ship(values: &[(&str, f64)]) -> Particulars {
+        values.iter().map(|&(name, value)| (name.to_owned(), Quantity::new(value, "test"))).collect()
+    }
+
+    #[test]
+    fn mass_follows_from_displacement_and_density() {
+        let ship = ship(&[("displacement_m3", 2.0), ("water_density_kg_m3", 1000.0)]);
+        assert_eq!(value(&ship, "mass_kg"), Some(2000.0));
+        assert_eq!(value(&ship, "lpp_m"), None);
+    }
+
+    #[test]
+    fn nonsense_is_refused_by_name() {
+        assert_eq!(check(&ship(&[("lenght_m", 3.0)])).unwrap_err().0, "lenght_m");
+        assert!(check(&ship(&[("lpp_m", 17500.0)])).unwrap_err().1.contains("unit"));
+        let contradictory =
+            ship(&[("lpp_m", 100.0), ("beam_m", 20.0), ("draught_m", 5.0), ("displacement_m3", 5000.0), ("block_coefficient", 0.8)]);
+        assert!(check(&contradictory).unwrap_err().1.contains("contradicts"));
+    }
+}

@@ -1,0 +1,112 @@
+//! A number with its source, as a model file writes it.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::formula;
+
+/// A value, its source, and what is known of its uncertainty.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Quantity {
+    /// The value, in the unit that its name or its law gives.
+    pub value: f64,
+    /// Key of the source it comes from; empty only while a section's default is not yet filled in.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub source: String,
+    /// Standard error, where one is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub standard_error: Option<f64>,
+    /// A remark, such as a disagreement between sources.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+}
+
+impl Quantity {
+    /// A value from a source.
+    pub fn new(value: f64, source: impl Into<String>) -> Self {
+        Self { value, source: source.into(), standard_error: None, note: None }
+    }
+}
+
+/// The ways in which a file may write a value.
+#[derive(Debug, Clone, Deserialize, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Written {
+    /// A plain number.
+    Number(f64),
+    /// A constant expression such as `"0.605/304.8"`.
+    Expression(String),
+    /// A value with its own source or remark.
+    Full(WrittenInFull),
+}
+
+/// A value with its own source or remark.
+#[derive(Debug, Clone, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WrittenInFull {
+    value: NumberOrExpression,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    source: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    note: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    standard_error: Option<f64>,
+}
+
+#[derive(Debug, Clone, Deserialize, Serialize, JsonSchema)]
+#[serde(untagged)]
+enum NumberOrExpression {
+    Number(f64),
+    Expression(String),
+}
+
+/// Values that share a source unless one says otherwise.
+#[derive(Debug, Clone, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Section {
+    /// The source of every value that names none itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// The values by name.
+    #[serde(default)]
+    pub values: BTreeMap<String, Written>,
+}
+
+impl Section {
+    /// The values with their sources filled in; `sources` are the keys that exist.
+    ///
+    /// # Errors
+    /// Names the value that is not a finite number, has no source, or cites one that the file does not list.
+    pub fn resolve(&self, sources: &[&str]) -> Result<BTreeMap<String, Quantity>, (String, String)> {
+        let one = |(name, written): (&String, &Written)| {
+            let quantity = resolve(written, self.source.as_deref(), sources).map_err(|e| (name.clone(), e))?;
+            Ok((name.clone(), quantity))
+        };
+        self.values.iter().map(one).collect()
+    }
+}
+
+fn resolve(written: &Written, default_source: Option<&str>, sources: &[&str]) -> Result<Quantity, String> {
+    let (value, source, note, standard_error) = match written {
+        Written::Number(number) => (*number, None, None, None),
+        Written::Expression(text) => (formula::constant(text)?, None, None, None),
+        Written::Full(full) => {
+            let value = match &full.value {
+                NumberOrExpression::Number(number) => *number,
+                NumberOrExpression::Expression(text) => formula::constant(text)?,
+            };
+            (value, full.source.as_deref(), full.note.clone(), full.standard_error)
+        }
+    };
+    if !value.is_finite() {
+        return Err(format!("{value} is not a finite number"));
+    }
+    let source = source.or(default_source).ok_or("has no source: give the section or the value one")?;
+    if !sources.contains(&source) {
+        return Err(format!("cites `{source}`, which is not listed under `sources`"));
+    }
+    Ok(Quantity { value, source: source.to_owned(), standard_error, note })
+}

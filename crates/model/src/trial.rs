@@ -1,0 +1,346 @@
+//! A free-running trial in canonical units and signs, and the manifest that maps a file to it.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::units::Dimension;
+
+/// What a trial may record besides time. Ship-fixed velocities are of midship, over the ground unless the trial says
+/// through the water; positive `Delta` turns the ship to starboard; angles in radians, revolutions per second.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Channel {
+    /// Position north, m.
+    X,
+    /// Position east, m.
+    Y,
+    /// Heading clockwise from north, rad, continuous.
+    Psi,
+    /// Surge velocity, m/s.
+    U,
+    /// Sway velocity, m/s, to starboard.
+    V,
+    /// Yaw rate, rad/s, to starboard.
+    R,
+    /// Roll angle, rad, to starboard.
+    Phi,
+    /// Roll rate, rad/s.
+    P,
+    /// Rudder angle, rad, positive turns the ship to starboard.
+    Delta,
+    /// Propeller revolutions, 1/s.
+    N,
+    /// True wind speed, m/s.
+    WindSpeed,
+    /// Where the true wind comes from, rad clockwise from north.
+    WindFrom,
+    /// Apparent wind speed, m/s.
+    ApparentWindSpeed,
+    /// Where the apparent wind comes from, rad clockwise from the bow.
+    ApparentWindFrom,
+    /// Water depth, m.
+    Depth,
+}
+
+/// Name in manifests, canonical column, dimension.
+const CHANNELS: [(Channel, &str, &str, Dimension); 15] = [
+    (Channel::X, "x", "x_m", Dimension::LENGTH),
+    (Channel::Y, "y", "y_m", Dimension::LENGTH),
+    (Channel::Psi, "psi", "psi_rad", Dimension::NONE),
+    (Channel::U, "u", "u_m_s", Dimension::SPEED),
+    (Channel::V, "v", "v_m_s", Dimension::SPEED),
+    (Channel::R, "r", "r_rad_s", Dimension::RATE),
+    (Channel::Phi, "phi", "phi_rad", Dimension::NONE),
+    (Channel::P, "p", "p_rad_s", Dimension::RATE),
+    (Channel::Delta, "delta", "delta_rad", Dimension::NONE),
+    (Channel::N, "n", "n_rps", Dimension::RATE),
+    (Channel::WindSpeed, "wind_speed", "wind_speed_m_s", Dimension::SPEED),
+    (Channel::WindFrom, "wind_from", "wind_from_rad", Dimension::NONE),
+    (Channel::ApparentWindSpeed, "apparent_wind_speed", "apparent_wind_speed_m_s", Dimension::SPEED),
+    (Channel::ApparentWindFrom, "apparent_wind_from", "apparent_wind_from_rad", Dimension::NONE),
+    (Channel::Depth, "depth", "depth_m", Dimension::LENGTH),
+];
+
+impl Channel {
+    /// Every channel.
+    pub fn all() -> impl Iterator<Item = Self> {
+        CHANNELS.iter().map(|&(channel, ..)| channel)
+    }
+
+    fn row(self) -> &'static (Self, &'static str, &'static str, Dimension) {
+        &CHANNELS[self as usize]
+    }
+
+    /// The name in manifests and formulas.
+    pub fn name(self) -> &'static str {
+        self.row().1
+    }
+
+    /// The canonical column name, which carries the unit.
+    pub fn column(self) -> &'static str {
+        self.row().2
+    }
+
+    /// What it measures.
+    pub fn dimension(self) -> Dimension {
+        self.row().3
+    }
+
+    /// The channel with that name in manifests.
+    pub fn by_name(name: &str) -> Option<Self> {
+        CHANNELS.iter().find(|(_, known, ..)| *known == name).map(|&(channel, ..)| channel)
+    }
+
+    /// The channel with that canonical column.
+    pub fn by_column(column: &str) -> Option<Self> {
+        CHANNELS.iter().find(|(_, _, known, _)| *known == column).map(|&(channel, ..)| channel)
+    }
+
+    /// Whether the channel is an angle that wraps.
+    pub fn is_angle(self) -> bool {
+        matches!(self, Self::Psi | Self::Phi | Self::Delta | Self::WindFrom | Self::ApparentWindFrom)
+    }
+}
+
+impl fmt::Display for Channel {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(self.name())
+    }
+}
+
+/// One trial: time and channels of equal length, in canonical units.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trial {
+    /// What people call it, usually the file's name.
+    pub name: String,
+    /// Time, s, strictly increasing.
+    pub t_s: Vec<f64>,
+    /// What was recorded; every vector is as long as `t_s`, every value finite.
+    pub channels: BTreeMap<Channel, Vec<f64>>,
+    /// What was sailed, such as `zigzag 10/10`.
+    pub manoeuvre: Option<String>,
+    /// Water depth where it is constant, m.
+    pub depth_m: Option<f64>,
+    /// What the checks remarked without refusing the trial.
+    pub warnings: Vec<Finding>,
+}
+
+impl Trial {
+    /// A channel's samples, if it was recorded.
+    pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
+        self.channels.get(&channel).map(Vec::as_slice)
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.t_s.len()
+    }
+
+    /// Whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.t_s.is_empty()
+    }
+
+    /// Time from the first to the last sample, s.
+    pub fn duration_s(&self) -> f64 {
+        match (self.t_s.first(), self.t_s.last()) {
+            (Some(first), Some(last)) => last - first,
+            _ => 0.0,
+        }
+    }
+
+    /// The median time between samples, s.
+    pub fn interval_s(&self) -> f64 {
+        let mut steps: Vec<f64> = self.t_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        steps.sort_by(f64::total_cmp);
+        steps.get(steps.len() / 2).copied().unwrap_or(0.0)
+    }
+
+    /// Ranges of samples without a gap: a step longer than 1.5 of the median starts a new one.
+    pub fn segments(&self) -> Vec<std::ops::Range<usize>> {
+        let limit = 1.5 * self.interval_s();
+        let breaks = (1..self.len()).filter(|&k| self.t_s[k] - self.t_s[k - 1] > limit);
+        let mut starts: Vec<usize> = std::iter::once(0).chain(breaks).collect();
+        starts.push(self.len());
+        starts.windows(2).map(|pair| pair[0]..pair[1]).filter(|range| !range.is_empty()).collect()
+    }
+}
+
+/// Something a check found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Finding {
+    /// Row of the file, counted from 1 with the header as row 1; absent where the whole column is meant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub row: Option<usize>,
+    /// Column as the file names it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub column: Option<String>,
+    /// What was found and what can be done.
+    pub message: String,
+}
+
+/// A trial manifest: which columns of which files are which channels, in which units and signs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// Always `trials`.
+    pub kind: TrialsKind,
+    /// The ship that was tried.
+    pub ship: String,
+    /// Signs and frames of the files.
+    #[serde(default)]
+    pub conventions: TrialConventions,
+    /// Channel (`t`, `x`, `psi`, ...) to column; canonical column names need no mapping.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, ColumnMapping>")]
+    pub columns: IndexMap<String, ColumnMapping>,
+    /// The files, relative to the manifest.
+    pub trials: Vec<ManifestTrial>,
+}
+
+/// The word `trials`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum TrialsKind {
+    /// The only one.
+    Trials,
+}
+
+/// Where a channel stands in a file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ColumnMapping {
+    /// The column's header.
+    pub column: String,
+    /// Its unit.
+    pub unit: String,
+}
+
+/// One file of a manifest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ManifestTrial {
+    /// Path, relative to the manifest.
+    pub file: String,
+    /// What was sailed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manoeuvre: Option<String>,
+    /// Water depth, m; absent for deep water.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub depth_m: Option<f64>,
+}
+
+/// Signs and frames of a file; the defaults are the canonical ones.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct TrialConventions {
+    /// Which way positive rudder turns the ship.
+    pub rudder_positive: RudderSign,
+    /// What `u` and `v` are speeds over or through.
+    pub velocity: VelocityFrame,
+    /// How wind is given.
+    pub wind: WindConvention,
+    /// What to do with rows in which a mapped value is missing or not a number.
+    pub missing: Missing,
+    /// Smooth the recorded channels at the door.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothing: Option<Smoothing>,
+}
+
+/// Which way positive rudder turns the ship.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RudderSign {
+    /// To starboard: the canonical sign.
+    #[default]
+    StarboardTurn,
+    /// To port.
+    PortTurn,
+}
+
+/// What `u` and `v` are components of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum VelocityFrame {
+    /// Ship-fixed components of the speed over the ground.
+    #[default]
+    Ground,
+    /// Ship-fixed components of the speed through the water.
+    Water,
+}
+
+/// How wind is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct WindConvention {
+    /// True or apparent.
+    pub kind: WindKind,
+    /// Where it comes from or goes to.
+    pub direction: WindDirection,
+}
+
+/// True or apparent wind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum WindKind {
+    /// Over the ground, clockwise from north.
+    #[default]
+    True,
+    /// As felt aboard, clockwise from the bow.
+    Apparent,
+}
+
+/// What a wind direction points at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum WindDirection {
+    /// Where the wind comes from.
+    #[default]
+    From,
+    /// Where it blows to.
+    To,
+}
+
+/// What to do with rows in which a value is missing or not a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Missing {
+    /// Refuse the file and name the row.
+    #[default]
+    Refuse,
+    /// Leave the row out; the gap is kept as a warning and nothing is interpolated over it.
+    Drop,
+}
+
+/// Savitzky-Golay smoothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Smoothing {
+    /// Odd number of samples in the window.
+    pub window: usize,
+    /// Degree of the polynomial, less than the window.
+    pub degree: usize,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_channel_table_is_in_the_order_of_the_enum() {
+        for channel in Channel::all() {
+            assert_eq!(Channel::by_name(channel.name()), Some(channel));
+            assert_eq!(Channel::by_column(channel.column()), Some(channel));
+        }
+    }
+
+    #[test]
+    fn a_gap_starts_a_new_segment() {
+        let trial = Trial { t_s: vec![0.0, 0.1, 0.2, 5.0, 5.1], ..Trial::default() };
+        assert_eq!(trial.segments(), vec![0..3, 3..5]);
+    }
+}

@@ -1,0 +1,145 @@
+//! Physical dimensions and the units that files may name.
+//!
+//! Angles count as dimensionless: a radian is a ratio of lengths, and the prime system treats it so.
+
+use std::fmt;
+use std::ops::{Add, Sub};
+
+/// Exponents of kilogram, metre and second. Halves are allowed: `sqrt(m)` has a dimension too.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Dimension {
+    /// Exponent of the kilogram.
+    pub mass: f64,
+    /// Exponent of the metre.
+    pub length: f64,
+    /// Exponent of the second.
+    pub time: f64,
+}
+
+impl Dimension {
+    /// A pure number (or an angle).
+    pub const NONE: Self = Self::new(0.0, 0.0, 0.0);
+    /// Metre.
+    pub const LENGTH: Self = Self::new(0.0, 1.0, 0.0);
+    /// Second.
+    pub const TIME: Self = Self::new(0.0, 0.0, 1.0);
+    /// Metre per second.
+    pub const SPEED: Self = Self::new(0.0, 1.0, -1.0);
+    /// Radian (or revolution) per second.
+    pub const RATE: Self = Self::new(0.0, 0.0, -1.0);
+    /// Newton.
+    pub const FORCE: Self = Self::new(1.0, 1.0, -2.0);
+    /// Newton metre.
+    pub const MOMENT: Self = Self::new(1.0, 2.0, -2.0);
+
+    /// `kg^mass m^length s^time`.
+    pub const fn new(mass: f64, length: f64, time: f64) -> Self {
+        Self { mass, length, time }
+    }
+
+    /// This dimension raised to a power.
+    pub fn pow(self, exponent: f64) -> Self {
+        Self::new(self.mass * exponent, self.length * exponent, self.time * exponent)
+    }
+}
+
+impl Add for Dimension {
+    type Output = Self;
+    /// The dimension of a product.
+    fn add(self, other: Self) -> Self {
+        Self::new(self.mass + other.mass, self.length + other.length, self.time + other.time)
+    }
+}
+
+impl Sub for Dimension {
+    type Output = Self;
+    /// The dimension of a quotient.
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.mass - other.mass, self.length - other.length, self.time - other.time)
+    }
+}
+
+impl fmt::Display for Dimension {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let factors: Vec<String> = [("kg", self.mass), ("m", self.length), ("s", self.time)]
+            .into_iter()
+            .filter(|(_, exponent)| *exponent != 0.0)
+            .map(|(unit, exponent)| if exponent == 1.0 { unit.into() } else { format!("{unit}^{exponent}") })
+            .collect();
+        if factors.is_empty() { out.write_str("1") } else { out.write_str(&factors.join(" ")) }
+    }
+}
+
+/// A unit: its dimension and the factor that takes a value in it to SI and radians.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    /// What it measures.
+    pub dimension: Dimension,
+    /// `value in SI = factor * value in this unit`.
+    pub to_si: f64,
+}
+
+const DEG: f64 = std::f64::consts::PI / 180.0;
+const KNOT: f64 = 1852.0 / 3600.0;
+
+/// Every unit name that a file may use; a revolution counts as one, as propeller coefficients do.
+const UNITS: &[(&str, Dimension, f64)] = &[
+    ("1", Dimension::NONE, 1.0),
+    ("rad", Dimension::NONE, 1.0),
+    ("deg", Dimension::NONE, DEG),
+    ("s", Dimension::TIME, 1.0),
+    ("ms", Dimension::TIME, 1e-3),
+    ("min", Dimension::TIME, 60.0),
+    ("m", Dimension::LENGTH, 1.0),
+    ("km", Dimension::LENGTH, 1000.0),
+    ("nmi", Dimension::LENGTH, 1852.0),
+    ("m/s", Dimension::SPEED, 1.0),
+    ("kn", Dimension::SPEED, KNOT),
+    ("km/h", Dimension::SPEED, 1.0 / 3.6),
+    ("rad/s", Dimension::RATE, 1.0),
+    ("deg/s", Dimension::RATE, DEG),
+    ("deg/min", Dimension::RATE, DEG / 60.0),
+    ("rps", Dimension::RATE, 1.0),
+    ("rpm", Dimension::RATE, 1.0 / 60.0),
+    ("kg", Dimension::new(1.0, 0.0, 0.0), 1.0),
+    ("t", Dimension::new(1.0, 0.0, 0.0), 1000.0),
+    ("m2", Dimension::new(0.0, 2.0, 0.0), 1.0),
+    ("m3", Dimension::new(0.0, 3.0, 0.0), 1.0),
+    ("kg/m3", Dimension::new(1.0, -3.0, 0.0), 1.0),
+    ("m/s2", Dimension::new(0.0, 1.0, -2.0), 1.0),
+    ("N", Dimension::FORCE, 1.0),
+    ("N m", Dimension::MOMENT, 1.0),
+];
+
+impl Unit {
+    /// Looks a unit up by the name a file gives it.
+    ///
+    /// # Errors
+    /// Names the unknown unit and lists those that are known.
+    pub fn parse(name: &str) -> Result<Self, String> {
+        let found = UNITS.iter().find(|(known, _, _)| *known == name.trim());
+        found.map(|&(_, dimension, to_si)| Self { dimension, to_si }).ok_or_else(|| {
+            let known: Vec<&str> = UNITS.iter().map(|(known, _, _)| *known).collect();
+            format!("unknown unit `{name}`; known units: {}", known.join(", "))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn knots_and_degrees_convert_to_si() {
+        assert!((Unit::parse("kn").unwrap().to_si - 0.514_444_444).abs() < 1e-9);
+        assert!((Unit::parse("deg/s").unwrap().to_si * 180.0 - std::f64::consts::PI).abs() < 1e-12);
+        assert!(Unit::parse("furlong").unwrap_err().contains("kn"));
+    }
+
+    #[test]
+    fn force_is_mass_times_acceleration() {
+        let mass = Dimension::new(1.0, 0.0, 0.0);
+        assert_eq!(mass + Dimension::SPEED - Dimension::TIME, Dimension::FORCE);
+        assert_eq!(Dimension::FORCE.to_string(), "kg m s^-2");
+    }
+}

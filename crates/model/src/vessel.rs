@@ -1,0 +1,242 @@
+//! A vessel of the zoo: particulars, conventions, and the published coefficients of her models, with sources.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Blame, FileError};
+use crate::name::check_slug;
+use crate::particulars::{self, Particulars};
+use crate::quantity::{Quantity, Section};
+use crate::source::Source;
+use crate::trial::RudderSign;
+
+/// A vessel as her file writes her; see `models/vessels/README.md`.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VesselFile {
+    /// Always `vessel`.
+    pub kind: VesselKind,
+    /// Name in the zoo: lower case, digits, hyphens.
+    pub name: String,
+    /// One line for people.
+    pub title: String,
+    /// Ships are compared within a category: `tanker`, `dry-cargo`, `car-carrier`, ...
+    pub category: String,
+    /// A finer word for people.
+    #[serde(default, rename = "type", skip_serializing_if = "Option::is_none")]
+    pub ship_type: Option<String>,
+    /// Full-scale length over model length, for models.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<f64>,
+    /// Publications by key.
+    #[serde(default)]
+    pub sources: BTreeMap<String, Source>,
+    /// How the sources count.
+    #[serde(default)]
+    pub conventions: VesselConventions,
+    /// What is known of the ship.
+    pub particulars: Section,
+    /// Characteristic vectors exactly as a publication prints them, by the definition's name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub quoted_vectors: BTreeMap<String, QuotedVectorFile>,
+    /// Her models; none for a ship known by particulars only.
+    #[serde(default)]
+    pub models: Vec<PublishedModelFile>,
+}
+
+/// The word `vessel`.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum VesselKind {
+    /// The only one.
+    Vessel,
+}
+
+/// How the sources of a vessel count.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct VesselConventions {
+    /// Which way positive rudder turns the ship in the published coefficients.
+    pub rudder_positive: RudderSign,
+}
+
+/// A characteristic vector as printed.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct QuotedVectorFile {
+    /// Where it is printed.
+    pub source: String,
+    /// A remark.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+    /// The components by name.
+    pub values: BTreeMap<String, crate::quantity::Written>,
+}
+
+/// A published or estimated model as its file writes it, in the signs of the source.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PublishedModelFile {
+    /// Its name among the vessel's models.
+    pub name: String,
+    /// The law it belongs to.
+    pub law: String,
+    /// Where the figures come from.
+    pub status: Status,
+    /// A remark.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+    /// The approach speed the figures belong to, m/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_m_s: Option<f64>,
+    /// The propeller revolutions at that speed, 1/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub revolutions_rps: Option<f64>,
+    /// The steering gear.
+    #[serde(default)]
+    pub steering: Steering,
+    /// Nonlinear parameters.
+    #[serde(default)]
+    pub parameters: Section,
+    /// Coefficients.
+    #[serde(default)]
+    pub coefficients: Section,
+}
+
+/// How far a model's figures can be trusted to be somebody's measurement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// As published from captive tests, computations or trials.
+    Published,
+    /// From particulars by regression formulas: a stopgap.
+    Estimated,
+    /// A source model carried over to another ship by the prime system, not fitted to her.
+    Transferred,
+    /// Fitted to trials.
+    Refined,
+}
+
+/// The steering gear: `rate = clamp((order - angle) / time_constant, +-rate_limit)`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Steering {
+    /// Largest rudder angle, deg.
+    pub limit_deg: f64,
+    /// Largest rudder rate, deg/s.
+    pub rate_deg_s: f64,
+    /// Time constant, s; zero for a gear that moves at its full rate until it arrives.
+    pub time_constant_s: f64,
+    /// Key of the source.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// A remark.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+}
+
+impl Default for Steering {
+    /// The least that SOLAS II-1/29 asks of a main steering gear: 35 deg, 65 deg in 28 s.
+    fn default() -> Self {
+        Self { limit_deg: 35.0, rate_deg_s: 2.32, time_constant_s: 0.0, source: None, note: None }
+    }
+}
+
+/// A vessel, read and checked.
+#[derive(Debug, Clone)]
+pub struct Vessel {
+    /// The file she came from.
+    pub file: VesselFile,
+    /// Her particulars with sources.
+    pub particulars: Particulars,
+    /// Vectors as printed, by definition and component.
+    pub quoted_vectors: BTreeMap<String, BTreeMap<String, f64>>,
+}
+
+impl Vessel {
+    /// Reads and checks a vessel; her models are checked against their laws when they are taken.
+    ///
+    /// # Errors
+    /// Names file, line and field of the first thing that is wrong.
+    pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
+        let blame = Blame::new(file, text);
+        Self::check(blame.read()?, &blame)
+    }
+
+    /// Checks a vessel that came as a document; `name` is what errors call it.
+    ///
+    /// # Errors
+    /// As [`Vessel::parse`].
+    pub fn from_file(name: &str, raw: VesselFile) -> Result<Self, FileError> {
+        Self::check(raw, &Blame::new(name, ""))
+    }
+
+    fn check(raw: VesselFile, blame: &Blame<'_>) -> Result<Self, FileError> {
+        check_slug(&raw.name).map_err(|e| blame.at("name", e))?;
+        check_slug(&raw.category).map_err(|e| blame.at("category", e))?;
+        if raw.scale.is_some_and(|scale| !(1.0..=1000.0).contains(&scale)) {
+            return Err(blame.at("scale", "is full-scale length over model length, from 1 to 1000"));
+        }
+        let keys: Vec<&str> = raw.sources.keys().map(String::as_str).collect();
+        let at = |section: &str| {
+            let section = section.to_owned();
+            move |(name, message): (String, String)| blame.at(&format!("{section}.{name}"), message)
+        };
+        let particulars = raw.particulars.resolve(&keys).map_err(at("particulars.values"))?;
+        particulars::check(&particulars).map_err(at("particulars.values"))?;
+        let quoted_vectors = quoted(&raw, &keys).map_err(at("quoted_vectors"))?;
+        for (index, model) in raw.models.iter().enumerate() {
+            check_model(model, raw.models.iter().take(index)).map_err(at("models"))?;
+        }
+        Ok(Self { file: raw, particulars, quoted_vectors })
+    }
+
+    /// Her name in the zoo.
+    pub fn name(&self) -> &str {
+        &self.file.name
+    }
+
+    /// A particular, stated or derived, in SI.
+    pub fn particular(&self, name: &str) -> Option<f64> {
+        particulars::value(&self.particulars, name)
+    }
+
+    /// The keys of her sources.
+    pub fn source_keys(&self) -> Vec<&str> {
+        self.file.sources.keys().map(String::as_str).collect()
+    }
+}
+
+type FieldError = (String, String);
+
+fn quoted(raw: &VesselFile, keys: &[&str]) -> Result<BTreeMap<String, BTreeMap<String, f64>>, FieldError> {
+    let one = |(name, vector): (&String, &QuotedVectorFile)| {
+        let section = Section { source: Some(vector.source.clone()), values: vector.values.clone() };
+        let values: BTreeMap<String, Quantity> = section.resolve(keys)?;
+        Ok((name.clone(), values.into_iter().map(|(name, quantity)| (name, quantity.value)).collect()))
+    };
+    raw.quoted_vectors.iter().map(one).collect()
+}
+
+fn check_model<'a>(model: &PublishedModelFile, mut earlier: impl Iterator<Item = &'a PublishedModelFile>) -> Result<(), FieldError> {
+    let blame = |field: &str, message: &str| Err((field.to_owned(), message.to_owned()));
+    if let Err(message) = check_slug(&model.name) {
+        return Err(("name".into(), message));
+    }
+    if earlier.any(|other| other.name == model.name) {
+        return Err((model.name.clone(), "two models of one ship must have different names".into()));
+    }
+    let gear = &model.steering;
+    if !(gear.limit_deg > 0.0 && gear.limit_deg <= 90.0) {
+        return blame("steering.limit_deg", "must be above 0 and at most 90 deg");
+    }
+    if !(gear.rate_deg_s > 0.0 && gear.rate_deg_s.is_finite() && gear.time_constant_s >= 0.0 && gear.time_constant_s.is_finite()) {
+        return blame("steering.rate_deg_s", "the rate must be above 0 deg/s and the time constant not below 0 s");
+    }
+    if model.speed_m_s.is_some_and(|speed| !(speed > 0.0 && speed < 50.0)) {
+        return blame("speed_m_s", "must be above 0 and below 50 m/s");
+    }
+    Ok(())
+}

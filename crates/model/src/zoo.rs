@@ -1,0 +1,160 @@
+//! The zoo: laws and vessels by name, embedded in the program and extended at run time.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use include_dir::{Dir, include_dir};
+
+use crate::error::FileError;
+use crate::law::Law;
+use crate::model::Model;
+use crate::vessel::Vessel;
+
+static MODELS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../models");
+
+/// Laws and vessels by name.
+#[derive(Debug, Clone, Default)]
+pub struct Zoo {
+    laws: BTreeMap<String, Arc<Law>>,
+    vessels: BTreeMap<String, Arc<Vessel>>,
+    texts: BTreeMap<String, String>,
+}
+
+impl Zoo {
+    /// The laws and vessels that the program carries.
+    ///
+    /// # Errors
+    /// The first file that does not read; a test keeps this from happening in a release.
+    pub fn embedded() -> Result<Self, FileError> {
+        let mut zoo = Self::default();
+        for (name, text) in yaml_files("laws") {
+            zoo.add_law(name, text)?;
+        }
+        for (name, text) in yaml_files("vessels") {
+            zoo.add_vessel(name, text)?;
+        }
+        Ok(zoo)
+    }
+
+    /// Adds a law, or replaces the one of the same name.
+    ///
+    /// # Errors
+    /// As [`Law::parse`].
+    pub fn add_law(&mut self, file: &str, text: &str) -> Result<Arc<Law>, FileError> {
+        let law = Arc::new(Law::parse(file, text)?);
+        self.texts.insert(format!("law {}", law.name), text.to_owned());
+        self.laws.insert(law.name.clone(), Arc::clone(&law));
+        Ok(law)
+    }
+
+    /// Adds a vessel, or replaces the one of the same name; each of her models is checked against its law.
+    ///
+    /// # Errors
+    /// As [`Vessel::parse`] and [`Model::published`].
+    pub fn add_vessel(&mut self, file: &str, text: &str) -> Result<Arc<Vessel>, FileError> {
+        let vessel = Arc::new(Vessel::parse(file, text)?);
+        self.check_models(&vessel).map_err(|error| FileError { file: file.to_owned(), ..error })?;
+        self.texts.insert(format!("vessel {}", vessel.name()), text.to_owned());
+        self.vessels.insert(vessel.name().to_owned(), Arc::clone(&vessel));
+        Ok(vessel)
+    }
+
+    /// Checks that each model of a vessel fits its law.
+    ///
+    /// # Errors
+    /// Names the model and the field.
+    pub fn check_models(&self, vessel: &Vessel) -> Result<(), FileError> {
+        vessel.file.models.iter().try_for_each(|model| self.published(vessel, Some(&model.name)).map(|_| ()))
+    }
+
+    /// A published model of a vessel, by default her first.
+    ///
+    /// # Errors
+    /// Says which law, model, parameter or coefficient is missing.
+    pub fn published(&self, vessel: &Vessel, name: Option<&str>) -> Result<Model, FileError> {
+        let models = &vessel.file.models;
+        let wanted = name.map_or_else(|| models.first(), |name| models.iter().find(|model| model.name == name));
+        let law_name = wanted.map_or("", |model| model.law.as_str());
+        match self.laws.get(law_name) {
+            Some(law) => Model::published(vessel, name, law),
+            None if wanted.is_none() => Model::published(vessel, name, &Law::empty()),
+            None => Err(FileError {
+                file: vessel.name().to_owned(),
+                line: None,
+                field: "models.law".into(),
+                message: format!("there is no law `{law_name}`; there are {}", self.law_names().join(", ")),
+            }),
+        }
+    }
+
+    /// A model by `ship` or `ship/model`.
+    ///
+    /// # Errors
+    /// Says what is not in the zoo, and what is.
+    pub fn model(&self, name: &str) -> Result<Model, FileError> {
+        let (ship, model) = name.split_once('/').map_or((name, None), |(ship, model)| (ship, Some(model)));
+        let vessel = self.vessels.get(ship).ok_or_else(|| self.no_ship(ship))?;
+        self.published(vessel, model)
+    }
+
+    /// The refusal of a ship that is not here.
+    pub fn no_ship(&self, name: &str) -> FileError {
+        let known: Vec<&str> = self.vessels.keys().map(String::as_str).collect();
+        let message = format!("there is no such ship in the zoo and no such file; the zoo has {}", known.join(", "));
+        FileError { file: name.to_owned(), line: None, field: String::new(), message }
+    }
+
+    /// A law by name.
+    pub fn law(&self, name: &str) -> Option<&Arc<Law>> {
+        self.laws.get(name)
+    }
+
+    /// A vessel by name.
+    pub fn vessel(&self, name: &str) -> Option<&Arc<Vessel>> {
+        self.vessels.get(name)
+    }
+
+    /// Every law, by name.
+    pub fn laws(&self) -> impl Iterator<Item = &Arc<Law>> {
+        self.laws.values()
+    }
+
+    /// Every vessel, by name.
+    pub fn vessels(&self) -> impl Iterator<Item = &Arc<Vessel>> {
+        self.vessels.values()
+    }
+
+    /// The text of a law's file.
+    pub fn law_text(&self, name: &str) -> Option<&str> {
+        self.texts.get(&format!("law {name}")).map(String::as_str)
+    }
+
+    /// The text of a vessel's file.
+    pub fn vessel_text(&self, name: &str) -> Option<&str> {
+        self.texts.get(&format!("vessel {name}")).map(String::as_str)
+    }
+
+    fn law_names(&self) -> Vec<&str> {
+        self.laws.keys().map(String::as_str).collect()
+    }
+}
+
+fn yaml_files(folder: &str) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let files = MODELS.get_dir(folder).map(Dir::files).into_iter().flatten();
+    files
+        .filter(|file| file.path().extension().is_some_and(|extension| extension == "yaml"))
+        .filter_map(|file| Some((file.path().to_str()?, file.contents_utf8()?)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_embedded_file_reads() {
+        let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+        for ship in ["mariner", "sr108", "kvlcc2", "kvlcc2-7m", "kcs", "esso-tanker", "pcc", "esso-osaka-3m"] {
+            assert!(zoo.vessel(ship).is_some(), "{ship} is missing");
+        }
+    }
+}
