@@ -1,1 +1,3 @@
-//! Shared helpers of the journeys.
+//! What the journeys and the accuracy tests share: finding the measured data, reading it, comparing with it.
+
+pub mod shared;

@@ -1,1 +1,19 @@
-//! Placeholder while the rooms are being built.
+//! Forward: from a model and what is done to the ship to her motion, and to the figures by which she is judged.
+
+pub mod envelope;
+pub mod error;
+pub mod gear;
+pub mod integrate;
+pub mod manoeuvre;
+pub mod metrics;
+pub mod plant;
+pub mod recorded;
+pub mod ship;
+pub mod state;
+pub mod tape;
+
+pub use envelope::{Envelope, Stopped};
+pub use integrate::Method;
+pub use plant::{Plant, PlantError};
+pub use ship::{Order, Run, Ship};
+pub use state::{StateVector, Trajectory};

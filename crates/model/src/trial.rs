@@ -125,6 +125,8 @@ pub struct Trial {
     pub manoeuvre: Option<String>,
     /// Water depth where it is constant, m.
     pub depth_m: Option<f64>,
+    /// Whether `u` and `v` are speeds over the ground or through the water.
+    pub velocity: VelocityFrame,
     /// What the checks remarked without refusing the trial.
     pub warnings: Vec<Finding>,
 }

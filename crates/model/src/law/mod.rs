@@ -127,6 +127,15 @@ impl Law {
     /// # Errors
     /// Says why the law has no such coefficient.
     pub fn regressor(&self, name: &str) -> Result<(Axis, Expr), String> {
+        let (axis, term) = self.term(name)?;
+        Ok((axis, self.axes[&axis].scale.clone().times(term)))
+    }
+
+    /// The regressor of a coefficient without its axis' scale.
+    ///
+    /// # Errors
+    /// Says why the law has no such coefficient.
+    pub fn term(&self, name: &str) -> Result<(Axis, Expr), String> {
         let parsed = CoefficientName::parse(name, &self.extra_factors())?;
         let axis = self.axes.get(&parsed.axis).ok_or_else(|| format!("law `{}` has no {} axis", self.name, parsed.axis))?;
         let term = match axis.terms.get(name) {
@@ -137,7 +146,7 @@ impl Law {
                 return Err(format!("law `{}` has no coefficient `{name}`; it has {}", self.name, known.join(", ")));
             }
         };
-        Ok((parsed.axis, axis.scale.clone().times(term)))
+        Ok((parsed.axis, term))
     }
 
     /// The regressor that a name spells: the product of what its factors stand for.

@@ -1,0 +1,52 @@
+//! The range in which a simulation is believed: outside it a run stops with a reason, never with infinities.
+
+use crate::state::{StateVector, at, speed};
+
+/// Limits of what a ship can do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Envelope {
+    speed_m_s: f64,
+    yaw_rate_rad_s: f64,
+    roll_rad: f64,
+}
+
+/// Why a simulation was stopped.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("stopped at {t_s:.1} s: {reason}")]
+pub struct Stopped {
+    /// When, s.
+    pub t_s: f64,
+    /// What left the physical range.
+    pub reason: String,
+}
+
+impl Envelope {
+    /// For a ship of a length that approaches at a speed: three times that speed (at least a Froude number of 0.1), a
+    /// yaw rate of one length in a sixth of the time she takes to sail it, 80 degrees of roll.
+    pub fn new(lpp_m: f64, approach_speed_m_s: f64) -> Self {
+        let reference = approach_speed_m_s.abs().max(0.1 * (9.806_65 * lpp_m).sqrt());
+        Self { speed_m_s: 3.0 * reference, yaw_rate_rad_s: 6.0 * reference / lpp_m, roll_rad: 80_f64.to_radians() }
+    }
+
+    /// Checks a state.
+    ///
+    /// # Errors
+    /// Says what left the range.
+    pub fn check(&self, t_s: f64, state: &StateVector) -> Result<(), Stopped> {
+        let stop = |reason: String| Err(Stopped { t_s, reason });
+        if state.iter().any(|value| !value.is_finite()) {
+            return stop("the state is no longer a number".into());
+        }
+        if speed(state) > self.speed_m_s {
+            return stop(format!("speed {:.2} m/s exceeds {:.2} m/s", speed(state), self.speed_m_s));
+        }
+        if state[at::R].abs() > self.yaw_rate_rad_s {
+            let limit = self.yaw_rate_rad_s.to_degrees();
+            return stop(format!("yaw rate {:.2} deg/s exceeds {limit:.2} deg/s", state[at::R].to_degrees()));
+        }
+        if state[at::PHI].abs() > self.roll_rad {
+            return stop(format!("roll {:.0} deg: the ship has capsized", state[at::PHI].to_degrees()));
+        }
+        Ok(())
+    }
+}

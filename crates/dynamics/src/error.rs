@@ -1,0 +1,92 @@
+//! How far a simulated trial is from the measured one.
+
+use std::collections::BTreeMap;
+
+use sistership_model::trial::{Channel, Trial};
+
+use crate::recorded::Replay;
+use crate::state::at;
+
+/// The channels that are compared, with their place in the state.
+pub const COMPARED: [(Channel, usize); 8] = [
+    (Channel::U, at::U),
+    (Channel::V, at::V),
+    (Channel::R, at::R),
+    (Channel::Psi, at::PSI),
+    (Channel::X, at::X),
+    (Channel::Y, at::Y),
+    (Channel::Phi, at::PHI),
+    (Channel::P, at::P),
+];
+
+/// Sums of squared differences by channel, which add over trials.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SquaredError {
+    sums: BTreeMap<Channel, (f64, usize)>,
+}
+
+impl SquaredError {
+    /// The differences of one simulated trial; the heading's is wrapped to half a turn.
+    pub fn of(trial: &Trial, replay: &Replay) -> Self {
+        let mut error = Self::default();
+        for (channel, index) in COMPARED {
+            let Some(measured) = trial.channel(channel) else { continue };
+            let square = |(state, &k): (&crate::StateVector, &usize)| difference(channel, state[index], measured[k]).powi(2);
+            let sum = replay.track.states.iter().zip(&replay.samples).map(square).sum();
+            error.sums.insert(channel, (sum, replay.samples.len()));
+        }
+        error
+    }
+
+    /// Adds another trial's.
+    pub fn add(&mut self, other: &Self) {
+        for (channel, (sum, count)) in &other.sums {
+            let entry = self.sums.entry(*channel).or_default();
+            entry.0 += sum;
+            entry.1 += count;
+        }
+    }
+
+    /// Root mean square by channel name.
+    pub fn rmse(&self) -> BTreeMap<String, f64> {
+        let root = |(sum, count): &(f64, usize)| if *count == 0 { f64::MAX } else { (sum / *count as f64).sqrt() };
+        self.sums.iter().map(|(channel, pair)| (channel.name().to_owned(), root(pair))).collect()
+    }
+
+    /// Root mean square of one channel.
+    pub fn channel_rmse(&self, channel: Channel) -> Option<f64> {
+        self.sums.get(&channel).filter(|(_, count)| *count > 0).map(|(sum, count)| (sum / *count as f64).sqrt())
+    }
+}
+
+fn difference(channel: Channel, simulated: f64, measured: f64) -> f64 {
+    let plain = simulated - measured;
+    if channel == Channel::Psi { wrapped(plain) } else { plain }
+}
+
+/// An angle in (-pi, pi].
+pub fn wrapped(angle: f64) -> f64 {
+    let turn = std::f64::consts::TAU;
+    angle - turn * (angle / turn).round()
+}
+
+/// Standard deviations of the compared channels over trials, the scale of [`standardised_mse`].
+pub fn standard_deviations(trials: &[&Trial]) -> BTreeMap<Channel, f64> {
+    let of = |channel: Channel| {
+        let values: Vec<f64> = trials.iter().filter_map(|trial| trial.channel(channel)).flatten().copied().collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64;
+        (!values.is_empty()).then(|| variance.sqrt())
+    };
+    COMPARED.iter().filter_map(|&(channel, _)| Some((channel, of(channel)?))).collect()
+}
+
+/// The standardised mean squared error of Wakita et al. 2022, Eq. 26: the mean over samples of the squared differences
+/// of `u, v, r, psi, x, y`, each divided by its standard deviation, summed over the channels that the trial has.
+pub fn standardised_mse(error: &SquaredError, deviations: &BTreeMap<Channel, f64>) -> f64 {
+    let term = |&(channel, _): &(Channel, usize)| {
+        let (rmse, deviation) = (error.channel_rmse(channel)?, deviations.get(&channel)?);
+        (*deviation > 0.0).then(|| (rmse / deviation).powi(2))
+    };
+    COMPARED[..6].iter().filter_map(term).sum()
+}

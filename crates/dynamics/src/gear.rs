@@ -1,0 +1,30 @@
+//! The steering gear: from the ordered rudder angle to the actual one.
+
+use sistership_model::vessel::Steering;
+
+/// A steering gear with a limit, a rate limit and a time constant, SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gear {
+    limit_rad: f64,
+    rate_rad_s: f64,
+    time_constant_s: f64,
+}
+
+impl Gear {
+    /// A gear as a model describes it.
+    pub fn new(steering: &Steering) -> Self {
+        Self {
+            limit_rad: steering.limit_deg.to_radians(),
+            rate_rad_s: steering.rate_deg_s.to_radians(),
+            time_constant_s: steering.time_constant_s,
+        }
+    }
+
+    /// The rudder rate, rad/s. A gear without a time constant would chatter about its order: within what it covers in
+    /// one step of `step_s` it goes straight there.
+    pub fn rate(&self, order_rad: f64, angle_rad: f64, step_s: f64) -> f64 {
+        let order = order_rad.clamp(-self.limit_rad, self.limit_rad);
+        let time = self.time_constant_s.max(step_s);
+        ((order - angle_rad) / time).clamp(-self.rate_rad_s, self.rate_rad_s)
+    }
+}

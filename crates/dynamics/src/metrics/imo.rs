@@ -1,0 +1,99 @@
+//! IMO Standards for ship manoeuvrability, resolution MSC.137(76), annex, section 5.3.
+
+use serde::{Deserialize, Serialize};
+
+use super::{TurningMetrics, ZigzagMetrics};
+
+/// One criterion with its limit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Criterion {
+    /// Its name.
+    pub criterion: String,
+    /// What was found, in `unit`; absent where the manoeuvre did not reach it.
+    pub value: Option<f64>,
+    /// The most it may be.
+    pub limit: f64,
+    /// Unit of value and limit: `L` (ship lengths) or `deg`.
+    pub unit: String,
+    /// Whether it is met; unknown without a value.
+    pub pass: Option<bool>,
+}
+
+impl Criterion {
+    fn new(name: &str, value: Option<f64>, limit: f64, unit: &str) -> Self {
+        let pass = value.map(|value| value <= limit);
+        Self { criterion: name.into(), value, limit, unit: unit.into(), pass }
+    }
+}
+
+/// The criteria: turning at the largest rudder (35 deg), initial turning at 10 deg, zigzags 10/10 and 20/20. Where both
+/// sides were sailed the worse counts. `speed_m_s` is the test speed, `lpp_m` the length.
+pub fn criteria(
+    lpp_m: f64,
+    speed_m_s: f64,
+    turns: &[TurningMetrics],
+    zigzags: &[ZigzagMetrics],
+    initial_turning_m: Option<f64>,
+) -> Vec<Criterion> {
+    let hard = turns.iter().filter(|turn| turn.rudder_deg.abs() >= 34.5);
+    let hard: Vec<&TurningMetrics> = hard.collect();
+    let lengths = |of: &dyn Fn(&TurningMetrics) -> Option<f64>| worst(hard.iter().map(|turn| of(turn))).map(|m| m / lpp_m);
+    let zigzag = |rudder: f64, of: &dyn Fn(&ZigzagMetrics) -> Option<f64>| {
+        worst(zigzags.iter().filter(|z| z.rudder_deg.abs() == rudder && z.switch_deg == rudder).map(of))
+    };
+    let time = lpp_m / speed_m_s;
+    vec![
+        Criterion::new("advance", lengths(&|turn| turn.advance_m), 4.5, "L"),
+        Criterion::new("tactical diameter", lengths(&|turn| turn.tactical_diameter_m), 5.0, "L"),
+        Criterion::new("initial turning ability", initial_turning_m.map(|m| m / lpp_m), 2.5, "L"),
+        Criterion::new("10/10 first overshoot", zigzag(10.0, &|z| z.first_overshoot_deg), first_limit(time), "deg"),
+        Criterion::new("10/10 second overshoot", zigzag(10.0, &|z| z.second_overshoot_deg), second_limit(time), "deg"),
+        Criterion::new("20/20 first overshoot", zigzag(20.0, &|z| z.first_overshoot_deg), 25.0, "deg"),
+    ]
+}
+
+/// The worst of several, unknown as soon as one is unknown.
+fn worst(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+    let values: Option<Vec<f64>> = values.collect();
+    values?.into_iter().reduce(f64::max)
+}
+
+/// First overshoot of the 10/10 zigzag: 10 deg below L/V = 10 s, 20 deg from 30 s, 5 + (L/V)/2 between.
+fn first_limit(time_s: f64) -> f64 {
+    if time_s < 10.0 {
+        10.0
+    } else if time_s >= 30.0 {
+        20.0
+    } else {
+        5.0 + 0.5 * time_s
+    }
+}
+
+/// Second overshoot of the 10/10 zigzag: 25 deg below L/V = 10 s, 40 deg from 30 s, 17.5 + 0.75 (L/V) between.
+fn second_limit(time_s: f64) -> f64 {
+    if time_s < 10.0 {
+        25.0
+    } else if time_s >= 30.0 {
+        40.0
+    } else {
+        17.5 + 0.75 * time_s
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn overshoot_limits_are_continuous() {
+        assert!((first_limit(10.0) - first_limit(9.999)).abs() < 0.01 && (first_limit(29.999) - 20.0).abs() < 0.01);
+        assert!((second_limit(10.0) - 25.0).abs() < 0.01 && (second_limit(29.999) - 40.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn an_unfinished_turn_is_neither_pass_nor_fail() {
+        let all = criteria(100.0, 5.0, &[], &[], Some(300.0));
+        assert_eq!(all[0].pass, None);
+        assert_eq!(all[2].pass, Some(false));
+    }
+}

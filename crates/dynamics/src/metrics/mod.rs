@@ -1,0 +1,9 @@
+//! The figures by which a ship's manoeuvring is judged, by their ITTC and IMO names.
+
+mod imo;
+mod turning;
+mod zigzag;
+
+pub use imo::{Criterion, criteria};
+pub use turning::{TurningMetrics, initial_turning_distance};
+pub use zigzag::ZigzagMetrics;

@@ -1,0 +1,103 @@
+//! Turning circle: ITTC 7.5-04-02-01, section on turning tests.
+
+use serde::{Deserialize, Serialize};
+
+use crate::state::{StateVector, Trajectory, at, speed};
+
+/// A turning circle, measured from the execution of the rudder. Lengths are positive towards the side of the turn.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TurningMetrics {
+    /// Ordered rudder angle, deg, positive to starboard.
+    pub rudder_deg: f64,
+    /// Distance along the first heading until the heading has changed by 90 deg, m.
+    pub advance_m: Option<f64>,
+    /// Distance across the first heading until the heading has changed by 90 deg, m.
+    pub transfer_m: Option<f64>,
+    /// Distance across the first heading until the heading has changed by 180 deg, m.
+    pub tactical_diameter_m: Option<f64>,
+    /// Speed over yaw rate at the end, m.
+    pub steady_radius_m: Option<f64>,
+    /// Largest distance along the first heading, m.
+    pub max_advance_m: f64,
+    /// Largest distance across the first heading, m.
+    pub max_transfer_m: f64,
+    /// Speed at the execution less speed at the end, m/s.
+    pub speed_loss_m_s: f64,
+}
+
+impl TurningMetrics {
+    /// From a track that starts at the execution of the rudder.
+    pub fn of(track: &Trajectory, rudder_deg: f64) -> Option<Self> {
+        let (first, last) = (track.states.first()?, track.last()?);
+        let seen = View::new(first, rudder_deg);
+        let along = |state: &StateVector| seen.along(state);
+        let across = |state: &StateVector| seen.across(state);
+        let largest = |of: &dyn Fn(&StateVector) -> f64| track.states.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+        let rate = last[at::R].abs();
+        Some(Self {
+            rudder_deg,
+            advance_m: seen.at_turn(track, 90.0, &along),
+            transfer_m: seen.at_turn(track, 90.0, &across),
+            tactical_diameter_m: seen.at_turn(track, 180.0, &across),
+            steady_radius_m: (rate > 1e-9).then(|| speed(last) / rate),
+            max_advance_m: largest(&along),
+            max_transfer_m: largest(&across),
+            speed_loss_m_s: speed(first) - speed(last),
+        })
+    }
+}
+
+/// The distance sailed until the heading has changed by `change_deg`, m; with 10 deg of rudder and of change, IMO's
+/// initial turning ability.
+pub fn initial_turning_distance(track: &Trajectory, rudder_deg: f64, change_deg: f64) -> Option<f64> {
+    let first = track.states.first()?;
+    let mut sailed = vec![0.0];
+    for pair in track.states.windows(2) {
+        let leg = (pair[1][at::X] - pair[0][at::X]).hypot(pair[1][at::Y] - pair[0][at::Y]);
+        sailed.push(sailed[sailed.len() - 1] + leg);
+    }
+    let (k, w) = View::new(first, rudder_deg).crossing(track, change_deg)?;
+    Some(sailed[k - 1] + w * (sailed[k] - sailed[k - 1]))
+}
+
+/// The plane as seen from the start of the turn.
+struct View {
+    origin: StateVector,
+    side: f64,
+}
+
+impl View {
+    fn new(origin: &StateVector, rudder_deg: f64) -> Self {
+        Self { origin: *origin, side: if rudder_deg < 0.0 { -1.0 } else { 1.0 } }
+    }
+
+    fn offset(&self, state: &StateVector) -> (f64, f64) {
+        (state[at::X] - self.origin[at::X], state[at::Y] - self.origin[at::Y])
+    }
+
+    fn along(&self, state: &StateVector) -> f64 {
+        let (x, y) = self.offset(state);
+        let (sin, cos) = self.origin[at::PSI].sin_cos();
+        x * cos + y * sin
+    }
+
+    fn across(&self, state: &StateVector) -> f64 {
+        let (x, y) = self.offset(state);
+        let (sin, cos) = self.origin[at::PSI].sin_cos();
+        self.side * (y * cos - x * sin)
+    }
+
+    /// The sample after which the heading has changed by an angle, and how far between the two samples.
+    fn crossing(&self, track: &Trajectory, change_deg: f64) -> Option<(usize, f64)> {
+        let turned = |state: &StateVector| self.side * (state[at::PSI] - self.origin[at::PSI]) - change_deg.to_radians();
+        let k = track.states.iter().position(|state| turned(state) >= 0.0).filter(|&k| k > 0)?;
+        let (before, after) = (turned(&track.states[k - 1]), turned(&track.states[k]));
+        Some((k, before / (before - after)))
+    }
+
+    fn at_turn(&self, track: &Trajectory, change_deg: f64, of: &dyn Fn(&StateVector) -> f64) -> Option<f64> {
+        let (k, w) = self.crossing(track, change_deg)?;
+        let (before, after) = (of(&track.states[k - 1]), of(&track.states[k]));
+        Some(before + w * (after - before))
+    }
+}

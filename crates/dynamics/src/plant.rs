@@ -1,0 +1,206 @@
+//! A model made ready to run: its law and figures on one tape, and the accelerations that follow.
+
+use nalgebra::{LU, Matrix4, U4, Vector4};
+use sistership_model::coefficient::Axis;
+use sistership_model::formula::Expr;
+use sistership_model::law::{Law, STATES};
+use sistership_model::particulars;
+use sistership_model::Model;
+
+use crate::state::{StateVector, at};
+use crate::tape::{Binding, Lanes, Tape, TapeBuilder};
+
+/// Why a model cannot be made ready.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum PlantError {
+    /// A formula needs a particular or parameter that the model does not have.
+    #[error("law `{law}` needs `{name}`, which the model `{model}` does not give")]
+    Missing {
+        /// The law.
+        law: String,
+        /// The name without a value.
+        name: String,
+        /// The model.
+        model: String,
+    },
+    /// The mass matrix cannot be solved.
+    #[error("the mass matrix of `{0}` is singular or not positive: check mass, inertia and added masses")]
+    Mass(String),
+    /// A coefficient or its formula does not fit the law.
+    #[error("{0}")]
+    Law(String),
+}
+
+/// What is given from outside at an instant, in the order of the law's inputs.
+pub type Inputs = [f64; MAX_INPUTS];
+
+/// Most inputs a law may declare.
+pub const MAX_INPUTS: usize = 8;
+
+/// A model made ready to run.
+#[derive(Debug)]
+pub struct Plant {
+    tape: Tape,
+    layout: Layout,
+    constant_mass: Option<LU<f64, U4, U4>>,
+    input_names: Vec<String>,
+    input_defaults: Vec<Option<f64>>,
+}
+
+/// Where the outputs stand on the tape.
+#[derive(Debug, Clone, Default)]
+struct Layout {
+    /// Forces by axis in the order X, Y, K, N; absent axes have none.
+    forces: [Option<usize>; 4],
+    /// Mass matrix entries in the same order.
+    mass: [[Option<usize>; 4]; 4],
+    /// Rates of x, y, psi, phi where the law says them.
+    kinematics: [Option<usize>; 4],
+}
+
+/// Room to evaluate in, kept from step to step so that the time loop allocates nothing.
+#[derive(Debug, Default)]
+pub struct Work {
+    inputs: Vec<Lanes<1>>,
+    work: Vec<Lanes<1>>,
+}
+
+/// Forces in N and moments in N m, accelerations in SI: X, Y, K, N.
+type ByAxis = Vector4<f64>;
+
+impl Plant {
+    /// Lowers a model onto a tape.
+    ///
+    /// # Errors
+    /// Names what the model does not give, or says that the mass matrix cannot be solved.
+    pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
+        let bind = |name: &str| binding(model, law, name);
+        let names: Vec<&str> = STATES.iter().map(|&(name, _)| name).chain(law.inputs.keys().map(String::as_str)).collect();
+        if law.inputs.len() > MAX_INPUTS {
+            return Err(PlantError::Law(format!("law `{}` has more than {MAX_INPUTS} inputs", law.name)));
+        }
+        let mut builder = TapeBuilder::new(&names, &bind);
+        let missing = |name: String| PlantError::Missing { law: law.name.clone(), name, model: model.name.clone() };
+        let layout = lay_out(model, law, &mut builder, &missing)?;
+        let tape = builder.finish();
+        let constant_mass = constant_mass(&tape, &layout).map(LU::new);
+        if constant_mass.as_ref().is_some_and(|lu| !lu.is_invertible() || lu.determinant() <= 0.0) {
+            return Err(PlantError::Mass(model.name.clone()));
+        }
+        Ok(Self {
+            tape,
+            layout,
+            constant_mass,
+            input_names: law.inputs.keys().cloned().collect(),
+            input_defaults: law.inputs.values().map(|input| input.default).collect(),
+        })
+    }
+
+    /// The inputs that the law takes, in their order.
+    pub fn input_names(&self) -> &[String] {
+        &self.input_names
+    }
+
+    /// The default of each input.
+    pub fn input_defaults(&self) -> &[Option<f64>] {
+        &self.input_defaults
+    }
+
+    /// The rate of change of the state; that of the rudder is left at zero, the steering gear's business.
+    pub fn rate(&self, state: &StateVector, inputs: &Inputs, room: &mut Work) -> StateVector {
+        let Work { inputs: lanes, work } = room;
+        lanes.clear();
+        lanes.extend([at::U, at::V, at::R, at::P, at::PHI, at::PSI].map(|index| [state[index]]));
+        lanes.extend(inputs[..self.input_names.len()].iter().map(|&value| [value]));
+        self.tape.run(lanes, work);
+        let acceleration = self.accelerations(work);
+        let mut rate = StateVector::zeros();
+        rate[at::U] = acceleration[0];
+        rate[at::V] = acceleration[1];
+        rate[at::P] = acceleration[2];
+        rate[at::R] = acceleration[3];
+        self.kinematics(state, work, &mut rate);
+        rate
+    }
+
+    fn accelerations(&self, work: &[Lanes<1>]) -> ByAxis {
+        let read = |output: Option<usize>| output.map_or(0.0, |output| self.tape.read(output, work)[0]);
+        let forces = ByAxis::from_fn(|row, _| read(self.layout.forces[row]));
+        if let Some(mass) = &self.constant_mass {
+            return mass.solve(&forces).unwrap_or_else(|| ByAxis::repeat(f64::NAN));
+        }
+        let mass = Matrix4::from_fn(|row, column| {
+            self.layout.mass[row][column].map_or(f64::from(u8::from(row == column)), |output| self.tape.read(output, work)[0])
+        });
+        mass.lu().solve(&forces).unwrap_or_else(|| ByAxis::repeat(f64::NAN))
+    }
+
+    fn kinematics(&self, state: &StateVector, work: &[Lanes<1>], rate: &mut StateVector) {
+        let (u, v) = (state[at::U], state[at::V]);
+        let (sin, cos) = state[at::PSI].sin_cos();
+        let has_roll = self.layout.forces[2].is_some();
+        let plain = [u * cos - v * sin, u * sin + v * cos, state[at::R], if has_roll { state[at::P] } else { 0.0 }];
+        for (place, (index, plain)) in [at::X, at::Y, at::PSI, at::PHI].into_iter().zip(plain).enumerate() {
+            rate[index] = self.layout.kinematics[place].map_or(plain, |output| self.tape.read(output, work)[0]);
+        }
+    }
+}
+
+/// What a name of the law stands for in a model.
+pub(crate) fn binding(model: &Model, law: &Law, name: &str) -> Option<Binding> {
+    if let Some(expr) = law.values.get(name) {
+        return Some(Binding::Formula(expr.clone()));
+    }
+    let parameter = model.parameters.get(name).map(|quantity| quantity.value);
+    parameter.or_else(|| particulars::value(&model.particulars, name)).map(Binding::Constant)
+}
+
+fn lay_out(
+    model: &Model,
+    law: &Law,
+    builder: &mut TapeBuilder<'_>,
+    missing: &dyn Fn(String) -> PlantError,
+) -> Result<Layout, PlantError> {
+    let mut layout = Layout::default();
+    for (row, axis) in Axis::ALL.into_iter().enumerate() {
+        if law.axes.contains_key(&axis) {
+            layout.forces[row] = Some(builder.output(&force(model, law, axis)?).map_err(missing)?);
+        }
+        for (column, other) in Axis::ALL.into_iter().enumerate() {
+            if let Some(expr) = law.mass.get(&(axis, other)) {
+                layout.mass[row][column] = Some(builder.output(expr).map_err(missing)?);
+            }
+        }
+    }
+    for (place, name) in ["x", "y", "psi", "phi"].into_iter().enumerate() {
+        if let Some(expr) = law.kinematics.get(name) {
+            layout.kinematics[place] = Some(builder.output(expr).map_err(missing)?);
+        }
+    }
+    Ok(layout)
+}
+
+/// The whole right-hand side of an axis: coefficients times regressors, and the rest.
+fn force(model: &Model, law: &Law, axis: Axis) -> Result<Expr, PlantError> {
+    let axis_law = &law.axes[&axis];
+    let mut sum = Expr::Number(0.0);
+    for (name, quantity) in &model.coefficients {
+        let (acts_on, term) = law.term(name).map_err(PlantError::Law)?;
+        if acts_on == axis && quantity.value != 0.0 {
+            sum = Expr::Add(Box::new(sum), Box::new(term.times(Expr::Number(quantity.value))));
+        }
+    }
+    Ok(Expr::Add(Box::new(axis_law.scale.clone().times(sum)), Box::new(axis_law.rest.clone())))
+}
+
+fn constant_mass(tape: &Tape, layout: &Layout) -> Option<Matrix4<f64>> {
+    let mut mass = Matrix4::identity();
+    for (row, columns) in layout.mass.iter().enumerate() {
+        for (column, output) in columns.iter().enumerate() {
+            if let Some(output) = output {
+                mass[(row, column)] = tape.constant_output(*output)?;
+            }
+        }
+    }
+    Some(mass)
+}

@@ -1,0 +1,156 @@
+//! Simulation of a recorded trial: the recorded rudder and revolutions drive the model, and the motion is compared.
+
+use sistership_model::trial::{Channel, Trial};
+
+use crate::envelope::Stopped;
+use crate::integrate::Method;
+use crate::plant::Work;
+use crate::ship::Ship;
+use crate::state::{StateVector, Trajectory, at};
+
+/// How a trial is simulated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReplaySettings {
+    /// Start anew from the recorded state every so often, s; `None` runs each gap-free part to its end.
+    pub restart_s: Option<f64>,
+    /// Integration method.
+    pub method: Method,
+    /// Longest step, s; a sampling interval is cut into equal steps no longer than this.
+    pub step_s: f64,
+}
+
+impl Default for ReplaySettings {
+    fn default() -> Self {
+        Self { restart_s: None, method: Method::Rk4, step_s: 0.5 }
+    }
+}
+
+/// Why a trial cannot be simulated at all.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("trial `{trial}` has no channel `{channel}`, which the simulation needs")]
+pub struct MissingChannel {
+    /// The trial.
+    pub trial: String,
+    /// The channel it lacks.
+    pub channel: Channel,
+}
+
+/// A simulated trial.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Replay {
+    /// Simulated states at the recorded times; after a divergence, until then only.
+    pub track: Trajectory,
+    /// Sample of the trial to which each state belongs.
+    pub samples: Vec<usize>,
+    /// Why the simulation stopped early, if it did.
+    pub stopped: Option<Stopped>,
+}
+
+/// Simulates a trial with its recorded inputs.
+///
+/// # Errors
+/// Names the channel that the trial lacks: velocities, rudder, and revolutions for laws with a propeller.
+pub fn replay(ship: &Ship, trial: &Trial, settings: &ReplaySettings) -> Result<Replay, MissingChannel> {
+    let record = Record::new(ship, trial)?;
+    let mut result = Replay { track: Trajectory::default(), samples: Vec::new(), stopped: None };
+    let mut work = Work::default();
+    for part in parts(trial, settings.restart_s) {
+        if let Err(stopped) = record.run(ship, part, settings, &mut result, &mut work) {
+            result.stopped.get_or_insert(stopped);
+        }
+    }
+    Ok(result)
+}
+
+/// The gap-free parts of a trial, cut where the simulation starts anew.
+fn parts(trial: &Trial, restart_s: Option<f64>) -> Vec<std::ops::Range<usize>> {
+    let cut = |segment: std::ops::Range<usize>| {
+        let mut starts = vec![segment.start];
+        if let Some(restart) = restart_s {
+            for k in segment.clone() {
+                let since = trial.t_s[k] - trial.t_s[*starts.last().unwrap_or(&segment.start)];
+                if since >= restart * (1.0 - 1e-9) {
+                    starts.push(k);
+                }
+            }
+        }
+        starts.push(segment.end);
+        starts.windows(2).map(|pair| pair[0]..pair[1]).collect::<Vec<_>>()
+    };
+    trial.segments().into_iter().flat_map(cut).collect()
+}
+
+/// The channels of a trial that a simulation reads.
+struct Record<'a> {
+    trial: &'a Trial,
+    delta: &'a [f64],
+    n: Option<&'a [f64]>,
+    start: Vec<(usize, &'a [f64])>,
+}
+
+/// Channels that give the state at the start of a part; the first three are needed.
+const START: [(Channel, usize); 8] = [
+    (Channel::U, at::U),
+    (Channel::V, at::V),
+    (Channel::R, at::R),
+    (Channel::Psi, at::PSI),
+    (Channel::X, at::X),
+    (Channel::Y, at::Y),
+    (Channel::Phi, at::PHI),
+    (Channel::P, at::P),
+];
+
+impl<'a> Record<'a> {
+    fn new(ship: &Ship, trial: &'a Trial) -> Result<Self, MissingChannel> {
+        let need = |channel| trial.channel(channel).ok_or_else(|| MissingChannel { trial: trial.name.clone(), channel });
+        for (channel, _) in &START[..3] {
+            need(*channel)?;
+        }
+        let n = if ship.has_propeller() { Some(need(Channel::N)?) } else { trial.channel(Channel::N) };
+        let start = START.iter().filter_map(|&(channel, index)| Some((index, trial.channel(channel)?))).collect();
+        Ok(Self { trial, delta: need(Channel::Delta)?, n, start })
+    }
+
+    fn state_at(&self, sample: usize) -> StateVector {
+        let mut state = StateVector::zeros();
+        self.start.iter().for_each(|(index, column)| state[*index] = column[sample]);
+        state[at::DELTA] = self.delta[sample];
+        state
+    }
+
+    fn run(
+        &self,
+        ship: &Ship,
+        part: std::ops::Range<usize>,
+        settings: &ReplaySettings,
+        result: &mut Replay,
+        work: &mut Work,
+    ) -> Result<(), Stopped> {
+        let mut state = self.state_at(part.start);
+        for k in part.clone() {
+            state[at::DELTA] = self.delta[k];
+            ship.envelope().check(self.trial.t_s[k], &state)?;
+            result.track.push(self.trial.t_s[k], state, self.n.map_or(0.0, |n| n[k]));
+            result.samples.push(k);
+            if k + 1 < part.end {
+                state = self.advance(ship, k, state, settings, work);
+            }
+        }
+        Ok(())
+    }
+
+    /// From one sample to the next. Between samples the recorded inputs vary linearly.
+    fn advance(&self, ship: &Ship, k: usize, mut state: StateVector, settings: &ReplaySettings, work: &mut Work) -> StateVector {
+        let interval = self.trial.t_s[k + 1] - self.trial.t_s[k];
+        let steps = (interval / settings.step_s - 1e-9).ceil().max(1.0) as usize;
+        let step_s = interval / steps as f64;
+        for i in 0..steps {
+            state = settings.method.step(&state, step_s, |fraction, s| {
+                let w = (i as f64 + fraction) / steps as f64;
+                let between = |column: &[f64]| column[k] + w * (column[k + 1] - column[k]);
+                ship.rate_at(s, between(self.delta), self.n.map_or(0.0, between), work)
+            });
+        }
+        state
+    }
+}

@@ -1,0 +1,172 @@
+//! A ship ready to sail: plant, steering gear, envelope and what is held constant around her.
+
+use sistership_model::law::Law;
+use sistership_model::{Model, particulars};
+
+use crate::envelope::{Envelope, Stopped};
+use crate::gear::Gear;
+use crate::integrate::Method;
+use crate::plant::{Inputs, MAX_INPUTS, Plant, PlantError, Work};
+use crate::state::{StateVector, Trajectory, at};
+
+/// What the bridge orders at an instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Order {
+    /// Rudder, rad, positive turns to starboard.
+    pub delta_rad: f64,
+    /// Propeller revolutions, 1/s.
+    pub n_rps: f64,
+}
+
+/// A ship ready to sail.
+#[derive(Debug)]
+pub struct Ship {
+    plant: Plant,
+    gear: Gear,
+    envelope: Envelope,
+    template: Inputs,
+    slots: Slots,
+    lpp_m: f64,
+    approach_speed_m_s: f64,
+    approach_n_rps: f64,
+}
+
+/// Places of the inputs that change during a run.
+#[derive(Debug, Clone, Copy)]
+struct Slots {
+    delta: Option<usize>,
+    n: Option<usize>,
+    depth: Option<usize>,
+}
+
+impl Ship {
+    /// Makes a model ready.
+    ///
+    /// # Errors
+    /// As [`Plant::new`]; also where the model has no length or no approach speed.
+    pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
+        let plant = Plant::new(model, law)?;
+        let need = |name: &str, value: Option<f64>| {
+            value.ok_or_else(|| PlantError::Missing { law: law.name.clone(), name: name.into(), model: model.name.clone() })
+        };
+        let lpp_m = need("lpp_m", particulars::value(&model.particulars, "lpp_m"))?;
+        let service = particulars::value(&model.particulars, "service_speed_m_s");
+        let speed = need("speed_m_s", model.speed_m_s.or(service))?;
+        let place = |name: &str| plant.input_names().iter().position(|known| known == name);
+        let slots = Slots { delta: place("delta"), n: place("n"), depth: place("depth") };
+        let mut template = [0.0; MAX_INPUTS];
+        for (value, default) in template.iter_mut().zip(plant.input_defaults()) {
+            *value = default.unwrap_or(0.0);
+        }
+        let envelope = Envelope::new(lpp_m, speed);
+        let approach_n_rps = model.revolutions_rps.unwrap_or(0.0);
+        Ok(Self {
+            plant,
+            gear: Gear::new(&model.steering),
+            envelope,
+            template,
+            slots,
+            lpp_m,
+            approach_speed_m_s: speed,
+            approach_n_rps,
+        })
+    }
+
+    /// Sets the water depth for laws that know it, m.
+    pub fn set_depth(&mut self, depth_m: f64) {
+        if let Some(slot) = self.slots.depth {
+            self.template[slot] = depth_m;
+        }
+    }
+
+    /// Length between perpendiculars, m.
+    pub fn lpp_m(&self) -> f64 {
+        self.lpp_m
+    }
+
+    /// The approach speed that the model belongs to, m/s.
+    pub fn approach_speed_m_s(&self) -> f64 {
+        self.approach_speed_m_s
+    }
+
+    /// Revolutions for a steady approach at a speed, in proportion to the model's own, 1/s.
+    pub fn revolutions_at(&self, speed_m_s: f64) -> f64 {
+        self.approach_n_rps * speed_m_s / self.approach_speed_m_s
+    }
+
+    /// Whether the law turns revolutions into thrust.
+    pub fn has_propeller(&self) -> bool {
+        self.slots.n.is_some()
+    }
+
+    /// The range outside which runs are stopped.
+    pub fn envelope(&self) -> &Envelope {
+        &self.envelope
+    }
+
+    /// Widens the range to that of a run at another speed.
+    pub fn set_envelope_speed(&mut self, speed_m_s: f64) {
+        self.envelope = Envelope::new(self.lpp_m, speed_m_s.abs().max(self.approach_speed_m_s));
+    }
+
+    /// The inputs for a rudder angle and revolutions.
+    pub fn inputs(&self, delta_rad: f64, n_rps: f64) -> Inputs {
+        let mut inputs = self.template;
+        for (slot, value) in [(self.slots.delta, delta_rad), (self.slots.n, n_rps)] {
+            if let Some(slot) = slot {
+                inputs[slot] = value;
+            }
+        }
+        inputs
+    }
+
+    /// The rate of change of the state with the steering gear following `order`.
+    pub fn rate_under(&self, state: &StateVector, order: Order, step_s: f64, work: &mut Work) -> StateVector {
+        let mut rate = self.plant.rate(state, &self.inputs(state[at::DELTA], order.n_rps), work);
+        rate[at::DELTA] = self.gear.rate(order.delta_rad, state[at::DELTA], step_s);
+        rate
+    }
+
+    /// The rate of change of the state at a recorded rudder angle.
+    pub fn rate_at(&self, state: &StateVector, delta_rad: f64, n_rps: f64, work: &mut Work) -> StateVector {
+        self.plant.rate(state, &self.inputs(delta_rad, n_rps), work)
+    }
+
+    /// Sails for a time; `bridge` gives the order at each step, which is held over it, or `None` to end the run.
+    ///
+    /// # Errors
+    /// Says when and why the motion left the physical range; what was sailed until then is in `track`.
+    pub fn sail(
+        &self,
+        run: Run,
+        track: &mut Trajectory,
+        mut bridge: impl FnMut(f64, &StateVector) -> Option<Order>,
+    ) -> Result<(), Stopped> {
+        let mut work = Work::default();
+        let mut state = run.start;
+        let steps = (run.duration_s / run.step_s).round() as usize;
+        for k in 0..=steps {
+            let t_s = k as f64 * run.step_s;
+            self.envelope.check(t_s, &state)?;
+            let Some(order) = bridge(t_s, &state) else { return Ok(()) };
+            track.push(t_s, state, order.n_rps);
+            if k < steps {
+                state = run.method.step(&state, run.step_s, |_, s| self.rate_under(s, order, run.step_s, &mut work));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// How to sail.
+#[derive(Debug, Clone, Copy)]
+pub struct Run {
+    /// The state at time zero.
+    pub start: StateVector,
+    /// How long, s.
+    pub duration_s: f64,
+    /// Step, s.
+    pub step_s: f64,
+    /// Integration method.
+    pub method: Method,
+}

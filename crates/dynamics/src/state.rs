@@ -1,0 +1,70 @@
+//! The state of a ship in motion.
+
+use nalgebra::SVector;
+
+/// The state vector: `u, v, r, p, phi, psi, x, y, delta` in SI and radians; `delta` is the actual rudder angle.
+pub type StateVector = SVector<f64, 9>;
+
+/// Places in the state vector.
+pub mod at {
+    /// Surge velocity, m/s.
+    pub const U: usize = 0;
+    /// Sway velocity, m/s.
+    pub const V: usize = 1;
+    /// Yaw rate, rad/s.
+    pub const R: usize = 2;
+    /// Roll rate, rad/s.
+    pub const P: usize = 3;
+    /// Roll angle, rad.
+    pub const PHI: usize = 4;
+    /// Heading, rad.
+    pub const PSI: usize = 5;
+    /// Position north, m.
+    pub const X: usize = 6;
+    /// Position east, m.
+    pub const Y: usize = 7;
+    /// Rudder angle, rad.
+    pub const DELTA: usize = 8;
+}
+
+/// Speed over the water, m/s.
+pub fn speed(state: &StateVector) -> f64 {
+    state[at::U].hypot(state[at::V])
+}
+
+/// A state of straight running at a speed, heading north.
+pub fn straight(speed_m_s: f64) -> StateVector {
+    let mut state = StateVector::zeros();
+    state[at::U] = speed_m_s;
+    state
+}
+
+/// States over time.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Trajectory {
+    /// Time, s.
+    pub t_s: Vec<f64>,
+    /// The state at each time.
+    pub states: Vec<StateVector>,
+    /// Propeller revolutions at each time, 1/s.
+    pub n_rps: Vec<f64>,
+}
+
+impl Trajectory {
+    /// One component over time.
+    pub fn column(&self, index: usize) -> Vec<f64> {
+        self.states.iter().map(|state| state[index]).collect()
+    }
+
+    /// Adds a sample.
+    pub fn push(&mut self, t_s: f64, state: StateVector, n_rps: f64) {
+        self.t_s.push(t_s);
+        self.states.push(state);
+        self.n_rps.push(n_rps);
+    }
+
+    /// The last state.
+    pub fn last(&self) -> Option<&StateVector> {
+        self.states.last()
+    }
+}

@@ -1,0 +1,252 @@
+//! From formulas to the tape: constant folding and shared subexpressions.
+
+use std::collections::HashMap;
+
+use sistership_model::formula::{Comparison, Expr, Function, builtin};
+
+use super::{Op, Slot, Tape};
+
+/// What a name stands for while a formula is lowered.
+pub enum Binding {
+    /// A number, folded in.
+    Constant(f64),
+    /// Another formula.
+    Formula(Expr),
+}
+
+/// Builds a tape from formulas.
+pub struct TapeBuilder<'a> {
+    inputs: Vec<String>,
+    bind: &'a dyn Fn(&str) -> Option<Binding>,
+    ops: Vec<Op>,
+    seen: HashMap<[u64; 6], Slot>,
+    named: HashMap<String, Slot>,
+    outputs: Vec<Slot>,
+}
+
+impl<'a> TapeBuilder<'a> {
+    /// A builder whose tape takes `inputs`; `bind` says what every other name stands for.
+    pub fn new(inputs: &[&str], bind: &'a dyn Fn(&str) -> Option<Binding>) -> Self {
+        let inputs = inputs.iter().map(|&name| name.to_owned()).collect();
+        Self { inputs, bind, ops: Vec::new(), seen: HashMap::new(), named: HashMap::new(), outputs: Vec::new() }
+    }
+
+    /// Adds an output and returns its number.
+    ///
+    /// # Errors
+    /// Names what nothing stands for.
+    pub fn output(&mut self, expr: &Expr) -> Result<usize, String> {
+        let slot = self.lower(expr)?;
+        self.outputs.push(slot);
+        Ok(self.outputs.len() - 1)
+    }
+
+    /// The finished tape, without operations that no output needs.
+    pub fn finish(self) -> Tape {
+        let Self { inputs, ops, outputs, .. } = self;
+        let mut needed = vec![false; ops.len()];
+        outputs.iter().for_each(|&slot| needed[slot as usize] = true);
+        for (index, op) in ops.iter().enumerate().rev() {
+            if needed[index] {
+                op.operands().into_iter().flatten().for_each(|slot| needed[slot as usize] = true);
+            }
+        }
+        let mut place = vec![0; ops.len()];
+        let mut kept = Vec::new();
+        for (index, op) in ops.iter().enumerate().filter(|(index, _)| needed[*index]) {
+            place[index] = kept.len() as Slot;
+            kept.push(op.moved(&|slot| place[slot as usize]));
+        }
+        let outputs = outputs.iter().map(|&slot| place[slot as usize]).collect();
+        Tape { inputs, ops: kept, outputs }
+    }
+
+    fn lower(&mut self, expr: &Expr) -> Result<Slot, String> {
+        Ok(match expr {
+            Expr::Number(number) => self.push(Op::Constant(*number)),
+            Expr::Name(name) => self.name(name)?,
+            Expr::Negate(a) => self.unary(a, Op::Negate)?,
+            Expr::Add(a, b) => self.binary(a, b, Op::Add)?,
+            Expr::Subtract(a, b) => self.binary(a, b, Op::Subtract)?,
+            Expr::Multiply(a, b) => self.binary(a, b, Op::Multiply)?,
+            Expr::Divide(a, b) => self.binary(a, b, Op::Divide)?,
+            Expr::Power(a, b) => self.power(a, b)?,
+            Expr::Call(function, arguments) if arguments.len() == 1 => self.unary(&arguments[0], |a| Op::Call1(*function, a))?,
+            Expr::Call(function, arguments) => self.binary(&arguments[0], &arguments[1], |a, b| Op::Call2(*function, a, b))?,
+            Expr::If(comparison, parts) => self.select(*comparison, parts)?,
+        })
+    }
+
+    fn name(&mut self, name: &str) -> Result<Slot, String> {
+        if let Some(&slot) = self.named.get(name) {
+            return Ok(slot);
+        }
+        let slot = if let Some(index) = self.inputs.iter().position(|input| input == name) {
+            self.push(Op::Input(index as u32))
+        } else {
+            match (self.bind)(name).or_else(|| Some(Binding::Constant(builtin(name)?.0))) {
+                Some(Binding::Constant(value)) => self.push(Op::Constant(value)),
+                Some(Binding::Formula(expr)) => self.lower(&expr)?,
+                None => return Err(name.to_owned()),
+            }
+        };
+        self.named.insert(name.to_owned(), slot);
+        Ok(slot)
+    }
+
+    fn unary(&mut self, a: &Expr, make: impl Fn(Slot) -> Op) -> Result<Slot, String> {
+        let a = self.lower(a)?;
+        Ok(self.push(make(a)))
+    }
+
+    fn binary(&mut self, a: &Expr, b: &Expr, make: impl Fn(Slot, Slot) -> Op) -> Result<Slot, String> {
+        let (a, b) = (self.lower(a)?, self.lower(b)?);
+        Ok(self.push(make(a, b)))
+    }
+
+    fn select(&mut self, comparison: Comparison, parts: &[Expr; 4]) -> Result<Slot, String> {
+        let [a, b, c, d] = parts;
+        let slots = [self.lower(a)?, self.lower(b)?, self.lower(c)?, self.lower(d)?];
+        Ok(self.push(Op::Select(comparison, slots[0], slots[1], slots[2], slots[3])))
+    }
+
+    /// Whole powers become products: faster than `powf`, and defined for negative bases.
+    fn power(&mut self, base: &Expr, exponent: &Expr) -> Result<Slot, String> {
+        let (base, exponent) = (self.lower(base)?, self.lower(exponent)?);
+        let Op::Constant(number) = self.ops[exponent as usize] else { return Ok(self.push(Op::Power(base, exponent))) };
+        if number == 0.5 {
+            return Ok(self.push(Op::Call1(Function::Sqrt, base)));
+        }
+        if number.fract() != 0.0 || number.abs() > 16.0 {
+            return Ok(self.push(Op::Power(base, exponent)));
+        }
+        let mut product = self.push(Op::Constant(1.0));
+        for _ in 0..number.abs() as u32 {
+            product = self.push(Op::Multiply(product, base));
+        }
+        if number >= 0.0 {
+            return Ok(product);
+        }
+        let one = self.push(Op::Constant(1.0));
+        Ok(self.push(Op::Divide(one, product)))
+    }
+
+    fn constant(&self, slot: Slot) -> Option<f64> {
+        if let Op::Constant(value) = self.ops[slot as usize] { Some(value) } else { None }
+    }
+
+    fn push(&mut self, op: Op) -> Slot {
+        if let Some(same) = self.neutral(op) {
+            return same;
+        }
+        let op = self.folded(op).map_or(op, Op::Constant);
+        let key = op.key();
+        if let Some(&slot) = self.seen.get(&key) {
+            return slot;
+        }
+        self.ops.push(op);
+        let slot = (self.ops.len() - 1) as Slot;
+        self.seen.insert(key, slot);
+        slot
+    }
+
+    /// `x * 1`, `x + 0`, `x / 1`: the operand itself; `x * 0` is zero.
+    fn neutral(&self, op: Op) -> Option<Slot> {
+        let is = |slot: Slot, value: f64| self.constant(slot) == Some(value);
+        match op {
+            Op::Multiply(a, b) if is(a, 1.0) || is(b, 0.0) => Some(b),
+            Op::Multiply(a, b) if is(b, 1.0) || is(a, 0.0) => Some(a),
+            Op::Add(a, b) if is(a, 0.0) => Some(b),
+            Op::Add(a, b) | Op::Subtract(a, b) if is(b, 0.0) => Some(a),
+            Op::Divide(a, b) if is(b, 1.0) => Some(a),
+            _ => None,
+        }
+    }
+
+    fn folded(&self, op: Op) -> Option<f64> {
+        if matches!(op, Op::Constant(_) | Op::Input(_)) {
+            return None;
+        }
+        let mut values = [0.0; 4];
+        for (value, slot) in values.iter_mut().zip(op.operands()) {
+            if let Some(slot) = slot {
+                *value = self.constant(slot)?;
+            }
+        }
+        Some(op.apply(values))
+    }
+}
+
+impl Op {
+    /// The results it needs.
+    pub(crate) fn operands(&self) -> [Option<Slot>; 4] {
+        match *self {
+            Self::Constant(_) | Self::Input(_) => [None; 4],
+            Self::Negate(a) | Self::Call1(_, a) => [Some(a), None, None, None],
+            Self::Add(a, b) | Self::Subtract(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => [Some(a), Some(b), None, None],
+            Self::Power(a, b) | Self::Call2(_, a, b) => [Some(a), Some(b), None, None],
+            Self::Select(_, a, b, c, d) => [Some(a), Some(b), Some(c), Some(d)],
+        }
+    }
+
+    fn moved(self, to: &dyn Fn(Slot) -> Slot) -> Self {
+        match self {
+            Self::Constant(_) | Self::Input(_) => self,
+            Self::Negate(a) => Self::Negate(to(a)),
+            Self::Add(a, b) => Self::Add(to(a), to(b)),
+            Self::Subtract(a, b) => Self::Subtract(to(a), to(b)),
+            Self::Multiply(a, b) => Self::Multiply(to(a), to(b)),
+            Self::Divide(a, b) => Self::Divide(to(a), to(b)),
+            Self::Power(a, b) => Self::Power(to(a), to(b)),
+            Self::Call1(function, a) => Self::Call1(function, to(a)),
+            Self::Call2(function, a, b) => Self::Call2(function, to(a), to(b)),
+            Self::Select(comparison, a, b, c, d) => Self::Select(comparison, to(a), to(b), to(c), to(d)),
+        }
+    }
+
+    /// The value for given operands.
+    fn apply(&self, [a, b, c, d]: [f64; 4]) -> f64 {
+        match *self {
+            Self::Constant(value) => value,
+            Self::Input(_) => f64::NAN,
+            Self::Negate(_) => -a,
+            Self::Add(..) => a + b,
+            Self::Subtract(..) => a - b,
+            Self::Multiply(..) => a * b,
+            Self::Divide(..) => a / b,
+            Self::Power(..) => a.powf(b),
+            Self::Call1(function, _) | Self::Call2(function, ..) => function.apply(a, b),
+            Self::Select(comparison, ..) => {
+                if comparison.holds(a, b) {
+                    c
+                } else {
+                    d
+                }
+            }
+        }
+    }
+
+    /// Equal operations have equal keys; sums and products also with their operands exchanged.
+    fn key(&self) -> [u64; 6] {
+        let slots = self.operands().map(|slot| slot.map_or(u64::MAX, u64::from));
+        let ordered = |mut pair: [u64; 2]| {
+            pair.sort_unstable();
+            pair
+        };
+        let [a, b, c, d] = slots;
+        let [low, high] = ordered([a, b]);
+        match *self {
+            Self::Constant(value) => [0, value.to_bits(), 0, 0, 0, 0],
+            Self::Input(index) => [1, u64::from(index), 0, 0, 0, 0],
+            Self::Negate(_) => [2, a, 0, 0, 0, 0],
+            Self::Add(..) => [3, low, high, 0, 0, 0],
+            Self::Subtract(..) => [4, a, b, 0, 0, 0],
+            Self::Multiply(..) => [5, low, high, 0, 0, 0],
+            Self::Divide(..) => [6, a, b, 0, 0, 0],
+            Self::Power(..) => [7, a, b, 0, 0, 0],
+            Self::Call1(function, _) => [8, function as u64, a, 0, 0, 0],
+            Self::Call2(function, ..) => [9, function as u64, a, b, 0, 0],
+            Self::Select(comparison, ..) => [10, comparison as u64, a, b, c, d],
+        }
+    }
+}
