@@ -147,7 +147,7 @@ impl Plant {
 }
 
 /// What a name of the law stands for in a model.
-pub(crate) fn binding(model: &Model, law: &Law, name: &str) -> Option<Binding> {
+pub fn binding(model: &Model, law: &Law, name: &str) -> Option<Binding> {
     if let Some(expr) = law.values.get(name) {
         return Some(Binding::Formula(expr.clone()));
     }

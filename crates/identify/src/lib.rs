@@ -1,1 +1,7 @@
-//! Placeholder while the rooms are being built.
+//! Inverse: from trials to models. Similarity of ships, refinement of a source model, and what the residual says.
+
+pub mod refine;
+pub mod regression;
+pub mod similarity;
+pub mod source;
+pub mod transfer;

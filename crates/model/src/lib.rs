@@ -13,6 +13,7 @@ pub mod quantity;
 pub mod source;
 pub mod trial;
 pub mod units;
+pub mod version;
 pub mod vessel;
 pub mod zoo;
 

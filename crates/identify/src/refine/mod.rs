@@ -1,0 +1,15 @@
+//! Refinement of a source model against trials.
+
+mod blocks;
+mod outcome;
+mod published;
+mod rows;
+mod selection;
+mod settings;
+
+pub use blocks::{Block, Blocks};
+pub use outcome::{CoefficientChange, HeldOut, Manoeuvres, RefineError, Refinement, StepOption};
+pub use published::{Choices, Fit, Fitted, Fold, fit, tune};
+pub use rows::{Table, trial_moments, trial_tables};
+pub use selection::{Progress, Request, refine};
+pub use settings::{Method, Range, Settings};

@@ -1,0 +1,141 @@
+//! What a refinement gives, and why it may be refused.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use sistership_dynamics::manoeuvre::StandardManoeuvres;
+use sistership_model::Model;
+use sistership_model::trial::Channel;
+
+use super::settings::Settings;
+
+/// Why a refinement is refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RefineError {
+    /// The law needs something that the model does not give.
+    #[error("law `{law}` needs `{name}`, which the model `{model}` does not give")]
+    Missing {
+        /// The law.
+        law: String,
+        /// The name without a value.
+        name: String,
+        /// The model.
+        model: String,
+    },
+    /// A trial lacks a channel.
+    #[error("trial `{trial}` has no channel `{channel}`, which the law needs")]
+    Channel {
+        /// The trial.
+        trial: String,
+        /// The channel.
+        channel: Channel,
+    },
+    /// The law cannot be used so.
+    #[error("{0}")]
+    Law(String),
+    /// There is too little to fit on.
+    #[error("{0}")]
+    Data(String),
+    /// A setting is out of range.
+    #[error("settings.{field}: {message}")]
+    Setting {
+        /// The setting.
+        field: String,
+        /// What it may be.
+        message: String,
+    },
+    /// Every option left the physical range.
+    #[error("no option stays in the physical range: {0}")]
+    Diverged(String),
+    /// The caller asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+/// How one coefficient moved.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CoefficientChange {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// The source's value.
+    pub source: f64,
+    /// The refined value.
+    pub refined: f64,
+    /// Posterior standard error.
+    pub standard_error: f64,
+    /// Distance from the source in standard deviations of the prior.
+    pub moved_sd: f64,
+}
+
+/// One step of the widening ranges, with what it would give.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StepOption {
+    /// `source`, or the range's number from 1.
+    pub step: String,
+    /// Least lambda allowed; none for the source itself.
+    pub lambda_min: Option<f64>,
+    /// Chosen lambda by acceleration, in the order of the axes.
+    pub lambda: Vec<f64>,
+    /// Chosen alpha likewise.
+    pub alpha: Vec<f64>,
+    /// Standardised mean squared error of simulated manoeuvres left out; none where a simulation diverged.
+    pub error: Option<f64>,
+    /// Whether this option was taken.
+    pub chosen: bool,
+    /// Why it could not be taken, if so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+/// Root mean square errors by channel (SI), on manoeuvres left out.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct HeldOut {
+    /// The source model carried over to the ship.
+    pub source: BTreeMap<String, f64>,
+    /// The refined model.
+    pub refined: BTreeMap<String, f64>,
+    /// How the manoeuvres were left out.
+    pub how: String,
+}
+
+/// The result of a refinement.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Refinement {
+    /// The target ship.
+    pub ship: String,
+    /// The source model.
+    pub source: String,
+    /// The estimator.
+    pub method: String,
+    /// The refined model.
+    pub model: Model,
+    /// The source model carried over to the ship, before refinement.
+    pub transferred: Model,
+    /// Every setting.
+    pub settings: Settings,
+    /// Largest condition number of the standardised regressions.
+    pub condition_number: f64,
+    /// Coefficients that the trials cannot tell apart.
+    pub collinear_groups: Vec<Vec<String>>,
+    /// Errors on manoeuvres left out.
+    pub held_out: HeldOut,
+    /// Every coefficient.
+    pub coefficients: Vec<CoefficientChange>,
+    /// Every step of the widening ranges.
+    pub options: Vec<StepOption>,
+    /// Standard manoeuvres of the source carried over and of the refined model.
+    pub manoeuvres: Manoeuvres,
+    /// Remarks for the person who must defend the model.
+    pub remarks: Vec<String>,
+}
+
+/// Standard manoeuvres before and after.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Manoeuvres {
+    /// Of the source carried over.
+    pub source: StandardManoeuvres,
+    /// Of the refined model.
+    pub refined: StandardManoeuvres,
+}

@@ -1,0 +1,331 @@
+//! The whole refinement: tuning ranges widen from the source outwards, each gives an option, and the option whose
+//! simulations of manoeuvres left out are best is taken.
+
+use rayon::prelude::*;
+use sistership_dynamics::Ship;
+use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
+use sistership_dynamics::manoeuvre::{ManoeuvreSettings, standard};
+use sistership_dynamics::recorded::{ReplaySettings, replay};
+use sistership_model::law::Law;
+use sistership_model::quantity::Quantity;
+use sistership_model::trial::Trial;
+use sistership_model::vessel::Status;
+use sistership_model::{Model, Vessel};
+
+use super::blocks::Blocks;
+use super::outcome::{CoefficientChange, HeldOut, Manoeuvres, RefineError, Refinement, StepOption};
+use super::published::{Choices, Fit, Fitted, Fold, fit, tune};
+use super::rows::trial_moments;
+use super::settings::Settings;
+use crate::regression::Moments;
+use crate::transfer::{approach_of, ready, transfer};
+
+/// What is to be refined, and against what.
+#[derive(Debug, Clone, Copy)]
+pub struct Request<'a> {
+    /// The ship.
+    pub target: &'a Vessel,
+    /// The source model, as published or as refined earlier.
+    pub source: &'a Model,
+    /// The source's law.
+    pub law: &'a Law,
+    /// Her trials.
+    pub trials: &'a [&'a Trial],
+    /// Settings.
+    pub settings: &'a Settings,
+}
+
+/// Told how far a refinement is (0 to 1) and what it does; answers `false` to stop it.
+pub type Progress<'a> = &'a (dyn Fn(f64, &str) -> bool + Sync);
+
+/// Refines a source model against trials.
+///
+/// # Errors
+/// Says which setting, trial or channel is at fault; never leaves a model half refined.
+pub fn refine(request: &Request<'_>, progress: Progress<'_>) -> Result<Refinement, RefineError> {
+    request.settings.check().map_err(|(field, message)| RefineError::Setting { field, message })?;
+    let task = Task::new(request)?;
+    step(progress, 0.05, "sufficient statistics of each trial")?;
+    let moments = task.moments()?;
+    let folds = task.folds(&moments)?;
+    let options = task.options(&folds, progress)?;
+    step(progress, 0.8, "fitting all trials")?;
+    let all = merged(&moments, |_| true).ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
+    task.finish(options, &all, progress)
+}
+
+fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineError> {
+    if progress(fraction, what) { Ok(()) } else { Err(RefineError::Cancelled) }
+}
+
+/// A request with everything that does not change while options are tried.
+struct Task<'a> {
+    request: &'a Request<'a>,
+    training: Vec<&'a Trial>,
+    judged: Vec<&'a Trial>,
+    transferred: Model,
+    blocks: Blocks,
+}
+
+/// An option with what it takes to compare and to take it.
+struct Trying {
+    option: StepOption,
+    choices: Option<Choices>,
+    errors: SquaredError,
+}
+
+impl<'a> Task<'a> {
+    fn new(request: &'a Request<'a>) -> Result<Self, RefineError> {
+        let names = &request.settings.held_out;
+        if let Some(unknown) = names.iter().find(|name| !request.trials.iter().any(|trial| trial.name == **name)) {
+            let message = format!("no trial is called `{unknown}`");
+            return Err(RefineError::Setting { field: "held_out".into(), message });
+        }
+        let (judged, training): (Vec<&Trial>, Vec<&Trial>) = request.trials.iter().partition(|trial| names.contains(&trial.name));
+        if training.is_empty() {
+            return Err(RefineError::Data("there is no trial to fit on".into()));
+        }
+        let transferred = if request.source.ship == request.target.name() {
+            request.source.clone()
+        } else {
+            transfer(request.source, request.law, request.target, approach_of(&training))
+        };
+        let blocks = Blocks::new(&transferred, request.law)?;
+        Ok(Self { request, training, judged, transferred, blocks })
+    }
+
+    fn moments(&self) -> Result<Vec<Vec<Moments>>, RefineError> {
+        let one = |trial: &&Trial| trial_moments(&self.blocks, trial, self.request.settings.difference_s);
+        let moments: Vec<Vec<Moments>> = self.training.par_iter().map(one).collect::<Result<_, _>>()?;
+        let samples: f64 = moments.iter().map(|m| m.first().map_or(0.0, |m| m.count)).sum();
+        let widest = self.blocks.blocks.iter().map(super::Block::regressors).max().unwrap_or(0) as f64;
+        if samples < 4.0 * widest {
+            let message = format!("{samples} samples are too few for {widest} coefficients an axis; give at least {}", 4.0 * widest);
+            return Err(RefineError::Data(message));
+        }
+        Ok(moments)
+    }
+
+    /// Which fold a training trial is left out in.
+    fn fold_of(&self, trial: usize) -> usize {
+        trial % self.fold_count()
+    }
+
+    fn fold_count(&self) -> usize {
+        self.training.len().min(self.request.settings.folds)
+    }
+
+    /// Training sets with whole manoeuvres left out; a single trial can only judge itself.
+    fn folds<'f>(&'f self, moments: &[Vec<Moments>]) -> Result<Vec<Fold<'f>>, RefineError> {
+        let nothing = || RefineError::Data("a fold has no sample".into());
+        let one = |fold: usize| {
+            let inside = |trial: usize| self.training.len() == 1 || self.fold_of(trial) != fold;
+            let training = merged(moments, inside).ok_or_else(nothing)?;
+            let left_out = merged(moments, |trial| self.fold_of(trial) == fold).ok_or_else(nothing)?;
+            Ok(Fold::new(&self.blocks, &self.transferred, &training, &left_out))
+        };
+        (0..self.fold_count()).map(one).collect()
+    }
+
+    /// The source itself, and one option for each range; a single trial allows the first range only.
+    fn options(&self, folds: &[Fold<'_>], progress: Progress<'_>) -> Result<Vec<Trying>, RefineError> {
+        let mut options = vec![self.source_option()?];
+        let ranges = &self.request.settings.ranges;
+        let allowed = if self.training.len() == 1 { 1 } else { ranges.len() };
+        for (index, range) in ranges.iter().take(allowed).enumerate() {
+            let done = 0.1 + 0.7 * index as f64 / allowed as f64;
+            step(progress, done, &format!("lambda from {:.0e}: simulating manoeuvres left out", range.lambda_min))?;
+            let choices = tune(folds, range, self.request.settings.lambda_count);
+            options.push(self.ranged_option(index + 1, range.lambda_min, choices, folds)?);
+        }
+        Ok(options)
+    }
+
+    fn source_option(&self) -> Result<Trying, RefineError> {
+        let (errors, reason) = self.simulate_all(&self.training, &|_| self.transferred.clone())?;
+        Ok(self.trying("source".into(), None, None, errors, reason))
+    }
+
+    fn ranged_option(&self, number: usize, lambda_min: f64, choices: Choices, folds: &[Fold<'_>]) -> Result<Trying, RefineError> {
+        let models: Vec<Model> = folds.iter().map(|fold| self.model_with(&fold.solve(&choices))).collect();
+        let (errors, reason) = self.simulate_all(&self.training, &|trial| models[self.fold_of(trial)].clone())?;
+        Ok(self.trying(number.to_string(), Some(lambda_min), Some(choices), errors, reason))
+    }
+
+    fn trying(
+        &self,
+        step: String,
+        lambda_min: Option<f64>,
+        choices: Option<Choices>,
+        errors: SquaredError,
+        reason: Option<String>,
+    ) -> Trying {
+        let error = reason.is_none().then(|| standardised_mse(&errors, &standard_deviations(&self.training)));
+        let flat = |of: &dyn Fn(&crate::regression::Choice) -> f64| choices.iter().flatten().flatten().map(of).collect();
+        let (lambda, alpha) = (flat(&|c| c.lambda), flat(&|c| c.alpha));
+        Trying { option: StepOption { step, lambda_min, lambda, alpha, error, chosen: false, reason }, choices, errors }
+    }
+
+    /// Simulates trials, each with the model that did not see it; the first divergence is the reason against the option.
+    fn simulate_all(
+        &self,
+        trials: &[&Trial],
+        model_of: &(dyn Fn(usize) -> Model + Sync),
+    ) -> Result<(SquaredError, Option<String>), RefineError> {
+        let settings = ReplaySettings { restart_s: self.request.settings.restart_s, ..ReplaySettings::default() };
+        let one = |(index, trial): (usize, &&Trial)| -> Result<(SquaredError, Option<String>), RefineError> {
+            let ship = match ready(&model_of(index), self.request.law, trials) {
+                Ok(ship) => ship,
+                Err(reason) => return Ok((SquaredError::default(), Some(reason))),
+            };
+            let run = replay(&ship, trial, &settings)
+                .map_err(|e| RefineError::Channel { trial: e.trial, channel: e.channel })?;
+            let reason = run.stopped.as_ref().map(|stopped| format!("{} {stopped}", trial.name));
+            Ok((SquaredError::of(trial, &run), reason))
+        };
+        let each: Vec<_> = trials.par_iter().enumerate().map(one).collect::<Result<_, _>>()?;
+        let mut total = SquaredError::default();
+        each.iter().for_each(|(error, _)| total.add(error));
+        Ok((total, each.into_iter().find_map(|(_, reason)| reason)))
+    }
+
+    /// The transferred model with other coefficients.
+    fn model_with(&self, coefficients: &std::collections::BTreeMap<String, Fitted>) -> Model {
+        let mut model = self.transferred.clone();
+        model.status = Status::Refined;
+        for (name, fitted) in coefficients {
+            let quantity = Quantity {
+                standard_error: Some(fitted.standard_error),
+                ..Quantity::new(fitted.value, format!("refined from {}", self.request.source.name))
+            };
+            model.coefficients.insert(name.clone(), quantity);
+        }
+        model
+    }
+
+    /// Takes the best option whose model, fitted on all trials, also sails the standard manoeuvres that the source sails.
+    fn finish(&self, mut options: Vec<Trying>, all: &[Moments], progress: Progress<'_>) -> Result<Refinement, RefineError> {
+        let before = self.standard_manoeuvres(&self.transferred);
+        loop {
+            let Some(best) = best(&options) else {
+                let reasons: Vec<String> = options.iter().filter_map(|o| o.option.reason.clone()).collect();
+                return Err(RefineError::Diverged(reasons.join("; ")));
+            };
+            step(progress, 0.9, &format!("standard manoeuvres of option {}", options[best].option.step))?;
+            let fitted = options[best].choices.as_ref().map(|choices| fit(&self.blocks, all, &self.transferred, choices));
+            let model = fitted.as_ref().map_or_else(|| self.transferred.clone(), |fit| self.model_with(&fit.coefficients));
+            let after = self.standard_manoeuvres(&model);
+            let worse = after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
+            if let Some(failure) = worse {
+                options[best].option.reason = Some(format!("fails a standard manoeuvre that the source sails: {failure}"));
+                options[best].option.error = None;
+                continue;
+            }
+            options[best].option.chosen = true;
+            let manoeuvres = Manoeuvres { source: before, refined: after };
+            return self.refinement(options, best, model, fitted, manoeuvres);
+        }
+    }
+
+    fn standard_manoeuvres(&self, model: &Model) -> sistership_dynamics::manoeuvre::StandardManoeuvres {
+        match Ship::new(model, self.request.law) {
+            Ok(ship) => standard(&ship, &ManoeuvreSettings::default()),
+            Err(error) => sistership_dynamics::manoeuvre::StandardManoeuvres { failures: vec![error.to_string()], ..Default::default() },
+        }
+    }
+
+    fn refinement(
+        &self,
+        options: Vec<Trying>,
+        best: usize,
+        model: Model,
+        fitted: Option<Fit>,
+        manoeuvres: Manoeuvres,
+    ) -> Result<Refinement, RefineError> {
+        let held_out = self.held_out(&options, best, &model)?;
+        let (condition_number, collinear_groups) =
+            fitted.as_ref().map_or((1.0, Vec::new()), |fit| (fit.condition_number, fit.collinear_groups.clone()));
+        Ok(Refinement {
+            ship: self.request.target.name().to_owned(),
+            source: self.request.source.name.clone(),
+            method: self.request.settings.method.name().to_owned(),
+            coefficients: self.changes(&model, fitted.as_ref()),
+            model,
+            transferred: self.transferred.clone(),
+            settings: self.request.settings.clone(),
+            condition_number,
+            collinear_groups,
+            held_out,
+            options: options.into_iter().map(|trying| trying.option).collect(),
+            manoeuvres,
+            remarks: self.remarks(best),
+        })
+    }
+
+    fn held_out(&self, options: &[Trying], best: usize, model: &Model) -> Result<HeldOut, RefineError> {
+        if self.judged.is_empty() {
+            let how = if self.training.len() == 1 {
+                "nothing could be left out of a single trial: these are errors on the trial that was fitted".to_owned()
+            } else {
+                format!("each of {} trials simulated by a model fitted without it, in {} folds", self.training.len(), self.fold_count())
+            };
+            return Ok(HeldOut { source: options[0].errors.rmse(), refined: options[best].errors.rmse(), how });
+        }
+        let (source, _) = self.simulate_all(&self.judged, &|_| self.transferred.clone())?;
+        let (refined, _) = self.simulate_all(&self.judged, &|_| model.clone())?;
+        let names: Vec<&str> = self.judged.iter().map(|trial| trial.name.as_str()).collect();
+        Ok(HeldOut { source: source.rmse(), refined: refined.rmse(), how: format!("kept out of fit and choice: {}", names.join(", ")) })
+    }
+
+    fn changes(&self, model: &Model, fitted: Option<&Fit>) -> Vec<CoefficientChange> {
+        let one = |(name, quantity): (&String, &Quantity)| {
+            let source = self.transferred.coefficient(name);
+            let fitted = fitted.and_then(|fit| fit.coefficients.get(name));
+            let prior = fitted.map_or(0.0, |f| f.prior_deviation);
+            let unit = self.request.law.coefficient_dimension(name).map_or_else(|_| "?".to_owned(), |d| d.to_string());
+            CoefficientChange {
+                name: name.clone(),
+                unit,
+                source,
+                refined: quantity.value,
+                standard_error: fitted.map_or(0.0, |f| f.standard_error),
+                moved_sd: if prior > 0.0 { (quantity.value - source) / prior } else { 0.0 },
+            }
+        };
+        model.coefficients.iter().map(one).collect()
+    }
+
+    fn remarks(&self, best: usize) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if best == 0 {
+            remarks.push("no option beat the source on manoeuvres left out: the source is kept as it is".to_owned());
+        }
+        if self.training.len() == 1 {
+            remarks.push("a single trial: only the most conservative range was tried".to_owned());
+        }
+        let scaled = self.transferred.particulars.iter().filter(|(_, quantity)| quantity.source.starts_with("scaled from"));
+        let names: Vec<&str> = scaled.map(|(name, _)| name.as_str()).collect();
+        if !names.is_empty() {
+            remarks.push(format!("the ship does not state {}: scaled from the source ship", names.join(", ")));
+        }
+        remarks
+    }
+}
+
+/// The option with the least error; an earlier one wins unless a later one is better by more than one per cent.
+fn best(options: &[Trying]) -> Option<usize> {
+    let mut best: Option<(usize, f64)> = None;
+    for (index, error) in options.iter().enumerate().filter_map(|(index, o)| Some((index, o.option.error?))) {
+        if error.is_finite() && best.is_none_or(|(_, least)| error < 0.99 * least) {
+            best = Some((index, error));
+        }
+    }
+    best.map(|(index, _)| index)
+}
+
+/// The statistics of some trials together, one set per regression.
+fn merged(moments: &[Vec<Moments>], keep: impl Fn(usize) -> bool) -> Option<Vec<Moments>> {
+    let kept: Vec<&Vec<Moments>> = moments.iter().enumerate().filter(|(trial, _)| keep(*trial)).map(|(_, m)| m).collect();
+    let blocks = kept.first()?.len();
+    (0..blocks).map(|block| Moments::sum(kept.iter().map(|m| &m[block]))).collect()
+}

@@ -1,0 +1,110 @@
+//! What a refinement may be told.
+
+use serde::{Deserialize, Serialize};
+
+/// The estimator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// One-step differences and the ridge with the source as l2 prior: Kanazawa 2023, Eqs. 5.4-5.17.
+    #[default]
+    Published,
+}
+
+impl Method {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Published => "published",
+        }
+    }
+}
+
+/// A range in which (lambda, alpha) are tuned.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Range {
+    /// Least strength of the prior.
+    pub lambda_min: f64,
+    /// Greatest strength of the prior.
+    pub lambda_max: f64,
+    /// Largest share of the zero vector in the prior.
+    pub alpha_max: f64,
+}
+
+/// Settings of a refinement; every one is kept with the version.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Settings {
+    /// The estimator.
+    pub method: Method,
+    /// Tuning ranges from the source outwards; each gives an option, the best of which is chosen.
+    pub ranges: Vec<Range>,
+    /// Values of lambda tried in a range, evenly spaced in their logarithm.
+    pub lambda_count: usize,
+    /// Time over which accelerations are differenced, s; one sampling interval where absent.
+    pub difference_s: Option<f64>,
+    /// Simulations of manoeuvres left out start anew every so often, s; never where absent.
+    pub restart_s: Option<f64>,
+    /// Most folds; with more manoeuvres than that, several are left out together.
+    pub folds: usize,
+    /// Names of trials that are kept out of fit and choice altogether, to be judged on.
+    pub held_out: Vec<String>,
+    /// Differences from the source are fitted without the intercept that centring implies, as published.
+    pub centred: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        let range = |exponent: i32| Range {
+            lambda_min: 10_f64.powi(-exponent),
+            lambda_max: 1e10,
+            alpha_max: (0.1 * f64::from(1 + exponent)).min(1.0),
+        };
+        Self {
+            method: Method::Published,
+            ranges: (0..=6).map(range).collect(),
+            lambda_count: 100,
+            difference_s: None,
+            restart_s: None,
+            folds: 8,
+            held_out: Vec::new(),
+            centred: true,
+        }
+    }
+}
+
+impl Settings {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// Names the field and what it may be.
+    pub fn check(&self) -> Result<(), (String, String)> {
+        let refuse = |field: &str, message: &str| Err((field.to_owned(), message.to_owned()));
+        if self.ranges.is_empty() || self.ranges.len() > 20 {
+            return refuse("ranges", "give 1 to 20 tuning ranges");
+        }
+        for range in &self.ranges {
+            if !(range.lambda_min > 0.0 && range.lambda_min <= range.lambda_max && range.lambda_max.is_finite()) {
+                return refuse("ranges", "lambda_min must be above 0 and not above lambda_max");
+            }
+            if !(0.0..=1.0).contains(&range.alpha_max) {
+                return refuse("ranges", "alpha_max must be from 0 to 1");
+            }
+        }
+        if !(2..=1000).contains(&self.lambda_count) {
+            return refuse("lambda_count", "must be from 2 to 1000");
+        }
+        if !(2..=100).contains(&self.folds) {
+            return refuse("folds", "must be from 2 to 100");
+        }
+        let positive = |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
+        if !positive(self.difference_s) {
+            return refuse("difference_s", "must be above 0 s");
+        }
+        if !positive(self.restart_s) {
+            return refuse("restart_s", "must be above 0 s");
+        }
+        Ok(())
+    }
+}

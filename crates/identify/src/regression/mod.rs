@@ -1,0 +1,7 @@
+//! Linear regression with a prior: sufficient statistics, and the whole path of ridge solutions from one decomposition.
+
+mod moments;
+mod path;
+
+pub use moments::Moments;
+pub use path::{Choice, RidgePath, Validation};

@@ -1,0 +1,225 @@
+//! The ridge with the source's coefficients as l2 prior: Kanazawa 2023, Eqs. 5.11-5.17.
+//!
+//! With z-scored regressors, `C` their correlation matrix and `b` the mean products with the target,
+//! `beta' = (C + lambda I)^-1 (b + lambda (1 - alpha) beta'_source)`. One symmetric eigendecomposition of `C` gives
+//! every (lambda, alpha); nothing is inverted.
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use super::Moments;
+
+/// Everything that one set of samples and one source need for all (lambda, alpha).
+#[derive(Debug, Clone)]
+pub struct RidgePath {
+    deviations: DVector<f64>,
+    eigenvalues: DVector<f64>,
+    eigenvectors: DMatrix<f64>,
+    /// Per target: the data's and the source's part in the eigenbasis.
+    data: Vec<DVector<f64>>,
+    source: Vec<DVector<f64>>,
+    target_variance: Vec<f64>,
+    count: f64,
+}
+
+/// A point of the path: how strongly the source holds, and how much of it is replaced by zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Choice {
+    /// Strength of the prior.
+    pub lambda: f64,
+    /// Share of the zero vector in the prior.
+    pub alpha: f64,
+}
+
+impl RidgePath {
+    /// Decomposes the statistics once; `source[t]` are the prior coefficients for target `t`, in the units of the
+    /// regressors. A regressor that does not vary keeps its source value.
+    pub fn new(moments: &Moments, source: &[Vec<f64>]) -> Self {
+        let p = moments.regressors();
+        let scale = (0..p).map(|j| moments.variance(j).sqrt() / moments.mean(j).abs().max(1e-300));
+        let varies: Vec<bool> = scale.map(|ratio| ratio > 1e-10).collect();
+        let deviations = DVector::from_fn(p, |j, _| if varies[j] { moments.variance(j).sqrt() } else { 0.0 });
+        let inverse = deviations.map(|sigma| if sigma > 0.0 { 1.0 / sigma } else { 0.0 });
+        let correlation = DMatrix::from_fn(p, p, |i, j| moments.covariance(i, j) * inverse[i] * inverse[j]);
+        let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(correlation);
+        let in_basis = |f: &dyn Fn(usize) -> f64| tr_mul(&eigenvectors, &DVector::from_fn(p, |j, _| f(j)));
+        let targets = 0..moments.targets();
+        let data = targets.clone().map(|t| in_basis(&|j| moments.covariance_with_target(j, t) * inverse[j])).collect();
+        let source = source.iter().map(|beta| in_basis(&|j| beta[j] * deviations[j])).collect();
+        let target_variance = targets.map(|t| moments.target_variance(t)).collect();
+        let eigenvalues = eigenvalues.map(|value| value.max(0.0));
+        Self { deviations, eigenvalues, eigenvectors, data, source, target_variance, count: moments.count }
+    }
+
+    /// The coefficients of a target in the units of the regressors.
+    pub fn solve(&self, target: usize, choice: Choice, source: &[f64]) -> Vec<f64> {
+        let (from_data, from_source) = self.parts(target, choice.lambda);
+        self.unscaled(&(from_data + from_source * (1.0 - choice.alpha)), source)
+    }
+
+    /// The two vectors of which every solution at `lambda` is `data + (1 - alpha) source`, standardised.
+    fn parts(&self, target: usize, lambda: f64) -> (DVector<f64>, DVector<f64>) {
+        let divide = |v: &DVector<f64>, by: f64| v.zip_map(&self.eigenvalues, |x, d| by * x / (d + lambda).max(1e-300));
+        let data = &self.eigenvectors * divide(&self.data[target], 1.0);
+        let source = &self.eigenvectors * divide(&self.source[target], lambda);
+        (data, source)
+    }
+
+    fn unscaled(&self, beta: &DVector<f64>, source: &[f64]) -> Vec<f64> {
+        let one = |((b, sigma), kept): ((&f64, &f64), &f64)| if *sigma > 0.0 { b / sigma } else { *kept };
+        beta.iter().zip(self.deviations.iter()).zip(source).map(one).collect()
+    }
+
+    /// The alpha within a range that is best at `lambda` on other samples, and the mean squared error there; the error is
+    /// that of the model without intercept, and quadratic in alpha, so that its minimum is at hand.
+    pub fn best_alpha(&self, target: usize, lambda: f64, source: &[f64], validation: &Validation, alphas: (f64, f64)) -> (f64, f64) {
+        let (data, prior) = self.parts(target, lambda);
+        let fixed = self.unscaled(&data, source);
+        let zero = vec![0.0; source.len()];
+        let along = self.unscaled(&prior, &zero);
+        let (constant, linear, square) = validation.error_along(target, &fixed, &along);
+        let stationary = if square > 0.0 { -linear / (2.0 * square) } else { 1.0 };
+        let weight = stationary.clamp(1.0 - alphas.1, 1.0 - alphas.0);
+        (1.0 - weight, constant + linear * weight + square * weight * weight)
+    }
+
+    /// Residual variance of a target at a solution, from the statistics alone; degrees of freedom as the ridge uses them.
+    pub fn residual_variance(&self, target: usize, choice: Choice) -> f64 {
+        let solution = |i: usize| {
+            let pull = choice.lambda * (1.0 - choice.alpha) * self.source[target][i];
+            (self.data[target][i] + pull) / (self.eigenvalues[i] + choice.lambda).max(1e-300)
+        };
+        let explained: f64 =
+            (0..self.eigenvalues.len()).map(|i| solution(i) * (2.0 * self.data[target][i] - self.eigenvalues[i] * solution(i))).sum();
+        let freedom: f64 = self.eigenvalues.iter().map(|d| d / (d + choice.lambda).max(1e-300)).sum();
+        let mean = (self.target_variance[target] - explained).max(0.0);
+        mean * self.count / (self.count - freedom - 1.0).max(1.0)
+    }
+
+    /// Posterior standard deviations of the coefficients at residual variance 1, and the prior's, both in the units of
+    /// the regressors.
+    pub fn deviations(&self, lambda: f64) -> Vec<(f64, f64)> {
+        let weights = self.eigenvalues.map(|d| 1.0 / (self.count * (d + lambda).max(1e-300)));
+        let posterior = |j: usize| self.eigenvectors.row(j).iter().zip(weights.iter()).map(|(v, w)| v * v * w).sum::<f64>();
+        let prior = 1.0 / (self.count * lambda.max(1e-300));
+        let one = |(j, sigma): (usize, &f64)| {
+            if *sigma > 0.0 { (posterior(j).sqrt() / sigma, prior.sqrt() / sigma) } else { (0.0, 0.0) }
+        };
+        self.deviations.iter().enumerate().map(one).collect()
+    }
+
+    /// Largest eigenvalue of the correlation matrix over the smallest of those that belong to varying regressors.
+    pub fn condition_number(&self) -> f64 {
+        let still = self.deviations.iter().filter(|sigma| **sigma == 0.0).count();
+        let mut values: Vec<f64> = self.eigenvalues.iter().copied().collect();
+        values.sort_by(f64::total_cmp);
+        let smallest = values.get(still).copied().unwrap_or(0.0);
+        values.last().map_or(1.0, |largest| largest / smallest.max(largest * f64::EPSILON))
+    }
+
+    /// Groups of regressors that the samples cannot tell apart: those that share an eigenvector whose eigenvalue is below
+    /// `tolerance` of the largest.
+    pub fn collinear_groups(&self, tolerance: f64) -> Vec<Vec<usize>> {
+        let largest = self.eigenvalues.max();
+        let small = (0..self.eigenvalues.len()).filter(|&i| self.eigenvalues[i] < tolerance * largest);
+        let members = |i: usize| -> Vec<usize> {
+            let column = self.eigenvectors.column(i);
+            let moving = (0..column.len()).filter(|&j| column[j].abs() > 0.3 && self.deviations[j] > 0.0);
+            moving.collect()
+        };
+        let mut groups: Vec<Vec<usize>> = small.map(members).filter(|group| group.len() > 1).collect();
+        groups.sort();
+        groups.dedup();
+        groups
+    }
+}
+
+/// `V' x`, a column at a time: nalgebra's own transposed product is far slower.
+fn tr_mul(matrix: &DMatrix<f64>, vector: &DVector<f64>) -> DVector<f64> {
+    DVector::from_iterator(matrix.ncols(), matrix.column_iter().map(|column| column.dot(vector)))
+}
+
+/// Samples on which solutions are judged, prepared once.
+#[derive(Debug, Clone)]
+pub struct Validation {
+    raw: DMatrix<f64>,
+    regressors: usize,
+}
+
+impl Validation {
+    /// From their statistics.
+    pub fn new(moments: &Moments) -> Self {
+        Self { raw: moments.raw_products(), regressors: moments.regressors() }
+    }
+
+    /// Mean squared error of `fixed + w along` as `(constant, linear, square)` in `w`.
+    fn error_along(&self, target: usize, fixed: &[f64], along: &[f64]) -> (f64, f64, f64) {
+        let (p, t) = (self.regressors, self.regressors + target);
+        let (mut cross, mut square, mut own, mut data, mut shift) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        for j in 0..p {
+            let column = self.raw.column(j);
+            let (mut by_fixed, mut by_along) = (0.0, 0.0);
+            for i in 0..p {
+                by_fixed += column[i] * fixed[i];
+                by_along += column[i] * along[i];
+            }
+            own += fixed[j] * by_fixed;
+            cross += along[j] * by_fixed;
+            square += along[j] * by_along;
+            data += column[t] * fixed[j];
+            shift += column[t] * along[j];
+        }
+        (self.raw[(t, t)] - 2.0 * data + own, 2.0 * (cross - shift), square)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn samples() -> Vec<Vec<f64>> {
+        let x: Vec<f64> = (0..400).map(|k| (0.11 * f64::from(k)).sin()).collect();
+        let z: Vec<f64> = (0..400).map(|k| 3.0 + (0.07 * f64::from(k)).cos()).collect();
+        let y = x.iter().zip(&z).map(|(x, z)| 2.0 * x - 0.5 * z).collect();
+        vec![x, z, y]
+    }
+
+    #[test]
+    fn known_coefficients_are_recovered_and_the_source_holds_when_told_to() {
+        let path = RidgePath::new(&Moments::of_columns(&samples(), 2), &[vec![1.0, 1.0]]);
+        let at = |lambda: f64, alpha: f64| path.solve(0, Choice { lambda, alpha }, &[1.0, 1.0]);
+        let free = at(1e-12, 0.0);
+        assert!((free[0] - 2.0).abs() < 1e-9 && (free[1] + 0.5).abs() < 1e-9);
+        let held = at(1e9, 0.0);
+        assert!((held[0] - 1.0).abs() < 1e-6 && (held[1] - 1.0).abs() < 1e-6);
+        assert!(at(1e9, 1.0)[0].abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_closed_form_solves_the_normal_equations() {
+        let moments = Moments::of_columns(&samples(), 2);
+        let (lambda, alpha, source) = (0.3, 0.2, [1.5, -1.0]);
+        let beta = RidgePath::new(&moments, &[source.to_vec()]).solve(0, Choice { lambda, alpha }, &source);
+        for i in 0..2 {
+            let sigma = moments.variance(i).sqrt();
+            let left: f64 = (0..2).map(|j| moments.covariance(i, j) * beta[j]).sum::<f64>() / sigma + lambda * beta[i] * sigma;
+            let right = moments.covariance_with_target(i, 0) / sigma + lambda * (1.0 - alpha) * source[i] * sigma;
+            assert!((left - right).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_best_alpha_beats_its_neighbours() {
+        let moments = Moments::of_columns(&samples(), 2);
+        let source = [2.5, -0.7];
+        let path = RidgePath::new(&moments, &[source.to_vec()]);
+        let validation = Validation::new(&moments);
+        let (alpha, error) = path.best_alpha(0, 1.0, &source, &validation, (0.0, 1.0));
+        for other in [alpha - 0.05, alpha + 0.05] {
+            let beta = path.solve(0, Choice { lambda: 1.0, alpha: other }, &source);
+            let columns = samples();
+            let mse = (0..400).map(|k| (columns[2][k] - beta[0] * columns[0][k] - beta[1] * columns[1][k]).powi(2)).sum::<f64>() / 400.0;
+            assert!(mse > error);
+        }
+    }
+}

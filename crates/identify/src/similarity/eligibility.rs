@@ -1,0 +1,139 @@
+//! Ranking by correlation, and the three steps by which a source is eligible: Kanazawa 2023, section 5.1.2.
+
+use serde::Serialize;
+use sistership_model::{Model, Vessel};
+
+use super::{CharacteristicVector, Definition};
+
+/// A ship of the zoo with the model she would give.
+#[derive(Debug, Clone)]
+pub struct Candidate<'a> {
+    /// The ship.
+    pub vessel: &'a Vessel,
+    /// Her model; none for a ship known by particulars only.
+    pub model: Option<&'a Model>,
+}
+
+/// What is asked of a source.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Limits {
+    /// Largest relative difference of a component of the vector of Eq. 5.18. The thesis' own pair differs by 6 % at most.
+    pub vector_difference: f64,
+    /// Least correlation of simulated and measured yaw rate over the target's trials.
+    pub trend: f64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { vector_difference: 0.35, trend: 0.6 }
+    }
+}
+
+/// Whether a ship may be a source, and why not.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Eligibility {
+    /// Whether every step is passed.
+    pub eligible: bool,
+    /// The outcome of each step, with its figure.
+    pub reasons: Vec<String>,
+}
+
+/// One line of the ranking.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RankedSource {
+    /// The ship.
+    pub ship: String,
+    /// Her model's name; none for a ship known by particulars only.
+    pub model: Option<String>,
+    /// The law of that model.
+    pub law: Option<String>,
+    /// Correlation of the characteristic vectors; none where too few components are known.
+    pub correlation: Option<f64>,
+    /// Whether she may be the source.
+    pub eligible: bool,
+    /// Why, step by step, with figures.
+    pub reasons: Vec<String>,
+}
+
+/// Ranks the candidates by correlation with the target. `trend` measures how well a source's model captures the trend of
+/// the target's trials; without trials the third step is left open and said to be.
+pub fn rank(
+    target: &Vessel,
+    candidates: &[Candidate<'_>],
+    definition: Definition,
+    limits: &Limits,
+    trend: Option<&dyn Fn(&Model) -> Result<f64, String>>,
+) -> Vec<RankedSource> {
+    let here = CharacteristicVector::of(target, definition);
+    let others = candidates.iter().filter(|candidate| candidate.vessel.name() != target.name());
+    let mut ranking: Vec<RankedSource> = others
+        .map(|candidate| {
+            let correlation = here.correlation(&CharacteristicVector::of(candidate.vessel, definition));
+            let Eligibility { eligible, reasons } = judge(target, candidate, limits, trend);
+            RankedSource {
+                ship: candidate.vessel.name().to_owned(),
+                model: candidate.model.map(|model| model.name.clone()),
+                law: candidate.model.map(|model| model.law.clone()),
+                correlation,
+                eligible,
+                reasons,
+            }
+        })
+        .collect();
+    ranking.sort_by(|a, b| {
+        let key = |r: &RankedSource| r.correlation.unwrap_or(-2.0);
+        key(b).total_cmp(&key(a)).then_with(|| a.ship.cmp(&b.ship))
+    });
+    ranking
+}
+
+fn judge(
+    target: &Vessel,
+    candidate: &Candidate<'_>,
+    limits: &Limits,
+    trend: Option<&dyn Fn(&Model) -> Result<f64, String>>,
+) -> Eligibility {
+    let mut steps = vec![same_category(target, candidate.vessel), similar_vector(target, candidate.vessel, limits)];
+    match candidate.model {
+        None => steps.push(Err("no model: known by particulars only".into())),
+        // A simulation costs more than a comparison of numbers: it is run for those that passed them.
+        Some(model) if steps.iter().all(Result::is_ok) => match trend {
+            Some(trend) => steps.push(captures_trend(trend(model), limits)),
+            None => steps.push(Ok("trend of the trials: not checked, no trials given".into())),
+        },
+        Some(_) => {}
+    }
+    let eligible = steps.iter().all(Result::is_ok);
+    Eligibility { eligible, reasons: steps.into_iter().map(|step| step.unwrap_or_else(|reason| reason)).collect() }
+}
+
+type Step = Result<String, String>;
+
+fn same_category(target: &Vessel, source: &Vessel) -> Step {
+    let (here, there) = (&target.file.category, &source.file.category);
+    if here == there { Ok(format!("same category: {here}")) } else { Err(format!("another category: {there}, not {here}")) }
+}
+
+fn similar_vector(target: &Vessel, source: &Vessel, limits: &Limits) -> Step {
+    let definition = Definition::Kanazawa2023;
+    let here = CharacteristicVector::of(target, definition);
+    let there = CharacteristicVector::of(source, definition);
+    let shared = here.values.keys().filter(|name| there.values.contains_key(*name)).count();
+    let Some((name, difference)) = here.largest_difference(&there).filter(|_| shared >= 4) else {
+        return Err(format!("characteristic vector unknown: only {shared} components in common"));
+    };
+    let (percent, limit) = (100.0 * difference, 100.0 * limits.vector_difference);
+    if difference <= limits.vector_difference {
+        Ok(format!("similar vector: largest difference {percent:.0} % in {name}"))
+    } else {
+        Err(format!("vector too different: {percent:.0} % in {name}, at most {limit:.0} %"))
+    }
+}
+
+fn captures_trend(measured: Result<f64, String>, limits: &Limits) -> Step {
+    match measured {
+        Err(reason) => Err(format!("does not capture the trials: {reason}")),
+        Ok(r) if r >= limits.trend => Ok(format!("captures the trend of the trials: yaw rate correlates at {r:.2}")),
+        Ok(r) => Err(format!("misses the trend of the trials: yaw rate correlates at {r:.2}, at least {:.2}", limits.trend)),
+    }
+}

@@ -1,0 +1,64 @@
+//! Choosing the source of a refinement: `auto`, a ship, or one of her models.
+
+use serde::Serialize;
+use sistership_model::trial::Trial;
+use sistership_model::{Model, Vessel, Zoo};
+
+use crate::similarity::{Candidate, CharacteristicVector, Definition, Limits, RankedSource, rank};
+use crate::transfer::{approach_of, transfer, trend};
+
+/// How similar ships rank for a target.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Similarity {
+    /// The target's name.
+    pub target: String,
+    /// The definition of the vector.
+    pub definition: Definition,
+    /// The target's vector.
+    pub vector: std::collections::BTreeMap<String, f64>,
+    /// Candidates, most similar first.
+    pub ranking: Vec<RankedSource>,
+}
+
+/// Ranks the zoo for a target. Without a `definition`, Mei's where the target has every component of it, else Kanazawa's.
+/// `trials` let the third step of eligibility be measured.
+pub fn similar(zoo: &Zoo, target: &Vessel, definition: Option<Definition>, trials: &[&Trial]) -> Similarity {
+    let complete = CharacteristicVector::of(target, Definition::Mei2019).missing().is_empty();
+    let default = if complete { Definition::Mei2019 } else { Definition::Kanazawa2023 };
+    let definition = definition.unwrap_or(default);
+    let models: Vec<(&Vessel, Option<Model>)> =
+        zoo.vessels().map(|vessel| (&**vessel, zoo.published(vessel, None).ok())).collect();
+    let candidates: Vec<Candidate<'_>> =
+        models.iter().map(|(vessel, model)| Candidate { vessel, model: model.as_ref() }).collect();
+    let measured = |model: &Model| trend_on(zoo, target, model, trials);
+    let measured: Option<&dyn Fn(&Model) -> Result<f64, String>> = if trials.is_empty() { None } else { Some(&measured) };
+    Similarity {
+        target: target.name().to_owned(),
+        definition,
+        vector: CharacteristicVector::of(target, definition).values,
+        ranking: rank(target, &candidates, definition, &Limits::default(), measured),
+    }
+}
+
+/// The trend of a source on the target's trials, started anew each time she has sailed 20 of her lengths.
+fn trend_on(zoo: &Zoo, target: &Vessel, source: &Model, trials: &[&Trial]) -> Result<f64, String> {
+    let law = zoo.law(&source.law).ok_or_else(|| format!("there is no law `{}`", source.law))?;
+    let approach = approach_of(trials);
+    let model = transfer(source, law, target, approach);
+    let lengths_s = target.particular("lpp_m").zip(approach).map(|(l, a)| 20.0 * l / a.speed_m_s);
+    trend(&model, law, trials, lengths_s.unwrap_or(200.0))
+}
+
+/// The best eligible source, or every reason why there is none.
+///
+/// # Errors
+/// Lists each ship of the ranking with the step it failed.
+pub fn best_source(zoo: &Zoo, similarity: &Similarity) -> Result<Model, String> {
+    let eligible = similarity.ranking.iter().find(|ranked| ranked.eligible);
+    if let Some(model) = eligible.and_then(|ranked| ranked.model.as_deref()) {
+        return zoo.model(model).map_err(|error| error.to_string());
+    }
+    let why = |ranked: &RankedSource| format!("{}: {}", ranked.ship, ranked.reasons.last().map_or("", String::as_str));
+    let reasons: Vec<String> = similarity.ranking.iter().map(why).collect();
+    Err(format!("no ship of the zoo is an eligible source for `{}`; {}", similarity.target, reasons.join("; ")))
+}

@@ -1,0 +1,123 @@
+//! Carrying a source model over to another ship, and measuring whether it captures the trend of her trials.
+
+use std::collections::BTreeSet;
+
+use sistership_dynamics::recorded::{ReplaySettings, replay};
+use sistership_dynamics::state::at;
+use sistership_dynamics::Ship;
+use sistership_model::formula::Expr;
+use sistership_model::law::Law;
+use sistership_model::particulars::{self, Particulars};
+use sistership_model::quantity::Quantity;
+use sistership_model::trial::{Channel, Trial};
+use sistership_model::{Model, Vessel};
+
+/// How a ship approaches her trials.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Approach {
+    /// Speed, m/s.
+    pub speed_m_s: f64,
+    /// Propeller revolutions, 1/s, where recorded.
+    pub n_rps: Option<f64>,
+}
+
+/// The approach of a set of trials: the median speed at their first samples; where they start from rest, the median
+/// speed under way. `None` without velocities.
+pub fn approach_of(trials: &[&Trial]) -> Option<Approach> {
+    let first = |trial: &&Trial| Some(trial.channel(Channel::U)?.first()?.hypot(*trial.channel(Channel::V)?.first()?));
+    let mut starts: Vec<f64> = trials.iter().filter_map(first).collect();
+    let mut speeds: Vec<f64> = trials.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten().copied()).collect();
+    let mut revolutions: Vec<f64> = trials.iter().flat_map(|t| t.channel(Channel::N).into_iter().flatten().copied()).collect();
+    let (start, under_way) = (median(&mut starts)?, median(&mut speeds)?);
+    let speed_m_s = if start > 0.5 * under_way { start } else { under_way };
+    (speed_m_s > 0.0).then(|| Approach { speed_m_s, n_rps: median(&mut revolutions).filter(|n| *n > 0.0) })
+}
+
+fn median(values: &mut [f64]) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+/// A source model on the target's particulars. What the law needs and the target does not state is scaled from the source
+/// by Froude's law and marked so; the steering gear's rate is scaled likewise.
+pub fn transfer(source: &Model, law: &Law, target: &Vessel, approach: Option<Approach>) -> Model {
+    let of_source = |name: &str| particulars::value(&source.particulars, name);
+    let ratio = match (target.particular("lpp_m"), of_source("lpp_m")) {
+        (Some(here), Some(there)) => here / there,
+        _ => 1.0,
+    };
+    let particulars = complete(source, law, target, ratio);
+    let service = particulars::value(&particulars, "service_speed_m_s");
+    let froude = source.speed_m_s.map(|speed| speed * ratio.sqrt());
+    let speed = approach.map(|a| a.speed_m_s).or(service).or(froude);
+    let mut model = source.transferred(law, target.name(), &particulars, speed);
+    model.speed_m_s = speed;
+    let scaled_n = source.revolutions_rps.zip(froude).zip(speed).map(|((n, froude), speed)| n / ratio.sqrt() * speed / froude);
+    model.revolutions_rps = approach.and_then(|a| a.n_rps).or(scaled_n);
+    model.steering.rate_deg_s = source.steering.rate_deg_s / ratio.sqrt();
+    model.steering.time_constant_s = source.steering.time_constant_s * ratio.sqrt();
+    model.steering.source = Some(format!("scaled from {}", source.name));
+    model
+}
+
+fn complete(source: &Model, law: &Law, target: &Vessel, ratio: f64) -> Particulars {
+    let mut particulars = target.particulars.clone();
+    for name in needed_particulars(law) {
+        let known = particulars::value(&target.particulars, &name).is_some();
+        let (false, Some(value), Some(dimension)) =
+            (known, particulars::value(&source.particulars, &name), particulars::dimension(&name))
+        else {
+            continue;
+        };
+        let factor = ratio.powf(dimension.length + 3.0 * dimension.mass + 0.5 * dimension.time);
+        particulars.insert(name, Quantity::new(value * factor, format!("scaled from {}", source.name)));
+    }
+    particulars
+}
+
+/// The particulars that a law's formulas mention.
+fn needed_particulars(law: &Law) -> BTreeSet<String> {
+    let axes = law.axes.values().flat_map(|axis| axis.terms.values().chain([&axis.scale, &axis.rest]));
+    let formulas: Vec<&Expr> = law.values.values().chain(law.mass.values()).chain(axes).collect();
+    let names = formulas.into_iter().flat_map(|expr| expr.names().into_iter().map(str::to_owned).collect::<Vec<_>>());
+    names.filter(|name| particulars::dimension(name).is_some()).collect()
+}
+
+/// How well a model captures the trend of trials: Pearson's correlation of simulated and measured yaw rate over all of
+/// them, simulated with the recorded rudder and started anew every `restart_s`.
+///
+/// # Errors
+/// Says which channel is missing, or that the simulation left the physical range.
+pub fn trend(model: &Model, law: &Law, trials: &[&Trial], restart_s: f64) -> Result<f64, String> {
+    let ship = ready(model, law, trials)?;
+    let settings = ReplaySettings { restart_s: Some(restart_s), ..ReplaySettings::default() };
+    let mut pairs = Vec::new();
+    for trial in trials {
+        let run = replay(&ship, trial, &settings).map_err(|e| e.to_string())?;
+        if let Some(stopped) = run.stopped {
+            return Err(format!("{} {stopped}", trial.name));
+        }
+        let measured = trial.channel(Channel::R).unwrap_or_default();
+        pairs.extend(run.track.states.iter().zip(&run.samples).map(|(state, &k)| (state[at::R], measured[k])));
+    }
+    pearson(&pairs).ok_or_else(|| "the yaw rate is constant".to_owned())
+}
+
+/// A ship whose envelope covers the speeds of the trials.
+pub(crate) fn ready(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, String> {
+    let mut ship = Ship::new(model, law).map_err(|e| e.to_string())?;
+    let fastest = trials.iter().flat_map(|t| t.channel(Channel::U).into_iter().flatten()).fold(0.0_f64, |a, b| a.max(b.abs()));
+    ship.set_envelope_speed(fastest);
+    Ok(ship)
+}
+
+fn pearson(pairs: &[(f64, f64)]) -> Option<f64> {
+    let n = pairs.len() as f64;
+    let mean = pairs.iter().fold((0.0, 0.0), |m, p| (m.0 + p.0 / n, m.1 + p.1 / n));
+    let sums = pairs.iter().fold((0.0, 0.0, 0.0), |s, p| {
+        let (a, b) = (p.0 - mean.0, p.1 - mean.1);
+        (s.0 + a * a, s.1 + b * b, s.2 + a * b)
+    });
+    let spread = (sums.0 * sums.1).sqrt();
+    (spread > 0.0).then(|| sums.2 / spread)
+}

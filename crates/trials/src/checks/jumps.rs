@@ -1,0 +1,109 @@
+//! Steps between two samples that no ship makes, with room for what instruments do.
+
+use std::f64::consts::PI;
+
+use sistership_model::trial::Channel;
+
+use crate::findings::{Findings, Severity};
+use crate::recording::Recording;
+use crate::stats::quantile;
+
+/// m/s; faster than any ship.
+const MAX_SPEED: f64 = 40.0;
+/// m; what a satellite fix may step on its own account.
+const FIX_STEP: f64 = 10.0;
+/// rad; a heading step in one sample, and the rate (rad/s) that widens it when samples are far apart.
+const HEADING_STEP: f64 = PI / 3.0;
+const HEADING_RATE: f64 = 0.1;
+/// m/s and m/s2; a step of a speed sensor, and an acceleration beyond any ship's.
+const SPEED_STEP: f64 = 5.0;
+const ACCELERATION: f64 = 2.0;
+/// A position step this many times the usual one is remarked.
+const UNUSUAL: f64 = 10.0;
+
+pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
+    position(recording, findings);
+    heading(recording, findings);
+    for channel in [Channel::U, Channel::V] {
+        speed(recording, channel, findings);
+    }
+}
+
+fn position(recording: &Recording, findings: &mut Findings) {
+    let (Some(x), Some(y)) = (recording.channel(Channel::X), recording.channel(Channel::Y)) else { return };
+    let (t, header) = (recording.time(), recording.header(Channel::X));
+    let step = |k: usize| (x[k] - x[k - 1]).hypot(y[k] - y[k - 1]);
+    let hits = recording.hits(1..t.len(), |k| step(k) > FIX_STEP + MAX_SPEED * (t[k] - t[k - 1]));
+    findings.rows(Severity::Error, header, &hits, |k| {
+        format!("the position jumps {:.1} m in {:.3} s; remove the faulty fix, or split the file there", step(k), t[k] - t[k - 1])
+    });
+    if hits.is_empty() {
+        unusual(recording, step, findings);
+    }
+}
+
+/// Steps of a satellite fix are kept, but told: the largest of them and how many.
+fn unusual(recording: &Recording, step: impl Fn(usize) -> f64, findings: &mut Findings) {
+    let typical = quantile((1..recording.trial.len()).map(&step).collect(), 0.95);
+    let steady = recording.segments.iter().flat_map(|segment| segment.start + 1..segment.end);
+    let hits: Vec<usize> = steady.filter(|&k| step(k) > UNUSUAL * typical && typical > 0.0).collect();
+    if let Some(&largest) = hits.iter().max_by(|&&a, &&b| step(a).total_cmp(&step(b))) {
+        let message = format!(
+            "the position steps {:.2} m here where 95 % of steps are below {typical:.3} m ({} such steps); satellite fixes do so",
+            step(largest),
+            hits.len()
+        );
+        findings.warning(Some(recording.row(largest)), Some(recording.header(Channel::X)), message);
+    }
+}
+
+fn heading(recording: &Recording, findings: &mut Findings) {
+    let Some(psi) = recording.channel(Channel::Psi) else { return };
+    let (t, header) = (recording.time(), recording.header(Channel::Psi));
+    let within = |k: usize| !recording.segments.iter().any(|segment| segment.start == k);
+    let limit = |k: usize| HEADING_STEP.max(HEADING_RATE * (t[k] - t[k - 1]));
+    let hits = recording.hits(1..t.len(), |k| (psi[k] - psi[k - 1]).abs() > limit(k) && within(k));
+    findings.rows(Severity::Error, header, &hits, |k| {
+        let degrees = (psi[k] - psi[k - 1]) * 180.0 / PI;
+        format!(
+            "the heading steps {degrees:.0} deg in {:.3} s; if its unit is degrees declare `deg`, otherwise remove the row",
+            t[k] - t[k - 1]
+        )
+    });
+}
+
+fn speed(recording: &Recording, channel: Channel, findings: &mut Findings) {
+    let Some(values) = recording.channel(channel) else { return };
+    let (t, header) = (recording.time(), recording.header(channel));
+    let step = |k: usize| values[k] - values[k - 1];
+    let hits = recording.hits(1..t.len(), |k| step(k).abs() > SPEED_STEP + ACCELERATION * (t[k] - t[k - 1]));
+    findings.rows(Severity::Error, header, &hits, |k| {
+        format!("the speed steps {:.2} m/s in {:.3} s, which no ship does; remove the faulty row", step(k), t[k] - t[k - 1])
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{recording, said, zigzag};
+
+    #[test]
+    fn a_steady_run_passes() {
+        assert_eq!(said(&recording(&zigzag()), check), "");
+    }
+
+    #[test]
+    fn impossible_steps_name_their_row() {
+        let broken = |channel: Channel, by: f64| {
+            let mut channels = zigzag();
+            channels.iter_mut().filter(|(name, _)| *name == channel).for_each(|(_, values)| values[100] += by);
+            said(&recording(&channels), check)
+        };
+        assert!(broken(Channel::X, 60.0).starts_with("error Some(102) Some(\"x_m\") the position jumps"));
+        assert!(broken(Channel::Psi, 1.2).starts_with("error Some(102) Some(\"psi_rad\") the heading steps"));
+        assert!(broken(Channel::U, 8.0).starts_with("error Some(102) Some(\"u_m_s\") the speed steps"));
+        // A satellite fix that steps is the seafarer's daily bread.
+        let text = broken(Channel::X, 27.0);
+        assert!(text.starts_with("warning Some(10") && text.contains("satellite fixes"), "{text}");
+    }
+}

@@ -1,0 +1,29 @@
+//! What must hold of a recording before anybody fits a model to it.
+
+mod course;
+mod jumps;
+mod ranges;
+mod rudder;
+mod shape;
+mod time;
+mod track;
+mod yaw;
+
+use crate::findings::Findings;
+use crate::recording::Recording;
+
+/// Runs every check. Those that need time to run forwards are left out when it does not.
+pub(crate) fn run(recording: &mut Recording, findings: &mut Findings) {
+    shape::check(recording, findings);
+    ranges::check(recording, findings);
+    if !time::in_order(recording, findings) {
+        return;
+    }
+    recording.settle_time();
+    time::gaps(recording, findings);
+    jumps::check(recording, findings);
+    yaw::check(recording, findings);
+    course::check(recording, findings);
+    track::check(recording, findings);
+    rudder::check(recording, findings);
+}

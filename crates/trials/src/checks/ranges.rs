@@ -1,0 +1,115 @@
+//! Values that no ship and no model basin produces, and what they most likely are instead.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use sistership_model::trial::Channel;
+
+use crate::findings::{Findings, Severity};
+use crate::recording::Recording;
+use crate::stats::quantile;
+
+/// Channel, largest magnitude, what to do about more.
+///
+/// The limits hold for a one-metre model as for a tanker: 40 m/s is beyond any displacement ship, 1.5 rad/s (86 deg/s)
+/// beyond a free-running model at full rudder, 200 turns per second beyond a model's propeller.
+const LIMITS: [(Channel, f64, &str); 9] = [
+    (Channel::U, 40.0, "no ship is that fast; check the column and its unit"),
+    (Channel::V, 40.0, "no ship is that fast; check the column and its unit"),
+    (Channel::R, 1.5, "no ship turns that fast; if the values are degrees per second declare `deg/s`"),
+    (Channel::P, 3.0, "no ship rolls that fast; if the values are degrees per second declare `deg/s`"),
+    (Channel::Phi, FRAC_PI_2, "the ship would lie on her side; if the values are degrees declare `deg`"),
+    (Channel::Delta, FRAC_PI_2, "no rudder turns that far; if the values are degrees declare `deg`"),
+    (Channel::N, 200.0, "no propeller turns that fast; if the values are per minute declare `rpm`"),
+    (Channel::WindSpeed, 100.0, "no wind blows that fast; check the column and its unit"),
+    (Channel::ApparentWindSpeed, 100.0, "no wind blows that fast; check the column and its unit"),
+];
+
+pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
+    for (channel, limit, advice) in LIMITS {
+        beyond(recording, channel, |value| value.abs() > limit, advice, findings);
+    }
+    for channel in [Channel::WindSpeed, Channel::ApparentWindSpeed] {
+        beyond(recording, channel, |value| value < 0.0, "a wind speed is not negative; give its direction apart", findings);
+    }
+    beyond(recording, Channel::Depth, |value| value <= 0.0, "depth is positive downwards", findings);
+    tiny_rudder(recording, findings);
+    fast_propeller(recording, findings);
+}
+
+fn beyond(recording: &Recording, channel: Channel, wrong: impl Fn(f64) -> bool, advice: &str, findings: &mut Findings) {
+    let Some(values) = recording.channel(channel) else { return };
+    let hits = recording.hits(0..values.len(), |k| wrong(values[k]));
+    let unit = recording.canonical_unit(channel);
+    let note = converted(recording, channel, unit);
+    findings.rows(Severity::Error, recording.header(channel), &hits, |k| format!("{:.4} {unit}{note}: {advice}", values[k]));
+}
+
+fn converted(recording: &Recording, channel: Channel, canonical: &str) -> String {
+    let declared = recording.unit(channel);
+    let same = declared.is_empty() || declared == canonical;
+    if same { String::new() } else { format!(" (converted from {declared})") }
+}
+
+/// A rudder that never leaves a degree is one recorded in radians and declared in degrees.
+fn tiny_rudder(recording: &Recording, findings: &mut Findings) {
+    let Some(values) = recording.channel(Channel::Delta).filter(|_| recording.unit(Channel::Delta) == "deg") else { return };
+    let most = values.iter().fold(0.0_f64, |most, value| most.max(value.abs())) * 180.0 / PI;
+    if (0.03..1.0).contains(&most) {
+        let message = format!("the rudder never exceeds {most:.2} deg; if these are radians declare `rad`");
+        findings.warning(None, Some(recording.header(Channel::Delta)), message);
+    }
+}
+
+fn fast_propeller(recording: &Recording, findings: &mut Findings) {
+    let Some(values) = recording.channel(Channel::N) else { return };
+    let typical = quantile(values.iter().map(|value| value.abs()).collect(), 0.5);
+    if typical > 40.0 {
+        let message =
+            format!("the propeller typically makes {typical:.0} turns per second; if these are per minute declare `rpm`");
+        findings.warning(None, Some(recording.header(Channel::N)), message);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{recording, said};
+
+    fn of(channel: Channel, values: &[f64]) -> String {
+        said(&recording(&[(channel, values.to_vec())]), check)
+    }
+
+    #[test]
+    fn degrees_taken_for_radians_are_named() {
+        let text = of(Channel::Delta, &[0.0, 35.0, -20.0]);
+        assert!(text.starts_with("error Some(3) Some(\"delta_rad\") 35.0000 rad: no rudder turns that far"), "{text}");
+        assert!(text.contains("declare `deg`"));
+        assert!(of(Channel::R, &[0.0, 2.5]).contains("declare `deg/s`"));
+    }
+
+    #[test]
+    fn impossible_values_are_refused() {
+        assert!(of(Channel::U, &[41.0]).starts_with("error Some(2)"));
+        assert!(of(Channel::WindSpeed, &[-1.0]).contains("not negative"));
+        assert!(of(Channel::Depth, &[0.0]).contains("positive"));
+        assert!(of(Channel::N, &[80.0, 80.0]).starts_with("warning"));
+    }
+
+    #[test]
+    fn ordinary_values_pass() {
+        for (channel, value) in
+            [(Channel::U, 15.0), (Channel::R, 0.11), (Channel::Delta, -0.62), (Channel::N, 20.0), (Channel::Phi, 0.5)]
+        {
+            assert_eq!(of(channel, &[value, 0.5 * value]), "");
+        }
+    }
+
+    #[test]
+    fn radians_taken_for_degrees_are_remarked() {
+        let mut recording = recording(&[(Channel::Delta, vec![0.0, 0.17 * PI / 180.0])]);
+        if let Some(column) = recording.columns.get_mut(&Channel::Delta) {
+            column.unit = "deg".into();
+        }
+        assert!(said(&recording, check).contains("declare `rad`"));
+    }
+}

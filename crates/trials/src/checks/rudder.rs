@@ -1,0 +1,107 @@
+//! Positive rudder turns the ship to starboard.
+//!
+//! Two witnesses are heard. The yaw rate some moments later correlates with the rudder; and in Nomoto's first-order
+//! model, dr/dt = a r + b delta + c, fitted over blocks, b has the rudder's sign. Either alone errs at times: the first
+//! when the ship swings slowly, the second when a turn is so tight that the model does not fit. A trial is refused
+//! when both agree that the sign is wrong.
+
+use nalgebra::{Matrix3, Vector3};
+use sistership_model::trial::Channel;
+
+use crate::findings::Findings;
+use crate::recording::Recording;
+use crate::stats::{Block, blocks, correlation, quantile, range};
+
+/// rad; less rudder or less swing than this is course keeping, in which the rudder follows the yaw rate.
+const RUDDER: f64 = 0.05;
+const SWING: f64 = 0.25;
+/// Blocks with speed ahead that are needed.
+const ENOUGH: usize = 15;
+/// Lags of the yaw rate, as parts of the recording.
+const LAGS: [f64; 4] = [0.0, 0.005, 0.01, 0.02];
+/// Each witness must be below the first, both together below the second.
+const EACH: f64 = 0.25;
+const BOTH: f64 = -0.6;
+
+pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
+    let (Some(r), Some(delta)) = (recording.channel(Channel::R), recording.channel(Channel::Delta)) else { return };
+    let ahead = ahead(recording);
+    let blocks: Vec<Block> = blocks(recording).into_iter().filter(|block| (block.first..=block.last).all(|k| ahead[k])).collect();
+    if blocks.len() < ENOUGH || !manoeuvres(recording, r, delta) {
+        return;
+    }
+    let (lagged, fitted) = (lagged(r, delta, &ahead), fitted(recording, &blocks, r, delta));
+    if lagged < EACH && fitted < EACH && lagged + fitted < BOTH {
+        let message = format!(
+            "positive rudder turns the ship to port in this file (the yaw rate correlates with it by {lagged:.2}); \
+             set `rudder_positive: port_turn` in the manifest's conventions, or starboard_turn if port_turn is set"
+        );
+        findings.error(None, Some(recording.header(Channel::Delta)), message);
+    }
+}
+
+/// Samples with way ahead: a ship going astern answers her rudder the other way or not at all.
+fn ahead(recording: &Recording) -> Vec<bool> {
+    let all = vec![true; recording.trial.len()];
+    let Some(u) = recording.channel(Channel::U) else { return all };
+    let enough = 0.5 * quantile(u.to_vec(), 0.95);
+    let n = recording.channel(Channel::N);
+    (0..u.len()).map(|k| u[k] > 0.0 && u[k] > enough && n.is_none_or(|n| n[k] > 0.0)).collect()
+}
+
+fn manoeuvres(recording: &Recording, r: &[f64], delta: &[f64]) -> bool {
+    let mut heading = 0.0;
+    let t = recording.time();
+    let swing: Vec<f64> = (1..t.len())
+        .map(|k| {
+            heading += r[k] * (t[k] - t[k - 1]);
+            heading
+        })
+        .collect();
+    range(&swing) > SWING && quantile(delta.iter().map(|value| value.abs()).collect(), 0.95) > RUDDER
+}
+
+/// The correlation that is largest in magnitude among the lags.
+fn lagged(r: &[f64], delta: &[f64], ahead: &[bool]) -> f64 {
+    let at = |part: &f64| {
+        let lag = (part * r.len() as f64) as usize;
+        let both = (0..r.len() - lag).filter(|&k| ahead[k] && ahead[k + lag]);
+        correlation(&both.map(|k| (delta[k], r[k + lag])).collect::<Vec<_>>())
+    };
+    LAGS.iter().map(at).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
+}
+
+/// The partial correlation of rudder and yaw acceleration: b of Nomoto's model over its standard error, brought to -1 to 1.
+fn fitted(recording: &Recording, blocks: &[Block], r: &[f64], delta: &[f64]) -> f64 {
+    let t = recording.time();
+    let row = |block: &Block| Vector3::new(block.integral(t, |k| r[k]), block.integral(t, |k| delta[k]), block.change(t));
+    let rows: Vec<(Vector3<f64>, f64)> = blocks.iter().map(|block| (row(block), block.change(r))).collect();
+    let gram: Matrix3<f64> = rows.iter().map(|(row, _)| row * row.transpose()).sum();
+    let moment: Vector3<f64> = rows.iter().map(|(row, change)| row * *change).sum();
+    let Some(inverse) = gram.try_inverse() else { return 0.0 };
+    let found = inverse * moment;
+    let squares: f64 = rows.iter().map(|(row, change)| (change - row.dot(&found)).powi(2)).sum();
+    let freedom = (rows.len() - 3) as f64;
+    // b^2 / (b^2 + its variance times the degrees of freedom) needs no division by a variance of zero.
+    let partial = found[1] / (found[1].powi(2) + squares * inverse[(1, 1)]).sqrt();
+    if partial.is_finite() && freedom > 0.0 { partial } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{recording, said, zigzag, zigzag_with};
+
+    #[test]
+    fn a_rudder_of_the_other_sign_is_refused() {
+        assert_eq!(said(&recording(&zigzag()), check), "");
+        let text = said(&zigzag_with(Channel::Delta, |delta| -delta), check);
+        assert!(text.starts_with("error None Some(\"delta_rad\")") && text.contains("port_turn"), "{text}");
+    }
+
+    #[test]
+    fn no_rudder_or_no_swing_says_nothing() {
+        assert_eq!(said(&zigzag_with(Channel::Delta, |_| 0.0), check), "");
+        assert_eq!(said(&zigzag_with(Channel::R, |r| -1e-3 * r), check), "");
+    }
+}

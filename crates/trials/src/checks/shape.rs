@@ -1,0 +1,87 @@
+//! Whether there is enough in the recording to be of use.
+
+use std::f64::consts::TAU;
+
+use sistership_model::trial::Channel;
+
+use crate::findings::Findings;
+use crate::recording::Recording;
+use crate::stats::range;
+
+/// Samples below which nothing can be said of a trial.
+const FEWEST: usize = 3;
+/// Part of a full turn that counts as one.
+const ALMOST: f64 = 0.98;
+
+pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
+    if recording.trial.len() < FEWEST {
+        let message = format!("{} usable rows are no trial; at least {FEWEST} are needed", recording.trial.len());
+        findings.error(None, None, message);
+        return;
+    }
+    constant(recording, findings);
+    short_turn(recording, findings);
+}
+
+/// A channel that never changes is a dead sensor or a placeholder; depth is constant by nature.
+fn constant(recording: &Recording, findings: &mut Findings) {
+    for (&channel, values) in &recording.trial.channels {
+        if channel != Channel::Depth && range(values) == 0.0 {
+            findings.warning(
+                None,
+                Some(recording.header(channel)),
+                format!("constant at {:.4} {} throughout", values[0], recording.canonical_unit(channel)),
+            );
+        }
+    }
+}
+
+/// A turning circle is measured over a full turn at least.
+fn short_turn(recording: &Recording, findings: &mut Findings) {
+    if !is_turn(recording) {
+        return;
+    }
+    let turned = match (recording.channel(Channel::Psi), recording.channel(Channel::R)) {
+        (Some(psi), _) => range(psi),
+        (None, Some(r)) => {
+            let t = recording.time();
+            (1..r.len()).map(|k| r[k] * (t[k] - t[k - 1])).sum::<f64>().abs()
+        }
+        (None, None) => return,
+    };
+    if turned < ALMOST * TAU {
+        let message = format!(
+            "the turn is too short: {:.0} deg of heading, where a turning circle takes 360 deg or more",
+            turned.to_degrees()
+        );
+        findings.warning(None, Some(recording.header(Channel::Psi)), message);
+    }
+}
+
+fn is_turn(recording: &Recording) -> bool {
+    let file = recording.trial.name.rsplit(['/', '\\']).next().unwrap_or_default();
+    let text = recording.trial.manoeuvre.as_deref().unwrap_or(file).to_lowercase();
+    text.split(|c: char| !c.is_alphanumeric()).any(|word| matches!(word, "turn" | "turning"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{recording, said};
+
+    #[test]
+    fn a_constant_channel_and_a_short_turn_are_told() {
+        let mut turn =
+            recording(&[(Channel::Psi, vec![0.0, 0.5, 1.0]), (Channel::N, vec![2.0; 3]), (Channel::Depth, vec![9.0; 3])]);
+        assert!(!said(&turn, check).contains("too short"));
+        turn.trial.manoeuvre = Some("turn 35 deg".into());
+        let text = said(&turn, check);
+        assert!(text.contains("Some(\"n_rps\") constant at 2.0000 rps") && text.contains("57 deg of heading"), "{text}");
+        assert!(!text.contains("depth"));
+    }
+
+    #[test]
+    fn two_rows_are_no_trial() {
+        assert!(said(&recording(&[(Channel::U, vec![1.0, 2.0])]), check).starts_with("error"));
+    }
+}

@@ -1,0 +1,72 @@
+//! Time runs forwards, and its gaps are told.
+
+use crate::findings::{Findings, Severity};
+use crate::recording::Recording;
+
+/// Steps longer than this many medians are gaps.
+const GAP: f64 = 1.5;
+
+/// Whether time is strictly increasing; errors name the rows where it is not.
+pub(crate) fn in_order(recording: &Recording, findings: &mut Findings) -> bool {
+    let t = recording.time();
+    let hits = recording.hits(1..t.len(), |k| t[k] <= t[k - 1]);
+    findings.rows(Severity::Error, &recording.time, &hits, |k| match t[k] == t[k - 1] {
+        true => format!("time {} s stands twice; remove one of the rows", t[k]),
+        false => format!(
+            "time goes back from {} s to {} s; sort the rows, or split the file if two runs follow each other",
+            t[k - 1],
+            t[k]
+        ),
+    });
+    hits.is_empty()
+}
+
+/// Warns of gaps and of a start that is not zero. A gap left by dropped rows has been told already.
+pub(crate) fn gaps(recording: &Recording, findings: &mut Findings) {
+    let (t, limit) = (recording.time(), GAP * recording.interval_s);
+    let hits = recording.hits(1..t.len(), |k| t[k] - t[k - 1] > limit && recording.rows[k] - recording.rows[k - 1] == 1);
+    findings.rows(Severity::Warning, &recording.time, &hits, |k| {
+        format!(
+            "gap of {:.3} s (samples are {:.3} s apart); nothing is interpolated over it",
+            t[k] - t[k - 1],
+            recording.interval_s
+        )
+    });
+    if let Some(&start) = t.first().filter(|start| start.abs() > 1e-9) {
+        findings.warning(
+            Some(recording.row(0)),
+            Some(&recording.time),
+            format!("time starts at {start} s, not at 0; kept as recorded"),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sistership_model::trial::Channel;
+
+    use super::*;
+    use crate::testing::{recording, said};
+
+    fn at(t: &[f64]) -> Recording {
+        let mut recording = recording(&[(Channel::U, vec![1.0; t.len()])]);
+        recording.trial.t_s = t.to_vec();
+        recording
+    }
+
+    #[test]
+    fn time_runs_forwards() {
+        let text = said(&at(&[0.0, 1.0, 1.0, 0.5]), |recording, findings| assert!(!in_order(recording, findings)));
+        assert!(text.contains("error Some(4) Some(\"t_s\") time 1 s stands twice"), "{text}");
+        assert!(text.contains("error Some(5)") && text.contains("back from 1 s to 0.5 s"));
+    }
+
+    #[test]
+    fn gaps_and_late_starts_are_told() {
+        let mut late = at(&[7.0, 8.0, 9.0, 14.0, 15.0]);
+        late.settle_time();
+        let text = said(&late, gaps);
+        assert!(text.contains("warning Some(5)") && text.contains("gap of 5.000 s"), "{text}");
+        assert!(text.contains("starts at 7 s"));
+    }
+}

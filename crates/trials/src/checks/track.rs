@@ -1,0 +1,146 @@
+//! The positions move as the ship-fixed velocities, turned by the heading, say.
+
+use sistership_model::trial::{Channel, VelocityFrame};
+
+use crate::findings::Findings;
+use crate::recording::Recording;
+use crate::stats::{Block, blocks, proportion, range};
+
+/// rad; the heading must turn this much before axes can be told apart.
+const TURNED: f64 = 0.5;
+/// An explanation must leave less than this part of what the declared axes leave, and of the whole.
+const MUCH_BETTER: f64 = 0.1;
+/// Part of the mean speed that a steady or unsteady disagreement must reach to be remarked.
+const STEADY: f64 = 0.05;
+const UNSTEADY: f64 = 0.25;
+
+/// A block's displacement north and east, m.
+type Step = (f64, f64);
+
+/// What the axes might be instead of the declared ones: velocity north and east from u, v, cos psi and sin psi.
+type Axes = fn(f64, f64, f64, f64) -> Step;
+
+const DECLARED: Axes = |u, v, c, s| (u * c - v * s, u * s + v * c);
+
+const MISTAKES: [(Axes, &str); 4] = [
+    (|u, v, _, _| (u, v), "u and v are the velocities north and east, not along the ship; rotate them by the heading first"),
+    (
+        |u, v, c, s| (u * s + v * c, u * c - v * s),
+        "x and y are exchanged: x points north and y east; map them the other way round",
+    ),
+    (
+        |u, v, c, s| (u * c - v * s, -u * s - v * c),
+        "y points west, or the heading counts anticlockwise; y points east and the heading counts clockwise: change the sign",
+    ),
+    (|u, v, c, s| (u * c + v * s, u * s - v * c), "v is positive to port; it counts to starboard: change its sign"),
+];
+
+/// Ratio of measured to predicted track, and the unit mistake it betrays.
+const SCALES: [(f64, &str); 5] = [
+    (1852.0 / 3600.0, "knots; declare `kn`"),
+    (3600.0 / 1852.0, "m/s; declare `m/s`"),
+    (1.0 / 3.6, "km/h; declare `km/h`"),
+    (3.6, "m/s; declare `m/s`"),
+    (1e-3, "right and time is in milliseconds; declare `ms` for t"),
+];
+
+pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
+    let Some(track) = Track::of(recording) else { return };
+    let message = if range(track.psi) < TURNED { None } else { track.mistake().or_else(|| track.scale()) };
+    match message {
+        Some(message) => findings.error(None, Some(recording.header(Channel::U)), message),
+        None if recording.trial.velocity == VelocityFrame::Ground => track.remark(findings),
+        None => {}
+    }
+}
+
+struct Track<'a> {
+    recording: &'a Recording,
+    blocks: Vec<Block>,
+    measured: Vec<Step>,
+    psi: &'a [f64],
+    u: &'a [f64],
+    v: &'a [f64],
+}
+
+/// What is left of the track: a steady drift, m/s, and the sum of squares of the rest, m2.
+struct Rest {
+    drift: Step,
+    squares: f64,
+}
+
+impl<'a> Track<'a> {
+    fn of(recording: &'a Recording) -> Option<Self> {
+        let (x, y) = (recording.channel(Channel::X)?, recording.channel(Channel::Y)?);
+        let (u, v) = (recording.channel(Channel::U)?, recording.channel(Channel::V)?);
+        let psi = recording.channel(Channel::Psi)?;
+        let blocks = blocks(recording);
+        let measured: Vec<Step> = blocks.iter().map(|block| (block.change(x), block.change(y))).collect();
+        (blocks.len() >= 10).then_some(Self { recording, blocks, measured, psi, u, v })
+    }
+
+    fn predicted(&self, axes: Axes) -> Vec<Step> {
+        let t = self.recording.time();
+        let velocity = |k: usize| axes(self.u[k], self.v[k], self.psi[k].cos(), self.psi[k].sin());
+        self.blocks.iter().map(|block| (block.integral(t, |k| velocity(k).0), block.integral(t, |k| velocity(k).1))).collect()
+    }
+
+    /// A steady drift is taken out first: it is a current, and no sign of wrong axes.
+    fn rest(&self, predicted: &[Step]) -> Rest {
+        let left: Vec<Step> = self.measured.iter().zip(predicted).map(|(a, b)| (a.0 - b.0, a.1 - b.1)).collect();
+        let seconds = self.seconds();
+        let sum = left.iter().fold((0.0, 0.0), |sum, step| (sum.0 + step.0, sum.1 + step.1));
+        let drift = (sum.0 / seconds, sum.1 / seconds);
+        let each = seconds / left.len() as f64;
+        let squares = left.iter().map(|step| (step.0 - drift.0 * each).powi(2) + (step.1 - drift.1 * each).powi(2)).sum();
+        Rest { drift, squares }
+    }
+
+    fn seconds(&self) -> f64 {
+        let t = self.recording.time();
+        self.blocks.iter().map(|block| block.change(t)).sum()
+    }
+
+    fn mistake(&self) -> Option<String> {
+        let declared = self.rest(&self.predicted(DECLARED)).squares;
+        let whole = self.rest(&vec![(0.0, 0.0); self.blocks.len()]).squares;
+        let left = MISTAKES.iter().map(|&(axes, message)| (self.rest(&self.predicted(axes)).squares, message));
+        let (best, message) = left.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (best < MUCH_BETTER * declared && best < MUCH_BETTER * whole).then(|| format!("the track shows that {message}"))
+    }
+
+    fn scale(&self) -> Option<String> {
+        let predicted = self.predicted(DECLARED);
+        let pairs: Vec<(f64, f64)> = predicted.iter().zip(&self.measured).flat_map(|(a, b)| [(a.0, b.0), (a.1, b.1)]).collect();
+        let found = proportion(&pairs).filter(|found| found.correlation > 0.98)?;
+        let unit = SCALES.iter().find(|(factor, _)| (found.slope / factor - 1.0).abs() < 0.03)?.1;
+        Some(format!("the positions move {:.4} times as fast as u and v say; the velocities are likely {unit}", found.slope))
+    }
+
+    fn remark(&self, findings: &mut Findings) {
+        let predicted = self.predicted(DECLARED);
+        let rest = self.rest(&predicted);
+        let (n, seconds) = (self.blocks.len() as f64, self.seconds());
+        let speed = predicted.iter().map(|step| step.0.hypot(step.1)).sum::<f64>() / seconds;
+        let scatter = (rest.squares / n).sqrt() * n / seconds;
+        let drift = rest.drift.0.hypot(rest.drift.1);
+        let header = self.recording.header(Channel::X);
+        if drift > STEADY * speed && drift > 4.0 * scatter / n.sqrt() {
+            let towards = rest.drift.1.atan2(rest.drift.0).to_degrees().rem_euclid(360.0).round() % 360.0;
+            let message = format!(
+                "the positions drift {drift:.3} m/s towards {towards:.0} deg beyond what u and v say: a current with speeds through the water, or a speed sensor's error"
+            );
+            findings.warning(None, Some(header), message);
+        }
+        if scatter > UNSTEADY * speed {
+            let message = format!(
+                "positions and velocities disagree by {scatter:.3} m/s (mean speed {speed:.3} m/s); check reference points and sensors"
+            );
+            findings.warning(None, Some(header), message);
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "track_tests.rs"]
+mod tests;

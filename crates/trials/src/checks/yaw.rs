@@ -1,0 +1,84 @@
+//! The heading turns as fast as the yaw rate says.
+
+use std::f64::consts::PI;
+
+use sistership_model::trial::Channel;
+
+use crate::findings::Findings;
+use crate::recording::Recording;
+use crate::stats::{Proportion, blocks, proportion};
+
+/// Correlation above which the ratio of two series can be trusted.
+const CERTAIN: f64 = 0.9;
+/// Relative width around a factor of units.
+const NEAR: f64 = 0.25;
+/// Relative disagreement that is worth a remark.
+const MODERATE: f64 = 0.1;
+const DEGREES: f64 = 180.0 / PI;
+
+/// Compares the change of heading over blocks of samples with the integral of the yaw rate.
+pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
+    let (Some(psi), Some(r)) = (recording.channel(Channel::Psi), recording.channel(Channel::R)) else { return };
+    let pairs: Vec<(f64, f64)> =
+        blocks(recording).into_iter().map(|block| (block.integral(recording.time(), |k| r[k]), block.change(psi))).collect();
+    let Some(found) = proportion(&pairs) else { return };
+    if found.correlation.abs() < CERTAIN {
+        return;
+    }
+    match fault(recording, found.slope) {
+        Some(message) => findings.error(None, Some(recording.header(Channel::R)), message),
+        None => remark(recording, found, findings),
+    }
+}
+
+fn fault(recording: &Recording, slope: f64) -> Option<String> {
+    let near = |factor: f64| (slope / factor - 1.0).abs() < NEAR;
+    let (psi, r) = (recording.header(Channel::Psi), recording.header(Channel::R));
+    let (psi_unit, r_unit) = (recording.unit(Channel::Psi), recording.unit(Channel::R));
+    if near(DEGREES) {
+        return Some(format!(
+            "the heading `{psi}` turns 57.3 times as fast as the yaw rate: declare `{psi}` in `deg` if its `{psi_unit}` is wrong, \
+             or the yaw rate in `rad/s` if its `{r_unit}` is"
+        ));
+    }
+    if near(1.0 / DEGREES) {
+        return Some(format!(
+            "the yaw rate is 57.3 times the rate of the heading `{psi}`: declare `{r}` in `deg/s` if its `{r_unit}` is wrong, \
+             or the heading in `rad` if its `{psi_unit}` is"
+        ));
+    }
+    near(-1.0).then(|| {
+        format!("the yaw rate and the heading `{psi}` turn opposite ways; heading counts clockwise from north and yaw rate to starboard: change the sign of one")
+    })
+}
+
+fn remark(recording: &Recording, found: Proportion, findings: &mut Findings) {
+    if (found.slope - 1.0).abs() > MODERATE {
+        let psi = recording.header(Channel::Psi);
+        let message =
+            format!("the heading `{psi}` turns {:.2} times as fast as the yaw rate says; check both sensors", found.slope);
+        findings.warning(None, Some(recording.header(Channel::R)), message);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{recording, said, zigzag, zigzag_with};
+
+    #[test]
+    fn degrees_and_signs_are_told_from_radians() {
+        assert_eq!(said(&recording(&zigzag()), check), "");
+        assert!(said(&zigzag_with(Channel::R, |r| r * DEGREES), check).contains("declare `r_rad_s` in `deg/s`"));
+        assert!(said(&zigzag_with(Channel::Psi, |psi| psi * DEGREES), check).contains("declare `psi_rad` in `deg`"));
+        assert!(said(&zigzag_with(Channel::R, |r| -r), check).contains("opposite ways"));
+        assert!(said(&zigzag_with(Channel::R, |r| 1.2 * r), check).starts_with("warning"));
+    }
+
+    #[test]
+    fn noise_about_a_straight_course_says_nothing() {
+        let noise = |seed: usize| (0..600).map(|k| ((k * 7919 + seed) % 101) as f64 * 1e-5).collect::<Vec<f64>>();
+        let straight = recording(&[(Channel::Psi, noise(3)), (Channel::R, noise(57))]);
+        assert!(!said(&straight, check).contains("error"));
+    }
+}

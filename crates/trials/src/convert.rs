@@ -1,0 +1,152 @@
+//! The one place where a file's signs become the canonical ones.
+
+use std::f64::consts::{PI, TAU};
+
+use sistership_model::trial::{Channel, RudderSign, Trial, TrialConventions, VelocityFrame, WindDirection};
+
+use crate::findings::Findings;
+use crate::mapping::Mapping;
+use crate::recording::Recording;
+use crate::table::{Table, Target};
+
+/// Applies the conventions: rudder sign, wind direction, continuous heading.
+pub(crate) fn convert(name: &str, table: Table, mapping: &Mapping, findings: &mut Findings) -> Recording {
+    let trial = Trial {
+        name: name.to_owned(),
+        manoeuvre: mapping.manoeuvre.clone(),
+        depth_m: mapping.depth_m,
+        velocity: mapping.conventions.velocity,
+        ..Trial::default()
+    };
+    let mut recording = Recording { trial, rows: table.rows, ..Recording::default() };
+    for (column, mut values) in table.columns.into_iter().zip(table.values) {
+        match column.target {
+            Target::Time => {
+                recording.trial.t_s = values;
+                recording.time = column.header;
+            }
+            Target::Channel(channel) => {
+                recording.columns.insert(channel, column);
+                sign(channel, &mut values, &mapping.conventions, &recording, findings);
+                recording.trial.channels.insert(channel, values);
+            }
+        }
+    }
+    tell_frame(&recording, findings);
+    recording
+}
+
+fn sign(channel: Channel, values: &mut [f64], conventions: &TrialConventions, recording: &Recording, findings: &mut Findings) {
+    match channel {
+        Channel::Delta if conventions.rudder_positive == RudderSign::PortTurn => {
+            values.iter_mut().for_each(|value| *value = -*value);
+        }
+        Channel::Psi => {
+            degree_wrap(values, recording, findings);
+            unwrap_heading(values);
+        }
+        Channel::WindFrom | Channel::ApparentWindFrom => {
+            degree_wind(channel, values, recording, findings);
+            let turn = if conventions.wind.direction == WindDirection::To { PI } else { 0.0 };
+            values.iter_mut().for_each(|value| *value = wrap(*value + turn));
+        }
+        _ => {}
+    }
+}
+
+/// Removes jumps of more than half a turn. The first value stays, and so does a heading that is already continuous.
+fn unwrap_heading(values: &mut [f64]) {
+    let mut turns = 0.0;
+    let mut before = values.first().copied().unwrap_or(0.0);
+    for value in values {
+        let step = *value - before;
+        before = *value;
+        if step.abs() > PI {
+            turns -= (step / TAU).round();
+        }
+        *value += turns * TAU;
+    }
+}
+
+/// Into [0, 2 pi).
+fn wrap(angle: f64) -> f64 {
+    let wrapped = angle.rem_euclid(TAU);
+    // A tiny negative angle rounds up to a full turn.
+    if wrapped >= TAU { 0.0 } else { wrapped }
+}
+
+/// A step of about 360 "rad" between two samples is a compass passing north in degrees.
+fn degree_wrap(values: &[f64], recording: &Recording, findings: &mut Findings) {
+    let jump = (1..values.len()).find(|&k| (300.0..=361.0).contains(&(values[k] - values[k - 1]).abs()));
+    if let Some(k) = jump {
+        let (header, unit) = (recording.header(Channel::Psi), recording.unit(Channel::Psi));
+        let message = format!(
+            "the heading jumps from {:.1} to {:.1} as a compass in degrees does, but its unit is `{unit}`; declare `deg`",
+            values[k - 1],
+            values[k]
+        );
+        findings.error(Some(recording.row(k)), Some(header), message);
+    }
+}
+
+/// No wind direction needs two full turns in radians.
+fn degree_wind(channel: Channel, values: &[f64], recording: &Recording, findings: &mut Findings) {
+    if let Some(k) = values.iter().position(|value| value.abs() > 2.0 * TAU) {
+        let message = format!("{:.1} rad is more than two turns; the values look like degrees: declare `deg`", values[k]);
+        findings.error(Some(recording.row(k)), Some(recording.header(channel)), message);
+    }
+}
+
+fn tell_frame(recording: &Recording, findings: &mut Findings) {
+    let moving = [Channel::U, Channel::V].into_iter().find(|&channel| recording.channel(channel).is_some());
+    if let (VelocityFrame::Water, Some(channel)) = (recording.trial.velocity, moving) {
+        let message = "u and v are speeds through the water, as declared: a current shows in the positions only";
+        findings.warning(None, Some(recording.header(channel)), message);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{messages, table};
+
+    fn run(channel: Channel, values: &[f64], change: impl Fn(&mut TrialConventions)) -> (Vec<f64>, String) {
+        let mut mapping = Mapping::canonical();
+        change(&mut mapping.conventions);
+        let mut findings = Findings::default();
+        let recording = convert("a", table(&[(channel, values.to_vec())]), &mapping, &mut findings);
+        (recording.trial.channels[&channel].clone(), messages(findings))
+    }
+
+    #[test]
+    fn port_turn_flips_the_rudder_only() {
+        let port = |conventions: &mut TrialConventions| conventions.rudder_positive = RudderSign::PortTurn;
+        assert_eq!(run(Channel::Delta, &[0.1, -0.2], port).0, [-0.1, 0.2]);
+        assert_eq!(run(Channel::R, &[0.1, -0.2], port).0, [0.1, -0.2]);
+    }
+
+    #[test]
+    fn wind_comes_from_where_it_does_not_go_to() {
+        let to = |conventions: &mut TrialConventions| conventions.wind.direction = WindDirection::To;
+        let (from, _) = run(Channel::WindFrom, &[0.0, PI], to);
+        assert!((from[0] - PI).abs() < 1e-12 && from[1] < 1e-12);
+        assert_eq!(run(Channel::WindFrom, &[-1e-20, 0.1 - TAU], |_| ()).0[0], 0.0);
+        assert!(run(Channel::WindFrom, &[10.0, 200.0], |_| ()).1.contains("declare `deg`"));
+    }
+
+    #[test]
+    fn the_heading_becomes_continuous() {
+        let (psi, text) = run(Channel::Psi, &[3.0, -3.1, -2.9, 3.1, 3.0], |_| ());
+        assert!(psi.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 1.0), "{psi:?}");
+        assert!((psi[1] - (TAU - 3.1)).abs() < 1e-12 && psi[4] == 3.0);
+        assert!(text.is_empty());
+        assert!(run(Channel::Psi, &[358.0, 359.5, 1.0], |_| ()).1.contains("declare `deg`"));
+    }
+
+    #[test]
+    fn speeds_through_the_water_stay_marked() {
+        assert!(
+            run(Channel::U, &[1.0], |conventions| conventions.velocity = VelocityFrame::Water).1.contains("through the water")
+        );
+    }
+}

@@ -1,0 +1,94 @@
+//! Collects what the checks find, without drowning the reader in a thousand equal lines.
+
+use sistership_model::trial::Finding;
+
+/// Errors listed for one file.
+const MAX_ERRORS: usize = 20;
+/// Warnings kept for one file.
+const MAX_WARNINGS: usize = 100;
+/// Rows listed for one and the same fault.
+const MAX_ROWS: usize = 3;
+
+/// Whether a finding refuses the trial.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Severity {
+    Error,
+    Warning,
+}
+
+/// Everything found in one file so far.
+#[derive(Debug, Default)]
+pub(crate) struct Findings {
+    errors: Vec<Finding>,
+    warnings: Vec<Finding>,
+    more_errors: usize,
+    more_warnings: usize,
+}
+
+impl Findings {
+    pub(crate) fn error(&mut self, row: Option<usize>, column: Option<&str>, message: impl Into<String>) {
+        self.add(Severity::Error, row, column, message.into());
+    }
+
+    pub(crate) fn warning(&mut self, row: Option<usize>, column: Option<&str>, message: impl Into<String>) {
+        self.add(Severity::Warning, row, column, message.into());
+    }
+
+    fn add(&mut self, severity: Severity, row: Option<usize>, column: Option<&str>, message: String) {
+        let (list, more, most) = match severity {
+            Severity::Error => (&mut self.errors, &mut self.more_errors, MAX_ERRORS),
+            Severity::Warning => (&mut self.warnings, &mut self.more_warnings, MAX_WARNINGS),
+        };
+        if list.len() < most {
+            list.push(Finding { row, column: column.map(str::to_owned), message });
+        } else {
+            *more += 1;
+        }
+    }
+
+    /// The same fault in several rows: the first few one by one, the rest as a count.
+    pub(crate) fn rows(&mut self, severity: Severity, column: &str, hits: &[(usize, usize)], message: impl Fn(usize) -> String) {
+        for &(sample, row) in hits.iter().take(MAX_ROWS) {
+            self.add(severity, Some(row), Some(column), message(sample));
+        }
+        if let (Some(more @ 1..), Some(&(_, last))) = (hits.len().checked_sub(MAX_ROWS), hits.last()) {
+            self.add(severity, None, Some(column), format!("the same in {more} further rows, the last of them row {last}"));
+        }
+    }
+
+    pub(crate) fn has_errors(&self) -> bool {
+        !self.errors.is_empty()
+    }
+
+    /// Errors and warnings, each with a last line about those not listed.
+    pub(crate) fn finish(mut self) -> (Vec<Finding>, Vec<Finding>) {
+        for (list, more, what) in
+            [(&mut self.errors, self.more_errors, "errors"), (&mut self.warnings, self.more_warnings, "warnings")]
+        {
+            if more > 0 {
+                list.push(Finding { row: None, column: None, message: format!("{more} further {what} are not listed") });
+            }
+        }
+        (self.errors, self.warnings)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_faults_are_counted_and_the_list_is_bounded() {
+        let mut findings = Findings::default();
+        let hits: Vec<(usize, usize)> = (0..10).map(|k| (k, k + 2)).collect();
+        findings.rows(Severity::Error, "u", &hits, |k| format!("fault {k}"));
+        for k in 0..30 {
+            findings.error(Some(k), None, "other");
+        }
+        let (errors, warnings) = findings.finish();
+        assert_eq!(errors[3].message, "the same in 7 further rows, the last of them row 11");
+        assert_eq!(errors.len(), MAX_ERRORS + 1);
+        assert_eq!(errors[MAX_ERRORS].message, "14 further errors are not listed");
+        assert!(warnings.is_empty());
+    }
+}

@@ -1,0 +1,116 @@
+//! What a command line names: a manifest, or one file.
+
+use std::path::Path;
+
+use sistership_model::FileError;
+use sistership_model::trial::{Finding, Manifest, Trial};
+
+use crate::manifest::read_manifest;
+use crate::mapping::Mapping;
+use crate::outcome::{CheckOutcome, Refusal};
+use crate::read::{check, read_trial};
+use crate::source::Source;
+
+/// Trials read from a path.
+#[derive(Debug)]
+pub struct Loaded {
+    /// The manifest, if the path named one.
+    pub manifest: Option<Manifest>,
+    /// Each file's trial, in the manifest's order.
+    pub trials: Vec<Result<Trial, Refusal>>,
+}
+
+/// Reads a manifest (`.yaml`, `.yml`) with all its files, or a CSV or Parquet file with canonical column names.
+///
+/// # Errors
+/// The manifest is wrong, or the path cannot be read. A single trial that is refused is no error of the whole.
+pub fn load_path(path: &Path) -> Result<Loaded, FileError> {
+    let (manifest, mut trials) = each(path, |name, file, mapping| match Source::open(name, file) {
+        Ok(source) => read_trial(source, mapping),
+        Err(error) => Err(Refusal { file: name.to_owned(), findings: vec![unreadable(&error)] }),
+    })?;
+    if manifest.is_none()
+        && let (Some(Ok(trial)), Some(name)) = (trials.first_mut(), path.file_name())
+    {
+        // Where the file lies on this machine must not become part of a version's recipe.
+        trial.name = name.to_string_lossy().into_owned();
+    }
+    Ok(Loaded { manifest, trials })
+}
+
+/// Checks what [`load_path`] would read, and keeps the outcomes only.
+///
+/// # Errors
+/// As [`load_path`].
+pub fn check_path(path: &Path) -> Result<Vec<CheckOutcome>, FileError> {
+    let outcomes = each(path, |name, file, mapping| match Source::open(name, file) {
+        Ok(source) => check(source, mapping),
+        Err(error) => CheckOutcome {
+            file: name.to_owned(),
+            rows: 0,
+            duration_s: 0.0,
+            errors: vec![unreadable(&error)],
+            warnings: Vec::new(),
+        },
+    })?;
+    Ok(outcomes.1)
+}
+
+fn each<T>(path: &Path, mut take: impl FnMut(&str, &Path, &Mapping) -> T) -> Result<(Option<Manifest>, Vec<T>), FileError> {
+    let shown = path.display().to_string();
+    if !is_manifest(path) {
+        std::fs::metadata(path).map_err(|error| missing(&shown, &error))?;
+        return Ok((None, vec![take(&shown, path, &Mapping::canonical())]));
+    }
+    let text = std::fs::read_to_string(path).map_err(|error| missing(&shown, &error))?;
+    let manifest = read_manifest(&shown, &text)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let taken = manifest.trials.iter().map(|trial| take(&trial.file, &folder.join(&trial.file), &Mapping::of(&manifest, trial)));
+    let taken = taken.collect();
+    Ok((Some(manifest), taken))
+}
+
+fn is_manifest(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("yaml") || extension.eq_ignore_ascii_case("yml"))
+}
+
+fn missing(file: &str, error: &std::io::Error) -> FileError {
+    FileError { file: file.to_owned(), line: None, field: String::new(), message: format!("cannot be read: {error}") }
+}
+
+fn unreadable(error: &std::io::Error) -> Finding {
+    Finding { row: None, column: None, message: format!("cannot be read: {error}") }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    const MANIFEST: &str = "kind: trials\nship: a\ncolumns: { u: { column: log, unit: kn } }\n\
+                            trials: [{ file: a.csv, manoeuvre: zigzag 10/10 }, { file: lost.csv }]\n";
+
+    #[test]
+    fn a_manifest_gives_each_file_its_own_outcome() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("m.yaml"), MANIFEST).unwrap();
+        std::fs::write(folder.path().join("a.csv"), "t_s,log\n0,1\n1,2\n2,3\n").unwrap();
+        let loaded = load_path(&folder.path().join("m.yaml")).unwrap();
+        assert_eq!(loaded.manifest.unwrap().ship, "a");
+        assert_eq!(loaded.trials[0].as_ref().unwrap().manoeuvre.as_deref(), Some("zigzag 10/10"));
+        assert!(loaded.trials[1].as_ref().unwrap_err().to_string().contains("lost.csv is refused:\n  cannot be read"));
+        let outcomes = check_path(&folder.path().join("m.yaml")).unwrap();
+        assert_eq!(outcomes.iter().map(CheckOutcome::accepted).collect::<Vec<_>>(), [true, false]);
+    }
+
+    #[test]
+    fn a_file_is_read_without_a_manifest() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.csv");
+        std::fs::write(&file, "t_s,u_m_s\n0,1\n1,2\n2,3\n").unwrap();
+        let loaded = load_path(&file).unwrap();
+        let trial = loaded.trials[0].as_ref().unwrap();
+        assert_eq!((trial.name.as_str(), trial.len()), ("a.csv", 3));
+        assert!(load_path(&folder.path().join("lost.csv")).unwrap_err().to_string().contains("cannot be read"));
+    }
+}

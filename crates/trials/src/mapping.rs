@@ -1,0 +1,40 @@
+//! What is known of a file before it is opened.
+
+use sistership_model::trial::{ColumnMapping, Manifest, ManifestTrial, TrialConventions};
+
+use crate::limits::Limits;
+
+/// Which columns are which channels, in which signs, and how large the file may be.
+///
+/// Columns that carry canonical names (with any unit suffix) need no entry.
+#[derive(Debug, Clone, Default)]
+pub struct Mapping {
+    /// Channel name (or `t`) and where it stands.
+    pub columns: Vec<(String, ColumnMapping)>,
+    /// Signs and frames.
+    pub conventions: TrialConventions,
+    /// What was sailed.
+    pub manoeuvre: Option<String>,
+    /// Water depth where it is constant, m.
+    pub depth_m: Option<f64>,
+    /// Bounds on the file.
+    pub limits: Limits,
+}
+
+impl Mapping {
+    /// The mapping of a file whose columns have canonical names and whose signs are the canonical ones.
+    pub fn canonical() -> Self {
+        Self::default()
+    }
+
+    /// The mapping of one file of a manifest.
+    pub fn of(manifest: &Manifest, trial: &ManifestTrial) -> Self {
+        Self {
+            columns: manifest.columns.iter().map(|(name, column)| (name.clone(), column.clone())).collect(),
+            conventions: manifest.conventions.clone(),
+            manoeuvre: trial.manoeuvre.clone(),
+            depth_m: trial.depth_m,
+            limits: Limits::default(),
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Column names that need no mapping: a channel's name and a unit suffix.
+
+use sistership_model::trial::Channel;
+
+use crate::table::Target;
+use crate::units::Kind;
+
+/// Other names in use for a channel; a wind direction without more is where the wind comes from.
+const ALIASES: [(&str, Channel); 2] = [("wind_dir", Channel::WindFrom), ("apparent_wind_dir", Channel::ApparentWindFrom)];
+
+/// The target and unit that a header names, such as `r_radps` or `wind_speed_kn`; a channel's name followed by anything
+/// but a unit of its kind (`delta_ordered_rad`) is some other quantity.
+pub(crate) fn canonical(header: &str) -> Option<(Target, &'static str)> {
+    let channels = Channel::all().map(|channel| (channel.name(), Target::Channel(channel)));
+    let aliases = ALIASES.iter().map(|&(name, channel)| (name, Target::Channel(channel)));
+    let mut known = std::iter::once(("t", Target::Time)).chain(channels).chain(aliases);
+    known.find_map(|(name, target)| {
+        let suffix = header.strip_prefix(name)?.strip_prefix('_')?;
+        Kind::of(target).suffix(suffix).map(|unit| (target, unit))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn channel(header: &str) -> Option<(Channel, &'static str)> {
+        match canonical(header) {
+            Some((Target::Channel(channel), unit)) => Some((channel, unit)),
+            _ => None,
+        }
+    }
+
+    #[test]
+    fn canonical_columns_and_other_units_are_known() {
+        for known in Channel::all() {
+            assert_eq!(channel(known.column()).map(|(found, _)| found), Some(known));
+        }
+        assert_eq!(canonical("t_s"), Some((Target::Time, "s")));
+        assert_eq!(channel("r_radps"), Some((Channel::R, "rad/s")));
+        assert_eq!(channel("p_deg_s"), Some((Channel::P, "deg/s")));
+        assert_eq!(channel("n_rpm"), Some((Channel::N, "rpm")));
+        assert_eq!(channel("u_km_h"), Some((Channel::U, "km/h")));
+        assert_eq!(channel("wind_speed_kn"), Some((Channel::WindSpeed, "kn")));
+        assert_eq!(channel("wind_dir_rad"), Some((Channel::WindFrom, "rad")));
+    }
+
+    #[test]
+    fn other_quantities_are_not_taken_for_a_channel() {
+        for header in ["delta_ordered_rad", "u", "n_rad_s", "r_rpm", "psi_m", "", "x_"] {
+            assert_eq!(canonical(header), None, "{header}");
+        }
+    }
+}

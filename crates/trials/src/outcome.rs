@@ -1,0 +1,96 @@
+//! What is told of a file: a refusal, or the outcome of its checks.
+
+use std::fmt;
+
+use serde::{Serialize, Serializer};
+use sistership_model::trial::Finding;
+
+/// A trial that is not accepted, and everything that was found wrong with it.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub struct Refusal {
+    /// The file's name as it was given.
+    pub file: String,
+    /// The errors, each with row and column where they could be told.
+    pub findings: Vec<Finding>,
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{} is refused:", self.file)?;
+        for finding in &self.findings {
+            out.write_str("\n  ")?;
+            if let Some(row) = finding.row {
+                write!(out, "row {row}: ")?;
+            }
+            if let Some(column) = &finding.column {
+                write!(out, "column `{column}`: ")?;
+            }
+            out.write_str(&finding.message)?;
+        }
+        Ok(())
+    }
+}
+
+/// The outcome of checking one file; serialises as the `check` command prints it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CheckOutcome {
+    /// The file's name as it was given.
+    pub file: String,
+    /// Rows of data that could be used.
+    pub rows: usize,
+    /// Time from the first to the last of them, s.
+    pub duration_s: f64,
+    /// What refuses the trial.
+    #[serde(serialize_with = "with_every_key")]
+    pub errors: Vec<Finding>,
+    /// What is remarked without refusing it.
+    #[serde(serialize_with = "with_every_key")]
+    pub warnings: Vec<Finding>,
+}
+
+impl CheckOutcome {
+    /// Whether the trial is accepted.
+    pub fn accepted(&self) -> bool {
+        self.errors.is_empty()
+    }
+}
+
+/// Scripts look for the keys `row` and `column`, so they are there even when a finding has none.
+fn with_every_key<S: Serializer>(findings: &[Finding], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(findings.iter().map(Entry::of))
+}
+
+#[derive(Serialize)]
+struct Entry<'a> {
+    row: Option<usize>,
+    column: Option<&'a str>,
+    message: &'a str,
+}
+
+impl<'a> Entry<'a> {
+    fn of(finding: &'a Finding) -> Self {
+        Self { row: finding.row, column: finding.column.as_deref(), message: &finding.message }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn refusals_and_outcomes_read_well() {
+        let finding = Finding { row: Some(3), column: Some("u".into()), message: "too fast".into() };
+        let bare = Finding { row: None, column: None, message: "empty".into() };
+        let refusal = Refusal { file: "a.csv".into(), findings: vec![finding.clone(), bare.clone()] };
+        assert_eq!(refusal.to_string(), "a.csv is refused:\n  row 3: column `u`: too fast\n  empty");
+        let outcome =
+            CheckOutcome { file: "a.csv".into(), rows: 2, duration_s: 0.5, errors: vec![bare], warnings: vec![finding] };
+        let text = serde_json::to_string(&outcome).unwrap();
+        assert_eq!(
+            text,
+            r#"{"file":"a.csv","rows":2,"duration_s":0.5,"errors":[{"row":null,"column":null,"message":"empty"}],"warnings":[{"row":3,"column":"u","message":"too fast"}]}"#
+        );
+        assert!(!outcome.accepted());
+    }
+}

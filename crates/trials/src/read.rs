@@ -1,0 +1,100 @@
+//! From a source and a mapping to a checked trial.
+
+use sistership_model::trial::{Finding, Trial};
+
+use crate::checks;
+use crate::convert::convert;
+use crate::findings::Findings;
+use crate::mapping::Mapping;
+use crate::outcome::{CheckOutcome, Refusal};
+use crate::recording::Recording;
+use crate::smoothing::smooth;
+use crate::source::{Content, Source};
+use crate::{csv_file, parquet_file};
+
+/// Reads, converts, checks and, where the conventions ask for it, smooths a trial.
+///
+/// # Errors
+/// Every reason, with row and column, why the file is no trial.
+pub fn read_trial(source: Source, mapping: &Mapping) -> Result<Trial, Refusal> {
+    let file = source.name.clone();
+    let (trial, errors, warnings) = examine(source, mapping);
+    if errors.is_empty() { Ok(Trial { warnings, ..trial }) } else { Err(Refusal { file, findings: errors }) }
+}
+
+/// Runs the checks of [`read_trial`] and tells what they found.
+pub fn check(source: Source, mapping: &Mapping) -> CheckOutcome {
+    let file = source.name.clone();
+    let (trial, errors, warnings) = examine(source, mapping);
+    CheckOutcome { file, rows: trial.len(), duration_s: trial.duration_s(), errors, warnings }
+}
+
+fn examine(source: Source, mapping: &Mapping) -> (Trial, Vec<Finding>, Vec<Finding>) {
+    let mut findings = Findings::default();
+    let mut recording = record(source, mapping, &mut findings);
+    if !findings.has_errors()
+        && let Some(smoothing) = mapping.conventions.smoothing
+    {
+        smooth(&mut recording, smoothing, &mut findings);
+    }
+    let (errors, warnings) = findings.finish();
+    (recording.trial, errors, warnings)
+}
+
+fn record(source: Source, mapping: &Mapping, findings: &mut Findings) -> Recording {
+    let table = match source.content {
+        Content::Csv(reader) => csv_file::read(reader, mapping, findings),
+        Content::ParquetBytes(bytes) => parquet_file::read(bytes, mapping, findings),
+        Content::ParquetFile(file) => parquet_file::read(file, mapping, findings),
+    };
+    let Some(table) = table else { return Recording::default() };
+    let mut recording = convert(&source.name, table, mapping, findings);
+    checks::run(&mut recording, findings);
+    recording
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_model::trial::{Channel, Smoothing};
+
+    fn csv(text: &str, mapping: &Mapping) -> Result<Trial, Refusal> {
+        read_trial(Source::csv("a.csv", text.as_bytes()), mapping)
+    }
+
+    #[test]
+    fn a_file_with_canonical_names_becomes_a_trial() {
+        let trial = csv("t_s,u_kn,psi_deg,note\n0,10,350,a\n1,11,5,b\n2,12,10,c\n", &Mapping::canonical()).unwrap();
+        assert!((trial.channel(Channel::U).unwrap()[0] - 5.144_444).abs() < 1e-5);
+        let psi = trial.channel(Channel::Psi).unwrap();
+        assert!((psi[1] - psi[0] - 15.0_f64.to_radians()).abs() < 1e-12);
+        assert_eq!((trial.name.as_str(), trial.warnings.len()), ("a.csv", 1));
+    }
+
+    #[test]
+    fn every_error_is_told_at_once() {
+        let refusal = csv("t_s,u_m_s,delta_rad\n0,1,35\n1,,20\n1,99,10\n", &Mapping::canonical()).unwrap_err();
+        let text = refusal.to_string();
+        assert!(text.contains("row 3: column `u_m_s`: the cell is empty"), "{text}");
+        assert!(text.contains("row 4: column `u_m_s`: 99.0000 m/s") && text.contains("declare `deg`"), "{text}");
+    }
+
+    #[test]
+    fn smoothing_is_done_on_demand_and_its_refusal_is_an_error() {
+        let text: String = (0..50).map(|k| format!("{k},{}\n", (k as f64).powi(2) * 1e-3)).collect();
+        let text = format!("t_s,u_m_s\n{text}");
+        let mut mapping = Mapping::canonical();
+        mapping.conventions.smoothing = Some(Smoothing { window: 9, degree: 2 });
+        let smooth = csv(&text, &mapping).unwrap();
+        assert!((smooth.channel(Channel::U).unwrap()[0]).abs() < 1e-12);
+        mapping.conventions.smoothing = Some(Smoothing { window: 8, degree: 2 });
+        assert!(csv(&text, &mapping).unwrap_err().to_string().contains("odd"));
+    }
+
+    #[test]
+    fn check_tells_rows_and_duration() {
+        let outcome = check(Source::csv("a.csv", "t_s,u_m_s\n0,1\n2,2\n4,3\n".as_bytes()), &Mapping::canonical());
+        assert_eq!((outcome.rows, outcome.duration_s, outcome.accepted()), (3, 4.0, true));
+    }
+}

@@ -1,0 +1,64 @@
+//! A trial on its way through the checks: canonical samples, and the row and column that each came from.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use sistership_model::trial::{Channel, Trial};
+
+use crate::table::{Column, Target};
+use crate::units::Kind;
+
+/// Canonical samples and where they stand in the file.
+#[derive(Debug, Default)]
+pub(crate) struct Recording {
+    pub trial: Trial,
+    pub rows: Vec<u32>,
+    /// Header of the time column.
+    pub time: String,
+    pub columns: BTreeMap<Channel, Column>,
+    /// Median time between samples, s; zero until time is known to be in order.
+    pub interval_s: f64,
+    /// Ranges without a gap; empty until time is known to be in order.
+    pub segments: Vec<Range<usize>>,
+}
+
+impl Recording {
+    /// The row of a sample.
+    pub(crate) fn row(&self, sample: usize) -> usize {
+        self.rows.get(sample).map_or(0, |&row| row as usize)
+    }
+
+    /// The column's name in the file, or the channel's own.
+    pub(crate) fn header(&self, channel: Channel) -> &str {
+        self.columns.get(&channel).map_or(channel.name(), |column| &column.header)
+    }
+
+    /// The declared unit.
+    pub(crate) fn unit(&self, channel: Channel) -> &str {
+        self.columns.get(&channel).map_or("", |column| &column.unit)
+    }
+
+    /// The unit of the samples.
+    pub(crate) fn canonical_unit(&self, channel: Channel) -> &'static str {
+        Kind::of(Target::Channel(channel)).canonical()
+    }
+
+    pub(crate) fn channel(&self, channel: Channel) -> Option<&[f64]> {
+        self.trial.channel(channel)
+    }
+
+    pub(crate) fn time(&self) -> &[f64] {
+        &self.trial.t_s
+    }
+
+    /// Samples that a test holds for, each with its row.
+    pub(crate) fn hits(&self, samples: Range<usize>, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
+        samples.filter(|&k| holds(k)).map(|k| (k, self.row(k))).collect()
+    }
+
+    /// Learns interval and segments; time must be strictly increasing.
+    pub(crate) fn settle_time(&mut self) {
+        self.interval_s = self.trial.interval_s();
+        self.segments = self.trial.segments();
+    }
+}

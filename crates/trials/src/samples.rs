@@ -1,0 +1,187 @@
+//! Trials in canonical form: Parquet to keep them, CSV to look at them.
+//!
+//! The Parquet file has one DOUBLE column per channel under its canonical name, `t_s` first, and no nulls. What else
+//! a trial is (name, manoeuvre, depth, velocity frame, warnings) is one JSON text in the file's key-value metadata, so
+//! that reading back gives the same trial. The same trial gives the same bytes: there is no time stamp, the writer's
+//! name is fixed, and compression runs on one thread.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::sync::Arc;
+
+use bytes::Bytes;
+use parquet::basic::{Compression, Encoding, Repetition, Type as Physical, ZstdLevel};
+use parquet::data_type::DoubleType;
+use parquet::errors::{ParquetError, Result as ParquetResult};
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::Type;
+use serde::{Deserialize, Serialize};
+use sistership_model::trial::{Channel, Finding, Trial, VelocityFrame};
+
+use crate::limits::Limits;
+use crate::parquet_file;
+
+/// Key of the metadata.
+const KEY: &str = "sistership.trial";
+/// Canonical name of time.
+const TIME: &str = "t_s";
+/// Rows that are compressed and decoded together.
+const GROUP_ROWS: usize = 1 << 20;
+
+/// Why samples could not be written or read back.
+#[derive(Debug, thiserror::Error)]
+pub enum SamplesError {
+    /// The Parquet library refuses, or the file is damaged.
+    #[error("Parquet samples: {0}")]
+    Parquet(#[from] ParquetError),
+    /// The CSV cannot be written.
+    #[error("CSV samples: {0}")]
+    Csv(#[from] csv::Error),
+    /// The samples are no canonical trial.
+    #[error("samples: {0}")]
+    Content(String),
+}
+
+/// What a trial is besides its samples.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct About {
+    name: String,
+    manoeuvre: Option<String>,
+    depth_m: Option<f64>,
+    velocity: VelocityFrame,
+    warnings: Vec<Finding>,
+}
+
+/// The trial as Parquet, without loss.
+///
+/// # Errors
+/// A channel is not as long as time, or the library refuses.
+pub fn to_parquet(trial: &Trial) -> Result<Vec<u8>, SamplesError> {
+    let columns = columns(trial)?;
+    let schema = schema(columns.iter().map(|(name, _)| *name))?;
+    let mut bytes = Vec::new();
+    let mut writer = SerializedFileWriter::new(&mut bytes, schema, Arc::new(properties(trial)?))?;
+    for start in (0..trial.len()).step_by(GROUP_ROWS) {
+        let rows = start..(start + GROUP_ROWS).min(trial.len());
+        let mut group = writer.next_row_group()?;
+        for (_, values) in &columns {
+            write_column(&mut group, &values[rows.clone()])?;
+        }
+        group.close()?;
+    }
+    writer.close()?;
+    Ok(bytes)
+}
+
+/// The trial that [`to_parquet`] wrote.
+///
+/// # Errors
+/// The file is damaged, too large, or not written by [`to_parquet`].
+pub fn from_parquet(bytes: Bytes) -> Result<Trial, SamplesError> {
+    let reader = parquet_file::open(bytes, Limits::default()).map_err(SamplesError::Content)?;
+    let About { name, manoeuvre, depth_m, velocity, warnings } = about(&reader)?;
+    let mut trial = Trial { name, manoeuvre, depth_m, velocity, warnings, ..Trial::default() };
+    let mut columns = parquet_file::guarded(|| read_columns(&reader))?;
+    trial.t_s = columns.remove(TIME).ok_or_else(|| SamplesError::Content(format!("no column `{TIME}`")))?;
+    for (name, values) in columns {
+        let channel = Channel::by_column(&name).ok_or_else(|| SamplesError::Content(format!("unknown column `{name}`")))?;
+        trial.channels.insert(channel, values);
+    }
+    Ok(trial)
+}
+
+/// The trial as CSV: canonical names, every number in the shortest form that reads back to the same value.
+///
+/// # Errors
+/// A channel is not as long as time, or the writer fails.
+pub fn to_csv(writer: impl Write, trial: &Trial) -> Result<(), SamplesError> {
+    let columns = columns(trial)?;
+    let mut writer = csv::Writer::from_writer(writer);
+    writer.write_record(columns.iter().map(|(name, _)| *name))?;
+    let mut row = Vec::with_capacity(columns.len());
+    for k in 0..trial.len() {
+        row.clear();
+        row.extend(columns.iter().map(|(_, values)| values[k]));
+        writer.serialize(&row)?;
+    }
+    writer.flush().map_err(csv::Error::from)?;
+    Ok(())
+}
+
+/// Name and samples of every column, in the order of the channels.
+fn columns(trial: &Trial) -> Result<Vec<(&'static str, &[f64])>, SamplesError> {
+    let mut columns = vec![(TIME, trial.t_s.as_slice())];
+    for (channel, values) in &trial.channels {
+        if values.len() != trial.len() {
+            let message = format!("{channel} has {} samples, time has {}", values.len(), trial.len());
+            return Err(SamplesError::Content(message));
+        }
+        columns.push((channel.column(), values.as_slice()));
+    }
+    Ok(columns)
+}
+
+fn schema(names: impl Iterator<Item = &'static str>) -> ParquetResult<Arc<Type>> {
+    let column =
+        |name| Type::primitive_type_builder(name, Physical::DOUBLE).with_repetition(Repetition::REQUIRED).build().map(Arc::new);
+    let fields = names.map(column).collect::<ParquetResult<_>>()?;
+    Type::group_type_builder("trial").with_fields(fields).build().map(Arc::new)
+}
+
+fn properties(trial: &Trial) -> Result<WriterProperties, SamplesError> {
+    let about = About {
+        name: trial.name.clone(),
+        manoeuvre: trial.manoeuvre.clone(),
+        depth_m: trial.depth_m,
+        velocity: trial.velocity,
+        warnings: trial.warnings.clone(),
+    };
+    let text = serde_json::to_string(&about).map_err(|error| SamplesError::Content(error.to_string()))?;
+    Ok(WriterProperties::builder()
+        .set_created_by("sistership".into())
+        .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
+        // Neighbouring samples share sign, exponent and leading digits: split by byte they compress well.
+        .set_encoding(Encoding::BYTE_STREAM_SPLIT)
+        .set_dictionary_enabled(false)
+        .set_statistics_enabled(EnabledStatistics::None)
+        .set_key_value_metadata(Some(vec![KeyValue::new(KEY.to_owned(), text)]))
+        .build())
+}
+
+fn write_column<W: Write + Send>(
+    group: &mut parquet::file::writer::SerializedRowGroupWriter<'_, W>,
+    values: &[f64],
+) -> ParquetResult<()> {
+    let missing = || ParquetError::General("more columns than the schema has".into());
+    let mut column = group.next_column()?.ok_or_else(missing)?;
+    column.typed::<DoubleType>().write_batch(values, None, None)?;
+    column.close()
+}
+
+fn about(reader: &SerializedFileReader<Bytes>) -> Result<About, SamplesError> {
+    let metadata = reader.metadata().file_metadata().key_value_metadata();
+    let text = metadata.into_iter().flatten().find(|entry| entry.key == KEY).and_then(|entry| entry.value.as_deref());
+    let text = text.ok_or_else(|| SamplesError::Content(format!("no metadata `{KEY}`; not written by Sistership")))?;
+    serde_json::from_str(text).map_err(|error| SamplesError::Content(format!("metadata `{KEY}`: {error}")))
+}
+
+fn read_columns(reader: &SerializedFileReader<Bytes>) -> ParquetResult<BTreeMap<String, Vec<f64>>> {
+    let names = parquet_file::headers(reader);
+    let mut columns: BTreeMap<String, Vec<f64>> = names.iter().map(|name| (name.clone(), Vec::new())).collect();
+    for index in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(index)?;
+        for (position, name) in names.iter().enumerate() {
+            let values = parquet_file::column_values(&*group, position)?;
+            columns.entry(name.clone()).or_default().extend(values);
+        }
+    }
+    Ok(columns)
+}
+
+#[cfg(test)]
+#[path = "samples_tests.rs"]
+mod tests;

@@ -1,0 +1,69 @@
+//! The mapped columns of a file as numbers in SI units and radians, still in the file's own signs.
+
+use std::fmt;
+
+use sistership_model::trial::Channel;
+
+/// What a column is read into.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Target {
+    Time,
+    Channel(Channel),
+}
+
+impl Target {
+    pub(crate) fn by_name(name: &str) -> Option<Self> {
+        if name == "t" { Some(Self::Time) } else { Channel::by_name(name).map(Self::Channel) }
+    }
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Time => "t",
+            Self::Channel(channel) => channel.name(),
+        }
+    }
+}
+
+/// A column of the file that is read.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Column {
+    /// Position in the file, from 0.
+    pub index: usize,
+    pub header: String,
+    pub target: Target,
+    /// As declared, for messages.
+    pub unit: String,
+    pub to_si: f64,
+}
+
+/// Numbers of the mapped columns, one vector per column, and the rows of the file that they stand in.
+#[derive(Debug, Default)]
+pub(crate) struct Table {
+    pub columns: Vec<Column>,
+    pub values: Vec<Vec<f64>>,
+    pub rows: Vec<u32>,
+}
+
+/// Why a cell holds no number.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Fault {
+    Absent,
+    Empty,
+    NotANumber,
+    Text(String),
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Absent => out.write_str("the row ends before this column"),
+            Self::Empty => out.write_str("the cell is empty"),
+            Self::NotANumber => out.write_str("the cell is not a finite number"),
+            Self::Text(text) if text.contains(',') => write!(out, "`{text}` is not a number; write decimals with a point"),
+            Self::Text(text) if text.contains(':') => {
+                write!(out, "`{text}` is not a number; write time as seconds, such as 12.5")
+            }
+            Self::Text(text) => write!(out, "`{text}` is not a number"),
+        }
+    }
+}

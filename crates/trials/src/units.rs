@@ -1,0 +1,109 @@
+//! Which units a channel may be given in, and the suffixes that name them in a header.
+
+use sistership_model::trial::Channel;
+use sistership_model::units::{Dimension, Unit};
+
+use crate::table::Target;
+
+/// What a column measures. Dimensions alone do not tell a yaw rate from propeller revolutions: both are 1/s, but one
+/// counts radians and the other turns, and 80 rpm read as a yaw rate would be wrong by two pi.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Time,
+    Length,
+    Speed,
+    Angle,
+    Rate,
+    Revolutions,
+}
+
+/// Header suffix, kind, unit. The suffix `ms` is a millisecond for time and a metre per second for a speed.
+const SUFFIXES: &[(&str, Kind, &str)] = &[
+    ("s", Kind::Time, "s"),
+    ("sec", Kind::Time, "s"),
+    ("ms", Kind::Time, "ms"),
+    ("min", Kind::Time, "min"),
+    ("m", Kind::Length, "m"),
+    ("km", Kind::Length, "km"),
+    ("nmi", Kind::Length, "nmi"),
+    ("m_s", Kind::Speed, "m/s"),
+    ("mps", Kind::Speed, "m/s"),
+    ("ms", Kind::Speed, "m/s"),
+    ("kn", Kind::Speed, "kn"),
+    ("kt", Kind::Speed, "kn"),
+    ("kts", Kind::Speed, "kn"),
+    ("km_h", Kind::Speed, "km/h"),
+    ("kmh", Kind::Speed, "km/h"),
+    ("kmph", Kind::Speed, "km/h"),
+    ("rad", Kind::Angle, "rad"),
+    ("deg", Kind::Angle, "deg"),
+    ("rad_s", Kind::Rate, "rad/s"),
+    ("radps", Kind::Rate, "rad/s"),
+    ("deg_s", Kind::Rate, "deg/s"),
+    ("degps", Kind::Rate, "deg/s"),
+    ("deg_min", Kind::Rate, "deg/min"),
+    ("degpmin", Kind::Rate, "deg/min"),
+    ("rps", Kind::Revolutions, "rps"),
+    ("rpm", Kind::Revolutions, "rpm"),
+];
+
+impl Kind {
+    /// What the target's columns measure.
+    pub(crate) fn of(target: Target) -> Self {
+        match target {
+            Target::Time => Self::Time,
+            Target::Channel(Channel::N) => Self::Revolutions,
+            Target::Channel(channel) if channel.dimension() == Dimension::LENGTH => Self::Length,
+            Target::Channel(channel) if channel.dimension() == Dimension::SPEED => Self::Speed,
+            Target::Channel(channel) if channel.dimension() == Dimension::RATE => Self::Rate,
+            Target::Channel(_) => Self::Angle,
+        }
+    }
+
+    /// The unit that a header's suffix stands for.
+    pub(crate) fn suffix(self, suffix: &str) -> Option<&'static str> {
+        SUFFIXES.iter().find(|(known, kind, _)| *kind == self && *known == suffix).map(|&(_, _, unit)| unit)
+    }
+
+    /// Units accepted, the canonical one first.
+    pub(crate) fn accepted(self) -> Vec<&'static str> {
+        let mut units: Vec<&str> = SUFFIXES.iter().filter(|(_, kind, _)| *kind == self).map(|&(_, _, unit)| unit).collect();
+        units.dedup();
+        units
+    }
+
+    /// The unit of the canonical column.
+    pub(crate) fn canonical(self) -> &'static str {
+        self.accepted().first().copied().unwrap_or("1")
+    }
+
+    /// The factor to canonical units, or what would have been accepted.
+    pub(crate) fn factor(self, unit: &str) -> Result<f64, String> {
+        let accepted = self.accepted();
+        match Unit::parse(unit) {
+            Ok(known) if accepted.contains(&unit.trim()) => Ok(known.to_si),
+            _ => Err(format!("unit `{unit}` does not fit; use one of {}", accepted.join(", "))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn every_suffix_names_a_known_unit() {
+        for (_, kind, unit) in SUFFIXES {
+            kind.factor(unit).unwrap();
+        }
+    }
+
+    #[test]
+    fn revolutions_are_not_a_yaw_rate() {
+        assert!(Kind::of(Target::Channel(Channel::R)).factor("rpm").unwrap_err().contains("rad/s"));
+        assert!(Kind::of(Target::Channel(Channel::N)).factor("rad/s").unwrap_err().contains("rps, rpm"));
+        assert_eq!(Kind::of(Target::Channel(Channel::Depth)), Kind::Length);
+        assert_eq!(Kind::of(Target::Channel(Channel::WindFrom)), Kind::Angle);
+    }
+}
