@@ -121,6 +121,7 @@ fn kvlcc2_turns_as_published() {
             let lengths = |m: Option<f64>| m.expect("a full turn") / kvlcc2.lpp_m();
             let (advance, diameter) = (lengths(metrics.advance_m), lengths(metrics.tactical_diameter_m));
             println!("{name} {rudder:+} deg: advance {advance:.3} L, tactical diameter {diameter:.3} L");
+            assert!((advance / 3.31 - 1.0).abs() < 0.02 && (diameter / 3.36 - 1.0).abs() < 0.02);
         }
     }
 }
