@@ -20,5 +20,6 @@ pub mod zoo;
 pub use error::FileError;
 pub use law::Law;
 pub use model::Model;
+pub use trial::Trial;
 pub use vessel::Vessel;
 pub use zoo::Zoo;

@@ -65,6 +65,7 @@ struct Task<'a> {
     judged: Vec<&'a Trial>,
     transferred: Model,
     blocks: Blocks,
+    settings: Settings,
 }
 
 /// An option with what it takes to compare and to take it.
@@ -91,11 +92,12 @@ impl<'a> Task<'a> {
             transfer(request.source, request.law, request.target, approach_of(&training))
         };
         let blocks = Blocks::new(&transferred, request.law)?;
-        Ok(Self { request, training, judged, transferred, blocks })
+        let settings = resolved(request, &training);
+        Ok(Self { request, training, judged, transferred, blocks, settings })
     }
 
     fn moments(&self) -> Result<Vec<Vec<Moments>>, RefineError> {
-        let one = |trial: &&Trial| trial_moments(&self.blocks, trial, self.request.settings.difference_s);
+        let one = |trial: &&Trial| trial_moments(&self.blocks, trial, self.settings.difference_s);
         let moments: Vec<Vec<Moments>> = self.training.par_iter().map(one).collect::<Result<_, _>>()?;
         let samples: f64 = moments.iter().map(|m| m.first().map_or(0.0, |m| m.count)).sum();
         let widest = self.blocks.blocks.iter().map(super::Block::regressors).max().unwrap_or(0) as f64;
@@ -172,7 +174,7 @@ impl<'a> Task<'a> {
         trials: &[&Trial],
         model_of: &(dyn Fn(usize) -> Model + Sync),
     ) -> Result<(SquaredError, Option<String>), RefineError> {
-        let settings = ReplaySettings { restart_s: self.request.settings.restart_s, ..ReplaySettings::default() };
+        let settings = ReplaySettings { restart_s: self.settings.restart_s, ..ReplaySettings::default() };
         let one = |(index, trial): (usize, &&Trial)| -> Result<(SquaredError, Option<String>), RefineError> {
             let ship = match ready(&model_of(index), self.request.law, trials) {
                 Ok(ship) => ship,
@@ -252,7 +254,7 @@ impl<'a> Task<'a> {
             coefficients: self.changes(&model, fitted.as_ref()),
             model,
             transferred: self.transferred.clone(),
-            settings: self.request.settings.clone(),
+            settings: self.settings.clone(),
             condition_number,
             collinear_groups,
             held_out,
@@ -310,6 +312,15 @@ impl<'a> Task<'a> {
         }
         remarks
     }
+}
+
+/// The settings with the times that depend on the ship filled in, so that a version records what was used.
+fn resolved(request: &Request<'_>, training: &[&Trial]) -> Settings {
+    let length_s = request.target.particular("lpp_m").zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s);
+    let mut settings = request.settings.clone();
+    settings.difference_s = settings.difference_s.or(length_s.map(|s| 0.1 * s));
+    settings.restart_s = settings.restart_s.or(length_s.map(|s| 10.0 * s));
+    settings
 }
 
 /// The option with the least error; an earlier one wins unless a later one is better by more than one per cent.

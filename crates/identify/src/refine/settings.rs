@@ -42,16 +42,16 @@ pub struct Settings {
     pub ranges: Vec<Range>,
     /// Values of lambda tried in a range, evenly spaced in their logarithm.
     pub lambda_count: usize,
-    /// Time over which accelerations are differenced, s; one sampling interval where absent.
+    /// Time over which accelerations are differenced, s, at least one sampling interval. Where absent, a tenth of the
+    /// time in which the ship sails her length: what the instruments add at a shorter one drowns the acceleration.
     pub difference_s: Option<f64>,
-    /// Simulations of manoeuvres left out start anew every so often, s; never where absent.
+    /// Simulations of manoeuvres left out start anew every so often, s. Where absent, ten times the time in which the
+    /// ship sails her length; longer than a trial runs it whole.
     pub restart_s: Option<f64>,
     /// Most folds; with more manoeuvres than that, several are left out together.
     pub folds: usize,
     /// Names of trials that are kept out of fit and choice altogether, to be judged on.
     pub held_out: Vec<String>,
-    /// Differences from the source are fitted without the intercept that centring implies, as published.
-    pub centred: bool,
 }
 
 impl Default for Settings {
@@ -69,7 +69,6 @@ impl Default for Settings {
             restart_s: None,
             folds: 8,
             held_out: Vec::new(),
-            centred: true,
         }
     }
 }

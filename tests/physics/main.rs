@@ -1,0 +1,25 @@
+//! Properties that hold whatever the numbers: symmetry, the prime system, coefficients recovered, runs that stop.
+
+mod recovery;
+mod scaling;
+mod stopping;
+mod symmetry;
+
+use std::sync::Arc;
+
+use sistership_dynamics::Ship;
+use sistership_model::{Law, Model, Zoo};
+
+/// The models of the zoo that sail.
+const SHIPS: [&str; 6] = ["mariner", "sr108", "kvlcc2", "kvlcc2-7m", "kcs", "esso-tanker"];
+
+fn model(name: &str) -> (Model, Arc<Law>) {
+    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let model = zoo.model(name).unwrap_or_else(|error| panic!("{error}"));
+    let law = zoo.law(&model.law).expect("the law of a zoo model").clone();
+    (model, law)
+}
+
+fn ready(model: &Model, law: &Law) -> Ship {
+    Ship::new(model, law).unwrap_or_else(|error| panic!("{error}"))
+}

@@ -1,0 +1,37 @@
+//! A simulation that leaves the physical range stops with a reason; it never returns infinities.
+
+use proptest::prelude::*;
+use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn};
+use sistership_dynamics::state::straight;
+use sistership_dynamics::{Method, Order, Run, Trajectory};
+
+use super::{SHIPS, model, ready};
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(30))]
+    #[test]
+    fn wild_coefficients_stop_with_a_reason(factor in 1.0..200.0_f64, ship in 0..SHIPS.len(), which in 0..40_usize, rudder in -35.0..35.0_f64) {
+        let (mut model, law) = model(SHIPS[ship]);
+        let index = which % model.coefficients.len();
+        if let Some(quantity) = model.coefficients.values_mut().nth(index) {
+            quantity.value *= -factor;
+        }
+        let ship = ready(&model, &law);
+        let mut track = Trajectory::default();
+        let run = Run { start: straight(ship.approach_speed_m_s()), duration_s: 300.0, step_s: 0.5, method: Method::Rk4 };
+        let n_rps = ship.revolutions_at(ship.approach_speed_m_s());
+        let sailed = ship.sail(run, &mut track, |_, _| Some(Order { delta_rad: rudder.to_radians(), n_rps }));
+        prop_assert!(track.states.iter().all(|state| state.iter().all(|value| value.is_finite())));
+        if let Err(stopped) = sailed {
+            prop_assert!(!stopped.reason.is_empty() && stopped.t_s.is_finite());
+        }
+    }
+}
+
+#[test]
+fn a_sign_error_is_reported_with_time_and_reason() {
+    let (mut model, law) = model("mariner");
+    model.coefficients.get_mut("N_r").expect("a coefficient").value *= -5.0;
+    let stopped = turn(&ready(&model, &law), 35.0, &ManoeuvreSettings::default()).expect_err("she cannot sail so");
+    assert!(stopped.to_string().contains("yaw rate") || stopped.to_string().contains("speed"), "{stopped}");
+}
