@@ -54,7 +54,15 @@ fn trend_on(zoo: &Zoo, target: &Vessel, source: &Model, trials: &[&Trial]) -> Re
 /// # Errors
 /// Lists each ship of the ranking with the step it failed.
 pub fn best_source(zoo: &Zoo, similarity: &Similarity) -> Result<Model, String> {
-    let eligible = similarity.ranking.iter().find(|ranked| ranked.eligible);
+    best_source_except(zoo, similarity, &[])
+}
+
+/// As [`best_source`], with some ships set aside by a person's word.
+///
+/// # Errors
+/// As [`best_source`].
+pub fn best_source_except(zoo: &Zoo, similarity: &Similarity, exclude: &[String]) -> Result<Model, String> {
+    let eligible = similarity.ranking.iter().find(|ranked| ranked.eligible && !exclude.contains(&ranked.ship));
     if let Some(model) = eligible.and_then(|ranked| ranked.model.as_deref()) {
         return zoo.model(model).map_err(|error| error.to_string());
     }

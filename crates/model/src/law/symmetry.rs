@@ -40,7 +40,9 @@ pub(super) fn check(law: &Law) -> Result<(), (String, String)> {
 fn spelled_parity(law: &Law, name: &str, axis: Axis) -> bool {
     let Ok(parsed) = CoefficientName::parse(name, &law.extra_factors()) else { return axis.is_odd() };
     let odd = |expr: &Expr| is_odd(law, expr).unwrap_or(false);
-    let odd_factors = parsed.factors.iter().filter(|f| !f.absolute && law.factors.get(&f.symbol).is_some_and(odd));
+    // A factor that only explicit formulas use is known by its symbol alone.
+    let of_symbol = |symbol: &String| law.factors.get(symbol).map_or(ODD.contains(&symbol.as_str()), odd);
+    let odd_factors = parsed.factors.iter().filter(|f| !f.absolute && of_symbol(&f.symbol));
     odd_factors.count() % 2 == 1
 }
 

@@ -1,0 +1,86 @@
+//! A new law, a new vessel and a new coefficient set at run time: files, and no Rust.
+
+use sistership_dynamics::Ship;
+use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn};
+use sistership_model::Zoo;
+
+/// Nomoto's first-order law with a quadratic resistance: nothing the program knows.
+const LAW: &str = "
+kind: law
+name: nomoto
+title: First-order steering law
+sources: { nomoto-1957: { citation: 'Nomoto et al. 1957, On the steering qualities of ships' } }
+inputs: { delta: { unit: rad } }
+parameters:
+  T: { unit: s, meaning: time constant }
+  U0: { unit: m/s, meaning: approach speed, role: approach_speed }
+factors: { r: r, delta: delta, u: u - U0 }
+axes:
+  X: { scale: mass_kg/T, terms: [X_u] }
+  Y: { scale: mass_kg/T, terms: [{ Y_v: v }] }
+  N: { scale: mass_kg*lpp_m^2/T, terms: [N_r, { N_delta: delta/T }] }
+mass:
+  X: { X: mass_kg }
+  Y: { Y: mass_kg }
+  N: { N: mass_kg*lpp_m^2 }
+";
+
+const VESSEL: &str = "
+kind: vessel
+name: barge
+title: A barge of the test
+category: barge
+sources: { test: { citation: made for this test } }
+particulars: { source: test, values: { lpp_m: 60.0, beam_m: 12.0, draught_m: 3.0, displacement_m3: 1800.0 } }
+models:
+  - name: slow
+    law: nomoto
+    status: published
+    speed_m_s: 4.0
+    parameters: { source: test, values: { T: 20.0 } }
+    coefficients: { source: test, values: { X_u: -1.0, Y_v: -1.0, N_r: -1.0, N_delta: 0.6 } }
+  - name: quick
+    law: nomoto
+    status: published
+    speed_m_s: 4.0
+    parameters: { source: test, values: { T: 20.0 } }
+    coefficients: { source: test, values: { X_u: -1.0, Y_v: -1.0, N_r: -1.0, N_delta: 1.2 } }
+";
+
+/// A coefficient set for a law that the program carries.
+const SISTER: &str = "
+kind: vessel
+name: little-sister
+title: A vessel on the Abkowitz law
+category: dry-cargo
+sources: { test: { citation: made for this test } }
+conventions: { rudder_positive: port_turn }
+particulars: { source: test, values: { lpp_m: 120.0, beam_m: 18.0, draught_m: 6.0, service_speed_m_s: 7.0, displacement_m3: 8000.0, yaw_gyradius_ratio: 0.25, x_g_m: 0.0 } }
+models:
+  - name: own
+    law: abkowitz
+    status: published
+    speed_m_s: 7.0
+    parameters: { source: test, values: { X_udot: -42.0e-5, Y_vdot: -748.0e-5, Y_rdot: 0.0, N_vdot: 0.0, N_rdot: -43.8e-5 } }
+    coefficients:
+      source: test
+      values: { X_u: -184.0e-5, Y_v: -1160.0e-5, Y_r: -499.0e-5, N_v: -264.0e-5, N_r: -166.0e-5, Y_delta: 278.0e-5, N_delta: -139.0e-5, N_v|v|: -100.0e-5 }
+";
+
+#[test]
+fn a_new_law_vessel_and_coefficient_set_are_files() {
+    let mut zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    zoo.add_law("nomoto.yaml", LAW).unwrap_or_else(|error| panic!("{error}"));
+    zoo.add_vessel("barge.yaml", VESSEL).unwrap_or_else(|error| panic!("{error}"));
+    zoo.add_vessel("little-sister.yaml", SISTER).unwrap_or_else(|error| panic!("{error}"));
+    let rate = |name: &str| {
+        let model = zoo.model(name).unwrap_or_else(|error| panic!("{error}"));
+        let ship = Ship::new(&model, zoo.law(&model.law).expect("added")).unwrap_or_else(|error| panic!("{error}"));
+        let sailed = turn(&ship, 20.0, &ManoeuvreSettings::default()).unwrap_or_else(|stopped| panic!("{name}: {stopped}"));
+        sailed.track.last().expect("a state")[sistership_dynamics::state::at::R]
+    };
+    // Nomoto: the steady yaw rate is K delta, here 0.6/20 and 1.2/20 of 20 deg.
+    assert!((rate("barge/slow") - 0.03 * 20_f64.to_radians()).abs() < 1e-4);
+    assert!((rate("barge/quick") - 0.06 * 20_f64.to_radians()).abs() < 1e-4);
+    assert!(rate("little-sister") > 0.0, "positive rudder turns to starboard whatever the source counts");
+}
