@@ -1,0 +1,169 @@
+//! Aliases: names of versions that move by compare-and-swap and remember every move.
+
+use crate::arguments::args;
+use crate::checks;
+use crate::database::Transaction;
+use crate::error::{Result, StoreError};
+use crate::page::{List, Page};
+use crate::record::record;
+use crate::statements::{pair, same, statements};
+use crate::store::Store;
+use crate::versions;
+
+statements! {
+    // Moves within one model wait for each other, so that the history tells where an alias came from. SQLite's writers
+    // wait for each other anyway.
+    LOCK = pair("SELECT name FROM models WHERE name = $1", "SELECT name FROM models WHERE name = $1 FOR UPDATE");
+    PUT = same("INSERT INTO aliases (model, alias, version_number, revision) VALUES ($1, $2, $3, 1) \
+        ON CONFLICT (model, alias) DO UPDATE SET version_number = excluded.version_number, revision = aliases.revision + 1 \
+        RETURNING model, alias, version_number, revision");
+    REMEMBER = same("INSERT INTO alias_moves (id, model, alias, from_number, to_number, revision, reason, actor, moved_us) \
+        VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)");
+    GET = same("SELECT model, alias, version_number, revision FROM aliases WHERE model = $1 AND alias = $2");
+    LIST = same("SELECT model, alias, version_number, revision FROM aliases \
+        WHERE model = $1 AND alias > COALESCE($2, '') ORDER BY alias LIMIT $3");
+    HISTORY = same("SELECT id, model, alias, from_number, to_number, revision, reason, actor, moved_us FROM alias_moves \
+        WHERE model = $1 AND alias = $2 AND revision < COALESCE($3, 9223372036854775807) ORDER BY revision DESC LIMIT $4");
+}
+
+record! {
+    /// Where an alias stands.
+    pub struct Alias {
+        /// The model.
+        pub model: String,
+        /// The alias: `champion`, `candidate`, any.
+        pub alias: String,
+        /// The version it stands for.
+        pub version_number: i64,
+        /// 1 at first, one more with each move.
+        pub revision: i64,
+    }
+}
+
+record! {
+    /// One move of an alias.
+    pub struct AliasChange {
+        /// Its id.
+        pub id: String,
+        /// The model.
+        pub model: String,
+        /// The alias.
+        pub alias: String,
+        /// The version it stood for; none at first.
+        pub from_number: Option<i64>,
+        /// The version it stands for since.
+        pub to_number: i64,
+        /// The revision it got.
+        pub revision: i64,
+        /// Why.
+        pub reason: String,
+        /// Who.
+        pub actor: String,
+        /// When.
+        pub moved_us: i64,
+    }
+}
+
+record! {
+    /// A model whose row is locked.
+    pub struct Locked {
+        /// The model.
+        pub name: String,
+    }
+}
+
+/// What the caller believes of an alias that is to move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Expect {
+    /// Nothing.
+    Any,
+    /// That it does not exist.
+    Absent,
+    /// That it is at this revision.
+    Revision(i64),
+}
+
+impl Expect {
+    fn holds(self, current: Option<i64>) -> bool {
+        match self {
+            Self::Any => true,
+            Self::Absent => current.is_none(),
+            Self::Revision(revision) => current == Some(revision),
+        }
+    }
+}
+
+/// A move to make.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AliasMove {
+    /// The alias.
+    pub alias: String,
+    /// What must be true of it beforehand.
+    pub expect: Expect,
+    /// Why it moves.
+    pub reason: String,
+    /// Who moves it.
+    pub actor: String,
+}
+
+/// The aliases of a store.
+#[derive(Debug, Clone, Copy)]
+pub struct Aliases<'a>(pub(crate) &'a Store);
+
+impl Aliases<'_> {
+    /// Moves an alias of a model to the version `to`, if it is where the move expects it.
+    pub async fn move_to(&self, model: &str, to: i64, change: &AliasMove) -> Result<Alias> {
+        let mut tx = self.0.begin().await?;
+        let alias = shift(self.0, &mut tx, model, to, change).await?;
+        tx.commit().await?;
+        Ok(alias)
+    }
+
+    /// Where an alias stands.
+    pub async fn get(&self, model: &str, alias: &str) -> Result<Alias> {
+        let found = self.0.database().optional(GET, args![model: model, alias: alias]).await?;
+        found.ok_or_else(|| StoreError::missing("alias", format!("{model}/{alias}")))
+    }
+
+    /// The aliases of a model by name.
+    pub async fn list(&self, model: &str, page: &Page) -> Result<List<Alias>> {
+        let values = args![model: model, after: &page.after, limit: page.fetch()?];
+        let aliases = self.0.database().all(LIST, values).await?;
+        Ok(page.of(aliases, |alias: &Alias| alias.alias.clone()))
+    }
+
+    /// How an alias has moved, the latest first, by revision.
+    pub async fn history(&self, model: &str, alias: &str, page: &Page<i64>) -> Result<List<AliasChange, i64>> {
+        let values = args![model: model, alias: alias, after: page.after, limit: page.fetch()?];
+        let changes = self.0.database().all(HISTORY, values).await?;
+        Ok(page.of(changes, |change: &AliasChange| change.revision))
+    }
+}
+
+/// Moves an alias within a transaction.
+pub(crate) async fn shift(store: &Store, tx: &mut Transaction, model: &str, to: i64, change: &AliasMove) -> Result<Alias> {
+    checks::name("alias", &change.alias)?;
+    lock(tx, model).await?;
+    versions::check_exists(tx, model, to).await?;
+    let before: Option<Alias> = tx.optional(GET, args![model: model, alias: &change.alias]).await?;
+    let current = before.as_ref().map(|alias| alias.revision);
+    if !change.expect.holds(current) {
+        return Err(StoreError::stale("alias", format!("{model}/{}", change.alias), current));
+    }
+    let after = tx.one(PUT, args![model: model, alias: &change.alias, version_number: to]).await?;
+    remember(store, tx, before, &after, change).await?;
+    Ok(after)
+}
+
+async fn lock(tx: &mut Transaction, model: &str) -> Result<()> {
+    let locked: Option<Locked> = tx.optional(LOCK, args![model: model]).await?;
+    locked.map(drop).ok_or_else(|| StoreError::missing("model", model))
+}
+
+async fn remember(store: &Store, tx: &mut Transaction, before: Option<Alias>, after: &Alias, change: &AliasMove) -> Result<()> {
+    let from = before.map(|alias| alias.version_number);
+    let id = store.new_id();
+    let values = args![id: &id, model: &after.model, alias: &after.alias, from_number: from, to_number: after.version_number,
+        revision: after.revision, reason: &change.reason, actor: &change.actor, moved_us: store.now_us()];
+    tx.execute(REMEMBER, values).await.map(drop)
+}

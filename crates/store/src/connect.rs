@@ -1,0 +1,94 @@
+//! Opening a database by its URL.
+
+use std::str::FromStr as _;
+use std::time::Duration;
+
+use sqlx::postgres::{PgConnectOptions, PgPoolOptions};
+use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
+use sqlx::{PgPool, SqlitePool};
+
+use crate::database::{Database, Pool};
+use crate::error::{Result, StoreError};
+use crate::folders;
+use crate::migrate;
+
+const BUSY: Duration = Duration::from_secs(10);
+const SQLITE_READERS: u32 = 4;
+const POSTGRES_CONNECTIONS: u32 = 10;
+
+/// Opens the database at `url` and brings its schema up to date.
+pub(crate) async fn connect(url: &str) -> Result<Database> {
+    match url.split_once(':') {
+        Some(("sqlite", _)) if url.contains(":memory:") => memory(url).await,
+        Some(("sqlite", _)) => file(url).await,
+        Some(("postgres" | "postgresql", _)) => postgres(url).await,
+        _ => Err(StoreError::invalid("database_url", "must begin with sqlite: or postgres:")),
+    }
+}
+
+/// One connection that lasts as long as the store: with it the data would go.
+async fn memory(url: &str) -> Result<Database> {
+    let options = SqliteConnectOptions::from_str(url)?.foreign_keys(true);
+    let pool = SqlitePoolOptions::new().max_connections(1).min_connections(1).idle_timeout(None).max_lifetime(None);
+    let pool = pool.connect_with(options).await?;
+    migrate::sqlite(&pool).await?;
+    Ok(Database { read: Pool::Sqlite(pool.clone()), write: Pool::Sqlite(pool) })
+}
+
+async fn file(url: &str) -> Result<Database> {
+    let options = SqliteConnectOptions::from_str(url)?.foreign_keys(true).busy_timeout(BUSY);
+    options.get_filename().parent().map_or(Ok(()), folders::make).map_err(sqlx::Error::Io)?;
+    let write = options.clone().create_if_missing(true).synchronous(SqliteSynchronous::Full);
+    let write = writer(write.journal_mode(SqliteJournalMode::Wal)).await?;
+    migrate::sqlite(&write).await?;
+    let readers = SqlitePoolOptions::new().max_connections(SQLITE_READERS);
+    let read = readers.connect_with(options.pragma("query_only", "ON")).await?;
+    Ok(Database { read: Pool::Sqlite(read), write: Pool::Sqlite(write) })
+}
+
+/// The one connection that writes. Turning on the write-ahead log needs the file for itself and does not wait for it, so
+/// that two processes which open a new file at once have to try again.
+async fn writer(options: SqliteConnectOptions) -> Result<SqlitePool> {
+    let mut tries = 100;
+    loop {
+        let pool = SqlitePoolOptions::new().max_connections(1).connect_with(options.clone()).await;
+        match pool {
+            Err(error) if tries > 0 && is_locked(&error) => tries -= 1,
+            other => return Ok(other?),
+        }
+        tokio::time::sleep(Duration::from_millis(50)).await;
+    }
+}
+
+fn is_locked(error: &sqlx::Error) -> bool {
+    error.as_database_error().is_some_and(|error| error.message().contains("locked"))
+}
+
+async fn postgres(url: &str) -> Result<Database> {
+    let options = PgConnectOptions::from_str(url)?.application_name("sistership");
+    let pool: PgPool = PgPoolOptions::new().max_connections(POSTGRES_CONNECTIONS).connect_with(options).await?;
+    migrate::postgres(&pool).await?;
+    Ok(Database { read: Pool::Postgres(pool.clone()), write: Pool::Postgres(pool) })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    async fn pragma(pool: &SqlitePool, sql: &'static str) -> String {
+        sqlx::query_scalar(sql).fetch_one(pool).await.unwrap()
+    }
+
+    #[tokio::test]
+    async fn a_sqlite_file_is_durable_and_its_readers_only_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let url = format!("sqlite://{}", folder.path().join("new/store.db").display());
+        let Database { read: Pool::Sqlite(read), write: Pool::Sqlite(write) } = connect(&url).await.unwrap() else { panic!() };
+        assert_eq!(pragma(&write, "SELECT journal_mode FROM pragma_journal_mode").await, "wal");
+        assert_eq!(pragma(&write, "SELECT CAST(synchronous AS TEXT) FROM pragma_synchronous").await, "2");
+        assert_eq!(pragma(&write, "SELECT CAST(foreign_keys AS TEXT) FROM pragma_foreign_keys").await, "1");
+        assert_eq!(pragma(&read, "SELECT CAST(query_only AS TEXT) FROM pragma_query_only").await, "1");
+    }
+}

@@ -1,0 +1,106 @@
+//! The two databases behind one set of operations. Every operation is written once and expanded for both by [`on!`].
+
+use sqlx::{PgPool, Postgres, Sqlite, SqlitePool};
+
+use crate::arguments::{Args, bind, check};
+use crate::error::Result;
+use crate::record::Record;
+use crate::statements::Statement;
+
+/// The connections of one database, to read and to write; the same ones but for SQLite, where one connection writes.
+#[derive(Debug, Clone)]
+pub(crate) struct Database {
+    pub(crate) read: Pool,
+    pub(crate) write: Pool,
+}
+
+/// A pool of connections.
+#[derive(Debug, Clone)]
+pub(crate) enum Pool {
+    Sqlite(SqlitePool),
+    Postgres(PgPool),
+}
+
+/// A transaction that may write; it is undone unless [committed](Self::commit).
+pub(crate) enum Transaction {
+    Sqlite(sqlx::Transaction<'static, Sqlite>),
+    Postgres(sqlx::Transaction<'static, Postgres>),
+}
+
+/// Expands one body for both databases, with the connection and the statement's text for it.
+macro_rules! on {
+    ($of:ident, $value:expr, $statement:expr, |$connection:ident, $sql:ident| $body:expr) => {
+        match $value {
+            $of::Sqlite($connection) => {
+                let $sql = $statement.sqlite;
+                $body
+            }
+            $of::Postgres($connection) => {
+                let $sql = $statement.postgres;
+                $body
+            }
+        }
+    };
+}
+
+impl Database {
+    /// Begins to write. On SQLite the lock is taken at once, so that what is read stays true until the commit.
+    pub(crate) async fn begin(&self) -> Result<Transaction> {
+        Ok(match &self.write {
+            Pool::Sqlite(pool) => Transaction::Sqlite(pool.begin_with("BEGIN IMMEDIATE").await?),
+            Pool::Postgres(pool) => Transaction::Postgres(pool.begin().await?),
+        })
+    }
+
+    /// The row that a reading statement finds, if any.
+    pub(crate) async fn optional<T: Record>(&self, statement: Statement, args: Args<'_>) -> Result<Option<T>> {
+        check(args)?;
+        Ok(on!(Pool, &self.read, statement, |pool, sql| bind!(sqlx::query_as(sql), args).fetch_optional(pool).await)?)
+    }
+
+    /// The rows that a reading statement finds.
+    pub(crate) async fn all<T: Record>(&self, statement: Statement, args: Args<'_>) -> Result<Vec<T>> {
+        check(args)?;
+        Ok(on!(Pool, &self.read, statement, |pool, sql| bind!(sqlx::query_as(sql), args).fetch_all(pool).await)?)
+    }
+
+    /// Ends all connections.
+    pub(crate) async fn close(&self) {
+        for pool in [&self.read, &self.write] {
+            match pool {
+                Pool::Sqlite(pool) => pool.close().await,
+                Pool::Postgres(pool) => pool.close().await,
+            }
+        }
+    }
+}
+
+impl Transaction {
+    /// The number of rows that a writing statement changed.
+    pub(crate) async fn execute(&mut self, statement: Statement, args: Args<'_>) -> Result<u64> {
+        check(args)?;
+        let changed =
+            on!(Self, self, statement, |tx, sql| bind!(sqlx::query(sql), args).execute(&mut **tx).await?.rows_affected());
+        Ok(changed)
+    }
+
+    /// The row that a statement finds or returns, if any.
+    pub(crate) async fn optional<T: Record>(&mut self, statement: Statement, args: Args<'_>) -> Result<Option<T>> {
+        check(args)?;
+        Ok(on!(Self, self, statement, |tx, sql| bind!(sqlx::query_as(sql), args).fetch_optional(&mut **tx).await)?)
+    }
+
+    /// The row that a statement is sure to return.
+    pub(crate) async fn one<T: Record>(&mut self, statement: Statement, args: Args<'_>) -> Result<T> {
+        check(args)?;
+        Ok(on!(Self, self, statement, |tx, sql| bind!(sqlx::query_as(sql), args).fetch_one(&mut **tx).await)?)
+    }
+
+    /// Makes it last.
+    pub(crate) async fn commit(self) -> Result<()> {
+        Ok(match self {
+            Self::Sqlite(tx) => tx.commit().await,
+            Self::Postgres(tx) => tx.commit().await,
+        }?)
+    }
+}

@@ -1,0 +1,83 @@
+//! Long work, as rows: what those who ask for it do. What workers do is in `work.rs`.
+
+use crate::arguments::{Args, args};
+use crate::checks;
+use crate::database::Transaction;
+use crate::error::{Result, StoreError};
+use crate::job::{Job, JobFilter, JobState, NewJob, job};
+use crate::page::{List, Page};
+use crate::statements::{Statement, same, statements};
+use crate::store::Store;
+
+statements! {
+    INSERT = same(job!("INSERT INTO jobs (id, kind, ship, request, state, progress, message, attempt, fence, created_us, \
+        cancel_requested) VALUES ($1, $2, $3, $4, 'queued', 0, '', 0, 0, $5, 0) RETURNING", ""));
+    GET = same(job!("SELECT", "FROM jobs WHERE id = $1"));
+    LIST = same(job!("SELECT", "FROM jobs WHERE id < COALESCE($1, '~') AND (CAST($2 AS TEXT) IS NULL OR ship = $2) \
+        AND state = COALESCE($3, state) ORDER BY id DESC LIMIT $4"));
+    CANCEL = same(job!("UPDATE jobs SET cancel_requested = 1, \
+        finished_us = CASE WHEN state = 'queued' THEN $2 ELSE finished_us END, \
+        state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END \
+        WHERE id = $1 AND state IN ('queued', 'running') RETURNING", ""));
+    RETRY = same(job!("UPDATE jobs SET state = 'queued', attempt = 0, progress = 0, message = '', error = NULL, worker = NULL, \
+        finished_us = NULL, cancel_requested = 0 WHERE id = $1 AND state IN ('failed', 'cancelled') RETURNING", ""));
+}
+
+/// The jobs of a store.
+#[derive(Debug, Clone, Copy)]
+pub struct Jobs<'a>(pub(crate) &'a Store);
+
+impl Jobs<'_> {
+    /// Puts a job in the queue.
+    pub async fn enqueue(&self, new: &NewJob) -> Result<Job> {
+        checks::name("kind", &new.kind)?;
+        checks::json("request", &new.request)?;
+        let (id, now) = (self.0.new_id(), self.0.now_us());
+        let values = args![id: &id, kind: &new.kind, ship: &new.ship, request: &new.request, created_us: now];
+        let mut tx = self.0.begin().await?;
+        let job = tx.one(INSERT, values).await?;
+        tx.commit().await?;
+        Ok(job)
+    }
+
+    /// The job of this id.
+    pub async fn get(&self, id: &str) -> Result<Job> {
+        let job = self.0.database().optional(GET, args![id: id]).await?;
+        job.ok_or_else(|| StoreError::missing("job", id))
+    }
+
+    /// Jobs, the latest first.
+    pub async fn list(&self, filter: &JobFilter, page: &Page) -> Result<List<Job>> {
+        let state = filter.state.map(JobState::as_str);
+        let values = args![after: &page.after, ship: &filter.ship, state: state, limit: page.fetch()?];
+        let jobs = self.0.database().all(LIST, values).await?;
+        Ok(page.of(jobs, |job: &Job| job.id.clone()))
+    }
+
+    /// Cancels a job that waits, or asks the worker of a running one to stop.
+    pub async fn request_cancel(&self, id: &str) -> Result<Job> {
+        self.unless(CANCEL, id, args![id: id, finished_us: self.0.now_us()], "only what waits or runs can be cancelled").await
+    }
+
+    /// Puts a job that failed or was cancelled back in the queue.
+    pub async fn retry(&self, id: &str) -> Result<Job> {
+        self.unless(RETRY, id, args![id: id], "only what failed or was cancelled can be tried again").await
+    }
+
+    /// A change that the job's state may rule out.
+    async fn unless(&self, statement: Statement, id: &str, values: Args<'_>, rule: &str) -> Result<Job> {
+        let mut tx = self.0.begin().await?;
+        let Some(job) = tx.optional(statement, values).await? else {
+            let state = find(&mut tx, id).await?.state;
+            return Err(StoreError::conflict("job", id, format!("is {state}; {rule}")));
+        };
+        tx.commit().await?;
+        Ok(job)
+    }
+}
+
+/// The job, as the transaction sees it.
+pub(crate) async fn find(tx: &mut Transaction, id: &str) -> Result<Job> {
+    let job = tx.optional(GET, args![id: id]).await?;
+    job.ok_or_else(|| StoreError::missing("job", id))
+}

@@ -1,0 +1,52 @@
+//! What Sistership keeps: ships, trials, laws, model versions with their aliases, jobs and reports, in SQLite or
+//! PostgreSQL, and the samples of trials in a content-addressed object store.
+//!
+//! Each table has one repository, reached from [`Store`]; time and ids are parameters ([`Clock`], [`Ids`]), so that a
+//! test holds both in its hand. Nothing is overwritten: versions and laws are insert-only, aliases and ships keep their
+//! history, a deletion is a tombstone. What must happen together happens in one transaction, see
+//! [`Store::commit_refinement`].
+
+mod aliases;
+mod arguments;
+mod checks;
+mod clock;
+mod commit;
+mod connect;
+mod database;
+mod error;
+mod folders;
+mod idempotency;
+mod job;
+mod jobs;
+mod laws;
+mod migrate;
+mod objects;
+mod page;
+mod record;
+mod reports;
+mod ships;
+mod statements;
+mod store;
+#[cfg(all(unix, feature = "testing"))]
+pub mod testing;
+mod trials;
+mod versions;
+mod work;
+
+pub use aliases::{Alias, AliasChange, AliasMove, Aliases, Expect};
+pub use checks::{MAX_NAME_BYTES, MAX_TEXT_BYTES};
+pub use clock::{Clock, Ids, ManualClock, SequentialIds, SystemClock, UuidIds};
+pub use commit::{Committed, Refinement};
+pub use error::{Result, StoreError};
+pub use idempotency::{Begun, Idempotency, KEEP_KEYS, TAKE_OVER_AFTER, Ticket};
+pub use job::{Job, JobFilter, JobState, NewJob};
+pub use jobs::Jobs;
+pub use laws::{Law, Laws};
+pub use objects::{Objects, ObjectsError, sha256_hex};
+pub use page::{List, MAX_LIMIT, Page};
+pub use reports::{NewReport, Report, ReportHead, Reports};
+pub use ships::{NewShip, Ship, ShipRevision, Ships};
+pub use store::Store;
+pub use trials::{Inserted, NewTrial, Trial, Trials};
+pub use versions::{NewVersion, Version, VersionHead, Versions};
+pub use work::MAX_ATTEMPTS;

@@ -1,0 +1,53 @@
+//! The schema, embedded in the binary, brought up to date when a store is opened, by one process at a time.
+
+use sqlx::migrate::{Migration, MigrationType, Migrator};
+use sqlx::{PgPool, SqlSafeStr as _, SqlitePool};
+
+use crate::error::Result;
+
+/// A migration: its number, its name, its text.
+type Source = (i64, &'static str, &'static str);
+
+const SQLITE: &[Source] = &[(1, "initial", include_str!("../../../migrations/sqlite/0001_initial.sql"))];
+const POSTGRES: &[Source] = &[(1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql"))];
+
+fn migrator(sources: &'static [Source]) -> Migrator {
+    let migration =
+        |&(version, name, sql): &Source| Migration::new(version, name.into(), MigrationType::Simple, sql.into_sql_str(), false);
+    Migrator::with_migrations(sources.iter().map(migration).collect())
+}
+
+/// All of it in one immediate transaction: the database's write lock keeps other processes out, and sqlx has no other lock.
+pub(crate) async fn sqlite(pool: &SqlitePool) -> Result<()> {
+    let mut tx = pool.begin_with("BEGIN IMMEDIATE").await?;
+    migrator(SQLITE).run_direct(None, &mut *tx, false).await.map_err(sqlx::Error::from)?;
+    Ok(tx.commit().await?)
+}
+
+/// Under the advisory lock that sqlx takes.
+pub(crate) async fn postgres(pool: &PgPool) -> Result<()> {
+    Ok(migrator(POSTGRES).run(pool).await.map_err(sqlx::Error::from)?)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    fn files(dialect: &str) -> Vec<String> {
+        let folder = format!("{}/../../migrations/{dialect}", env!("CARGO_MANIFEST_DIR"));
+        let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
+        let mut names: Vec<_> = std::fs::read_dir(folder).unwrap().map(name).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn every_migration_file_is_embedded() {
+        for (dialect, sources) in [("sqlite", SQLITE), ("postgres", POSTGRES)] {
+            let embedded: Vec<_> = sources.iter().map(|(version, name, _)| format!("{version:04}_{name}.sql")).collect();
+            assert_eq!(files(dialect), embedded);
+        }
+    }
+}

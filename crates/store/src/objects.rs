@@ -1,0 +1,114 @@
+//! Objects: bytes named by their SHA-256, in a local folder now and an S3-compatible store when one is configured.
+//!
+//! What [`Objects::put`] has acknowledged is on the disk, folder entries included, so that a row may refer to it.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use bytes::Bytes;
+use object_store::local::LocalFileSystem;
+use object_store::memory::InMemory;
+use object_store::path::Path as ObjectPath;
+use object_store::{ObjectStore, ObjectStoreExt as _, PutPayload};
+use sha2::{Digest as _, Sha256};
+
+use crate::checks;
+use crate::error::{Result, StoreError};
+use crate::folders;
+
+/// Why the object store did not do it.
+#[derive(Debug, thiserror::Error)]
+pub enum ObjectsError {
+    /// The bytes that were read are not those that were put.
+    #[error("the object `{key}` is damaged: its content has the hash {actual}")]
+    Damaged {
+        /// The hash that was asked for.
+        key: String,
+        /// The hash of what is there.
+        actual: String,
+    },
+    /// The store behind it failed.
+    #[error(transparent)]
+    Store(#[from] object_store::Error),
+    /// The folder could not be made.
+    #[error(transparent)]
+    Folder(#[from] std::io::Error),
+    /// The hash could not be computed: the task was stopped.
+    #[error(transparent)]
+    Stopped(#[from] tokio::task::JoinError),
+}
+
+/// A content-addressed store. A clone is another handle on the same one.
+#[derive(Debug, Clone)]
+pub struct Objects(Arc<dyn ObjectStore>);
+
+impl Objects {
+    /// Objects below the folder `root`, which is made if it is not there.
+    pub fn local(root: &Path) -> Result<Self> {
+        folders::make(root).map_err(ObjectsError::from)?;
+        let store = LocalFileSystem::new_with_prefix(root).map_err(ObjectsError::from)?;
+        Ok(Self(Arc::new(store.with_fsync(true))))
+    }
+
+    /// Objects that go with the process.
+    pub fn memory() -> Self {
+        Self(Arc::new(InMemory::new()))
+    }
+
+    /// Objects in any store.
+    pub fn over(store: Arc<dyn ObjectStore>) -> Self {
+        Self(store)
+    }
+
+    /// Keeps the bytes and returns their key, once they are durable. They are written even when the key is there: another
+    /// writer may not have made them durable yet, and a damaged object is healed.
+    pub async fn put(&self, bytes: Bytes) -> Result<String> {
+        let key = hash(bytes.clone()).await?;
+        self.0.put(&path(&key)?, PutPayload::from(bytes)).await.map_err(ObjectsError::from)?;
+        Ok(key)
+    }
+
+    /// The bytes of this key, verified.
+    pub async fn get(&self, key: &str) -> Result<Bytes> {
+        let found = self.0.get(&path(key)?).await.map_err(|error| failure(key, error))?;
+        let bytes = found.bytes().await.map_err(|error| failure(key, error))?;
+        let actual = hash(bytes.clone()).await?;
+        match actual == key {
+            true => Ok(bytes),
+            false => Err(ObjectsError::Damaged { key: key.to_owned(), actual }.into()),
+        }
+    }
+
+    /// Whether there is an object of this key.
+    pub async fn exists(&self, key: &str) -> Result<bool> {
+        match self.0.head(&path(key)?).await {
+            Ok(_) => Ok(true),
+            Err(object_store::Error::NotFound { .. }) => Ok(false),
+            Err(error) => Err(ObjectsError::from(error).into()),
+        }
+    }
+}
+
+/// The SHA-256 of bytes in lower-case hexadecimal.
+pub fn sha256_hex(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The hash, computed where it holds nobody up.
+async fn hash(bytes: Bytes) -> Result<String, ObjectsError> {
+    Ok(tokio::task::spawn_blocking(move || sha256_hex(&bytes)).await?)
+}
+
+/// `objects/ab/cdef...`
+fn path(key: &str) -> Result<ObjectPath> {
+    checks::sha256("key", key)?;
+    let (folder, file) = key.split_at(2);
+    Ok(ObjectPath::from_iter(["objects", folder, file]))
+}
+
+fn failure(key: &str, error: object_store::Error) -> StoreError {
+    match error {
+        object_store::Error::NotFound { .. } => StoreError::missing("object", key),
+        error => ObjectsError::from(error).into(),
+    }
+}

@@ -1,0 +1,102 @@
+//! Reports on versions and ships, as data and as a page.
+
+use crate::arguments::args;
+use crate::checks;
+use crate::database::Transaction;
+use crate::error::{Result, StoreError};
+use crate::page::{List, Page};
+use crate::record::record;
+use crate::statements::{same, statements};
+use crate::store::Store;
+use crate::versions;
+
+statements! {
+    INSERT = same("INSERT INTO reports (id, version_id, ship, kind, document, html, created_us) \
+        VALUES ($1, $2, $3, $4, $5, $6, $7) RETURNING id, version_id, ship, kind, created_us");
+    GET = same("SELECT id, version_id, ship, kind, document, html, created_us FROM reports WHERE id = $1");
+    BY_VERSION = same("SELECT id, version_id, ship, kind, created_us FROM reports \
+        WHERE version_id = $1 AND id < COALESCE($2, '~') ORDER BY id DESC LIMIT $3");
+}
+
+record! {
+    /// A report, but for its texts.
+    pub struct ReportHead {
+        /// Its id.
+        pub id: String,
+        /// The version it is about, if it is about one.
+        pub version_id: Option<String>,
+        /// The ship it is about.
+        pub ship: String,
+        /// What it reports: `refinement`, `diagnosis`, ...
+        pub kind: String,
+        /// When it was made.
+        pub created_us: i64,
+    }
+}
+
+record! {
+    /// A report.
+    pub struct Report {
+        flatten head: ReportHead,
+        /// Its data, JSON.
+        pub document: String,
+        /// Its page.
+        pub html: String,
+    }
+}
+
+/// What a report is made of.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NewReport {
+    /// The version it is about, if it is about one.
+    pub version_id: Option<String>,
+    /// The ship it is about.
+    pub ship: String,
+    /// What it reports.
+    pub kind: String,
+    /// Its data, JSON.
+    pub document: String,
+    /// Its page.
+    pub html: String,
+}
+
+/// The reports of a store.
+#[derive(Debug, Clone, Copy)]
+pub struct Reports<'a>(pub(crate) &'a Store);
+
+impl Reports<'_> {
+    /// Puts a report in.
+    pub async fn insert(&self, new: &NewReport) -> Result<ReportHead> {
+        let mut tx = self.0.begin().await?;
+        let report = insert(self.0, &mut tx, new).await?;
+        tx.commit().await?;
+        Ok(report)
+    }
+
+    /// The report of this id.
+    pub async fn get(&self, id: &str) -> Result<Report> {
+        let report = self.0.database().optional(GET, args![id: id]).await?;
+        report.ok_or_else(|| StoreError::missing("report", id))
+    }
+
+    /// The reports on a version, the latest first.
+    pub async fn by_version(&self, version_id: &str, page: &Page) -> Result<List<ReportHead>> {
+        let values = args![version_id: version_id, after: &page.after, limit: page.fetch()?];
+        let reports = self.0.database().all(BY_VERSION, values).await?;
+        Ok(page.of(reports, |report: &ReportHead| report.id.clone()))
+    }
+}
+
+/// Puts a report in within a transaction.
+pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewReport) -> Result<ReportHead> {
+    checks::name("ship", &new.ship)?;
+    checks::name("kind", &new.kind)?;
+    checks::json("document", &new.document)?;
+    if let Some(version) = &new.version_id {
+        versions::check_id(tx, "version_id", version).await?;
+    }
+    let id = store.new_id();
+    let values = args![id: &id, version_id: &new.version_id, ship: &new.ship, kind: &new.kind, document: &new.document,
+        html: &new.html, created_us: store.now_us()];
+    tx.one(INSERT, values).await
+}

@@ -1,0 +1,192 @@
+//! Ships: the present document under a revision, and every document before it.
+
+use crate::arguments::args;
+use crate::checks;
+use crate::database::Transaction;
+use crate::error::{Result, StoreError};
+use crate::page::{List, Page};
+use crate::record::record;
+use crate::statements::{same, statements};
+use crate::store::Store;
+
+statements! {
+    INSERT = same("INSERT INTO ships (name, title, category, document, revision, created_us, updated_us) \
+        VALUES ($1, $2, $3, $4, 1, $5, $5) ON CONFLICT (name) DO NOTHING \
+        RETURNING name, title, category, document, revision, created_us, updated_us, deleted_us");
+    UPDATE = same("UPDATE ships SET title = $3, category = $4, document = $5, revision = revision + 1, updated_us = $6 \
+        WHERE name = $1 AND revision = $2 AND deleted_us IS NULL \
+        RETURNING name, title, category, document, revision, created_us, updated_us, deleted_us");
+    DELETE = same("UPDATE ships SET deleted_us = $3 \
+        WHERE name = $1 AND revision = COALESCE($2, revision) AND deleted_us IS NULL \
+        RETURNING name, title, category, document, revision, created_us, updated_us, deleted_us");
+    UNDELETE = same("UPDATE ships SET deleted_us = NULL WHERE name = $1 \
+        RETURNING name, title, category, document, revision, created_us, updated_us, deleted_us");
+    REMEMBER = same("INSERT INTO ship_revisions (ship, revision, title, category, document, created_us) \
+        SELECT name, revision, title, category, document, updated_us FROM ships WHERE name = $1");
+    GET = same("SELECT name, title, category, document, revision, created_us, updated_us, deleted_us FROM ships WHERE name = $1");
+    LIST = same("SELECT name, title, category, document, revision, created_us, updated_us, deleted_us FROM ships \
+        WHERE name > COALESCE($1, '') AND category = COALESCE($2, category) AND deleted_us IS NULL ORDER BY name LIMIT $3");
+    REVISIONS = same("SELECT ship, revision, title, category, document, created_us FROM ship_revisions \
+        WHERE ship = $1 AND revision < COALESCE($2, 9223372036854775807) ORDER BY revision DESC LIMIT $3");
+}
+
+record! {
+    /// A ship.
+    pub struct Ship {
+        /// Its name, for ever.
+        pub name: String,
+        /// What people call it.
+        pub title: String,
+        /// Its kind: container ship, tanker, ...
+        pub category: String,
+        /// The vessel as canonical JSON.
+        pub document: String,
+        /// 1 when created, one more with each update.
+        pub revision: i64,
+        /// When it was created.
+        pub created_us: i64,
+        /// When the present revision was made.
+        pub updated_us: i64,
+        /// When it was deleted, if it is.
+        pub deleted_us: Option<i64>,
+    }
+}
+
+record! {
+    /// A ship as it was at one revision.
+    pub struct ShipRevision {
+        /// The ship.
+        pub ship: String,
+        /// The revision.
+        pub revision: i64,
+        /// What people called it.
+        pub title: String,
+        /// Its kind.
+        pub category: String,
+        /// The vessel as canonical JSON.
+        pub document: String,
+        /// When this revision was made.
+        pub created_us: i64,
+    }
+}
+
+/// What a ship is made of.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NewShip {
+    /// Its name.
+    pub name: String,
+    /// What people call it.
+    pub title: String,
+    /// Its kind.
+    pub category: String,
+    /// The vessel as canonical JSON.
+    pub document: String,
+}
+
+impl NewShip {
+    fn check(&self) -> Result<()> {
+        checks::name("name", &self.name)?;
+        checks::name("category", &self.category)?;
+        checks::json("document", &self.document)
+    }
+}
+
+/// The ships of a store.
+#[derive(Debug, Clone, Copy)]
+pub struct Ships<'a>(pub(crate) &'a Store);
+
+impl Ships<'_> {
+    /// Creates a ship at revision 1; a name that was ever taken is a conflict.
+    pub async fn create(&self, new: &NewShip) -> Result<Ship> {
+        new.check()?;
+        let NewShip { name, title, category, document } = new;
+        let values = args![name: name, title: title, category: category, document: document, created_us: self.0.now_us()];
+        let mut tx = self.0.begin().await?;
+        let Some(ship) = tx.optional(INSERT, values).await? else {
+            return Err(taken(name, find(&mut tx, name).await));
+        };
+        tx.execute(REMEMBER, args![name: name]).await?;
+        tx.commit().await?;
+        Ok(ship)
+    }
+
+    /// The ship of this name.
+    pub async fn get(&self, name: &str) -> Result<Ship> {
+        let ship: Option<Ship> = self.0.database().optional(GET, args![name: name]).await?;
+        present(name, ship)
+    }
+
+    /// Replaces what the ship is made of, if it is still at `revision`.
+    pub async fn update(&self, new: &NewShip, revision: i64) -> Result<Ship> {
+        new.check()?;
+        let NewShip { name, title, category, document } = new;
+        let mut tx = self.0.begin().await?;
+        let values = args![name: name, revision: revision, title: title, category: category, document: document,
+            updated_us: self.0.now_us()];
+        let Some(ship) = tx.optional(UPDATE, values).await? else {
+            return Err(stale(&mut tx, name).await);
+        };
+        tx.execute(REMEMBER, args![name: name]).await?;
+        tx.commit().await?;
+        Ok(ship)
+    }
+
+    /// Deletes the ship, if it is still at `revision` (any when none is given); [`undelete`](Self::undelete) undoes it.
+    pub async fn delete(&self, name: &str, revision: Option<i64>) -> Result<Ship> {
+        let mut tx = self.0.begin().await?;
+        let values = args![name: name, revision: revision, deleted_us: self.0.now_us()];
+        let Some(ship) = tx.optional(DELETE, values).await? else {
+            return Err(stale(&mut tx, name).await);
+        };
+        tx.commit().await?;
+        Ok(ship)
+    }
+
+    /// Brings a deleted ship back as it was.
+    pub async fn undelete(&self, name: &str) -> Result<Ship> {
+        let mut tx = self.0.begin().await?;
+        let ship = tx.optional(UNDELETE, args![name: name]).await?;
+        tx.commit().await?;
+        ship.ok_or_else(|| StoreError::missing("ship", name))
+    }
+
+    /// All ships by name, or those of one category.
+    pub async fn list(&self, category: Option<&str>, page: &Page) -> Result<List<Ship>> {
+        let values = args![after: &page.after, category: category, limit: page.fetch()?];
+        let ships = self.0.database().all(LIST, values).await?;
+        Ok(page.of(ships, |ship: &Ship| ship.name.clone()))
+    }
+
+    /// Every revision of a ship, the latest first.
+    pub async fn revisions(&self, name: &str, page: &Page<i64>) -> Result<List<ShipRevision, i64>> {
+        let values = args![name: name, after: page.after, limit: page.fetch()?];
+        let revisions = self.0.database().all(REVISIONS, values).await?;
+        Ok(page.of(revisions, |revision: &ShipRevision| revision.revision))
+    }
+}
+
+/// The ship, if it is there and not deleted, as the transaction sees it.
+pub(crate) async fn find(tx: &mut Transaction, name: &str) -> Result<Ship> {
+    present(name, tx.optional(GET, args![name: name]).await?)
+}
+
+fn present(name: &str, ship: Option<Ship>) -> Result<Ship> {
+    ship.filter(|ship| ship.deleted_us.is_none()).ok_or_else(|| StoreError::missing("ship", name))
+}
+
+/// Why a name cannot be given again.
+fn taken(name: &str, holder: Result<Ship>) -> StoreError {
+    match holder {
+        Ok(_) => StoreError::conflict("ship", name, "exists already"),
+        Err(StoreError::NotFound { .. }) => StoreError::conflict("ship", name, "was deleted; undelete it instead"),
+        Err(error) => error,
+    }
+}
+
+/// Why a compare-and-swap found nothing to swap.
+async fn stale(tx: &mut Transaction, name: &str) -> StoreError {
+    match find(tx, name).await {
+        Ok(ship) => StoreError::stale("ship", name, Some(ship.revision)),
+        Err(error) => error,
+    }
+}

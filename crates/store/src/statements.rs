@@ -1,0 +1,75 @@
+//! SQL texts: one per operation, the same for both databases but where it cannot be. Each repository declares its own
+//! with [`statements!`], which also lists them, so that one test prepares every text on both databases.
+
+/// The text of an operation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Statement {
+    pub(crate) sqlite: &'static str,
+    pub(crate) postgres: &'static str,
+}
+
+/// One text for both databases.
+pub(crate) const fn same(sql: &'static str) -> Statement {
+    Statement { sqlite: sql, postgres: sql }
+}
+
+/// A text for each, where they must differ.
+pub(crate) const fn pair(sqlite: &'static str, postgres: &'static str) -> Statement {
+    Statement { sqlite, postgres }
+}
+
+/// Declares statements by name, and the list of them.
+macro_rules! statements {
+    ($($name:ident = $statement:expr;)*) => {
+        $(const $name: $crate::statements::Statement = $statement;)*
+
+        /// Every statement of this repository.
+        #[cfg(feature = "testing")]
+        pub(crate) const STATEMENTS: &[(&str, $crate::statements::Statement)] = &[$((stringify!($name), $name)),*];
+    };
+}
+pub(crate) use statements;
+
+#[cfg(feature = "testing")]
+mod prepare {
+    use sqlx::{Executor as _, SqlSafeStr as _};
+
+    use crate::database::Pool;
+    use crate::error::{Result, StoreError};
+    use crate::store::Store;
+    use crate::{aliases, idempotency, jobs, laws, reports, ships, store, trials, versions, work};
+
+    const ALL: &[(&str, &[(&str, super::Statement)])] = &[
+        ("aliases", aliases::STATEMENTS),
+        ("idempotency", idempotency::STATEMENTS),
+        ("jobs", jobs::STATEMENTS),
+        ("laws", laws::STATEMENTS),
+        ("reports", reports::STATEMENTS),
+        ("ships", ships::STATEMENTS),
+        ("store", store::STATEMENTS),
+        ("trials", trials::STATEMENTS),
+        ("versions", versions::STATEMENTS),
+        ("work", work::STATEMENTS),
+    ];
+
+    impl Store {
+        /// Prepares every statement of the crate on this database and returns their number.
+        pub async fn prepare_every_statement(&self) -> Result<usize> {
+            let mut count = 0;
+            for (table, statements) in ALL {
+                for (name, statement) in *statements {
+                    self.prepare(*statement).await.map_err(|error| StoreError::conflict(table, *name, error.to_string()))?;
+                    count += 1;
+                }
+            }
+            Ok(count)
+        }
+
+        async fn prepare(&self, statement: super::Statement) -> sqlx::Result<()> {
+            match &self.database().write {
+                Pool::Sqlite(pool) => pool.prepare(statement.sqlite.into_sql_str()).await.map(drop),
+                Pool::Postgres(pool) => pool.prepare(statement.postgres.into_sql_str()).await.map(drop),
+            }
+        }
+    }
+}

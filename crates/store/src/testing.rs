@@ -1,0 +1,69 @@
+//! Databases for tests: a temporary SQLite file, and a fresh database on a private PostgreSQL server.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use sqlx::{AssertSqlSafe, ConnectOptions as _, Connection as _, Executor as _, PgConnection};
+use tempfile::TempDir;
+
+use crate::clock::ManualClock;
+use crate::store::Store;
+
+mod server;
+
+/// An empty database that goes when this is dropped (on PostgreSQL, when the test process ends).
+#[derive(Debug)]
+pub struct TestDatabase {
+    /// What to connect to.
+    pub url: String,
+    /// A folder for this test alone.
+    pub folder: TempDir,
+}
+
+impl TestDatabase {
+    /// A new SQLite file.
+    pub fn sqlite() -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        Self { url: format!("sqlite://{}", folder.path().join("store.db").display()), folder }
+    }
+
+    /// A new database on the private PostgreSQL server of this process. Without PostgreSQL's programs on this machine it says
+    /// so and returns none, unless `SISTERSHIP_REQUIRE_POSTGRES=1`, which makes it a failure.
+    pub async fn postgres() -> Option<Self> {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let server = server::shared()?;
+        let name = format!("test_{}", COUNT.fetch_add(1, Ordering::SeqCst));
+        let mut connection = server.options().connect().await.expect("a connection to the private PostgreSQL server");
+        create(&mut connection, &name).await.expect("a new database");
+        connection.close().await.expect("the end of a connection");
+        Some(Self { url: server.url(&name), folder: tempfile::tempdir().expect("a temporary folder") })
+    }
+
+    /// Opens it with a clock that stands still.
+    pub async fn open(self) -> TestStore {
+        let clock = Arc::new(ManualClock::new(1_800_000_000_000_000));
+        let store = Store::connect(&self.url, clock.clone()).await.expect("a store");
+        TestStore { store, clock, database: self }
+    }
+}
+
+/// A database that sorts as people do, where the server can (from PostgreSQL 15): keys must not depend on that.
+async fn create(connection: &mut PgConnection, name: &str) -> sqlx::Result<()> {
+    let plain = format!("CREATE DATABASE {name} TEMPLATE template0");
+    let sorted = format!("{plain} LOCALE_PROVIDER icu ICU_LOCALE 'en'");
+    match connection.execute(AssertSqlSafe(sorted)).await {
+        Ok(_) => Ok(()),
+        Err(_) => connection.execute(AssertSqlSafe(plain)).await.map(drop),
+    }
+}
+
+/// A store on an empty database.
+#[derive(Debug)]
+pub struct TestStore {
+    /// The store.
+    pub store: Store,
+    /// Its clock.
+    pub clock: Arc<ManualClock>,
+    /// Its database.
+    pub database: TestDatabase,
+}

@@ -1,0 +1,163 @@
+//! Trials: what is known of a recorded manoeuvre; its samples are an object, named by their hash.
+
+use crate::arguments::args;
+use crate::checks;
+use crate::error::{Result, StoreError};
+use crate::page::{List, Page};
+use crate::record::record;
+use crate::ships;
+use crate::statements::{same, statements};
+use crate::store::Store;
+
+statements! {
+    INSERT = same("INSERT INTO trials (id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, duration_s, \
+        warnings, object_key, created_us) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12) \
+        ON CONFLICT (ship, sha256) DO NOTHING");
+    REVIVE = same("UPDATE trials SET deleted_us = NULL WHERE ship = $1 AND sha256 = $2 RETURNING id, ship, sha256, name, \
+        manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, object_key, created_us, deleted_us");
+    GET = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, \
+        object_key, created_us, deleted_us FROM trials WHERE id = $1 AND deleted_us IS NULL");
+    FIND = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, \
+        object_key, created_us, deleted_us FROM trials WHERE ship = $1 AND sha256 = $2 AND deleted_us IS NULL");
+    LIST = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, \
+        object_key, created_us, deleted_us FROM trials \
+        WHERE ship = $1 AND id > COALESCE($2, '') AND deleted_us IS NULL ORDER BY id LIMIT $3");
+    DELETE = same("UPDATE trials SET deleted_us = $2 WHERE id = $1 AND deleted_us IS NULL RETURNING id, ship, sha256, name, \
+        manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, object_key, created_us, deleted_us");
+    UNDELETE = same("UPDATE trials SET deleted_us = NULL WHERE id = $1 RETURNING id, ship, sha256, name, \
+        manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, object_key, created_us, deleted_us");
+}
+
+record! {
+    /// A trial of a ship.
+    pub struct Trial {
+        /// Its id.
+        pub id: String,
+        /// The ship.
+        pub ship: String,
+        /// The SHA-256 of the samples.
+        pub sha256: String,
+        /// What the uploader called it.
+        pub name: String,
+        /// The manifest, JSON.
+        pub manifest: String,
+        /// The conventions of the file it came from, JSON.
+        pub conventions: String,
+        /// The manoeuvre, where it is known.
+        pub manoeuvre: Option<String>,
+        /// The number of samples.
+        pub sample_rows: i64,
+        /// How long it lasts.
+        pub duration_s: f64,
+        /// What the checks had to say, JSON.
+        pub warnings: String,
+        /// Where the samples are, see [`crate::Objects`].
+        pub object_key: String,
+        /// When it was uploaded.
+        pub created_us: i64,
+        /// When it was deleted, if it is.
+        pub deleted_us: Option<i64>,
+    }
+}
+
+/// What a trial is made of. The object must be in the object store before the trial is inserted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewTrial {
+    /// The ship.
+    pub ship: String,
+    /// The SHA-256 of the samples.
+    pub sha256: String,
+    /// What the uploader calls it.
+    pub name: String,
+    /// The manifest, JSON.
+    pub manifest: String,
+    /// The conventions of the file it comes from, JSON.
+    pub conventions: String,
+    /// The manoeuvre, where it is known.
+    pub manoeuvre: Option<String>,
+    /// The number of samples.
+    pub sample_rows: i64,
+    /// How long it lasts.
+    pub duration_s: f64,
+    /// What the checks have to say, JSON.
+    pub warnings: String,
+    /// Where the samples are.
+    pub object_key: String,
+}
+
+impl NewTrial {
+    fn check(&self) -> Result<()> {
+        checks::sha256("sha256", &self.sha256)?;
+        checks::sha256("object_key", &self.object_key)?;
+        checks::json("manifest", &self.manifest)?;
+        checks::json("conventions", &self.conventions)?;
+        checks::json("warnings", &self.warnings)?;
+        checks::count("sample_rows", self.sample_rows)?;
+        checks::not_negative("duration_s", self.duration_s)
+    }
+}
+
+/// What an insertion found or made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inserted<T> {
+    /// The row that is there now.
+    pub row: T,
+    /// Whether this call made it.
+    pub new: bool,
+}
+
+/// The trials of a store.
+#[derive(Debug, Clone, Copy)]
+pub struct Trials<'a>(pub(crate) &'a Store);
+
+impl Trials<'_> {
+    /// Puts a trial in. The same samples of the same ship again give the trial that is there, brought back if it was deleted.
+    pub async fn insert(&self, new: &NewTrial) -> Result<Inserted<Trial>> {
+        new.check()?;
+        let id = self.0.new_id();
+        let mut tx = self.0.begin().await?;
+        ships::find(&mut tx, &new.ship).await?;
+        let values = args![id: &id, ship: &new.ship, sha256: &new.sha256, name: &new.name, manifest: &new.manifest,
+            conventions: &new.conventions, manoeuvre: &new.manoeuvre, sample_rows: new.sample_rows,
+            duration_s: new.duration_s, warnings: &new.warnings, object_key: &new.object_key, created_us: self.0.now_us()];
+        let inserted = tx.execute(INSERT, values).await?;
+        let row = tx.one(REVIVE, args![ship: &new.ship, sha256: &new.sha256]).await?;
+        tx.commit().await?;
+        Ok(Inserted { row, new: inserted == 1 })
+    }
+
+    /// The trial of this id.
+    pub async fn get(&self, id: &str) -> Result<Trial> {
+        let trial = self.0.database().optional(GET, args![id: id]).await?;
+        trial.ok_or_else(|| StoreError::missing("trial", id))
+    }
+
+    /// The trial of a ship with these samples.
+    pub async fn find(&self, ship: &str, sha256: &str) -> Result<Trial> {
+        let trial = self.0.database().optional(FIND, args![ship: ship, sha256: sha256]).await?;
+        trial.ok_or_else(|| StoreError::missing("trial", format!("{ship}/{sha256}")))
+    }
+
+    /// The trials of a ship, in the order of their upload.
+    pub async fn list(&self, ship: &str, page: &Page) -> Result<List<Trial>> {
+        let values = args![ship: ship, after: &page.after, limit: page.fetch()?];
+        let trials = self.0.database().all(LIST, values).await?;
+        Ok(page.of(trials, |trial: &Trial| trial.id.clone()))
+    }
+
+    /// Deletes a trial; [`undelete`](Self::undelete) undoes it. Its samples stay: versions name them by their hash.
+    pub async fn delete(&self, id: &str) -> Result<Trial> {
+        let mut tx = self.0.begin().await?;
+        let trial = tx.optional(DELETE, args![id: id, deleted_us: self.0.now_us()]).await?;
+        tx.commit().await?;
+        trial.ok_or_else(|| StoreError::missing("trial", id))
+    }
+
+    /// Brings a deleted trial back.
+    pub async fn undelete(&self, id: &str) -> Result<Trial> {
+        let mut tx = self.0.begin().await?;
+        let trial = tx.optional(UNDELETE, args![id: id]).await?;
+        tx.commit().await?;
+        trial.ok_or_else(|| StoreError::missing("trial", id))
+    }
+}

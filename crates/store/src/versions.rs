@@ -1,0 +1,174 @@
+//! Versions of models: insert-only, numbered without gaps.
+
+use crate::aliases::{self, AliasMove};
+use crate::arguments::args;
+use crate::checks;
+use crate::database::Transaction;
+use crate::error::{Result, StoreError};
+use crate::objects::sha256_hex;
+use crate::page::{List, Page};
+use crate::record::record;
+use crate::statements::{same, statements};
+use crate::store::Store;
+
+statements! {
+    // The row of the model stays locked until the commit, and an undone transaction gives its number back: no gaps.
+    NUMBER = same("INSERT INTO models (name, next_number) VALUES ($1, 2) \
+        ON CONFLICT (name) DO UPDATE SET next_number = models.next_number + 1 RETURNING next_number - 1 AS number");
+    INSERT = same("INSERT INTO versions (id, model, number, parent, law, method, document, sha256, created_us) \
+        VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9) RETURNING id, model, number, parent, law, method, sha256, created_us");
+    GET = same("SELECT id, model, number, parent, law, method, document, sha256, created_us FROM versions \
+        WHERE model = $1 AND number = $2");
+    HEAD = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions \
+        WHERE model = $1 AND number = $2");
+    HEAD_BY_ID = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions WHERE id = $1");
+    BY_ID = same("SELECT id, model, number, parent, law, method, document, sha256, created_us FROM versions WHERE id = $1");
+    LATEST = same("SELECT id, model, number, parent, law, method, document, sha256, created_us FROM versions \
+        WHERE model = $1 ORDER BY number DESC LIMIT 1");
+    LIST = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions \
+        WHERE model = $1 AND number < COALESCE($2, 9223372036854775807) ORDER BY number DESC LIMIT $3");
+    CHILDREN = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions \
+        WHERE parent = $1 AND id > COALESCE($2, '') ORDER BY id LIMIT $3");
+}
+
+record! {
+    /// A version, but for its document.
+    pub struct VersionHead {
+        /// Its id.
+        pub id: String,
+        /// The model (the ship's name).
+        pub model: String,
+        /// 1, 2, 3, ... within the model.
+        pub number: i64,
+        /// The id of the version it was made from.
+        pub parent: Option<String>,
+        /// The law of motion.
+        pub law: String,
+        /// How it was made: `published-source`, `published`, `weak`, `trajectory`, ...
+        pub method: String,
+        /// The SHA-256 of the document.
+        pub sha256: String,
+        /// When it was made.
+        pub created_us: i64,
+    }
+}
+
+record! {
+    /// A version.
+    pub struct Version {
+        flatten head: VersionHead,
+        /// The whole record of the version as canonical JSON, byte for byte.
+        pub document: String,
+    }
+}
+
+record! {
+    /// A number just taken.
+    pub struct Number {
+        /// The number.
+        pub number: i64,
+    }
+}
+
+/// What a version is made of. The document holds neither the number nor the time: the same recipe gives the same bytes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NewVersion {
+    /// The model (the ship's name).
+    pub model: String,
+    /// The id of the version it is made from.
+    pub parent: Option<String>,
+    /// The law of motion.
+    pub law: String,
+    /// How it was made.
+    pub method: String,
+    /// The whole record of the version as canonical JSON.
+    pub document: String,
+}
+
+impl NewVersion {
+    fn check(&self) -> Result<()> {
+        checks::name("model", &self.model)?;
+        checks::name("law", &self.law)?;
+        checks::name("method", &self.method)?;
+        checks::json("document", &self.document)
+    }
+}
+
+/// The versions of a store.
+#[derive(Debug, Clone, Copy)]
+pub struct Versions<'a>(pub(crate) &'a Store);
+
+impl Versions<'_> {
+    /// Makes the next version of a model and moves aliases to it, all or nothing.
+    pub async fn create(&self, new: &NewVersion, moves: &[AliasMove]) -> Result<VersionHead> {
+        let mut tx = self.0.begin().await?;
+        let version = insert(self.0, &mut tx, new, moves).await?;
+        tx.commit().await?;
+        Ok(version)
+    }
+
+    /// A version by its number.
+    pub async fn get(&self, model: &str, number: i64) -> Result<Version> {
+        let version = self.0.database().optional(GET, args![model: model, number: number]).await?;
+        version.ok_or_else(|| missing(model, number))
+    }
+
+    /// A version by its id.
+    pub async fn by_id(&self, id: &str) -> Result<Version> {
+        let version = self.0.database().optional(BY_ID, args![id: id]).await?;
+        version.ok_or_else(|| StoreError::missing("version", id))
+    }
+
+    /// The version of a model with the highest number.
+    pub async fn latest(&self, model: &str) -> Result<Version> {
+        let version = self.0.database().optional(LATEST, args![model: model]).await?;
+        version.ok_or_else(|| StoreError::missing("model", model))
+    }
+
+    /// The versions of a model, the latest first.
+    pub async fn list(&self, model: &str, page: &Page<i64>) -> Result<List<VersionHead, i64>> {
+        let values = args![model: model, after: page.after, limit: page.fetch()?];
+        let versions = self.0.database().all(LIST, values).await?;
+        Ok(page.of(versions, |version: &VersionHead| version.number))
+    }
+
+    /// The versions, of whatever model, that were made from the version `id`, the oldest first.
+    pub async fn children(&self, id: &str, page: &Page) -> Result<List<VersionHead>> {
+        let values = args![parent: id, after: &page.after, limit: page.fetch()?];
+        let versions = self.0.database().all(CHILDREN, values).await?;
+        Ok(page.of(versions, |version: &VersionHead| version.id.clone()))
+    }
+}
+
+/// Makes a version and moves aliases to it within a transaction.
+pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewVersion, moves: &[AliasMove]) -> Result<VersionHead> {
+    new.check()?;
+    if let Some(parent) = &new.parent {
+        check_id(tx, "parent", parent).await?;
+    }
+    let Number { number } = tx.one(NUMBER, args![model: &new.model]).await?;
+    let (id, sha256) = (store.new_id(), sha256_hex(new.document.as_bytes()));
+    let values = args![id: &id, model: &new.model, number: number, parent: &new.parent, law: &new.law, method: &new.method,
+        document: &new.document, sha256: &sha256, created_us: store.now_us()];
+    let version = tx.one(INSERT, values).await?;
+    for alias in moves {
+        aliases::shift(store, tx, &new.model, number, alias).await?;
+    }
+    Ok(version)
+}
+
+/// Whether the transaction sees this version.
+pub(crate) async fn check_exists(tx: &mut Transaction, model: &str, number: i64) -> Result<()> {
+    let version: Option<VersionHead> = tx.optional(HEAD, args![model: model, number: number]).await?;
+    version.map(drop).ok_or_else(|| missing(model, number))
+}
+
+/// Whether the transaction sees the version that `field` names.
+pub(crate) async fn check_id(tx: &mut Transaction, field: &'static str, id: &str) -> Result<()> {
+    let version: Option<VersionHead> = tx.optional(HEAD_BY_ID, args![id: id]).await?;
+    version.map(drop).ok_or_else(|| StoreError::invalid(field, format!("there is no version `{id}`")))
+}
+
+fn missing(model: &str, number: i64) -> StoreError {
+    StoreError::missing("version", format!("{model}/{number}"))
+}

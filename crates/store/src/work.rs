@@ -1,0 +1,142 @@
+//! Long work: what workers do. A worker claims a job under a lease, and each claim raises the job's fence; whoever holds an
+//! older fence has lost the job and can no longer change it.
+
+use std::time::Duration;
+
+use crate::arguments::{Args, args};
+use crate::checks;
+use crate::clock::micros;
+use crate::database::Transaction;
+use crate::error::{Result, StoreError};
+use crate::job::{Job, JobState, job};
+use crate::jobs::{Jobs, find};
+use crate::statements::{Statement, pair, same, statements};
+
+/// How often a job is begun before it is taken for one that kills its workers.
+pub const MAX_ATTEMPTS: i64 = 3;
+
+statements! {
+    NEXT = pair(
+        job!("SELECT", "FROM jobs WHERE state IN ('queued', 'running') AND (state = 'queued' OR lease_until_us < $1) \
+            ORDER BY id LIMIT 1"),
+        job!("SELECT", "FROM jobs WHERE state IN ('queued', 'running') AND (state = 'queued' OR lease_until_us < $1) \
+            ORDER BY id LIMIT 1 FOR UPDATE SKIP LOCKED"),
+    );
+    START = same(job!("UPDATE jobs SET state = 'running', attempt = attempt + 1, fence = fence + 1, worker = $2, \
+        lease_until_us = $3, started_us = COALESCE(started_us, $4) WHERE id = $1 RETURNING", ""));
+    HEARTBEAT = same(job!("UPDATE jobs SET progress = $3, message = $4, lease_until_us = $5 \
+        WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
+    END = same(job!("UPDATE jobs SET state = $3, result = $4, error = $5, finished_us = $6, lease_until_us = NULL, \
+        progress = CASE WHEN CAST($4 AS TEXT) IS NULL THEN progress ELSE 1.0 END \
+        WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
+    RELEASE = same(job!("UPDATE jobs SET state = 'queued', attempt = attempt - 1, lease_until_us = NULL, worker = NULL \
+        WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
+}
+
+/// How a job ends.
+enum End<'a> {
+    Succeeded { result: &'a str },
+    Failed { error: &'a str },
+    Cancelled,
+}
+
+impl Jobs<'_> {
+    /// Takes the oldest job that waits, or whose worker has let its lease run out. One that has lost [`MAX_ATTEMPTS`]
+    /// workers has failed; one that was to be cancelled when its worker died is cancelled.
+    pub async fn claim(&self, worker: &str, lease: Duration) -> Result<Option<Job>> {
+        let mut tx = self.0.begin().await?;
+        let now = self.0.now_us();
+        let claimed = loop {
+            let Some(job) = tx.optional::<Job>(NEXT, args![now_us: now]).await? else { break None };
+            if !bury(&mut tx, &job, now).await? {
+                let values = args![id: &job.id, worker: worker, lease_until_us: until(now, lease), started_us: now];
+                break Some(tx.one(START, values).await?);
+            }
+        };
+        tx.commit().await?;
+        Ok(claimed)
+    }
+
+    /// Tells how far a job is and prolongs its lease. Returns whether its worker is asked to stop.
+    pub async fn heartbeat(&self, id: &str, fence: i64, progress: f64, message: &str, lease: Duration) -> Result<bool> {
+        let until = until(self.0.now_us(), lease);
+        let values = args![id: id, fence: fence, progress: progress, message: message, lease_until_us: until];
+        self.held(HEARTBEAT, id, fence, values).await.map(|job| job.cancel_requested)
+    }
+
+    /// Ends a job with what came of it, JSON. Where a version comes of it, see [`crate::Store::commit_refinement`].
+    pub async fn complete(&self, id: &str, fence: i64, result: &str) -> Result<Job> {
+        self.end(id, fence, End::Succeeded { result }).await
+    }
+
+    /// Ends a job that failed.
+    pub async fn fail(&self, id: &str, fence: i64, error: &str) -> Result<Job> {
+        self.end(id, fence, End::Failed { error }).await
+    }
+
+    /// Ends a job that was stopped on request.
+    pub async fn cancelled(&self, id: &str, fence: i64) -> Result<Job> {
+        self.end(id, fence, End::Cancelled).await
+    }
+
+    /// Gives a job back to the queue, as a worker does that is told to leave; it does not count as an attempt.
+    pub async fn release(&self, id: &str, fence: i64) -> Result<Job> {
+        self.held(RELEASE, id, fence, args![id: id, fence: fence]).await
+    }
+
+    /// A change that only the holder of the job's fence may make.
+    async fn held(&self, statement: Statement, id: &str, fence: i64, values: Args<'_>) -> Result<Job> {
+        let mut tx = self.0.begin().await?;
+        let job = held(&mut tx, statement, id, fence, values).await?;
+        tx.commit().await?;
+        Ok(job)
+    }
+
+    async fn end(&self, id: &str, fence: i64, how: End<'_>) -> Result<Job> {
+        let mut tx = self.0.begin().await?;
+        let job = end(&mut tx, id, fence, how, self.0.now_us()).await?;
+        tx.commit().await?;
+        Ok(job)
+    }
+}
+
+/// Ends a job with its result within a transaction.
+pub(crate) async fn complete(tx: &mut Transaction, id: &str, fence: i64, result: &str, now_us: i64) -> Result<Job> {
+    end(tx, id, fence, End::Succeeded { result }, now_us).await
+}
+
+async fn end(tx: &mut Transaction, id: &str, fence: i64, how: End<'_>, now_us: i64) -> Result<Job> {
+    let (state, result, error) = match how {
+        End::Succeeded { result } => (JobState::Succeeded, Some(result), None),
+        End::Failed { error } => (JobState::Failed, None, Some(error)),
+        End::Cancelled => (JobState::Cancelled, None, None),
+    };
+    result.map_or(Ok(()), |result| checks::json("result", result))?;
+    let state = state.as_str();
+    let values = args![id: id, fence: fence, state: state, result: result, error: error, finished_us: now_us];
+    held(tx, END, id, fence, values).await
+}
+
+/// Ends a job that must not be begun again, and tells whether it did.
+async fn bury(tx: &mut Transaction, job: &Job, now_us: i64) -> Result<bool> {
+    let message = format!("the worker died {} times; the last one was `{}`", job.attempt, job.worker.as_deref().unwrap_or("?"));
+    let how = match job {
+        Job { state: JobState::Running, cancel_requested: true, .. } => End::Cancelled,
+        Job { attempt: MAX_ATTEMPTS.., .. } => End::Failed { error: &message },
+        _ => return Ok(false),
+    };
+    end(tx, &job.id, job.fence, how, now_us).await.map(|_| true)
+}
+
+async fn held(tx: &mut Transaction, statement: Statement, id: &str, fence: i64, values: Args<'_>) -> Result<Job> {
+    if let Some(job) = tx.optional(statement, values).await? {
+        return Ok(job);
+    }
+    let job = find(tx, id).await?;
+    let message = format!("is {} under fence {}; who holds fence {fence} has lost it", job.state, job.fence);
+    Err(StoreError::conflict("job", id, message))
+}
+
+fn until(now_us: i64, lease: Duration) -> i64 {
+    now_us.saturating_add(micros(lease))
+}

@@ -1,0 +1,133 @@
+use std::time::Duration;
+
+use sistership_store::{Job, JobFilter, JobState, MAX_ATTEMPTS, Page};
+
+use crate::support::*;
+
+pub const LEASE: Duration = Duration::from_secs(30);
+
+pub async fn claim(on: &TestStore, worker: &str) -> Option<Job> {
+    on.store.jobs().claim(worker, LEASE).await.unwrap()
+}
+
+pub async fn let_the_lease_run_out(on: &TestStore) {
+    on.clock.advance(LEASE + Duration::from_micros(1));
+}
+
+async fn a_job_runs_and_ends(on: &TestStore) {
+    let jobs = on.store.jobs();
+    assert_eq!(claim(on, "a").await, None);
+    let first = jobs.enqueue(&job("kcs")).await.unwrap();
+    let second = jobs.enqueue(&job("pcc")).await.unwrap();
+    assert_eq!(first.state, JobState::Queued);
+    let running = claim(on, "a").await.unwrap();
+    assert_eq!((&running.id, running.state, running.attempt, running.fence), (&first.id, JobState::Running, 1, 1));
+    assert_eq!(claim(on, "b").await.unwrap().id, second.id);
+    assert_eq!(claim(on, "c").await, None);
+    assert!(!jobs.heartbeat(&first.id, 1, 0.5, "half way", LEASE).await.unwrap());
+    assert_eq!(jobs.get(&first.id).await.unwrap().progress, 0.5);
+    let done = jobs.complete(&first.id, 1, r#"{"version":3}"#).await.unwrap();
+    assert_eq!((done.state, done.progress, done.lease_until_us), (JobState::Succeeded, 1.0, None));
+    assert_conflict(jobs.complete(&first.id, 1, "{}").await, "succeeded");
+    assert_not_found(jobs.get("none").await, "job");
+    assert_not_found(jobs.heartbeat("none", 1, 0.0, "", LEASE).await, "job");
+}
+
+async fn a_lost_lease_fences_the_old_worker(on: &TestStore) {
+    let jobs = on.store.jobs();
+    let id = jobs.enqueue(&job("kcs")).await.unwrap().id;
+    let old = claim(on, "old").await.unwrap();
+    on.clock.advance(LEASE);
+    assert_eq!(claim(on, "new").await, None);
+    jobs.heartbeat(&id, old.fence, 0.1, "", LEASE).await.unwrap();
+    let_the_lease_run_out(on).await;
+    let new = claim(on, "new").await.unwrap();
+    assert_eq!((new.id.as_str(), new.fence, new.attempt), (id.as_str(), 2, 2));
+    assert_conflict(jobs.heartbeat(&id, old.fence, 0.9, "", LEASE).await, "lost");
+    assert_conflict(jobs.complete(&id, old.fence, "{}").await, "lost");
+    assert_conflict(jobs.fail(&id, old.fence, "late").await, "lost");
+    assert_conflict(jobs.release(&id, old.fence).await, "lost");
+    assert_eq!(jobs.get(&id).await.unwrap(), new);
+}
+
+async fn a_job_that_kills_its_workers_fails(on: &TestStore) {
+    let poison = on.store.jobs().enqueue(&job("kcs")).await.unwrap().id;
+    let healthy = on.store.jobs().enqueue(&job("pcc")).await.unwrap().id;
+    for _ in 0..MAX_ATTEMPTS {
+        assert_eq!(claim(on, "mortal").await.unwrap().id, poison);
+        let_the_lease_run_out(on).await;
+    }
+    assert_eq!(claim(on, "mortal").await.unwrap().id, healthy);
+    let failed = on.store.jobs().get(&poison).await.unwrap();
+    assert_eq!(failed.state, JobState::Failed);
+    assert!(failed.error.unwrap().contains("the worker died 3 times"));
+    assert!(failed.finished_us.is_some());
+}
+
+async fn a_job_is_cancelled(on: &TestStore) {
+    let jobs = on.store.jobs();
+    let waiting = jobs.enqueue(&job("kcs")).await.unwrap().id;
+    assert_eq!(jobs.request_cancel(&waiting).await.unwrap().state, JobState::Cancelled);
+    assert_eq!(claim(on, "a").await, None);
+    let running = jobs.enqueue(&job("kcs")).await.unwrap().id;
+    let fence = claim(on, "a").await.unwrap().fence;
+    assert_eq!(jobs.request_cancel(&running).await.unwrap().state, JobState::Running);
+    assert!(jobs.heartbeat(&running, fence, 0.5, "", LEASE).await.unwrap());
+    let cancelled = jobs.cancelled(&running, fence).await.unwrap();
+    assert_eq!((cancelled.state, cancelled.progress), (JobState::Cancelled, 0.5));
+    assert_conflict(jobs.request_cancel(&running).await, "cancelled");
+    assert_not_found(jobs.request_cancel("none").await, "job");
+}
+
+async fn a_dead_worker_cannot_keep_a_cancelled_job(on: &TestStore) {
+    let id = on.store.jobs().enqueue(&job("kcs")).await.unwrap().id;
+    claim(on, "a").await.unwrap();
+    on.store.jobs().request_cancel(&id).await.unwrap();
+    let_the_lease_run_out(on).await;
+    assert_eq!(claim(on, "b").await, None);
+    assert_eq!(on.store.jobs().get(&id).await.unwrap().state, JobState::Cancelled);
+}
+
+async fn a_failed_job_is_tried_again(on: &TestStore) {
+    let jobs = on.store.jobs();
+    let id = jobs.enqueue(&job("kcs")).await.unwrap().id;
+    let fence = claim(on, "a").await.unwrap().fence;
+    assert_conflict(jobs.retry(&id).await, "running");
+    assert_eq!(jobs.fail(&id, fence, "the trials hold no turn").await.unwrap().error.unwrap(), "the trials hold no turn");
+    let queued = jobs.retry(&id).await.unwrap();
+    assert_eq!((queued.state, queued.error, queued.attempt, queued.fence), (JobState::Queued, None, 0, 1));
+    assert_eq!(claim(on, "b").await.unwrap().fence, 2);
+}
+
+async fn a_leaving_worker_gives_its_job_back(on: &TestStore) {
+    let id = on.store.jobs().enqueue(&job("kcs")).await.unwrap().id;
+    let fence = claim(on, "a").await.unwrap().fence;
+    assert_eq!(on.store.jobs().release(&id, fence).await.unwrap().state, JobState::Queued);
+    let again = claim(on, "b").await.unwrap();
+    assert_eq!((again.attempt, again.fence), (1, 2));
+}
+
+async fn jobs_are_listed(on: &TestStore) {
+    for ship in ["kcs", "kcs", "pcc", "kcs"] {
+        on.store.jobs().enqueue(&job(ship)).await.unwrap();
+    }
+    let oldest = claim(on, "a").await.unwrap();
+    let filter = JobFilter { ship: Some("kcs".into()), state: None };
+    let first = on.store.jobs().list(&filter, &Page::first(2)).await.unwrap();
+    let second = on.store.jobs().list(&filter, &Page::after(first.next.unwrap(), 2)).await.unwrap();
+    assert_eq!((first.items.len(), second.items, second.next), (2, vec![oldest.clone()], None));
+    let running = JobFilter { ship: None, state: Some(JobState::Running) };
+    assert_eq!(on.store.jobs().list(&running, &Page::first(9)).await.unwrap().items, [oldest]);
+    assert_eq!(on.store.jobs().list(&JobFilter::default(), &Page::first(9)).await.unwrap().items.len(), 4);
+}
+
+on_both_databases!(
+    a_job_runs_and_ends,
+    a_lost_lease_fences_the_old_worker,
+    a_job_that_kills_its_workers_fails,
+    a_job_is_cancelled,
+    a_dead_worker_cannot_keep_a_cancelled_job,
+    a_failed_job_is_tried_again,
+    a_leaving_worker_gives_its_job_back,
+    jobs_are_listed
+);

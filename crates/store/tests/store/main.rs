@@ -1,0 +1,19 @@
+//! The same suite on SQLite and on PostgreSQL.
+#![allow(clippy::unwrap_used)]
+
+#[macro_use]
+mod support;
+
+mod aliases;
+mod concurrency;
+mod idempotency;
+mod jobs;
+mod laws;
+mod objects;
+mod refinements;
+mod refusals;
+mod reports;
+mod schema;
+mod ships;
+mod trials;
+mod versions;

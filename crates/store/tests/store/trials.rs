@@ -1,0 +1,59 @@
+use sistership_store::{NewTrial, Page};
+
+use crate::support::*;
+
+async fn the_same_samples_are_one_trial(on: &TestStore) {
+    on.store.ships().create(&ship("kcs")).await.unwrap();
+    on.store.ships().create(&ship("pcc")).await.unwrap();
+    let first = on.store.trials().insert(&trial("kcs", "zigzag")).await.unwrap();
+    let again = NewTrial { name: "copy.csv".into(), ..trial("kcs", "zigzag") };
+    let again = on.store.trials().insert(&again).await.unwrap();
+    assert_eq!((first.new, again.new), (true, false));
+    assert_eq!(first.row, again.row);
+    assert_eq!(first.row.duration_s, 599.5);
+    let other = on.store.trials().insert(&trial("pcc", "zigzag")).await.unwrap();
+    assert!(other.new && other.row.id != first.row.id);
+    assert_eq!(on.store.trials().find("kcs", &first.row.sha256).await.unwrap(), first.row);
+}
+
+async fn a_trial_needs_its_ship(on: &TestStore) {
+    assert_not_found(on.store.trials().insert(&trial("kcs", "turn")).await, "ship");
+    on.store.ships().create(&ship("kcs")).await.unwrap();
+    on.store.ships().delete("kcs", None).await.unwrap();
+    assert_not_found(on.store.trials().insert(&trial("kcs", "turn")).await, "ship");
+}
+
+async fn a_deleted_trial_comes_back(on: &TestStore) {
+    on.store.ships().create(&ship("kcs")).await.unwrap();
+    let trials = on.store.trials();
+    let made = trials.insert(&trial("kcs", "turn")).await.unwrap().row;
+    assert!(trials.delete(&made.id).await.unwrap().deleted_us.is_some());
+    assert_not_found(trials.get(&made.id).await, "trial");
+    assert_not_found(trials.find("kcs", &made.sha256).await, "trial");
+    assert_not_found(trials.delete(&made.id).await, "trial");
+    assert!(trials.list("kcs", &Page::first(10)).await.unwrap().items.is_empty());
+    assert_eq!(trials.undelete(&made.id).await.unwrap(), made);
+    trials.delete(&made.id).await.unwrap();
+    let again = trials.insert(&trial("kcs", "turn")).await.unwrap();
+    assert_eq!((again.row, again.new), (made.clone(), false));
+    assert_eq!(trials.get(&made.id).await.unwrap(), made);
+}
+
+async fn trials_are_listed_in_the_order_of_upload(on: &TestStore) {
+    on.store.ships().create(&ship("kcs")).await.unwrap();
+    for n in 0..5 {
+        on.store.trials().insert(&trial("kcs", &n.to_string())).await.unwrap();
+    }
+    let first = on.store.trials().list("kcs", &Page::first(3)).await.unwrap();
+    let second = on.store.trials().list("kcs", &Page::after(first.next.unwrap(), 3)).await.unwrap();
+    let names: Vec<_> = first.items.iter().chain(&second.items).map(|trial| trial.name.as_str()).collect();
+    assert_eq!(names, ["0.csv", "1.csv", "2.csv", "3.csv", "4.csv"]);
+    assert_eq!(second.next, None);
+}
+
+on_both_databases!(
+    the_same_samples_are_one_trial,
+    a_trial_needs_its_ship,
+    a_deleted_trial_comes_back,
+    trials_are_listed_in_the_order_of_upload
+);

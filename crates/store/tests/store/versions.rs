@@ -1,0 +1,54 @@
+use sistership_store::{Expect, NewVersion, Page, sha256_hex};
+
+use crate::support::*;
+
+async fn a_version_is_found_again(on: &TestStore) {
+    let store = on.store.versions();
+    let head = store.create(&version("kcs"), &[champion(Expect::Absent)]).await.unwrap();
+    assert_eq!((head.number, head.sha256.as_str()), (1, sha256_hex(version("kcs").document.as_bytes()).as_str()));
+    let found = store.get("kcs", 1).await.unwrap();
+    assert_eq!((&found.head, &found.document), (&head, &version("kcs").document));
+    assert_eq!(store.by_id(&head.id).await.unwrap(), found);
+    assert_eq!(store.latest("kcs").await.unwrap(), found);
+    assert_eq!(on.store.aliases().get("kcs", "champion").await.unwrap().version_number, 1);
+    assert_not_found(store.get("kcs", 2).await, "version");
+    assert_not_found(store.by_id("none").await, "version");
+    assert_not_found(store.latest("pcc").await, "model");
+}
+
+async fn each_model_counts_for_itself_and_newest_first(on: &TestStore) {
+    versions(on, "kcs", 5).await;
+    versions(on, "pcc", 1).await;
+    let first = on.store.versions().list("kcs", &Page::first(3)).await.unwrap();
+    let second = on.store.versions().list("kcs", &Page::after(first.next.unwrap(), 3)).await.unwrap();
+    let numbers: Vec<_> = first.items.iter().chain(&second.items).map(|version| version.number).collect();
+    assert_eq!((numbers, second.next), (vec![5, 4, 3, 2, 1], None));
+    assert_eq!(on.store.versions().latest("pcc").await.unwrap().head.number, 1);
+}
+
+async fn children_name_their_parent(on: &TestStore) {
+    let parent = versions(on, "kvlcc2", 1).await.remove(0).id;
+    for model in ["kvlcc2", "esso-tanker"] {
+        let child = NewVersion { parent: Some(parent.clone()), ..version(model) };
+        on.store.versions().create(&child, &[]).await.unwrap();
+    }
+    let children = on.store.versions().children(&parent, &Page::first(10)).await.unwrap().items;
+    let models: Vec<_> = children.iter().map(|child| (child.model.as_str(), child.number)).collect();
+    assert_eq!(models, [("kvlcc2", 2), ("esso-tanker", 1)]);
+    let orphan = NewVersion { parent: Some("none".into()), ..version("kvlcc2") };
+    assert_invalid(on.store.versions().create(&orphan, &[]).await, "parent");
+}
+
+async fn a_refused_alias_takes_no_number(on: &TestStore) {
+    versions(on, "kcs", 1).await;
+    let refused = on.store.versions().create(&version("kcs"), &[champion(Expect::Revision(7))]).await;
+    assert_stale(refused, None);
+    assert_eq!(versions(on, "kcs", 1).await[0].number, 2);
+}
+
+on_both_databases!(
+    a_version_is_found_again,
+    each_model_counts_for_itself_and_newest_first,
+    children_name_their_parent,
+    a_refused_alias_takes_no_number
+);
