@@ -17,7 +17,13 @@ fn refined(trials: &[Trial], held_out: Vec<String>) -> Refinement {
     let trials: Vec<&Trial> = trials.iter().collect();
     let ranking = similar(&zoo, target, None, &trials);
     for ranked in ranking.ranking.iter().filter(|ranked| ranked.model.is_some()) {
-        println!("{:<12} {:+.3} eligible {}: {}", ranked.ship, ranked.correlation.unwrap_or(f64::NAN), ranked.eligible, ranked.reasons.join("; "));
+        println!(
+            "{:<12} {:+.3} eligible {}: {}",
+            ranked.ship,
+            ranked.correlation.unwrap_or(f64::NAN),
+            ranked.eligible,
+            ranked.reasons.join("; ")
+        );
     }
     let source = best_source(&zoo, &ranking).unwrap_or_else(|reason| panic!("{reason}"));
     let law = zoo.law(&source.law).expect("the law of a zoo model");

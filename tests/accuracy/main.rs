@@ -1,6 +1,6 @@
 //! Accuracy against published tables and independent reference data. Figures are printed; `--nocapture` shows them.
 
-mod paper_v;
 mod esso_osaka;
+mod paper_v;
 mod reference_tracks;
 mod similarity;

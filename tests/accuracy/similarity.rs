@@ -31,7 +31,8 @@ fn tables_5_and_6_of_mei_2019() {
     }
     let ranking = similar(&zoo, zoo.vessel("kvlcc2").expect("in the zoo"), Some(Definition::Mei2019), &[]).ranking;
     for (ship, printed) in TABLE_6 {
-        let found = ranking.iter().find(|ranked| ranked.ship == ship).and_then(|ranked| ranked.correlation).expect("a correlation");
+        let found =
+            ranking.iter().find(|ranked| ranked.ship == ship).and_then(|ranked| ranked.correlation).expect("a correlation");
         println!("KVLCC2 against {ship}: {found:.4}, printed {printed}");
         assert!((found - printed).abs() < 0.0006, "{ship}");
     }

@@ -11,8 +11,17 @@ use sistership_model::{Model, Zoo};
 use super::{model, ready};
 
 fn trial(name: &str, track: &Trajectory) -> Trial {
-    let columns = [(Channel::U, at::U), (Channel::V, at::V), (Channel::R, at::R), (Channel::Psi, at::PSI), (Channel::X, at::X), (Channel::Y, at::Y), (Channel::Delta, at::DELTA)];
-    let mut channels: std::collections::BTreeMap<_, _> = columns.into_iter().map(|(channel, index)| (channel, track.column(index))).collect();
+    let columns = [
+        (Channel::U, at::U),
+        (Channel::V, at::V),
+        (Channel::R, at::R),
+        (Channel::Psi, at::PSI),
+        (Channel::X, at::X),
+        (Channel::Y, at::Y),
+        (Channel::Delta, at::DELTA),
+    ];
+    let mut channels: std::collections::BTreeMap<_, _> =
+        columns.into_iter().map(|(channel, index)| (channel, track.column(index))).collect();
     channels.insert(Channel::N, track.n_rps.clone());
     Trial { name: name.into(), t_s: track.t_s.clone(), channels, ..Trial::default() }
 }
@@ -20,8 +29,10 @@ fn trial(name: &str, track: &Trajectory) -> Trial {
 /// Noise-free trials by explicit Euler, for which one-step differences are exact.
 fn trials(model: &Model, law: &sistership_model::Law) -> Vec<Trial> {
     let ship = ready(model, law);
-    let settings = ManoeuvreSettings { step_s: 0.25, method: Method::Euler, duration_s: Some(400.0), ..ManoeuvreSettings::default() };
-    let zigzags = [(10.0, 10.0), (-20.0, 20.0), (30.0, 10.0)].map(|(rudder, switch)| zigzag(&ship, rudder, switch, &settings).expect("a zigzag").track);
+    let settings =
+        ManoeuvreSettings { step_s: 0.25, method: Method::Euler, duration_s: Some(400.0), ..ManoeuvreSettings::default() };
+    let zigzags = [(10.0, 10.0), (-20.0, 20.0), (30.0, 10.0)]
+        .map(|(rudder, switch)| zigzag(&ship, rudder, switch, &settings).expect("a zigzag").track);
     let turns = [15.0, -30.0].map(|rudder| turn(&ship, rudder, &settings).expect("a turn").track);
     zigzags.iter().chain(&turns).enumerate().map(|(k, track)| trial(&format!("trial {k}"), track)).collect()
 }

@@ -29,8 +29,10 @@ fn a_scaled_ship_turns_the_same_circle_in_lengths() {
         let model = transfer(&source, &law, &scaled(vessel, 1.0 / 25.0), None);
         let turned = |model: &sistership_model::Model| {
             let ship = ready(model, &law);
-            let metrics = turn(&ship, 20.0, &ManoeuvreSettings::default()).unwrap_or_else(|stopped| panic!("{name}: {stopped}")).metrics;
-            [metrics.advance_m, metrics.tactical_diameter_m, metrics.steady_radius_m].map(|m| m.expect("a full turn") / ship.lpp_m())
+            let metrics =
+                turn(&ship, 20.0, &ManoeuvreSettings::default()).unwrap_or_else(|stopped| panic!("{name}: {stopped}")).metrics;
+            [metrics.advance_m, metrics.tactical_diameter_m, metrics.steady_radius_m]
+                .map(|m| m.expect("a full turn") / ship.lpp_m())
         };
         // The approach speed of the copy is that of her scaled service speed, so the original is given hers as well.
         let mut original = source.clone();

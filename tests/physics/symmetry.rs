@@ -11,7 +11,14 @@ use super::{SHIPS, model, ready};
 
 /// Drops the biases a single screw gives and sets paired parameters equal, which is what makes a ship symmetric.
 fn symmetric(mut model: Model, law: &Law) -> Model {
-    let odd = |name: &CoefficientName| name.factors.iter().filter(|f| !f.absolute && matches!(f.symbol.as_str(), "v" | "r" | "phi" | "p" | "delta" | "beta")).count() % 2 == 1;
+    let odd = |name: &CoefficientName| {
+        name.factors
+            .iter()
+            .filter(|f| !f.absolute && matches!(f.symbol.as_str(), "v" | "r" | "phi" | "p" | "delta" | "beta"))
+            .count()
+            % 2
+            == 1
+    };
     model.coefficients.retain(|name, _| {
         CoefficientName::parse(name, &law.extra_factors()).is_ok_and(|parsed| (parsed.axis != Axis::X) == odd(&parsed))
     });

@@ -17,7 +17,8 @@ pub fn trials(folder: &Path, kinds: &[&str]) -> Vec<Trial> {
     let wanted = manifest.trials.iter().filter(|trial| kinds.iter().any(|kind| trial.file.starts_with(kind)));
     wanted
         .map(|entry| {
-            let source = Source::open(&entry.file, &folder.join(&entry.file)).unwrap_or_else(|error| panic!("{}: {error}", entry.file));
+            let source =
+                Source::open(&entry.file, &folder.join(&entry.file)).unwrap_or_else(|error| panic!("{}: {error}", entry.file));
             read_trial(source, &Mapping::of(&manifest, entry)).unwrap_or_else(|refusal| panic!("{refusal}"))
         })
         .collect()

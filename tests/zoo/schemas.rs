@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use schemars::{JsonSchema, schema_for};
+use sistership_model::Model;
 use sistership_model::law::LawFile;
 use sistership_model::trial::Manifest;
 use sistership_model::vessel::VesselFile;
-use sistership_model::Model;
 
 fn check<T: JsonSchema>(name: &str) {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../models/schema").join(format!("{name}.json"));

@@ -1,11 +1,11 @@
 //! A model made ready to run: its law and figures on one tape, and the accelerations that follow.
 
 use nalgebra::{LU, Matrix4, U4, Vector4};
+use sistership_model::Model;
 use sistership_model::coefficient::Axis;
 use sistership_model::formula::Expr;
 use sistership_model::law::{Law, STATES};
 use sistership_model::particulars;
-use sistership_model::Model;
 
 use crate::state::{StateVector, at};
 use crate::tape::{Binding, Lanes, Tape, TapeBuilder};

@@ -35,7 +35,8 @@ fn best(folds: &[(RidgePath, Validation)], target: usize, source: &[f64]) -> Cho
     let mut best = (f64::INFINITY, Choice { lambda: 1.0, alpha: 0.0 });
     for k in 0..LAMBDAS {
         let lambda = 10_f64.powf(-6.0 + 16.0 * k as f64 / (LAMBDAS - 1) as f64);
-        let of_fold = |(path, validation): &(RidgePath, Validation)| path.best_alpha(target, lambda, source, validation, (0.0, 0.1));
+        let of_fold =
+            |(path, validation): &(RidgePath, Validation)| path.best_alpha(target, lambda, source, validation, (0.0, 0.1));
         let each: Vec<(f64, f64)> = folds.iter().map(of_fold).collect();
         let error: f64 = each.iter().map(|(_, error)| error).sum();
         if error < best.0 {

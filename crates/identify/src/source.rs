@@ -4,7 +4,7 @@ use serde::Serialize;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel, Zoo};
 
-use crate::similarity::{Candidate, CharacteristicVector, Definition, Limits, RankedSource, rank};
+use crate::similarity::{Candidate, CharacteristicVector, Definition, Limits, RankedSource, Trend, rank};
 use crate::transfer::{approach_of, transfer, trend};
 
 /// How similar ships rank for a target.
@@ -31,7 +31,7 @@ pub fn similar(zoo: &Zoo, target: &Vessel, definition: Option<Definition>, trial
     let candidates: Vec<Candidate<'_>> =
         models.iter().map(|(vessel, model)| Candidate { vessel, model: model.as_ref() }).collect();
     let measured = |model: &Model| trend_on(zoo, target, model, trials);
-    let measured: Option<&dyn Fn(&Model) -> Result<f64, String>> = if trials.is_empty() { None } else { Some(&measured) };
+    let measured: Option<Trend<'_>> = if trials.is_empty() { None } else { Some(&measured) };
     Similarity {
         target: target.name().to_owned(),
         definition,

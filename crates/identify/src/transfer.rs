@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use sistership_dynamics::Ship;
 use sistership_dynamics::recorded::{ReplaySettings, replay};
 use sistership_dynamics::state::at;
-use sistership_dynamics::Ship;
 use sistership_model::formula::Expr;
 use sistership_model::law::Law;
 use sistership_model::particulars::{self, Particulars};

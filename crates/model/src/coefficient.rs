@@ -79,7 +79,8 @@ impl CoefficientName {
         let (axis, rest) = name.split_once('_').ok_or_else(|| format!("`{name}`: {help}"))?;
         let axis = Axis::ALL.into_iter().find(|a| a.to_string() == axis);
         let axis = axis.ok_or_else(|| format!("`{name}`: the axis must be X, Y, K or N; {help}"))?;
-        let mut factors = if rest == "0" { Vec::new() } else { split(rest, extra).map_err(|e| format!("`{name}`: {e}; {help}"))? };
+        let mut factors =
+            if rest == "0" { Vec::new() } else { split(rest, extra).map_err(|e| format!("`{name}`: {e}; {help}"))? };
         let as_written = factors.clone();
         factors.sort();
         let canonical = Self { axis, factors };
@@ -128,6 +129,7 @@ where
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn canonical(name: &str) -> Result<String, String> {

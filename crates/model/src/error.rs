@@ -56,7 +56,13 @@ impl<'a> Blame<'a> {
         for key in field.split('.') {
             let start = found.map_or(0, |line: usize| line);
             let names_key = |line: &str| key_position(line, key);
-            match self.text.lines().enumerate().skip(start.saturating_sub(usize::from(start > 0))).find(|(_, line)| names_key(line)) {
+            match self
+                .text
+                .lines()
+                .enumerate()
+                .skip(start.saturating_sub(usize::from(start > 0)))
+                .find(|(_, line)| names_key(line))
+            {
                 Some((index, _)) => found = Some(index + 1),
                 None => break,
             }

@@ -118,6 +118,7 @@ fn value_or(stated: &dyn Fn(&str) -> Option<f64>, name: &str, box_volume: impl F
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn ship(values: &[(&str, f64)]) -> Particulars {
@@ -135,8 +136,13 @@ mod tests {
     fn nonsense_is_refused_by_name() {
         assert_eq!(check(&ship(&[("lenght_m", 3.0)])).unwrap_err().0, "lenght_m");
         assert!(check(&ship(&[("lpp_m", 17500.0)])).unwrap_err().1.contains("unit"));
-        let contradictory =
-            ship(&[("lpp_m", 100.0), ("beam_m", 20.0), ("draught_m", 5.0), ("displacement_m3", 5000.0), ("block_coefficient", 0.8)]);
+        let contradictory = ship(&[
+            ("lpp_m", 100.0),
+            ("beam_m", 20.0),
+            ("draught_m", 5.0),
+            ("displacement_m3", 5000.0),
+            ("block_coefficient", 0.8),
+        ]);
         assert!(check(&contradictory).unwrap_err().1.contains("contradicts"));
     }
 }

@@ -220,7 +220,10 @@ fn quoted(raw: &VesselFile, keys: &[&str]) -> Result<BTreeMap<String, BTreeMap<S
     raw.quoted_vectors.iter().map(one).collect()
 }
 
-fn check_model<'a>(model: &PublishedModelFile, mut earlier: impl Iterator<Item = &'a PublishedModelFile>) -> Result<(), FieldError> {
+fn check_model<'a>(
+    model: &PublishedModelFile,
+    mut earlier: impl Iterator<Item = &'a PublishedModelFile>,
+) -> Result<(), FieldError> {
     let blame = |field: &str, message: &str| Err((field.to_owned(), message.to_owned()));
     if let Err(message) = check_slug(&model.name) {
         return Err(("name".into(), message));
@@ -232,7 +235,8 @@ fn check_model<'a>(model: &PublishedModelFile, mut earlier: impl Iterator<Item =
     if !(gear.limit_deg > 0.0 && gear.limit_deg <= 90.0) {
         return blame("steering.limit_deg", "must be above 0 and at most 90 deg");
     }
-    if !(gear.rate_deg_s > 0.0 && gear.rate_deg_s.is_finite() && gear.time_constant_s >= 0.0 && gear.time_constant_s.is_finite()) {
+    if !(gear.rate_deg_s > 0.0 && gear.rate_deg_s.is_finite() && gear.time_constant_s >= 0.0 && gear.time_constant_s.is_finite())
+    {
         return blame("steering.rate_deg_s", "the rate must be above 0 deg/s and the time constant not below 0 s");
     }
     if model.speed_m_s.is_some_and(|speed| !(speed > 0.0 && speed < 50.0)) {

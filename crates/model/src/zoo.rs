@@ -148,6 +148,7 @@ fn yaml_files(folder: &str) -> impl Iterator<Item = (&'static str, &'static str)
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]

@@ -106,7 +106,7 @@ struct Pilot {
 
 impl Pilot {
     fn order_deg(&mut self, since_s: f64, state: &StateVector) -> f64 {
-        let sign = |reversals: usize| if reversals % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = |reversals: usize| if reversals.is_multiple_of(2) { 1.0 } else { -1.0 };
         let side = sign(self.reversals_s.len()) * self.rudder_deg.signum();
         if side * state[at::PSI].to_degrees() >= self.switch_deg {
             self.reversals_s.push(since_s);

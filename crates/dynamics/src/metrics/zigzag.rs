@@ -30,7 +30,7 @@ impl ZigzagMetrics {
         let overshoot = |index: usize| {
             let from = *reversals_s.get(index)?;
             let until = reversals_s.get(index + 1).copied().unwrap_or(end);
-            let side = if index % 2 == 0 { side } else { -side };
+            let side = if index.is_multiple_of(2) { side } else { -side };
             let window = track.t_s.iter().zip(&track.states).filter(|(t, _)| (from..=until).contains(*t));
             let swing: Vec<f64> = window.map(|(_, state)| side * (state[at::PSI] - start).to_degrees()).collect();
             let peak = swing.iter().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -189,7 +189,8 @@ mod tests {
 
     #[test]
     fn derivatives_agree_with_differences() {
-        for text in ["u^3*v/(1 + v^2)", "atan2(v, u)*abs(v)", "max(u, v)*tanh(u*v) - u^-2", "sin(u)*cos(v)*log(u)*exp(v) + u^2.5"] {
+        for text in ["u^3*v/(1 + v^2)", "atan2(v, u)*abs(v)", "max(u, v)*tanh(u*v) - u^-2", "sin(u)*cos(v)*log(u)*exp(v) + u^2.5"]
+        {
             let tape = tape(text);
             let at = [1.3, -0.7];
             let exact = tape.jacobian(&at)[0].clone();
@@ -198,7 +199,11 @@ mod tests {
                 moved[0][i] += 1e-6;
                 moved[1][i] -= 1e-6;
                 let difference = (tape.values(&moved[0])[0] - tape.values(&moved[1])[0]) / 2e-6;
-                assert!((difference - exact[i]).abs() < 1e-7 * (1.0 + difference.abs()), "{text}: {difference} against {}", exact[i]);
+                assert!(
+                    (difference - exact[i]).abs() < 1e-7 * (1.0 + difference.abs()),
+                    "{text}: {difference} against {}",
+                    exact[i]
+                );
             }
         }
     }

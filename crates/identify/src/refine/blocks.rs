@@ -54,7 +54,9 @@ impl Blocks {
         match Self::build(model, law, true)? {
             Some(blocks) => Ok(blocks),
             // Mass or scales change during a run: there is no constant mixture to undo, so forces are regressed.
-            None => Self::build(model, law, false)?.ok_or_else(|| RefineError::Law(format!("law `{}` cannot be regressed", law.name))),
+            None => {
+                Self::build(model, law, false)?.ok_or_else(|| RefineError::Law(format!("law `{}` cannot be regressed", law.name)))
+            }
         }
     }
 
@@ -82,7 +84,8 @@ impl Blocks {
 fn coupled(law: &Law) -> Vec<Vec<Axis>> {
     let mut groups: Vec<Vec<Axis>> = Vec::new();
     for axis in law.axes.keys().copied() {
-        let touches = |group: &Vec<Axis>| group.iter().any(|&o| law.mass.contains_key(&(axis, o)) || law.mass.contains_key(&(o, axis)));
+        let touches =
+            |group: &Vec<Axis>| group.iter().any(|&o| law.mass.contains_key(&(axis, o)) || law.mass.contains_key(&(o, axis)));
         let (mut joined, apart): (Vec<_>, Vec<_>) = groups.into_iter().partition(touches);
         let mut group: Vec<Axis> = joined.drain(..).flatten().collect();
         group.push(axis);

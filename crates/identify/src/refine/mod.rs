@@ -1,6 +1,7 @@
 //! Refinement of a source model against trials.
 
 mod blocks;
+mod finish;
 mod outcome;
 mod published;
 mod rows;

@@ -78,7 +78,8 @@ impl<'a> Fold<'a> {
 pub fn tune(folds: &[Fold<'_>], range: &Range, count: usize) -> Choices {
     let Some(first) = folds.first() else { return Choices::new() };
     let of_block = |b: usize| {
-        let pairs: Vec<(&Prepared<'_>, &Validation)> = folds.iter().map(|fold| (&fold.prepared[b], &fold.validations[b])).collect();
+        let pairs: Vec<(&Prepared<'_>, &Validation)> =
+            folds.iter().map(|fold| (&fold.prepared[b], &fold.validations[b])).collect();
         (0..first.prepared[b].source.len()).map(|target| tune_target(target, &pairs, range, count)).collect()
     };
     (0..first.prepared.len()).map(of_block).collect()
@@ -153,7 +154,9 @@ fn unmix(prepared: &Prepared<'_>, choices: &[Choice], into: &mut BTreeMap<String
         let solved = DVector::from_iterator(q, solutions.iter().map(|solution| solution[i]));
         let own = &unmixing * solved;
         for axis in 0..q {
-            let spread = |of: &dyn Fn(usize) -> f64| (0..q).map(|t| (unmixing[(axis, t)] * scatter[t] * of(t)).powi(2)).sum::<f64>().sqrt();
+            let spread = |of: &dyn Fn(usize) -> f64| {
+                (0..q).map(|t| (unmixing[(axis, t)] * scatter[t] * of(t)).powi(2)).sum::<f64>().sqrt()
+            };
             let fitted = Fitted {
                 value: own[axis],
                 standard_error: spread(&|t| deviations[t][i].0),

@@ -54,7 +54,8 @@ impl Block {
 /// Samples and the later samples to which they are differenced.
 fn pairs(trial: &Trial, difference_s: Option<f64>) -> Vec<(usize, usize)> {
     let stride = difference_s.map_or(1, |s| (s / trial.interval_s()).round().max(1.0) as usize);
-    let within = |segment: std::ops::Range<usize>| (segment.start..segment.end.saturating_sub(stride)).map(move |k| (k, k + stride));
+    let within =
+        |segment: std::ops::Range<usize>| (segment.start..segment.end.saturating_sub(stride)).map(move |k| (k, k + stride));
     trial.segments().into_iter().flat_map(within).collect()
 }
 

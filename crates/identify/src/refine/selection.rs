@@ -2,9 +2,7 @@
 //! simulations of manoeuvres left out are best is taken.
 
 use rayon::prelude::*;
-use sistership_dynamics::Ship;
 use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, standard};
 use sistership_dynamics::recorded::{ReplaySettings, replay};
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
@@ -13,8 +11,8 @@ use sistership_model::vessel::Status;
 use sistership_model::{Model, Vessel};
 
 use super::blocks::Blocks;
-use super::outcome::{CoefficientChange, HeldOut, Manoeuvres, RefineError, Refinement, StepOption};
-use super::published::{Choices, Fit, Fitted, Fold, fit, tune};
+use super::outcome::{RefineError, Refinement, StepOption};
+use super::published::{Choices, Fitted, Fold, tune};
 use super::rows::trial_moments;
 use super::settings::Settings;
 use crate::regression::Moments;
@@ -54,25 +52,25 @@ pub fn refine(request: &Request<'_>, progress: Progress<'_>) -> Result<Refinemen
     task.finish(options, &all, progress)
 }
 
-fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineError> {
+pub(super) fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineError> {
     if progress(fraction, what) { Ok(()) } else { Err(RefineError::Cancelled) }
 }
 
 /// A request with everything that does not change while options are tried.
-struct Task<'a> {
-    request: &'a Request<'a>,
-    training: Vec<&'a Trial>,
-    judged: Vec<&'a Trial>,
-    transferred: Model,
-    blocks: Blocks,
-    settings: Settings,
+pub(super) struct Task<'a> {
+    pub(super) request: &'a Request<'a>,
+    pub(super) training: Vec<&'a Trial>,
+    pub(super) judged: Vec<&'a Trial>,
+    pub(super) transferred: Model,
+    pub(super) blocks: Blocks,
+    pub(super) settings: Settings,
 }
 
 /// An option with what it takes to compare and to take it.
-struct Trying {
-    option: StepOption,
-    choices: Option<Choices>,
-    errors: SquaredError,
+pub(super) struct Trying {
+    pub(super) option: StepOption,
+    pub(super) choices: Option<Choices>,
+    pub(super) errors: SquaredError,
 }
 
 impl<'a> Task<'a> {
@@ -102,7 +100,8 @@ impl<'a> Task<'a> {
         let samples: f64 = moments.iter().map(|m| m.first().map_or(0.0, |m| m.count)).sum();
         let widest = self.blocks.blocks.iter().map(super::Block::regressors).max().unwrap_or(0) as f64;
         if samples < 4.0 * widest {
-            let message = format!("{samples} samples are too few for {widest} coefficients an axis; give at least {}", 4.0 * widest);
+            let message =
+                format!("{samples} samples are too few for {widest} coefficients an axis; give at least {}", 4.0 * widest);
             return Err(RefineError::Data(message));
         }
         Ok(moments)
@@ -113,7 +112,7 @@ impl<'a> Task<'a> {
         trial % self.fold_count()
     }
 
-    fn fold_count(&self) -> usize {
+    pub(super) fn fold_count(&self) -> usize {
         self.training.len().min(self.request.settings.folds)
     }
 
@@ -169,7 +168,7 @@ impl<'a> Task<'a> {
     }
 
     /// Simulates trials, each with the model that did not see it; the first divergence is the reason against the option.
-    fn simulate_all(
+    pub(super) fn simulate_all(
         &self,
         trials: &[&Trial],
         model_of: &(dyn Fn(usize) -> Model + Sync),
@@ -180,8 +179,7 @@ impl<'a> Task<'a> {
                 Ok(ship) => ship,
                 Err(reason) => return Ok((SquaredError::default(), Some(reason))),
             };
-            let run = replay(&ship, trial, &settings)
-                .map_err(|e| RefineError::Channel { trial: e.trial, channel: e.channel })?;
+            let run = replay(&ship, trial, &settings).map_err(|e| RefineError::Channel { trial: e.trial, channel: e.channel })?;
             let reason = run.stopped.as_ref().map(|stopped| format!("{} {stopped}", trial.name));
             Ok((SquaredError::of(trial, &run), reason))
         };
@@ -192,7 +190,7 @@ impl<'a> Task<'a> {
     }
 
     /// The transferred model with other coefficients.
-    fn model_with(&self, coefficients: &std::collections::BTreeMap<String, Fitted>) -> Model {
+    pub(super) fn model_with(&self, coefficients: &std::collections::BTreeMap<String, Fitted>) -> Model {
         let mut model = self.transferred.clone();
         model.status = Status::Refined;
         for (name, fitted) in coefficients {
@@ -204,114 +202,6 @@ impl<'a> Task<'a> {
         }
         model
     }
-
-    /// Takes the best option whose model, fitted on all trials, also sails the standard manoeuvres that the source sails.
-    fn finish(&self, mut options: Vec<Trying>, all: &[Moments], progress: Progress<'_>) -> Result<Refinement, RefineError> {
-        let before = self.standard_manoeuvres(&self.transferred);
-        loop {
-            let Some(best) = best(&options) else {
-                let reasons: Vec<String> = options.iter().filter_map(|o| o.option.reason.clone()).collect();
-                return Err(RefineError::Diverged(reasons.join("; ")));
-            };
-            step(progress, 0.9, &format!("standard manoeuvres of option {}", options[best].option.step))?;
-            let fitted = options[best].choices.as_ref().map(|choices| fit(&self.blocks, all, &self.transferred, choices));
-            let model = fitted.as_ref().map_or_else(|| self.transferred.clone(), |fit| self.model_with(&fit.coefficients));
-            let after = self.standard_manoeuvres(&model);
-            let worse = after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
-            if let Some(failure) = worse {
-                options[best].option.reason = Some(format!("fails a standard manoeuvre that the source sails: {failure}"));
-                options[best].option.error = None;
-                continue;
-            }
-            options[best].option.chosen = true;
-            let manoeuvres = Manoeuvres { source: before, refined: after };
-            return self.refinement(options, best, model, fitted, manoeuvres);
-        }
-    }
-
-    fn standard_manoeuvres(&self, model: &Model) -> sistership_dynamics::manoeuvre::StandardManoeuvres {
-        match Ship::new(model, self.request.law) {
-            Ok(ship) => standard(&ship, &ManoeuvreSettings::default()),
-            Err(error) => sistership_dynamics::manoeuvre::StandardManoeuvres { failures: vec![error.to_string()], ..Default::default() },
-        }
-    }
-
-    fn refinement(
-        &self,
-        options: Vec<Trying>,
-        best: usize,
-        model: Model,
-        fitted: Option<Fit>,
-        manoeuvres: Manoeuvres,
-    ) -> Result<Refinement, RefineError> {
-        let held_out = self.held_out(&options, best, &model)?;
-        let (condition_number, collinear_groups) =
-            fitted.as_ref().map_or((1.0, Vec::new()), |fit| (fit.condition_number, fit.collinear_groups.clone()));
-        Ok(Refinement {
-            ship: self.request.target.name().to_owned(),
-            source: self.request.source.name.clone(),
-            method: self.request.settings.method.name().to_owned(),
-            coefficients: self.changes(&model, fitted.as_ref()),
-            model,
-            transferred: self.transferred.clone(),
-            settings: self.settings.clone(),
-            condition_number,
-            collinear_groups,
-            held_out,
-            options: options.into_iter().map(|trying| trying.option).collect(),
-            manoeuvres,
-            remarks: self.remarks(best),
-        })
-    }
-
-    fn held_out(&self, options: &[Trying], best: usize, model: &Model) -> Result<HeldOut, RefineError> {
-        if self.judged.is_empty() {
-            let how = if self.training.len() == 1 {
-                "nothing could be left out of a single trial: these are errors on the trial that was fitted".to_owned()
-            } else {
-                format!("each of {} trials simulated by a model fitted without it, in {} folds", self.training.len(), self.fold_count())
-            };
-            return Ok(HeldOut { source: options[0].errors.rmse(), refined: options[best].errors.rmse(), how });
-        }
-        let (source, _) = self.simulate_all(&self.judged, &|_| self.transferred.clone())?;
-        let (refined, _) = self.simulate_all(&self.judged, &|_| model.clone())?;
-        let names: Vec<&str> = self.judged.iter().map(|trial| trial.name.as_str()).collect();
-        Ok(HeldOut { source: source.rmse(), refined: refined.rmse(), how: format!("kept out of fit and choice: {}", names.join(", ")) })
-    }
-
-    fn changes(&self, model: &Model, fitted: Option<&Fit>) -> Vec<CoefficientChange> {
-        let one = |(name, quantity): (&String, &Quantity)| {
-            let source = self.transferred.coefficient(name);
-            let fitted = fitted.and_then(|fit| fit.coefficients.get(name));
-            let prior = fitted.map_or(0.0, |f| f.prior_deviation);
-            let unit = self.request.law.coefficient_dimension(name).map_or_else(|_| "?".to_owned(), |d| d.to_string());
-            CoefficientChange {
-                name: name.clone(),
-                unit,
-                source,
-                refined: quantity.value,
-                standard_error: fitted.map_or(0.0, |f| f.standard_error),
-                moved_sd: if prior > 0.0 { (quantity.value - source) / prior } else { 0.0 },
-            }
-        };
-        model.coefficients.iter().map(one).collect()
-    }
-
-    fn remarks(&self, best: usize) -> Vec<String> {
-        let mut remarks = Vec::new();
-        if best == 0 {
-            remarks.push("no option beat the source on manoeuvres left out: the source is kept as it is".to_owned());
-        }
-        if self.training.len() == 1 {
-            remarks.push("a single trial: only the most conservative range was tried".to_owned());
-        }
-        let scaled = self.transferred.particulars.iter().filter(|(_, quantity)| quantity.source.starts_with("scaled from"));
-        let names: Vec<&str> = scaled.map(|(name, _)| name.as_str()).collect();
-        if !names.is_empty() {
-            remarks.push(format!("the ship does not state {}: scaled from the source ship", names.join(", ")));
-        }
-        remarks
-    }
 }
 
 /// The settings with the times that depend on the ship filled in, so that a version records what was used.
@@ -321,17 +211,6 @@ fn resolved(request: &Request<'_>, training: &[&Trial]) -> Settings {
     settings.difference_s = settings.difference_s.or(length_s.map(|s| 0.1 * s));
     settings.restart_s = settings.restart_s.or(length_s.map(|s| 10.0 * s));
     settings
-}
-
-/// The option with the least error; an earlier one wins unless a later one is better by more than one per cent.
-fn best(options: &[Trying]) -> Option<usize> {
-    let mut best: Option<(usize, f64)> = None;
-    for (index, error) in options.iter().enumerate().filter_map(|(index, o)| Some((index, o.option.error?))) {
-        if error.is_finite() && best.is_none_or(|(_, least)| error < 0.99 * least) {
-            best = Some((index, error));
-        }
-    }
-    best.map(|(index, _)| index)
 }
 
 /// The statistics of some trials together, one set per regression.

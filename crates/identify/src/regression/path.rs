@@ -71,7 +71,14 @@ impl RidgePath {
 
     /// The alpha within a range that is best at `lambda` on other samples, and the mean squared error there; the error is
     /// that of the model without intercept, and quadratic in alpha, so that its minimum is at hand.
-    pub fn best_alpha(&self, target: usize, lambda: f64, source: &[f64], validation: &Validation, alphas: (f64, f64)) -> (f64, f64) {
+    pub fn best_alpha(
+        &self,
+        target: usize,
+        lambda: f64,
+        source: &[f64],
+        validation: &Validation,
+        alphas: (f64, f64),
+    ) -> (f64, f64) {
         let (data, prior) = self.parts(target, lambda);
         let fixed = self.unscaled(&data, source);
         let zero = vec![0.0; source.len()];
@@ -88,8 +95,9 @@ impl RidgePath {
             let pull = choice.lambda * (1.0 - choice.alpha) * self.source[target][i];
             (self.data[target][i] + pull) / (self.eigenvalues[i] + choice.lambda).max(1e-300)
         };
-        let explained: f64 =
-            (0..self.eigenvalues.len()).map(|i| solution(i) * (2.0 * self.data[target][i] - self.eigenvalues[i] * solution(i))).sum();
+        let explained: f64 = (0..self.eigenvalues.len())
+            .map(|i| solution(i) * (2.0 * self.data[target][i] - self.eigenvalues[i] * solution(i)))
+            .sum();
         let freedom: f64 = self.eigenvalues.iter().map(|d| d / (d + choice.lambda).max(1e-300)).sum();
         let mean = (self.target_variance[target] - explained).max(0.0);
         mean * self.count / (self.count - freedom - 1.0).max(1.0)
@@ -218,7 +226,8 @@ mod tests {
         for other in [alpha - 0.05, alpha + 0.05] {
             let beta = path.solve(0, Choice { lambda: 1.0, alpha: other }, &source);
             let columns = samples();
-            let mse = (0..400).map(|k| (columns[2][k] - beta[0] * columns[0][k] - beta[1] * columns[1][k]).powi(2)).sum::<f64>() / 400.0;
+            let mse = (0..400).map(|k| (columns[2][k] - beta[0] * columns[0][k] - beta[1] * columns[1][k]).powi(2)).sum::<f64>()
+                / 400.0;
             assert!(mse > error);
         }
     }

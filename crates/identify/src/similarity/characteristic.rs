@@ -144,7 +144,9 @@ mod tests {
         let zoo = Zoo::embedded().unwrap();
         let ships = ["kvlcc2", "mariner", "esso-tanker", "sr108", "kcs"].map(|name| zoo.vessel(name).unwrap().clone());
         for (name, norm) in KANAZAWA_2023 {
-            let square = |v: &std::sync::Arc<Vessel>| CharacteristicVector::of(v, Definition::Kanazawa2023).values.get(name).map(|x| x * x);
+            let square = |v: &std::sync::Arc<Vessel>| {
+                CharacteristicVector::of(v, Definition::Kanazawa2023).values.get(name).map(|x| x * x)
+            };
             let sum = ships.iter().filter_map(square).sum::<f64>().sqrt();
             assert!((sum / norm - 1.0).abs() < 5e-3, "{name}: {sum}");
         }

@@ -55,6 +55,9 @@ pub struct RankedSource {
     pub reasons: Vec<String>,
 }
 
+/// How well a source's model captures the trend of the target's trials (a correlation), or why that cannot be told.
+pub type Trend<'a> = &'a dyn Fn(&Model) -> Result<f64, String>;
+
 /// Ranks the candidates by correlation with the target. `trend` measures how well a source's model captures the trend of
 /// the target's trials; without trials the third step is left open and said to be.
 pub fn rank(
@@ -62,7 +65,7 @@ pub fn rank(
     candidates: &[Candidate<'_>],
     definition: Definition,
     limits: &Limits,
-    trend: Option<&dyn Fn(&Model) -> Result<f64, String>>,
+    trend: Option<Trend<'_>>,
 ) -> Vec<RankedSource> {
     let here = CharacteristicVector::of(target, definition);
     let others = candidates.iter().filter(|candidate| candidate.vessel.name() != target.name());
@@ -87,12 +90,7 @@ pub fn rank(
     ranking
 }
 
-fn judge(
-    target: &Vessel,
-    candidate: &Candidate<'_>,
-    limits: &Limits,
-    trend: Option<&dyn Fn(&Model) -> Result<f64, String>>,
-) -> Eligibility {
+fn judge(target: &Vessel, candidate: &Candidate<'_>, limits: &Limits, trend: Option<Trend<'_>>) -> Eligibility {
     let mut steps = vec![same_category(target, candidate.vessel), similar_vector(target, candidate.vessel, limits)];
     match candidate.model {
         None => steps.push(Err("no model: known by particulars only".into())),

@@ -65,6 +65,7 @@ fn same(a: &Expr, of_a: Dimension, b: &Expr, of_b: Dimension) -> Result<Dimensio
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::super::parse;
     use super::*;
 

@@ -107,6 +107,7 @@ fn condition(input: &mut &str) -> Result<Expr> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn value(text: &str) -> f64 {

@@ -171,7 +171,11 @@ impl Expr {
                 function.apply(of(&arguments[0])?, second)
             }
             Self::If(comparison, parts) => {
-                if comparison.holds(of(&parts[0])?, of(&parts[1])?) { of(&parts[2])? } else { of(&parts[3])? }
+                if comparison.holds(of(&parts[0])?, of(&parts[1])?) {
+                    of(&parts[2])?
+                } else {
+                    of(&parts[3])?
+                }
             }
         })
     }

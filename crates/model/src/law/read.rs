@@ -81,7 +81,11 @@ impl Reader<'_> {
             return Ok(());
         }
         let found = formula::dimension_of(from, &particulars::dimension).map_err(|e| self.blame.at(field, e))?;
-        if found == wanted { Ok(()) } else { Err(self.blame.at(field, format!("`from` gives {found}, the parameter is {wanted}"))) }
+        if found == wanted {
+            Ok(())
+        } else {
+            Err(self.blame.at(field, format!("`from` gives {found}, the parameter is {wanted}")))
+        }
     }
 
     fn values(&self, law: &mut Law, raw: &IndexMap<String, String>) -> Result<(), FileError> {
@@ -100,7 +104,8 @@ impl Reader<'_> {
     /// Parses a formula and checks its names and its dimension.
     fn formula(&self, law: &Law, field: &str, text: &str, wanted: Option<Dimension>) -> Result<Expr, FileError> {
         let expr = formula::parse(text).map_err(|e| self.blame.at(field, e))?;
-        let found = formula::dimension_of(&expr, &|n| law.dimension(n)).map_err(|e| self.blame.at(field, format!("`{text}` {e}")))?;
+        let found =
+            formula::dimension_of(&expr, &|n| law.dimension(n)).map_err(|e| self.blame.at(field, format!("`{text}` {e}")))?;
         match wanted {
             Some(wanted) if wanted != found && expr != Expr::Number(0.0) => {
                 Err(self.blame.at(field, format!("`{text}` has the dimension {found}; {wanted} is needed")))
@@ -138,7 +143,9 @@ impl Reader<'_> {
         let name = match raw {
             TermFile::Name(name) => name,
             TermFile::Formula(map) if map.len() == 1 => map.keys().next().unwrap_or(&law.name),
-            TermFile::Formula(_) => return Err(self.blame.at(&format!("axes.{axis}.terms"), "write one `{name: formula}` an entry")),
+            TermFile::Formula(_) => {
+                return Err(self.blame.at(&format!("axes.{axis}.terms"), "write one `{name: formula}` an entry"));
+            }
         };
         let field = format!("axes.{axis}.terms.{name}");
         let parsed = CoefficientName::parse(name, &law.extra_factors()).map_err(|e| self.blame.at(&field, e))?;

@@ -52,7 +52,8 @@ fn check_parity(law: &Law, expr: &Expr, odd: bool, field: &str) -> Result<(), (S
         return Ok(());
     }
     let wanted = if odd { "change its sign" } else { "stay as it is" };
-    let message = format!("breaks the port/starboard symmetry: mirrored (v, r, p, phi, delta with other signs) it should {wanted}");
+    let message =
+        format!("breaks the port/starboard symmetry: mirrored (v, r, p, phi, delta with other signs) it should {wanted}");
     Err((field.to_owned(), message))
 }
 

@@ -1,0 +1,145 @@
+//! The end of a refinement: the best option is taken, and everything that its user must be able to defend is gathered.
+
+use sistership_dynamics::Ship;
+use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard};
+use sistership_model::Model;
+use sistership_model::quantity::Quantity;
+
+use super::outcome::{CoefficientChange, HeldOut, Manoeuvres, RefineError, Refinement};
+use super::published::{Fit, fit};
+use super::selection::{Progress, Task, Trying, step};
+use crate::regression::Moments;
+
+impl Task<'_> {
+    /// Takes the best option whose model, fitted on all trials, also sails the standard manoeuvres that the source sails.
+    pub(super) fn finish(
+        &self,
+        mut options: Vec<Trying>,
+        all: &[Moments],
+        progress: Progress<'_>,
+    ) -> Result<Refinement, RefineError> {
+        let before = self.standard_manoeuvres(&self.transferred);
+        loop {
+            let Some(best) = best(&options) else {
+                let reasons: Vec<String> = options.iter().filter_map(|o| o.option.reason.clone()).collect();
+                return Err(RefineError::Diverged(reasons.join("; ")));
+            };
+            step(progress, 0.9, &format!("standard manoeuvres of option {}", options[best].option.step))?;
+            let fitted = options[best].choices.as_ref().map(|choices| fit(&self.blocks, all, &self.transferred, choices));
+            let model = fitted.as_ref().map_or_else(|| self.transferred.clone(), |fit| self.model_with(&fit.coefficients));
+            let after = self.standard_manoeuvres(&model);
+            let worse = after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
+            if let Some(failure) = worse {
+                options[best].option.reason = Some(format!("fails a standard manoeuvre that the source sails: {failure}"));
+                options[best].option.error = None;
+                continue;
+            }
+            options[best].option.chosen = true;
+            let manoeuvres = Manoeuvres { source: before, refined: after };
+            return self.refinement(options, best, model, fitted, manoeuvres);
+        }
+    }
+
+    fn standard_manoeuvres(&self, model: &Model) -> StandardManoeuvres {
+        match Ship::new(model, self.request.law) {
+            Ok(ship) => standard(&ship, &ManoeuvreSettings::default()),
+            Err(error) => StandardManoeuvres { failures: vec![error.to_string()], ..Default::default() },
+        }
+    }
+
+    fn refinement(
+        &self,
+        options: Vec<Trying>,
+        best: usize,
+        model: Model,
+        fitted: Option<Fit>,
+        manoeuvres: Manoeuvres,
+    ) -> Result<Refinement, RefineError> {
+        let held_out = self.held_out(&options, best, &model)?;
+        let (condition_number, collinear_groups) =
+            fitted.as_ref().map_or((1.0, Vec::new()), |fit| (fit.condition_number, fit.collinear_groups.clone()));
+        Ok(Refinement {
+            ship: self.request.target.name().to_owned(),
+            source: self.request.source.name.clone(),
+            method: self.request.settings.method.name().to_owned(),
+            coefficients: self.changes(&model, fitted.as_ref()),
+            model,
+            transferred: self.transferred.clone(),
+            settings: self.settings.clone(),
+            condition_number,
+            collinear_groups,
+            held_out,
+            options: options.into_iter().map(|trying| trying.option).collect(),
+            manoeuvres,
+            remarks: self.remarks(best),
+        })
+    }
+
+    fn held_out(&self, options: &[Trying], best: usize, model: &Model) -> Result<HeldOut, RefineError> {
+        if self.judged.is_empty() {
+            let how = if self.training.len() == 1 {
+                "nothing could be left out of a single trial: these are errors on the trial that was fitted".to_owned()
+            } else {
+                format!(
+                    "each of {} trials simulated by a model fitted without it, in {} folds",
+                    self.training.len(),
+                    self.fold_count()
+                )
+            };
+            return Ok(HeldOut { source: options[0].errors.rmse(), refined: options[best].errors.rmse(), how });
+        }
+        let (source, _) = self.simulate_all(&self.judged, &|_| self.transferred.clone())?;
+        let (refined, _) = self.simulate_all(&self.judged, &|_| model.clone())?;
+        let names: Vec<&str> = self.judged.iter().map(|trial| trial.name.as_str()).collect();
+        Ok(HeldOut {
+            source: source.rmse(),
+            refined: refined.rmse(),
+            how: format!("kept out of fit and choice: {}", names.join(", ")),
+        })
+    }
+
+    fn changes(&self, model: &Model, fitted: Option<&Fit>) -> Vec<CoefficientChange> {
+        let one = |(name, quantity): (&String, &Quantity)| {
+            let source = self.transferred.coefficient(name);
+            let fitted = fitted.and_then(|fit| fit.coefficients.get(name));
+            let prior = fitted.map_or(0.0, |f| f.prior_deviation);
+            let unit = self.request.law.coefficient_dimension(name).map_or_else(|_| "?".to_owned(), |d| d.to_string());
+            CoefficientChange {
+                name: name.clone(),
+                unit,
+                source,
+                refined: quantity.value,
+                standard_error: fitted.map_or(0.0, |f| f.standard_error),
+                moved_sd: if prior > 0.0 { (quantity.value - source) / prior } else { 0.0 },
+            }
+        };
+        model.coefficients.iter().map(one).collect()
+    }
+
+    fn remarks(&self, best: usize) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if best == 0 {
+            remarks.push("no option beat the source on manoeuvres left out: the source is kept as it is".to_owned());
+        }
+        if self.training.len() == 1 {
+            remarks.push("a single trial: only the most conservative range was tried".to_owned());
+        }
+        let scaled = self.transferred.particulars.iter().filter(|(_, quantity)| quantity.source.starts_with("scaled from"));
+        let names: Vec<&str> = scaled.map(|(name, _)| name.as_str()).collect();
+        if !names.is_empty() {
+            remarks.push(format!("the ship does not state {}: scaled from the source ship", names.join(", ")));
+        }
+        remarks
+    }
+}
+
+/// The option with the least error; an earlier one wins unless a later one is better by more than one per cent.
+fn best(options: &[Trying]) -> Option<usize> {
+    let mut best: Option<(usize, f64)> = None;
+    for (index, error) in options.iter().enumerate().filter_map(|(index, o)| Some((index, o.option.error?))) {
+        if error.is_finite() && best.is_none_or(|(_, least)| error < 0.99 * least) {
+            best = Some((index, error));
+        }
+    }
+    best.map(|(index, _)| index)
+}
