@@ -30,7 +30,7 @@ fn trial(name: &str, track: &Trajectory) -> Trial {
 fn trials(model: &Model, law: &sistership_model::Law) -> Vec<Trial> {
     let ship = ready(model, law);
     let settings =
-        ManoeuvreSettings { step_s: 0.25, method: Method::Euler, duration_s: Some(400.0), ..ManoeuvreSettings::default() };
+        ManoeuvreSettings { step_s: Some(0.25), method: Method::Euler, duration_s: Some(400.0), ..ManoeuvreSettings::default() };
     let zigzags = [(10.0, 10.0), (-20.0, 20.0), (30.0, 10.0)]
         .map(|(rudder, switch)| zigzag(&ship, rudder, switch, &settings).expect("a zigzag").track);
     let turns = [15.0, -30.0].map(|rudder| turn(&ship, rudder, &settings).expect("a turn").track);

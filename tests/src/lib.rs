@@ -1,4 +1,6 @@
-//! What the journeys and the accuracy tests share: finding the measured data, reading it, comparing with it.
+//! What the journeys and the accuracy tests share: the program, a server, the measured data.
 
+pub mod binary;
 pub mod esso_osaka;
+pub mod server;
 pub mod shared;

@@ -26,10 +26,11 @@ pub struct SquaredError {
 }
 
 impl SquaredError {
-    /// The differences of one simulated trial; the heading's is wrapped to half a turn.
+    /// The differences of one simulated trial; the heading's is wrapped to half a turn. Roll counts for ships that roll.
     pub fn of(trial: &Trial, replay: &Replay) -> Self {
         let mut error = Self::default();
-        for (channel, index) in COMPARED {
+        let compared = COMPARED.iter().filter(|(channel, _)| replay.has_roll || !matches!(channel, Channel::Phi | Channel::P));
+        for &(channel, index) in compared {
             let Some(measured) = trial.channel(channel) else { continue };
             let square = |(state, &k): (&crate::StateVector, &usize)| difference(channel, state[index], measured[k]).powi(2);
             let sum = replay.track.states.iter().zip(&replay.samples).map(square).sum();
@@ -47,10 +48,10 @@ impl SquaredError {
         }
     }
 
-    /// Root mean square by channel name.
+    /// Root mean square by channel name; channels of which nothing was simulated are absent.
     pub fn rmse(&self) -> BTreeMap<String, f64> {
-        let root = |(sum, count): &(f64, usize)| if *count == 0 { f64::MAX } else { (sum / *count as f64).sqrt() };
-        self.sums.iter().map(|(channel, pair)| (channel.name().to_owned(), root(pair))).collect()
+        let named = |channel: &Channel| Some((channel.name().to_owned(), self.channel_rmse(*channel)?));
+        self.sums.keys().filter_map(named).collect()
     }
 
     /// Root mean square of one channel.

@@ -101,6 +101,11 @@ impl Plant {
         &self.input_names
     }
 
+    /// Whether the law has roll.
+    pub fn has_roll(&self) -> bool {
+        self.layout.forces[2].is_some()
+    }
+
     /// The default of each input.
     pub fn input_defaults(&self) -> &[Option<f64>] {
         &self.input_defaults
@@ -138,8 +143,7 @@ impl Plant {
     fn kinematics(&self, state: &StateVector, work: &[Lanes<1>], rate: &mut StateVector) {
         let (u, v) = (state[at::U], state[at::V]);
         let (sin, cos) = state[at::PSI].sin_cos();
-        let has_roll = self.layout.forces[2].is_some();
-        let plain = [u * cos - v * sin, u * sin + v * cos, state[at::R], if has_roll { state[at::P] } else { 0.0 }];
+        let plain = [u * cos - v * sin, u * sin + v * cos, state[at::R], if self.has_roll() { state[at::P] } else { 0.0 }];
         for (place, (index, plain)) in [at::X, at::Y, at::PSI, at::PHI].into_iter().zip(plain).enumerate() {
             rate[index] = self.layout.kinematics[place].map_or(plain, |output| self.tape.read(output, work)[0]);
         }

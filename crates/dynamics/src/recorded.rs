@@ -4,7 +4,7 @@ use sistership_model::trial::{Channel, Trial};
 
 use crate::envelope::Stopped;
 use crate::integrate::Method;
-use crate::plant::Work;
+use crate::plant::{Inputs, MAX_INPUTS, Work};
 use crate::ship::Ship;
 use crate::state::{StateVector, Trajectory, at};
 
@@ -44,15 +44,17 @@ pub struct Replay {
     pub samples: Vec<usize>,
     /// Why the simulation stopped early, if it did.
     pub stopped: Option<Stopped>,
+    /// Whether roll was simulated.
+    pub has_roll: bool,
 }
 
 /// Simulates a trial with its recorded inputs.
 ///
 /// # Errors
-/// Names the channel that the trial lacks: velocities, rudder, and revolutions for laws with a propeller.
+/// Names the channel that the trial lacks: velocities, rudder, or another input of the law that has no default.
 pub fn replay(ship: &Ship, trial: &Trial, settings: &ReplaySettings) -> Result<Replay, MissingChannel> {
     let record = Record::new(ship, trial)?;
-    let mut result = Replay { track: Trajectory::default(), samples: Vec::new(), stopped: None };
+    let mut result = Replay { track: Trajectory::default(), samples: Vec::new(), stopped: None, has_roll: ship.has_roll() };
     let mut work = Work::default();
     for part in parts(trial, settings.restart_s) {
         if let Err(stopped) = record.run(ship, part, settings, &mut result, &mut work) {
@@ -85,6 +87,8 @@ struct Record<'a> {
     trial: &'a Trial,
     delta: &'a [f64],
     n: Option<&'a [f64]>,
+    /// Each input of the law: recorded, or constant.
+    inputs: Vec<Result<&'a [f64], f64>>,
     start: Vec<(usize, &'a [f64])>,
 }
 
@@ -106,9 +110,9 @@ impl<'a> Record<'a> {
         for (channel, _) in &START[..3] {
             need(*channel)?;
         }
-        let n = if ship.has_propeller() { Some(need(Channel::N)?) } else { trial.channel(Channel::N) };
         let start = START.iter().filter_map(|&(channel, index)| Some((index, trial.channel(channel)?))).collect();
-        Ok(Self { trial, delta: need(Channel::Delta)?, n, start })
+        let inputs = ship.law_inputs().map(|(name, default)| input(trial, name, default)).collect::<Result<_, _>>()?;
+        Ok(Self { trial, delta: need(Channel::Delta)?, n: trial.channel(Channel::N), inputs, start })
     }
 
     fn state_at(&self, sample: usize) -> StateVector {
@@ -116,6 +120,15 @@ impl<'a> Record<'a> {
         self.start.iter().for_each(|(index, column)| state[*index] = column[sample]);
         state[at::DELTA] = self.delta[sample];
         state
+    }
+
+    /// The inputs at a fraction of the way from a sample to the next, between which they vary linearly.
+    fn inputs_at(&self, k: usize, w: f64) -> Inputs {
+        let mut inputs = [0.0; MAX_INPUTS];
+        for (value, input) in inputs.iter_mut().zip(&self.inputs) {
+            *value = input.map_or_else(|constant| constant, |column| column[k] + w * (column[k + 1] - column[k]));
+        }
+        inputs
     }
 
     fn run(
@@ -139,18 +152,30 @@ impl<'a> Record<'a> {
         Ok(())
     }
 
-    /// From one sample to the next. Between samples the recorded inputs vary linearly.
+    /// From one sample to the next.
     fn advance(&self, ship: &Ship, k: usize, mut state: StateVector, settings: &ReplaySettings, work: &mut Work) -> StateVector {
         let interval = self.trial.t_s[k + 1] - self.trial.t_s[k];
         let steps = (interval / settings.step_s - 1e-9).ceil().max(1.0) as usize;
         let step_s = interval / steps as f64;
         for i in 0..steps {
             state = settings.method.step(&state, step_s, |fraction, s| {
-                let w = (i as f64 + fraction) / steps as f64;
-                let between = |column: &[f64]| column[k] + w * (column[k + 1] - column[k]);
-                ship.rate_at(s, between(self.delta), self.n.map_or(0.0, between), work)
+                let inputs = self.inputs_at(k, (i as f64 + fraction) / steps as f64);
+                ship.rate_with(s, &inputs, work)
             });
         }
         state
+    }
+}
+
+/// An input of the law on a trial: its channel, the trial's constant depth, or the law's default.
+fn input<'a>(trial: &'a Trial, name: &str, default: Option<f64>) -> Result<Result<&'a [f64], f64>, MissingChannel> {
+    let channel = Channel::by_name(name);
+    if let Some(column) = channel.and_then(|channel| trial.channel(channel)) {
+        return Ok(Ok(column));
+    }
+    let constant = if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
+    match (constant, channel) {
+        (Some(value), _) => Ok(Err(value)),
+        (None, channel) => Err(MissingChannel { trial: trial.name.clone(), channel: channel.unwrap_or(Channel::Delta) }),
     }
 }

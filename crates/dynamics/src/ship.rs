@@ -99,6 +99,16 @@ impl Ship {
         self.slots.n.is_some()
     }
 
+    /// Whether the law has roll.
+    pub fn has_roll(&self) -> bool {
+        self.plant.has_roll()
+    }
+
+    /// What the law takes from outside, with what it takes where nothing is given.
+    pub fn law_inputs(&self) -> impl Iterator<Item = (&str, Option<f64>)> {
+        self.plant.input_names().iter().map(String::as_str).zip(self.plant.input_defaults().iter().copied())
+    }
+
     /// The range outside which runs are stopped.
     pub fn envelope(&self) -> &Envelope {
         &self.envelope
@@ -130,6 +140,11 @@ impl Ship {
     /// The rate of change of the state at a recorded rudder angle.
     pub fn rate_at(&self, state: &StateVector, delta_rad: f64, n_rps: f64, work: &mut Work) -> StateVector {
         self.plant.rate(state, &self.inputs(delta_rad, n_rps), work)
+    }
+
+    /// The rate of change of the state with every input of the law given, in the order of [`Ship::law_inputs`].
+    pub fn rate_with(&self, state: &StateVector, inputs: &Inputs, work: &mut Work) -> StateVector {
+        self.plant.rate(state, inputs, work)
     }
 
     /// Sails for a time; `bridge` gives the order at each step, which is held over it, or `None` to end the run.

@@ -1,1 +1,30 @@
-//! Placeholder while the rooms are being built.
+//! The REST server of Sistership: endpoints, jobs, pages and reports over the store.
+//!
+//! [`Server::start`] runs it within the program that calls it. [`derive`](mod@derive) and [`verify`](mod@verify) make
+//! versions again from their recipes, for the server's jobs and for the command line alike.
+
+mod app;
+mod archive;
+mod catalogue;
+mod config;
+pub mod derive;
+mod jobs;
+#[cfg(test)]
+mod journey;
+mod listen;
+mod predict;
+mod problem;
+mod publish;
+pub mod report;
+mod routes;
+mod seed;
+mod server;
+mod stopping;
+mod upload;
+pub mod verify;
+mod web;
+
+pub use archive::Archive;
+pub use config::{Config, DEFAULT_LISTEN, Leases, Limits, StartError, sqlite_url};
+pub use routes::openapi;
+pub use server::{Running, Server};

@@ -21,8 +21,8 @@ pub struct ManoeuvreSettings {
     pub n_rps: Option<f64>,
     /// Longest duration, s; enough for a turn of three times round where absent.
     pub duration_s: Option<f64>,
-    /// Step, s.
-    pub step_s: f64,
+    /// Step, s; where absent 0.1 s, or a fiftieth of the time in which a small ship sails her length.
+    pub step_s: Option<f64>,
     /// Integration method.
     pub method: Method,
     /// Run straight for this long before the rudder is executed, s.
@@ -31,7 +31,7 @@ pub struct ManoeuvreSettings {
 
 impl Default for ManoeuvreSettings {
     fn default() -> Self {
-        Self { speed_m_s: None, n_rps: None, duration_s: None, step_s: 0.1, method: Method::Rk4, run_in_s: 0.0 }
+        Self { speed_m_s: None, n_rps: None, duration_s: None, step_s: None, method: Method::Rk4, run_in_s: 0.0 }
     }
 }
 
@@ -44,15 +44,14 @@ impl ManoeuvreSettings {
         self.n_rps.unwrap_or_else(|| ship.revolutions_at(self.speed(ship)))
     }
 
-    /// Scaled so that a small model and a large ship sail as far: 250 times the time she takes for her length at least.
+    /// Scaled so that a small model and a large ship sail as far: 60 of her lengths.
     fn duration(&self, ship: &Ship) -> f64 {
         self.duration_s.unwrap_or_else(|| 60.0 * ship.lpp_m() / self.speed(ship)) + self.run_in_s
     }
 
-    /// A step no longer than a hundredth of the time she takes for her length.
     fn run(&self, ship: &Ship, start: StateVector) -> Run {
-        let finest = 0.02 * ship.lpp_m() / self.speed(ship);
-        Run { start, duration_s: self.duration(ship), step_s: self.step_s.min(finest), method: self.method }
+        let default = 0.1_f64.min(0.02 * ship.lpp_m() / self.speed(ship));
+        Run { start, duration_s: self.duration(ship), step_s: self.step_s.unwrap_or(default), method: self.method }
     }
 }
 

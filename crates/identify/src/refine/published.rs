@@ -16,7 +16,8 @@ pub struct Fitted {
     pub value: f64,
     /// Posterior standard error.
     pub standard_error: f64,
-    /// Standard deviation of the prior about the source.
+    /// How far the prior lets the coefficient be from the source: the root of its variance and of the square of the share
+    /// that alpha pulls towards zero.
     pub prior_deviation: f64,
 }
 
@@ -157,10 +158,11 @@ fn unmix(prepared: &Prepared<'_>, choices: &[Choice], into: &mut BTreeMap<String
             let spread = |of: &dyn Fn(usize) -> f64| {
                 (0..q).map(|t| (unmixing[(axis, t)] * scatter[t] * of(t)).powi(2)).sum::<f64>().sqrt()
             };
+            let pulled = (0..q).map(|t| unmixing[(axis, t)] * choices[t].alpha * prepared.source[t][i]).sum::<f64>();
             let fitted = Fitted {
                 value: own[axis],
                 standard_error: spread(&|t| deviations[t][i].0),
-                prior_deviation: spread(&|t| deviations[t][i].1),
+                prior_deviation: spread(&|t| deviations[t][i].1).hypot(pulled),
             };
             into.insert(block.names[axis][i].clone(), fitted);
         }

@@ -1,0 +1,145 @@
+//! What may be written on the command line, and how its values are read.
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand, ValueEnum};
+use sistership_dynamics::Method;
+
+use crate::commands::{check, manoeuvre, refine, similar, simulate};
+use crate::commands::{serve, verify};
+use crate::demo::Demo;
+
+const EXAMPLES: &str = "\
+SHIP and MODEL are a name in the zoo (`mariner`, `mariner/abkowitz`) or a YAML file.
+TRIALS is a trial manifest (YAML), or a CSV or Parquet file with canonical columns (t_s, x_m, y_m, psi_rad, u_m_s,
+v_m_s, r_rad_s, delta_rad, n_rps, ...; other unit suffixes such as _deg, _rpm, _kn are converted).
+
+Examples:
+  sistership similar kvlcc2
+  sistership check trials.yaml
+  sistership refine --ship my-ship.yaml --source auto --trials trials.yaml --out my-model.yaml
+  sistership simulate --model my-model.yaml --trials trials.yaml
+  sistership manoeuvre --model my-model.yaml --all
+
+Exit status: 0 done, 1 the data or the model says no, 2 the call is wrong.";
+
+/// Ship manoeuvring models: find the most similar ship, refine her model against trials, sail it.
+#[derive(Debug, Parser)]
+#[command(name = "sistership", version, after_help = EXAMPLES, arg_required_else_help = true)]
+pub struct Arguments {
+    /// Add laws/*.yaml and vessels/*.yaml of a folder to the zoo; repeatable. SISTERSHIP_ZOO holds further ones.
+    #[arg(long, value_name = "DIR", global = true)]
+    pub zoo: Vec<PathBuf>,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Rank the ships of the zoo by similarity to a ship.
+    Similar(similar::Similar),
+    /// Check trial files: units, signs, gaps, jumps, time.
+    Check(check::Check),
+    /// Refine a source model against a ship's trials.
+    Refine(Box<refine::Refine>),
+    /// Simulate recorded trials with a model and measure its errors.
+    Simulate(simulate::Simulate),
+    /// Sail turning circles and zigzags with a model and judge them by the IMO criteria.
+    Manoeuvre(manoeuvre::Manoeuvre),
+    /// Show the whole loop through the real server: ship, trials, source, refinement, champion, report.
+    Demo(Demo),
+    /// Run the REST server.
+    Serve(serve::Serve),
+    /// Derive a version again from its recipe and compare the bytes.
+    Verify(verify::Verify),
+}
+
+/// Integration methods by the names they are called by.
+#[derive(Debug, Clone, Copy, Default, ValueEnum)]
+pub enum Integration {
+    /// Classical Runge-Kutta of fourth order.
+    #[default]
+    Rk4,
+    /// Explicit Euler.
+    Euler,
+}
+
+impl From<Integration> for Method {
+    fn from(method: Integration) -> Self {
+        match method {
+            Integration::Rk4 => Self::Rk4,
+            Integration::Euler => Self::Euler,
+        }
+    }
+}
+
+/// A finite number above zero.
+pub fn positive(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        value if value > 0.0 => Ok(value),
+        value => Err(format!("must be above 0, not {value}")),
+    }
+}
+
+/// A rudder angle in degrees that is no zero.
+pub fn rudder_deg(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        value if value != 0.0 && value.abs() <= 90.0 => Ok(value),
+        value => {
+            Err(format!("must be a rudder angle from -90 to 90 deg other than 0 (positive turns to starboard), not {value}"))
+        }
+    }
+}
+
+/// `DEG/DEG`: rudder angle and change of heading.
+pub fn zigzag_deg(text: &str) -> Result<(f64, f64), String> {
+    let (rudder, switch) = text.split_once('/').ok_or("write rudder angle and change of heading as `20/20`")?;
+    let switch = positive(switch).map_err(|e| format!("change of heading: {e}"))?;
+    if switch > 180.0 {
+        return Err(format!("change of heading: must be at most 180 deg, not {switch}"));
+    }
+    Ok((rudder_deg(rudder).map_err(|e| format!("rudder: {e}"))?, switch))
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    let value: f64 = text.trim().parse().map_err(|_| format!("`{text}` is not a number"))?;
+    if value.is_finite() { Ok(value) } else { Err(format!("`{text}` is not a finite number")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn zigzags_are_read_or_refused_with_the_reason() {
+        assert_eq!(zigzag_deg("10/5"), Ok((10.0, 5.0)));
+        assert_eq!(zigzag_deg("-20/20"), Ok((-20.0, 20.0)));
+        for (text, part) in [("20", "20/20"), ("0/10", "other than 0"), ("10/0", "above 0"), ("10/x", "`x`"), ("10/200", "180")] {
+            assert!(zigzag_deg(text).is_err_and(|e| e.contains(part)), "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_finite() {
+        assert_eq!(positive("1.5"), Ok(1.5));
+        assert!(positive("inf").is_err() && positive("-1").is_err() && positive("NaN").is_err() && rudder_deg("91").is_err());
+    }
+
+    #[test]
+    fn other_methods_and_mixed_manoeuvres_are_calls_that_are_wrong() {
+        let refused = |line: &str| Arguments::try_parse_from(line.split(' ')).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(refused("sistership refine --ship a --trials t --method weak").contains("this version has `published`"));
+        assert!(refused("sistership manoeuvre --model a --turn 35 --zigzag 10/10").contains("cannot be used with"));
+        assert!(refused("sistership diagnose").contains("unrecognized subcommand"));
+        assert_eq!(refused("sistership manoeuvre --model a --turn -35 --turn 35"), "");
+        assert_eq!(refused("sistership manoeuvre --model a --zigzag -10/10"), "");
+    }
+}

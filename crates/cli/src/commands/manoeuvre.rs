@@ -1,0 +1,174 @@
+//! `sistership manoeuvre`: turning circles and zigzags, their figures and the IMO criteria.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+use sistership_dynamics::Ship;
+use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres};
+use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+use sistership_model::{Law, Model, Zoo};
+
+use super::sailed::sail;
+use super::{manoeuvre_text, ready, set_depth};
+use crate::arguments::{Integration, positive, rudder_deg, zigzag_deg};
+use crate::failure::Failure;
+use crate::files::Promised;
+use crate::{named, output, track};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership manoeuvre --model mariner
+  sistership manoeuvre --model kvlcc2 --turn 35 --turn -35 --json
+  sistership manoeuvre --model my-model.yaml --zigzag 20/20 --speed-m-s 6 --out zigzag.csv
+
+Positive rudder turns to starboard. A criterion that is not met is a result: the exit status is 0.
+Exit status 1 when a manoeuvre leaves the physical range.";
+
+/// Sail turning circles and zigzags with a model and judge them by the IMO criteria.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Manoeuvre {
+    /// The model: a name in the zoo, a model file, or a vessel file with a model.
+    #[arg(long)]
+    model: String,
+    /// A turning circle with this rudder; repeatable.
+    #[arg(long, value_name = "DEG", value_parser = rudder_deg, allow_negative_numbers = true, conflicts_with_all = ["zigzag", "all"])]
+    turn: Vec<f64>,
+    /// A zigzag: rudder and change of heading, such as 20/20; repeatable.
+    #[arg(long, value_name = "DEG/DEG", value_parser = zigzag_deg, allow_hyphen_values = true, conflicts_with = "all")]
+    zigzag: Vec<(f64, f64)>,
+    /// Turns at 35 deg, zigzags 10/10 and 20/20 to both sides, initial turning, IMO criteria: the default.
+    #[arg(long)]
+    all: bool,
+    /// Approach speed; the model's own where absent.
+    #[arg(long, value_name = "U", value_parser = positive, allow_negative_numbers = true)]
+    speed_m_s: Option<f64>,
+    /// Propeller revolutions per second; those of the approach speed where absent.
+    #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
+    n_rps: Option<f64>,
+    /// Water depth; deep water where absent.
+    #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
+    depth_m: Option<f64>,
+    /// Longest duration of a manoeuvre; scaled with ship and speed where absent.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    duration_s: Option<f64>,
+    /// Step; 0.1 s where absent, shorter for small models.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    step_s: Option<f64>,
+    /// Integration method.
+    #[arg(long, value_enum, default_value_t)]
+    method: Integration,
+    /// Write the track of the single manoeuvre (canonical columns).
+    #[arg(long, value_name = "CSV")]
+    out: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What is printed.
+#[derive(Debug, Serialize)]
+pub struct Document {
+    /// The model.
+    pub model: String,
+    /// Its law.
+    pub law: String,
+    /// Whether its figures are published, estimated, transferred or refined.
+    pub status: sistership_model::vessel::Status,
+    /// The approach speed, m/s.
+    pub speed_m_s: f64,
+    /// Turning circles.
+    pub turns: Vec<TurningMetrics>,
+    /// Zigzags.
+    pub zigzags: Vec<ZigzagMetrics>,
+    /// Distance to 10 deg of heading with 10 deg of rudder, the worse side, m.
+    pub initial_turning_m: Option<f64>,
+    /// The IMO criteria.
+    pub imo: Vec<Criterion>,
+    /// Manoeuvres that left the physical range.
+    pub failures: Vec<String>,
+    /// What must be known to read the figures.
+    pub remarks: Vec<String>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The model is refused or a manoeuvre leaves the physical range.
+pub fn run(zoo: &Zoo, manoeuvre: &Manoeuvre) -> Result<(), Failure> {
+    if manoeuvre.out.is_some() && manoeuvre.turn.len() + manoeuvre.zigzag.len() != 1 {
+        return Err(Failure::Call("--out writes the track of a single manoeuvre: give one --turn or one --zigzag".into()));
+    }
+    let (mut model, law) = named::model(zoo, &manoeuvre.model)?;
+    let inputs = [PathBuf::from(&manoeuvre.model)];
+    let file = manoeuvre.out.as_ref().map(|path| Promised::new(path, &inputs)).transpose()?;
+    let remarks = remarks(manoeuvre, &mut model, &law);
+    let ship = ship(manoeuvre, &model, &law)?;
+    let (sailed, tracks) = sail(&ship, &manoeuvre.turn, &manoeuvre.zigzag, &settings(manoeuvre));
+    if let (Some(file), Some(track)) = (file, tracks.first()) {
+        file.write(&track::csv(track, &law, ship.has_propeller())?)?;
+    }
+    let document = document(&model, &ship, sailed, remarks);
+    output::print(manoeuvre.json, &document, || manoeuvre_text::text(&document, &model, &law, &ship))?;
+    if document.failures.is_empty() { Ok(()) } else { Err(Failure::Told) }
+}
+
+/// Moves a law that is expanded about a speed to the speed asked for, and says so.
+fn remarks(manoeuvre: &Manoeuvre, model: &mut Model, law: &Law) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if let (Some(speed), Some(own), Some(_)) = (manoeuvre.speed_m_s, model.speed_m_s, law.approach_speed_parameter())
+        && speed != own
+    {
+        model.set_approach_speed(law, speed);
+        model.revolutions_rps = model.revolutions_rps.map(|n| n * speed / own);
+        remarks.push(format!("the law is expanded about {speed} m/s here; the model belongs to {own} m/s"));
+    }
+    let largest =
+        manoeuvre.turn.iter().chain(manoeuvre.zigzag.iter().map(|(rudder, _)| rudder)).fold(0.0_f64, |a, b| a.max(b.abs()));
+    let ordered = if largest == 0.0 { 35.0 } else { largest };
+    if ordered > model.steering.limit_deg {
+        remarks.push(format!("{ordered} deg were ordered; the rudder stops at {} deg", model.steering.limit_deg));
+    }
+    remarks
+}
+
+fn ship(manoeuvre: &Manoeuvre, model: &Model, law: &Law) -> Result<Ship, Failure> {
+    let mut ship = ready(model, law)?;
+    let speed = manoeuvre.speed_m_s.unwrap_or(ship.approach_speed_m_s());
+    ship.set_envelope_speed(speed);
+    if ship.has_propeller() && manoeuvre.n_rps.is_none() && ship.revolutions_at(speed) == 0.0 {
+        let message = format!("law `{}` needs propeller revolutions and {} gives none: add --n-rps", law.name, model.name);
+        return Err(Failure::Refused(message));
+    }
+    if let Some(depth_m) = manoeuvre.depth_m {
+        set_depth(&mut ship, model, law, depth_m)?;
+    }
+    Ok(ship)
+}
+
+fn settings(manoeuvre: &Manoeuvre) -> ManoeuvreSettings {
+    ManoeuvreSettings {
+        speed_m_s: manoeuvre.speed_m_s,
+        n_rps: manoeuvre.n_rps,
+        duration_s: manoeuvre.duration_s,
+        step_s: manoeuvre.step_s,
+        method: manoeuvre.method.into(),
+        ..ManoeuvreSettings::default()
+    }
+}
+
+fn document(model: &Model, ship: &Ship, sailed: StandardManoeuvres, remarks: Vec<String>) -> Document {
+    Document {
+        model: model.name.clone(),
+        law: model.law.clone(),
+        status: model.status,
+        speed_m_s: ship.approach_speed_m_s(),
+        turns: sailed.turns,
+        zigzags: sailed.zigzags,
+        initial_turning_m: sailed.initial_turning_m,
+        imo: sailed.imo,
+        failures: sailed.failures,
+        remarks,
+    }
+}

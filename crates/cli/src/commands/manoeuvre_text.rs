@@ -1,0 +1,79 @@
+//! The manoeuvres of a model in words and tables.
+
+use sistership_dynamics::Ship;
+use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+use sistership_model::{Law, Model};
+
+use super::manoeuvre::Document;
+use super::model_line;
+use crate::table::{Table, number, optional};
+
+/// Everything that was sailed.
+pub fn text(document: &Document, model: &Model, law: &Law, ship: &Ship) -> String {
+    let head = format!(
+        "{}\nlength {} m, approach at {} m/s\n",
+        model_line(model, law),
+        number(ship.lpp_m()),
+        number(document.speed_m_s)
+    );
+    let parts = [
+        section("Turning circles", document.turns.is_empty(), || turns(&document.turns, ship.lpp_m())),
+        section("Zigzags", document.zigzags.is_empty(), || zigzags(&document.zigzags)),
+        section("IMO criteria, MSC.137(76)", document.imo.is_empty(), || criteria(&document.imo)),
+    ];
+    let lines = |label: &str, lines: &[String]| lines.iter().map(|line| format!("{label}: {line}\n")).collect::<String>();
+    let end = lines("remark", &document.remarks) + &lines("FAILED", &document.failures);
+    let gap = if end.is_empty() { "" } else { "\n" };
+    format!("{head}{}{gap}{end}", parts.concat())
+}
+
+fn section(title: &str, is_empty: bool, table: impl FnOnce() -> Table) -> String {
+    if is_empty { String::new() } else { format!("\n{title}\n{}", table()) }
+}
+
+fn turns(turns: &[TurningMetrics], lpp_m: f64) -> Table {
+    let mut table = Table::new([
+        "rudder deg",
+        "advance m",
+        "L",
+        "transfer m",
+        "L",
+        "tactical diameter m",
+        "L",
+        "steady radius m",
+        "max advance m",
+        "max transfer m",
+        "speed loss m/s",
+    ]);
+    for turn in turns {
+        let mut cells = vec![number(turn.rudder_deg)];
+        for length in [turn.advance_m, turn.transfer_m, turn.tactical_diameter_m] {
+            cells.extend([optional(length), length.map_or_else(|| "-".to_owned(), |m| format!("{:.2}", m / lpp_m))]);
+        }
+        cells.push(optional(turn.steady_radius_m));
+        cells.extend([turn.max_advance_m, turn.max_transfer_m, turn.speed_loss_m_s].map(number));
+        table.row(cells);
+    }
+    table
+}
+
+fn zigzags(zigzags: &[ZigzagMetrics]) -> Table {
+    let mut table =
+        Table::new(["rudder deg", "heading deg", "1st overshoot deg", "2nd overshoot deg", "initial turning s", "period s"]);
+    for zigzag in zigzags {
+        let known = [zigzag.first_overshoot_deg, zigzag.second_overshoot_deg, zigzag.initial_turning_time_s, zigzag.period_s];
+        table.row([number(zigzag.rudder_deg), number(zigzag.switch_deg)].into_iter().chain(known.map(optional)));
+    }
+    table
+}
+
+fn criteria(criteria: &[Criterion]) -> Table {
+    let mut table = Table::new(["criterion", "value", "limit", "unit", "verdict"]);
+    for criterion in criteria {
+        let verdict = criterion.pass.map_or("not reached", |pass| if pass { "pass" } else { "FAIL" });
+        let value = criterion.value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"));
+        let limit = format!("{:.2}", criterion.limit);
+        table.row([criterion.criterion.clone(), value, limit, criterion.unit.clone(), verdict.to_owned()]);
+    }
+    table
+}

@@ -1,0 +1,66 @@
+//! One file for each command, and what they share.
+
+pub mod check;
+pub mod manoeuvre;
+mod manoeuvre_text;
+pub mod refine;
+mod refine_settings;
+pub(crate) mod refine_text;
+mod sailed;
+pub mod serve;
+pub mod similar;
+pub mod simulate;
+mod simulated;
+pub(crate) mod store;
+pub mod verify;
+
+use sistership_dynamics::Ship;
+use sistership_model::vessel::Status;
+use sistership_model::{Law, Model, particulars};
+
+use crate::failure::Failure;
+
+/// A model ready to sail.
+///
+/// # Errors
+/// Names what the model does not give.
+fn ready(model: &Model, law: &Law) -> Result<Ship, Failure> {
+    Ship::new(model, law).map_err(|error| Failure::Refused(error.to_string()))
+}
+
+/// Puts the ship into shallow water.
+///
+/// # Errors
+/// Her law does not know water depth, or the water is too shallow for her.
+fn set_depth(ship: &mut Ship, model: &Model, law: &Law, depth_m: f64) -> Result<(), Failure> {
+    if !knows_depth(law) {
+        return Err(Failure::Refused(format!("law `{}` does not know water depth: it sails in deep water only", law.name)));
+    }
+    let draught_m = particulars::value(&model.particulars, "draught_m").unwrap_or(0.0);
+    if depth_m <= draught_m {
+        return Err(Failure::Refused(format!("{depth_m} m of water do not float {}, who draws {draught_m} m", model.ship)));
+    }
+    ship.set_depth(depth_m);
+    Ok(())
+}
+
+/// Whether a law sails in shallow water.
+fn knows_depth(law: &Law) -> bool {
+    law.inputs.contains_key("depth")
+}
+
+/// A model with what its figures are worth.
+fn model_line(model: &Model, law: &Law) -> String {
+    let note = model.note.as_ref().map_or(String::new(), |note| format!("\nnote: {note}"));
+    format!("{}, law {}: {}{note}", model.name, law.name, worth(model.status))
+}
+
+/// What a model's figures are worth.
+fn worth(status: Status) -> &'static str {
+    match status {
+        Status::Published => "as published",
+        Status::Estimated => "ESTIMATED from particulars: a stopgap, not measured",
+        Status::Transferred => "TRANSFERRED from another ship, not fitted to her",
+        Status::Refined => "refined against trials",
+    }
+}

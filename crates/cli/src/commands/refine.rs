@@ -1,0 +1,195 @@
+//! `sistership refine`: a source model fitted to a ship's trials.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+use sistership_identify::refine::{Method, Refinement, Request, Settings, refine};
+use sistership_identify::similarity::RankedSource;
+use sistership_identify::source::{Similarity, best_source, similar};
+use sistership_model::{Model, Vessel, Zoo};
+use sistership_server::report::{Input, render};
+
+use super::refine_settings::{held_out, settings_file};
+use super::refine_text;
+use crate::arguments::positive;
+use crate::failure::Failure;
+use crate::files::Promised;
+use crate::named;
+use crate::output::{self, count, note};
+use crate::trials::{self, ReadTrial};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership refine --ship esso-osaka-3m --trials trials.yaml --out refined.yaml
+  sistership refine --ship my-ship.yaml --source mariner --trials a.csv b.csv c.csv --json
+  sistership refine --ship my-ship.yaml --source old-model.yaml --trials trials.yaml --held-out zigzag/last.csv
+
+The source's coefficients are the prior: ranges of tuning widen from the source outwards, and the option that is best on
+whole manoeuvres left out is taken. Give several manoeuvres; a single one allows the most conservative range only.";
+
+/// Refine a source model against a ship's trials.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Refine {
+    /// The ship: a name in the zoo or a vessel file.
+    #[arg(long)]
+    ship: String,
+    /// The source: a model's name or file, or `auto` for the most similar eligible ship of the zoo.
+    #[arg(long, value_name = "MODEL|auto", default_value = "auto")]
+    source: String,
+    /// Trial manifests, CSV or Parquet files.
+    #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
+    trials: Vec<PathBuf>,
+    /// The estimator; this version has `published`.
+    #[arg(long, value_name = "NAME", value_parser = method)]
+    method: Option<Method>,
+    /// Settings of the refinement (YAML); the flags below win over it.
+    #[arg(long, value_name = "FILE.yaml")]
+    settings: Option<PathBuf>,
+    /// Trials kept out of fit and choice altogether, to be judged on.
+    #[arg(long, value_name = "NAME", num_args = 1..)]
+    held_out: Vec<String>,
+    /// Start simulations of manoeuvres left out anew every so often; where absent, every ten ship lengths sailed.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    restart_s: Option<f64>,
+    /// Time over which accelerations are differenced; where absent, that of sailing a tenth of her length.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    difference_s: Option<f64>,
+    /// Write the refined model.
+    #[arg(long, value_name = "MODEL.yaml")]
+    out: Option<PathBuf>,
+    /// Write a report with plots.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+fn method(name: &str) -> Result<Method, String> {
+    if name == Method::Published.name() { Ok(Method::Published) } else { Err("this version has `published`".to_owned()) }
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    refinement: &'a Refinement,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ranking: Option<&'a [RankedSource]>,
+    #[serde(flatten)]
+    files: Files<'a>,
+}
+
+/// What was written.
+#[derive(Clone, Copy, Serialize)]
+pub struct Files<'a> {
+    /// The model.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub out: Option<&'a Path>,
+    /// The report.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub report: Option<&'a Path>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The ship, the source, a trial or the refinement is refused, or a file cannot be written.
+pub fn run(zoo: &Zoo, arguments: &Refine) -> Result<(), Failure> {
+    let target = named::ship(zoo, &arguments.ship)?;
+    let mut settings = settings(arguments)?;
+    let given = if arguments.source == "auto" { None } else { Some(named::model(zoo, &arguments.source)?.0) };
+    let out = promised(arguments.out.as_deref(), arguments)?;
+    let report = promised(arguments.report.as_deref(), arguments)?;
+    let read = trials::read(&arguments.trials)?;
+    trials::remark_other_ship(&read, target.name());
+    note(&format!("{}: {} read", target.name(), count(read.len(), "trial")));
+    guard(arguments, &read)?;
+    settings.held_out = held_out(&settings.held_out, &read)?;
+    let (source, similarity) = match given {
+        Some(model) => (model, None),
+        None => chosen(zoo, &target, &settings, &read).map(|(model, similarity)| (model, Some(similarity)))?,
+    };
+    let refinement = refined(zoo, &target, &source, &settings, &read)?;
+    if let Some(out) = out {
+        out.write(model_file(zoo, &refinement.model)?.as_bytes())?;
+    }
+    if let Some(report) = report {
+        report.write(&report_html(zoo, &target, &refinement, similarity.as_ref(), &read)?)?;
+    }
+    let ranking = similarity.as_ref().map(|similarity| similarity.ranking.as_slice());
+    let files = Files { out: arguments.out.as_deref(), report: arguments.report.as_deref() };
+    let document = Document { refinement: &refinement, ranking, files };
+    output::print(arguments.json, &document, || refine_text::text(&refinement, &source, ranking, &files))
+}
+
+fn promised(path: Option<&Path>, arguments: &Refine) -> Result<Option<Promised>, Failure> {
+    path.map(|path| Promised::new(path, &named_files(arguments))).transpose()
+}
+
+fn report_html(
+    zoo: &Zoo,
+    vessel: &Vessel,
+    refinement: &Refinement,
+    similarity: Option<&Similarity>,
+    read: &[ReadTrial],
+) -> Result<Vec<u8>, Failure> {
+    let law = named::law_of(zoo, &refinement.model)?;
+    let trials = trials::trials(read);
+    let input = Input { refinement, law: &law, vessel, trials: &trials, similarity, version: None };
+    let rendered = render(&input).map_err(|error| Failure::Refused(format!("the report: {error}")))?;
+    Ok(rendered.html.into_bytes())
+}
+
+/// Settings from the file, if any, and the flags.
+fn settings(arguments: &Refine) -> Result<Settings, Failure> {
+    let mut settings = arguments.settings.as_deref().map(settings_file).transpose()?.unwrap_or_default();
+    settings.method = arguments.method.unwrap_or(settings.method);
+    settings.restart_s = arguments.restart_s.or(settings.restart_s);
+    settings.difference_s = arguments.difference_s.or(settings.difference_s);
+    settings.held_out.extend(arguments.held_out.iter().cloned());
+    Ok(settings)
+}
+
+fn named_files(arguments: &Refine) -> Vec<PathBuf> {
+    let files = arguments.trials.iter().chain(&arguments.settings).cloned();
+    files.chain([PathBuf::from(&arguments.ship)]).collect()
+}
+
+/// The files that a manifest lists are known only once it is read.
+fn guard(arguments: &Refine, read: &[ReadTrial]) -> Result<(), Failure> {
+    let inputs = trials::inputs(read, &[]);
+    let mut files = arguments.out.as_deref().into_iter().chain(arguments.report.as_deref());
+    files.try_for_each(|path| Promised::new(path, &inputs).map(|_| ()))
+}
+
+/// The best eligible source; trials kept out have no say in it.
+fn chosen(zoo: &Zoo, target: &Vessel, settings: &Settings, read: &[ReadTrial]) -> Result<(Model, Similarity), Failure> {
+    note("choosing the source: similarity, and the trend of the trials");
+    let fitted = trials::trials(read).into_iter().filter(|trial| !settings.held_out.contains(&trial.name));
+    let similarity = similar(zoo, target, None, &fitted.collect::<Vec<_>>());
+    let source =
+        best_source(zoo, &similarity).map_err(|reasons| Failure::Refused(format!("{reasons}; name one with --source")))?;
+    note(&format!("source: {}", source.name));
+    Ok((source, similarity))
+}
+
+fn refined(zoo: &Zoo, target: &Vessel, source: &Model, settings: &Settings, read: &[ReadTrial]) -> Result<Refinement, Failure> {
+    let law = named::law_of(zoo, source)?;
+    let trials = trials::trials(read);
+    let request = Request { target, source, law: &law, trials: &trials, settings };
+    let told = |fraction: f64, what: &str| {
+        note(&format!("{:3.0} % {what}", 100.0 * fraction));
+        true
+    };
+    refine(&request, &told).map_err(|error| Failure::Refused(error.to_string()))
+}
+
+/// The model as a file, read back once to be sure that it is one.
+fn model_file(zoo: &Zoo, model: &Model) -> Result<String, Failure> {
+    let text = serde_yaml::to_string(model).map_err(|error| Failure::Refused(format!("the model cannot be written: {error}")))?;
+    let text = format!("# {} by sistership {}, method published\n{text}", model.name, env!("CARGO_PKG_VERSION"));
+    Model::parse("the refined model", &text, &|law| zoo.law(law).map(|law| (**law).clone()))?;
+    Ok(text)
+}

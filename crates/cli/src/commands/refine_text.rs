@@ -1,0 +1,125 @@
+//! A refinement in words and tables.
+
+use sistership_dynamics::manoeuvre::StandardManoeuvres;
+use sistership_identify::refine::{CoefficientChange, HeldOut, Refinement, StepOption};
+use sistership_identify::similarity::RankedSource;
+use sistership_model::Model;
+
+use super::refine::Files;
+use super::{similar, worth};
+use crate::table::{Table, number, optional};
+
+/// Channels in the order of the table: name, unit, and the factor to it from SI.
+const CHANNELS: [(&str, &str, f64); 8] = [
+    ("u", "m/s", 1.0),
+    ("v", "m/s", 1.0),
+    ("r", "deg/s", 180.0 / std::f64::consts::PI),
+    ("psi", "deg", 180.0 / std::f64::consts::PI),
+    ("x", "m", 1.0),
+    ("y", "m", 1.0),
+    ("phi", "deg", 180.0 / std::f64::consts::PI),
+    ("p", "deg/s", 180.0 / std::f64::consts::PI),
+];
+
+/// Everything that came of a refinement.
+pub fn text(refinement: &Refinement, source: &Model, ranking: Option<&[RankedSource]>, files: &Files<'_>) -> String {
+    let ranked = ranking.map_or(String::new(), |ranking| format!("Similar ships\n{}\n", similar::ranking(ranking)));
+    let head =
+        format!("{} refined from {} ({}) by `{}`\n\n", refinement.ship, source.name, worth(source.status), refinement.method);
+    let restart =
+        refinement.settings.restart_s.map_or(String::new(), |s| format!(";\nsimulations start anew every {} s", number(s)));
+    let how = format!("Root mean square errors: {}{restart}", refinement.held_out.how);
+    let errors = format!("{how}\n{}\n", errors(&refinement.held_out, has_roll(&refinement.model)));
+    let options = format!("Options, from the source outwards\n{}\n", options(&refinement.options));
+    let coefficients =
+        format!("Coefficients (moved: in standard deviations of the prior)\n{}\n", coefficients(&refinement.coefficients));
+    let manoeuvres =
+        format!("Standard manoeuvres\n{}\n", manoeuvres(&refinement.manoeuvres.source, &refinement.manoeuvres.refined));
+    format!("{ranked}{head}{errors}{options}{coefficients}{manoeuvres}{}", end(refinement, files))
+}
+
+/// A law without roll leaves roll where it was: its errors would say nothing.
+fn has_roll(model: &Model) -> bool {
+    model.coefficients.keys().any(|name| name.starts_with("K_"))
+}
+
+/// The errors on manoeuvres left out, before and after.
+pub fn errors(held_out: &HeldOut, has_roll: bool) -> Table {
+    let mut table = Table::new(["channel", "unit", "source", "refined", "change"]);
+    for (name, unit, factor) in CHANNELS.into_iter().filter(|(name, ..)| has_roll || !matches!(*name, "phi" | "p")) {
+        let of = |errors: &std::collections::BTreeMap<String, f64>| {
+            errors.get(name).filter(|rmse| **rmse != f64::MAX).map(|rmse| rmse * factor)
+        };
+        let (before, after) = (of(&held_out.source), of(&held_out.refined));
+        if before.is_some() || after.is_some() {
+            let change = before.zip(after).map_or_else(|| "-".to_owned(), |(before, after)| percent(before, after));
+            table.row([name.to_owned(), unit.to_owned(), optional(before), optional(after), change]);
+        }
+    }
+    table
+}
+
+fn percent(before: f64, after: f64) -> String {
+    if before > 0.0 { format!("{:+.0} %", 100.0 * (after / before - 1.0)) } else { "-".to_owned() }
+}
+
+fn options(options: &[StepOption]) -> Table {
+    let mut table = Table::new(["step", "least lambda", "error", "taken", "why not"]);
+    for option in options {
+        let least = option.lambda_min.map_or_else(|| "-".to_owned(), |lambda| format!("{lambda:.0e}"));
+        let taken = if option.chosen { "yes" } else { "" };
+        let reason = option.reason.clone().unwrap_or_default();
+        table.row([option.step.clone(), least, optional(option.error), taken.to_owned(), reason]);
+    }
+    table
+}
+
+fn coefficients(coefficients: &[CoefficientChange]) -> Table {
+    let mut table = Table::new(["name", "unit", "source", "refined", "std. error", "moved"]);
+    for change in coefficients {
+        let figures = [change.source, change.refined, change.standard_error].map(number);
+        let moved = format!("{:.2}", change.moved_sd);
+        table.row([change.name.clone(), change.unit.clone()].into_iter().chain(figures).chain([moved]));
+    }
+    table
+}
+
+fn manoeuvres(source: &StandardManoeuvres, refined: &StandardManoeuvres) -> Table {
+    let mut table = Table::new(["figure", "unit", "source", "refined"]);
+    for turn in refined.turns.iter().chain(source.turns.iter().filter(|_| refined.turns.is_empty())) {
+        let of = |all: &StandardManoeuvres| all.turns.iter().find(|other| other.rudder_deg == turn.rudder_deg).cloned();
+        let (before, after) = (of(source), of(refined));
+        let mut figure = |name: &str, of: &dyn Fn(&sistership_dynamics::metrics::TurningMetrics) -> Option<f64>| {
+            let [before, after] = [&before, &after].map(|turn| optional(turn.as_ref().and_then(of)));
+            table.row([format!("turn {}: {name}", turn.rudder_deg), "m".to_owned(), before, after]);
+        };
+        figure("advance", &|turn| turn.advance_m);
+        figure("tactical diameter", &|turn| turn.tactical_diameter_m);
+    }
+    for zigzag in refined.zigzags.iter().chain(source.zigzags.iter().filter(|_| refined.zigzags.is_empty())) {
+        let of = |all: &StandardManoeuvres| {
+            let same =
+                all.zigzags.iter().find(|other| (other.rudder_deg, other.switch_deg) == (zigzag.rudder_deg, zigzag.switch_deg));
+            optional(same.and_then(|zigzag| zigzag.first_overshoot_deg))
+        };
+        let name = format!("zigzag {}/{}: first overshoot", zigzag.rudder_deg, zigzag.switch_deg);
+        table.row([name, "deg".to_owned(), of(source), of(refined)]);
+    }
+    table
+}
+
+fn end(refinement: &Refinement, files: &Files<'_>) -> String {
+    let mut lines = vec![format!("condition number {}", number(refinement.condition_number))];
+    lines.extend(
+        refinement.collinear_groups.iter().map(|group| format!("cannot be told apart by these trials: {}", group.join(", "))),
+    );
+    let failures = refinement.manoeuvres.refined.failures.iter();
+    lines.extend(failures.map(|failure| format!("remark: the refined model fails a standard manoeuvre: {failure}")));
+    lines.extend(refinement.remarks.iter().map(|remark| format!("remark: {remark}")));
+    lines.push(match files.out {
+        Some(path) => format!("model written to {}", path.display()),
+        None => "model not written: give --out MODEL.yaml to keep it".to_owned(),
+    });
+    lines.extend(files.report.map(|path| format!("report written to {}", path.display())));
+    lines.join("\n")
+}

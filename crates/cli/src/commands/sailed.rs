@@ -1,0 +1,59 @@
+//! Sailing what a call asks for.
+
+use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard, turn, zigzag};
+use sistership_dynamics::{Ship, Stopped, Trajectory};
+
+/// Sails the turns and zigzags asked for, or the standard set where none is; what diverges is a failure in the result.
+pub fn sail(
+    ship: &Ship,
+    turns: &[f64],
+    zigzags: &[(f64, f64)],
+    settings: &ManoeuvreSettings,
+) -> (StandardManoeuvres, Vec<Trajectory>) {
+    if turns.is_empty() && zigzags.is_empty() {
+        return (standard(ship, settings), Vec::new());
+    }
+    let (mut sailed, mut tracks) = (StandardManoeuvres::default(), Vec::new());
+    for rudder in turns {
+        let turned = turn(ship, *rudder, settings).map(|turn| (turn.metrics, turn.track));
+        keep(turned, format!("turn {rudder} deg"), &mut sailed.turns, &mut sailed.failures, &mut tracks);
+    }
+    for (rudder, switch) in zigzags {
+        let zigzagged = zigzag(ship, *rudder, *switch, settings).map(|zigzag| (zigzag.metrics, zigzag.track));
+        keep(zigzagged, format!("zigzag {rudder}/{switch}"), &mut sailed.zigzags, &mut sailed.failures, &mut tracks);
+    }
+    (sailed, tracks)
+}
+
+fn keep<T>(
+    sailed: Result<(T, Trajectory), Stopped>,
+    name: String,
+    metrics: &mut Vec<T>,
+    failures: &mut Vec<String>,
+    tracks: &mut Vec<Trajectory>,
+) {
+    match sailed {
+        Ok((of, track)) => {
+            metrics.push(of);
+            tracks.push(track);
+        }
+        Err(stopped) => failures.push(format!("{name}: {stopped}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_model::Zoo;
+
+    #[test]
+    fn what_is_asked_for_is_sailed_and_nothing_else() {
+        let zoo = Zoo::embedded().unwrap();
+        let ship = Ship::new(&zoo.model("mariner").unwrap(), zoo.law("abkowitz").unwrap()).unwrap();
+        let (sailed, tracks) = sail(&ship, &[35.0, -35.0], &[], &ManoeuvreSettings::default());
+        assert_eq!((sailed.turns.len(), sailed.zigzags.len(), sailed.imo.len(), tracks.len()), (2, 0, 0, 2));
+        let (all, tracks) = sail(&ship, &[], &[], &ManoeuvreSettings::default());
+        assert!(!all.imo.is_empty() && tracks.is_empty());
+    }
+}

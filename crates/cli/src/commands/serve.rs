@@ -1,0 +1,147 @@
+//! `sistership serve`: the REST server.
+
+use std::io::IsTerminal as _;
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use sistership_server::{Config, DEFAULT_LISTEN, Running, Server, StartError};
+use tracing_subscriber::EnvFilter;
+
+use super::store::{StoreArguments, block_on};
+use crate::failure::{Failure, about_file};
+use crate::output;
+use crate::zoo::text_of;
+
+/// Holds the API key.
+const KEY: &str = "SISTERSHIP_API_KEY";
+/// Holds the filter of the log.
+const LOG: &str = "SISTERSHIP_LOG";
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership serve
+  sistership serve --listen 127.0.0.1:9000 --data-dir /var/lib/sistership
+  sistership serve --listen 0.0.0.0:8080 --database-url postgres://user@host/sistership --api-key-file /run/secrets/key
+
+The API key is read from SISTERSHIP_API_KEY or --api-key-file, never from a flag that others could see; requests carry
+it as `Authorization: Bearer KEY`. Without a key the server listens on loopback only. SISTERSHIP_LOG sets what is logged
+on standard error (`info` by default). Stop it with Ctrl-C or SIGTERM: jobs under way go back to the queue.";
+
+/// Run the REST server.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Serve {
+    /// Address and port; port 0 takes a free one.
+    #[arg(long, value_name = "ADDRESS:PORT", env = "SISTERSHIP_LISTEN", default_value_t = DEFAULT_LISTEN, value_parser = address)]
+    listen: SocketAddr,
+    #[command(flatten)]
+    store: StoreArguments,
+    /// File that holds the API key; wins over SISTERSHIP_API_KEY.
+    #[arg(long, value_name = "FILE", env = "SISTERSHIP_API_KEY_FILE")]
+    api_key_file: Option<PathBuf>,
+    /// Jobs worked on at a time; 0 leaves them to other processes on the same database.
+    #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS", default_value_t = 1, value_parser = clap::value_parser!(u16).range(..=64))]
+    workers: u16,
+}
+
+fn address(text: &str) -> Result<SocketAddr, String> {
+    text.parse().map_err(|_| "write an address and a port, such as 127.0.0.1:8080 or [::1]:8080".to_owned())
+}
+
+/// Runs the command until it is told to stop.
+///
+/// # Errors
+/// The configuration is refused, or the store or the address cannot be used.
+pub fn run(serve: &Serve, zoo: &[PathBuf]) -> Result<(), Failure> {
+    if !zoo.is_empty() {
+        return Err(Failure::Call(
+            "a server keeps its ships and laws in its database: send them to /v1/ships and /v1/laws, not by --zoo".into(),
+        ));
+    }
+    let config = config(serve)?;
+    let filter = EnvFilter::try_from_env(LOG).unwrap_or_else(|_| EnvFilter::new("info"));
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal())
+        .init();
+    block_on(async {
+        let running = Server::start(config).await.map_err(refused)?;
+        let url = running.url();
+        output::print(false, &(), || format!("sistership listens on {url}"))?;
+        until_stopped(running).await
+    })
+}
+
+fn config(serve: &Serve) -> Result<Config, Failure> {
+    let mut config = Config::new(&serve.store.data_dir);
+    config.listen = serve.listen;
+    config.database_url = serve.store.url();
+    config.workers = usize::from(serve.workers);
+    config.api_key = match &serve.api_key_file {
+        Some(file) => Some(key_of(file)?),
+        None => std::env::var(KEY).ok().filter(|key| !key.is_empty()),
+    };
+    config.check().map_err(refused)?;
+    Ok(config)
+}
+
+fn key_of(file: &Path) -> Result<String, Failure> {
+    let key = text_of(file)?.trim().to_owned();
+    if key.is_empty() { Err(about_file(file, "holds no API key")) } else { Ok(key) }
+}
+
+/// What can be seen in the call alone is a call that is wrong.
+fn refused(error: StartError) -> Failure {
+    match error {
+        StartError::OpenWithoutKey(listen) => Failure::Call(format!(
+            "refusing to listen on {listen} without an API key: set {KEY} or --api-key-file, or listen on 127.0.0.1"
+        )),
+        StartError::Key => Failure::Call(error.to_string()),
+        other => Failure::Refused(other.to_string()),
+    }
+}
+
+/// Waits for a signal, then for what is under way; a second signal does not wait.
+async fn until_stopped(running: Running) -> Result<(), Failure> {
+    signal().await?;
+    output::note("stopping; once more to stop at once");
+    tokio::select! {
+        () = running.stop() => Ok(()),
+        second = signal() => second.and(Err(Failure::Refused("stopped before everything under way had ended".into()))),
+    }
+}
+
+/// Ctrl-C, or SIGTERM where there is one.
+async fn signal() -> Result<(), Failure> {
+    let unheard = |error: std::io::Error| Failure::Refused(format!("signals cannot be heard: {error}"));
+    #[cfg(unix)]
+    {
+        let mut terminate = tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate()).map_err(unheard)?;
+        tokio::select! {
+            interrupted = tokio::signal::ctrl_c() => interrupted.map_err(unheard),
+            _ = terminate.recv() => Ok(()),
+        }
+    }
+    #[cfg(not(unix))]
+    tokio::signal::ctrl_c().await.map_err(unheard)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_are_read() {
+        assert_eq!(address("127.0.0.1:8080"), Ok(DEFAULT_LISTEN));
+        assert!(address("8080").is_err_and(|message| message.contains("127.0.0.1:8080")));
+    }
+
+    #[test]
+    fn an_open_server_is_a_call_that_is_wrong() {
+        let failure = refused(StartError::OpenWithoutKey(([0, 0, 0, 0], 80).into()));
+        assert_eq!(failure.status(), 2);
+        assert!(failure.message().is_some_and(|message| message.contains("--api-key-file")));
+    }
+}

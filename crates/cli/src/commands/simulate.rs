@@ -1,0 +1,125 @@
+//! `sistership simulate`: recorded trials against a model driven by their rudder and revolutions.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+use sistership_dynamics::error::standard_deviations;
+use sistership_dynamics::recorded::{Replay, ReplaySettings};
+use sistership_model::trial::Channel;
+use sistership_model::{Law, Model, Zoo};
+
+use crate::arguments::{Integration, positive};
+use crate::commands::simulated::{Simulated, Simulator, total};
+use crate::failure::Failure;
+use crate::output::{self, count, note};
+use crate::table::{Table, number};
+use crate::trials::{self, ReadTrial};
+use crate::{commands::model_line, folder, named, track};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership simulate --model mariner --trials turn.csv zigzag.csv
+  sistership simulate --model my-model.yaml --trials trials.yaml --restart-s 100 --json
+  sistership simulate --model sr108 --trials trials.yaml --out simulated
+
+Errors are root mean squares; `std. MSE` adds up the squares of those of u, v, r, psi, x and y, each divided by the
+standard deviation of the channel over the trials given. Exit status 1 when a simulation leaves the physical range.";
+
+/// Simulate recorded trials with a model and measure its errors.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Simulate {
+    /// The model: a name in the zoo, a model file, or a vessel file with a model.
+    #[arg(long)]
+    model: String,
+    /// Trial manifests, CSV or Parquet files.
+    #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
+    trials: Vec<PathBuf>,
+    /// Start anew from the recorded state every so often; never where absent.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    restart_s: Option<f64>,
+    /// Integration method.
+    #[arg(long, value_enum, default_value_t)]
+    method: Integration,
+    /// Longest step; sampling intervals are cut into equal steps no longer than this.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true, default_value_t = 0.5)]
+    step_s: f64,
+    /// Write one CSV per trial of the simulated states at the recorded times into this folder.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    model: &'a str,
+    law: &'a str,
+    trials: &'a [Simulated],
+    all: Option<Simulated>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The model or a trial is refused, a channel is missing, or a simulation leaves the physical range.
+pub fn run(zoo: &Zoo, simulate: &Simulate) -> Result<(), Failure> {
+    let (model, law) = named::model(zoo, &simulate.model)?;
+    let read = trials::read(&simulate.trials)?;
+    trials::remark_other_ship(&read, &model.ship);
+    let files = promised(simulate, &read)?;
+    let runs = simulate_all(simulate, &model, &law, &read)?;
+    let simulated = written(runs, files, &law, &read)?;
+    let document = Document { model: &model.name, law: &model.law, trials: &simulated, all: total(&simulated) };
+    output::print(simulate.json, &document, || text(simulate, &model, &law, &document))?;
+    if simulated.iter().any(|trial| trial.diverged) { Err(Failure::Told) } else { Ok(()) }
+}
+
+fn promised(simulate: &Simulate, read: &[ReadTrial]) -> Result<Vec<folder::Promised>, Failure> {
+    let Some(out) = &simulate.out else { return Ok(Vec::new()) };
+    let names: Vec<&str> = read.iter().map(|read| read.trial.name.as_str()).collect();
+    folder::promise(out, &names, &trials::inputs(read, &simulate.trials))
+}
+
+fn simulate_all(simulate: &Simulate, model: &Model, law: &Law, read: &[ReadTrial]) -> Result<Vec<(Simulated, Replay)>, Failure> {
+    let settings = ReplaySettings { restart_s: simulate.restart_s, method: simulate.method.into(), step_s: simulate.step_s };
+    let deviations = standard_deviations(&trials::trials(read));
+    let simulator = Simulator { model, law, settings, deviations };
+    note(&format!("simulating {} with {}", count(read.len(), "trial"), model.name));
+    read.iter().map(|read| simulator.run(read)).collect()
+}
+
+/// Writes the states of each trial where files are promised.
+fn written(
+    runs: Vec<(Simulated, Replay)>,
+    files: Vec<folder::Promised>,
+    law: &Law,
+    read: &[ReadTrial],
+) -> Result<Vec<Simulated>, Failure> {
+    let mut files = files.into_iter();
+    let one = |((mut simulated, run), read): ((Simulated, Replay), &ReadTrial)| {
+        if let Some(promised) = files.next() {
+            promised.file.write(&track::csv(&run.track, law, read.trial.channel(Channel::N).is_some())?)?;
+            simulated.out = Some(promised.shown);
+        }
+        Ok(simulated)
+    };
+    runs.into_iter().zip(read).map(one).collect()
+}
+
+fn text(simulate: &Simulate, model: &Model, law: &Law, document: &Document<'_>) -> String {
+    let restart = simulate.restart_s.map_or("once from the first sample".to_owned(), |s| format!("anew every {} s", number(s)));
+    let head = format!("{}\nstarted {restart}; root mean square errors\n\n", model_line(model, law));
+    let mut table = Table::new(["trial", "s", "u m/s", "v m/s", "r deg/s", "psi deg", "x m", "y m", "std. MSE"]);
+    document
+        .trials
+        .iter()
+        .chain(document.all.as_ref().filter(|_| document.trials.len() > 1))
+        .for_each(|trial| table.row(trial.cells()));
+    let diverged =
+        document.trials.iter().filter_map(|trial| Some(format!("DIVERGED: {}: {}\n", trial.file, trial.reason.as_ref()?)));
+    let written = simulate.out.as_ref().map_or(String::new(), |out| format!("simulated states written to {}\n", out.display()));
+    format!("{head}{table}{}{written}", diverged.collect::<String>())
+}

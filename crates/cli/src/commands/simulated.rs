@@ -1,0 +1,144 @@
+//! One recorded trial simulated by a model, and how far off it is.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use sistership_dynamics::Ship;
+use sistership_dynamics::error::{SquaredError, standardised_mse};
+use sistership_dynamics::recorded::{Replay, ReplaySettings, replay};
+use sistership_model::trial::{Channel, Trial};
+use sistership_model::{Law, Model};
+
+use crate::commands;
+use crate::failure::Failure;
+use crate::output::note;
+use crate::table::{number, optional};
+use crate::trials::ReadTrial;
+
+/// The channels whose errors every document holds, null where they are unknown.
+const CHANNELS: [Channel; 6] = [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::X, Channel::Y];
+
+/// Errors of one trial as the `simulate` command prints them.
+#[derive(Debug, Clone, Serialize)]
+pub struct Simulated {
+    /// The file as it was given.
+    pub file: String,
+    /// From the first to the last sample, s.
+    pub duration_s: f64,
+    /// Root mean square errors by channel, SI; null where the trial lacks the channel or the simulation diverged.
+    pub rmse: BTreeMap<&'static str, Option<f64>>,
+    /// Standardised mean squared error; null where the simulation diverged.
+    pub standardised_mse: Option<f64>,
+    /// Whether the simulation left the physical range.
+    pub diverged: bool,
+    /// When and why it did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// The file of simulated states.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub out: Option<String>,
+    #[serde(skip)]
+    samples: usize,
+}
+
+/// What is the same for every trial.
+pub struct Simulator<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// Its law.
+    pub law: &'a Law,
+    /// How to simulate.
+    pub settings: ReplaySettings,
+    /// Standard deviations of the channels over all trials.
+    pub deviations: BTreeMap<Channel, f64>,
+}
+
+impl Simulator<'_> {
+    /// Simulates a trial.
+    ///
+    /// # Errors
+    /// The model cannot sail, or the trial lacks a channel.
+    pub fn run(&self, read: &ReadTrial) -> Result<(Simulated, Replay), Failure> {
+        let ship = self.ship(&read.trial)?;
+        let run = replay(&ship, &read.trial, &self.settings);
+        let run = run.map_err(|error| Failure::Refused(format!("{error} of {} by law `{}`", self.model.name, self.law.name)))?;
+        Ok((self.errors(&read.file, &read.trial, &run), run))
+    }
+
+    /// The ship in the water of a trial, with a range that covers its speeds.
+    fn ship(&self, trial: &Trial) -> Result<Ship, Failure> {
+        let mut ship = commands::ready(self.model, self.law)?;
+        let speeds = trial.channel(Channel::U).into_iter().flatten();
+        ship.set_envelope_speed(speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs())));
+        match trial.depth_m.or_else(|| mean(trial.channel(Channel::Depth)?)) {
+            Some(depth_m) if commands::knows_depth(self.law) => commands::set_depth(&mut ship, self.model, self.law, depth_m)?,
+            Some(depth_m) => {
+                let law = &self.law.name;
+                note(&format!("warning: {}: sailed in {depth_m} m of water; law `{law}` knows deep water only", trial.name));
+            }
+            None => {}
+        }
+        Ok(ship)
+    }
+
+    fn errors(&self, file: &str, trial: &Trial, run: &Replay) -> Simulated {
+        let error = SquaredError::of(trial, run);
+        let reason = run.stopped.as_ref().map(ToString::to_string);
+        let known = |value: Option<f64>| value.filter(|_| reason.is_none());
+        let rmse = CHANNELS.map(|channel| (channel.name(), known(error.channel_rmse(channel))));
+        Simulated {
+            file: file.to_owned(),
+            duration_s: trial.duration_s(),
+            rmse: rmse.into(),
+            standardised_mse: known(Some(standardised_mse(&error, &self.deviations))),
+            diverged: reason.is_some(),
+            reason,
+            out: None,
+            samples: run.samples.len(),
+        }
+    }
+}
+
+impl Simulated {
+    /// A row of the table.
+    pub fn cells(&self) -> Vec<String> {
+        let value = |channel: Channel| {
+            let scale = if matches!(channel, Channel::R | Channel::Psi) { 1_f64.to_degrees() } else { 1.0 };
+            optional(self.rmse.get(channel.name()).copied().flatten().map(|value| value * scale))
+        };
+        let mut cells = vec![self.file.clone(), number(self.duration_s)];
+        cells.extend(CHANNELS.map(value));
+        cells.push(optional(self.standardised_mse));
+        cells
+    }
+}
+
+/// The errors over all samples of all trials; none where one diverged.
+pub fn total(trials: &[Simulated]) -> Option<Simulated> {
+    if trials.iter().any(|trial| trial.diverged) {
+        return None;
+    }
+    let mean = |of: &dyn Fn(&Simulated) -> Option<f64>| {
+        let pairs = trials.iter().filter_map(|trial| Some((of(trial)?, trial.samples as f64)));
+        let (sum, samples) = pairs.fold((0.0, 0.0), |(sum, all), (value, samples)| (sum + value * samples, all + samples));
+        (samples > 0.0).then(|| sum / samples)
+    };
+    let rmse = CHANNELS.map(|channel| {
+        let square = |trial: &Simulated| trial.rmse.get(channel.name()).copied().flatten().map(|rmse| rmse * rmse);
+        (channel.name(), mean(&square).map(f64::sqrt))
+    });
+    Some(Simulated {
+        file: "all".to_owned(),
+        duration_s: trials.iter().map(|trial| trial.duration_s).sum(),
+        rmse: rmse.into(),
+        standardised_mse: mean(&|trial| trial.standardised_mse),
+        diverged: false,
+        reason: None,
+        out: None,
+        samples: trials.iter().map(|trial| trial.samples).sum(),
+    })
+}
+
+fn mean(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}

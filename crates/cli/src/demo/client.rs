@@ -1,0 +1,93 @@
+//! A client of the server's REST interface, as a user of it would write one.
+
+use reqwest::multipart::{Form, Part};
+use reqwest::{Client, RequestBuilder, Response};
+use serde_json::Value;
+
+use crate::failure::Failure;
+
+/// Speaks to one server.
+pub struct Api {
+    client: Client,
+    url: String,
+}
+
+impl Api {
+    /// Speaks to the server at a URL.
+    pub fn new(url: String) -> Self {
+        Self { client: Client::new(), url }
+    }
+
+    /// The JSON under a path.
+    ///
+    /// # Errors
+    /// What the server refuses, in its own words.
+    pub async fn get(&self, path: &str) -> Result<Value, Failure> {
+        json(self.client.get(self.at(path))).await
+    }
+
+    /// The text under a path, in a form.
+    ///
+    /// # Errors
+    /// As [`Api::get`].
+    pub async fn text(&self, path: &str, accept: &str) -> Result<String, Failure> {
+        let response = answered(self.client.get(self.at(path)).header("accept", accept)).await?;
+        response.text().await.map_err(broken)
+    }
+
+    /// Sends YAML.
+    ///
+    /// # Errors
+    /// As [`Api::get`].
+    pub async fn post_yaml(&self, path: &str, body: String) -> Result<Value, Failure> {
+        json(self.client.post(self.at(path)).header("content-type", "application/yaml").body(body)).await
+    }
+
+    /// Sends JSON.
+    ///
+    /// # Errors
+    /// As [`Api::get`].
+    pub async fn post_json(&self, path: &str, body: &Value) -> Result<Value, Failure> {
+        json(self.client.post(self.at(path)).json(body)).await
+    }
+
+    /// Uploads files with their manifest.
+    ///
+    /// # Errors
+    /// As [`Api::get`].
+    pub async fn upload(&self, manifest: String, files: Vec<(String, Vec<u8>)>) -> Result<Value, Failure> {
+        let form = Form::new().text("manifest", manifest);
+        let form = files.into_iter().fold(form, |form, (name, bytes)| form.part("file", Part::bytes(bytes).file_name(name)));
+        json(self.client.post(self.at("/v1/trials")).multipart(form)).await
+    }
+
+    /// Deletes what is under a path; it can be undone.
+    ///
+    /// # Errors
+    /// As [`Api::get`].
+    pub async fn delete(&self, path: &str) -> Result<(), Failure> {
+        answered(self.client.delete(self.at(path))).await.map(drop)
+    }
+
+    fn at(&self, path: &str) -> String {
+        format!("{}{path}", self.url)
+    }
+}
+
+async fn json(request: RequestBuilder) -> Result<Value, Failure> {
+    answered(request).await?.json().await.map_err(broken)
+}
+
+/// The answer, or the problem that the server tells.
+async fn answered(request: RequestBuilder) -> Result<Response, Failure> {
+    let response = request.send().await.map_err(broken)?;
+    if response.status().is_success() {
+        return Ok(response);
+    }
+    let problem: Value = response.json().await.map_err(broken)?;
+    Err(Failure::Refused(format!("the server says: {}", problem["detail"].as_str().unwrap_or("no reason given"))))
+}
+
+fn broken(error: reqwest::Error) -> Failure {
+    Failure::Refused(format!("the server did not answer: {error}"))
+}

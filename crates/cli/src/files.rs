@@ -1,0 +1,89 @@
+//! Files that appear whole or not at all.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use crate::failure::{Failure, about_file};
+
+/// A file to be written: the place is known to be writable before the work begins.
+#[derive(Debug)]
+pub struct Promised {
+    path: PathBuf,
+    file: NamedTempFile,
+}
+
+impl Promised {
+    /// Makes sure that a file can be written, without touching what is there.
+    ///
+    /// # Errors
+    /// Says why the file could not be written, or that it is one of `inputs`, which must not be overwritten.
+    pub fn new(path: &Path, inputs: &[PathBuf]) -> Result<Self, Failure> {
+        let place = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        if inputs.iter().filter_map(|input| input.canonicalize().ok()).any(|input| input == place) {
+            return Err(about_file(path, "is read by this command and will not be overwritten; choose another place"));
+        }
+        if place.exists() && !place.is_file() {
+            return Err(about_file(path, "is not a file that can be replaced"));
+        }
+        let file = beside(&place).map_err(|error| about_file(path, unwritable(&place, &error)))?;
+        Ok(Self { path: place, file })
+    }
+
+    /// Writes the file and puts it into its place.
+    ///
+    /// # Errors
+    /// Says why it could not be written; what was there before is kept.
+    pub fn write(mut self, bytes: &[u8]) -> Result<(), Failure> {
+        let written = self.file.write_all(bytes).and_then(|()| self.file.as_file().sync_all());
+        let kept = written.and_then(|()| self.file.persist(&self.path).map(|_| ()).map_err(|error| error.error));
+        kept.map_err(|error| about_file(&self.path, format!("cannot be written: {error}")))
+    }
+}
+
+fn unwritable(place: &Path, error: &std::io::Error) -> String {
+    match place.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.exists() => format!("there is no folder {}", folder.display()),
+        _ => format!("cannot be written: {}", error.kind()),
+    }
+}
+
+/// A temporary file in the folder of another, with the permissions that a new file gets.
+fn beside(path: &Path) -> std::io::Result<NamedTempFile> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".sistership-");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_file_is_replaced_only_when_it_is_complete() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.yaml");
+        std::fs::write(&path, "old").unwrap();
+        drop(Promised::new(&path, &[]).unwrap());
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
+        Promised::new(&path, &[]).unwrap().write(b"new").unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "new");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn inputs_folders_and_lost_places_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        std::fs::write(&path, "data").unwrap();
+        let refused = |place: &Path| Promised::new(place, std::slice::from_ref(&path)).unwrap_err().message().unwrap().to_owned();
+        assert!(refused(&path).contains("will not be overwritten"));
+        assert!(refused(folder.path()).contains("is not a file"));
+        assert!(refused(&folder.path().join("lost/b.csv")).contains("there is no folder"));
+    }
+}

@@ -1,0 +1,55 @@
+//! The command line of Sistership: the work of the server, on files.
+//!
+//! Exit status: 0 done, 1 the data or the model says no (with the reason), 2 the call is wrong. With `--json` one JSON
+//! document goes to standard output and nothing else; progress, warnings and errors go to standard error.
+
+mod arguments;
+mod close;
+mod commands;
+mod demo;
+mod failure;
+mod files;
+mod folder;
+mod named;
+mod output;
+mod table;
+mod track;
+mod trials;
+mod zoo;
+
+pub use demo::sea_trials;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::arguments::{Arguments, Command};
+use crate::failure::Failure;
+
+/// Runs what the process' arguments ask for.
+pub fn run() -> ExitCode {
+    let arguments = Arguments::parse();
+    match dispatch(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            if let Some(message) = failure.message() {
+                output::note(&format!("error: {}", output::shortened(message)));
+            }
+            ExitCode::from(failure.status())
+        }
+    }
+}
+
+fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
+    let zoo = || zoo::load(&arguments.zoo);
+    match &arguments.command {
+        Command::Similar(similar) => commands::similar::run(&zoo()?, similar),
+        Command::Check(check) => commands::check::run(check),
+        Command::Refine(refine) => commands::refine::run(&zoo()?, refine),
+        Command::Simulate(simulate) => commands::simulate::run(&zoo()?, simulate),
+        Command::Manoeuvre(manoeuvre) => commands::manoeuvre::run(&zoo()?, manoeuvre),
+        Command::Demo(demo) => demo::run(demo, &zoo()?),
+        Command::Serve(serve) => commands::serve::run(serve, &arguments.zoo),
+        Command::Verify(verify) => commands::verify::run(verify),
+    }
+}

@@ -1,0 +1,171 @@
+//! What `SHIP` and `MODEL` name: an entry of the zoo, or a YAML file.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use sistership_model::{FileError, Law, Model, Vessel, Zoo};
+
+use crate::close::close_names;
+use crate::failure::{Failure, about_file};
+use crate::zoo::text_of;
+
+/// The vessel that `SHIP` names.
+///
+/// # Errors
+/// It is neither a ship of the zoo nor a vessel file that reads.
+pub fn ship(zoo: &Zoo, name: &str) -> Result<Arc<Vessel>, Failure> {
+    if let Some(vessel) = zoo.vessel(name) {
+        return Ok(Arc::clone(vessel));
+    }
+    let path = Path::new(name);
+    if path.is_file() {
+        return vessel_file(zoo, path);
+    }
+    if let Some((ship, _)) = name.split_once('/').filter(|(ship, _)| zoo.vessel(ship).is_some()) {
+        return Err(Failure::Refused(format!("`{name}` is a model; a ship is asked for here: `{ship}`")));
+    }
+    Err(unknown(name, zoo.vessels().map(|vessel| vessel.name().to_owned()).collect()))
+}
+
+fn vessel_file(zoo: &Zoo, path: &Path) -> Result<Arc<Vessel>, Failure> {
+    let text = text_of(path)?;
+    match kind_of(&text) {
+        Kind::Named(kind) if kind == "model" => {
+            Err(about_file(path, "is a model; a ship is asked for here: a file of `kind: vessel`"))
+        }
+        Kind::Named(kind) if kind != "vessel" => {
+            Err(about_file(path, format!("is of `kind: {kind}`; a ship is of `kind: vessel`")))
+        }
+        Kind::None => Err(about_file(path, "is no ship's file: it does not begin with `kind: vessel`")),
+        _ => Ok(Arc::new(read_vessel(zoo, path, &text)?)),
+    }
+}
+
+fn read_vessel(zoo: &Zoo, path: &Path, text: &str) -> Result<Vessel, FileError> {
+    let shown = path.display().to_string();
+    let vessel = Vessel::parse(&shown, text)?;
+    zoo.check_models(&vessel).map_err(|error| FileError { file: shown, ..error })?;
+    Ok(vessel)
+}
+
+/// The model that `MODEL` names, and its law.
+///
+/// # Errors
+/// It is neither a model of the zoo nor a file that holds one.
+pub fn model(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
+    let ship = name.split_once('/').map_or(name, |(ship, _)| ship);
+    let path = Path::new(name);
+    let model = if zoo.vessel(ship).is_some() {
+        zoo.model(name)?
+    } else if path.is_file() {
+        model_file(zoo, path)?
+    } else {
+        return Err(unknown(name, model_names(zoo, name.contains('/'))));
+    };
+    let law = law_of(zoo, &model)?;
+    Ok((model, law))
+}
+
+/// The law of a model.
+///
+/// # Errors
+/// The zoo does not have it.
+pub fn law_of(zoo: &Zoo, model: &Model) -> Result<Arc<Law>, Failure> {
+    let missing = || Failure::Refused(format!("{}: there is no law `{}`", model.name, model.law));
+    zoo.law(&model.law).cloned().ok_or_else(missing)
+}
+
+fn model_file(zoo: &Zoo, path: &Path) -> Result<Model, Failure> {
+    const WANTED: &str = "a model is of `kind: model`, or of `kind: vessel` with models";
+    let text = text_of(path)?;
+    let shown = path.display().to_string();
+    match kind_of(&text) {
+        Kind::Named(kind) if kind == "vessel" => {
+            let vessel = read_vessel(zoo, path, &text)?;
+            Ok(zoo.published(&vessel, None).map_err(|error| FileError { file: shown, ..error })?)
+        }
+        Kind::Named(kind) if kind != "model" => Err(about_file(path, format!("is of `kind: {kind}`; {WANTED}"))),
+        Kind::None => Err(about_file(path, format!("is no model's file: {WANTED}"))),
+        _ => Ok(Model::parse(&shown, &text, &|law| zoo.law(law).map(|law| (**law).clone()))?),
+    }
+}
+
+/// What a document says it is.
+enum Kind {
+    Named(String),
+    /// It says nothing.
+    None,
+    /// It is no YAML; reading it for good tells the line.
+    Broken,
+}
+
+fn kind_of(text: &str) -> Kind {
+    match serde_yaml::from_str::<serde_yaml::Value>(text) {
+        Err(_) => Kind::Broken,
+        Ok(document) => {
+            document.get("kind").and_then(|kind| kind.as_str()).map_or(Kind::None, |kind| Kind::Named(kind.to_owned()))
+        }
+    }
+}
+
+/// Ships that have a model, or `ship/model` for each of them.
+fn model_names(zoo: &Zoo, full: bool) -> Vec<String> {
+    let of_ship = |vessel: &Arc<Vessel>| -> Vec<String> {
+        let ship = vessel.name();
+        let models = &vessel.file.models;
+        if full { models.iter().map(|model| format!("{ship}/{}", model.name)).collect() } else { vec![ship.to_owned()] }
+    };
+    zoo.vessels().filter(|vessel| !vessel.file.models.is_empty()).flat_map(of_ship).collect()
+}
+
+fn unknown(name: &str, known: Vec<String>) -> Failure {
+    let close: Vec<String> = close_names(name, &known).into_iter().map(|known| format!("`{known}`")).collect();
+    let hint = if close.is_empty() {
+        format!("the zoo has {}", known.join(", "))
+    } else {
+        format!("did you mean {}?", close.join(" or "))
+    };
+    Failure::Refused(format!("`{name}` is neither a name in the zoo nor a file; {hint}"))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn message<T: std::fmt::Debug>(result: Result<T, Failure>) -> String {
+        result.unwrap_err().message().unwrap().to_owned()
+    }
+
+    #[test]
+    fn names_of_the_zoo_are_found_and_slips_corrected() {
+        let zoo = Zoo::embedded().unwrap();
+        assert_eq!(ship(&zoo, "mariner").unwrap().name(), "mariner");
+        assert_eq!(model(&zoo, "mariner").unwrap().0.law, "abkowitz");
+        assert!(message(ship(&zoo, "marinr")).contains("did you mean `mariner`?"));
+        assert!(message(ship(&zoo, "kvlcc")).contains("`kvlcc2` or `kvlcc2-7m`"));
+        assert!(message(ship(&zoo, "zzz")).contains("the zoo has"));
+        assert!(message(ship(&zoo, "mariner/abkowitz")).contains("is a model"));
+        assert!(message(model(&zoo, "marinr/abkowitz")).contains("`mariner/abkowitz`"));
+        assert!(message(model(&zoo, "esso-osaka-3m")).contains("particulars only"));
+    }
+
+    #[test]
+    fn files_are_read_by_their_kind() {
+        let zoo = Zoo::embedded().unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("m.yaml");
+        let file = path.to_str().unwrap();
+        std::fs::write(&path, zoo.vessel_text("mariner").unwrap()).unwrap();
+        assert_eq!(model(&zoo, file).unwrap().0, zoo.model("mariner").unwrap());
+        std::fs::write(&path, serde_yaml::to_string(&zoo.model("mariner").unwrap()).unwrap()).unwrap();
+        assert_eq!(model(&zoo, file).unwrap().0, zoo.model("mariner").unwrap());
+        assert!(message(ship(&zoo, file)).contains("is a model"));
+        std::fs::write(&path, "t_s,u_m_s\n0,1\n").unwrap();
+        assert!(
+            message(ship(&zoo, file)).contains("is no ship's file") && message(model(&zoo, file)).contains("is no model's file")
+        );
+        std::fs::write(&path, "kind: vessel\nname: [\n").unwrap();
+        assert!(message(ship(&zoo, file)).contains("m.yaml:"));
+    }
+}

@@ -1,0 +1,63 @@
+//! Standard output for results, standard error for everything else.
+
+use std::io::{ErrorKind, Write};
+
+use serde::Serialize;
+
+use crate::failure::Failure;
+
+/// Prints a result: one JSON document, or text.
+///
+/// # Errors
+/// Standard output cannot be written. A reader that stopped reading (`| head`) is no error.
+pub fn print(json: bool, document: &impl Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
+    let mut result = if json {
+        serde_json::to_string_pretty(document)
+            .map_err(|error| Failure::Refused(format!("the result cannot be written: {error}")))?
+    } else {
+        text()
+    };
+    result.truncate(result.trim_end().len());
+    result.push('\n');
+    let mut out = std::io::stdout().lock();
+    match out.write_all(result.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::Refused(format!("standard output: {error}"))),
+        _ => Ok(()),
+    }
+}
+
+/// Tells something on standard error; where nobody listens nothing is lost that counts.
+pub fn note(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
+/// `1 trial`, `2 trials`.
+pub fn count(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+}
+
+/// A message none of whose lines is endless, as one that quotes a file may be.
+pub fn shortened(message: &str) -> String {
+    const MOST: usize = 1000;
+    let short = |line: &str| match line.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{} ...", &line[..end]),
+        None => line.to_owned(),
+    };
+    message.lines().map(short).collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn endless_lines_are_cut() {
+        assert_eq!(shortened("a\nb"), "a\nb");
+        assert_eq!(shortened(&"ü".repeat(5000)).chars().count(), 1004);
+    }
+
+    #[test]
+    fn numbers_agree() {
+        assert_eq!((count(1, "trial"), count(0, "trial")), ("1 trial".to_owned(), "0 trials".to_owned()));
+    }
+}

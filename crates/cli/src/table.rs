@@ -1,0 +1,87 @@
+//! Aligned text tables.
+
+use std::fmt;
+
+/// A table: columns of numbers are set to the right, of words to the left.
+#[derive(Debug, Default)]
+pub struct Table {
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table with a header.
+    pub fn new<const N: usize>(header: [&str; N]) -> Self {
+        Self { rows: vec![header.map(str::to_owned).to_vec()] }
+    }
+
+    /// Adds a row.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(cells.into_iter().collect());
+    }
+
+    fn width(&self, column: usize) -> usize {
+        self.rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+    }
+
+    /// Whether every cell below the header is a number or says that there is none.
+    fn is_numeric(&self, column: usize) -> bool {
+        let numeric =
+            |cell: &String| cell.trim_end_matches([' ', '%']).parse::<f64>().is_ok() || matches!(cell.as_str(), "-" | "");
+        self.rows.iter().skip(1).filter_map(|row| row.get(column)).all(numeric)
+    }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
+        let layout: Vec<(usize, bool)> = (0..columns).map(|column| (self.width(column), self.is_numeric(column))).collect();
+        for row in &self.rows {
+            let cell = |(cell, (width, numeric)): (&String, &(usize, bool))| {
+                if *numeric { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
+            };
+            let cells: Vec<String> = row.iter().zip(&layout).map(cell).collect();
+            writeln!(out, "  {}", cells.join("  ").trim_end())?;
+        }
+        Ok(())
+    }
+}
+
+/// A number with four significant digits.
+pub fn number(value: f64) -> String {
+    if !value.is_finite() || value == f64::MAX {
+        return "-".to_owned();
+    }
+    let size = value.abs();
+    if size == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e6).contains(&size) {
+        return format!("{value:.3e}");
+    }
+    let decimals = (3.0 - size.log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// A number that may be unknown.
+pub fn optional(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_aligned_by_what_they_hold() {
+        let mut table = Table::new(["ship", "correlation", "note"]);
+        table.row(["pcc".to_owned(), "-0.7".to_owned(), "a".to_owned()]);
+        table.row(["mariner".to_owned(), "-".to_owned(), String::new()]);
+        assert_eq!(table.to_string(), "  ship     correlation  note\n  pcc             -0.7  a\n  mariner            -\n");
+    }
+
+    #[test]
+    fn numbers_keep_four_digits() {
+        let written = [0.0, 12.3456, 0.0012346, 1234.56, 5e-7, f64::MAX, f64::NAN, -0.5763].map(number);
+        assert_eq!(written, ["0", "12.35", "0.001235", "1235", "5.000e-7", "-", "-", "-0.5763"]);
+    }
+}

@@ -1,0 +1,162 @@
+//! The trials that a command reads: every file or none, each under a name of its own.
+
+use std::path::{Path, PathBuf};
+
+use sistership_model::trial::{Finding, Trial};
+use sistership_trials::{Loaded, Refusal, load_path};
+
+use crate::failure::Failure;
+use crate::output::{count, note};
+
+/// Warnings of one file that are told before the rest is only counted.
+const TOLD: usize = 3;
+
+/// A trial and where it came from.
+#[derive(Debug)]
+pub struct ReadTrial {
+    /// The trial.
+    pub trial: Trial,
+    /// The file as the command line or the manifest names it.
+    pub file: String,
+    /// The file's path.
+    pub path: PathBuf,
+    /// The ship that the manifest names.
+    pub ship: Option<String>,
+}
+
+/// Reads every file; warnings go to standard error.
+///
+/// # Errors
+/// All refusals together, with row and column.
+pub fn read(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
+    let (mut read, mut refused) = (Vec::new(), Vec::new());
+    for path in paths {
+        let loaded = load_path(path)?;
+        let files = files_of(path, &loaded);
+        let ship = loaded.manifest.map(|manifest| manifest.ship);
+        for (result, (file, path)) in loaded.trials.into_iter().zip(files) {
+            match result {
+                Ok(trial) => read.push(ReadTrial { trial, file, path, ship: ship.clone() }),
+                Err(refusal) => refused.push(refusal),
+            }
+        }
+    }
+    if !refused.is_empty() {
+        return Err(Failure::Refused(all_refusals(&refused)));
+    }
+    tell_warnings(&read);
+    name_apart(&mut read)?;
+    Ok(read)
+}
+
+fn files_of(path: &Path, loaded: &Loaded) -> Vec<(String, PathBuf)> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    match &loaded.manifest {
+        Some(manifest) => manifest.trials.iter().map(|trial| (trial.file.clone(), folder.join(&trial.file))).collect(),
+        None => vec![(path.display().to_string(), path.to_path_buf())],
+    }
+}
+
+fn all_refusals(refused: &[Refusal]) -> String {
+    let each: Vec<String> = refused.iter().map(ToString::to_string).collect();
+    each.join("\n")
+}
+
+/// The first warnings of each file; what several files have in common is told once.
+fn tell_warnings(read: &[ReadTrial]) {
+    let mut told: Vec<(String, &str, usize)> = Vec::new();
+    for read in read {
+        let warnings = &read.trial.warnings;
+        let more = warnings.len().saturating_sub(TOLD);
+        let further = (more > 0).then(|| format!("{}; `sistership check` lists them", count(more, "further warning")));
+        for message in warnings.iter().take(TOLD).map(place).chain(further) {
+            match told.iter_mut().find(|(known, ..)| *known == message) {
+                Some((.., others)) => *others += 1,
+                None => told.push((message, &read.file, 0)),
+            }
+        }
+    }
+    for (message, file, others) in told {
+        let others = if others > 0 { format!(" and {}", count(others, "other")) } else { String::new() };
+        note(&format!("warning: {file}{others}: {message}"));
+    }
+}
+
+/// A finding with its row and column.
+pub fn place(finding: &Finding) -> String {
+    let row = finding.row.map_or(String::new(), |row| format!("row {row}: "));
+    let column = finding.column.as_ref().map_or(String::new(), |column| format!("column `{column}`: "));
+    format!("{row}{column}{}", finding.message)
+}
+
+/// Trials of the same file name are told apart by their folder's; the same file twice would count twice.
+fn name_apart(read: &mut [ReadTrial]) -> Result<(), Failure> {
+    for index in 1..read.len() {
+        let (earlier, rest) = read.split_at_mut(index);
+        let this = &mut rest[0];
+        let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        if earlier.iter().any(|other| real(&other.path) == real(&this.path)) {
+            return Err(Failure::Refused(format!("{}: is given twice; the same data would count twice", this.file)));
+        }
+        if earlier.iter().any(|other| other.trial.name == this.trial.name) {
+            this.trial.name = with_folder(&this.path, &this.trial.name);
+        }
+        if earlier.iter().any(|other| other.trial.name == this.trial.name) {
+            let message = format!("{}: another trial is called `{}` too; list both in one manifest", this.file, this.trial.name);
+            return Err(Failure::Refused(message));
+        }
+    }
+    Ok(())
+}
+
+fn with_folder(path: &Path, name: &str) -> String {
+    let folder = path.parent().and_then(Path::file_name).map(|folder| folder.to_string_lossy().into_owned());
+    folder.map_or_else(|| name.to_owned(), |folder| format!("{folder}/{name}"))
+}
+
+/// References to the trials alone.
+pub fn trials(read: &[ReadTrial]) -> Vec<&Trial> {
+    read.iter().map(|read| &read.trial).collect()
+}
+
+/// Everything that was read, so that nothing of it is overwritten.
+pub fn inputs(read: &[ReadTrial], paths: &[PathBuf]) -> Vec<PathBuf> {
+    read.iter().map(|read| read.path.clone()).chain(paths.iter().cloned()).collect()
+}
+
+/// Remarks where a manifest names another ship than the command does.
+pub fn remark_other_ship(read: &[ReadTrial], ship: &str) {
+    let mut others: Vec<&str> = read.iter().filter_map(|read| read.ship.as_deref()).filter(|other| *other != ship).collect();
+    others.dedup();
+    others.iter().for_each(|other| note(&format!("warning: the manifest says the trials are of `{other}`, not of `{ship}`")));
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn equal_names_are_told_apart_and_equal_files_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let paths = ["a", "b"].map(|name| folder.path().join(name).join("t.csv"));
+        for path in &paths {
+            std::fs::create_dir(path.parent().unwrap()).unwrap();
+            std::fs::write(path, "t_s,u_m_s\n0,1\n1,2\n2,3\n").unwrap();
+        }
+        let read = read(&paths).unwrap();
+        assert_eq!(trials(&read).iter().map(|trial| trial.name.as_str()).collect::<Vec<_>>(), ["t.csv", "b/t.csv"]);
+        let twice = [paths[0].clone(), paths[0].clone()];
+        assert!(super::read(&twice).unwrap_err().message().unwrap().contains("given twice"));
+    }
+
+    #[test]
+    fn every_refusal_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let paths = ["a.csv", "b.csv"].map(|name| folder.path().join(name));
+        paths.iter().for_each(|path| std::fs::write(path, "t_s,u_m_s\n0,1\n0,2\n").unwrap());
+        let failure = read(&paths).unwrap_err();
+        let message = failure.message().unwrap();
+        assert!(message.contains("a.csv is refused") && message.contains("b.csv is refused"), "{message}");
+    }
+}

@@ -1,0 +1,82 @@
+//! The zoo of a run: what the program carries, and the folders that were named.
+
+use std::path::{Path, PathBuf};
+
+use sistership_model::Zoo;
+
+use crate::failure::{Failure, about_file};
+
+/// Folders of further laws and vessels, separated as in `PATH`.
+const VARIABLE: &str = "SISTERSHIP_ZOO";
+
+/// The embedded zoo with the folders of the environment and of the command line, in this order.
+///
+/// # Errors
+/// Names the file that does not read.
+pub fn load(folders: &[PathBuf]) -> Result<Zoo, Failure> {
+    let mut zoo = Zoo::embedded()?;
+    let named = std::env::var_os(VARIABLE).unwrap_or_default();
+    let named = std::env::split_paths(&named).filter(|folder| !folder.as_os_str().is_empty());
+    for folder in named.chain(folders.iter().cloned()) {
+        extend(&mut zoo, &folder)?;
+    }
+    Ok(zoo)
+}
+
+fn extend(zoo: &mut Zoo, folder: &Path) -> Result<(), Failure> {
+    let (laws, vessels) = (yaml_files(&folder.join("laws"))?, yaml_files(&folder.join("vessels"))?);
+    if laws.is_empty() && vessels.is_empty() {
+        return Err(about_file(folder, "is no zoo: it holds neither laws/*.yaml nor vessels/*.yaml"));
+    }
+    for path in laws {
+        zoo.add_law(&path.display().to_string(), &text_of(&path)?)?;
+    }
+    for path in vessels {
+        zoo.add_vessel(&path.display().to_string(), &text_of(&path)?)?;
+    }
+    Ok(())
+}
+
+/// The YAML files of a folder by name; none where there is no such folder.
+fn yaml_files(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    if !folder.is_dir() {
+        return Ok(Vec::new());
+    }
+    let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+    let entries = entries.map_err(|error| about_file(folder, format!("cannot be read: {error}")))?;
+    let mut files: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).filter(|path| is_yaml(path)).collect();
+    files.sort();
+    Ok(files)
+}
+
+fn is_yaml(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml")
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// It cannot be read or is no text.
+pub fn text_of(path: &Path) -> Result<String, Failure> {
+    std::fs::read_to_string(path).map_err(|error| about_file(path, format!("cannot be read: {error}")))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_folder_extends_the_zoo_and_faults_name_its_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut zoo = Zoo::embedded().unwrap();
+        assert!(extend(&mut zoo, folder.path()).unwrap_err().message().unwrap().contains("is no zoo"));
+        std::fs::create_dir(folder.path().join("vessels")).unwrap();
+        let vessel = zoo.vessel_text("mariner").unwrap().replace("name: mariner", "name: mariner-two");
+        std::fs::write(folder.path().join("vessels/two.yaml"), &vessel).unwrap();
+        extend(&mut zoo, folder.path()).unwrap();
+        assert!(zoo.vessel("mariner-two").is_some());
+        std::fs::write(folder.path().join("vessels/three.yaml"), "kind: vessel\n").unwrap();
+        assert!(extend(&mut zoo, folder.path()).unwrap_err().message().unwrap().contains("vessels/three.yaml"));
+    }
+}

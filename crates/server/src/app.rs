@@ -1,0 +1,113 @@
+//! What every handler and worker shares.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use sistership_model::{Law, Zoo};
+use sistership_store::{Objects, Store};
+use tokio::sync::{Notify, Semaphore};
+
+use crate::archive::Archive;
+use crate::catalogue::Catalogue;
+use crate::config::{Config, Leases, Limits};
+use crate::problem::{Problem, Result};
+use crate::stopping::Stopping;
+use crate::web::guard::ApiKey;
+
+/// The shared state of a server. A clone is another handle on the same one.
+#[derive(Clone)]
+pub(crate) struct App(Arc<Inner>);
+
+struct Inner {
+    archive: Archive,
+    catalogue: Catalogue,
+    key: Option<ApiKey>,
+    limits: Limits,
+    leases: Leases,
+    spool: PathBuf,
+    seats: Arc<Semaphore>,
+    wake: Notify,
+    stopping: Stopping,
+}
+
+impl App {
+    pub(crate) fn new(config: &Config, archive: Archive, catalogue: Catalogue, stopping: Stopping) -> Self {
+        let seats = std::thread::available_parallelism().map_or(2, std::num::NonZero::get);
+        Self(Arc::new(Inner {
+            archive,
+            catalogue,
+            key: config.api_key.as_deref().map(ApiKey::new),
+            limits: config.limits,
+            leases: config.leases,
+            spool: spool(config),
+            seats: Arc::new(Semaphore::new(seats)),
+            wake: Notify::new(),
+            stopping,
+        }))
+    }
+
+    pub(crate) fn archive(&self) -> &Archive {
+        &self.0.archive
+    }
+
+    pub(crate) fn store(&self) -> &Store {
+        &self.0.archive.store
+    }
+
+    pub(crate) fn objects(&self) -> &Objects {
+        &self.0.archive.objects
+    }
+
+    pub(crate) fn key(&self) -> Option<&ApiKey> {
+        self.0.key.as_ref()
+    }
+
+    pub(crate) fn limits(&self) -> &Limits {
+        &self.0.limits
+    }
+
+    pub(crate) fn leases(&self) -> &Leases {
+        &self.0.leases
+    }
+
+    /// Where uploads lie until they have been read.
+    pub(crate) fn spool(&self) -> &PathBuf {
+        &self.0.spool
+    }
+
+    /// Wakes this process' workers.
+    pub(crate) fn wake(&self) -> &Notify {
+        &self.0.wake
+    }
+
+    /// The word that the server shall stop.
+    pub(crate) fn stopping(&self) -> Stopping {
+        self.0.stopping.clone()
+    }
+
+    /// The laws and ships as the database has them now.
+    pub(crate) async fn zoo(&self) -> Result<Arc<Zoo>> {
+        Ok(self.0.catalogue.refresh(self.store()).await?)
+    }
+
+    /// A law of the database.
+    pub(crate) async fn law(&self, name: &str) -> Result<Arc<Law>> {
+        let law = self.0.catalogue.law(self.store(), name).await?;
+        law.ok_or_else(|| Problem::internal(format!("the law `{name}` does not read")))
+    }
+
+    /// Runs numerics away from the threads that serve; as many at a time as there are cores.
+    pub(crate) async fn compute<T: Send + 'static>(&self, work: impl FnOnce() -> T + Send + 'static) -> Result<T> {
+        let seat = Arc::clone(&self.0.seats).acquire_owned().await.map_err(Problem::internal)?;
+        let task = tokio::task::spawn_blocking(move || {
+            let _seat = seat;
+            work()
+        });
+        task.await.map_err(Problem::internal)
+    }
+}
+
+/// The folder of uploads under way.
+pub(crate) fn spool(config: &Config) -> PathBuf {
+    config.data_dir.join("uploads")
+}

@@ -1,0 +1,189 @@
+//! What a server is told before it starts, and what it refuses to start with.
+
+use std::fmt;
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Where the server listens when nobody says otherwise.
+pub const DEFAULT_LISTEN: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(std::net::Ipv4Addr::LOCALHOST), 8080);
+
+/// What a server is told before it starts.
+#[derive(Clone)]
+pub struct Config {
+    /// Address and port; port 0 takes a free one. Another address than loopback needs an API key.
+    pub listen: SocketAddr,
+    /// `sqlite://path/file.db` or `postgres://...`.
+    pub database_url: String,
+    /// Folder of the samples and of uploads under way; made if it is not there.
+    pub data_dir: PathBuf,
+    /// What every request must present as `Authorization: Bearer KEY`, if one is set.
+    pub api_key: Option<String>,
+    /// Bounds on what is sent.
+    pub limits: Limits,
+    /// How workers hold their jobs.
+    pub leases: Leases,
+    /// Jobs that this process works on at a time; none leaves them to other processes.
+    pub workers: usize,
+}
+
+/// Bounds on what is sent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// A JSON or YAML document, bytes.
+    pub document_bytes: usize,
+    /// An upload of trials, bytes.
+    pub upload_bytes: usize,
+    /// Files in one upload.
+    pub upload_files: usize,
+    /// Until a request's head has been read.
+    pub header_time: Duration,
+    /// Until a request has been answered.
+    pub request_time: Duration,
+    /// The same for uploads and for deriving a version again.
+    pub long_request_time: Duration,
+    /// Connections at a time; further ones wait.
+    pub connections: usize,
+    /// Samples of a predicted track.
+    pub prediction_samples: usize,
+    /// Trials of one refinement.
+    pub refinement_trials: usize,
+    /// How long a server that is told to stop waits for what is under way.
+    pub stop_time: Duration,
+}
+
+/// How workers hold their jobs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Leases {
+    /// After this long without a beat, another worker may take the job.
+    pub lease: Duration,
+    /// How often a worker tells that it lives.
+    pub beat: Duration,
+    /// How often an idle worker looks for jobs that other processes have queued.
+    pub poll: Duration,
+}
+
+impl Config {
+    /// A server on the loopback interface with an SQLite database in `data_dir`.
+    pub fn new(data_dir: impl Into<PathBuf>) -> Self {
+        let data_dir = data_dir.into();
+        Self {
+            listen: DEFAULT_LISTEN,
+            database_url: sqlite_url(&data_dir),
+            data_dir,
+            api_key: None,
+            limits: Limits::default(),
+            leases: Leases::default(),
+            workers: 1,
+        }
+    }
+
+    /// Checks what can be checked without starting.
+    ///
+    /// # Errors
+    /// Says which setting cannot be, and what to do.
+    pub fn check(&self) -> Result<(), StartError> {
+        match &self.api_key {
+            None if !self.listen.ip().is_loopback() => Err(StartError::OpenWithoutKey(self.listen)),
+            Some(key) if key.is_empty() || !key.bytes().all(|byte| byte.is_ascii_graphic()) => Err(StartError::Key),
+            _ if self.leases.beat >= self.leases.lease => Err(StartError::Leases),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The embedded database of a data folder.
+pub fn sqlite_url(data_dir: &Path) -> String {
+    format!("sqlite://{}", data_dir.join("sistership.db").display())
+}
+
+impl fmt::Debug for Config {
+    /// Leaves out the key, and the database's URL, which may hold a password.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let key = self.api_key.as_ref().map(|_| "set");
+        out.debug_struct("Config")
+            .field("listen", &self.listen)
+            .field("data_dir", &self.data_dir)
+            .field("api_key", &key)
+            .field("limits", &self.limits)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            document_bytes: 4 << 20,
+            upload_bytes: 256 << 20,
+            upload_files: 1000,
+            header_time: Duration::from_secs(10),
+            request_time: Duration::from_secs(60),
+            long_request_time: Duration::from_secs(600),
+            connections: 512,
+            prediction_samples: 200_000,
+            refinement_trials: 1000,
+            stop_time: Duration::from_secs(10),
+        }
+    }
+}
+
+impl Default for Leases {
+    fn default() -> Self {
+        Self { lease: Duration::from_secs(15), beat: Duration::from_secs(3), poll: Duration::from_millis(500) }
+    }
+}
+
+/// Why a server does not start.
+#[derive(Debug, thiserror::Error)]
+pub enum StartError {
+    /// Anyone on the network could change what it holds.
+    #[error("refusing to listen on {0} without an API key: set one (--api-key or SISTERSHIP_API_KEY), or listen on 127.0.0.1")]
+    OpenWithoutKey(SocketAddr),
+    /// A key that no header can carry.
+    #[error("the API key must be one or more printable ASCII characters without spaces")]
+    Key,
+    /// Every job would be taken over while it runs.
+    #[error("the beat of a worker must be shorter than its lease")]
+    Leases,
+    /// The address is taken or not ours.
+    #[error("cannot listen on {listen}: {error}")]
+    Listen {
+        /// The address.
+        listen: SocketAddr,
+        /// What the system said.
+        error: std::io::Error,
+    },
+    /// The data folder cannot be used.
+    #[error("cannot use the data folder {folder}: {error}")]
+    Folder {
+        /// The folder.
+        folder: PathBuf,
+        /// What the system said.
+        error: std::io::Error,
+    },
+    /// The database or the object store cannot be used.
+    #[error("cannot open the store: {0}")]
+    Store(#[from] sistership_store::StoreError),
+    /// The zoo that the program carries does not read.
+    #[error("the zoo is damaged: {0}")]
+    Zoo(#[from] sistership_model::FileError),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_address_needs_a_key() {
+        let mut config = Config::new("data");
+        assert!(config.check().is_ok());
+        config.listen.set_ip([0, 0, 0, 0].into());
+        let message = config.check().err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(message.contains("API key") && message.contains("127.0.0.1"), "{message}");
+        config.api_key = Some("secret".into());
+        assert!(config.check().is_ok());
+        assert!(!format!("{config:?}").contains("secret"));
+        config.api_key = Some("two words".into());
+        assert!(matches!(config.check(), Err(StartError::Key)));
+    }
+}

@@ -1,0 +1,109 @@
+//! The end of a refinement: its report, and the one transaction that keeps version, aliases, report and job.
+
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+use sistership_identify::source::Similarity;
+use sistership_model::trial::Trial;
+use sistership_model::version::sha256;
+use sistership_store::{Expect, Job, NewReport, NewVersion, Refinement, ReportHead, StoreError, VersionHead};
+
+use super::outcome::{JobError, Result, failed};
+use super::refinement::Prepared;
+use crate::app::App;
+use crate::derive::{Derived, Refined};
+use crate::publish::{CANDIDATE, CHAMPION, Standing, step};
+use crate::report::{self, Rendered, VersionLabel};
+
+/// How often another version of the same ship may come in between.
+const TRIES: usize = 5;
+
+/// A version that is to be kept, with what its report is made of.
+struct Made {
+    version: NewVersion,
+    refined: Arc<Refined>,
+    similarity: Option<Arc<Similarity>>,
+    result: Value,
+}
+
+/// Keeps what was derived: champion where the ship has none, else candidate.
+pub(super) async fn commit(app: &App, job: &Job, derived: Derived, prepared: Prepared) -> Result<()> {
+    let made = Made::new(derived, prepared)?;
+    for _ in 0..TRIES {
+        let standing = Standing::of(app.store(), &made.version.model).await?;
+        let report = made.report(app, standing.next).await?;
+        match made.keep(app, job, &standing, report).await {
+            // Another version has come in between; the report would name the wrong number.
+            Err(JobError::Store(StoreError::PreconditionFailed { .. })) => {}
+            other => return other,
+        }
+    }
+    Err(failed("other versions of the ship kept coming in between; retry the job"))
+}
+
+impl Made {
+    fn new(derived: Derived, prepared: Prepared) -> Result<Self> {
+        let Derived { document, refined } = derived;
+        let source = format!("{}/{}", prepared.source.head.model, prepared.source.head.number);
+        let refined = refined.ok_or_else(|| failed("the recipe is not that of a refinement"))?;
+        let version = NewVersion {
+            model: document.ship.clone(),
+            parent: Some(prepared.source.head.id),
+            law: document.model.law.clone(),
+            method: refined.refinement.method.clone(),
+            document: document.canonical().map_err(failed)?,
+        };
+        let ranking = prepared.similarity.as_ref().map(|similarity| &similarity.ranking);
+        let result = json!({ "source": source, "held_out": refined.refinement.held_out, "ranking": ranking });
+        Ok(Self { version, refined: Arc::new(refined), similarity: prepared.similarity.map(Arc::new), result })
+    }
+
+    async fn report(&self, app: &App, number: i64) -> Result<NewReport> {
+        let sha256 = sha256(self.version.document.as_bytes());
+        let label = VersionLabel { ship: self.version.model.clone(), number, sha256 };
+        let (refined, similarity) = (Arc::clone(&self.refined), self.similarity.clone());
+        let rendered = app.compute(move || render(&refined, similarity.as_deref(), label)).await??;
+        let document = serde_json::to_string(&rendered.json).map_err(failed)?;
+        Ok(NewReport {
+            version_id: None,
+            ship: self.version.model.clone(),
+            kind: "refinement".into(),
+            document,
+            html: rendered.html,
+        })
+    }
+
+    async fn keep(&self, app: &App, job: &Job, standing: &Standing, report: NewReport) -> Result<()> {
+        let reason = format!("refined from {} in job {}", self.result["source"].as_str().unwrap_or_default(), job.id);
+        let alias = if standing.champion { CANDIDATE } else { CHAMPION };
+        let expect = if standing.champion { Expect::Any } else { Expect::Absent };
+        let moves = vec![step(alias, expect, &reason), standing.follow(&reason)];
+        let refinement = Refinement { version: self.version.clone(), moves, report: Some(report) };
+        let result = |version: &VersionHead, report: Option<&ReportHead>| self.result(version, report, alias);
+        app.store().commit_refinement(&job.id, job.fence, &refinement, result).await?;
+        Ok(())
+    }
+
+    fn result(&self, version: &VersionHead, report: Option<&ReportHead>, alias: &str) -> String {
+        let mut result = self.result.clone();
+        result["model"] = json!(version.model);
+        result["version"] = json!(version.number);
+        result["sha256"] = json!(version.sha256);
+        result["alias"] = json!(alias);
+        result["report"] = json!(report.map(|report| &report.id));
+        result.to_string()
+    }
+}
+
+fn render(refined: &Refined, similarity: Option<&Similarity>, version: VersionLabel) -> Result<Rendered> {
+    let trials: Vec<&Trial> = refined.ingredients.trials.iter().collect();
+    let input = report::Input {
+        refinement: &refined.refinement,
+        law: &refined.ingredients.law,
+        vessel: &refined.ingredients.target,
+        trials: &trials,
+        similarity,
+        version: Some(version),
+    };
+    report::render(&input).map_err(failed)
+}

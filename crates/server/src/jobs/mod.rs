@@ -1,0 +1,11 @@
+//! Long work: what is asked for, and the workers that do it.
+
+mod commit;
+mod outcome;
+mod progress;
+mod refinement;
+mod request;
+mod worker;
+
+pub(crate) use request::{REFINEMENT, RefinementJob, SourceChoice};
+pub(crate) use worker::Worker;

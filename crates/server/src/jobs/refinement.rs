@@ -1,0 +1,97 @@
+//! The refinement job: its source, its recipe, and what derives from it.
+
+use std::sync::Arc;
+
+use sistership_identify::source::{Similarity, best_source, similar};
+use sistership_model::trial::Trial as Recording;
+use sistership_model::version::{Recipe, RecipeTrial, SourceVersion, sha256};
+use sistership_model::{Vessel, Zoo};
+use sistership_store::{Job, Version};
+use sistership_trials::samples::from_parquet;
+
+use super::commit::commit;
+use super::outcome::{JobError, Result, failed};
+use super::progress::Progress;
+use super::request::{RefinementJob, SourceChoice};
+use crate::app::App;
+use crate::archive::vessel;
+use crate::derive::{code_revision, derive, sorted};
+use crate::publish::{alias, alias_of};
+
+/// Does a refinement.
+pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {
+    let asked: RefinementJob = serde_json::from_str(&job.request).map_err(failed)?;
+    tell(&progress, 0.01, "reading the trials")?;
+    let prepared = prepare(app, &asked, &progress).await?;
+    let step = progress.clone();
+    let scaled = move |fraction: f64, what: &str| step.tell(0.1 + 0.8 * fraction, what);
+    let derived = derive(app.archive(), &asked.ship, &prepared.recipe, Arc::new(scaled)).await?;
+    tell(&progress, 0.92, "writing the report and keeping the version")?;
+    commit(app, job, derived, prepared).await
+}
+
+fn tell(progress: &Progress, fraction: f64, what: &str) -> Result<()> {
+    if progress.tell(fraction, what) { Ok(()) } else { Err(JobError::Stopped) }
+}
+
+/// A recipe, and how its source was chosen.
+pub(super) struct Prepared {
+    pub recipe: Recipe,
+    pub source: Version,
+    pub similarity: Option<Similarity>,
+}
+
+async fn prepare(app: &App, asked: &RefinementJob, progress: &Progress) -> Result<Prepared> {
+    let ship = app.store().ships().get(&asked.ship).await?;
+    let trials = trials(app, &asked.trials).await?;
+    let target = vessel(&ship.name, &ship.document)?;
+    let (source, similarity) = match &asked.source {
+        SourceChoice::Version { ship, number } => (app.store().versions().get(ship, *number).await?, None),
+        SourceChoice::Auto => {
+            tell(progress, 0.03, "choosing the source")?;
+            let (version, similarity) = choose(app, target, &trials).await?;
+            (version, Some(similarity))
+        }
+    };
+    let law = app.store().laws().get(&source.head.law).await?;
+    let recipe = Recipe::Refinement {
+        source: SourceVersion { ship: source.head.model.clone(), number: source.head.number, sha256: source.head.sha256.clone() },
+        ship_sha256: sha256(ship.document.as_bytes()),
+        law_sha256: law.sha256,
+        trials,
+        settings: sorted(serde_json::to_value(&asked.settings).map_err(failed)?),
+        code_revision: code_revision().to_owned(),
+    };
+    Ok(Prepared { recipe, source, similarity })
+}
+
+async fn trials(app: &App, ids: &[String]) -> Result<Vec<RecipeTrial>> {
+    let mut trials = Vec::with_capacity(ids.len());
+    for id in ids {
+        let trial = app.store().trials().get(id).await?;
+        trials.push(RecipeTrial { name: trial.name, sha256: trial.sha256 });
+    }
+    Ok(trials)
+}
+
+/// The best eligible ship of the zoo, measured on the trials.
+async fn choose(app: &App, target: Vessel, trials: &[RecipeTrial]) -> Result<(Version, Similarity)> {
+    let zoo = app.zoo().await?;
+    let samples = app.archive().samples(trials).await?;
+    let choice = move || {
+        let trials: Vec<Recording> =
+            samples.into_iter().map(from_parquet).collect::<std::result::Result<_, _>>().map_err(failed)?;
+        best(&zoo, &target, &trials)
+    };
+    let (name, similarity) = app.compute(choice).await??;
+    let (ship, model) = name.split_once('/').unwrap_or((&name, ""));
+    let found = alias(app.store(), ship, &alias_of(model)).await?;
+    let found = found.ok_or_else(|| failed(format!("the model `{name}` has no version; start the server again to make it")))?;
+    Ok((app.store().versions().get(ship, found.version_number).await?, similarity))
+}
+
+fn best(zoo: &Zoo, target: &Vessel, trials: &[Recording]) -> Result<(String, Similarity)> {
+    let similarity = similar(zoo, target, None, &trials.iter().collect::<Vec<_>>());
+    let model = best_source(zoo, &similarity).map_err(failed)?;
+    Ok((model.name, similarity))
+}

@@ -1,0 +1,39 @@
+//! What a job is asked to do, as its row keeps it.
+
+use serde::{Deserialize, Serialize};
+use sistership_identify::refine::Settings;
+
+/// The kind of refinement jobs.
+pub(crate) const REFINEMENT: &str = "refinement";
+
+/// A refinement to be done. Everything but the choice of an `auto` source is settled when it is asked for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RefinementJob {
+    /// The ship.
+    pub ship: String,
+    /// Where to start.
+    pub source: SourceChoice,
+    /// The trials' ids.
+    pub trials: Vec<String>,
+    /// Every setting.
+    pub settings: Settings,
+    /// The hash of the request's idempotency key, by which a repeated request finds its job.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub key_sha256: Option<String>,
+}
+
+/// Where a refinement starts.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum SourceChoice {
+    /// At the best eligible ship of the zoo.
+    Auto,
+    /// At a version.
+    Version {
+        /// Its ship.
+        ship: String,
+        /// Its number.
+        number: i64,
+    },
+}

@@ -1,0 +1,7 @@
+//! Through the real server, on SQLite and on PostgreSQL where this machine has it.
+
+#![allow(clippy::unwrap_used)]
+
+mod harness;
+mod loops;
+mod refusals;

@@ -1,0 +1,88 @@
+//! Standard manoeuvres.
+
+use serde::Deserialize;
+use serde_json::{Value, json};
+use sistership_dynamics::manoeuvre::{ManoeuvreSettings, standard, turn, zigzag};
+use sistership_dynamics::{Ship, Stopped};
+use utoipa::ToSchema;
+
+use super::{bounded, columns, positive};
+use crate::problem::{Problem, Result};
+
+/// Longest step.
+const STEP_S: f64 = 0.1;
+
+/// One of `turn_deg`, `zigzag` and `all`.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ManoeuvreRequest {
+    /// A turning circle with this rudder angle, positive to starboard.
+    turn_deg: Option<f64>,
+    /// A zigzag.
+    zigzag: Option<ZigzagRequest>,
+    /// Turning circles, zigzags and the IMO criteria.
+    #[serde(default)]
+    all: bool,
+    /// Approach speed; the model's own where absent.
+    speed_m_s: Option<f64>,
+    /// Propeller revolutions; those of the approach speed where absent.
+    n_rps: Option<f64>,
+}
+
+/// A zigzag.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ZigzagRequest {
+    /// Rudder angle, positive where the first execution is to starboard.
+    rudder_deg: f64,
+    /// Change of heading at which the rudder is reversed.
+    switch_deg: f64,
+}
+
+impl ManoeuvreRequest {
+    pub(super) fn sail(&self, ship: &mut Ship, most: usize) -> Result<Value> {
+        let settings = self.settings(ship, most)?;
+        match (self.turn_deg, &self.zigzag, self.all) {
+            (Some(rudder), None, false) => {
+                let sailed = turn(ship, angle("manoeuvre.turn_deg", rudder)?, &settings).map_err(diverged)?;
+                Ok(json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null }))
+            }
+            (None, Some(ZigzagRequest { rudder_deg, switch_deg }), false) => {
+                let rudder = angle("manoeuvre.zigzag.rudder_deg", *rudder_deg)?;
+                let switch = angle("manoeuvre.zigzag.switch_deg", *switch_deg)?.abs();
+                let sailed = zigzag(ship, rudder, switch, &settings).map_err(diverged)?;
+                Ok(json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null }))
+            }
+            (None, None, true) => serde_json::to_value(standard(ship, &settings)).map_err(Problem::internal),
+            _ => Err(Problem::invalid("manoeuvre", "give one of `turn_deg`, `zigzag` and `all`")),
+        }
+    }
+
+    /// The settings; they are refused where the run, of 60 lengths at most, would be out of all proportion.
+    fn settings(&self, ship: &mut Ship, most: usize) -> Result<ManoeuvreSettings> {
+        let speed = positive("manoeuvre.speed_m_s", self.speed_m_s.unwrap_or(ship.approach_speed_m_s()))?;
+        if self.n_rps.is_some_and(|n| !n.is_finite()) {
+            return Err(Problem::invalid("manoeuvre.n_rps", "must be a number"));
+        }
+        let length_s = ship.lpp_m() / speed;
+        let step_s = STEP_S.min(0.02 * length_s);
+        bounded("manoeuvre.speed_m_s", 60.0 * length_s / step_s, most)?;
+        ship.set_envelope_speed(speed);
+        let (speed_m_s, n_rps, step_s) = (self.speed_m_s, self.n_rps, Some(step_s));
+        Ok(ManoeuvreSettings { speed_m_s, n_rps, step_s, ..ManoeuvreSettings::default() })
+    }
+}
+
+fn angle(field: &str, angle_deg: f64) -> Result<f64> {
+    match angle_deg != 0.0 && angle_deg.abs() <= 90.0 {
+        true => Ok(angle_deg),
+        false => Err(Problem::invalid(field, format!("must be an angle up to 90 deg and not 0, is {angle_deg}"))),
+    }
+}
+
+fn diverged(stopped: Stopped) -> Problem {
+    Problem::invalid(
+        "manoeuvre",
+        format!("the simulation left the physical range, {stopped}; the model does not hold for this manoeuvre"),
+    )
+}

@@ -1,0 +1,133 @@
+//! Predictions: a model sails a manoeuvre, or follows recorded inputs.
+
+mod inputs;
+mod manoeuvre;
+
+use serde::Deserialize;
+use serde_json::{Value, json};
+use sistership_dynamics::state::at;
+use sistership_dynamics::{Ship, Trajectory};
+use sistership_model::{Law, Model};
+use utoipa::ToSchema;
+
+pub(crate) use inputs::InputsRequest;
+pub(crate) use manoeuvre::ManoeuvreRequest;
+
+use crate::problem::{Problem, Result};
+
+/// What is to be simulated: a manoeuvre or recorded inputs.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PredictionRequest {
+    /// `ship` (her champion), `ship/number` or `ship/alias`.
+    pub model: String,
+    /// Water depth for laws that know it, m; deep where absent.
+    pub depth_m: Option<f64>,
+    /// A standard manoeuvre; or give `inputs`.
+    pub manoeuvre: Option<ManoeuvreRequest>,
+    /// Recorded inputs; or give `manoeuvre`.
+    pub inputs: Option<InputsRequest>,
+}
+
+/// Simulates; no track has more than `most` samples.
+pub(crate) fn predict(request: &PredictionRequest, model: &Model, law: &Law, most: usize) -> Result<Value> {
+    let mut ship = Ship::new(model, law).map_err(|error| Problem::invalid("model", error.to_string()))?;
+    if let Some(depth) = request.depth_m {
+        ship.set_depth(positive("depth_m", depth)?);
+    }
+    match (&request.manoeuvre, &request.inputs) {
+        (Some(manoeuvre), None) => manoeuvre.sail(&mut ship, most),
+        (None, Some(inputs)) => inputs.follow(&mut ship, most),
+        _ => Err(Problem::invalid("manoeuvre", "give either `manoeuvre` or `inputs`")),
+    }
+}
+
+fn positive(field: &str, value: f64) -> Result<f64> {
+    match value > 0.0 && value.is_finite() {
+        true => Ok(value),
+        false => Err(Problem::invalid(field, format!("must be above 0, is {value}"))),
+    }
+}
+
+/// Refuses a simulation of more steps than are allowed.
+fn bounded(field: &str, steps: f64, most: usize) -> Result<()> {
+    match steps <= most as f64 {
+        true => Ok(()),
+        false => Err(Problem::invalid(
+            field,
+            format!("would take {steps:.0} steps, at most {most} are made: give a higher speed or a shorter time"),
+        )),
+    }
+}
+
+/// Places in the state vector by canonical column.
+const COLUMNS: [(&str, usize); 9] = [
+    ("x_m", at::X),
+    ("y_m", at::Y),
+    ("psi_rad", at::PSI),
+    ("u_m_s", at::U),
+    ("v_m_s", at::V),
+    ("r_rad_s", at::R),
+    ("phi_rad", at::PHI),
+    ("p_rad_s", at::P),
+    ("delta_rad", at::DELTA),
+];
+
+/// A track by column.
+fn columns(track: &Trajectory) -> Value {
+    let mut columns = json!({ "t_s": track.t_s, "n_rps": track.n_rps });
+    for (name, index) in COLUMNS {
+        columns[name] = json!(track.column(index));
+    }
+    columns
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_model::Zoo;
+
+    fn ask(ship: &str, request: Value) -> Result<Value> {
+        let zoo = Zoo::embedded().unwrap();
+        let model = zoo.model(ship).unwrap();
+        let request: PredictionRequest = serde_json::from_value(request).unwrap();
+        predict(&request, &model, zoo.law(&model.law).unwrap(), 100_000)
+    }
+
+    #[test]
+    fn manoeuvres_give_tracks_and_figures() {
+        let turn = ask("mariner", json!({ "model": "mariner", "manoeuvre": { "turn_deg": -35 } })).unwrap();
+        assert!(turn["metrics"]["tactical_diameter_m"].as_f64().unwrap() > 300.0);
+        assert_eq!(turn["trajectory"]["t_s"].as_array().unwrap().len(), turn["trajectory"]["psi_rad"].as_array().unwrap().len());
+        let zigzag = json!({ "model": "mariner", "manoeuvre": { "zigzag": { "rudder_deg": 10, "switch_deg": 10 } } });
+        assert!(ask("mariner", zigzag).unwrap()["metrics"]["first_overshoot_deg"].is_number());
+        let all = ask("kvlcc2-7m", json!({ "model": "kvlcc2-7m", "manoeuvre": { "all": true } })).unwrap();
+        assert_eq!(all["turns"].as_array().unwrap().len(), 2);
+    }
+
+    #[test]
+    fn inputs_are_followed() {
+        let t: Vec<f64> = (0..100).map(f64::from).collect();
+        let request =
+            json!({ "model": "sr108", "inputs": { "t_s": t, "delta_rad": vec![0.1; 100], "start": { "u_m_s": 10.0 } } });
+        let run = ask("sr108", request).unwrap();
+        assert!(run["stopped"].is_null());
+        assert!(run["trajectory"]["psi_rad"][99].as_f64().unwrap() > 0.1);
+        assert_eq!(run["trajectory"]["t_s"].as_array().unwrap().len(), 100);
+    }
+
+    #[test]
+    fn impossible_requests_are_refused_by_field() {
+        let field = |request: Value| ask("mariner", request).unwrap_err().errors[0].field.clone().unwrap();
+        let inputs = |t: Value, delta: Value| json!({ "model": "m", "inputs": { "t_s": t, "delta_rad": delta, "start": { "u_m_s": 8.0 } } });
+        assert_eq!(field(json!({ "model": "m" })), "manoeuvre");
+        assert_eq!(field(json!({ "model": "m", "manoeuvre": { "turn_deg": 35, "all": true } })), "manoeuvre");
+        assert_eq!(field(json!({ "model": "m", "manoeuvre": { "turn_deg": 135 } })), "manoeuvre.turn_deg");
+        assert_eq!(field(json!({ "model": "m", "manoeuvre": { "turn_deg": 35, "speed_m_s": 1e-6 } })), "manoeuvre.speed_m_s");
+        assert_eq!(field(inputs(json!([0, 1, 2]), json!([0, 1]))), "inputs.delta_rad");
+        assert_eq!(field(inputs(json!([0, 2, 1]), json!([0, 0, 0]))), "inputs.t_s");
+        assert_eq!(field(inputs(json!([0, 1, 2, 3, 9]), json!([0, 0, 0, 0, 0]))), "inputs.t_s");
+        assert_eq!(field(inputs(json!([0, 1e9]), json!([0, 0]))), "inputs.t_s");
+    }
+}

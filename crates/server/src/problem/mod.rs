@@ -1,0 +1,143 @@
+//! Problem details (RFC 9457): the one form of every error.
+
+mod from;
+
+use axum::Json;
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// The media type of [`Problem`].
+pub(crate) const MEDIA: &str = "application/problem+json";
+
+/// What an operation of the server returns.
+pub(crate) type Result<T, E = Problem> = std::result::Result<T, E>;
+
+/// Why a request was not carried out, and what to do about it.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+pub(crate) struct Problem {
+    /// A URI that names the kind of problem.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// The kind of problem in words.
+    pub title: &'static str,
+    /// The HTTP status.
+    pub status: u16,
+    /// What happened this time, and what to do.
+    pub detail: String,
+    /// A URI that names this one occurrence; the server's log has the same id.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instance: Option<String>,
+    /// Each fault on its own, where it can be placed; else empty.
+    pub errors: Vec<Fault>,
+}
+
+/// One fault, with its place.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
+pub(crate) struct Fault {
+    /// The field of a document (dotted path), or the file of an upload.
+    pub field: Option<String>,
+    /// The row of a file or the line of a document, counted from 1.
+    pub row: Option<usize>,
+    /// The column of a file.
+    pub column: Option<String>,
+    /// What is wrong, and what would be right.
+    pub message: String,
+}
+
+/// Status, URI and title of each kind.
+const KINDS: [(u16, &str, &str); 17] = [
+    (400, "urn:sistership:problem:bad-request", "The request cannot be read"),
+    (401, "urn:sistership:problem:unauthorized", "An API key is needed"),
+    (403, "urn:sistership:problem:forbidden", "The request is not allowed from there"),
+    (404, "urn:sistership:problem:not-found", "There is no such thing"),
+    (405, "urn:sistership:problem:method-not-allowed", "The method is not possible here"),
+    (406, "urn:sistership:problem:not-acceptable", "None of the accepted forms is available"),
+    (408, "urn:sistership:problem:request-timeout", "The request took too long to arrive"),
+    (409, "urn:sistership:problem:conflict", "The request contradicts what is there"),
+    (412, "urn:sistership:problem:stale", "It has changed since it was read"),
+    (413, "urn:sistership:problem:too-large", "The request is too large"),
+    (415, "urn:sistership:problem:unsupported-media-type", "The content type is not one that is read here"),
+    (422, "urn:sistership:problem:invalid", "The content is not valid"),
+    (428, "urn:sistership:problem:precondition-required", "A precondition is needed"),
+    (431, "urn:sistership:problem:headers-too-large", "The headers are too large"),
+    (500, "urn:sistership:problem:internal", "The server failed"),
+    (503, "urn:sistership:problem:unavailable", "The server cannot answer at the moment"),
+    (504, "urn:sistership:problem:timeout", "The request took too long"),
+];
+
+impl Problem {
+    pub(crate) fn new(status: StatusCode, detail: impl Into<String>) -> Self {
+        let known = KINDS.iter().find(|(known, ..)| *known == status.as_u16());
+        let (_, kind, title) = known.copied().unwrap_or((0, "about:blank", status.canonical_reason().unwrap_or("Problem")));
+        Self { kind, title, status: status.as_u16(), detail: detail.into(), instance: None, errors: Vec::new() }
+    }
+
+    pub(crate) fn bad_request(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::BAD_REQUEST, detail)
+    }
+
+    pub(crate) fn not_found(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::NOT_FOUND, detail)
+    }
+
+    /// A document of which one field is at fault.
+    pub(crate) fn invalid(field: &str, message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self::new(StatusCode::UNPROCESSABLE_ENTITY, format!("{field}: {message}")).with(Fault::at(field, message))
+    }
+
+    /// A failure of ours: the log has the reason, the answer does not.
+    pub(crate) fn internal(reason: impl std::fmt::Display) -> Self {
+        tracing::error!(%reason, "internal error");
+        Self::new(
+            StatusCode::INTERNAL_SERVER_ERROR,
+            "the server failed to do this; its log tells why, under the id in `instance`",
+        )
+    }
+
+    pub(crate) fn with(mut self, fault: Fault) -> Self {
+        self.errors.push(fault);
+        self
+    }
+
+    pub(crate) fn status(&self) -> StatusCode {
+        StatusCode::from_u16(self.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR)
+    }
+}
+
+impl Fault {
+    pub(crate) fn at(field: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { field: Some(field.into()), message: message.into(), ..Self::default() }
+    }
+}
+
+impl IntoResponse for Problem {
+    fn into_response(self) -> Response {
+        let mut response = (self.status(), Json(&self)).into_response();
+        response.headers_mut().insert(header::CONTENT_TYPE, HeaderValue::from_static(MEDIA));
+        if self.status == StatusCode::UNAUTHORIZED {
+            let challenge = HeaderValue::from_static("Bearer, Basic realm=\"sistership\"");
+            response.headers_mut().insert(header::WWW_AUTHENTICATE, challenge);
+        }
+        // Whoever knows the request's id writes it in, see `web::envelope`.
+        response.extensions_mut().insert(self);
+        response
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_problem_names_its_kind_and_place() {
+        let problem = Problem::invalid("settings.folds", "must be from 2 to 100");
+        let json = serde_json::to_value(&problem).unwrap_or_default();
+        assert_eq!(json["type"], "urn:sistership:problem:invalid");
+        assert_eq!(json["errors"][0]["field"], "settings.folds");
+        assert_eq!(json["status"], 422);
+        assert_eq!(Problem::new(StatusCode::IM_A_TEAPOT, "").kind, "about:blank");
+    }
+}

@@ -1,0 +1,190 @@
+//! The page: content, tables and plots put into the template.
+
+use askama::Template;
+use sistership_model::source::Source;
+use sistership_model::vessel::Status;
+
+use super::coefficients::Coefficients;
+use super::numbers::{fixed, list, significant, stated};
+use super::plots::{self, Plot};
+use super::replays::{Replayed, Shown};
+use super::summary::{ErrorRow, method_text};
+use super::tables::{self, Table};
+use super::{Content, ReportError, similarity, words};
+
+/// The page as its template sees it.
+#[derive(Template)]
+#[template(path = "report.html")]
+struct Page<'a> {
+    content: &'a Content<'a>,
+    method: String,
+    tiles: Vec<Tile>,
+    errors: Table,
+    trials: Vec<TrialPlots<'a>>,
+    moved: Vec<(&'static str, Plot)>,
+    coefficients: Table,
+    groups: Vec<String>,
+    condition: String,
+    options: Table,
+    turns: Table,
+    zigzags: Table,
+    imo: Table,
+    why: Option<Why>,
+    particulars: Table,
+    parameters: Table,
+    settings: Table,
+    steering: String,
+    sources: Vec<(&'static str, Vec<Citation<'a>>)>,
+}
+
+/// A headline figure.
+struct Tile {
+    name: &'static str,
+    change: String,
+    class: &'static str,
+    before: String,
+    after: String,
+    /// Lengths of the two bars, per cent of the longer.
+    bars: (String, String),
+}
+
+/// The plots of one trial.
+struct TrialPlots<'a> {
+    shown: &'a Shown<'a>,
+    caption: String,
+    trajectory: Plot,
+    series: Plot,
+}
+
+/// Why this source.
+struct Why {
+    definition: &'static str,
+    vector: String,
+    remark: Option<String>,
+    table: Table,
+}
+
+/// A publication under its key.
+struct Citation<'a> {
+    key: &'a str,
+    source: &'a Source,
+}
+
+/// Writes the page.
+pub(super) fn page(content: &Content<'_>, replayed: &[Replayed<'_>]) -> Result<String, ReportError> {
+    let provenance = &content.provenance;
+    let page = Page {
+        content,
+        method: method_text(&content.headline),
+        tiles: content.errors.headline().map(Tile::of).collect(),
+        errors: tables::errors(&content.errors),
+        trials: content.replays.iter().zip(replayed).map(|(shown, replayed)| TrialPlots::of(shown, replayed)).collect(),
+        moved: plots::moved(&content.coefficients),
+        coefficients: tables::coefficients(&content.coefficients),
+        groups: groups(&content.coefficients),
+        condition: significant(provenance.condition_number, 2),
+        options: tables::options(&content.options),
+        turns: tables::turns(&content.manoeuvres),
+        zigzags: tables::zigzags(&content.manoeuvres),
+        imo: tables::imo(&content.manoeuvres),
+        why: why(content),
+        particulars: tables::particulars(&provenance.particulars),
+        parameters: tables::parameters(&provenance.parameters),
+        settings: tables::settings(provenance.settings),
+        steering: steering(content),
+        sources: sources(content),
+    };
+    Ok(page.render()?)
+}
+
+impl Page<'_> {
+    fn badge(&self, status: &Status) -> &'static str {
+        words::status(*status)
+    }
+
+    fn meaning(&self, status: &Status) -> &'static str {
+        words::status_meaning(*status)
+    }
+
+    fn number(&self, value: &f64, digits: usize) -> String {
+        stated(*value, digits)
+    }
+}
+
+impl Tile {
+    fn of(row: &ErrorRow) -> Self {
+        let unit = row.quantity.unit;
+        let text = |value: Option<f64>| value.map_or_else(|| "–".into(), |value| format!("{} {unit}", significant(value, 3)));
+        let most = row.source.unwrap_or(0.0).max(row.refined.unwrap_or(0.0)).max(1e-300);
+        let bar = |value: Option<f64>| fixed(100.0 * value.unwrap_or(0.0) / most, 1);
+        let class = match row.change().0 {
+            "fell" => "good",
+            "rose" => "bad",
+            _ => "open",
+        };
+        Self {
+            name: row.quantity.name,
+            change: row.change_text(),
+            class,
+            before: text(row.source),
+            after: text(row.refined),
+            bars: (bar(row.source), bar(row.refined)),
+        }
+    }
+}
+
+impl<'a> TrialPlots<'a> {
+    fn of(shown: &'a Shown<'a>, replayed: &Replayed<'_>) -> Self {
+        Self { shown, caption: caption(shown), trajectory: plots::trajectory(replayed), series: plots::series(replayed) }
+    }
+}
+
+/// What the plots of a trial show and how far the models are off there.
+fn caption(shown: &Shown<'_>) -> String {
+    let error = |quantity: &words::Quantity| {
+        let of = |errors: &std::collections::BTreeMap<String, f64>| {
+            Some(significant(errors.get(quantity.channel)? * quantity.factor, 3))
+        };
+        Some(format!("{} {} → {} {}", quantity.name, of(&shown.source)?, of(&shown.refined)?, quantity.unit))
+    };
+    let wanted = |quantity: &&words::Quantity| ["r", "psi", "x", "y"].contains(&quantity.channel);
+    let errors: Vec<String> = words::CHANNELS.iter().filter(wanted).filter_map(error).collect();
+    let dots = stated(plots::mark_interval_s(shown.duration_s), 3);
+    let part = if shown.fitted { "was fitted with" } else { "has not seen" };
+    format!(
+        "Dots every {dots} s. The refined model {part} this trial. RMS error over the whole run, source → refined: {}.",
+        list(&errors)
+    )
+}
+
+/// Each collinear group as a line.
+fn groups(coefficients: &Coefficients<'_>) -> Vec<String> {
+    coefficients.collinear_groups.iter().map(|group| group.join(", ").replace('/', " and ")).collect()
+}
+
+fn why(content: &Content<'_>) -> Option<Why> {
+    content.similarity.map(|ranking| Why {
+        definition: similarity::definition(ranking.definition),
+        vector: similarity::vector(ranking),
+        remark: similarity::remark(ranking, content.headline.source),
+        table: similarity::table(ranking, content.headline.source),
+    })
+}
+
+fn steering(content: &Content<'_>) -> String {
+    let gear = content.provenance.steering;
+    let source = gear.source.as_deref().unwrap_or("default of SOLAS II-1/29");
+    let figures = [gear.limit_deg, gear.rate_deg_s, gear.time_constant_s].map(|value| stated(value, 3));
+    format!("rudder to {} deg, at most {} deg/s, time constant {} s ({source})", figures[0], figures[1], figures[2])
+}
+
+fn sources<'a>(content: &'a Content<'a>) -> Vec<(&'static str, Vec<Citation<'a>>)> {
+    let provenance = &content.provenance;
+    let lists = [
+        ("of the ship", provenance.ship_sources),
+        ("of the source model", provenance.model_sources),
+        ("of the law", provenance.law_sources),
+    ];
+    let cited = lists.map(|(of, sources)| (of, sources.iter().map(|(key, source)| Citation { key, source }).collect::<Vec<_>>()));
+    cited.into_iter().filter(|(_, citations)| !citations.is_empty()).collect()
+}

@@ -1,0 +1,134 @@
+//! The standard manoeuvres and the IMO criteria before and after.
+
+use serde::Serialize;
+use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+
+use super::Input;
+
+/// The two sides of every figure.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub(super) struct Pair {
+    pub source: Option<f64>,
+    pub refined: Option<f64>,
+}
+
+/// One figure of one manoeuvre.
+#[derive(Debug, Serialize)]
+pub(super) struct Figure {
+    pub manoeuvre: String,
+    pub figure: &'static str,
+    pub unit: &'static str,
+    #[serde(flatten)]
+    pub pair: Pair,
+}
+
+/// One IMO criterion.
+#[derive(Debug, Serialize)]
+pub(super) struct Verdict<'a> {
+    pub criterion: &'a str,
+    pub limit: f64,
+    pub unit: &'a str,
+    pub source: Option<f64>,
+    pub source_pass: Option<bool>,
+    pub refined: Option<f64>,
+    pub refined_pass: Option<bool>,
+}
+
+/// The whole comparison.
+#[derive(Debug, Serialize)]
+pub(super) struct Comparison<'a> {
+    pub lpp_m: Option<f64>,
+    pub speed_m_s: Option<f64>,
+    pub turns: Vec<Figure>,
+    pub zigzags: Vec<Figure>,
+    pub imo: Vec<Verdict<'a>>,
+    pub source_failures: &'a [String],
+    pub refined_failures: &'a [String],
+}
+
+impl<'a> Comparison<'a> {
+    pub fn of(input: &Input<'a>) -> Self {
+        let both = &input.refinement.manoeuvres;
+        let (source, refined) = (&both.source, &both.refined);
+        Self {
+            lpp_m: input.vessel.particular("lpp_m"),
+            speed_m_s: input.refinement.model.speed_m_s,
+            turns: turns(&source.turns, &refined.turns),
+            zigzags: zigzags(&source.zigzags, &refined.zigzags),
+            imo: criteria(&source.imo, &refined.imo),
+            source_failures: &source.failures,
+            refined_failures: &refined.failures,
+        }
+    }
+}
+
+type Read<T> = fn(&T) -> Option<f64>;
+
+const TURN: [(&str, Read<TurningMetrics>); 4] = [
+    ("advance", |turn| turn.advance_m),
+    ("transfer", |turn| turn.transfer_m),
+    ("tactical diameter", |turn| turn.tactical_diameter_m),
+    ("steady radius", |turn| turn.steady_radius_m),
+];
+
+const ZIGZAG: [(&str, &str, Read<ZigzagMetrics>); 3] = [
+    ("first overshoot", "deg", |zigzag| zigzag.first_overshoot_deg),
+    ("second overshoot", "deg", |zigzag| zigzag.second_overshoot_deg),
+    ("period", "s", |zigzag| zigzag.period_s),
+];
+
+/// The values of one key from both sides, in the order of the first; what only one side sailed is kept.
+fn matched<'t, T>(source: &'t [T], refined: &'t [T], same: impl Fn(&T, &T) -> bool) -> Vec<(Option<&'t T>, Option<&'t T>)> {
+    let mut pairs: Vec<_> = source.iter().map(|one| (Some(one), refined.iter().find(|other| same(one, other)))).collect();
+    let alone = refined.iter().filter(|other| !source.iter().any(|one| same(one, other)));
+    pairs.extend(alone.map(|other| (None, Some(other))));
+    pairs
+}
+
+fn turns(source: &[TurningMetrics], refined: &[TurningMetrics]) -> Vec<Figure> {
+    let mut figures = Vec::new();
+    for (before, after) in matched(source, refined, |a, b| a.rudder_deg == b.rudder_deg) {
+        let rudder = before.or(after).map_or(0.0, |turn| turn.rudder_deg);
+        let manoeuvre = format!("turn, {} deg to {}", rudder.abs(), side(rudder));
+        for (figure, read) in TURN {
+            let pair = Pair { source: before.and_then(read), refined: after.and_then(read) };
+            figures.push(Figure { manoeuvre: manoeuvre.clone(), figure, unit: "m", pair });
+        }
+    }
+    figures
+}
+
+fn zigzags(source: &[ZigzagMetrics], refined: &[ZigzagMetrics]) -> Vec<Figure> {
+    let same = |a: &ZigzagMetrics, b: &ZigzagMetrics| a.rudder_deg == b.rudder_deg && a.switch_deg == b.switch_deg;
+    let mut figures = Vec::new();
+    for (before, after) in matched(source, refined, same) {
+        let Some(one) = before.or(after) else { continue };
+        let manoeuvre = format!("zigzag {}/{}, first to {}", one.rudder_deg.abs(), one.switch_deg, side(one.rudder_deg));
+        for (figure, unit, read) in ZIGZAG {
+            let pair = Pair { source: before.and_then(read), refined: after.and_then(read) };
+            figures.push(Figure { manoeuvre: manoeuvre.clone(), figure, unit, pair });
+        }
+    }
+    figures
+}
+
+fn criteria<'a>(source: &'a [Criterion], refined: &'a [Criterion]) -> Vec<Verdict<'a>> {
+    let pairs = matched(source, refined, |a, b| a.criterion == b.criterion);
+    let one = |(before, after): (Option<&'a Criterion>, Option<&'a Criterion>)| {
+        let any = after.or(before)?;
+        Some(Verdict {
+            criterion: &any.criterion,
+            limit: any.limit,
+            unit: &any.unit,
+            source: before.and_then(|criterion| criterion.value),
+            source_pass: before.and_then(|criterion| criterion.pass),
+            refined: after.and_then(|criterion| criterion.value),
+            refined_pass: after.and_then(|criterion| criterion.pass),
+        })
+    };
+    pairs.into_iter().filter_map(one).collect()
+}
+
+fn side(rudder_deg: f64) -> &'static str {
+    if rudder_deg < 0.0 { "port" } else { "starboard" }
+}

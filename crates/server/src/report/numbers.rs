@@ -1,0 +1,103 @@
+//! Numbers as people read them: significant digits, a true minus sign, powers of ten.
+
+/// A value with so many significant digits; very small and very large ones as a power of ten.
+pub(super) fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() || value.abs() >= 1e300 {
+        return "–".into();
+    }
+    if value == 0.0 {
+        return "0".into();
+    }
+    let exponent = exponent(value, digits);
+    if exponent < -4 || exponent >= (digits as i32 + 2).min(6) {
+        return power_of_ten(value, digits, exponent);
+    }
+    let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+    fixed(value, decimals)
+}
+
+/// A stated value: as many digits as it was given with, at most so many.
+pub(super) fn stated(value: f64, digits: usize) -> String {
+    let text = significant(value, digits);
+    let (number, power) =
+        text.split_once('×').map_or((text.as_str(), String::new()), |(number, power)| (number, format!("×{power}")));
+    let trimmed = if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number };
+    format!("{trimmed}{power}")
+}
+
+/// The decimal exponent of the value once rounded to so many digits.
+fn exponent(value: f64, digits: usize) -> i32 {
+    let text = format!("{:.*e}", digits.saturating_sub(1), value);
+    text.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0)
+}
+
+fn power_of_ten(value: f64, digits: usize, exponent: i32) -> String {
+    let mantissa = fixed(value / 10_f64.powi(exponent), digits.saturating_sub(1));
+    format!("{mantissa}×10{}", superscript(exponent))
+}
+
+/// A small integer as an exponent is written.
+pub(super) fn superscript(number: i32) -> String {
+    let raised = |c: char| match c {
+        '-' => '⁻',
+        _ => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][c.to_digit(10).unwrap_or(0) as usize],
+    };
+    number.to_string().chars().map(raised).collect()
+}
+
+/// A value with so many decimals.
+pub(super) fn fixed(value: f64, decimals: usize) -> String {
+    if !value.is_finite() || value.abs() >= 1e300 {
+        return "–".into();
+    }
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(zero) if zero.chars().all(|c| c == '0' || c == '.') => zero.to_owned(),
+        Some(positive) => format!("−{positive}"),
+        None => text,
+    }
+}
+
+/// The same with a plus sign on what is not negative.
+pub(super) fn signed(value: f64, decimals: usize) -> String {
+    let text = fixed(value, decimals);
+    if text.starts_with(['−', '–']) { text } else { format!("+{text}") }
+}
+
+/// A value that may be unknown.
+pub(super) fn known(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
+    value.map_or_else(|| "–".into(), format)
+}
+
+/// Words as a list: `a, b and c`.
+pub(super) fn list(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_those_that_mean_something() {
+        let cases =
+            [(12.345, "12.3"), (0.012_345, "0.0123"), (-1.84e-5, "−1.84×10⁻⁵"), (0.0, "0"), (99.96, "100"), (f64::MAX, "–")];
+        for (value, text) in cases {
+            assert_eq!(significant(value, 3), text);
+        }
+        assert_eq!((significant(1.2345e7, 3), significant(171_298.0, 2)), ("1.23×10⁷".into(), "1.7×10⁵".into()));
+        let stated = [175.0, 0.562, 21222.0, -4.646e-5, 0.0].map(|value| stated(value, 5));
+        assert_eq!(stated, ["175", "0.562", "21222", "−4.646×10⁻⁵", "0"]);
+        assert_eq!((fixed(-0.001, 1), signed(2.0, 1), signed(-2.0, 1)), ("0.0".into(), "+2.0".into(), "−2.0".into()));
+    }
+
+    #[test]
+    fn lists_read_as_sentences() {
+        let words = ["a", "b", "c"].map(str::to_owned);
+        assert_eq!((list(&words), list(&words[..1])), ("a, b and c".into(), "a".into()));
+    }
+}

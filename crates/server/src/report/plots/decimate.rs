@@ -1,0 +1,41 @@
+//! Fewer points, where there are more than a plot can show.
+
+/// Most points of a line.
+const MOST: usize = 600;
+
+/// The indices that are drawn: every so many, first and last among them.
+pub(super) fn kept(count: usize) -> Vec<usize> {
+    let stride = count.div_ceil(MOST - 1).max(1);
+    let mut kept: Vec<usize> = (0..count).step_by(stride).collect();
+    if kept.last().is_some_and(|last| last + 1 < count) {
+        kept.push(count - 1);
+    }
+    kept
+}
+
+/// Path data through points, broken where `jumps` says that a gap lies between two samples.
+pub(super) fn path(points: &[(f64, f64)], jumps: impl Fn(usize, usize) -> bool) -> String {
+    let mut data = String::new();
+    let mut last: Option<usize> = None;
+    for index in kept(points.len()) {
+        let (x, y) = points[index];
+        let pen = if last.is_none_or(|last| jumps(last, index)) { 'M' } else { 'L' };
+        data.push_str(&format!("{pen}{x:.1} {y:.1}"));
+        last = Some(index);
+    }
+    data
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_line_has_more_than_the_most() {
+        for count in [0, 1, 599, 600, 601, 1301, 100_000] {
+            let kept = kept(count);
+            assert!(kept.len() <= MOST, "{count}");
+            assert_eq!(kept.last().copied(), count.checked_sub(1));
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! Plots as inline SVG: a few shapes, axes with nice ticks, and what is drawn on them.
+
+mod axes;
+mod bars;
+mod decimate;
+mod lines;
+mod series;
+mod trajectory;
+
+use askama::Template;
+
+pub(super) use bars::moved;
+pub(super) use series::series;
+pub(super) use trajectory::{mark_interval_s, trajectory};
+
+/// Width of every plot in its own units, near that of a phone's screen, so that text stays legible there.
+const WIDTH: f64 = 420.0;
+
+/// A plot.
+#[derive(Debug, Template)]
+#[template(path = "report_plot.html")]
+pub(super) struct Plot {
+    pub width: f64,
+    pub height: f64,
+    /// What it shows, for those who cannot see it.
+    pub label: String,
+    pub shapes: Vec<Shape>,
+}
+
+/// What plots are made of. `class` is a style of the page.
+#[derive(Debug)]
+pub(super) enum Shape {
+    /// A straight line.
+    Line { from: (f64, f64), to: (f64, f64), class: &'static str },
+    /// A line through many points, as path data.
+    Path { d: String, class: &'static str },
+    /// A rectangle.
+    Rect { at: (f64, f64), size: (f64, f64), class: &'static str },
+    /// A dot.
+    Dot { at: (f64, f64), radius: f64, class: &'static str },
+    /// Text; `class` also anchors it.
+    Text { at: (f64, f64), text: String, class: &'static str },
+    /// Shapes in the coordinates of a panel, cut off at its edges.
+    Panel { at: (f64, f64), size: (f64, f64), shapes: Vec<Shape> },
+}

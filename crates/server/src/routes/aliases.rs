@@ -1,0 +1,175 @@
+//! Aliases of versions: they move by compare-and-swap and keep their history.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use sistership_store::{Alias, AliasChange, AliasMove, Expect};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::versions::exists;
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::publish::{alias, is_reserved};
+use crate::web::conditions::tag;
+use crate::web::{Conditions, Listing, Params, Payload, Place, page};
+
+/// The longest reason.
+const REASON_BYTES: usize = 1000;
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(list)).routes(routes!(get, put)).routes(routes!(history))
+}
+
+/// Where an alias stands.
+#[derive(Debug, Serialize, ToSchema)]
+struct AliasView {
+    model: String,
+    alias: String,
+    /// The number of the version that it stands for.
+    version: i64,
+    /// One more with each move; its ETag.
+    revision: i64,
+}
+
+/// One move of an alias.
+#[derive(Debug, Serialize, ToSchema)]
+struct AliasStep {
+    /// The version it stood for; null at first.
+    from: Option<i64>,
+    /// The version it stands for since.
+    to: i64,
+    revision: i64,
+    reason: String,
+    actor: String,
+    moved_us: i64,
+}
+
+/// Where an alias shall stand.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct AliasRequest {
+    /// The number of the version.
+    version: i64,
+    /// Why; kept in the history.
+    reason: String,
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct Names {
+    /// The most items to return, 1 to 1000.
+    limit: Option<i64>,
+    /// `next` of the page before.
+    after: Option<String>,
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct Revisions {
+    /// The most items to return, 1 to 1000.
+    limit: Option<i64>,
+    /// `next` of the page before.
+    after: Option<i64>,
+}
+
+impl AliasView {
+    fn of(alias: Alias) -> Self {
+        let Alias { model, alias, version_number: version, revision } = alias;
+        Self { model, alias, version, revision }
+    }
+
+    fn answer(self, status: StatusCode) -> Response {
+        (status, [(header::ETAG, tag(self.revision))], Json(self)).into_response()
+    }
+}
+
+impl AliasStep {
+    fn of(change: AliasChange) -> Self {
+        let AliasChange { from_number: from, to_number: to, revision, reason, actor, moved_us, .. } = change;
+        Self { from, to, revision, reason, actor, moved_us }
+    }
+}
+
+/// List the aliases of a model
+#[utoipa::path(
+    get, path = "/v1/models/{model}/aliases", tag = "models", params(("model" = String, Path), Names),
+    responses((status = 200, body = Listing<AliasView>))
+)]
+async fn list(
+    State(app): State<App>,
+    Place(model): Place<String>,
+    Params(query): Params<Names>,
+) -> Result<Json<Listing<AliasView>>> {
+    exists(&app, &model).await?;
+    let aliases = app.store().aliases().list(&model, &page::page(query.limit, query.after)).await?;
+    Ok(Json(Listing::of(aliases, AliasView::of)))
+}
+
+/// Where an alias stands; its ETag is what a move must present
+#[utoipa::path(
+    get, path = "/v1/models/{model}/aliases/{alias}", tag = "models", params(("model" = String, Path), ("alias" = String, Path)),
+    responses((status = 200, body = AliasView, headers(("ETag" = String))))
+)]
+async fn get(State(app): State<App>, Place((model, name)): Place<(String, String)>) -> Result<Response> {
+    Ok(AliasView::of(app.store().aliases().get(&model, &name).await?).answer(StatusCode::OK))
+}
+
+/// Move an alias, or create it
+#[utoipa::path(
+    put, path = "/v1/models/{model}/aliases/{alias}", tag = "models",
+    params(
+        ("model" = String, Path), ("alias" = String, Path),
+        ("If-Match" = Option<String>, Header, description = "The ETag of the alias as you last read it, to move it"),
+        ("If-None-Match" = Option<String>, Header, description = "`*`, to create it")
+    ),
+    request_body = AliasRequest,
+    responses((status = 200, body = AliasView, headers(("ETag" = String))), (status = 201, body = AliasView, headers(("ETag" = String))))
+)]
+async fn put(
+    State(app): State<App>,
+    Place((model, name)): Place<(String, String)>,
+    conditions: Conditions,
+    payload: Payload,
+) -> Result<Response> {
+    let AliasRequest { version, reason } = payload.json()?;
+    check(&name, &reason)?;
+    let current = alias(app.store(), &model, &name).await?.map(|alias| alias.revision);
+    let expect = conditions.expect(&format!("alias `{model}/{name}`"), current)?;
+    let change = AliasMove { alias: name, expect, reason, actor: "api".to_owned() };
+    let moved = app.store().aliases().move_to(&model, version, &change).await?;
+    let status = if expect == Expect::Absent { StatusCode::CREATED } else { StatusCode::OK };
+    Ok(AliasView::of(moved).answer(status))
+}
+
+fn check(name: &str, reason: &str) -> Result<()> {
+    if is_reserved(name) {
+        return Err(Problem::invalid("alias", format!("`{name}` is moved by the server itself; choose another name")));
+    }
+    sistership_model::name::check_slug(name).map_err(|message| Problem::invalid("alias", message))?;
+    match !reason.trim().is_empty() && reason.len() <= REASON_BYTES {
+        true => Ok(()),
+        false => Err(Problem::invalid("reason", format!("say why in 1 to {REASON_BYTES} bytes; it is kept in the history"))),
+    }
+}
+
+/// How an alias has moved, the latest first
+#[utoipa::path(
+    get, path = "/v1/models/{model}/aliases/{alias}/history", tag = "models",
+    params(("model" = String, Path), ("alias" = String, Path), Revisions),
+    responses((status = 200, body = Listing<AliasStep>))
+)]
+async fn history(
+    State(app): State<App>,
+    Place((model, name)): Place<(String, String)>,
+    Params(query): Params<Revisions>,
+) -> Result<Json<Listing<AliasStep>>> {
+    app.store().aliases().get(&model, &name).await?;
+    let changes = app.store().aliases().history(&model, &name, &page::page(query.limit, query.after)).await?;
+    Ok(Json(Listing::of(changes, AliasStep::of)))
+}

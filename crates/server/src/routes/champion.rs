@@ -1,0 +1,123 @@
+//! The query the product exists for: the model of a ship.
+
+use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sistership_model::Model;
+use sistership_store::Version;
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::versions::VersionHead;
+use crate::app::App;
+use crate::archive::document;
+use crate::problem::{Problem, Result};
+use crate::publish::{CHAMPION, alias};
+use crate::web::{Conditions, Params, Place, accept};
+
+const JSON: &str = "application/json";
+const YAML: &str = "application/yaml";
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(champion))
+}
+
+/// The champion of a ship.
+#[derive(Debug, Serialize, ToSchema)]
+struct Champion {
+    ship: String,
+    /// The version that the alias `champion` stands for.
+    version: VersionHead,
+    /// The model, as `models/schema/model.schema.json` describes it.
+    #[schema(value_type = Object)]
+    model: Value,
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct Query {
+    /// `json` or `yaml`, over what `Accept` says.
+    #[param(value_type = Option<String>)]
+    format: Option<Format>,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Format {
+    Json,
+    Yaml,
+}
+
+/// The model of a ship: her champion
+///
+/// As YAML it is a file that `sistership simulate --model` takes.
+#[utoipa::path(
+    get, path = "/v1/ships/{ship}/model", tag = "ships", params(("ship" = String, Path), Query),
+    responses(
+        (status = 200, content((Champion = "application/json"), (String = "application/yaml")), headers(("ETag" = String))),
+        (status = 304, description = "As you have it")
+    )
+)]
+async fn champion(
+    State(app): State<App>,
+    Place(ship): Place<String>,
+    Params(query): Params<Query>,
+    conditions: Conditions,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let media = match query.format {
+        Some(Format::Json) => JSON,
+        Some(Format::Yaml) => YAML,
+        None => accept::choose(&headers, &[JSON, YAML])?,
+    };
+    let version = current(&app, &ship).await?;
+    let etag = if media == YAML { format!("\"{}.yaml\"", version.head.sha256) } else { format!("\"{}\"", version.head.sha256) };
+    let head = [(header::ETAG, etag.clone()), (header::VARY, "accept".to_owned()), (header::CONTENT_TYPE, media.to_owned())];
+    if conditions.has(&etag) {
+        return Ok((StatusCode::NOT_MODIFIED, head).into_response());
+    }
+    let model = document(&version)?.model;
+    let body = if media == YAML { yaml(&model)? } else { json(&app, ship, version, &model).await? };
+    Ok((head, body).into_response())
+}
+
+async fn current(app: &App, ship: &str) -> Result<Version> {
+    app.store().ships().get(ship).await?;
+    let missing = || {
+        let todo = "upload trials to /v1/trials and POST a refinement to /v1/refinements";
+        Problem::not_found(format!("the ship `{ship}` is known by particulars only and has no model yet; {todo}"))
+    };
+    let champion = alias(app.store(), ship, CHAMPION).await?.ok_or_else(missing)?;
+    Ok(app.store().versions().get(ship, champion.version_number).await?)
+}
+
+fn yaml(model: &Model) -> Result<String> {
+    serde_yaml::to_string(model).map_err(Problem::internal)
+}
+
+async fn json(app: &App, ship: String, version: Version, model: &Model) -> Result<String> {
+    let version = VersionHead::with_report(app, version.head).await?;
+    let model = serde_json::to_value(model).map_err(Problem::internal)?;
+    serde_json::to_string(&Champion { ship, version, model }).map_err(Problem::internal)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_model::Zoo;
+
+    #[test]
+    fn yaml_reads_back_as_the_same_model() {
+        let zoo = Zoo::embedded().unwrap();
+        for vessel in zoo.vessels().filter(|vessel| !vessel.file.models.is_empty()) {
+            let model = zoo.published(vessel, None).unwrap();
+            let law_of = |name: &str| zoo.law(name).map(|law| (**law).clone());
+            assert_eq!(Model::parse("model.yaml", &yaml(&model).unwrap(), &law_of).unwrap(), model);
+        }
+    }
+}

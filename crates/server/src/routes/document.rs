@@ -1,0 +1,85 @@
+//! The OpenAPI document.
+
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use utoipa::OpenApi as _;
+use utoipa::openapi::path::Operation;
+use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme};
+use utoipa::openapi::{Components, Content, OpenApi, PathItem, Ref, ResponseBuilder};
+
+use crate::config::Limits;
+use crate::problem::{Fault, MEDIA, Problem};
+
+#[derive(utoipa::OpenApi)]
+#[openapi(
+    info(
+        title = "Sistership",
+        description = "A model zoo and refinement server for ship manoeuvring models. Every error is a problem (RFC 9457); \
+                       times are microseconds since 1970; other figures carry their unit in their name.",
+        license(name = "MIT OR Apache-2.0"),
+        version = "1"
+    ),
+    components(schemas(Problem, Fault)),
+    tags(
+        (name = "ships", description = "Ships, and the model that each is asked for."),
+        (name = "trials", description = "Free-running trials of ships."),
+        (name = "refinements", description = "Refining a model against trials, as a job."),
+        (name = "jobs", description = "Long work."),
+        (name = "models", description = "Versions of models, insert-only, and the aliases that move between them."),
+        (name = "predictions", description = "Simulations with a version."),
+        (name = "reports", description = "What a refinement reported."),
+        (name = "laws", description = "Laws of motion."),
+        (name = "health", description = "Whether the server lives and can work.")
+    )
+)]
+struct About;
+
+/// What does not depend on the endpoints.
+pub(super) fn about() -> OpenApi {
+    let mut about = About::openapi();
+    about.info.version = env!("CARGO_PKG_VERSION").to_owned();
+    let key =
+        HttpBuilder::new().scheme(HttpAuthScheme::Bearer).description(Some("The server's API key, where it has one")).build();
+    about.components.get_or_insert_with(Components::new).add_security_scheme("api_key", SecurityScheme::Http(key));
+    about.security = Some(vec![SecurityRequirement::default(), SecurityRequirement::new("api_key", Vec::<String>::new())]);
+    about
+}
+
+/// The contract of the server, as `/openapi.json` serves it.
+pub fn openapi() -> OpenApi {
+    let mut document = super::api(&Limits::default()).into_openapi();
+    for (path, item) in &mut document.paths.paths {
+        for (method, operation) in operations(item) {
+            operation.operation_id = Some(id(method, path));
+            add_problem(operation);
+        }
+    }
+    document
+}
+
+fn operations(item: &mut PathItem) -> impl Iterator<Item = (&'static str, &mut Operation)> {
+    let all = [("get", &mut item.get), ("put", &mut item.put), ("post", &mut item.post), ("delete", &mut item.delete)];
+    all.into_iter().filter_map(|(method, operation)| Some((method, operation.as_mut()?)))
+}
+
+/// A name for programs that are made from the document: `get_ships_ship_model`.
+fn id(method: &str, path: &str) -> String {
+    let words = path.split('/').filter(|word| !word.is_empty() && *word != "v1").map(|word| word.trim_matches(['{', '}']));
+    std::iter::once(method).chain(words).collect::<Vec<_>>().join("_")
+}
+
+/// Whatever goes wrong is a problem.
+fn add_problem(operation: &mut Operation) {
+    let content = Content::new(Some(Ref::from_schema_name("Problem")));
+    let problem = ResponseBuilder::new().description("Why it was not done, and what to do").content(MEDIA, content).build();
+    operation.responses.responses.insert("default".to_owned(), problem.into());
+}
+
+/// The document as text, indented, with a line feed at its end.
+pub(super) fn text() -> String {
+    openapi().to_pretty_json().map(|text| text + "\n").unwrap_or_default()
+}
+
+pub(super) fn served(text: String) -> Response {
+    ([(header::CONTENT_TYPE, "application/json")], text).into_response()
+}

@@ -1,0 +1,69 @@
+//! A job as it goes, as server-sent events.
+
+use std::convert::Infallible;
+use std::time::Duration;
+
+use axum::extract::State;
+use axum::response::sse::{Event, KeepAlive, Sse};
+use futures::Stream;
+use sistership_store::{Job, JobState};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::jobs::JobView;
+use crate::app::App;
+use crate::problem::Result;
+use crate::web::Place;
+
+/// How often the job is looked at: another process may work on it.
+const LOOK: Duration = Duration::from_millis(200);
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(events))
+}
+
+/// Follow a job until its end
+///
+/// Each event is called `job` and holds the job as JSON; there is one at once and one with each change. The stream ends
+/// when the job is at its end, or when the server stops.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}/events", tag = "jobs", params(("id" = String, Path)),
+    responses((status = 200, body = String, content_type = "text/event-stream"))
+)]
+async fn events(State(app): State<App>, Place(id): Place<String>) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>> {
+    let job = app.store().jobs().get(&id).await?;
+    Ok(Sse::new(follow(app, job)).keep_alive(KeepAlive::default()))
+}
+
+fn follow(app: App, first: Job) -> impl Stream<Item = Result<Event, Infallible>> {
+    let id = first.id.clone();
+    async_stream::stream! {
+        let (mut stopping, mut seen, mut job) = (app.stopping(), None, first);
+        loop {
+            if seen.replace(mark(&job)) != Some(mark(&job)) {
+                yield Ok(event(job.clone()));
+            }
+            if job.state.is_final() {
+                break;
+            }
+            tokio::select! {
+                () = stopping.wait() => break,
+                () = tokio::time::sleep(LOOK) => {}
+            }
+            match app.store().jobs().get(&id).await {
+                Ok(now) => job = now,
+                Err(error) => tracing::warn!(%error, "a job could not be looked at"),
+            }
+        }
+    }
+}
+
+/// What a listener is told about when it changes.
+fn mark(job: &Job) -> (JobState, u64, String, bool, i64) {
+    (job.state, job.progress.to_bits(), job.message.clone(), job.cancel_requested, job.attempt)
+}
+
+fn event(job: Job) -> Event {
+    let event = Event::default().event("job");
+    event.json_data(JobView::of(job)).unwrap_or_else(|_| Event::default().comment("the job cannot be shown"))
+}

@@ -1,0 +1,46 @@
+//! Whether the server lives, and whether it can work.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::StatusCode;
+use serde::Serialize;
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use crate::app::App;
+use crate::derive::code_revision;
+use crate::problem::{Problem, Result};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(healthz)).routes(routes!(readyz))
+}
+
+/// How the server is.
+#[derive(Debug, Serialize, ToSchema)]
+struct Health {
+    /// Always `ok`: anything else is a problem.
+    status: &'static str,
+    /// The program's revision.
+    revision: &'static str,
+}
+
+fn ok() -> Json<Health> {
+    Json(Health { status: "ok", revision: code_revision() })
+}
+
+/// Whether the server lives
+#[utoipa::path(get, path = "/healthz", tag = "health", responses((status = 200, body = Health)))]
+async fn healthz() -> Json<Health> {
+    ok()
+}
+
+/// Whether the server can work: its database answers, and it is not stopping
+#[utoipa::path(get, path = "/readyz", tag = "health", responses((status = 200, body = Health)))]
+async fn readyz(State(app): State<App>) -> Result<Json<Health>> {
+    if app.stopping().now() {
+        return Err(Problem::new(StatusCode::SERVICE_UNAVAILABLE, "the server is stopping"));
+    }
+    app.store().health().await?;
+    Ok(ok())
+}

@@ -1,0 +1,123 @@
+//! Long work: where it stands.
+
+use axum::Json;
+use axum::extract::State;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sistership_store::{Job, JobFilter};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use crate::app::App;
+use crate::problem::Result;
+use crate::web::{Listing, Params, Place, page};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(list)).routes(routes!(get, cancel)).routes(routes!(retry))
+}
+
+/// A job.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct JobView {
+    pub id: String,
+    /// `refinement`.
+    pub kind: String,
+    pub ship: Option<String>,
+    /// `queued`, `running`, `succeeded`, `failed` or `cancelled`.
+    pub state: &'static str,
+    /// From 0 to 1.
+    pub progress: f64,
+    /// What is being done.
+    pub message: String,
+    /// What was asked.
+    #[schema(value_type = Object)]
+    pub request: Value,
+    /// What came of it: `model`, `version`, `sha256`, `alias`, `report`, `source`, `held_out`, `ranking`.
+    #[schema(value_type = Option<Object>)]
+    pub result: Option<Value>,
+    /// Why it failed.
+    pub error: Option<String>,
+    /// How often it was begun.
+    pub attempt: i64,
+    /// Whether it is asked to stop.
+    pub cancel_requested: bool,
+    pub created_us: i64,
+    pub started_us: Option<i64>,
+    pub finished_us: Option<i64>,
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct Query {
+    /// Of this ship only.
+    ship: Option<String>,
+    /// In this state only.
+    state: Option<String>,
+    /// The most items to return, 1 to 1000.
+    limit: Option<i64>,
+    /// `next` of the page before.
+    after: Option<String>,
+}
+
+impl JobView {
+    pub(super) fn of(job: Job) -> Self {
+        let mut request: Value = serde_json::from_str(&job.request).unwrap_or_default();
+        if let Some(fields) = request.as_object_mut() {
+            fields.remove("key_sha256");
+        }
+        let result = job.result.as_deref().and_then(|result| serde_json::from_str(result).ok());
+        let state = job.state.as_str();
+        let Job {
+            id, kind, ship, progress, message, error, attempt, cancel_requested, created_us, started_us, finished_us, ..
+        } = job;
+        Self {
+            id,
+            kind,
+            ship,
+            state,
+            progress,
+            message,
+            request,
+            result,
+            error,
+            attempt,
+            cancel_requested,
+            created_us,
+            started_us,
+            finished_us,
+        }
+    }
+}
+
+/// List the jobs, the latest first
+#[utoipa::path(get, path = "/v1/jobs", tag = "jobs", params(Query), responses((status = 200, body = Listing<JobView>)))]
+async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<JobView>>> {
+    let state = query.state.as_deref().map(str::parse).transpose()?;
+    let filter = JobFilter { ship: query.ship, state };
+    let jobs = app.store().jobs().list(&filter, &page::page(query.limit, query.after)).await?;
+    Ok(Json(Listing::of(jobs, JobView::of)))
+}
+
+/// A job
+#[utoipa::path(get, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = String, Path)), responses((status = 200, body = JobView)))]
+async fn get(State(app): State<App>, Place(id): Place<String>) -> Result<Json<JobView>> {
+    Ok(Json(JobView::of(app.store().jobs().get(&id).await?)))
+}
+
+/// Cancel a job; one that runs stops at its next step
+#[utoipa::path(delete, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = String, Path)), responses((status = 200, body = JobView)))]
+async fn cancel(State(app): State<App>, Place(id): Place<String>) -> Result<Json<JobView>> {
+    Ok(Json(JobView::of(app.store().jobs().request_cancel(&id).await?)))
+}
+
+/// Do a job again that failed or was cancelled
+#[utoipa::path(
+    post, path = "/v1/jobs/{id}/retry", tag = "jobs", params(("id" = String, Path)), responses((status = 200, body = JobView))
+)]
+async fn retry(State(app): State<App>, Place(id): Place<String>) -> Result<Json<JobView>> {
+    let job = app.store().jobs().retry(&id).await?;
+    app.wake().notify_one();
+    Ok(Json(JobView::of(job)))
+}

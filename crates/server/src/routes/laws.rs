@@ -1,0 +1,97 @@
+//! Laws of motion.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use sistership_model::Law;
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use crate::app::App;
+use crate::problem::Result;
+use crate::web::{Key, Listing, Params, Payload, Place, Reply, accept, page};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(list, create)).routes(routes!(get))
+}
+
+/// A law as lists show it.
+#[derive(Debug, Serialize, ToSchema)]
+struct LawHead {
+    name: String,
+    /// The SHA-256 of its text.
+    sha256: String,
+    created_us: i64,
+}
+
+/// A law with its text.
+#[derive(Debug, Serialize, ToSchema)]
+struct LawText {
+    name: String,
+    /// The SHA-256 of its text.
+    sha256: String,
+    created_us: i64,
+    /// The YAML file, byte for byte.
+    document: String,
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct Query {
+    /// The most items to return, 1 to 1000.
+    limit: Option<i64>,
+    /// `next` of the page before.
+    after: Option<String>,
+}
+
+impl LawHead {
+    fn of(law: sistership_store::Law) -> Self {
+        Self { name: law.name, sha256: law.sha256, created_us: law.created_us }
+    }
+}
+
+/// List the laws
+#[utoipa::path(get, path = "/v1/laws", tag = "laws", params(Query), responses((status = 200, body = Listing<LawHead>)))]
+async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<LawHead>>> {
+    let laws = app.store().laws().list(&page::page(query.limit, query.after)).await?;
+    Ok(Json(Listing::of(laws, LawHead::of)))
+}
+
+/// Add a law; it never changes afterwards
+///
+/// The body is the law's YAML file. Its formulas, units and symmetry are checked before it is kept.
+#[utoipa::path(
+    post, path = "/v1/laws", tag = "laws",
+    params(("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
+    request_body(content = String, content_type = "application/yaml"),
+    responses((status = 201, body = LawHead))
+)]
+async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
+    let text = payload.text()?.to_owned();
+    let parse = text.clone();
+    let name = app.compute(move || Law::parse("body", &parse)).await??.name;
+    let store = app.store().clone();
+    let work = async move {
+        let head = LawHead::of(store.laws().insert(&name, &text).await?);
+        Ok(Reply::new(StatusCode::CREATED, &head)?.at(format!("/v1/laws/{name}")))
+    };
+    key.once(&app, payload.bytes(), work).await
+}
+
+/// A law, as JSON or as its YAML file
+#[utoipa::path(
+    get, path = "/v1/laws/{law}", tag = "laws", params(("law" = String, Path)),
+    responses((status = 200, content((LawText = "application/json"), (String = "application/yaml"))))
+)]
+async fn get(State(app): State<App>, Place(name): Place<String>, headers: HeaderMap) -> Result<Response> {
+    let law = app.store().laws().get(&name).await?;
+    if accept::choose(&headers, &["application/json", "application/yaml"])? == "application/yaml" {
+        return Ok(([(header::CONTENT_TYPE, "application/yaml"), (header::VARY, "accept")], law.document).into_response());
+    }
+    let sistership_store::Law { name, sha256, created_us, document } = law;
+    Ok(([(header::VARY, "accept")], Json(LawText { name, sha256, created_us, document })).into_response())
+}

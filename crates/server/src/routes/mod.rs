@@ -1,0 +1,85 @@
+//! The endpoints, one file a group, and the document that describes them.
+
+mod aliases;
+mod champion;
+mod document;
+mod events;
+mod health;
+mod jobs;
+mod laws;
+mod model_ref;
+mod pages;
+mod predictions;
+mod refinements;
+mod reports;
+mod samples;
+mod ship_changes;
+mod ships;
+mod similar;
+mod trials;
+mod uploads;
+mod versions;
+
+use axum::Router;
+use axum::extract::DefaultBodyLimit;
+use axum::http::StatusCode;
+use axum::middleware::{from_fn, from_fn_with_state};
+use axum::routing::get;
+use tower_http::catch_panic::CatchPanicLayer;
+use tower_http::timeout::TimeoutLayer;
+use utoipa_axum::router::OpenApiRouter;
+
+pub use document::openapi;
+
+use crate::app::App;
+use crate::config::Limits;
+use crate::web::{envelope, guard};
+
+/// Everything that is served.
+pub(crate) fn router(app: App) -> Router {
+    let (api, _) = api(app.limits()).split_for_parts();
+    let text = document::text();
+    api.route("/openapi.json", get(move || async move { document::served(text) }))
+        .merge(pages::routes())
+        .fallback(envelope::nowhere)
+        .layer(from_fn_with_state(app.clone(), guard::guard))
+        .layer(CatchPanicLayer::custom(envelope::panicked))
+        .layer(from_fn(envelope::envelope))
+        .with_state(app)
+}
+
+/// The endpoints that the OpenAPI document describes.
+fn api(limits: &Limits) -> OpenApiRouter<App> {
+    OpenApiRouter::with_openapi(document::about()).merge(quick(limits)).merge(long(limits))
+}
+
+/// What is answered at once.
+fn quick(limits: &Limits) -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .merge(health::routes())
+        .merge(laws::routes())
+        .merge(ships::routes())
+        .merge(ship_changes::routes())
+        .merge(similar::routes())
+        .merge(champion::routes())
+        .merge(trials::routes())
+        .merge(samples::routes())
+        .merge(refinements::routes())
+        .merge(jobs::routes())
+        .merge(events::routes())
+        .merge(versions::routes())
+        .merge(aliases::routes())
+        .merge(predictions::routes())
+        .merge(reports::routes())
+        .layer(DefaultBodyLimit::max(limits.document_bytes))
+        .layer(TimeoutLayer::with_status_code(StatusCode::GATEWAY_TIMEOUT, limits.request_time))
+}
+
+/// What takes long: uploads, and deriving a version again.
+fn long(limits: &Limits) -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .merge(uploads::routes())
+        .merge(versions::verification())
+        .layer(DefaultBodyLimit::max(limits.upload_bytes))
+        .layer(TimeoutLayer::with_status_code(StatusCode::GATEWAY_TIMEOUT, limits.long_request_time))
+}

@@ -1,0 +1,40 @@
+//! Simulations with a version.
+
+use axum::Json;
+use axum::extract::State;
+use serde_json::{Value, json};
+use sistership_model::Model;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::model_ref::resolve;
+use crate::app::App;
+use crate::archive::document;
+use crate::predict::{PredictionRequest, predict};
+use crate::problem::Result;
+use crate::web::Payload;
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(create))
+}
+
+/// Simulate a manoeuvre, or recorded inputs, with a version of a model
+#[utoipa::path(
+    post, path = "/v1/predictions", tag = "predictions", request_body = PredictionRequest,
+    responses((status = 200, body = Object, description = "`model`, `version`, `sha256`, `law`; `trajectory` under canonical names; `metrics`; \
+        `stopped` where recorded inputs led out of the physical range; for all standard manoeuvres `turns`, `zigzags`, `imo`"))
+)]
+async fn create(State(app): State<App>, payload: Payload) -> Result<Json<Value>> {
+    let request: PredictionRequest = payload.json()?;
+    let version = resolve(app.store(), "model", &request.model).await?;
+    let model: Model = document(&version)?.model;
+    let law = app.law(&model.law).await?;
+    let most = app.limits().prediction_samples;
+    let mut answer = app.compute(move || predict(&request, &model, &law, most)).await??;
+    let head = version.head;
+    answer["model"] = json!(head.model);
+    answer["version"] = json!(head.number);
+    answer["sha256"] = json!(head.sha256);
+    answer["law"] = json!(head.law);
+    Ok(Json(answer))
+}

@@ -1,0 +1,60 @@
+//! Reports, as data and as pages.
+
+use axum::extract::State;
+use axum::http::{HeaderMap, header};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use utoipa::IntoParams;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::pages::POLICY;
+use crate::app::App;
+use crate::problem::Result;
+use crate::web::{Params, Place, accept};
+
+const JSON: &str = "application/json";
+const HTML: &str = "text/html";
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(get))
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct Query {
+    /// `json` or `html`, over what `Accept` says.
+    #[param(value_type = Option<String>)]
+    format: Option<Format>,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Format {
+    Json,
+    Html,
+}
+
+/// A report, as JSON or as a page that stands alone
+#[utoipa::path(
+    get, path = "/v1/reports/{id}", tag = "reports", params(("id" = String, Path), Query),
+    responses((status = 200, content((Object = "application/json"), (String = "text/html"))))
+)]
+async fn get(
+    State(app): State<App>,
+    Place(id): Place<String>,
+    Params(query): Params<Query>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let media = match query.format {
+        Some(Format::Json) => JSON,
+        Some(Format::Html) => HTML,
+        None => accept::choose(&headers, &[JSON, HTML])?,
+    };
+    let report = app.store().reports().get(&id).await?;
+    let body = if media == HTML { report.html } else { report.document };
+    let media = if media == HTML { "text/html; charset=utf-8" } else { media };
+    let head = [(header::CONTENT_TYPE, media), (header::VARY, "accept"), (header::CONTENT_SECURITY_POLICY, POLICY)];
+    Ok((head, body).into_response())
+}

@@ -1,0 +1,119 @@
+//! Ships, to change.
+
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use sistership_model::Vessel;
+use sistership_model::vessel::VesselFile;
+use sistership_store::{NewShip, Ship, Store, StoreError};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::ships::ShipDetail;
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::publish::publish;
+use crate::seed::new_ship;
+use crate::web::conditions::tag;
+use crate::web::{Conditions, Key, Payload, Place, Reply};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(create)).routes(routes!(replace, delete)).routes(routes!(undelete))
+}
+
+/// Reads and checks a vessel as JSON or YAML.
+async fn vessel(app: &App, payload: &Payload) -> Result<Vessel> {
+    if payload.is_json() {
+        return Ok(Vessel::from_file("body", payload.json::<VesselFile>()?)?);
+    }
+    let text = payload.text().map_err(|_| payload.wrong("application/yaml` or `application/json"))?.to_owned();
+    Ok(app.compute(move || Vessel::parse("body", &text)).await??)
+}
+
+/// Create a ship
+///
+/// The body is a vessel document, YAML or JSON (`models/schema/vessel.schema.json`). Each model that it publishes becomes
+/// a version; the first becomes champion. A ship known by particulars only gets her first model from a refinement.
+#[utoipa::path(
+    post, path = "/v1/ships", tag = "ships",
+    params(("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
+    request_body(content((Object = "application/json"), (String = "application/yaml"))),
+    responses((status = 201, body = ShipDetail, headers(("ETag" = String), ("Location" = String))))
+)]
+async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
+    let vessel = vessel(&app, &payload).await?;
+    let (inner, keyed) = (app.clone(), key.value.is_some());
+    key.once(&app, payload.bytes(), async move { created(&inner, &vessel, keyed).await }).await
+}
+
+async fn created(app: &App, vessel: &Vessel, keyed: bool) -> Result<Reply> {
+    let zoo = app.zoo().await?;
+    zoo.check_models(vessel)?;
+    let new = new_ship(vessel).map_err(Problem::internal)?;
+    let ship = match app.store().ships().create(&new).await {
+        // The same request again, whose first answer was lost when the server was killed.
+        Err(StoreError::Conflict { .. }) if keyed && is_there(app.store(), &new).await => {
+            app.store().ships().get(&new.name).await?
+        }
+        other => other?,
+    };
+    publish(app.store(), &zoo, vessel, &ship.document).await?;
+    let (location, etag) = (format!("/v1/ships/{}", ship.name), tag(ship.revision));
+    Ok(Reply::new(StatusCode::CREATED, &ShipDetail::of(ship)?)?.at(location).tagged(etag))
+}
+
+async fn is_there(store: &Store, new: &NewShip) -> bool {
+    store.ships().get(&new.name).await.is_ok_and(|ship| ship.revision == 1 && ship.document == new.document)
+}
+
+/// Replace a ship's document, as you last read it
+#[utoipa::path(
+    put, path = "/v1/ships/{ship}", tag = "ships",
+    params(("ship" = String, Path), ("If-Match" = String, Header, description = "The ETag of the ship as you last read her")),
+    request_body(content((Object = "application/json"), (String = "application/yaml"))),
+    responses((status = 200, body = ShipDetail, headers(("ETag" = String))))
+)]
+async fn replace(
+    State(app): State<App>,
+    Place(name): Place<String>,
+    conditions: Conditions,
+    payload: Payload,
+) -> Result<Response> {
+    let current = app.store().ships().get(&name).await?;
+    let revision = conditions.revision(&format!("ship `{name}`"), current.revision)?;
+    let vessel = vessel(&app, &payload).await?;
+    if vessel.name() != name {
+        return Err(Problem::invalid(
+            "name",
+            format!("is `{}`, but the path says `{name}`; a ship keeps her name", vessel.name()),
+        ));
+    }
+    let zoo = app.zoo().await?;
+    zoo.check_models(&vessel)?;
+    let new = new_ship(&vessel).map_err(Problem::internal)?;
+    let ship: Ship = app.store().ships().update(&new, revision).await?;
+    publish(app.store(), &zoo, &vessel, &ship.document).await?;
+    Ok(ShipDetail::of(ship)?.answer())
+}
+
+/// Delete a ship; her versions stay, and `undelete` brings her back
+#[utoipa::path(
+    delete, path = "/v1/ships/{ship}", tag = "ships",
+    params(("ship" = String, Path), ("If-Match" = Option<String>, Header, description = "Only if she is still as you last read her")),
+    responses((status = 204, description = "Deleted"))
+)]
+async fn delete(State(app): State<App>, Place(name): Place<String>, conditions: Conditions) -> Result<Response> {
+    let current = app.store().ships().get(&name).await?;
+    let revision = conditions.optional_revision(&format!("ship `{name}`"), current.revision)?;
+    app.store().ships().delete(&name, revision).await?;
+    Ok(StatusCode::NO_CONTENT.into_response())
+}
+
+/// Bring a deleted ship back
+#[utoipa::path(
+    post, path = "/v1/ships/{ship}/undelete", tag = "ships", params(("ship" = String, Path)),
+    responses((status = 200, body = ShipDetail, headers(("ETag" = String))))
+)]
+async fn undelete(State(app): State<App>, Place(name): Place<String>) -> Result<Response> {
+    Ok(ShipDetail::of(app.store().ships().undelete(&name).await?)?.answer())
+}

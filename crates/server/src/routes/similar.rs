@@ -1,0 +1,62 @@
+//! Which ships are most like a ship.
+
+use axum::Json;
+use axum::extract::State;
+use serde::Deserialize;
+use serde_json::Value;
+use sistership_identify::similarity::Definition;
+use sistership_identify::source;
+use sistership_trials::samples::{SamplesError, from_parquet};
+use utoipa::IntoParams;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::trials::all_of_ship;
+use crate::app::App;
+use crate::archive::vessel;
+use crate::problem::{Problem, Result};
+use crate::web::{Params, Place};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(similar))
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct Query {
+    /// `mei-2019` or `kanazawa-2023`; Mei's where the ship has every component of it, else Kanazawa's.
+    #[param(value_type = Option<String>)]
+    vector: Option<Definition>,
+    /// Whether eligible ships are measured on the ship's trials, where she has any.
+    #[serde(default = "yes")]
+    trials: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// Rank the zoo for a ship, and say which ships may be her source
+#[utoipa::path(
+    get, path = "/v1/ships/{ship}/similar", tag = "ships", params(("ship" = String, Path), Query),
+    responses((status = 200, body = Object, description = "`target`, `definition`, `vector` and `ranking`, as `sistership similar --json`"))
+)]
+async fn similar(State(app): State<App>, Place(name): Place<String>, Params(query): Params<Query>) -> Result<Json<Value>> {
+    let ship = app.store().ships().get(&name).await?;
+    let target = vessel(&ship.name, &ship.document)?;
+    let mut samples = Vec::new();
+    if query.trials {
+        for trial in all_of_ship(&app, &name).await? {
+            samples.push(app.objects().get(&trial.object_key).await?);
+        }
+    }
+    let zoo = app.zoo().await?;
+    let ranked = app.compute(move || {
+        let trials = samples.into_iter().map(from_parquet).collect::<Result<Vec<_>, SamplesError>>()?;
+        let trials: Vec<_> = trials.iter().collect();
+        Ok::<_, SamplesError>(source::similar(&zoo, &target, query.vector, &trials))
+    });
+    let ranked = ranked.await?.map_err(Problem::internal)?;
+    Ok(Json(serde_json::to_value(ranked).map_err(Problem::internal)?))
+}

@@ -1,0 +1,120 @@
+//! Trials, to look at and to delete.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sistership_store::{MAX_LIMIT, Page, Trial};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::web::{Listing, Params, Place, page};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(list)).routes(routes!(get, delete)).routes(routes!(undelete))
+}
+
+/// A trial; its samples are under `/samples`.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct TrialView {
+    pub id: String,
+    pub ship: String,
+    /// The file's name.
+    pub name: String,
+    /// The SHA-256 of its samples as they are kept.
+    pub sha256: String,
+    /// Number of samples.
+    pub rows: i64,
+    pub duration_s: f64,
+    /// What was sailed, where it is known.
+    pub manoeuvre: Option<String>,
+    /// What the checks remarked: `row`, `column`, `message`.
+    #[schema(value_type = Vec<Object>)]
+    pub warnings: Value,
+    /// The manifest's entry of the file: columns, conventions, depth.
+    #[schema(value_type = Object)]
+    pub manifest: Value,
+    pub created_us: i64,
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct Query {
+    /// The ship.
+    ship: String,
+    /// The most items to return, 1 to 1000.
+    limit: Option<i64>,
+    /// `next` of the page before.
+    after: Option<String>,
+}
+
+impl TrialView {
+    pub(super) fn of(trial: Trial) -> Self {
+        let read = |text: &str| serde_json::from_str(text).unwrap_or_default();
+        let (warnings, manifest) = (read(&trial.warnings), read(&trial.manifest));
+        let Trial { id, ship, name, sha256, sample_rows: rows, duration_s, manoeuvre, created_us, .. } = trial;
+        Self { id, ship, name, sha256, rows, duration_s, manoeuvre, warnings, manifest, created_us }
+    }
+}
+
+/// List the trials of a ship, in the order of their upload
+#[utoipa::path(get, path = "/v1/trials", tag = "trials", params(Query), responses((status = 200, body = Listing<TrialView>)))]
+async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<TrialView>>> {
+    app.store().ships().get(&query.ship).await?;
+    let trials = app.store().trials().list(&query.ship, &page::page(query.limit, query.after)).await?;
+    Ok(Json(Listing::of(trials, TrialView::of)))
+}
+
+/// A trial
+#[utoipa::path(
+    get, path = "/v1/trials/{id}", tag = "trials", params(("id" = String, Path)), responses((status = 200, body = TrialView))
+)]
+async fn get(State(app): State<App>, Place(id): Place<String>) -> Result<Json<TrialView>> {
+    Ok(Json(TrialView::of(app.store().trials().get(&id).await?)))
+}
+
+/// Delete a trial; versions that were made with it stay, and `undelete` brings it back
+#[utoipa::path(
+    delete, path = "/v1/trials/{id}", tag = "trials", params(("id" = String, Path)),
+    responses((status = 204, description = "Deleted"))
+)]
+async fn delete(State(app): State<App>, Place(id): Place<String>) -> Result<Response> {
+    app.store().trials().delete(&id).await?;
+    Ok(StatusCode::NO_CONTENT.into_response())
+}
+
+/// Bring a deleted trial back
+#[utoipa::path(
+    post, path = "/v1/trials/{id}/undelete", tag = "trials", params(("id" = String, Path)),
+    responses((status = 200, body = TrialView))
+)]
+async fn undelete(State(app): State<App>, Place(id): Place<String>) -> Result<Json<TrialView>> {
+    Ok(Json(TrialView::of(app.store().trials().undelete(&id).await?)))
+}
+
+/// Every trial of a ship, as long as there are not too many for one piece of work.
+pub(super) async fn all_of_ship(app: &App, ship: &str) -> Result<Vec<Trial>> {
+    let (mut all, mut page) = (Vec::new(), Page::first(MAX_LIMIT));
+    loop {
+        let list = app.store().trials().list(ship, &page).await?;
+        all.extend(list.items);
+        bounded(app, all.len())?;
+        let Some(next) = list.next else { return Ok(all) };
+        page = Page::after(next, MAX_LIMIT);
+    }
+}
+
+/// Refuses more trials than one piece of work takes.
+pub(super) fn bounded(app: &App, count: usize) -> Result<()> {
+    let most = app.limits().refinement_trials;
+    match count <= most {
+        true => Ok(()),
+        false => Err(Problem::invalid("trials", format!("more than {most} trials at a time; name those that matter"))),
+    }
+}

@@ -1,0 +1,85 @@
+//! Trials, to upload and to check.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+use serde::Serialize;
+use serde_json::{Value, json};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::trials::TrialView;
+use crate::app::App;
+use crate::problem::Result;
+use crate::upload::{Kept, RawQuery, Upload, keep};
+use crate::web::{Key, Reply};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(upload)).routes(routes!(check))
+}
+
+/// What an upload has brought.
+#[derive(Debug, Serialize, ToSchema)]
+struct Uploaded {
+    ship: String,
+    /// The trials, in the manifest's order; samples that were there already give the trial that is there.
+    trials: Vec<TrialView>,
+    /// How many of them are new.
+    new: usize,
+}
+
+/// The parts of a form.
+#[derive(ToSchema)]
+#[allow(dead_code, reason = "it only describes the form")]
+struct Form {
+    /// The trial manifest, YAML (`models/schema/trials.schema.json`).
+    manifest: Option<String>,
+    /// The ship, instead of a manifest, for files with canonical columns.
+    ship: Option<String>,
+    /// One part for each file; its filename is the path in the manifest.
+    #[schema(value_type = Vec<String>, format = Binary)]
+    file: Vec<Vec<u8>>,
+}
+
+/// Upload trials, all together or none
+///
+/// A form with a manifest and its files, or one CSV or Parquet file with canonical columns. Units and signs are
+/// converted once, here; what the checks refuse is told with file, row and column.
+#[utoipa::path(
+    post, path = "/v1/trials", tag = "trials",
+    params(RawQuery, ("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
+    request_body(content((Form = "multipart/form-data"), (String = "text/csv"), (Vec<u8> = "application/vnd.apache.parquet"))),
+    responses((status = 201, body = Uploaded, headers(("Location" = String))))
+)]
+async fn upload(State(app): State<App>, key: Key, upload: Upload) -> Result<Response> {
+    let fingerprint = upload.fingerprint()?;
+    let inner = app.clone();
+    key.once(&app, fingerprint.as_bytes(), async move { kept(&inner, upload).await }).await
+}
+
+async fn kept(app: &App, upload: Upload) -> Result<Reply> {
+    let ship = upload.manifest.ship.clone();
+    let kept: Vec<Kept> = keep(app, upload).await?;
+    let location = match kept.as_slice() {
+        [only] => format!("/v1/trials/{}", only.row.id),
+        _ => format!("/v1/trials?ship={ship}"),
+    };
+    let new = kept.iter().filter(|trial| trial.new).count();
+    let trials = kept.into_iter().map(|trial| TrialView::of(trial.row)).collect();
+    Ok(Reply::new(StatusCode::CREATED, &Uploaded { ship, trials, new })?.at(location))
+}
+
+/// Check trials without keeping them
+///
+/// The same body as for an upload; the ship need not exist. The answer is that of `sistership check --json`.
+#[utoipa::path(
+    post, path = "/v1/trials/check", tag = "trials", params(RawQuery),
+    request_body(content((Form = "multipart/form-data"), (String = "text/csv"), (Vec<u8> = "application/vnd.apache.parquet"))),
+    responses((status = 200, body = Object, description = "`trials`: `file`, `rows`, `duration_s`, `errors`, `warnings` of each"))
+)]
+async fn check(State(app): State<App>, upload: Upload) -> Result<Json<Value>> {
+    let outcomes = app.compute(move || upload.check()).await?;
+    Ok(Json(json!({ "trials": outcomes })))
+}

@@ -1,0 +1,98 @@
+//! The zoo that the program carries, put into the database where it is not there yet.
+
+use sistership_model::{Vessel, Zoo};
+use sistership_store::{NewShip, Store, StoreError};
+
+use crate::catalogue::{Catalogue, all_ships};
+use crate::config::StartError;
+use crate::problem::Problem;
+use crate::publish::publish;
+
+/// Puts in what is missing; several processes may do so at once, and one that was killed half-way is continued.
+pub(crate) async fn seed(store: &Store, catalogue: &Catalogue) -> Result<(), StartError> {
+    let embedded = tokio::task::spawn_blocking(Zoo::embedded).await.map_err(|error| broken(&error))??;
+    laws(store, &embedded).await?;
+    ships(store, &embedded).await?;
+    let zoo = catalogue.refresh(store).await?;
+    for ship in all_ships(store).await? {
+        let Some(vessel) = zoo.vessel(&ship.name) else { continue };
+        publish(store, &zoo, vessel, &ship.document).await.map_err(|error| publishing(&ship.name, &error))?;
+    }
+    Ok(())
+}
+
+async fn laws(store: &Store, embedded: &Zoo) -> Result<(), StartError> {
+    for law in embedded.laws() {
+        let text = embedded.law_text(&law.name).unwrap_or_default();
+        match store.laws().insert(&law.name, text).await {
+            Err(StoreError::Conflict { .. }) => tracing::warn!(law = %law.name, "the database keeps its older text of this law"),
+            other => drop(other?),
+        }
+    }
+    Ok(())
+}
+
+async fn ships(store: &Store, embedded: &Zoo) -> Result<(), StartError> {
+    for vessel in embedded.vessels() {
+        let ship = new_ship(vessel).map_err(|error| broken(&error))?;
+        match store.ships().create(&ship).await {
+            // It is there, changed, or was deleted: in each case somebody's decision.
+            Err(StoreError::Conflict { .. }) => {}
+            other => drop(other?),
+        }
+    }
+    Ok(())
+}
+
+/// A ship as the store keeps it.
+pub(crate) fn new_ship(vessel: &Vessel) -> Result<NewShip, serde_json::Error> {
+    Ok(NewShip {
+        name: vessel.name().to_owned(),
+        title: vessel.file.title.clone(),
+        category: vessel.file.category.clone(),
+        document: serde_json::to_string(&vessel.file)?,
+    })
+}
+
+fn broken(error: &dyn std::fmt::Display) -> StartError {
+    damaged("zoo", error.to_string())
+}
+
+fn publishing(ship: &str, problem: &Problem) -> StartError {
+    damaged(ship, problem.detail.clone())
+}
+
+fn damaged(file: &str, message: String) -> StartError {
+    StartError::Zoo(sistership_model::FileError { file: file.to_owned(), line: None, field: String::new(), message })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::archive::{document, vessel};
+    use sistership_store::SystemClock;
+    use std::sync::Arc;
+
+    #[tokio::test]
+    async fn seeding_twice_changes_nothing_and_documents_read_back() {
+        let store = Store::connect("sqlite::memory:", Arc::new(SystemClock)).await.unwrap();
+        seed(&store, &Catalogue::default()).await.unwrap();
+        seed(&store, &Catalogue::default()).await.unwrap();
+        let embedded = Zoo::embedded().unwrap();
+        for known in embedded.vessels() {
+            let ship = store.ships().get(known.name()).await.unwrap();
+            let read = vessel(known.name(), &ship.document).unwrap();
+            assert_eq!(new_ship(&read).unwrap().document, ship.document);
+            let versions = store.versions().list(known.name(), &sistership_store::Page::first(10)).await.unwrap().items;
+            assert_eq!(versions.len(), known.file.models.len(), "{}", known.name());
+            if let Ok(model) = embedded.published(known, None) {
+                let champion = store.aliases().get(known.name(), "champion").await.unwrap();
+                let version = store.versions().get(known.name(), champion.version_number).await.unwrap();
+                let read = document(&version).unwrap();
+                assert_eq!((champion.version_number, &read.model), (1, &model));
+                assert_eq!(read.canonical().unwrap(), version.document);
+            }
+        }
+    }
+}

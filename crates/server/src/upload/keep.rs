@@ -1,0 +1,108 @@
+//! From files that have arrived to trials that are kept.
+
+use bytes::Bytes;
+use sistership_model::trial::{Manifest, ManifestTrial};
+use sistership_store::{Inserted, NewTrial, Objects, Store, StoreError, Trial};
+use sistership_trials::{Mapping, Refusal, Source, read_trial, samples};
+
+use super::{Upload, lost};
+use crate::app::App;
+use crate::problem::{Problem, Result};
+
+/// A trial that is kept now, and whether it was new.
+pub(crate) type Kept = Inserted<Trial>;
+
+/// A trial that has passed every check.
+struct Accepted {
+    new: NewTrial,
+    samples: Bytes,
+}
+
+/// Keeps the trials of an upload: all of them, or none where one is refused.
+pub(crate) async fn keep(app: &App, upload: Upload) -> Result<Vec<Kept>> {
+    let ship = upload.manifest.ship.clone();
+    match app.store().ships().get(&ship).await {
+        Err(StoreError::NotFound { .. }) => return Err(no_ship(&ship)),
+        other => drop(other?),
+    }
+    let accepted = app.compute(move || upload.accept()).await??;
+    let keys = put_samples(app.objects(), &accepted).await?;
+    insert(app.store(), accepted, keys).await
+}
+
+fn no_ship(ship: &str) -> Problem {
+    Problem::invalid("ship", format!("there is no ship `{ship}`; create her with POST /v1/ships first, or mend the name"))
+}
+
+impl Upload {
+    /// Reads every file; the refusals of all of them are told together.
+    fn accept(self) -> Result<Vec<Accepted>> {
+        let (mut accepted, mut refused) = (Vec::new(), Vec::new());
+        for (entry, file) in self.manifest.trials.iter().zip(&self.files) {
+            let mapping = Mapping::of(&self.manifest, entry);
+            let read = Source::open(&entry.file, &file.path).map_err(|error| lost(&entry.file, &error));
+            match read.and_then(|source| read_trial(source, &mapping)) {
+                Ok(trial) => accepted.push(Accepted::new(&self.manifest, entry, &trial)?),
+                Err(refusal) => refused.push(refusal),
+            }
+        }
+        if refused.is_empty() { Ok(accepted) } else { Err(Vec::<Refusal>::into(refused)) }
+    }
+}
+
+impl Accepted {
+    fn new(manifest: &Manifest, entry: &ManifestTrial, trial: &sistership_model::trial::Trial) -> Result<Self> {
+        let samples = Bytes::from(samples::to_parquet(trial).map_err(Problem::internal)?);
+        let only = Manifest { trials: vec![entry.clone()], ..manifest.clone() };
+        let new = NewTrial {
+            ship: manifest.ship.clone(),
+            sha256: String::new(),
+            name: trial.name.clone(),
+            manifest: json(&only)?,
+            conventions: json(&manifest.conventions)?,
+            manoeuvre: trial.manoeuvre.clone(),
+            sample_rows: i64::try_from(trial.len()).map_err(Problem::internal)?,
+            duration_s: trial.duration_s(),
+            warnings: json(&trial.warnings)?,
+            object_key: String::new(),
+        };
+        Ok(Self { new, samples })
+    }
+}
+
+fn json(value: &impl serde::Serialize) -> Result<String> {
+    serde_json::to_string(value).map_err(Problem::internal)
+}
+
+/// The samples first: a row that is there has its samples.
+async fn put_samples(objects: &Objects, accepted: &[Accepted]) -> Result<Vec<String>> {
+    let mut keys = Vec::with_capacity(accepted.len());
+    for trial in accepted {
+        keys.push(objects.put(trial.samples.clone()).await?);
+    }
+    Ok(keys)
+}
+
+/// The rows; where one cannot be inserted, those that this upload has made are taken back.
+async fn insert(store: &Store, accepted: Vec<Accepted>, keys: Vec<String>) -> Result<Vec<Kept>> {
+    let mut kept: Vec<Kept> = Vec::with_capacity(accepted.len());
+    for (trial, key) in accepted.into_iter().zip(keys) {
+        let new = NewTrial { sha256: key.clone(), object_key: key, ..trial.new };
+        match store.trials().insert(&new).await {
+            Ok(inserted) => kept.push(inserted),
+            Err(error) => {
+                take_back(store, &kept).await;
+                return Err(error.into());
+            }
+        }
+    }
+    Ok(kept)
+}
+
+async fn take_back(store: &Store, kept: &[Kept]) {
+    for trial in kept.iter().filter(|trial| trial.new) {
+        if let Err(error) = store.trials().delete(&trial.row.id).await {
+            tracing::warn!(%error, trial = %trial.row.id, "a trial of a broken upload could not be taken back");
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! Uploads of trials: streamed to files, read and checked there, and kept all together or not at all.
+
+mod keep;
+mod multipart;
+mod raw;
+mod spool;
+
+use axum::extract::{FromRequest, Request};
+use axum::http::StatusCode;
+use sistership_model::trial::{Manifest, ManifestTrial, TrialConventions, TrialsKind};
+use sistership_trials::{CheckOutcome, Mapping, Refusal, Source, check};
+
+pub(crate) use keep::{Kept, keep};
+pub(crate) use raw::RawQuery;
+pub(crate) use spool::{Spooled, clear};
+
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::web::payload::{media, plain};
+
+/// Bodies that are one file.
+const FILE_MEDIA: [&str; 3] = ["text/csv", "application/vnd.apache.parquet", "application/parquet"];
+/// The longest name of a file.
+const NAME_BYTES: usize = 200;
+
+/// An upload that has arrived: a manifest and the files that it lists, in its order.
+#[derive(Debug)]
+pub(crate) struct Upload {
+    /// What the files are.
+    pub manifest: Manifest,
+    files: Vec<Spooled>,
+}
+
+impl FromRequest<App> for Upload {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, app: &App) -> Result<Self> {
+        plain(request.headers())?;
+        match media(request.headers()).as_str() {
+            "multipart/form-data" => multipart::receive(request, app).await,
+            other if FILE_MEDIA.contains(&other) => raw::receive(request, app).await,
+            other => Err(Problem::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, unknown(other))),
+        }
+    }
+}
+
+fn unknown(media: &str) -> String {
+    let found = if media.is_empty() { "nothing".to_owned() } else { format!("`{media}`") };
+    format!(
+        "Content-Type is {found}; send multipart/form-data with a part `manifest` and the files that it lists, or one file as {}",
+        FILE_MEDIA.join(" or ")
+    )
+}
+
+impl Upload {
+    /// What tells one upload from another, however its parts are delimited.
+    pub(crate) fn fingerprint(&self) -> Result<String> {
+        let manifest = serde_json::to_string(&self.manifest).map_err(Problem::internal)?;
+        let files = self.files.iter().map(|file| file.sha256.as_str());
+        Ok(std::iter::once(manifest.as_str()).chain(files).collect::<Vec<_>>().join("\n"))
+    }
+
+    /// Checks every file without keeping any.
+    pub(crate) fn check(self) -> Vec<CheckOutcome> {
+        let one = |(entry, file): (&ManifestTrial, &Spooled)| match Source::open(&entry.file, &file.path) {
+            Ok(source) => check(source, &Mapping::of(&self.manifest, entry)),
+            Err(error) => unreadable(&entry.file, &error),
+        };
+        self.manifest.trials.iter().zip(&self.files).map(one).collect()
+    }
+}
+
+fn unreadable(file: &str, error: &std::io::Error) -> CheckOutcome {
+    let Refusal { file, findings } = lost(file, error);
+    CheckOutcome { file, rows: 0, duration_s: 0.0, errors: findings, warnings: Vec::new() }
+}
+
+fn lost(file: &str, error: &std::io::Error) -> Refusal {
+    let finding = sistership_model::trial::Finding { row: None, column: None, message: format!("cannot be read: {error}") };
+    Refusal { file: file.to_owned(), findings: vec![finding] }
+}
+
+/// The manifest of files with canonical columns.
+fn canonical(ship: String, trials: Vec<ManifestTrial>) -> Result<Manifest> {
+    for trial in &trials {
+        let name = &trial.file;
+        if name.is_empty() || name.len() > NAME_BYTES || name.chars().any(char::is_control) {
+            return Err(Problem::invalid(
+                "name",
+                format!("a file needs a name of 1 to {NAME_BYTES} bytes, without control characters"),
+            ));
+        }
+        if trial.depth_m.is_some_and(|depth| !(depth > 0.0 && depth.is_finite())) {
+            return Err(Problem::invalid("depth_m", "must be positive; leave it out for deep water"));
+        }
+    }
+    let (kind, conventions) = (TrialsKind::Trials, TrialConventions::default());
+    Ok(Manifest { kind, ship, conventions, columns: Default::default(), trials })
+}

@@ -1,0 +1,138 @@
+//! A manifest and its files as the parts of a form.
+
+use axum::extract::multipart::{Field, Multipart, MultipartError};
+use axum::extract::{FromRequest as _, Request};
+use axum::http::StatusCode;
+use sistership_model::trial::{Manifest, ManifestTrial};
+use sistership_trials::read_manifest;
+
+use super::spool::{Spooled, spool};
+use super::{Upload, canonical};
+use crate::app::App;
+use crate::problem::{Fault, Problem, Result};
+
+/// The parts of a form as they have arrived.
+#[derive(Default)]
+struct Parts {
+    manifest: Option<String>,
+    ship: Option<String>,
+    files: Vec<Part>,
+}
+
+struct Part {
+    field: String,
+    name: String,
+    file: Spooled,
+}
+
+pub(super) async fn receive(request: Request, app: &App) -> Result<Upload> {
+    let form = Multipart::from_request(request, &()).await;
+    let mut form = form.map_err(|error| Problem::bad_request(format!("the form cannot be read: {}", error.body_text())))?;
+    let mut parts = Parts::default();
+    while let Some(field) = form.next_field().await? {
+        parts.take(field, app).await?;
+    }
+    match (parts.manifest.take(), parts.ship.take()) {
+        (Some(manifest), None) => parts.listed(read_manifest("manifest", &manifest)?),
+        (None, Some(ship)) => parts.canonical(ship),
+        (Some(_), Some(_)) => Err(Problem::invalid("ship", "the manifest names the ship; leave the part `ship` out")),
+        (None, None) => {
+            Err(Problem::invalid("manifest", "send a part `manifest` (YAML), or a part `ship` for files with canonical columns"))
+        }
+    }
+}
+
+impl Parts {
+    async fn take(&mut self, field: Field<'_>, app: &App) -> Result<()> {
+        let name = field.name().unwrap_or_default().to_owned();
+        match (name.as_str(), field.file_name().map(str::to_owned)) {
+            ("manifest", _) => set(&mut self.manifest, "manifest", text(field, app).await?),
+            ("ship", None) => set(&mut self.ship, "ship", text(field, app).await?.trim().to_owned()),
+            (_, Some(file_name)) => self.file(name, file_name, field, app).await,
+            (other, None) => {
+                Err(Problem::invalid(other, "is not known here: parts are `manifest`, `ship`, and files with a filename"))
+            }
+        }
+    }
+
+    async fn file(&mut self, field: String, name: String, content: Field<'_>, app: &App) -> Result<()> {
+        let most = app.limits().upload_files;
+        if self.files.len() >= most {
+            return Err(Problem::new(
+                StatusCode::PAYLOAD_TOO_LARGE,
+                format!("an upload has at most {most} files; send several uploads"),
+            ));
+        }
+        self.files.push(Part { field, name, file: spool(app.spool(), content).await? });
+        Ok(())
+    }
+
+    /// The files that a manifest lists; each must be there, and no other.
+    fn listed(mut self, manifest: Manifest) -> Result<Upload> {
+        let mut files = Vec::with_capacity(manifest.trials.len());
+        for (index, trial) in manifest.trials.iter().enumerate() {
+            let Some(found) = self.find(&trial.file) else { return Err(self.missing(index, &trial.file)) };
+            files.push(self.files.swap_remove(found).file);
+        }
+        match self.files.first() {
+            Some(extra) => {
+                Err(Problem::invalid(&extra.name, "is not listed under `trials` of the manifest; list it or leave it out"))
+            }
+            None => Ok(Upload { manifest, files }),
+        }
+    }
+
+    /// By its whole path; else by its name alone, where only one has it: many programs send no more than that.
+    fn find(&self, path: &str) -> Option<usize> {
+        let exact = self.files.iter().position(|part| part.name == path || part.field == path);
+        let base = |path: &str| path.rsplit('/').next().map(str::to_owned);
+        let mut alike = self.files.iter().enumerate().filter(|(_, part)| base(&part.name) == base(path)).map(|(index, _)| index);
+        exact.or_else(|| alike.next().filter(|_| alike.next().is_none()))
+    }
+
+    fn missing(&self, index: usize, path: &str) -> Problem {
+        let sent: Vec<&str> = self.files.iter().map(|part| part.name.as_str()).collect();
+        let sent = if sent.is_empty() { "none is left".to_owned() } else { format!("left are {}", sent.join(", ")) };
+        let message = format!("the manifest lists `{path}`, but no part has that filename; {sent}");
+        Problem::new(StatusCode::UNPROCESSABLE_ENTITY, message.clone()).with(Fault::at(format!("trials[{index}].file"), message))
+    }
+
+    fn canonical(self, ship: String) -> Result<Upload> {
+        if self.files.is_empty() {
+            return Err(Problem::invalid("file", "send at least one part with a filename"));
+        }
+        let trial = |part: &Part| ManifestTrial { file: part.name.clone(), manoeuvre: None, depth_m: None };
+        let manifest = canonical(ship, self.files.iter().map(trial).collect())?;
+        Ok(Upload { manifest, files: self.files.into_iter().map(|part| part.file).collect() })
+    }
+}
+
+fn set(place: &mut Option<String>, name: &str, text: String) -> Result<()> {
+    match place.replace(text) {
+        Some(_) => Err(Problem::invalid(name, "is sent twice")),
+        None => Ok(()),
+    }
+}
+
+/// A part that is a short text.
+async fn text(mut field: Field<'_>, app: &App) -> Result<String> {
+    let mut bytes = Vec::new();
+    while let Some(chunk) = field.chunk().await? {
+        bytes.extend_from_slice(&chunk);
+        if bytes.len() > app.limits().document_bytes {
+            return Err(Problem::new(StatusCode::PAYLOAD_TOO_LARGE, "the manifest is too large"));
+        }
+    }
+    String::from_utf8(bytes).map_err(|error| Problem::bad_request(format!("a part is not UTF-8: {error}")))
+}
+
+impl From<MultipartError> for Problem {
+    fn from(error: MultipartError) -> Self {
+        match error.status() {
+            StatusCode::PAYLOAD_TOO_LARGE => {
+                Self::new(StatusCode::PAYLOAD_TOO_LARGE, "the upload is larger than this server takes; send several uploads")
+            }
+            _ => Self::bad_request(format!("the form cannot be read: {}", error.body_text())),
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! What wraps every request: an id, a line in the log, and problem details for errors that no handler made.
+
+use std::time::Instant;
+
+use axum::extract::Request;
+use axum::http::{HeaderValue, Response as HttpResponse, StatusCode, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use tracing::Instrument as _;
+use uuid::Uuid;
+
+use crate::problem::{MEDIA, Problem};
+
+/// Gives the request an id, logs it, and sees to it that an error is a problem with that id.
+pub(crate) async fn envelope(request: Request, next: Next) -> Response {
+    let id = Uuid::now_v7();
+    let span = tracing::info_span!("request", %id, method = %request.method(), path = request.uri().path());
+    async move {
+        let start = Instant::now();
+        let response = finish(next.run(request).await, id);
+        tracing::info!(status = response.status().as_u16(), elapsed_ms = start.elapsed().as_millis() as u64, "answered");
+        response
+    }
+    .instrument(span)
+    .await
+}
+
+fn finish(response: Response, id: Uuid) -> Response {
+    let failed = response.status().is_client_error() || response.status().is_server_error();
+    let mut response = if failed { problem(response, id) } else { response };
+    let headers = response.headers_mut();
+    if let Ok(id) = HeaderValue::try_from(id.to_string()) {
+        headers.insert("x-request-id", id);
+    }
+    headers.insert(header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
+    response
+}
+
+/// The same answer with a problem as its body; other headers stay (`Allow`, `WWW-Authenticate`).
+fn problem(response: Response, id: Uuid) -> Response {
+    let (mut parts, _) = response.into_parts();
+    let mut problem = parts.extensions.remove::<Problem>().unwrap_or_else(|| Problem::new(parts.status, reason(parts.status)));
+    problem.instance = Some(format!("urn:uuid:{id}"));
+    let (fresh, body) = problem.into_response().into_parts();
+    parts.headers.remove(header::CONTENT_LENGTH);
+    parts.headers.extend(fresh.headers);
+    parts.headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(MEDIA));
+    HttpResponse::from_parts(parts, body)
+}
+
+/// What to do about an error that a layer made.
+fn reason(status: StatusCode) -> &'static str {
+    match status {
+        StatusCode::METHOD_NOT_ALLOWED => "this path does not know the method; the header `Allow` lists those it knows",
+        StatusCode::PAYLOAD_TOO_LARGE => "the body is larger than this endpoint reads",
+        StatusCode::REQUEST_TIMEOUT | StatusCode::GATEWAY_TIMEOUT => {
+            "the request took too long; send less at a time, or try again later"
+        }
+        StatusCode::INTERNAL_SERVER_ERROR => "the server failed to do this; its log tells why, under the id in `instance`",
+        _ => "the request was refused",
+    }
+}
+
+/// The answer where there is no route.
+pub(crate) async fn nowhere(request: Request) -> Problem {
+    Problem::not_found(format!("there is no {}; /openapi.json lists what there is", request.uri().path()))
+}
+
+/// The answer where a handler panicked.
+pub(crate) fn panicked(reason: Box<dyn std::any::Any + Send>) -> Response {
+    let text = reason.downcast_ref::<String>().map(String::as_str).or_else(|| reason.downcast_ref::<&str>().copied());
+    Problem::internal(text.unwrap_or("a panic without a message")).into_response()
+}

@@ -1,0 +1,134 @@
+//! A document as a body: JSON or YAML, whole and bounded.
+
+use axum::extract::{FromRequest, Request};
+use axum::http::{HeaderMap, StatusCode, header};
+use bytes::Bytes;
+use serde::de::DeserializeOwned;
+
+use crate::problem::{Fault, Problem, Result};
+
+/// A body that is one document.
+#[derive(Debug)]
+pub(crate) struct Payload {
+    media: String,
+    bytes: Bytes,
+}
+
+impl<S: Send + Sync> FromRequest<S> for Payload {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, state: &S) -> Result<Self> {
+        plain(request.headers())?;
+        let media = media(request.headers());
+        Ok(Self { media, bytes: Bytes::from_request(request, state).await? })
+    }
+}
+
+/// The media type of a body, in lower case and without parameters; empty where there is none.
+pub(crate) fn media(headers: &HeaderMap) -> String {
+    let value = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
+    value.split(';').next().unwrap_or_default().trim().to_ascii_lowercase()
+}
+
+/// Refuses a compressed body: what it grows to is not bounded by what is sent.
+pub(crate) fn plain(headers: &HeaderMap) -> Result<()> {
+    match headers.get(header::CONTENT_ENCODING) {
+        Some(encoding) if encoding != "identity" => {
+            Err(Problem::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "send the body without Content-Encoding"))
+        }
+        _ => Ok(()),
+    }
+}
+
+impl Payload {
+    /// The bytes, which tell one request from another.
+    pub(crate) fn bytes(&self) -> &Bytes {
+        &self.bytes
+    }
+
+    pub(crate) fn is_json(&self) -> bool {
+        self.media == "application/json" || self.media.ends_with("+json")
+    }
+
+    fn is_text(&self) -> bool {
+        let known = ["application/yaml", "application/x-yaml", "text/yaml", "text/x-yaml", "text/plain"];
+        known.contains(&self.media.as_str())
+    }
+
+    /// The JSON document.
+    pub(crate) fn json<T: DeserializeOwned>(&self) -> Result<T> {
+        if !self.is_json() {
+            return Err(self.wrong("application/json"));
+        }
+        let mut reader = serde_json::Deserializer::from_slice(&self.bytes);
+        let value =
+            serde_path_to_error::deserialize(&mut reader).map_err(|error| refused(&error.path().to_string(), error.inner()))?;
+        reader.end().map_err(|error| refused(".", &error))?;
+        Ok(value)
+    }
+
+    /// The YAML document as text.
+    pub(crate) fn text(&self) -> Result<&str> {
+        if !self.is_text() {
+            return Err(self.wrong("application/yaml"));
+        }
+        std::str::from_utf8(&self.bytes).map_err(|error| Problem::bad_request(format!("the body is not UTF-8: {error}")))
+    }
+
+    /// A refusal of the content type.
+    pub(crate) fn wrong(&self, wanted: &str) -> Problem {
+        let found = if self.media.is_empty() { "nothing".to_owned() } else { format!("`{}`", self.media) };
+        let detail = format!("Content-Type is {found}; send `{wanted}`");
+        Problem::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, detail)
+    }
+}
+
+/// What the JSON library calls Rust's types, for people.
+const TYPES: [(&str, &str); 4] = [
+    ("expected f64", "expected a number"),
+    ("expected usize", "expected a whole number"),
+    ("expected i64", "expected a whole number"),
+    ("a sequence", "a list"),
+];
+
+/// Broken JSON is 400, JSON that says the wrong thing 422.
+fn refused(path: &str, error: &serde_json::Error) -> Problem {
+    let status = if error.is_data() { StatusCode::UNPROCESSABLE_ENTITY } else { StatusCode::BAD_REQUEST };
+    let message = TYPES.iter().fold(error.to_string(), |text, (from, to)| text.replace(from, to));
+    let (place, field) = if path == "." { (String::new(), None) } else { (format!("{path}: "), Some(path.to_owned())) };
+    let detail = format!("{place}{message}");
+    Problem::new(status, detail).with(Fault { field, row: Some(error.line()), column: None, message })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[derive(Debug, serde::Deserialize)]
+    #[serde(deny_unknown_fields)]
+    #[allow(dead_code, reason = "only read")]
+    struct Inner {
+        folds: usize,
+    }
+
+    fn read(media: &str, text: &str) -> Problem {
+        let payload = Payload { media: media.into(), bytes: text.to_owned().into() };
+        payload.json::<std::collections::BTreeMap<String, Inner>>().unwrap_err()
+    }
+
+    #[test]
+    fn faults_of_json_are_placed() {
+        let problem = read("application/json", r#"{"settings": {"fold": 3}}"#);
+        assert_eq!((problem.status, problem.errors[0].field.as_deref()), (422, Some("settings.fold")));
+        assert!(problem.detail.contains("unknown field `fold`, expected `folds`"), "{}", problem.detail);
+        assert_eq!(read("application/json", r#"{"settings": {"folds": "#).status, 400);
+        assert_eq!(read("application/json", r#"{} {}"#).status, 400);
+        assert!(
+            read("application/json", r#"{"a": {"folds": "x"}}"#)
+                .detail
+                .contains("a.folds: invalid type: string \"x\", expected a whole number")
+        );
+        assert!(read("text/csv", "{}").detail.contains("`text/csv`"));
+    }
+}

@@ -1,0 +1,7 @@
+//! Journeys through the real server process, over HTTP and the command line, on SQLite and on PostgreSQL.
+
+mod bad_input;
+mod command_line;
+mod crash;
+mod over_http;
+mod sea_trials;

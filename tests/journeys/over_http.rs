@@ -1,0 +1,114 @@
+//! One journey over HTTP, the same on both databases.
+
+use reqwest::Method;
+use reqwest::multipart::{Form, Part};
+use serde_json::{Value, json};
+use sistership_tests::binary;
+use sistership_tests::server::{TestServer, json as answer};
+
+use super::sea_trials::{NAME, csv, manifest, ship, trials};
+
+/// Creates the ship.
+pub async fn create(server: &TestServer) {
+    let request = server.request(Method::POST, "/v1/ships").header("content-type", "application/yaml").body(ship());
+    let (status, created) = answer(request.send().await.expect("an answer")).await;
+    assert_eq!((status, created["name"].as_str()), (201, Some(NAME)), "{created}");
+}
+
+/// Uploads her trials by manifest.
+pub async fn upload(server: &TestServer) -> Value {
+    let trials = trials();
+    let form = Form::new().text("manifest", manifest(&trials));
+    let form = trials.iter().fold(form, |form, trial| form.part("file", Part::bytes(csv(trial)).file_name(trial.name.clone())));
+    let (status, uploaded) =
+        answer(server.request(Method::POST, "/v1/trials").multipart(form).send().await.expect("an answer")).await;
+    assert_eq!((status, uploaded["new"].as_u64()), (201, Some(4)), "{uploaded}");
+    uploaded
+}
+
+/// Asks for a refinement under a key; gives the job's id.
+pub async fn refine(server: &TestServer, key: &str) -> String {
+    let body = json!({ "ship": NAME, "source": "auto" });
+    let (status, job) = server.send(Method::POST, "/v1/refinements", &body, &[("Idempotency-Key", key)]).await;
+    assert_eq!(status, 202, "{job}");
+    job["id"].as_str().expect("an id").to_owned()
+}
+
+async fn journey(server: TestServer) {
+    // SR108 made the trials: she must not be her own source.
+    assert_eq!(server.send(Method::DELETE, "/v1/ships/sr108", &Value::Null, &[]).await.0, 204);
+    create(&server).await;
+    upload(&server).await;
+    assert_eq!(server.get(&format!("/v1/ships/{NAME}/model")).await["status"], 404, "no model yet");
+    let job = refine(&server, "first").await;
+    assert_eq!(refine(&server, "first").await, job, "the same key is the same job");
+    let done = server.finished(&job).await;
+    assert_eq!(done["state"], "succeeded", "{done}");
+    assert_eq!((done["result"]["version"].as_i64(), done["result"]["alias"].as_str()), (Some(1), Some("champion")), "{done}");
+    let champion = server.get(&format!("/v1/ships/{NAME}/model")).await;
+    assert_eq!(champion["version"]["number"], 1, "{champion}");
+    improved(&done["result"]["held_out"]);
+    aliases(&server).await;
+    repeated(&server).await;
+    verified(&server, 1).await;
+    let report = done["result"]["report"].as_str().expect("a report");
+    let page = server.request(Method::GET, &format!("/v1/reports/{report}?format=html")).send().await.expect("an answer");
+    assert!(page.text().await.expect("a page").contains("<svg"), "the report has plots");
+}
+
+/// The refined model is better on manoeuvres left out.
+fn improved(held_out: &Value) {
+    for channel in ["u", "r", "psi"] {
+        let of = |which: &str| held_out[which][channel].as_f64().expect("an error");
+        assert!(of("refined") < of("source"), "{channel}: {held_out}");
+    }
+}
+
+/// An alias moves only for who has seen where it stands.
+async fn aliases(server: &TestServer) {
+    let path = format!("/v1/models/{NAME}/aliases/harbour");
+    let body = json!({ "version": 1, "reason": "the journey" });
+    assert_eq!(server.send(Method::PUT, &path, &body, &[]).await.0, 428);
+    let created = server.request(Method::PUT, &path).header("if-none-match", "*").json(&body).send().await.expect("an answer");
+    let etag = created.headers()["etag"].to_str().expect("text").to_owned();
+    assert!(created.status().is_success());
+    assert_eq!(server.send(Method::PUT, &path, &body, &[("if-match", &etag)]).await.0, 200);
+    let (status, problem) = server.send(Method::PUT, &path, &body, &[("if-match", &etag)]).await;
+    assert_eq!(status, 412, "a stale ETag: {problem}");
+    let history = server.get(&format!("{path}/history")).await;
+    assert_eq!(history["items"].as_array().map(Vec::len), Some(2), "{history}");
+}
+
+/// A second refinement is a candidate; repeating its request makes no third.
+async fn repeated(server: &TestServer) {
+    let job = refine(server, "second").await;
+    let done = server.finished(&job).await;
+    assert_eq!((done["result"]["version"].as_i64(), done["result"]["alias"].as_str()), (Some(2), Some("candidate")), "{done}");
+    assert_eq!(refine(server, "second").await, job);
+    let body = json!({ "ship": NAME, "source": "mariner" });
+    assert_eq!(server.send(Method::POST, "/v1/refinements", &body, &[("Idempotency-Key", "second")]).await.0, 422);
+    let versions = server.get(&format!("/v1/models/{NAME}/versions")).await;
+    assert_eq!(versions["items"].as_array().map(Vec::len), Some(2), "{versions}");
+}
+
+/// `sistership verify` derives the version again from its recipe, byte for byte.
+pub async fn verified(server: &TestServer, number: i64) {
+    let name = format!("{NAME}/{number}");
+    let store = server.store_arguments();
+    let mut arguments = vec!["verify", name.as_str(), "--json"];
+    arguments.extend(store.iter().map(String::as_str));
+    let verification = binary::json(&arguments, 0);
+    assert_eq!(verification["identical"], true, "{verification}");
+}
+
+#[tokio::test]
+async fn journey_on_sqlite() {
+    journey(TestServer::sqlite().await).await;
+}
+
+#[tokio::test]
+async fn journey_on_postgres() {
+    if let Some(server) = TestServer::postgres().await {
+        journey(server).await;
+    }
+}

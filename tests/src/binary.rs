@@ -1,0 +1,49 @@
+//! The program itself, built once for all tests of a process.
+
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
+
+/// The path of the `sistership` program, built in the profile of the tests.
+///
+/// # Panics
+/// Where it does not build.
+pub fn path() -> &'static PathBuf {
+    static PATH: OnceLock<PathBuf> = OnceLock::new();
+    PATH.get_or_init(build)
+}
+
+/// Cargo does not build another package's program for a test, so it is asked to.
+fn build() -> PathBuf {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.args(["build", "--package", "sistership", "--bin", "sistership", "--message-format", "json"]);
+    if !cfg!(debug_assertions) {
+        command.arg("--release");
+    }
+    let built = command.current_dir(env!("CARGO_MANIFEST_DIR")).stderr(Stdio::inherit()).output().expect("cargo runs");
+    assert!(built.status.success(), "the program does not build");
+    let messages = String::from_utf8_lossy(&built.stdout);
+    let executables = messages.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
+    let path = executables.filter_map(|message| message["executable"].as_str().map(PathBuf::from)).next_back();
+    path.expect("cargo names the program it built")
+}
+
+/// Runs the program to its end.
+///
+/// # Panics
+/// Where it cannot be started.
+pub fn run(arguments: &[&str]) -> Output {
+    Command::new(path()).args(arguments).env_remove("SISTERSHIP_ZOO").output().expect("the program runs")
+}
+
+/// Runs it with `--json` in mind: asserts the exit status and reads standard output as one JSON document.
+///
+/// # Panics
+/// Where the exit status is another, or the output is not one JSON document.
+pub fn json(arguments: &[&str], status: i32) -> serde_json::Value {
+    let output = run(arguments);
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {err}");
+    serde_json::from_str(&out).unwrap_or_else(|error| panic!("{arguments:?}: {error}: {out}"))
+}

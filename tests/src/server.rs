@@ -1,0 +1,141 @@
+//! A real server process on a temporary folder, and a client of it.
+
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use reqwest::{Client, Method, RequestBuilder, Response};
+use serde_json::Value;
+use sistership_store::testing::TestDatabase;
+
+use crate::binary;
+
+/// A server process; it is killed when this is dropped.
+pub struct TestServer {
+    process: Child,
+    url: String,
+    client: Client,
+    database: TestDatabase,
+    data: PathBuf,
+}
+
+impl TestServer {
+    /// On a new SQLite database.
+    pub async fn sqlite() -> Self {
+        Self::on(TestDatabase::sqlite()).await
+    }
+
+    /// On a new PostgreSQL database; `None`, said plainly, where PostgreSQL is not installed.
+    pub async fn postgres() -> Option<Self> {
+        Some(Self::on(TestDatabase::postgres().await?).await)
+    }
+
+    async fn on(database: TestDatabase) -> Self {
+        let data = database.folder.path().join("data");
+        let (process, url) = start(&database.url, &data);
+        let server = Self { process, url, client: Client::new(), database, data };
+        server.until_ready().await;
+        server
+    }
+
+    /// Kills the process without warning, as the system would.
+    ///
+    /// # Panics
+    /// Where it cannot be killed.
+    pub fn kill(&mut self) {
+        self.process.kill().expect("the server is killed");
+        self.process.wait().expect("the server is gone");
+    }
+
+    /// Starts it again on the same database and folder.
+    pub async fn restart(&mut self) {
+        (self.process, self.url) = start(&self.database.url, &self.data);
+        self.until_ready().await;
+    }
+
+    /// Arguments that open its store from the command line.
+    pub fn store_arguments(&self) -> [String; 4] {
+        ["--database-url".into(), self.database.url.clone(), "--data-dir".into(), self.data.display().to_string()]
+    }
+
+    async fn until_ready(&self) {
+        for _ in 0..100 {
+            if self.client.get(format!("{}/readyz", self.url)).send().await.is_ok_and(|response| response.status().is_success()) {
+                return;
+            }
+            tokio::time::sleep(Duration::from_millis(100)).await;
+        }
+        panic!("the server does not become ready");
+    }
+
+    /// A request to a path.
+    pub fn request(&self, method: Method, path: &str) -> RequestBuilder {
+        self.client.request(method, format!("{}{path}", self.url))
+    }
+
+    /// The JSON answer to a GET.
+    ///
+    /// # Panics
+    /// Where there is none.
+    pub async fn get(&self, path: &str) -> Value {
+        json(self.request(Method::GET, path).send().await.expect("an answer")).await.1
+    }
+
+    /// Sends JSON; gives the status and the JSON answer.
+    ///
+    /// # Panics
+    /// Where there is none.
+    pub async fn send(&self, method: Method, path: &str, body: &Value, headers: &[(&str, &str)]) -> (u16, Value) {
+        let request = self.request(method, path).json(body);
+        let request = headers.iter().fold(request, |request, (name, value)| request.header(*name, *value));
+        json(request.send().await.expect("an answer")).await
+    }
+
+    /// Follows a job to its end and gives it.
+    ///
+    /// # Panics
+    /// Where it takes more than two minutes.
+    pub async fn finished(&self, job: &str) -> Value {
+        for _ in 0..600 {
+            let state = self.get(&format!("/v1/jobs/{job}")).await;
+            if matches!(state["state"].as_str(), Some("succeeded" | "failed" | "cancelled")) {
+                return state;
+            }
+            tokio::time::sleep(Duration::from_millis(200)).await;
+        }
+        panic!("job {job} does not end");
+    }
+}
+
+impl Drop for TestServer {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// The status and the JSON of an answer; null for an answer without a body.
+///
+/// # Panics
+/// Where the body breaks off.
+pub async fn json(response: Response) -> (u16, Value) {
+    let status = response.status().as_u16();
+    let text = response.text().await.expect("a body");
+    (status, serde_json::from_str(&text).unwrap_or(Value::Null))
+}
+
+/// Starts the program and reads its address from the line it prints when it listens.
+fn start(database_url: &str, data: &Path) -> (Child, String) {
+    let mut process = Command::new(binary::path())
+        .args(["serve", "--listen", "127.0.0.1:0", "--database-url", database_url, "--data-dir"])
+        .arg(data)
+        .env("SISTERSHIP_LOG", "warn")
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the server starts");
+    let out = process.stdout.take().expect("its output");
+    let line = BufReader::new(out).lines().next().expect("a line").expect("text");
+    let url = line.rsplit(' ').next().expect("an address").to_owned();
+    (process, url)
+}
