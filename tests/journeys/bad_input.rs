@@ -124,7 +124,7 @@ fn bad_trials() -> Vec<Case> {
             "/v1/trials?ship=nobody&name=x",
             CSV,
             trial(2, "0.0,7.0,0.01,0.001,0.0,0.02"),
-            404,
+            422,
             &["nobody"],
         ),
     ]
@@ -143,10 +143,10 @@ fn bad_requests() -> Vec<Case> {
     let refine = |what, body: Value, status, says| case(what, "POST", "/v1/refinements", JSON, body.to_string(), status, says);
     let predict = |what, body: Value, status, says| case(what, "POST", "/v1/predictions", JSON, body.to_string(), status, says);
     vec![
-        case("JSON that stops", "POST", "/v1/refinements", JSON, "{\"ship\": ", 400, &["JSON"]),
+        case("JSON that stops", "POST", "/v1/refinements", JSON, "{\"ship\": ", 400, &["ship", "line 1"]),
         refine("unknown field", json!({"ship": "mariner", "source": "auto", "trails": []}), 422, &["trails"]),
         refine("missing field", json!({"source": "auto"}), 422, &["ship"]),
-        refine("a ship that is not there", json!({"ship": "nobody", "source": "auto"}), 404, &["nobody"]),
+        refine("a ship that is not there", json!({"ship": "nobody", "source": "auto"}), 422, &["nobody"]),
         refine("no trials", json!({"ship": "pcc", "source": "auto"}), 422, &["trial"]),
         refine(
             "unknown setting",
@@ -167,13 +167,13 @@ fn bad_requests() -> Vec<Case> {
             422,
             &["speed_m_s"],
         ),
-        predict("a model that is not there", json!({"model": "nobody", "manoeuvre": {"turn_deg": 35.0}}), 404, &["nobody"]),
+        predict("a model that is not there", json!({"model": "nobody", "manoeuvre": {"turn_deg": 35.0}}), 422, &["nobody"]),
         predict("text for a number", json!({"model": "mariner", "manoeuvre": {"turn_deg": "hard"}}), 422, &["turn_deg"]),
         case("a limit that is no number", "GET", "/v1/ships?limit=many", JSON, "", 400, &["limit"]),
-        case("an unknown vector", "GET", "/v1/ships/mariner/similar?vector=mine", JSON, "", 422, &["mine", "mei-2019"]),
+        case("an unknown vector", "GET", "/v1/ships/mariner/similar?vector=mine", JSON, "", 400, &["mine", "mei-2019"]),
         case("a version that is not there", "GET", "/v1/models/mariner/versions/99", JSON, "", 404, &["99"]),
         case("a path that is not there", "GET", "/v1/shipz", JSON, "", 404, &["/v1/shipz"]),
-        case("a method that is not there", "DELETE", "/v1/ships", JSON, "", 405, &["DELETE"]),
+        case("a method that is not there", "DELETE", "/v1/ships", JSON, "", 405, &["Allow"]),
         case("a body of the wrong kind", "POST", "/v1/refinements", "image/png", "x", 415, &["application/json"]),
         case(
             "an alias without a condition",

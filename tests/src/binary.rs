@@ -13,11 +13,12 @@ pub fn path() -> &'static PathBuf {
     PATH.get_or_init(build)
 }
 
-/// Cargo does not build another package's program for a test, so it is asked to.
+/// Cargo does not build another package's program for a test, so it is asked to: for the whole workspace, with the features
+/// that the tests were built with.
 fn build() -> PathBuf {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
-    command.args(["build", "--package", "sistership", "--bin", "sistership", "--message-format", "json"]);
+    command.args(["build", "--workspace", "--bin", "sistership", "--message-format", "json"]);
     if !cfg!(debug_assertions) {
         command.arg("--release");
     }

@@ -4,6 +4,7 @@ pub mod envelope;
 pub mod error;
 pub mod gear;
 pub mod integrate;
+pub mod interpolate;
 pub mod manoeuvre;
 pub mod metrics;
 pub mod plant;

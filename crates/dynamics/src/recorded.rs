@@ -4,6 +4,7 @@ use sistership_model::trial::{Channel, Trial};
 
 use crate::envelope::Stopped;
 use crate::integrate::Method;
+use crate::interpolate::MonotoneCubic;
 use crate::plant::{Inputs, MAX_INPUTS, Work};
 use crate::ship::Ship;
 use crate::state::{StateVector, Trajectory, at};
@@ -88,7 +89,7 @@ struct Record<'a> {
     delta: &'a [f64],
     n: Option<&'a [f64]>,
     /// Each input of the law: recorded, or constant.
-    inputs: Vec<Result<&'a [f64], f64>>,
+    inputs: Vec<Result<MonotoneCubic<'a>, f64>>,
     start: Vec<(usize, &'a [f64])>,
 }
 
@@ -122,11 +123,11 @@ impl<'a> Record<'a> {
         state
     }
 
-    /// The inputs at a fraction of the way from a sample to the next, between which they vary linearly.
+    /// The inputs at a fraction of the way from a sample to the next.
     fn inputs_at(&self, k: usize, w: f64) -> Inputs {
         let mut inputs = [0.0; MAX_INPUTS];
         for (value, input) in inputs.iter_mut().zip(&self.inputs) {
-            *value = input.map_or_else(|constant| constant, |column| column[k] + w * (column[k + 1] - column[k]));
+            *value = input.as_ref().map_or_else(|constant| *constant, |column| column.between(k, w));
         }
         inputs
     }
@@ -168,10 +169,10 @@ impl<'a> Record<'a> {
 }
 
 /// An input of the law on a trial: its channel, the trial's constant depth, or the law's default.
-fn input<'a>(trial: &'a Trial, name: &str, default: Option<f64>) -> Result<Result<&'a [f64], f64>, MissingChannel> {
+fn input<'a>(trial: &'a Trial, name: &str, default: Option<f64>) -> Result<Result<MonotoneCubic<'a>, f64>, MissingChannel> {
     let channel = Channel::by_name(name);
     if let Some(column) = channel.and_then(|channel| trial.channel(channel)) {
-        return Ok(Ok(column));
+        return Ok(Ok(MonotoneCubic::new(&trial.t_s, column)));
     }
     let constant = if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
     match (constant, channel) {

@@ -1,9 +1,11 @@
-//! What a server is told before it starts, and what it refuses to start with.
+//! What a server is told before it starts.
 
 use std::fmt;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+use crate::start_error::StartError;
 
 /// Where the server listens when nobody says otherwise.
 pub const DEFAULT_LISTEN: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(std::net::Ipv4Addr::LOCALHOST), 8080);
@@ -131,42 +133,6 @@ impl Default for Leases {
     fn default() -> Self {
         Self { lease: Duration::from_secs(15), beat: Duration::from_secs(3), poll: Duration::from_millis(500) }
     }
-}
-
-/// Why a server does not start.
-#[derive(Debug, thiserror::Error)]
-pub enum StartError {
-    /// Anyone on the network could change what it holds.
-    #[error("refusing to listen on {0} without an API key: set one (--api-key or SISTERSHIP_API_KEY), or listen on 127.0.0.1")]
-    OpenWithoutKey(SocketAddr),
-    /// A key that no header can carry.
-    #[error("the API key must be one or more printable ASCII characters without spaces")]
-    Key,
-    /// Every job would be taken over while it runs.
-    #[error("the beat of a worker must be shorter than its lease")]
-    Leases,
-    /// The address is taken or not ours.
-    #[error("cannot listen on {listen}: {error}")]
-    Listen {
-        /// The address.
-        listen: SocketAddr,
-        /// What the system said.
-        error: std::io::Error,
-    },
-    /// The data folder cannot be used.
-    #[error("cannot use the data folder {folder}: {error}")]
-    Folder {
-        /// The folder.
-        folder: PathBuf,
-        /// What the system said.
-        error: std::io::Error,
-    },
-    /// The database or the object store cannot be used.
-    #[error("cannot open the store: {0}")]
-    Store(#[from] sistership_store::StoreError),
-    /// The zoo that the program carries does not read.
-    #[error("the zoo is damaged: {0}")]
-    Zoo(#[from] sistership_model::FileError),
 }
 
 #[cfg(test)]

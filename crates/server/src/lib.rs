@@ -19,12 +19,14 @@ pub mod report;
 mod routes;
 mod seed;
 mod server;
+mod start_error;
 mod stopping;
 mod upload;
 pub mod verify;
 mod web;
 
 pub use archive::Archive;
-pub use config::{Config, DEFAULT_LISTEN, Leases, Limits, StartError, sqlite_url};
+pub use config::{Config, DEFAULT_LISTEN, Leases, Limits, sqlite_url};
 pub use routes::openapi;
 pub use server::{Running, Server};
+pub use start_error::StartError;

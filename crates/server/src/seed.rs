@@ -4,9 +4,9 @@ use sistership_model::{Vessel, Zoo};
 use sistership_store::{NewShip, Store, StoreError};
 
 use crate::catalogue::{Catalogue, all_ships};
-use crate::config::StartError;
 use crate::problem::Problem;
 use crate::publish::publish;
+use crate::start_error::StartError;
 
 /// Puts in what is missing; several processes may do so at once, and one that was killed half-way is continued.
 pub(crate) async fn seed(store: &Store, catalogue: &Catalogue) -> Result<(), StartError> {

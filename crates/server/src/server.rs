@@ -9,9 +9,10 @@ use tokio::task::JoinSet;
 use crate::app::{self, App};
 use crate::archive::Archive;
 use crate::catalogue::Catalogue;
-use crate::config::{Config, StartError};
+use crate::config::Config;
 use crate::jobs::Worker;
 use crate::listen::listen;
+use crate::start_error::StartError;
 use crate::stopping::Stopping;
 use crate::{routes, seed, upload};
 

@@ -84,7 +84,7 @@ fn sail(zoo: &Zoo) -> Result<Vec<Trial>, Failure> {
 /// An old demonstration goes; a folder that holds anything else is left alone.
 fn empty(folder: &Path) -> Result<(), Failure> {
     let ours = |name: &std::ffi::OsStr| name == "data" || name == "report.html";
-    let failed = |error: std::io::Error| about_file(folder, &error.to_string());
+    let failed = |error: std::io::Error| about_file(folder, error.to_string());
     std::fs::create_dir_all(folder).map_err(failed)?;
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let entry = entry.map_err(failed)?;
@@ -114,7 +114,7 @@ async fn tell(running: &Running, trials: &[Trial], out: &Path) -> Result<(), Fai
     let report = job["report"].as_str().ok_or_else(|| Failure::Refused("the job names no report".into()))?;
     let path = out.join("report.html");
     let html = api.text(&format!("/v1/reports/{report}"), "text/html").await?;
-    std::fs::write(&path, html).map_err(|error| about_file(&path, &error.to_string()))?;
+    std::fs::write(&path, html).map_err(|error| about_file(&path, error.to_string()))?;
     let held_out: HeldOut =
         serde_json::from_value(job["held_out"].clone()).map_err(|error| Failure::Refused(error.to_string()))?;
     output::note(&format!("8/8  report written to {}\n", path.display()));

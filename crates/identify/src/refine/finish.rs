@@ -2,13 +2,17 @@
 
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard};
+use sistership_dynamics::metrics::{Recognised, recorded_track};
+use sistership_dynamics::recorded::{ReplaySettings, replay};
 use sistership_model::Model;
 use sistership_model::quantity::Quantity;
+use sistership_model::trial::Trial;
 
-use super::outcome::{CoefficientChange, HeldOut, Manoeuvres, RefineError, Refinement};
+use super::outcome::{CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement};
 use super::published::{Fit, fit};
 use super::selection::{Progress, Task, Trying, step};
 use crate::regression::Moments;
+use crate::transfer::ready;
 
 impl Task<'_> {
     /// Takes the best option whose model, fitted on all trials, also sails the standard manoeuvres that the source sails.
@@ -35,9 +39,32 @@ impl Task<'_> {
                 continue;
             }
             options[best].option.chosen = true;
-            let manoeuvres = Manoeuvres { source: before, refined: after };
+            let measured = self.measured_manoeuvres(&model);
+            let manoeuvres = Manoeuvres { source: before, refined: after, measured };
             return self.refinement(options, best, model, fitted, manoeuvres);
         }
+    }
+
+    /// The turning circles and zigzags among the trials, beside what both models make of the recorded rudder.
+    fn measured_manoeuvres(&self, refined: &Model) -> Vec<MeasuredManoeuvre> {
+        let trials = self.training.iter().map(|trial| (*trial, true)).chain(self.judged.iter().map(|trial| (*trial, false)));
+        let one = |(trial, fitted): (&Trial, bool)| {
+            let recognised = Recognised::of(trial)?;
+            let samples: Vec<usize> = (0..trial.len()).collect();
+            let simulated = |model: &Model| {
+                let ship = ready(model, self.request.law, &[trial]).ok()?;
+                let run = replay(&ship, trial, &ReplaySettings::default()).ok().filter(|run| run.stopped.is_none())?;
+                recognised.metrics(&run.track, &run.samples)
+            };
+            Some(MeasuredManoeuvre {
+                trial: trial.name.clone(),
+                fitted,
+                measured: recognised.metrics(&recorded_track(trial)?, &samples)?,
+                source: simulated(&self.transferred),
+                refined: simulated(refined),
+            })
+        };
+        trials.filter_map(one).collect()
     }
 
     fn standard_manoeuvres(&self, model: &Model) -> StandardManoeuvres {
@@ -56,6 +83,7 @@ impl Task<'_> {
         manoeuvres: Manoeuvres,
     ) -> Result<Refinement, RefineError> {
         let held_out = self.held_out(&options, best, &model)?;
+        let lambdas = options[best].option.lambda.clone();
         let (condition_number, collinear_groups) =
             fitted.as_ref().map_or((1.0, Vec::new()), |fit| (fit.condition_number, fit.collinear_groups.clone()));
         Ok(Refinement {
@@ -71,7 +99,7 @@ impl Task<'_> {
             held_out,
             options: options.into_iter().map(|trying| trying.option).collect(),
             manoeuvres,
-            remarks: self.remarks(best),
+            remarks: self.remarks(best, &lambdas),
         })
     }
 
@@ -116,8 +144,13 @@ impl Task<'_> {
         model.coefficients.iter().map(one).collect()
     }
 
-    fn remarks(&self, best: usize) -> Vec<String> {
+    fn remarks(&self, best: usize, lambdas: &[f64]) -> Vec<String> {
         let mut remarks = Vec::new();
+        let strongest = self.settings.ranges.iter().map(|range| range.lambda_max).fold(0.0, f64::max);
+        if lambdas.iter().any(|lambda| *lambda > 0.999 * strongest) {
+            let what = "an acceleration took the strongest prior allowed: its coefficients are the source's, scaled as a whole by 1 - alpha";
+            remarks.push(format!("{what}, and their standard errors say nothing"));
+        }
         if best == 0 {
             remarks.push("no option beat the source on manoeuvres left out: the source is kept as it is".to_owned());
         }

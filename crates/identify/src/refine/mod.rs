@@ -9,7 +9,7 @@ mod selection;
 mod settings;
 
 pub use blocks::{Block, Blocks};
-pub use outcome::{CoefficientChange, HeldOut, Manoeuvres, RefineError, Refinement, StepOption};
+pub use outcome::{CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement, StepOption};
 pub use published::{Choices, Fit, Fitted, Fold, fit, tune};
 pub use rows::{Table, trial_moments, trial_tables};
 pub use selection::{Progress, Request, refine};

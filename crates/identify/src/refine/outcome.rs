@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use sistership_dynamics::manoeuvre::StandardManoeuvres;
+use sistership_dynamics::metrics::ManoeuvreMetrics;
 use sistership_model::Model;
 use sistership_model::trial::Channel;
 
@@ -138,4 +139,21 @@ pub struct Manoeuvres {
     pub source: StandardManoeuvres,
     /// Of the refined model.
     pub refined: StandardManoeuvres,
+    /// Turning circles and zigzags among the trials, measured and simulated with the recorded rudder from their start.
+    pub measured: Vec<MeasuredManoeuvre>,
+}
+
+/// A manoeuvre that was sailed at sea, and what the models make of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MeasuredManoeuvre {
+    /// The trial.
+    pub trial: String,
+    /// Whether the refined model was fitted on it.
+    pub fitted: bool,
+    /// As measured.
+    pub measured: ManoeuvreMetrics,
+    /// As simulated by the source carried over; absent where that diverged.
+    pub source: Option<ManoeuvreMetrics>,
+    /// As simulated by the refined model.
+    pub refined: Option<ManoeuvreMetrics>,
 }

@@ -91,9 +91,9 @@ fn zigzag(angle: i64) -> Value {
     json!({ "zigzag": { "rudder_deg": angle, "switch_deg": angle.abs() } })
 }
 
-/// Every fifth sample, without the roll that the fitted law does not know.
+/// Every fifth sample.
 fn csv(track: &Value) -> String {
-    let columns = ["t_s", "x_m", "y_m", "psi_rad", "u_m_s", "v_m_s", "r_rad_s", "delta_rad", "n_rps"];
+    let columns = ["t_s", "x_m", "y_m", "psi_rad", "u_m_s", "v_m_s", "r_rad_s", "phi_rad", "p_rad_s", "delta_rad", "n_rps"];
     let rows = track["t_s"].as_array().unwrap().len();
     let row = |k: usize| columns.map(|column| track[column][k].to_string()).join(",");
     std::iter::once(columns.join(",")).chain((0..rows).step_by(5).map(row)).collect::<Vec<_>>().join("\n")

@@ -62,16 +62,16 @@ impl<'a> Comparison<'a> {
     }
 }
 
-type Read<T> = fn(&T) -> Option<f64>;
+pub(super) type Read<T> = fn(&T) -> Option<f64>;
 
-const TURN: [(&str, Read<TurningMetrics>); 4] = [
+pub(super) const TURN: [(&str, Read<TurningMetrics>); 4] = [
     ("advance", |turn| turn.advance_m),
     ("transfer", |turn| turn.transfer_m),
     ("tactical diameter", |turn| turn.tactical_diameter_m),
     ("steady radius", |turn| turn.steady_radius_m),
 ];
 
-const ZIGZAG: [(&str, &str, Read<ZigzagMetrics>); 3] = [
+pub(super) const ZIGZAG: [(&str, &str, Read<ZigzagMetrics>); 3] = [
     ("first overshoot", "deg", |zigzag| zigzag.first_overshoot_deg),
     ("second overshoot", "deg", |zigzag| zigzag.second_overshoot_deg),
     ("period", "s", |zigzag| zigzag.period_s),

@@ -11,6 +11,7 @@ mod options;
 mod plots;
 mod provenance;
 mod replays;
+mod sailed;
 mod similarity;
 mod summary;
 mod tables;
@@ -93,6 +94,7 @@ struct Content<'a> {
     coefficients: coefficients::Coefficients<'a>,
     options: options::Options<'a>,
     manoeuvres: manoeuvres::Comparison<'a>,
+    sailed: Vec<sailed::Sailed>,
     similarity: Option<&'a Similarity>,
     provenance: provenance::Provenance<'a>,
 }
@@ -119,6 +121,7 @@ impl<'a> Content<'a> {
             coefficients: coefficients::Coefficients::of(input),
             options: options::Options::of(input),
             manoeuvres: manoeuvres::Comparison::of(input),
+            sailed: sailed::figures(input),
             similarity: input.similarity,
             provenance: provenance::Provenance::of(input),
         }

@@ -1,11 +1,11 @@
 //! The OpenAPI document.
 
-use axum::http::header;
-use axum::response::{IntoResponse, Response};
+use axum::http::{StatusCode, header};
+use axum::response::IntoResponse;
 use utoipa::OpenApi as _;
 use utoipa::openapi::path::Operation;
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme};
-use utoipa::openapi::{Components, Content, OpenApi, PathItem, Ref, ResponseBuilder};
+use utoipa::openapi::{Components, Content, OpenApi, PathItem, Ref, RefOr, Response, ResponseBuilder};
 
 use crate::config::Limits;
 use crate::problem::{Fault, MEDIA, Problem};
@@ -33,6 +33,12 @@ use crate::problem::{Fault, MEDIA, Problem};
     )
 )]
 struct About;
+
+/// A file as it is.
+#[derive(utoipa::ToSchema)]
+#[schema(value_type = String, format = Binary)]
+#[allow(dead_code, reason = "it only describes a body")]
+pub(super) struct Binary(Vec<u8>);
 
 /// What does not depend on the endpoints.
 pub(super) fn about() -> OpenApi {
@@ -73,6 +79,16 @@ fn add_problem(operation: &mut Operation) {
     let content = Content::new(Some(Ref::from_schema_name("Problem")));
     let problem = ResponseBuilder::new().description("Why it was not done, and what to do").content(MEDIA, content).build();
     operation.responses.responses.insert("default".to_owned(), problem.into());
+    operation.responses.responses.iter_mut().for_each(|(status, response)| describe(status, response));
+}
+
+/// Every response must have a description; where none is written, the status has one.
+fn describe(status: &str, response: &mut RefOr<Response>) {
+    let RefOr::T(response) = response else { return };
+    if response.description.is_empty() {
+        let known = status.parse().ok().and_then(|status: u16| StatusCode::from_u16(status).ok());
+        response.description = known.and_then(|status| status.canonical_reason()).unwrap_or("The answer").to_owned();
+    }
 }
 
 /// The document as text, indented, with a line feed at its end.
@@ -80,6 +96,6 @@ pub(super) fn text() -> String {
     openapi().to_pretty_json().map(|text| text + "\n").unwrap_or_default()
 }
 
-pub(super) fn served(text: String) -> Response {
+pub(super) fn served(text: String) -> axum::response::Response {
     ([(header::CONTENT_TYPE, "application/json")], text).into_response()
 }

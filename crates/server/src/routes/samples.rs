@@ -10,6 +10,7 @@ use tokio_util::io::{ReaderStream, SyncIoBridge};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::document::Binary;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::{Place, accept};
@@ -26,7 +27,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 /// The samples of a trial, as CSV or as Parquet, under canonical names
 #[utoipa::path(
     get, path = "/v1/trials/{id}/samples", tag = "trials", params(("id" = String, Path)),
-    responses((status = 200, content((String = "text/csv"), (Vec<u8> = "application/vnd.apache.parquet"))))
+    responses((status = 200, content((String = "text/csv"), (Binary = "application/vnd.apache.parquet"))))
 )]
 async fn samples(State(app): State<App>, Place(id): Place<String>, headers: HeaderMap) -> Result<Response> {
     let media = accept::choose(&headers, &[CSV, PARQUET])?;

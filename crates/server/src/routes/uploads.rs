@@ -10,6 +10,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::document::Binary;
 use super::trials::TrialView;
 use crate::app::App;
 use crate::problem::Result;
@@ -50,7 +51,7 @@ struct Form {
 #[utoipa::path(
     post, path = "/v1/trials", tag = "trials",
     params(RawQuery, ("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
-    request_body(content((Form = "multipart/form-data"), (String = "text/csv"), (Vec<u8> = "application/vnd.apache.parquet"))),
+    request_body(content((Form = "multipart/form-data"), (String = "text/csv"), (Binary = "application/vnd.apache.parquet"))),
     responses((status = 201, body = Uploaded, headers(("Location" = String))))
 )]
 async fn upload(State(app): State<App>, key: Key, upload: Upload) -> Result<Response> {
@@ -76,7 +77,7 @@ async fn kept(app: &App, upload: Upload) -> Result<Reply> {
 /// The same body as for an upload; the ship need not exist. The answer is that of `sistership check --json`.
 #[utoipa::path(
     post, path = "/v1/trials/check", tag = "trials", params(RawQuery),
-    request_body(content((Form = "multipart/form-data"), (String = "text/csv"), (Vec<u8> = "application/vnd.apache.parquet"))),
+    request_body(content((Form = "multipart/form-data"), (String = "text/csv"), (Binary = "application/vnd.apache.parquet"))),
     responses((status = 200, body = Object, description = "`trials`: `file`, `rows`, `duration_s`, `errors`, `warnings` of each"))
 )]
 async fn check(State(app): State<App>, upload: Upload) -> Result<Json<Value>> {

@@ -3,12 +3,14 @@
 mod moved;
 mod provenance;
 mod results;
+mod sailed;
 
 use askama::Template;
 
 pub(super) use moved::coefficients;
 pub(super) use provenance::{parameters, particulars, settings};
 pub(super) use results::{errors, imo, options, turns, zigzags};
+pub(super) use sailed::sailed;
 
 /// A table.
 #[derive(Debug, Template)]

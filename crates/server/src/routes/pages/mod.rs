@@ -8,6 +8,7 @@ use axum::Router;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use serde_json::Value;
 use sistership_store::{Job, Trial};
 
 use crate::app::App;
@@ -40,16 +41,17 @@ struct JobRow {
 impl JobRow {
     fn of(job: Job) -> Self {
         let percent = (100.0 * job.progress.clamp(0.0, 1.0)).round() as u32;
-        let (state, created) = (job.state.as_str(), date(job.created_us));
-        Self {
-            id: job.id,
-            ship: job.ship.unwrap_or_default(),
-            state,
-            percent,
-            message: job.error.unwrap_or(job.message),
-            created,
-        }
+        let (state, created, outcome) = (job.state.as_str(), date(job.created_us), outcome(&job));
+        let message = outcome.or(job.error).unwrap_or(job.message);
+        Self { id: job.id, ship: job.ship.unwrap_or_default(), state, percent, message, created }
     }
+}
+
+/// What came of a job that is done.
+fn outcome(job: &Job) -> Option<String> {
+    let result: Value = serde_json::from_str(job.result.as_deref()?).ok()?;
+    let (alias, source) = (result["alias"].as_str()?, result["source"].as_str()?);
+    Some(format!("version {}, {alias}, from {source}", result["version"]))
 }
 
 /// A trial as a page shows it.
@@ -64,7 +66,7 @@ struct TrialRow {
 
 impl TrialRow {
     fn of(trial: Trial) -> Self {
-        let warnings = serde_json::from_str::<Vec<serde_json::Value>>(&trial.warnings).map_or(0, |warnings| warnings.len());
+        let warnings = serde_json::from_str::<Vec<Value>>(&trial.warnings).map_or(0, |warnings| warnings.len());
         let (manoeuvre, duration) = (trial.manoeuvre.unwrap_or_default(), format!("{:.0} s", trial.duration_s));
         Self { id: trial.id, name: trial.name, manoeuvre, rows: trial.sample_rows, duration, warnings }
     }

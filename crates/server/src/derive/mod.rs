@@ -1,16 +1,18 @@
 //! From a recipe to the version that it describes. Jobs and [`verify`](mod@crate::verify) both go this way, so that they
 //! cannot differ.
 
+mod refined;
+
 use std::sync::Arc;
 
-use bytes::Bytes;
 use serde_json::{Map, Value};
-use sistership_identify::refine::{RefineError, Refinement, Request, Settings, refine};
-use sistership_model::trial::Trial;
-use sistership_model::version::{FORMAT, Recipe, SourceVersion, VersionDocument};
+use sistership_identify::refine::RefineError;
+use sistership_model::version::{FORMAT, Recipe, VersionDocument};
 use sistership_model::{FileError, Law, Model, Vessel};
 use sistership_store::StoreError;
-use sistership_trials::samples::{self, SamplesError};
+use sistership_trials::samples::SamplesError;
+
+pub use refined::{Ingredients, Refined, refined_document};
 
 use crate::archive::Archive;
 
@@ -52,32 +54,6 @@ pub struct Derived {
     pub refined: Option<Refined>,
 }
 
-/// A refinement with everything that went into it.
-#[derive(Debug)]
-pub struct Refined {
-    /// What came out.
-    pub refinement: Refinement,
-    /// What went in.
-    pub ingredients: Ingredients,
-}
-
-/// What a refinement is made of.
-#[derive(Debug)]
-pub struct Ingredients {
-    /// The ship.
-    pub target: Vessel,
-    /// The version that is refined.
-    pub source: SourceVersion,
-    /// Its model.
-    pub model: Model,
-    /// Its law.
-    pub law: Law,
-    /// The trials, in the recipe's order.
-    pub trials: Vec<Trial>,
-    /// The settings.
-    pub settings: Settings,
-}
-
 /// Derives the version of a ship that a recipe describes.
 ///
 /// # Errors
@@ -86,19 +62,11 @@ pub async fn derive(archive: &Archive, ship: &str, recipe: &Recipe, progress: Pr
     match recipe {
         Recipe::Published { model, ship_sha256, law_sha256 } => published(archive, ship, model, ship_sha256, law_sha256).await,
         Recipe::Refinement { .. } => {
-            let (ingredients, samples) = gather(archive, ship, recipe).await?;
+            let (ingredients, samples) = refined::gather(archive, ship, recipe).await?;
             let recipe = recipe.clone();
-            tokio::task::spawn_blocking(move || refined(ingredients, &samples, &recipe, &progress)).await?
+            tokio::task::spawn_blocking(move || refined::refined(ingredients, &samples, &recipe, &progress)).await?
         }
     }
-}
-
-/// The settings of a recipe, every one of them.
-///
-/// # Errors
-/// A setting is unknown or of the wrong type.
-pub(crate) fn settings(recorded: &Value) -> Result<Settings, DeriveError> {
-    Ok(serde_json::from_value(recorded.clone())?)
 }
 
 async fn published(
@@ -135,61 +103,6 @@ pub(crate) fn published_document(
         model: Model::published(vessel, Some(model), law)?,
         report: Value::Null,
     })
-}
-
-/// Loads what a recipe names, each by its hash; the samples are not yet read.
-async fn gather(archive: &Archive, ship: &str, recipe: &Recipe) -> Result<(Ingredients, Vec<Bytes>), DeriveError> {
-    let Recipe::Refinement { source, ship_sha256, law_sha256, trials, settings: recorded, .. } = recipe else {
-        return Err(DeriveError::Lost("the recipe is not that of a refinement".into()));
-    };
-    let model = archive.source(source).await?;
-    let law = archive.law(&model.law, law_sha256).await?;
-    let target = archive.ship(ship, ship_sha256).await?;
-    let samples = archive.samples(trials).await?;
-    let settings = settings(recorded)?;
-    Ok((Ingredients { target, source: source.clone(), model, law, trials: Vec::new(), settings }, samples))
-}
-
-fn refined(
-    mut ingredients: Ingredients,
-    samples: &[Bytes],
-    recipe: &Recipe,
-    progress: &Progress,
-) -> Result<Derived, DeriveError> {
-    ingredients.trials = samples.iter().cloned().map(samples::from_parquet).collect::<Result<_, _>>()?;
-    let (document, refinement) = refined_document(&ingredients, recipe, &**progress)?;
-    Ok(Derived { document, refined: Some(Refined { refinement, ingredients }) })
-}
-
-/// The version that a refinement gives: a function of its ingredients and nothing else.
-///
-/// # Errors
-/// Why the refinement is refused, or that it was stopped.
-pub fn refined_document(
-    ingredients: &Ingredients,
-    recipe: &Recipe,
-    progress: &(dyn Fn(f64, &str) -> bool + Sync),
-) -> Result<(VersionDocument, Refinement), DeriveError> {
-    let Ingredients { target, model, law, settings, .. } = ingredients;
-    let trials: Vec<&Trial> = ingredients.trials.iter().collect();
-    let refinement = refine(&Request { target, source: model, law, trials: &trials, settings }, progress)?;
-    let document = VersionDocument {
-        format: FORMAT.to_owned(),
-        ship: target.name().to_owned(),
-        recipe: recipe.clone(),
-        model: refinement.model.clone(),
-        report: report(&refinement)?,
-    };
-    Ok((document, refinement))
-}
-
-/// What a refinement reported, without the model that the version holds anyway.
-fn report(refinement: &Refinement) -> Result<Value, serde_json::Error> {
-    let mut report = serde_json::to_value(refinement)?;
-    if let Some(fields) = report.as_object_mut() {
-        fields.remove("model");
-    }
-    Ok(sorted(report))
 }
 
 /// The same value with every map in the order of its keys, however the JSON library is built.

@@ -1,0 +1,131 @@
+//! The same figures from a recorded trial: what was sailed is told by its name, when the rudder moved by its record.
+
+use serde::{Deserialize, Serialize};
+use sistership_model::trial::{Channel, Trial};
+
+use super::{TurningMetrics, ZigzagMetrics};
+use crate::state::{StateVector, Trajectory, at};
+
+/// The figures of one manoeuvre.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ManoeuvreMetrics {
+    /// Of a turning circle.
+    Turn(TurningMetrics),
+    /// Of a zigzag.
+    Zigzag(ZigzagMetrics),
+}
+
+/// A trial as a manoeuvre: what it is, from which sample, and when the rudder was reversed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recognised {
+    kind: Kind,
+    start: usize,
+    reversals_s: Vec<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    Turn { rudder_deg: f64 },
+    Zigzag { rudder_deg: f64, switch_deg: f64 },
+}
+
+impl Recognised {
+    /// Reads `turn ...` or `zigzag R/H` in the trial's manoeuvre; `None` for anything else, or where the rudder never moves.
+    pub fn of(trial: &Trial) -> Option<Self> {
+        let name = trial.manoeuvre.as_deref()?.to_lowercase();
+        let delta = trial.channel(Channel::Delta)?;
+        let start = execution(delta)?;
+        let side = delta[start].signum();
+        if name.starts_with("turn") {
+            let rudder_deg = median(&delta[start + (delta.len() - start) / 2..])?.to_degrees();
+            return Some(Self { kind: Kind::Turn { rudder_deg }, start, reversals_s: Vec::new() });
+        }
+        let (rudder, switch) = name.strip_prefix("zigzag")?.trim().split_once('/')?;
+        let angle = |text: &str| text.trim().trim_end_matches("deg").trim().parse::<f64>().ok().map(f64::abs);
+        let kind = Kind::Zigzag { rudder_deg: side * angle(rudder)?, switch_deg: angle(switch)? };
+        let crossing = |k: &usize| delta[k - 1] * delta[*k] < 0.0 || (delta[*k] == 0.0 && delta[k - 1] != 0.0);
+        let reversals = (start + 1..delta.len()).filter(crossing).map(|k| trial.t_s[k] - trial.t_s[start]);
+        Some(Self { kind, start, reversals_s: reversals.collect() })
+    }
+
+    /// The figures of a track whose states belong to the given samples of the trial.
+    pub fn metrics(&self, track: &Trajectory, samples: &[usize]) -> Option<ManoeuvreMetrics> {
+        let first = samples.iter().position(|&k| k >= self.start)?;
+        let mut after = Trajectory::default();
+        for k in first..track.states.len() {
+            after.push(track.t_s[k] - track.t_s[first], track.states[k], track.n_rps[k]);
+        }
+        match self.kind {
+            Kind::Turn { rudder_deg } => TurningMetrics::of(&after, rudder_deg).map(ManoeuvreMetrics::Turn),
+            Kind::Zigzag { rudder_deg, switch_deg } => {
+                ZigzagMetrics::of(&after, rudder_deg, switch_deg, &self.reversals_s).map(ManoeuvreMetrics::Zigzag)
+            }
+        }
+    }
+}
+
+/// A trial as a track; `None` where velocities, heading or position were not recorded.
+pub fn recorded_track(trial: &Trial) -> Option<Trajectory> {
+    let needed = [
+        (Channel::U, at::U),
+        (Channel::V, at::V),
+        (Channel::R, at::R),
+        (Channel::Psi, at::PSI),
+        (Channel::X, at::X),
+        (Channel::Y, at::Y),
+    ];
+    let columns: Vec<(usize, &[f64])> =
+        needed.iter().filter_map(|&(channel, index)| Some((index, trial.channel(channel)?))).collect();
+    if columns.len() < needed.len() {
+        return None;
+    }
+    let mut track = Trajectory::default();
+    for (k, &t_s) in trial.t_s.iter().enumerate() {
+        let mut state = StateVector::zeros();
+        columns.iter().for_each(|(index, column)| state[*index] = column[k]);
+        track.push(t_s, state, trial.channel(Channel::N).map_or(0.0, |n| n[k]));
+    }
+    Some(track)
+}
+
+/// The sample at which the rudder leaves its first angle by a tenth of its range and by more than half a degree.
+fn execution(delta: &[f64]) -> Option<usize> {
+    let rest = *delta.first()?;
+    let range = delta.iter().map(|value| (value - rest).abs()).fold(0.0, f64::max);
+    let least = (0.1 * range).max(0.5_f64.to_radians());
+    delta.iter().position(|value| (value - rest).abs() > least)
+}
+
+fn median(values: &[f64]) -> Option<f64> {
+    let mut values = values.to_vec();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn trial(manoeuvre: &str, delta_deg: &[f64]) -> Trial {
+        let delta: Vec<f64> = delta_deg.iter().map(|d| d.to_radians()).collect();
+        let t_s = (0..delta.len()).map(|k| k as f64).collect();
+        Trial { t_s, channels: [(Channel::Delta, delta)].into(), manoeuvre: Some(manoeuvre.into()), ..Trial::default() }
+    }
+
+    #[test]
+    fn a_zigzag_is_recognised_with_its_reversals() {
+        let trial = trial("zigzag 10/5", &[0.0, 0.0, 5.0, 10.0, 10.0, 2.0, -8.0, -10.0, -10.0, 3.0, 10.0]);
+        let found = Recognised::of(&trial).unwrap();
+        assert_eq!((found.start, found.reversals_s), (2, vec![4.0, 7.0]));
+        assert_eq!(found.kind, Kind::Zigzag { rudder_deg: 10.0, switch_deg: 5.0 });
+    }
+
+    #[test]
+    fn a_turn_has_the_rudder_it_ends_with() {
+        let found = Recognised::of(&trial("turn", &[0.0, -3.0, -12.0, -12.0, -12.0, -12.0])).unwrap();
+        assert_eq!((found.start, found.kind), (1, Kind::Turn { rudder_deg: (-12_f64.to_radians()).to_degrees() }));
+        assert_eq!(Recognised::of(&trial("random", &[0.0, 5.0])), None);
+    }
+}

@@ -1,0 +1,93 @@
+//! Deriving a refined version: a function of its ingredients, each found by its hash.
+
+use bytes::Bytes;
+use serde_json::Value;
+use sistership_identify::refine::{Refinement, Request, Settings, refine};
+use sistership_model::trial::Trial;
+use sistership_model::version::{FORMAT, Recipe, SourceVersion, VersionDocument};
+use sistership_model::{Law, Model, Vessel};
+use sistership_trials::samples;
+
+use super::{DeriveError, Derived, Progress, sorted};
+use crate::archive::Archive;
+
+/// A refinement with everything that went into it.
+#[derive(Debug)]
+pub struct Refined {
+    /// What came out.
+    pub refinement: Refinement,
+    /// What went in.
+    pub ingredients: Ingredients,
+}
+
+/// What a refinement is made of.
+#[derive(Debug)]
+pub struct Ingredients {
+    /// The ship.
+    pub target: Vessel,
+    /// The version that is refined.
+    pub source: SourceVersion,
+    /// Its model.
+    pub model: Model,
+    /// Its law.
+    pub law: Law,
+    /// The trials, in the recipe's order.
+    pub trials: Vec<Trial>,
+    /// The settings.
+    pub settings: Settings,
+}
+
+/// Loads what a recipe names, each by its hash; the samples are not yet read.
+pub(super) async fn gather(archive: &Archive, ship: &str, recipe: &Recipe) -> Result<(Ingredients, Vec<Bytes>), DeriveError> {
+    let Recipe::Refinement { source, ship_sha256, law_sha256, trials, settings: recorded, .. } = recipe else {
+        return Err(DeriveError::Lost("the recipe is not that of a refinement".into()));
+    };
+    let model = archive.source(source).await?;
+    let law = archive.law(&model.law, law_sha256).await?;
+    let target = archive.ship(ship, ship_sha256).await?;
+    let samples = archive.samples(trials).await?;
+    let settings: Settings = serde_json::from_value(recorded.clone())?;
+    Ok((Ingredients { target, source: source.clone(), model, law, trials: Vec::new(), settings }, samples))
+}
+
+pub(super) fn refined(
+    mut ingredients: Ingredients,
+    samples: &[Bytes],
+    recipe: &Recipe,
+    progress: &Progress,
+) -> Result<Derived, DeriveError> {
+    ingredients.trials = samples.iter().cloned().map(samples::from_parquet).collect::<Result<_, _>>()?;
+    let (document, refinement) = refined_document(&ingredients, recipe, &**progress)?;
+    Ok(Derived { document, refined: Some(Refined { refinement, ingredients }) })
+}
+
+/// The version that a refinement gives: a function of its ingredients and nothing else.
+///
+/// # Errors
+/// Why the refinement is refused, or that it was stopped.
+pub fn refined_document(
+    ingredients: &Ingredients,
+    recipe: &Recipe,
+    progress: &(dyn Fn(f64, &str) -> bool + Sync),
+) -> Result<(VersionDocument, Refinement), DeriveError> {
+    let Ingredients { target, model, law, settings, .. } = ingredients;
+    let trials: Vec<&Trial> = ingredients.trials.iter().collect();
+    let refinement = refine(&Request { target, source: model, law, trials: &trials, settings }, progress)?;
+    let document = VersionDocument {
+        format: FORMAT.to_owned(),
+        ship: target.name().to_owned(),
+        recipe: recipe.clone(),
+        model: refinement.model.clone(),
+        report: report(&refinement)?,
+    };
+    Ok((document, refinement))
+}
+
+/// What a refinement reported, without the model that the version holds anyway.
+fn report(refinement: &Refinement) -> Result<Value, serde_json::Error> {
+    let mut report = serde_json::to_value(refinement)?;
+    if let Some(fields) = report.as_object_mut() {
+        fields.remove("model");
+    }
+    Ok(sorted(report))
+}

@@ -1,0 +1,40 @@
+//! Why a server does not start.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+/// Why a server does not start.
+#[derive(Debug, thiserror::Error)]
+pub enum StartError {
+    /// Anyone on the network could change what it holds.
+    #[error("refusing to listen on {0} without an API key: set one (--api-key or SISTERSHIP_API_KEY), or listen on 127.0.0.1")]
+    OpenWithoutKey(SocketAddr),
+    /// A key that no header can carry.
+    #[error("the API key must be one or more printable ASCII characters without spaces")]
+    Key,
+    /// Every job would be taken over while it runs.
+    #[error("the beat of a worker must be shorter than its lease")]
+    Leases,
+    /// The address is taken or not ours.
+    #[error("cannot listen on {listen}: {error}")]
+    Listen {
+        /// The address.
+        listen: SocketAddr,
+        /// What the system said.
+        error: std::io::Error,
+    },
+    /// The data folder cannot be used.
+    #[error("cannot use the data folder {folder}: {error}")]
+    Folder {
+        /// The folder.
+        folder: PathBuf,
+        /// What the system said.
+        error: std::io::Error,
+    },
+    /// The database or the object store cannot be used.
+    #[error("cannot open the store: {0}")]
+    Store(#[from] sistership_store::StoreError),
+    /// The zoo that the program carries does not read.
+    #[error("the zoo is damaged: {0}")]
+    Zoo(#[from] sistership_model::FileError),
+}
