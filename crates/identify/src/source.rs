@@ -1,7 +1,7 @@
 //! Choosing the source of a refinement: `auto`, a ship, or one of her models.
 
 use serde::Serialize;
-use sistership_model::trial::Trial;
+use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Vessel, Zoo};
 
 use crate::similarity::{Candidate, CharacteristicVector, Definition, Limits, RankedSource, Trend, rank};
@@ -43,6 +43,13 @@ pub fn similar(zoo: &Zoo, target: &Vessel, definition: Option<Definition>, trial
 /// The trend of a source on the target's trials, started anew each time she has sailed 20 of her lengths.
 fn trend_on(zoo: &Zoo, target: &Vessel, source: &Model, trials: &[&Trial]) -> Result<f64, String> {
     let law = zoo.law(&source.law).ok_or_else(|| format!("there is no law `{}`", source.law))?;
+    let silent = [Channel::Phi, Channel::P].into_iter().find_map(|channel| {
+        let without = trials.iter().find(|trial| law.has_roll() && trial.channel(channel).is_none())?;
+        Some(format!("its law has roll, and trial `{}` has no channel `{channel}`", without.name))
+    });
+    if let Some(reason) = silent {
+        return Err(reason);
+    }
     let approach = approach_of(trials);
     let model = transfer(source, law, target, approach);
     let lengths_s = target.particular("lpp_m").zip(approach).map(|(l, a)| 20.0 * l / a.speed_m_s);

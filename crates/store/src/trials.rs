@@ -2,6 +2,7 @@
 
 use crate::arguments::args;
 use crate::checks;
+use crate::database::Transaction;
 use crate::error::{Result, StoreError};
 use crate::page::{List, Page};
 use crate::record::record;
@@ -113,16 +114,30 @@ pub struct Trials<'a>(pub(crate) &'a Store);
 impl Trials<'_> {
     /// Puts a trial in. The same samples of the same ship again give the trial that is there, brought back if it was deleted.
     pub async fn insert(&self, new: &NewTrial) -> Result<Inserted<Trial>> {
-        new.check()?;
-        let id = self.0.new_id();
+        let mut inserted = self.insert_all(std::slice::from_ref(new)).await?;
+        inserted.pop().ok_or_else(|| StoreError::missing("trial", &new.name))
+    }
+
+    /// Puts several trials in, all of them or none.
+    pub async fn insert_all(&self, all: &[NewTrial]) -> Result<Vec<Inserted<Trial>>> {
+        all.iter().try_for_each(NewTrial::check)?;
         let mut tx = self.0.begin().await?;
-        ships::find(&mut tx, &new.ship).await?;
+        let mut inserted = Vec::with_capacity(all.len());
+        for new in all {
+            inserted.push(self.insert_one(&mut tx, new).await?);
+        }
+        tx.commit().await?;
+        Ok(inserted)
+    }
+
+    async fn insert_one(&self, tx: &mut Transaction, new: &NewTrial) -> Result<Inserted<Trial>> {
+        let id = self.0.new_id();
+        ships::find(tx, &new.ship).await?;
         let values = args![id: &id, ship: &new.ship, sha256: &new.sha256, name: &new.name, manifest: &new.manifest,
             conventions: &new.conventions, manoeuvre: &new.manoeuvre, sample_rows: new.sample_rows,
             duration_s: new.duration_s, warnings: &new.warnings, object_key: &new.object_key, created_us: self.0.now_us()];
         let inserted = tx.execute(INSERT, values).await?;
         let row = tx.one(REVIVE, args![ship: &new.ship, sha256: &new.sha256]).await?;
-        tx.commit().await?;
         Ok(Inserted { row, new: inserted == 1 })
     }
 

@@ -28,6 +28,15 @@ impl Manoeuvre {
             Self::Zigzag(rudder_deg, switch_deg) => format!("zigzag {rudder_deg}/{switch_deg}"),
         }
     }
+
+    /// The name of its file, such as `turn-port-15.csv`.
+    fn file_name(self) -> String {
+        let side = |rudder_deg: f64| if rudder_deg < 0.0 { "port" } else { "starboard" };
+        match self {
+            Self::Turn(rudder_deg) => format!("turn-{}-{}.csv", side(rudder_deg), rudder_deg.abs()),
+            Self::Zigzag(rudder_deg, switch_deg) => format!("zigzag-{}-{}-{switch_deg}.csv", side(rudder_deg), rudder_deg.abs()),
+        }
+    }
 }
 
 /// How long each trial is recorded, s, and when the rudder is first executed.
@@ -80,7 +89,7 @@ fn recorded(manoeuvre: Manoeuvre, track: &Trajectory, noise: &mut ChaCha12Rng) -
         .collect();
     channels.insert(Channel::N, sampled(track.n_rps.clone(), REVOLUTIONS_NOISE_RPS, noise));
     Trial {
-        name: format!("{}.csv", manoeuvre.name().replace(['/', ' '], "-")),
+        name: manoeuvre.file_name(),
         t_s: track.t_s.iter().copied().step_by(STRIDE).collect(),
         channels,
         manoeuvre: Some(manoeuvre.name()),

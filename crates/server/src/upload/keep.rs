@@ -83,26 +83,9 @@ async fn put_samples(objects: &Objects, accepted: &[Accepted]) -> Result<Vec<Str
     Ok(keys)
 }
 
-/// The rows; where one cannot be inserted, those that this upload has made are taken back.
+/// The rows, all of them or none.
 async fn insert(store: &Store, accepted: Vec<Accepted>, keys: Vec<String>) -> Result<Vec<Kept>> {
-    let mut kept: Vec<Kept> = Vec::with_capacity(accepted.len());
-    for (trial, key) in accepted.into_iter().zip(keys) {
-        let new = NewTrial { sha256: key.clone(), object_key: key, ..trial.new };
-        match store.trials().insert(&new).await {
-            Ok(inserted) => kept.push(inserted),
-            Err(error) => {
-                take_back(store, &kept).await;
-                return Err(error.into());
-            }
-        }
-    }
-    Ok(kept)
-}
-
-async fn take_back(store: &Store, kept: &[Kept]) {
-    for trial in kept.iter().filter(|trial| trial.new) {
-        if let Err(error) = store.trials().delete(&trial.row.id).await {
-            tracing::warn!(%error, trial = %trial.row.id, "a trial of a broken upload could not be taken back");
-        }
-    }
+    let row = |(trial, key): (Accepted, String)| NewTrial { sha256: key.clone(), object_key: key, ..trial.new };
+    let rows: Vec<NewTrial> = accepted.into_iter().zip(keys).map(row).collect();
+    Ok(store.trials().insert_all(&rows).await?)
 }

@@ -23,6 +23,15 @@ async fn a_trial_needs_its_ship(on: &TestStore) {
     assert_not_found(on.store.trials().insert(&trial("kcs", "turn")).await, "ship");
 }
 
+async fn several_trials_are_put_in_all_or_none(on: &TestStore) {
+    on.store.ships().create(&ship("kcs")).await.unwrap();
+    let batch = [trial("kcs", "one"), trial("nobody", "two")];
+    assert_not_found(on.store.trials().insert_all(&batch).await, "ship");
+    assert!(on.store.trials().list("kcs", &Page::first(10)).await.unwrap().items.is_empty());
+    let inserted = on.store.trials().insert_all(&[trial("kcs", "one"), trial("kcs", "two"), trial("kcs", "one")]).await.unwrap();
+    assert_eq!(inserted.iter().map(|one| one.new).collect::<Vec<_>>(), [true, true, false]);
+}
+
 async fn a_deleted_trial_comes_back(on: &TestStore) {
     on.store.ships().create(&ship("kcs")).await.unwrap();
     let trials = on.store.trials();
@@ -54,6 +63,7 @@ async fn trials_are_listed_in_the_order_of_upload(on: &TestStore) {
 on_both_databases!(
     the_same_samples_are_one_trial,
     a_trial_needs_its_ship,
+    several_trials_are_put_in_all_or_none,
     a_deleted_trial_comes_back,
     trials_are_listed_in_the_order_of_upload
 );
