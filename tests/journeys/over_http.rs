@@ -5,6 +5,7 @@ use reqwest::multipart::{Form, Part};
 use serde_json::{Value, json};
 use sistership_tests::binary;
 use sistership_tests::server::{TestServer, json as answer};
+use sistership_tests::shape;
 
 use super::sea_trials::{NAME, csv, manifest, ship, trials};
 
@@ -54,6 +55,20 @@ async fn journey(server: TestServer) {
     let report = done["result"]["report"].as_str().expect("a report");
     let page = server.request(Method::GET, &format!("/v1/reports/{report}?format=html")).send().await.expect("an answer");
     assert!(page.text().await.expect("a page").contains("<svg"), "the report has plots");
+    shapes(&[("job", &done), ("champion", &champion), ("report", &server.get(&format!("/v1/reports/{report}")).await)]);
+}
+
+/// What scripts depend on: the paths and types of the answers, held by snapshots (`INSTA_UPDATE=always` rewrites them).
+fn shapes(answers: &[(&str, &Value)]) {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("../snapshots");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| {
+        for (name, answer) in answers {
+            insta::assert_snapshot!(*name, shape::of(answer));
+        }
+    });
 }
 
 /// The refined model is better on manoeuvres left out.

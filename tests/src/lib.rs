@@ -3,4 +3,5 @@
 pub mod binary;
 pub mod esso_osaka;
 pub mod server;
+pub mod shape;
 pub mod shared;

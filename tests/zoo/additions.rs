@@ -67,6 +67,48 @@ models:
       values: { X_u: -184.0e-5, Y_v: -1160.0e-5, Y_r: -499.0e-5, N_v: -264.0e-5, N_r: -166.0e-5, Y_delta: 278.0e-5, N_delta: -139.0e-5, N_v|v|: -100.0e-5 }
 ";
 
+/// A ship on the general polynomial: powers, absolute values, sine and cosine of the rudder, terms that nobody listed.
+const POLYNOMIAL: &str = "
+kind: vessel
+name: polynomial-ship
+title: A vessel on the general polynomial
+category: dry-cargo
+sources: { test: { citation: made for this test } }
+particulars: { source: test, values: { lpp_m: 120.0, beam_m: 18.0, draught_m: 6.0, displacement_m3: 8000.0, yaw_gyradius_ratio: 0.25, x_g_m: 0.0 } }
+models:
+  - name: own
+    law: polynomial
+    status: published
+    speed_m_s: 7.0
+    revolutions_rps: 1.5
+    parameters: { source: test, values: { X_udot: -42.0e-5, Y_vdot: -748.0e-5, Y_rdot: 0.0, N_vdot: 0.0, N_rdot: -43.8e-5 } }
+    coefficients:
+      source: test
+      values:
+        X_uu: -0.0005
+        X_nn: \"0.0005*(7.0/(1.5*120.0))^2\"
+        X_cosdelta: -0.001
+        Y_uv: -0.0116
+        Y_v|v|: -0.05
+        Y_ur: -0.005
+        Y_sindelta: -0.0028
+        N_uv: -0.0026
+        N_ur: -0.0017
+        N_r|r|: -0.001
+        N_sindelta: 0.0014
+";
+
+#[test]
+fn the_general_polynomial_sails() {
+    let mut zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    zoo.add_vessel("polynomial-ship.yaml", POLYNOMIAL).unwrap_or_else(|error| panic!("{error}"));
+    let model = zoo.model("polynomial-ship").unwrap_or_else(|error| panic!("{error}"));
+    let ship = Ship::new(&model, zoo.law(&model.law).expect("in the zoo")).unwrap_or_else(|error| panic!("{error}"));
+    let sailed = turn(&ship, 20.0, &ManoeuvreSettings::default()).unwrap_or_else(|stopped| panic!("{stopped}"));
+    assert!(sailed.metrics.tactical_diameter_m.is_some_and(|m| m > 120.0 && m < 2000.0), "{:?}", sailed.metrics);
+    assert!(sailed.metrics.speed_loss_m_s > 0.0);
+}
+
 #[test]
 fn a_new_law_vessel_and_coefficient_set_are_files() {
     let mut zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
