@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use schemars::{JsonSchema, schema_for};
 use sistership_model::Model;
 use sistership_model::law::LawFile;
-use sistership_model::trial::Manifest;
+use sistership_model::manifest::Manifest;
 use sistership_model::vessel::VesselFile;
 
 fn check<T: JsonSchema>(name: &str) {

@@ -6,6 +6,7 @@ pub mod coefficient;
 mod error;
 pub mod formula;
 pub mod law;
+pub mod manifest;
 pub mod model;
 pub mod name;
 pub mod particulars;

@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 use crate::coefficient::CoefficientName;
 use crate::error::{Blame, FileError};
 use crate::law::Law;
+use crate::manifest::RudderSign;
 use crate::particulars::{self, Particulars};
 use crate::quantity::Quantity;
 use crate::source::Source;
-use crate::trial::RudderSign;
 use crate::vessel::{PublishedModelFile, Status, Steering, Vessel};
 
 /// A model document. Positive rudder turns the ship to starboard; parameters and coefficients are in the law's units.

@@ -6,11 +6,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Blame, FileError};
+use crate::manifest::RudderSign;
 use crate::name::check_slug;
 use crate::particulars::{self, Particulars};
 use crate::quantity::{Quantity, Section};
 use crate::source::Source;
-use crate::trial::RudderSign;
 
 /// A vessel as her file writes her; see `models/vessels/README.md`.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]

@@ -2,7 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use sistership_model::trial::{Channel, RudderSign, Trial, TrialConventions, VelocityFrame, WindDirection};
+use sistership_model::manifest::{RudderSign, TrialConventions, VelocityFrame, WindDirection};
+use sistership_model::trial::{Channel, Trial};
 
 use crate::findings::Findings;
 use crate::mapping::Mapping;

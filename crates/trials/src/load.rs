@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use sistership_model::FileError;
-use sistership_model::trial::{Finding, Manifest, Trial};
+use sistership_model::manifest::Manifest;
+use sistership_model::trial::{Finding, Trial};
 
 use crate::manifest::read_manifest;
 use crate::mapping::Mapping;

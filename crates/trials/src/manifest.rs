@@ -3,7 +3,7 @@
 use std::path::{Component, Path};
 
 use sistership_model::FileError;
-use sistership_model::trial::Manifest;
+use sistership_model::manifest::Manifest;
 
 use crate::resolve::channel_names;
 use crate::smoothing;

@@ -1,6 +1,6 @@
 //! What is known of a file before it is opened.
 
-use sistership_model::trial::{ColumnMapping, Manifest, ManifestTrial, TrialConventions};
+use sistership_model::manifest::{ColumnMapping, Manifest, ManifestTrial, TrialConventions};
 
 use crate::limits::Limits;
 

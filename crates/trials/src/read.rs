@@ -57,7 +57,8 @@ fn record(source: Source, mapping: &Mapping, findings: &mut Findings) -> Recordi
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use sistership_model::trial::{Channel, Smoothing};
+    use sistership_model::manifest::Smoothing;
+    use sistership_model::trial::Channel;
 
     fn csv(text: &str, mapping: &Mapping) -> Result<Trial, Refusal> {
         read_trial(Source::csv("a.csv", text.as_bytes()), mapping)

@@ -1,6 +1,7 @@
 //! From a file's headers to the columns that are read.
 
-use sistership_model::trial::{Channel, WindKind};
+use sistership_model::manifest::WindKind;
+use sistership_model::trial::Channel;
 
 use crate::findings::Findings;
 use crate::mapping::Mapping;

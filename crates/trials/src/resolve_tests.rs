@@ -1,5 +1,5 @@
 #![allow(clippy::unwrap_used)]
-use sistership_model::trial::ColumnMapping;
+use sistership_model::manifest::ColumnMapping;
 
 use super::*;
 

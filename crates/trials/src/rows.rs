@@ -1,6 +1,6 @@
 //! Rows of a file on their way into a table: kept, dropped or refused.
 
-use sistership_model::trial::Missing;
+use sistership_model::manifest::Missing;
 
 use crate::findings::Findings;
 use crate::table::{Column, Fault, Table};

@@ -19,7 +19,8 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use serde::{Deserialize, Serialize};
-use sistership_model::trial::{Channel, Finding, Trial, VelocityFrame};
+use sistership_model::manifest::VelocityFrame;
+use sistership_model::trial::{Channel, Finding, Trial};
 
 use crate::limits::Limits;
 use crate::parquet_file;

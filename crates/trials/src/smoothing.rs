@@ -4,7 +4,8 @@
 //! last window, as SciPy's `savgol_filter` does with `mode="interp"`.
 
 use nalgebra::DMatrix;
-use sistership_model::trial::{Channel, Smoothing};
+use sistership_model::manifest::Smoothing;
+use sistership_model::trial::Channel;
 
 use crate::findings::Findings;
 use crate::recording::Recording;

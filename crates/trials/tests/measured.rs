@@ -6,7 +6,8 @@
 
 use std::path::{Path, PathBuf};
 
-use sistership_model::trial::{Channel, Manifest, Trial};
+use sistership_model::manifest::Manifest;
+use sistership_model::trial::{Channel, Trial};
 use sistership_trials::samples::{from_parquet, to_parquet};
 use sistership_trials::{Mapping, Refusal, Source, check, load_path, read_manifest, read_trial};
 
@@ -94,7 +95,7 @@ fn missing_values_are_refused_unless_they_may_be_dropped() {
     let dropped = read(&file, &mapping).unwrap();
     assert_eq!(dropped.len(), 1701);
     assert!(dropped.warnings.iter().any(|warning| warning.message.starts_with("rows 1703 to 2029 left out")));
-    mapping.conventions.missing = sistership_model::trial::Missing::Refuse;
+    mapping.conventions.missing = sistership_model::manifest::Missing::Refuse;
     let refusal = read(&file, &mapping).unwrap_err();
     assert_eq!((refusal.findings[0].row, refusal.findings[0].column.as_deref()), (Some(1703), Some("t [s]")));
 }
@@ -121,7 +122,7 @@ fn broken_conventions_are_found_in_most_real_files() {
     for file in csv_files(&folder).into_iter().filter(|file| !file.to_string_lossy().contains("berthing")) {
         let esso = file.to_string_lossy().contains("esso-osaka");
         let mut mapping = if esso { esso_osaka() } else { Mapping::canonical() };
-        mapping.conventions.rudder_positive = sistership_model::trial::RudderSign::PortTurn;
+        mapping.conventions.rudder_positive = sistership_model::manifest::RudderSign::PortTurn;
         let says = |mapping: &Mapping, what: &str| {
             let outcome = check(Source::open("a", &file).unwrap(), mapping);
             let said = outcome.errors.iter().any(|error| error.message.contains(what));

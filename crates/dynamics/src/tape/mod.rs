@@ -5,30 +5,11 @@
 
 mod eval;
 mod lower;
-
-use sistership_model::formula::{Comparison, Function};
+mod op;
 
 pub use eval::Lanes;
 pub use lower::{Binding, TapeBuilder};
-
-/// Index of an operation's result.
-pub(crate) type Slot = u32;
-
-/// One operation on earlier results.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Op {
-    Constant(f64),
-    Input(u32),
-    Negate(Slot),
-    Add(Slot, Slot),
-    Subtract(Slot, Slot),
-    Multiply(Slot, Slot),
-    Divide(Slot, Slot),
-    Power(Slot, Slot),
-    Call1(Function, Slot),
-    Call2(Function, Slot, Slot),
-    Select(Comparison, Slot, Slot, Slot, Slot),
-}
+pub(crate) use op::{Op, Slot};
 
 /// A list of operations with named inputs and numbered outputs.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! From files that have arrived to trials that are kept.
 
 use bytes::Bytes;
-use sistership_model::trial::{Manifest, ManifestTrial};
+use sistership_model::manifest::{Manifest, ManifestTrial};
 use sistership_store::{Inserted, NewTrial, Objects, Store, StoreError, Trial};
 use sistership_trials::{Mapping, Refusal, Source, read_trial, samples};
 

@@ -7,7 +7,7 @@ mod spool;
 
 use axum::extract::{FromRequest, Request};
 use axum::http::StatusCode;
-use sistership_model::trial::{Manifest, ManifestTrial, TrialConventions, TrialsKind};
+use sistership_model::manifest::{Manifest, ManifestTrial, TrialConventions, TrialsKind};
 use sistership_trials::{CheckOutcome, Mapping, Refusal, Source, check};
 
 pub(crate) use keep::{Kept, keep};

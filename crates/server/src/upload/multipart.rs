@@ -3,7 +3,7 @@
 use axum::extract::multipart::{Field, Multipart, MultipartError};
 use axum::extract::{FromRequest as _, Request};
 use axum::http::StatusCode;
-use sistership_model::trial::{Manifest, ManifestTrial};
+use sistership_model::manifest::{Manifest, ManifestTrial};
 use sistership_trials::read_manifest;
 
 use super::spool::{Spooled, spool};

@@ -5,7 +5,7 @@ use axum::extract::{Query, Request};
 use axum::http::StatusCode;
 use futures::TryStreamExt as _;
 use serde::Deserialize;
-use sistership_model::trial::ManifestTrial;
+use sistership_model::manifest::ManifestTrial;
 use utoipa::IntoParams;
 
 use super::spool::spool;

@@ -1,6 +1,7 @@
 //! The positions move as the ship-fixed velocities, turned by the heading, say.
 
-use sistership_model::trial::{Channel, VelocityFrame};
+use sistership_model::manifest::VelocityFrame;
+use sistership_model::trial::Channel;
 
 use crate::findings::Findings;
 use crate::recording::Recording;

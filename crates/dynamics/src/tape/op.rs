@@ -1,0 +1,97 @@
+//! One operation of the tape.
+
+use sistership_model::formula::{Comparison, Function};
+
+/// Index of an operation's result.
+pub(crate) type Slot = u32;
+
+/// One operation on earlier results.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Op {
+    Constant(f64),
+    Input(u32),
+    Negate(Slot),
+    Add(Slot, Slot),
+    Subtract(Slot, Slot),
+    Multiply(Slot, Slot),
+    Divide(Slot, Slot),
+    Power(Slot, Slot),
+    Call1(Function, Slot),
+    Call2(Function, Slot, Slot),
+    Select(Comparison, Slot, Slot, Slot, Slot),
+}
+
+impl Op {
+    /// The results it needs.
+    pub(crate) fn operands(&self) -> [Option<Slot>; 4] {
+        match *self {
+            Self::Constant(_) | Self::Input(_) => [None; 4],
+            Self::Negate(a) | Self::Call1(_, a) => [Some(a), None, None, None],
+            Self::Add(a, b) | Self::Subtract(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => [Some(a), Some(b), None, None],
+            Self::Power(a, b) | Self::Call2(_, a, b) => [Some(a), Some(b), None, None],
+            Self::Select(_, a, b, c, d) => [Some(a), Some(b), Some(c), Some(d)],
+        }
+    }
+
+    /// The same operation with its operands elsewhere.
+    pub(crate) fn moved(self, to: &dyn Fn(Slot) -> Slot) -> Self {
+        match self {
+            Self::Constant(_) | Self::Input(_) => self,
+            Self::Negate(a) => Self::Negate(to(a)),
+            Self::Add(a, b) => Self::Add(to(a), to(b)),
+            Self::Subtract(a, b) => Self::Subtract(to(a), to(b)),
+            Self::Multiply(a, b) => Self::Multiply(to(a), to(b)),
+            Self::Divide(a, b) => Self::Divide(to(a), to(b)),
+            Self::Power(a, b) => Self::Power(to(a), to(b)),
+            Self::Call1(function, a) => Self::Call1(function, to(a)),
+            Self::Call2(function, a, b) => Self::Call2(function, to(a), to(b)),
+            Self::Select(comparison, a, b, c, d) => Self::Select(comparison, to(a), to(b), to(c), to(d)),
+        }
+    }
+
+    /// The value for given operands.
+    pub(crate) fn apply(&self, [a, b, c, d]: [f64; 4]) -> f64 {
+        match *self {
+            Self::Constant(value) => value,
+            Self::Input(_) => f64::NAN,
+            Self::Negate(_) => -a,
+            Self::Add(..) => a + b,
+            Self::Subtract(..) => a - b,
+            Self::Multiply(..) => a * b,
+            Self::Divide(..) => a / b,
+            Self::Power(..) => a.powf(b),
+            Self::Call1(function, _) | Self::Call2(function, ..) => function.apply(a, b),
+            Self::Select(comparison, ..) => {
+                if comparison.holds(a, b) {
+                    c
+                } else {
+                    d
+                }
+            }
+        }
+    }
+
+    /// Equal operations have equal keys; sums and products also with their operands exchanged.
+    pub(crate) fn key(&self) -> [u64; 6] {
+        let slots = self.operands().map(|slot| slot.map_or(u64::MAX, u64::from));
+        let ordered = |mut pair: [u64; 2]| {
+            pair.sort_unstable();
+            pair
+        };
+        let [a, b, c, d] = slots;
+        let [low, high] = ordered([a, b]);
+        match *self {
+            Self::Constant(value) => [0, value.to_bits(), 0, 0, 0, 0],
+            Self::Input(index) => [1, u64::from(index), 0, 0, 0, 0],
+            Self::Negate(_) => [2, a, 0, 0, 0, 0],
+            Self::Add(..) => [3, low, high, 0, 0, 0],
+            Self::Subtract(..) => [4, a, b, 0, 0, 0],
+            Self::Multiply(..) => [5, low, high, 0, 0, 0],
+            Self::Divide(..) => [6, a, b, 0, 0, 0],
+            Self::Power(..) => [7, a, b, 0, 0, 0],
+            Self::Call1(function, _) => [8, function as u64, a, 0, 0, 0],
+            Self::Call2(function, ..) => [9, function as u64, a, b, 0, 0],
+            Self::Select(comparison, ..) => [10, comparison as u64, a, b, c, d],
+        }
+    }
+}

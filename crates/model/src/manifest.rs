@@ -1,0 +1,150 @@
+//! The manifest that maps a file to trials: columns, units, signs and frames.
+
+use std::collections::BTreeMap;
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A trial manifest: which columns of which files are which channels, in which units and signs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// Always `trials`.
+    pub kind: TrialsKind,
+    /// The ship that was tried.
+    pub ship: String,
+    /// Signs and frames of the files.
+    #[serde(default)]
+    pub conventions: TrialConventions,
+    /// Channel (`t`, `x`, `psi`, ...) to column; canonical column names need no mapping.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, ColumnMapping>")]
+    pub columns: IndexMap<String, ColumnMapping>,
+    /// The files, relative to the manifest.
+    pub trials: Vec<ManifestTrial>,
+}
+
+/// The word `trials`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum TrialsKind {
+    /// The only one.
+    Trials,
+}
+
+/// Where a channel stands in a file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ColumnMapping {
+    /// The column's header.
+    pub column: String,
+    /// Its unit.
+    pub unit: String,
+}
+
+/// One file of a manifest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ManifestTrial {
+    /// Path, relative to the manifest.
+    pub file: String,
+    /// What was sailed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manoeuvre: Option<String>,
+    /// Water depth, m; absent for deep water.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub depth_m: Option<f64>,
+}
+
+/// Signs and frames of a file; the defaults are the canonical ones.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct TrialConventions {
+    /// Which way positive rudder turns the ship.
+    pub rudder_positive: RudderSign,
+    /// What `u` and `v` are speeds over or through.
+    pub velocity: VelocityFrame,
+    /// How wind is given.
+    pub wind: WindConvention,
+    /// What to do with rows in which a mapped value is missing or not a number.
+    pub missing: Missing,
+    /// Smooth the recorded channels at the door.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothing: Option<Smoothing>,
+}
+
+/// Which way positive rudder turns the ship.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RudderSign {
+    /// To starboard: the canonical sign.
+    #[default]
+    StarboardTurn,
+    /// To port.
+    PortTurn,
+}
+
+/// What `u` and `v` are components of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum VelocityFrame {
+    /// Ship-fixed components of the speed over the ground.
+    #[default]
+    Ground,
+    /// Ship-fixed components of the speed through the water.
+    Water,
+}
+
+/// How wind is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct WindConvention {
+    /// True or apparent.
+    pub kind: WindKind,
+    /// Where it comes from or goes to.
+    pub direction: WindDirection,
+}
+
+/// True or apparent wind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum WindKind {
+    /// Over the ground, clockwise from north.
+    #[default]
+    True,
+    /// As felt aboard, clockwise from the bow.
+    Apparent,
+}
+
+/// What a wind direction points at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum WindDirection {
+    /// Where the wind comes from.
+    #[default]
+    From,
+    /// Where it blows to.
+    To,
+}
+
+/// What to do with rows in which a value is missing or not a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Missing {
+    /// Refuse the file and name the row.
+    #[default]
+    Refuse,
+    /// Leave the row out; the gap is kept as a warning and nothing is interpolated over it.
+    Drop,
+}
+
+/// Savitzky-Golay smoothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Smoothing {
+    /// Odd number of samples in the window.
+    pub window: usize,
+    /// Degree of the polynomial, less than the window.
+    pub degree: usize,
+}
