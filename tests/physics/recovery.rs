@@ -2,7 +2,7 @@
 
 use rand::{RngExt, SeedableRng};
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_dynamics::state::at;
+use sistership_dynamics::state::{RECORDED, at};
 use sistership_dynamics::{Method, Trajectory};
 use sistership_identify::refine::{Range, Request, Settings, refine};
 use sistership_model::trial::{Channel, Trial};
@@ -11,17 +11,9 @@ use sistership_model::{Model, Zoo};
 use super::{model, ready};
 
 fn trial(name: &str, track: &Trajectory) -> Trial {
-    let columns = [
-        (Channel::U, at::U),
-        (Channel::V, at::V),
-        (Channel::R, at::R),
-        (Channel::Psi, at::PSI),
-        (Channel::X, at::X),
-        (Channel::Y, at::Y),
-        (Channel::Delta, at::DELTA),
-    ];
+    let columns = RECORDED[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
     let mut channels: std::collections::BTreeMap<_, _> =
-        columns.into_iter().map(|(channel, index)| (channel, track.column(index))).collect();
+        columns.map(|&(channel, index)| (channel, track.column(index))).collect();
     channels.insert(Channel::N, track.n_rps.clone());
     Trial { name: name.into(), t_s: track.t_s.clone(), channels, ..Trial::default() }
 }

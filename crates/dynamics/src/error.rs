@@ -5,19 +5,7 @@ use std::collections::BTreeMap;
 use sistership_model::trial::{Channel, Trial};
 
 use crate::recorded::Replay;
-use crate::state::at;
-
-/// The channels that are compared, with their place in the state.
-pub const COMPARED: [(Channel, usize); 8] = [
-    (Channel::U, at::U),
-    (Channel::V, at::V),
-    (Channel::R, at::R),
-    (Channel::Psi, at::PSI),
-    (Channel::X, at::X),
-    (Channel::Y, at::Y),
-    (Channel::Phi, at::PHI),
-    (Channel::P, at::P),
-];
+use crate::state::RECORDED;
 
 /// Sums of squared differences by channel, which add over trials.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -29,7 +17,7 @@ impl SquaredError {
     /// The differences of one simulated trial; the heading's is wrapped to half a turn. Roll counts for ships that roll.
     pub fn of(trial: &Trial, replay: &Replay) -> Self {
         let mut error = Self::default();
-        let compared = COMPARED.iter().filter(|(channel, _)| replay.has_roll || !matches!(channel, Channel::Phi | Channel::P));
+        let compared = RECORDED.iter().filter(|(channel, _)| replay.has_roll || !matches!(channel, Channel::Phi | Channel::P));
         for &(channel, index) in compared {
             let Some(measured) = trial.channel(channel) else { continue };
             let square = |(state, &k): (&crate::StateVector, &usize)| difference(channel, state[index], measured[k]).powi(2);
@@ -79,7 +67,7 @@ pub fn standard_deviations(trials: &[&Trial]) -> BTreeMap<Channel, f64> {
         let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64;
         (!values.is_empty()).then(|| variance.sqrt())
     };
-    COMPARED.iter().filter_map(|&(channel, _)| Some((channel, of(channel)?))).collect()
+    RECORDED.iter().filter_map(|&(channel, _)| Some((channel, of(channel)?))).collect()
 }
 
 /// The standardised mean squared error of Wakita et al. 2022, Eq. 26: the mean over samples of the squared differences
@@ -89,5 +77,5 @@ pub fn standardised_mse(error: &SquaredError, deviations: &BTreeMap<Channel, f64
         let (rmse, deviation) = (error.channel_rmse(channel)?, deviations.get(&channel)?);
         (*deviation > 0.0).then(|| (rmse / deviation).powi(2))
     };
-    COMPARED[..6].iter().filter_map(term).sum()
+    RECORDED[..6].iter().filter_map(term).sum()
 }

@@ -7,7 +7,7 @@ use crate::integrate::Method;
 use crate::interpolate::MonotoneCubic;
 use crate::plant::{Inputs, MAX_INPUTS, Work};
 use crate::ship::Ship;
-use crate::state::{StateVector, Trajectory, at};
+use crate::state::{RECORDED, StateVector, Trajectory, at};
 
 /// How a trial is simulated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,25 +93,14 @@ struct Record<'a> {
     start: Vec<(usize, &'a [f64])>,
 }
 
-/// Channels that give the state at the start of a part; the first three are needed.
-const START: [(Channel, usize); 8] = [
-    (Channel::U, at::U),
-    (Channel::V, at::V),
-    (Channel::R, at::R),
-    (Channel::Psi, at::PSI),
-    (Channel::X, at::X),
-    (Channel::Y, at::Y),
-    (Channel::Phi, at::PHI),
-    (Channel::P, at::P),
-];
-
 impl<'a> Record<'a> {
     fn new(ship: &Ship, trial: &'a Trial) -> Result<Self, MissingChannel> {
         let need = |channel| trial.channel(channel).ok_or_else(|| MissingChannel { trial: trial.name.clone(), channel });
-        for (channel, _) in &START[..3] {
+        // Velocities must be known at the start of a part; heading and position start at zero where they are not.
+        for (channel, _) in &RECORDED[..3] {
             need(*channel)?;
         }
-        let start = START.iter().filter_map(|&(channel, index)| Some((index, trial.channel(channel)?))).collect();
+        let start = RECORDED.iter().filter_map(|&(channel, index)| Some((index, trial.channel(channel)?))).collect();
         let inputs = ship.law_inputs().map(|(name, default)| input(trial, name, default)).collect::<Result<_, _>>()?;
         Ok(Self { trial, delta: need(Channel::Delta)?, n: trial.channel(Channel::N), inputs, start })
     }

@@ -1,6 +1,7 @@
 //! The state of a ship in motion.
 
 use nalgebra::SVector;
+use sistership_model::trial::Channel;
 
 /// The state vector: `u, v, r, p, phi, psi, x, y, delta` in SI and radians; `delta` is the actual rudder angle.
 pub type StateVector = SVector<f64, 9>;
@@ -26,6 +27,18 @@ pub mod at {
     /// Rudder angle, rad.
     pub const DELTA: usize = 8;
 }
+
+/// The channels of a trial that record the state, with their places in it: velocities, heading, position, then roll.
+pub const RECORDED: [(Channel, usize); 8] = [
+    (Channel::U, at::U),
+    (Channel::V, at::V),
+    (Channel::R, at::R),
+    (Channel::Psi, at::PSI),
+    (Channel::X, at::X),
+    (Channel::Y, at::Y),
+    (Channel::Phi, at::PHI),
+    (Channel::P, at::P),
+];
 
 /// Speed over the water, m/s.
 pub fn speed(state: &StateVector) -> f64 {

@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use sistership_dynamics::error::COMPARED;
-use sistership_dynamics::state::{StateVector, at, straight};
+use sistership_dynamics::state::{RECORDED, StateVector, at, straight};
 use sistership_dynamics::{Method, Order, Run, Ship, Trajectory};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Zoo};
@@ -73,6 +72,6 @@ impl Truth {
 /// A part of a track as a trial without measurement errors.
 pub fn recorded(track: &Trajectory, samples: Range<usize>) -> Trial {
     let column = |(channel, index): (Channel, usize)| (channel, track.column(index)[samples.clone()].to_vec());
-    let channels = COMPARED.into_iter().chain([(Channel::Delta, at::DELTA)]).map(column).collect();
+    let channels = RECORDED.into_iter().chain([(Channel::Delta, at::DELTA)]).map(column).collect();
     Trial { t_s: track.t_s[samples.clone()].to_vec(), channels, ..Trial::default() }
 }

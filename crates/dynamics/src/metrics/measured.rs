@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use sistership_model::trial::{Channel, Trial};
 
 use super::{TurningMetrics, ZigzagMetrics};
-use crate::state::{StateVector, Trajectory, at};
+use crate::state::{RECORDED, StateVector, Trajectory};
 
 /// The figures of one manoeuvre.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -67,14 +67,7 @@ impl Recognised {
 
 /// A trial as a track; `None` where velocities, heading or position were not recorded.
 pub fn recorded_track(trial: &Trial) -> Option<Trajectory> {
-    let needed = [
-        (Channel::U, at::U),
-        (Channel::V, at::V),
-        (Channel::R, at::R),
-        (Channel::Psi, at::PSI),
-        (Channel::X, at::X),
-        (Channel::Y, at::Y),
-    ];
+    let needed = &RECORDED[..6];
     let columns: Vec<(usize, &[f64])> =
         needed.iter().filter_map(|&(channel, index)| Some((index, trial.channel(channel)?))).collect();
     if columns.len() < needed.len() {

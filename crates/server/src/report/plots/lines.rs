@@ -15,7 +15,7 @@ pub(super) struct Line<T> {
 
 /// Where a channel stands in the state.
 fn place(channel: Channel) -> Option<usize> {
-    sistership_dynamics::error::COMPARED.into_iter().find(|(known, _)| *known == channel).map(|(_, place)| place)
+    sistership_dynamics::state::RECORDED.into_iter().find(|(known, _)| *known == channel).map(|(_, place)| place)
 }
 
 /// A channel over the samples, measured first, then the source, then the refined model.
