@@ -39,7 +39,8 @@ fn of_manoeuvre(manoeuvre: &MeasuredManoeuvre) -> Vec<Sailed> {
         source: value(&source, index),
         refined: value(&refined, index),
     };
-    let known = |sailed: &Sailed| sailed.measured.is_some();
+    // With the recorded rudder both models have the period of the record.
+    let known = |sailed: &Sailed| sailed.measured.is_some() && sailed.figure != "period";
     measured.iter().enumerate().map(one).filter(known).collect()
 }
 
