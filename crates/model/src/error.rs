@@ -54,15 +54,9 @@ impl<'a> Blame<'a> {
     fn line_of(&self, field: &str) -> Option<usize> {
         let mut found = None;
         for key in field.split('.') {
-            let start = found.map_or(0, |line: usize| line);
-            let names_key = |line: &str| key_position(line, key);
-            match self
-                .text
-                .lines()
-                .enumerate()
-                .skip(start.saturating_sub(usize::from(start > 0)))
-                .find(|(_, line)| names_key(line))
-            {
+            // A key may stand on the line of the one before, in braces.
+            let start = found.map_or(0, |line: usize| line - 1);
+            match self.text.lines().enumerate().skip(start).find(|(_, line)| names_key(line, key)) {
                 Some((index, _)) => found = Some(index + 1),
                 None => break,
             }
@@ -72,7 +66,7 @@ impl<'a> Blame<'a> {
 }
 
 /// Whether the line has `key:` as a whole word (quoted or not), or lists it as `- key` or in brackets.
-fn key_position(line: &str, key: &str) -> bool {
+fn names_key(line: &str, key: &str) -> bool {
     line.match_indices(key).any(|(at, _)| {
         let before = line[..at].chars().next_back();
         let after = line[at + key.len()..].chars().next();

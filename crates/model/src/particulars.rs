@@ -101,19 +101,16 @@ pub fn value(particulars: &Particulars, name: &str) -> Option<f64> {
 fn derived(name: &str, stated: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
     let density = stated("water_density_kg_m3").unwrap_or(DEFAULTS[0].1);
     let box_volume = || Some(stated("lpp_m")? * stated("beam_m")? * stated("draught_m")?);
+    let from_block = || Some(stated("block_coefficient")? * box_volume()?);
     let volume = || stated("displacement_m3").or_else(|| Some(stated("mass_kg")? / density));
     match name {
-        "displacement_m3" => volume().or_else(|| Some(stated("block_coefficient")? * box_volume()?)),
+        "displacement_m3" => volume().or_else(from_block),
         "block_coefficient" => Some(volume()? / box_volume()?),
-        "mass_kg" => Some(value_or(stated, "displacement_m3", box_volume)? * density),
+        "mass_kg" => Some(stated("displacement_m3").or_else(from_block)? * density),
         "rudder_height_m" => Some((stated("rudder_area_m2")? * stated("rudder_aspect_ratio")?).sqrt()),
         "rudder_aspect_ratio" => Some(stated("rudder_height_m")?.powi(2) / stated("rudder_area_m2")?),
         _ => None,
     }
-}
-
-fn value_or(stated: &dyn Fn(&str) -> Option<f64>, name: &str, box_volume: impl Fn() -> Option<f64>) -> Option<f64> {
-    stated(name).or_else(|| Some(stated("block_coefficient")? * box_volume()?))
 }
 
 #[cfg(test)]

@@ -99,11 +99,6 @@ impl Channel {
     pub fn by_column(column: &str) -> Option<Self> {
         CHANNELS.iter().find(|(_, _, known, _)| *known == column).map(|&(channel, ..)| channel)
     }
-
-    /// Whether the channel is an angle that wraps.
-    pub fn is_angle(self) -> bool {
-        matches!(self, Self::Psi | Self::Phi | Self::Delta | Self::WindFrom | Self::ApparentWindFrom)
-    }
 }
 
 impl fmt::Display for Channel {

@@ -36,11 +36,20 @@ fn set_depth(ship: &mut Ship, model: &Model, law: &Law, depth_m: f64) -> Result<
     if !knows_depth(law) {
         return Err(Failure::Refused(format!("law `{}` does not know water depth: it sails in deep water only", law.name)));
     }
+    check_floats(model, depth_m)?;
+    ship.set_depth(depth_m);
+    Ok(())
+}
+
+/// The ship floats in water of a depth.
+///
+/// # Errors
+/// The water is too shallow for her.
+fn check_floats(model: &Model, depth_m: f64) -> Result<(), Failure> {
     let draught_m = particulars::value(&model.particulars, "draught_m").unwrap_or(0.0);
     if depth_m <= draught_m {
         return Err(Failure::Refused(format!("{depth_m} m of water do not float {}, who draws {draught_m} m", model.ship)));
     }
-    ship.set_depth(depth_m);
     Ok(())
 }
 

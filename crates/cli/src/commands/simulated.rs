@@ -65,13 +65,13 @@ impl Simulator<'_> {
         Ok((self.errors(&read.file, &read.trial, &run), run))
     }
 
-    /// The ship in the water of a trial, with a range that covers its speeds.
+    /// The ship with a range that covers the speeds of a trial; its water depth is an input that the replay reads.
     fn ship(&self, trial: &Trial) -> Result<Ship, Failure> {
         let mut ship = commands::ready(self.model, self.law)?;
         let speeds = trial.channel(Channel::U).into_iter().flatten();
         ship.set_envelope_speed(speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs())));
         match trial.depth_m.or_else(|| mean(trial.channel(Channel::Depth)?)) {
-            Some(depth_m) if commands::knows_depth(self.law) => commands::set_depth(&mut ship, self.model, self.law, depth_m)?,
+            Some(depth_m) if commands::knows_depth(self.law) => commands::check_floats(self.model, depth_m)?,
             Some(depth_m) => {
                 let law = &self.law.name;
                 note(&format!("warning: {}: sailed in {depth_m} m of water; law `{law}` knows deep water only", trial.name));

@@ -25,11 +25,6 @@ impl Tape {
         &self.inputs
     }
 
-    /// How many outputs it has.
-    pub fn output_count(&self) -> usize {
-        self.outputs.len()
-    }
-
     /// How many operations it takes.
     pub fn len(&self) -> usize {
         self.ops.len()
