@@ -1,8 +1,9 @@
-//! A new law, a new vessel and a new coefficient set at run time: files, and no Rust.
+//! A new law, a new vessel, a new coefficient set and a new effect at run time: files, and no Rust.
 
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn};
 use sistership_model::Zoo;
+use sistership_model::trial::Channel;
 
 /// Nomoto's first-order law with a quadratic resistance: nothing the program knows.
 const LAW: &str = "
@@ -125,4 +126,33 @@ fn a_new_law_vessel_and_coefficient_set_are_files() {
     assert!((rate("barge/slow") - 0.03 * 20_f64.to_radians()).abs() < 1e-4);
     assert!((rate("barge/quick") - 0.06 * 20_f64.to_radians()).abs() < 1e-4);
     assert!(rate("little-sister") > 0.0, "positive rudder turns to starboard whatever the source counts");
+}
+
+/// The last file that the README of the effects shows.
+fn effect_of_the_readme() -> &'static str {
+    let readme = include_str!("../../models/effects/README.md");
+    let example = readme.rsplit("```yaml\n").next().expect("an example");
+    example.split("```").next().expect("its end")
+}
+
+#[test]
+fn the_effect_that_the_readme_shows_reads() {
+    let mut zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    assert!(zoo.effect("compass-offset").is_none(), "the example is not in the library");
+    let text = effect_of_the_readme();
+    let added = zoo.add_effect("compass-offset.yaml", text).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(zoo.effect("compass-offset"), Some(&added));
+    assert!(added.forms[0].measures.contains_key(&Channel::Psi));
+    let wrong = text.replace("psi + offset_rad", "psi + offset_rad*u");
+    let refused = zoo.add_effect("compass-offset.yaml", &wrong).expect_err("a heading has no speed").to_string();
+    assert!(refused.starts_with("compass-offset.yaml:19: forms.constant.measures.psi"), "{refused}");
+}
+
+#[test]
+fn the_file_that_the_readme_explains_reads() {
+    let readme = include_str!("../../models/effects/README.md");
+    let text = readme.split("```").nth(1).expect("an example").trim_start_matches("yaml");
+    let mut zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let added = zoo.add_effect("my-effect.yaml", text).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(added.forms[0].parameters["share"].start, 0.05);
 }

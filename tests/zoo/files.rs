@@ -3,6 +3,7 @@
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, standard};
 use sistership_model::Zoo;
+use sistership_model::effect::Form;
 use sistership_model::vessel::Status;
 
 fn zoo() -> Zoo {
@@ -49,4 +50,62 @@ fn coefficients_of_prime_laws_have_no_dimension() {
             }
         }
     }
+}
+
+#[test]
+fn every_effect_reads_and_has_a_source() {
+    let zoo = zoo();
+    let names: Vec<&str> = zoo.effects().map(|effect| effect.name.as_str()).collect();
+    assert_eq!(names.len(), 15, "{names:?}");
+    for effect in zoo.effects() {
+        assert!(!effect.sources.is_empty(), "{} has no source", effect.name);
+        assert!(effect.sources.values().all(|source| !source.citation.is_empty()), "{}", effect.name);
+        assert!(zoo.effect_text(&effect.name).is_some_and(|text| text.contains("kind: effect")));
+    }
+}
+
+#[test]
+fn a_form_means_the_same_wherever_it_is_read() {
+    for effect in zoo().effects() {
+        for form in &effect.forms {
+            let again = Form::read(effect.acts_on, &form.file).unwrap_or_else(|(field, message)| panic!("{field}: {message}"));
+            assert_eq!(&again, form.as_ref(), "{}", effect.name);
+        }
+    }
+}
+
+#[test]
+fn coefficients_that_shallow_water_scales_are_spelled_right() {
+    let zoo = zoo();
+    let form = &zoo.effect("shallow-water").expect("in the zoo").forms[0];
+    let mmg = zoo.law("mmg").expect("in the zoo");
+    for name in form.coefficients.keys() {
+        assert!(mmg.term(name).is_ok(), "{name}");
+    }
+    let of = |name: &str, depth: f64| {
+        let lookup = |n: &str| particular(n).or((n == "draught_to_depth").then_some(depth));
+        let nested = |n: &str| resolve(form, n, &lookup);
+        form.coefficients[name].value(&nested).expect("every name is known")
+    };
+    for name in form.coefficients.keys() {
+        let factors: Vec<f64> = [0.0, 0.2, 0.4, 0.6, 0.8].into_iter().map(|depth| of(name, depth)).collect();
+        // The effective aspect ratio as published dips a little before it grows.
+        assert!(factors.iter().all(|factor| (0.85..8.0).contains(factor)), "{name}: {factors:?}");
+        assert!(factors[4] > 1.0 && (factors[0] - 1.0).abs() < 1e-9, "{name}: {factors:?}");
+    }
+}
+
+fn resolve(form: &Form, name: &str, known: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
+    known(name).or_else(|| form.values.get(name)?.value(&|n| resolve(form, n, known)))
+}
+
+fn particular(name: &str) -> Option<f64> {
+    // KVLCC2
+    Some(match name {
+        "lpp_m" => 320.0,
+        "beam_m" => 58.0,
+        "draught_m" => 20.8,
+        "block_coefficient" => 0.81,
+        _ => return None,
+    })
 }

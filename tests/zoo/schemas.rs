@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use schemars::{JsonSchema, schema_for};
 use sistership_model::Model;
+use sistership_model::effect::EffectFile;
 use sistership_model::law::LawFile;
 use sistership_model::manifest::Manifest;
 use sistership_model::vessel::VesselFile;
@@ -21,6 +22,7 @@ fn check<T: JsonSchema>(name: &str) {
 #[test]
 fn schemas_are_those_of_the_types() {
     check::<LawFile>("law");
+    check::<EffectFile>("effect");
     check::<VesselFile>("vessel");
     check::<Model>("model");
     check::<Manifest>("trials");

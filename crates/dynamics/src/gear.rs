@@ -20,6 +20,11 @@ impl Gear {
         }
     }
 
+    /// The same gear with a further lag, s.
+    pub fn with_lag(self, lag_s: f64) -> Self {
+        Self { time_constant_s: self.time_constant_s + lag_s, ..self }
+    }
+
     /// The rudder rate, rad/s. A gear without a time constant would chatter about its order: within what it covers in
     /// one step of `step_s` it goes straight there.
     pub fn rate(&self, order_rad: f64, angle_rad: f64, step_s: f64) -> f64 {

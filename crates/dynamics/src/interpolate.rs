@@ -4,17 +4,20 @@
 //! second is a metre of track. Noise is not amplified, since the cubic has no overshoot (Fritsch and Carlson 1980, SIAM
 //! J Numer Anal 17, 238-246, with the harmonic mean of Fritsch and Butland 1984).
 
+use std::borrow::Cow;
+
 /// A monotone cubic through samples.
 #[derive(Debug, Clone)]
 pub struct MonotoneCubic<'a> {
     t: &'a [f64],
-    values: &'a [f64],
+    values: Cow<'a, [f64]>,
     slopes: Vec<f64>,
 }
 
 impl<'a> MonotoneCubic<'a> {
     /// Through values at increasing times.
-    pub fn new(t: &'a [f64], values: &'a [f64]) -> Self {
+    pub fn new(t: &'a [f64], values: impl Into<Cow<'a, [f64]>>) -> Self {
+        let values = values.into();
         let secant = |k: usize| (values[k + 1] - values[k]) / (t[k + 1] - t[k]);
         let inner = |k: usize| {
             let (before, after) = (secant(k - 1), secant(k));
@@ -27,7 +30,13 @@ impl<'a> MonotoneCubic<'a> {
             k if k + 1 == n => secant(n - 2),
             k => inner(k),
         };
-        Self { t, values, slopes: (0..n).map(slope).collect() }
+        let slopes = (0..n).map(slope).collect();
+        Self { t, values, slopes }
+    }
+
+    /// The value at a fraction `w` of the way from sample `k` to the next; at the last sample, its own.
+    pub fn at(&self, k: usize, w: f64) -> f64 {
+        if k + 1 < self.values.len() { self.between(k, w) } else { self.values[k] }
     }
 
     /// The value at a fraction `w` of the way from sample `k` to the next.
@@ -40,6 +49,19 @@ impl<'a> MonotoneCubic<'a> {
     }
 }
 
+/// What comes out of a first-order lag into which samples go, straight between them; it starts settled.
+pub fn lagged(t: &[f64], values: &[f64], time_constant_s: f64) -> Vec<f64> {
+    let mut out = values.to_vec();
+    for k in 1..values.len() {
+        let x = (t[k] - t[k - 1]) / time_constant_s.max(1e-9);
+        let decay = (-x).exp();
+        let (from, slope) = (values[k - 1], (values[k] - values[k - 1]) / x);
+        // The answer to a ramp of `slope` a time constant, from the state before.
+        out[k] = values[k] - slope + (out[k - 1] - from + slope) * decay;
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -47,10 +69,10 @@ mod tests {
     #[test]
     fn lines_are_exact_and_steps_do_not_overshoot() {
         let t = [0.0, 1.0, 2.0, 3.0, 4.0];
-        let line = MonotoneCubic::new(&t, &[0.0, 2.0, 4.0, 6.0, 8.0]);
+        let line = MonotoneCubic::new(&t, vec![0.0, 2.0, 4.0, 6.0, 8.0]);
         assert!((line.between(1, 0.3) - 2.6).abs() < 1e-12);
         let step = [0.0, 0.0, 1.0, 1.0, 1.0];
-        let cubic = MonotoneCubic::new(&t, &step);
+        let cubic = MonotoneCubic::new(&t, step.to_vec());
         assert!((0..=100).all(|i| (0.0..=1.0).contains(&cubic.between(1, f64::from(i) / 100.0))));
         assert_eq!((cubic.between(1, 0.0), cubic.between(1, 1.0)), (0.0, 1.0));
     }
@@ -59,11 +81,19 @@ mod tests {
     fn an_exponential_is_followed_better_than_by_lines() {
         let t: Vec<f64> = (0..12).map(|k| 0.5 * f64::from(k)).collect();
         let values: Vec<f64> = t.iter().map(|t| (-t).exp()).collect();
-        let cubic = MonotoneCubic::new(&t, &values);
+        let cubic = MonotoneCubic::new(&t, values.clone());
         for k in 1..10 {
             let exact = (-(t[k] + 0.25)).exp();
             let linear = 0.5 * (values[k] + values[k + 1]);
             assert!((cubic.between(k, 0.5) - exact).abs() < 0.2 * (linear - exact).abs());
         }
+    }
+
+    #[test]
+    fn a_lag_follows_a_ramp_one_time_constant_behind() {
+        let t: Vec<f64> = (0..200).map(|k| 0.5 * f64::from(k)).collect();
+        let out = lagged(&t, &t, 3.0);
+        assert!((out[199] - (t[199] - 3.0)).abs() < 1e-9);
+        assert!(lagged(&t, &t, 0.0).iter().zip(&t).all(|(a, b)| (a - b).abs() < 1e-6));
     }
 }

@@ -3,6 +3,7 @@
 pub mod envelope;
 pub mod error;
 pub mod gear;
+pub mod instruments;
 pub mod integrate;
 pub mod interpolate;
 pub mod manoeuvre;

@@ -1,5 +1,7 @@
 //! A model made ready to run: its law and figures on one tape, and the accelerations that follow.
 
+use std::borrow::Cow;
+
 use nalgebra::{LU, Matrix4, U4, Vector4};
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
@@ -35,7 +37,7 @@ pub enum PlantError {
 pub type Inputs = [f64; MAX_INPUTS];
 
 /// Most inputs a law may declare.
-pub const MAX_INPUTS: usize = 8;
+pub const MAX_INPUTS: usize = 16;
 
 /// A model made ready to run.
 #[derive(Debug)]
@@ -45,6 +47,7 @@ pub struct Plant {
     constant_mass: Option<LU<f64, U4, U4>>,
     input_names: Vec<String>,
     input_defaults: Vec<Option<f64>>,
+    lags_s: Vec<(usize, f64)>,
 }
 
 /// Where the outputs stand on the tape.
@@ -56,6 +59,8 @@ struct Layout {
     mass: [[Option<usize>; 4]; 4],
     /// Rates of x, y, psi, phi where the law says them.
     kinematics: [Option<usize>; 4],
+    /// What effects add to the accelerations, in the same order.
+    accelerations: [Option<usize>; 4],
 }
 
 /// Room to evaluate in, kept from step to step so that the time loop allocates nothing.
@@ -63,17 +68,19 @@ struct Layout {
 pub struct Work {
     inputs: Vec<Lanes<1>>,
     work: Vec<Lanes<1>>,
+    pub(crate) instruments: crate::instruments::Room,
 }
 
 /// Forces in N and moments in N m, accelerations in SI: X, Y, K, N.
 type ByAxis = Vector4<f64>;
 
 impl Plant {
-    /// Lowers a model onto a tape.
+    /// Lowers a model onto a tape, with the effects that it carries.
     ///
     /// # Errors
     /// Names what the model does not give, or says that the mass matrix cannot be solved.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
+        let law = &dressed(model, law)?;
         let bind = |name: &str| binding(model, law, name);
         let names: Vec<&str> = STATES.iter().map(|&(name, _)| name).chain(law.inputs.keys().map(String::as_str)).collect();
         if law.inputs.len() > MAX_INPUTS {
@@ -93,12 +100,18 @@ impl Plant {
             constant_mass,
             input_names: law.inputs.keys().cloned().collect(),
             input_defaults: law.inputs.values().map(|input| input.default).collect(),
+            lags_s: lags(model, law, &missing)?,
         })
     }
 
     /// The inputs that the law takes, in their order.
     pub fn input_names(&self) -> &[String] {
         &self.input_names
+    }
+
+    /// Inputs that reach the ship through a lag: their place and its time constant, s.
+    pub fn lags_s(&self) -> &[(usize, f64)] {
+        &self.lags_s
     }
 
     /// Whether the law has roll.
@@ -113,12 +126,15 @@ impl Plant {
 
     /// The rate of change of the state; that of the rudder is left at zero, the steering gear's business.
     pub fn rate(&self, state: &StateVector, inputs: &Inputs, room: &mut Work) -> StateVector {
-        let Work { inputs: lanes, work } = room;
+        let Work { inputs: lanes, work, .. } = room;
         lanes.clear();
         lanes.extend([at::U, at::V, at::R, at::P, at::PHI, at::PSI].map(|index| [state[index]]));
         lanes.extend(inputs[..self.input_names.len()].iter().map(|&value| [value]));
         self.tape.run(lanes, work);
-        let acceleration = self.accelerations(work);
+        let mut acceleration = self.accelerations(work);
+        for (sum, output) in acceleration.iter_mut().zip(self.layout.accelerations) {
+            *sum += output.map_or(0.0, |output| self.tape.read(output, work)[0]);
+        }
         let mut rate = StateVector::zeros();
         rate[at::U] = acceleration[0];
         rate[at::V] = acceleration[1];
@@ -155,7 +171,8 @@ pub fn binding(model: &Model, law: &Law, name: &str) -> Option<Binding> {
     if let Some(expr) = law.values.get(name) {
         return Some(Binding::Formula(expr.clone()));
     }
-    let parameter = model.parameters.get(name).map(|quantity| quantity.value);
+    let of_effect = law.dressing.parameters.get(name).copied();
+    let parameter = of_effect.or_else(|| model.parameters.get(name).map(|quantity| quantity.value));
     parameter.or_else(|| particulars::value(&model.particulars, name)).map(Binding::Constant)
 }
 
@@ -181,11 +198,37 @@ fn lay_out(
             layout.kinematics[place] = Some(builder.output(expr).map_err(missing)?);
         }
     }
+    for (axis, expr) in &law.dressing.accelerations {
+        let place = &mut layout.accelerations[*axis as usize];
+        *place = Some(builder.sum(*place, expr).map_err(missing)?);
+    }
     Ok(layout)
 }
 
-/// The whole right-hand side of an axis: coefficients times regressors, and the rest.
-fn force(model: &Model, law: &Law, axis: Axis) -> Result<Expr, PlantError> {
+/// The law with the effects that a model carries.
+pub fn dressed<'a>(model: &Model, law: &'a Law) -> Result<Cow<'a, Law>, PlantError> {
+    if model.effects.is_empty() {
+        return Ok(Cow::Borrowed(law));
+    }
+    law.with_effects(model).map(Cow::Owned).map_err(|(field, message)| PlantError::Law(format!("{field}: {message}")))
+}
+
+fn lags(model: &Model, law: &Law, missing: &dyn Fn(String) -> PlantError) -> Result<Vec<(usize, f64)>, PlantError> {
+    let one = |(input, expr): &(String, Expr)| {
+        let place = law.inputs.get_index_of(input)?;
+        let bind = |name: &str| binding(model, law, name);
+        let mut builder = TapeBuilder::new(&[], &bind);
+        let tape = builder.output(expr).map_err(missing).map(|_| builder.finish());
+        Some(tape.map(|tape| (place, tape.values(&[])[0].max(0.0))))
+    };
+    law.dressing.lags.iter().filter_map(one).collect()
+}
+
+/// The whole right-hand side of an axis, in N (N m): coefficients times regressors, and the rest.
+///
+/// # Errors
+/// Names the coefficient that the law does not have.
+pub fn force(model: &Model, law: &Law, axis: Axis) -> Result<Expr, PlantError> {
     let axis_law = &law.axes[&axis];
     let mut sum = Expr::Number(0.0);
     for (name, quantity) in &model.coefficients {

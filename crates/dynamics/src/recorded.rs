@@ -1,10 +1,11 @@
 //! Simulation of a recorded trial: the recorded rudder and revolutions drive the model, and the motion is compared.
 
+use sistership_model::effect::{TIME, input_channel};
 use sistership_model::trial::{Channel, Trial};
 
 use crate::envelope::Stopped;
 use crate::integrate::Method;
-use crate::interpolate::MonotoneCubic;
+use crate::interpolate::{MonotoneCubic, lagged};
 use crate::plant::{Inputs, MAX_INPUTS, Work};
 use crate::ship::Ship;
 use crate::state::{RECORDED, StateVector, Trajectory, at};
@@ -39,7 +40,7 @@ pub struct MissingChannel {
 /// A simulated trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replay {
-    /// Simulated states at the recorded times; after a divergence, until then only.
+    /// Simulated states at the recorded times, as the instruments would say them; after a divergence, until then only.
     pub track: Trajectory,
     /// Sample of the trial to which each state belongs.
     pub samples: Vec<usize>,
@@ -101,7 +102,10 @@ impl<'a> Record<'a> {
             need(*channel)?;
         }
         let start = RECORDED.iter().filter_map(|&(channel, index)| Some((index, trial.channel(channel)?))).collect();
-        let inputs = ship.law_inputs().map(|(name, default)| input(trial, name, default)).collect::<Result<_, _>>()?;
+        let lag_s = |place: usize| ship.lags_s().iter().find(|(of, _)| *of == place).map(|&(_, lag_s)| lag_s);
+        let inputs = ship.law_inputs().enumerate();
+        let inputs =
+            inputs.map(|(place, (name, default))| input(trial, name, default, lag_s(place))).collect::<Result<_, _>>()?;
         Ok(Self { trial, delta: need(Channel::Delta)?, n: trial.channel(Channel::N), inputs, start })
     }
 
@@ -116,7 +120,7 @@ impl<'a> Record<'a> {
     fn inputs_at(&self, k: usize, w: f64) -> Inputs {
         let mut inputs = [0.0; MAX_INPUTS];
         for (value, input) in inputs.iter_mut().zip(&self.inputs) {
-            *value = input.as_ref().map_or_else(|constant| *constant, |column| column.between(k, w));
+            *value = input.as_ref().map_or_else(|constant| *constant, |column| column.at(k, w));
         }
         inputs
     }
@@ -129,11 +133,13 @@ impl<'a> Record<'a> {
         result: &mut Replay,
         work: &mut Work,
     ) -> Result<(), Stopped> {
-        let mut state = self.state_at(part.start);
+        let frame = self.trial.velocity;
+        let mut state = ship.truth(frame, &self.state_at(part.start), &self.inputs_at(part.start, 0.0), work);
         for k in part.clone() {
             state[at::DELTA] = self.delta[k];
             ship.envelope().check(self.trial.t_s[k], &state)?;
-            result.track.push(self.trial.t_s[k], state, self.n.map_or(0.0, |n| n[k]));
+            let said = ship.says(frame, &state, &self.inputs_at(k, 0.0), work);
+            result.track.push(self.trial.t_s[k], said, self.n.map_or(0.0, |n| n[k]));
             result.samples.push(k);
             if k + 1 < part.end {
                 state = self.advance(ship, k, state, settings, work);
@@ -157,11 +163,23 @@ impl<'a> Record<'a> {
     }
 }
 
-/// An input of the law on a trial: its channel, the trial's constant depth, or the law's default.
-fn input<'a>(trial: &'a Trial, name: &str, default: Option<f64>) -> Result<Result<MonotoneCubic<'a>, f64>, MissingChannel> {
-    let channel = Channel::by_name(name);
+/// An input of the law on a trial: time, its channel, the trial's constant depth, or the law's default.
+fn input<'a>(
+    trial: &'a Trial,
+    name: &str,
+    default: Option<f64>,
+    lag_s: Option<f64>,
+) -> Result<Result<MonotoneCubic<'a>, f64>, MissingChannel> {
+    if name == TIME {
+        let start = trial.t_s.first().copied().unwrap_or_default();
+        return Ok(Ok(MonotoneCubic::new(&trial.t_s, trial.t_s.iter().map(|t| t - start).collect::<Vec<f64>>())));
+    }
+    let channel = input_channel(name);
     if let Some(column) = channel.and_then(|channel| trial.channel(channel)) {
-        return Ok(Ok(MonotoneCubic::new(&trial.t_s, column)));
+        return Ok(Ok(match lag_s {
+            Some(lag_s) if lag_s > 0.0 => MonotoneCubic::new(&trial.t_s, lagged(&trial.t_s, column, lag_s)),
+            _ => MonotoneCubic::new(&trial.t_s, column),
+        }));
     }
     let constant = if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
     match (constant, channel) {

@@ -1,12 +1,14 @@
 //! A ship ready to sail: plant, steering gear, envelope and what is held constant around her.
 
 use sistership_model::law::Law;
+use sistership_model::manifest::VelocityFrame;
 use sistership_model::{Model, particulars};
 
 use crate::envelope::{Envelope, Stopped};
 use crate::gear::Gear;
+use crate::instruments::{Instruments, truth};
 use crate::integrate::Method;
-use crate::plant::{Inputs, MAX_INPUTS, Plant, PlantError, Work};
+use crate::plant::{Inputs, MAX_INPUTS, Plant, PlantError, Work, dressed};
 use crate::state::{StateVector, Trajectory, at};
 
 /// What the bridge orders at an instant.
@@ -29,6 +31,8 @@ pub struct Ship {
     lpp_m: f64,
     approach_speed_m_s: f64,
     approach_n_rps: f64,
+    /// For velocities over the ground, and through the water.
+    instruments: [Option<Instruments>; 2],
 }
 
 /// Places of the inputs that change during a run.
@@ -46,6 +50,9 @@ impl Ship {
     /// As [`Plant::new`]; also where the model has no length or no approach speed.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
         let plant = Plant::new(model, law)?;
+        let dressed = dressed(model, law)?;
+        let instruments = |frame| Instruments::new(model, &dressed, frame);
+        let instruments = [instruments(VelocityFrame::Ground)?, instruments(VelocityFrame::Water)?];
         let need = |name: &str, value: Option<f64>| {
             value.ok_or_else(|| PlantError::Missing { law: law.name.clone(), name: name.into(), model: model.name.clone() })
         };
@@ -60,9 +67,11 @@ impl Ship {
         }
         let envelope = Envelope::new(lpp_m, speed);
         let approach_n_rps = model.revolutions_rps.unwrap_or(0.0);
+        let lag_s = plant.lags_s().iter().find(|(place, _)| Some(*place) == slots.delta).map_or(0.0, |&(_, lag_s)| lag_s);
         Ok(Self {
+            gear: Gear::new(&model.steering).with_lag(lag_s),
             plant,
-            gear: Gear::new(&model.steering),
+            instruments,
             envelope,
             template,
             slots,
@@ -107,6 +116,26 @@ impl Ship {
     /// What the law takes from outside, with what it takes where nothing is given.
     pub fn law_inputs(&self) -> impl Iterator<Item = (&str, Option<f64>)> {
         self.plant.input_names().iter().map(String::as_str).zip(self.plant.input_defaults().iter().copied())
+    }
+
+    /// Inputs that reach the ship through a lag: their place and its time constant, s.
+    pub fn lags_s(&self) -> &[(usize, f64)] {
+        self.plant.lags_s()
+    }
+
+    /// What the instruments say of a state; `inputs` as in [`Ship::rate_with`].
+    pub fn says(&self, frame: VelocityFrame, state: &StateVector, inputs: &Inputs, work: &mut Work) -> StateVector {
+        let Some(instruments) = &self.instruments[frame as usize] else { return *state };
+        let rate = self.plant.rate(state, inputs, work);
+        instruments.read(state, &rate, &inputs[..self.plant.input_names().len()], &mut work.instruments)
+    }
+
+    /// The state of which the instruments say `said`.
+    pub fn truth(&self, frame: VelocityFrame, said: &StateVector, inputs: &Inputs, work: &mut Work) -> StateVector {
+        if self.instruments[frame as usize].is_none() {
+            return *said;
+        }
+        truth(said, |state| self.says(frame, state, inputs, work))
     }
 
     /// The range outside which runs are stopped.

@@ -3,6 +3,7 @@
 //! No I/O and no async: text goes in, checked values come out, and every refusal names file, line and field.
 
 pub mod coefficient;
+pub mod effect;
 mod error;
 pub mod formula;
 pub mod law;
@@ -13,11 +14,13 @@ pub mod particulars;
 pub mod quantity;
 pub mod source;
 pub mod trial;
+pub mod uncertainty;
 pub mod units;
 pub mod version;
 pub mod vessel;
 pub mod zoo;
 
+pub use effect::Effect;
 pub use error::FileError;
 pub use law::Law;
 pub use model::Model;

@@ -6,12 +6,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::coefficient::CoefficientName;
+use crate::effect::AppliedEffect;
 use crate::error::{Blame, FileError};
 use crate::law::Law;
 use crate::manifest::RudderSign;
 use crate::particulars::{self, Particulars};
 use crate::quantity::Quantity;
 use crate::source::Source;
+use crate::uncertainty::Uncertainty;
 use crate::vessel::{PublishedModelFile, Status, Steering, Vessel};
 
 /// A model document. Positive rudder turns the ship to starboard; parameters and coefficients are in the law's units.
@@ -49,6 +51,12 @@ pub struct Model {
     pub parameters: BTreeMap<String, Quantity>,
     /// Coefficients of the law.
     pub coefficients: BTreeMap<String, Quantity>,
+    /// Effects that change the law from outside.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub effects: Vec<AppliedEffect>,
+    /// What the trials it was fitted on leave open.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<Uncertainty>,
 }
 
 /// The word `model`.
@@ -102,6 +110,8 @@ impl Model {
             particulars: vessel.particulars.clone(),
             parameters: section("parameters", &raw.parameters)?,
             coefficients: section("coefficients", &raw.coefficients)?,
+            effects: Vec::new(),
+            uncertainty: None,
         };
         model.fill_parameters(law);
         model.check(law).map_err(|(field, e)| blame.at(&format!("models.{}.{field}", raw.name), e))?;
@@ -121,6 +131,9 @@ impl Model {
         model.status = Status::Transferred;
         model.note = Some(format!("carried over from {}", self.name));
         model.particulars = particulars.clone();
+        // What acted on the source's trials, and what they left open, belongs to those trials.
+        model.effects = Vec::new();
+        model.uncertainty = None;
         for name in law.parameters.keys() {
             if let Some(value) = law.derived_parameter(name, particulars) {
                 model.parameters.insert(name.clone(), Quantity::new(value, DERIVED));
@@ -163,10 +176,13 @@ impl Model {
         if let Some((name, quantity)) = values.into_iter().find(|(_, quantity)| !quantity.value.is_finite()) {
             return Err((format!("values.{name}"), format!("{} is not a finite number", quantity.value)));
         }
-        match law.parameters.iter().find(|(name, _)| !self.parameters.contains_key(*name)) {
-            Some((name, parameter)) => Err((format!("parameters.values.{name}"), missing_parameter(name, parameter))),
-            None => Ok(()),
+        if let Some((name, parameter)) = law.parameters.iter().find(|(name, _)| !self.parameters.contains_key(*name)) {
+            return Err((format!("parameters.values.{name}"), missing_parameter(name, parameter)));
         }
+        if let Some(uncertainty) = &self.uncertainty {
+            uncertainty.check().map_err(|message| ("uncertainty".to_owned(), message))?;
+        }
+        law.with_effects(self).map(|_| ())
     }
 
     fn fill_parameters(&mut self, law: &Law) {

@@ -1,10 +1,11 @@
-//! The zoo: laws and vessels by name, embedded in the program and extended at run time.
+//! The zoo: laws, effects and vessels by name, embedded in the program and extended at run time.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use include_dir::{Dir, include_dir};
 
+use crate::effect::Effect;
 use crate::error::FileError;
 use crate::law::Law;
 use crate::model::Model;
@@ -12,16 +13,17 @@ use crate::vessel::Vessel;
 
 static MODELS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../models");
 
-/// Laws and vessels by name.
+/// Laws, effects and vessels by name.
 #[derive(Debug, Clone, Default)]
 pub struct Zoo {
     laws: BTreeMap<String, Arc<Law>>,
+    effects: BTreeMap<String, Arc<Effect>>,
     vessels: BTreeMap<String, Arc<Vessel>>,
     texts: BTreeMap<String, String>,
 }
 
 impl Zoo {
-    /// The laws and vessels that the program carries.
+    /// The laws, effects and vessels that the program carries.
     ///
     /// # Errors
     /// The first file that does not read; a test keeps this from happening in a release.
@@ -29,6 +31,9 @@ impl Zoo {
         let mut zoo = Self::default();
         for (name, text) in yaml_files("laws") {
             zoo.add_law(name, text)?;
+        }
+        for (name, text) in yaml_files("effects") {
+            zoo.add_effect(name, text)?;
         }
         for (name, text) in yaml_files("vessels") {
             zoo.add_vessel(name, text)?;
@@ -45,6 +50,17 @@ impl Zoo {
         self.texts.insert(format!("law {}", law.name), text.to_owned());
         self.laws.insert(law.name.clone(), Arc::clone(&law));
         Ok(law)
+    }
+
+    /// Adds an effect, or replaces the one of the same name.
+    ///
+    /// # Errors
+    /// As [`Effect::parse`].
+    pub fn add_effect(&mut self, file: &str, text: &str) -> Result<Arc<Effect>, FileError> {
+        let effect = Arc::new(Effect::parse(file, text)?);
+        self.texts.insert(format!("effect {}", effect.name), text.to_owned());
+        self.effects.insert(effect.name.clone(), Arc::clone(&effect));
+        Ok(effect)
     }
 
     /// Adds a vessel, or replaces the one of the same name; each of her models is checked against its law.
@@ -109,6 +125,11 @@ impl Zoo {
         self.laws.get(name)
     }
 
+    /// An effect by name.
+    pub fn effect(&self, name: &str) -> Option<&Arc<Effect>> {
+        self.effects.get(name)
+    }
+
     /// A vessel by name.
     pub fn vessel(&self, name: &str) -> Option<&Arc<Vessel>> {
         self.vessels.get(name)
@@ -119,6 +140,11 @@ impl Zoo {
         self.laws.values()
     }
 
+    /// Every effect, by name.
+    pub fn effects(&self) -> impl Iterator<Item = &Arc<Effect>> {
+        self.effects.values()
+    }
+
     /// Every vessel, by name.
     pub fn vessels(&self) -> impl Iterator<Item = &Arc<Vessel>> {
         self.vessels.values()
@@ -127,6 +153,11 @@ impl Zoo {
     /// The text of a law's file.
     pub fn law_text(&self, name: &str) -> Option<&str> {
         self.texts.get(&format!("law {name}")).map(String::as_str)
+    }
+
+    /// The text of an effect's file.
+    pub fn effect_text(&self, name: &str) -> Option<&str> {
+        self.texts.get(&format!("effect {name}")).map(String::as_str)
     }
 
     /// The text of a vessel's file.

@@ -41,6 +41,17 @@ impl<'a> TapeBuilder<'a> {
         Ok(self.outputs.len() - 1)
     }
 
+    /// Adds a formula to an output that may be there already.
+    ///
+    /// # Errors
+    /// Names what nothing stands for.
+    pub fn sum(&mut self, output: Option<usize>, expr: &Expr) -> Result<usize, String> {
+        let Some(output) = output else { return self.output(expr) };
+        let slot = self.lower(expr)?;
+        self.outputs[output] = self.push(Op::Add(self.outputs[output], slot));
+        Ok(output)
+    }
+
     /// The finished tape, without operations that no output needs.
     pub fn finish(self) -> Tape {
         let Self { inputs, ops, outputs, .. } = self;

@@ -12,7 +12,7 @@ pub use lower::{Binding, TapeBuilder};
 pub(crate) use op::{Op, Slot};
 
 /// A list of operations with named inputs and numbered outputs.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Tape {
     inputs: Vec<String>,
     ops: Vec<Op>,

@@ -149,6 +149,23 @@ impl Expr {
         }
     }
 
+    /// The same expression with some names replaced.
+    pub fn renamed(&self, by: &dyn Fn(&str) -> Option<Expr>) -> Expr {
+        let of = |e: &Expr| Box::new(e.renamed(by));
+        match self {
+            Self::Number(number) => Self::Number(*number),
+            Self::Name(name) => by(name).unwrap_or_else(|| self.clone()),
+            Self::Negate(a) => Self::Negate(of(a)),
+            Self::Add(a, b) => Self::Add(of(a), of(b)),
+            Self::Subtract(a, b) => Self::Subtract(of(a), of(b)),
+            Self::Multiply(a, b) => Self::Multiply(of(a), of(b)),
+            Self::Divide(a, b) => Self::Divide(of(a), of(b)),
+            Self::Power(a, b) => Self::Power(of(a), of(b)),
+            Self::Call(function, arguments) => Self::Call(*function, arguments.iter().map(|e| e.renamed(by)).collect()),
+            Self::If(comparison, parts) => Self::If(*comparison, Box::new(parts.each_ref().map(|e| e.renamed(by)))),
+        }
+    }
+
     /// The product of two expressions.
     pub fn times(self, other: Expr) -> Expr {
         Self::Multiply(Box::new(self), Box::new(other))

@@ -11,6 +11,7 @@ use indexmap::IndexMap;
 pub use file::LawFile;
 
 use crate::coefficient::{Axis, CoefficientName};
+use crate::effect::Dressing;
 use crate::formula::Expr;
 use crate::particulars;
 use crate::quantity::Quantity;
@@ -52,6 +53,8 @@ pub struct Law {
     pub kinematics: BTreeMap<String, Expr>,
     /// What parameters become when the ship is mirrored port to starboard: another one, or `-name` for its opposite.
     pub mirrors: BTreeMap<String, String>,
+    /// What effects add; nothing in a law as its file writes it.
+    pub dressing: Dressing,
 }
 
 /// Something the law takes from outside.
@@ -114,6 +117,7 @@ impl Law {
             mass: BTreeMap::new(),
             kinematics: BTreeMap::new(),
             mirrors: BTreeMap::new(),
+            dressing: Dressing::default(),
         }
     }
 
@@ -146,7 +150,8 @@ impl Law {
                 return Err(format!("law `{}` has no coefficient `{name}`; it has {}", self.name, known.join(", ")));
             }
         };
-        Ok((parsed.axis, term))
+        let factors = self.dressing.coefficients.iter().filter(|(of, _)| of == name);
+        Ok((parsed.axis, factors.fold(term, |term, (_, factor)| term.times(factor.clone()))))
     }
 
     /// The regressor that a name spells: the product of what its factors stand for.

@@ -29,6 +29,7 @@ pub(super) fn read(file: &str, text: &str) -> Result<Law, FileError> {
         mass: BTreeMap::new(),
         kinematics: BTreeMap::new(),
         mirrors: raw.mirrors,
+        dressing: crate::effect::Dressing::default(),
     };
     let reader = Reader { blame: &blame };
     for (name, input) in &raw.inputs {

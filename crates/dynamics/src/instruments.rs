@@ -1,0 +1,99 @@
+//! What the instruments say of a state, where effects make them say something else than the truth.
+
+use sistership_model::Model;
+use sistership_model::law::Law;
+use sistership_model::manifest::VelocityFrame;
+use sistership_model::trial::Channel;
+
+use crate::plant::{PlantError, binding};
+use crate::state::{RECORDED, StateVector, at};
+use crate::tape::{Lanes, Tape, TapeBuilder};
+
+/// The names that the formula of an instrument may use, with their places: states, then their rates.
+const STATES: [(&str, usize); 8] =
+    [("u", at::U), ("v", at::V), ("r", at::R), ("p", at::P), ("phi", at::PHI), ("psi", at::PSI), ("x", at::X), ("y", at::Y)];
+
+/// Instruments: for each channel that does not say the truth, what it says.
+#[derive(Debug)]
+pub struct Instruments {
+    tape: Tape,
+    /// Place in the state and output of the tape.
+    says: Vec<(usize, usize)>,
+}
+
+/// Room to read in, kept from sample to sample.
+#[derive(Debug, Default)]
+pub struct Room {
+    values: Vec<Lanes<1>>,
+    work: Vec<Lanes<1>>,
+}
+
+impl Instruments {
+    /// The instruments of trials whose velocities are of a frame; `None` where every one says the truth.
+    ///
+    /// # Errors
+    /// Names what the model does not give.
+    pub fn new(model: &Model, law: &Law, frame: VelocityFrame) -> Result<Option<Self>, PlantError> {
+        let missing = |name: String| PlantError::Missing { law: law.name.clone(), name, model: model.name.clone() };
+        let names = input_names(law);
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let bind = |name: &str| binding(model, law, name);
+        let mut builder = TapeBuilder::new(&names, &bind);
+        let mut says = Vec::new();
+        for (channel, expr) in readings(law, frame) {
+            let Some(&(_, place)) = RECORDED.iter().find(|(known, _)| *known == channel) else { continue };
+            says.push((place, builder.output(&expr).map_err(missing)?));
+        }
+        Ok((!says.is_empty()).then(|| Self { tape: builder.finish(), says }))
+    }
+
+    /// What they say of a state with its rate of change.
+    pub fn read(&self, state: &StateVector, rate: &StateVector, inputs: &[f64], room: &mut Room) -> StateVector {
+        let Room { values, work } = room;
+        values.clear();
+        values.extend(STATES.iter().map(|&(_, place)| [state[place]]));
+        values.extend(STATES.iter().map(|&(_, place)| [rate[place]]));
+        values.extend(inputs.iter().map(|&value| [value]));
+        self.tape.run(values, work);
+        let mut said = *state;
+        self.says.iter().for_each(|&(place, output)| said[place] = self.tape.read(output, work)[0]);
+        said
+    }
+}
+
+/// The names of the tape of instruments: states, their rates, the inputs of the law.
+pub fn input_names(law: &Law) -> Vec<String> {
+    let states = STATES.iter().map(|(name, _)| (*name).to_owned());
+    let rates = STATES.iter().map(|(name, _)| format!("{name}_dot"));
+    states.chain(rates).chain(law.inputs.keys().cloned()).collect()
+}
+
+/// What each channel says, where it is not the truth: a log that measures through the water says what the hull sees.
+pub fn readings(law: &Law, frame: VelocityFrame) -> Vec<(Channel, sistership_model::formula::Expr)> {
+    use sistership_model::formula::Expr;
+    let mut readings: Vec<(Channel, Expr)> = Vec::new();
+    if frame == VelocityFrame::Water {
+        for channel in [Channel::U, Channel::V] {
+            let seen = law.values.keys().find(|name| name.ends_with(&format!(".seen.{channel}")));
+            readings.extend(seen.map(|name| (channel, Expr::Name(name.clone()))));
+        }
+    }
+    for (channel, expr) in &law.dressing.measures {
+        match readings.iter_mut().find(|(known, _)| known == channel) {
+            // The second effect acts on what the first one left.
+            Some((_, before)) => *before = expr.renamed(&|name| (name == channel.name()).then(|| before.clone())),
+            None => readings.push((*channel, expr.clone())),
+        }
+    }
+    readings
+}
+
+/// The true state of which instruments say `said`; effects on instruments are small, so that a few rounds suffice.
+pub fn truth(said: &StateVector, mut read: impl FnMut(&StateVector) -> StateVector) -> StateVector {
+    let mut state = *said;
+    for _ in 0..8 {
+        let error = read(&state) - said;
+        state -= error;
+    }
+    state
+}

@@ -1,0 +1,100 @@
+//! The evidence for hypotheses: how much more probable they make the readings than the model alone does.
+//!
+//! The coefficients are left the slack of their prior and integrated out, and so are the parameters of an effect under
+//! theirs: the logarithm of the likelihood ratio that remains has paid for every parameter (Kass and Raftery 1995, J Am
+//! Stat Assoc 90, 773-795). The autocorrelation of what no coefficient explains is in the filter's discrepancy.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use crate::residual::Gram;
+
+/// What is known of the coefficients before these trials: `information`, and `information * mean`, by column.
+#[derive(Debug, Clone)]
+pub struct Fixed {
+    /// Information matrix, coefficients by coefficients.
+    pub information: DMatrix<f64>,
+    /// Information times the expected change.
+    pub weighted_mean: DVector<f64>,
+}
+
+/// The columns of effects with the coefficients integrated out.
+#[derive(Debug, Clone)]
+pub struct Reduced {
+    /// Minus twice the logarithm of the likelihood of the model without any effect, less a constant.
+    pub deviance: f64,
+    /// Information of the effects' columns.
+    pub information: DMatrix<f64>,
+    /// Their products with what remains of the residual.
+    pub right: DVector<f64>,
+    /// `A^-1 G_ce` and `A^-1 b_c`: how the coefficients answer to the effects.
+    pub answers: DMatrix<f64>,
+    /// The change of the coefficients without any effect.
+    pub shift: DVector<f64>,
+}
+
+/// A normal prior of one column, as a distance from where the column is a tangent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fixing {
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation.
+    pub deviation: f64,
+}
+
+/// What a hypothesis gives.
+#[derive(Debug, Clone)]
+pub struct Estimate {
+    /// Logarithm of how much more probable the readings are than under the model alone.
+    pub gain: f64,
+    /// The parameters, as distances from where the columns are tangents.
+    pub mean: DVector<f64>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
+}
+
+/// The level of the discrepancy, as a factor on what is expected of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Level {
+    /// The factor.
+    pub factor: f64,
+    /// Logarithm of its prior probability.
+    pub log_prior: f64,
+}
+
+impl Reduced {
+    /// Integrates the first `coefficients` columns out; `None` where the information is not positive.
+    pub fn new(gram: &Gram, fixed: &Fixed) -> Option<Self> {
+        let c = fixed.weighted_mean.len();
+        let e = gram.products.nrows() - 1 - c;
+        let products = &gram.products;
+        let own = products.view((1, 1), (c, c)) + &fixed.information;
+        let cross = products.view((1, 1 + c), (c, e)).into_owned();
+        let right = products.view((1, 0), (c, 1)).column(0) + &fixed.weighted_mean;
+        let coefficients = Cholesky::new(own)?;
+        let answers = coefficients.solve(&cross);
+        let shift = coefficients.solve(&right);
+        let information = products.view((1 + c, 1 + c), (e, e)) - cross.transpose() * &answers;
+        let remaining = products.view((1 + c, 0), (e, 1)).column(0) - cross.transpose() * &shift;
+        let log_determinant: f64 = 2.0 * coefficients.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
+        let deviance = products[(0, 0)] + gram.log_variance - right.dot(&shift) + log_determinant;
+        Some(Self { deviance, information, right: remaining, answers, shift })
+    }
+
+    /// The estimate of a hypothesis that has some of the effects' columns, with their priors.
+    pub fn estimate(&self, columns: &[usize], priors: &[Fixing]) -> Option<Estimate> {
+        let size = columns.len();
+        let precision = |i: usize| priors[i].deviation.powi(-2);
+        let mut information = DMatrix::from_fn(size, size, |i, j| self.information[(columns[i], columns[j])]);
+        let mut right = DVector::from_fn(size, |i, _| self.right[columns[i]]);
+        let mut prior = 0.0;
+        for i in 0..size {
+            information[(i, i)] += precision(i);
+            right[i] += precision(i) * priors[i].mean;
+            prior += precision(i) * priors[i].mean.powi(2) - precision(i).ln();
+        }
+        let factor = Cholesky::new(information)?;
+        let mean = factor.solve(&right);
+        let log_determinant: f64 = 2.0 * factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
+        Some(Estimate { gain: 0.5 * (right.dot(&mean) - prior - log_determinant), mean, covariance: factor.inverse() })
+    }
+}

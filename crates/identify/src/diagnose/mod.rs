@@ -1,0 +1,42 @@
+//! What the residual says: which effect a model lacks, if any.
+
+mod calibrate;
+mod choose;
+mod evidence;
+mod judge;
+mod nuisance;
+mod outcome;
+mod remainder;
+mod run;
+mod search;
+mod settings;
+mod setup;
+mod values;
+mod workspace;
+
+use std::sync::Arc;
+
+pub use calibrate::calibrate;
+pub use outcome::{
+    Confounded, Diagnosis, DiscrepancyLevel, Found, Hypothesis, NextTrial, ResidualSeries, SailedManoeuvre, TrialErrors,
+    Unexplained, Value, Verdict,
+};
+pub use run::diagnose;
+pub use settings::Settings;
+use sistership_model::law::Law;
+use sistership_model::{Effect, Model, Trial};
+
+/// What is to be diagnosed, on what.
+#[derive(Debug, Clone, Copy)]
+pub struct Request<'a> {
+    /// The model, with the effects it carries already.
+    pub model: &'a Model,
+    /// Its law, without effects.
+    pub law: &'a Law,
+    /// The library.
+    pub effects: &'a [Arc<Effect>],
+    /// New trials of the ship, that the model was not fitted on.
+    pub trials: &'a [&'a Trial],
+    /// Settings.
+    pub settings: &'a Settings,
+}

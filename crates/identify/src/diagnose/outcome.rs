@@ -1,0 +1,208 @@
+//! What a diagnosis gives.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use sistership_dynamics::metrics::ManoeuvreMetrics;
+use sistership_model::Model;
+use sistership_model::effect::ActsOn;
+
+use super::settings::Settings;
+
+/// The answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// The residual is what the noise predicts.
+    Complete,
+    /// Named effects are missing from the model, and with them the residual is what the noise predicts.
+    Effects,
+    /// Something is missing that no effect of the library explains.
+    Unexplained,
+}
+
+/// The result of a diagnosis. Errors are root mean squares by channel in SI, on trials that the fit has not seen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Diagnosis {
+    /// The answer.
+    pub verdict: Verdict,
+    /// The effects that are missing.
+    pub effects: Vec<Found>,
+    /// What no effect explains.
+    pub unexplained: Vec<Unexplained>,
+    /// The trial that would tell the effects found from those that they are confounded with; absent where nothing is to be
+    /// told apart.
+    pub next_trial: Option<NextTrial>,
+    /// Errors of the model as it is.
+    pub before: BTreeMap<String, f64>,
+    /// Errors of the model with the effects, refitted; those of `before` where there are none.
+    pub after: BTreeMap<String, f64>,
+    /// Standard deviation of the noise by channel, as the trials show it, SI.
+    pub noise: BTreeMap<String, f64>,
+    /// How trials were kept from the fit that they judge.
+    pub how: String,
+    /// The model that was diagnosed.
+    pub diagnosed: String,
+    /// Every hypothesis that was tried, the most probable first.
+    pub hypotheses: Vec<Hypothesis>,
+    /// Errors trial by trial.
+    pub trials: Vec<TrialErrors>,
+    /// Turning circles and zigzags among the trials.
+    pub manoeuvres: Vec<SailedManoeuvre>,
+    /// The residual over time, by trial and channel, for plots.
+    pub residuals: Vec<ResidualSeries>,
+    /// How much the accelerations carry that nothing explains, before and after.
+    pub discrepancies: Vec<DiscrepancyLevel>,
+    /// The model with the effects, where some were found.
+    pub model: Option<Model>,
+    /// Every setting.
+    pub settings: Settings,
+    /// Remarks for the person who must defend the answer.
+    pub remarks: Vec<String>,
+}
+
+/// A value with its standard error, in the unit of its name.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Value {
+    /// The value.
+    pub value: f64,
+    /// Its standard error.
+    pub se: f64,
+}
+
+/// An effect that is missing from the model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Found {
+    /// Its name in the library.
+    pub name: String,
+    /// In which form.
+    pub form: String,
+    /// One line for people.
+    pub meaning: String,
+    /// Where it acts.
+    pub acts_on: ActsOn,
+    /// Its parameters and what follows from them.
+    pub parameters: BTreeMap<String, Value>,
+    /// Natural logarithm of how much more probable the trials are with it than without, after what the number of
+    /// hypotheses tried costs.
+    pub evidence: f64,
+    /// Effects that these trials cannot tell it from, or hardly.
+    pub confounded_with: Vec<Confounded>,
+}
+
+/// An effect whose answer on these trials is nearly the same.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Confounded {
+    /// Its name.
+    pub name: String,
+    /// The angle between what was found and the nearest that this effect could do, deg: 0 the same, 90 nothing in common.
+    pub angle_deg: f64,
+    /// How much less evidence there is for it, natural logarithm.
+    pub behind: f64,
+}
+
+/// A stretch of a trial that no effect explains.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Unexplained {
+    /// The channel whose equation does not hold.
+    pub channel: String,
+    /// Root mean square of what remains over what the noise predicts.
+    pub rms_over_noise: f64,
+    /// The trial.
+    pub trial: String,
+    /// From when, s of the trial.
+    pub from_s: f64,
+    /// Until when, s of the trial.
+    pub to_s: f64,
+}
+
+/// The trial that would tell effects apart.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NextTrial {
+    /// What to sail.
+    pub manoeuvre: String,
+    /// At which approach speed, m/s.
+    pub speed_m_s: f64,
+    /// On which heading, deg.
+    pub heading_deg: f64,
+    /// What it would tell apart.
+    pub separates: Vec<String>,
+    /// The evidence that it is expected to give for one over the other, natural logarithm.
+    pub expected: f64,
+}
+
+/// One hypothesis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Hypothesis {
+    /// Its effects, as `name/form`.
+    pub effects: Vec<String>,
+    /// Evidence against the model alone, as [`Found::evidence`].
+    pub evidence: f64,
+    /// How much more probable trials became by it that its fit had not seen, natural logarithm; absent where it was not
+    /// judged so.
+    pub held_out: Option<f64>,
+    /// Parameters.
+    pub parameters: BTreeMap<String, Value>,
+    /// Whether it was taken.
+    pub taken: bool,
+}
+
+/// Errors on one trial.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TrialErrors {
+    /// The trial.
+    pub trial: String,
+    /// Of the model as it is.
+    pub before: BTreeMap<String, f64>,
+    /// With the effects, fitted without this trial.
+    pub after: BTreeMap<String, f64>,
+}
+
+/// A manoeuvre that was sailed, measured and simulated with the recorded rudder.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SailedManoeuvre {
+    /// The trial.
+    pub trial: String,
+    /// As measured.
+    pub measured: ManoeuvreMetrics,
+    /// Of the model as it is; absent where its simulation diverged.
+    pub before: Option<ManoeuvreMetrics>,
+    /// With the effects, fitted without this trial.
+    pub after: Option<ManoeuvreMetrics>,
+}
+
+/// The residual of an acceleration over a trial: what must be added to what the model gives, as the filter's smoother
+/// finds it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ResidualSeries {
+    /// The trial.
+    pub trial: String,
+    /// `u`, `v`, `r` or `p`.
+    pub channel: String,
+    /// Time, s.
+    pub t_s: Vec<f64>,
+    /// Of the model as it is, m/s2 or rad/s2.
+    pub before: Vec<f64>,
+    /// With the effects.
+    pub after: Vec<f64>,
+    /// Two standard deviations of what noise alone would show.
+    pub band: Vec<f64>,
+    /// The recorded variable that explains most of `before`, such as `psi` or `delta`, and its values.
+    pub against: String,
+    /// Its values, SI.
+    pub variable: Vec<f64>,
+}
+
+/// How much of an acceleration nothing explains.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DiscrepancyLevel {
+    /// `u`, `v`, `r` or `p`.
+    pub channel: String,
+    /// Standard deviation that the model brings with it from the trials it was fitted on, m/s2 or rad/s2; absent where it
+    /// says nothing of it.
+    pub expected: Option<f64>,
+    /// On these trials, of the model as it is.
+    pub before: f64,
+    /// With the effects.
+    pub after: f64,
+}

@@ -1,0 +1,130 @@
+//! The whole diagnosis.
+
+use super::Request;
+use super::choose::{Choice, choose};
+use super::judge::errors;
+use super::outcome::{Diagnosis, Found, Hypothesis, Verdict};
+use super::remainder::unexplained;
+use super::search::{Judged, Search};
+use super::setup::{candidates, search};
+use super::values::{acts_on, own_covariance, values};
+use crate::refine::{Progress, RefineError};
+
+/// Diagnoses a model on trials.
+///
+/// # Errors
+/// Says which setting, trial or channel is at fault.
+pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Diagnosis, RefineError> {
+    request.settings.check().map_err(|(field, message)| RefineError::Setting { field, message })?;
+    if request.trials.is_empty() {
+        return Err(RefineError::Data("there is no trial to diagnose on".into()));
+    }
+    step(progress, 0.05, "which effects can be tried on these trials")?;
+    let candidates = candidates(request);
+    let search = search(request, &candidates)?;
+    step(progress, 0.1, "every effect alone, then together")?;
+    let choice = choose(&search, &candidates, request.settings)?;
+    step(progress, 0.8, "what remains")?;
+    answer(request, &search, &choice, progress)
+}
+
+fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineError> {
+    if progress(fraction, what) { Ok(()) } else { Err(RefineError::Cancelled) }
+}
+
+fn answer(request: &Request<'_>, search: &Search<'_>, choice: &Choice, progress: Progress<'_>) -> Result<Diagnosis, RefineError> {
+    let best = choice.best();
+    let workspace = search.workspace(best.stood.clone())?;
+    let remaining = remaining(search, best, &workspace)?;
+    let length_s = workspace.lpp_m / workspace.speed_m_s;
+    step(progress, 0.85, "simulating each trial by a fit on the others")?;
+    let errors = errors(request, search, best, request.settings.restart_s.unwrap_or(10.0 * length_s));
+    let found: Vec<Found> = (0..best.candidates.len()).map(|place| found(request, choice, place)).collect();
+    let verdict = match (remaining.is_empty(), found.is_empty()) {
+        (false, _) => Verdict::Unexplained,
+        (true, true) => Verdict::Complete,
+        (true, false) => Verdict::Effects,
+    };
+    let model = (!found.is_empty()).then(|| search.model_with(&best.candidates, Some(&best.covariance)));
+    Ok(Diagnosis {
+        verdict,
+        effects: found,
+        unexplained: remaining,
+        next_trial: None,
+        before: errors.before,
+        after: errors.after,
+        noise: workspace.noise.iter().map(|(channel, sigma)| (channel.name().to_owned(), *sigma)).collect(),
+        how: how(request),
+        diagnosed: request.model.name.clone(),
+        hypotheses: hypotheses(request, search, choice),
+        trials: errors.trials,
+        manoeuvres: errors.manoeuvres,
+        residuals: Vec::new(),
+        discrepancies: Vec::new(),
+        model,
+        settings: request.settings.clone(),
+        remarks: Vec::new(),
+    })
+}
+
+fn remaining(
+    search: &Search<'_>,
+    best: &Judged,
+    workspace: &super::workspace::Workspace<'_>,
+) -> Result<Vec<super::outcome::Unexplained>, RefineError> {
+    let expected = match search.model.uncertainty {
+        Some(_) => &search.expected,
+        None => &workspace.scales().discrepancies(REMAINDER),
+    };
+    let moved = best.candidates.iter().zip(&best.stood).flat_map(|(c, s)| c.at.iter().zip(&s.at).map(|(a, b)| a - b));
+    let parameters: Vec<f64> = best.shift.iter().copied().chain(moved).collect();
+    Ok(unexplained(workspace, expected, &parameters.into()))
+}
+
+/// The discrepancy that is forgiven a model that brings none, by the typical acceleration.
+const REMAINDER: f64 = 3e-4;
+
+fn how(request: &Request<'_>) -> String {
+    match request.trials.len() {
+        1 => "there is one trial only: these are errors on the trial that the effects were fitted on".to_owned(),
+        count => format!("each of {count} trials simulated with effects fitted on the others"),
+    }
+}
+
+fn found(request: &Request<'_>, choice: &Choice, place: usize) -> Found {
+    let best = choice.best();
+    let candidate = &best.candidates[place];
+    let covariance = own_covariance(&best.candidates, place, &best.covariance);
+    Found {
+        name: candidate.effect.clone(),
+        form: candidate.form.file.name.clone(),
+        meaning: candidate.form.file.meaning.clone(),
+        acts_on: acts_on(candidate),
+        parameters: values(candidate, &covariance, request.model),
+        evidence: best.log_evidence - choice.alone.log_evidence,
+        confounded_with: Vec::new(),
+    }
+}
+
+/// Everything that was judged where it stands, the most probable first.
+fn hypotheses(request: &Request<'_>, search: &Search<'_>, choice: &Choice) -> Vec<Hypothesis> {
+    let alone = choice.alone.held_out(&search.fixed);
+    let one = |(place, judged): (usize, &Judged)| Hypothesis {
+        effects: judged.candidates.iter().map(crate::residual::Candidate::key).collect(),
+        evidence: judged.log_evidence - choice.alone.log_evidence,
+        held_out: judged.held_out(&search.fixed).zip(alone).map(|(with, without)| with - without),
+        parameters: parameters(request, judged),
+        taken: choice.taken == Some(place),
+    };
+    let mut all: Vec<Hypothesis> = choice.tried.iter().enumerate().map(one).collect();
+    all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    all
+}
+
+fn parameters(request: &Request<'_>, judged: &Judged) -> std::collections::BTreeMap<String, super::outcome::Value> {
+    let of = |place: usize| {
+        let covariance = own_covariance(&judged.candidates, place, &judged.covariance);
+        values(&judged.candidates[place], &covariance, request.model)
+    };
+    (0..judged.candidates.len()).flat_map(of).collect()
+}

@@ -1,0 +1,55 @@
+//! What a diagnosis may be told.
+
+use serde::{Deserialize, Serialize};
+
+/// Settings of a diagnosis; every one is kept with its report.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Settings {
+    /// Simulations that judge start anew every so often, s. Where absent, ten times the time in which the ship sails her
+    /// length.
+    pub restart_s: Option<f64>,
+    /// Shortest interval between samples that are used, s. Where absent, a fiftieth of the time in which the ship sails her
+    /// length.
+    pub least_step_s: Option<f64>,
+    /// How far a published coefficient may be from the truth, as a share of its value, where the model does not say what
+    /// its own trials leave open.
+    pub slack: f64,
+    /// Least evidence (natural logarithm, after what the number of hypotheses costs) for an effect to be named.
+    pub least_evidence: f64,
+    /// Most effects that are named together.
+    pub most_effects: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { restart_s: None, least_step_s: None, slack: 0.02, least_evidence: 5.0, most_effects: 3 }
+    }
+}
+
+impl Settings {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// Names the field and what it may be.
+    pub fn check(&self) -> Result<(), (String, String)> {
+        let refuse = |field: &str, message: &str| Err((field.to_owned(), message.to_owned()));
+        let positive = |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
+        if !positive(self.restart_s) {
+            return refuse("restart_s", "must be above 0 s");
+        }
+        if !positive(self.least_step_s) {
+            return refuse("least_step_s", "must be above 0 s");
+        }
+        if !(self.slack > 0.0 && self.slack <= 1.0) {
+            return refuse("slack", "must be above 0 and at most 1");
+        }
+        if !(self.least_evidence >= 0.0 && self.least_evidence.is_finite()) {
+            return refuse("least_evidence", "must be at least 0");
+        }
+        if !(1..=4).contains(&self.most_effects) {
+            return refuse("most_effects", "must be from 1 to 4");
+        }
+        Ok(())
+    }
+}

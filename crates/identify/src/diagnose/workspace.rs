@@ -1,0 +1,97 @@
+//! A model, columns and trials made ready: linearised once, filtered at any level of discrepancy.
+
+use rayon::prelude::*;
+use sistership_model::coefficient::Axis;
+use sistership_model::law::Law;
+use sistership_model::trial::Channel;
+use sistership_model::{Model, Trial, particulars};
+
+use super::nuisance::{Terms, regressor};
+use crate::refine::RefineError;
+use crate::residual::{Columns, Discrepancies, Gram, Linearised, Noise, Record, System, filter, floor, linearise, scatter};
+use crate::transfer::approach_of;
+
+/// Everything that does not change with the discrepancy.
+pub struct Workspace<'a> {
+    pub trials: &'a [&'a Trial],
+    pub noise: Noise,
+    pub lpp_m: f64,
+    pub speed_m_s: f64,
+    system: System,
+    linear: Vec<Vec<Linearised>>,
+}
+
+/// What is typical of a ship.
+#[derive(Debug, Clone)]
+pub struct Scales {
+    /// Accelerations by axis: U^2/L, or (U/L)^2.
+    pub accelerations: Vec<f64>,
+    /// Time over which the discrepancy is correlated, s: the ship sails her length.
+    pub time_s: f64,
+}
+
+impl<'a> Workspace<'a> {
+    /// # Errors
+    /// Names what the model or a trial lacks.
+    pub fn new(
+        model: &Model,
+        law: &Law,
+        columns: Columns,
+        terms: &Terms,
+        trials: &'a [&'a Trial],
+        least_step_s: Option<f64>,
+    ) -> Result<Self, RefineError> {
+        let lpp_m = particulars::value(&model.particulars, "lpp_m");
+        let lpp_m = lpp_m.ok_or_else(|| RefineError::Law(format!("the model `{}` does not give `lpp_m`", model.name)))?;
+        let approach = approach_of(trials).map(|approach| approach.speed_m_s);
+        let speed_m_s = approach.or(model.speed_m_s).ok_or_else(|| RefineError::Data("the trials have no speed".into()))?;
+        let least_step_s = least_step_s.unwrap_or(0.02 * lpp_m / speed_m_s);
+        let records: Vec<Record<'a>> = trials.iter().map(|trial| Record::new(trial, least_step_s)).collect();
+        let noise = noise(&records, lpp_m, speed_m_s);
+        let frame = trials.first().map(|trial| trial.velocity).unwrap_or_default();
+        let term = |name: &str| terms.get(name).and_then(|form| Some(regressor(model, form)?.1));
+        let system = System::new(model, law, columns, &term, frame)?;
+        let linear = records.par_iter().map(|record| linearise(&system, record)).collect::<Result<_, _>>()?;
+        Ok(Self { trials, noise, lpp_m, speed_m_s, system, linear })
+    }
+
+    pub fn columns(&self) -> &Columns {
+        &self.system.columns
+    }
+
+    pub fn axes(&self) -> &[Axis] {
+        &self.system.axes
+    }
+
+    pub fn linear(&self) -> &[Vec<Linearised>] {
+        &self.linear
+    }
+
+    pub fn scales(&self) -> Scales {
+        let rate = self.speed_m_s / self.lpp_m;
+        let of = |axis: &Axis| if matches!(axis, Axis::X | Axis::Y) { self.speed_m_s * rate } else { rate * rate };
+        Scales { accelerations: self.axes().iter().map(of).collect(), time_s: rate.recip() }
+    }
+
+    /// The products of each trial.
+    pub fn each(&self, discrepancies: &Discrepancies) -> Vec<Gram> {
+        let width = 1 + self.columns().len();
+        let of_trial = |parts: &Vec<Linearised>| {
+            let grams: Vec<Gram> = parts.iter().map(|part| filter(part, &self.noise, discrepancies)).collect();
+            Gram::sum(&grams, width)
+        };
+        self.linear.par_iter().map(of_trial).collect()
+    }
+
+    /// The products of all trials.
+    pub fn total(&self, discrepancies: &Discrepancies) -> Gram {
+        Gram::sum(&self.each(discrepancies), 1 + self.columns().len())
+    }
+}
+
+/// The scatter of each instrument over all trials.
+fn noise(records: &[Record<'_>], lpp_m: f64, speed_m_s: f64) -> Noise {
+    let read = [Channel::U, Channel::V, Channel::R, Channel::P, Channel::Phi, Channel::Psi, Channel::X, Channel::Y];
+    let one = |channel: Channel| Some((channel, scatter(records, channel)?.max(floor(channel, lpp_m, speed_m_s))));
+    read.into_iter().filter_map(one).collect()
+}

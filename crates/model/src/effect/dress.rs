@@ -1,0 +1,209 @@
+//! A law as effects change it: the same kind of thing, so that whatever takes a law takes a dressed one.
+
+use std::collections::BTreeMap;
+
+use super::{AppliedEffect, Form};
+use crate::Model;
+use crate::formula::Expr;
+use crate::law::{Input, Law, Parameter, STATES};
+use crate::trial::Channel;
+
+/// What effects add to a law, beside the formulas of its own that they change.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Dressing {
+    /// Values of the effects' parameters by qualified name.
+    pub parameters: BTreeMap<String, f64>,
+    /// Added to the accelerations.
+    pub accelerations: Vec<(crate::coefficient::Axis, Expr)>,
+    /// Factors on coefficients.
+    pub coefficients: Vec<(String, Expr)>,
+    /// Inputs behind a lag, with its time constant, s.
+    pub lags: Vec<(String, Expr)>,
+    /// What instruments say, by channel; several effects on one channel follow each other.
+    pub measures: Vec<(Channel, Expr)>,
+}
+
+/// The name of an effect's parameter (or value) in a dressed law.
+pub fn qualified(effect: &str, form: &str, name: &str) -> String {
+    format!("{effect}/{form}.{name}")
+}
+
+/// The input that carries a recorded channel which is a state of some laws.
+fn recorded(channel: &str) -> String {
+    format!("recorded.{channel}")
+}
+
+/// The channel that an input of a law is recorded in, if any can be.
+pub fn input_channel(input: &str) -> Option<Channel> {
+    Channel::by_name(input.strip_prefix("recorded.").unwrap_or(input))
+}
+
+/// The input of a dressed law that is the time since the start of the trial, s; effects call it `t`, which laws may use
+/// for the thrust deduction.
+pub const TIME: &str = "recorded.t";
+
+impl Law {
+    /// This law with the effects that a model carries.
+    ///
+    /// # Errors
+    /// The field of the model at fault, and why.
+    pub fn with_effects(&self, model: &Model) -> Result<Self, (String, String)> {
+        let mut forms = Vec::new();
+        for effect in &model.effects {
+            let field = |(field, message): (String, String)| (format!("effects.{}.{field}", effect.name), message);
+            forms.push((effect, effect.checked().map_err(field)?));
+        }
+        let listed: Vec<(&str, &Form)> = forms.iter().map(|(effect, form)| (effect.name.as_str(), form)).collect();
+        let mut law = self.dressed(model, &listed);
+        for (effect, _) in &forms {
+            for (name, quantity) in &effect.parameters {
+                law.dressing.parameters.insert(qualified(&effect.name, &effect.form.name, name), quantity.value);
+            }
+        }
+        Ok(law)
+    }
+
+    /// This law with forms of effects at the absence of each; `model` gives the particulars.
+    pub fn dressed(&self, model: &Model, forms: &[(&str, &Form)]) -> Self {
+        let mut law = self.clone();
+        // What the law sees is changed before forces are added: an added force sees the ship as she moves over the ground.
+        let (inflow, others): (Vec<_>, Vec<_>) = forms.iter().partition(|(_, form)| !form.sees.is_empty());
+        for (effect, form) in inflow.into_iter().chain(others) {
+            Dresser { effect, form, model, has_roll: self.has_roll() }.dress(&mut law);
+        }
+        law
+    }
+}
+
+impl AppliedEffect {
+    /// The form with its formulas, and a value for each parameter.
+    ///
+    /// # Errors
+    /// The field at fault and why.
+    pub fn checked(&self) -> Result<Form, (String, String)> {
+        let form = Form::read(self.acts_on, &self.form)?;
+        for name in form.parameters.keys() {
+            if !self.parameters.get(name).is_some_and(|quantity| quantity.value.is_finite()) {
+                return Err((format!("parameters.{name}"), "give it a finite value".into()));
+            }
+        }
+        match self.parameters.keys().find(|name| !form.parameters.contains_key(*name)) {
+            Some(name) => Err((format!("parameters.{name}"), "the effect has no such parameter".into())),
+            None => Ok(form),
+        }
+    }
+}
+
+struct Dresser<'a> {
+    effect: &'a str,
+    form: &'a Form,
+    model: &'a Model,
+    has_roll: bool,
+}
+
+impl Dresser<'_> {
+    fn dress(&self, law: &mut Law) {
+        self.inputs(law);
+        self.parameters(law);
+        for (name, expr) in &self.form.values {
+            law.values.insert(self.name(name), self.expr(expr));
+        }
+        for (name, expr) in &self.form.sees {
+            let seen = format!("{}/{}.seen.{name}", self.effect, self.form.file.name);
+            law.rename_in_forces(name, &seen);
+            law.values.insert(seen, self.expr(expr));
+        }
+        for (axis, expr) in &self.form.forces {
+            if let Some(axis) = law.axes.get_mut(axis) {
+                axis.rest = Expr::Add(Box::new(axis.rest.clone()), Box::new(self.expr(expr)));
+            }
+        }
+        law.dressing.accelerations.extend(self.form.accelerates.iter().map(|(axis, e)| (*axis, self.expr(e))));
+        law.dressing.coefficients.extend(self.form.coefficients.iter().map(|(name, e)| (name.clone(), self.expr(e))));
+        law.dressing.lags.extend(self.form.lags.iter().map(|(name, e)| (name.clone(), self.expr(e))));
+        law.dressing.measures.extend(self.form.measures.iter().map(|(channel, e)| (*channel, self.expr(e))));
+    }
+
+    fn parameters(&self, law: &mut Law) {
+        for (name, parameter) in &self.form.parameters {
+            let unit = self.form.file.parameters.get(name).map(|p| p.unit.clone()).unwrap_or_default();
+            let meaning = format!("{name} of {}", self.effect);
+            let known = Parameter { dimension: parameter.dimension, unit, meaning, from: None, is_approach_speed: false };
+            law.parameters.insert(self.name(name), known);
+            law.dressing.parameters.insert(self.name(name), parameter.absent);
+        }
+        for (name, expr) in &self.form.particulars {
+            law.values.insert(self.name(name), self.expr(expr));
+        }
+    }
+
+    /// Channels that the law does not take yet become inputs; where nobody records them they are still: no wind, no roll,
+    /// deep water.
+    fn inputs(&self, law: &mut Law) {
+        let mentioned = self.form.formulas().flat_map(|expr| expr.names().into_iter().map(str::to_owned).collect::<Vec<_>>());
+        for name in mentioned.collect::<Vec<_>>() {
+            let input = self.input(&name);
+            let channel = input_channel(&input);
+            let dimension = if input == TIME { Some(crate::units::Dimension::TIME) } else { channel.map(Channel::dimension) };
+            let is_state = STATES.iter().any(|(state, _)| *state == input) || input == "x" || input == "y";
+            let (Some(dimension), false) = (dimension, is_state || law.inputs.contains_key(&input)) else { continue };
+            let still = if channel == Some(Channel::Depth) { f64::INFINITY } else { 0.0 };
+            law.inputs.insert(input, Input { dimension, default: Some(still) });
+        }
+    }
+
+    /// Roll is what was recorded where the law does not simulate it.
+    fn input(&self, name: &str) -> String {
+        let is_recorded = name == "t" || !self.has_roll && (name == "phi" || name == "p");
+        if is_recorded { recorded(name) } else { name.to_owned() }
+    }
+
+    fn name(&self, name: &str) -> String {
+        qualified(self.effect, &self.form.file.name, name)
+    }
+
+    fn expr(&self, expr: &Expr) -> Expr {
+        expr.renamed(&|name| self.renamed(name))
+    }
+
+    fn renamed(&self, name: &str) -> Option<Expr> {
+        let form = self.form;
+        let stands_in = form.particulars.contains_key(name) && !self.model.particulars.contains_key(name);
+        if name == "approach_speed_m_s" {
+            let service = crate::particulars::value(&self.model.particulars, "service_speed_m_s");
+            return Some(Expr::Number(self.model.speed_m_s.or(service).unwrap_or(1.0)));
+        }
+        let own = form.parameters.contains_key(name) || form.values.contains_key(name) || stands_in;
+        let renamed = if own { self.name(name) } else { self.input(name) };
+        (renamed != name).then_some(Expr::Name(renamed))
+    }
+}
+
+impl Form {
+    /// Every formula that acts.
+    fn formulas(&self) -> impl Iterator<Item = &Expr> {
+        let named = self.values.values().chain(self.sees.values()).chain(self.coefficients.values()).chain(self.lags.values());
+        named.chain(self.accelerates.values()).chain(self.forces.values()).chain(self.measures.values())
+    }
+
+    /// A figure that follows from the parameters, in the unit of its name; `None` without a finite value.
+    pub fn report(&self, name: &str, lookup: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
+        let report = self.reports.get(name)?;
+        report.formula.value(lookup).map(|value| value * report.factor).filter(|value| value.is_finite())
+    }
+}
+
+impl Law {
+    /// Replaces a state or an input by another name in everything that makes forces; kinematics stay.
+    fn rename_in_forces(&mut self, name: &str, by: &str) {
+        let rename = |expr: &mut Expr| *expr = expr.renamed(&|found| (found == name).then(|| Expr::Name(by.to_owned())));
+        self.values.values_mut().for_each(rename);
+        self.factors.values_mut().for_each(rename);
+        self.mass.values_mut().for_each(rename);
+        for axis in self.axes.values_mut() {
+            axis.terms.values_mut().for_each(rename);
+            rename(&mut axis.scale);
+            rename(&mut axis.rest);
+        }
+    }
+}

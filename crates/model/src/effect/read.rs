@@ -1,0 +1,126 @@
+//! From an effect's file to a checked effect.
+
+use std::sync::Arc;
+
+use super::file::EffectFile;
+use super::{ActsOn, Effect, Form, FormFile, Grammar, GrammarFile};
+use crate::FileError;
+use crate::error::Blame;
+use crate::name::check_slug;
+
+pub(super) fn read(file: &str, text: &str) -> Result<Effect, FileError> {
+    let blame = Blame::new(file, text);
+    let raw: EffectFile = blame.read()?;
+    check_slug(&raw.name).map_err(|e| blame.at("name", e))?;
+    if raw.forms.is_empty() == raw.grammar.is_none() {
+        return Err(blame.at("forms", "write either `forms` or a `grammar`"));
+    }
+    let at = |(field, message): (String, String)| blame.at(&field, message);
+    Ok(Effect {
+        forms: forms(raw.acts_on, &raw.forms).map_err(at)?,
+        grammar: raw.grammar.as_ref().map(|grammar| read_grammar(raw.acts_on, grammar)).transpose().map_err(at)?,
+        name: raw.name,
+        title: raw.title,
+        acts_on: raw.acts_on,
+        sources: raw.sources,
+        note: raw.note,
+    })
+}
+
+fn forms(acts_on: ActsOn, raw: &[FormFile]) -> Result<Vec<Arc<Form>>, (String, String)> {
+    let one = |(index, form): (usize, &FormFile)| {
+        let path = format!("forms.{}", form.name);
+        check_slug(&form.name).map_err(|e| (path.clone(), e))?;
+        if raw[..index].iter().any(|earlier| earlier.name == form.name) {
+            return Err((path, "is the name of two forms".into()));
+        }
+        let below = |(field, message): (String, String)| {
+            let field = if field.is_empty() { path.clone() } else { format!("{path}.{field}") };
+            (field, message)
+        };
+        Form::read(acts_on, form).map(Arc::new).map_err(below)
+    };
+    raw.iter().enumerate().map(one).collect()
+}
+
+fn read_grammar(acts_on: ActsOn, raw: &GrammarFile) -> Result<Grammar, (String, String)> {
+    if acts_on != ActsOn::Force {
+        return Err(("acts_on".into(), "a grammar spells forces: write `force`".into()));
+    }
+    Grammar::read(raw).map_err(|(field, message)| (format!("grammar.{field}"), message))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    const DRAG: &str = "
+kind: effect
+name: drag
+title: Drag by roll
+acts_on: force
+sources: { test: { citation: made for this test } }
+forms:
+  - name: only
+    meaning: drag
+    needs: [phi]
+    parameters:
+      share: { unit: '1', meaning: share, prior: { deviation: 0.1 }, bounds: [-1, 1], mirror: same }
+    reports: { share_percent: share }
+    values: { force: 0.5*water_density_kg_m3*lpp_m^2*u^2 }
+    forces:
+      X: -share*force*phi^2
+";
+
+    fn refused(from: &str, to: &str) -> String {
+        assert!(DRAG.contains(from), "{from}");
+        read("drag.yaml", &DRAG.replace(from, to)).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_form_reads() {
+        let effect = read("drag.yaml", DRAG).unwrap_or_else(|e| panic!("{e}"));
+        let form = &effect.forms[0];
+        assert_eq!(form.reports["share_percent"].factor, 100.0);
+        assert_eq!((form.parameters["share"].start, form.parameters["share"].prior_mean), (0.0, 0.0));
+    }
+
+    #[test]
+    fn refusals_name_file_line_and_field() {
+        let unknown = refused("*phi^2", "*beta^2");
+        assert!(unknown.starts_with("drag.yaml:16: forms.only.forces.X: ") && unknown.contains("`beta`"), "{unknown}");
+        let dimension = refused("force*phi^2", "force*lpp_m*phi^2");
+        assert!(dimension.contains("drag.yaml:16") && dimension.contains("kg m^2 s^-2"), "{dimension}");
+        let symmetry = refused("phi^2", "phi");
+        assert!(symmetry.contains("drag.yaml:16: forms.only.forces.X") && symmetry.contains("stay as it is"), "{symmetry}");
+        let needs = refused("needs: [phi]", "needs: [p]");
+        assert!(needs.contains("drag.yaml:16: forms.only.forces.X: uses `phi`"), "{needs}");
+        let absent = refused("-share*", "-(share + 0.1)*");
+        assert!(absent.contains("forms.only.forces.X: does not vanish") && absent.contains("should be 0"), "{absent}");
+    }
+
+    #[test]
+    fn parameters_are_checked() {
+        for (from, to, part) in [
+            ("deviation: 0.1", "deviation: 0.0", "above zero"),
+            ("[-1, 1]", "[1, -1]", "in order"),
+            ("[-1, 1]", "[0.5, 1]", "absent, 0, is outside"),
+            ("unit: '1'", "unit: deg", "SI"),
+            ("      share: {", "      draught_m: {", "already means"),
+            ("forces:\n      X", "measures:\n      u", "`measurement`"),
+            ("share_percent: share", "share_deg_s: share", "s^-1"),
+            ("share_percent: share", "share_percent: share*u", "unknown name `u`"),
+            ("name: only", "name: Only one", "is not a name"),
+        ] {
+            let error = refused(from, to);
+            assert!(error.contains(part), "{error}");
+        }
+    }
+
+    #[test]
+    fn forms_or_a_grammar() {
+        let neither = &DRAG[..DRAG.find("forms:").unwrap()];
+        assert!(read("drag.yaml", neither).unwrap_err().message.contains("either"));
+    }
+}

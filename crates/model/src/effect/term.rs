@@ -1,0 +1,95 @@
+//! One term that a grammar spells, and its form.
+
+use std::collections::BTreeMap;
+
+use indexmap::IndexMap;
+
+use super::{EffectParameterFile, FormFile, GrammarFile, Mirror, PriorFile, names};
+use crate::coefficient::Axis;
+use crate::formula::{self, Expr};
+use crate::trial::Channel;
+
+/// What a factor of a coefficient's name stands for.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Factor {
+    pub symbol: String,
+    pub text: String,
+    /// Whether it changes its sign in the mirror.
+    pub odd: bool,
+    pub absolute: bool,
+}
+
+/// Factors of a term, the last perhaps as its absolute value.
+pub(super) struct Term<'a> {
+    pub factors: Vec<&'a Factor>,
+    pub bars: bool,
+}
+
+impl Term<'_> {
+    /// Whether its parity is that of the axis.
+    pub fn fits(&self, axis: Axis) -> bool {
+        let odd = self.factors.iter().filter(|factor| factor.odd).count();
+        let in_bars = self.factors.last().filter(|factor| self.bars && factor.odd).map_or(0, |_| 1);
+        ((odd - in_bars) % 2 == 1) == axis.is_odd()
+    }
+
+    /// Like a coefficient; formulas cannot mention bars, so that the parameter has another mark in their place.
+    fn name(&self, axis: Axis, bar: &str) -> String {
+        let last = self.factors.len() - 1;
+        let symbol = |(place, factor): (usize, &&Factor)| {
+            if self.bars && place == last { format!("{bar}{}{bar}", factor.symbol) } else { factor.symbol.clone() }
+        };
+        format!("{axis}_{}", self.factors.iter().enumerate().map(symbol).collect::<String>())
+    }
+
+    fn product(&self) -> String {
+        let last = self.factors.len() - 1;
+        let one = |(place, factor): (usize, &&Factor)| {
+            if self.bars && place == last { format!("abs({})", factor.text) } else { format!("({})", factor.text) }
+        };
+        self.factors.iter().enumerate().map(one).collect::<Vec<_>>().join("*")
+    }
+
+    /// The form of the term on an axis.
+    pub fn form(&self, grammar: &GrammarFile, axis: Axis) -> FormFile {
+        let (name, parameter) = (self.name(axis, "|"), self.name(axis, "_abs_").trim_end_matches("_abs_").to_owned());
+        let force = format!("{parameter}*({})*{}", grammar.scales[&axis], self.product());
+        FormFile {
+            meaning: format!("the term {name} of the hull's polynomial"),
+            name,
+            needs: needs(&force),
+            unless: Vec::new(),
+            only_without_roll: false,
+            particulars: IndexMap::new(),
+            parameters: IndexMap::from([(parameter, coefficient(grammar.deviations[&axis]))]),
+            reports: IndexMap::new(),
+            values: IndexMap::new(),
+            sees: IndexMap::new(),
+            accelerates: BTreeMap::new(),
+            coefficients: IndexMap::new(),
+            lags: IndexMap::new(),
+            forces: BTreeMap::from([(axis, force)]),
+            measures: BTreeMap::new(),
+        }
+    }
+}
+
+/// The channels that a formula uses and that trials may lack.
+fn needs(formula: &str) -> Vec<Channel> {
+    let parsed = formula::parse(formula);
+    let mut needs: Vec<Channel> = parsed.iter().flat_map(Expr::names).filter_map(names::needed).collect();
+    needs.sort_unstable();
+    needs
+}
+
+fn coefficient(deviation: f64) -> EffectParameterFile {
+    EffectParameterFile {
+        unit: "1".into(),
+        meaning: "the coefficient".into(),
+        prior: PriorFile { mean: 0.0, deviation },
+        bounds: [-20.0 * deviation, 20.0 * deviation],
+        absent: 0.0,
+        start: None,
+        mirror: Mirror::Same,
+    }
+}

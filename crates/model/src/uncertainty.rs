@@ -1,0 +1,86 @@
+//! What the trials that a model was fitted on leave open: the coefficients' information, and the discrepancy that no
+//! coefficient explains.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::coefficient::Axis;
+
+/// What a fit leaves open. With `d` the change of the listed coefficients, each divided by its scale, the trials that
+/// were fitted say `|R d - z|^2` (minus twice the logarithm of their likelihood, less a constant).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Uncertainty {
+    /// Names of the coefficients, and of terms that the model does not have (its value for them is zero).
+    pub names: Vec<String>,
+    /// What each change is divided by, in the unit of the coefficient.
+    pub scales: Vec<f64>,
+    /// The upper triangle of R, a row in a line: numbers from the diagonal on, separated by spaces.
+    pub root_information: Vec<String>,
+    /// z.
+    pub offset: Vec<f64>,
+    /// Accelerations that remain, by axis.
+    pub discrepancy: BTreeMap<Axis, Discrepancy>,
+    /// Names of the trials that it was learned on.
+    pub trials: Vec<String>,
+}
+
+/// What remains of an acceleration: a random part of exponential autocorrelation, and a white one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Discrepancy {
+    /// Standard deviation, m/s2 or rad/s2.
+    pub deviation: f64,
+    /// Correlation time, s.
+    pub time_s: f64,
+    /// Root of the density of the white part, m/s2 or rad/s2 times the root of a second.
+    pub white: f64,
+}
+
+impl Uncertainty {
+    /// Writes R row by row; `entry(i, j)` for `j >= i`.
+    pub fn rows(size: usize, entry: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
+        let row = |i: usize| (i..size).map(|j| format!("{:.7e}", entry(i, j))).collect::<Vec<_>>().join(" ");
+        (0..size).map(row).collect()
+    }
+
+    /// R, row by row from the diagonal on.
+    ///
+    /// # Errors
+    /// Names the row that is not as long as it should be, or not of numbers.
+    pub fn root(&self) -> Result<Vec<Vec<f64>>, String> {
+        let size = self.names.len();
+        let row = |(i, text): (usize, &String)| {
+            let numbers: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
+            let numbers = numbers.ok().filter(|row| row.len() == size - i && row.iter().all(|x: &f64| x.is_finite()));
+            numbers.ok_or_else(|| format!("root_information: row {} should be {} finite numbers", i + 1, size - i))
+        };
+        if self.root_information.len() != size {
+            return Err(format!("root_information: {} rows for {size} names", self.root_information.len()));
+        }
+        self.root_information.iter().enumerate().map(row).collect()
+    }
+
+    /// Checks that the lists go together.
+    ///
+    /// # Errors
+    /// Says which do not.
+    pub fn check(&self) -> Result<(), String> {
+        let size = self.names.len();
+        if self.scales.len() != size || self.offset.len() != size {
+            return Err("names, scales and offset should be equally many".into());
+        }
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        if !self.scales.iter().all(|&scale| positive(scale)) {
+            return Err("scales should be above 0".into());
+        }
+        if self.discrepancy.values().any(|d| {
+            !(d.white >= 0.0 && d.white.is_finite() && d.deviation >= 0.0 && d.deviation.is_finite() && positive(d.time_s))
+        }) {
+            return Err("discrepancy: deviation and white should be at least 0 and time_s above 0".into());
+        }
+        self.root().map(|_| ())
+    }
+}
