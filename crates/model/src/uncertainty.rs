@@ -23,8 +23,25 @@ pub struct Uncertainty {
     pub offset: Vec<f64>,
     /// Accelerations that remain, by axis.
     pub discrepancy: BTreeMap<Axis, Discrepancy>,
+    /// How much each form of an effect explained of these trials, which do not have it: by `effect/form`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub feigned: BTreeMap<String, Feigned>,
+    /// The largest that any stretch of these trials left unexplained, in deviations, by channel.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub remainder: BTreeMap<String, f64>,
     /// Names of the trials that it was learned on.
     pub trials: Vec<String>,
+}
+
+/// What an effect explained of trials that do not have it, by what chance would let it explain: one where the model is
+/// right. Each trial is judged by coefficients fitted on the others.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Feigned {
+    /// Of single trials, in the mean.
+    pub each: f64,
+    /// Of all together: more than `each` where one size of the effect would suit them all.
+    pub together: f64,
 }
 
 /// What remains of an acceleration: a random part of exponential autocorrelation, and a white one.

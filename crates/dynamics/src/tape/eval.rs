@@ -2,7 +2,7 @@
 
 use sistership_model::formula::Function;
 
-use super::{Op, Tape};
+use super::{Op, Slot, Tape};
 
 /// Values of one quantity in every lane.
 pub type Lanes<const N: usize> = [f64; N];
@@ -38,6 +38,34 @@ impl Tape {
         for (index, op) in self.ops.iter().enumerate() {
             let value = tangent(op, index, primal, seeds, work);
             work.push(value);
+        }
+    }
+
+    /// The operations that depend on some of the inputs.
+    pub fn depending_on(&self, inputs: &[usize]) -> Vec<Slot> {
+        let mut depends = vec![false; self.ops.len()];
+        for (index, op) in self.ops.iter().enumerate() {
+            depends[index] = match *op {
+                Op::Input(input) => inputs.contains(&(input as usize)),
+                _ => op.operands().into_iter().flatten().any(|slot| depends[slot as usize]),
+            };
+        }
+        (0..self.ops.len()).filter(|&index| depends[index]).map(|index| index as Slot).collect()
+    }
+
+    /// As [`Tape::tangents`], where nothing but what [`depends`](Tape::depending_on) on the seeded inputs is visited; `work`
+    /// is kept from call to call for the same inputs, empty at first.
+    pub fn tangents_among<const N: usize>(
+        &self,
+        depending: &[Slot],
+        primal: &[Lanes<1>],
+        seeds: &[Lanes<N>],
+        work: &mut Vec<Lanes<N>>,
+    ) {
+        work.resize(self.ops.len(), [0.0; N]);
+        for &slot in depending {
+            let index = slot as usize;
+            work[index] = tangent(&self.ops[index], index, primal, seeds, work);
         }
     }
 
@@ -91,11 +119,18 @@ fn call<const N: usize>(function: Function, a: &Lanes<N>) -> Lanes<N> {
     }
 }
 
+#[inline(always)]
+fn times<const N: usize>(lanes: &Lanes<N>, factor: f64) -> Lanes<N> {
+    // No direction is moved by an infinite slope that it does not meet.
+    lanes.map(|x| if x == 0.0 { 0.0 } else { x * factor })
+}
+
+#[inline(always)]
 fn tangent<const N: usize>(op: &Op, index: usize, primal: &[Lanes<1>], seeds: &[Lanes<N>], work: &[Lanes<N>]) -> Lanes<N> {
     let value = |slot: u32| primal[slot as usize][0];
     let d = |slot: u32| &work[slot as usize];
-    let scaled = |slot: u32, factor: f64| d(slot).map(|x| if x == 0.0 { 0.0 } else { x * factor });
-    let both = |a: u32, by_a: f64, b: u32, by_b: f64| zip(&scaled(a, by_a), &scaled(b, by_b), |x, y| x + y);
+    let scaled = |slot: u32, factor: f64| times(d(slot), factor);
+    let both = |a: u32, by_a: f64, b: u32, by_b: f64| zip(&times(d(a), by_a), &times(d(b), by_b), |x, y| x + y);
     match *op {
         Op::Constant(_) => [0.0; N],
         Op::Input(input) => seeds[input as usize],
@@ -185,6 +220,20 @@ mod tests {
         for k in 0..4 {
             assert_eq!(tape.read(0, &work)[k], tape.values(&[u[k], v[k]])[0]);
         }
+    }
+
+    #[test]
+    fn what_does_not_depend_on_a_direction_is_not_visited() {
+        let tape = tape("u^2*sin(u) + sqrt(1 + v^2)*exp(v)");
+        let point = [[1.3], [0.4]];
+        let (mut primal, mut all, mut some) = (Vec::new(), Vec::new(), Vec::new());
+        tape.run(&point, &mut primal);
+        let seeds = [[0.0], [1.0]];
+        let depending = tape.depending_on(&[1]);
+        assert!(depending.len() < tape.len());
+        tape.tangents(&primal, &seeds, &mut all);
+        tape.tangents_among(&depending, &primal, &seeds, &mut some);
+        assert_eq!(tape.read(0, &all), tape.read(0, &some));
     }
 
     #[test]

@@ -9,7 +9,8 @@ mod op;
 
 pub use eval::Lanes;
 pub use lower::{Binding, TapeBuilder};
-pub(crate) use op::{Op, Slot};
+pub(crate) use op::Op;
+pub use op::Slot;
 
 /// A list of operations with named inputs and numbered outputs.
 #[derive(Debug, Clone, Default)]

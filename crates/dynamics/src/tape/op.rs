@@ -3,7 +3,7 @@
 use sistership_model::formula::{Comparison, Function};
 
 /// Index of an operation's result.
-pub(crate) type Slot = u32;
+pub type Slot = u32;
 
 /// One operation on earlier results.
 #[derive(Debug, Clone, Copy, PartialEq)]

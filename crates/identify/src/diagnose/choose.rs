@@ -2,56 +2,63 @@
 
 use rayon::prelude::*;
 
-use super::search::{Judged, Search};
+use super::Request;
+use super::base::Base;
+use super::discount::SIZE;
+use super::evidence::Level;
+use super::search::{Judged, Likely, Search};
 use super::settings::Settings;
 use crate::refine::RefineError;
 use crate::residual::Candidate;
 
 /// How many of the most probable by one linearisation are judged where they stand.
-const JUDGED: usize = 8;
+const JUDGED: usize = 6;
 /// How many companions of a taken effect are.
-const COMPANIONS: usize = 4;
+const COMPANIONS: usize = 3;
 
-/// Every hypothesis that was judged; the first is the model alone.
+/// Rounds in which coefficients and effects are then fitted together, everything linearised anew.
+const SETTLED: usize = 2;
+
+/// Every hypothesis that was judged.
 pub(super) struct Choice {
+    /// The model alone.
     pub alone: Judged,
     pub tried: Vec<Judged>,
     /// Place of the one taken; none where the model alone stands.
     pub taken: Option<usize>,
+    /// Levels of the discrepancy that are still weighed.
+    levels: Vec<Level>,
 }
 
 /// Judges single effects, then what stands together with the best, exchanging each of a set for every other.
 ///
 /// # Errors
 /// Names what a trial lacks.
-pub(super) fn choose(search: &Search<'_>, candidates: &[Candidate], settings: &Settings) -> Result<Choice, RefineError> {
-    let alone = search.judge(&[])?;
-    let mut choice = Choice { alone, tried: Vec::new(), taken: None };
-    for _ in 0..settings.most_effects {
+pub(super) fn choose(search: &Search<'_>, settings: &Settings) -> Result<Choice, RefineError> {
+    let base = search.base(&[], &search.levels)?;
+    let (_, alone) = search.alone(&base)?;
+    let mut choice = Choice { alone, tried: Vec::new(), taken: None, levels: search.levels.clone() };
+    choice.add(search, settings, &base, JUDGED)?;
+    while choice.taken.is_some() && choice.kept().len() < settings.most_effects {
         let kept = choice.kept();
-        let found = companions(search, &kept, candidates)?;
-        let better = most_probable(&found).filter(|&best| choice.accepts(search, &found[best], settings));
-        choice.take(found, better);
-        if better.is_none() {
+        let base = search.base(&kept, &choice.levels)?;
+        if !choice.add(search, settings, &base, COMPANIONS)? {
             break;
         }
-        choice.exchange(search, candidates)?;
+        choice.exchange(search, settings)?;
     }
     Ok(choice)
 }
 
-fn most_probable(found: &[Judged]) -> Option<usize> {
-    (0..found.len()).max_by(|&a, &b| found[a].log_evidence.total_cmp(&found[b].log_evidence))
+fn most_probable(found: &[Judged], accepted: impl Fn(&Judged) -> bool) -> Option<usize> {
+    let places = (0..found.len()).filter(|&place| accepted(&found[place]));
+    places.max_by(|&a, &b| found[a].log_evidence.total_cmp(&found[b].log_evidence))
 }
 
-fn companions(search: &Search<'_>, base: &[Candidate], candidates: &[Candidate]) -> Result<Vec<Judged>, RefineError> {
-    let others: Vec<Candidate> =
-        candidates.iter().filter(|c| !base.iter().any(|kept| kept.effect == c.effect)).cloned().collect();
-    let screened = search.screen(base, &others)?;
-    let count = if base.is_empty() { JUDGED } else { COMPANIONS };
-    let likely: Vec<Candidate> = screened.into_iter().take(count).map(|(_, candidate)| candidate).collect();
-    let judge = |candidate: &Candidate| search.judge(&[base, std::slice::from_ref(candidate)].concat());
-    likely.par_iter().map(judge).collect()
+/// The most probable sets of those of a base and one more, judged where they stand.
+fn companions(search: &Search<'_>, base: &Base<'_>, count: usize) -> Result<Vec<Judged>, RefineError> {
+    let likely: Vec<Likely> = search.screen(base).into_iter().take(count).collect();
+    likely.par_iter().map(|likely| search.judge(base, &likely.candidate, likely.level)).collect()
 }
 
 impl Choice {
@@ -64,20 +71,49 @@ impl Choice {
         self.tried.extend(found);
     }
 
-    /// Undoes a wrong first step: each of those taken together is exchanged for whatever is more probable in its place.
-    fn exchange(&mut self, search: &Search<'_>, candidates: &[Candidate]) -> Result<(), RefineError> {
+    /// One effect more, if any is believed.
+    fn add(&mut self, search: &Search<'_>, settings: &Settings, base: &Base<'_>, count: usize) -> Result<bool, RefineError> {
+        let found = companions(search, base, count)?;
+        let better = most_probable(&found, |judged| self.accepts(search, judged, settings));
+        self.take(found, better);
+        Ok(better.is_some())
+    }
+
+    /// Undoes a wrong step: each of those taken together but the last is exchanged for whatever is more probable in its
+    /// place. What goes with the others than the last has been tried just before.
+    fn exchange(&mut self, search: &Search<'_>, settings: &Settings) -> Result<(), RefineError> {
         let kept = self.kept();
-        if kept.len() < 2 {
-            return Ok(());
-        }
-        for place in 0..kept.len() {
-            let mut base = kept.clone();
-            base.remove(place);
-            let found = companions(search, &base, candidates)?;
-            let better = most_probable(&found).filter(|&best| found[best].log_evidence > self.best().log_evidence + 1.0);
+        for place in 0..kept.len() - 1 {
+            let mut others = kept.clone();
+            others.remove(place);
+            let base = search.base(&others, &self.levels)?;
+            let found = companions(search, &base, COMPANIONS)?;
+            let best = self.best().log_evidence + 1.0;
+            let better = most_probable(&found, |judged| judged.log_evidence > best && stands(search, judged, settings));
             self.take(found, better);
         }
         Ok(())
+    }
+
+    /// The effects taken, fitted together with the coefficients until both stay, without what the others then make needless.
+    ///
+    /// # Errors
+    /// Names what a trial lacks.
+    pub(super) fn settled<'a>(&self, search: &Search<'a>, request: &Request<'_>) -> Result<(Search<'a>, Judged), RefineError> {
+        let (mut search, mut best) = (search.clone(), self.best().clone());
+        let mut rounds = SETTLED;
+        while rounds > 0 {
+            search = search.taught_by(request, &best)?;
+            best = search.alone(&search.bare(&best.candidates, &self.levels)?)?.1;
+            rounds -= 1;
+            if let Some(place) = needless(&search, &best, request.settings).filter(|_| rounds == 0) {
+                let mut kept = best.candidates.clone();
+                kept.remove(place);
+                best = search.alone(&search.bare(&kept, &self.levels)?)?.1;
+                rounds = 1;
+            }
+        }
+        Ok((search, best))
     }
 
     pub(super) fn best(&self) -> &Judged {
@@ -86,8 +122,24 @@ impl Choice {
 
     /// A hypothesis is taken where it is more probable by enough, also on trials that its fit has not seen.
     fn accepts(&self, search: &Search<'_>, found: &Judged, settings: &Settings) -> bool {
-        let before = self.best();
         let held_out = |judged: &Judged| judged.held_out(&search.fixed).unwrap_or(f64::NEG_INFINITY);
-        found.log_evidence - before.log_evidence > settings.least_evidence && held_out(found) > held_out(before)
+        stands(search, found, settings) && held_out(found) > held_out(self.best())
     }
+}
+
+/// Whether the evidence for the effect that came last is enough, and more than a shadow of the others'.
+fn stands(search: &Search<'_>, found: &Judged, settings: &Settings) -> bool {
+    let last = found.candidates.len() - 1;
+    let evidence = |place: usize| search.evidence(found, place).unwrap_or(f64::NEG_INFINITY);
+    let strongest = (0..last).map(evidence).fold(0.0, f64::max);
+    evidence(last) > settings.least_evidence.max(SIZE.powi(2) * strongest)
+}
+
+/// The weakest of effects that are judged together, where the evidence for it is not enough.
+fn needless(search: &Search<'_>, best: &Judged, settings: &Settings) -> Option<usize> {
+    let evidence = |place: usize| search.evidence(best, place).unwrap_or(f64::NEG_INFINITY);
+    let evidence: Vec<f64> = (0..best.candidates.len()).map(evidence).collect();
+    let strongest = evidence.iter().copied().fold(0.0, f64::max);
+    let weakest = (0..evidence.len()).min_by(|&a, &b| evidence[a].total_cmp(&evidence[b]));
+    weakest.filter(|&place| evidence[place] <= settings.least_evidence.max(SIZE.powi(2) * strongest))
 }

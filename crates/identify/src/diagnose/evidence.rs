@@ -80,18 +80,68 @@ impl Reduced {
         Some(Self { deviance, information, right: remaining, answers, shift })
     }
 
-    /// The estimate of a hypothesis that has some of the effects' columns, with their priors.
-    pub fn estimate(&self, columns: &[usize], priors: &[Fixing]) -> Option<Estimate> {
+    /// Some of the effects' columns, with others integrated out under their priors.
+    pub fn given(&self, others: &[usize], priors: &[Fixing], columns: &[usize]) -> Option<Self> {
+        let (own, right) = self.posterior(others, priors);
+        let cross = DMatrix::from_fn(others.len(), columns.len(), |i, j| self.information[(others[i], columns[j])]);
+        let factor = Cholesky::new(own)?;
+        let part = DMatrix::from_fn(columns.len(), columns.len(), |i, j| self.information[(columns[i], columns[j])]);
+        let remaining = DVector::from_fn(columns.len(), |i, _| self.right[columns[i]]);
+        Some(Self {
+            information: part - cross.transpose() * factor.solve(&cross),
+            right: remaining - cross.transpose() * factor.solve(&right),
+            ..self.clone()
+        })
+    }
+
+    /// What other trials say of the same columns besides.
+    pub fn plus(mut self, other: Self) -> Self {
+        self.information += other.information;
+        self.right += other.right;
+        self.deviance += other.deviance;
+        self
+    }
+
+    /// Logarithm of the likelihood at a distance from where the columns are tangents, by that at no distance.
+    pub fn at(&self, distance: &DVector<f64>) -> f64 {
+        self.right.dot(distance) - 0.5 * distance.dot(&(&self.information * distance))
+    }
+
+    /// As if the trials said less by a factor.
+    pub fn discounted(mut self, by: f64) -> Self {
+        self.information /= by;
+        self.right /= by;
+        self
+    }
+
+    /// What some columns explain (in squared deviations), and what chance lets them explain: of a right model without an
+    /// effect, the first is a chi-square whose mean is the second.
+    pub fn explained(&self, columns: &[usize], priors: &[Fixing]) -> Option<(f64, f64)> {
+        let free: Vec<Fixing> = priors.iter().map(|prior| Fixing { mean: 0.0, ..*prior }).collect();
+        let (posterior, right) = self.posterior(columns, &free);
+        let factor = Cholesky::new(posterior)?;
+        let left: f64 = (0..columns.len()).map(|i| factor.inverse()[(i, i)] * priors[i].deviation.powi(-2)).sum();
+        Some((right.dot(&factor.solve(&right)), columns.len() as f64 - left))
+    }
+
+    /// Information and right side of some columns with their priors.
+    fn posterior(&self, columns: &[usize], priors: &[Fixing]) -> (DMatrix<f64>, DVector<f64>) {
         let size = columns.len();
         let precision = |i: usize| priors[i].deviation.powi(-2);
         let mut information = DMatrix::from_fn(size, size, |i, j| self.information[(columns[i], columns[j])]);
         let mut right = DVector::from_fn(size, |i, _| self.right[columns[i]]);
-        let mut prior = 0.0;
         for i in 0..size {
             information[(i, i)] += precision(i);
             right[i] += precision(i) * priors[i].mean;
-            prior += precision(i) * priors[i].mean.powi(2) - precision(i).ln();
         }
+        (information, right)
+    }
+
+    /// The estimate of a hypothesis that has some of the effects' columns, with their priors.
+    pub fn estimate(&self, columns: &[usize], priors: &[Fixing]) -> Option<Estimate> {
+        let (information, right) = self.posterior(columns, priors);
+        let of = |fixing: &Fixing| (fixing.mean / fixing.deviation).powi(2) + 2.0 * fixing.deviation.ln();
+        let prior: f64 = priors.iter().map(of).sum();
         let factor = Cholesky::new(information)?;
         let mean = factor.solve(&right);
         let log_determinant: f64 = 2.0 * factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();

@@ -1,9 +1,12 @@
 //! What the residual says: which effect a model lacks, if any.
 
+mod base;
 mod calibrate;
 mod choose;
+mod discount;
 mod evidence;
 mod judge;
+mod learned;
 mod nuisance;
 mod outcome;
 mod remainder;

@@ -13,7 +13,10 @@ use sistership_model::uncertainty::Uncertainty;
 use sistership_model::{Effect, Model, Trial};
 
 use super::evidence::Fixed;
-use crate::residual::{Columns, Nuisance};
+use crate::residual::{Columns, Nuisance, NuisanceKind};
+
+/// How far virtual masses, by strip theory or regression, are from the truth: a judgement.
+const MASS_DEVIATION: f64 = 0.05;
 
 /// Terms that a grammar spells and a model lacks, by name.
 pub type Terms = BTreeMap<String, Arc<Form>>;
@@ -30,17 +33,14 @@ pub fn lacked(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Tria
     effects.iter().flat_map(of).collect()
 }
 
-/// Terms that are learned together with the coefficients: smooth ones up to third order of the motion in the plane, and
-/// roll to first order. They take up what the law's own form cannot follow on clean trials, so that it is not taken for
-/// an effect later.
-pub fn learned(lacked: &[(String, Arc<Form>)]) -> Terms {
-    let smooth = |name: &str| {
-        let Ok(parsed) = CoefficientName::parse(name, &[]) else { return false };
-        let rolls = parsed.factors.iter().any(|factor| factor.symbol == "phi" || factor.symbol == "p");
-        !parsed.factors.iter().any(|factor| factor.absolute) && (!rolls || parsed.factors.len() == 1)
-    };
-    let named = lacked.iter().map(|(_, form)| (form.file.name.clone(), Arc::clone(form)));
-    named.filter(|(name, _)| smooth(name)).collect()
+/// Terms that are learned together with the coefficients: all that the grammars spell, and a constant on each axis. They
+/// take up what the law's own form cannot follow on clean trials, so that it is not taken for an effect later.
+pub fn learned(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Terms {
+    let axes: Vec<Axis> = law.axes.keys().copied().collect();
+    let known = |name: &str| model.coefficients.contains_key(name);
+    let constants = effects.iter().filter_map(|effect| effect.grammar.as_ref()).flat_map(|g| g.constants(&axes, &known));
+    let terms = lacked(model, law, effects, trials).into_iter().map(|(_, form)| form);
+    terms.chain(constants).map(|form| (form.file.name.clone(), form)).collect()
 }
 
 /// The regressor of a term, in N (N m) per unit of its coefficient, in the names of a law.
@@ -63,9 +63,10 @@ pub fn prior(model: &Model, columns: &[Nuisance], terms: &Terms, slack: f64) -> 
         let of = terms.values().find(|form| form.forces.contains_key(&axis));
         of.and_then(|form| form.parameters.values().next()).map_or(1e-2, |parameter| parameter.prior_deviation)
     };
-    let deviation = |nuisance: &Nuisance| {
-        let typical = of_axis(nuisance.axis);
-        if nuisance.own { slack * model.coefficient(&nuisance.name).abs().max(0.1 * typical) } else { slack * typical }
+    let deviation = |nuisance: &Nuisance| match nuisance.kind {
+        NuisanceKind::Own(axis) => slack * model.coefficient(&nuisance.name).abs().max(0.1 * of_axis(axis)),
+        NuisanceKind::Lacked(axis) => slack * of_axis(axis),
+        NuisanceKind::Mass(..) => MASS_DEVIATION,
     };
     let precisions = DVector::from_iterator(columns.len(), columns.iter().map(|nuisance| deviation(nuisance).powi(-2)));
     Fixed { information: DMatrix::from_diagonal(&precisions), weighted_mean: DVector::zeros(columns.len()) }
@@ -88,9 +89,10 @@ pub fn learned_prior(uncertainty: &Uncertainty) -> Result<Fixed, String> {
 pub fn columns(model: &Model, law: &Law) -> Vec<Nuisance> {
     let own = Columns::nuisance(model, law, &[]);
     let Some(uncertainty) = &model.uncertainty else { return own };
-    let named = |name: &String| {
+    let of_model = |name: &str| own.iter().find(|nuisance| nuisance.name == name).cloned();
+    let lacked = |name: &str| {
         let axis = CoefficientName::parse(name, &law.extra_factors()).ok()?.axis;
-        Some(Nuisance { name: name.clone(), axis, own: model.coefficients.contains_key(name) })
+        Some(Nuisance { name: name.to_owned(), kind: NuisanceKind::Lacked(axis) })
     };
-    uncertainty.names.iter().filter_map(named).collect()
+    uncertainty.names.iter().filter_map(|name| of_model(name).or_else(|| lacked(name))).collect()
 }

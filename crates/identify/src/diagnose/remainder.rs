@@ -1,87 +1,128 @@
 //! What a hypothesis leaves: stretches of a trial in which the prediction errors are larger or steadier than noise.
 
-use nalgebra::DVector;
+use std::collections::BTreeMap;
+
 use sistership_model::trial::Channel;
 
+use super::discount::SHAPE;
 use super::outcome::Unexplained;
 use super::workspace::Workspace;
-use crate::residual::{Discrepancies, Linearised, whitened};
+use crate::residual::{Discrepancies, Linearised, errors, responses};
 
 /// Prediction errors are added up over so long, in the times in which the ship sails her length: what lasts stands out.
 const BLOCK: f64 = 0.6;
 /// Blocks that are judged together.
 const BLOCKS: usize = 6;
-/// Root mean square of the sums, in deviations, above which a stretch is not noise.
+/// Root mean square of the sums, in deviations, above which a stretch is not noise, where clean trials say nothing else.
 const LIMIT: f64 = 3.0;
+/// How much larger than on any clean trial a stretch must be.
+const MARGIN: f64 = 1.25;
+/// The channels whose equations are judged.
+const JUDGED: [Channel; 5] = [Channel::U, Channel::V, Channel::R, Channel::P, Channel::Psi];
 
-/// Stretches that the columns at `parameters` leave unexplained, under the discrepancy that is expected.
+/// Stretches that the columns at `parameters` leave unexplained, under the discrepancy that is expected; the largest first.
 pub(super) fn unexplained(
     workspace: &Workspace<'_>,
     discrepancies: &Discrepancies,
-    parameters: &DVector<f64>,
+    parameters: &[f64],
+    effects: &[f64],
+    clean: Option<&BTreeMap<String, f64>>,
 ) -> Vec<Unexplained> {
-    let block_s = BLOCK * workspace.lpp_m / workspace.speed_m_s;
+    let limit = |channel: Channel| {
+        let seen = clean.and_then(|clean| clean.get(channel.name())).copied().unwrap_or_default();
+        LIMIT.max(MARGIN * seen)
+    };
     let mut found = Vec::new();
-    for (trial, parts) in workspace.trials.iter().zip(workspace.linear()) {
-        for part in parts {
-            let errors = errors(workspace, part, discrepancies, parameters);
-            for (place, &(channel, _)) in part.channels.iter().enumerate() {
-                if matches!(channel, Channel::U | Channel::V | Channel::R | Channel::P | Channel::Psi) {
-                    found.extend(stretches(&trial.name, channel, part, &errors[place], block_s));
-                }
-            }
+    for (place, trial) in workspace.trials.iter().enumerate() {
+        for (channel, sums) in sums(workspace, place, discrepancies, [parameters, effects]) {
+            found.extend(sums.stretches(&trial.name, channel, limit(channel)));
         }
     }
     found.sort_by(|a, b| b.rms_over_noise.total_cmp(&a.rms_over_noise));
     found
 }
 
-/// Prediction errors in deviations, by channel.
-fn errors(
+/// The largest that any stretch of a trial leaves, by channel.
+pub(super) fn largest(
     workspace: &Workspace<'_>,
-    part: &Linearised,
+    trial: usize,
     discrepancies: &Discrepancies,
-    parameters: &DVector<f64>,
-) -> Vec<Vec<f64>> {
-    let (rows, _) = whitened(part, &workspace.noise, discrepancies);
-    let width = 1 + part.sizes.columns;
-    let mut errors = vec![Vec::with_capacity(part.samples.len()); part.channels.len()];
-    for (index, row) in rows.chunks_exact(width).enumerate() {
-        let explained: f64 = row[1..].iter().zip(parameters.iter()).map(|(column, value)| column * value).sum();
-        errors[index % part.channels.len()].push(row[0] - explained);
-    }
-    errors
+    parameters: &[f64],
+) -> Vec<(Channel, f64)> {
+    let of = |(channel, sums): (Channel, Sums<'_>)| (channel, sums.largest());
+    sums(workspace, trial, discrepancies, [parameters, &vec![0.0; parameters.len()]]).into_iter().map(of).collect()
 }
 
-/// Runs of blocks above the limit, each as one stretch.
-fn stretches(trial: &str, channel: Channel, part: &Linearised, errors: &[f64], block_s: f64) -> Vec<Unexplained> {
-    let interval = (part.t_s[part.t_s.len() - 1] - part.t_s[0]) / (part.t_s.len() - 1) as f64;
-    let size = (block_s / interval).round().max(1.0) as usize;
-    let sums: Vec<f64> = errors.chunks(size).map(|block| block.iter().sum::<f64>() / (block.len() as f64).sqrt()).collect();
-    let rms = |from: usize, to: usize| (sums[from..to].iter().map(|s| s * s).sum::<f64>() / (to - from) as f64).sqrt();
-    let mut found = Vec::new();
-    let mut open: Option<(usize, usize)> = None;
-    for from in 0..sums.len().saturating_sub(BLOCKS - 1) {
-        let to = from + BLOCKS;
-        let is_large = rms(from, to) > LIMIT;
-        open = match (open, is_large) {
-            (Some((start, end)), true) if from <= end => Some((start, to)),
-            (Some(stretch), true) => {
-                found.push(stretch);
-                Some((from, to))
-            }
-            (None, true) => Some((from, to)),
-            (kept, false) => kept,
-        };
+/// Sums of the prediction errors of a channel over blocks of a part of a trial, in deviations.
+struct Sums<'a> {
+    part: &'a Linearised,
+    /// Samples in a block.
+    size: usize,
+    sums: Vec<f64>,
+    /// What the effects found move these sums by: their laws are not exact.
+    moved: Vec<f64>,
+}
+
+fn sums<'a>(
+    workspace: &'a Workspace<'_>,
+    trial: usize,
+    discrepancies: &Discrepancies,
+    [parameters, effects]: [&[f64]; 2],
+) -> Vec<(Channel, Sums<'a>)> {
+    let block_s = BLOCK * workspace.lpp_m / workspace.speed_m_s;
+    let mut all = Vec::new();
+    for part in &workspace.linear()[trial] {
+        let interval = (part.t_s[part.t_s.len() - 1] - part.t_s[0]) / (part.t_s.len() - 1) as f64;
+        let size = (block_s / interval).round().max(1.0) as usize;
+        let (left, _) = errors(&part.along(parameters), &workspace.noise, discrepancies);
+        let moved = responses(&part.along(effects), &workspace.noise, discrepancies);
+        for (place, &(channel, _)) in part.channels.iter().enumerate().filter(|(_, (channel, _))| JUDGED.contains(channel)) {
+            let of = |all: &[f64]| block_sums(all.iter().skip(place).step_by(part.channels.len()).copied(), size);
+            all.push((channel, Sums { part, size, sums: of(&left), moved: of(&moved) }));
+        }
     }
-    found.extend(open);
-    let time = |block: usize| part.t_s[(block * size).min(part.t_s.len() - 1)];
-    let stretch = |(from, to): (usize, usize)| Unexplained {
-        channel: channel.name().to_owned(),
-        rms_over_noise: rms(from, to),
-        trial: trial.to_owned(),
-        from_s: time(from),
-        to_s: time(to),
-    };
-    found.into_iter().map(stretch).collect()
+    all
+}
+
+fn block_sums(values: impl Iterator<Item = f64>, size: usize) -> Vec<f64> {
+    let values: Vec<f64> = values.collect();
+    values.chunks(size).map(|block| block.iter().sum::<f64>() / (block.len() as f64).sqrt()).collect()
+}
+
+fn rms(sums: &[f64]) -> f64 {
+    (sums.iter().map(|s| s * s).sum::<f64>() / sums.len() as f64).sqrt()
+}
+
+impl Sums<'_> {
+    fn starts(&self) -> std::ops::Range<usize> {
+        0..self.sums.len().saturating_sub(BLOCKS - 1)
+    }
+
+    fn largest(&self) -> f64 {
+        self.starts().map(|from| rms(&self.sums[from..from + BLOCKS])).fold(0.0, f64::max)
+    }
+
+    /// Runs of blocks above the limit, each as one stretch.
+    fn stretches(&self, trial: &str, channel: Channel, limit: f64) -> Vec<Unexplained> {
+        let mut found: Vec<(usize, usize)> = Vec::new();
+        let is_large = |&from: &usize| {
+            let blocks = from..from + BLOCKS;
+            rms(&self.sums[blocks.clone()]) > limit.hypot(SHAPE * rms(&self.moved[blocks]))
+        };
+        for from in self.starts().filter(is_large) {
+            match found.last_mut().filter(|(_, end)| from <= *end) {
+                Some((_, end)) => *end = from + BLOCKS,
+                None => found.push((from, from + BLOCKS)),
+            }
+        }
+        let time = |block: usize| self.part.t_s[(block * self.size).min(self.part.t_s.len() - 1)];
+        let stretch = |(from, to): (usize, usize)| Unexplained {
+            channel: channel.name().to_owned(),
+            rms_over_noise: rms(&self.sums[from..to]),
+            trial: trial.to_owned(),
+            from_s: time(from),
+            to_s: time(to),
+        };
+        found.into_iter().map(stretch).collect()
+    }
 }

@@ -6,7 +6,7 @@ use super::judge::errors;
 use super::outcome::{Diagnosis, Found, Hypothesis, Verdict};
 use super::remainder::unexplained;
 use super::search::{Judged, Search};
-use super::setup::{candidates, search};
+use super::setup::search;
 use super::values::{acts_on, own_covariance, values};
 use crate::refine::{Progress, RefineError};
 
@@ -20,10 +20,9 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Diagnos
         return Err(RefineError::Data("there is no trial to diagnose on".into()));
     }
     step(progress, 0.05, "which effects can be tried on these trials")?;
-    let candidates = candidates(request);
-    let search = search(request, &candidates)?;
+    let search = search(request)?;
     step(progress, 0.1, "every effect alone, then together")?;
-    let choice = choose(&search, &candidates, request.settings)?;
+    let choice = choose(&search, request.settings)?;
     step(progress, 0.8, "what remains")?;
     answer(request, &search, &choice, progress)
 }
@@ -33,13 +32,14 @@ fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineE
 }
 
 fn answer(request: &Request<'_>, search: &Search<'_>, choice: &Choice, progress: Progress<'_>) -> Result<Diagnosis, RefineError> {
-    let best = choice.best();
+    let (search, best) = &choice.settled(search, request)?;
     let workspace = search.workspace(best.stood.clone())?;
     let remaining = remaining(search, best, &workspace)?;
     let length_s = workspace.lpp_m / workspace.speed_m_s;
     step(progress, 0.85, "simulating each trial by a fit on the others")?;
     let errors = errors(request, search, best, request.settings.restart_s.unwrap_or(10.0 * length_s));
-    let found: Vec<Found> = (0..best.candidates.len()).map(|place| found(request, choice, place)).collect();
+    let mut found: Vec<Found> = (0..best.candidates.len()).map(|place| found(request, search, best, place)).collect();
+    found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let verdict = match (remaining.is_empty(), found.is_empty()) {
         (false, _) => Verdict::Unexplained,
         (true, true) => Verdict::Complete,
@@ -78,7 +78,10 @@ fn remaining(
     };
     let moved = best.candidates.iter().zip(&best.stood).flat_map(|(c, s)| c.at.iter().zip(&s.at).map(|(a, b)| a - b));
     let parameters: Vec<f64> = best.shift.iter().copied().chain(moved).collect();
-    Ok(unexplained(workspace, expected, &parameters.into()))
+    let clean = search.model.uncertainty.as_ref().map(|uncertainty| &uncertainty.remainder);
+    let changes = best.candidates.iter().flat_map(|candidate| candidate.change());
+    let effects: Vec<f64> = vec![0.0; best.shift.len()].into_iter().chain(changes).collect();
+    Ok(unexplained(workspace, expected, &parameters, &effects, clean))
 }
 
 /// The discrepancy that is forgiven a model that brings none, by the typical acceleration.
@@ -91,17 +94,16 @@ fn how(request: &Request<'_>) -> String {
     }
 }
 
-fn found(request: &Request<'_>, choice: &Choice, place: usize) -> Found {
-    let best = choice.best();
+fn found(request: &Request<'_>, search: &Search<'_>, best: &Judged, place: usize) -> Found {
     let candidate = &best.candidates[place];
-    let covariance = own_covariance(&best.candidates, place, &best.covariance);
+    let covariance = search.covariance(best, place);
     Found {
         name: candidate.effect.clone(),
         form: candidate.form.file.name.clone(),
         meaning: candidate.form.file.meaning.clone(),
         acts_on: acts_on(candidate),
         parameters: values(candidate, &covariance, request.model),
-        evidence: best.log_evidence - choice.alone.log_evidence,
+        evidence: search.evidence(best, place).unwrap_or_default(),
         confounded_with: Vec::new(),
     }
 }

@@ -4,10 +4,13 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use sistership_model::law::Law;
 use sistership_model::{Model, Trial};
 
+use super::Request;
+use super::base::Base;
+use super::discount::discount;
 use super::evidence::{Estimate, Fixed, Fixing, Level, Reduced};
+use super::learned::Learned;
 use super::nuisance::Terms;
 use super::workspace::Workspace;
 use crate::refine::RefineError;
@@ -17,19 +20,35 @@ use crate::residual::{Candidate, Columns, Discrepancies, Gram, Nuisance};
 const ROUNDS: usize = 3;
 
 /// What stays the same while hypotheses change.
+#[derive(Clone)]
 pub(super) struct Search<'a> {
     pub model: &'a Model,
-    pub law: &'a Law,
+    /// The model as its own trials have taught it.
+    pub learned: Learned,
+    /// By how much, by column.
+    pub taught: Vec<f64>,
+    pub terms: Terms,
     pub trials: &'a [&'a Trial],
     pub nuisance: Vec<Nuisance>,
-    pub terms: Terms,
     pub fixed: Fixed,
     pub expected: Discrepancies,
     /// Levels of the discrepancy that are weighed.
     pub levels: Vec<Level>,
     pub least_step_s: Option<f64>,
+    /// Forms of the library's effects that can be tried.
+    pub listed: Vec<Candidate>,
+    /// Terms that the model lacks.
+    pub freed: Vec<Candidate>,
     /// Logarithm of the prior probability of each form among all.
     pub log_priors: std::collections::BTreeMap<String, f64>,
+}
+
+/// An effect that may be missing, by one linearisation.
+pub(super) struct Likely {
+    pub evidence: f64,
+    /// The level of the discrepancy at which it is most probable, among those of the base.
+    pub level: usize,
+    pub candidate: Candidate,
 }
 
 /// A hypothesis where it is most probable.
@@ -47,7 +66,7 @@ pub(super) struct Judged {
     pub stood: Vec<Candidate>,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
     fn discrepancies(&self, level: Level) -> Discrepancies {
         let scaled = |d: &sistership_model::uncertainty::Discrepancy| {
             let (deviation, white) = (d.deviation * level.factor, d.white * level.factor);
@@ -57,52 +76,187 @@ impl Search<'_> {
     }
 
     /// Trials and columns made ready.
-    pub fn workspace(&self, candidates: Vec<Candidate>) -> Result<Workspace<'_>, RefineError> {
+    ///
+    /// # Errors
+    /// Names what the model or a trial lacks.
+    pub fn workspace(&self, candidates: Vec<Candidate>) -> Result<Workspace<'a>, RefineError> {
         let columns = Columns { nuisance: self.nuisance.clone(), candidates };
-        Workspace::new(self.model, self.law, columns, &self.terms, self.trials, self.least_step_s)
+        Workspace::new(&self.learned, columns, self.trials, self.least_step_s)
     }
 
-    /// The evidence of each candidate together with those `taken`, from one linearisation at the absence of all others, most
-    /// probable first.
-    pub fn screen(&self, taken: &[Candidate], candidates: &[Candidate]) -> Result<Vec<(f64, Candidate)>, RefineError> {
-        let workspace = self.workspace([taken, candidates].concat())?;
-        let reduced: Vec<(Level, Reduced)> = self
-            .levels
-            .iter()
-            .filter_map(|&level| Some((level, Reduced::new(&workspace.total(&self.discrepancies(level)), &self.fixed)?)))
-            .collect();
-        let one = |(place, candidate): (usize, &Candidate)| {
-            let own = workspace.columns().places(taken.len() + place);
-            let before = (0..taken.len()).flat_map(|place| workspace.columns().places(place));
-            let places: Vec<usize> = before.chain(own).map(|p| p - self.nuisance.len()).collect();
-            let fixing: Vec<Fixing> = taken.iter().chain([candidate]).flat_map(priors).collect();
-            let gain = |(level, reduced): &(Level, Reduced)| {
-                Some(level.log_prior - 0.5 * reduced.deviance + reduced.estimate(&places, &fixing)?.gain)
+    /// Effects that are taken with all others beside them, at some of the levels.
+    ///
+    /// # Errors
+    /// Names what the model or a trial lacks.
+    pub fn base(&self, taken: &[Candidate], levels: &[Level]) -> Result<Base<'a>, RefineError> {
+        let has_column = |candidate: &&Candidate| !self.nuisance.iter().any(|n| n.name == candidate.form.file.name);
+        let others = self.others(taken).into_iter().filter(has_column).cloned();
+        let workspace = self.workspace(taken.iter().cloned().chain(others).collect())?;
+        let levels = levels.iter().map(|&level| (level, self.discrepancies(level))).collect();
+        Ok(Base::new(taken, workspace, levels))
+    }
+
+    /// Effects that are taken, with nothing beside them.
+    ///
+    /// # Errors
+    /// Names what the model or a trial lacks.
+    pub fn bare(&self, taken: &[Candidate], levels: &[Level]) -> Result<Base<'a>, RefineError> {
+        let levels = levels.iter().map(|&level| (level, self.discrepancies(level))).collect();
+        Ok(Base::new(taken, self.workspace(taken.to_vec())?, levels))
+    }
+
+    fn others(&self, taken: &[Candidate]) -> Vec<&Candidate> {
+        let is_other = |candidate: &&Candidate| !taken.iter().any(|kept| kept.effect == candidate.effect);
+        self.listed.iter().chain(&self.freed).filter(is_other).collect()
+    }
+
+    /// The evidence of each other effect together with those taken, from one linearisation at the absence of all others,
+    /// most probable first.
+    pub fn screen(&self, base: &Base<'_>) -> Vec<Likely> {
+        let others = self.others(&base.taken);
+        let showing = |candidate: &&Candidate| base.workspace.columns().showing(candidate);
+        let columns = base.taken.iter().flat_map(|kept| showing(&kept)).chain(others.iter().flat_map(showing));
+        let places: Vec<usize> = (0..self.nuisance.len()).chain(columns).collect();
+        let at_level = |level: usize| Some((level, Reduced::new(&base.total(level).select(&places), &self.fixed)?));
+        let reduced: Vec<(usize, Reduced)> = (0..base.levels.len()).into_par_iter().filter_map(at_level).collect();
+        self.screened(base, &others, &reduced)
+    }
+
+    fn screened(&self, base: &Base<'_>, others: &[&Candidate], reduced: &[(usize, Reduced)]) -> Vec<Likely> {
+        let kept: Vec<usize> = (0..base.taken.iter().map(|kept| kept.at.len()).sum()).collect();
+        let mut first = kept.len();
+        let mut one = |candidate: &&Candidate| {
+            let places: Vec<usize> = kept.iter().copied().chain(first..first + candidate.at.len()).collect();
+            first += candidate.at.len();
+            let fixing: Vec<Fixing> = base.taken.iter().chain([*candidate]).flat_map(priors).collect();
+            let gain = |(level, reduced): &(usize, Reduced)| {
+                let gain = reduced.estimate(&places, &fixing)?.gain;
+                Some((base.levels[*level].level.log_prior - 0.5 * reduced.deviance + gain, *level))
             };
-            let best = reduced.iter().filter_map(gain).fold(f64::NEG_INFINITY, f64::max);
-            (best + self.log_prior(candidate), candidate.clone())
+            let (evidence, level) = reduced.iter().filter_map(gain).max_by(|a, b| a.0.total_cmp(&b.0))?;
+            Some(Likely { evidence: evidence + self.log_prior(candidate), level, candidate: (*candidate).clone() })
         };
-        let mut screened: Vec<(f64, Candidate)> = candidates.iter().enumerate().map(one).collect();
-        screened.sort_by(|a, b| b.0.total_cmp(&a.0));
-        Ok(screened)
+        let mut screened: Vec<Likely> = others.iter().filter_map(&mut one).collect();
+        screened.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        screened
+    }
+
+    /// The evidence for one of the effects judged together, given the others: discounted by what it feigns on clean trials,
+    /// after what the number of hypotheses costs.
+    pub fn evidence(&self, judged: &Judged, place: usize) -> Option<f64> {
+        let candidate = &judged.candidates[place];
+        let sizes: Vec<usize> = judged.stood.iter().map(|stood| stood.at.len()).collect();
+        let first: usize = sizes[..place].iter().sum();
+        let own: Vec<usize> = (first..first + sizes[place]).collect();
+        let others: Vec<usize> = (0..sizes.iter().sum()).filter(|column| !own.contains(column)).collect();
+        let fixing: Vec<Fixing> = judged.stood.iter().flat_map(priors).collect();
+        let of = |columns: &[usize]| columns.iter().map(|&column| fixing[column]).collect::<Vec<_>>();
+        let width = judged.grams.first()?.products.nrows();
+        let reduced = Reduced::new(&Gram::sum(&judged.grams, width), &self.fixed)?.given(&others, &of(&others), &own)?;
+        let reduced = reduced.discounted(self.discount(candidate));
+        let estimate = reduced.estimate(&(0..own.len()).collect::<Vec<_>>(), &of(&own))?;
+        let stood = judged.stood[place].at.iter().zip(candidate.form.parameters.values());
+        let absent = reduced.at(&stood.map(|(at, parameter)| parameter.absent - at).collect::<Vec<_>>().into());
+        Some(estimate.gain - absent + self.log_prior(candidate))
+    }
+
+    /// The factor by which the information on an effect is discounted.
+    pub fn discount(&self, candidate: &Candidate) -> f64 {
+        discount(self.model.uncertainty.as_ref(), candidate, self.trials.len())
     }
 
     fn log_prior(&self, candidate: &Candidate) -> f64 {
         self.log_priors.get(&candidate.key()).copied().unwrap_or_default()
     }
 
-    /// A hypothesis, linearised anew where it stands until it stays there.
-    pub fn judge(&self, candidates: &[Candidate]) -> Result<Judged, RefineError> {
-        let mut best = self.judged(candidates.to_vec())?;
-        for _ in 0..if candidates.is_empty() { 0 } else { ROUNDS } {
-            let next = self.judged(self.moved(&best))?;
-            let gain = next.log_evidence - best.log_evidence;
+    /// The effects of a base alone, at the level at which they are most probable.
+    ///
+    /// # Errors
+    /// Says that the information is not positive.
+    pub fn alone(&self, base: &Base<'_>) -> Result<(usize, Judged), RefineError> {
+        let places: Vec<usize> = (0..base.taken.iter().map(|kept| kept.at.len()).sum()).collect();
+        let grams = |level: usize| match base.taken.len() {
+            0 => Ok::<_, RefineError>(base.alone(level)),
+            _ => Ok(base.stand(&self.learned, &base.taken)?.grams(level)),
+        };
+        let at = |level: usize| Some((level, self.judged(base, &base.taken, level, grams(level).ok()?, &places)?));
+        let best = (0..base.levels.len()).filter_map(at).max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
+        best.ok_or_else(not_positive)
+    }
+
+    /// A hypothesis beside the effects of a base, linearised anew where it stands until it stays there.
+    ///
+    /// # Errors
+    /// Names what a trial lacks.
+    pub fn judge(&self, base: &Base<'_>, candidate: &Candidate, level: usize) -> Result<Judged, RefineError> {
+        let candidates = [base.taken.as_slice(), std::slice::from_ref(candidate)].concat();
+        let mut best = self.at(base, &candidates, level)?;
+        for _ in 0..ROUNDS {
+            let next = self.at(base, &self.moved(&best.1), best.0)?;
+            let gain = next.1.log_evidence - best.1.log_evidence;
             best = if gain > 0.0 { next } else { break };
             if gain < 0.5 {
                 break;
             }
         }
-        Ok(best)
+        Ok(best.1)
+    }
+
+    /// This search with the model as a hypothesis teaches it.
+    ///
+    /// # Errors
+    /// Says that the information is not positive.
+    pub fn taught_by(&self, request: &Request<'_>, judged: &Judged) -> Result<Self, RefineError> {
+        let size = self.nuisance.len();
+        let total = Gram::sum(&judged.grams, judged.grams.first().map_or(0, |gram| gram.products.nrows()));
+        let moved = judged.candidates.iter().zip(&judged.stood).flat_map(|(c, s)| c.at.iter().zip(&s.at).map(|(a, b)| a - b));
+        let cross = total.products.view((1, 1 + size), (size, total.products.ncols() - 1 - size));
+        let right = total.products.view((1, 0), (size, 1)).column(0) - cross * DVector::from_iterator(cross.ncols(), moved);
+        let known = Fixed {
+            information: total.products.view((1, 1), (size, size)) + &self.fixed.information,
+            weighted_mean: right + &self.fixed.weighted_mean,
+        };
+        let shift = known.taught(&self.nuisance).ok_or_else(not_positive)?;
+        let taught: Vec<f64> = self.taught.iter().zip(&shift).map(|(before, more)| before + more).collect();
+        Ok(Self {
+            learned: Learned::new(request.model, request.law, &self.terms, &self.nuisance, &taught)?,
+            fixed: self.fixed.clone().from(&shift),
+            taught,
+            ..self.clone()
+        })
+    }
+
+    /// Where candidates stand, at a level or the one below, whichever is more probable.
+    fn at(&self, base: &Base<'_>, candidates: &[Candidate], level: usize) -> Result<(usize, Judged), RefineError> {
+        let stand = base.stand(&self.learned, candidates)?;
+        let places: Vec<usize> = (0..candidates.iter().map(|candidate| candidate.at.len()).sum()).collect();
+        let at = |level: usize| Some((level, self.judged(base, candidates, level, stand.grams(level), &places)?));
+        let levels = level.saturating_sub(1)..=level;
+        let best = levels.filter_map(at).max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
+        best.ok_or_else(not_positive)
+    }
+
+    fn judged(
+        &self,
+        base: &Base<'_>,
+        candidates: &[Candidate],
+        level: usize,
+        grams: Vec<Gram>,
+        places: &[usize],
+    ) -> Option<Judged> {
+        let priors: Vec<Fixing> = candidates.iter().flat_map(priors).collect();
+        let total = Gram::sum(&grams, grams.first()?.products.nrows());
+        let reduced = Reduced::new(&total, &self.fixed)?;
+        let estimate = reduced.estimate(places, &priors)?;
+        let prior: f64 = candidates.iter().map(|candidate| self.log_prior(candidate)).sum();
+        Some(Judged {
+            log_evidence: base.levels[level].level.log_prior - 0.5 * reduced.deviance + estimate.gain + prior,
+            candidates: placed(candidates.to_vec(), &estimate),
+            stood: candidates.to_vec(),
+            shift: &reduced.shift - &reduced.answers * &estimate.mean,
+            covariance: estimate.covariance,
+            grams,
+        })
     }
 
     /// The candidates at their estimates, within their bounds.
@@ -117,36 +271,10 @@ impl Search<'_> {
             })
             .collect()
     }
+}
 
-    /// A hypothesis from one linearisation; its candidates come back at their estimates.
-    fn judged(&self, candidates: Vec<Candidate>) -> Result<Judged, RefineError> {
-        let workspace = self.workspace(candidates.clone())?;
-        let columns: Vec<usize> = (0..workspace.columns().len() - self.nuisance.len()).collect();
-        let priors: Vec<Fixing> = candidates.iter().flat_map(priors).collect();
-        let at_level = |level: Level| {
-            let discrepancies = self.discrepancies(level);
-            let grams = workspace.each(&discrepancies);
-            let total = Gram::sum(&grams, 1 + workspace.columns().len());
-            let reduced = Reduced::new(&total, &self.fixed)?;
-            let estimate = reduced.estimate(&columns, &priors)?;
-            Some((level.log_prior - 0.5 * reduced.deviance + estimate.gain, grams, reduced, estimate))
-        };
-        let levels: Vec<_> = self.levels.par_iter().copied().filter_map(at_level).collect();
-        let total = log_sum(levels.iter().map(|level| level.0));
-        let best = levels.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
-        let (_, grams, reduced, estimate) =
-            best.ok_or_else(|| RefineError::Data("the trials' information is not positive".into()))?;
-        let prior: f64 = candidates.iter().map(|candidate| self.log_prior(candidate)).sum();
-        let shift = &reduced.shift - &reduced.answers * &estimate.mean;
-        Ok(Judged {
-            log_evidence: total + prior,
-            candidates: placed(candidates.clone(), &estimate),
-            stood: candidates,
-            covariance: estimate.covariance,
-            shift,
-            grams,
-        })
-    }
+fn not_positive() -> RefineError {
+    RefineError::Data("the trials' information is not positive".into())
 }
 
 impl Judged {
@@ -185,9 +313,4 @@ fn placed(mut candidates: Vec<Candidate>, estimate: &Estimate) -> Vec<Candidate>
         candidate.at.iter_mut().zip(&mut means).for_each(|(at, mean)| *at += mean);
     }
     candidates
-}
-
-fn log_sum(values: impl Iterator<Item = f64> + Clone) -> f64 {
-    let largest = values.clone().fold(f64::NEG_INFINITY, f64::max);
-    largest + values.map(|value| (value - largest).exp()).sum::<f64>().ln()
 }

@@ -2,13 +2,15 @@
 
 use rayon::prelude::*;
 use sistership_model::coefficient::Axis;
-use sistership_model::law::Law;
+use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
-use sistership_model::{Model, Trial, particulars};
+use sistership_model::{Trial, particulars};
 
-use super::nuisance::{Terms, regressor};
+use super::learned::Learned;
 use crate::refine::RefineError;
-use crate::residual::{Columns, Discrepancies, Gram, Linearised, Noise, Record, System, filter, floor, linearise, scatter};
+use crate::residual::{
+    Columns, Detail, Discrepancies, Gram, Linearised, Noise, Record, System, filter, floor, linearise, scatter,
+};
 use crate::transfer::approach_of;
 
 /// Everything that does not change with the discrepancy.
@@ -18,6 +20,7 @@ pub struct Workspace<'a> {
     pub lpp_m: f64,
     pub speed_m_s: f64,
     system: System,
+    records: Vec<Record<'a>>,
     linear: Vec<Vec<Linearised>>,
 }
 
@@ -34,13 +37,12 @@ impl<'a> Workspace<'a> {
     /// # Errors
     /// Names what the model or a trial lacks.
     pub fn new(
-        model: &Model,
-        law: &Law,
+        learned: &Learned,
         columns: Columns,
-        terms: &Terms,
         trials: &'a [&'a Trial],
         least_step_s: Option<f64>,
     ) -> Result<Self, RefineError> {
+        let Learned { model, law } = learned;
         let lpp_m = particulars::value(&model.particulars, "lpp_m");
         let lpp_m = lpp_m.ok_or_else(|| RefineError::Law(format!("the model `{}` does not give `lpp_m`", model.name)))?;
         let approach = approach_of(trials).map(|approach| approach.speed_m_s);
@@ -49,10 +51,9 @@ impl<'a> Workspace<'a> {
         let records: Vec<Record<'a>> = trials.iter().map(|trial| Record::new(trial, least_step_s)).collect();
         let noise = noise(&records, lpp_m, speed_m_s);
         let frame = trials.first().map(|trial| trial.velocity).unwrap_or_default();
-        let term = |name: &str| terms.get(name).and_then(|form| Some(regressor(model, form)?.1));
-        let system = System::new(model, law, columns, &term, frame)?;
-        let linear = records.par_iter().map(|record| linearise(&system, record)).collect::<Result<_, _>>()?;
-        Ok(Self { trials, noise, lpp_m, speed_m_s, system, linear })
+        let system = System::new(model, law, columns, frame)?;
+        let linear = records.par_iter().map(|record| linearise(&system, record, Detail::Whole)).collect::<Result<_, _>>()?;
+        Ok(Self { trials, noise, lpp_m, speed_m_s, system, records, linear })
     }
 
     pub fn columns(&self) -> &Columns {
@@ -61,6 +62,14 @@ impl<'a> Workspace<'a> {
 
     pub fn axes(&self) -> &[Axis] {
         &self.system.axes
+    }
+
+    pub fn frame(&self) -> VelocityFrame {
+        self.system.frame
+    }
+
+    pub fn records(&self) -> &[Record<'a>] {
+        &self.records
     }
 
     pub fn linear(&self) -> &[Vec<Linearised>] {

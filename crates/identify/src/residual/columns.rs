@@ -1,6 +1,5 @@
 //! What the columns stand for: coefficients that may move, and parameters of effects that may be missing.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -9,15 +8,34 @@ use sistership_model::coefficient::Axis;
 use sistership_model::effect::{Form, qualified};
 use sistership_model::law::Law;
 
-/// A coefficient that may move, or a term that the model lacks and whose coefficient may differ from zero.
+/// What a model has and may have a little different.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Nuisance {
     /// Its name, such as `Y_vvr`.
     pub name: String,
-    /// The axis it acts on.
-    pub axis: Axis,
-    /// Whether the model has it.
-    pub own: bool,
+    /// What it stands for.
+    pub kind: NuisanceKind,
+}
+
+/// What a nuisance column stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NuisanceKind {
+    /// A coefficient of the model, on its axis.
+    Own(Axis),
+    /// A term that the model lacks, on its axis: its coefficient may differ from zero.
+    Lacked(Axis),
+    /// An entry of the virtual mass matrix, by the root of the product of its diagonal entries. Only trials without an
+    /// effect whose size is known could tell mass and forces apart: what they leave open is the size of every force.
+    Mass(Axis, Axis),
+}
+
+impl NuisanceKind {
+    /// The axis it acts on; of a mass, the first.
+    pub fn axis(self) -> Axis {
+        match self {
+            Self::Own(axis) | Self::Lacked(axis) | Self::Mass(axis, _) => axis,
+        }
+    }
 }
 
 /// One form of an effect, with values of its parameters at which the columns are tangents.
@@ -36,6 +54,11 @@ impl Candidate {
     pub fn absent(effect: &str, form: &Arc<Form>) -> Self {
         let at = form.parameters.values().map(|parameter| parameter.absent).collect();
         Self { effect: effect.to_owned(), form: Arc::clone(form), at }
+    }
+
+    /// How far each parameter is from the absence of the effect.
+    pub fn change(&self) -> Vec<f64> {
+        self.at.iter().zip(self.form.parameters.values()).map(|(at, parameter)| at - parameter.absent).collect()
     }
 
     /// The names of its parameters in a dressed law.
@@ -76,17 +99,28 @@ impl Columns {
         start..start + self.candidates[candidate].at.len()
     }
 
-    /// The coefficients that a model has, and terms of a grammar that it lacks.
-    pub fn nuisance(model: &Model, law: &Law, extra: &[(String, Axis)]) -> Vec<Nuisance> {
-        let axis = |name: &str| law.term(name).ok().map(|(axis, _)| axis);
-        let own =
-            model.coefficients.keys().filter_map(|name| Some(Nuisance { name: name.clone(), axis: axis(name)?, own: true }));
-        let lacked = extra.iter().map(|(name, axis)| Nuisance { name: name.clone(), axis: *axis, own: false });
-        own.chain(lacked).collect()
+    /// The places of the columns in which a candidate shows: its own, or that of the coefficient which it frees.
+    pub fn showing(&self, candidate: &Candidate) -> Vec<usize> {
+        let own = self.candidates.iter().position(|known| known.key() == candidate.key());
+        let freed = || self.nuisance.iter().position(|nuisance| nuisance.name == candidate.form.file.name);
+        own.map_or_else(|| freed().into_iter().collect(), |own| self.places(own).collect())
     }
 
-    /// The places of coefficients by name.
-    pub fn by_name(&self) -> BTreeMap<&str, usize> {
-        self.nuisance.iter().enumerate().map(|(place, nuisance)| (nuisance.name.as_str(), place)).collect()
+    /// The coefficients that a model has, terms of a grammar that it lacks, and the virtual masses of its law.
+    pub fn nuisance(model: &Model, law: &Law, extra: &[(String, Axis)]) -> Vec<Nuisance> {
+        let axis = |name: &str| law.term(name).ok().map(|(axis, _)| axis);
+        let own = model.coefficients.keys().filter_map(|name| Some((name.clone(), NuisanceKind::Own(axis(name)?))));
+        let lacked = extra.iter().map(|(name, axis)| (name.clone(), NuisanceKind::Lacked(*axis)));
+        let upper = law.mass.keys().filter(|(row, column)| row <= column);
+        let masses = upper.map(|&(row, column)| (format!("{MASS}{row}{column}"), NuisanceKind::Mass(row, column)));
+        own.chain(lacked).chain(masses).map(|(name, kind)| Nuisance { name, kind }).collect()
     }
+}
+
+/// How the names of virtual masses start.
+pub const MASS: &str = "mass ";
+
+/// The name under which a law keeps the regressor of a term that its model lacks.
+pub fn lacked_name(term: &str) -> String {
+    format!("lacked/{term}")
 }

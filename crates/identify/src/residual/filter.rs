@@ -7,8 +7,8 @@
 use sistership_model::uncertainty::Discrepancy;
 
 use super::gram::Gram;
+use super::linearised::Linearised;
 use super::noise::Noise;
-use super::system::Linearised;
 
 /// The discrepancy of each acceleration, in the order of the filter's axes.
 pub type Discrepancies = Vec<Discrepancy>;
@@ -23,6 +23,18 @@ const DRIFT: f64 = 1e-3;
 pub fn filter(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) -> Gram {
     let (rows, log_variance) = whitened(linear, noise, discrepancies);
     Gram::of_rows(rows, 1 + linear.sizes.columns, log_variance)
+}
+
+/// Prediction errors of parts with all columns in one ([`Linearised::along`]), divided by the predicted deviation, sample
+/// after sample and in each by recorded channel; and the sum of the logarithms of the predicted variances.
+pub fn errors(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) -> (Vec<f64>, f64) {
+    let (rows, log_variance) = whitened(linear, noise, discrepancies);
+    (rows.chunks_exact(2).map(|row| row[0] - row[1]).collect(), log_variance)
+}
+
+/// What the one column of [`Linearised::along`] takes from the prediction errors, in the same order.
+pub fn responses(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) -> Vec<f64> {
+    whitened(linear, noise, discrepancies).0.chunks_exact(2).map(|row| row[1]).collect()
 }
 
 /// Prediction errors and what each column adds to them, divided by the predicted deviation: for each sample and recorded

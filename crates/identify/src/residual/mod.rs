@@ -13,15 +13,18 @@
 mod columns;
 mod filter;
 mod gram;
+mod instruments;
+mod linearised;
 mod noise;
+mod path;
 mod record;
-mod system;
 mod tapes;
+mod walker;
 
-pub use columns::{Candidate, Columns, Nuisance};
-pub use filter::{Discrepancies, filter, whitened};
+pub use columns::{Candidate, Columns, Nuisance, NuisanceKind, lacked_name};
+pub use filter::{Discrepancies, errors, filter, responses, whitened};
 pub use gram::Gram;
+pub use linearised::{Detail, Linearised, linearise};
 pub use noise::{Noise, floor, scatter};
 pub use record::Record;
-pub use system::{Linearised, linearise};
 pub use tapes::System;

@@ -1,7 +1,7 @@
 //! A model, the effects that may be missing and the coefficients that may move, on tapes.
 
 use sistership_dynamics::instruments::{input_names, readings};
-use sistership_dynamics::plant::{binding, dressed};
+use sistership_dynamics::plant::binding;
 use sistership_dynamics::state::{RECORDED, at};
 use sistership_dynamics::tape::{Tape, TapeBuilder};
 use sistership_model::Model;
@@ -11,7 +11,7 @@ use sistership_model::law::{Law, STATES};
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
 
-use super::Columns;
+use super::{Columns, NuisanceKind, lacked_name};
 use crate::refine::RefineError;
 
 /// Places of the states in a filter: `u, v, r`, then roll where the law has it, then `psi, x, y`.
@@ -55,19 +55,12 @@ pub(super) struct Motion {
 }
 
 impl System {
-    /// For trials whose velocities are of a frame. `terms` are the regressors of nuisance terms that the model lacks, in N
-    /// (N m) per unit.
+    /// For trials whose velocities are of a frame. The law is in the dress of the effects that the model carries, and keeps
+    /// the regressors of nuisance terms that the model lacks ([`lacked_name`]), in N (N m) per unit.
     ///
     /// # Errors
     /// Names what the model does not give.
-    pub fn new(
-        model: &Model,
-        law: &Law,
-        columns: Columns,
-        terms: &dyn Fn(&str) -> Option<Expr>,
-        frame: VelocityFrame,
-    ) -> Result<Self, RefineError> {
-        let law = dressed(model, law).map_err(|e| RefineError::Law(e.to_string()))?;
+    pub fn new(model: &Model, law: &Law, columns: Columns, frame: VelocityFrame) -> Result<Self, RefineError> {
         let forms: Vec<_> = columns.candidates.iter().map(|c| (c.effect.as_str(), &*c.form)).collect();
         let law = law.dressed(model, &forms);
         let build = Builder { model, law: &law, columns: &columns };
@@ -78,7 +71,7 @@ impl System {
         let (instruments, says) = build.instruments(&channels, frame)?;
         Ok(Self {
             motion: build.motion(&axes, states)?,
-            regressors: build.regressors(terms)?,
+            regressors: build.regressors()?,
             lagged: build.lagged(),
             inputs: law.inputs.iter().map(|(name, input)| (name.clone(), input.default)).collect(),
             columns,
@@ -170,12 +163,16 @@ impl Builder<'_> {
         }
     }
 
-    fn regressors(&self, terms: &dyn Fn(&str) -> Option<Expr>) -> Result<Tape, RefineError> {
+    fn regressors(&self) -> Result<Tape, RefineError> {
         let (tape, ()) = self.build(&self.names(true), |output| {
             for nuisance in &self.columns.nuisance {
-                let lacked = || terms(&nuisance.name).ok_or_else(|| self.missing(nuisance.name.clone()));
-                let of_law = |name: &str| self.law.regressor(name).map(|(_, expr)| expr).map_err(RefineError::Law);
-                output(&if nuisance.own { of_law(&nuisance.name)? } else { lacked()? })?;
+                let name = &nuisance.name;
+                output(&match nuisance.kind {
+                    NuisanceKind::Own(_) => self.law.regressor(name).map_err(RefineError::Law)?.1,
+                    NuisanceKind::Lacked(_) => Expr::Name(lacked_name(name)),
+                    // Its column follows from the motion's own tape.
+                    NuisanceKind::Mass(..) => Expr::Number(0.0),
+                })?;
             }
             Ok(())
         })?;

@@ -51,6 +51,14 @@ impl Grammar {
         wanted.filter_map(|form| Form::read(ActsOn::Force, &form).ok()).map(Arc::new).collect()
     }
 
+    /// The constant of each axis, such as `Y_0`: what a ship that is not quite symmetric has. None of those `known`.
+    pub fn constants(&self, axes: &[Axis], known: &dyn Fn(&str) -> bool) -> Vec<Arc<Form>> {
+        let constant = Term { factors: Vec::new(), bars: false };
+        let axes = axes.iter().copied().filter(|axis| self.scales.contains_key(axis));
+        let wanted = axes.map(|axis| constant.form(&self.file, axis)).filter(|form| !known(&form.name));
+        wanted.filter_map(|form| Form::read(ActsOn::Force, &form).ok()).map(Arc::new).collect()
+    }
+
     fn terms(&self) -> Vec<Term<'_>> {
         let mut terms = Vec::new();
         for order in 1..=self.file.order {

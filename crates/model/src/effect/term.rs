@@ -35,7 +35,7 @@ impl Term<'_> {
 
     /// Like a coefficient; formulas cannot mention bars, so that the parameter has another mark in their place.
     fn name(&self, axis: Axis, bar: &str) -> String {
-        let last = self.factors.len() - 1;
+        let Some(last) = self.factors.len().checked_sub(1) else { return format!("{axis}_0") };
         let symbol = |(place, factor): (usize, &&Factor)| {
             if self.bars && place == last { format!("{bar}{}{bar}", factor.symbol) } else { factor.symbol.clone() }
         };
@@ -43,7 +43,7 @@ impl Term<'_> {
     }
 
     fn product(&self) -> String {
-        let last = self.factors.len() - 1;
+        let Some(last) = self.factors.len().checked_sub(1) else { return "1".into() };
         let one = |(place, factor): (usize, &&Factor)| {
             if self.bars && place == last { format!("abs({})", factor.text) } else { format!("({})", factor.text) }
         };
@@ -61,7 +61,7 @@ impl Term<'_> {
             unless: Vec::new(),
             only_without_roll: false,
             particulars: IndexMap::new(),
-            parameters: IndexMap::from([(parameter, coefficient(grammar.deviations[&axis]))]),
+            parameters: IndexMap::from([(parameter, coefficient(grammar.deviations[&axis], self.fits(axis)))]),
             reports: IndexMap::new(),
             values: IndexMap::new(),
             sees: IndexMap::new(),
@@ -82,7 +82,7 @@ fn needs(formula: &str) -> Vec<Channel> {
     needs
 }
 
-fn coefficient(deviation: f64) -> EffectParameterFile {
+fn coefficient(deviation: f64, is_symmetric: bool) -> EffectParameterFile {
     EffectParameterFile {
         unit: "1".into(),
         meaning: "the coefficient".into(),
@@ -90,6 +90,6 @@ fn coefficient(deviation: f64) -> EffectParameterFile {
         bounds: [-20.0 * deviation, 20.0 * deviation],
         absent: 0.0,
         start: None,
-        mirror: Mirror::Same,
+        mirror: if is_symmetric { Mirror::Same } else { Mirror::Opposite },
     }
 }

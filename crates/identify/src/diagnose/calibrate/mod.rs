@@ -1,0 +1,167 @@
+//! What the trials that a model was fitted on leave open.
+
+mod discrepancy;
+mod feigned;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+use sistership_model::law::Law;
+use sistership_model::uncertainty::{Discrepancy, Uncertainty};
+use sistership_model::{Effect, Model, Trial};
+
+use super::evidence::Fixed;
+use super::learned::Learned;
+use super::nuisance::{Terms, lacked, learned, prior, regressor};
+use super::remainder::largest;
+use super::setup::listed;
+use super::workspace::Workspace;
+use crate::refine::RefineError;
+use crate::residual::{Candidate, Columns, Discrepancies, Gram, Nuisance};
+
+/// How far coefficients may be from the model's before its own trials are asked.
+const WIDE: f64 = 1.0;
+
+/// What the trials that a model was fitted on leave open, to be kept with it. Terms of the library's grammar that the model
+/// lacks are learned too, as far as those trials show them; and what effects would explain of these trials, which do not
+/// have them, is kept to judge them by later.
+///
+/// # Errors
+/// Names the channel that a trial lacks, or says that the information is not positive.
+pub fn calibrate(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Result<Uncertainty, RefineError> {
+    let terms = learned(model, law, effects, trials);
+    let extra: Vec<_> = terms.iter().filter_map(|(name, form)| Some((name.clone(), regressor(model, form)?.0))).collect();
+    let nuisance = Columns::nuisance(model, law, &extra);
+    let prior = prior(model, &nuisance, &terms, WIDE);
+    let (shift, rough) = taught(model, law, &terms, &nuisance, &prior, trials)?;
+    let candidates = listed(model, law, effects, trials);
+    let columns = Columns { nuisance: nuisance.clone(), candidates: candidates.clone() };
+    let workspace = Workspace::new(&Learned::new(model, law, &terms, &nuisance, &shift)?, columns, trials, None)?;
+    let fixed = prior.from(&shift);
+    let discrepancies = discrepancy::most_probable(&workspace, &fixed, Some(rough))?;
+    let grams = workspace.each(&discrepancies);
+    let freed = lacked(model, law, effects, trials);
+    let freed = freed.iter().map(|(effect, form)| Candidate::absent(effect, form));
+    let all: Vec<_> = candidates.into_iter().chain(freed).collect();
+    let known = Known { fixed: &fixed, grams: &grams, scatter: 1.0 };
+    let known = Known { scatter: known.scatter(), ..known };
+    Ok(Uncertainty {
+        feigned: feigned::feigned(&workspace, &known, &all),
+        remainder: remainder(&workspace, &known, &discrepancies),
+        ..uncertainty(&workspace, &known, &shift, &discrepancies)?
+    })
+}
+
+/// What the trials teach by one linearisation about the model as it is, and the discrepancies by that.
+fn taught(
+    model: &Model,
+    law: &Law,
+    terms: &Terms,
+    nuisance: &[Nuisance],
+    prior: &Fixed,
+    trials: &[&Trial],
+) -> Result<(Vec<f64>, Discrepancies), RefineError> {
+    let columns = Columns { nuisance: nuisance.to_vec(), candidates: Vec::new() };
+    let as_it_is = Learned::new(model, law, terms, nuisance, &vec![0.0; nuisance.len()])?;
+    let workspace = Workspace::new(&as_it_is, columns, trials, None)?;
+    let discrepancies = discrepancy::most_probable(&workspace, prior, None)?;
+    let grams = workspace.each(&discrepancies);
+    let shift = Known { fixed: prior, grams: &grams, scatter: 1.0 }.by(&|_| true).taught(nuisance);
+    Ok((shift.ok_or_else(|| RefineError::Data("the trials' information is not positive".into()))?, discrepancies))
+}
+
+/// What is known of the coefficients, trial by trial.
+struct Known<'a> {
+    fixed: &'a Fixed,
+    grams: &'a [Gram],
+    /// How much more coefficients differ from trial to trial than each trial by itself would say.
+    scatter: f64,
+}
+
+impl Known<'_> {
+    /// By the prior and some of the trials.
+    fn by(&self, keep: &dyn Fn(usize) -> bool) -> Fixed {
+        let mut known = self.fixed.clone();
+        let size = known.weighted_mean.len();
+        for (_, gram) in self.grams.iter().enumerate().filter(|(trial, _)| keep(*trial)) {
+            known.information += gram.products.view((1, 1), (size, size)) / self.scatter;
+            known.weighted_mean += gram.products.view((1, 0), (size, 1)).column(0) / self.scatter;
+        }
+        known
+    }
+
+    /// What coefficients fitted on the others leave of each trial and its own would explain, by what chance would: one where
+    /// the law is right, more where it only seems to be known so well.
+    fn scatter(&self) -> f64 {
+        let size = self.fixed.weighted_mean.len();
+        let mut sum = (0.0, 0.0);
+        for (trial, gram) in self.grams.iter().enumerate() {
+            let others = self.by(&|other| other != trial);
+            let (Some(mean), products) = (others.mean(), gram.products.view((1, 1), (size, size))) else { continue };
+            let left = gram.products.view((1, 0), (size, 1)).column(0) - products * mean;
+            let Some(factor) = Cholesky::new(products + &others.information) else { continue };
+            sum.0 += left.dot(&factor.solve(&left));
+            sum.1 += factor.solve(&products.into_owned()).trace();
+        }
+        if sum.1 > 0.0 { (sum.0 / sum.1).max(1.0) } else { 1.0 }
+    }
+
+    /// The change of the coefficients by the trials but one; all effects absent.
+    fn shift(&self, but: usize, width: usize) -> Option<Vec<f64>> {
+        let known = self.by(&|trial| trial != but);
+        let mut shift = known.mean()?.as_slice().to_vec();
+        shift.resize(width, 0.0);
+        Some(shift)
+    }
+}
+
+impl Fixed {
+    /// The expected change of the coefficients; `None` where the information is not positive.
+    pub(super) fn mean(&self) -> Option<DVector<f64>> {
+        Some(Cholesky::new(self.information.clone())?.solve(&self.weighted_mean))
+    }
+}
+
+/// The largest remainder by channel, each trial under coefficients fitted on the others.
+fn remainder(workspace: &Workspace<'_>, known: &Known<'_>, discrepancies: &Discrepancies) -> BTreeMap<String, f64> {
+    let mut limits: BTreeMap<String, f64> = BTreeMap::new();
+    for trial in 0..workspace.trials.len() {
+        let Some(shift) = known.shift(trial, workspace.columns().len()) else { continue };
+        for (channel, size) in largest(workspace, trial, discrepancies, &shift) {
+            let limit = limits.entry(channel.name().to_owned()).or_default();
+            *limit = limit.max((1e3 * size).round() / 1e3);
+        }
+    }
+    limits
+}
+
+fn uncertainty(
+    workspace: &Workspace<'_>,
+    known: &Known<'_>,
+    shift: &[f64],
+    discrepancies: &Discrepancies,
+) -> Result<Uncertainty, RefineError> {
+    // From the model as it is, not as the trials taught it.
+    let back: Vec<f64> = shift.iter().map(|shift| -shift).collect();
+    let all = known.by(&|_| true).from(&back);
+    let size = all.weighted_mean.len();
+    let scales: Vec<f64> = (0..size).map(|i| known.fixed.information[(i, i)].sqrt().recip()).collect();
+    let scaled = DMatrix::from_fn(size, size, |i, j| all.information[(i, j)] * scales[i] * scales[j]);
+    let right = DVector::from_fn(size, |i, _| all.weighted_mean[i] * scales[i]);
+    let factor = Cholesky::new(scaled).ok_or_else(|| RefineError::Data("the trials' information is not positive".into()))?;
+    let lower = factor.l();
+    let offset = lower.solve_lower_triangular(&right).unwrap_or(right);
+    let axes = workspace.axes();
+    let discrepancy: BTreeMap<_, Discrepancy> = axes.iter().copied().zip(discrepancies.iter().copied()).collect();
+    Ok(Uncertainty {
+        names: workspace.columns().nuisance.iter().map(|n: &Nuisance| n.name.clone()).collect(),
+        scales,
+        root_information: Uncertainty::rows(size, &|i, j| lower[(j, i)]),
+        offset: offset.iter().copied().collect(),
+        discrepancy,
+        feigned: BTreeMap::new(),
+        remainder: BTreeMap::new(),
+        trials: workspace.trials.iter().map(|trial| trial.name.clone()).collect(),
+    })
+}
