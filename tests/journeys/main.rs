@@ -3,5 +3,8 @@
 mod bad_input;
 mod command_line;
 mod crash;
+mod diagnosis_on_files;
+mod diagnosis_over_http;
+mod lacking;
 mod over_http;
 mod sea_trials;

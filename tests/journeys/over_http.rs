@@ -59,7 +59,7 @@ async fn journey(server: TestServer) {
 }
 
 /// What scripts depend on: the paths and types of the answers, held by snapshots (`INSTA_UPDATE=always` rewrites them).
-fn shapes(answers: &[(&str, &Value)]) {
+pub fn shapes(answers: &[(&str, &Value)]) {
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path("../snapshots");
     settings.set_prepend_module_to_snapshot(false);

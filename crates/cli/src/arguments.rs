@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand, ValueEnum};
 use sistership_dynamics::Method;
 
-use crate::commands::{check, manoeuvre, refine, similar, simulate};
+use crate::commands::{check, diagnose, manoeuvre, refine, similar, simulate};
 use crate::commands::{serve, verify};
 use crate::demo::Demo;
 
@@ -19,6 +19,7 @@ Examples:
   sistership check trials.yaml
   sistership refine --ship my-ship.yaml --source auto --trials trials.yaml --out my-model.yaml
   sistership simulate --model my-model.yaml --trials trials.yaml
+  sistership diagnose --model my-model.yaml --trials new-trials.yaml --report diagnosis.html
   sistership manoeuvre --model my-model.yaml --all
 
 Exit status: 0 done, 1 the data or the model says no, 2 the call is wrong.";
@@ -27,7 +28,7 @@ Exit status: 0 done, 1 the data or the model says no, 2 the call is wrong.";
 #[derive(Debug, Parser)]
 #[command(name = "sistership", version, after_help = EXAMPLES, arg_required_else_help = true)]
 pub struct Arguments {
-    /// Add laws/*.yaml and vessels/*.yaml of a folder to the zoo; repeatable. SISTERSHIP_ZOO holds further ones.
+    /// Add laws/*.yaml, effects/*.yaml and vessels/*.yaml of a folder to the zoo; repeatable. SISTERSHIP_ZOO holds further ones.
     #[arg(long, value_name = "DIR", global = true)]
     pub zoo: Vec<PathBuf>,
     /// What to do.
@@ -46,6 +47,8 @@ pub enum Command {
     Refine(Box<refine::Refine>),
     /// Simulate recorded trials with a model and measure its errors.
     Simulate(simulate::Simulate),
+    /// Find what a model lacks, by trials that it has not seen.
+    Diagnose(diagnose::Diagnose),
     /// Sail turning circles and zigzags with a model and judge them by the IMO criteria.
     Manoeuvre(manoeuvre::Manoeuvre),
     /// Show the whole loop through the real server: ship, trials, source, refinement, champion, report.
@@ -138,7 +141,8 @@ mod tests {
         let refused = |line: &str| Arguments::try_parse_from(line.split(' ')).err().map(|e| e.to_string()).unwrap_or_default();
         assert!(refused("sistership refine --ship a --trials t --method weak").contains("this version has `published`"));
         assert!(refused("sistership manoeuvre --model a --turn 35 --zigzag 10/10").contains("cannot be used with"));
-        assert!(refused("sistership diagnose").contains("unrecognized subcommand"));
+        assert!(refused("sistership diagnose --model a").contains("--trials"));
+        assert!(refused("sistership diagnose --model a --trials t --slack -1").contains("above 0"));
         assert_eq!(refused("sistership manoeuvre --model a --turn -35 --turn 35"), "");
         assert_eq!(refused("sistership manoeuvre --model a --zigzag -10/10"), "");
     }

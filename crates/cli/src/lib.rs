@@ -47,6 +47,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Check(check) => commands::check::run(check),
         Command::Refine(refine) => commands::refine::run(&zoo()?, refine),
         Command::Simulate(simulate) => commands::simulate::run(&zoo()?, simulate),
+        Command::Diagnose(diagnose) => commands::diagnose::run(&zoo()?, diagnose),
         Command::Manoeuvre(manoeuvre) => commands::manoeuvre::run(&zoo()?, manoeuvre),
         Command::Demo(demo) => demo::run(demo, &zoo()?),
         Command::Serve(serve) => commands::serve::run(serve, &arguments.zoo),

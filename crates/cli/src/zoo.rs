@@ -6,7 +6,7 @@ use sistership_model::Zoo;
 
 use crate::failure::{Failure, about_file};
 
-/// Folders of further laws and vessels, separated as in `PATH`.
+/// Folders of further laws, effects and vessels, separated as in `PATH`.
 const VARIABLE: &str = "SISTERSHIP_ZOO";
 
 /// The embedded zoo with the folders of the environment and of the command line, in this order.
@@ -24,12 +24,16 @@ pub fn load(folders: &[PathBuf]) -> Result<Zoo, Failure> {
 }
 
 fn extend(zoo: &mut Zoo, folder: &Path) -> Result<(), Failure> {
-    let (laws, vessels) = (yaml_files(&folder.join("laws"))?, yaml_files(&folder.join("vessels"))?);
-    if laws.is_empty() && vessels.is_empty() {
-        return Err(about_file(folder, "is no zoo: it holds neither laws/*.yaml nor vessels/*.yaml"));
+    let of = |kind: &str| yaml_files(&folder.join(kind));
+    let (laws, effects, vessels) = (of("laws")?, of("effects")?, of("vessels")?);
+    if laws.is_empty() && effects.is_empty() && vessels.is_empty() {
+        return Err(about_file(folder, "is no zoo: it holds neither laws/*.yaml nor effects/*.yaml nor vessels/*.yaml"));
     }
     for path in laws {
         zoo.add_law(&path.display().to_string(), &text_of(&path)?)?;
+    }
+    for path in effects {
+        zoo.add_effect(&path.display().to_string(), &text_of(&path)?)?;
     }
     for path in vessels {
         zoo.add_vessel(&path.display().to_string(), &text_of(&path)?)?;
@@ -76,6 +80,11 @@ mod tests {
         std::fs::write(folder.path().join("vessels/two.yaml"), &vessel).unwrap();
         extend(&mut zoo, folder.path()).unwrap();
         assert!(zoo.vessel("mariner-two").is_some());
+        std::fs::create_dir(folder.path().join("effects")).unwrap();
+        let effect = zoo.effect_text("current").unwrap().replace("name: current", "name: tide");
+        std::fs::write(folder.path().join("effects/tide.yaml"), &effect).unwrap();
+        extend(&mut zoo, folder.path()).unwrap();
+        assert!(zoo.effect("tide").is_some());
         std::fs::write(folder.path().join("vessels/three.yaml"), "kind: vessel\n").unwrap();
         assert!(extend(&mut zoo, folder.path()).unwrap_err().message().unwrap().contains("vessels/three.yaml"));
     }

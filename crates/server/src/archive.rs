@@ -4,12 +4,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use bytes::Bytes;
-use sistership_model::version::{RecipeTrial, SourceVersion, VersionDocument, sha256};
+use sistership_model::version::{RecipeTrial, SourceVersion, sha256};
 use sistership_model::vessel::VesselFile;
 use sistership_model::{Law, Model, Vessel};
 use sistership_store::{MAX_LIMIT, Objects, Page, Store, SystemClock, Version};
 
 use crate::derive::DeriveError;
+use crate::version::VersionDocument;
 
 /// The database and the samples that belong to it.
 #[derive(Debug, Clone)]

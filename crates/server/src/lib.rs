@@ -11,6 +11,7 @@ pub mod derive;
 mod jobs;
 #[cfg(test)]
 mod journey;
+pub mod library;
 mod listen;
 mod predict;
 mod problem;
@@ -23,6 +24,7 @@ mod start_error;
 mod stopping;
 mod upload;
 pub mod verify;
+pub mod version;
 mod web;
 
 pub use archive::Archive;

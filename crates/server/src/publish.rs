@@ -1,12 +1,13 @@
 //! The models that a ship's own document publishes, as versions of her line.
 
-use sistership_model::version::{Recipe, VersionDocument, sha256};
+use sistership_model::version::sha256;
 use sistership_model::{Vessel, Zoo};
 use sistership_store::{Alias, AliasMove, Expect, NewVersion, Store, StoreError};
 
 use crate::archive::document;
 use crate::derive::published_document;
 use crate::problem::{Problem, Result};
+use crate::version::VersionDocument;
 
 /// The alias that the product is asked for.
 pub(crate) const CHAMPION: &str = "champion";
@@ -75,10 +76,7 @@ async fn moves(store: &Store, model: &str, name: &str, current: Option<Alias>) -
 /// Whether the version that stands for a published model has the same model by the same law.
 async fn same(store: &Store, current: &Alias, published: &VersionDocument) -> Result<bool> {
     let there = document(&store.versions().get(&current.model, current.version_number).await?)?;
-    let law = |recipe: &Recipe| match recipe {
-        Recipe::Published { law_sha256, .. } | Recipe::Refinement { law_sha256, .. } => law_sha256.clone(),
-    };
-    Ok(there.model == published.model && law(&there.recipe) == law(&published.recipe))
+    Ok(there.model == published.model && there.recipe.law_sha256() == published.recipe.law_sha256())
 }
 
 /// A move of an alias by the server itself.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 use serde_json::Value;
-use sistership_model::version::{Recipe, sha256};
+use sistership_model::version::sha256;
 use utoipa::ToSchema;
 
 use crate::archive::{Archive, document};
@@ -50,7 +50,7 @@ pub async fn verify_with(archive: &Archive, ship: &str, number: i64, progress: P
     let stored = document(&version)?;
     let derived = derive(archive, ship, &stored.recipe, progress).await?.document.canonical()?;
     let (stored_sha256, derived_sha256) = (sha256(version.document.as_bytes()), sha256(derived.as_bytes()));
-    let made_by = made_by(&stored.recipe);
+    let made_by = stored.recipe.code_revision().map(str::to_owned);
     let identical = version.head.sha256 == stored_sha256 && version.document == derived;
     let remarks = remarks(made_by.as_deref(), (&version.document, &derived), version.head.sha256 == stored_sha256);
     Ok(Verification {
@@ -64,13 +64,6 @@ pub async fn verify_with(archive: &Archive, ship: &str, number: i64, progress: P
         checked_by: code_revision().to_owned(),
         remarks,
     })
-}
-
-fn made_by(recipe: &Recipe) -> Option<String> {
-    match recipe {
-        Recipe::Published { .. } => None,
-        Recipe::Refinement { code_revision, .. } => Some(code_revision.clone()),
-    }
 }
 
 fn remarks(made_by: Option<&str>, (stored, derived): (&str, &str), undamaged: bool) -> Vec<String> {

@@ -30,12 +30,8 @@ pub struct Jobs<'a>(pub(crate) &'a Store);
 impl Jobs<'_> {
     /// Puts a job in the queue.
     pub async fn enqueue(&self, new: &NewJob) -> Result<Job> {
-        checks::name("kind", &new.kind)?;
-        checks::json("request", &new.request)?;
-        let (id, now) = (self.0.new_id(), self.0.now_us());
-        let values = args![id: &id, kind: &new.kind, ship: &new.ship, request: &new.request, created_us: now];
         let mut tx = self.0.begin().await?;
-        let job = tx.one(INSERT, values).await?;
+        let job = insert(self.0, &mut tx, new).await?;
         tx.commit().await?;
         Ok(job)
     }
@@ -74,6 +70,15 @@ impl Jobs<'_> {
         tx.commit().await?;
         Ok(job)
     }
+}
+
+/// Puts a job in the queue within a transaction.
+pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewJob) -> Result<Job> {
+    checks::name("kind", &new.kind)?;
+    checks::json("request", &new.request)?;
+    let (id, now) = (store.new_id(), store.now_us());
+    let values = args![id: &id, kind: &new.kind, ship: &new.ship, request: &new.request, created_us: now];
+    tx.one(INSERT, values).await
 }
 
 /// The job, as the transaction sees it.

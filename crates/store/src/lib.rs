@@ -4,15 +4,17 @@
 //! Each table has one repository, reached from [`Store`]; time and ids are parameters ([`Clock`], [`Ids`]), so that a
 //! test holds both in its hand. Nothing is overwritten: versions and laws are insert-only, aliases and ships keep their
 //! history, a deletion is a tombstone. What must happen together happens in one transaction, see
-//! [`Store::commit_refinement`].
+//! [`Store::commit_refinement`] and [`Store::commit_diagnosis`].
 
 mod aliases;
 mod arguments;
 mod checks;
 mod clock;
 mod commit;
+mod commit_diagnosis;
 mod connect;
 mod database;
+mod diagnoses;
 mod error;
 mod folders;
 mod idempotency;
@@ -37,6 +39,8 @@ pub use aliases::{Alias, AliasChange, AliasMove, Aliases, Expect};
 pub use checks::{MAX_NAME_BYTES, MAX_TEXT_BYTES};
 pub use clock::{Clock, Ids, ManualClock, SequentialIds, SystemClock, UuidIds};
 pub use commit::{Committed, Refinement};
+pub use commit_diagnosis::{CommittedDiagnosis, Diagnosis};
+pub use diagnoses::{Diagnosed, Diagnoses, NewDiagnosed};
 pub use error::{Result, StoreError};
 pub use idempotency::{Begun, Idempotency, KEEP_KEYS, TAKE_OVER_AFTER, Ticket};
 pub use job::{Job, JobFilter, JobState, NewJob};

@@ -8,8 +8,14 @@ use crate::error::Result;
 /// A migration: its number, its name, its text.
 type Source = (i64, &'static str, &'static str);
 
-const SQLITE: &[Source] = &[(1, "initial", include_str!("../../../migrations/sqlite/0001_initial.sql"))];
-const POSTGRES: &[Source] = &[(1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql"))];
+const SQLITE: &[Source] = &[
+    (1, "initial", include_str!("../../../migrations/sqlite/0001_initial.sql")),
+    (2, "diagnoses", include_str!("../../../migrations/sqlite/0002_diagnoses.sql")),
+];
+const POSTGRES: &[Source] = &[
+    (1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql")),
+    (2, "diagnoses", include_str!("../../../migrations/postgres/0002_diagnoses.sql")),
+];
 
 fn migrator(sources: &'static [Source]) -> Migrator {
     let migration =

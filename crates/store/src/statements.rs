@@ -37,10 +37,11 @@ mod prepare {
     use crate::database::Pool;
     use crate::error::{Result, StoreError};
     use crate::store::Store;
-    use crate::{aliases, idempotency, jobs, laws, reports, ships, store, trials, versions, work};
+    use crate::{aliases, diagnoses, idempotency, jobs, laws, reports, ships, store, trials, versions, work};
 
     const ALL: &[(&str, &[(&str, super::Statement)])] = &[
         ("aliases", aliases::STATEMENTS),
+        ("diagnoses", diagnoses::STATEMENTS),
         ("idempotency", idempotency::STATEMENTS),
         ("jobs", jobs::STATEMENTS),
         ("laws", laws::STATEMENTS),

@@ -7,6 +7,7 @@ use crate::aliases::Aliases;
 use crate::clock::{Clock, Ids, UuidIds};
 use crate::connect;
 use crate::database::{Database, Transaction};
+use crate::diagnoses::Diagnoses;
 use crate::error::Result;
 use crate::idempotency::Idempotency;
 use crate::jobs::Jobs;
@@ -111,6 +112,11 @@ impl Store {
     /// Reports on versions and ships.
     pub fn reports(&self) -> Reports<'_> {
         Reports(self)
+    }
+
+    /// Diagnoses of versions.
+    pub fn diagnoses(&self) -> Diagnoses<'_> {
+        Diagnoses(self)
     }
 
     pub(crate) fn new_id(&self) -> String {

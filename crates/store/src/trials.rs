@@ -4,6 +4,8 @@ use crate::arguments::args;
 use crate::checks;
 use crate::database::Transaction;
 use crate::error::{Result, StoreError};
+use crate::job::{Job, NewJob};
+use crate::jobs;
 use crate::page::{List, Page};
 use crate::record::record;
 use crate::ships;
@@ -120,14 +122,26 @@ impl Trials<'_> {
 
     /// Puts several trials in, all of them or none.
     pub async fn insert_all(&self, all: &[NewTrial]) -> Result<Vec<Inserted<Trial>>> {
+        self.insert_all_and_enqueue(all, |_| None).await.map(|(inserted, _)| inserted)
+    }
+
+    /// The same with a job that is to follow, if `job` asks for one: whoever sees the trials finds the job too.
+    pub async fn insert_all_and_enqueue<F>(&self, all: &[NewTrial], job: F) -> Result<(Vec<Inserted<Trial>>, Option<Job>)>
+    where
+        F: FnOnce(&[Inserted<Trial>]) -> Option<NewJob>,
+    {
         all.iter().try_for_each(NewTrial::check)?;
         let mut tx = self.0.begin().await?;
         let mut inserted = Vec::with_capacity(all.len());
         for new in all {
             inserted.push(self.insert_one(&mut tx, new).await?);
         }
+        let job = match job(&inserted) {
+            Some(new) => Some(jobs::insert(self.0, &mut tx, &new).await?),
+            None => None,
+        };
         tx.commit().await?;
-        Ok(inserted)
+        Ok((inserted, job))
     }
 
     async fn insert_one(&self, tx: &mut Transaction, new: &NewTrial) -> Result<Inserted<Trial>> {

@@ -1,6 +1,8 @@
 //! One file for each command, and what they share.
 
 pub mod check;
+pub mod diagnose;
+mod diagnose_text;
 pub mod manoeuvre;
 mod manoeuvre_text;
 pub mod refine;

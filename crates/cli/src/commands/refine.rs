@@ -8,6 +8,7 @@ use sistership_identify::refine::{Method, Refinement, Request, Settings, refine}
 use sistership_identify::similarity::RankedSource;
 use sistership_identify::source::{Similarity, best_source, similar};
 use sistership_model::{Model, Vessel, Zoo};
+use sistership_server::derive::with_uncertainty;
 use sistership_server::report::{Input, render};
 
 use super::refine_settings::{held_out, settings_file};
@@ -113,7 +114,7 @@ pub fn run(zoo: &Zoo, arguments: &Refine) -> Result<(), Failure> {
     };
     let refinement = refined(zoo, &target, &source, &settings, &read)?;
     if let Some(out) = out {
-        out.write(model_file(zoo, &refinement.model)?.as_bytes())?;
+        out.write(model_file(zoo, &refinement.model, "method published")?.as_bytes())?;
     }
     if let Some(report) = report {
         report.write(&report_html(zoo, &target, &refinement, similarity.as_ref(), &read)?)?;
@@ -183,13 +184,19 @@ fn refined(zoo: &Zoo, target: &Vessel, source: &Model, settings: &Settings, read
         note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true
     };
-    refine(&request, &told).map_err(|error| Failure::Refused(error.to_string()))
+    let refinement = refine(&request, &told).map_err(|error| Failure::Refused(error.to_string()))?;
+    note("learning what these trials leave open");
+    let effects: Vec<_> = zoo.effects().cloned().collect();
+    Ok(with_uncertainty(refinement, &law, &effects, &trials))
 }
 
-/// The model as a file, read back once to be sure that it is one.
-fn model_file(zoo: &Zoo, model: &Model) -> Result<String, Failure> {
+/// The model as a file, read back once to be sure that it is one; `how` says how it was made.
+///
+/// # Errors
+/// It does not read back.
+pub fn model_file(zoo: &Zoo, model: &Model, how: &str) -> Result<String, Failure> {
     let text = serde_yaml::to_string(model).map_err(|error| Failure::Refused(format!("the model cannot be written: {error}")))?;
-    let text = format!("# {} by sistership {}, method published\n{text}", model.name, env!("CARGO_PKG_VERSION"));
-    Model::parse("the refined model", &text, &|law| zoo.law(law).map(|law| (**law).clone()))?;
+    let text = format!("# {} by sistership {}, {how}\n{text}", model.name, env!("CARGO_PKG_VERSION"));
+    Model::parse("the model to be written", &text, &|law| zoo.law(law).map(|law| (**law).clone()))?;
     Ok(text)
 }

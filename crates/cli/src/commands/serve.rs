@@ -56,7 +56,7 @@ fn address(text: &str) -> Result<SocketAddr, String> {
 pub fn run(serve: &Serve, zoo: &[PathBuf]) -> Result<(), Failure> {
     if !zoo.is_empty() {
         return Err(Failure::Call(
-            "a server keeps its ships and laws in its database: send them to /v1/ships and /v1/laws, not by --zoo".into(),
+            "a server keeps its ships and laws in its database: send them to /v1/ships and /v1/laws, not by --zoo; it diagnoses with the effects of the program".into(),
         ));
     }
     let config = config(serve)?;

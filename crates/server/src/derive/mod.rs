@@ -1,20 +1,25 @@
 //! From a recipe to the version that it describes. Jobs and [`verify`](mod@crate::verify) both go this way, so that they
 //! cannot differ.
 
+mod calibrated;
+mod diagnosed;
 mod refined;
 
 use std::sync::Arc;
 
 use serde_json::{Map, Value};
 use sistership_identify::refine::RefineError;
-use sistership_model::version::{FORMAT, Recipe, VersionDocument};
+use sistership_model::version::{self, FORMAT};
 use sistership_model::{FileError, Law, Model, Vessel};
 use sistership_store::StoreError;
 use sistership_trials::samples::SamplesError;
 
+pub use calibrated::with_uncertainty;
+pub use diagnosed::{Diagnosed, diagnosed};
 pub use refined::{Ingredients, Refined, refined_document};
 
 use crate::archive::Archive;
+use crate::version::{Recipe, VersionDocument};
 
 /// Told how far a derivation is (0 to 1) and what it does; answers `false` to stop it.
 pub type Progress = Arc<dyn Fn(f64, &str) -> bool + Send + Sync>;
@@ -50,7 +55,7 @@ pub enum DeriveError {
 pub struct Derived {
     /// The version.
     pub document: VersionDocument,
-    /// The refinement that gave it; none for a published model.
+    /// The refinement that gave it, if one did.
     pub refined: Option<Refined>,
 }
 
@@ -60,11 +65,18 @@ pub struct Derived {
 /// Says what is missing or has changed, or why the refinement is refused.
 pub async fn derive(archive: &Archive, ship: &str, recipe: &Recipe, progress: Progress) -> Result<Derived, DeriveError> {
     match recipe {
-        Recipe::Published { model, ship_sha256, law_sha256 } => published(archive, ship, model, ship_sha256, law_sha256).await,
-        Recipe::Refinement { .. } => {
+        Recipe::Plain(version::Recipe::Published { model, ship_sha256, law_sha256 }) => {
+            published(archive, ship, model, ship_sha256, law_sha256).await
+        }
+        Recipe::Plain(recipe @ version::Recipe::Refinement { .. }) => {
             let (ingredients, samples) = refined::gather(archive, ship, recipe).await?;
             let recipe = recipe.clone();
             tokio::task::spawn_blocking(move || refined::refined(ingredients, &samples, &recipe, &progress)).await?
+        }
+        Recipe::Diagnosis(recipe) => {
+            let document = diagnosed(archive, recipe.clone(), progress).await?.document()?;
+            let nothing = || DeriveError::Lost("the diagnosis finds no effect now, so that no version comes of it".into());
+            Ok(Derived { document: document.ok_or_else(nothing)?, refined: None })
         }
     }
 }
@@ -95,11 +107,11 @@ pub(crate) fn published_document(
     Ok(VersionDocument {
         format: FORMAT.to_owned(),
         ship: vessel.name().to_owned(),
-        recipe: Recipe::Published {
+        recipe: Recipe::Plain(version::Recipe::Published {
             model: model.to_owned(),
             ship_sha256: ship_sha256.to_owned(),
             law_sha256: law_sha256.to_owned(),
-        },
+        }),
         model: Model::published(vessel, Some(model), law)?,
         report: Value::Null,
     })

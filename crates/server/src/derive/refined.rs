@@ -2,14 +2,16 @@
 
 use bytes::Bytes;
 use serde_json::Value;
-use sistership_identify::refine::{Refinement, Request, Settings, refine};
+use sistership_identify::refine::{RefineError, Refinement, Request, Settings, refine};
 use sistership_model::trial::Trial;
-use sistership_model::version::{FORMAT, Recipe, SourceVersion, VersionDocument};
+use sistership_model::version::{FORMAT, Recipe, SourceVersion};
 use sistership_model::{Law, Model, Vessel};
 use sistership_trials::samples;
 
-use super::{DeriveError, Derived, Progress, sorted};
+use super::{DeriveError, Derived, Progress, sorted, with_uncertainty};
 use crate::archive::Archive;
+use crate::library::library;
+use crate::version::{self, VersionDocument};
 
 /// A refinement with everything that went into it.
 #[derive(Debug)]
@@ -73,10 +75,14 @@ pub fn refined_document(
     let Ingredients { target, model, law, settings, .. } = ingredients;
     let trials: Vec<&Trial> = ingredients.trials.iter().collect();
     let refinement = refine(&Request { target, source: model, law, trials: &trials, settings }, progress)?;
+    if !progress(0.97, "learning what the trials leave open") {
+        return Err(RefineError::Cancelled.into());
+    }
+    let refinement = with_uncertainty(refinement, law, &library()?.effects, &trials);
     let document = VersionDocument {
         format: FORMAT.to_owned(),
         ship: target.name().to_owned(),
-        recipe: recipe.clone(),
+        recipe: version::Recipe::Plain(recipe.clone()),
         model: refinement.model.clone(),
         report: report(&refinement)?,
     };

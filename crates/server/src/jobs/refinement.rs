@@ -17,6 +17,7 @@ use crate::app::App;
 use crate::archive::vessel;
 use crate::derive::{code_revision, derive, sorted};
 use crate::publish::{alias, alias_of};
+use crate::version;
 
 /// Does a refinement.
 pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {
@@ -25,12 +26,12 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
     let prepared = prepare(app, &asked, &progress).await?;
     let step = progress.clone();
     let scaled = move |fraction: f64, what: &str| step.tell(0.1 + 0.8 * fraction, what);
-    let derived = derive(app.archive(), &asked.ship, &prepared.recipe, Arc::new(scaled)).await?;
+    let derived = derive(app.archive(), &asked.ship, &version::Recipe::Plain(prepared.recipe.clone()), Arc::new(scaled)).await?;
     tell(&progress, 0.92, "writing the report and keeping the version")?;
     commit(app, job, derived, prepared).await
 }
 
-fn tell(progress: &Progress, fraction: f64, what: &str) -> Result<()> {
+pub(super) fn tell(progress: &Progress, fraction: f64, what: &str) -> Result<()> {
     if progress.tell(fraction, what) { Ok(()) } else { Err(JobError::Stopped) }
 }
 
@@ -65,7 +66,7 @@ async fn prepare(app: &App, asked: &RefinementJob, progress: &Progress) -> Resul
     Ok(Prepared { recipe, source, similarity })
 }
 
-async fn trials(app: &App, ids: &[String]) -> Result<Vec<RecipeTrial>> {
+pub(super) async fn trials(app: &App, ids: &[String]) -> Result<Vec<RecipeTrial>> {
     let mut trials = Vec::with_capacity(ids.len());
     for id in ids {
         let trial = app.store().trials().get(id).await?;

@@ -1,6 +1,7 @@
 //! What a job is asked to do, as its row keeps it.
 
 use serde::{Deserialize, Serialize};
+use sistership_identify::diagnose;
 use sistership_identify::refine::Settings;
 
 /// The kind of refinement jobs.
@@ -18,6 +19,26 @@ pub(crate) struct RefinementJob {
     pub trials: Vec<String>,
     /// Every setting.
     pub settings: Settings,
+    /// The hash of the request's idempotency key, by which a repeated request finds its job.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub key_sha256: Option<String>,
+}
+
+/// The kind of diagnosis jobs.
+pub(crate) const DIAGNOSIS: &str = "diagnosis";
+
+/// A diagnosis to be done; everything is settled when it is asked for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DiagnosisJob {
+    /// The ship, whose name is that of the line of versions.
+    pub ship: String,
+    /// The number of the version.
+    pub number: i64,
+    /// The trials' ids.
+    pub trials: Vec<String>,
+    /// Every setting.
+    pub settings: diagnose::Settings,
     /// The hash of the request's idempotency key, by which a repeated request finds its job.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key_sha256: Option<String>,

@@ -9,8 +9,8 @@ use uuid::Uuid;
 
 use super::outcome::JobError;
 use super::progress::{Progress, Stop};
-use super::refinement;
-use super::request::REFINEMENT;
+use super::request::{DIAGNOSIS, REFINEMENT};
+use super::{diagnosis, refinement};
 use crate::app::App;
 use crate::stopping::Stopping;
 
@@ -129,6 +129,7 @@ impl Worker {
 async fn work(app: App, job: Job, progress: Progress) -> Result<(), JobError> {
     match job.kind.as_str() {
         REFINEMENT => refinement::run(&app, &job, progress).await,
+        DIAGNOSIS => diagnosis::run(&app, &job, progress).await,
         other => Err(JobError::Failed(format!("this server does not know jobs of the kind `{other}`"))),
     }
 }

@@ -5,11 +5,12 @@ use sistership_model::source::Source;
 use sistership_model::vessel::Status;
 
 use super::coefficients::Coefficients;
-use super::numbers::{fixed, list, significant, stated};
+use super::numbers::{list, significant, stated};
 use super::plots::{self, Plot};
 use super::replays::{Replayed, Shown};
-use super::summary::{ErrorRow, method_text};
+use super::summary::method_text;
 use super::tables::{self, Table};
+use super::tile::Tile;
 use super::{Content, ReportError, similarity, words};
 
 /// The page as its template sees it.
@@ -36,17 +37,6 @@ struct Page<'a> {
     settings: Table,
     steering: String,
     sources: Vec<(&'static str, Vec<Citation<'a>>)>,
-}
-
-/// A headline figure.
-struct Tile {
-    name: &'static str,
-    change: String,
-    class: &'static str,
-    before: String,
-    after: String,
-    /// Lengths of the two bars, per cent of the longer.
-    bars: (String, String),
 }
 
 /// The plots of one trial.
@@ -110,28 +100,6 @@ impl Page<'_> {
 
     fn number(&self, value: &f64, digits: usize) -> String {
         stated(*value, digits)
-    }
-}
-
-impl Tile {
-    fn of(row: &ErrorRow) -> Self {
-        let unit = row.quantity.unit;
-        let text = |value: Option<f64>| value.map_or_else(|| "–".into(), |value| format!("{} {unit}", significant(value, 3)));
-        let most = row.source.unwrap_or(0.0).max(row.refined.unwrap_or(0.0)).max(1e-300);
-        let bar = |value: Option<f64>| fixed(100.0 * value.unwrap_or(0.0) / most, 1);
-        let class = match row.change().0 {
-            "fell" => "good",
-            "rose" => "bad",
-            _ => "open",
-        };
-        Self {
-            name: row.quantity.name,
-            change: row.change_text(),
-            class,
-            before: text(row.source),
-            after: text(row.refined),
-            bars: (bar(row.source), bar(row.refined)),
-        }
     }
 }
 

@@ -1,9 +1,11 @@
-//! The report of a refinement: one HTML page that a stranger can read and print, and the same content as JSON.
+//! The reports of a refinement and of a diagnosis ([`diagnosis`]): one HTML page that a stranger can read and print, and the
+//! same content as JSON.
 //!
 //! [`render`] gathers the content once (`summary`, `coefficients`, `options`, `manoeuvres`, `similarity`, `provenance`,
 //! `replays`); JSON is that content, the page shows it with `tables` and `plots`. Nothing depends on the clock.
 
 mod coefficients;
+mod diagnosis;
 mod html;
 mod manoeuvres;
 mod numbers;
@@ -17,7 +19,10 @@ mod summary;
 mod tables;
 #[cfg(test)]
 mod tests;
+mod tile;
 mod words;
+
+pub use diagnosis::{DiagnosisInput, distinct, render_diagnosis};
 
 use serde::Serialize;
 use sistership_dynamics::PlantError;

@@ -45,9 +45,10 @@ fn of_manoeuvre(manoeuvre: &MeasuredManoeuvre) -> Vec<Sailed> {
 }
 
 /// Name, unit, value.
-type Figure = (&'static str, &'static str, Option<f64>);
+pub(super) type Figure = (&'static str, &'static str, Option<f64>);
 
-fn read(metrics: &ManoeuvreMetrics) -> Vec<Figure> {
+/// The figures of a manoeuvre.
+pub(super) fn read(metrics: &ManoeuvreMetrics) -> Vec<Figure> {
     match metrics {
         ManoeuvreMetrics::Turn(turn) => TURN.iter().map(|(name, read)| (*name, "m", read(turn))).collect(),
         ManoeuvreMetrics::Zigzag(zigzag) => ZIGZAG.iter().map(|(name, unit, read)| (*name, *unit, read(zigzag))).collect(),

@@ -24,10 +24,11 @@ use crate::problem::{Fault, MEDIA, Problem};
         (name = "ships", description = "Ships, and the model that each is asked for."),
         (name = "trials", description = "Free-running trials of ships."),
         (name = "refinements", description = "Refining a model against trials, as a job."),
+        (name = "diagnoses", description = "Finding what a model lacks, as a job."),
         (name = "jobs", description = "Long work."),
         (name = "models", description = "Versions of models, insert-only, and the aliases that move between them."),
         (name = "predictions", description = "Simulations with a version."),
-        (name = "reports", description = "What a refinement reported."),
+        (name = "reports", description = "What a refinement or a diagnosis reported."),
         (name = "laws", description = "Laws of motion."),
         (name = "health", description = "Whether the server lives and can work.")
     )

@@ -21,7 +21,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct JobView {
     pub id: String,
-    /// `refinement`.
+    /// `refinement` or `diagnosis`.
     pub kind: String,
     pub ship: Option<String>,
     /// `queued`, `running`, `succeeded`, `failed` or `cancelled`.
@@ -33,7 +33,9 @@ pub(super) struct JobView {
     /// What was asked.
     #[schema(value_type = Object)]
     pub request: Value,
-    /// What came of it: `model`, `version`, `sha256`, `alias`, `report`, `source`, `held_out`, `ranking`.
+    /// What came of it: `model`, `version`, `sha256`, `alias` (of a diagnosis only where it found effects) and `report`; of a
+    /// refinement `source`, `held_out`, `ranking`; of a diagnosis `diagnosed`, `verdict`, `effects`, `before`, `after`,
+    /// `next_trial`.
     #[schema(value_type = Option<Object>)]
     pub result: Option<Value>,
     /// Why it failed.

@@ -2,14 +2,18 @@
 
 mod aliases;
 mod champion;
+mod condition;
+mod diagnoses;
 mod document;
 mod events;
 mod health;
 mod jobs;
 mod laws;
 mod model_ref;
+mod named_trials;
 mod pages;
 mod predictions;
+mod queue;
 mod refinements;
 mod reports;
 mod samples;
@@ -65,6 +69,7 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(trials::routes())
         .merge(samples::routes())
         .merge(refinements::routes())
+        .merge(diagnoses::routes())
         .merge(jobs::routes())
         .merge(events::routes())
         .merge(versions::routes())

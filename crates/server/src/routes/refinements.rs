@@ -1,22 +1,23 @@
 //! Asking for a refinement.
 
 use axum::extract::State;
-use axum::http::StatusCode;
 use axum::response::Response;
 use serde::Deserialize;
 use sistership_identify::refine::Settings;
 use sistership_model::version::sha256;
-use sistership_store::{Job, JobFilter, MAX_LIMIT, NewJob, Page, StoreError};
+use sistership_store::StoreError;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::jobs::JobView;
 use super::model_ref::resolve;
-use super::trials::{all_of_ship, bounded};
+use super::named_trials::{named, no_trials};
+use super::queue::{accepted, earlier, enqueue};
+use super::trials::all_of_ship;
 use crate::app::App;
 use crate::jobs::{REFINEMENT, RefinementJob, SourceChoice};
-use crate::problem::{Fault, Problem, Result};
+use crate::problem::{Problem, Result};
 use crate::web::{Key, Payload, Reply};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -61,28 +62,12 @@ async fn refine(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
 }
 
 async fn queued(app: &App, request: RefinementRequest, key_sha256: Option<String>) -> Result<Reply> {
-    let job = match earlier(app, &request.ship, key_sha256.as_ref()).await? {
+    let ship = request.ship.clone();
+    let job = match earlier(app, REFINEMENT, &ship, key_sha256.as_ref()).await? {
         Some(job) => job,
-        None => enqueue(app, settled(app, request, key_sha256).await?).await?,
+        None => enqueue(app, REFINEMENT, &ship, &settled(app, request, key_sha256).await?).await?,
     };
-    app.wake().notify_one();
-    let location = format!("/v1/jobs/{}", job.id);
-    Ok(Reply::new(StatusCode::ACCEPTED, &JobView::of(job))?.at(location))
-}
-
-async fn enqueue(app: &App, job: RefinementJob) -> Result<Job> {
-    let request = serde_json::to_string(&job).map_err(Problem::internal)?;
-    let new = NewJob { kind: REFINEMENT.to_owned(), ship: Some(job.ship), request };
-    Ok(app.store().jobs().enqueue(&new).await?)
-}
-
-/// The job that the same request has queued before its answer was lost.
-async fn earlier(app: &App, ship: &str, key_sha256: Option<&String>) -> Result<Option<Job>> {
-    let Some(key) = key_sha256 else { return Ok(None) };
-    let filter = JobFilter { ship: Some(ship.to_owned()), state: None };
-    let jobs = app.store().jobs().list(&filter, &Page::first(MAX_LIMIT)).await?;
-    let asked = |job: &Job| serde_json::from_str::<RefinementJob>(&job.request).ok();
-    Ok(jobs.items.into_iter().find(|job| asked(job).is_some_and(|asked| asked.key_sha256.as_ref() == Some(key))))
+    accepted(app, job)
 }
 
 /// The request with everything looked up, so that a job that is wrong is refused at once.
@@ -107,35 +92,10 @@ async fn choice(app: &App, source: &str) -> Result<SourceChoice> {
     Ok(SourceChoice::Version { ship: head.model, number: head.number })
 }
 
-async fn trial_ids(app: &App, ship: &str, named: Option<Vec<String>>) -> Result<Vec<String>> {
-    let Some(ids) = named else {
-        let all: Vec<String> = all_of_ship(app, ship).await?.into_iter().map(|trial| trial.id).collect();
-        return if all.is_empty() { Err(no_trials(ship)) } else { Ok(all) };
-    };
-    bounded(app, ids.len())?;
-    if ids.is_empty() {
-        return Err(Problem::invalid("trials", "is empty; name at least one, or leave it out for all of the ship's"));
+async fn trial_ids(app: &App, ship: &str, ids: Option<Vec<String>>) -> Result<Vec<String>> {
+    if let Some(ids) = ids {
+        return named(app, ship, ids, "all of the ship's").await;
     }
-    for (index, id) in ids.iter().enumerate() {
-        let wrong = if ids[..index].contains(id) { Some("is named twice".to_owned()) } else { mismatch(app, ship, id).await? };
-        if let Some(message) = wrong {
-            let problem = Problem::new(StatusCode::UNPROCESSABLE_ENTITY, format!("trials[{index}]: `{id}` {message}"));
-            return Err(problem.with(Fault::at(format!("trials[{index}]"), message)));
-        }
-    }
-    Ok(ids)
-}
-
-/// Why a trial cannot be one of the ship's.
-async fn mismatch(app: &App, ship: &str, id: &str) -> Result<Option<String>> {
-    match app.store().trials().get(id).await {
-        Ok(trial) if trial.ship == ship => Ok(None),
-        Ok(trial) => Ok(Some(format!("is a trial of `{}`, not of `{ship}`", trial.ship))),
-        Err(StoreError::NotFound { .. }) => Ok(Some(format!("is not there; GET /v1/trials?ship={ship} lists her trials"))),
-        Err(error) => Err(error.into()),
-    }
-}
-
-fn no_trials(ship: &str) -> Problem {
-    Problem::invalid("trials", format!("the ship `{ship}` has no trials; upload some with POST /v1/trials"))
+    let all: Vec<String> = all_of_ship(app, ship).await?.into_iter().map(|trial| trial.id).collect();
+    if all.is_empty() { Err(no_trials(ship)) } else { Ok(all) }
 }

@@ -14,7 +14,6 @@ use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::publish::publish;
 use crate::seed::new_ship;
-use crate::web::conditions::tag;
 use crate::web::{Conditions, Key, Payload, Place, Reply};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -58,8 +57,9 @@ async fn created(app: &App, vessel: &Vessel, keyed: bool) -> Result<Reply> {
         other => other?,
     };
     publish(app.store(), &zoo, vessel, &ship.document).await?;
-    let (location, etag) = (format!("/v1/ships/{}", ship.name), tag(ship.revision));
-    Ok(Reply::new(StatusCode::CREATED, &ShipDetail::of(ship)?)?.at(location).tagged(etag))
+    let ship = ShipDetail::of(app, ship).await?;
+    let (location, etag) = (format!("/v1/ships/{}", ship.name), ship.etag());
+    Ok(Reply::new(StatusCode::CREATED, &ship)?.at(location).tagged(etag))
 }
 
 async fn is_there(store: &Store, new: &NewShip) -> bool {
@@ -93,7 +93,7 @@ async fn replace(
     let new = new_ship(&vessel).map_err(Problem::internal)?;
     let ship: Ship = app.store().ships().update(&new, revision).await?;
     publish(app.store(), &zoo, &vessel, &ship.document).await?;
-    Ok(ShipDetail::of(ship)?.answer())
+    Ok(ShipDetail::of(&app, ship).await?.answer())
 }
 
 /// Delete a ship; her versions stay, and `undelete` brings her back
@@ -115,5 +115,6 @@ async fn delete(State(app): State<App>, Place(name): Place<String>, conditions: 
     responses((status = 200, body = ShipDetail, headers(("ETag" = String))))
 )]
 async fn undelete(State(app): State<App>, Place(name): Place<String>) -> Result<Response> {
-    Ok(ShipDetail::of(app.store().ships().undelete(&name).await?)?.answer())
+    let ship = app.store().ships().undelete(&name).await?;
+    Ok(ShipDetail::of(&app, ship).await?.answer())
 }

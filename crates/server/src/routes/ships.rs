@@ -11,6 +11,7 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::condition::Condition;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::conditions::tag;
@@ -42,10 +43,12 @@ pub(super) struct ShipDetail {
     pub title: String,
     /// Ships are compared within a category.
     pub category: String,
-    /// One more with each change; her ETag.
+    /// One more with each change.
     pub revision: i64,
     pub created_us: i64,
     pub updated_us: i64,
+    /// Whether her champion still holds.
+    pub condition: Condition,
     /// The vessel as `models/schema/vessel.schema.json` describes it.
     #[schema(value_type = Object)]
     pub document: Value,
@@ -71,14 +74,20 @@ impl ShipHead {
 }
 
 impl ShipDetail {
-    pub(super) fn of(ship: Ship) -> Result<Self> {
+    pub(super) async fn of(app: &App, ship: Ship) -> Result<Self> {
+        let condition = Condition::of(app, &ship.name).await?;
         let document = serde_json::from_str(&ship.document).map_err(Problem::internal)?;
         let Ship { name, title, category, revision, created_us, updated_us, .. } = ship;
-        Ok(Self { name, title, category, revision, created_us, updated_us, document })
+        Ok(Self { name, title, category, revision, created_us, updated_us, condition, document })
+    }
+
+    /// Her revision, and what her condition comes from: either changes what is shown, the first alone what may be changed.
+    pub(super) fn etag(&self) -> String {
+        tag(format!("{}{}", self.revision, self.condition.tag()))
     }
 
     pub(super) fn answer(self) -> Response {
-        ([(header::ETAG, tag(self.revision))], Json(self)).into_response()
+        ([(header::ETAG, self.etag())], Json(self)).into_response()
     }
 }
 
@@ -96,10 +105,10 @@ async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Js
     responses((status = 200, body = ShipDetail, headers(("ETag" = String))), (status = 304, description = "As you have her"))
 )]
 async fn get(State(app): State<App>, Place(name): Place<String>, conditions: Conditions) -> Result<Response> {
-    let ship = app.store().ships().get(&name).await?;
-    let etag = tag(ship.revision);
+    let ship = ShipDetail::of(&app, app.store().ships().get(&name).await?).await?;
+    let etag = ship.etag();
     match conditions.has(&etag) {
         true => Ok((StatusCode::NOT_MODIFIED, [(header::ETAG, etag)]).into_response()),
-        false => Ok(ShipDetail::of(ship)?.answer()),
+        false => Ok(ship.answer()),
     }
 }

@@ -29,6 +29,8 @@ struct Uploaded {
     trials: Vec<TrialView>,
     /// How many of them are new.
     new: usize,
+    /// The job that diagnoses the ship's champion on the new ones; none where she has no champion.
+    diagnosis: Option<String>,
 }
 
 /// The parts of a form.
@@ -47,7 +49,8 @@ struct Form {
 /// Upload trials, all together or none
 ///
 /// A form with a manifest and its files, or one CSV or Parquet file with canonical columns. Units and signs are
-/// converted once, here; what the checks refuse is told with file, row and column.
+/// converted once, here; what the checks refuse is told with file, row and column. Where the ship has a champion, a job
+/// follows that diagnoses it on the new trials, unless `diagnose=false`.
 #[utoipa::path(
     post, path = "/v1/trials", tag = "trials",
     params(RawQuery, ("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
@@ -62,14 +65,15 @@ async fn upload(State(app): State<App>, key: Key, upload: Upload) -> Result<Resp
 
 async fn kept(app: &App, upload: Upload) -> Result<Reply> {
     let ship = upload.manifest.ship.clone();
-    let kept: Vec<Kept> = keep(app, upload).await?;
+    let (kept, job): (Vec<Kept>, _) = keep(app, upload).await?;
+    app.wake().notify_one();
     let location = match kept.as_slice() {
         [only] => format!("/v1/trials/{}", only.row.id),
         _ => format!("/v1/trials?ship={ship}"),
     };
     let new = kept.iter().filter(|trial| trial.new).count();
     let trials = kept.into_iter().map(|trial| TrialView::of(trial.row)).collect();
-    Ok(Reply::new(StatusCode::CREATED, &Uploaded { ship, trials, new })?.at(location))
+    Ok(Reply::new(StatusCode::CREATED, &Uploaded { ship, trials, new, diagnosis: job.map(|job| job.id) })?.at(location))
 }
 
 /// Check trials without keeping them

@@ -35,7 +35,7 @@ pub(super) struct VersionHead {
     /// The id of the version it was made from.
     pub parent: Option<String>,
     pub law: String,
-    /// `published-source`, or the method of the refinement.
+    /// `published-source`, the method of the refinement, or `diagnosis`.
     pub method: String,
     /// The SHA-256 of its document.
     pub sha256: String,

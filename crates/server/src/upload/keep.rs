@@ -2,12 +2,14 @@
 
 use bytes::Bytes;
 use sistership_model::manifest::{Manifest, ManifestTrial};
-use sistership_store::{Inserted, NewTrial, Objects, Store, StoreError, Trial};
+use sistership_store::{Alias, Inserted, Job, NewJob, NewTrial, Objects, StoreError, Trial};
 use sistership_trials::{Mapping, Refusal, Source, read_trial, samples};
 
 use super::{Upload, lost};
 use crate::app::App;
+use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::problem::{Problem, Result};
+use crate::publish::{CHAMPION, alias};
 
 /// A trial that is kept now, and whether it was new.
 pub(crate) type Kept = Inserted<Trial>;
@@ -18,16 +20,29 @@ struct Accepted {
     samples: Bytes,
 }
 
-/// Keeps the trials of an upload: all of them, or none where one is refused.
-pub(crate) async fn keep(app: &App, upload: Upload) -> Result<Vec<Kept>> {
-    let ship = upload.manifest.ship.clone();
+/// Keeps the trials of an upload: all of them, or none where one is refused. The job that diagnoses the ship's champion on
+/// the new ones is queued with them.
+pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option<Job>)> {
+    let (ship, diagnose) = (upload.manifest.ship.clone(), upload.diagnose);
     match app.store().ships().get(&ship).await {
         Err(StoreError::NotFound { .. }) => return Err(no_ship(&ship)),
         other => drop(other?),
     }
     let accepted = app.compute(move || upload.accept()).await??;
     let keys = put_samples(app.objects(), &accepted).await?;
-    insert(app.store(), accepted, keys).await
+    let rows = rows(accepted, keys);
+    let champion = if diagnose { alias(app.store(), &ship, CHAMPION).await? } else { None };
+    let job = |kept: &[Kept]| champion.and_then(|champion| follow_up(&champion, kept));
+    Ok(app.store().trials().insert_all_and_enqueue(&rows, job).await?)
+}
+
+/// The diagnosis of a champion on what is new.
+fn follow_up(champion: &Alias, kept: &[Kept]) -> Option<NewJob> {
+    let trials: Vec<String> = kept.iter().filter(|trial| trial.new).map(|trial| trial.row.id.clone()).collect();
+    let (ship, number, settings) = (champion.model.clone(), champion.version_number, Default::default());
+    let asked = DiagnosisJob { ship: ship.clone(), number, trials, settings, key_sha256: None };
+    let request = serde_json::to_string(&asked).ok().filter(|_| !asked.trials.is_empty())?;
+    Some(NewJob { kind: DIAGNOSIS.to_owned(), ship: Some(ship), request })
 }
 
 fn no_ship(ship: &str) -> Problem {
@@ -83,9 +98,7 @@ async fn put_samples(objects: &Objects, accepted: &[Accepted]) -> Result<Vec<Str
     Ok(keys)
 }
 
-/// The rows, all of them or none.
-async fn insert(store: &Store, accepted: Vec<Accepted>, keys: Vec<String>) -> Result<Vec<Kept>> {
+fn rows(accepted: Vec<Accepted>, keys: Vec<String>) -> Vec<NewTrial> {
     let row = |(trial, key): (Accepted, String)| NewTrial { sha256: key.clone(), object_key: key, ..trial.new };
-    let rows: Vec<NewTrial> = accepted.into_iter().zip(keys).map(row).collect();
-    Ok(store.trials().insert_all(&rows).await?)
+    accepted.into_iter().zip(keys).map(row).collect()
 }

@@ -5,8 +5,9 @@ mod multipart;
 mod raw;
 mod spool;
 
-use axum::extract::{FromRequest, Request};
+use axum::extract::{FromRequest, Query, Request};
 use axum::http::StatusCode;
+use serde::Deserialize;
 use sistership_model::manifest::{Manifest, ManifestTrial, TrialConventions, TrialsKind};
 use sistership_trials::{CheckOutcome, Mapping, Refusal, Source, check};
 
@@ -28,6 +29,8 @@ const NAME_BYTES: usize = 200;
 pub(crate) struct Upload {
     /// What the files are.
     pub manifest: Manifest,
+    /// Whether the ship's champion is to be diagnosed on them.
+    pub diagnose: bool,
     files: Vec<Spooled>,
 }
 
@@ -37,11 +40,20 @@ impl FromRequest<App> for Upload {
     async fn from_request(request: Request, app: &App) -> Result<Self> {
         plain(request.headers())?;
         match media(request.headers()).as_str() {
-            "multipart/form-data" => multipart::receive(request, app).await,
+            "multipart/form-data" => {
+                let Query(Wish { diagnose }) = Query::try_from_uri(request.uri())?;
+                Ok(Self { diagnose: diagnose.unwrap_or(true), ..multipart::receive(request, app).await? })
+            }
             other if FILE_MEDIA.contains(&other) => raw::receive(request, app).await,
             other => Err(Problem::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, unknown(other))),
         }
     }
+}
+
+/// What the query of a form says; the rest is in the form.
+#[derive(Debug, Deserialize)]
+struct Wish {
+    diagnose: Option<bool>,
 }
 
 fn unknown(media: &str) -> String {

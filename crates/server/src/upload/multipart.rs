@@ -78,7 +78,7 @@ impl Parts {
             Some(extra) => {
                 Err(Problem::invalid(&extra.name, "is not listed under `trials` of the manifest; list it or leave it out"))
             }
-            None => Ok(Upload { manifest, files }),
+            None => Ok(Upload { manifest, diagnose: true, files }),
         }
     }
 
@@ -103,7 +103,7 @@ impl Parts {
         }
         let trial = |part: &Part| ManifestTrial { file: part.name.clone(), manoeuvre: None, depth_m: None };
         let manifest = canonical(ship, self.files.iter().map(trial).collect())?;
-        Ok(Upload { manifest, files: self.files.into_iter().map(|part| part.file).collect() })
+        Ok(Upload { manifest, diagnose: true, files: self.files.into_iter().map(|part| part.file).collect() })
     }
 }
 

@@ -28,6 +28,8 @@ pub(crate) struct RawQuery {
     pub manoeuvre: Option<String>,
     /// Water depth, m; absent for deep water.
     pub depth_m: Option<f64>,
+    /// `false` where the ship's champion is not to be diagnosed on these trials; read for every form of upload.
+    pub diagnose: Option<bool>,
 }
 
 fn unnamed() -> String {
@@ -36,10 +38,10 @@ fn unnamed() -> String {
 
 pub(super) async fn receive(mut request: Request, app: &App) -> Result<Upload> {
     let Query(query) = request.extract_parts::<Query<RawQuery>>().await?;
-    let RawQuery { ship, name, manoeuvre, depth_m } = query;
+    let RawQuery { ship, name, manoeuvre, depth_m, diagnose } = query;
     let manifest = canonical(ship, vec![ManifestTrial { file: name, manoeuvre, depth_m }])?;
     let stream = request.with_limited_body().into_body().into_data_stream().map_err(interrupted);
-    Ok(Upload { manifest, files: vec![spool(app.spool(), stream).await?] })
+    Ok(Upload { manifest, diagnose: diagnose.unwrap_or(true), files: vec![spool(app.spool(), stream).await?] })
 }
 
 /// Too much was sent, or the caller hung up.

@@ -55,13 +55,22 @@ impl Tags {
     }
 }
 
+impl Tags {
+    /// Whether the tags name this revision, with whatever was shown beside it.
+    fn name_revision(&self, revision: i64) -> bool {
+        let (alone, with_more) = (tag(revision), format!("\"{revision}."));
+        let named = |known: &String| *known == alone || known.starts_with(&with_more);
+        matches!(self, Self::These(tags) if tags.iter().any(named)) || *self == Self::Any
+    }
+}
+
 impl Conditions {
     /// The revision that a change must start from; `what` is at `current`.
     pub(crate) fn revision(&self, what: &str, current: i64) -> Result<i64> {
         let Some(tags) = &self.if_match else {
             return Err(required(&format!("If-Match with the ETag of {what} as you last read it")));
         };
-        if tags.name(&tag(current)) { Ok(current) } else { Err(stale(what, Some(current))) }
+        if tags.name_revision(current) { Ok(current) } else { Err(stale(what, Some(current))) }
     }
 
     /// As [`Conditions::revision`], but a request without the header may change anything.
@@ -112,6 +121,8 @@ mod tests {
         assert_eq!(given(header::IF_MATCH, "\"3\"").revision("ship", 3).unwrap(), 3);
         assert_eq!(given(header::IF_MATCH, "\"1\", \"3\"").revision("ship", 3).unwrap(), 3);
         assert_eq!(given(header::IF_MATCH, "*").revision("ship", 3).unwrap(), 3);
+        assert_eq!(given(header::IF_MATCH, "\"3.a\"").revision("ship", 3).unwrap(), 3);
+        assert_eq!(given(header::IF_MATCH, "\"31\"").revision("ship", 3).unwrap_err().status, 412);
         assert_eq!(given(header::IF_MATCH, "\"2\"").revision("ship", 3).unwrap_err().status, 412);
         assert_eq!(given(header::IF_MATCH, "W/\"3\"").revision("ship", 3).unwrap_err().status, 412);
         assert_eq!(Conditions::default().revision("ship", 3).unwrap_err().status, 428);

@@ -6,6 +6,7 @@ mod support;
 
 mod aliases;
 mod concurrency;
+mod diagnoses;
 mod idempotency;
 mod jobs;
 mod laws;

@@ -20,10 +20,11 @@ async fn opening_twice_keeps_what_is_there(on: &TestStore) {
 }
 
 async fn insert_only_holds_below_the_store_too(on: &TestStore) {
-    on.store.laws().insert("abkowitz", "").await.unwrap();
     on.store.ships().create(&ship("kcs")).await.unwrap();
+    crate::diagnoses::one(on).await;
+    on.store.laws().insert("abkowitz", "").await.unwrap();
     on.store.versions().create(&version("kcs"), &[champion(Expect::Any)]).await.unwrap();
-    for table in ["laws", "ship_revisions", "versions", "alias_moves"] {
+    for table in ["laws", "ship_revisions", "versions", "alias_moves", "diagnoses"] {
         for change in [format!("DELETE FROM {table}"), format!("UPDATE {table} SET id = id").replace("id = id", key(table))] {
             let error = execute(&on.database.url, change).await.unwrap_err().to_string();
             assert!(error.contains("is insert-only"), "{error}");

@@ -32,6 +32,18 @@ async fn several_trials_are_put_in_all_or_none(on: &TestStore) {
     assert_eq!(inserted.iter().map(|one| one.new).collect::<Vec<_>>(), [true, true, false]);
 }
 
+async fn a_job_follows_trials_or_both_are_undone(on: &TestStore) {
+    on.store.ships().create(&ship("kcs")).await.unwrap();
+    let asked = |inserted: &[sistership_store::Inserted<_>]| inserted.iter().any(|one| one.new).then(|| job("kcs"));
+    let (_, queued) = on.store.trials().insert_all_and_enqueue(&[trial("kcs", "one")], asked).await.unwrap();
+    assert_eq!(queued.unwrap().ship.as_deref(), Some("kcs"));
+    let (_, queued) = on.store.trials().insert_all_and_enqueue(&[trial("kcs", "one")], asked).await.unwrap();
+    assert_eq!(queued, None, "nothing new, nothing to do");
+    let broken = |_: &[_]| Some(sistership_store::NewJob { request: "{".into(), ..job("kcs") });
+    assert_invalid(on.store.trials().insert_all_and_enqueue(&[trial("kcs", "two")], broken).await, "request");
+    assert_eq!(on.store.trials().list("kcs", &Page::first(10)).await.unwrap().items.len(), 1);
+}
+
 async fn a_deleted_trial_comes_back(on: &TestStore) {
     on.store.ships().create(&ship("kcs")).await.unwrap();
     let trials = on.store.trials();
@@ -64,6 +76,7 @@ on_both_databases!(
     the_same_samples_are_one_trial,
     a_trial_needs_its_ship,
     several_trials_are_put_in_all_or_none,
+    a_job_follows_trials_or_both_are_undone,
     a_deleted_trial_comes_back,
     trials_are_listed_in_the_order_of_upload
 );

@@ -53,7 +53,8 @@ pub(super) fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 pub(super) fn shown(measured: Option<(f64, f64)>, others: Option<(f64, f64)>) -> (f64, f64) {
     match (measured, others) {
         (Some((low, high)), Some((from, to))) => {
-            let room = (high - low).max(1e-6);
+            // What stays the same gets room too: its last digits mean nothing.
+            let room = (high - low).max(0.02 * low.abs().max(high.abs())).max(1e-6);
             (low.min(from.max(low - room)), high.max(to.min(high + room)))
         }
         (Some(range), None) | (None, Some(range)) => range,
@@ -101,5 +102,6 @@ mod tests {
     #[test]
     fn a_runaway_does_not_flatten_what_was_measured() {
         assert_eq!(shown(Some((0.0, 10.0)), Some((-5.0, 1e6))), (-5.0, 20.0));
+        assert_eq!(shown(Some((5.0, 5.0)), Some((4.0, 6.0))), (4.9, 5.1));
     }
 }

@@ -4,12 +4,16 @@ mod axes;
 mod bars;
 mod decimate;
 mod lines;
+mod residual;
+mod scatter;
 mod series;
 mod trajectory;
 
 use askama::Template;
 
 pub(super) use bars::moved;
+pub(super) use residual::residual;
+pub(super) use scatter::scatters;
 pub(super) use series::series;
 pub(super) use trajectory::{mark_interval_s, trajectory};
 

@@ -8,7 +8,7 @@ mod sailed;
 use askama::Template;
 
 pub(super) use moved::coefficients;
-pub(super) use provenance::{parameters, particulars, settings};
+pub(super) use provenance::{parameters, particulars, setting, settings};
 pub(super) use results::{errors, imo, options, turns, zigzags};
 pub(super) use sailed::sailed;
 

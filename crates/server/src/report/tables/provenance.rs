@@ -69,7 +69,8 @@ pub(in crate::report) fn settings(settings: &Settings) -> Table {
     Table { columns, rows: lines.into_iter().map(|(_, row)| row).collect() }
 }
 
-fn setting(value: &Value) -> String {
+/// A setting as people read it.
+pub(in crate::report) fn setting(value: &Value) -> String {
     match value {
         Value::Null => "–".into(),
         Value::Bool(yes) => if *yes { "yes" } else { "no" }.into(),

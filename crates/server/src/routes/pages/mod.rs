@@ -50,8 +50,21 @@ impl JobRow {
 /// What came of a job that is done.
 fn outcome(job: &Job) -> Option<String> {
     let result: Value = serde_json::from_str(job.result.as_deref()?).ok()?;
+    if let Some(verdict) = result["verdict"].as_str() {
+        return Some(found(verdict, &result));
+    }
     let (alias, source) = (result["alias"].as_str()?, result["source"].as_str()?);
     Some(format!("version {}, {alias}, from {source}", result["version"]))
+}
+
+/// What a diagnosis has found.
+fn found(verdict: &str, result: &Value) -> String {
+    let diagnosed = result["diagnosed"].as_str().unwrap_or_default();
+    let effects: Vec<&str> = result["effects"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+    match effects.as_slice() {
+        [] => format!("{diagnosed} diagnosed: {verdict}"),
+        effects => format!("{diagnosed} diagnosed: lacks {}; version {}", effects.join(", "), result["version"]),
+    }
 }
 
 /// A trial as a page shows it.

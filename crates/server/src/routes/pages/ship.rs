@@ -5,6 +5,7 @@ use axum::extract::State;
 use axum::response::Response;
 use sistership_store::{Alias, JobFilter, Page, VersionHead};
 
+use super::super::condition::Condition;
 use super::{JobRow, TrialRow, answer, date};
 use crate::app::App;
 use crate::archive::vessel;
@@ -21,6 +22,8 @@ struct ShipPage {
     title: String,
     category: String,
     revision: i64,
+    condition: Condition,
+    since: Option<String>,
     particulars: Vec<(String, String)>,
     versions: Vec<VersionRow>,
     trials: Vec<TrialRow>,
@@ -46,12 +49,15 @@ pub(super) async fn page(State(app): State<App>, Place(name): Place<String>) -> 
     }
     let trials = app.store().trials().list(&name, &Page::first(LINES)).await?;
     let jobs = app.store().jobs().list(&JobFilter { ship: Some(name.clone()), state: None }, &Page::first(LINES)).await?;
+    let condition = Condition::of(&app, &name).await?;
     let particulars = vessel(&ship.name, &ship.document)?.particulars;
     answer(&ShipPage {
         name,
         title: ship.title,
         category: ship.category,
         revision: ship.revision,
+        since: condition.since.as_ref().map(|since| date(since.at_us)),
+        condition,
         particulars: particulars.into_iter().map(|(name, quantity)| (name, quantity.value.to_string())).collect(),
         versions,
         trials: trials.items.into_iter().map(TrialRow::of).collect(),

@@ -1,0 +1,89 @@
+//! Deriving a diagnosis, and the version with the effects that it finds: a function of what its recipe names by hash.
+
+use serde_json::Value;
+use sistership_identify::diagnose::{Diagnosis, Request, Settings, diagnose};
+use sistership_model::trial::Trial;
+use sistership_model::version::FORMAT;
+use sistership_model::{Law, Model};
+use sistership_trials::samples;
+
+use super::{DeriveError, Progress, sorted};
+use crate::archive::Archive;
+use crate::library::library;
+use crate::version::{DiagnosisRecipe, Recipe, VersionDocument};
+
+/// A diagnosis with everything that went into it.
+#[derive(Debug)]
+pub struct Diagnosed {
+    /// What came out.
+    pub diagnosis: Diagnosis,
+    /// How.
+    pub recipe: DiagnosisRecipe,
+    /// The model that was diagnosed.
+    pub model: Model,
+    /// Its law.
+    pub law: Law,
+    /// The trials, in the recipe's order.
+    pub trials: Vec<Trial>,
+}
+
+/// Carries out the diagnosis that a recipe describes.
+///
+/// # Errors
+/// Says what is missing or has changed, or why the diagnosis is refused.
+pub async fn diagnosed(archive: &Archive, recipe: DiagnosisRecipe, progress: Progress) -> Result<Diagnosed, DeriveError> {
+    let model = archive.source(&recipe.diagnosed).await?;
+    let law = archive.law(&model.law, &recipe.law_sha256).await?;
+    let samples = archive.samples(&recipe.trials).await?;
+    let work = move || {
+        let trials = samples.into_iter().map(samples::from_parquet).collect::<Result<Vec<Trial>, _>>()?;
+        let diagnosis = carry_out(&recipe, &model, &law, &trials, &progress)?;
+        Ok(Diagnosed { diagnosis, recipe, model, law, trials })
+    };
+    tokio::task::spawn_blocking(work).await?
+}
+
+fn carry_out(
+    recipe: &DiagnosisRecipe,
+    model: &Model,
+    law: &Law,
+    trials: &[Trial],
+    progress: &Progress,
+) -> Result<Diagnosis, DeriveError> {
+    let library = library()?;
+    if library.sha256 != recipe.effects_sha256 {
+        let (now, then) = (&library.sha256, &recipe.effects_sha256);
+        return Err(DeriveError::Lost(format!("this program's library of effects has the hash {now}, not {then}")));
+    }
+    let settings: Settings = serde_json::from_value(recipe.settings.clone())?;
+    let trials: Vec<&Trial> = trials.iter().collect();
+    let request = Request { model, law, effects: &library.effects, trials: &trials, settings: &settings };
+    Ok(diagnose(&request, &**progress)?)
+}
+
+impl Diagnosed {
+    /// The version that comes of it; none where no effect was found.
+    ///
+    /// # Errors
+    /// A number of the report is not finite.
+    pub fn document(&self) -> Result<Option<VersionDocument>, serde_json::Error> {
+        let Some(model) = &self.diagnosis.model else { return Ok(None) };
+        Ok(Some(VersionDocument {
+            format: FORMAT.to_owned(),
+            ship: self.recipe.diagnosed.ship.clone(),
+            recipe: Recipe::Diagnosis(self.recipe.clone()),
+            model: model.clone(),
+            report: report(&self.diagnosis)?,
+        }))
+    }
+}
+
+/// What a diagnosis reported, without the model that the version holds anyway and the series that only plots need.
+fn report(diagnosis: &Diagnosis) -> Result<Value, serde_json::Error> {
+    let mut report = serde_json::to_value(diagnosis)?;
+    if let Some(fields) = report.as_object_mut() {
+        fields.remove("model");
+        fields.remove("residuals");
+    }
+    Ok(sorted(report))
+}

@@ -1,0 +1,62 @@
+//! The report of a diagnosis: one HTML page that a stranger can read and print, and the diagnosis as JSON.
+//!
+//! [`render_diagnosis`] says in one sentence what was found (`sentence`), puts the figures into tables (`evidence`, `errors`,
+//! `remaining`, `provenance`) and simulates the trials with the model before and after (`replays`) for the plots. Nothing depends on the
+//! clock.
+
+mod distinct;
+mod errors;
+mod evidence;
+mod html;
+mod parameter;
+mod provenance;
+mod remaining;
+mod replays;
+mod sentence;
+#[cfg(test)]
+mod tests;
+
+pub use distinct::distinct;
+pub(super) use remaining::acceleration;
+
+use serde_json::{Value, json};
+use sistership_identify::diagnose::Diagnosis;
+use sistership_model::trial::Trial;
+use sistership_model::{Law, Model};
+
+use super::{Rendered, ReportError, VersionLabel};
+
+/// What the report of a diagnosis is made of.
+#[derive(Debug, Clone)]
+pub struct DiagnosisInput<'a> {
+    /// The diagnosis.
+    pub diagnosis: &'a Diagnosis,
+    /// The model that was diagnosed.
+    pub model: &'a Model,
+    /// Its law, without effects.
+    pub law: &'a Law,
+    /// The trials.
+    pub trials: &'a [&'a Trial],
+    /// The version that was diagnosed, where it is one.
+    pub of: Option<VersionLabel>,
+    /// The version that came of it, where it is kept.
+    pub made: Option<VersionLabel>,
+}
+
+/// Renders the report of a diagnosis; the same input gives the same bytes.
+///
+/// # Errors
+/// A model does not simulate under the law, or the page cannot be written.
+pub fn render_diagnosis(input: &DiagnosisInput<'_>) -> Result<Rendered, ReportError> {
+    let replayed = replays::replay_chosen(input)?;
+    Ok(Rendered { json: document(input)?, html: html::page(input, &replayed)? })
+}
+
+/// The diagnosis with its place.
+fn document(input: &DiagnosisInput<'_>) -> Result<Value, ReportError> {
+    let mut document = serde_json::to_value(input.diagnosis)?;
+    document["format"] = json!("sistership-diagnosis/1");
+    document["sentence"] = json!(sentence::sentence(input.diagnosis));
+    document["version"] = json!({ "diagnosed": input.of, "made": input.made });
+    Ok(document)
+}

@@ -1,0 +1,38 @@
+//! A headline figure: an error before and after, with bars.
+
+use super::numbers::{fixed, significant};
+use super::summary::ErrorRow;
+
+/// A headline figure.
+pub(super) struct Tile {
+    pub name: &'static str,
+    pub change: String,
+    pub class: &'static str,
+    pub before: String,
+    pub after: String,
+    /// Lengths of the two bars, per cent of the longer.
+    pub bars: (String, String),
+}
+
+impl Tile {
+    /// Of one channel.
+    pub fn of(row: &ErrorRow) -> Self {
+        let unit = row.quantity.unit;
+        let text = |value: Option<f64>| value.map_or_else(|| "–".into(), |value| format!("{} {unit}", significant(value, 3)));
+        let most = row.source.unwrap_or(0.0).max(row.refined.unwrap_or(0.0)).max(1e-300);
+        let bar = |value: Option<f64>| fixed(100.0 * value.unwrap_or(0.0) / most, 1);
+        let class = match row.change().0 {
+            "fell" => "good",
+            "rose" => "bad",
+            _ => "open",
+        };
+        Self {
+            name: row.quantity.name,
+            change: row.change_text(),
+            class,
+            before: text(row.source),
+            after: text(row.refined),
+            bars: (bar(row.source), bar(row.refined)),
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! What a version holds, with the recipes that [`sistership_model::version`] knows and that of a diagnosis.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sistership_model::Model;
+use sistership_model::version::{self, RecipeTrial, SourceVersion};
+
+/// What a version holds. Its bytes are [`VersionDocument::canonical`]; the hash is over them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VersionDocument {
+    /// Always [`version::FORMAT`].
+    pub format: String,
+    /// The ship, whose name is also that of the line of versions.
+    pub ship: String,
+    /// How to derive it.
+    pub recipe: Recipe,
+    /// The model.
+    pub model: Model,
+    /// What was reported as it was made; null for a published model.
+    pub report: Value,
+}
+
+/// How a version is derived.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Recipe {
+    /// By adding the effects that a diagnosis finds.
+    Diagnosis(DiagnosisRecipe),
+    /// From a ship's own document, or by refinement.
+    Plain(version::Recipe),
+}
+
+/// How a diagnosis is derived. Everything it starts from is named by the SHA-256 of its bytes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DiagnosisRecipe {
+    /// Always `diagnosis`.
+    pub kind: DiagnosisKind,
+    /// The version diagnosed.
+    pub diagnosed: SourceVersion,
+    /// The law's file.
+    pub law_sha256: String,
+    /// The trials, in the order in which they were given.
+    pub trials: Vec<RecipeTrial>,
+    /// The library of effects, see [`crate::library::Library`].
+    pub effects_sha256: String,
+    /// Every setting.
+    pub settings: Value,
+    /// The program that did it.
+    pub code_revision: String,
+}
+
+/// The word `diagnosis`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DiagnosisKind {
+    /// The only one.
+    Diagnosis,
+}
+
+impl VersionDocument {
+    /// The bytes that are stored and hashed: JSON with fields in the order of this type and maps in order of their keys.
+    ///
+    /// # Errors
+    /// Where a number is not finite, which no checked model has.
+    pub fn canonical(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string(self)
+    }
+}
+
+impl Recipe {
+    /// The hash of the law's file.
+    pub fn law_sha256(&self) -> &str {
+        match self {
+            Self::Diagnosis(DiagnosisRecipe { law_sha256, .. })
+            | Self::Plain(version::Recipe::Published { law_sha256, .. } | version::Recipe::Refinement { law_sha256, .. }) => {
+                law_sha256
+            }
+        }
+    }
+
+    /// The program that followed it; none for a published model.
+    pub fn code_revision(&self) -> Option<&str> {
+        match self {
+            Self::Diagnosis(DiagnosisRecipe { code_revision, .. })
+            | Self::Plain(version::Recipe::Refinement { code_revision, .. }) => Some(code_revision),
+            Self::Plain(version::Recipe::Published { .. }) => None,
+        }
+    }
+
+    /// The trials that it names.
+    pub fn trials(&self) -> &[RecipeTrial] {
+        match self {
+            Self::Diagnosis(DiagnosisRecipe { trials, .. }) | Self::Plain(version::Recipe::Refinement { trials, .. }) => trials,
+            Self::Plain(version::Recipe::Published { .. }) => &[],
+        }
+    }
+
+    /// The version that a diagnosis started from.
+    pub fn diagnosed(&self) -> Option<&SourceVersion> {
+        match self {
+            Self::Diagnosis(recipe) => Some(&recipe.diagnosed),
+            Self::Plain(_) => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn recipes_are_told_by_their_kind_and_keep_their_bytes() {
+        let published = json!({ "kind": "published", "model": "own", "ship_sha256": "a", "law_sha256": "b" });
+        let diagnosed = json!({ "kind": "diagnosis", "diagnosed": { "ship": "kcs", "number": 2, "sha256": "c" },
+            "law_sha256": "b", "trials": [{ "name": "t.csv", "sha256": "d" }], "effects_sha256": "e",
+            "settings": { "slack": 0.02 }, "code_revision": "1" });
+        for (value, kind) in [(published, None), (diagnosed, Some(2))] {
+            let recipe: Recipe = serde_json::from_value(value.clone()).unwrap();
+            assert_eq!(recipe.diagnosed().map(|source| source.number), kind);
+            assert_eq!(serde_json::to_value(&recipe).unwrap(), value);
+            assert_eq!(recipe.law_sha256(), "b");
+        }
+        assert!(serde_json::from_value::<Recipe>(json!({ "kind": "diagnosis" })).is_err());
+    }
+}

@@ -1,0 +1,57 @@
+//! The one transaction that ends a diagnosis: its report, what was found, the version that came of it, and its job.
+
+use crate::aliases::AliasMove;
+use crate::diagnoses::{self, Diagnosed, NewDiagnosed};
+use crate::error::Result;
+use crate::job::Job;
+use crate::reports::{self, NewReport, ReportHead};
+use crate::store::Store;
+use crate::versions::{self, NewVersion, VersionHead};
+use crate::work;
+
+/// What a diagnosis brings.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnosis {
+    /// The version with the effects and the aliases that move to it, where effects were found.
+    pub version: Option<(NewVersion, Vec<AliasMove>)>,
+    /// The report; its `version_id` becomes that of the version that came of it.
+    pub report: NewReport,
+    /// What was found.
+    pub found: NewDiagnosed,
+}
+
+/// What has become of a diagnosis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CommittedDiagnosis {
+    /// The version, now numbered.
+    pub version: Option<VersionHead>,
+    /// The report.
+    pub report: ReportHead,
+    /// What was found.
+    pub found: Diagnosed,
+    /// The job, done.
+    pub job: Job,
+}
+
+impl Store {
+    /// Keeps what a diagnosis brings and ends its job, all or nothing: a worker that has lost the job to another (an older
+    /// `fence`) leaves nothing behind. `result` writes the job's result, JSON, from what was kept.
+    pub async fn commit_diagnosis<F>(&self, job: &str, fence: i64, diagnosis: &Diagnosis, result: F) -> Result<CommittedDiagnosis>
+    where
+        F: FnOnce(Option<&VersionHead>, &ReportHead) -> String,
+    {
+        let mut tx = self.begin().await?;
+        let version = match &diagnosis.version {
+            Some((version, moves)) => Some(versions::insert(self, &mut tx, version, moves).await?),
+            None => None,
+        };
+        let made_id = version.as_ref().map(|version| version.id.clone());
+        let report = NewReport { version_id: made_id.clone(), ..diagnosis.report.clone() };
+        let report = reports::insert(self, &mut tx, &report).await?;
+        let found = diagnoses::insert(self, &mut tx, &diagnosis.found, made_id.as_deref(), &report.id).await?;
+        let result = result(version.as_ref(), &report);
+        let job = work::complete(&mut tx, job, fence, &result, self.now_us()).await?;
+        tx.commit().await?;
+        Ok(CommittedDiagnosis { version, report, found, job })
+    }
+}
