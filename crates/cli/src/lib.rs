@@ -48,6 +48,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Refine(refine) => commands::refine::run(&zoo()?, refine),
         Command::Simulate(simulate) => commands::simulate::run(&zoo()?, simulate),
         Command::Manoeuvre(manoeuvre) => commands::manoeuvre::run(&zoo()?, manoeuvre),
+        Command::Derive(derive) => commands::derive::run(&zoo()?, derive),
         Command::Demo(demo) => demo::run(demo, &zoo()?),
         Command::Serve(serve) => commands::serve::run(serve, &arguments.zoo),
         Command::Verify(verify) => commands::verify::run(verify),

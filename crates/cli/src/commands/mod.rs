@@ -1,6 +1,7 @@
 //! One file for each command, and what they share.
 
 pub mod check;
+pub mod derive;
 pub mod manoeuvre;
 mod manoeuvre_text;
 pub mod refine;
