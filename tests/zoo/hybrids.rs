@@ -6,8 +6,10 @@ use sistership_dynamics::Ship;
 use sistership_dynamics::plant::Work;
 use sistership_dynamics::state::{StateVector, Trajectory, at};
 use sistership_dynamics::{Method, ship};
-use sistership_model::Zoo;
+use sistership_model::effect::AppliedEffect;
 use sistership_model::hybrid::{Derivation, derive};
+use sistership_model::quantity::Quantity;
+use sistership_model::{Model, Zoo};
 
 fn models() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../models")
@@ -51,6 +53,11 @@ fn unknowns_of_the_hybrids_of_the_zoo() {
 
 /// The Esso Osaka 3 m model on the derived law; `values` are her coefficients.
 fn esso_osaka(values: &str) -> Ship {
+    let (zoo, model) = esso_osaka_model(values);
+    Ship::new(&model, zoo.law(&model.law).expect("derived")).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn esso_osaka_model(values: &str) -> (Zoo, Model) {
     let mut zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
     let law = derived("hybrid-single-screw");
     zoo.add_law("derived.yaml", &law.text).unwrap_or_else(|error| panic!("{error}"));
@@ -62,7 +69,7 @@ fn esso_osaka(values: &str) -> Ship {
     let vessel = zoo.vessel_text("esso-osaka-3m").expect("in the zoo").replace("models: []", &models);
     zoo.add_vessel("esso.yaml", &vessel).unwrap_or_else(|error| panic!("{error}"));
     let model = zoo.model("esso-osaka-3m").unwrap_or_else(|error| panic!("{error}"));
-    Ship::new(&model, zoo.law(&model.law).expect("derived")).unwrap_or_else(|error| panic!("{error}"))
+    (zoo, model)
 }
 
 #[test]
@@ -98,4 +105,25 @@ fn a_deviation_acts_in_its_quadrant_alone() {
         let wanted = force(u, n, x_uu, x_nn);
         assert!((rate(u, n) - wanted).abs() < 1e-12 * (1.0 + wanted.abs()), "{u} {n}: {} {wanted}", rate(u, n));
     }
+}
+
+#[test]
+fn a_current_moves_the_conditions_with_the_water() {
+    let (zoo, mut model) = esso_osaka_model("\"X_u|u|@backing\": -0.03");
+    let effect = zoo.effect("current").expect("in the zoo");
+    let form = effect.forms[0].as_ref();
+    let parameters = [("north_m_s", 0.4), ("east_m_s", 0.0)].map(|(name, value)| (name.to_owned(), Quantity::new(value, "test")));
+    model.effects.push(AppliedEffect {
+        name: effect.name.clone(),
+        acts_on: effect.acts_on,
+        form: form.file.clone(),
+        parameters: parameters.into(),
+    });
+    let ship = Ship::new(&model, zoo.law(&model.law).expect("derived")).unwrap_or_else(|error| panic!("{error}"));
+    let mut state = StateVector::zeros();
+    state[at::U] = 0.2;
+    // Ahead over the ground, but astern through water that follows her at 0.4 m/s.
+    let drag = ship.rate_at(&state, 0.0, -8.0, &mut Work::default())[at::U];
+    let wanted = 0.03 * 0.2_f64.powi(2) / (9.806_65 * 3.0) * 9.806_65 / 1.05;
+    assert!((drag - wanted).abs() < 1e-12, "{drag} {wanted}");
 }
