@@ -65,6 +65,19 @@ fn exit_status_tells_a_wrong_call_from_a_refusal() {
 }
 
 #[test]
+fn a_law_is_derived_from_a_list_of_actuators() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let declaration = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/hybrids/hybrid-vectwin.yaml");
+    let law = folder.path().join("law.yaml").display().to_string();
+    let derived = binary::json(&["derive", declaration, "--out", &law, "--json"], 0);
+    assert_eq!((derived["unknowns"].as_u64(), derived["coefficient_sets"].as_u64()), (Some(193), Some(3)), "{derived}");
+    assert_eq!(derived["rules"][3]["rule"], "A: symmetry");
+    assert_eq!(derived["law"]["axes"]["X"]["terms"][4], "X_u|u|");
+    let text = std::fs::read_to_string(&law).expect("written");
+    sistership_model::Law::parse(&law, &text).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
 fn a_law_and_a_vessel_are_added_by_files() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     std::fs::create_dir_all(folder.path().join("vessels")).expect("a folder");

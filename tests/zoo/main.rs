@@ -3,4 +3,5 @@
 
 mod additions;
 mod files;
+mod hybrids;
 mod schemas;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use schemars::{JsonSchema, schema_for};
 use sistership_model::Model;
 use sistership_model::effect::EffectFile;
+use sistership_model::hybrid::HybridFile;
 use sistership_model::law::LawFile;
 use sistership_model::manifest::Manifest;
 use sistership_model::vessel::VesselFile;
@@ -23,6 +24,7 @@ fn check<T: JsonSchema>(name: &str) {
 fn schemas_are_those_of_the_types() {
     check::<LawFile>("law");
     check::<EffectFile>("effect");
+    check::<HybridFile>("hybrid");
     check::<VesselFile>("vessel");
     check::<Model>("model");
     check::<Manifest>("trials");

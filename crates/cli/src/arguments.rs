@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand, ValueEnum};
 use sistership_dynamics::Method;
 
-use crate::commands::{check, diagnose, manoeuvre, refine, similar, simulate};
+use crate::commands::{check, derive, diagnose, manoeuvre, refine, similar, simulate};
 use crate::commands::{serve, verify};
 use crate::demo::Demo;
 
@@ -51,6 +51,8 @@ pub enum Command {
     Diagnose(diagnose::Diagnose),
     /// Sail turning circles and zigzags with a model and judge them by the IMO criteria.
     Manoeuvre(manoeuvre::Manoeuvre),
+    /// Derive a law of motion from a list of actuators.
+    Derive(derive::Derive),
     /// Show the whole loop through the real server: ship, trials, source, refinement, champion, report.
     Demo(Demo),
     /// Run the REST server.

@@ -49,6 +49,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Simulate(simulate) => commands::simulate::run(&zoo()?, simulate),
         Command::Diagnose(diagnose) => commands::diagnose::run(&zoo()?, diagnose),
         Command::Manoeuvre(manoeuvre) => commands::manoeuvre::run(&zoo()?, manoeuvre),
+        Command::Derive(derive) => commands::derive::run(&zoo()?, derive),
         Command::Demo(demo) => demo::run(demo, &zoo()?),
         Command::Serve(serve) => commands::serve::run(serve, &arguments.zoo),
         Command::Verify(verify) => commands::verify::run(verify),

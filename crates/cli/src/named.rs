@@ -90,6 +90,25 @@ fn model_file(zoo: &Zoo, path: &Path) -> Result<Model, Failure> {
     }
 }
 
+/// Refuses a file of another kind; `what` is what one of this kind is called.
+///
+/// # Errors
+/// The file says that it is something else, or nothing.
+pub fn must_be(path: &Path, text: &str, kind: &str, what: &str) -> Result<(), Failure> {
+    match kind_of(text) {
+        Kind::Named(found) if found != kind => {
+            Err(about_file(path, format!("is of `kind: {found}`; {what} is of `kind: {kind}`")))
+        }
+        Kind::None => Err(about_file(path, format!("is no {}: it does not begin with `kind: {kind}`", bare(what)))),
+        _ => Ok(()),
+    }
+}
+
+/// A noun without its article.
+fn bare(what: &str) -> &str {
+    what.split_once(' ').map_or(what, |(_, noun)| noun)
+}
+
 /// What a document says it is.
 enum Kind {
     Named(String),

@@ -1,7 +1,8 @@
 //! The names of coefficients: `Axis_factors`, spelled one way.
 //!
 //! Factors stand in the order u, v, r, phi, p, delta, n, then those a law adds; a factor to a power is repeated, an
-//! absolute value is written `|v|` and follows the plain factor: `X_uu`, `Y_vvr`, `N_v|v|`, `X_udeltadelta`, `Y_0`.
+//! absolute value is written `|v|` and follows the plain factor: `X_uu`, `Y_vvr`, `N_v|v|`, `X_udeltadelta`, `Y_0`. What a
+//! coefficient deviates by under a submodel's conditions is named after it: `X_uu@astern`.
 
 use std::fmt;
 
@@ -67,6 +68,13 @@ pub struct CoefficientName {
     pub axis: Axis,
     /// The factors that multiply it, in canonical order; none for a constant such as `Y_0`.
     pub factors: Vec<Factor>,
+    /// The submodel under whose conditions it is added to the coefficient of the same factors, if any.
+    pub submodel: Option<String>,
+}
+
+/// A name's shared part and its submodel: `X_uu@astern` is `X_uu` and `astern`.
+pub fn split_submodel(name: &str) -> (&str, Option<&str>) {
+    name.split_once('@').map_or((name, None), |(shared, submodel)| (shared, Some(submodel)))
 }
 
 impl CoefficientName {
@@ -76,14 +84,15 @@ impl CoefficientName {
     /// Says what is wrong and, where it can tell, how the name is spelled here.
     pub fn parse(name: &str, extra: &[&str]) -> Result<Self, String> {
         let help = "a coefficient is written Axis_factors, such as X_uu, Y_vvr, N_v|v| or Y_0";
-        let (axis, rest) = name.split_once('_').ok_or_else(|| format!("`{name}`: {help}"))?;
+        let (shared, submodel) = split_submodel(name);
+        let (axis, rest) = shared.split_once('_').ok_or_else(|| format!("`{name}`: {help}"))?;
         let axis = Axis::ALL.into_iter().find(|a| a.to_string() == axis);
         let axis = axis.ok_or_else(|| format!("`{name}`: the axis must be X, Y, K or N; {help}"))?;
         let mut factors =
             if rest == "0" { Vec::new() } else { split(rest, extra).map_err(|e| format!("`{name}`: {e}; {help}"))? };
         let as_written = factors.clone();
         factors.sort();
-        let canonical = Self { axis, factors };
+        let canonical = Self { axis, factors, submodel: submodel.map(str::to_owned) };
         if canonical.factors == as_written { Ok(canonical) } else { Err(format!("`{name}` is spelled `{canonical}` here")) }
     }
 
@@ -97,9 +106,12 @@ impl fmt::Display for CoefficientName {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{}_", self.axis)?;
         if self.factors.is_empty() {
-            return out.write_str("0");
+            out.write_str("0")?;
         }
-        self.factors.iter().try_for_each(|f| if f.absolute { write!(out, "|{}|", f.symbol) } else { out.write_str(&f.symbol) })
+        self.factors
+            .iter()
+            .try_for_each(|f| if f.absolute { write!(out, "|{}|", f.symbol) } else { out.write_str(&f.symbol) })?;
+        self.submodel.as_ref().map_or(Ok(()), |submodel| write!(out, "@{submodel}"))
     }
 }
 
@@ -138,7 +150,20 @@ mod tests {
 
     #[test]
     fn canonical_names_read_back() {
-        for name in ["X_uu", "Y_vvr", "N_v|v|", "X_udeltadelta", "Y_0", "K_vphiphi", "N_p", "Y_deltac|c|", "N_T", "Y_urzeta"] {
+        for name in [
+            "X_uu",
+            "Y_vvr",
+            "N_v|v|",
+            "X_udeltadelta",
+            "Y_0",
+            "K_vphiphi",
+            "N_p",
+            "Y_deltac|c|",
+            "N_T",
+            "Y_urzeta",
+            "Y_v|v|@astern",
+            "X_0@astern",
+        ] {
             assert_eq!(canonical(name).as_deref(), Ok(name));
         }
     }
@@ -146,6 +171,7 @@ mod tests {
     #[test]
     fn another_spelling_is_refused_with_the_right_one() {
         assert!(canonical("Y_vu").unwrap_err().contains("`Y_uv`"));
+        assert!(canonical("Y_vu@astern").unwrap_err().contains("`Y_uv@astern`"));
         assert!(canonical("Y_|v|v").unwrap_err().contains("`Y_v|v|`"));
         assert!(canonical("X_deltau").unwrap_err().contains("`X_udelta`"));
         assert!(canonical("Q_u").unwrap_err().contains("axis"));

@@ -6,6 +6,7 @@ pub mod coefficient;
 pub mod effect;
 mod error;
 pub mod formula;
+pub mod hybrid;
 pub mod law;
 pub mod manifest;
 pub mod model;

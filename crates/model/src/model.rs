@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::coefficient::CoefficientName;
 use crate::effect::AppliedEffect;
 use crate::error::{Blame, FileError};
 use crate::law::Law;
@@ -200,9 +199,8 @@ impl Model {
 
     /// Turns coefficients that count positive rudder to port into canonical ones.
     fn flip_rudder(&mut self, law: &Law) {
-        let extra = law.extra_factors();
         for (name, quantity) in &mut self.coefficients {
-            if CoefficientName::parse(name, &extra).is_ok_and(|parsed| parsed.is_odd_in("delta")) {
+            if law.is_odd_in_rudder(name) {
                 quantity.value = -quantity.value;
             }
         }

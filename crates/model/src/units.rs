@@ -103,6 +103,7 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("rpm", Dimension::RATE, 1.0 / 60.0),
     ("kg", Dimension::new(1.0, 0.0, 0.0), 1.0),
     ("t", Dimension::new(1.0, 0.0, 0.0), 1000.0),
+    ("kg m2", Dimension::new(1.0, 2.0, 0.0), 1.0),
     ("m2", Dimension::new(0.0, 2.0, 0.0), 1.0),
     ("m3", Dimension::new(0.0, 3.0, 0.0), 1.0),
     ("kg/m3", Dimension::new(1.0, -3.0, 0.0), 1.0),

@@ -1,6 +1,7 @@
 //! One file for each command, and what they share.
 
 pub mod check;
+pub mod derive;
 pub mod diagnose;
 mod diagnose_text;
 pub mod manoeuvre;

@@ -237,6 +237,18 @@ mod tests {
     }
 
     #[test]
+    fn a_condition_switches_by_lane_and_has_no_derivative() {
+        let mut builder = TapeBuilder::new(&["u", "v"], &|_| None);
+        builder.output(&sistership_model::formula::parse_condition("u*v < 1").unwrap().times(parse("u^2").unwrap())).unwrap();
+        let tape = builder.finish();
+        let mut work = Vec::new();
+        tape.run(&[[0.5, 2.0, -3.0], [1.0, 1.0, 1.0]], &mut work);
+        assert_eq!(tape.read(0, &work), [0.25, 0.0, 9.0]);
+        assert_eq!(tape.jacobian(&[0.5, 1.0])[0], [1.0, 0.0]);
+        assert_eq!(tape.jacobian(&[2.0, 1.0])[0], [0.0, 0.0]);
+    }
+
+    #[test]
     fn derivatives_agree_with_differences() {
         for text in ["u^3*v/(1 + v^2)", "atan2(v, u)*abs(v)", "max(u, v)*tanh(u*v) - u^-2", "sin(u)*cos(v)*log(u)*exp(v) + u^2.5"]
         {

@@ -16,7 +16,7 @@ use super::evidence::Fixed;
 use crate::residual::{Columns, Nuisance, NuisanceKind};
 
 /// How far virtual masses, by strip theory or regression, are from the truth: a judgement.
-const MASS_DEVIATION: f64 = 0.05;
+const MASS_DEVIATION: f64 = 0.15;
 
 /// Terms that a grammar spells and a model lacks, by name.
 pub type Terms = BTreeMap<String, Arc<Form>>;

@@ -23,6 +23,8 @@ pub struct Block {
     pub names: Vec<Vec<String>>,
     /// Regressors without scale, in the order of the names.
     pub(crate) terms: Vec<usize>,
+    /// How many times the precision of each one's prior is the common one: more than 1 for deviations of submodels.
+    pub(crate) shrinkage: Vec<f64>,
     /// Scale by axis.
     pub(crate) scales: Vec<usize>,
     /// Rest by axis.
@@ -141,7 +143,8 @@ fn block(
         mass.push(group.iter().map(entry).collect::<Result<Vec<_>, _>>()?);
     }
     let mixing = DMatrix::identity(axes.len(), axes.len());
-    Ok(Some(Block { axes, names, terms, scales, rests, mass, columns: group.to_vec(), mixing }))
+    let shrinkage = names[0].iter().map(|name| law.deviation(name).map_or(1.0, |submodel| submodel.shrinkage)).collect();
+    Ok(Some(Block { axes, names, terms, shrinkage, scales, rests, mass, columns: group.to_vec(), mixing }))
 }
 
 impl Block {

@@ -45,7 +45,7 @@ struct Prepared<'a> {
 impl<'a> Prepared<'a> {
     fn new(block: &'a Block, moments: &Moments, model: &Model) -> Self {
         let source = mixed_source(block, model);
-        Self { block, path: RidgePath::new(moments, &source), source }
+        Self { block, path: RidgePath::shrunken(moments, &source, &block.shrinkage), source }
     }
 
     fn solve(&self, choices: &[Choice]) -> Vec<Vec<f64>> {

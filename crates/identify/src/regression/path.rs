@@ -34,10 +34,16 @@ impl RidgePath {
     /// Decomposes the statistics once; `source[t]` are the prior coefficients for target `t`, in the units of the
     /// regressors. A regressor that does not vary keeps its source value.
     pub fn new(moments: &Moments, source: &[Vec<f64>]) -> Self {
+        Self::shrunken(moments, source, &vec![1.0; moments.regressors()])
+    }
+
+    /// The same with a prior whose precision is `shrinkage[j]` times the common one for regressor `j`: each is measured
+    /// not by its standard deviation but by that times the root of its shrinkage.
+    pub fn shrunken(moments: &Moments, source: &[Vec<f64>], shrinkage: &[f64]) -> Self {
         let p = moments.regressors();
         let scale = (0..p).map(|j| moments.variance(j).sqrt() / moments.mean(j).abs().max(1e-300));
         let varies: Vec<bool> = scale.map(|ratio| ratio > 1e-10).collect();
-        let deviations = DVector::from_fn(p, |j, _| if varies[j] { moments.variance(j).sqrt() } else { 0.0 });
+        let deviations = DVector::from_fn(p, |j, _| if varies[j] { (moments.variance(j) * shrinkage[j]).sqrt() } else { 0.0 });
         let inverse = deviations.map(|sigma| if sigma > 0.0 { 1.0 / sigma } else { 0.0 });
         let correlation = DMatrix::from_fn(p, p, |i, j| moments.covariance(i, j) * inverse[i] * inverse[j]);
         let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(correlation);
@@ -214,6 +220,22 @@ mod tests {
             let right = moments.covariance_with_target(i, 0) / sigma + lambda * (1.0 - alpha) * source[i] * sigma;
             assert!((left - right).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn shrinkage_makes_a_prior_more_precise() {
+        let moments = Moments::of_columns(&samples(), 2);
+        let (lambda, source, shrinkage) = (0.3, [1.5, -1.0], [1.0, 9.0]);
+        let path = RidgePath::shrunken(&moments, &[source.to_vec()], &shrinkage);
+        let beta = path.solve(0, Choice { lambda, alpha: 0.0 }, &source);
+        for i in 0..2 {
+            let precision = lambda * shrinkage[i] * moments.variance(i);
+            let left: f64 = (0..2).map(|j| moments.covariance(i, j) * beta[j]).sum::<f64>() + precision * beta[i];
+            assert!((left - moments.covariance_with_target(i, 0) - precision * source[i]).abs() < 1e-12);
+        }
+        let ratio = |deviations: Vec<(f64, f64)>| deviations[1].1;
+        let plain = RidgePath::new(&moments, &[source.to_vec()]);
+        assert!((ratio(plain.deviations(lambda)) / ratio(path.deviations(lambda)) - 3.0).abs() < 1e-12);
     }
 
     #[test]

@@ -5,5 +5,5 @@ mod parse;
 mod syntax;
 
 pub use dimension::dimension_of;
-pub use parse::parse;
+pub use parse::{parse, parse_condition};
 pub use syntax::{Comparison, Expr, Function, builtin, constant};

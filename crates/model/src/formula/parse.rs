@@ -27,6 +27,17 @@ pub fn parse(text: &str) -> std::result::Result<Expr, String> {
     })
 }
 
+/// Parses a comparison such as `u < 0` to a formula that is 1 where it holds and 0 elsewhere. Its derivative is zero.
+///
+/// # Errors
+/// As [`parse`]; also where there is no comparison.
+pub fn parse_condition(text: &str) -> std::result::Result<Expr, String> {
+    match text.find(['<', '>']) {
+        Some(_) => parse(&format!("if({text}, 1, 0)")).map_err(|_| format!("condition `{text}` cannot be read: write `u < 0`")),
+        None => Err(format!("condition `{text}` lacks a comparison: write `u < 0`")),
+    }
+}
+
 fn boxed(a: Expr, b: Expr, make: fn(Box<Expr>, Box<Expr>) -> Expr) -> Expr {
     make(Box::new(a), Box::new(b))
 }
@@ -130,6 +141,15 @@ mod tests {
         assert_eq!(value("if(u >= 3, max(1, u), 0)"), 3.0);
         assert_eq!(value("abs(-u) + sign(-u)"), 2.0);
         assert!((value("atan2(1, 0)") - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    }
+
+    #[test]
+    fn conditions_are_one_or_zero() {
+        let holds = |text: &str| parse_condition(text).unwrap().value(&|_| Some(3.0)).unwrap();
+        assert_eq!((holds("u >= 3"), holds("max(u, 1) - 5 > 0")), (1.0, 0.0));
+        assert!(parse_condition("u + 1").unwrap_err().contains("comparison"));
+        assert!(parse_condition("u <").unwrap_err().contains("`u <`"));
+        assert!(parse_condition("u < 0, 1").is_err());
     }
 
     #[test]

@@ -22,30 +22,34 @@ pub struct LawFile {
     /// Publications by key.
     pub sources: BTreeMap<String, Source>,
     /// What the law takes from outside: `delta`, `n`, `depth`, ...
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, InputFile>")]
     pub inputs: IndexMap<String, InputFile>,
     /// Nonlinear parameters.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, ParameterFile>")]
     pub parameters: IndexMap<String, ParameterFile>,
     /// Intermediate values, each a formula of earlier ones.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub values: IndexMap<String, String>,
     /// What each factor of a coefficient's name stands for.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub factors: IndexMap<String, String>,
+    /// Conditions under which every coefficient deviates: the first whose comparisons all hold applies.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schemars(with = "BTreeMap<String, SubmodelFile>")]
+    pub submodels: IndexMap<String, SubmodelFile>,
     /// The right-hand sides by axis.
     pub axes: BTreeMap<Axis, AxisFile>,
     /// The mass matrix: axis, then the axis whose acceleration it multiplies.
     pub mass: BTreeMap<Axis, BTreeMap<Axis, String>>,
     /// Rates of `x`, `y`, `psi`, `phi` where they are not those of motion in the horizontal plane.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub kinematics: BTreeMap<String, String>,
-    /// Parameters that change places when the ship is mirrored.
-    #[serde(default)]
+    /// What parameters and inputs become when the ship is mirrored: another one, or `-name` for the opposite.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub mirrors: BTreeMap<String, String>,
 }
 
@@ -92,6 +96,24 @@ pub enum ParameterRole {
     ApproachSpeed,
 }
 
+/// A submodel as its file writes it: the coefficient `X_u@name` is added to `X_u` while its comparisons hold.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SubmodelFile {
+    /// Comparisons such as `u < 0`, all of which must hold.
+    pub when: Vec<String>,
+    /// What it stands for.
+    pub meaning: String,
+    /// How many times the precision (the inverse variance) of the prior that pulls a deviation to zero is that of the shared
+    /// coefficient's prior.
+    #[serde(default = "no_shrinkage")]
+    pub shrinkage: f64,
+}
+
+fn no_shrinkage() -> f64 {
+    1.0
+}
+
 /// One axis as its file writes it.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -106,7 +128,7 @@ pub struct AxisFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest: Option<String>,
     /// Whether a vessel may add further terms that the factors can spell.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub open: bool,
 }
 

@@ -2,15 +2,16 @@
 
 mod file;
 mod read;
+mod submodel;
 mod symmetry;
 
 use std::collections::BTreeMap;
 
 use indexmap::IndexMap;
 
-pub use file::LawFile;
+pub use file::{AxisFile, InputFile, LawFile, LawKind, ParameterFile, SubmodelFile, TermFile};
 
-use crate::coefficient::{Axis, CoefficientName};
+use crate::coefficient::{Axis, CoefficientName, split_submodel};
 use crate::effect::Dressing;
 use crate::formula::Expr;
 use crate::particulars;
@@ -45,13 +46,15 @@ pub struct Law {
     pub values: IndexMap<String, Expr>,
     /// What a factor of a coefficient's name stands for in a regressor.
     pub factors: IndexMap<String, Expr>,
+    /// Submodels by name, the first whose conditions hold applies; each one's indicator is the value [`indicator`].
+    pub submodels: IndexMap<String, Submodel>,
     /// The right-hand sides.
     pub axes: BTreeMap<Axis, AxisLaw>,
     /// The mass matrix, by axis and the axis whose acceleration it multiplies; what is absent is zero.
     pub mass: BTreeMap<(Axis, Axis), Expr>,
     /// Rates of x, y, psi and phi, where they differ from those of motion in the horizontal plane.
     pub kinematics: BTreeMap<String, Expr>,
-    /// What parameters become when the ship is mirrored port to starboard: another one, or `-name` for its opposite.
+    /// What parameters and inputs become when the ship is mirrored port to starboard: another one, or `-name` for the opposite.
     pub mirrors: BTreeMap<String, String>,
     /// What effects add; nothing in a law as its file writes it.
     pub dressing: Dressing,
@@ -79,6 +82,20 @@ pub struct Parameter {
     pub from: Option<Expr>,
     /// Whether it is the speed about which the law is expanded, which belongs to the trials and not to the ship.
     pub is_approach_speed: bool,
+}
+
+/// Conditions under which coefficients deviate from the shared ones: while they hold, `X_u@name` is added to `X_u`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Submodel {
+    /// What it stands for.
+    pub meaning: String,
+    /// How many times the precision of a deviation's prior, which pulls it to zero, is that of the shared coefficient's.
+    pub shrinkage: f64,
+}
+
+/// The name of the value that is 1 while a submodel applies and 0 elsewhere; no formula of a file can spell it.
+pub fn indicator(submodel: &str) -> String {
+    format!("@{submodel}")
 }
 
 /// The right-hand side of one axis.
@@ -113,6 +130,7 @@ impl Law {
             parameters: IndexMap::new(),
             values: IndexMap::new(),
             factors: IndexMap::new(),
+            submodels: IndexMap::new(),
             axes: BTreeMap::new(),
             mass: BTreeMap::new(),
             kinematics: BTreeMap::new(),
@@ -142,7 +160,8 @@ impl Law {
     pub fn term(&self, name: &str) -> Result<(Axis, Expr), String> {
         let parsed = CoefficientName::parse(name, &self.extra_factors())?;
         let axis = self.axes.get(&parsed.axis).ok_or_else(|| format!("law `{}` has no {} axis", self.name, parsed.axis))?;
-        let term = match axis.terms.get(name) {
+        let (shared, submodel) = split_submodel(name);
+        let term = match axis.terms.get(shared) {
             Some(term) => term.clone(),
             None if axis.open => self.product(&parsed)?,
             None => {
@@ -150,7 +169,8 @@ impl Law {
                 return Err(format!("law `{}` has no coefficient `{name}`; it has {}", self.name, known.join(", ")));
             }
         };
-        let factors = self.dressing.coefficients.iter().filter(|(of, _)| of == name);
+        let term = submodel.map_or(Ok(term.clone()), |submodel| self.under(submodel, term))?;
+        let factors = self.dressing.coefficients.iter().filter(|(of, _)| of == shared);
         Ok((parsed.axis, factors.fold(term, |term, (_, factor)| term.times(factor.clone()))))
     }
 
@@ -198,6 +218,16 @@ impl Law {
     /// The parameter about which the law is expanded, if it has one.
     pub fn approach_speed_parameter(&self) -> Option<&str> {
         self.parameters.iter().find(|(_, parameter)| parameter.is_approach_speed).map(|(name, _)| name.as_str())
+    }
+
+    /// Whether a coefficient's regressor changes sign with the rudder: by `delta`, or by a factor of the law that does, such
+    /// as a sine of it.
+    pub fn is_odd_in_rudder(&self, coefficient: &str) -> bool {
+        let Ok(name) = CoefficientName::parse(coefficient, &self.extra_factors()) else { return false };
+        let odd = |symbol: &str| {
+            symbol == "delta" || self.factors.get(symbol).is_some_and(|expr| symmetry::is_odd_in_rudder(self, expr))
+        };
+        name.factors.iter().filter(|factor| !factor.absolute && odd(&factor.symbol)).count() % 2 == 1
     }
 
     /// Whether roll is a state of its own.

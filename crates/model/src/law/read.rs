@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use indexmap::IndexMap;
 
 use super::file::{AxisFile, LawFile, ParameterFile, ParameterRole, TermFile};
+use super::submodel::read_submodels;
 use super::{AxisLaw, Input, Law, Parameter, STATES, axis_dimension, symmetry};
 use crate::coefficient::{Axis, CoefficientName};
 use crate::error::{Blame, FileError};
@@ -25,6 +26,7 @@ pub(super) fn read(file: &str, text: &str) -> Result<Law, FileError> {
         parameters: IndexMap::new(),
         values: IndexMap::new(),
         factors: IndexMap::new(),
+        submodels: IndexMap::new(),
         axes: BTreeMap::new(),
         mass: BTreeMap::new(),
         kinematics: BTreeMap::new(),
@@ -40,6 +42,7 @@ pub(super) fn read(file: &str, text: &str) -> Result<Law, FileError> {
         law.parameters.insert(name.clone(), reader.parameter(name, parameter)?);
     }
     reader.values(&mut law, &raw.values)?;
+    read_submodels(&mut law, &raw.submodels).map_err(|(field, message)| blame.at(&field, message))?;
     for (symbol, formula) in &raw.factors {
         let expr = reader.formula(&law, &format!("factors.{symbol}"), formula, None)?;
         law.factors.insert(symbol.clone(), expr);

@@ -22,9 +22,13 @@ const AT: [&str; 8] = ["u", "v", "r", "p", "phi", "psi", "delta", "n"];
 pub(super) fn check(law: &Law) -> Result<(), (String, String)> {
     for (first, second) in &law.mirrors {
         let second = second.trim_start_matches('-');
-        if !law.parameters.contains_key(first) || !law.parameters.contains_key(second) {
-            return Err((format!("mirrors.{first}"), "both must be parameters of the law".into()));
+        let both = |known: &dyn Fn(&str) -> bool| known(first) && known(second);
+        if !both(&|name| law.parameters.contains_key(name)) && !both(&|name| law.inputs.contains_key(name)) {
+            return Err((format!("mirrors.{first}"), "both must be parameters of the law, or both inputs".into()));
         }
+    }
+    for name in law.submodels.keys() {
+        check_parity(law, &Expr::Name(super::indicator(name)), false, &format!("submodels.{name}"))?;
     }
     for (axis, axis_law) in &law.axes {
         check_parity(law, &axis_law.rest, axis.is_odd(), &format!("axes.{axis}.rest"))?;
@@ -36,14 +40,16 @@ pub(super) fn check(law: &Law) -> Result<(), (String, String)> {
     Ok(())
 }
 
-/// Whether the factors that a name spells make an odd product in the mirror.
+/// Whether the factors that a name spells make an odd product in the mirror. Where one of them is neither odd nor even, as
+/// the angle of one rudder of a pair, the name cannot spell a bias and the axis decides.
 fn spelled_parity(law: &Law, name: &str, axis: Axis) -> bool {
     let Ok(parsed) = CoefficientName::parse(name, &law.extra_factors()) else { return axis.is_odd() };
-    let odd = |expr: &Expr| is_odd(law, expr).unwrap_or(false);
     // A factor that only explicit formulas use is known by its symbol alone.
-    let of_symbol = |symbol: &String| law.factors.get(symbol).map_or(ODD.contains(&symbol.as_str()), odd);
-    let odd_factors = parsed.factors.iter().filter(|f| !f.absolute && of_symbol(&f.symbol));
-    odd_factors.count() % 2 == 1
+    let of_symbol =
+        |symbol: &String| law.factors.get(symbol).map_or(Some(ODD.contains(&symbol.as_str())), |expr| is_odd(law, expr));
+    let plain = parsed.factors.iter().filter(|f| !f.absolute).map(|f| of_symbol(&f.symbol));
+    let odd = plain.collect::<Option<Vec<bool>>>();
+    odd.map_or(axis.is_odd(), |odd| odd.into_iter().filter(|odd| *odd).count() % 2 == 1)
 }
 
 fn check_parity(law: &Law, expr: &Expr, odd: bool, field: &str) -> Result<(), (String, String)> {
@@ -72,6 +78,20 @@ fn is_odd(law: &Law, expr: &Expr) -> Option<bool> {
     }
 }
 
+/// Whether a formula changes sign with every rudder angle, `delta` or one of a pair, all else as it is.
+pub(super) fn is_odd_in_rudder(law: &Law, expr: &Expr) -> bool {
+    let rudders = || law.inputs.keys().filter(|name| *name == "delta" || name.starts_with("delta_"));
+    let value = |point: &[f64; 8], sign: f64| {
+        let mut known: BTreeMap<&str, f64> = AT.iter().copied().zip(point.iter().copied()).collect();
+        known.extend(rudders().enumerate().map(|(k, name)| (name.as_str(), sign * (0.2 + 0.1 * k as f64))));
+        lookup(law, expr, &known, false)
+    };
+    POINTS.iter().all(|point| match (value(point, 1.0), value(point, -1.0)) {
+        (Some(here), Some(there)) => here != 0.0 && (here + there).abs() <= 1e-9 * here.abs(),
+        _ => false,
+    })
+}
+
 fn at(law: &Law, expr: &Expr, point: &[f64; 8], mirrored: bool) -> Option<f64> {
     let mut known: BTreeMap<&str, f64> = AT.iter().copied().zip(point.iter().copied()).collect();
     if mirrored {
@@ -95,13 +115,16 @@ fn stand_in(law: &Law, name: &str, mirrored: bool) -> f64 {
         return value;
     }
     let twin = if mirrored { twin(law, name) } else { None };
-    let name = twin.unwrap_or(name);
-    let (sign, name) = name.strip_prefix('-').map_or((1.0, name), |positive| (-1.0, positive));
+    let (sign, name) = twin.unwrap_or((1.0, name));
     let hash = name.bytes().fold(7_u32, |hash, byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)));
     sign * (0.2 + f64::from(hash % 997) / 997.0)
 }
 
-/// What a parameter becomes in the mirror: another one (`gamma_R_minus`), or its own opposite (`-c_Pr`).
-fn twin<'a>(law: &'a Law, name: &str) -> Option<&'a str> {
-    law.mirrors.iter().find_map(|(a, b)| if a == name { Some(b.as_str()) } else { (b == name).then_some(a.as_str()) })
+/// What a parameter or input becomes in the mirror, with its sign: another one (`gamma_R_minus`), its own opposite
+/// (`-c_Pr`), or the opposite of another (`-delta_p`).
+fn twin<'a>(law: &'a Law, name: &str) -> Option<(f64, &'a str)> {
+    law.mirrors.iter().find_map(|(a, b)| {
+        let (sign, b) = b.strip_prefix('-').map_or((1.0, b.as_str()), |positive| (-1.0, positive));
+        if a == name { Some((sign, b)) } else { (b == name).then_some((sign, a.as_str())) }
+    })
 }

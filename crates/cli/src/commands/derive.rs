@@ -1,0 +1,141 @@
+//! `sistership derive`: a law of motion from a list of actuators.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+use sistership_model::hybrid::{Derivation, Unknowns, derive};
+use sistership_model::law::LawFile;
+use sistership_model::{FileError, Zoo};
+
+use crate::failure::Failure;
+use crate::files::Promised;
+use crate::table::Table;
+use crate::zoo::text_of;
+use crate::{named, output};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership derive my-ferry.yaml
+  sistership derive my-ferry.yaml --out zoo/laws/my-ferry.yaml
+  sistership derive my-ferry.yaml --json
+
+A declaration is of `kind: hybrid`; models/hybrids/README.md has one with every field.";
+
+/// Derive the Abkowitz-MMG hybrid of a ship from her actuators, and count its unknowns rule by rule.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Derive {
+    /// The declaration: actuators, order, rules, submodels.
+    declaration: PathBuf,
+    /// Write the law to a file.
+    #[arg(long, value_name = "LAW.yaml")]
+    out: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    name: &'a str,
+    order: u32,
+    #[serde(flatten)]
+    unknowns: &'a Unknowns,
+    submodels: Vec<&'a str>,
+    law: &'a LawFile,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The declaration is refused, or the law cannot be written.
+pub fn run(zoo: &Zoo, asked: &Derive) -> Result<(), Failure> {
+    let path = &asked.declaration;
+    let promised = asked.out.as_deref().map(|out| Promised::new(out, std::slice::from_ref(path))).transpose()?;
+    let text = text_of(path)?;
+    named::must_be(path, &text, "hybrid", "a declaration")?;
+    let derived = derive(&path.display().to_string(), &text)?;
+    let unknowns = derived.unknowns(zoo).map_err(|(field, message)| blamed(path, field, message))?;
+    if let Some(promised) = promised {
+        promised.write(derived.text.as_bytes())?;
+    }
+    let submodels = derived.law.submodels.keys().map(String::as_str).collect();
+    let document =
+        Document { name: &derived.law.name, order: derived.file.order, unknowns: &unknowns, submodels, law: &derived.law_file };
+    output::print(asked.json, &document, || report(&derived, &unknowns, asked.out.as_deref()))
+}
+
+fn blamed(path: &Path, field: String, message: String) -> FileError {
+    FileError { file: path.display().to_string(), line: None, field, message }
+}
+
+fn report(derived: &Derivation, unknowns: &Unknowns, out: Option<&Path>) -> String {
+    let mut table = Table::new(["terms after", "setting", "X", "Y", "N", "all"]);
+    for rule in &unknowns.rules {
+        let counts = [rule.x, rule.y, rule.n, rule.total].map(|count| count.to_string());
+        table.row([rule.rule.to_owned(), rule.setting.clone()].into_iter().chain(counts));
+    }
+    let written = out.map_or(String::new(), |out| format!("\nlaw written to {}", out.display()));
+    format!("{}: {}\n\n{table}\n{}{written}", derived.law.name, derived.law.title, sum(derived, unknowns))
+}
+
+/// `60 coefficients in 3 sets (shared, stalled, astern): 180`, and what comes on top.
+fn sum(derived: &Derivation, unknowns: &Unknowns) -> String {
+    let mut table = Table::new(["unknowns", "of", "number"]);
+    let sets: Vec<&str> = std::iter::once("shared").chain(derived.law.submodels.keys().map(String::as_str)).collect();
+    let mut row = |what: &str, of: String, count: usize| table.row([what.to_owned(), of, count.to_string()]);
+    row("coefficients", format!("{} sets: {}", unknowns.coefficient_sets, sets.join(", ")), unknowns.coefficients);
+    row("inertia", unknowns.parameters.join(", "), unknowns.parameters.len());
+    for effect in &unknowns.effects {
+        row("effect", format!("{}, {}", effect.effect, effect.form), effect.unknowns);
+    }
+    row("all", String::new(), unknowns.unknowns);
+    table.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    const DECLARATION: &str = "kind: hybrid\nname: ferry\ntitle: A ferry\norder: 2\nactuators: { n: { kind: propeller }, delta: \
+                               { kind: vectwin } }\nsubmodels: ahead_astern\neffects: [{ effect: wind, form: measured }]\n";
+
+    fn asked(folder: &Path, text: &str) -> Derive {
+        let declaration = folder.join("ferry.yaml");
+        std::fs::write(&declaration, text).unwrap();
+        Derive { declaration, out: Some(folder.join("law.yaml")), json: false }
+    }
+
+    #[test]
+    fn the_law_is_written_and_its_unknowns_counted() {
+        let folder = tempfile::tempdir().unwrap();
+        let asked = asked(folder.path(), DECLARATION);
+        let zoo = Zoo::embedded().unwrap();
+        run(&zoo, &asked).unwrap();
+        let text = std::fs::read_to_string(folder.path().join("law.yaml")).unwrap();
+        let law = sistership_model::Law::parse("law.yaml", &text).unwrap();
+        assert_eq!(law.coefficient_names().len(), 120);
+        let derived = derive("ferry.yaml", DECLARATION).unwrap();
+        let report = report(&derived, &derived.unknowns(&zoo).unwrap(), None);
+        for part in ["A: symmetry", "2 sets: shared, astern", "133"] {
+            assert!(report.contains(part), "{part} in\n{report}");
+        }
+    }
+
+    #[test]
+    fn faults_name_file_and_field_and_leave_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let zoo = Zoo::embedded().unwrap();
+        let refused = |from: &str, to: &str| {
+            let asked = asked(folder.path(), &DECLARATION.replace(from, to));
+            run(&zoo, &asked).unwrap_err().message().unwrap().to_owned()
+        };
+        assert!(refused("order: 2", "order: 0").contains("ferry.yaml:4: order"));
+        assert!(refused("form: measured", "form: felt").contains("effects: `wind` has no form `felt`"));
+        assert!(refused("kind: hybrid", "kind: law").contains("is of `kind: law`; a declaration is of `kind: hybrid`"));
+        assert!(refused("kind: hybrid\n", "").contains("is no declaration"));
+        assert!(!folder.path().join("law.yaml").exists());
+    }
+}

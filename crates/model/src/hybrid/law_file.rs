@@ -1,0 +1,176 @@
+//! The derived law as a file like any other: forces from the terms, the rest from the equations of motion (Miyauchi 2024,
+//! Eq. 1).
+
+use std::collections::BTreeMap;
+
+use indexmap::IndexMap;
+
+use super::actuators::{ActuatorInput, Unit, Variable};
+use super::file::{HybridFile, Scaling};
+use super::rules::{AXES, Term};
+use crate::coefficient::Axis;
+use crate::law::{AxisFile, InputFile, LawFile, LawKind, ParameterFile, SubmodelFile, TermFile};
+use crate::source::Source;
+
+/// What a law is written from.
+pub(super) struct Writer<'a> {
+    pub file: &'a HybridFile,
+    pub inputs: &'a [ActuatorInput],
+    pub variables: &'a [Variable],
+    pub terms: &'a [Vec<Term>; 3],
+    pub submodels: IndexMap<String, SubmodelFile>,
+}
+
+impl Writer<'_> {
+    pub(super) fn law(self) -> LawFile {
+        let inertia = Inertia::of(self.file.scaling);
+        let input = |input: &ActuatorInput| (input.name.clone(), InputFile { unit: input.unit.into(), default: None });
+        let mirror = |input: &ActuatorInput| Some((input.name.clone(), input.mirror.clone()?));
+        let factor = |place: usize| (self.variables[place].symbol.clone(), self.called(place));
+        LawFile {
+            kind: LawKind::Law,
+            name: self.file.name.clone(),
+            title: self.file.title.clone(),
+            sources: self.sources(),
+            inputs: self.inputs.iter().map(input).collect(),
+            parameters: inertia.parameters(),
+            values: self.values(),
+            factors: (0..self.variables.len()).map(factor).collect(),
+            axes: AXES.into_iter().zip(self.terms).map(|(axis, terms)| (axis, self.axis(axis, terms, &inertia))).collect(),
+            mass: inertia.mass(),
+            kinematics: BTreeMap::new(),
+            mirrors: self.inputs.iter().filter_map(mirror).collect(),
+            submodels: self.submodels,
+        }
+    }
+
+    fn sources(&self) -> BTreeMap<String, Source> {
+        let citation = "Miyauchi, Y., Akimoto, Y. and Maki, A. (2024). Development of a mathematical model for harbor maneuvers \
+                        to realize modeling automation. J Mar Sci Technol 29, 975-999, sec. 2.2";
+        let hybrid = Source { citation: citation.into(), doi: None, note: None };
+        let mut sources = self.file.sources.clone();
+        sources.entry("miyauchi-2024".into()).or_insert(hybrid);
+        sources
+    }
+
+    fn is_scaled(&self, variable: &Variable) -> bool {
+        self.file.scaling == Scaling::Bis && variable.unit != Unit::Number
+    }
+
+    /// What a variable is called in formulas.
+    fn called(&self, place: usize) -> String {
+        let variable = &self.variables[place];
+        if self.is_scaled(variable) { format!("{}_bis", variable.symbol) } else { variable.symbol.clone() }
+    }
+
+    fn values(&self) -> IndexMap<String, String> {
+        let mut values = IndexMap::new();
+        if self.file.scaling == Scaling::Bis {
+            values.insert("speed_unit".to_owned(), "sqrt(g*lpp_m)".to_owned());
+            values.insert("time_unit".to_owned(), "sqrt(lpp_m/g)".to_owned());
+        }
+        for (place, variable) in self.variables.iter().enumerate() {
+            let formula = match variable.unit {
+                Unit::Speed if self.is_scaled(variable) => format!("{}/speed_unit", variable.formula),
+                Unit::Rate if self.is_scaled(variable) => format!("{}*time_unit", variable.formula),
+                _ => variable.formula.clone(),
+            };
+            if formula != variable.symbol {
+                values.insert(self.called(place), formula);
+            }
+        }
+        values
+    }
+
+    fn axis(&self, axis: Axis, terms: &[Term], inertia: &Inertia) -> AxisFile {
+        AxisFile {
+            scale: inertia.scale(axis),
+            terms: terms.iter().map(|term| self.term(axis, term)).collect(),
+            rest: Some(inertia.rest(axis)),
+            open: false,
+        }
+    }
+
+    fn term(&self, axis: Axis, term: &Term) -> TermFile {
+        let name = term.monomial.name(axis, self.variables);
+        let formula = |monomial: &super::monomial::Monomial| monomial.formula(&|place| self.called(place));
+        match &term.image {
+            None if term.monomial.degree() == 0 => TermFile::Formula(BTreeMap::from([(name, "1".into())])),
+            None => TermFile::Name(name),
+            Some((image, subtracted)) => {
+                let sign = if *subtracted { '-' } else { '+' };
+                TermFile::Formula(BTreeMap::from([(name, format!("{} {sign} {}", formula(&term.monomial), formula(image)))]))
+            }
+        }
+    }
+}
+
+/// The inertial side of Eq. 1 in one scaling.
+struct Inertia {
+    scaling: Scaling,
+    /// Mass with added mass in surge and in sway, kg.
+    surge: &'static str,
+    sway: &'static str,
+    /// Moment of inertia with added moment about midship, kg m2.
+    yaw: &'static str,
+    /// Static moment about midship, kg m.
+    moment: &'static str,
+}
+
+impl Inertia {
+    fn of(scaling: Scaling) -> Self {
+        match scaling {
+            Scaling::Bis => Self {
+                scaling,
+                surge: "m*(1 + m_x)",
+                sway: "m*(1 + m_y)",
+                yaw: "m*lpp_m^2*(I_zz_plus_J_zz + x_G^2)",
+                moment: "m*lpp_m*x_G",
+            },
+            Scaling::Dimensional => {
+                Self { scaling, surge: "(m + m_x)", sway: "(m + m_y)", yaw: "(I_zz_plus_J_zz + m*x_G^2)", moment: "m*x_G" }
+            }
+        }
+    }
+
+    fn parameters(&self) -> IndexMap<String, ParameterFile> {
+        let bis = self.scaling == Scaling::Bis;
+        let one = |name: &str, unit: &str, of: &str, by: &str, from: Option<&str>| {
+            let meaning = if bis && !by.is_empty() { format!("{of} by {by}") } else { of.to_owned() };
+            let unit = if bis && !by.is_empty() { "1" } else { unit };
+            let from = from.map(str::to_owned);
+            (name.to_owned(), ParameterFile { unit: unit.into(), meaning, from, role: None })
+        };
+        let x_g = if bis { "x_g_m/lpp_m" } else { "x_g_m" };
+        IndexMap::from([
+            one("m", "kg", "mass", "", Some("mass_kg")),
+            one("x_G", "m", "centre of gravity forward of midship", "L", Some(x_g)),
+            one("m_x", "kg", "added mass in surge", "m", None),
+            one("m_y", "kg", "added mass in sway", "m", None),
+            one("I_zz_plus_J_zz", "kg m2", "yaw moment of inertia about the centre of gravity with the added one", "m L^2", None),
+        ])
+    }
+
+    fn scale(&self, axis: Axis) -> Option<String> {
+        let bis = if axis == Axis::N { "m*g*lpp_m" } else { "m*g" };
+        (self.scaling == Scaling::Bis).then(|| bis.to_owned())
+    }
+
+    /// The products of velocities that stand left in Eq. 1.
+    fn rest(&self, axis: Axis) -> String {
+        match axis {
+            Axis::X => format!("{}*v*r + {}*r^2", self.sway, self.moment),
+            Axis::Y => format!("-{}*u*r", self.surge),
+            Axis::K | Axis::N => format!("-{}*u*r", self.moment),
+        }
+    }
+
+    fn mass(&self) -> BTreeMap<Axis, BTreeMap<Axis, String>> {
+        let row = |entries: &[(Axis, &str)]| entries.iter().map(|(axis, formula)| (*axis, (*formula).to_owned())).collect();
+        BTreeMap::from([
+            (Axis::X, row(&[(Axis::X, self.surge)])),
+            (Axis::Y, row(&[(Axis::Y, self.sway), (Axis::N, self.moment)])),
+            (Axis::N, row(&[(Axis::Y, self.moment), (Axis::N, self.yaw)])),
+        ])
+    }
+}

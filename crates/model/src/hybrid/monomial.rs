@@ -1,0 +1,108 @@
+//! Monomials and the Taylor expansion: Miyauchi 2024, Eqs. 7 to 11.
+
+use std::collections::BTreeSet;
+
+use super::actuators::Variable;
+use crate::coefficient::Axis;
+
+/// A product of powers of the expansion's variables, which it knows by their places.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub struct Monomial {
+    /// Places and powers above zero, by place.
+    pub powers: Vec<(usize, u32)>,
+    /// Places whose square is written `x|x|`.
+    pub moduli: BTreeSet<usize>,
+}
+
+/// Every monomial up to a degree, by degree, then by the order of the variables.
+pub fn expand(variables: usize, order: u32) -> Vec<Monomial> {
+    let mut all = vec![Monomial::default()];
+    let mut last = vec![Vec::new()];
+    for _ in 0..order {
+        last = last.iter().flat_map(|factors: &Vec<usize>| longer(factors, variables)).collect();
+        all.extend(last.iter().map(|factors| Monomial::of(factors)));
+    }
+    all
+}
+
+/// The products of one factor more, none before the last one.
+fn longer(factors: &[usize], variables: usize) -> Vec<Vec<usize>> {
+    let from = factors.last().copied().unwrap_or(0);
+    (from..variables).map(|next| factors.iter().copied().chain([next]).collect()).collect()
+}
+
+impl Monomial {
+    fn of(factors: &[usize]) -> Self {
+        let mut powers: Vec<(usize, u32)> = Vec::new();
+        for &place in factors {
+            match powers.last_mut() {
+                Some((last, power)) if *last == place => *power += 1,
+                _ => powers.push((place, 1)),
+            }
+        }
+        Self { powers, moduli: BTreeSet::new() }
+    }
+
+    /// The sum of the powers.
+    pub fn degree(&self) -> u32 {
+        self.powers.iter().map(|(_, power)| power).sum()
+    }
+
+    /// The places whose power is two.
+    pub fn squares(&self) -> impl Iterator<Item = usize> + '_ {
+        self.powers.iter().filter(|(_, power)| *power == 2).map(|&(place, _)| place)
+    }
+
+    /// Whether it changes sign in the mirror; `x|x|` does where `x` does.
+    pub fn is_odd(&self, variables: &[Variable]) -> bool {
+        let odd = self.powers.iter().filter(|(place, _)| variables[*place].odd);
+        let signs = odd.filter(|(place, power)| (power - u32::from(self.moduli.contains(place))) % 2 == 1);
+        signs.count() % 2 == 1
+    }
+
+    /// With the sides of every pair exchanged.
+    pub fn exchanged(&self, variables: &[Variable]) -> Self {
+        let twin = |place: usize| variables.iter().position(|v| v.symbol == variables[place].twin).unwrap_or(place);
+        let mut powers: Vec<(usize, u32)> = self.powers.iter().map(|&(place, power)| (twin(place), power)).collect();
+        powers.sort_unstable();
+        Self { powers, moduli: self.moduli.iter().map(|&place| twin(place)).collect() }
+    }
+
+    /// The name of its coefficient on an axis, such as `Y_v|v|`.
+    pub fn name(&self, axis: Axis, variables: &[Variable]) -> String {
+        let factors: Vec<String> = self.powers.iter().map(|&(place, power)| self.spelled(place, power, variables)).collect();
+        format!("{axis}_{}", if factors.is_empty() { "0".to_owned() } else { factors.concat() })
+    }
+
+    fn spelled(&self, place: usize, power: u32, variables: &[Variable]) -> String {
+        let symbol = &variables[place].symbol;
+        if self.moduli.contains(&place) { format!("{symbol}|{symbol}|") } else { symbol.repeat(power as usize) }
+    }
+
+    /// Its formula, of what each variable is called in formulas.
+    pub fn formula(&self, called: &dyn Fn(usize) -> String) -> String {
+        let factor = |&(place, power): &(usize, u32)| match (called(place), power) {
+            (name, 2) if self.moduli.contains(&place) => format!("{name}*abs({name})"),
+            (name, 1) => name,
+            (name, power) => format!("{name}^{power}"),
+        };
+        let factors: Vec<String> = self.powers.iter().map(factor).collect();
+        if factors.is_empty() { "1".to_owned() } else { factors.join("*") }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_expansion_has_every_product_once() {
+        let binomial = |n: usize, k: usize| (0..k).fold(1, |product, i| product * (n - i) / (i + 1));
+        for (variables, order) in [(8, 2), (8, 3), (6, 3), (3, 4)] {
+            let all = expand(variables, order);
+            let distinct: BTreeSet<&Monomial> = all.iter().collect();
+            assert_eq!((all.len(), distinct.len()), (binomial(variables + order as usize, order as usize), all.len()));
+            assert!(all.iter().all(|monomial| monomial.degree() <= order));
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! How many numbers a hybrid leaves to be found: Miyauchi 2024, Eq. 34 and Table 4.
+
+use serde::Serialize;
+
+use super::Derivation;
+use crate::Zoo;
+
+/// The unknowns of a derived law, rule by rule.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Unknowns {
+    /// Terms that each rule leaves.
+    pub rules: Vec<RuleCount>,
+    /// Sets of coefficients: the shared one and the submodels'.
+    pub coefficient_sets: usize,
+    /// Coefficients of all sets.
+    pub coefficients: usize,
+    /// Parameters that do not follow from particulars: added masses and the moment of inertia.
+    pub parameters: Vec<String>,
+    /// Parameters of the effects that go with the law.
+    pub effects: Vec<EffectUnknowns>,
+    /// All of them.
+    pub unknowns: usize,
+}
+
+/// Terms by axis after a rule.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RuleCount {
+    /// The rule.
+    pub rule: &'static str,
+    /// Its setting in words.
+    pub setting: String,
+    /// Terms of the surge force.
+    #[serde(rename = "X")]
+    pub x: usize,
+    /// Terms of the sway force.
+    #[serde(rename = "Y")]
+    pub y: usize,
+    /// Terms of the yaw moment.
+    #[serde(rename = "N")]
+    pub n: usize,
+    /// Their sum.
+    pub total: usize,
+}
+
+/// The unknowns of an effect.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct EffectUnknowns {
+    /// The effect.
+    pub effect: String,
+    /// Its form.
+    pub form: String,
+    /// Its parameters.
+    pub unknowns: usize,
+}
+
+impl Derivation {
+    /// Counts the unknowns; `zoo` knows the effects.
+    ///
+    /// # Errors
+    /// The field of the declaration that names an effect or form that is not in the zoo, and what is.
+    pub fn unknowns(&self, zoo: &Zoo) -> Result<Unknowns, (String, String)> {
+        let effects = self.effects(zoo)?;
+        let parameters: Vec<String> =
+            self.law.parameters.iter().filter(|(_, parameter)| parameter.from.is_none()).map(|(name, _)| name.clone()).collect();
+        let coefficients = self.law.coefficient_names().len();
+        let of_effects: usize = effects.iter().map(|effect| effect.unknowns).sum();
+        Ok(Unknowns {
+            rules: self.rules(),
+            coefficient_sets: 1 + self.law.submodels.len(),
+            coefficients,
+            unknowns: coefficients + parameters.len() + of_effects,
+            parameters,
+            effects,
+        })
+    }
+
+    fn rules(&self) -> Vec<RuleCount> {
+        let count = |step: &super::Step| {
+            let [x, y, n] = step.terms;
+            RuleCount { rule: step.rule, setting: step.setting.clone(), x, y, n, total: x + y + n }
+        };
+        self.steps.iter().map(count).collect()
+    }
+
+    fn effects(&self, zoo: &Zoo) -> Result<Vec<EffectUnknowns>, (String, String)> {
+        let one = |used: &super::EffectUse| {
+            let fault = |message| ("effects".to_owned(), message);
+            let names = || zoo.effects().map(|effect| effect.name.clone()).collect::<Vec<_>>().join(", ");
+            let effect = zoo.effect(&used.effect);
+            let effect = effect.ok_or_else(|| fault(format!("there is no effect `{}`; there are {}", used.effect, names())))?;
+            let forms = || effect.forms.iter().map(|form| form.file.name.clone()).collect::<Vec<_>>().join(", ");
+            let form = effect.forms.iter().find(|form| form.file.name == used.form);
+            let form = form.ok_or_else(|| fault(format!("`{}` has no form `{}`; it has {}", used.effect, used.form, forms())))?;
+            Ok(EffectUnknowns { effect: used.effect.clone(), form: used.form.clone(), unknowns: form.parameters.len() })
+        };
+        self.file.effects.iter().map(one).collect()
+    }
+}
