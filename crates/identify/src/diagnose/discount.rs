@@ -2,30 +2,11 @@
 
 use sistership_model::uncertainty::{Feigned, Uncertainty};
 
-use nalgebra::{Cholesky, DMatrix, DVector};
-use sistership_model::effect::ActsOn;
-
-use super::search::{Judged, Search};
-use super::values::{acts_on, own_covariance};
 use crate::residual::Candidate;
 
 /// The law of an effect is a model too: how far the size of what it does is from the truth, and how far the shape.
 pub(super) const SIZE: f64 = 0.03;
 pub(super) const SHAPE: f64 = 0.003;
-
-impl Search<'_> {
-    /// The covariance of an effect's parameters, with what the effect feigns on clean trials and what its own law is
-    /// uncertain by.
-    pub fn covariance(&self, judged: &Judged, place: usize) -> DMatrix<f64> {
-        let candidate = &judged.candidates[place];
-        let own = own_covariance(&judged.candidates, place, &judged.covariance);
-        let change = DVector::from_vec(candidate.change());
-        let response = Cholesky::new(own.clone()).map_or(0.0, |factor| change.dot(&factor.solve(&change)));
-        // What an instrument says of a motion is exact by definition; what a force does is not.
-        let size = if acts_on(candidate) == ActsOn::Measurement { 0.0 } else { SIZE };
-        own * (self.discount(candidate) + SHAPE.powi(2) * response) + &change * change.transpose() * size.powi(2)
-    }
-}
 
 /// Where a model brings no uncertainty: its coefficients are published ones, and what they cannot follow nobody has measured.
 const UNKNOWN: f64 = 10.0;

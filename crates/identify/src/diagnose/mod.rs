@@ -3,6 +3,7 @@
 mod base;
 mod calibrate;
 mod choose;
+mod covariance;
 mod discount;
 mod evidence;
 mod judge;

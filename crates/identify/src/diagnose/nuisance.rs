@@ -15,8 +15,9 @@ use sistership_model::{Effect, Model, Trial};
 use super::evidence::Fixed;
 use crate::residual::{Columns, Nuisance, NuisanceKind};
 
-/// How far virtual masses, by strip theory or regression, are from the truth: a judgement.
-const MASS_DEVIATION: f64 = 0.15;
+/// Virtual masses are held: trials would seem to tell them, but what they tell is how far the law is from the truth. What is
+/// not known of them goes into standard errors (`covariance`).
+const HELD: f64 = 1e-6;
 
 /// Terms that a grammar spells and a model lacks, by name.
 pub type Terms = BTreeMap<String, Arc<Form>>;
@@ -66,7 +67,7 @@ pub fn prior(model: &Model, columns: &[Nuisance], terms: &Terms, slack: f64) -> 
     let deviation = |nuisance: &Nuisance| match nuisance.kind {
         NuisanceKind::Own(axis) => slack * model.coefficient(&nuisance.name).abs().max(0.1 * of_axis(axis)),
         NuisanceKind::Lacked(axis) => slack * of_axis(axis),
-        NuisanceKind::Mass(..) => MASS_DEVIATION,
+        NuisanceKind::Mass(..) => HELD,
     };
     let precisions = DVector::from_iterator(columns.len(), columns.iter().map(|nuisance| deviation(nuisance).powi(-2)));
     Fixed { information: DMatrix::from_diagonal(&precisions), weighted_mean: DVector::zeros(columns.len()) }

@@ -46,7 +46,6 @@ pub fn calibrate(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&T
     let all: Vec<_> = candidates.into_iter().chain(freed).collect();
     let known = Known { fixed: &fixed, grams: &grams, scatter: 1.0 };
     let known = Known { scatter: known.scatter(), ..known };
-    eprintln!("scatter {}", known.scatter);
     Ok(Uncertainty {
         feigned: feigned::feigned(&workspace, &known, &all),
         remainder: remainder(&workspace, &known, &discrepancies),
