@@ -1,6 +1,8 @@
 //! A linearisation with everything that may show, filtered at each level of the discrepancy. A hypothesis near it is then
 //! judged by what it moves alone: its own columns pass the same filter, the coefficients' are there already.
 
+use std::ops::AddAssign;
+
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use sistership_model::manifest::VelocityFrame;
@@ -31,6 +33,12 @@ struct Filtered {
     /// Whitened columns of the coefficients, by part: columns by readings.
     coefficients: Vec<DMatrix<f64>>,
     gram: Gram,
+}
+
+impl AtLevel {
+    pub fn discrepancies(&self) -> &Discrepancies {
+        &self.discrepancies
+    }
 }
 
 impl<'a> Base<'a> {
@@ -101,26 +109,66 @@ impl Stand<'_, '_> {
         trials.into_par_iter().map(|(parts, filtered)| self.gram(parts, filtered, &at.discrepancies)).collect()
     }
 
+    /// The products of each trial in pieces of equal duration.
+    pub fn pieces(&self, level: usize, count: usize) -> Vec<Gram> {
+        let at = &self.base.levels[level];
+        let trials: Vec<_> = self.linear.iter().zip(&at.trials).collect();
+        let of = |(parts, filtered): (&Vec<Linearised>, &Filtered)| self.in_pieces(parts, filtered, &at.discrepancies, count);
+        trials.into_par_iter().flat_map_iter(of).collect()
+    }
+
+    fn in_pieces(&self, parts: &[Linearised], filtered: &Filtered, discrepancies: &Discrepancies, count: usize) -> Vec<Gram> {
+        let width = self.base.coefficients + self.width();
+        let mut pieces = vec![Gram::empty(width); count];
+        for (part, coefficients) in parts.iter().zip(&filtered.coefficients) {
+            let own = self.rows(part, discrepancies).0;
+            let readings = own.nrows();
+            for (piece, gram) in pieces.iter_mut().enumerate() {
+                let (from, to) = (piece * readings / count, (piece + 1) * readings / count);
+                let (known, own) = (coefficients.columns(from, to - from), own.rows(from, to - from));
+                let square = Gram::of_columns(&known.into_owned(), 0.0).products;
+                gram.products.view_mut((1, 1), square.shape()).add_assign(&square);
+                add(gram, &(known * own), &own.tr_mul(&own));
+            }
+        }
+        pieces
+    }
+
     fn gram(&self, parts: &[Linearised], filtered: &Filtered, discrepancies: &Discrepancies) -> Gram {
         let c = self.base.coefficients;
-        let own = 1 + parts.first().map_or(0, |part| part.sizes.columns);
-        let mut gram = Gram::empty(c + own);
+        let mut gram = Gram::empty(c + self.width());
         gram.products.view_mut((1, 1), (c, c)).copy_from(&filtered.gram.products.view((1, 1), (c, c)));
-        let place = |i: usize| if i == 0 { 0 } else { c + i };
         for (part, coefficients) in parts.iter().zip(&filtered.coefficients) {
-            let (rows, log_variance) = whitened(part, &self.base.workspace.noise, discrepancies);
-            let rows = DMatrix::from_vec(own, rows.len() / own, rows).transpose();
-            let (cross, square) = (coefficients * &rows, rows.tr_mul(&rows));
-            for i in 0..own {
-                for k in 0..c {
-                    gram.products[(1 + k, place(i))] += cross[(k, i)];
-                    gram.products[(place(i), 1 + k)] += cross[(k, i)];
-                }
-                (0..own).for_each(|j| gram.products[(place(i), place(j))] += square[(i, j)]);
-            }
+            let (rows, log_variance) = self.rows(part, discrepancies);
+            add(&mut gram, &(coefficients * &rows), &rows.tr_mul(&rows));
             gram.log_variance += log_variance;
             gram.count += rows.nrows();
         }
         gram
+    }
+
+    /// The residual and the parameters of the hypothesis.
+    fn width(&self) -> usize {
+        1 + self.linear.iter().flatten().next().map_or(0, |part| part.sizes.columns)
+    }
+
+    /// Whitened, readings by columns.
+    fn rows(&self, part: &Linearised, discrepancies: &Discrepancies) -> (DMatrix<f64>, f64) {
+        let (rows, log_variance) = whitened(part, &self.base.workspace.noise, discrepancies);
+        let width = self.width();
+        (DMatrix::from_vec(width, rows.len() / width, rows).transpose(), log_variance)
+    }
+}
+
+/// Adds products of coefficients with a hypothesis' own columns, and of these among themselves.
+fn add(gram: &mut Gram, cross: &DMatrix<f64>, square: &DMatrix<f64>) {
+    let (c, own) = cross.shape();
+    let place = |i: usize| if i == 0 { 0 } else { c + i };
+    for i in 0..own {
+        for k in 0..c {
+            gram.products[(1 + k, place(i))] += cross[(k, i)];
+            gram.products[(place(i), 1 + k)] += cross[(k, i)];
+        }
+        (0..own).for_each(|j| gram.products[(place(i), place(j))] += square[(i, j)]);
     }
 }

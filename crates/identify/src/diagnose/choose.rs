@@ -30,6 +30,13 @@ pub(super) struct Choice {
     levels: Vec<Level>,
 }
 
+/// Effects and coefficients where both stay, and the search about the model so taught.
+pub(super) struct Settled<'a> {
+    pub search: Search<'a>,
+    pub base: Base<'a>,
+    pub best: Judged,
+}
+
 /// Judges single effects, then what stands together with the best, exchanging each of a set for every other.
 ///
 /// # Errors
@@ -95,25 +102,40 @@ impl Choice {
         Ok(())
     }
 
-    /// The effects taken, fitted together with the coefficients until both stay, without what the others then make needless.
+    /// Effects fitted together with the coefficients until both stay, without what the others then make needless.
     ///
     /// # Errors
     /// Names what a trial lacks.
-    pub(super) fn settled<'a>(&self, search: &Search<'a>, request: &Request<'_>) -> Result<(Search<'a>, Judged), RefineError> {
-        let (mut search, mut best) = (search.clone(), self.best().clone());
+    pub(super) fn settled<'a>(
+        &self,
+        search: &Search<'a>,
+        request: &Request<'_>,
+        taken: &Judged,
+    ) -> Result<Settled<'a>, RefineError> {
+        let (mut search, mut best) = (search.clone(), taken.clone());
         let mut rounds = SETTLED;
-        while rounds > 0 {
+        loop {
             search = search.taught_by(request, &best)?;
-            best = search.alone(&search.bare(&best.candidates, &self.levels)?)?.1;
+            let base = search.bare(&best.candidates, &self.levels)?;
+            best = search.alone(&base)?.1;
             rounds -= 1;
-            if let Some(place) = needless(&search, &best, request.settings).filter(|_| rounds == 0) {
-                let mut kept = best.candidates.clone();
-                kept.remove(place);
-                best = search.alone(&search.bare(&kept, &self.levels)?)?.1;
-                rounds = 1;
+            if rounds > 0 {
+                continue;
             }
+            let Some(place) = needless(&search, &best, request.settings) else { return Ok(Settled { search, base, best }) };
+            best = self.without(&search, &best, place)?;
+            rounds = 1;
         }
-        Ok((search, best))
+    }
+
+    /// A set of effects but one.
+    ///
+    /// # Errors
+    /// Names what a trial lacks.
+    pub(super) fn without(&self, search: &Search<'_>, judged: &Judged, place: usize) -> Result<Judged, RefineError> {
+        let mut kept = judged.candidates.clone();
+        kept.remove(place);
+        Ok(search.alone(&search.bare(&kept, &self.levels)?)?.1)
     }
 
     pub(super) fn best(&self) -> &Judged {

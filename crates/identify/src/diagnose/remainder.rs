@@ -123,6 +123,18 @@ impl Sums<'_> {
             from_s: time(from),
             to_s: time(to),
         };
-        found.into_iter().map(stretch).collect()
+        found.into_iter().map(|run| stretch(self.trimmed(run, limit))).collect()
+    }
+
+    /// A run without the blocks at its ends that came in only beside large ones.
+    fn trimmed(&self, (mut from, mut to): (usize, usize), limit: f64) -> (usize, usize) {
+        let is_small = |block: usize| self.sums[block].abs() < limit;
+        while to - from > BLOCKS && is_small(from) {
+            from += 1;
+        }
+        while to - from > BLOCKS && is_small(to - 1) {
+            to -= 1;
+        }
+        (from, to)
     }
 }

@@ -1,11 +1,14 @@
 //! The whole diagnosis.
 
 use super::Request;
-use super::choose::{Choice, choose};
+use super::choose::{Choice, Settled, choose};
+use super::confounded::Responses;
 use super::judge::errors;
-use super::outcome::{Diagnosis, Found, Hypothesis, Verdict};
+use super::next_trial::next_trial;
+use super::outcome::{Diagnosis, Found, Hypothesis, NextTrial, Unexplained, Verdict};
 use super::remainder::unexplained;
 use super::search::{Judged, Search};
+use super::series::{levels, residuals};
 use super::setup::search;
 use super::values::{acts_on, own_covariance, values};
 use crate::refine::{Progress, RefineError};
@@ -31,15 +34,15 @@ fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineE
     if progress(fraction, what) { Ok(()) } else { Err(RefineError::Cancelled) }
 }
 
-fn answer(request: &Request<'_>, search: &Search<'_>, choice: &Choice, progress: Progress<'_>) -> Result<Diagnosis, RefineError> {
-    let (search, best) = &choice.settled(search, request)?;
-    let workspace = search.workspace(best.stood.clone())?;
-    let remaining = remaining(search, best, &workspace)?;
+fn answer(request: &Request<'_>, first: &Search<'_>, choice: &Choice, progress: Progress<'_>) -> Result<Diagnosis, RefineError> {
+    let (settled, remaining, refused) = believed(request, first, choice)?;
+    let Settled { search, base, best } = &settled;
+    let workspace = &base.workspace;
     let length_s = workspace.lpp_m / workspace.speed_m_s;
     step(progress, 0.85, "simulating each trial by a fit on the others")?;
     let errors = errors(request, search, best, request.settings.restart_s.unwrap_or(10.0 * length_s));
-    let mut found: Vec<Found> = (0..best.candidates.len()).map(|place| found(request, search, best, place)).collect();
-    found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    step(progress, 0.95, "what these trials cannot tell apart")?;
+    let (found, next_trial) = apart(request, search, best)?;
     let verdict = match (remaining.is_empty(), found.is_empty()) {
         (false, _) => Verdict::Unexplained,
         (true, true) => Verdict::Complete,
@@ -50,7 +53,7 @@ fn answer(request: &Request<'_>, search: &Search<'_>, choice: &Choice, progress:
         verdict,
         effects: found,
         unexplained: remaining,
-        next_trial: None,
+        next_trial,
         before: errors.before,
         after: errors.after,
         noise: workspace.noise.iter().map(|(channel, sigma)| (channel.name().to_owned(), *sigma)).collect(),
@@ -59,19 +62,47 @@ fn answer(request: &Request<'_>, search: &Search<'_>, choice: &Choice, progress:
         hypotheses: hypotheses(request, search, choice),
         trials: errors.trials,
         manoeuvres: errors.manoeuvres,
-        residuals: Vec::new(),
-        discrepancies: Vec::new(),
+        residuals: residuals(first, search, best)?,
+        discrepancies: levels(search, workspace, &choice.alone, best),
         model,
         settings: request.settings.clone(),
-        remarks: Vec::new(),
+        remarks: remarks(&refused),
     })
+}
+
+/// The effects taken, as far as each is the same at all times where something remains unexplained; and the names of others.
+fn believed<'a>(
+    request: &Request<'_>,
+    search: &Search<'a>,
+    choice: &Choice,
+) -> Result<(Settled<'a>, Vec<Unexplained>, Vec<String>), RefineError> {
+    let (mut taken, mut refused) = (choice.best().clone(), Vec::new());
+    loop {
+        let settled = choice.settled(search, request, &taken)?;
+        let remaining = remaining(&settled.search, &settled.best, &settled.base.workspace)?;
+        let inconstant = if remaining.is_empty() { None } else { settled.search.inconstant(&settled.base, &settled.best)? };
+        let Some(place) = inconstant else { return Ok((settled, remaining, refused)) };
+        refused.push(settled.best.candidates[place].effect.clone());
+        taken = choice.without(&settled.search, &settled.best, place)?;
+    }
+}
+
+/// What is said of effects that were refused.
+fn remarks(refused: &[String]) -> Vec<String> {
+    let one = |name: &String| {
+        format!(
+            "`{name}` would explain a part of what remains, but in one size here and in another there: it resembles what is \
+             missing and is not named"
+        )
+    };
+    refused.iter().map(one).collect()
 }
 
 fn remaining(
     search: &Search<'_>,
     best: &Judged,
     workspace: &super::workspace::Workspace<'_>,
-) -> Result<Vec<super::outcome::Unexplained>, RefineError> {
+) -> Result<Vec<Unexplained>, RefineError> {
     let expected = match search.model.uncertainty {
         Some(_) => &search.expected,
         None => &workspace.scales().discrepancies(REMAINDER),
@@ -79,9 +110,19 @@ fn remaining(
     let moved = best.candidates.iter().zip(&best.stood).flat_map(|(c, s)| c.at.iter().zip(&s.at).map(|(a, b)| a - b));
     let parameters: Vec<f64> = best.shift.iter().copied().chain(moved).collect();
     let clean = search.model.uncertainty.as_ref().map(|uncertainty| &uncertainty.remainder);
-    let changes = best.candidates.iter().flat_map(|candidate| candidate.change());
+    let changes: Vec<f64> = best.candidates.iter().flat_map(|candidate| candidate.change()).collect();
     let effects: Vec<f64> = vec![0.0; best.shift.len()].into_iter().chain(changes).collect();
-    Ok(unexplained(workspace, expected, &parameters, &effects, clean))
+    let found = unexplained(workspace, expected, &parameters, &effects, clean);
+    if clean.is_none() || found.is_empty() {
+        return Ok(found);
+    }
+    // Coefficients that gave way to what is missing have spread it over the trial: it is dated by those of clean trials.
+    let given_way = search.given_way().into_iter().map(|change| -change);
+    let as_taught: Vec<f64> = given_way.chain(parameters.iter().copied().skip(best.shift.len())).collect();
+    let dated = unexplained(workspace, expected, &as_taught, &effects, clean);
+    let same = |a: &Unexplained, b: &Unexplained| a.trial == b.trial && a.channel == b.channel;
+    let dated: Vec<Unexplained> = dated.into_iter().filter(|a| found.iter().any(|b| same(a, b))).collect();
+    Ok(if dated.is_empty() { found } else { dated })
 }
 
 /// The discrepancy that is forgiven a model that brings none, by the typical acceleration.
@@ -92,6 +133,22 @@ fn how(request: &Request<'_>) -> String {
         1 => "there is one trial only: these are errors on the trial that the effects were fitted on".to_owned(),
         count => format!("each of {count} trials simulated with effects fitted on the others"),
     }
+}
+
+/// The effects found with those they are confounded with, the strongest first, and the trial that would separate them.
+fn apart(request: &Request<'_>, search: &Search<'_>, best: &Judged) -> Result<(Vec<Found>, Option<NextTrial>), RefineError> {
+    let mut all: Vec<Found> = (0..best.candidates.len()).map(|place| found(request, search, best, place)).collect();
+    let mut next = None;
+    if !all.is_empty() {
+        let base = search.base(&best.candidates, &search.levels[..1])?;
+        let responses = Responses::new(search, &base, best, &base.total(0));
+        for (place, found) in all.iter_mut().enumerate() {
+            found.confounded_with = responses.as_ref().map(|responses| responses.beside(place)).unwrap_or_default();
+        }
+        next = next_trial(search, &base, best, &all);
+    }
+    all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    Ok((all, next))
 }
 
 fn found(request: &Request<'_>, search: &Search<'_>, best: &Judged, place: usize) -> Found {

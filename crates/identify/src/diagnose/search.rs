@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use sistership_model::law::Law;
 use sistership_model::{Model, Trial};
 
 use super::Request;
@@ -23,10 +24,13 @@ const ROUNDS: usize = 3;
 #[derive(Clone)]
 pub(super) struct Search<'a> {
     pub model: &'a Model,
+    /// Its law, without effects.
+    pub law: &'a Law,
     /// The model as its own trials have taught it.
     pub learned: Learned,
-    /// By how much, by column.
+    /// By how much, by column; and by how much before any hypothesis taught it more.
     pub taught: Vec<f64>,
+    pub taught_at_first: Vec<f64>,
     pub terms: Terms,
     pub trials: &'a [&'a Trial],
     pub nuisance: Vec<Nuisance>,
@@ -58,6 +62,8 @@ pub(super) struct Judged {
     /// Logarithm of the probability of the readings and of the hypothesis itself.
     pub log_evidence: f64,
     pub covariance: DMatrix<f64>,
+    /// The level of the discrepancy, among those of the base that it was judged beside.
+    pub level: usize,
     /// Change of the coefficients.
     pub shift: DVector<f64>,
     /// Products of each trial under the most probable discrepancies, at `stood`.
@@ -67,7 +73,8 @@ pub(super) struct Judged {
 }
 
 impl<'a> Search<'a> {
-    fn discrepancies(&self, level: Level) -> Discrepancies {
+    /// The discrepancies at a level.
+    pub fn discrepancies(&self, level: Level) -> Discrepancies {
         let scaled = |d: &sistership_model::uncertainty::Discrepancy| {
             let (deviation, white) = (d.deviation * level.factor, d.white * level.factor);
             sistership_model::uncertainty::Discrepancy { deviation, white, ..*d }
@@ -105,7 +112,13 @@ impl<'a> Search<'a> {
         Ok(Base::new(taken, self.workspace(taken.to_vec())?, levels))
     }
 
-    fn others(&self, taken: &[Candidate]) -> Vec<&Candidate> {
+    /// How far coefficients have given way to the trials that are diagnosed.
+    pub fn given_way(&self) -> Vec<f64> {
+        self.taught.iter().zip(&self.taught_at_first).map(|(now, before)| now - before).collect()
+    }
+
+    /// Every effect of which none is taken.
+    pub fn others(&self, taken: &[Candidate]) -> Vec<&Candidate> {
         let is_other = |candidate: &&Candidate| !taken.iter().any(|kept| kept.effect == candidate.effect);
         self.listed.iter().chain(&self.freed).filter(is_other).collect()
     }
@@ -255,6 +268,7 @@ impl<'a> Search<'a> {
             stood: candidates.to_vec(),
             shift: &reduced.shift - &reduced.answers * &estimate.mean,
             covariance: estimate.covariance,
+            level,
             grams,
         })
     }

@@ -68,11 +68,13 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<Search<'a>, RefineErro
     let shift = fixed.taught(&nuisance).ok_or_else(|| RefineError::Law("what it knows of itself is not positive".into()))?;
     let mut search = Search {
         model: request.model,
+        law: request.law,
         learned: Learned::new(request.model, request.law, &terms, &nuisance, &shift)?,
         trials: request.trials,
         nuisance,
         terms,
         fixed: fixed.from(&shift),
+        taught_at_first: shift.clone(),
         taught: shift,
         expected: Vec::new(),
         levels,

@@ -18,6 +18,7 @@ mod linearised;
 mod noise;
 mod path;
 mod record;
+mod smoother;
 mod tapes;
 mod walker;
 
@@ -27,4 +28,5 @@ pub use gram::Gram;
 pub use linearised::{Detail, Linearised, linearise};
 pub use noise::{Noise, floor, scatter};
 pub use record::Record;
+pub use smoother::{Smoothed, smoothed};
 pub use tapes::System;
