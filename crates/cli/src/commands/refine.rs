@@ -41,7 +41,7 @@ pub struct Refine {
     /// Trial manifests, CSV or Parquet files.
     #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
     trials: Vec<PathBuf>,
-    /// The estimator; this version has `published`.
+    /// The estimator: `published` (one-step differences) or `weak` (integrated over windows).
     #[arg(long, value_name = "NAME", value_parser = method)]
     method: Option<Method>,
     /// Settings of the refinement (YAML); the flags below win over it.
@@ -68,7 +68,8 @@ pub struct Refine {
 }
 
 fn method(name: &str) -> Result<Method, String> {
-    if name == Method::Published.name() { Ok(Method::Published) } else { Err("this version has `published`".to_owned()) }
+    let known = || Method::ALL.map(|method| format!("`{}`", method.name())).join(", ");
+    Method::by_name(name).ok_or_else(|| format!("there are {}", known()))
 }
 
 #[derive(Serialize)]
@@ -113,7 +114,7 @@ pub fn run(zoo: &Zoo, arguments: &Refine) -> Result<(), Failure> {
     };
     let refinement = refined(zoo, &target, &source, &settings, &read)?;
     if let Some(out) = out {
-        out.write(model_file(zoo, &refinement.model)?.as_bytes())?;
+        out.write(model_file(zoo, &refinement)?.as_bytes())?;
     }
     if let Some(report) = report {
         report.write(&report_html(zoo, &target, &refinement, similarity.as_ref(), &read)?)?;
@@ -187,9 +188,10 @@ fn refined(zoo: &Zoo, target: &Vessel, source: &Model, settings: &Settings, read
 }
 
 /// The model as a file, read back once to be sure that it is one.
-fn model_file(zoo: &Zoo, model: &Model) -> Result<String, Failure> {
+fn model_file(zoo: &Zoo, refinement: &Refinement) -> Result<String, Failure> {
+    let (model, method) = (&refinement.model, &refinement.method);
     let text = serde_yaml::to_string(model).map_err(|error| Failure::Refused(format!("the model cannot be written: {error}")))?;
-    let text = format!("# {} by sistership {}, method published\n{text}", model.name, env!("CARGO_PKG_VERSION"));
+    let text = format!("# {} by sistership {}, method {method}\n{text}", model.name, env!("CARGO_PKG_VERSION"));
     Model::parse("the refined model", &text, &|law| zoo.law(law).map(|law| (**law).clone()))?;
     Ok(text)
 }

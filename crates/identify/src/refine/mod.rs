@@ -7,6 +7,7 @@ mod published;
 mod rows;
 mod selection;
 mod settings;
+mod weak;
 
 pub use blocks::{Block, Blocks};
 pub use outcome::{CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement, StepOption};
@@ -14,3 +15,4 @@ pub use published::{Choices, Fit, Fitted, Fold, fit, tune};
 pub use rows::{Table, trial_moments, trial_tables};
 pub use selection::{Progress, Request, refine};
 pub use settings::{Method, Range, Settings};
+pub use weak::{Windows, weak_moments, weak_tables};

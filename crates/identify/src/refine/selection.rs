@@ -14,7 +14,8 @@ use super::blocks::Blocks;
 use super::outcome::{RefineError, Refinement, StepOption};
 use super::published::{Choices, Fitted, Fold, tune};
 use super::rows::trial_moments;
-use super::settings::Settings;
+use super::settings::{Method, Settings};
+use super::weak::{Windows, weak_moments};
 use crate::regression::Moments;
 use crate::transfer::{approach_of, ready, transfer};
 
@@ -95,7 +96,10 @@ impl<'a> Task<'a> {
     }
 
     fn moments(&self) -> Result<Vec<Vec<Moments>>, RefineError> {
-        let one = |trial: &&Trial| trial_moments(&self.blocks, trial, self.settings.difference_s);
+        let one = |trial: &&Trial| match (self.settings.method, self.windows()) {
+            (Method::Published, _) | (_, None) => trial_moments(&self.blocks, trial, self.settings.difference_s),
+            (_, Some(windows)) => weak_moments(&self.blocks, trial, windows),
+        };
         let moments: Vec<Vec<Moments>> = self.training.par_iter().map(one).collect::<Result<_, _>>()?;
         let samples: f64 = moments.iter().map(|m| m.first().map_or(0.0, |m| m.count)).sum();
         let widest = self.blocks.blocks.iter().map(super::Block::regressors).max().unwrap_or(0) as f64;
@@ -105,6 +109,12 @@ impl<'a> Task<'a> {
             return Err(RefineError::Data(message));
         }
         Ok(moments)
+    }
+
+    /// The windows of the weak form; none where neither the settings nor the ship's length and speed say how long.
+    fn windows(&self) -> Option<Windows> {
+        let length_s = self.settings.window_s?;
+        Some(Windows { length_s, hop_s: self.settings.hop_s.unwrap_or(0.1 * length_s) })
     }
 
     /// Which fold a training trial is left out in.
@@ -208,7 +218,12 @@ impl<'a> Task<'a> {
 fn resolved(request: &Request<'_>, training: &[&Trial]) -> Settings {
     let length_s = request.target.particular("lpp_m").zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s);
     let mut settings = request.settings.clone();
-    settings.difference_s = settings.difference_s.or(length_s.map(|s| 0.1 * s));
+    if settings.method == Method::Published {
+        settings.difference_s = settings.difference_s.or(length_s.map(|s| 0.1 * s));
+    } else {
+        settings.window_s = settings.window_s.or(length_s.map(|s| s / 1.5));
+        settings.hop_s = settings.hop_s.or(settings.window_s.map(|s| 0.1 * s));
+    }
     settings.restart_s = settings.restart_s.or(length_s.map(|s| 10.0 * s));
     settings
 }

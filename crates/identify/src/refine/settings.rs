@@ -9,13 +9,24 @@ pub enum Method {
     /// One-step differences and the ridge with the source as l2 prior: Kanazawa 2023, Eqs. 5.4-5.17.
     #[default]
     Published,
+    /// The equations of motion integrated over windows with smooth bumps, nothing differentiated; the same ridge.
+    Weak,
 }
 
 impl Method {
+    /// Every estimator.
+    pub const ALL: [Self; 2] = [Self::Published, Self::Weak];
+
+    /// The estimator of that name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.name() == name)
+    }
+
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Published => "published",
+            Self::Weak => "weak",
         }
     }
 }
@@ -45,6 +56,12 @@ pub struct Settings {
     /// Time over which accelerations are differenced, s, at least one sampling interval. Where absent, a tenth of the
     /// time in which the ship sails her length: what the instruments add at a shorter one drowns the acceleration.
     pub difference_s: Option<f64>,
+    /// Length of the weak form's windows, s. Where absent, two thirds of the time in which the ship sails her length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub window_s: Option<f64>,
+    /// From one window of the weak form to the next, s. Where absent, a tenth of a window.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hop_s: Option<f64>,
     /// Simulations of manoeuvres left out start anew every so often, s. Where absent, ten times the time in which the
     /// ship sails her length; longer than a trial runs it whole.
     pub restart_s: Option<f64>,
@@ -66,6 +83,8 @@ impl Default for Settings {
             ranges: (0..=6).map(range).collect(),
             lambda_count: 100,
             difference_s: None,
+            window_s: None,
+            hop_s: None,
             restart_s: None,
             folds: 8,
             held_out: Vec::new(),
@@ -103,6 +122,10 @@ impl Settings {
         }
         if !positive(self.restart_s) {
             return refuse("restart_s", "must be above 0 s");
+        }
+        if !positive(self.window_s) || !positive(self.hop_s) {
+            let field = if positive(self.hop_s) { "window_s" } else { "hop_s" };
+            return refuse(field, "must be above 0 s");
         }
         Ok(())
     }
