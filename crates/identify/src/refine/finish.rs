@@ -10,8 +10,8 @@ use sistership_model::trial::Trial;
 
 use super::outcome::{CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement};
 use super::published::{Fit, fit};
-use super::selection::{Progress, Task, Trying, step};
-use crate::regression::Moments;
+use super::selection::{Progress, Taken, Task, Trying, step};
+use super::variant::{Variant, merged};
 use crate::transfer::ready;
 
 impl Task<'_> {
@@ -19,7 +19,7 @@ impl Task<'_> {
     pub(super) fn finish(
         &self,
         mut options: Vec<Trying>,
-        all: &[Moments],
+        variants: &[Variant],
         progress: Progress<'_>,
     ) -> Result<Refinement, RefineError> {
         let before = self.standard_manoeuvres(&self.transferred);
@@ -29,7 +29,7 @@ impl Task<'_> {
                 return Err(RefineError::Diverged(reasons.join("; ")));
             };
             step(progress, 0.9, &format!("standard manoeuvres of option {}", options[best].option.step))?;
-            let fitted = options[best].choices.as_ref().map(|choices| fit(&self.blocks, all, &self.transferred, choices));
+            let fitted = self.fitted(&options[best].taken, variants)?;
             let model = fitted.as_ref().map_or_else(|| self.transferred.clone(), |fit| self.model_with(&fit.coefficients));
             let after = self.standard_manoeuvres(&model);
             let worse = after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
@@ -43,6 +43,14 @@ impl Task<'_> {
             let manoeuvres = Manoeuvres { source: before, refined: after, measured };
             return self.refinement(options, best, model, fitted, manoeuvres);
         }
+    }
+
+    /// What an option gives on all trials.
+    fn fitted(&self, taken: &Taken, variants: &[Variant]) -> Result<Option<Fit>, RefineError> {
+        let Taken::Ridge { variant, choices } = taken else { return Ok(None) };
+        let variant = &variants[*variant];
+        let all = merged(&variant.moments, |_| true).ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
+        Ok(Some(fit(&variant.blocks, &all, &variant.model, choices)))
     }
 
     /// The turning circles and zigzags among the trials, beside what both models make of the recorded rudder.

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::family::Family;
+
 /// The estimator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -62,6 +64,12 @@ pub struct Settings {
     /// From one window of the weak form to the next, s. Where absent, a tenth of a window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hop_s: Option<f64>,
+    /// Families of terms among which the weak and the trajectory form choose. Where empty, all of them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub families: Vec<Family>,
+    /// Strengths of the prior among which they choose, from the source outwards. Where empty, half decades from 10 to 1e-8.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub strengths: Vec<f64>,
     /// Simulations of manoeuvres left out start anew every so often, s. Where absent, ten times the time in which the
     /// ship sails her length; longer than a trial runs it whole.
     pub restart_s: Option<f64>,
@@ -85,6 +93,8 @@ impl Default for Settings {
             difference_s: None,
             window_s: None,
             hop_s: None,
+            families: Vec::new(),
+            strengths: Vec::new(),
             restart_s: None,
             folds: 8,
             held_out: Vec::new(),
@@ -93,6 +103,16 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// Fills in what model selection chooses among, so that a version records it.
+    pub(super) fn fill_selection(&mut self) {
+        if self.families.is_empty() {
+            self.families = vec![Family::Own, Family::Symmetric, Family::ThirdOrder];
+        }
+        if self.strengths.is_empty() {
+            self.strengths = (0..=18).map(|k| 10_f64.powf(1.0 - 0.5 * f64::from(k))).collect();
+        }
+    }
+
     /// Checks the numbers.
     ///
     /// # Errors
@@ -115,6 +135,9 @@ impl Settings {
         }
         if !(2..=100).contains(&self.folds) {
             return refuse("folds", "must be from 2 to 100");
+        }
+        if self.strengths.len() > 100 || self.strengths.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
+            return refuse("strengths", "give at most 100, each above 0");
         }
         let positive = |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
         if !positive(self.difference_s) {

@@ -18,10 +18,13 @@ pub(super) struct Columns<'a> {
     pub targets: Vec<Target<'a>>,
 }
 
+/// A mass, 1 where absent, with the velocity it multiplies.
+pub(super) type Inertia<'a> = (Option<Vec<f64>>, Cow<'a, [f64]>);
+
 /// What a target is made of.
 pub(super) struct Target<'a> {
     /// Masses, 1 where absent, and velocities whose rate of change they multiply.
-    pub inertia: Vec<(Option<Vec<f64>>, Cow<'a, [f64]>)>,
+    pub inertia: Vec<Inertia<'a>>,
     /// What is known of the right-hand side.
     pub rest: Vec<f64>,
 }
