@@ -47,8 +47,11 @@ impl Task<'_> {
 
     /// What an option gives on all trials.
     fn fitted(&self, taken: &Taken, variants: &[Variant]) -> Result<Option<Fit>, RefineError> {
-        let Taken::Ridge { variant, choices } = taken else { return Ok(None) };
-        let variant = &variants[*variant];
+        let (variant, choices) = match taken {
+            Taken::Source => return Ok(None),
+            Taken::Trajectory { fit } => return Ok(Some((**fit).clone())),
+            Taken::Ridge { variant, choices } => (&variants[*variant], choices),
+        };
         let all = merged(&variant.moments, |_| true).ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
         Ok(Some(fit(&variant.blocks, &all, &variant.model, choices)))
     }
@@ -124,8 +127,8 @@ impl Task<'_> {
             };
             return Ok(HeldOut { source: options[0].errors.rmse(), refined: options[best].errors.rmse(), how });
         }
-        let (source, _) = self.simulate_all(&self.judged, &|_| self.transferred.clone())?;
-        let (refined, _) = self.simulate_all(&self.judged, &|_| model.clone())?;
+        let source = self.simulate_all(&self.judged, &|_| self.transferred.clone())?.total;
+        let refined = self.simulate_all(&self.judged, &|_| model.clone())?.total;
         let names: Vec<&str> = self.judged.iter().map(|trial| trial.name.as_str()).collect();
         Ok(HeldOut {
             source: source.rmse(),
@@ -174,13 +177,28 @@ impl Task<'_> {
     }
 }
 
-/// The option with the least error; an earlier one wins unless a later one is better by more than one per cent.
-fn best(options: &[Trying]) -> Option<usize> {
+/// The option with the least error; an earlier one wins unless a later one is better by more than one per cent, and against
+/// one with fewer coefficients by more than the standard error of the difference over the trials (Breiman et al. 1984,
+/// Classification and regression trees, section 3.4.3).
+pub(super) fn best(options: &[Trying]) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
     for (index, error) in options.iter().enumerate().filter_map(|(index, o)| Some((index, o.option.error?))) {
-        if error.is_finite() && best.is_none_or(|(_, least)| error < 0.99 * least) {
+        let better = |(at, least): (usize, f64)| error < 0.99 * least && clearly(&options[index], &options[at]);
+        if error.is_finite() && best.is_none_or(better) {
             best = Some((index, error));
         }
     }
     best.map(|(index, _)| index)
+}
+
+/// Whether an option may replace one that has fewer coefficients; the source has none of its own to count.
+fn clearly(new: &Trying, old: &Trying) -> bool {
+    if old.size == 0 || new.size <= old.size || new.each.len() != old.each.len() || new.each.len() < 2 {
+        return true;
+    }
+    let gains: Vec<f64> = old.each.iter().zip(&new.each).map(|(old, new)| old - new).collect();
+    let count = gains.len() as f64;
+    let mean = gains.iter().sum::<f64>() / count;
+    let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    mean > (variance / count).sqrt()
 }

@@ -8,6 +8,7 @@ mod published;
 mod rows;
 mod selection;
 mod settings;
+mod trajectory;
 mod variant;
 mod weak;
 

@@ -13,7 +13,7 @@ use sistership_model::vessel::Status;
 use sistership_model::{Model, Vessel};
 
 use super::outcome::{RefineError, Refinement, StepOption};
-use super::published::{Choices, Fitted, Fold, tune};
+use super::published::{Choices, Fit, Fitted, Fold, tune};
 use super::settings::{Method, Settings};
 use super::variant::Variant;
 use crate::transfer::{approach_of, ready, transfer};
@@ -45,7 +45,10 @@ pub fn refine(request: &Request<'_>, progress: Progress<'_>) -> Result<Refinemen
     let task = Task::new(request)?;
     step(progress, 0.05, "sufficient statistics of each trial")?;
     let variants = task.variants()?;
-    let options = task.options(&variants, progress)?;
+    let mut options = task.options(&variants, progress)?;
+    if task.settings.method == Method::Trajectory {
+        task.by_trajectory(&variants, &mut options, progress)?;
+    }
     step(progress, 0.8, "fitting all trials")?;
     task.finish(options, &variants, progress)
 }
@@ -72,6 +75,8 @@ pub(super) enum Taken {
     Source,
     /// A ridge of a variant at its choices.
     Ridge { variant: usize, choices: Choices },
+    /// What the trajectory form gives on all trials.
+    Trajectory { fit: Box<Fit> },
 }
 
 /// An option with what it takes to compare and to take it.
@@ -79,6 +84,18 @@ pub(super) struct Trying {
     pub(super) option: StepOption,
     pub(super) taken: Taken,
     pub(super) errors: SquaredError,
+    /// Standardised errors by trial.
+    pub(super) each: Vec<f64>,
+    /// Number of coefficients that are fitted.
+    pub(super) size: usize,
+}
+
+/// Trials as simulated by models that did not see them.
+pub(super) struct Simulated {
+    pub(super) total: SquaredError,
+    each: Vec<SquaredError>,
+    /// The first divergence.
+    reason: Option<String>,
 }
 
 impl<'a> Task<'a> {
@@ -160,31 +177,35 @@ impl<'a> Task<'a> {
     }
 
     fn source_option(&self) -> Result<Trying, RefineError> {
-        let (errors, reason) = self.simulate_all(&self.training, &|_| self.transferred.clone())?;
-        Ok(self.trying("source".into(), None, Taken::Source, errors, reason))
+        let simulated = self.simulate_all(&self.training, &|_| self.transferred.clone())?;
+        Ok(self.trying("source".into(), None, Taken::Source, 0, simulated))
     }
 
     fn ridge_option(&self, label: String, lambda_min: f64, taken: Taken, folds: &[Fold<'_>]) -> Result<Trying, RefineError> {
         let Taken::Ridge { choices, .. } = &taken else { return self.source_option() };
         let models: Vec<Model> = folds.iter().map(|fold| self.model_with(&fold.solve(choices))).collect();
-        let (errors, reason) = self.simulate_all(&self.training, &|trial| models[self.fold_of(trial)].clone())?;
-        Ok(self.trying(label, Some(lambda_min), taken, errors, reason))
+        let simulated = self.simulate_all(&self.training, &|trial| models[self.fold_of(trial)].clone())?;
+        let size = models.first().map_or(0, |model| model.coefficients.len());
+        Ok(self.trying(label, Some(lambda_min), taken, size, simulated))
     }
 
-    fn trying(
+    pub(super) fn trying(
         &self,
         step: String,
         lambda_min: Option<f64>,
         taken: Taken,
-        errors: SquaredError,
-        reason: Option<String>,
+        size: usize,
+        simulated: Simulated,
     ) -> Trying {
-        let error = reason.is_none().then(|| standardised_mse(&errors, &standard_deviations(&self.training)));
+        let deviations = standard_deviations(&self.training);
+        let Simulated { total: errors, each, reason } = simulated;
+        let error = reason.is_none().then(|| standardised_mse(&errors, &deviations));
+        let each = each.iter().map(|error| standardised_mse(error, &deviations)).collect();
         let flat = |of: &dyn Fn(&crate::regression::Choice) -> f64| {
             taken.choices().iter().flat_map(|choices| choices.iter().flatten()).map(of).collect()
         };
         let (lambda, alpha) = (flat(&|c| c.lambda), flat(&|c| c.alpha));
-        Trying { option: StepOption { step, lambda_min, lambda, alpha, error, chosen: false, reason }, taken, errors }
+        Trying { option: StepOption { step, lambda_min, lambda, alpha, error, chosen: false, reason }, taken, errors, each, size }
     }
 
     /// Simulates trials, each with the model that did not see it; the first divergence is the reason against the option.
@@ -192,7 +213,7 @@ impl<'a> Task<'a> {
         &self,
         trials: &[&Trial],
         model_of: &(dyn Fn(usize) -> Model + Sync),
-    ) -> Result<(SquaredError, Option<String>), RefineError> {
+    ) -> Result<Simulated, RefineError> {
         let settings = ReplaySettings { restart_s: self.settings.restart_s, ..ReplaySettings::default() };
         let one = |(index, trial): (usize, &&Trial)| -> Result<(SquaredError, Option<String>), RefineError> {
             let ship = match ready(&model_of(index), self.request.law, trials) {
@@ -203,10 +224,11 @@ impl<'a> Task<'a> {
             let reason = run.stopped.as_ref().map(|stopped| format!("{} {stopped}", trial.name));
             Ok((SquaredError::of(trial, &run), reason))
         };
-        let each: Vec<_> = trials.par_iter().enumerate().map(one).collect::<Result<_, _>>()?;
+        let runs: Vec<_> = trials.par_iter().enumerate().map(one).collect::<Result<_, _>>()?;
         let mut total = SquaredError::default();
-        each.iter().for_each(|(error, _)| total.add(error));
-        Ok((total, each.into_iter().find_map(|(_, reason)| reason)))
+        runs.iter().for_each(|(error, _)| total.add(error));
+        let (each, reasons): (Vec<_>, Vec<_>) = runs.into_iter().unzip();
+        Ok(Simulated { total, each, reason: reasons.into_iter().flatten().next() })
     }
 
     /// The transferred model with these coefficients and no others.
@@ -229,7 +251,7 @@ impl Taken {
     fn choices(&self) -> Option<&Choices> {
         match self {
             Self::Ridge { choices, .. } => Some(choices),
-            Self::Source => None,
+            Self::Source | Self::Trajectory { .. } => None,
         }
     }
 }
@@ -244,6 +266,11 @@ fn resolved(request: &Request<'_>, training: &[&Trial]) -> Settings {
         settings.window_s = settings.window_s.or(length_s.map(|s| s / 1.5));
         settings.hop_s = settings.hop_s.or(settings.window_s.map(|s| 0.1 * s));
         settings.fill_selection();
+    }
+    if settings.method == Method::Trajectory {
+        settings.step_s = settings.step_s.or(length_s.map(|s| s / 30.0));
+        settings.segment_s = settings.segment_s.or(length_s.map(|s| 4.0 * s));
+        settings.residual_s = settings.residual_s.or(length_s.map(|s| s / 7.5));
     }
     settings.restart_s = settings.restart_s.or(length_s.map(|s| 10.0 * s));
     settings

@@ -13,11 +13,13 @@ pub enum Method {
     Published,
     /// The equations of motion integrated over windows with smooth bumps, nothing differentiated; the same ridge.
     Weak,
+    /// Simulated segments against the trials by forward sensitivities, started from the weak form and held by it.
+    Trajectory,
 }
 
 impl Method {
     /// Every estimator.
-    pub const ALL: [Self; 2] = [Self::Published, Self::Weak];
+    pub const ALL: [Self; 3] = [Self::Published, Self::Weak, Self::Trajectory];
 
     /// The estimator of that name.
     pub fn by_name(name: &str) -> Option<Self> {
@@ -29,6 +31,7 @@ impl Method {
         match self {
             Self::Published => "published",
             Self::Weak => "weak",
+            Self::Trajectory => "trajectory",
         }
     }
 }
@@ -64,6 +67,15 @@ pub struct Settings {
     /// From one window of the weak form to the next, s. Where absent, a tenth of a window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hop_s: Option<f64>,
+    /// Length of the trajectory form's segments, s. Where absent, four times the time in which the ship sails her length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub segment_s: Option<f64>,
+    /// From one residual of the trajectory form to the next, s. Where absent, a thirtieth of a segment.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub residual_s: Option<f64>,
+    /// Integration step of the trajectory form, s, rounded to sampling intervals. Where absent, a quarter of a residual's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step_s: Option<f64>,
     /// Families of terms among which the weak and the trajectory form choose. Where empty, all of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub families: Vec<Family>,
@@ -93,6 +105,9 @@ impl Default for Settings {
             difference_s: None,
             window_s: None,
             hop_s: None,
+            segment_s: None,
+            residual_s: None,
+            step_s: None,
             families: Vec::new(),
             strengths: Vec::new(),
             restart_s: None,
@@ -146,8 +161,14 @@ impl Settings {
         if !positive(self.restart_s) {
             return refuse("restart_s", "must be above 0 s");
         }
-        if !positive(self.window_s) || !positive(self.hop_s) {
-            let field = if positive(self.hop_s) { "window_s" } else { "hop_s" };
+        let times = [
+            ("window_s", self.window_s),
+            ("hop_s", self.hop_s),
+            ("segment_s", self.segment_s),
+            ("residual_s", self.residual_s),
+            ("step_s", self.step_s),
+        ];
+        if let Some((field, _)) = times.into_iter().find(|(_, value)| !positive(*value)) {
             return refuse(field, "must be above 0 s");
         }
         Ok(())
