@@ -7,6 +7,7 @@ use serde::Serialize;
 use sistership_identify::refine::{Method, Refinement, Request, Settings, refine};
 use sistership_identify::similarity::RankedSource;
 use sistership_identify::source::{Similarity, best_source, similar};
+use sistership_identify::transfer::{approach_of, blank};
 use sistership_model::{Model, Vessel, Zoo};
 use sistership_server::report::{Input, render};
 
@@ -38,10 +39,14 @@ pub struct Refine {
     /// The source: a model's name or file, or `auto` for the most similar eligible ship of the zoo.
     #[arg(long, value_name = "MODEL|auto", default_value = "auto")]
     source: String,
+    /// Start from nothing but a law of the zoo, such as `low-speed`, instead of a source: the trials alone make the model.
+    #[arg(long, value_name = "LAW", conflicts_with = "source")]
+    law: Option<String>,
     /// Trial manifests, CSV or Parquet files.
     #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
     trials: Vec<PathBuf>,
-    /// The estimator: `published` (one-step differences) or `weak` (integrated over windows).
+    /// The estimator: `published` (one-step differences), `weak` (integrated over windows) or `trajectory` (simulated
+    /// segments).
     #[arg(long, value_name = "NAME", value_parser = method)]
     method: Option<Method>,
     /// Settings of the refinement (YAML); the flags below win over it.
@@ -108,9 +113,10 @@ pub fn run(zoo: &Zoo, arguments: &Refine) -> Result<(), Failure> {
     note(&format!("{}: {} read", target.name(), count(read.len(), "trial")));
     guard(arguments, &read)?;
     settings.held_out = held_out(&settings.held_out, &read)?;
-    let (source, similarity) = match given {
-        Some(model) => (model, None),
-        None => chosen(zoo, &target, &settings, &read).map(|(model, similarity)| (model, Some(similarity)))?,
+    let (source, similarity) = match (given, &arguments.law) {
+        (Some(model), _) => (model, None),
+        (None, Some(law)) => (of_law(zoo, law, &target, &settings, &read)?, None),
+        (None, None) => chosen(zoo, &target, &settings, &read).map(|(model, similarity)| (model, Some(similarity)))?,
     };
     let refinement = refined(zoo, &target, &source, &settings, &read)?;
     if let Some(out) = out {
@@ -163,6 +169,14 @@ fn guard(arguments: &Refine, read: &[ReadTrial]) -> Result<(), Failure> {
     let inputs = trials::inputs(read, &[]);
     let mut files = arguments.out.as_deref().into_iter().chain(arguments.report.as_deref());
     files.try_for_each(|path| Promised::new(path, &inputs).map(|_| ()))
+}
+
+/// A law without coefficients, for the approach of the trials that are fitted.
+fn of_law(zoo: &Zoo, name: &str, target: &Vessel, settings: &Settings, read: &[ReadTrial]) -> Result<Model, Failure> {
+    let law = zoo.law(name).ok_or_else(|| Failure::Refused(format!("--law {name}: the zoo has no such law")))?;
+    let fitted = trials::trials(read).into_iter().filter(|trial| !settings.held_out.contains(&trial.name));
+    let approach = approach_of(&fitted.collect::<Vec<_>>());
+    blank(law, target, approach).map_err(Failure::Refused)
 }
 
 /// The best eligible source; trials kept out have no say in it.

@@ -14,8 +14,8 @@ pub enum Family {
     Own,
     /// The source's own without those that break the symmetry of port and starboard, such as `Y_0` or `N_uu`.
     Symmetric,
-    /// Symmetric, and what the law's factors can spell: linear terms and their products with `u`, squares and products in
-    /// surge, cubes and their products on the other axes. Roll rate, revolutions and terms with bars are linear only.
+    /// Symmetric, and every product of up to three of `u`, `v`, `r`, `phi` and `delta` that the law's factors can spell and
+    /// that has the symmetry of its axis; roll rate and the moment of heel linearly.
     ThirdOrder,
 }
 
@@ -77,12 +77,14 @@ fn third_order(law: &Law) -> Vec<String> {
 
 fn odd_terms(products: &[&str], linear: &[&str]) -> Vec<String> {
     let singles = products.iter().chain(linear).map(|s| (*s).to_owned());
-    let with_u = products.iter().map(|s| format!("u{s}"));
+    let with_u = products.iter().flat_map(|s| [format!("u{s}"), format!("uu{s}")]);
     singles.chain(with_u).chain(monomials(products, 3)).collect()
 }
 
 fn even_terms(products: &[&str]) -> Vec<String> {
-    ["u", "uu", "uuu"].into_iter().map(str::to_owned).chain(monomials(products, 2)).collect()
+    let squares = monomials(products, 2);
+    let with_u = squares.iter().map(|s| format!("u{s}")).collect::<Vec<_>>();
+    ["0", "u", "uu", "uuu"].into_iter().map(str::to_owned).chain(squares).chain(with_u).collect()
 }
 
 /// Every product of so many factors, in their order.

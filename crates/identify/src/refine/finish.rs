@@ -178,7 +178,7 @@ impl Task<'_> {
 }
 
 /// The option with the least error; an earlier one wins unless a later one is better by more than one per cent, and against
-/// one with fewer coefficients by more than the standard error of the difference over the trials (Breiman et al. 1984,
+/// one with fewer coefficients by more than two standard errors of the difference over the trials (Breiman et al. 1984,
 /// Classification and regression trees, section 3.4.3).
 pub(super) fn best(options: &[Trying]) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
@@ -200,5 +200,5 @@ fn clearly(new: &Trying, old: &Trying) -> bool {
     let count = gains.len() as f64;
     let mean = gains.iter().sum::<f64>() / count;
     let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    mean > (variance / count).sqrt()
+    mean > 2.0 * (variance / count).sqrt()
 }

@@ -263,7 +263,7 @@ fn resolved(request: &Request<'_>, training: &[&Trial]) -> Settings {
     if settings.method == Method::Published {
         settings.difference_s = settings.difference_s.or(length_s.map(|s| 0.1 * s));
     } else {
-        settings.window_s = settings.window_s.or(length_s.map(|s| s / 1.5));
+        settings.window_s = settings.window_s.or(length_s);
         settings.hop_s = settings.hop_s.or(settings.window_s.map(|s| 0.1 * s));
         settings.fill_selection();
     }

@@ -61,7 +61,7 @@ pub struct Settings {
     /// Time over which accelerations are differenced, s, at least one sampling interval. Where absent, a tenth of the
     /// time in which the ship sails her length: what the instruments add at a shorter one drowns the acceleration.
     pub difference_s: Option<f64>,
-    /// Length of the weak form's windows, s. Where absent, two thirds of the time in which the ship sails her length.
+    /// Length of the weak form's windows, s. Where absent, the time in which the ship sails her length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window_s: Option<f64>,
     /// From one window of the weak form to the next, s. Where absent, a tenth of a window.
