@@ -269,7 +269,7 @@ fn resolved(request: &Request<'_>, training: &[&Trial]) -> Settings {
     }
     if settings.method == Method::Trajectory {
         settings.step_s = settings.step_s.or(length_s.map(|s| s / 30.0));
-        settings.segment_s = settings.segment_s.or(length_s.map(|s| 4.0 * s));
+        settings.segment_s = settings.segment_s.or(length_s.map(|s| 5.0 * s));
         settings.residual_s = settings.residual_s.or(length_s.map(|s| s / 7.5));
     }
     settings.restart_s = settings.restart_s.or(length_s.map(|s| 10.0 * s));

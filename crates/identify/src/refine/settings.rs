@@ -67,13 +67,15 @@ pub struct Settings {
     /// From one window of the weak form to the next, s. Where absent, a tenth of a window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hop_s: Option<f64>,
-    /// Length of the trajectory form's segments, s. Where absent, four times the time in which the ship sails her length.
+    /// Length of the trajectory form's segments, s. Where absent, five times the time in which the ship sails her length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub segment_s: Option<f64>,
-    /// From one residual of the trajectory form to the next, s. Where absent, a thirtieth of a segment.
+    /// From one residual of the trajectory form to the next, s. Where absent, a 7.5th of the time in which
+    /// she sails her length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub residual_s: Option<f64>,
-    /// Integration step of the trajectory form, s, rounded to sampling intervals. Where absent, a quarter of a residual's.
+    /// Integration step of the trajectory form, s, rounded to sampling intervals. Where absent, a
+    /// thirtieth of the time in which she sails her length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step_s: Option<f64>,
     /// Families of terms among which the weak and the trajectory form choose. Where empty, all of them.

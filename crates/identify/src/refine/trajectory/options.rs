@@ -129,7 +129,7 @@ impl Trajectory<'_> {
             return Ok(());
         };
         let reached = self.descend(prior, strength(pull), middle.at)?;
-        *fit = Box::new(self.fit(prior, strength(pull), &reached.pass, reached.at.clone()));
+        **fit = self.fit(prior, strength(pull), &reached.pass, reached.at.clone());
         Ok(())
     }
 
