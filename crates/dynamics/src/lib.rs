@@ -10,6 +10,7 @@ pub mod manoeuvre;
 pub mod metrics;
 pub mod plant;
 pub mod recorded;
+pub mod sensitivity;
 pub mod ship;
 pub mod state;
 pub mod tape;

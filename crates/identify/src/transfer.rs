@@ -7,9 +7,11 @@ use sistership_dynamics::recorded::{ReplaySettings, replay};
 use sistership_dynamics::state::at;
 use sistership_model::formula::Expr;
 use sistership_model::law::Law;
+use sistership_model::model::{DERIVED, ModelKind};
 use sistership_model::particulars::{self, Particulars};
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
+use sistership_model::vessel::Status;
 use sistership_model::{Model, Vessel};
 
 /// How a ship approaches her trials.
@@ -58,6 +60,39 @@ pub fn transfer(source: &Model, law: &Law, target: &Vessel, approach: Option<App
     model.steering.time_constant_s = source.steering.time_constant_s * ratio.sqrt();
     model.steering.source = Some(format!("scaled from {}", source.name));
     model
+}
+
+/// A model of a law for a ship of which nothing is known but her particulars: every coefficient that the law lists is zero, so
+/// that a prior which pulls to it is a plain ridge. Only trials make it a model.
+///
+/// # Errors
+/// Names a parameter of the law that does not follow from her particulars.
+pub fn blank(law: &Law, target: &Vessel, approach: Option<Approach>) -> Result<Model, String> {
+    let zero = |name: &String| (name.clone(), Quantity::new(0.0, "nothing known"));
+    let parameter = |name: &String| {
+        let own = if law.approach_speed_parameter() == Some(name) { approach.map(|a| a.speed_m_s) } else { None };
+        let value = own.or_else(|| law.derived_parameter(name, &target.particulars));
+        let value = value
+            .ok_or_else(|| format!("`{name}` of law `{}` does not follow from the particulars of {}", law.name, target.name()))?;
+        Ok((name.clone(), Quantity::new(value, DERIVED)))
+    };
+    Ok(Model {
+        kind: ModelKind::Model,
+        name: format!("{}/{}", target.name(), law.name),
+        ship: target.name().to_owned(),
+        law: law.name.clone(),
+        status: Status::Transferred,
+        note: Some("a law without coefficients, to be filled by trials alone".to_owned()),
+        sources: Default::default(),
+        speed_m_s: approach.map(|a| a.speed_m_s).or_else(|| target.particular("service_speed_m_s")),
+        revolutions_rps: approach.and_then(|a| a.n_rps),
+        steering: Default::default(),
+        particulars: target.particulars.clone(),
+        parameters: law.parameters.keys().map(parameter).collect::<Result<_, String>>()?,
+        coefficients: law.axes.values().flat_map(|axis| axis.terms.keys().map(zero)).collect(),
+        effects: Vec::new(),
+        uncertainty: None,
+    })
 }
 
 fn complete(source: &Model, law: &Law, target: &Vessel, ratio: f64) -> Particulars {

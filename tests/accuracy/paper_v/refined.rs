@@ -16,11 +16,11 @@ use sistership_trials::smoothing::savitzky_golay;
 use super::truth::{FITTED, Truth, recorded};
 
 /// Rudder and heading of the zigzag in each of the five data sets, deg.
-const ZIGZAGS: [(f64, f64); 5] = [(10.0, 10.0), (10.0, 5.0), (12.5, 10.0), (5.0, 5.0), (12.5, 15.0)];
+pub const ZIGZAGS: [(f64, f64); 5] = [(10.0, 10.0), (10.0, 5.0), (12.5, 10.0), (5.0, 5.0), (12.5, 15.0)];
 /// Rudder of the turns that are in every data set, deg.
-const TURNS: [f64; 2] = [12.5, -12.5];
+pub const TURNS: [f64; 2] = [12.5, -12.5];
 /// Standard deviations of the noise, m/s and rad/s: amplitude, reduction by channel and general reduction of Eq. 22.
-const NOISE: [(Channel, usize, f64); 3] = [
+pub const NOISE: [(Channel, usize, f64); 3] = [
     (Channel::U, at::U, 8.0 * 0.1 * 0.003),
     (Channel::V, at::V, 1.0 * 0.003),
     (Channel::R, at::R, 1.0 * 0.003 * std::f64::consts::PI / 180.0),
@@ -62,12 +62,17 @@ fn refined(source: &Model, blocks: &Blocks, trials: &[Trial], rng: &mut ChaCha8R
 fn measured(track: &Trajectory, rng: &mut ChaCha8Rng) -> Trial {
     let mut trial = recorded(track, FITTED);
     for (channel, index, deviation) in NOISE {
-        let noise = Normal::new(0.0, deviation).expect("a finite deviation");
-        let noisy: Vec<f64> = track.column(index).into_iter().map(|value| value + noise.sample(rng)).collect();
-        let smooth = savitzky_golay(&noisy, SMOOTHING.0, SMOOTHING.1).expect("a record longer than the window");
-        trial.channels.insert(channel, smooth[FITTED].to_vec());
+        trial.channels.insert(channel, noisy(track, index, deviation, rng));
     }
     trial
+}
+
+/// A state as measured: with noise, smoothed, without the straight run before.
+pub fn noisy(track: &Trajectory, index: usize, deviation: f64, rng: &mut ChaCha8Rng) -> Vec<f64> {
+    let noise = Normal::new(0.0, deviation).expect("a finite deviation");
+    let noisy: Vec<f64> = track.column(index).into_iter().map(|value| value + noise.sample(rng)).collect();
+    let smooth = savitzky_golay(&noisy, SMOOTHING.0, SMOOTHING.1).expect("a record longer than the window");
+    smooth[FITTED].to_vec()
 }
 
 /// One table for each regression over the samples of all trials.

@@ -7,6 +7,7 @@ use serde::Serialize;
 use sistership_identify::refine::{Method, Refinement, Request, Settings, refine};
 use sistership_identify::similarity::RankedSource;
 use sistership_identify::source::{Similarity, best_source, similar};
+use sistership_identify::transfer::{approach_of, blank};
 use sistership_model::{Model, Vessel, Zoo};
 use sistership_server::derive::with_uncertainty;
 use sistership_server::report::{Input, render};
@@ -39,10 +40,14 @@ pub struct Refine {
     /// The source: a model's name or file, or `auto` for the most similar eligible ship of the zoo.
     #[arg(long, value_name = "MODEL|auto", default_value = "auto")]
     source: String,
+    /// Start from nothing but a law of the zoo, such as `low-speed`, instead of a source: the trials alone make the model.
+    #[arg(long, value_name = "LAW", conflicts_with = "source")]
+    law: Option<String>,
     /// Trial manifests, CSV or Parquet files.
     #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
     trials: Vec<PathBuf>,
-    /// The estimator; this version has `published`.
+    /// The estimator: `published` (one-step differences), `weak` (integrated over windows) or `trajectory` (simulated
+    /// segments).
     #[arg(long, value_name = "NAME", value_parser = method)]
     method: Option<Method>,
     /// Settings of the refinement (YAML); the flags below win over it.
@@ -69,7 +74,8 @@ pub struct Refine {
 }
 
 fn method(name: &str) -> Result<Method, String> {
-    if name == Method::Published.name() { Ok(Method::Published) } else { Err("this version has `published`".to_owned()) }
+    let known = || Method::ALL.map(|method| format!("`{}`", method.name())).join(", ");
+    Method::by_name(name).ok_or_else(|| format!("there are {}", known()))
 }
 
 #[derive(Serialize)]
@@ -108,13 +114,15 @@ pub fn run(zoo: &Zoo, arguments: &Refine) -> Result<(), Failure> {
     note(&format!("{}: {} read", target.name(), count(read.len(), "trial")));
     guard(arguments, &read)?;
     settings.held_out = held_out(&settings.held_out, &read)?;
-    let (source, similarity) = match given {
-        Some(model) => (model, None),
-        None => chosen(zoo, &target, &settings, &read).map(|(model, similarity)| (model, Some(similarity)))?,
+    let (source, similarity) = match (given, &arguments.law) {
+        (Some(model), _) => (model, None),
+        (None, Some(law)) => (of_law(zoo, law, &target, &settings, &read)?, None),
+        (None, None) => chosen(zoo, &target, &settings, &read).map(|(model, similarity)| (model, Some(similarity)))?,
     };
     let refinement = refined(zoo, &target, &source, &settings, &read)?;
     if let Some(out) = out {
-        out.write(model_file(zoo, &refinement.model, "method published")?.as_bytes())?;
+        let how = format!("method {}", refinement.method);
+        out.write(model_file(zoo, &refinement.model, &how)?.as_bytes())?;
     }
     if let Some(report) = report {
         report.write(&report_html(zoo, &target, &refinement, similarity.as_ref(), &read)?)?;
@@ -163,6 +171,14 @@ fn guard(arguments: &Refine, read: &[ReadTrial]) -> Result<(), Failure> {
     let inputs = trials::inputs(read, &[]);
     let mut files = arguments.out.as_deref().into_iter().chain(arguments.report.as_deref());
     files.try_for_each(|path| Promised::new(path, &inputs).map(|_| ()))
+}
+
+/// A law without coefficients, for the approach of the trials that are fitted.
+fn of_law(zoo: &Zoo, name: &str, target: &Vessel, settings: &Settings, read: &[ReadTrial]) -> Result<Model, Failure> {
+    let law = zoo.law(name).ok_or_else(|| Failure::Refused(format!("--law {name}: the zoo has no such law")))?;
+    let fitted = trials::trials(read).into_iter().filter(|trial| !settings.held_out.contains(&trial.name));
+    let approach = approach_of(&fitted.collect::<Vec<_>>());
+    blank(law, target, approach).map_err(Failure::Refused)
 }
 
 /// The best eligible source; trials kept out have no say in it.

@@ -16,19 +16,29 @@ pub enum Binding {
 
 /// Builds a tape from formulas.
 pub struct TapeBuilder<'a> {
-    inputs: Vec<String>,
+    pub(super) inputs: Vec<String>,
     bind: &'a dyn Fn(&str) -> Option<Binding>,
-    ops: Vec<Op>,
+    pub(super) ops: Vec<Op>,
     seen: HashMap<[u64; 6], Slot>,
     named: HashMap<String, Slot>,
-    outputs: Vec<Slot>,
+    pub(super) outputs: Vec<Slot>,
+    /// Derivatives that are there already, by slot and input.
+    pub(super) slopes: HashMap<(Slot, u32), Slot>,
 }
 
 impl<'a> TapeBuilder<'a> {
     /// A builder whose tape takes `inputs`; `bind` says what every other name stands for.
     pub fn new(inputs: &[&str], bind: &'a dyn Fn(&str) -> Option<Binding>) -> Self {
         let inputs = inputs.iter().map(|&name| name.to_owned()).collect();
-        Self { inputs, bind, ops: Vec::new(), seen: HashMap::new(), named: HashMap::new(), outputs: Vec::new() }
+        Self {
+            inputs,
+            bind,
+            ops: Vec::new(),
+            seen: HashMap::new(),
+            named: HashMap::new(),
+            outputs: Vec::new(),
+            slopes: HashMap::new(),
+        }
     }
 
     /// Adds an output and returns its number.
@@ -142,11 +152,11 @@ impl<'a> TapeBuilder<'a> {
         Ok(self.push(Op::Divide(one, product)))
     }
 
-    fn constant(&self, slot: Slot) -> Option<f64> {
+    pub(super) fn constant(&self, slot: Slot) -> Option<f64> {
         if let Op::Constant(value) = self.ops[slot as usize] { Some(value) } else { None }
     }
 
-    fn push(&mut self, op: Op) -> Slot {
+    pub(super) fn push(&mut self, op: Op) -> Slot {
         if let Some(same) = self.neutral(op) {
             return same;
         }

@@ -3,6 +3,7 @@
 //! Lowering shares common subexpressions and folds constants, so that a model's coefficients and particulars cost
 //! nothing per step. Lanes are states, trials, ships or tangent directions in lockstep.
 
+mod derive;
 mod eval;
 mod lower;
 mod op;

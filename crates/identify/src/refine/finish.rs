@@ -10,8 +10,8 @@ use sistership_model::trial::Trial;
 
 use super::outcome::{CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement};
 use super::published::{Fit, fit};
-use super::selection::{Progress, Task, Trying, step};
-use crate::regression::Moments;
+use super::selection::{Progress, Taken, Task, Trying, step};
+use super::variant::{Variant, merged};
 use crate::transfer::ready;
 
 impl Task<'_> {
@@ -19,7 +19,7 @@ impl Task<'_> {
     pub(super) fn finish(
         &self,
         mut options: Vec<Trying>,
-        all: &[Moments],
+        variants: &[Variant],
         progress: Progress<'_>,
     ) -> Result<Refinement, RefineError> {
         let before = self.standard_manoeuvres(&self.transferred);
@@ -29,7 +29,7 @@ impl Task<'_> {
                 return Err(RefineError::Diverged(reasons.join("; ")));
             };
             step(progress, 0.9, &format!("standard manoeuvres of option {}", options[best].option.step))?;
-            let fitted = options[best].choices.as_ref().map(|choices| fit(&self.blocks, all, &self.transferred, choices));
+            let fitted = self.fitted(&options[best].taken, variants)?;
             let model = fitted.as_ref().map_or_else(|| self.transferred.clone(), |fit| self.model_with(&fit.coefficients));
             let after = self.standard_manoeuvres(&model);
             let worse = after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
@@ -43,6 +43,17 @@ impl Task<'_> {
             let manoeuvres = Manoeuvres { source: before, refined: after, measured };
             return self.refinement(options, best, model, fitted, manoeuvres);
         }
+    }
+
+    /// What an option gives on all trials.
+    fn fitted(&self, taken: &Taken, variants: &[Variant]) -> Result<Option<Fit>, RefineError> {
+        let (variant, choices) = match taken {
+            Taken::Source => return Ok(None),
+            Taken::Trajectory { fit } => return Ok(Some((**fit).clone())),
+            Taken::Ridge { variant, choices } => (&variants[*variant], choices),
+        };
+        let all = merged(&variant.moments, |_| true).ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
+        Ok(Some(fit(&variant.blocks, &all, &variant.model, choices)))
     }
 
     /// The turning circles and zigzags among the trials, beside what both models make of the recorded rudder.
@@ -116,8 +127,8 @@ impl Task<'_> {
             };
             return Ok(HeldOut { source: options[0].errors.rmse(), refined: options[best].errors.rmse(), how });
         }
-        let (source, _) = self.simulate_all(&self.judged, &|_| self.transferred.clone())?;
-        let (refined, _) = self.simulate_all(&self.judged, &|_| model.clone())?;
+        let source = self.simulate_all(&self.judged, &|_| self.transferred.clone())?.total;
+        let refined = self.simulate_all(&self.judged, &|_| model.clone())?.total;
         let names: Vec<&str> = self.judged.iter().map(|trial| trial.name.as_str()).collect();
         Ok(HeldOut {
             source: source.rmse(),
@@ -166,13 +177,28 @@ impl Task<'_> {
     }
 }
 
-/// The option with the least error; an earlier one wins unless a later one is better by more than one per cent.
-fn best(options: &[Trying]) -> Option<usize> {
+/// The option with the least error; an earlier one wins unless a later one is better by more than one per cent, and against
+/// one with fewer coefficients by more than two standard errors of the difference over the trials (Breiman et al. 1984,
+/// Classification and regression trees, section 3.4.3).
+pub(super) fn best(options: &[Trying]) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
     for (index, error) in options.iter().enumerate().filter_map(|(index, o)| Some((index, o.option.error?))) {
-        if error.is_finite() && best.is_none_or(|(_, least)| error < 0.99 * least) {
+        let better = |(at, least): (usize, f64)| error < 0.99 * least && clearly(&options[index], &options[at]);
+        if error.is_finite() && best.is_none_or(better) {
             best = Some((index, error));
         }
     }
     best.map(|(index, _)| index)
+}
+
+/// Whether an option may replace one that has fewer coefficients; the source has none of its own to count.
+fn clearly(new: &Trying, old: &Trying) -> bool {
+    if old.size == 0 || new.size <= old.size || new.each.len() != old.each.len() || new.each.len() < 2 {
+        return true;
+    }
+    let gains: Vec<f64> = old.each.iter().zip(&new.each).map(|(old, new)| old - new).collect();
+    let count = gains.len() as f64;
+    let mean = gains.iter().sum::<f64>() / count;
+    let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    mean > 2.0 * (variance / count).sqrt()
 }

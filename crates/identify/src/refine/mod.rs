@@ -1,16 +1,22 @@
 //! Refinement of a source model against trials.
 
 mod blocks;
+mod family;
 mod finish;
 mod outcome;
 mod published;
 mod rows;
 mod selection;
 mod settings;
+mod trajectory;
+mod variant;
+mod weak;
 
 pub use blocks::{Block, Blocks};
+pub use family::Family;
 pub use outcome::{CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement, StepOption};
 pub use published::{Choices, Fit, Fitted, Fold, fit, tune};
 pub use rows::{Table, trial_moments, trial_tables};
 pub use selection::{Progress, Request, refine};
 pub use settings::{Method, Range, Settings};
+pub use weak::{Windows, weak_moments, weak_tables};

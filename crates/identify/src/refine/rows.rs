@@ -9,7 +9,7 @@ use super::outcome::RefineError;
 use crate::regression::Moments;
 
 /// Samples evaluated at a time.
-const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 
 /// The statistics of one trial, one set for each regression. Accelerations are forward differences over `difference_s`
 /// (one sampling interval where absent); no difference reaches over a gap.
@@ -59,16 +59,17 @@ fn pairs(trial: &Trial, difference_s: Option<f64>) -> Vec<(usize, usize)> {
     trial.segments().into_iter().flat_map(within).collect()
 }
 
-struct Record<'a> {
+/// The channels of a trial that regressions read.
+pub(super) struct Record<'a> {
     t_s: &'a [f64],
     /// What the tape takes: a recorded column or a constant.
-    columns: Vec<Result<&'a [f64], f64>>,
+    pub(super) columns: Vec<Result<&'a [f64], f64>>,
     /// Velocities by axis.
     velocities: [Option<&'a [f64]>; 4],
 }
 
 impl<'a> Record<'a> {
-    fn new(blocks: &Blocks, trial: &'a Trial) -> Result<Self, RefineError> {
+    pub(super) fn new(blocks: &Blocks, trial: &'a Trial) -> Result<Self, RefineError> {
         let missing = |channel: Channel| RefineError::Channel { trial: trial.name.clone(), channel };
         let need = |channel: Channel| trial.channel(channel).ok_or_else(|| missing(channel));
         let or_zero = |channel: Channel| trial.channel(channel).ok_or(0.0);
@@ -94,13 +95,18 @@ impl<'a> Record<'a> {
         Ok(Self { t_s: &trial.t_s, columns, velocities })
     }
 
-    fn load(&self, chunk: &[(usize, usize)], lanes: &mut [Lanes<LANES>]) {
+    pub(super) fn load(&self, chunk: &[(usize, usize)], lanes: &mut [Lanes<LANES>]) {
         for (lane, column) in lanes.iter_mut().zip(&self.columns) {
             *lane = std::array::from_fn(|i| {
                 let (k, _) = chunk[i.min(chunk.len() - 1)];
                 column.as_ref().map_or_else(|constant| *constant, |column| column[k])
             });
         }
+    }
+
+    /// The velocity of an axis; none where it is not recorded.
+    pub(super) fn velocity(&self, axis: Axis) -> &'a [f64] {
+        self.velocities[axis as usize].unwrap_or_default()
     }
 
     /// The acceleration of an axis between two samples.

@@ -1,6 +1,8 @@
 //! The whole refinement: tuning ranges widen from the source outwards, each gives an option, and the option whose
 //! simulations of manoeuvres left out are best is taken.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
 use sistership_dynamics::recorded::{ReplaySettings, replay};
@@ -10,12 +12,10 @@ use sistership_model::trial::Trial;
 use sistership_model::vessel::Status;
 use sistership_model::{Model, Vessel};
 
-use super::blocks::Blocks;
 use super::outcome::{RefineError, Refinement, StepOption};
-use super::published::{Choices, Fitted, Fold, tune};
-use super::rows::trial_moments;
-use super::settings::Settings;
-use crate::regression::Moments;
+use super::published::{Choices, Fit, Fitted, Fold, tune};
+use super::settings::{Method, Settings};
+use super::variant::Variant;
 use crate::transfer::{approach_of, ready, transfer};
 
 /// What is to be refined, and against what.
@@ -44,17 +44,21 @@ pub fn refine(request: &Request<'_>, progress: Progress<'_>) -> Result<Refinemen
     request.settings.check().map_err(|(field, message)| RefineError::Setting { field, message })?;
     let task = Task::new(request)?;
     step(progress, 0.05, "sufficient statistics of each trial")?;
-    let moments = task.moments()?;
-    let folds = task.folds(&moments)?;
-    let options = task.options(&folds, progress)?;
+    let variants = task.variants()?;
+    let mut options = task.options(&variants, progress)?;
+    if task.settings.method == Method::Trajectory {
+        task.by_trajectory(&variants, &mut options, progress)?;
+    }
     step(progress, 0.8, "fitting all trials")?;
-    let all = merged(&moments, |_| true).ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
-    task.finish(options, &all, progress)
+    task.finish(options, &variants, progress)
 }
 
 pub(super) fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineError> {
     if progress(fraction, what) { Ok(()) } else { Err(RefineError::Cancelled) }
 }
+
+/// Told how far the options of a family are, and what is tried.
+type Told<'a> = &'a dyn Fn(f64, &str) -> Result<(), RefineError>;
 
 /// A request with everything that does not change while options are tried.
 pub(super) struct Task<'a> {
@@ -62,15 +66,36 @@ pub(super) struct Task<'a> {
     pub(super) training: Vec<&'a Trial>,
     pub(super) judged: Vec<&'a Trial>,
     pub(super) transferred: Model,
-    pub(super) blocks: Blocks,
     pub(super) settings: Settings,
+}
+
+/// What an option takes.
+pub(super) enum Taken {
+    /// The source as it is.
+    Source,
+    /// A ridge of a variant at its choices.
+    Ridge { variant: usize, choices: Choices },
+    /// What the trajectory form gives on all trials.
+    Trajectory { fit: Box<Fit> },
 }
 
 /// An option with what it takes to compare and to take it.
 pub(super) struct Trying {
     pub(super) option: StepOption,
-    pub(super) choices: Option<Choices>,
+    pub(super) taken: Taken,
     pub(super) errors: SquaredError,
+    /// Standardised errors by trial.
+    pub(super) each: Vec<f64>,
+    /// Number of coefficients that are fitted.
+    pub(super) size: usize,
+}
+
+/// Trials as simulated by models that did not see them.
+pub(super) struct Simulated {
+    pub(super) total: SquaredError,
+    each: Vec<SquaredError>,
+    /// The first divergence.
+    reason: Option<String>,
 }
 
 impl<'a> Task<'a> {
@@ -89,26 +114,12 @@ impl<'a> Task<'a> {
         } else {
             transfer(request.source, request.law, request.target, approach_of(&training))
         };
-        let blocks = Blocks::new(&transferred, request.law)?;
         let settings = resolved(request, &training);
-        Ok(Self { request, training, judged, transferred, blocks, settings })
-    }
-
-    fn moments(&self) -> Result<Vec<Vec<Moments>>, RefineError> {
-        let one = |trial: &&Trial| trial_moments(&self.blocks, trial, self.settings.difference_s);
-        let moments: Vec<Vec<Moments>> = self.training.par_iter().map(one).collect::<Result<_, _>>()?;
-        let samples: f64 = moments.iter().map(|m| m.first().map_or(0.0, |m| m.count)).sum();
-        let widest = self.blocks.blocks.iter().map(super::Block::regressors).max().unwrap_or(0) as f64;
-        if samples < 4.0 * widest {
-            let message =
-                format!("{samples} samples are too few for {widest} coefficients an axis; give at least {}", 4.0 * widest);
-            return Err(RefineError::Data(message));
-        }
-        Ok(moments)
+        Ok(Self { request, training, judged, transferred, settings })
     }
 
     /// Which fold a training trial is left out in.
-    fn fold_of(&self, trial: usize) -> usize {
+    pub(super) fn fold_of(&self, trial: usize) -> usize {
         trial % self.fold_count()
     }
 
@@ -116,55 +127,85 @@ impl<'a> Task<'a> {
         self.training.len().min(self.request.settings.folds)
     }
 
-    /// Training sets with whole manoeuvres left out; a single trial can only judge itself.
-    fn folds<'f>(&'f self, moments: &[Vec<Moments>]) -> Result<Vec<Fold<'f>>, RefineError> {
-        let nothing = || RefineError::Data("a fold has no sample".into());
-        let one = |fold: usize| {
-            let inside = |trial: usize| self.training.len() == 1 || self.fold_of(trial) != fold;
-            let training = merged(moments, inside).ok_or_else(nothing)?;
-            let left_out = merged(moments, |trial| self.fold_of(trial) == fold).ok_or_else(nothing)?;
-            Ok(Fold::new(&self.blocks, &self.transferred, &training, &left_out))
-        };
-        (0..self.fold_count()).map(one).collect()
-    }
-
-    /// The source itself, and one option for each range; a single trial allows the first range only.
-    fn options(&self, folds: &[Fold<'_>], progress: Progress<'_>) -> Result<Vec<Trying>, RefineError> {
+    /// The source itself, and options from it outwards for each family of terms.
+    fn options(&self, variants: &[Variant], progress: Progress<'_>) -> Result<Vec<Trying>, RefineError> {
         let mut options = vec![self.source_option()?];
-        let ranges = &self.request.settings.ranges;
-        let allowed = if self.training.len() == 1 { 1 } else { ranges.len() };
-        for (index, range) in ranges.iter().take(allowed).enumerate() {
-            let done = 0.1 + 0.7 * index as f64 / allowed as f64;
-            step(progress, done, &format!("lambda from {:.0e}: simulating manoeuvres left out", range.lambda_min))?;
-            let choices = tune(folds, range, self.request.settings.lambda_count);
-            options.push(self.ranged_option(index + 1, range.lambda_min, choices, folds)?);
+        for (index, variant) in variants.iter().enumerate() {
+            let folds = self.folds(variant)?;
+            let share = 0.7 / variants.len() as f64;
+            let told = |done: f64, what: &str| step(progress, 0.1 + share * (index as f64 + done), what);
+            match self.settings.method {
+                Method::Published => self.by_range(index, &folds, &told, &mut options)?,
+                _ => self.by_strength(index, variant, &folds, &told, &mut options)?,
+            }
         }
         Ok(options)
     }
 
+    /// One option for each range; a single trial allows the first range only.
+    fn by_range(&self, variant: usize, folds: &[Fold<'_>], told: Told<'_>, options: &mut Vec<Trying>) -> Result<(), RefineError> {
+        let ranges = &self.request.settings.ranges;
+        let allowed = if self.training.len() == 1 { 1 } else { ranges.len() };
+        for (index, range) in ranges.iter().take(allowed).enumerate() {
+            let what = format!("lambda from {:.0e}: simulating manoeuvres left out", range.lambda_min);
+            told(index as f64 / allowed as f64, &what)?;
+            let choices = tune(folds, range, self.request.settings.lambda_count);
+            let taken = Taken::Ridge { variant, choices };
+            options.push(self.ridge_option((index + 1).to_string(), range.lambda_min, taken, folds)?);
+        }
+        Ok(())
+    }
+
+    /// One option for each strength of the prior, from the source outwards; a single trial allows the first three only.
+    fn by_strength(
+        &self,
+        index: usize,
+        variant: &Variant,
+        folds: &[Fold<'_>],
+        told: Told<'_>,
+        options: &mut Vec<Trying>,
+    ) -> Result<(), RefineError> {
+        let strengths = &self.settings.strengths;
+        let allowed = if self.training.len() == 1 { strengths.len().min(3) } else { strengths.len() };
+        for (k, &lambda) in strengths.iter().take(allowed).enumerate() {
+            let label = format!("{}, lambda {lambda:.0e}", variant.family.name());
+            told(k as f64 / allowed as f64, &format!("{label}: simulating manoeuvres left out"))?;
+            let choices = self.common_choices(variant, folds, lambda);
+            options.push(self.ridge_option(label, lambda, Taken::Ridge { variant: index, choices }, folds)?);
+        }
+        Ok(())
+    }
+
     fn source_option(&self) -> Result<Trying, RefineError> {
-        let (errors, reason) = self.simulate_all(&self.training, &|_| self.transferred.clone())?;
-        Ok(self.trying("source".into(), None, None, errors, reason))
+        let simulated = self.simulate_all(&self.training, &|_| self.transferred.clone())?;
+        Ok(self.trying("source".into(), None, Taken::Source, 0, simulated))
     }
 
-    fn ranged_option(&self, number: usize, lambda_min: f64, choices: Choices, folds: &[Fold<'_>]) -> Result<Trying, RefineError> {
-        let models: Vec<Model> = folds.iter().map(|fold| self.model_with(&fold.solve(&choices))).collect();
-        let (errors, reason) = self.simulate_all(&self.training, &|trial| models[self.fold_of(trial)].clone())?;
-        Ok(self.trying(number.to_string(), Some(lambda_min), Some(choices), errors, reason))
+    fn ridge_option(&self, label: String, lambda_min: f64, taken: Taken, folds: &[Fold<'_>]) -> Result<Trying, RefineError> {
+        let Taken::Ridge { choices, .. } = &taken else { return self.source_option() };
+        let models: Vec<Model> = folds.iter().map(|fold| self.model_with(&fold.solve(choices))).collect();
+        let simulated = self.simulate_all(&self.training, &|trial| models[self.fold_of(trial)].clone())?;
+        let size = models.first().map_or(0, |model| model.coefficients.len());
+        Ok(self.trying(label, Some(lambda_min), taken, size, simulated))
     }
 
-    fn trying(
+    pub(super) fn trying(
         &self,
         step: String,
         lambda_min: Option<f64>,
-        choices: Option<Choices>,
-        errors: SquaredError,
-        reason: Option<String>,
+        taken: Taken,
+        size: usize,
+        simulated: Simulated,
     ) -> Trying {
-        let error = reason.is_none().then(|| standardised_mse(&errors, &standard_deviations(&self.training)));
-        let flat = |of: &dyn Fn(&crate::regression::Choice) -> f64| choices.iter().flatten().flatten().map(of).collect();
+        let deviations = standard_deviations(&self.training);
+        let Simulated { total: errors, each, reason } = simulated;
+        let error = reason.is_none().then(|| standardised_mse(&errors, &deviations));
+        let each = each.iter().map(|error| standardised_mse(error, &deviations)).collect();
+        let flat = |of: &dyn Fn(&crate::regression::Choice) -> f64| {
+            taken.choices().iter().flat_map(|choices| choices.iter().flatten()).map(of).collect()
+        };
         let (lambda, alpha) = (flat(&|c| c.lambda), flat(&|c| c.alpha));
-        Trying { option: StepOption { step, lambda_min, lambda, alpha, error, chosen: false, reason }, choices, errors }
+        Trying { option: StepOption { step, lambda_min, lambda, alpha, error, chosen: false, reason }, taken, errors, each, size }
     }
 
     /// Simulates trials, each with the model that did not see it; the first divergence is the reason against the option.
@@ -172,7 +213,7 @@ impl<'a> Task<'a> {
         &self,
         trials: &[&Trial],
         model_of: &(dyn Fn(usize) -> Model + Sync),
-    ) -> Result<(SquaredError, Option<String>), RefineError> {
+    ) -> Result<Simulated, RefineError> {
         let settings = ReplaySettings { restart_s: self.settings.restart_s, ..ReplaySettings::default() };
         let one = |(index, trial): (usize, &&Trial)| -> Result<(SquaredError, Option<String>), RefineError> {
             let ship = match ready(&model_of(index), self.request.law, trials) {
@@ -183,16 +224,18 @@ impl<'a> Task<'a> {
             let reason = run.stopped.as_ref().map(|stopped| format!("{} {stopped}", trial.name));
             Ok((SquaredError::of(trial, &run), reason))
         };
-        let each: Vec<_> = trials.par_iter().enumerate().map(one).collect::<Result<_, _>>()?;
+        let runs: Vec<_> = trials.par_iter().enumerate().map(one).collect::<Result<_, _>>()?;
         let mut total = SquaredError::default();
-        each.iter().for_each(|(error, _)| total.add(error));
-        Ok((total, each.into_iter().find_map(|(_, reason)| reason)))
+        runs.iter().for_each(|(error, _)| total.add(error));
+        let (each, reasons): (Vec<_>, Vec<_>) = runs.into_iter().unzip();
+        Ok(Simulated { total, each, reason: reasons.into_iter().flatten().next() })
     }
 
-    /// The transferred model with other coefficients.
-    pub(super) fn model_with(&self, coefficients: &std::collections::BTreeMap<String, Fitted>) -> Model {
+    /// The transferred model with these coefficients and no others.
+    pub(super) fn model_with(&self, coefficients: &BTreeMap<String, Fitted>) -> Model {
         let mut model = self.transferred.clone();
         model.status = Status::Refined;
+        model.coefficients.clear();
         for (name, fitted) in coefficients {
             let quantity = Quantity {
                 standard_error: Some(fitted.standard_error),
@@ -204,18 +247,31 @@ impl<'a> Task<'a> {
     }
 }
 
+impl Taken {
+    fn choices(&self) -> Option<&Choices> {
+        match self {
+            Self::Ridge { choices, .. } => Some(choices),
+            Self::Source | Self::Trajectory { .. } => None,
+        }
+    }
+}
+
 /// The settings with the times that depend on the ship filled in, so that a version records what was used.
 fn resolved(request: &Request<'_>, training: &[&Trial]) -> Settings {
     let length_s = request.target.particular("lpp_m").zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s);
     let mut settings = request.settings.clone();
-    settings.difference_s = settings.difference_s.or(length_s.map(|s| 0.1 * s));
+    if settings.method == Method::Published {
+        settings.difference_s = settings.difference_s.or(length_s.map(|s| 0.1 * s));
+    } else {
+        settings.window_s = settings.window_s.or(length_s);
+        settings.hop_s = settings.hop_s.or(settings.window_s.map(|s| 0.1 * s));
+        settings.fill_selection();
+    }
+    if settings.method == Method::Trajectory {
+        settings.step_s = settings.step_s.or(length_s.map(|s| s / 30.0));
+        settings.segment_s = settings.segment_s.or(length_s.map(|s| 5.0 * s));
+        settings.residual_s = settings.residual_s.or(length_s.map(|s| s / 7.5));
+    }
     settings.restart_s = settings.restart_s.or(length_s.map(|s| 10.0 * s));
     settings
-}
-
-/// The statistics of some trials together, one set per regression.
-fn merged(moments: &[Vec<Moments>], keep: impl Fn(usize) -> bool) -> Option<Vec<Moments>> {
-    let kept: Vec<&Vec<Moments>> = moments.iter().enumerate().filter(|(trial, _)| keep(*trial)).map(|(_, m)| m).collect();
-    let blocks = kept.first()?.len();
-    (0..blocks).map(|block| Moments::sum(kept.iter().map(|m| &m[block]))).collect()
 }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::family::Family;
+
 /// The estimator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -9,13 +11,27 @@ pub enum Method {
     /// One-step differences and the ridge with the source as l2 prior: Kanazawa 2023, Eqs. 5.4-5.17.
     #[default]
     Published,
+    /// The equations of motion integrated over windows with smooth bumps, nothing differentiated; the same ridge.
+    Weak,
+    /// Simulated segments against the trials by forward sensitivities, started from the weak form and held by it.
+    Trajectory,
 }
 
 impl Method {
+    /// Every estimator.
+    pub const ALL: [Self; 3] = [Self::Published, Self::Weak, Self::Trajectory];
+
+    /// The estimator of that name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.name() == name)
+    }
+
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Published => "published",
+            Self::Weak => "weak",
+            Self::Trajectory => "trajectory",
         }
     }
 }
@@ -45,6 +61,29 @@ pub struct Settings {
     /// Time over which accelerations are differenced, s, at least one sampling interval. Where absent, a tenth of the
     /// time in which the ship sails her length: what the instruments add at a shorter one drowns the acceleration.
     pub difference_s: Option<f64>,
+    /// Length of the weak form's windows, s. Where absent, the time in which the ship sails her length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub window_s: Option<f64>,
+    /// From one window of the weak form to the next, s. Where absent, a tenth of a window.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hop_s: Option<f64>,
+    /// Length of the trajectory form's segments, s. Where absent, five times the time in which the ship sails her length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub segment_s: Option<f64>,
+    /// From one residual of the trajectory form to the next, s. Where absent, a 7.5th of the time in which
+    /// she sails her length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub residual_s: Option<f64>,
+    /// Integration step of the trajectory form, s, rounded to sampling intervals. Where absent, a
+    /// thirtieth of the time in which she sails her length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step_s: Option<f64>,
+    /// Families of terms among which the weak and the trajectory form choose. Where empty, all of them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub families: Vec<Family>,
+    /// Strengths of the prior among which they choose, from the source outwards. Where empty, half decades from 10 to 1e-8.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub strengths: Vec<f64>,
     /// Simulations of manoeuvres left out start anew every so often, s. Where absent, ten times the time in which the
     /// ship sails her length; longer than a trial runs it whole.
     pub restart_s: Option<f64>,
@@ -66,6 +105,13 @@ impl Default for Settings {
             ranges: (0..=6).map(range).collect(),
             lambda_count: 100,
             difference_s: None,
+            window_s: None,
+            hop_s: None,
+            segment_s: None,
+            residual_s: None,
+            step_s: None,
+            families: Vec::new(),
+            strengths: Vec::new(),
             restart_s: None,
             folds: 8,
             held_out: Vec::new(),
@@ -74,6 +120,16 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// Fills in what model selection chooses among, so that a version records it.
+    pub(super) fn fill_selection(&mut self) {
+        if self.families.is_empty() {
+            self.families = vec![Family::Own, Family::Symmetric, Family::ThirdOrder];
+        }
+        if self.strengths.is_empty() {
+            self.strengths = (0..=18).map(|k| 10_f64.powf(1.0 - 0.5 * f64::from(k))).collect();
+        }
+    }
+
     /// Checks the numbers.
     ///
     /// # Errors
@@ -97,12 +153,25 @@ impl Settings {
         if !(2..=100).contains(&self.folds) {
             return refuse("folds", "must be from 2 to 100");
         }
+        if self.strengths.len() > 100 || self.strengths.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
+            return refuse("strengths", "give at most 100, each above 0");
+        }
         let positive = |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
         if !positive(self.difference_s) {
             return refuse("difference_s", "must be above 0 s");
         }
         if !positive(self.restart_s) {
             return refuse("restart_s", "must be above 0 s");
+        }
+        let times = [
+            ("window_s", self.window_s),
+            ("hop_s", self.hop_s),
+            ("segment_s", self.segment_s),
+            ("residual_s", self.residual_s),
+            ("step_s", self.step_s),
+        ];
+        if let Some((field, _)) = times.into_iter().find(|(_, value)| !positive(*value)) {
+            return refuse(field, "must be above 0 s");
         }
         Ok(())
     }

@@ -37,6 +37,22 @@ impl Moments {
         all
     }
 
+    /// Of samples given by column, about zero instead of their means, for models without intercept; each sample counts as
+    /// the share `weight` of an independent one.
+    pub fn about_zero(columns: &[Vec<f64>], regressors: usize, weight: f64) -> Self {
+        let size = columns.len();
+        let rows = columns.first().map_or(0, Vec::len);
+        let mut products = DMatrix::zeros(size, size);
+        for i in 0..size {
+            for j in i..size {
+                let product = weight * dot(&columns[i], &columns[j]);
+                products[(i, j)] = product;
+                products[(j, i)] = product;
+            }
+        }
+        Self { count: weight * rows as f64, mean: DVector::zeros(size), products, regressors }
+    }
+
     fn of_chunk(columns: &[&[f64]], regressors: usize) -> Self {
         let size = columns.len();
         let count = columns[0].len() as f64;
@@ -112,9 +128,9 @@ impl Moments {
         self.products[(t, t)] / self.count
     }
 
-    /// Mean products without centring: `E[x x']`, as the error of a model without intercept needs them.
+    /// Mean products without centring: `E[x x']`, as the error of a model without intercept needs them; zero of no samples.
     pub fn raw_products(&self) -> DMatrix<f64> {
-        let mut raw = &self.products / self.count;
+        let mut raw = &self.products / self.count.max(f64::MIN_POSITIVE);
         raw.ger(1.0, &self.mean, &self.mean, 1.0);
         raw
     }

@@ -9,6 +9,9 @@ use crate::formula::Expr;
 /// States and inputs that change sign in the mirror.
 const ODD: [&str; 6] = ["v", "r", "p", "phi", "psi", "delta"];
 
+/// Inputs beyond [`AT`] that change sign too: directions of the wind.
+const ODD_INPUTS: [&str; 2] = ["wind_from", "apparent_wind_from"];
+
 /// A few states well apart from zero and from each other, in SI.
 const POINTS: [[f64; 8]; 3] = [
     // u, v, r, p, phi, psi, delta, n
@@ -116,6 +119,7 @@ fn stand_in(law: &Law, name: &str, mirrored: bool) -> f64 {
     }
     let twin = if mirrored { twin(law, name) } else { None };
     let (sign, name) = twin.unwrap_or((1.0, name));
+    let sign = if mirrored && ODD_INPUTS.contains(&name) { -sign } else { sign };
     let hash = name.bytes().fold(7_u32, |hash, byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)));
     sign * (0.2 + f64::from(hash % 997) / 997.0)
 }

@@ -1,0 +1,259 @@
+//! Simulation of a block of lanes with their sensitivities; nothing is allocated from step to step.
+
+use super::small::Small;
+use super::system::{SensitiveSystem, Sloped};
+use crate::integrate::Method;
+use crate::state::{StateVector, at};
+use crate::tape::Lanes;
+
+/// Runs in lockstep: states and sensitivities of each lane.
+#[derive(Debug)]
+pub struct SensitiveRun<'a, const L: usize> {
+    system: &'a SensitiveSystem,
+    states: Vec<Lanes<L>>,
+    /// By lane, state and column: coefficients, then the starting state.
+    sensitivities: Vec<f64>,
+    columns: usize,
+    stages: [Stage<L>; 4],
+    room: Room<L>,
+}
+
+/// What a stage of a step leaves behind.
+#[derive(Debug, Clone)]
+struct Stage<const L: usize> {
+    rate: Vec<Lanes<L>>,
+    slopes: Small<L>,
+    /// Regressors by lane.
+    regressors: Vec<f64>,
+    mobility: Vec<Lanes<L>>,
+}
+
+#[derive(Debug)]
+struct Room<const L: usize> {
+    at: Vec<Lanes<L>>,
+    inputs: Vec<Lanes<L>>,
+    work: Vec<Lanes<L>>,
+    gains: [Small<L>; 4],
+    product: Small<L>,
+    transition: Small<L>,
+    /// Gain times mobility of a stage: state by axis.
+    reach: Vec<Lanes<L>>,
+    next: Vec<f64>,
+}
+
+impl<'a, const L: usize> SensitiveRun<'a, L> {
+    /// Of nothing yet; every lane must be started.
+    pub fn new(system: &'a SensitiveSystem) -> Self {
+        let (order, axes, count) = (system.states.len(), system.axes.len(), system.regressors.len());
+        let columns = count + order;
+        let stage = || Stage {
+            rate: vec![[0.0; L]; order],
+            slopes: Small::zeros(order),
+            regressors: vec![0.0; L * count],
+            mobility: vec![[0.0; L]; axes * axes],
+        };
+        let small = || Small::zeros(order);
+        let room = Room {
+            at: vec![[0.0; L]; order],
+            inputs: Vec::with_capacity(6 + system.input_names().len()),
+            work: Vec::with_capacity(system.tape.len()),
+            gains: std::array::from_fn(|_| small()),
+            product: small(),
+            transition: small(),
+            reach: vec![[0.0; L]; order * axes],
+            next: vec![0.0; order * columns],
+        };
+        let sensitivities = vec![0.0; L * order * columns];
+        Self { system, states: vec![[0.0; L]; order], sensitivities, columns, stages: std::array::from_fn(|_| stage()), room }
+    }
+
+    /// Starts a lane anew at a state: sensitivities to coefficients are zero, those to the starting state one.
+    pub fn start(&mut self, lane: usize, state: &StateVector) {
+        let order = self.states.len();
+        for (row, &place) in self.system.states.iter().enumerate() {
+            self.states[row][lane] = state[place];
+        }
+        let count = self.columns - order;
+        let own = &mut self.sensitivities[lane * order * self.columns..(lane + 1) * order * self.columns];
+        own.fill(0.0);
+        (0..order).for_each(|row| own[row * self.columns + count + row] = 1.0);
+    }
+
+    /// The state of a lane; what does not move is zero.
+    pub fn state(&self, lane: usize) -> StateVector {
+        let mut state = StateVector::zeros();
+        self.system.states.iter().zip(&self.states).for_each(|(&place, lanes)| state[place] = lanes[lane]);
+        state
+    }
+
+    /// The sensitivities of one state of a lane: to each coefficient, then to each state at the start. `row` counts as
+    /// [`SensitiveSystem::states`] does.
+    pub fn sensitivity(&self, lane: usize, row: usize) -> &[f64] {
+        let start = (lane * self.states.len() + row) * self.columns;
+        &self.sensitivities[start..start + self.columns]
+    }
+
+    /// One step of every lane; `inputs` are those of the law at its start, middle and end.
+    pub fn step(&mut self, method: Method, step_s: f64, inputs: [&[Lanes<L>]; 3]) {
+        match method {
+            Method::Euler => self.euler(step_s, inputs[0]),
+            Method::Rk4 => self.rk4(step_s, inputs),
+        }
+    }
+
+    fn euler(&mut self, h: f64, inputs: &[Lanes<L>]) {
+        self.stage(0, 0.0, inputs);
+        self.room.transition.set(1.0, h, &self.stages[0].slopes);
+        let Room { gains, product, .. } = &mut self.room;
+        product.entries.fill([0.0; L]);
+        gains[0].set(h, 0.0, product);
+        self.advance_states(|[k, ..]| h * k);
+        self.advance_sensitivities(1);
+    }
+
+    fn rk4(&mut self, h: f64, [start, middle, end]: [&[Lanes<L>]; 3]) {
+        for (i, (reach, inputs)) in [(0.0, start), (0.5 * h, middle), (0.5 * h, middle), (h, end)].into_iter().enumerate() {
+            self.stage(i, reach, inputs);
+        }
+        self.gains(h);
+        self.advance_states(|[a, b, c, d]| h / 6.0 * (a + 2.0 * (b + c) + d));
+        self.advance_sensitivities(4);
+    }
+
+    /// Evaluates the rate, its slopes and regressors at the state reached along the stage before.
+    fn stage(&mut self, i: usize, reach: f64, inputs: &[Lanes<L>]) {
+        let Self { system, states, stages, room, .. } = self;
+        for (row, at) in room.at.iter_mut().enumerate() {
+            *at = states[row];
+            if i > 0 {
+                let rate = stages[i - 1].rate[row];
+                (0..L).for_each(|lane| at[lane] += reach * rate[lane]);
+            }
+        }
+        let place = |wanted: usize| system.states.iter().position(|&place| place == wanted);
+        let value = |wanted: usize| place(wanted).map_or([0.0; L], |row| room.at[row]);
+        let given = [at::U, at::V, at::R, at::P, at::PHI, at::PSI].map(value);
+        room.inputs.clear();
+        room.inputs.extend(given);
+        room.inputs.extend_from_slice(inputs);
+        system.tape.run(&room.inputs, &mut room.work);
+        stages[i].read(system, &room.work);
+    }
+
+    /// Gains of each stage and the transition of a step of the classical Runge-Kutta method.
+    fn gains(&mut self, h: f64) {
+        let Room { gains, product, transition, .. } = &mut self.room;
+        product.entries.fill([0.0; L]);
+        transition.set(1.0, 0.0, product);
+        let weights = [h / 6.0, h / 3.0, h / 3.0, h / 6.0];
+        let reaches = [0.5 * h, 0.5 * h, h, 0.0];
+        for i in (0..4).rev() {
+            gains[i].set(weights[i], reaches[i], product);
+            product.set_product(&gains[i], &self.stages[i].slopes);
+            transition.add(product);
+        }
+    }
+
+    fn advance_states(&mut self, by: impl Fn([f64; 4]) -> f64) {
+        for (row, state) in self.states.iter_mut().enumerate() {
+            for (lane, value) in state.iter_mut().enumerate() {
+                *value += by(std::array::from_fn(|i| self.stages[i].rate[row][lane]));
+            }
+        }
+    }
+
+    fn advance_sensitivities(&mut self, stages: usize) {
+        let size = self.states.len() * self.columns;
+        for lane in 0..L {
+            self.transport(lane);
+            self.sensitivities[lane * size..(lane + 1) * size].copy_from_slice(&self.room.next);
+        }
+        for i in 0..stages {
+            self.reach(i);
+            (0..L).for_each(|lane| self.push(i, lane));
+        }
+    }
+
+    /// `next = P S` for a lane.
+    fn transport(&mut self, lane: usize) {
+        let (order, columns) = (self.states.len(), self.columns);
+        let own = &self.sensitivities[lane * order * columns..(lane + 1) * order * columns];
+        for (row, out) in self.room.next.chunks_exact_mut(columns).enumerate() {
+            out.fill(0.0);
+            for (k, from) in own.chunks_exact(columns).enumerate() {
+                add_scaled(out, self.room.transition.at(row, k)[lane], from);
+            }
+        }
+    }
+
+    /// Gain times mobility of a stage.
+    fn reach(&mut self, i: usize) {
+        let axes = self.system.axes.len();
+        let (gain, mobility) = (&self.room.gains[i], &self.stages[i].mobility);
+        for (index, out) in self.room.reach.iter_mut().enumerate() {
+            let (row, axis) = (index / axes, index % axes);
+            *out = [0.0; L];
+            for k in 0..axes {
+                let (g, m) = (gain.at(row, k), &mobility[k * axes + axis]);
+                (0..L).for_each(|lane| out[lane] += g[lane] * m[lane]);
+            }
+        }
+    }
+
+    /// Adds what the coefficients push at a stage.
+    fn push(&mut self, i: usize, lane: usize) {
+        let (order, axes, columns) = (self.states.len(), self.system.axes.len(), self.columns);
+        let count = columns - order;
+        let regressors = &self.stages[i].regressors[lane * count..(lane + 1) * count];
+        let own = &mut self.sensitivities[lane * order * columns..(lane + 1) * order * columns];
+        for (row, out) in own.chunks_exact_mut(columns).enumerate() {
+            for (axis, range) in self.system.of_axis.iter().enumerate() {
+                add_scaled(&mut out[range.clone()], self.room.reach[row * axes + axis][lane], &regressors[range.clone()]);
+            }
+        }
+    }
+}
+
+impl<const L: usize> Stage<L> {
+    fn read(&mut self, system: &SensitiveSystem, work: &[Lanes<L>]) {
+        let (order, axes, count) = (self.rate.len(), system.axes.len(), system.regressors.len());
+        let read = |output: usize| system.tape.read(output, work);
+        system.mobility(work, &mut self.mobility);
+        self.rate.fill([0.0; L]);
+        self.slopes.entries.fill([0.0; L]);
+        for (axis, force) in system.forces.iter().enumerate() {
+            for row in 0..axes {
+                let mobility = self.mobility[row * axes + axis];
+                self.add(row, &mobility, force, &read);
+            }
+        }
+        for (row, addition) in system.additions.iter().enumerate() {
+            addition.iter().for_each(|addition| self.add(row, &[1.0; L], addition, &read));
+        }
+        for (row, kinematic) in (axes..order).zip(&system.kinematics) {
+            self.add(row, &[1.0; L], kinematic, &read);
+        }
+        for (j, &output) in system.regressors.iter().enumerate() {
+            let value = read(output);
+            (0..L).for_each(|lane| self.regressors[lane * count + j] = value[lane]);
+        }
+    }
+
+    /// Adds a multiple of a value with its slopes to the rate of a state.
+    fn add(&mut self, row: usize, factor: &Lanes<L>, sloped: &Sloped, read: &impl Fn(usize) -> Lanes<L>) {
+        let value = read(sloped.value);
+        (0..L).for_each(|lane| self.rate[row][lane] += factor[lane] * value[lane]);
+        for &(column, output) in &sloped.slopes {
+            let slope = read(output);
+            let entry = self.slopes.at_mut(row, column);
+            (0..L).for_each(|lane| entry[lane] += factor[lane] * slope[lane]);
+        }
+    }
+}
+
+/// `out += factor x`.
+fn add_scaled(out: &mut [f64], factor: f64, x: &[f64]) {
+    if factor != 0.0 {
+        out.iter_mut().zip(x).for_each(|(out, x)| *out += factor * x);
+    }
+}

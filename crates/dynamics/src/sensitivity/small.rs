@@ -1,0 +1,58 @@
+//! Small square matrices, every entry in lanes.
+
+use crate::tape::Lanes;
+
+/// Rows one after the other.
+#[derive(Debug, Clone)]
+pub(super) struct Small<const L: usize> {
+    pub order: usize,
+    pub entries: Vec<Lanes<L>>,
+}
+
+impl<const L: usize> Small<L> {
+    pub fn zeros(order: usize) -> Self {
+        Self { order, entries: vec![[0.0; L]; order * order] }
+    }
+
+    pub fn at(&self, row: usize, column: usize) -> &Lanes<L> {
+        &self.entries[row * self.order + column]
+    }
+
+    pub fn at_mut(&mut self, row: usize, column: usize) -> &mut Lanes<L> {
+        &mut self.entries[row * self.order + column]
+    }
+
+    /// `diagonal + factor other`.
+    pub fn set(&mut self, diagonal: f64, factor: f64, other: &Self) {
+        for (entry, other) in self.entries.iter_mut().zip(&other.entries) {
+            *entry = other.map(|value| factor * value);
+        }
+        for i in 0..self.order {
+            self.at_mut(i, i).iter_mut().for_each(|value| *value += diagonal);
+        }
+    }
+
+    /// `a b`.
+    pub fn set_product(&mut self, a: &Self, b: &Self) {
+        let order = self.order;
+        for (row, out) in self.entries.chunks_exact_mut(order).enumerate() {
+            out.fill([0.0; L]);
+            for k in 0..order {
+                let factor = *a.at(row, k);
+                for (entry, b) in out.iter_mut().zip(&b.entries[k * order..(k + 1) * order]) {
+                    for lane in 0..L {
+                        entry[lane] += factor[lane] * b[lane];
+                    }
+                }
+            }
+        }
+    }
+
+    pub fn add(&mut self, other: &Self) {
+        for (entry, other) in self.entries.iter_mut().zip(&other.entries) {
+            for lane in 0..L {
+                entry[lane] += other[lane];
+            }
+        }
+    }
+}

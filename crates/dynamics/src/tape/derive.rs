@@ -1,0 +1,205 @@
+//! Derivatives as further operations on the same tape: what they share with the values is computed once, and all of it
+//! runs for a block of lanes.
+
+use sistership_model::formula::{Comparison, Function};
+
+use super::{Op, Slot, TapeBuilder};
+
+impl TapeBuilder<'_> {
+    /// Adds the derivative of an output by an input; `None` where it is zero whatever the inputs are. At a kink, the
+    /// derivative towards larger arguments.
+    pub fn derivative(&mut self, output: usize, input: &str) -> Option<usize> {
+        let input = self.inputs.iter().position(|known| known == input)? as u32;
+        let slot = self.slope_of(self.outputs[output], input);
+        if self.constant(slot) == Some(0.0) {
+            return None;
+        }
+        self.outputs.push(slot);
+        Some(self.outputs.len() - 1)
+    }
+
+    /// The slot of a slot's derivative.
+    fn slope_of(&mut self, slot: Slot, input: u32) -> Slot {
+        if let Some(&known) = self.slopes.get(&(slot, input)) {
+            return known;
+        }
+        let slope = self.new_slope(slot, input);
+        self.slopes.insert((slot, input), slope);
+        slope
+    }
+
+    fn new_slope(&mut self, slot: Slot, input: u32) -> Slot {
+        let op = self.ops[slot as usize];
+        match op {
+            Op::Constant(_) => self.number(0.0),
+            Op::Input(index) => self.number(f64::from(u8::from(index == input))),
+            Op::Negate(a) => {
+                let a = self.slope_of(a, input);
+                self.push(Op::Negate(a))
+            }
+            Op::Add(a, b) => self.of_both(a, b, input, Op::Add),
+            Op::Subtract(a, b) => self.of_both(a, b, input, Op::Subtract),
+            Op::Multiply(a, b) => self.product_rule(a, b, input),
+            Op::Divide(a, b) => self.quotient_rule(slot, a, b, input),
+            Op::Power(a, b) => self.power_rule(slot, a, b, input),
+            Op::Call1(function, a) => self.chain_rule(slot, function, a, input),
+            Op::Call2(function, a, b) => self.of_call2(function, a, b, input),
+            Op::Select(comparison, a, b, c, d) => {
+                let (c, d) = (self.slope_of(c, input), self.slope_of(d, input));
+                self.either(comparison, a, b, c, d)
+            }
+        }
+    }
+
+    fn number(&mut self, value: f64) -> Slot {
+        self.push(Op::Constant(value))
+    }
+
+    fn of_both(&mut self, a: Slot, b: Slot, input: u32, make: fn(Slot, Slot) -> Op) -> Slot {
+        let (a, b) = (self.slope_of(a, input), self.slope_of(b, input));
+        self.push(make(a, b))
+    }
+
+    /// A choice between equal things is no choice.
+    fn either(&mut self, comparison: Comparison, a: Slot, b: Slot, c: Slot, d: Slot) -> Slot {
+        if c == d { c } else { self.push(Op::Select(comparison, a, b, c, d)) }
+    }
+
+    fn times(&mut self, a: Slot, b: Slot) -> Slot {
+        self.push(Op::Multiply(a, b))
+    }
+
+    fn product_rule(&mut self, a: Slot, b: Slot, input: u32) -> Slot {
+        let (da, db) = (self.slope_of(a, input), self.slope_of(b, input));
+        let (left, right) = (self.times(da, b), self.times(a, db));
+        self.push(Op::Add(left, right))
+    }
+
+    fn quotient_rule(&mut self, quotient: Slot, a: Slot, b: Slot, input: u32) -> Slot {
+        let (da, db) = (self.slope_of(a, input), self.slope_of(b, input));
+        let taken = self.times(quotient, db);
+        let above = self.push(Op::Subtract(da, taken));
+        if self.constant(above) == Some(0.0) { above } else { self.push(Op::Divide(above, b)) }
+    }
+
+    fn power_rule(&mut self, power: Slot, a: Slot, b: Slot, input: u32) -> Slot {
+        let (da, db) = (self.slope_of(a, input), self.slope_of(b, input));
+        let one = self.number(1.0);
+        let less = self.push(Op::Subtract(b, one));
+        let lower = self.push(Op::Power(a, less));
+        let by_base = self.times(b, lower);
+        let log = self.push(Op::Call1(Function::Log, a));
+        let by_exponent = self.times(power, log);
+        let (left, right) = (self.times(by_base, da), self.times(by_exponent, db));
+        self.push(Op::Add(left, right))
+    }
+
+    fn chain_rule(&mut self, value: Slot, function: Function, a: Slot, input: u32) -> Slot {
+        let da = self.slope_of(a, input);
+        if self.constant(da) == Some(0.0) {
+            return da;
+        }
+        let outer = self.slope_by_argument(value, function, a);
+        self.times(outer, da)
+    }
+
+    /// The slope of a function of one argument; `value` is the function there.
+    fn slope_by_argument(&mut self, value: Slot, function: Function, a: Slot) -> Slot {
+        let one = self.number(1.0);
+        match function {
+            Function::Sin => self.push(Op::Call1(Function::Cos, a)),
+            Function::Cos => {
+                let sin = self.push(Op::Call1(Function::Sin, a));
+                self.push(Op::Negate(sin))
+            }
+            Function::Tan => {
+                let square = self.times(value, value);
+                self.push(Op::Add(one, square))
+            }
+            Function::Tanh => {
+                let square = self.times(value, value);
+                self.push(Op::Subtract(one, square))
+            }
+            Function::Atan => {
+                let square = self.times(a, a);
+                let below = self.push(Op::Add(one, square));
+                self.push(Op::Divide(one, below))
+            }
+            Function::Sqrt => {
+                let half = self.number(0.5);
+                self.push(Op::Divide(half, value))
+            }
+            Function::Abs => {
+                let (zero, minus) = (self.number(0.0), self.number(-1.0));
+                self.either(Comparison::GreaterOrEqual, a, zero, one, minus)
+            }
+            Function::Exp => value,
+            Function::Log => self.push(Op::Divide(one, a)),
+            Function::Sign | Function::Atan2 | Function::Min | Function::Max => self.number(0.0),
+        }
+    }
+
+    fn of_call2(&mut self, function: Function, a: Slot, b: Slot, input: u32) -> Slot {
+        let (da, db) = (self.slope_of(a, input), self.slope_of(b, input));
+        match function {
+            Function::Min => self.either(Comparison::LessOrEqual, a, b, da, db),
+            Function::Max => self.either(Comparison::GreaterOrEqual, a, b, da, db),
+            _ => self.of_atan2(a, b, da, db),
+        }
+    }
+
+    /// `(b da - a db) / (a^2 + b^2)`, and nothing where both are zero.
+    fn of_atan2(&mut self, a: Slot, b: Slot, da: Slot, db: Slot) -> Slot {
+        let (left, right) = (self.times(b, da), self.times(a, db));
+        let above = self.push(Op::Subtract(left, right));
+        if self.constant(above) == Some(0.0) {
+            return above;
+        }
+        let (aa, bb) = (self.times(a, a), self.times(b, b));
+        let square = self.push(Op::Add(aa, bb));
+        let (zero, slope) = (self.number(0.0), self.push(Op::Divide(above, square)));
+        self.either(Comparison::Greater, square, zero, slope, zero)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::{Tape, TapeBuilder};
+    use sistership_model::formula::parse;
+
+    fn with_slopes(text: &str) -> (Tape, [Option<usize>; 2]) {
+        let mut builder = TapeBuilder::new(&["u", "v"], &|_| None);
+        builder.output(&parse(text).unwrap()).unwrap();
+        let slopes = ["u", "v"].map(|input| builder.derivative(0, input));
+        (builder.finish(), slopes)
+    }
+
+    #[test]
+    fn derivatives_on_the_tape_are_those_of_its_tangents() {
+        let texts = [
+            "u^3*v/(1 + v^2)",
+            "atan2(v, u)*abs(v)",
+            "max(u, v)*tanh(u*v) - u^-2 + min(u, v)",
+            "sin(u)*cos(v)*log(u)*exp(v) + u^2.5 + tan(v) + atan(u*v)",
+            "if(u > v, sqrt(u), sign(v))*abs(-u*v)",
+            "(2 + u^2)^(0.3*v)",
+        ];
+        for text in texts {
+            let (tape, slopes) = with_slopes(text);
+            for at in [[1.3, -0.7], [0.4, 0.9], [2.0, 0.3]] {
+                let (values, exact) = (tape.values(&at), tape.jacobian(&at)[0].clone());
+                for (slope, exact) in slopes.iter().zip(exact) {
+                    let here = slope.map_or(0.0, |output| values[output]);
+                    assert!((here - exact).abs() < 1e-12 * (1.0 + exact.abs()), "{text}: {here} against {exact}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_does_not_depend_on_an_input_has_no_derivative() {
+        assert_eq!(with_slopes("3*v + sign(u)").1[0], None);
+        assert!(with_slopes("if(u > 0, v, v)").1[1].is_some());
+    }
+}

@@ -1,0 +1,167 @@
+//! One pass over all segments: residuals, and the normal equations of the coefficients.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use sistership_dynamics::sensitivity::{SensitiveRun, SensitiveSystem};
+use sistership_dynamics::{Envelope, Method};
+
+use super::segments::{Plan, Segment, difference};
+
+/// Segments in lockstep.
+const LANES: usize = 4;
+/// Rows of residuals gathered before they are multiplied.
+const ROWS: usize = 96;
+/// What a residual counts that a simulation never came to, in standard deviations.
+const LOST: f64 = 10.0;
+
+/// Sums over the residuals of some segments.
+#[derive(Debug, Clone)]
+pub(super) struct Normal {
+    /// Of squared sensitivities by Huber's weights.
+    pub hessian: DMatrix<f64>,
+    /// Of sensitivities times residuals.
+    pub gradient: DVector<f64>,
+    /// Of Huber's function (twice: squares near zero).
+    pub cost: f64,
+    /// Of residual times.
+    pub count: f64,
+}
+
+/// A pass: sums by trial, and gradients by segment for the standard errors.
+pub(super) struct Pass {
+    pub trials: Vec<Normal>,
+    pub gradients: Vec<DVector<f64>>,
+    /// Absolute residuals by compared state, where they were asked for.
+    pub sizes: Vec<Vec<f64>>,
+}
+
+impl Normal {
+    pub fn zeros(size: usize) -> Self {
+        Self { hessian: DMatrix::zeros(size, size), gradient: DVector::zeros(size), cost: 0.0, count: 0.0 }
+    }
+
+    pub fn add(&mut self, other: &Self) {
+        self.hessian += &other.hessian;
+        self.gradient += &other.gradient;
+        self.cost += other.cost;
+        self.count += other.count;
+    }
+}
+
+/// What a pass needs besides the system.
+pub(super) struct Passing<'a> {
+    pub segments: &'a [Segment],
+    pub plan: &'a Plan,
+    pub envelope: Envelope,
+    /// Huber's thresholds by compared state, in standard deviations.
+    pub thresholds: Vec<f64>,
+    pub trials: usize,
+}
+
+impl Passing<'_> {
+    /// Simulates every segment.
+    pub fn pass(&self, system: &SensitiveSystem) -> Pass {
+        let size = system.names().len();
+        let blocks: Vec<Vec<Lane>> = self.segments.par_chunks(LANES).map(|block| self.block(system, block)).collect();
+        let mut pass = Pass {
+            trials: vec![Normal::zeros(size); self.trials],
+            gradients: Vec::new(),
+            sizes: vec![Vec::new(); self.plan.compared.len()],
+        };
+        for (segment, lane) in self.segments.iter().zip(blocks.into_iter().flatten()) {
+            pass.trials[segment.trial].add(&lane.normal);
+            pass.gradients.push(lane.normal.gradient);
+            pass.sizes.iter_mut().zip(lane.sizes).for_each(|(all, own)| all.extend(own));
+        }
+        pass
+    }
+
+    fn block(&self, system: &SensitiveSystem, block: &[Segment]) -> Vec<Lane> {
+        let size = system.names().len();
+        let mut run = SensitiveRun::<LANES>::new(system);
+        let mut lanes: Vec<Lane> = block.iter().map(|_| Lane::new(size, self.plan.compared.len())).collect();
+        block.iter().enumerate().for_each(|(lane, segment)| run.start(lane, &segment.start));
+        // Lanes without a segment repeat the first.
+        (block.len()..LANES).for_each(|lane| run.start(lane, &block[0].start));
+        let width = system.input_names().len();
+        let mut inputs = [vec![[0.0; LANES]; width], vec![[0.0; LANES]; width], vec![[0.0; LANES]; width]];
+        for k in 0..block[0].steps {
+            for (half, given) in inputs.iter_mut().enumerate() {
+                load(block, 2 * k + half, width, given);
+            }
+            run.step(Method::Rk4, self.plan.step_s, [&inputs[0], &inputs[1], &inputs[2]]);
+            if (k + 1) % self.plan.stride == 0 {
+                let due = lanes.iter_mut().zip(block).enumerate().filter(|(_, (_, segment))| k < segment.steps);
+                due.for_each(|(lane, (own, segment))| self.compare(&run, lane, own, segment, (k + 1) / self.plan.stride - 1));
+            }
+        }
+        lanes.iter_mut().for_each(Lane::flush);
+        lanes
+    }
+
+    /// Adds a lane's residuals at a time.
+    fn compare(&self, run: &SensitiveRun<'_, LANES>, lane: usize, own: &mut Lane, segment: &Segment, residual: usize) {
+        let state = run.state(lane);
+        own.normal.count += 1.0;
+        own.lost = own.lost || self.envelope.check(0.0, &state).is_err();
+        let width = self.plan.compared.len();
+        let measured = &segment.measured[residual * width..(residual + 1) * width];
+        for (index, (&(row, place, deviation), measured)) in self.plan.compared.iter().zip(measured).enumerate() {
+            if !measured.is_finite() {
+                continue;
+            }
+            if own.lost {
+                own.normal.cost += LOST * LOST;
+                continue;
+            }
+            let value = difference(place, state[place], *measured) / deviation;
+            own.sizes[index].push(value.abs());
+            own.add(&run.sensitivity(lane, row)[..own.normal.gradient.len()], value, deviation, self.thresholds[index]);
+        }
+    }
+}
+
+/// The inputs of each lane at a half step; a lane that is done keeps its last.
+fn load(block: &[Segment], half_step: usize, width: usize, into: &mut [[f64; LANES]]) {
+    for lane in 0..LANES {
+        let segment = block.get(lane).unwrap_or(&block[0]);
+        let at = half_step.min(2 * segment.steps) * width;
+        into.iter_mut().zip(&segment.inputs[at..at + width]).for_each(|(lanes, value)| lanes[lane] = *value);
+    }
+}
+
+/// Sums of one lane, with rows that wait to be multiplied.
+struct Lane {
+    normal: Normal,
+    rows: DMatrix<f64>,
+    waiting: usize,
+    lost: bool,
+    sizes: Vec<Vec<f64>>,
+}
+
+impl Lane {
+    fn new(size: usize, compared: usize) -> Self {
+        let sizes = vec![Vec::new(); compared];
+        Self { normal: Normal::zeros(size), rows: DMatrix::zeros(size, ROWS), waiting: 0, lost: false, sizes }
+    }
+
+    fn add(&mut self, sensitivity: &[f64], value: f64, deviation: f64, threshold: f64) {
+        let size = value.abs();
+        let weight = if size <= threshold { 1.0 } else { threshold / size };
+        self.normal.cost += if size <= threshold { size * size } else { threshold * (2.0 * size - threshold) };
+        let factor = weight.sqrt() / deviation;
+        let mut row = self.rows.column_mut(self.waiting);
+        row.iter_mut().zip(sensitivity).for_each(|(out, s)| *out = factor * s);
+        self.normal.gradient.axpy(weight.sqrt() * value, &row, 1.0);
+        self.waiting += 1;
+        if self.waiting == ROWS {
+            self.flush();
+        }
+    }
+
+    fn flush(&mut self) {
+        let rows = self.rows.columns(0, self.waiting);
+        self.normal.hessian.gemm(1.0, &rows, &rows.transpose(), 1.0);
+        self.waiting = 0;
+    }
+}

@@ -1,0 +1,236 @@
+//! The trajectory form as options of a refinement.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DVector;
+use sistership_dynamics::error::standard_deviations;
+use sistership_dynamics::sensitivity::SensitiveSystem;
+use sistership_model::Model;
+use sistership_model::quantity::Quantity;
+
+use super::super::outcome::RefineError;
+use super::super::published::{Choices, Fit, Fitted, fit};
+use super::super::selection::{Progress, Taken, Task, Trying, step};
+use super::super::variant::{Variant, merged};
+use super::Cut;
+use super::normal::{Normal, Pass, Passing};
+use super::prior::{Prior, Strength};
+use super::segments::{Plan, compared, cut};
+use super::solve::Held;
+use crate::transfer::ready;
+
+/// Pulls towards the weak form that are tried, strongest first; the source pulls with a hundredth of them.
+const PULLS: [f64; 5] = [1.0, 0.1, 0.01, 1e-3, 1e-4];
+/// The pull at which the equations are linearised for choosing among them.
+const MIDDLE: f64 = 0.01;
+/// Huber's threshold in robust standard deviations of a state's residuals.
+const HUBER: f64 = 3.0;
+/// Most steps.
+const STEPS: usize = 12;
+/// Steps end when one gains less than this share.
+const ENOUGH: f64 = 2e-3;
+
+/// What the trajectory form makes of one variant.
+pub(in super::super) struct Trajectory<'a> {
+    task: &'a Task<'a>,
+    variant: &'a Variant,
+    choices: &'a Choices,
+    passing: Passing<'a>,
+    names: Vec<String>,
+}
+
+/// Coefficients with the pass at them.
+struct Reached {
+    at: DVector<f64>,
+    pass: Pass,
+}
+
+impl Task<'_> {
+    /// Adds options of the trajectory form, started from the best option of the weak form.
+    pub(in super::super) fn by_trajectory(
+        &self,
+        variants: &[Variant],
+        options: &mut Vec<Trying>,
+        progress: Progress<'_>,
+    ) -> Result<(), RefineError> {
+        let Some((variant, choices)) = super::super::finish::best(options).and_then(|best| match &options[best].taken {
+            Taken::Ridge { variant, choices } => Some((&variants[*variant], choices.clone())),
+            _ => None,
+        }) else {
+            return Ok(());
+        };
+        step(progress, 0.6, "trajectories from the weak form")?;
+        let cutting = self.cut();
+        let model = self.model_at(variant, &weak_values(variant, &choices)?);
+        let system = SensitiveSystem::new(&model, self.request.law).map_err(|e| RefineError::Law(e.to_string()))?;
+        let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;
+        let compared = compared(&system, &standard_deviations(&self.training));
+        let plan = Plan { compared, stride, step_s: cutting.step_s };
+        let segments = cut(&self.training, self.request.law, &system, cutting, &plan)?;
+        if segments.is_empty() {
+            return Ok(());
+        }
+        let ship = ready(&model, self.request.law, &self.training).map_err(RefineError::Law)?;
+        let thresholds = vec![f64::INFINITY; plan.compared.len()];
+        let trials = self.training.len();
+        let passing = Passing { segments: &segments, plan: &plan, envelope: *ship.envelope(), thresholds, trials };
+        let names = system.names().to_vec();
+        Trajectory { task: self, variant, choices: &choices, passing, names }.options(options, progress)
+    }
+
+    fn cut(&self) -> Cut {
+        let given = &self.settings;
+        let interval = self.training.iter().map(|trial| trial.interval_s()).fold(f64::INFINITY, f64::min).max(1e-3);
+        let step_s = interval * (given.step_s.unwrap_or(interval) / interval).round().max(1.0);
+        let segment_s = given.segment_s.unwrap_or(120.0 * step_s);
+        Cut { segment_s, residual_s: given.residual_s.unwrap_or(4.0 * step_s).max(step_s), step_s }
+    }
+
+    /// The variant's model with other coefficients.
+    fn model_at(&self, variant: &Variant, values: &BTreeMap<String, f64>) -> Model {
+        let mut model = variant.model.clone();
+        let all = values.iter().map(|(name, value)| (name.clone(), Quantity::new(*value, "refined")));
+        model.coefficients.extend(all);
+        model
+    }
+}
+
+/// The weak form's coefficients on all trials.
+fn weak_values(variant: &Variant, choices: &Choices) -> Result<BTreeMap<String, f64>, RefineError> {
+    let all = merged(&variant.moments, |_| true).ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
+    let fitted = fit(&variant.blocks, &all, &variant.model, choices);
+    Ok(fitted.coefficients.into_iter().map(|(name, fitted)| (name, fitted.value)).collect())
+}
+
+impl Trajectory<'_> {
+    fn options(mut self, options: &mut Vec<Trying>, progress: Progress<'_>) -> Result<(), RefineError> {
+        let prior = self.prior(&|_| true)?;
+        let first = self.pass(&prior.weak)?;
+        self.passing.thresholds = first.sizes.into_iter().map(threshold).collect();
+        let middle = self.descend(&prior, strength(MIDDLE), prior.weak.clone())?;
+        let priors: Vec<Prior> =
+            (0..self.task.fold_count()).map(|fold| self.prior(&|t| self.inside(t, fold))).collect::<Result<_, _>>()?;
+        for pull in PULLS {
+            let label = format!("trajectory, {}, pull {pull:.0e}", self.variant.family.name());
+            step(progress, 0.7, &format!("{label}: simulating manoeuvres left out"))?;
+            let models: Vec<Model> =
+                priors.iter().enumerate().map(|(fold, prior)| self.left_out(fold, prior, strength(pull), &middle)).collect();
+            let simulated = self.task.simulate_all(&self.task.training, &|t| models[self.task.fold_of(t)].clone())?;
+            let taken = Taken::Trajectory { fit: self.one_step(&prior, strength(pull), &middle) };
+            options.push(self.task.trying(label, Some(pull), taken, self.names.len(), simulated));
+        }
+        self.fit_best(&prior, middle, options)
+    }
+
+    /// Carries the best option to its end; the others stay one step from where the equations were linearised.
+    fn fit_best(&self, prior: &Prior, middle: Reached, options: &mut [Trying]) -> Result<(), RefineError> {
+        let Some(best) = super::super::finish::best(options) else { return Ok(()) };
+        let (Taken::Trajectory { fit }, Some(pull)) = (&mut options[best].taken, options[best].option.lambda_min) else {
+            return Ok(());
+        };
+        let reached = self.descend(prior, strength(pull), middle.at)?;
+        **fit = self.fit(prior, strength(pull), &reached.pass, reached.at.clone());
+        Ok(())
+    }
+
+    /// One step from where the equations were linearised.
+    fn one_step(&self, prior: &Prior, strength: Strength, middle: &Reached) -> Box<Fit> {
+        let held = Held::new(&total(&middle.pass, |_| true), prior, strength, &middle.at);
+        let at = held.step(1e-6).map_or_else(|| middle.at.clone(), |step| &middle.at + step);
+        Box::new(self.fit(prior, strength, &middle.pass, at))
+    }
+
+    fn inside(&self, trial: usize, fold: usize) -> bool {
+        self.task.training.len() == 1 || self.task.fold_of(trial) != fold
+    }
+
+    /// The pulls of some trials.
+    fn prior(&self, keep: &dyn Fn(usize) -> bool) -> Result<Prior, RefineError> {
+        let nothing = || RefineError::Data("a fold has no sample".into());
+        let moments = merged(&self.variant.moments, keep).ok_or_else(nothing)?;
+        let fitted = fit(&self.variant.blocks, &moments, &self.variant.model, self.choices);
+        let weak = |name: &str| fitted.coefficients.get(name).map_or(0.0, |fitted| fitted.value);
+        let source = |name: &str| self.variant.model.coefficient(name);
+        Ok(Prior::new(&self.names, &self.variant.blocks, &moments, &weak, &source))
+    }
+
+    fn values(&self, at: &DVector<f64>) -> BTreeMap<String, f64> {
+        self.names.iter().cloned().zip(at.iter().copied()).collect()
+    }
+
+    fn pass(&self, at: &DVector<f64>) -> Result<Pass, RefineError> {
+        let model = self.task.model_at(self.variant, &self.values(at));
+        let system = SensitiveSystem::new(&model, self.task.request.law).map_err(|e| RefineError::Law(e.to_string()))?;
+        Ok(self.passing.pass(&system))
+    }
+
+    /// From coefficients to the least cost nearby.
+    fn descend(&self, prior: &Prior, strength: Strength, from: DVector<f64>) -> Result<Reached, RefineError> {
+        let mut here = Reached { pass: self.pass(&from)?, at: from };
+        let mut damping = 1e-3;
+        let mut held = Held::new(&total(&here.pass, |_| true), prior, strength, &here.at);
+        for _ in 0..STEPS {
+            let Some(step) = held.step(damping) else { break };
+            let at = &here.at + step;
+            let pass = self.pass(&at)?;
+            let next = Held::new(&total(&pass, |_| true), prior, strength, &at);
+            if next.cost.is_finite() && next.cost < held.cost {
+                let gained = 1.0 - next.cost / held.cost;
+                (here, held) = (Reached { at, pass }, next);
+                damping *= 0.1;
+                if gained < ENOUGH {
+                    break;
+                }
+            } else {
+                damping = (damping * 30.0).max(1e-2);
+                if damping > 1e6 {
+                    break;
+                }
+            }
+        }
+        Ok(here)
+    }
+
+    /// The model of a fold: one step from where all trials are fitted, on the trials inside it and their weak form.
+    fn left_out(&self, fold: usize, prior: &Prior, strength: Strength, middle: &Reached) -> Model {
+        let normal = total(&middle.pass, |trial| self.inside(trial, fold));
+        let held = Held::new(&normal, prior, strength, &middle.at);
+        let at = held.step(1e-6).map_or_else(|| middle.at.clone(), |step| &middle.at + step);
+        self.task.model_at(self.variant, &self.values(&at))
+    }
+
+    /// Coefficients with what a pass near them says of their errors.
+    fn fit(&self, prior: &Prior, strength: Strength, pass: &Pass, at: DVector<f64>) -> Fit {
+        let normal = total(pass, |_| true);
+        let held = Held::new(&normal, prior, strength, &at);
+        let errors = held.standard_errors(&pass.gradients, normal.count);
+        let one = |(k, name): (usize, &String)| {
+            let fitted = Fitted {
+                value: at[k],
+                standard_error: errors[k],
+                prior_deviation: prior.deviation(k, strength) * (normal.cost / normal.count.max(1.0)).sqrt(),
+            };
+            (name.clone(), fitted)
+        };
+        let coefficients = self.names.iter().enumerate().map(one).collect();
+        Fit { coefficients, condition_number: held.condition_number(), collinear_groups: Vec::new() }
+    }
+}
+
+fn strength(pull: f64) -> Strength {
+    Strength { mu: pull, lambda: 0.01 * pull }
+}
+
+/// Sums over some trials.
+fn total(pass: &Pass, keep: impl Fn(usize) -> bool) -> Normal {
+    let mut all = Normal::zeros(pass.trials.first().map_or(0, |normal| normal.gradient.len()));
+    pass.trials.iter().enumerate().filter(|(trial, _)| keep(*trial)).for_each(|(_, normal)| all.add(normal));
+    all
+}
+
+/// Huber's threshold from absolute residuals: their median, as that of a normal distribution.
+fn threshold(mut sizes: Vec<f64>) -> f64 {
+    sizes.sort_by(f64::total_cmp);
+    let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+    if median > 0.0 { HUBER * 1.4826 * median } else { f64::INFINITY }
+}

@@ -1,0 +1,60 @@
+//! Damped Gauss-Newton steps (Marquardt 1963, J Soc Ind Appl Math 11, 431-441).
+
+use nalgebra::{DMatrix, DVector};
+
+use super::normal::Normal;
+use super::prior::{Prior, Strength};
+
+/// Normal equations with what holds the coefficients, by the number of residuals.
+pub(super) struct Held {
+    pub hessian: DMatrix<f64>,
+    pub gradient: DVector<f64>,
+    pub cost: f64,
+}
+
+impl Held {
+    /// At coefficients.
+    pub fn new(normal: &Normal, prior: &Prior, strength: Strength, at: &DVector<f64>) -> Self {
+        let count = normal.count.max(1.0);
+        let (mut hessian, mut gradient) = (&normal.hessian / count, &normal.gradient / count);
+        prior.add(at, strength, &mut hessian, &mut gradient);
+        Self { hessian, gradient, cost: normal.cost / count + prior.cost(at, strength) }
+    }
+
+    /// The step with every curvature enlarged by a share; none where the equations cannot be solved.
+    pub fn step(&self, damping: f64) -> Option<DVector<f64>> {
+        let (mut scaled, scales) = self.scaled();
+        scaled.iter_mut().step_by(scales.len() + 1).for_each(|diagonal| *diagonal += damping + 1e-12);
+        let right = self.gradient.component_mul(&scales);
+        let step = scaled.cholesky()?.solve(&right);
+        Some(-step.component_mul(&scales))
+    }
+
+    /// The Hessian with ones on its diagonal, and the scales that make it so.
+    fn scaled(&self) -> (DMatrix<f64>, DVector<f64>) {
+        let scales = self.hessian.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
+        let scaled = DMatrix::from_fn(scales.len(), scales.len(), |i, j| self.hessian[(i, j)] * scales[i] * scales[j]);
+        (scaled, scales)
+    }
+
+    /// Ratio of the extreme eigenvalues of the scaled Hessian.
+    pub fn condition_number(&self) -> f64 {
+        let values = self.scaled().0.symmetric_eigenvalues();
+        let largest = values.max();
+        largest / values.min().max(largest * f64::EPSILON)
+    }
+
+    /// Standard errors from the scatter of the segments' gradients, within which residuals may depend on each other (Huber
+    /// 1967, Proc. Fifth Berkeley Symposium 1, 221-233: `H^-1 sum g g' H^-1`).
+    pub fn standard_errors(&self, gradients: &[DVector<f64>], count: f64) -> DVector<f64> {
+        let (mut scaled, scales) = self.scaled();
+        scaled.iter_mut().step_by(scales.len() + 1).for_each(|diagonal| *diagonal += 1e-12);
+        let Some(factor) = scaled.cholesky() else { return DVector::zeros(scales.len()) };
+        let columns: Vec<DVector<f64>> = gradients.iter().map(|g| g.component_mul(&scales) / count.max(1.0)).collect();
+        if columns.is_empty() {
+            return DVector::zeros(scales.len());
+        }
+        let moved = factor.solve(&DMatrix::from_columns(&columns));
+        DVector::from_fn(scales.len(), |k, _| moved.row(k).norm() * scales[k])
+    }
+}

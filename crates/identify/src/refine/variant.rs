@@ -1,0 +1,110 @@
+//! The term families of a refinement, each with its regressions, statistics and training sets.
+
+use rayon::prelude::*;
+use sistership_model::Model;
+use sistership_model::coefficient::Axis;
+
+use super::blocks::Blocks;
+use super::family::Family;
+use super::outcome::RefineError;
+use super::published::{Choices, Fold, tune};
+use super::rows::trial_moments;
+use super::selection::Task;
+use super::settings::{Method, Range};
+use super::weak::{Windows, weak_moments};
+use crate::regression::{Choice, Moments};
+
+/// One family of terms.
+pub(super) struct Variant {
+    /// Which.
+    pub family: Family,
+    /// The source carried over, with these terms.
+    pub model: Model,
+    /// Its regressions.
+    pub blocks: Blocks,
+    /// Its statistics, by trial and regression.
+    pub moments: Vec<Vec<Moments>>,
+}
+
+impl Task<'_> {
+    /// The families that the settings name and that differ from each other; one that has too few samples is left out,
+    /// unless it is the first.
+    pub(super) fn variants(&self) -> Result<Vec<Variant>, RefineError> {
+        let families = if self.settings.families.is_empty() { &[Family::Own][..] } else { &self.settings.families };
+        let mut variants = Vec::new();
+        for &family in families {
+            let Some(model) = family.of(&self.transferred, self.request.law) else { continue };
+            match self.variant(family, model) {
+                Ok(variant) => variants.push(variant),
+                Err(RefineError::Data(_)) if !variants.is_empty() => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(variants)
+    }
+
+    fn variant(&self, family: Family, model: Model) -> Result<Variant, RefineError> {
+        let blocks = Blocks::new(&model, self.request.law)?;
+        let moments = self.moments(&blocks)?;
+        Ok(Variant { family, model, blocks, moments })
+    }
+
+    fn moments(&self, blocks: &Blocks) -> Result<Vec<Vec<Moments>>, RefineError> {
+        let one = |trial: &&sistership_model::Trial| match self.windows() {
+            Some(windows) => weak_moments(blocks, trial, windows),
+            None => trial_moments(blocks, trial, self.settings.difference_s),
+        };
+        let moments: Vec<Vec<Moments>> = self.training.par_iter().map(one).collect::<Result<_, _>>()?;
+        let samples: f64 = moments.iter().map(|m| m.first().map_or(0.0, |m| m.count)).sum();
+        let widest = blocks.blocks.iter().map(super::Block::regressors).max().unwrap_or(0) as f64;
+        // A prior as strong as a source's lets windows be fewer than a difference a sample, which are far from independent.
+        let least = if self.windows().is_some() { widest } else { 4.0 * widest };
+        if samples < least {
+            let message = format!("{samples:.0} samples are too few for {widest} coefficients an axis; give at least {least}");
+            return Err(RefineError::Data(message));
+        }
+        Ok(moments)
+    }
+
+    /// The windows of the weak form; none where differences are taken.
+    fn windows(&self) -> Option<Windows> {
+        if self.settings.method == Method::Published {
+            return None;
+        }
+        let length_s = self.settings.window_s.unwrap_or(0.0);
+        Some(Windows { length_s, hop_s: self.settings.hop_s.unwrap_or(0.1 * length_s) })
+    }
+
+    /// Training sets with whole manoeuvres left out; a single trial can only judge itself.
+    pub(super) fn folds<'f>(&self, variant: &'f Variant) -> Result<Vec<Fold<'f>>, RefineError> {
+        let nothing = || RefineError::Data("a fold has no sample".into());
+        let one = |fold: usize| {
+            let inside = |trial: usize| self.training.len() == 1 || self.fold_of(trial) != fold;
+            let training = merged(&variant.moments, inside).ok_or_else(nothing)?;
+            let left_out = merged(&variant.moments, |trial| self.fold_of(trial) == fold).ok_or_else(nothing)?;
+            Ok(Fold::new(&variant.blocks, &variant.model, &training, &left_out))
+        };
+        (0..self.fold_count()).map(one).collect()
+    }
+
+    /// The same strength for every acceleration but roll's: of roll a source of the plane says nothing, so that its
+    /// strength is the one with the least error in the windows left out.
+    pub(super) fn common_choices(&self, variant: &Variant, folds: &[Fold<'_>], lambda: f64) -> Choices {
+        let rolls = variant.blocks.blocks.iter().any(|block| block.axes.contains(&Axis::K));
+        let free = Range { lambda_min: 1e-9, lambda_max: 1.0, alpha_max: 0.0 };
+        let tuned = if rolls { tune(folds, &free, 50) } else { Choices::new() };
+        let of_axis = |b: usize, (target, axis): (usize, &Axis)| match axis {
+            Axis::K => tuned[b][target],
+            _ => Choice { lambda, alpha: 0.0 },
+        };
+        let of_block = |b: usize| variant.blocks.blocks[b].axes.iter().enumerate().map(|axis| of_axis(b, axis)).collect();
+        (0..variant.blocks.blocks.len()).map(of_block).collect()
+    }
+}
+
+/// The statistics of some trials together, one set per regression.
+pub(super) fn merged(moments: &[Vec<Moments>], keep: impl Fn(usize) -> bool) -> Option<Vec<Moments>> {
+    let kept: Vec<&Vec<Moments>> = moments.iter().enumerate().filter(|(trial, _)| keep(*trial)).map(|(_, m)| m).collect();
+    let blocks = kept.first()?.len();
+    (0..blocks).map(|block| Moments::sum(kept.iter().map(|m| &m[block]))).collect()
+}

@@ -1,0 +1,96 @@
+//! Windows and their weights.
+
+use std::ops::Range;
+
+use sistership_model::trial::Trial;
+
+/// Least intervals in a window: fewer cannot tell the bump from a spike.
+const LEAST_INTERVALS: f64 = 8.0;
+/// A bump weighs its window as if it were this share of it: `(int b)^2 / int b^2` for `(1 - s^2)^3`.
+const EQUIVALENT: f64 = 0.612_9;
+
+/// Length and spacing of the windows of a trial.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Windows {
+    /// Length, s; at least eight sampling intervals are taken.
+    pub length_s: f64,
+    /// From one window's start to the next, s; at least a sampling interval.
+    pub hop_s: f64,
+}
+
+impl Windows {
+    fn length(&self, interval_s: f64) -> f64 {
+        self.length_s.max(LEAST_INTERVALS * interval_s)
+    }
+
+    /// How much of a window is its own: neighbours that overlap repeat each other.
+    pub(super) fn share(&self, interval_s: f64) -> f64 {
+        (self.hop_s.max(interval_s) / (EQUIVALENT * self.length(interval_s))).min(1.0)
+    }
+
+    /// The bumps of a trial, none of which reaches over a gap.
+    pub(super) fn over(&self, trial: &Trial) -> Vec<Bump> {
+        let interval_s = trial.interval_s();
+        let (length, hop) = (self.length(interval_s), self.hop_s.max(interval_s));
+        trial.segments().into_iter().flat_map(|segment| within(&trial.t_s, segment, length, hop)).collect()
+    }
+}
+
+/// The bumps of a part without gaps.
+fn within(t_s: &[f64], segment: Range<usize>, length: f64, hop: f64) -> Vec<Bump> {
+    let (start, end) = (t_s[segment.start], t_s[segment.end - 1]);
+    let count = ((end - start - length) / hop + 1e-9).floor();
+    let count = if count < 0.0 { 0 } else { count as usize + 1 };
+    let mut first = segment.start;
+    let mut one = |k: usize| {
+        let from = start + k as f64 * hop;
+        first += t_s[first..segment.end].partition_point(|t| *t < from - 1e-9);
+        let samples = t_s[first..segment.end].partition_point(|t| *t <= from + length + 1e-9);
+        Bump::new(t_s, first..first + samples, from + 0.5 * length, 0.5 * length)
+    };
+    (0..count).map(&mut one).collect()
+}
+
+/// A bump over the samples of a window: what integrates a column with it, and what integrates a rate of change by parts.
+#[derive(Debug, Clone)]
+pub(super) struct Bump {
+    samples: Range<usize>,
+    /// Trapezoidal weights times the bump; they add up to 1.
+    weights: Vec<f64>,
+    /// The bump itself at the samples, over the same sum.
+    bump: Vec<f64>,
+}
+
+impl Bump {
+    fn new(t_s: &[f64], samples: Range<usize>, centre: f64, half: f64) -> Self {
+        let t = &t_s[samples.clone()];
+        let shape = |t: &f64| (1.0 - ((t - centre) / half).powi(2)).max(0.0).powi(3);
+        let mut bump: Vec<f64> = t.iter().map(shape).collect();
+        let last = t.len().saturating_sub(1);
+        let width = |k: usize| 0.5 * (t[(k + 1).min(last)] - t[k.saturating_sub(1)]);
+        let mut weights: Vec<f64> = bump.iter().enumerate().map(|(k, b)| b * width(k)).collect();
+        let total: f64 = weights.iter().sum();
+        weights.iter_mut().chain(&mut bump).for_each(|value| *value /= total);
+        Self { samples, weights, bump }
+    }
+
+    /// The weighted mean of a column of the trial.
+    pub fn mean(&self, column: &[f64]) -> f64 {
+        self.weights.iter().zip(&column[self.samples.clone()]).map(|(w, x)| w * x).sum()
+    }
+
+    /// The weighted mean of mass times a velocity's rate of change, by parts: `-int v d(b m)`, summed so that a constant
+    /// velocity gives exactly zero. Mass is 1 where none is given.
+    pub fn rate(&self, mass: Option<&[f64]>, velocity: &[f64]) -> f64 {
+        let v = &velocity[self.samples.clone()];
+        let weighted = |k: usize| self.bump[k] * mass.map_or(1.0, |mass| mass[self.samples.start + k]);
+        let mut before = weighted(0);
+        let mut sum = 0.0;
+        for k in 1..v.len() {
+            let here = weighted(k);
+            sum -= 0.5 * (v[k] + v[k - 1]) * (here - before);
+            before = here;
+        }
+        sum + (before * v[v.len() - 1] - weighted(0) * v[0])
+    }
+}

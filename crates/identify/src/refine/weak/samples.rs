@@ -1,0 +1,101 @@
+//! What a regression is made of at every sample of a trial: regressors, masses with the velocities they multiply, rests.
+
+use std::borrow::Cow;
+
+use nalgebra::DVector;
+use sistership_dynamics::tape::Lanes;
+use sistership_model::trial::Trial;
+
+use super::super::blocks::{Block, Blocks};
+use super::super::outcome::RefineError;
+use super::super::rows::{LANES, Record};
+
+/// One regression's columns over the samples of a trial.
+pub(super) struct Columns<'a> {
+    /// Regressors with scale.
+    pub regressors: Vec<Vec<f64>>,
+    /// Targets.
+    pub targets: Vec<Target<'a>>,
+}
+
+/// A mass, 1 where absent, with the velocity it multiplies.
+pub(super) type Inertia<'a> = (Option<Vec<f64>>, Cow<'a, [f64]>);
+
+/// What a target is made of.
+pub(super) struct Target<'a> {
+    /// Masses, 1 where absent, and velocities whose rate of change they multiply.
+    pub inertia: Vec<Inertia<'a>>,
+    /// What is known of the right-hand side.
+    pub rest: Vec<f64>,
+}
+
+/// The columns of every regression of a law over a trial.
+pub(super) fn columns<'a>(blocks: &Blocks, trial: &'a Trial) -> Result<Vec<Columns<'a>>, RefineError> {
+    let record = Record::new(blocks, trial)?;
+    let mut all: Vec<Columns<'a>> = blocks.blocks.iter().map(|block| Columns::new(block, &record, trial.len())).collect();
+    let mut lanes = vec![[0.0; LANES]; record.columns.len()];
+    let mut work = Vec::new();
+    let samples: Vec<(usize, usize)> = (0..trial.len()).map(|k| (k, k)).collect();
+    for chunk in samples.chunks(LANES) {
+        record.load(chunk, &mut lanes);
+        blocks.tape.run(&lanes, &mut work);
+        for (block, columns) in blocks.blocks.iter().zip(&mut all) {
+            columns.append(blocks, block, &work, chunk.len());
+        }
+    }
+    Ok(all)
+}
+
+impl<'a> Columns<'a> {
+    fn new(block: &Block, record: &Record<'a>, samples: usize) -> Self {
+        let velocity = |axis| Cow::Borrowed(record.velocity(axis));
+        let room = || Vec::with_capacity(samples);
+        let target = |own| Target {
+            inertia: match block.axes.len() {
+                1 => {
+                    let with_mass = block.mass[0].iter().zip(&block.columns).filter(|(mass, _)| mass.is_some());
+                    with_mass.map(|(_, &axis)| (Some(room()), velocity(axis))).collect()
+                }
+                _ => vec![(None, velocity(own))],
+            },
+            rest: room(),
+        };
+        let targets = block.axes.iter().map(|&axis| target(axis)).collect();
+        Self { regressors: vec![room(); block.regressors()], targets }
+    }
+
+    fn append(&mut self, blocks: &Blocks, block: &Block, work: &[Lanes<LANES>], count: usize) {
+        let read = |output: usize| blocks.tape.read(output, work);
+        let own_mass = if block.is_force() || block.axes.len() > 1 { None } else { block.mass[0][0].map(read) };
+        let divided = |value: Lanes<LANES>| -> Lanes<LANES> {
+            own_mass.map_or(value, |mass| std::array::from_fn(|lane| value[lane] / mass[lane]))
+        };
+        let scale = read(block.scales[0]);
+        for (column, &term) in self.regressors.iter_mut().zip(&block.terms) {
+            let term = read(term);
+            column.extend_from_slice(&divided(std::array::from_fn(|lane| scale[lane] * term[lane]))[..count]);
+        }
+        if let [target] = self.targets.as_mut_slice() {
+            let masses = block.mass[0].iter().flatten();
+            for ((column, _), &mass) in target.inertia.iter_mut().zip(masses) {
+                column.get_or_insert_default().extend_from_slice(&divided(read(mass))[..count]);
+            }
+            target.rest.extend_from_slice(&divided(read(block.rests[0]))[..count]);
+            return;
+        }
+        self.append_rests(block, &read, count);
+    }
+
+    /// The accelerations that the rests of coupled axes cause.
+    fn append_rests(&mut self, block: &Block, read: &dyn Fn(usize) -> Lanes<LANES>, count: usize) {
+        let (scales, rests): (Vec<_>, Vec<_>) = block.scales.iter().zip(&block.rests).map(|(&s, &r)| (read(s), read(r))).unzip();
+        for lane in 0..count {
+            let unscaled = rests.iter().zip(&scales).map(|(rest, scale)| match rest[lane] {
+                0.0 => 0.0,
+                rest => rest * scales[0][lane] / scale[lane],
+            });
+            let caused = &block.mixing * DVector::from_iterator(rests.len(), unscaled);
+            self.targets.iter_mut().zip(caused.iter()).for_each(|(target, value)| target.rest.push(*value));
+        }
+    }
+}
