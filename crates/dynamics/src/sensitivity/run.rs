@@ -5,6 +5,7 @@ use super::system::{SensitiveSystem, Sloped};
 use crate::integrate::Method;
 use crate::state::{StateVector, at};
 use crate::tape::Lanes;
+use crate::wide::{Wide, widest};
 
 /// Runs in lockstep: states and sensitivities of each lane.
 #[derive(Debug)]
@@ -115,9 +116,8 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         for (i, (reach, inputs)) in [(0.0, start), (0.5 * h, middle), (0.5 * h, middle), (h, end)].into_iter().enumerate() {
             self.stage(i, reach, inputs);
         }
-        self.gains(h);
         self.advance_states(|[a, b, c, d]| h / 6.0 * (a + 2.0 * (b + c) + d));
-        self.advance_sensitivities(4);
+        widest(Chain { run: self, step_s: h });
     }
 
     /// Evaluates the rate, its slopes and regressors at the state reached along the stage before.
@@ -141,6 +141,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
     }
 
     /// Gains of each stage and the transition of a step of the classical Runge-Kutta method.
+    #[inline(always)]
     fn gains(&mut self, h: f64) {
         let Room { gains, product, transition, .. } = &mut self.room;
         product.entries.fill([0.0; L]);
@@ -162,6 +163,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         }
     }
 
+    #[inline(always)]
     fn advance_sensitivities(&mut self, stages: usize) {
         let size = self.states.len() * self.columns;
         for lane in 0..L {
@@ -175,6 +177,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
     }
 
     /// `next = P S` for a lane.
+    #[inline(always)]
     fn transport(&mut self, lane: usize) {
         let (order, columns) = (self.states.len(), self.columns);
         let own = &self.sensitivities[lane * order * columns..(lane + 1) * order * columns];
@@ -187,6 +190,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
     }
 
     /// Gain times mobility of a stage.
+    #[inline(always)]
     fn reach(&mut self, i: usize) {
         let axes = self.system.axes.len();
         let (gain, mobility) = (&self.room.gains[i], &self.stages[i].mobility);
@@ -201,6 +205,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
     }
 
     /// Adds what the coefficients push at a stage.
+    #[inline(always)]
     fn push(&mut self, i: usize, lane: usize) {
         let (order, axes, columns) = (self.states.len(), self.system.axes.len(), self.columns);
         let count = columns - order;
@@ -211,6 +216,20 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
                 add_scaled(&mut out[range.clone()], self.room.reach[row * axes + axis][lane], &regressors[range.clone()]);
             }
         }
+    }
+}
+
+/// The chain rule through the stages of a step.
+struct Chain<'r, 'a, const L: usize> {
+    run: &'r mut SensitiveRun<'a, L>,
+    step_s: f64,
+}
+
+impl<const L: usize> Wide for Chain<'_, '_, L> {
+    #[inline(always)]
+    fn go(self) {
+        self.run.gains(self.step_s);
+        self.run.advance_sensitivities(4);
     }
 }
 
@@ -252,6 +271,7 @@ impl<const L: usize> Stage<L> {
 }
 
 /// `out += factor x`.
+#[inline(always)]
 fn add_scaled(out: &mut [f64], factor: f64, x: &[f64]) {
     if factor != 0.0 {
         out.iter_mut().zip(x).for_each(|(out, x)| *out += factor * x);

@@ -14,18 +14,23 @@ impl<const L: usize> Small<L> {
         Self { order, entries: vec![[0.0; L]; order * order] }
     }
 
+    #[inline(always)]
     pub fn at(&self, row: usize, column: usize) -> &Lanes<L> {
         &self.entries[row * self.order + column]
     }
 
+    #[inline(always)]
     pub fn at_mut(&mut self, row: usize, column: usize) -> &mut Lanes<L> {
         &mut self.entries[row * self.order + column]
     }
 
     /// `diagonal + factor other`.
+    #[inline(always)]
     pub fn set(&mut self, diagonal: f64, factor: f64, other: &Self) {
         for (entry, other) in self.entries.iter_mut().zip(&other.entries) {
-            *entry = other.map(|value| factor * value);
+            for lane in 0..L {
+                entry[lane] = factor * other[lane];
+            }
         }
         for i in 0..self.order {
             self.at_mut(i, i).iter_mut().for_each(|value| *value += diagonal);
@@ -33,6 +38,7 @@ impl<const L: usize> Small<L> {
     }
 
     /// `a b`.
+    #[inline(always)]
     pub fn set_product(&mut self, a: &Self, b: &Self) {
         let order = self.order;
         for (row, out) in self.entries.chunks_exact_mut(order).enumerate() {
@@ -48,6 +54,7 @@ impl<const L: usize> Small<L> {
         }
     }
 
+    #[inline(always)]
     pub fn add(&mut self, other: &Self) {
         for (entry, other) in self.entries.iter_mut().zip(&other.entries) {
             for lane in 0..L {

@@ -3,6 +3,7 @@
 use sistership_model::formula::Function;
 
 use super::{Op, Slot, Tape};
+use crate::wide::{Wide, widest};
 
 /// Values of one quantity in every lane.
 pub type Lanes<const N: usize> = [f64; N];
@@ -11,11 +12,8 @@ impl Tape {
     /// Evaluates every operation; `work` is reused from call to call and holds the results afterwards.
     /// `inputs[i]` are the lanes of input `i`.
     pub fn run<const N: usize>(&self, inputs: &[Lanes<N>], work: &mut Vec<Lanes<N>>) {
-        work.clear();
-        for op in &self.ops {
-            let value = step(op, inputs, work);
-            work.push(value);
-        }
+        work.resize(self.ops.len(), [0.0; N]);
+        widest(Evaluation { ops: &self.ops, inputs, work });
     }
 
     /// An output after [`Tape::run`].
@@ -34,10 +32,9 @@ impl Tape {
     /// Directional derivatives at the point that `primal` holds after a [`Tape::run`] of one lane: lane `k` of
     /// `seeds[i]` is the change of input `i` in direction `k`.
     pub fn tangents<const N: usize>(&self, primal: &[Lanes<1>], seeds: &[Lanes<N>], work: &mut Vec<Lanes<N>>) {
-        work.clear();
+        work.resize(self.ops.len(), [0.0; N]);
         for (index, op) in self.ops.iter().enumerate() {
-            let value = tangent(op, index, primal, seeds, work);
-            work.push(value);
+            work[index] = tangent(op, index, primal, seeds, work);
         }
     }
 
@@ -84,13 +81,29 @@ impl Tape {
     }
 }
 
+/// Every operation in turn; `work` is as long as there are operations.
+struct Evaluation<'a, const N: usize> {
+    ops: &'a [Op],
+    inputs: &'a [Lanes<N>],
+    work: &'a mut [Lanes<N>],
+}
+
+impl<const N: usize> Wide for Evaluation<'_, N> {
+    #[inline(always)]
+    fn go(self) {
+        for (index, op) in self.ops.iter().enumerate() {
+            self.work[index] = step(op, self.inputs, self.work);
+        }
+    }
+}
+
 #[inline(always)]
 fn step<const N: usize>(op: &Op, inputs: &[Lanes<N>], work: &[Lanes<N>]) -> Lanes<N> {
     let at = |slot: u32| &work[slot as usize];
     match *op {
         Op::Constant(value) => [value; N],
         Op::Input(index) => inputs[index as usize],
-        Op::Negate(a) => at(a).map(|x| -x),
+        Op::Negate(a) => each(at(a), |x| -x),
         Op::Add(a, b) => zip(at(a), at(b), |x, y| x + y),
         Op::Subtract(a, b) => zip(at(a), at(b), |x, y| x - y),
         Op::Multiply(a, b) => zip(at(a), at(b), |x, y| x * y),
@@ -99,30 +112,50 @@ fn step<const N: usize>(op: &Op, inputs: &[Lanes<N>], work: &[Lanes<N>]) -> Lane
         Op::Call1(function, a) => call(function, at(a)),
         Op::Call2(function, a, b) => zip(at(a), at(b), |x, y| function.apply(x, y)),
         Op::Select(comparison, a, b, c, d) => {
-            std::array::from_fn(|k| if comparison.holds(at(a)[k], at(b)[k]) { at(c)[k] } else { at(d)[k] })
+            let (mut out, other) = (*at(c), at(d));
+            for k in 0..N {
+                if !comparison.holds(at(a)[k], at(b)[k]) {
+                    out[k] = other[k];
+                }
+            }
+            out
         }
     }
 }
 
 #[inline(always)]
 fn zip<const N: usize>(a: &Lanes<N>, b: &Lanes<N>, f: impl Fn(f64, f64) -> f64) -> Lanes<N> {
-    std::array::from_fn(|k| f(a[k], b[k]))
+    let mut out = [0.0; N];
+    for k in 0..N {
+        out[k] = f(a[k], b[k]);
+    }
+    out
+}
+
+/// A loop, since `map` on arrays is not always inlined, and a call a lane costs more than what it calculates.
+#[inline(always)]
+fn each<const N: usize>(a: &Lanes<N>, f: impl Fn(f64) -> f64) -> Lanes<N> {
+    let mut out = [0.0; N];
+    for k in 0..N {
+        out[k] = f(a[k]);
+    }
+    out
 }
 
 /// The cheap functions are spelled out, so that their loops over the lanes become vector instructions.
 #[inline(always)]
 fn call<const N: usize>(function: Function, a: &Lanes<N>) -> Lanes<N> {
     match function {
-        Function::Sqrt => a.map(f64::sqrt),
-        Function::Abs => a.map(f64::abs),
-        _ => a.map(|x| function.apply(x, 0.0)),
+        Function::Sqrt => each(a, f64::sqrt),
+        Function::Abs => each(a, f64::abs),
+        _ => each(a, |x| function.apply(x, 0.0)),
     }
 }
 
 #[inline(always)]
 fn times<const N: usize>(lanes: &Lanes<N>, factor: f64) -> Lanes<N> {
     // No direction is moved by an infinite slope that it does not meet.
-    lanes.map(|x| if x == 0.0 { 0.0 } else { x * factor })
+    each(lanes, |x| if x == 0.0 { 0.0 } else { x * factor })
 }
 
 #[inline(always)]
@@ -220,6 +253,17 @@ mod tests {
         for k in 0..4 {
             assert_eq!(tape.read(0, &work)[k], tape.values(&[u[k], v[k]])[0]);
         }
+    }
+
+    #[test]
+    fn wide_instructions_round_as_plain_ones() {
+        let tape = tape("if(u > v, sqrt(u^2 + v^2), atan2(v, u))*exp(-v)/(u*v + 3) - abs(u)^2.5 + tanh(u)*max(u, v)");
+        let lane = |from: f64| std::array::from_fn::<f64, 8, _>(|k| from + 0.37 * k as f64);
+        let inputs = [lane(-1.1), lane(-0.8)];
+        let (mut wide, mut plain) = (Vec::new(), vec![[0.0; 8]; tape.len()]);
+        tape.run(&inputs, &mut wide);
+        Evaluation { ops: &tape.ops, inputs: &inputs, work: &mut plain }.go();
+        assert_eq!(wide, plain);
     }
 
     #[test]
