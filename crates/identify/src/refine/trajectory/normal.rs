@@ -8,7 +8,7 @@ use sistership_dynamics::{Envelope, Method};
 use super::segments::{Plan, Segment, difference};
 
 /// Segments in lockstep.
-const LANES: usize = 4;
+const LANES: usize = 8;
 /// Rows of residuals gathered before they are multiplied.
 const ROWS: usize = 96;
 /// What a residual counts that a simulation never came to, in standard deviations.
