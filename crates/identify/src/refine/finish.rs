@@ -58,7 +58,7 @@ impl Task<'_> {
 
     /// The turning circles and zigzags among the trials, beside what both models make of the recorded rudder.
     fn measured_manoeuvres(&self, refined: &Model) -> Vec<MeasuredManoeuvre> {
-        let trials = self.training.iter().map(|trial| (*trial, true)).chain(self.judged.iter().map(|trial| (*trial, false)));
+        let trials = self.whole.iter().map(|trial| (*trial, true)).chain(self.judged.iter().map(|trial| (*trial, false)));
         let one = |(trial, fitted): (&Trial, bool)| {
             let recognised = Recognised::of(trial)?;
             let samples: Vec<usize> = (0..trial.len()).collect();
@@ -119,11 +119,11 @@ impl Task<'_> {
             let how = if self.training.len() == 1 {
                 "nothing could be left out of a single trial: these are errors on the trial that was fitted".to_owned()
             } else {
-                format!(
-                    "each of {} trials simulated by a model fitted without it, in {} folds",
-                    self.training.len(),
-                    self.fold_count()
-                )
+                let what = match self.whole.len() {
+                    whole if whole == self.training.len() => format!("{whole} trials"),
+                    whole => format!("{} parts of {whole} trials", self.training.len()),
+                };
+                format!("each of {what} simulated by a model fitted without it, in {} folds", self.fold_count())
             };
             return Ok(HeldOut { source: options[0].errors.rmse(), refined: options[best].errors.rmse(), how });
         }

@@ -4,6 +4,7 @@ mod blocks;
 mod family;
 mod finish;
 mod outcome;
+mod parts;
 mod published;
 mod rows;
 mod selection;

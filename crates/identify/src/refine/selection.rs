@@ -13,6 +13,7 @@ use sistership_model::vessel::Status;
 use sistership_model::{Model, Vessel};
 
 use super::outcome::{RefineError, Refinement, StepOption};
+use super::parts::parts;
 use super::published::{Choices, Fit, Fitted, Fold, tune};
 use super::settings::{Method, Settings};
 use super::variant::Variant;
@@ -42,7 +43,10 @@ pub type Progress<'a> = &'a (dyn Fn(f64, &str) -> bool + Sync);
 /// Says which setting, trial or channel is at fault; never leaves a model half refined.
 pub fn refine(request: &Request<'_>, progress: Progress<'_>) -> Result<Refinement, RefineError> {
     request.settings.check().map_err(|(field, message)| RefineError::Setting { field, message })?;
-    let task = Task::new(request)?;
+    let (judged, whole) = divided(request)?;
+    let settings = resolved(request, &whole);
+    let parts = parts(&whole, request.law, &settings);
+    let task = Task::new(request, judged, whole, &parts, settings);
     step(progress, 0.05, "sufficient statistics of each trial")?;
     let variants = task.variants()?;
     let mut options = task.options(&variants, progress)?;
@@ -63,7 +67,10 @@ type Told<'a> = &'a dyn Fn(f64, &str) -> Result<(), RefineError>;
 /// A request with everything that does not change while options are tried.
 pub(super) struct Task<'a> {
     pub(super) request: &'a Request<'a>,
+    /// What is fitted and left out: the trials, or parts of them.
     pub(super) training: Vec<&'a Trial>,
+    /// The trials of which that is.
+    pub(super) whole: Vec<&'a Trial>,
     pub(super) judged: Vec<&'a Trial>,
     pub(super) transferred: Model,
     pub(super) settings: Settings,
@@ -99,23 +106,20 @@ pub(super) struct Simulated {
 }
 
 impl<'a> Task<'a> {
-    fn new(request: &'a Request<'a>) -> Result<Self, RefineError> {
-        let names = &request.settings.held_out;
-        if let Some(unknown) = names.iter().find(|name| !request.trials.iter().any(|trial| trial.name == **name)) {
-            let message = format!("no trial is called `{unknown}`");
-            return Err(RefineError::Setting { field: "held_out".into(), message });
-        }
-        let (judged, training): (Vec<&Trial>, Vec<&Trial>) = request.trials.iter().partition(|trial| names.contains(&trial.name));
-        if training.is_empty() {
-            return Err(RefineError::Data("there is no trial to fit on".into()));
-        }
+    fn new(
+        request: &'a Request<'a>,
+        judged: Vec<&'a Trial>,
+        whole: Vec<&'a Trial>,
+        parts: &'a [Trial],
+        settings: Settings,
+    ) -> Self {
         let transferred = if request.source.ship == request.target.name() {
             request.source.clone()
         } else {
-            transfer(request.source, request.law, request.target, approach_of(&training))
+            transfer(request.source, request.law, request.target, approach_of(&whole))
         };
-        let settings = resolved(request, &training);
-        Ok(Self { request, training, judged, transferred, settings })
+        let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
+        Self { request, training, whole, judged, transferred, settings }
     }
 
     /// Which fold a training trial is left out in.
@@ -254,6 +258,20 @@ impl Taken {
             Self::Source | Self::Trajectory { .. } => None,
         }
     }
+}
+
+/// The trials that are kept out of fit and choice, and the others.
+fn divided<'a>(request: &'a Request<'a>) -> Result<(Vec<&'a Trial>, Vec<&'a Trial>), RefineError> {
+    let names = &request.settings.held_out;
+    if let Some(unknown) = names.iter().find(|name| !request.trials.iter().any(|trial| trial.name == **name)) {
+        let message = format!("no trial is called `{unknown}`");
+        return Err(RefineError::Setting { field: "held_out".into(), message });
+    }
+    let (judged, whole): (Vec<&Trial>, Vec<&Trial>) = request.trials.iter().partition(|trial| names.contains(&trial.name));
+    if whole.is_empty() {
+        return Err(RefineError::Data("there is no trial to fit on".into()));
+    }
+    Ok((judged, whole))
 }
 
 /// The settings with the times that depend on the ship filled in, so that a version records what was used.

@@ -23,6 +23,8 @@ pub(super) struct Prior {
     pub hessian: DMatrix<f64>,
     pub weak: DVector<f64>,
     pub source: DVector<f64>,
+    /// How many times stronger the source pulls each coefficient than it pulls others: deviations of submodels.
+    shrinkage: DVector<f64>,
 }
 
 impl Prior {
@@ -40,13 +42,19 @@ impl Prior {
             add_block(&mut hessian, block, moments, &place);
         }
         let vector = |of: &dyn Fn(&str) -> f64| DVector::from_iterator(names.len(), names.iter().map(|name| of(name)));
-        Self { hessian, weak: vector(weak), source: vector(source) }
+        let mut shrinkage = DVector::repeat(names.len(), 1.0);
+        for (name, factor) in
+            blocks.blocks.iter().flat_map(|block| block.names.iter().flat_map(|own| own.iter().zip(&block.shrinkage)))
+        {
+            place.get(name.as_str()).into_iter().for_each(|&k| shrinkage[k] = *factor);
+        }
+        Self { hessian, weak: vector(weak), source: vector(source), shrinkage }
     }
 
     /// What the pulls cost at coefficients.
     pub fn cost(&self, at: &DVector<f64>, strength: Strength) -> f64 {
         let (weak, source) = (at - &self.weak, at - &self.source);
-        let own: f64 = source.iter().enumerate().map(|(k, d)| self.hessian[(k, k)] * d * d).sum();
+        let own: f64 = source.iter().enumerate().map(|(k, d)| self.own(k) * d * d).sum();
         strength.mu * weak.dot(&(&self.hessian * &weak)) + strength.lambda * own
     }
 
@@ -55,7 +63,7 @@ impl Prior {
         *hessian += &self.hessian * strength.mu;
         *gradient += &self.hessian * (at - &self.weak) * strength.mu;
         for k in 0..at.len() {
-            let own = strength.lambda * self.hessian[(k, k)];
+            let own = strength.lambda * self.own(k);
             hessian[(k, k)] += own;
             gradient[k] += own * (at[k] - self.source[k]);
         }
@@ -63,7 +71,12 @@ impl Prior {
 
     /// How far the source's pull alone lets a coefficient be, as if the motion were missed by its own size.
     pub fn deviation(&self, k: usize, strength: Strength) -> f64 {
-        1.0 / (strength.lambda * self.hessian[(k, k)]).max(1e-300).sqrt()
+        1.0 / (strength.lambda * self.own(k)).max(1e-300).sqrt()
+    }
+
+    /// What the source's pull at strength 1 is on a coefficient.
+    fn own(&self, k: usize) -> f64 {
+        self.shrinkage[k] * self.hessian[(k, k)]
     }
 }
 
