@@ -105,6 +105,21 @@ fn tune_target(target: usize, folds: &[(&Prepared<'_>, &Validation)], range: &Ra
     best.1
 }
 
+/// The strengths with the greatest marginal likelihood, for each target of each regression, on the given statistics.
+pub(super) fn most_likely(blocks: &Blocks, moments: &[Moments], model: &Model, range: &Range, count: usize) -> Choices {
+    let of_block = |(block, moments): (&Block, &Moments)| {
+        let prepared = Prepared::new(block, moments, model);
+        let of_target = |target: usize| {
+            let misfit = |lambda: f64| (prepared.path.misfit(target, lambda), lambda);
+            let all = log_spaced(range.lambda_min, range.lambda_max, count).map(misfit);
+            let best = all.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(range.lambda_max, |(_, lambda)| lambda);
+            Choice { lambda: best, alpha: 0.0 }
+        };
+        (0..prepared.source.len()).map(of_target).collect()
+    };
+    blocks.blocks.iter().zip(moments).map(of_block).collect()
+}
+
 /// Values evenly spaced in their logarithm.
 fn log_spaced(low: f64, high: f64, count: usize) -> impl Iterator<Item = f64> {
     let (low, high) = (low.ln(), high.ln());

@@ -174,7 +174,7 @@ impl<'a> Task<'a> {
         for (k, &lambda) in strengths.iter().take(allowed).enumerate() {
             let label = format!("{}, lambda {lambda:.0e}", variant.family.name());
             told(k as f64 / allowed as f64, &format!("{label}: simulating manoeuvres left out"))?;
-            let choices = self.common_choices(variant, folds, lambda);
+            let choices = self.common_choices(variant, lambda)?;
             options.push(self.ridge_option(label, lambda, Taken::Ridge { variant: index, choices }, folds)?);
         }
         Ok(())

@@ -7,7 +7,7 @@ use sistership_model::coefficient::Axis;
 use super::blocks::Blocks;
 use super::family::Family;
 use super::outcome::RefineError;
-use super::published::{Choices, Fold, tune};
+use super::published::{Choices, Fold, most_likely};
 use super::rows::trial_moments;
 use super::selection::Task;
 use super::settings::{Method, Range};
@@ -87,18 +87,24 @@ impl Task<'_> {
         (0..self.fold_count()).map(one).collect()
     }
 
-    /// The same strength for every acceleration but roll's: of roll a source of the plane says nothing, so that its
-    /// strength is the one with the least error in the windows left out.
-    pub(super) fn common_choices(&self, variant: &Variant, folds: &[Fold<'_>], lambda: f64) -> Choices {
+    /// The same strength for every acceleration but roll's: of roll a source of the plane says nothing, so that its strength
+    /// is the one with the greatest marginal likelihood on all training samples. Windows left out would do only where
+    /// every fold keeps something that excites roll.
+    pub(super) fn common_choices(&self, variant: &Variant, lambda: f64) -> Result<Choices, RefineError> {
         let rolls = variant.blocks.blocks.iter().any(|block| block.axes.contains(&Axis::K));
         let free = Range { lambda_min: 1e-9, lambda_max: 1.0, alpha_max: 0.0 };
-        let tuned = if rolls { tune(folds, &free, 50) } else { Choices::new() };
+        let tuned = if rolls {
+            let all = merged(&variant.moments, |_| true).ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
+            most_likely(&variant.blocks, &all, &variant.model, &free, 50)
+        } else {
+            Choices::new()
+        };
         let of_axis = |b: usize, (target, axis): (usize, &Axis)| match axis {
             Axis::K => tuned[b][target],
             _ => Choice { lambda, alpha: 0.0 },
         };
         let of_block = |b: usize| variant.blocks.blocks[b].axes.iter().enumerate().map(|axis| of_axis(b, axis)).collect();
-        (0..variant.blocks.blocks.len()).map(of_block).collect()
+        Ok((0..variant.blocks.blocks.len()).map(of_block).collect())
     }
 }
 

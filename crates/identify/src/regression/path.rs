@@ -109,6 +109,19 @@ impl RidgePath {
         mean * self.count / (self.count - freedom - 1.0).max(1.0)
     }
 
+    /// How badly a strength of the prior explains a target: twice the negative logarithm of the marginal likelihood by the number
+    /// of samples, with the residual variance at its best and without what does not depend on lambda. Where the prior has the
+    /// variance `s^2/(n lambda)` about the source, the samples less what the source explains are normal with eigenvalues
+    /// `s^2 (d + lambda)/lambda` in the eigenbasis (MacKay 1992, Neural Computation 4, 415-447, section 3).
+    pub fn misfit(&self, target: usize, lambda: f64) -> f64 {
+        let (data, source, d) = (&self.data[target], &self.source[target], &self.eigenvalues);
+        let terms = || data.iter().zip(source).zip(d).map(|((z, s), d)| (*z, *s, *d));
+        let unexplained = self.target_variance[target] + terms().map(|(z, s, d)| s * (d * s - 2.0 * z)).sum::<f64>();
+        let gained: f64 = terms().map(|(z, s, d)| (z - d * s).powi(2) / (d + lambda)).sum();
+        let width: f64 = d.iter().map(|d| (1.0 + d / lambda).ln()).sum();
+        (unexplained - gained).max(1e-300).ln() + width / self.count.max(1.0)
+    }
+
     /// Posterior standard deviations of the coefficients at residual variance 1, and the prior's, both in the units of
     /// the regressors.
     pub fn deviations(&self, lambda: f64) -> Vec<(f64, f64)> {
@@ -236,6 +249,31 @@ mod tests {
         let ratio = |deviations: Vec<(f64, f64)>| deviations[1].1;
         let plain = RidgePath::new(&moments, &[source.to_vec()]);
         assert!((ratio(plain.deviations(lambda)) / ratio(path.deviations(lambda)) - 3.0).abs() < 1e-12);
+    }
+
+    /// Against the density of the samples themselves, a normal distribution of as many dimensions as there are samples.
+    #[test]
+    fn the_misfit_is_that_of_the_marginal_likelihood() {
+        let mut columns: Vec<Vec<f64>> = samples().iter().map(|column| column[..40].to_vec()).collect();
+        columns[2].iter_mut().enumerate().for_each(|(k, y)| *y += 0.3 * (5.1 * k as f64).sin());
+        let source = [1.5, -1.0];
+        let path = RidgePath::new(&Moments::of_columns(&columns, 2), &[source.to_vec()]);
+        let centred = columns.iter().map(|column| {
+            let column = DVector::from_vec(column.clone());
+            let mean = column.mean();
+            column.add_scalar(-mean)
+        });
+        let centred: Vec<DVector<f64>> = centred.collect();
+        let unexplained = &centred[2] - &centred[0] * source[0] - &centred[1] * source[1];
+        let direct = |lambda: f64| {
+            let spread = |x: &DVector<f64>| x * x.transpose() / (x.norm_squared() * lambda);
+            let covariance = DMatrix::identity(40, 40) + spread(&centred[0]) + spread(&centred[1]);
+            let variance = unexplained.dot(&covariance.clone().lu().solve(&unexplained).unwrap()) / 40.0;
+            variance.ln() + covariance.determinant().ln() / 40.0
+        };
+        for lambda in [1e-4, 1e-2, 1.0] {
+            assert!((path.misfit(0, lambda) - direct(lambda)).abs() < 1e-9, "{lambda}");
+        }
     }
 
     #[test]
