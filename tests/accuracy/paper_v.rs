@@ -77,7 +77,7 @@ fn the_weak_form_beats_the_published_refinement_on_paper_v() {
     println!("mean of 24 cells      {:.2} {plane:7.2} {roll:10.2} {pooled:12.2}", 5.03);
     assert!(plane <= 2.7 && pooled <= 0.5, "{plane} {pooled}");
     // A single zigzag is left out part by part, since nothing else in its set excites roll.
-    assert!(roll <= 3.5, "{roll}");
+    assert!(roll <= 3.2, "{roll}");
 }
 
 fn mean_of(errors: &[Metrics]) -> f64 {
