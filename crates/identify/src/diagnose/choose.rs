@@ -64,8 +64,22 @@ fn most_probable(found: &[Judged], accepted: impl Fn(&Judged) -> bool) -> Option
 
 /// The most probable sets of those of a base and one more, judged where they stand.
 fn companions(search: &Search<'_>, base: &Base<'_>, count: usize) -> Result<Vec<Judged>, RefineError> {
-    let likely: Vec<Likely> = search.screen(base).into_iter().take(count).collect();
+    let likely = likely(search.screen(base), count);
     likely.par_iter().map(|likely| search.judge(base, &likely.candidate, likely.level)).collect()
+}
+
+/// The most probable, and those that are believed most after what they feign.
+fn likely(screened: Vec<Likely>, count: usize) -> Vec<Likely> {
+    let mut by_belief = screened.clone();
+    by_belief.sort_by(|a, b| b.believed.total_cmp(&a.believed));
+    let mut likely: Vec<Likely> = screened.into_iter().take(count.div_ceil(2)).collect();
+    for candidate in by_belief {
+        let is_new = likely.iter().all(|known| known.candidate.key() != candidate.candidate.key());
+        if is_new && likely.len() < count {
+            likely.push(candidate);
+        }
+    }
+    likely
 }
 
 impl Choice {
@@ -81,7 +95,15 @@ impl Choice {
     /// One effect more, if any is believed.
     fn add(&mut self, search: &Search<'_>, settings: &Settings, base: &Base<'_>, count: usize) -> Result<bool, RefineError> {
         let found = companions(search, base, count)?;
-        let better = most_probable(&found, |judged| self.accepts(search, judged, settings));
+        let mut accepted: Vec<usize> = (0..found.len()).filter(|&at| self.accepts(search, &found[at], settings)).collect();
+        accepted.sort_by(|&a, &b| found[b].log_evidence.total_cmp(&found[a].log_evidence));
+        let mut better = None;
+        for place in accepted {
+            if !search.is_placebo(&found[place], base)? {
+                better = Some(place);
+                break;
+            }
+        }
         self.take(found, better);
         Ok(better.is_some())
     }

@@ -13,6 +13,7 @@ mod learned;
 mod next_trial;
 mod nuisance;
 mod outcome;
+mod placebo;
 mod remainder;
 mod run;
 mod search;

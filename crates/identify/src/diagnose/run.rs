@@ -56,7 +56,7 @@ fn answer(request: &Request<'_>, first: &Search<'_>, choice: &Choice, progress: 
         next_trial,
         before: errors.before,
         after: errors.after,
-        noise: workspace.noise.iter().map(|(channel, sigma)| (channel.name().to_owned(), *sigma)).collect(),
+        noise: workspace.noise.iter().map(|(channel, instrument)| (channel.name().to_owned(), instrument.deviation)).collect(),
         how: how(request),
         diagnosed: request.model.name.clone(),
         hypotheses: hypotheses(request, search, choice),

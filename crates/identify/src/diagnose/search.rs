@@ -48,8 +48,11 @@ pub(super) struct Search<'a> {
 }
 
 /// An effect that may be missing, by one linearisation.
+#[derive(Clone)]
 pub(super) struct Likely {
     pub evidence: f64,
+    /// Discounted by what the effect feigns.
+    pub believed: f64,
     /// The level of the discrepancy at which it is most probable, among those of the base.
     pub level: usize,
     pub candidate: Candidate,
@@ -147,11 +150,32 @@ impl<'a> Search<'a> {
                 Some((base.levels[*level].level.log_prior - 0.5 * reduced.deviance + gain, *level))
             };
             let (evidence, level) = reduced.iter().filter_map(gain).max_by(|a, b| a.0.total_cmp(&b.0))?;
-            Some(Likely { evidence: evidence + self.log_prior(candidate), level, candidate: (*candidate).clone() })
+            let believed = self.believed(reduced, &kept, &places[kept.len()..], base, candidate);
+            let prior = self.log_prior(candidate);
+            Some(Likely { evidence: evidence + prior, believed: believed? + prior, level, candidate: (*candidate).clone() })
         };
         let mut screened: Vec<Likely> = others.iter().filter_map(&mut one).collect();
         screened.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         screened
+    }
+
+    /// The discounted evidence of an effect beside those of a base, at the level at which it says most.
+    fn believed(
+        &self,
+        reduced: &[(usize, Reduced)],
+        kept: &[usize],
+        own: &[usize],
+        base: &Base<'_>,
+        candidate: &Candidate,
+    ) -> Option<f64> {
+        let (others, fixing): (Vec<Fixing>, Vec<Fixing>) = (base.taken.iter().flat_map(priors).collect(), priors(candidate));
+        let columns: Vec<usize> = (0..own.len()).collect();
+        let gain = |(_, reduced): &(usize, Reduced)| {
+            let given = reduced.given(kept, &others, own)?.discounted(self.discount(candidate));
+            Some(given.estimate(&columns, &fixing)?.gain)
+        };
+        // The least: what is said at one level only is not said.
+        reduced.iter().filter_map(gain).min_by(f64::total_cmp)
     }
 
     /// The evidence for one of the effects judged together, given the others: discounted by what it feigns on clean trials,
