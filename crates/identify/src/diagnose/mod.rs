@@ -14,6 +14,7 @@ mod next_trial;
 mod nuisance;
 mod outcome;
 mod placebo;
+mod refit;
 mod remainder;
 mod run;
 mod search;

@@ -1,7 +1,5 @@
 //! Which hypothesis is most probable: every effect alone, then those together that improve on it.
 
-use std::sync::Arc;
-
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use sistership_model::law::Law;
@@ -229,7 +227,7 @@ impl<'a> Search<'a> {
         let candidates = [base.taken.as_slice(), std::slice::from_ref(candidate)].concat();
         let mut best = self.at(base, &candidates, level)?;
         for _ in 0..ROUNDS {
-            let next = self.at(base, &self.moved(&best.1), best.0)?;
+            let next = self.at(base, &best.1.candidates, best.0)?;
             let gain = next.1.log_evidence - best.1.log_evidence;
             best = if gain > 0.0 { next } else { break };
             if gain < 0.5 {
@@ -296,19 +294,6 @@ impl<'a> Search<'a> {
             grams,
         })
     }
-
-    /// The candidates at their estimates, within their bounds.
-    fn moved(&self, judged: &Judged) -> Vec<Candidate> {
-        judged
-            .candidates
-            .iter()
-            .map(|candidate| {
-                let bounded = candidate.at.iter().zip(candidate.form.parameters.values());
-                let at = bounded.map(|(value, parameter)| value.clamp(parameter.bounds[0], parameter.bounds[1])).collect();
-                Candidate { at, ..candidate.clone() }
-            })
-            .collect()
-    }
 }
 
 fn not_positive() -> RefineError {
@@ -344,11 +329,14 @@ pub(super) fn priors(candidate: &Candidate) -> Vec<Fixing> {
     candidate.at.iter().zip(candidate.form.parameters.values()).map(one).collect()
 }
 
+/// Candidates at an estimate, within the bounds of their parameters.
 fn placed(mut candidates: Vec<Candidate>, estimate: &Estimate) -> Vec<Candidate> {
     let mut means = estimate.mean.iter();
     for candidate in &mut candidates {
-        candidate.form = Arc::clone(&candidate.form);
-        candidate.at.iter_mut().zip(&mut means).for_each(|(at, mean)| *at += mean);
+        let parameters = candidate.form.parameters.values();
+        for ((at, parameter), mean) in candidate.at.iter_mut().zip(parameters).zip(&mut means) {
+            *at = (*at + mean).clamp(parameter.bounds[0], parameter.bounds[1]);
+        }
     }
     candidates
 }
