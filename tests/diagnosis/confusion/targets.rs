@@ -1,4 +1,4 @@
-//! The targets of the issue.
+//! The targets that the table is held against.
 
 use super::super::cases::{Kind, STRENGTHS};
 use super::outcome::Outcome;
