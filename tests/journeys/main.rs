@@ -5,6 +5,7 @@ mod command_line;
 mod crash;
 mod diagnosis_on_files;
 mod diagnosis_over_http;
+mod fleet;
 mod lacking;
 mod over_http;
 mod sea_trials;

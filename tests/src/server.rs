@@ -18,23 +18,26 @@ pub struct TestServer {
     client: Client,
     database: TestDatabase,
     data: PathBuf,
+    extra: Vec<String>,
 }
 
 impl TestServer {
     /// On a new SQLite database.
     pub async fn sqlite() -> Self {
-        Self::on(TestDatabase::sqlite()).await
+        Self::on(TestDatabase::sqlite(), &[]).await
     }
 
     /// On a new PostgreSQL database; `None`, said plainly, where PostgreSQL is not installed.
     pub async fn postgres() -> Option<Self> {
-        Some(Self::on(TestDatabase::postgres().await?).await)
+        Some(Self::on(TestDatabase::postgres().await?, &[]).await)
     }
 
-    async fn on(database: TestDatabase) -> Self {
+    /// On a database, with further arguments of `sistership serve`.
+    pub async fn on(database: TestDatabase, extra: &[&str]) -> Self {
         let data = database.folder.path().join("data");
-        let (process, url) = start(&database.url, &data);
-        let server = Self { process, url, client: Client::new(), database, data };
+        let extra: Vec<String> = extra.iter().map(|&argument| argument.to_owned()).collect();
+        let (process, url) = start(&database.url, &data, &extra);
+        let server = Self { process, url, client: Client::new(), database, data, extra };
         server.until_ready().await;
         server
     }
@@ -50,8 +53,13 @@ impl TestServer {
 
     /// Starts it again on the same database and folder.
     pub async fn restart(&mut self) {
-        (self.process, self.url) = start(&self.database.url, &self.data);
+        (self.process, self.url) = start(&self.database.url, &self.data, &self.extra);
         self.until_ready().await;
+    }
+
+    /// Its database.
+    pub fn database(&self) -> &TestDatabase {
+        &self.database
     }
 
     /// Arguments that open its store from the command line.
@@ -126,10 +134,11 @@ pub async fn json(response: Response) -> (u16, Value) {
 }
 
 /// Starts the program and reads its address from the line it prints when it listens.
-fn start(database_url: &str, data: &Path) -> (Child, String) {
+fn start(database_url: &str, data: &Path, extra: &[String]) -> (Child, String) {
     let mut process = Command::new(binary::path())
         .args(["serve", "--listen", "127.0.0.1:0", "--database-url", database_url, "--data-dir"])
         .arg(data)
+        .args(extra)
         .env("SISTERSHIP_LOG", "warn")
         .stdout(Stdio::piped())
         .spawn()

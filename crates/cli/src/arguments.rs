@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 use sistership_dynamics::Method;
 
 use crate::commands::{check, derive, diagnose, manoeuvre, refine, similar, simulate};
-use crate::commands::{serve, verify};
+use crate::commands::{serve, verify, work};
 use crate::demo::Demo;
 
 const EXAMPLES: &str = "\
@@ -57,6 +57,8 @@ pub enum Command {
     Demo(Demo),
     /// Run the REST server.
     Serve(serve::Serve),
+    /// Work on the jobs that servers queue, without serving.
+    Work(work::Work),
     /// Derive a version again from its recipe and compare the bytes.
     Verify(verify::Verify),
 }

@@ -52,6 +52,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Derive(derive) => commands::derive::run(&zoo()?, derive),
         Command::Demo(demo) => demo::run(demo, &zoo()?),
         Command::Serve(serve) => commands::serve::run(serve, &arguments.zoo),
+        Command::Work(work) => commands::work::run(work),
         Command::Verify(verify) => commands::verify::run(verify),
     }
 }

@@ -129,9 +129,19 @@ impl Default for Limits {
     }
 }
 
+impl Leases {
+    /// The longest that a lease may be.
+    pub const MAX: Duration = Duration::from_secs(3600);
+
+    /// A lease of a length, with five beats in it: four may be missed before the job is lost.
+    pub fn of(lease: Duration) -> Self {
+        Self { lease, beat: lease / 5, poll: Duration::from_millis(500) }
+    }
+}
+
 impl Default for Leases {
     fn default() -> Self {
-        Self { lease: Duration::from_secs(15), beat: Duration::from_secs(3), poll: Duration::from_millis(500) }
+        Self::of(Duration::from_secs(15))
     }
 }
 

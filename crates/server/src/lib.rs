@@ -1,7 +1,8 @@
 //! The REST server of Sistership: endpoints, jobs, pages and reports over the store.
 //!
-//! [`Server::start`] runs it within the program that calls it. [`derive`](mod@derive) and [`verify`](mod@verify) make
-//! versions again from their recipes, for the server's jobs and for the command line alike.
+//! [`Server::start`] runs it within the program that calls it; [`Workers::start`] works on its jobs without serving.
+//! [`derive`](mod@derive) and [`verify`](mod@verify) make versions again from their recipes, for the server's jobs and for
+//! the command line alike.
 
 mod app;
 mod archive;
@@ -15,6 +16,7 @@ pub mod library;
 mod listen;
 mod predict;
 mod problem;
+mod process;
 mod publish;
 pub mod report;
 mod routes;
@@ -26,9 +28,11 @@ mod upload;
 pub mod verify;
 pub mod version;
 mod web;
+mod workers;
 
 pub use archive::Archive;
 pub use config::{Config, DEFAULT_LISTEN, Leases, Limits, sqlite_url};
 pub use routes::openapi;
 pub use server::{Running, Server};
 pub use start_error::StartError;
+pub use workers::Workers;

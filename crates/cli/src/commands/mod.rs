@@ -9,6 +9,7 @@ mod manoeuvre_text;
 pub mod refine;
 mod refine_settings;
 pub(crate) mod refine_text;
+mod running;
 mod sailed;
 pub mod serve;
 pub mod similar;
@@ -16,6 +17,7 @@ pub mod simulate;
 mod simulated;
 pub(crate) mod store;
 pub mod verify;
+pub mod work;
 
 use sistership_dynamics::Ship;
 use sistership_model::vessel::Status;

@@ -1,13 +1,12 @@
 //! `sistership serve`: the REST server.
 
-use std::io::IsTerminal as _;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use sistership_server::{Config, DEFAULT_LISTEN, Running, Server, StartError};
-use tracing_subscriber::EnvFilter;
+use sistership_server::{Config, DEFAULT_LISTEN, Server, StartError};
 
+use super::running::{LeaseArguments, log, until_stopped};
 use super::store::{StoreArguments, block_on};
 use crate::failure::{Failure, about_file};
 use crate::output;
@@ -15,8 +14,6 @@ use crate::zoo::text_of;
 
 /// Holds the API key.
 const KEY: &str = "SISTERSHIP_API_KEY";
-/// Holds the filter of the log.
-const LOG: &str = "SISTERSHIP_LOG";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -40,9 +37,14 @@ pub struct Serve {
     /// File that holds the API key; wins over SISTERSHIP_API_KEY.
     #[arg(long, value_name = "FILE", env = "SISTERSHIP_API_KEY_FILE")]
     api_key_file: Option<PathBuf>,
-    /// Jobs worked on at a time; 0 leaves them to other processes on the same database.
+    /// Jobs worked on at a time; 0 leaves them to other processes on the same database (`sistership work`).
     #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS", default_value_t = 1, value_parser = clap::value_parser!(u16).range(..=64))]
     workers: u16,
+    /// Work on no jobs, whatever --workers says.
+    #[arg(long)]
+    no_worker: bool,
+    #[command(flatten)]
+    lease: LeaseArguments,
 }
 
 fn address(text: &str) -> Result<SocketAddr, String> {
@@ -60,17 +62,12 @@ pub fn run(serve: &Serve, zoo: &[PathBuf]) -> Result<(), Failure> {
         ));
     }
     let config = config(serve)?;
-    let filter = EnvFilter::try_from_env(LOG).unwrap_or_else(|_| EnvFilter::new("info"));
-    tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(std::io::stderr)
-        .with_ansi(std::io::stderr().is_terminal())
-        .init();
+    log();
     block_on(async {
         let running = Server::start(config).await.map_err(refused)?;
         let url = running.url();
         output::print(false, &(), || format!("sistership listens on {url}"))?;
-        until_stopped(running).await
+        until_stopped(running.stop()).await
     })
 }
 
@@ -78,7 +75,8 @@ fn config(serve: &Serve) -> Result<Config, Failure> {
     let mut config = Config::new(&serve.store.data_dir);
     config.listen = serve.listen;
     config.database_url = serve.store.url();
-    config.workers = usize::from(serve.workers);
+    config.workers = if serve.no_worker { 0 } else { usize::from(serve.workers) };
+    config.leases = serve.lease.leases();
     config.api_key = match &serve.api_key_file {
         Some(file) => Some(key_of(file)?),
         None => std::env::var(KEY).ok().filter(|key| !key.is_empty()),
@@ -101,31 +99,6 @@ fn refused(error: StartError) -> Failure {
         StartError::Key => Failure::Call(error.to_string()),
         other => Failure::Refused(other.to_string()),
     }
-}
-
-/// Waits for a signal, then for what is under way; a second signal does not wait.
-async fn until_stopped(running: Running) -> Result<(), Failure> {
-    signal().await?;
-    output::note("stopping; once more to stop at once");
-    tokio::select! {
-        () = running.stop() => Ok(()),
-        second = signal() => second.and(Err(Failure::Refused("stopped before everything under way had ended".into()))),
-    }
-}
-
-/// Ctrl-C, or SIGTERM where there is one.
-async fn signal() -> Result<(), Failure> {
-    let unheard = |error: std::io::Error| Failure::Refused(format!("signals cannot be heard: {error}"));
-    #[cfg(unix)]
-    {
-        let mut terminate = tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate()).map_err(unheard)?;
-        tokio::select! {
-            interrupted = tokio::signal::ctrl_c() => interrupted.map_err(unheard),
-            _ = terminate.recv() => Ok(()),
-        }
-    }
-    #[cfg(not(unix))]
-    tokio::signal::ctrl_c().await.map_err(unheard)
 }
 
 #[cfg(test)]
