@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 use sistership_store::testing::TestDatabase;
 use sistership_store::{Job, JobFilter, JobState, Page, Store, SystemClock};
+use sistership_tests::binary;
 use sistership_tests::server::TestServer;
 use sistership_tests::worker::TestWorker;
 
@@ -89,6 +90,8 @@ async fn every_job_is_done_once(database: TestDatabase) {
     assert!(lost >= KILLED, "{KILLED} workers were killed, but only {lost} jobs have changed hands");
     kept_once(&fleet, &jobs).await;
     verified(&fleet.server, JOBS as i64).await;
+    let store = fleet.server.store_arguments();
+    assert_eq!(binary::run(&["fsck", &store[0], &store[1], &store[2], &store[3]]).status.code(), Some(0));
 }
 
 /// One version, one report and one move of an alias for each job, and none besides.

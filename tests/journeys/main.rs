@@ -1,5 +1,6 @@
 //! Journeys through the real server process, over HTTP and the command line, on SQLite and on PostgreSQL.
 
+mod backup;
 mod bad_input;
 mod command_line;
 mod crash;
@@ -9,3 +10,4 @@ mod fleet;
 mod lacking;
 mod over_http;
 mod sea_trials;
+mod upkeep;

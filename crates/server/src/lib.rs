@@ -24,6 +24,7 @@ mod seed;
 mod server;
 mod start_error;
 mod stopping;
+pub mod upkeep;
 mod upload;
 pub mod verify;
 pub mod version;

@@ -40,7 +40,7 @@ pub enum ObjectsError {
 
 /// A content-addressed store. A clone is another handle on the same one.
 #[derive(Debug, Clone)]
-pub struct Objects(Arc<dyn ObjectStore>);
+pub struct Objects(pub(crate) Arc<dyn ObjectStore>);
 
 impl Objects {
     /// Objects below the folder `root`, which is made if it is not there.
@@ -79,6 +79,15 @@ impl Objects {
         }
     }
 
+    /// Removes the object of this key, if it is there. Only who knows that no row refers to it may do so, see
+    /// [`crate::Store::remove_unreferred`].
+    pub(crate) async fn remove(&self, key: &str) -> Result<()> {
+        match self.0.delete(&path(key)?).await {
+            Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
+            Err(error) => Err(ObjectsError::from(error).into()),
+        }
+    }
+
     /// Whether there is an object of this key.
     pub async fn exists(&self, key: &str) -> Result<bool> {
         match self.0.head(&path(key)?).await {
@@ -99,11 +108,14 @@ async fn hash(bytes: Bytes) -> Result<String, ObjectsError> {
     Ok(tokio::task::spawn_blocking(move || sha256_hex(&bytes)).await?)
 }
 
+/// The folder of all objects.
+pub(crate) const FOLDER: &str = "objects";
+
 /// `objects/ab/cdef...`
 fn path(key: &str) -> Result<ObjectPath> {
     checks::sha256("key", key)?;
     let (folder, file) = key.split_at(2);
-    Ok(ObjectPath::from_iter(["objects", folder, file]))
+    Ok(ObjectPath::from_iter([FOLDER, folder, file]))
 }
 
 fn failure(key: &str, error: object_store::Error) -> StoreError {

@@ -1,9 +1,12 @@
 //! One file for each command, and what they share.
 
+pub mod backup;
 pub mod check;
 pub mod derive;
 pub mod diagnose;
 mod diagnose_text;
+pub mod fsck;
+pub mod gc;
 pub mod manoeuvre;
 mod manoeuvre_text;
 pub mod refine;

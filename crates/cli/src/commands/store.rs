@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use sistership_server::Archive;
 
 use crate::failure::Failure;
 
@@ -47,6 +48,24 @@ fn sqlite_file(url: &str) -> Option<&Path> {
     let rest = url.strip_prefix("sqlite:")?;
     let path = rest.strip_prefix("//").unwrap_or(rest);
     Some(Path::new(path.split_once('?').map_or(path, |(path, _)| path)))
+}
+
+/// Does something with a store that is there, and closes it.
+///
+/// # Errors
+/// The store is not there or cannot be opened, or what is done with it fails.
+pub fn with_archive<T, E: std::fmt::Display>(
+    store: &StoreArguments,
+    work: impl AsyncFnOnce(&Archive) -> Result<T, E>,
+) -> Result<T, Failure> {
+    store.must_exist()?;
+    block_on(async {
+        let archive = Archive::open(&store.url(), &store.data_dir).await;
+        let archive = archive.map_err(|error| Failure::Refused(format!("cannot open the store: {error}")))?;
+        let done = work(&archive).await;
+        archive.store.close().await;
+        done.map_err(|error| Failure::Refused(error.to_string()))
+    })
 }
 
 /// Runs asynchronous work to its end.
