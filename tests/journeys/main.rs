@@ -8,6 +8,7 @@ mod diagnosis_on_files;
 mod diagnosis_over_http;
 mod fleet;
 mod lacking;
+mod operation;
 mod over_http;
 mod sea_trials;
 mod upkeep;

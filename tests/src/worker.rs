@@ -15,17 +15,29 @@ impl TestWorker {
     /// # Panics
     /// Where it does not start.
     pub fn start(server: &TestServer, lease_s: &str) -> Self {
-        let mut process = Command::new(binary::path())
-            .args(["work", "--lease-s", lease_s])
-            .args(server.store_arguments())
-            .env("SISTERSHIP_LOG", "warn")
-            .stdout(Stdio::piped())
-            .spawn()
-            .expect("the worker starts");
-        let out = process.stdout.take().expect("its output");
-        let line = BufReader::new(out).lines().next().expect("a line").expect("text");
+        let mut worker = Self::begin(&server.store_arguments(), lease_s);
+        worker.until_it_works();
+        worker
+    }
+
+    /// Starts one on a store, and does not wait.
+    ///
+    /// # Panics
+    /// Where it does not start.
+    pub fn begin(store: &[String], lease_s: &str) -> Self {
+        let mut command = Command::new(binary::path());
+        command.args(["work", "--lease-s", lease_s]).args(store).env("SISTERSHIP_LOG", "warn");
+        Self(command.stdout(Stdio::piped()).spawn().expect("the worker starts"))
+    }
+
+    /// Waits until it works.
+    ///
+    /// # Panics
+    /// Where it ends instead.
+    pub fn until_it_works(&mut self) {
+        let out = self.0.stdout.take().expect("its output");
+        let line = BufReader::new(out).lines().next().expect("a worker that works").expect("text");
         assert!(line.contains("works"), "{line}");
-        Self(process)
     }
 
     /// Its process.

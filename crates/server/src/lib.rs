@@ -14,6 +14,7 @@ mod jobs;
 mod journey;
 pub mod library;
 mod listen;
+mod metrics;
 mod predict;
 mod problem;
 mod process;

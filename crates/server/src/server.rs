@@ -59,7 +59,8 @@ impl Running {
         &self.process.archive
     }
 
-    /// Stops: no further connections, requests under way are answered, jobs under way go back to the queue.
+    /// Stops: no further connections, requests under way are answered, jobs under way get
+    /// [`crate::Leases::drain`] to end and then go back to the queue.
     pub async fn stop(self) {
         self.process.stop().await;
     }

@@ -26,7 +26,7 @@ impl Workers {
         &self.0.archive
     }
 
-    /// Stops: no further jobs, and those under way go back to the queue.
+    /// Stops: no further jobs, and those under way get [`crate::Leases::drain`] to end and then go back to the queue.
     pub async fn stop(self) {
         self.0.stop().await;
     }

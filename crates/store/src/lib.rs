@@ -49,7 +49,7 @@ pub use diagnoses::{Diagnosed, Diagnoses, NewDiagnosed};
 pub use error::{Result, StoreError};
 pub use idempotency::{Begun, Idempotency, KEEP_KEYS, TAKE_OVER_AFTER, Ticket};
 pub use integrity::Fault;
-pub use job::{Job, JobFilter, JobState, NewJob};
+pub use job::{Job, JobCount, JobFilter, JobState, NewJob};
 pub use jobs::Jobs;
 pub use laws::{Law, Laws};
 pub use object_list::{ObjectHead, ObjectName};

@@ -60,6 +60,18 @@ impl Objects {
         Self(store)
     }
 
+    /// Leaves the mark that [`health`](Self::health) looks for: a folder that is no longer mounted does not have it.
+    pub async fn mark(&self) -> Result<()> {
+        let about = PutPayload::from_static(b"The objects of a Sistership store, named by the SHA-256 of their bytes.\n");
+        self.0.put(&ObjectPath::from(MARK), about).await.map_err(ObjectsError::from)?;
+        Ok(())
+    }
+
+    /// Whether the store answers and is the one that was [marked](Self::mark).
+    pub async fn health(&self) -> Result<()> {
+        self.0.head(&ObjectPath::from(MARK)).await.map(drop).map_err(|error| failure(MARK, error))
+    }
+
     /// Keeps the bytes and returns their key, once they are durable. They are written even when the key is there: another
     /// writer may not have made them durable yet, and a damaged object is healed.
     pub async fn put(&self, bytes: Bytes) -> Result<String> {
@@ -108,6 +120,8 @@ async fn hash(bytes: Bytes) -> Result<String, ObjectsError> {
     Ok(tokio::task::spawn_blocking(move || sha256_hex(&bytes)).await?)
 }
 
+/// What every store of ours has beside its objects.
+const MARK: &str = "about.txt";
 /// The folder of all objects.
 pub(crate) const FOLDER: &str = "objects";
 

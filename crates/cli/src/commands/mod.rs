@@ -2,11 +2,13 @@
 
 pub mod backup;
 pub mod check;
+mod config_file;
 pub mod derive;
 pub mod diagnose;
 mod diagnose_text;
 pub mod fsck;
 pub mod gc;
+mod log;
 pub mod manoeuvre;
 mod manoeuvre_text;
 pub mod refine;

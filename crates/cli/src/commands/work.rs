@@ -3,7 +3,9 @@
 use clap::Args;
 use sistership_server::{Config, Workers};
 
-use super::running::{LeaseArguments, log, until_stopped};
+use super::config_file::ConfigFile;
+use super::log::LogArguments;
+use super::running::{LeaseArguments, until_stopped, workers};
 use super::store::{StoreArguments, block_on};
 use crate::failure::Failure;
 use crate::output;
@@ -15,7 +17,8 @@ Examples:
 
 Any number of such processes may run beside `sistership serve` (which leaves all work to them with --no-worker), on any
 machines that reach the same database and the same samples. A job belongs to one of them at a time; when that one dies,
-its job goes to another after --lease-s. Stop it with Ctrl-C or SIGTERM: jobs under way go back to the queue.";
+its job goes to another after --lease-s. Stop it with Ctrl-C or SIGTERM: jobs under way get --drain-s
+to end and then go back to the queue.";
 
 /// Work on the jobs that servers queue, without serving.
 #[derive(Debug, Args)]
@@ -23,11 +26,13 @@ its job goes to another after --lease-s. Stop it with Ctrl-C or SIGTERM: jobs un
 pub struct Work {
     #[command(flatten)]
     store: StoreArguments,
-    /// Jobs worked on at a time.
-    #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=64))]
-    workers: u16,
+    /// Jobs worked on at a time, 1 to 64 [default: 1].
+    #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS")]
+    workers: Option<u16>,
     #[command(flatten)]
     lease: LeaseArguments,
+    #[command(flatten)]
+    log: LogArguments,
 }
 
 /// Runs the command until it is told to stop.
@@ -35,8 +40,9 @@ pub struct Work {
 /// # Errors
 /// The configuration is refused, or the store cannot be used.
 pub fn run(work: &Work) -> Result<(), Failure> {
-    let config = config(work);
-    log();
+    let file = work.store.file()?;
+    let config = config(work, &file)?;
+    work.log.begin(&file)?;
     block_on(async {
         let workers = Workers::start(config).await.map_err(|error| Failure::Refused(error.to_string()))?;
         output::print(false, &(), || format!("sistership works as process {}", std::process::id()))?;
@@ -44,10 +50,11 @@ pub fn run(work: &Work) -> Result<(), Failure> {
     })
 }
 
-fn config(work: &Work) -> Config {
-    let mut config = Config::new(&work.store.data_dir);
-    config.database_url = work.store.url();
-    config.workers = usize::from(work.workers);
-    config.leases = work.lease.leases();
-    config
+fn config(work: &Work, file: &ConfigFile) -> Result<Config, Failure> {
+    let place = work.store.place(file);
+    let mut config = Config::new(place.data_dir);
+    config.database_url = place.database_url;
+    config.workers = workers(work.workers, file, 1)?;
+    config.leases = work.lease.leases(file)?;
+    Ok(config)
 }

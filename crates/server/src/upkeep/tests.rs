@@ -42,8 +42,8 @@ async fn found(archive: &Archive) -> Findings {
     fsck(archive).await.unwrap()
 }
 
-fn databases() -> impl Future<Output = Vec<TestDatabase>> {
-    async { [Some(TestDatabase::sqlite()), TestDatabase::postgres().await].into_iter().flatten().collect() }
+async fn databases() -> Vec<TestDatabase> {
+    [Some(TestDatabase::sqlite()), TestDatabase::postgres().await].into_iter().flatten().collect()
 }
 
 #[tokio::test(flavor = "multi_thread")]
@@ -180,7 +180,7 @@ async fn garbage_goes_when_it_is_old_and_nobodys() {
         let asked = gc(&archive, Duration::ZERO, true).await.unwrap();
         assert_eq!((asked.removed.as_slice(), asked.bytes), ([orphan.clone()].as_slice(), 6));
         assert!(archive.objects.exists(&orphan).await.unwrap(), "a dry run removes nothing");
-        assert_eq!(gc(&archive, Duration::ZERO, false).await.unwrap().removed, [orphan.clone()]);
+        assert_eq!(gc(&archive, Duration::ZERO, false).await.unwrap().removed, std::slice::from_ref(&orphan));
         assert!(!archive.objects.exists(&orphan).await.unwrap());
         assert!(found(&archive).await.clean);
     }
