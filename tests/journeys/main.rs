@@ -1,10 +1,14 @@
 //! Journeys through the real server process, over HTTP and the command line, on SQLite and on PostgreSQL.
 
+mod backup;
 mod bad_input;
 mod command_line;
 mod crash;
 mod diagnosis_on_files;
 mod diagnosis_over_http;
+mod fleet;
 mod lacking;
+mod operation;
 mod over_http;
 mod sea_trials;
+mod upkeep;

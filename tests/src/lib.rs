@@ -5,3 +5,4 @@ pub mod esso_osaka;
 pub mod server;
 pub mod shape;
 pub mod shared;
+pub mod worker;

@@ -18,25 +18,43 @@ pub struct TestServer {
     client: Client,
     database: TestDatabase,
     data: PathBuf,
+    extra: Vec<String>,
 }
 
 impl TestServer {
     /// On a new SQLite database.
     pub async fn sqlite() -> Self {
-        Self::on(TestDatabase::sqlite()).await
+        Self::on(TestDatabase::sqlite(), &[]).await
     }
 
     /// On a new PostgreSQL database; `None`, said plainly, where PostgreSQL is not installed.
     pub async fn postgres() -> Option<Self> {
-        Some(Self::on(TestDatabase::postgres().await?).await)
+        Some(Self::on(TestDatabase::postgres().await?, &[]).await)
     }
 
-    async fn on(database: TestDatabase) -> Self {
+    /// On a database, with further arguments of `sistership serve`.
+    pub async fn on(database: TestDatabase, extra: &[&str]) -> Self {
         let data = database.folder.path().join("data");
-        let (process, url) = start(&database.url, &data);
-        let server = Self { process, url, client: Client::new(), database, data };
+        let extra: Vec<String> = extra.iter().map(|&argument| argument.to_owned()).collect();
+        let (process, url) = start(&database.url, &data, &extra, Stdio::inherit(), Some("warn"));
+        let server = Self { process, url, client: Client::new(), database, data, extra };
         server.until_ready().await;
         server
+    }
+
+    /// The same with its log in a file, as its own configuration asks for it.
+    ///
+    /// # Panics
+    /// Where it does not start.
+    pub async fn logged(database: TestDatabase, extra: &[&str]) -> (Self, PathBuf) {
+        let data = database.folder.path().join("data");
+        let log = database.folder.path().join("log");
+        let extra: Vec<String> = extra.iter().map(|&argument| argument.to_owned()).collect();
+        let file = std::fs::File::create(&log).expect("a log");
+        let (process, url) = start(&database.url, &data, &extra, file.into(), None);
+        let server = Self { process, url, client: Client::new(), database, data, extra };
+        server.until_ready().await;
+        (server, log)
     }
 
     /// Kills the process without warning, as the system would.
@@ -48,10 +66,25 @@ impl TestServer {
         self.process.wait().expect("the server is gone");
     }
 
+    /// Tells the process to stop, as a service manager does, and waits until it has.
+    ///
+    /// # Panics
+    /// Where it cannot be told.
+    pub fn terminate(&mut self) -> std::process::ExitStatus {
+        let told = Command::new("kill").args(["-TERM", &self.process.id().to_string()]).status();
+        assert!(told.expect("a signal is sent").success());
+        self.process.wait().expect("the server ends")
+    }
+
     /// Starts it again on the same database and folder.
     pub async fn restart(&mut self) {
-        (self.process, self.url) = start(&self.database.url, &self.data);
+        (self.process, self.url) = start(&self.database.url, &self.data, &self.extra, Stdio::inherit(), Some("warn"));
         self.until_ready().await;
+    }
+
+    /// Its database.
+    pub fn database(&self) -> &TestDatabase {
+        &self.database
     }
 
     /// Arguments that open its store from the command line.
@@ -126,12 +159,17 @@ pub async fn json(response: Response) -> (u16, Value) {
 }
 
 /// Starts the program and reads its address from the line it prints when it listens.
-fn start(database_url: &str, data: &Path) -> (Child, String) {
-    let mut process = Command::new(binary::path())
+fn start(database_url: &str, data: &Path, extra: &[String], log: Stdio, level: Option<&str>) -> (Child, String) {
+    let mut command = Command::new(binary::path());
+    if let Some(level) = level {
+        command.env("SISTERSHIP_LOG", level);
+    }
+    let mut process = command
         .args(["serve", "--listen", "127.0.0.1:0", "--database-url", database_url, "--data-dir"])
         .arg(data)
-        .env("SISTERSHIP_LOG", "warn")
+        .args(extra)
         .stdout(Stdio::piped())
+        .stderr(log)
         .spawn()
         .expect("the server starts");
     let out = process.stdout.take().expect("its output");

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand, ValueEnum};
 use sistership_dynamics::Method;
 
+use crate::commands::{backup, fsck, gc, serve, verify, work};
 use crate::commands::{check, derive, diagnose, manoeuvre, refine, similar, simulate};
-use crate::commands::{serve, verify};
 use crate::demo::Demo;
 
 const EXAMPLES: &str = "\
@@ -57,8 +57,18 @@ pub enum Command {
     Demo(Demo),
     /// Run the REST server.
     Serve(serve::Serve),
+    /// Work on the jobs that servers queue, without serving.
+    Work(work::Work),
     /// Derive a version again from its recipe and compare the bytes.
     Verify(verify::Verify),
+    /// Check every hash and every reference of a store.
+    Fsck(fsck::Fsck),
+    /// Remove objects that nothing refers to.
+    Gc(gc::Gc),
+    /// Copy a store, while it is written, into a folder.
+    Backup(backup::Backup),
+    /// Make a store of a backup, in an empty place.
+    Restore(backup::Restore),
 }
 
 /// Integration methods by the names they are called by.

@@ -52,6 +52,11 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Derive(derive) => commands::derive::run(&zoo()?, derive),
         Command::Demo(demo) => demo::run(demo, &zoo()?),
         Command::Serve(serve) => commands::serve::run(serve, &arguments.zoo),
+        Command::Work(work) => commands::work::run(work),
         Command::Verify(verify) => commands::verify::run(verify),
+        Command::Fsck(fsck) => commands::fsck::run(fsck),
+        Command::Gc(gc) => commands::gc::run(gc),
+        Command::Backup(backup) => commands::backup::backup(backup),
+        Command::Restore(restore) => commands::backup::restore(restore),
     }
 }

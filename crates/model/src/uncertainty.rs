@@ -23,6 +23,9 @@ pub struct Uncertainty {
     pub offset: Vec<f64>,
     /// Accelerations that remain, by axis.
     pub discrepancy: BTreeMap<Axis, Discrepancy>,
+    /// What the instruments did beside the scatter that their readings show, by channel.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub instruments: BTreeMap<String, InstrumentFit>,
     /// How much each form of an effect explained of these trials, which do not have it: by `effect/form`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub feigned: BTreeMap<String, Feigned>,
@@ -31,6 +34,16 @@ pub struct Uncertainty {
     pub remainder: BTreeMap<String, f64>,
     /// Names of the trials that it was learned on.
     pub trials: Vec<String>,
+}
+
+/// An instrument as the trials that a model was fitted on show it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InstrumentFit {
+    /// Deviation of its error by the scatter from sample to sample: more than one where readings were smoothed.
+    pub deviation_by_scatter: f64,
+    /// Root of the density of what its rate and the velocities disagree by, SI by the root of a second.
+    pub drift: f64,
 }
 
 /// What an effect explained of trials that do not have it, by what chance would let it explain: one where the model is

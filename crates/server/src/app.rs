@@ -10,6 +10,7 @@ use tokio::sync::{Notify, Semaphore};
 use crate::archive::Archive;
 use crate::catalogue::Catalogue;
 use crate::config::{Config, Leases, Limits};
+use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
 use crate::stopping::Stopping;
 use crate::web::guard::ApiKey;
@@ -27,6 +28,7 @@ struct Inner {
     spool: PathBuf,
     seats: Arc<Semaphore>,
     wake: Notify,
+    metrics: Metrics,
     stopping: Stopping,
 }
 
@@ -42,6 +44,7 @@ impl App {
             spool: spool(config),
             seats: Arc::new(Semaphore::new(seats)),
             wake: Notify::new(),
+            metrics: Metrics::default(),
             stopping,
         }))
     }
@@ -78,6 +81,10 @@ impl App {
     /// Wakes this process' workers.
     pub(crate) fn wake(&self) -> &Notify {
         &self.0.wake
+    }
+
+    pub(crate) fn metrics(&self) -> &Metrics {
+        &self.0.metrics
     }
 
     /// The word that the server shall stop.

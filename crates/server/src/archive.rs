@@ -30,6 +30,7 @@ impl Archive {
     /// Says which of them cannot be opened.
     pub async fn open(database_url: &str, data_dir: &Path) -> sistership_store::Result<Self> {
         let objects = Objects::local(data_dir)?;
+        objects.mark().await?;
         Ok(Self { store: Store::connect(database_url, Arc::new(SystemClock)).await?, objects })
     }
 

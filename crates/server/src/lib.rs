@@ -1,7 +1,8 @@
 //! The REST server of Sistership: endpoints, jobs, pages and reports over the store.
 //!
-//! [`Server::start`] runs it within the program that calls it. [`derive`](mod@derive) and [`verify`](mod@verify) make
-//! versions again from their recipes, for the server's jobs and for the command line alike.
+//! [`Server::start`] runs it within the program that calls it; [`Workers::start`] works on its jobs without serving.
+//! [`derive`](mod@derive) and [`verify`](mod@verify) make versions again from their recipes, for the server's jobs and for
+//! the command line alike.
 
 mod app;
 mod archive;
@@ -13,8 +14,10 @@ mod jobs;
 mod journey;
 pub mod library;
 mod listen;
+mod metrics;
 mod predict;
 mod problem;
+mod process;
 mod publish;
 pub mod report;
 mod routes;
@@ -22,13 +25,16 @@ mod seed;
 mod server;
 mod start_error;
 mod stopping;
+pub mod upkeep;
 mod upload;
 pub mod verify;
 pub mod version;
 mod web;
+mod workers;
 
 pub use archive::Archive;
 pub use config::{Config, DEFAULT_LISTEN, Leases, Limits, sqlite_url};
 pub use routes::openapi;
 pub use server::{Running, Server};
 pub use start_error::StartError;
+pub use workers::Workers;

@@ -3,18 +3,14 @@
 use std::net::SocketAddr;
 
 use tokio::net::TcpListener;
-use tokio::sync::watch;
-use tokio::task::JoinSet;
 
-use crate::app::{self, App};
+use crate::app;
 use crate::archive::Archive;
-use crate::catalogue::Catalogue;
 use crate::config::Config;
-use crate::jobs::Worker;
 use crate::listen::listen;
+use crate::process::Process;
 use crate::start_error::StartError;
-use crate::stopping::Stopping;
-use crate::{routes, seed, upload};
+use crate::{routes, upload};
 
 /// The server of Sistership.
 #[derive(Debug, Clone, Copy)]
@@ -24,9 +20,7 @@ pub struct Server;
 #[derive(Debug)]
 pub struct Running {
     addr: SocketAddr,
-    archive: Archive,
-    stop: watch::Sender<bool>,
-    tasks: JoinSet<()>,
+    process: Process,
 }
 
 impl Server {
@@ -37,21 +31,15 @@ impl Server {
     pub async fn start(config: Config) -> Result<Running, StartError> {
         config.check()?;
         spool(&config)?;
-        let archive = Archive::open(&config.database_url, &config.data_dir).await?;
-        let catalogue = Catalogue::default();
-        seed::seed(&archive.store, &catalogue).await?;
-        archive.store.idempotency().purge().await?;
+        // The address first: a process that cannot have it takes no job from others.
         let listener = bind(config.listen).await?;
         let addr = listener.local_addr().map_err(|error| StartError::Listen { listen: config.listen, error })?;
-        let (stop, stopping) = Stopping::new();
-        let app = App::new(&config, archive.clone(), catalogue, stopping.clone());
-        let mut tasks = JoinSet::new();
-        for _ in 0..config.workers {
-            tasks.spawn(Worker::new(app.clone()).run());
-        }
-        tasks.spawn(listen(listener, routes::router(app), config.limits, stopping));
+        let (mut process, app) = Process::start(&config).await?;
+        process.archive.store.idempotency().purge().await?;
+        let stopping = app.stopping();
+        process.tasks.spawn(listen(listener, routes::router(app), config.limits, stopping));
         tracing::info!(%addr, "listening");
-        Ok(Running { addr, archive, stop, tasks })
+        Ok(Running { addr, process })
     }
 }
 
@@ -68,14 +56,13 @@ impl Running {
 
     /// Its database and samples, for a program that runs the server within itself.
     pub fn archive(&self) -> &Archive {
-        &self.archive
+        &self.process.archive
     }
 
-    /// Stops: no further connections, requests under way are answered, jobs under way go back to the queue.
-    pub async fn stop(mut self) {
-        self.stop.send_replace(true);
-        while self.tasks.join_next().await.is_some() {}
-        self.archive.store.close().await;
+    /// Stops: no further connections, requests under way are answered, jobs under way get
+    /// [`crate::Leases::drain`] to end and then go back to the queue.
+    pub async fn stop(self) {
+        self.process.stop().await;
     }
 }
 

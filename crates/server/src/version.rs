@@ -97,6 +97,25 @@ impl Recipe {
         }
     }
 
+    /// The hash of the ship's document, where it names one.
+    pub fn ship_sha256(&self) -> Option<&str> {
+        match self {
+            Self::Plain(version::Recipe::Published { ship_sha256, .. } | version::Recipe::Refinement { ship_sha256, .. }) => {
+                Some(ship_sha256)
+            }
+            Self::Diagnosis(_) => None,
+        }
+    }
+
+    /// The version that it starts from; none for a published model.
+    pub fn starts_from(&self) -> Option<&SourceVersion> {
+        match self {
+            Self::Plain(version::Recipe::Refinement { source, .. }) => Some(source),
+            Self::Plain(version::Recipe::Published { .. }) => None,
+            Self::Diagnosis(_) => self.diagnosed(),
+        }
+    }
+
     /// The version that a diagnosis started from.
     pub fn diagnosed(&self) -> Option<&SourceVersion> {
         match self {

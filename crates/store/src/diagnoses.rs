@@ -14,6 +14,8 @@ statements! {
     INSERT = same("INSERT INTO diagnoses (id, version_id, made_id, report_id, verdict, effects, trials, created_us) \
         VALUES ($1, $2, $3, $4, $5, $6, $7, $8) \
         RETURNING id, version_id, made_id, report_id, verdict, effects, trials, created_us");
+    ALL = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, created_us FROM diagnoses \
+        WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
     BY_VERSION = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, created_us FROM diagnoses \
         WHERE (version_id = $1 OR made_id = $1) AND id < COALESCE($2, '~') ORDER BY id DESC LIMIT $3");
 }
@@ -58,6 +60,12 @@ pub struct NewDiagnosed {
 pub struct Diagnoses<'a>(pub(crate) &'a Store);
 
 impl Diagnoses<'_> {
+    /// Every diagnosis, in the order in which they were made.
+    pub async fn all(&self, page: &Page) -> Result<List<Diagnosed>> {
+        let diagnoses = self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
+        Ok(page.of(diagnoses, |diagnosis: &Diagnosed| diagnosis.id.clone()))
+    }
+
     /// The diagnoses that say something of a version, the latest first: those of it, and the one that it came of.
     pub async fn by_version(&self, version_id: &str, page: &Page) -> Result<List<Diagnosed>> {
         let values = args![version_id: version_id, after: &page.after, limit: page.fetch()?];

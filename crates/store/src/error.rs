@@ -47,6 +47,14 @@ pub enum StoreError {
     /// The database failed (500 or 503).
     #[error("database: {0}")]
     Database(#[from] sqlx::Error),
+    /// A file or folder of a backup cannot be used (500).
+    #[error("{}: {error}", path.display())]
+    File {
+        /// The file or folder.
+        path: std::path::PathBuf,
+        /// What the system said.
+        error: std::io::Error,
+    },
     /// The object store failed, or an object is not what was put there (500).
     #[error("objects: {0}")]
     Objects(#[from] ObjectsError),

@@ -11,7 +11,8 @@ pub(crate) fn make(folder: &Path) -> io::Result<()> {
     missing.into_iter().filter_map(Path::parent).try_for_each(sync)
 }
 
-fn sync(folder: &Path) -> io::Result<()> {
+/// Writes a folder's entries to the disk.
+pub(crate) fn sync(folder: &Path) -> io::Result<()> {
     let here = folder.as_os_str().is_empty();
     match cfg!(unix) {
         true => File::open(if here { Path::new(".") } else { folder })?.sync_all(),

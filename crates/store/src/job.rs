@@ -117,6 +117,20 @@ record! {
     }
 }
 
+record! {
+    /// Jobs of one kind in one state.
+    pub struct JobCount {
+        /// The kind.
+        pub kind: String,
+        /// The state.
+        pub state: JobState,
+        /// How many there are.
+        pub jobs: i64,
+        /// When the oldest of them was asked for.
+        pub oldest_us: i64,
+    }
+}
+
 /// What a job is made of.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewJob {

@@ -4,7 +4,7 @@ use crate::arguments::{Args, args};
 use crate::checks;
 use crate::database::Transaction;
 use crate::error::{Result, StoreError};
-use crate::job::{Job, JobFilter, JobState, NewJob, job};
+use crate::job::{Job, JobCount, JobFilter, JobState, NewJob, job};
 use crate::page::{List, Page};
 use crate::statements::{Statement, same, statements};
 use crate::store::Store;
@@ -15,6 +15,8 @@ statements! {
     GET = same(job!("SELECT", "FROM jobs WHERE id = $1"));
     LIST = same(job!("SELECT", "FROM jobs WHERE id < COALESCE($1, '~') AND (CAST($2 AS TEXT) IS NULL OR ship = $2) \
         AND state = COALESCE($3, state) ORDER BY id DESC LIMIT $4"));
+    COUNTS = same("SELECT kind, state, COUNT(*) AS jobs, MIN(created_us) AS oldest_us FROM jobs \
+        GROUP BY kind, state ORDER BY kind, state");
     CANCEL = same(job!("UPDATE jobs SET cancel_requested = 1, \
         finished_us = CASE WHEN state = 'queued' THEN $2 ELSE finished_us END, \
         state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END \
@@ -48,6 +50,11 @@ impl Jobs<'_> {
         let values = args![after: &page.after, ship: &filter.ship, state: state, limit: page.fetch()?];
         let jobs = self.0.database().all(LIST, values).await?;
         Ok(page.of(jobs, |job: &Job| job.id.clone()))
+    }
+
+    /// How many jobs there are of each kind in each state.
+    pub async fn counts(&self) -> Result<Vec<JobCount>> {
+        self.0.database().all(COUNTS, &[]).await
     }
 
     /// Cancels a job that waits, or asks the worker of a running one to stop.

@@ -1,7 +1,7 @@
 //! The schema, embedded in the binary, brought up to date when a store is opened, by one process at a time.
 
 use sqlx::migrate::{Migration, MigrationType, Migrator};
-use sqlx::{PgPool, SqlSafeStr as _, SqlitePool};
+use sqlx::{PgConnection, PgPool, SqlSafeStr as _, SqlitePool};
 
 use crate::error::Result;
 
@@ -33,6 +33,16 @@ pub(crate) async fn sqlite(pool: &SqlitePool) -> Result<()> {
 /// Under the advisory lock that sqlx takes.
 pub(crate) async fn postgres(pool: &PgPool) -> Result<()> {
     Ok(migrator(POSTGRES).run(pool).await.map_err(sqlx::Error::from)?)
+}
+
+/// The schema as it was after a migration, within a transaction of the caller's.
+pub(crate) async fn postgres_up_to(version: i64, connection: &mut PgConnection) -> Result<()> {
+    Ok(migrator(POSTGRES).run_direct(Some(version), connection, false).await.map_err(sqlx::Error::from)?)
+}
+
+/// The number of the newest migration.
+pub(crate) fn newest() -> i64 {
+    SQLITE.iter().map(|(version, ..)| *version).max().unwrap_or(0)
 }
 
 #[cfg(test)]

@@ -40,7 +40,7 @@ pub enum ObjectsError {
 
 /// A content-addressed store. A clone is another handle on the same one.
 #[derive(Debug, Clone)]
-pub struct Objects(Arc<dyn ObjectStore>);
+pub struct Objects(pub(crate) Arc<dyn ObjectStore>);
 
 impl Objects {
     /// Objects below the folder `root`, which is made if it is not there.
@@ -60,6 +60,18 @@ impl Objects {
         Self(store)
     }
 
+    /// Leaves the mark that [`health`](Self::health) looks for: a folder that is no longer mounted does not have it.
+    pub async fn mark(&self) -> Result<()> {
+        let about = PutPayload::from_static(b"The objects of a Sistership store, named by the SHA-256 of their bytes.\n");
+        self.0.put(&ObjectPath::from(MARK), about).await.map_err(ObjectsError::from)?;
+        Ok(())
+    }
+
+    /// Whether the store answers and is the one that was [marked](Self::mark).
+    pub async fn health(&self) -> Result<()> {
+        self.0.head(&ObjectPath::from(MARK)).await.map(drop).map_err(|error| failure(MARK, error))
+    }
+
     /// Keeps the bytes and returns their key, once they are durable. They are written even when the key is there: another
     /// writer may not have made them durable yet, and a damaged object is healed.
     pub async fn put(&self, bytes: Bytes) -> Result<String> {
@@ -76,6 +88,15 @@ impl Objects {
         match actual == key {
             true => Ok(bytes),
             false => Err(ObjectsError::Damaged { key: key.to_owned(), actual }.into()),
+        }
+    }
+
+    /// Removes the object of this key, if it is there. Only who knows that no row refers to it may do so, see
+    /// [`crate::Store::remove_unreferred`].
+    pub(crate) async fn remove(&self, key: &str) -> Result<()> {
+        match self.0.delete(&path(key)?).await {
+            Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
+            Err(error) => Err(ObjectsError::from(error).into()),
         }
     }
 
@@ -99,11 +120,16 @@ async fn hash(bytes: Bytes) -> Result<String, ObjectsError> {
     Ok(tokio::task::spawn_blocking(move || sha256_hex(&bytes)).await?)
 }
 
+/// What every store of ours has beside its objects.
+const MARK: &str = "about.txt";
+/// The folder of all objects.
+pub(crate) const FOLDER: &str = "objects";
+
 /// `objects/ab/cdef...`
 fn path(key: &str) -> Result<ObjectPath> {
     checks::sha256("key", key)?;
     let (folder, file) = key.split_at(2);
-    Ok(ObjectPath::from_iter(["objects", folder, file]))
+    Ok(ObjectPath::from_iter([FOLDER, folder, file]))
 }
 
 fn failure(key: &str, error: object_store::Error) -> StoreError {

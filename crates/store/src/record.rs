@@ -69,3 +69,11 @@ macro_rules! record {
     };
 }
 pub(crate) use record;
+
+record! {
+    /// A number of rows.
+    pub struct Counted {
+        /// The number.
+        pub rows: i64,
+    }
+}

@@ -37,12 +37,14 @@ mod prepare {
     use crate::database::Pool;
     use crate::error::{Result, StoreError};
     use crate::store::Store;
-    use crate::{aliases, diagnoses, idempotency, jobs, laws, reports, ships, store, trials, versions, work};
+    use crate::{aliases, diagnoses, garbage, idempotency, integrity, jobs, laws, reports, ships, store, trials, versions, work};
 
     const ALL: &[(&str, &[(&str, super::Statement)])] = &[
         ("aliases", aliases::STATEMENTS),
         ("diagnoses", diagnoses::STATEMENTS),
+        ("garbage", garbage::STATEMENTS),
         ("idempotency", idempotency::STATEMENTS),
+        ("integrity", integrity::STATEMENTS),
         ("jobs", jobs::STATEMENTS),
         ("laws", laws::STATEMENTS),
         ("reports", reports::STATEMENTS),

@@ -1,8 +1,10 @@
 //! Databases for tests: a temporary SQLite file, and a fresh database on a private PostgreSQL server.
 
+use std::str::FromStr as _;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{AssertSqlSafe, ConnectOptions as _, Connection as _, Executor as _, PgConnection};
 use tempfile::TempDir;
 
@@ -44,6 +46,33 @@ impl TestDatabase {
         let clock = Arc::new(ManualClock::new(1_800_000_000_000_000));
         let store = Store::connect(&self.url, clock.clone()).await.expect("a store");
         TestStore { store, clock, database: self }
+    }
+}
+
+impl TestDatabase {
+    /// Changes rows as no program of ours would: without triggers and without foreign keys.
+    pub async fn damage(&self, sql: &str) {
+        match self.url.starts_with("sqlite") {
+            true => self.damage_sqlite(sql).await,
+            false => self.damage_postgres(sql).await,
+        }
+        .expect("a damaged database");
+    }
+
+    async fn damage_sqlite(&self, sql: &str) -> sqlx::Result<()> {
+        let options = SqliteConnectOptions::from_str(&self.url)?.foreign_keys(false);
+        let mut connection = options.connect().await?;
+        let triggers = sqlx::query_scalar::<_, String>("SELECT name FROM sqlite_master WHERE type = 'trigger'");
+        for trigger in triggers.fetch_all(&mut connection).await? {
+            connection.execute(AssertSqlSafe(format!("DROP TRIGGER {trigger}"))).await?;
+        }
+        connection.execute(AssertSqlSafe(sql.to_owned())).await.map(drop)
+    }
+
+    async fn damage_postgres(&self, sql: &str) -> sqlx::Result<()> {
+        let mut connection = PgConnection::connect(&self.url).await?;
+        connection.execute("SET session_replication_role = replica").await?;
+        connection.execute(AssertSqlSafe(sql.to_owned())).await.map(drop)
     }
 }
 

@@ -6,8 +6,9 @@ use crate::database::Transaction;
 use crate::error::{Result, StoreError};
 use crate::job::{Job, NewJob};
 use crate::jobs;
+use crate::objects::Objects;
 use crate::page::{List, Page};
-use crate::record::record;
+use crate::record::{Counted, record};
 use crate::ships;
 use crate::statements::{same, statements};
 use crate::store::Store;
@@ -25,6 +26,9 @@ statements! {
     LIST = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, \
         object_key, created_us, deleted_us FROM trials \
         WHERE ship = $1 AND id > COALESCE($2, '') AND deleted_us IS NULL ORDER BY id LIMIT $3");
+    WAS = same("SELECT COUNT(*) AS rows FROM trials WHERE id = $1");
+    ALL = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, \
+        object_key, created_us, deleted_us FROM trials WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
     DELETE = same("UPDATE trials SET deleted_us = $2 WHERE id = $1 AND deleted_us IS NULL RETURNING id, ship, sha256, name, \
         manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, object_key, created_us, deleted_us");
     UNDELETE = same("UPDATE trials SET deleted_us = NULL WHERE id = $1 RETURNING id, ship, sha256, name, \
@@ -122,11 +126,25 @@ impl Trials<'_> {
 
     /// Puts several trials in, all of them or none.
     pub async fn insert_all(&self, all: &[NewTrial]) -> Result<Vec<Inserted<Trial>>> {
-        self.insert_all_and_enqueue(all, |_| None).await.map(|(inserted, _)| inserted)
+        self.write(all, None, |_| None).await.map(|(inserted, _)| inserted)
     }
 
-    /// The same with a job that is to follow, if `job` asks for one: whoever sees the trials finds the job too.
-    pub async fn insert_all_and_enqueue<F>(&self, all: &[NewTrial], job: F) -> Result<(Vec<Inserted<Trial>>, Option<Job>)>
+    /// The same with a job that is to follow, if `job` asks for one: whoever sees the trials finds the job too. Where an
+    /// object of theirs is no longer in `objects`, because [`Store::remove_unreferred`] was faster, that object is not found
+    /// and nothing is put in; put it there again and come back.
+    pub async fn insert_all_and_enqueue<F>(
+        &self,
+        all: &[NewTrial],
+        objects: &Objects,
+        job: F,
+    ) -> Result<(Vec<Inserted<Trial>>, Option<Job>)>
+    where
+        F: FnOnce(&[Inserted<Trial>]) -> Option<NewJob>,
+    {
+        self.write(all, Some(objects), job).await
+    }
+
+    async fn write<F>(&self, all: &[NewTrial], objects: Option<&Objects>, job: F) -> Result<(Vec<Inserted<Trial>>, Option<Job>)>
     where
         F: FnOnce(&[Inserted<Trial>]) -> Option<NewJob>,
     {
@@ -135,6 +153,9 @@ impl Trials<'_> {
         let mut inserted = Vec::with_capacity(all.len());
         for new in all {
             inserted.push(self.insert_one(&mut tx, new).await?);
+        }
+        if let Some(objects) = objects {
+            objects.must_have(inserted.iter().map(|trial| trial.row.object_key.clone())).await?;
         }
         let job = match job(&inserted) {
             Some(new) => Some(jobs::insert(self.0, &mut tx, &new).await?),
@@ -165,6 +186,18 @@ impl Trials<'_> {
     pub async fn find(&self, ship: &str, sha256: &str) -> Result<Trial> {
         let trial = self.0.database().optional(FIND, args![ship: ship, sha256: sha256]).await?;
         trial.ok_or_else(|| StoreError::missing("trial", format!("{ship}/{sha256}")))
+    }
+
+    /// Whether there is a trial of this id, deleted or not.
+    pub async fn was(&self, id: &str) -> Result<bool> {
+        let found: Option<Counted> = self.0.database().optional(WAS, args![id: id]).await?;
+        Ok(found.is_some_and(|found| found.rows > 0))
+    }
+
+    /// Every trial of every ship, deleted or not, in the order of their upload.
+    pub async fn all(&self, page: &Page) -> Result<List<Trial>> {
+        let trials = self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
+        Ok(page.of(trials, |trial: &Trial| trial.id.clone()))
     }
 
     /// The trials of a ship, in the order of their upload.

@@ -27,6 +27,8 @@ statements! {
         WHERE model = $1 ORDER BY number DESC LIMIT 1");
     LIST = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions \
         WHERE model = $1 AND number < COALESCE($2, 9223372036854775807) ORDER BY number DESC LIMIT $3");
+    ALL = same("SELECT id, model, number, parent, law, method, document, sha256, created_us FROM versions \
+        WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
     CHILDREN = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions \
         WHERE parent = $1 AND id > COALESCE($2, '') ORDER BY id LIMIT $3");
 }
@@ -130,6 +132,12 @@ impl Versions<'_> {
         let values = args![model: model, after: page.after, limit: page.fetch()?];
         let versions = self.0.database().all(LIST, values).await?;
         Ok(page.of(versions, |version: &VersionHead| version.number))
+    }
+
+    /// Every version of every model with its document, in the order in which they were made.
+    pub async fn all(&self, page: &Page) -> Result<List<Version>> {
+        let versions = self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
+        Ok(page.of(versions, |version: &Version| version.head.id.clone()))
     }
 
     /// The versions, of whatever model, that were made from the version `id`, the oldest first.

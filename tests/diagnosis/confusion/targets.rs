@@ -1,4 +1,4 @@
-//! The targets of the issue.
+//! The targets that the table is held against.
 
 use super::super::cases::{Kind, STRENGTHS};
 use super::outcome::Outcome;
@@ -6,32 +6,34 @@ use super::outcome::Outcome;
 /// Prints every figure beside its target, and gives those that miss it.
 pub fn print(outcomes: &[Outcome]) -> Vec<String> {
     let mut misses = Vec::new();
-    let mut judge = |what: String, share: Option<(usize, usize)>, least: f64| {
-        let Some((right, count)) = share.filter(|(_, count)| *count > 0) else { return };
-        let share = right as f64 / count as f64;
-        let line = format!("{what}: {right} of {count}, {:.1} % (target {:.0} %)", 100.0 * share, 100.0 * least);
-        println!("{line}");
-        if share < least {
-            misses.push(line);
+    {
+        let mut judge = |what: String, share: Option<(usize, usize)>, least: f64| {
+            let Some((right, count)) = share.filter(|(_, count)| *count > 0) else { return };
+            let share = right as f64 / count as f64;
+            let line = format!("{what}: {right} of {count}, {:.1} % (target {:.0} %)", 100.0 * share, 100.0 * least);
+            println!("{line}");
+            if share < least {
+                misses.push(line);
+            }
+        };
+        println!();
+        for (share, least) in STRENGTHS.into_iter().zip([0.95, 0.95, 0.8]) {
+            judge(
+                format!("right name first at {share:.1}"),
+                count(outcomes, |o| o.kind == Kind::Single(share), Outcome::is_right),
+                least,
+            );
         }
-    };
-    println!();
-    for (share, least) in STRENGTHS.into_iter().zip([0.95, 0.95, 0.8]) {
-        judge(
-            format!("right name first at {share:.1}"),
-            count(outcomes, |o| o.kind == Kind::Single(share), Outcome::is_right),
-            least,
-        );
+        judge("nothing named on clean trials".into(), count(outcomes, |o| o.kind == Kind::Clean, |o| o.named.is_empty()), 0.95);
+        judge("both names of a pair".into(), count(outcomes, |o| o.kind == Kind::Pair, Outcome::is_right), 0.8);
+        let is_unlisted = |outcome: &Outcome| matches!(outcome.kind, Kind::Unlisted(..));
+        judge("unlisted: unexplained".into(), count(outcomes, is_unlisted, Outcome::is_right), 0.9);
+        judge("unlisted: right channel and time".into(), count(outcomes, is_unlisted, Outcome::is_right_place), 0.9);
+        let off: Vec<f64> =
+            outcomes.iter().flat_map(|outcome| &outcome.parameters).map(|estimate| estimate.off().abs()).collect();
+        let within = off.iter().filter(|off| **off <= 3.0).count();
+        judge("parameters within three standard errors".into(), Some((within, off.len())), 0.9);
     }
-    judge("nothing named on clean trials".into(), count(outcomes, |o| o.kind == Kind::Clean, |o| o.named.is_empty()), 0.95);
-    judge("both names of a pair".into(), count(outcomes, |o| o.kind == Kind::Pair, Outcome::is_right), 0.8);
-    let is_unlisted = |outcome: &Outcome| matches!(outcome.kind, Kind::Unlisted(..));
-    judge("unlisted: unexplained".into(), count(outcomes, is_unlisted, Outcome::is_right), 0.9);
-    judge("unlisted: right channel and time".into(), count(outcomes, is_unlisted, Outcome::is_right_place), 0.9);
-    let off: Vec<f64> = outcomes.iter().flat_map(|outcome| &outcome.parameters).map(|estimate| estimate.off().abs()).collect();
-    let within = off.iter().filter(|off| **off <= 3.0).count();
-    judge("parameters within three standard errors".into(), Some((within, off.len())), 0.9);
-    drop(judge);
     misses.extend(ratios(outcomes));
     misses
 }

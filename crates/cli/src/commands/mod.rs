@@ -1,14 +1,20 @@
 //! One file for each command, and what they share.
 
+pub mod backup;
 pub mod check;
+mod config_file;
 pub mod derive;
 pub mod diagnose;
 mod diagnose_text;
+pub mod fsck;
+pub mod gc;
+mod log;
 pub mod manoeuvre;
 mod manoeuvre_text;
 pub mod refine;
 mod refine_settings;
 pub(crate) mod refine_text;
+mod running;
 mod sailed;
 pub mod serve;
 pub mod similar;
@@ -16,6 +22,7 @@ pub mod simulate;
 mod simulated;
 pub(crate) mod store;
 pub mod verify;
+pub mod work;
 
 use sistership_dynamics::Ship;
 use sistership_model::vessel::Status;

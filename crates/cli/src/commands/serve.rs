@@ -1,13 +1,14 @@
 //! `sistership serve`: the REST server.
 
-use std::io::IsTerminal as _;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use sistership_server::{Config, DEFAULT_LISTEN, Running, Server, StartError};
-use tracing_subscriber::EnvFilter;
+use sistership_server::{Config, DEFAULT_LISTEN, Server, StartError};
 
+use super::config_file::ConfigFile;
+use super::log::LogArguments;
+use super::running::{LeaseArguments, until_stopped, workers};
 use super::store::{StoreArguments, block_on};
 use crate::failure::{Failure, about_file};
 use crate::output;
@@ -15,8 +16,6 @@ use crate::zoo::text_of;
 
 /// Holds the API key.
 const KEY: &str = "SISTERSHIP_API_KEY";
-/// Holds the filter of the log.
-const LOG: &str = "SISTERSHIP_LOG";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -25,24 +24,31 @@ Examples:
   sistership serve --listen 0.0.0.0:8080 --database-url postgres://user@host/sistership --api-key-file /run/secrets/key
 
 The API key is read from SISTERSHIP_API_KEY or --api-key-file, never from a flag that others could see; requests carry
-it as `Authorization: Bearer KEY`. Without a key the server listens on loopback only. SISTERSHIP_LOG sets what is logged
-on standard error (`info` by default). Stop it with Ctrl-C or SIGTERM: jobs under way go back to the queue.";
+it as `Authorization: Bearer KEY`. Without a key the server listens on loopback only. Stop it with Ctrl-C or SIGTERM: jobs
+under way get --drain-s to end and then go back to the queue.";
 
 /// Run the REST server.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Serve {
-    /// Address and port; port 0 takes a free one.
-    #[arg(long, value_name = "ADDRESS:PORT", env = "SISTERSHIP_LISTEN", default_value_t = DEFAULT_LISTEN, value_parser = address)]
-    listen: SocketAddr,
+    /// Address and port; port 0 takes a free one [default: 127.0.0.1:8080].
+    #[arg(long, value_name = "ADDRESS:PORT", env = "SISTERSHIP_LISTEN", value_parser = address)]
+    listen: Option<SocketAddr>,
     #[command(flatten)]
     store: StoreArguments,
     /// File that holds the API key; wins over SISTERSHIP_API_KEY.
     #[arg(long, value_name = "FILE", env = "SISTERSHIP_API_KEY_FILE")]
     api_key_file: Option<PathBuf>,
-    /// Jobs worked on at a time; 0 leaves them to other processes on the same database.
-    #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS", default_value_t = 1, value_parser = clap::value_parser!(u16).range(..=64))]
-    workers: u16,
+    /// Jobs worked on at a time, 0 to 64; 0 leaves them to other processes on the same database (`sistership work`) [default: 1].
+    #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS")]
+    workers: Option<u16>,
+    /// Work on no jobs, whatever --workers says.
+    #[arg(long)]
+    no_worker: bool,
+    #[command(flatten)]
+    lease: LeaseArguments,
+    #[command(flatten)]
+    log: LogArguments,
 }
 
 fn address(text: &str) -> Result<SocketAddr, String> {
@@ -59,32 +65,38 @@ pub fn run(serve: &Serve, zoo: &[PathBuf]) -> Result<(), Failure> {
             "a server keeps its ships and laws in its database: send them to /v1/ships and /v1/laws, not by --zoo; it diagnoses with the effects of the program".into(),
         ));
     }
-    let config = config(serve)?;
-    let filter = EnvFilter::try_from_env(LOG).unwrap_or_else(|_| EnvFilter::new("info"));
-    tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(std::io::stderr)
-        .with_ansi(std::io::stderr().is_terminal())
-        .init();
+    let file = serve.store.file()?;
+    let config = config(serve, &file)?;
+    serve.log.begin(&file)?;
     block_on(async {
         let running = Server::start(config).await.map_err(refused)?;
         let url = running.url();
         output::print(false, &(), || format!("sistership listens on {url}"))?;
-        until_stopped(running).await
+        until_stopped(running.stop()).await
     })
 }
 
-fn config(serve: &Serve) -> Result<Config, Failure> {
-    let mut config = Config::new(&serve.store.data_dir);
-    config.listen = serve.listen;
-    config.database_url = serve.store.url();
-    config.workers = usize::from(serve.workers);
-    config.api_key = match &serve.api_key_file {
-        Some(file) => Some(key_of(file)?),
-        None => std::env::var(KEY).ok().filter(|key| !key.is_empty()),
-    };
+fn config(serve: &Serve, file: &ConfigFile) -> Result<Config, Failure> {
+    let place = serve.store.place(file);
+    let mut config = Config::new(place.data_dir);
+    config.listen = serve.listen.or(file.listen).unwrap_or(DEFAULT_LISTEN);
+    config.database_url = place.database_url;
+    config.workers = if serve.no_worker { 0 } else { workers(serve.workers, file, 0)? };
+    config.leases = serve.lease.leases(file)?;
+    config.api_key = api_key(serve, file)?;
     config.check().map_err(refused)?;
     Ok(config)
+}
+
+/// The key from the flag's file, from the environment, or from the file that the configuration names.
+fn api_key(serve: &Serve, file: &ConfigFile) -> Result<Option<String>, Failure> {
+    if let Some(path) = &serve.api_key_file {
+        return key_of(path).map(Some);
+    }
+    match std::env::var(KEY).ok().filter(|key| !key.is_empty()) {
+        Some(key) => Ok(Some(key)),
+        None => file.api_key_file.as_deref().map(key_of).transpose(),
+    }
 }
 
 fn key_of(file: &Path) -> Result<String, Failure> {
@@ -101,31 +113,6 @@ fn refused(error: StartError) -> Failure {
         StartError::Key => Failure::Call(error.to_string()),
         other => Failure::Refused(other.to_string()),
     }
-}
-
-/// Waits for a signal, then for what is under way; a second signal does not wait.
-async fn until_stopped(running: Running) -> Result<(), Failure> {
-    signal().await?;
-    output::note("stopping; once more to stop at once");
-    tokio::select! {
-        () = running.stop() => Ok(()),
-        second = signal() => second.and(Err(Failure::Refused("stopped before everything under way had ended".into()))),
-    }
-}
-
-/// Ctrl-C, or SIGTERM where there is one.
-async fn signal() -> Result<(), Failure> {
-    let unheard = |error: std::io::Error| Failure::Refused(format!("signals cannot be heard: {error}"));
-    #[cfg(unix)]
-    {
-        let mut terminate = tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate()).map_err(unheard)?;
-        tokio::select! {
-            interrupted = tokio::signal::ctrl_c() => interrupted.map_err(unheard),
-            _ = terminate.recv() => Ok(()),
-        }
-    }
-    #[cfg(not(unix))]
-    tokio::signal::ctrl_c().await.map_err(unheard)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use clap::Args;
 use sistership_server::Archive;
 use sistership_server::verify::{Verification, verify_with};
 
-use super::store::{StoreArguments, block_on};
+use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
 use crate::output::{self, note};
 
@@ -43,23 +43,19 @@ fn version(text: &str) -> Result<(String, i64), String> {
 /// # Errors
 /// The store or the version is not there, or the version is not what its recipe gives.
 pub fn run(verify: &Verify) -> Result<(), Failure> {
-    verify.store.must_exist()?;
-    let verification = block_on(verification(verify))?;
+    let verification = with_archive(&verify.store, async |archive| verification(verify, archive).await)?;
     output::print(verify.json, &verification, || text(&verification))?;
     if verification.identical { Ok(()) } else { Err(Failure::Told) }
 }
 
-async fn verification(verify: &Verify) -> Result<Verification, Failure> {
-    let archive = Archive::open(&verify.store.url(), &verify.store.data_dir).await;
-    let archive = archive.map_err(|error| Failure::Refused(format!("cannot open the store: {error}")))?;
+async fn verification(verify: &Verify, archive: &Archive) -> Result<Verification, String> {
     let (ship, number) = &verify.version;
     let told = |fraction: f64, what: &str| {
         note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true
     };
-    let verification = verify_with(&archive, ship, *number, Arc::new(told)).await;
-    archive.store.close().await;
-    verification.map_err(|error| Failure::Refused(format!("{ship}/{number}: {error}")))
+    let verification = verify_with(archive, ship, *number, Arc::new(told)).await;
+    verification.map_err(|error| format!("{ship}/{number}: {error}"))
 }
 
 fn text(verification: &Verification) -> String {

@@ -57,15 +57,34 @@ pub(super) fn choose(search: &Search<'_>, settings: &Settings) -> Result<Choice,
     Ok(choice)
 }
 
-fn most_probable(found: &[Judged], accepted: impl Fn(&Judged) -> bool) -> Option<usize> {
+fn most_believed(search: &Search<'_>, found: &[Judged], accepted: impl Fn(&Judged) -> bool) -> Option<usize> {
     let places = (0..found.len()).filter(|&place| accepted(&found[place]));
-    places.max_by(|&a, &b| found[a].log_evidence.total_cmp(&found[b].log_evidence))
+    places.max_by(|&a, &b| last_evidence(search, &found[a]).total_cmp(&last_evidence(search, &found[b])))
+}
+
+/// The evidence for the effect that came last.
+fn last_evidence(search: &Search<'_>, judged: &Judged) -> f64 {
+    search.evidence(judged, judged.candidates.len() - 1).unwrap_or(f64::NEG_INFINITY)
 }
 
 /// The most probable sets of those of a base and one more, judged where they stand.
 fn companions(search: &Search<'_>, base: &Base<'_>, count: usize) -> Result<Vec<Judged>, RefineError> {
-    let likely: Vec<Likely> = search.screen(base).into_iter().take(count).collect();
+    let likely = likely(search.screen(base), count);
     likely.par_iter().map(|likely| search.judge(base, &likely.candidate, likely.level)).collect()
+}
+
+/// The most probable, and those that are believed most after what they feign.
+fn likely(screened: Vec<Likely>, count: usize) -> Vec<Likely> {
+    let mut by_belief = screened.clone();
+    by_belief.sort_by(|a, b| b.believed.total_cmp(&a.believed));
+    let mut likely: Vec<Likely> = screened.into_iter().take(count.div_ceil(2)).collect();
+    for candidate in by_belief {
+        let is_new = likely.iter().all(|known| known.candidate.key() != candidate.candidate.key());
+        if is_new && likely.len() < count {
+            likely.push(candidate);
+        }
+    }
+    likely
 }
 
 impl Choice {
@@ -81,7 +100,17 @@ impl Choice {
     /// One effect more, if any is believed.
     fn add(&mut self, search: &Search<'_>, settings: &Settings, base: &Base<'_>, count: usize) -> Result<bool, RefineError> {
         let found = companions(search, base, count)?;
-        let better = most_probable(&found, |judged| self.accepts(search, judged, settings));
+        let mut accepted: Vec<usize> = (0..found.len()).filter(|&at| self.accepts(search, &found[at], settings)).collect();
+        // What is believed decides, not what fits: an instrument that always erred would stand before what is new.
+        let belief = |place: &usize| last_evidence(search, &found[*place]);
+        accepted.sort_by(|a, b| belief(b).total_cmp(&belief(a)));
+        let mut better = None;
+        for place in accepted {
+            if !search.is_placebo(&found[place], base)? {
+                better = Some(place);
+                break;
+            }
+        }
         self.take(found, better);
         Ok(better.is_some())
     }
@@ -95,9 +124,13 @@ impl Choice {
             others.remove(place);
             let base = search.base(&others, &self.levels)?;
             let found = companions(search, &base, COMPANIONS)?;
-            let best = self.best().log_evidence + 1.0;
-            let better = most_probable(&found, |judged| judged.log_evidence > best && stands(search, judged, settings));
+            let best = search.evidence(self.best(), place).unwrap_or(f64::NEG_INFINITY) + 1.0;
+            let is_better = |judged: &Judged| last_evidence(search, judged) > best && stands(search, judged, settings);
+            let better = most_believed(search, &found, is_better);
             self.take(found, better);
+            if better.is_some() {
+                break;
+            }
         }
         Ok(())
     }

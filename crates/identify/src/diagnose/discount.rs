@@ -1,5 +1,6 @@
 //! How much less than they seem to say trials say of an effect, by what it feigned on clean trials.
 
+use sistership_model::trial::Channel;
 use sistership_model::uncertainty::{Feigned, Uncertainty};
 
 use crate::residual::Candidate;
@@ -19,10 +20,21 @@ pub(super) fn discount(uncertainty: Option<&Uncertainty>, candidate: &Candidate,
         let together = 1.0 + (feigned.together - 1.0) * trials as f64 / known.trials.len().max(1) as f64;
         feigned.each.max(together).max(1.0)
     };
-    let own = known.feigned.get(&candidate.key()).map(of);
+    // What comes from outside was there on clean trials too where it is recorded at all: it is judged by records of other
+    // times instead.
+    let own = known.feigned.get(&candidate.key()).filter(|_| !is_from_outside(candidate)).map(of);
     own.unwrap_or_else(|| {
         let mut all: Vec<f64> = known.feigned.values().map(of).collect();
         all.sort_by(f64::total_cmp);
         all.get(all.len() / 2).copied().unwrap_or(1.0)
     })
+}
+
+/// The channels that do not come of the ship's motion.
+pub(super) const OUTSIDE: [Channel; 4] =
+    [Channel::WindSpeed, Channel::WindFrom, Channel::ApparentWindSpeed, Channel::ApparentWindFrom];
+
+/// Whether an effect follows a record of what does not come of the ship's motion.
+pub(super) fn is_from_outside(candidate: &Candidate) -> bool {
+    candidate.form.file.needs.iter().any(|channel| OUTSIDE.contains(channel))
 }

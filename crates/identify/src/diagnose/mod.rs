@@ -13,6 +13,8 @@ mod learned;
 mod next_trial;
 mod nuisance;
 mod outcome;
+mod placebo;
+mod refit;
 mod remainder;
 mod run;
 mod search;

@@ -6,6 +6,7 @@ use super::confounded::Responses;
 use super::judge::errors;
 use super::next_trial::next_trial;
 use super::outcome::{Diagnosis, Found, Hypothesis, NextTrial, Unexplained, Verdict};
+use super::refit::refitted;
 use super::remainder::unexplained;
 use super::search::{Judged, Search};
 use super::series::{levels, residuals};
@@ -48,7 +49,10 @@ fn answer(request: &Request<'_>, first: &Search<'_>, choice: &Choice, progress: 
         (true, true) => Verdict::Complete,
         (true, false) => Verdict::Effects,
     };
-    let model = (!found.is_empty()).then(|| search.model_with(&best.candidates, Some(&best.covariance)));
+    let with_effects = search.model_with(&best.candidates, Some(&best.covariance));
+    let with_effects = refitted(&with_effects, request.law, request.trials, errors.strength).into_owned();
+    let model = (!found.is_empty() && errors.change < 0.0).then_some(with_effects);
+    let is_better = found.is_empty() || model.is_some();
     Ok(Diagnosis {
         verdict,
         effects: found,
@@ -56,8 +60,8 @@ fn answer(request: &Request<'_>, first: &Search<'_>, choice: &Choice, progress: 
         next_trial,
         before: errors.before,
         after: errors.after,
-        noise: workspace.noise.iter().map(|(channel, sigma)| (channel.name().to_owned(), *sigma)).collect(),
-        how: how(request),
+        noise: workspace.noise.iter().map(|(channel, instrument)| (channel.name().to_owned(), instrument.deviation)).collect(),
+        how: how(request, errors.strength),
         diagnosed: request.model.name.clone(),
         hypotheses: hypotheses(request, search, choice),
         trials: errors.trials,
@@ -66,7 +70,7 @@ fn answer(request: &Request<'_>, first: &Search<'_>, choice: &Choice, progress: 
         discrepancies: levels(search, workspace, &choice.alone, best),
         model,
         settings: request.settings.clone(),
-        remarks: remarks(&refused),
+        remarks: remarks(&refused, is_better),
     })
 }
 
@@ -88,14 +92,15 @@ fn believed<'a>(
 }
 
 /// What is said of effects that were refused.
-fn remarks(refused: &[String]) -> Vec<String> {
+fn remarks(refused: &[String], is_better: bool) -> Vec<String> {
     let one = |name: &String| {
         format!(
             "`{name}` would explain a part of what remains, but in one size here and in another there: it resembles what is \
              missing and is not named"
         )
     };
-    refused.iter().map(one).collect()
+    let worse = "with what was found the model does not simulate trials better that the fit has not seen: no model is given";
+    refused.iter().map(one).chain((!is_better).then(|| worse.to_owned())).collect()
 }
 
 fn remaining(
@@ -128,10 +133,14 @@ fn remaining(
 /// The discrepancy that is forgiven a model that brings none, by the typical acceleration.
 const REMAINDER: f64 = 3e-4;
 
-fn how(request: &Request<'_>) -> String {
-    match request.trials.len() {
+fn how(request: &Request<'_>, strength: Option<f64>) -> String {
+    let fitted = match request.trials.len() {
         1 => "there is one trial only: these are errors on the trial that the effects were fitted on".to_owned(),
         count => format!("each of {count} trials simulated with effects fitted on the others"),
+    };
+    match strength {
+        Some(strength) => format!("{fitted}, and so were the coefficients (prior strength {strength}, chosen by these errors)"),
+        None => fitted,
     }
 }
 

@@ -1,7 +1,5 @@
 //! Which hypothesis is most probable: every effect alone, then those together that improve on it.
 
-use std::sync::Arc;
-
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use sistership_model::law::Law;
@@ -48,8 +46,11 @@ pub(super) struct Search<'a> {
 }
 
 /// An effect that may be missing, by one linearisation.
+#[derive(Clone)]
 pub(super) struct Likely {
     pub evidence: f64,
+    /// Discounted by what the effect feigns.
+    pub believed: f64,
     /// The level of the discrepancy at which it is most probable, among those of the base.
     pub level: usize,
     pub candidate: Candidate,
@@ -147,11 +148,32 @@ impl<'a> Search<'a> {
                 Some((base.levels[*level].level.log_prior - 0.5 * reduced.deviance + gain, *level))
             };
             let (evidence, level) = reduced.iter().filter_map(gain).max_by(|a, b| a.0.total_cmp(&b.0))?;
-            Some(Likely { evidence: evidence + self.log_prior(candidate), level, candidate: (*candidate).clone() })
+            let believed = self.believed(reduced, &kept, &places[kept.len()..], base, candidate);
+            let prior = self.log_prior(candidate);
+            Some(Likely { evidence: evidence + prior, believed: believed? + prior, level, candidate: (*candidate).clone() })
         };
         let mut screened: Vec<Likely> = others.iter().filter_map(&mut one).collect();
         screened.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         screened
+    }
+
+    /// The discounted evidence of an effect beside those of a base, at the level at which it says most.
+    fn believed(
+        &self,
+        reduced: &[(usize, Reduced)],
+        kept: &[usize],
+        own: &[usize],
+        base: &Base<'_>,
+        candidate: &Candidate,
+    ) -> Option<f64> {
+        let (others, fixing): (Vec<Fixing>, Vec<Fixing>) = (base.taken.iter().flat_map(priors).collect(), priors(candidate));
+        let columns: Vec<usize> = (0..own.len()).collect();
+        let gain = |(_, reduced): &(usize, Reduced)| {
+            let given = reduced.given(kept, &others, own)?.discounted(self.discount(candidate));
+            Some(given.estimate(&columns, &fixing)?.gain)
+        };
+        // The least: what is said at one level only is not said.
+        reduced.iter().filter_map(gain).min_by(f64::total_cmp)
     }
 
     /// The evidence for one of the effects judged together, given the others: discounted by what it feigns on clean trials,
@@ -205,7 +227,7 @@ impl<'a> Search<'a> {
         let candidates = [base.taken.as_slice(), std::slice::from_ref(candidate)].concat();
         let mut best = self.at(base, &candidates, level)?;
         for _ in 0..ROUNDS {
-            let next = self.at(base, &self.moved(&best.1), best.0)?;
+            let next = self.at(base, &best.1.candidates, best.0)?;
             let gain = next.1.log_evidence - best.1.log_evidence;
             best = if gain > 0.0 { next } else { break };
             if gain < 0.5 {
@@ -272,19 +294,6 @@ impl<'a> Search<'a> {
             grams,
         })
     }
-
-    /// The candidates at their estimates, within their bounds.
-    fn moved(&self, judged: &Judged) -> Vec<Candidate> {
-        judged
-            .candidates
-            .iter()
-            .map(|candidate| {
-                let bounded = candidate.at.iter().zip(candidate.form.parameters.values());
-                let at = bounded.map(|(value, parameter)| value.clamp(parameter.bounds[0], parameter.bounds[1])).collect();
-                Candidate { at, ..candidate.clone() }
-            })
-            .collect()
-    }
 }
 
 fn not_positive() -> RefineError {
@@ -320,11 +329,14 @@ pub(super) fn priors(candidate: &Candidate) -> Vec<Fixing> {
     candidate.at.iter().zip(candidate.form.parameters.values()).map(one).collect()
 }
 
+/// Candidates at an estimate, within the bounds of their parameters.
 fn placed(mut candidates: Vec<Candidate>, estimate: &Estimate) -> Vec<Candidate> {
     let mut means = estimate.mean.iter();
     for candidate in &mut candidates {
-        candidate.form = Arc::clone(&candidate.form);
-        candidate.at.iter_mut().zip(&mut means).for_each(|(at, mean)| *at += mean);
+        let parameters = candidate.form.parameters.values();
+        for ((at, parameter), mean) in candidate.at.iter_mut().zip(parameters).zip(&mut means) {
+            *at = (*at + mean).clamp(parameter.bounds[0], parameter.bounds[1]);
+        }
     }
     candidates
 }

@@ -4,12 +4,14 @@ use rayon::prelude::*;
 use sistership_model::coefficient::Axis;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
+use sistership_model::uncertainty::{InstrumentFit, Uncertainty};
 use sistership_model::{Trial, particulars};
 
 use super::learned::Learned;
 use crate::refine::RefineError;
 use crate::residual::{
-    Columns, Detail, Discrepancies, Gram, Linearised, Noise, Record, System, filter, floor, linearise, scatter,
+    Columns, Detail, Discrepancies, Gram, Instrument, Linearised, Noise, Record, System, filter, floor, linearise, scatter,
+    sparseness,
 };
 use crate::transfer::approach_of;
 
@@ -48,8 +50,10 @@ impl<'a> Workspace<'a> {
         let approach = approach_of(trials).map(|approach| approach.speed_m_s);
         let speed_m_s = approach.or(model.speed_m_s).ok_or_else(|| RefineError::Data("the trials have no speed".into()))?;
         let least_step_s = least_step_s.unwrap_or(0.02 * lpp_m / speed_m_s);
-        let records: Vec<Record<'a>> = trials.iter().map(|trial| Record::new(trial, least_step_s)).collect();
-        let noise = noise(&records, lpp_m, speed_m_s);
+        let mut records: Vec<Record<'a>> = trials.iter().map(|trial| Record::new(trial, least_step_s)).collect();
+        let every = sparseness(&records);
+        records.iter_mut().for_each(|record| record.every = every);
+        let noise = noise(&records, lpp_m, speed_m_s, model.uncertainty.as_ref());
         let frame = trials.first().map(|trial| trial.velocity).unwrap_or_default();
         let system = System::new(model, law, columns, frame)?;
         let linear = records.par_iter().map(|record| linearise(&system, record, Detail::Whole)).collect::<Result<_, _>>()?;
@@ -84,23 +88,32 @@ impl<'a> Workspace<'a> {
 
     /// The products of each trial.
     pub fn each(&self, discrepancies: &Discrepancies) -> Vec<Gram> {
+        self.each_under(&self.noise, discrepancies)
+    }
+
+    /// The products of each trial, by other instruments.
+    pub fn each_under(&self, noise: &Noise, discrepancies: &Discrepancies) -> Vec<Gram> {
         let width = 1 + self.columns().len();
         let of_trial = |parts: &Vec<Linearised>| {
-            let grams: Vec<Gram> = parts.iter().map(|part| filter(part, &self.noise, discrepancies)).collect();
+            let grams: Vec<Gram> = parts.iter().map(|part| filter(part, noise, discrepancies)).collect();
             Gram::sum(&grams, width)
         };
         self.linear.par_iter().map(of_trial).collect()
     }
-
-    /// The products of all trials.
-    pub fn total(&self, discrepancies: &Discrepancies) -> Gram {
-        Gram::sum(&self.each(discrepancies), 1 + self.columns().len())
-    }
 }
 
-/// The scatter of each instrument over all trials.
-fn noise(records: &[Record<'_>], lpp_m: f64, speed_m_s: f64) -> Noise {
+/// Each instrument over all trials: its scatter, and what is known of it beside.
+fn noise(records: &[Record<'_>], lpp_m: f64, speed_m_s: f64, known: Option<&Uncertainty>) -> Noise {
     let read = [Channel::U, Channel::V, Channel::R, Channel::P, Channel::Phi, Channel::Psi, Channel::X, Channel::Y];
-    let one = |channel: Channel| Some((channel, scatter(records, channel)?.max(floor(channel, lpp_m, speed_m_s))));
+    let one = |channel: Channel| {
+        let scatter =
+            Instrument::of_scatter(scatter(records, channel, records.first()?.every)?.max(floor(channel, lpp_m, speed_m_s)));
+        let known = known.and_then(|known| known.instruments.get(channel.name()));
+        let of = |known: &InstrumentFit| Instrument {
+            deviation: scatter.deviation * known.deviation_by_scatter,
+            drift: scatter.drift.max(known.drift),
+        };
+        Some((channel, known.map_or(scatter, of)))
+    };
     read.into_iter().filter_map(one).collect()
 }

@@ -15,10 +15,6 @@ pub type Discrepancies = Vec<Discrepancy>;
 
 /// How far the first sample may be from the smooth path, in deviations of the noise: practically anywhere.
 const START: f64 = 1e3;
-/// White noise of the discrepancy-free rates, by the noise of the channel and second: keeps the filter from trusting
-/// arithmetic.
-const DRIFT: f64 = 1e-3;
-
 /// Whitened residual and columns of a part of a trial, added up.
 pub fn filter(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) -> Gram {
     let (rows, log_variance) = whitened(linear, noise, discrepancies);
@@ -47,6 +43,9 @@ pub fn whitened(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancie
     for k in 0..linear.samples.len() {
         if k > 0 {
             state.predict(linear, k - 1, discrepancies);
+        }
+        if !k.is_multiple_of(linear.every) {
+            continue;
         }
         state.update(linear, k, noise, |error, variance| {
             let scale = variance.sqrt().recip();
@@ -83,9 +82,9 @@ impl State {
         let mut covariance = vec![0.0; order * order];
         for state in 0..states {
             let channel = linear.channels.iter().find(|(_, place)| *place == state).and_then(|(channel, _)| noise.get(channel));
-            drift[state] = (DRIFT * channel.copied().unwrap_or(1e-6)).powi(2);
+            drift[state] = channel.map_or(1e-9, |instrument| instrument.drift).powi(2);
             // What nobody reads starts on the path.
-            covariance[state * order + state] = channel.map_or(1e-12, |sigma| (START * sigma).powi(2));
+            covariance[state * order + state] = channel.map_or(1e-12, |instrument| (START * instrument.deviation).powi(2));
         }
         for (axis, discrepancy) in discrepancies.iter().enumerate() {
             covariance[(states + axis) * (order + 1)] = discrepancy.deviation.powi(2);
@@ -189,7 +188,7 @@ impl State {
                 axpy(-weight, &self.deviations[state * width..(state + 1) * width], &mut self.error);
                 axpy(weight, &self.covariance[state * order..(state + 1) * order], &mut self.gain);
             }
-            let sigma = noise.get(&channel).copied().unwrap_or(1.0);
+            let sigma = noise.get(&channel).map_or(1.0, |instrument| instrument.deviation);
             let own: f64 = weights.iter().enumerate().map(|(state, weight)| weight * self.gain[from + state]).sum();
             let variance = own + sigma * sigma;
             take(&self.error, variance);

@@ -33,6 +33,8 @@ pub struct Linearised {
     pub measured: Vec<usize>,
     /// The recorded channels with their places among the states.
     pub channels: Vec<(Channel, usize)>,
+    /// Of samples, how many go with one reading.
+    pub every: usize,
 }
 
 /// How much of a linearisation is wanted.
@@ -79,6 +81,7 @@ impl Linearised {
             reading: self.reading.clone(),
             by_state: self.by_state.clone(),
             channels: self.channels.clone(),
+            every: self.every,
         }
     }
 }

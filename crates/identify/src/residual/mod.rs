@@ -26,7 +26,7 @@ pub use columns::{Candidate, Columns, Nuisance, NuisanceKind, lacked_name};
 pub use filter::{Discrepancies, errors, filter, responses, whitened};
 pub use gram::Gram;
 pub use linearised::{Detail, Linearised, linearise};
-pub use noise::{Noise, floor, scatter};
+pub use noise::{Instrument, Noise, floor, scatter, sparseness};
 pub use record::Record;
 pub use smoother::{Smoothed, smoothed};
 pub use tapes::System;

@@ -6,8 +6,25 @@ use sistership_model::trial::Channel;
 
 use super::Record;
 
-/// Standard deviation of the noise by channel, SI.
-pub type Noise = BTreeMap<Channel, f64>;
+/// What an instrument scatters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Instrument {
+    /// Standard deviation of the noise of its readings, SI.
+    pub deviation: f64,
+    /// Root of the density of what its rate and the velocities disagree by, by the root of a second: headings and positions
+    /// do not quite follow from velocities.
+    pub drift: f64,
+}
+
+impl Instrument {
+    /// One of which nothing is known but its scatter: the drift keeps a filter from trusting arithmetic.
+    pub fn of_scatter(deviation: f64) -> Self {
+        Self { deviation, drift: 1e-3 * deviation }
+    }
+}
+
+/// Instruments by channel.
+pub type Noise = BTreeMap<Channel, Instrument>;
 
 /// The binomial coefficients of sixth differences; the variance of white noise grows by the sum of their squares.
 const SIXTH: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
@@ -15,8 +32,8 @@ const GAIN: f64 = 924.0;
 
 /// What sixth differences leave of a ship's motion is far below the noise of any instrument; their median is not moved
 /// by the few samples at which something jumps.
-pub fn scatter(records: &[Record<'_>], channel: Channel) -> Option<f64> {
-    let mut magnitudes: Vec<f64> = records.iter().flat_map(|record| differences(record, channel)).collect();
+pub fn scatter(records: &[Record<'_>], channel: Channel, every: usize) -> Option<f64> {
+    let mut magnitudes: Vec<f64> = records.iter().flat_map(|record| differences(record, channel, every)).collect();
     if magnitudes.is_empty() {
         return None;
     }
@@ -26,10 +43,29 @@ pub fn scatter(records: &[Record<'_>], channel: Channel) -> Option<f64> {
     Some(*median / 0.6745 / GAIN.sqrt())
 }
 
-fn differences(record: &Record<'_>, channel: Channel) -> Vec<f64> {
+/// Samples of which one is read where readings were smoothed.
+const SPARSE: usize = 5;
+/// How much more sparse readings scatter where they were.
+const GROWS: f64 = 4.0;
+
+/// Of samples, how many go with one reading: noise must be new in each. Where readings were smoothed, or waves move the
+/// ship, velocities wander from sample to sample, and what is smooth would be taken for an acceleration.
+pub fn sparseness(records: &[Record<'_>]) -> usize {
+    let grows = |channel: Channel| {
+        let pair = scatter(records, channel, 1).zip(scatter(records, channel, SPARSE));
+        pair.is_some_and(|(close, apart)| close > 0.0 && apart > GROWS * close)
+    };
+    if grows(Channel::U) && grows(Channel::V) { SPARSE } else { 1 }
+}
+
+fn differences(record: &Record<'_>, channel: Channel, every: usize) -> Vec<f64> {
     let Some(values) = record.trial.channel(channel) else { return Vec::new() };
     let difference = |window: &[usize]| SIXTH.iter().zip(window).map(|(c, &k)| c * values[k]).sum::<f64>().abs();
-    record.parts.iter().flat_map(|part| part.windows(7).map(difference).collect::<Vec<_>>()).collect()
+    let of = |part: &Vec<usize>| {
+        let taken: Vec<usize> = part.iter().copied().step_by(every).collect();
+        taken.windows(7).map(difference).collect::<Vec<f64>>()
+    };
+    record.parts.iter().flat_map(of).collect()
 }
 
 /// The least noise that is believed of an instrument: noise-free simulations are trials too. By the length of the ship

@@ -12,6 +12,8 @@ pub struct Record<'a> {
     pub trial: &'a Trial,
     /// The samples that are used, in gap-free parts.
     pub parts: Vec<Vec<usize>>,
+    /// Of these samples, how many go with one reading.
+    pub every: usize,
 }
 
 impl<'a> Record<'a> {
@@ -19,7 +21,7 @@ impl<'a> Record<'a> {
     pub fn new(trial: &'a Trial, least_step_s: f64) -> Self {
         let stride = (least_step_s / trial.interval_s().max(1e-9) + 1e-9).floor().max(1.0) as usize;
         let parts = trial.segments().into_iter().map(|range| range.step_by(stride).collect::<Vec<usize>>());
-        Self { trial, parts: parts.filter(|part| part.len() > 2).collect() }
+        Self { trial, parts: parts.filter(|part| part.len() > 2).collect(), every: 1 }
     }
 
     /// How many samples are used.

@@ -97,6 +97,7 @@ impl<'a> Walker<'a> {
             by_column: Vec::new(),
             measured: self.measuring(),
             channels,
+            every: self.path.record.every,
         };
         let mut before: Option<Instant> = None;
         for (i, &k) in part.iter().enumerate() {

@@ -15,9 +15,6 @@ use crate::derive::{Derived, Refined};
 use crate::publish::{CANDIDATE, CHAMPION, Standing, step};
 use crate::report::{self, Rendered, VersionLabel};
 
-/// How often another version of the same ship may come in between.
-const TRIES: usize = 5;
-
 /// A version that is to be kept, with what its report is made of.
 struct Made {
     version: NewVersion,
@@ -29,7 +26,7 @@ struct Made {
 /// Keeps what was derived: champion where the ship has none, else candidate.
 pub(super) async fn commit(app: &App, job: &Job, derived: Derived, prepared: Prepared) -> Result<()> {
     let made = Made::new(derived, prepared)?;
-    for _ in 0..TRIES {
+    for _ in 0..super::TRIES {
         let standing = Standing::of(app.store(), &made.version.model).await?;
         let report = made.report(app, standing.next).await?;
         match made.keep(app, job, &standing, report).await {

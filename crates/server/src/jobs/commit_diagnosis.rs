@@ -16,8 +16,6 @@ use crate::derive::Diagnosed;
 use crate::publish::{CANDIDATE, Standing, step};
 use crate::report::{DiagnosisInput, Rendered, VersionLabel, render_diagnosis};
 
-/// How often another version of the same ship may come in between.
-const TRIES: usize = 5;
 /// The kind of the reports, and the method of the versions.
 const DIAGNOSIS: &str = "diagnosis";
 
@@ -32,7 +30,7 @@ struct Made<'a> {
 /// Keeps a diagnosis; where it has found effects, the version with them becomes the candidate.
 pub(super) async fn commit(app: &App, job: &Job, diagnosed: Diagnosed, of: &VersionHead, trials: &[String]) -> Result<()> {
     let made = Made { version: version(&diagnosed, of)?, diagnosed: Arc::new(diagnosed), of, trials };
-    for _ in 0..TRIES {
+    for _ in 0..super::TRIES {
         let standing = Standing::of(app.store(), &of.model).await?;
         let report = made.report(app, standing.next).await?;
         match made.keep(app, job, &standing, report).await {

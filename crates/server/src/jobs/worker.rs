@@ -78,10 +78,13 @@ impl Worker {
     /// Keeps the lease while the work runs; gives its outcome, or none when it did not stop in time.
     async fn accompany(&mut self, job: &Job, watched: &mut Watched) -> Option<Result<(), JobError>> {
         let mut beat = Instant::now();
+        // When the job must be given back, once the server is told to stop.
+        let mut leave: Option<Instant> = None;
         loop {
             tokio::select! {
                 ended = &mut watched.work => return Some(ended.unwrap_or_else(|error| Err(JobError::Failed(format!("the computation broke off: {error}"))))),
-                () = self.stopping.wait() => {
+                () = self.stopping.wait(), if leave.is_none() => leave = Some(Instant::now() + self.app.leases().drain),
+                () = until(leave), if leave.is_some() => {
                     watched.progress.stop(Stop::Leaving);
                     let ended = tokio::time::timeout(self.app.limits().stop_time, &mut watched.work).await;
                     return ended.ok().and_then(Result::ok);
@@ -124,6 +127,11 @@ impl Worker {
         }
         Ok(())
     }
+}
+
+/// Waits for a moment that is known.
+async fn until(moment: Option<Instant>) {
+    tokio::time::sleep_until(moment.unwrap_or_else(Instant::now).into()).await;
 }
 
 async fn work(app: App, job: Job, progress: Progress) -> Result<(), JobError> {

@@ -32,7 +32,8 @@ pub(super) fn config(database: &TestDatabase) -> Config {
     let mut config = Config::new(database.folder.path().join("data"));
     config.listen.set_port(0);
     config.database_url = database.url.clone();
-    config.leases = Leases { lease: Duration::from_secs(5), beat: Duration::from_millis(200), poll: Duration::from_millis(50) };
+    let (lease, beat, poll) = (Duration::from_secs(5), Duration::from_millis(200), Duration::from_millis(50));
+    config.leases = Leases { lease, beat, poll, ..Leases::default() };
     config
 }
 

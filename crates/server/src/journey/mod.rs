@@ -4,4 +4,5 @@
 
 mod harness;
 mod loops;
+mod observed;
 mod refusals;

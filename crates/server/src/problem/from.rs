@@ -25,7 +25,7 @@ impl From<StoreError> for Problem {
                 tracing::error!(reason = %text, "the database failed");
                 Self::new(StatusCode::SERVICE_UNAVAILABLE, "the database did not carry this out; try again in a moment")
             }
-            StoreError::Objects(_) => Self::internal(text),
+            StoreError::Objects(_) | StoreError::File { .. } => Self::internal(text),
         }
     }
 }

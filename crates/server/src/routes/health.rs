@@ -4,6 +4,7 @@ use axum::Json;
 use axum::extract::State;
 use axum::http::StatusCode;
 use serde::Serialize;
+use sistership_store::StoreError;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -35,12 +36,18 @@ async fn healthz() -> Json<Health> {
     ok()
 }
 
-/// Whether the server can work: its database answers, and it is not stopping
+/// Whether the server can work: its database and its object store answer, and it is not stopping
 #[utoipa::path(get, path = "/readyz", tag = "health", responses((status = 200, body = Health)))]
 async fn readyz(State(app): State<App>) -> Result<Json<Health>> {
     if app.stopping().now() {
         return Err(Problem::new(StatusCode::SERVICE_UNAVAILABLE, "the server is stopping"));
     }
-    app.store().health().await?;
+    app.store().health().await.map_err(|error| unready("database", &error))?;
+    app.objects().health().await.map_err(|error| unready("object store", &error))?;
     Ok(ok())
+}
+
+fn unready(what: &str, error: &StoreError) -> Problem {
+    tracing::warn!(%error, "the {what} does not answer");
+    Problem::new(StatusCode::SERVICE_UNAVAILABLE, format!("the {what} does not answer; the server's log tells why"))
 }

@@ -9,6 +9,7 @@ mod events;
 mod health;
 mod jobs;
 mod laws;
+mod metrics;
 mod model_ref;
 mod named_trials;
 mod pages;
@@ -27,7 +28,7 @@ mod versions;
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::http::StatusCode;
-use axum::middleware::{from_fn, from_fn_with_state};
+use axum::middleware::from_fn_with_state;
 use axum::routing::get;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::timeout::TimeoutLayer;
@@ -48,7 +49,7 @@ pub(crate) fn router(app: App) -> Router {
         .fallback(envelope::nowhere)
         .layer(from_fn_with_state(app.clone(), guard::guard))
         .layer(CatchPanicLayer::custom(envelope::panicked))
-        .layer(from_fn(envelope::envelope))
+        .layer(from_fn_with_state(app.clone(), envelope::envelope))
         .with_state(app)
 }
 
@@ -61,6 +62,7 @@ fn api(limits: &Limits) -> OpenApiRouter<App> {
 fn quick(limits: &Limits) -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .merge(health::routes())
+        .merge(metrics::routes())
         .merge(laws::routes())
         .merge(ships::routes())
         .merge(ship_changes::routes())

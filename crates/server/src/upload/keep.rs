@@ -11,6 +11,9 @@ use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::problem::{Problem, Result};
 use crate::publish::{CHAMPION, alias};
 
+/// How often samples are put again that were removed before their rows were written.
+const TRIES: usize = 3;
+
 /// A trial that is kept now, and whether it was new.
 pub(crate) type Kept = Inserted<Trial>;
 
@@ -29,11 +32,17 @@ pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option
         other => drop(other?),
     }
     let accepted = app.compute(move || upload.accept()).await??;
-    let keys = put_samples(app.objects(), &accepted).await?;
-    let rows = rows(accepted, keys);
     let champion = if diagnose { alias(app.store(), &ship, CHAMPION).await? } else { None };
-    let job = |kept: &[Kept]| champion.and_then(|champion| follow_up(&champion, kept));
-    Ok(app.store().trials().insert_all_and_enqueue(&rows, job).await?)
+    let job = |kept: &[Kept]| champion.as_ref().and_then(|champion| follow_up(champion, kept));
+    for _ in 0..TRIES {
+        let rows = rows(&accepted, put_samples(app.objects(), &accepted).await?);
+        match app.store().trials().insert_all_and_enqueue(&rows, app.objects(), job).await {
+            // They were old and nobody's, and were removed as garbage between the two.
+            Err(StoreError::NotFound { kind: "object", .. }) => {}
+            other => return Ok(other?),
+        }
+    }
+    Err(Problem::internal("the samples of an upload kept disappearing from the object store"))
 }
 
 /// The diagnosis of a champion on what is new.
@@ -98,7 +107,7 @@ async fn put_samples(objects: &Objects, accepted: &[Accepted]) -> Result<Vec<Str
     Ok(keys)
 }
 
-fn rows(accepted: Vec<Accepted>, keys: Vec<String>) -> Vec<NewTrial> {
-    let row = |(trial, key): (Accepted, String)| NewTrial { sha256: key.clone(), object_key: key, ..trial.new };
-    accepted.into_iter().zip(keys).map(row).collect()
+fn rows(accepted: &[Accepted], keys: Vec<String>) -> Vec<NewTrial> {
+    let row = |(trial, key): (&Accepted, String)| NewTrial { sha256: key.clone(), object_key: key, ..trial.new.clone() };
+    accepted.iter().zip(keys).map(row).collect()
 }

@@ -2,27 +2,36 @@
 
 use std::time::Instant;
 
-use axum::extract::Request;
+use axum::extract::{MatchedPath, Request, State};
 use axum::http::{HeaderValue, Response as HttpResponse, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use tracing::Instrument as _;
 use uuid::Uuid;
 
+use crate::app::App;
 use crate::problem::{MEDIA, Problem};
 
-/// Gives the request an id, logs it, and sees to it that an error is a problem with that id.
-pub(crate) async fn envelope(request: Request, next: Next) -> Response {
+/// Gives the request an id, logs and counts it, and sees to it that an error is a problem with that id.
+pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Next) -> Response {
     let id = Uuid::now_v7();
+    let (method, route) = (request.method().clone(), route(&request));
     let span = tracing::info_span!("request", %id, method = %request.method(), path = request.uri().path());
     async move {
         let start = Instant::now();
         let response = finish(next.run(request).await, id);
-        tracing::info!(status = response.status().as_u16(), elapsed_ms = start.elapsed().as_millis() as u64, "answered");
+        let elapsed = start.elapsed();
+        tracing::info!(status = response.status().as_u16(), elapsed_ms = elapsed.as_millis() as u64, "answered");
+        app.metrics().answered(&method, &route, response.status(), elapsed);
         response
     }
     .instrument(span)
     .await
+}
+
+/// The path as the router knows it, with names in the place of ids.
+fn route(request: &Request) -> String {
+    request.extensions().get::<MatchedPath>().map_or("none", MatchedPath::as_str).to_owned()
 }
 
 fn finish(response: Response, id: Uuid) -> Response {

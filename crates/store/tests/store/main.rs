@@ -5,6 +5,7 @@
 mod support;
 
 mod aliases;
+mod backup;
 mod concurrency;
 mod diagnoses;
 mod idempotency;

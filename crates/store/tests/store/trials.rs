@@ -1,4 +1,4 @@
-use sistership_store::{NewTrial, Page};
+use sistership_store::{NewTrial, Objects, Page};
 
 use crate::support::*;
 
@@ -34,13 +34,20 @@ async fn several_trials_are_put_in_all_or_none(on: &TestStore) {
 
 async fn a_job_follows_trials_or_both_are_undone(on: &TestStore) {
     on.store.ships().create(&ship("kcs")).await.unwrap();
+    let objects = Objects::memory();
+    let one = [trial("kcs", "one")];
+    assert_not_found(on.store.trials().insert_all_and_enqueue(&one, &objects, |_| None).await, "object");
+    assert!(on.store.trials().list("kcs", &Page::first(10)).await.unwrap().items.is_empty(), "no trial without samples");
+    for samples in ["one", "two"] {
+        objects.put(samples.into()).await.unwrap();
+    }
     let asked = |inserted: &[sistership_store::Inserted<_>]| inserted.iter().any(|one| one.new).then(|| job("kcs"));
-    let (_, queued) = on.store.trials().insert_all_and_enqueue(&[trial("kcs", "one")], asked).await.unwrap();
+    let (_, queued) = on.store.trials().insert_all_and_enqueue(&one, &objects, asked).await.unwrap();
     assert_eq!(queued.unwrap().ship.as_deref(), Some("kcs"));
-    let (_, queued) = on.store.trials().insert_all_and_enqueue(&[trial("kcs", "one")], asked).await.unwrap();
+    let (_, queued) = on.store.trials().insert_all_and_enqueue(&one, &objects, asked).await.unwrap();
     assert_eq!(queued, None, "nothing new, nothing to do");
     let broken = |_: &[_]| Some(sistership_store::NewJob { request: "{".into(), ..job("kcs") });
-    assert_invalid(on.store.trials().insert_all_and_enqueue(&[trial("kcs", "two")], broken).await, "request");
+    assert_invalid(on.store.trials().insert_all_and_enqueue(&[trial("kcs", "two")], &objects, broken).await, "request");
     assert_eq!(on.store.trials().list("kcs", &Page::first(10)).await.unwrap().items.len(), 1);
 }
 

@@ -1,14 +1,16 @@
 //! What the trials that a model was fitted on leave open.
 
-mod discrepancy;
 mod feigned;
+mod scatter;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::{Cholesky, DMatrix, DVector};
+use scatter::Scatter;
 use sistership_model::law::Law;
-use sistership_model::uncertainty::{Discrepancy, Uncertainty};
+use sistership_model::trial::Channel;
+use sistership_model::uncertainty::{Discrepancy, InstrumentFit, Uncertainty};
 use sistership_model::{Effect, Model, Trial};
 
 use super::evidence::Fixed;
@@ -18,7 +20,7 @@ use super::remainder::largest;
 use super::setup::listed;
 use super::workspace::Workspace;
 use crate::refine::RefineError;
-use crate::residual::{Candidate, Columns, Discrepancies, Gram, Nuisance};
+use crate::residual::{Candidate, Columns, Discrepancies, Gram, Instrument, Noise, Nuisance};
 
 /// How far coefficients may be from the model's before its own trials are asked.
 const WIDE: f64 = 1.0;
@@ -37,9 +39,11 @@ pub fn calibrate(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&T
     let (shift, rough) = taught(model, law, &terms, &nuisance, &prior, trials)?;
     let candidates = listed(model, law, effects, trials);
     let columns = Columns { nuisance: nuisance.clone(), candidates: candidates.clone() };
-    let workspace = Workspace::new(&Learned::new(model, law, &terms, &nuisance, &shift)?, columns, trials, None)?;
+    let mut workspace = Workspace::new(&Learned::new(model, law, &terms, &nuisance, &shift)?, columns, trials, None)?;
     let fixed = prior.from(&shift);
-    let discrepancies = discrepancy::most_probable(&workspace, &fixed, Some(rough))?;
+    let scatter = workspace.noise.clone();
+    let Scatter { discrepancies, noise } = scatter::most_probable(&workspace, &fixed, Some(rough))?;
+    workspace.noise = noise;
     let grams = workspace.each(&discrepancies);
     let freed = lacked(model, law, effects, trials);
     let freed = freed.iter().map(|(effect, form)| Candidate::absent(effect, form));
@@ -47,6 +51,7 @@ pub fn calibrate(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&T
     let known = Known { fixed: &fixed, grams: &grams, scatter: 1.0 };
     let known = Known { scatter: known.scatter(), ..known };
     Ok(Uncertainty {
+        instruments: instruments(&workspace.noise, &scatter),
         feigned: feigned::feigned(&workspace, &known, &all),
         remainder: remainder(&workspace, &known, &discrepancies),
         ..uncertainty(&workspace, &known, &shift, &discrepancies)?
@@ -61,14 +66,24 @@ fn taught(
     nuisance: &[Nuisance],
     prior: &Fixed,
     trials: &[&Trial],
-) -> Result<(Vec<f64>, Discrepancies), RefineError> {
+) -> Result<(Vec<f64>, Scatter), RefineError> {
     let columns = Columns { nuisance: nuisance.to_vec(), candidates: Vec::new() };
     let as_it_is = Learned::new(model, law, terms, nuisance, &vec![0.0; nuisance.len()])?;
-    let workspace = Workspace::new(&as_it_is, columns, trials, None)?;
-    let discrepancies = discrepancy::most_probable(&workspace, prior, None)?;
-    let grams = workspace.each(&discrepancies);
+    let mut workspace = Workspace::new(&as_it_is, columns, trials, None)?;
+    let scatter = scatter::most_probable(&workspace, prior, None)?;
+    workspace.noise.clone_from(&scatter.noise);
+    let grams = workspace.each(&scatter.discrepancies);
     let shift = Known { fixed: prior, grams: &grams, scatter: 1.0 }.by(&|_| true).taught(nuisance);
-    Ok((shift.ok_or_else(|| RefineError::Data("the trials' information is not positive".into()))?, discrepancies))
+    Ok((shift.ok_or_else(|| RefineError::Data("the trials' information is not positive".into()))?, scatter))
+}
+
+/// Instruments by what their scatter alone says.
+fn instruments(fitted: &Noise, scatter: &Noise) -> BTreeMap<String, InstrumentFit> {
+    let one = |(channel, own): (&Channel, &Instrument)| {
+        let deviation_by_scatter = own.deviation / scatter.get(channel)?.deviation;
+        Some((channel.name().to_owned(), InstrumentFit { deviation_by_scatter, drift: own.drift }))
+    };
+    fitted.iter().filter_map(one).collect()
 }
 
 /// What is known of the coefficients, trial by trial.
@@ -160,6 +175,7 @@ fn uncertainty(
         root_information: Uncertainty::rows(size, &|i, j| lower[(j, i)]),
         offset: offset.iter().copied().collect(),
         discrepancy,
+        instruments: BTreeMap::new(),
         feigned: BTreeMap::new(),
         remainder: BTreeMap::new(),
         trials: workspace.trials.iter().map(|trial| trial.name.clone()).collect(),

@@ -1,0 +1,70 @@
+//! `sistership gc`: objects that nobody needs.
+
+use std::time::Duration;
+
+use clap::Args;
+use sistership_server::upkeep::{self, Collected};
+
+use super::store::{StoreArguments, with_archive};
+use crate::failure::Failure;
+use crate::output::{self, count};
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership gc --dry-run
+  sistership gc --grace-h 72 --data-dir /var/lib/sistership
+
+Removes the samples that no trial (deleted ones count) and no version refers to, as refused and broken uploads leave them.
+Servers and workers may go on.";
+
+/// Remove objects that nothing refers to.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Gc {
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Hours for which an object is left alone after it was put.
+    #[arg(long, value_name = "HOURS", default_value = "24", value_parser = hours)]
+    grace_h: Duration,
+    /// Only tell what would be removed.
+    #[arg(long)]
+    dry_run: bool,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+fn hours(text: &str) -> Result<Duration, String> {
+    let hours: f64 = text.parse().map_err(|_| format!("`{text}` is not a number of hours"))?;
+    match (0.0..=1e6).contains(&hours) {
+        true => Ok(Duration::from_secs_f64(hours * 3600.0)),
+        false => Err(format!("must be from 0 to 1000000 h, not {hours}")),
+    }
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The store is not there, or does not answer.
+pub fn run(gc: &Gc) -> Result<(), Failure> {
+    let collected = with_archive(&gc.store, async |archive| upkeep::gc(archive, gc.grace_h, gc.dry_run).await)?;
+    output::print(gc.json, &collected, || text(&collected))
+}
+
+fn text(collected: &Collected) -> String {
+    let Collected { dry_run, removed, bytes, objects } = collected;
+    let lines: String = removed.iter().map(|key| format!("{key}\n")).collect();
+    let done = if *dry_run { "would be removed" } else { "removed" };
+    format!("{lines}{} of {objects} ({bytes} bytes) {done}\n", count(removed.len(), "object"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hours_are_read_or_refused() {
+        assert_eq!(hours("0.5"), Ok(Duration::from_secs(1800)));
+        assert!(hours("-1").is_err() && hours("NaN").is_err() && hours("a day").is_err_and(|why| why.contains("a day")));
+    }
+}

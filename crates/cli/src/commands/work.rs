@@ -1,0 +1,60 @@
+//! `sistership work`: workers without a server.
+
+use clap::Args;
+use sistership_server::{Config, Workers};
+
+use super::config_file::ConfigFile;
+use super::log::LogArguments;
+use super::running::{LeaseArguments, until_stopped, workers};
+use super::store::{StoreArguments, block_on};
+use crate::failure::Failure;
+use crate::output;
+
+const EXAMPLES: &str = "\
+Examples:
+  sistership work --data-dir /var/lib/sistership
+  sistership work --workers 8 --database-url postgres://user@host/sistership --data-dir /mnt/shared/sistership
+
+Any number of such processes may run beside `sistership serve` (which leaves all work to them with --no-worker), on any
+machines that reach the same database and the same samples. A job belongs to one of them at a time; when that one dies,
+its job goes to another after --lease-s. Stop it with Ctrl-C or SIGTERM: jobs under way get --drain-s
+to end and then go back to the queue.";
+
+/// Work on the jobs that servers queue, without serving.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Work {
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Jobs worked on at a time, 1 to 64 [default: 1].
+    #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS")]
+    workers: Option<u16>,
+    #[command(flatten)]
+    lease: LeaseArguments,
+    #[command(flatten)]
+    log: LogArguments,
+}
+
+/// Runs the command until it is told to stop.
+///
+/// # Errors
+/// The configuration is refused, or the store cannot be used.
+pub fn run(work: &Work) -> Result<(), Failure> {
+    let file = work.store.file()?;
+    let config = config(work, &file)?;
+    work.log.begin(&file)?;
+    block_on(async {
+        let workers = Workers::start(config).await.map_err(|error| Failure::Refused(error.to_string()))?;
+        output::print(false, &(), || format!("sistership works as process {}", std::process::id()))?;
+        until_stopped(workers.stop()).await
+    })
+}
+
+fn config(work: &Work, file: &ConfigFile) -> Result<Config, Failure> {
+    let place = work.store.place(file);
+    let mut config = Config::new(place.data_dir);
+    config.database_url = place.database_url;
+    config.workers = workers(work.workers, file, 1)?;
+    config.leases = work.lease.leases(file)?;
+    Ok(config)
+}

@@ -1,0 +1,45 @@
+//! What a process of Sistership consists of, whether it answers requests or only works: the shared state, its workers, and
+//! the word that stops them.
+
+use tokio::sync::watch;
+use tokio::task::JoinSet;
+
+use crate::app::App;
+use crate::archive::Archive;
+use crate::catalogue::Catalogue;
+use crate::config::Config;
+use crate::jobs::Worker;
+use crate::seed;
+use crate::start_error::StartError;
+use crate::stopping::Stopping;
+
+/// A process that runs until it is [stopped](Self::stop) or dropped.
+#[derive(Debug)]
+pub(crate) struct Process {
+    pub archive: Archive,
+    pub tasks: JoinSet<()>,
+    stop: watch::Sender<bool>,
+}
+
+impl Process {
+    /// Opens the store, brings the zoo in, and sets the workers to work.
+    pub(crate) async fn start(config: &Config) -> Result<(Self, App), StartError> {
+        let archive = Archive::open(&config.database_url, &config.data_dir).await?;
+        let catalogue = Catalogue::default();
+        seed::seed(&archive.store, &catalogue).await?;
+        let (stop, stopping) = Stopping::new();
+        let app = App::new(config, archive.clone(), catalogue, stopping);
+        let mut tasks = JoinSet::new();
+        for _ in 0..config.workers {
+            tasks.spawn(Worker::new(app.clone()).run());
+        }
+        Ok((Self { archive, tasks, stop }, app))
+    }
+
+    /// Stops what runs, and waits for its end.
+    pub(crate) async fn stop(mut self) {
+        self.stop.send_replace(true);
+        while self.tasks.join_next().await.is_some() {}
+        self.archive.store.close().await;
+    }
+}

@@ -1,0 +1,73 @@
+//! A copy of a store, taken while others write, and a store made of it again.
+//!
+//! The database is copied as it was at one moment; then the objects that its rows refer to, which were durable before those
+//! rows were written. A folder is a backup once its manifest is there, which is written last.
+
+mod files;
+mod manifest;
+mod objects;
+mod postgres;
+mod sqlite;
+
+use std::path::Path;
+use std::sync::Arc;
+
+pub use manifest::{BackupManifest, DatabaseKind, FileHead, TableHead};
+
+use crate::clock::SystemClock;
+use crate::database::Pool;
+use crate::error::{Result, StoreError};
+use crate::objects::Objects;
+use crate::store::Store;
+
+/// What has been taken of a database.
+struct Taken {
+    kind: DatabaseKind,
+    schema: i64,
+    /// Files below the backup's folder.
+    files: Vec<String>,
+    tables: Vec<TableHead>,
+    /// The objects that its rows refer to.
+    keys: Vec<String>,
+}
+
+impl Store {
+    /// Copies this store, with those of the objects that it refers to, into `folder`, which must be empty or not be there.
+    /// Objects that are missing or damaged are left out and told in the manifest.
+    pub async fn backup(&self, objects: &Objects, folder: &Path) -> Result<BackupManifest> {
+        files::claim(folder)?;
+        let created_us = self.now_us();
+        let taken = match &self.database().write {
+            Pool::Sqlite(pool) => sqlite::take(pool, folder).await?,
+            Pool::Postgres(pool) => postgres::take(pool, folder).await?,
+        };
+        let copied = objects::copy(objects, &taken.keys, &Objects::local(folder)?).await?;
+        let manifest = BackupManifest::new(folder, created_us, taken, copied).await?;
+        manifest.write(folder)?;
+        Ok(manifest)
+    }
+
+    /// Makes a store of a backup: `url` must name a database of the same kind without tables, `objects` must be empty.
+    pub async fn restore(folder: &Path, url: &str, objects: &Objects) -> Result<BackupManifest> {
+        let manifest = BackupManifest::read(folder)?;
+        manifest.check(folder, url).await?;
+        objects::must_be_empty(objects).await?;
+        match manifest.database {
+            DatabaseKind::Sqlite => sqlite::must_be_absent(url)?,
+            DatabaseKind::Postgres => postgres::must_be_empty(url).await?,
+        }
+        // Objects first: from the moment that a row is there, so is its object.
+        objects::put(folder, &manifest, objects).await?;
+        match manifest.database {
+            DatabaseKind::Sqlite => sqlite::put(folder, url).await?,
+            DatabaseKind::Postgres => postgres::put(folder, &manifest, url).await?,
+        }
+        // Brings the schema up to date where this program is newer than the backup.
+        Self::connect(url, Arc::new(SystemClock)).await?.close().await;
+        Ok(manifest)
+    }
+}
+
+fn not_a_backup(folder: &Path, message: impl Into<String>) -> StoreError {
+    StoreError::conflict("backup", folder.display().to_string(), message)
+}

@@ -1,0 +1,101 @@
+//! A copy of a PostgreSQL database: every table by `COPY` within one repeatable-read transaction, which sees one moment and
+//! holds no writer up. Unlike `pg_dump` it needs no programs of the server's version on this machine.
+
+use std::path::Path;
+
+use futures::TryStreamExt as _;
+use sqlx::{Connection as _, PgConnection, PgPool};
+use tokio::fs::File;
+use tokio::io::AsyncWriteExt as _;
+
+use super::Taken;
+use super::files::at;
+use super::manifest::{BackupManifest, DatabaseKind, TableHead};
+use crate::error::{Result, StoreError};
+use crate::folders;
+use crate::migrate;
+
+/// Every table, each after those that it refers to.
+pub(crate) const TABLES: &[&str] = &[
+    "laws",
+    "ships",
+    "ship_revisions",
+    "trials",
+    "models",
+    "versions",
+    "aliases",
+    "alias_moves",
+    "idempotency_keys",
+    "jobs",
+    "reports",
+    "diagnoses",
+];
+const FOLDER: &str = "tables";
+const COLUMNS: &str = "SELECT CAST(column_name AS TEXT) FROM information_schema.columns \
+    WHERE table_schema = current_schema() AND table_name = $1 ORDER BY ordinal_position";
+
+pub(super) async fn take(pool: &PgPool, folder: &Path) -> Result<Taken> {
+    folders::make(&folder.join(FOLDER)).map_err(at(folder))?;
+    let mut tx = pool.begin_with("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY").await?;
+    let mut tables = Vec::with_capacity(TABLES.len());
+    for &name in TABLES {
+        let columns = sqlx::query_scalar(COLUMNS).bind(name).fetch_all(&mut *tx).await?;
+        let table = TableHead { name: name.to_owned(), columns };
+        take_table(&mut tx, &table, &folder.join(file_of(&table))).await?;
+        tables.push(table);
+    }
+    let keys = sqlx::query_scalar("SELECT DISTINCT object_key FROM trials ORDER BY 1").fetch_all(&mut *tx).await?;
+    let schema = sqlx::query_scalar("SELECT MAX(version) FROM _sqlx_migrations").fetch_one(&mut *tx).await?;
+    tx.commit().await?;
+    Ok(Taken { kind: DatabaseKind::Postgres, schema, files: tables.iter().map(file_of).collect(), tables, keys })
+}
+
+async fn take_table(connection: &mut PgConnection, table: &TableHead, path: &Path) -> Result<()> {
+    let mut file = File::create(path).await.map_err(at(path))?;
+    let mut rows = connection.copy_out_raw(&format!("COPY {} TO STDOUT", list(table))).await?;
+    while let Some(bytes) = rows.try_next().await? {
+        file.write_all(&bytes).await.map_err(at(path))?;
+    }
+    file.flush().await.map_err(at(path))?;
+    file.sync_all().await.map_err(at(path))
+}
+
+pub(super) async fn must_be_empty(url: &str) -> Result<()> {
+    let mut connection = PgConnection::connect(url).await?;
+    let tables = "SELECT COUNT(*) FROM information_schema.tables WHERE table_schema = current_schema()";
+    let tables: i64 = sqlx::query_scalar(tables).fetch_one(&mut connection).await?;
+    connection.close().await?;
+    match tables {
+        0 => Ok(()),
+        _ => Err(StoreError::conflict("database", "postgres", "has tables already; a backup is restored into an empty database")),
+    }
+}
+
+/// Schema and rows in one transaction: a restoration that breaks off leaves an empty database.
+pub(super) async fn put(folder: &Path, manifest: &BackupManifest, url: &str) -> Result<()> {
+    let mut connection = PgConnection::connect(url).await?;
+    let mut tx = connection.begin().await?;
+    migrate::postgres_up_to(manifest.schema, &mut tx).await?;
+    for table in &manifest.tables {
+        if !TABLES.contains(&table.name.as_str()) {
+            return Err(super::not_a_backup(folder, format!("has a table `{}` that no schema of ours has", table.name)));
+        }
+        let path = folder.join(file_of(table));
+        let file = File::open(&path).await.map_err(at(&path))?;
+        let mut copy = tx.copy_in_raw(&format!("COPY {} FROM STDIN", list(table))).await?;
+        copy.read_from(file).await?;
+        copy.finish().await?;
+    }
+    tx.commit().await?;
+    Ok(connection.close().await?)
+}
+
+fn file_of(table: &TableHead) -> String {
+    format!("{FOLDER}/{}.copy", table.name)
+}
+
+/// `table ("column", ...)`
+fn list(table: &TableHead) -> String {
+    let columns: Vec<String> = table.columns.iter().map(|column| format!("\"{}\"", column.replace('"', "\"\""))).collect();
+    format!("{} ({})", table.name, columns.join(", "))
+}

@@ -1,0 +1,48 @@
+//! Objects that no row refers to: what is left of uploads that were refused or broke off between object and row.
+
+use crate::arguments::args;
+use crate::database::Transaction;
+use crate::error::Result;
+use crate::objects::Objects;
+use crate::record::Counted;
+use crate::statements::{pair, same, statements};
+use crate::store::Store;
+
+statements! {
+    // Keeps new trials out until the end of the transaction; on SQLite its begin has done so.
+    LOCK = pair("SELECT 1 WHERE FALSE", "LOCK TABLE trials IN SHARE ROW EXCLUSIVE MODE");
+    REFERRED = same("SELECT COUNT(*) AS rows FROM trials WHERE object_key = $1");
+}
+
+impl Store {
+    /// Those of the keys that no trial refers to, deleted or not.
+    pub async fn unreferred(&self, keys: &[String]) -> Result<Vec<String>> {
+        let mut tx = self.begin().await?;
+        unreferred(&mut tx, keys).await
+    }
+
+    /// Removes the objects of those keys that no trial refers to, and returns these keys. No trial is put in meanwhile, and
+    /// [`crate::Trials::insert_all_and_enqueue`] looks for its objects after it has waited for this: neither order of the two
+    /// leaves a trial without samples.
+    pub async fn remove_unreferred(&self, objects: &Objects, keys: &[String]) -> Result<Vec<String>> {
+        let mut tx = self.begin().await?;
+        tx.execute(LOCK, &[]).await?;
+        let removed = unreferred(&mut tx, keys).await?;
+        for key in &removed {
+            objects.remove(key).await?;
+        }
+        tx.commit().await?;
+        Ok(removed)
+    }
+}
+
+async fn unreferred(tx: &mut Transaction, keys: &[String]) -> Result<Vec<String>> {
+    let mut found = Vec::new();
+    for key in keys {
+        let referred: Counted = tx.one(REFERRED, args![object_key: key]).await?;
+        if referred.rows == 0 {
+            found.push(key.clone());
+        }
+    }
+    Ok(found)
+}

@@ -1,0 +1,136 @@
+//! What must be true of the rows of every store, asked of the database itself. Each question is one statement, so that its
+//! answer holds at one moment, also while others write.
+
+use serde::Serialize;
+
+use crate::error::Result;
+use crate::record::record;
+use crate::statements::{Statement, pair, same, statements};
+use crate::store::Store;
+
+statements! {
+    // PostgreSQL checks its pages itself where the cluster has checksums; it has no statement for it.
+    DATABASE = pair(
+        "SELECT 'database' AS place, integrity_check AS message FROM pragma_integrity_check WHERE integrity_check <> 'ok'",
+        "SELECT 'database' AS place, '' AS message WHERE FALSE",
+    );
+    REVISION_SHIP = same("SELECT 'ship ' || ship || ' revision ' || revision AS place, 'there is no such ship' AS message \
+        FROM ship_revisions WHERE ship NOT IN (SELECT name FROM ships) ORDER BY ship, revision");
+    REVISION_LAST = same("SELECT 'ship ' || s.name AS place, 'is not what her history has at revision ' || s.revision AS message \
+        FROM ships s WHERE NOT EXISTS (SELECT 1 FROM ship_revisions r WHERE r.ship = s.name AND r.revision = s.revision \
+        AND r.title = s.title AND r.category = s.category AND r.document = s.document) ORDER BY s.name");
+    REVISION_GAP = same("SELECT 'ship ' || ship AS place, \
+        'has ' || COUNT(*) || ' revisions up to number ' || MAX(revision) AS message \
+        FROM ship_revisions GROUP BY ship HAVING COUNT(*) <> MAX(revision) ORDER BY ship");
+    TRIAL_SHIP = same("SELECT 'trial ' || id AS place, 'there is no ship ' || ship AS message FROM trials \
+        WHERE ship NOT IN (SELECT name FROM ships) ORDER BY id");
+    TRIAL_KEY = same("SELECT 'trial ' || id AS place, \
+        'its samples have the hash ' || sha256 || ', but it refers to the object ' || object_key AS message \
+        FROM trials WHERE sha256 <> object_key ORDER BY id");
+    VERSION_MODEL = same("SELECT 'version ' || model || '/' || number AS place, 'there is no such model' AS message \
+        FROM versions WHERE model NOT IN (SELECT name FROM models) ORDER BY model, number");
+    VERSION_PARENT = same("SELECT 'version ' || model || '/' || number AS place, 'its parent ' || parent || ' is missing' AS message \
+        FROM versions WHERE parent IS NOT NULL AND parent NOT IN (SELECT id FROM versions) ORDER BY model, number");
+    VERSION_GAP = same("SELECT 'model ' || m.name AS place, 'its next version is number ' || m.next_number || ', but it has ' || \
+        COUNT(v.number) || ' versions up to number ' || COALESCE(MAX(v.number), 0) AS message \
+        FROM models m LEFT JOIN versions v ON v.model = m.name GROUP BY m.name, m.next_number \
+        HAVING COUNT(v.number) <> m.next_number - 1 OR COALESCE(MAX(v.number), 0) <> m.next_number - 1 ORDER BY m.name");
+    ALIAS_VERSION = same("SELECT 'alias ' || a.model || '/' || a.alias AS place, \
+        'there is no version ' || a.version_number AS message FROM aliases a WHERE NOT EXISTS \
+        (SELECT 1 FROM versions v WHERE v.model = a.model AND v.number = a.version_number) ORDER BY a.model, a.alias");
+    ALIAS_LAST = same("SELECT 'alias ' || a.model || '/' || a.alias AS place, \
+        'is not where its history has it at revision ' || a.revision AS message FROM aliases a WHERE NOT EXISTS \
+        (SELECT 1 FROM alias_moves m WHERE m.model = a.model AND m.alias = a.alias AND m.revision = a.revision \
+        AND m.to_number = a.version_number) ORDER BY a.model, a.alias");
+    MOVE_VERSION = same("SELECT 'alias ' || m.model || '/' || m.alias || ' revision ' || m.revision AS place, \
+        'there is no version ' || m.to_number AS message FROM alias_moves m WHERE NOT EXISTS \
+        (SELECT 1 FROM versions v WHERE v.model = m.model AND v.number = m.to_number) ORDER BY m.model, m.alias, m.revision");
+    MOVE_CHAIN = same("SELECT 'alias ' || model || '/' || alias || ' revision ' || revision AS place, \
+        'its history does not join on to the move before it' AS message FROM (SELECT model, alias, revision, from_number, \
+        LAG(to_number) OVER (PARTITION BY model, alias ORDER BY revision) AS came_from, \
+        ROW_NUMBER() OVER (PARTITION BY model, alias ORDER BY revision) AS expected FROM alias_moves) AS moves \
+        WHERE COALESCE(from_number, 0) <> COALESCE(came_from, 0) OR revision <> expected ORDER BY model, alias, revision");
+    MOVE_ALIAS = same("SELECT DISTINCT 'alias ' || m.model || '/' || m.alias AS place, \
+        'has a history but stands nowhere' AS message FROM alias_moves m WHERE NOT EXISTS \
+        (SELECT 1 FROM aliases a WHERE a.model = m.model AND a.alias = m.alias) ORDER BY 1");
+    REPORT_SHIP = same("SELECT 'report ' || id AS place, 'there is no ship ' || ship AS message FROM reports \
+        WHERE ship NOT IN (SELECT name FROM ships) ORDER BY id");
+    REPORT_VERSION = same("SELECT 'report ' || id AS place, 'its version ' || version_id || ' is missing' AS message \
+        FROM reports WHERE version_id IS NOT NULL AND version_id NOT IN (SELECT id FROM versions) ORDER BY id");
+    DIAGNOSIS_VERSION = same("SELECT 'diagnosis ' || id AS place, 'the version ' || version_id || ' diagnosed is missing' AS message \
+        FROM diagnoses WHERE version_id NOT IN (SELECT id FROM versions) ORDER BY id");
+    DIAGNOSIS_MADE = same("SELECT 'diagnosis ' || id AS place, 'the version ' || made_id || ' that came of it is missing' AS message \
+        FROM diagnoses WHERE made_id IS NOT NULL AND made_id NOT IN (SELECT id FROM versions) ORDER BY id");
+    DIAGNOSIS_REPORT = same("SELECT 'diagnosis ' || id AS place, 'its report ' || report_id || ' is missing' AS message \
+        FROM diagnoses WHERE report_id NOT IN (SELECT id FROM reports) ORDER BY id");
+    JOB_SHIP = same("SELECT 'job ' || id AS place, 'there is no ship ' || ship AS message FROM jobs \
+        WHERE ship IS NOT NULL AND ship NOT IN (SELECT name FROM ships) ORDER BY id");
+    JOB_STATE = same("SELECT 'job ' || id AS place, 'is ' || state || ', which its lease, result, error or end contradicts' AS message \
+        FROM jobs WHERE (state = 'running') <> (lease_until_us IS NOT NULL) OR (state = 'succeeded') <> (result IS NOT NULL) \
+        OR (state = 'failed' AND error IS NULL) OR (state IN ('queued', 'running')) <> (finished_us IS NULL) ORDER BY id");
+}
+
+/// Each question, by the name that a fault found by it bears.
+const CHECKS: &[(&str, Statement)] = &[
+    ("database", DATABASE),
+    ("revision-ship", REVISION_SHIP),
+    ("revision-last", REVISION_LAST),
+    ("revision-gap", REVISION_GAP),
+    ("trial-ship", TRIAL_SHIP),
+    ("trial-key", TRIAL_KEY),
+    ("version-model", VERSION_MODEL),
+    ("version-parent", VERSION_PARENT),
+    ("version-gap", VERSION_GAP),
+    ("alias-version", ALIAS_VERSION),
+    ("alias-last", ALIAS_LAST),
+    ("move-version", MOVE_VERSION),
+    ("move-chain", MOVE_CHAIN),
+    ("move-alias", MOVE_ALIAS),
+    ("report-ship", REPORT_SHIP),
+    ("report-version", REPORT_VERSION),
+    ("diagnosis-version", DIAGNOSIS_VERSION),
+    ("diagnosis-made", DIAGNOSIS_MADE),
+    ("diagnosis-report", DIAGNOSIS_REPORT),
+    ("job-ship", JOB_SHIP),
+    ("job-state", JOB_STATE),
+];
+
+record! {
+    /// A fault as a statement finds it.
+    pub struct Found {
+        /// The row.
+        pub place: String,
+        /// What is wrong with it.
+        pub message: String,
+    }
+}
+
+/// Something in a store that is not as it must be.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Fault {
+    /// The check that found it.
+    pub check: &'static str,
+    /// Where: the kind of thing and its name or id.
+    pub place: String,
+    /// What is wrong.
+    pub message: String,
+}
+
+impl Fault {
+    /// A fault that `check` has found at `place`.
+    pub fn new(check: &'static str, place: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { check, place: place.into(), message: message.into() }
+    }
+}
+
+impl Store {
+    /// Checks the database and every reference between its rows.
+    pub async fn row_faults(&self) -> Result<Vec<Fault>> {
+        let mut faults = Vec::new();
+        for (check, statement) in CHECKS {
+            let found: Vec<Found> = self.database().all(*statement, &[]).await?;
+            faults.extend(found.into_iter().map(|found| Fault::new(check, found.place, found.message)));
+        }
+        Ok(faults)
+    }
+}
