@@ -43,7 +43,7 @@ fn answer(request: &Request<'_>, first: &Search<'_>, choice: &Choice, progress: 
     step(progress, 0.85, "simulating each trial by a fit on the others")?;
     let errors = errors(request, search, best, request.settings.restart_s.unwrap_or(10.0 * length_s));
     step(progress, 0.95, "what these trials cannot tell apart")?;
-    let (found, next_trial) = apart(request, search, best)?;
+    let (found, next_trial) = apart(request, search, best, best.log_evidence - choice.alone.log_evidence)?;
     let verdict = match (remaining.is_empty(), found.is_empty()) {
         (false, _) => Verdict::Unexplained,
         (true, true) => Verdict::Complete,
@@ -145,8 +145,13 @@ fn how(request: &Request<'_>, strength: Option<f64>) -> String {
 }
 
 /// The effects found with those they are confounded with, the strongest first, and the trial that would separate them.
-fn apart(request: &Request<'_>, search: &Search<'_>, best: &Judged) -> Result<(Vec<Found>, Option<NextTrial>), RefineError> {
-    let mut all: Vec<Found> = (0..best.candidates.len()).map(|place| found(request, search, best, place)).collect();
+fn apart(
+    request: &Request<'_>,
+    search: &Search<'_>,
+    best: &Judged,
+    of_all: f64,
+) -> Result<(Vec<Found>, Option<NextTrial>), RefineError> {
+    let mut all: Vec<Found> = (0..best.candidates.len()).map(|place| found(request, search, best, place, of_all)).collect();
     let mut next = None;
     if !all.is_empty() {
         let base = search.base(&best.candidates, &search.levels[..1])?;
@@ -160,7 +165,8 @@ fn apart(request: &Request<'_>, search: &Search<'_>, best: &Judged) -> Result<(V
     Ok((all, next))
 }
 
-fn found(request: &Request<'_>, search: &Search<'_>, best: &Judged, place: usize) -> Found {
+/// `of_all` is the evidence of all effects together where the model alone may have any discrepancy: none has more.
+fn found(request: &Request<'_>, search: &Search<'_>, best: &Judged, place: usize, of_all: f64) -> Found {
     let candidate = &best.candidates[place];
     let covariance = search.covariance(best, place);
     Found {
@@ -169,7 +175,7 @@ fn found(request: &Request<'_>, search: &Search<'_>, best: &Judged, place: usize
         meaning: candidate.form.file.meaning.clone(),
         acts_on: acts_on(candidate),
         parameters: values(candidate, &covariance, request.model),
-        evidence: search.evidence(best, place).unwrap_or_default(),
+        evidence: search.evidence(best, place).unwrap_or_default().min(of_all),
         confounded_with: Vec::new(),
     }
 }
