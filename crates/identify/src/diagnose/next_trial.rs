@@ -12,7 +12,7 @@ use super::base::Base;
 use super::confounded::Responses;
 use super::outcome::{Found, NextTrial};
 use super::search::{Judged, Search};
-use crate::residual::{Columns, Gram, filter};
+use crate::residual::{Gram, filter};
 
 /// What can be sailed: name, rudder, switch (none for a turn), deg.
 const MANOEUVRES: [(&str, f64, Option<f64>); 4] = [
@@ -135,7 +135,7 @@ fn recorded(track: &Trajectory, like: &Trial, heading_rad: f64) -> Trial {
 
 /// The products of all columns of a base over a planned trial.
 fn filtered(search: &Search<'_>, base: &Base<'_>, judged: &Judged, trial: &Trial) -> Option<Gram> {
-    let columns = Columns { ..base.workspace.columns().clone() };
+    let columns = base.workspace.columns().clone();
     let trials = [trial];
     let workspace = super::workspace::Workspace::new(&search.learned, columns, &trials, search.least_step_s).ok()?;
     let discrepancies = base.levels[judged.level.min(base.levels.len() - 1)].discrepancies();

@@ -83,8 +83,8 @@ pub struct Found {
     pub acts_on: ActsOn,
     /// Its parameters and what follows from them.
     pub parameters: BTreeMap<String, Value>,
-    /// Natural logarithm of how much more probable the trials are with it than without, after what the number of
-    /// hypotheses tried costs.
+    /// Natural logarithm of how much more probable the trials are with it than without, the other effects found being there:
+    /// after what the number of hypotheses tried costs, and discounted by what the effect explains of clean trials.
     pub evidence: f64,
     /// Effects that these trials cannot tell it from, or hardly.
     pub confounded_with: Vec<Confounded>,
@@ -136,7 +136,8 @@ pub struct NextTrial {
 pub struct Hypothesis {
     /// Its effects, as `name/form`.
     pub effects: Vec<String>,
-    /// Evidence against the model alone, as [`Found::evidence`].
+    /// Evidence of all its effects together against the model alone, not discounted by what they explain of clean trials:
+    /// a hypothesis with more of it than the one taken is not believed.
     pub evidence: f64,
     /// How much more probable trials became by it that its fit had not seen, natural logarithm; absent where it was not
     /// judged so.
