@@ -25,7 +25,7 @@ struct Ledger {
 async fn write(server: &TestServer, ledger: &Ledger, stop: &AtomicUsize) {
     while stop.load(Ordering::SeqCst) == 0 {
         let number = ledger.begun.fetch_add(1, Ordering::SeqCst);
-        let rows: String = (0..4).map(|row| format!("{row},{number}.{row}\n")).collect();
+        let rows: String = (0..4).map(|row| format!("{row},{row}.{number:06}\n")).collect();
         let path = format!("/v1/trials?ship={NAME}&name={}&diagnose=false", trial(number));
         let request = server.request(Method::POST, &path).header("content-type", "text/csv").body(format!("t_s,u_m_s\n{rows}"));
         let (status, written) = answer(request.send().await.expect("an answer")).await;
