@@ -35,9 +35,13 @@ pub fn fitted(source: &str, ship: &str, trials: &[&Trial]) -> Baseline {
 /// As [`fitted`], from a model.
 pub fn refined(source: &Model, ship: &str, trials: &[&Trial]) -> Baseline {
     let law = ZOO.law(&source.law).unwrap().clone();
+    by(source, &law, ship, trials, &Settings::default())
+}
+
+/// As [`refined`], by a law and settings.
+pub fn by(source: &Model, law: &Arc<Law>, ship: &str, trials: &[&Trial], settings: &Settings) -> Baseline {
     let target = ZOO.vessel(ship).unwrap();
-    let settings = Settings::default();
-    let request = Request { target, source, law: &law, trials, settings: &settings };
+    let request = Request { target, source, law, trials, settings };
     let refinement = refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"));
     let (before, after) = (&refinement.held_out.source, &refinement.held_out.refined);
     println!("refined from {}, held-out errors:", refinement.source);
@@ -45,14 +49,14 @@ pub fn refined(source: &Model, ship: &str, trials: &[&Trial]) -> Baseline {
         println!("{channel:>6} {:10.5} -> {:10.5}", before[channel], after[channel]);
     }
     let mut model = refinement.model;
-    let uncertainty = calibrate(&model, &law, &library(), trials).unwrap_or_else(|error| panic!("{error}"));
+    let uncertainty = calibrate(&model, law, &library(), trials).unwrap_or_else(|error| panic!("{error}"));
     println!("discrepancy {:?}", uncertainty.discrepancy);
     model.uncertainty = Some(uncertainty);
-    Baseline { model, law }
+    Baseline { model, law: law.clone() }
 }
 
 /// Twelve clean trials: six zigzags that start to either side, and turns of three angles to both.
-fn programme() -> Vec<Sailing> {
+pub fn programme() -> Vec<Sailing> {
     let zigzags = [(10.0, 10.0), (-10.0, 10.0), (20.0, 10.0), (-20.0, 10.0), (10.0, 5.0), (-15.0, 10.0)];
     let zigzags = zigzags.map(|(rudder, switch)| Manoeuvre::Zigzag(rudder, switch));
     let turns = [8.0, -8.0, 12.0, -12.0, 20.0, -20.0].map(Manoeuvre::Turn);

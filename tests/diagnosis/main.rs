@@ -10,5 +10,6 @@ mod cases;
 mod confusion;
 mod esso_osaka;
 mod examples;
+mod habits;
 mod timing;
 mod truth;

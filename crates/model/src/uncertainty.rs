@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::coefficient::Axis;
+use crate::effect::AppliedEffect;
 
 /// What a fit leaves open. With `d` the change of the listed coefficients, each divided by its scale, the trials that
 /// were fitted say `|R d - z|^2` (minus twice the logarithm of their likelihood, less a constant).
@@ -26,6 +27,9 @@ pub struct Uncertainty {
     /// What the instruments did beside the scatter that their readings show, by channel.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub instruments: BTreeMap<String, InstrumentFit>,
+    /// Errors of instruments that these trials show, one size for all: what later trials are read with, too.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub habits: Vec<AppliedEffect>,
     /// How much each form of an effect explained of these trials, which do not have it: by `effect/form`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub feigned: BTreeMap<String, Feigned>,

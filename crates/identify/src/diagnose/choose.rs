@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::Request;
 use super::base::Base;
-use super::discount::SIZE;
+use super::discount::{SIZE, is_from_outside};
 use super::evidence::Level;
 use super::search::{Judged, Likely, Search};
 use super::settings::Settings;
@@ -73,10 +73,12 @@ fn companions(search: &Search<'_>, base: &Base<'_>, count: usize) -> Result<Vec<
     likely.par_iter().map(|likely| search.judge(base, &likely.candidate, likely.level)).collect()
 }
 
-/// The most probable, and those that are believed most after what they feign.
+/// The most probable, those that are believed most after what they feign, and whatever follows a record from outside: its
+/// sensor is there to be asked.
 fn likely(screened: Vec<Likely>, count: usize) -> Vec<Likely> {
     let mut by_belief = screened.clone();
     by_belief.sort_by(|a, b| b.believed.total_cmp(&a.believed));
+    let recorded: Vec<Likely> = screened.iter().filter(|likely| is_from_outside(&likely.candidate)).cloned().collect();
     let mut likely: Vec<Likely> = screened.into_iter().take(count.div_ceil(2)).collect();
     for candidate in by_belief {
         let is_new = likely.iter().all(|known| known.candidate.key() != candidate.candidate.key());
@@ -84,6 +86,8 @@ fn likely(screened: Vec<Likely>, count: usize) -> Vec<Likely> {
             likely.push(candidate);
         }
     }
+    let keys: Vec<String> = likely.iter().map(|likely| likely.candidate.key()).collect();
+    likely.extend(recorded.into_iter().filter(|recorded| !keys.contains(&recorded.candidate.key())));
     likely
 }
 
@@ -139,13 +143,8 @@ impl Choice {
     ///
     /// # Errors
     /// Names what a trial lacks.
-    pub(super) fn settled<'a>(
-        &self,
-        search: &Search<'a>,
-        request: &Request<'_>,
-        taken: &Judged,
-    ) -> Result<Settled<'a>, RefineError> {
-        let (mut search, mut best) = (search.clone(), taken.clone());
+    pub(super) fn settled<'a>(&self, search: &Search<'a>, request: &Request<'_>) -> Result<Settled<'a>, RefineError> {
+        let (mut search, mut best) = (search.clone(), self.best().clone());
         let mut rounds = SETTLED;
         loop {
             search = search.taught_by(request, &best)?;
@@ -161,11 +160,17 @@ impl Choice {
         }
     }
 
+    /// This choice, with what an earlier one has tried besides.
+    pub(super) fn after(mut self, earlier: Self) -> Self {
+        self.tried.extend(earlier.tried);
+        self
+    }
+
     /// A set of effects but one.
     ///
     /// # Errors
     /// Names what a trial lacks.
-    pub(super) fn without(&self, search: &Search<'_>, judged: &Judged, place: usize) -> Result<Judged, RefineError> {
+    fn without(&self, search: &Search<'_>, judged: &Judged, place: usize) -> Result<Judged, RefineError> {
         let mut kept = judged.candidates.clone();
         kept.remove(place);
         Ok(search.alone(&search.bare(&kept, &self.levels)?)?.1)

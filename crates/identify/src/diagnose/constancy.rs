@@ -4,6 +4,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::base::Base;
+use super::discount::is_from_outside;
 use super::evidence::{Fixed, Fixing, Reduced};
 use super::search::{Judged, Search, priors};
 use crate::refine::RefineError;
@@ -15,17 +16,22 @@ const PIECES: usize = 2;
 const LIMIT: f64 = 0.1;
 
 impl Search<'_> {
-    /// The effect that is least the same, where it is not.
+    /// The effects that are not. One that follows a record from outside may vary where records of other times explain the
+    /// trials less ([`Search::follow_records`]): what is unknown does not follow that record.
     ///
     /// # Errors
     /// Names what a trial lacks.
-    pub fn inconstant(&self, base: &Base<'_>, judged: &Judged) -> Result<Option<usize>, RefineError> {
+    pub fn inconstant(&self, base: &Base<'_>, judged: &Judged, margin: f64) -> Result<Vec<usize>, RefineError> {
         let pieces = base.stand(&self.learned, &judged.stood)?.pieces(judged.level, PIECES);
         let known = self.known_after(judged);
         let reduced: Vec<Reduced> = pieces.iter().filter_map(|piece| Reduced::new(piece, &known)).collect();
         let varies: Vec<f64> = (0..judged.stood.len()).map(|place| self.varies(judged, place, &reduced)).collect();
-        let most = (0..varies.len()).max_by(|&a, &b| varies[a].total_cmp(&varies[b]));
-        Ok(most.filter(|&place| varies[place] > LIMIT))
+        let mut places: Vec<usize> = (0..varies.len()).filter(|&place| varies[place] > LIMIT).collect();
+        let is_outside = |place: &usize| is_from_outside(&judged.candidates[*place]);
+        if places.iter().any(is_outside) && self.follow_records(judged, margin)? {
+            places.retain(|place| !is_outside(place));
+        }
+        Ok(places)
     }
 
     /// What is known of the coefficients after all trials, whose change has been fitted.

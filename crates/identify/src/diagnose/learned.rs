@@ -21,12 +21,14 @@ pub struct Learned {
 }
 
 impl Learned {
-    /// A model with coefficients moved by `shift`, by column.
+    /// A model with coefficients moved by `shift`, by column, read by instruments that err as they did on its own trials.
     ///
     /// # Errors
     /// Names the field of an effect that the model carries.
     pub fn new(model: &Model, law: &Law, terms: &Terms, nuisance: &[Nuisance], shift: &[f64]) -> Result<Self, RefineError> {
         let (mut model, mut law) = (model.clone(), law.clone());
+        let habits = model.uncertainty.iter().flat_map(|known| known.habits.clone()).collect::<Vec<_>>();
+        model.effects.extend(habits);
         for (nuisance, shift) in nuisance.iter().zip(shift) {
             match nuisance.kind {
                 NuisanceKind::Own(_) => {

@@ -30,6 +30,23 @@ impl Search<'_> {
         Ok(false)
     }
 
+    /// Whether effects explain the trials better, by a margin, than with records from outside of any other time.
+    ///
+    /// # Errors
+    /// Names what a trial lacks.
+    pub fn follow_records(&self, judged: &Judged, margin: f64) -> Result<bool, RefineError> {
+        for share in SHIFTS {
+            let shifted: Vec<Trial> = self.trials.iter().map(|trial| shifted(trial, share)).collect();
+            let trials: Vec<&Trial> = shifted.iter().collect();
+            let search = self.on(&trials);
+            let there = search.bare(&judged.candidates, &search.levels)?;
+            if search.alone(&there)?.1.log_evidence > judged.log_evidence - margin {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
     /// The same search on other trials.
     fn on<'b>(&'b self, trials: &'b [&'b Trial]) -> Search<'b> {
         Search { trials, ..self.clone() }

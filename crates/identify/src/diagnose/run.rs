@@ -28,22 +28,22 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Diagnos
     step(progress, 0.1, "every effect alone, then together")?;
     let choice = choose(&search, request.settings)?;
     step(progress, 0.8, "what remains")?;
-    answer(request, &search, &choice, progress)
+    answer(request, &search, choice, progress)
 }
 
 fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineError> {
     if progress(fraction, what) { Ok(()) } else { Err(RefineError::Cancelled) }
 }
 
-fn answer(request: &Request<'_>, first: &Search<'_>, choice: &Choice, progress: Progress<'_>) -> Result<Diagnosis, RefineError> {
-    let (settled, remaining, refused) = believed(request, first, choice)?;
+fn answer(request: &Request<'_>, first: &Search<'_>, choice: Choice, progress: Progress<'_>) -> Result<Diagnosis, RefineError> {
+    let Believed { choice, settled, remaining, refused } = believed(request, first, choice)?;
     let Settled { search, base, best } = &settled;
     let workspace = &base.workspace;
     let length_s = workspace.lpp_m / workspace.speed_m_s;
     step(progress, 0.85, "simulating each trial by a fit on the others")?;
     let errors = errors(request, search, best, request.settings.restart_s.unwrap_or(10.0 * length_s));
     step(progress, 0.95, "what these trials cannot tell apart")?;
-    let (found, next_trial) = apart(request, search, best, best.log_evidence - choice.alone.log_evidence)?;
+    let (found, next_trial) = apart(request, search, best, choice.best().log_evidence - choice.alone.log_evidence)?;
     let verdict = match (remaining.is_empty(), found.is_empty()) {
         (false, _) => Verdict::Unexplained,
         (true, true) => Verdict::Complete,
@@ -63,7 +63,7 @@ fn answer(request: &Request<'_>, first: &Search<'_>, choice: &Choice, progress: 
         noise: workspace.noise.iter().map(|(channel, instrument)| (channel.name().to_owned(), instrument.deviation)).collect(),
         how: how(request, errors.strength),
         diagnosed: request.model.name.clone(),
-        hypotheses: hypotheses(request, search, choice),
+        hypotheses: hypotheses(request, search, &choice),
         trials: errors.trials,
         manoeuvres: errors.manoeuvres,
         residuals: residuals(first, search, best)?,
@@ -74,20 +74,33 @@ fn answer(request: &Request<'_>, first: &Search<'_>, choice: &Choice, progress: 
     })
 }
 
-/// The effects taken, as far as each is the same at all times where something remains unexplained; and the names of others.
-fn believed<'a>(
-    request: &Request<'_>,
-    search: &Search<'a>,
-    choice: &Choice,
-) -> Result<(Settled<'a>, Vec<Unexplained>, Vec<String>), RefineError> {
-    let (mut taken, mut refused) = (choice.best().clone(), Vec::new());
+/// What is taken in the end.
+struct Believed<'a> {
+    choice: Choice,
+    settled: Settled<'a>,
+    remaining: Vec<Unexplained>,
+    /// Names of effects that are not the same at all times.
+    refused: Vec<String>,
+}
+
+/// The effects taken, as far as each is the same at all times where something remains unexplained. Where one is not, the
+/// choice is made again without it: it may have stood before another.
+fn believed<'a>(request: &Request<'_>, search: &Search<'a>, choice: Choice) -> Result<Believed<'a>, RefineError> {
+    let (mut search, mut choice, mut refused) = (search.clone(), choice, Vec::new());
     loop {
-        let settled = choice.settled(search, request, &taken)?;
+        let settled = choice.settled(&search, request)?;
         let remaining = remaining(&settled.search, &settled.best, &settled.base.workspace)?;
-        let inconstant = if remaining.is_empty() { None } else { settled.search.inconstant(&settled.base, &settled.best)? };
-        let Some(place) = inconstant else { return Ok((settled, remaining, refused)) };
-        refused.push(settled.best.candidates[place].effect.clone());
-        taken = choice.without(&settled.search, &settled.best, place)?;
+        let margin = request.settings.least_evidence;
+        let inconstant = match remaining.is_empty() {
+            true => Vec::new(),
+            false => settled.search.inconstant(&settled.base, &settled.best, margin)?,
+        };
+        if inconstant.is_empty() {
+            return Ok(Believed { choice, settled, remaining, refused });
+        }
+        let names = inconstant.into_iter().map(|place| settled.best.candidates[place].effect.clone());
+        refused.extend(names.inspect(|name| search.forget(name)));
+        choice = choose(&search, request.settings)?.after(choice);
     }
 }
 
@@ -154,7 +167,8 @@ fn apart(
     let mut all: Vec<Found> = (0..best.candidates.len()).map(|place| found(request, search, best, place, of_all)).collect();
     let mut next = None;
     if !all.is_empty() {
-        let base = search.base(&best.candidates, &search.levels[..1])?;
+        let level = best.level.min(search.levels.len() - 1);
+        let base = search.base(&best.candidates, &search.levels[level..=level])?;
         let responses = Responses::new(search, &base, best, &base.total(0));
         for (place, found) in all.iter_mut().enumerate() {
             found.confounded_with = responses.as_ref().map(|responses| responses.beside(place)).unwrap_or_default();

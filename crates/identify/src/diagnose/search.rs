@@ -118,6 +118,12 @@ impl<'a> Search<'a> {
         self.taught.iter().zip(&self.taught_at_first).map(|(now, before)| now - before).collect()
     }
 
+    /// No form of an effect is tried any more.
+    pub fn forget(&mut self, effect: &str) {
+        self.listed.retain(|candidate| candidate.effect != effect);
+        self.freed.retain(|candidate| candidate.effect != effect);
+    }
+
     /// Every effect of which none is taken.
     pub fn others(&self, taken: &[Candidate]) -> Vec<&Candidate> {
         let is_other = |candidate: &&Candidate| !taken.iter().any(|kept| kept.effect == candidate.effect);

@@ -23,11 +23,14 @@ const SPREAD: f64 = 1.0;
 const UNKNOWN: [f64; 7] = [1.0, 4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0];
 const LEAST: f64 = 1e-5;
 
-/// The forms that can be tried on trials: those whose channels every trial has, of effects that the model does not carry.
+/// The forms that can be tried on trials: those whose channels every trial has, of effects that the model does not carry,
+/// but for what its instruments are known to do.
 pub(super) fn listed(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Vec<Candidate> {
     let carried = |effect: &&Arc<Effect>| !model.effects.iter().any(|applied| applied.name == effect.name);
+    let habits = model.uncertainty.as_ref().map(|known| known.habits.as_slice()).unwrap_or_default();
     let of = |effect: &Arc<Effect>| -> Vec<Candidate> {
-        let forms = effect.forms.iter().filter(|form| fits(form, law, trials));
+        let is_habit = |form: &Form| habits.iter().any(|habit| habit.name == effect.name && habit.form.name == form.file.name);
+        let forms = effect.forms.iter().filter(|form| fits(form, law, trials) && !is_habit(form));
         forms.map(|form| Candidate::absent(&effect.name, form)).collect()
     };
     effects.iter().filter(carried).flat_map(of).collect()

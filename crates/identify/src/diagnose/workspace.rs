@@ -15,6 +15,10 @@ use crate::residual::{
 };
 use crate::transfer::approach_of;
 
+/// How long before and after a jump readings are not used, by the time in which the ship sails her length: what was smoothed
+/// carries it on.
+const SETTLES: f64 = 0.2;
+
 /// Everything that does not change with the discrepancy.
 pub struct Workspace<'a> {
     pub trials: &'a [&'a Trial],
@@ -50,7 +54,8 @@ impl<'a> Workspace<'a> {
         let approach = approach_of(trials).map(|approach| approach.speed_m_s);
         let speed_m_s = approach.or(model.speed_m_s).ok_or_else(|| RefineError::Data("the trials have no speed".into()))?;
         let least_step_s = least_step_s.unwrap_or(0.02 * lpp_m / speed_m_s);
-        let mut records: Vec<Record<'a>> = trials.iter().map(|trial| Record::new(trial, least_step_s)).collect();
+        let settles_s = SETTLES * lpp_m / speed_m_s;
+        let mut records: Vec<Record<'a>> = trials.iter().map(|trial| Record::new(trial, least_step_s, settles_s)).collect();
         let every = sparseness(&records);
         records.iter_mut().for_each(|record| record.every = every);
         let noise = noise(&records, lpp_m, speed_m_s, model.uncertainty.as_ref());

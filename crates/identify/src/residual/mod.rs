@@ -14,6 +14,7 @@ mod columns;
 mod filter;
 mod gram;
 mod instruments;
+mod jumps;
 mod linearised;
 mod noise;
 mod path;

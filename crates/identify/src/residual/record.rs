@@ -3,6 +3,7 @@
 use sistership_model::effect::{TIME, input_channel};
 use sistership_model::trial::{Channel, Trial};
 
+use super::jumps::undisturbed;
 use crate::refine::RefineError;
 
 /// A trial as a filter reads it: times, readings, a smooth path through them, and inputs.
@@ -17,10 +18,11 @@ pub struct Record<'a> {
 }
 
 impl<'a> Record<'a> {
-    /// Of every so many samples one is used, such that no interval is shorter than `least_step_s`.
-    pub fn new(trial: &'a Trial, least_step_s: f64) -> Self {
+    /// Of every so many samples one is used, such that no interval is shorter than `least_step_s`; none within `settles_s` of
+    /// a jump.
+    pub fn new(trial: &'a Trial, least_step_s: f64, settles_s: f64) -> Self {
         let stride = (least_step_s / trial.interval_s().max(1e-9) + 1e-9).floor().max(1.0) as usize;
-        let parts = trial.segments().into_iter().map(|range| range.step_by(stride).collect::<Vec<usize>>());
+        let parts = undisturbed(trial, settles_s).into_iter().map(|range| range.step_by(stride).collect::<Vec<usize>>());
         Self { trial, parts: parts.filter(|part| part.len() > 2).collect(), every: 1 }
     }
 

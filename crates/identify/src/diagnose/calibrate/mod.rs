@@ -1,6 +1,7 @@
 //! What the trials that a model was fitted on leave open.
 
 mod feigned;
+mod habits;
 mod scatter;
 
 use std::collections::BTreeMap;
@@ -32,6 +33,18 @@ const WIDE: f64 = 1.0;
 /// # Errors
 /// Names the channel that a trial lacks, or says that the information is not positive.
 pub fn calibrate(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Result<Uncertainty, RefineError> {
+    let model = &Model { uncertainty: None, ..model.clone() };
+    let first = by_instruments(model, law, effects, trials)?;
+    let habits = habits::of(model, &first, law, effects, trials)?;
+    if habits.is_empty() {
+        return Ok(first);
+    }
+    let erring = Uncertainty { habits, instruments: BTreeMap::new(), ..first };
+    by_instruments(&Model { uncertainty: Some(erring), ..model.clone() }, law, effects, trials)
+}
+
+/// What the trials leave open where instruments err as the model's uncertainty says, or not at all.
+fn by_instruments(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Result<Uncertainty, RefineError> {
     let terms = learned(model, law, effects, trials);
     let extra: Vec<_> = terms.iter().filter_map(|(name, form)| Some((name.clone(), regressor(model, form)?.0))).collect();
     let nuisance = Columns::nuisance(model, law, &extra);
@@ -52,6 +65,7 @@ pub fn calibrate(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&T
     let known = Known { scatter: known.scatter(), ..known };
     Ok(Uncertainty {
         instruments: instruments(&workspace.noise, &scatter),
+        habits: model.uncertainty.as_ref().map(|known| known.habits.clone()).unwrap_or_default(),
         feigned: feigned::feigned(&workspace, &known, &all),
         remainder: remainder(&workspace, &known, &discrepancies),
         ..uncertainty(&workspace, &known, &shift, &discrepancies)?
@@ -176,6 +190,7 @@ fn uncertainty(
         offset: offset.iter().copied().collect(),
         discrepancy,
         instruments: BTreeMap::new(),
+        habits: Vec::new(),
         feigned: BTreeMap::new(),
         remainder: BTreeMap::new(),
         trials: workspace.trials.iter().map(|trial| trial.name.clone()).collect(),

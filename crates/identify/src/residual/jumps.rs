@@ -1,0 +1,117 @@
+//! Where a recording jumps: a position or a heading steps although the velocities do not. No ship did that. A receiver changed
+//! its satellites, or a compass was disturbed, and velocities that were derived from it are wrong nearby.
+
+use std::ops::Range;
+
+use sistership_model::Trial;
+use sistership_model::trial::Channel;
+
+/// By how many deviations of its own scatter a step must disagree with the velocities.
+const JUMP: f64 = 15.0;
+/// The share of what the fastest sample moves in a step below which no disagreement is a jump.
+const LEAST: f64 = 0.5;
+/// The share of a trial that may be lost; what jumps more often does not jump, but is recorded so.
+const MOST: f64 = 0.3;
+
+/// Ranges of samples without a gap and further than `settles_s` from any jump.
+pub fn undisturbed(trial: &Trial, settles_s: f64) -> Vec<Range<usize>> {
+    let jumps = jumps(trial);
+    let is_near = |k: usize| {
+        let next = jumps.partition_point(|&jump| jump < trial.t_s[k]);
+        let near = |jump: Option<&f64>| jump.is_some_and(|jump| (jump - trial.t_s[k]).abs() < settles_s);
+        near(jumps.get(next)) || near(next.checked_sub(1).and_then(|before| jumps.get(before)))
+    };
+    let kept: Vec<Range<usize>> = trial.segments().into_iter().flat_map(|range| runs(range, &|k| !is_near(k))).collect();
+    let left: usize = kept.iter().map(Range::len).sum();
+    if (left as f64) < (1.0 - MOST) * trial.len() as f64 { trial.segments() } else { kept }
+}
+
+/// Stretches of a range over which all samples are kept.
+fn runs(range: Range<usize>, keep: &dyn Fn(usize) -> bool) -> Vec<Range<usize>> {
+    let (mut runs, mut start) = (Vec::new(), range.start);
+    for k in range.clone() {
+        if !keep(k) {
+            runs.push(start..k);
+            start = k + 1;
+        }
+    }
+    runs.push(start..range.end);
+    runs.retain(|run| !run.is_empty());
+    runs
+}
+
+/// Times in the middle of steps that jump, in order.
+fn jumps(trial: &Trial) -> Vec<f64> {
+    let rates = [(Channel::X, ground(trial, 0.0)), (Channel::Y, ground(trial, -0.5 * std::f64::consts::PI))];
+    let turn = trial.channel(Channel::R).map(<[f64]>::to_vec);
+    let pairs = rates.into_iter().chain([(Channel::Psi, turn)]);
+    let mut jumps: Vec<f64> = pairs.flat_map(|(channel, rate)| of_channel(trial, channel, rate.as_deref())).collect();
+    jumps.sort_by(f64::total_cmp);
+    jumps
+}
+
+/// Speed over the ground along the x axis turned by an angle.
+fn ground(trial: &Trial, turned: f64) -> Option<Vec<f64>> {
+    let (u, v, psi) = (trial.channel(Channel::U)?, trial.channel(Channel::V)?, trial.channel(Channel::Psi)?);
+    let one = |((u, v), psi): ((&f64, &f64), &f64)| u * (psi + turned).cos() - v * (psi + turned).sin();
+    Some(u.iter().zip(v).zip(psi).map(one).collect())
+}
+
+fn of_channel(trial: &Trial, channel: Channel, rate: Option<&[f64]>) -> Vec<f64> {
+    let (Some(values), Some(rate)) = (trial.channel(channel), rate) else { return Vec::new() };
+    let step = |k: usize| trial.t_s[k] - trial.t_s[k - 1];
+    let steps: Vec<usize> = trial.segments().into_iter().flat_map(|range| range.skip(1)).collect();
+    let apart: Vec<f64> =
+        steps.iter().map(|&k| (values[k] - values[k - 1] - 0.5 * step(k) * (rate[k] + rate[k - 1])).abs()).collect();
+    let fastest = steps.iter().map(|&k| (step(k) * rate[k]).abs()).fold(0.0, f64::max);
+    let limit = (JUMP * scatter(&apart)).max(LEAST * fastest);
+    let jumping = steps.iter().zip(&apart).filter(|(_, apart)| **apart > limit);
+    jumping.map(|(&k, _)| 0.5 * (trial.t_s[k] + trial.t_s[k - 1])).collect()
+}
+
+/// The deviation of a normal variable with the median of these magnitudes.
+fn scatter(magnitudes: &[f64]) -> f64 {
+    let mut sorted = magnitudes.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or_default() / 0.6745
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A straight run of a hundred seconds with a receiver that scatters by 5 mm.
+    fn run(jump_m: f64) -> Trial {
+        let noise = |k: usize| 0.005 * (k as f64 * 12.9898).sin();
+        let x = |k: usize| 0.2 * k as f64 * 0.1 + noise(k) + if k >= 500 { jump_m } else { 0.0 };
+        let channels = [
+            (Channel::U, vec![0.2; 1000]),
+            (Channel::V, vec![0.0; 1000]),
+            (Channel::Psi, vec![0.0; 1000]),
+            (Channel::X, (0..1000).map(x).collect()),
+            (Channel::Y, (0..1000).map(noise).collect()),
+        ];
+        Trial { t_s: (0..1000).map(|k| 0.1 * k as f64).collect(), channels: channels.into(), ..Trial::default() }
+    }
+
+    #[test]
+    fn a_jump_parts_a_trial() {
+        let parts = undisturbed(&run(0.5), 3.0);
+        assert_eq!(parts, [0..470, 530..1000]);
+    }
+
+    #[test]
+    fn scatter_does_not() {
+        assert_eq!(undisturbed(&run(0.0), 3.0), [0..1000]);
+    }
+
+    #[test]
+    fn a_position_that_is_held_between_fixes_does_not() {
+        let mut held = run(0.0);
+        for channel in [Channel::X, Channel::Y] {
+            let values = held.channels.get_mut(&channel).unwrap();
+            *values = (0..1000).map(|k| values[k / 10 * 10]).collect();
+        }
+        assert_eq!(undisturbed(&held, 3.0), [0..1000]);
+    }
+}
