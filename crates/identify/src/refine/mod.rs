@@ -5,6 +5,7 @@ mod family;
 mod finish;
 mod outcome;
 mod parts;
+mod posterior;
 mod published;
 mod rows;
 mod selection;

@@ -9,6 +9,7 @@ use sistership_model::Model;
 use sistership_model::trial::Channel;
 
 use super::settings::Settings;
+use crate::bands::Bands;
 
 /// Why a refinement is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -139,6 +140,9 @@ pub struct Manoeuvres {
     pub source: StandardManoeuvres,
     /// Of the refined model.
     pub refined: StandardManoeuvres,
+    /// Confidence bands of the refined model's figures.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bands: Option<Bands>,
     /// Turning circles and zigzags among the trials, measured and simulated with the recorded rudder from their start.
     pub measured: Vec<MeasuredManoeuvre>,
 }

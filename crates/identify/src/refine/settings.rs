@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::family::Family;
+use crate::bands::Sampling;
 
 /// The estimator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -91,6 +92,8 @@ pub struct Settings {
     pub folds: usize,
     /// Names of trials that are kept out of fit and choice altogether, to be judged on.
     pub held_out: Vec<String>,
+    /// How the posterior is sampled for the bands of the standard manoeuvres; no samples leave them out.
+    pub bands: Sampling,
 }
 
 impl Default for Settings {
@@ -115,6 +118,7 @@ impl Default for Settings {
             restart_s: None,
             folds: 8,
             held_out: Vec::new(),
+            bands: Sampling::default(),
         }
     }
 }
@@ -153,6 +157,7 @@ impl Settings {
         if !(2..=100).contains(&self.folds) {
             return refuse("folds", "must be from 2 to 100");
         }
+        self.bands.check().map_err(|message| ("bands".to_owned(), message))?;
         if self.strengths.len() > 100 || self.strengths.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
             return refuse("strengths", "give at most 100, each above 0");
         }

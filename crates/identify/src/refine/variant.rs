@@ -3,15 +3,18 @@
 use rayon::prelude::*;
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
+use sistership_model::trial::Trial;
 
 use super::blocks::Blocks;
 use super::family::Family;
 use super::outcome::RefineError;
+use super::parts::slice;
+use super::posterior::{Errors, Rows, errors, rows};
 use super::published::{Choices, Fold, most_likely};
-use super::rows::trial_moments;
+use super::rows::{Table, trial_moments, trial_tables};
 use super::selection::Task;
 use super::settings::{Method, Range};
-use super::weak::{Windows, weak_moments};
+use super::weak::{Windows, weak_moments, weak_tables};
 use crate::regression::{Choice, Moments};
 
 /// One family of terms.
@@ -64,6 +67,28 @@ impl Task<'_> {
             return Err(RefineError::Data(message));
         }
         Ok(moments)
+    }
+
+    /// How far a ridge's coefficients on all trials may be from the truth.
+    pub(super) fn errors(&self, variant: &Variant, choices: &Choices) -> Result<Option<Errors>, RefineError> {
+        let Some(all) = merged(&variant.moments, |_| true) else { return Ok(None) };
+        Ok(errors(&variant.blocks, &all, &self.rows(&variant.blocks)?, &variant.model, choices))
+    }
+
+    /// The rows behind a variant's statistics. Differences of neighbouring samples share most of what they say: they are merged
+    /// over the time of a difference.
+    fn rows(&self, blocks: &Blocks) -> Result<Rows, RefineError> {
+        let windows = self.windows();
+        let parts = |trial: &&Trial| trial.segments().into_iter().map(|part| slice(trial, part)).collect::<Vec<_>>();
+        let parts: Vec<Trial> = self.training.iter().flat_map(parts).filter(|part| part.len() > 1).collect();
+        let one = |part: &Trial| match windows {
+            Some(windows) => weak_tables(blocks, part, windows),
+            None => trial_tables(blocks, part, self.settings.difference_s),
+        };
+        let tables: Vec<Vec<Table>> = parts.par_iter().map(one).collect::<Result<_, _>>()?;
+        let interval_s = parts.first().map_or(1.0, Trial::interval_s);
+        let merged = windows.is_none().then(|| self.settings.difference_s.map_or(1.0, |s| (s / interval_s).round()));
+        Ok(rows(blocks, &tables, merged.unwrap_or(1.0) as usize, windows.is_none()))
     }
 
     /// The windows of the weak form; none where differences are taken.
