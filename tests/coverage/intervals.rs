@@ -67,10 +67,11 @@ fn table(replicas: &[Held]) -> BTreeMap<String, (f64, f64)> {
     let mut sums: BTreeMap<String, (f64, f64)> = BTreeMap::new();
     for (name, (held, width)) in replicas.iter().flatten() {
         let sum = sums.entry(name.clone()).or_default();
-        sum.0 += f64::from(u8::from(*held)) / replicas.len() as f64;
-        sum.1 += width / replicas.len() as f64;
+        sum.0 += f64::from(u8::from(*held));
+        sum.1 += width;
     }
-    sums
+    let count = replicas.len() as f64;
+    sums.into_iter().map(|(name, (held, width))| (name, (held / count, width / count))).collect()
 }
 
 /// Prints the table and gives the shares of the coefficients in the mean and of the diameter.
