@@ -13,7 +13,7 @@ use sistership_model::trial::Trial;
 use super::blocks::Blocks;
 use super::family::Family;
 use super::outcome::{CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement};
-use super::published::{Choices, Fit, fit};
+use super::published::{Choices, Fit, Fold, fit};
 use super::selection::{Progress, Taken, Task, Trying, step};
 use super::variant::{Variant, merged};
 use crate::bands::bands;
@@ -35,7 +35,13 @@ impl Task<'_> {
                 return Err(RefineError::Diverged(reasons.join("; ")));
             };
             step(progress, 0.9, &format!("standard manoeuvres of option {}", options[best].option.step))?;
-            let fitted = self.fitted(&options[best].taken, variants)?;
+            let fitted = match self.fitted(&options[best].taken, variants) {
+                Err(RefineError::Constraints(reason)) => {
+                    (options[best].option.reason, options[best].option.error) = (Some(reason), None);
+                    continue;
+                }
+                fitted => fitted?,
+            };
             let mut model = fitted.as_ref().map_or_else(|| self.transferred.clone(), |fit| self.model_with(&fit.coefficients));
             model.validity = covered(&self.whole, self.request.law);
             let after = self.standard_manoeuvres(&model);
@@ -63,7 +69,11 @@ impl Task<'_> {
             Taken::Ridge { variant, choices } => (&variants[*variant], choices),
         };
         let all = merged(&variant.moments, |_| true).ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
-        let fitted = fit(&variant.blocks, &all, &variant.model, choices);
+        let mut fitted = fit(&variant.blocks, &all, &variant.model, choices);
+        if variant.limits.is_some() {
+            let fold = Fold::new(&variant.blocks, &variant.model, &all, &[]);
+            fitted.coefficients = variant.solve(&fold, choices).map_err(RefineError::Constraints)?;
+        }
         Ok(Some(fitted.with_errors(self.errors(variant, choices)?)))
     }
 

@@ -46,9 +46,12 @@ pub enum RefineError {
         /// What it may be.
         message: String,
     },
-    /// Every option left the physical range.
-    #[error("no option stays in the physical range: {0}")]
+    /// Every option left the physical range or cannot keep the constraints.
+    #[error("no option can be taken: {0}")]
     Diverged(String),
+    /// The constraints cannot be kept.
+    #[error("{0}")]
+    Constraints(String),
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,

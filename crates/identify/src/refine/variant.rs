@@ -1,16 +1,19 @@
 //! The term families of a refinement, each with its regressions, statistics and training sets.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
-use sistership_model::trial::Trial;
+use sistership_model::trial::{Channel, Trial};
 
 use super::blocks::Blocks;
+use super::constraints::Limits;
 use super::family::Family;
 use super::outcome::RefineError;
 use super::parts::slice;
 use super::posterior::{Errors, Rows, errors, rows};
-use super::published::{Choices, Fold, most_likely};
+use super::published::{Choices, Fitted, Fold, most_likely};
 use super::rows::{Table, trial_moments, trial_tables};
 use super::selection::Task;
 use super::settings::{Method, Range};
@@ -27,6 +30,27 @@ pub(super) struct Variant {
     pub blocks: Blocks,
     /// Its statistics, by trial and regression.
     pub moments: Vec<Vec<Moments>>,
+    /// What its coefficients must keep to, if anything.
+    pub limits: Option<Limits>,
+}
+
+impl Variant {
+    /// Coefficients fitted by a training set, within the limits.
+    ///
+    /// # Errors
+    /// Names the limits that cannot be kept together.
+    pub fn solve(&self, fold: &Fold<'_>, choices: &Choices) -> Result<BTreeMap<String, Fitted>, String> {
+        let mut fitted = fold.solve(choices);
+        let Some(limits) = &self.limits else { return Ok(fitted) };
+        let (names, curvature) = fold.curvature(choices);
+        let solution = fitted.iter().map(|(name, fitted)| (name.clone(), fitted.value)).collect();
+        let prior = |name: &str| fitted.get(name).map_or(0.0, |fitted| fitted.prior_deviation);
+        let nearest = limits.nearest(&solution, &names, &curvature, &prior)?;
+        nearest.into_iter().for_each(|(name, value)| {
+            fitted.get_mut(&name).into_iter().for_each(|fitted| fitted.value = value);
+        });
+        Ok(fitted)
+    }
 }
 
 impl Task<'_> {
@@ -49,7 +73,20 @@ impl Task<'_> {
     fn variant(&self, family: Family, model: Model) -> Result<Variant, RefineError> {
         let blocks = Blocks::new(&model, self.request.law)?;
         let moments = self.moments(&blocks)?;
-        Ok(Variant { family, model, blocks, moments })
+        let limits = self.limits(&model)?;
+        Ok(Variant { family, model, blocks, moments, limits })
+    }
+
+    /// What the settings ask of a model's coefficients.
+    fn limits(&self, model: &Model) -> Result<Option<Limits>, RefineError> {
+        let asked = &self.settings.constraints;
+        if asked.is_empty() {
+            return Ok(None);
+        }
+        let speeds = self.whole.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
+        let speeds = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], u| [low.min(*u), high.max(*u)]);
+        let limits = Limits::new(asked, model, self.request.law, speeds);
+        limits.map(Some).map_err(|message| RefineError::Setting { field: "constraints".into(), message })
     }
 
     fn moments(&self, blocks: &Blocks) -> Result<Vec<Vec<Moments>>, RefineError> {
