@@ -5,4 +5,5 @@ pub mod esso_osaka;
 pub mod server;
 pub mod shape;
 pub mod shared;
+pub mod synthetic;
 pub mod worker;

@@ -37,7 +37,7 @@ impl TestServer {
         let data = database.folder.path().join("data");
         let extra: Vec<String> = extra.iter().map(|&argument| argument.to_owned()).collect();
         let (process, url) = start(&database.url, &data, &extra, Stdio::inherit(), Some("warn"));
-        let server = Self { process, url, client: Client::new(), database, data, extra };
+        let server = Self { process, url, client: client(), database, data, extra };
         server.until_ready().await;
         server
     }
@@ -52,7 +52,7 @@ impl TestServer {
         let extra: Vec<String> = extra.iter().map(|&argument| argument.to_owned()).collect();
         let file = std::fs::File::create(&log).expect("a log");
         let (process, url) = start(&database.url, &data, &extra, file.into(), None);
-        let server = Self { process, url, client: Client::new(), database, data, extra };
+        let server = Self { process, url, client: client(), database, data, extra };
         server.until_ready().await;
         (server, log)
     }
@@ -176,4 +176,10 @@ fn start(database_url: &str, data: &Path, extra: &[String], log: Stdio, level: O
     let line = BufReader::new(out).lines().next().expect("a line").expect("text");
     let url = line.rsplit(' ').next().expect("an address").to_owned();
     (process, url)
+}
+
+/// A client that opens a connection for every request: while a test waits for a command, the server may close an idle one, which the
+/// next request would meet half way.
+fn client() -> Client {
+    Client::builder().pool_max_idle_per_host(0).build().unwrap_or_default()
 }

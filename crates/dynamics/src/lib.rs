@@ -14,6 +14,7 @@ pub mod sensitivity;
 pub mod ship;
 pub mod state;
 pub mod tape;
+pub mod validity;
 mod wide;
 
 pub use envelope::{Envelope, Stopped};

@@ -2,6 +2,7 @@
 
 use sistership_model::effect::{TIME, input_channel};
 use sistership_model::trial::{Channel, Trial};
+use sistership_model::validity::Excursion;
 
 use crate::envelope::Stopped;
 use crate::integrate::Method;
@@ -48,6 +49,8 @@ pub struct Replay {
     pub stopped: Option<Stopped>,
     /// Whether roll was simulated.
     pub has_roll: bool,
+    /// How the motion left what the model's trials covered, if it did.
+    pub outside: Option<Excursion>,
 }
 
 /// Simulates a trial with its recorded inputs.
@@ -56,13 +59,15 @@ pub struct Replay {
 /// Names the channel that the trial lacks: velocities, rudder, or another input of the law that has no default.
 pub fn replay(ship: &Ship, trial: &Trial, settings: &ReplaySettings) -> Result<Replay, MissingChannel> {
     let record = Record::new(ship, trial)?;
-    let mut result = Replay { track: Trajectory::default(), samples: Vec::new(), stopped: None, has_roll: ship.has_roll() };
+    let (track, samples) = (Trajectory::default(), Vec::new());
+    let mut result = Replay { track, samples, stopped: None, has_roll: ship.has_roll(), outside: None };
     let mut work = Work::default();
     for part in parts(trial, settings.restart_s) {
         if let Err(stopped) = record.run(ship, part, settings, &mut result, &mut work) {
             result.stopped.get_or_insert(stopped);
         }
     }
+    result.outside = ship.leaves(&result.track);
     Ok(result)
 }
 

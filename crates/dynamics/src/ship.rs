@@ -2,6 +2,7 @@
 
 use sistership_model::law::Law;
 use sistership_model::manifest::VelocityFrame;
+use sistership_model::validity::{Excursion, Region};
 use sistership_model::{Model, particulars};
 
 use crate::envelope::{Envelope, Stopped};
@@ -10,6 +11,7 @@ use crate::instruments::{Instruments, truth};
 use crate::integrate::Method;
 use crate::plant::{Inputs, MAX_INPUTS, Plant, PlantError, Work, dressed};
 use crate::state::{StateVector, Trajectory, at};
+use crate::validity::leaves;
 
 /// What the bridge orders at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +35,8 @@ pub struct Ship {
     approach_n_rps: f64,
     /// For velocities over the ground, and through the water.
     instruments: [Option<Instruments>; 2],
+    /// What the model's trials covered.
+    validity: Option<Region>,
 }
 
 /// Places of the inputs that change during a run.
@@ -78,6 +82,7 @@ impl Ship {
             lpp_m,
             approach_speed_m_s: speed,
             approach_n_rps,
+            validity: model.validity.clone(),
         })
     }
 
@@ -136,6 +141,11 @@ impl Ship {
             return *said;
         }
         truth(said, |state| self.says(frame, state, inputs, work))
+    }
+
+    /// How a motion leaves what the model's trials covered; none where it stays inside, or where nobody knows what they did.
+    pub fn leaves(&self, track: &Trajectory) -> Option<Excursion> {
+        leaves(self.validity.as_ref()?, track)
     }
 
     /// The range outside which runs are stopped.

@@ -92,6 +92,8 @@ pub fn blank(law: &Law, target: &Vessel, approach: Option<Approach>) -> Result<M
         coefficients: law.axes.values().flat_map(|axis| axis.terms.keys().map(zero)).collect(),
         effects: Vec::new(),
         uncertainty: None,
+        posterior: None,
+        validity: None,
     })
 }
 

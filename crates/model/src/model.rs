@@ -10,9 +10,11 @@ use crate::error::{Blame, FileError};
 use crate::law::Law;
 use crate::manifest::RudderSign;
 use crate::particulars::{self, Particulars};
+use crate::posterior::Posterior;
 use crate::quantity::Quantity;
 use crate::source::Source;
 use crate::uncertainty::Uncertainty;
+use crate::validity::Region;
 use crate::vessel::{PublishedModelFile, Status, Steering, Vessel};
 
 /// A model document. Positive rudder turns the ship to starboard; parameters and coefficients are in the law's units.
@@ -56,6 +58,12 @@ pub struct Model {
     /// What the trials it was fitted on leave open.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertainty: Option<Uncertainty>,
+    /// How far the coefficients may be from the truth.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub posterior: Option<Posterior>,
+    /// The motion that its trials covered.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub validity: Option<Region>,
 }
 
 /// The word `model`.
@@ -111,6 +119,8 @@ impl Model {
             coefficients: section("coefficients", &raw.coefficients)?,
             effects: Vec::new(),
             uncertainty: None,
+            posterior: None,
+            validity: None,
         };
         model.fill_parameters(law);
         model.check(law).map_err(|(field, e)| blame.at(&format!("models.{}.{field}", raw.name), e))?;
@@ -132,7 +142,7 @@ impl Model {
         model.particulars = particulars.clone();
         // What acted on the source's trials, and what they left open, belongs to those trials.
         model.effects = Vec::new();
-        model.uncertainty = None;
+        (model.uncertainty, model.posterior, model.validity) = (None, None, None);
         for name in law.parameters.keys() {
             if let Some(value) = law.derived_parameter(name, particulars) {
                 model.parameters.insert(name.clone(), Quantity::new(value, DERIVED));
@@ -155,6 +165,11 @@ impl Model {
     /// The value of a coefficient; zero where the model does not have it.
     pub fn coefficient(&self, name: &str) -> f64 {
         self.coefficients.get(name).map_or(0.0, |quantity| quantity.value)
+    }
+
+    /// How far its coefficients may be from the truth; none where they are no longer those that were estimated.
+    pub fn posterior(&self) -> Option<&Posterior> {
+        self.posterior.as_ref().filter(|p| p.is_about(|name| self.coefficients.get(name).map(|quantity| quantity.value)))
     }
 
     /// Checks that the law knows every name and that every parameter has a value.
@@ -180,6 +195,12 @@ impl Model {
         }
         if let Some(uncertainty) = &self.uncertainty {
             uncertainty.check().map_err(|message| ("uncertainty".to_owned(), message))?;
+        }
+        if let Some(posterior) = &self.posterior {
+            posterior.check().map_err(|message| ("posterior".to_owned(), message))?;
+        }
+        if let Some(region) = &self.validity {
+            region.check().map_err(|message| ("validity".to_owned(), message))?;
         }
         law.with_effects(self).map(|_| ())
     }

@@ -1,5 +1,6 @@
 //! `sistership manoeuvre`: turning circles and zigzags, their figures and the IMO criteria.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -7,6 +8,8 @@ use serde::Serialize;
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres};
 use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+use sistership_identify::bands::{Bands, Sampling, bands};
+use sistership_model::validity::Excursion;
 use sistership_model::{Law, Model, Zoo};
 
 use super::sailed::sail;
@@ -59,6 +62,12 @@ pub struct Manoeuvre {
     /// Integration method.
     #[arg(long, value_enum, default_value_t)]
     method: Integration,
+    /// Draw so many models from the posterior of a refined one, for confidence bands of the standard manoeuvres.
+    #[arg(long, value_name = "SAMPLES", conflicts_with_all = ["turn", "zigzag"])]
+    bands: Option<usize>,
+    /// What these draws follow from.
+    #[arg(long, value_name = "SEED", default_value_t = 1, requires = "bands")]
+    seed: u64,
     /// Write the track of the single manoeuvre (canonical columns).
     #[arg(long, value_name = "CSV")]
     out: Option<PathBuf>,
@@ -88,6 +97,12 @@ pub struct Document {
     pub imo: Vec<Criterion>,
     /// Manoeuvres that left the physical range.
     pub failures: Vec<String>,
+    /// Manoeuvres that left what the model's trials covered.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub outside: BTreeMap<String, Excursion>,
+    /// Confidence bands, where they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bands: Option<Bands>,
     /// What must be known to read the figures.
     pub remarks: Vec<String>,
 }
@@ -109,7 +124,8 @@ pub fn run(zoo: &Zoo, manoeuvre: &Manoeuvre) -> Result<(), Failure> {
     if let (Some(file), Some(track)) = (file, tracks.first()) {
         file.write(&track::csv(track, &law, ship.has_propeller())?)?;
     }
-    let document = document(&model, &ship, sailed, remarks);
+    let bands = drawn(manoeuvre, &model, &law)?;
+    let document = document(&model, &ship, sailed, bands, remarks);
     output::print(manoeuvre.json, &document, || manoeuvre_text::text(&document, &model, &law, &ship))?;
     if document.failures.is_empty() { Ok(()) } else { Err(Failure::Told) }
 }
@@ -158,7 +174,19 @@ fn settings(manoeuvre: &Manoeuvre) -> ManoeuvreSettings {
     }
 }
 
-fn document(model: &Model, ship: &Ship, sailed: StandardManoeuvres, remarks: Vec<String>) -> Document {
+/// The bands that are asked for.
+fn drawn(manoeuvre: &Manoeuvre, model: &Model, law: &Law) -> Result<Option<Bands>, Failure> {
+    let Some(samples) = manoeuvre.bands else { return Ok(None) };
+    let sampling = Sampling { samples, seed: manoeuvre.seed };
+    sampling.check().map_err(|message| Failure::Call(format!("--bands: {message}")))?;
+    let none = || {
+        let why = "only a refined model whose coefficients are those that were estimated has one";
+        Failure::Refused(format!("--bands: {} has no posterior to draw from; {why}", model.name))
+    };
+    bands(model, law, &settings(manoeuvre), manoeuvre.depth_m, sampling).ok_or_else(none).map(Some)
+}
+
+fn document(model: &Model, ship: &Ship, sailed: StandardManoeuvres, bands: Option<Bands>, remarks: Vec<String>) -> Document {
     Document {
         model: model.name.clone(),
         law: model.law.clone(),
@@ -169,6 +197,8 @@ fn document(model: &Model, ship: &Ship, sailed: StandardManoeuvres, remarks: Vec
         initial_turning_m: sailed.initial_turning_m,
         imo: sailed.imo,
         failures: sailed.failures,
+        outside: sailed.outside,
+        bands,
         remarks,
     }
 }

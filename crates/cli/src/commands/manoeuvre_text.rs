@@ -2,6 +2,7 @@
 
 use sistership_dynamics::Ship;
 use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+use sistership_identify::bands::Bands;
 use sistership_model::{Law, Model};
 
 use super::manoeuvre::Document;
@@ -20,9 +21,11 @@ pub fn text(document: &Document, model: &Model, law: &Law, ship: &Ship) -> Strin
         section("Turning circles", document.turns.is_empty(), || turns(&document.turns, ship.lpp_m())),
         section("Zigzags", document.zigzags.is_empty(), || zigzags(&document.zigzags)),
         section("IMO criteria, MSC.137(76)", document.imo.is_empty(), || criteria(&document.imo)),
+        document.bands.as_ref().map_or(String::new(), |bands| section(&title(bands), false, || banded(bands))),
     ];
     let lines = |label: &str, lines: &[String]| lines.iter().map(|line| format!("{label}: {line}\n")).collect::<String>();
-    let end = lines("remark", &document.remarks) + &lines("FAILED", &document.failures);
+    let outside: Vec<String> = document.outside.iter().map(|(name, how)| format!("{name}: {}", how.words())).collect();
+    let end = lines("OUTSIDE", &outside) + &lines("remark", &document.remarks) + &lines("FAILED", &document.failures);
     let gap = if end.is_empty() { "" } else { "\n" };
     format!("{head}{}{gap}{end}", parts.concat())
 }
@@ -63,6 +66,21 @@ fn zigzags(zigzags: &[ZigzagMetrics]) -> Table {
     for zigzag in zigzags {
         let known = [zigzag.first_overshoot_deg, zigzag.second_overshoot_deg, zigzag.initial_turning_time_s, zigzag.period_s];
         table.row([number(zigzag.rudder_deg), number(zigzag.switch_deg)].into_iter().chain(known.map(optional)));
+    }
+    table
+}
+
+fn title(bands: &Bands) -> String {
+    let failed = if bands.failed > 0 { format!(", {} of which left the physical range", bands.failed) } else { String::new() };
+    format!("Bands of 95 % by {} draws from the posterior{failed}", bands.sampling.samples)
+}
+
+fn banded(bands: &Bands) -> Table {
+    let mut table = Table::new(["figure", "unit", "from", "to", "reached", "met"]);
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    for band in &bands.figures {
+        let met = band.pass.map_or_else(|| "-".to_owned(), percent);
+        table.row([band.figure.clone(), band.unit.clone(), number(band.low), number(band.high), percent(band.reached), met]);
     }
     table
 }

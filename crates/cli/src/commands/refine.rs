@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde::Serialize;
-use sistership_identify::refine::{Method, Refinement, Request, Settings, refine};
+use sistership_identify::refine::{Constraints, Method, Refinement, Request, Settings, StraightLine, refine};
 use sistership_identify::similarity::RankedSource;
 use sistership_identify::source::{Similarity, best_source, similar};
 use sistership_identify::transfer::{approach_of, blank};
@@ -62,6 +62,12 @@ pub struct Refine {
     /// Time over which accelerations are differenced; where absent, that of sailing a tenth of her length.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     difference_s: Option<f64>,
+    /// What the refined model must keep to; bounds of single coefficients go into the settings.
+    #[arg(long, value_name = "WHAT", value_enum, num_args = 1..)]
+    constrain: Vec<Constrain>,
+    /// No coefficient moves further from the source than so many standard deviations of its prior.
+    #[arg(long, value_name = "SD", value_parser = positive, allow_negative_numbers = true)]
+    trust_sd: Option<f64>,
     /// Write the refined model.
     #[arg(long, value_name = "MODEL.yaml")]
     out: Option<PathBuf>,
@@ -71,6 +77,31 @@ pub struct Refine {
     /// Print one JSON document.
     #[arg(long)]
     json: bool,
+}
+
+/// Constraints that need no number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum Constrain {
+    /// Damped in drift and yaw, turned by the rudder to its side.
+    PhysicalSigns,
+    /// Surge terms brake.
+    Dissipative,
+    /// She keeps a straight line with the rudder amidships.
+    Stable,
+    /// She does not.
+    Unstable,
+}
+
+impl Constrain {
+    fn add_to(self, constraints: &mut Constraints) {
+        match self {
+            Self::PhysicalSigns => constraints.physical_signs = true,
+            Self::Dissipative => constraints.dissipative = true,
+            Self::Stable => constraints.straight_line = Some(StraightLine::Stable),
+            Self::Unstable => constraints.straight_line = Some(StraightLine::Unstable),
+        }
+    }
 }
 
 fn method(name: &str) -> Result<Method, String> {
@@ -157,6 +188,8 @@ fn settings(arguments: &Refine) -> Result<Settings, Failure> {
     settings.method = arguments.method.unwrap_or(settings.method);
     settings.restart_s = arguments.restart_s.or(settings.restart_s);
     settings.difference_s = arguments.difference_s.or(settings.difference_s);
+    arguments.constrain.iter().for_each(|constrain| constrain.add_to(&mut settings.constraints));
+    settings.constraints.trust_sd = arguments.trust_sd.or(settings.constraints.trust_sd);
     settings.held_out.extend(arguments.held_out.iter().cloned());
     Ok(settings)
 }

@@ -1,7 +1,8 @@
 //! A refinement in words and tables.
 
-use sistership_dynamics::manoeuvre::StandardManoeuvres;
-use sistership_identify::refine::{CoefficientChange, HeldOut, Refinement, StepOption};
+use sistership_dynamics::manoeuvre::Figure;
+use sistership_identify::bands::Band;
+use sistership_identify::refine::{CoefficientChange, HeldOut, Manoeuvres, Refinement, StepOption};
 use sistership_identify::similarity::RankedSource;
 use sistership_model::Model;
 
@@ -33,8 +34,7 @@ pub fn text(refinement: &Refinement, source: &Model, ranking: Option<&[RankedSou
     let options = format!("Options, from the source outwards\n{}\n", options(&refinement.options));
     let coefficients =
         format!("Coefficients (moved: in standard deviations of the prior)\n{}\n", coefficients(&refinement.coefficients));
-    let manoeuvres =
-        format!("Standard manoeuvres\n{}\n", manoeuvres(&refinement.manoeuvres.source, &refinement.manoeuvres.refined));
+    let manoeuvres = format!("Standard manoeuvres\n{}\n", manoeuvres(&refinement.manoeuvres));
     format!("{ranked}{head}{errors}{options}{coefficients}{manoeuvres}{}", end(refinement, files))
 }
 
@@ -84,26 +84,19 @@ fn coefficients(coefficients: &[CoefficientChange]) -> Table {
     table
 }
 
-fn manoeuvres(source: &StandardManoeuvres, refined: &StandardManoeuvres) -> Table {
-    let mut table = Table::new(["figure", "unit", "source", "refined"]);
-    for turn in refined.turns.iter().chain(source.turns.iter().filter(|_| refined.turns.is_empty())) {
-        let of = |all: &StandardManoeuvres| all.turns.iter().find(|other| other.rudder_deg == turn.rudder_deg).cloned();
-        let (before, after) = (of(source), of(refined));
-        let mut figure = |name: &str, of: &dyn Fn(&sistership_dynamics::metrics::TurningMetrics) -> Option<f64>| {
-            let [before, after] = [&before, &after].map(|turn| optional(turn.as_ref().and_then(of)));
-            table.row([format!("turn {}: {name}", turn.rudder_deg), "m".to_owned(), before, after]);
-        };
-        figure("advance", &|turn| turn.advance_m);
-        figure("tactical diameter", &|turn| turn.tactical_diameter_m);
-    }
-    for zigzag in refined.zigzags.iter().chain(source.zigzags.iter().filter(|_| refined.zigzags.is_empty())) {
-        let of = |all: &StandardManoeuvres| {
-            let same =
-                all.zigzags.iter().find(|other| (other.rudder_deg, other.switch_deg) == (zigzag.rudder_deg, zigzag.switch_deg));
-            optional(same.and_then(|zigzag| zigzag.first_overshoot_deg))
-        };
-        let name = format!("zigzag {}/{}: first overshoot", zigzag.rudder_deg, zigzag.switch_deg);
-        table.row([name, "deg".to_owned(), of(source), of(refined)]);
+/// Figures of the standard manoeuvres that are shown.
+const SHOWN: [&str; 3] = ["advance", "tactical diameter", "first overshoot"];
+
+fn manoeuvres(manoeuvres: &Manoeuvres) -> Table {
+    let mut table = Table::new(["figure", "unit", "source", "refined", "from", "to (95 %)"]);
+    let (source, refined) = (manoeuvres.source.figures(), manoeuvres.refined.figures());
+    let shown = |name: &str| !name.starts_with("IMO") && SHOWN.iter().any(|what| name.ends_with(what));
+    let all = if refined.len() < source.len() { &source } else { &refined };
+    for Figure { name, unit, .. } in all.iter().filter(|figure| shown(&figure.name)) {
+        let of = |figures: &[Figure]| optional(figures.iter().find(|other| other.name == *name).and_then(|other| other.value));
+        let band = manoeuvres.bands.as_ref().and_then(|bands| bands.of(name));
+        let edge = |of: fn(&Band) -> f64| optional(band.map(of));
+        table.row([name.clone(), unit.clone(), of(&source), of(&refined), edge(|band| band.low), edge(|band| band.high)]);
     }
     table
 }
@@ -115,6 +108,8 @@ fn end(refinement: &Refinement, files: &Files<'_>) -> String {
     );
     let failures = refinement.manoeuvres.refined.failures.iter();
     lines.extend(failures.map(|failure| format!("remark: the refined model fails a standard manoeuvre: {failure}")));
+    let outside = refinement.manoeuvres.refined.outside.iter();
+    lines.extend(outside.map(|(name, how)| format!("OUTSIDE: {name}: {}", how.words())));
     lines.extend(refinement.remarks.iter().map(|remark| format!("remark: {remark}")));
     lines.push(match files.out {
         Some(path) => format!("model written to {}", path.display()),

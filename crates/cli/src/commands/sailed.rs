@@ -1,7 +1,7 @@
 //! Sailing what a call asks for.
 
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard, turn, zigzag};
-use sistership_dynamics::{Ship, Stopped, Trajectory};
+use sistership_dynamics::{Ship, Trajectory};
 
 /// Sails the turns and zigzags asked for, or the standard set where none is; what diverges is a failure in the result.
 pub fn sail(
@@ -15,30 +15,28 @@ pub fn sail(
     }
     let (mut sailed, mut tracks) = (StandardManoeuvres::default(), Vec::new());
     for rudder in turns {
-        let turned = turn(ship, *rudder, settings).map(|turn| (turn.metrics, turn.track));
-        keep(turned, format!("turn {rudder} deg"), &mut sailed.turns, &mut sailed.failures, &mut tracks);
+        let name = format!("turn {rudder} deg");
+        match turn(ship, *rudder, settings) {
+            Ok(turn) => {
+                sailed.note_outside(&name, ship, &turn.track);
+                sailed.turns.push(turn.metrics);
+                tracks.push(turn.track);
+            }
+            Err(stopped) => sailed.failures.push(format!("{name}: {stopped}")),
+        }
     }
     for (rudder, switch) in zigzags {
-        let zigzagged = zigzag(ship, *rudder, *switch, settings).map(|zigzag| (zigzag.metrics, zigzag.track));
-        keep(zigzagged, format!("zigzag {rudder}/{switch}"), &mut sailed.zigzags, &mut sailed.failures, &mut tracks);
+        let name = format!("zigzag {rudder}/{switch}");
+        match zigzag(ship, *rudder, *switch, settings) {
+            Ok(zigzag) => {
+                sailed.note_outside(&name, ship, &zigzag.track);
+                sailed.zigzags.push(zigzag.metrics);
+                tracks.push(zigzag.track);
+            }
+            Err(stopped) => sailed.failures.push(format!("{name}: {stopped}")),
+        }
     }
     (sailed, tracks)
-}
-
-fn keep<T>(
-    sailed: Result<(T, Trajectory), Stopped>,
-    name: String,
-    metrics: &mut Vec<T>,
-    failures: &mut Vec<String>,
-    tracks: &mut Vec<Trajectory>,
-) {
-    match sailed {
-        Ok((of, track)) => {
-            metrics.push(of);
-            tracks.push(track);
-        }
-        Err(stopped) => failures.push(format!("{name}: {stopped}")),
-    }
 }
 
 #[cfg(test)]

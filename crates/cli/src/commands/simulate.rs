@@ -120,6 +120,8 @@ fn text(simulate: &Simulate, model: &Model, law: &Law, document: &Document<'_>) 
         .for_each(|trial| table.row(trial.cells()));
     let diverged =
         document.trials.iter().filter_map(|trial| Some(format!("DIVERGED: {}: {}\n", trial.file, trial.reason.as_ref()?)));
+    let outside = |trial: &Simulated| Some(format!("OUTSIDE: {}: {}\n", trial.file, trial.outside.as_ref()?.words()));
+    let outside: String = document.trials.iter().filter_map(outside).collect();
     let written = simulate.out.as_ref().map_or(String::new(), |out| format!("simulated states written to {}\n", out.display()));
-    format!("{head}{table}{}{written}", diverged.collect::<String>())
+    format!("{head}{table}{}{outside}{written}", diverged.collect::<String>())
 }

@@ -7,6 +7,7 @@ use sistership_dynamics::Ship;
 use sistership_dynamics::error::{SquaredError, standardised_mse};
 use sistership_dynamics::recorded::{Replay, ReplaySettings, replay};
 use sistership_model::trial::{Channel, Trial};
+use sistership_model::validity::Excursion;
 use sistership_model::{Law, Model};
 
 use crate::commands;
@@ -34,6 +35,9 @@ pub struct Simulated {
     /// When and why it did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// How the motion left what the model's trials covered, if it did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outside: Option<Excursion>,
     /// The file of simulated states.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub out: Option<String>,
@@ -93,6 +97,7 @@ impl Simulator<'_> {
             standardised_mse: known(Some(standardised_mse(&error, &self.deviations))),
             diverged: reason.is_some(),
             reason,
+            outside: run.outside.clone(),
             out: None,
             samples: run.samples.len(),
         }
@@ -134,6 +139,7 @@ pub fn total(trials: &[Simulated]) -> Option<Simulated> {
         standardised_mse: mean(&|trial| trial.standardised_mse),
         diverged: false,
         reason: None,
+        outside: None,
         out: None,
         samples: trials.iter().map(|trial| trial.samples).sum(),
     })

@@ -1,9 +1,11 @@
 //! The standard manoeuvres, sailed by a model.
 
+mod figures;
 mod standard;
 
 use serde::{Deserialize, Serialize};
 
+pub use figures::Figure;
 pub use standard::{StandardManoeuvres, Turn, Zigzag, standard};
 
 use crate::envelope::Stopped;

@@ -1,6 +1,9 @@
 //! The set of manoeuvres by which a ship is judged.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
+use sistership_model::validity::Excursion;
 
 use super::{ManoeuvreSettings, turn, zigzag};
 use crate::envelope::Stopped;
@@ -39,6 +42,16 @@ pub struct StandardManoeuvres {
     pub imo: Vec<Criterion>,
     /// Manoeuvres that left the physical range, with the reason.
     pub failures: Vec<String>,
+    /// Manoeuvres that left what the model's trials covered, and how.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub outside: BTreeMap<String, Excursion>,
+}
+
+impl StandardManoeuvres {
+    /// Notes how a manoeuvre left what the model's trials covered, if it did.
+    pub fn note_outside(&mut self, name: &str, ship: &Ship, track: &Trajectory) {
+        self.outside.extend(ship.leaves(track).map(|excursion| (name.to_owned(), excursion)));
+    }
 }
 
 /// Sails the standard manoeuvres; one that diverges is reported and the others go on.
@@ -46,18 +59,22 @@ pub fn standard(ship: &Ship, settings: &ManoeuvreSettings) -> StandardManoeuvres
     let mut all = StandardManoeuvres::default();
     for rudder_deg in [35.0, -35.0] {
         let sailed = turn(ship, rudder_deg, settings);
-        note(sailed, &format!("turn {rudder_deg} deg"), &mut all.failures, |turn| all.turns.push(turn.metrics));
+        if let Some(turn) = kept(ship, sailed, &format!("turn {rudder_deg} deg"), &mut all, |turn| &turn.track) {
+            all.turns.push(turn.metrics);
+        }
     }
     for angle in [10.0, -10.0, 20.0, -20.0_f64] {
         let sailed = zigzag(ship, angle, angle.abs(), settings);
-        note(sailed, &format!("zigzag {angle}/{}", angle.abs()), &mut all.failures, |zigzag| all.zigzags.push(zigzag.metrics));
+        if let Some(zigzag) = kept(ship, sailed, &format!("zigzag {angle}/{}", angle.abs()), &mut all, |zigzag| &zigzag.track) {
+            all.zigzags.push(zigzag.metrics);
+        }
     }
     let mut initial = Vec::new();
     for rudder_deg in [10.0, -10.0] {
         let sailed = turn(ship, rudder_deg, settings);
-        note(sailed, &format!("turn {rudder_deg} deg"), &mut all.failures, |turn| {
+        if let Some(turn) = kept(ship, sailed, &format!("turn {rudder_deg} deg"), &mut all, |turn| &turn.track) {
             initial.push(initial_turning_distance(&turn.track, rudder_deg, 10.0));
-        });
+        }
     }
     let both: Option<Vec<f64>> = initial.into_iter().collect();
     all.initial_turning_m = both.and_then(|both| both.into_iter().reduce(f64::max));
@@ -66,9 +83,22 @@ pub fn standard(ship: &Ship, settings: &ManoeuvreSettings) -> StandardManoeuvres
     all
 }
 
-fn note<T>(sailed: Result<T, Stopped>, name: &str, failures: &mut Vec<String>, keep: impl FnOnce(T)) {
+/// What was sailed; a failure, or how it left what the trials covered, is noted.
+fn kept<T>(
+    ship: &Ship,
+    sailed: Result<T, Stopped>,
+    name: &str,
+    all: &mut StandardManoeuvres,
+    track: impl Fn(&T) -> &Trajectory,
+) -> Option<T> {
     match sailed {
-        Ok(result) => keep(result),
-        Err(stopped) => failures.push(format!("{name}: {stopped}")),
+        Ok(result) => {
+            all.note_outside(name, ship, track(&result));
+            Some(result)
+        }
+        Err(stopped) => {
+            all.failures.push(format!("{name}: {stopped}"));
+            None
+        }
     }
 }

@@ -4,14 +4,20 @@ use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard};
 use sistership_dynamics::metrics::{Recognised, recorded_track};
 use sistership_dynamics::recorded::{ReplaySettings, replay};
+use sistership_dynamics::validity::covered;
 use sistership_model::Model;
+use sistership_model::posterior::Posterior;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::Trial;
 
+use super::blocks::Blocks;
+use super::family::Family;
 use super::outcome::{CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement};
-use super::published::{Fit, fit};
+use super::published::{Choices, Fit, Fold, fit};
 use super::selection::{Progress, Taken, Task, Trying, step};
 use super::variant::{Variant, merged};
+use crate::bands::bands;
+use crate::regression::Choice;
 use crate::transfer::ready;
 
 impl Task<'_> {
@@ -29,8 +35,15 @@ impl Task<'_> {
                 return Err(RefineError::Diverged(reasons.join("; ")));
             };
             step(progress, 0.9, &format!("standard manoeuvres of option {}", options[best].option.step))?;
-            let fitted = self.fitted(&options[best].taken, variants)?;
-            let model = fitted.as_ref().map_or_else(|| self.transferred.clone(), |fit| self.model_with(&fit.coefficients));
+            let fitted = match self.fitted(&options[best].taken, variants) {
+                Err(RefineError::Constraints(reason)) => {
+                    (options[best].option.reason, options[best].option.error) = (Some(reason), None);
+                    continue;
+                }
+                fitted => fitted?,
+            };
+            let mut model = fitted.as_ref().map_or_else(|| self.transferred.clone(), |fit| self.model_with(&fit.coefficients));
+            model.validity = covered(&self.whole, self.request.law);
             let after = self.standard_manoeuvres(&model);
             let worse = after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
             if let Some(failure) = worse {
@@ -39,8 +52,11 @@ impl Task<'_> {
                 continue;
             }
             options[best].option.chosen = true;
+            model.posterior = self.posterior(&model, fitted.as_ref(), variants)?;
             let measured = self.measured_manoeuvres(&model);
-            let manoeuvres = Manoeuvres { source: before, refined: after, measured };
+            step(progress, 0.93, "confidence bands")?;
+            let bands = bands(&model, self.request.law, &ManoeuvreSettings::default(), None, self.settings.bands);
+            let manoeuvres = Manoeuvres { source: before, refined: after, bands, measured };
             return self.refinement(options, best, model, fitted, manoeuvres);
         }
     }
@@ -53,7 +69,23 @@ impl Task<'_> {
             Taken::Ridge { variant, choices } => (&variants[*variant], choices),
         };
         let all = merged(&variant.moments, |_| true).ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
-        Ok(Some(fit(&variant.blocks, &all, &variant.model, choices)))
+        let mut fitted = fit(&variant.blocks, &all, &variant.model, choices);
+        if variant.limits.is_some() {
+            let fold = Fold::new(&variant.blocks, &variant.model, &all, &[]);
+            fitted.coefficients = variant.solve(&fold, choices).map_err(RefineError::Constraints)?;
+        }
+        Ok(Some(fitted.with_errors(self.errors(variant, choices)?)))
+    }
+
+    /// How far the model's coefficients may be from the truth. Those of a source that is kept are as far as the trials say
+    /// that they are.
+    fn posterior(&self, model: &Model, fitted: Option<&Fit>, variants: &[Variant]) -> Result<Option<Posterior>, RefineError> {
+        let errors = match (fitted, variants.iter().find(|variant| variant.family == Family::Own)) {
+            (Some(fitted), _) => fitted.errors.clone(),
+            (None, Some(own)) => self.errors(own, &held(&own.blocks))?,
+            (None, None) => None,
+        };
+        Ok(errors.and_then(|errors| errors.posterior(model)))
     }
 
     /// The turning circles and zigzags among the trials, beside what both models make of the recorded rudder.
@@ -175,6 +207,11 @@ impl Task<'_> {
         }
         remarks
     }
+}
+
+/// Choices that keep the source.
+fn held(blocks: &Blocks) -> Choices {
+    blocks.blocks.iter().map(|block| vec![Choice { lambda: 1e9, alpha: 0.0 }; block.axes.len()]).collect()
 }
 
 /// The option with the least error; an earlier one wins unless a later one is better by more than one per cent, and against

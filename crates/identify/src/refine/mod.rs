@@ -1,10 +1,12 @@
 //! Refinement of a source model against trials.
 
 mod blocks;
+mod constraints;
 mod family;
 mod finish;
 mod outcome;
 mod parts;
+mod posterior;
 mod published;
 mod rows;
 mod selection;
@@ -14,6 +16,7 @@ mod variant;
 mod weak;
 
 pub use blocks::{Block, Blocks};
+pub use constraints::{Bound, Constraints, StraightLine};
 pub use family::Family;
 pub use outcome::{CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement, StepOption};
 pub use published::{Choices, Fit, Fitted, Fold, fit, tune};

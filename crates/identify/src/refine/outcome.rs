@@ -9,6 +9,7 @@ use sistership_model::Model;
 use sistership_model::trial::Channel;
 
 use super::settings::Settings;
+use crate::bands::Bands;
 
 /// Why a refinement is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -45,9 +46,12 @@ pub enum RefineError {
         /// What it may be.
         message: String,
     },
-    /// Every option left the physical range.
-    #[error("no option stays in the physical range: {0}")]
+    /// Every option left the physical range or cannot keep the constraints.
+    #[error("no option can be taken: {0}")]
     Diverged(String),
+    /// The constraints cannot be kept.
+    #[error("{0}")]
+    Constraints(String),
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
@@ -139,6 +143,9 @@ pub struct Manoeuvres {
     pub source: StandardManoeuvres,
     /// Of the refined model.
     pub refined: StandardManoeuvres,
+    /// Confidence bands of the refined model's figures.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bands: Option<Bands>,
     /// Turning circles and zigzags among the trials, measured and simulated with the recorded rudder from their start.
     pub measured: Vec<MeasuredManoeuvre>,
 }

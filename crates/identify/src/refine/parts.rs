@@ -27,7 +27,7 @@ fn cut(trial: &Trial, part_s: f64) -> Vec<Trial> {
     (0..trial.len()).step_by(size).map(|from| slice(trial, from..(from + size).min(trial.len()))).collect()
 }
 
-fn slice(trial: &Trial, samples: Range<usize>) -> Trial {
+pub(super) fn slice(trial: &Trial, samples: Range<usize>) -> Trial {
     let of = |column: &[f64]| column[samples.clone()].to_vec();
     Trial {
         name: trial.name.clone(),

@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use sistership_model::Model;
 
 use super::blocks::{Block, Blocks};
+use super::posterior::Errors;
 use super::settings::Range;
 use crate::regression::{Choice, Moments, RidgePath, Validation};
 
@@ -30,6 +31,8 @@ pub struct Fit {
     pub condition_number: f64,
     /// Coefficients that the samples cannot tell apart.
     pub collinear_groups: Vec<Vec<String>>,
+    /// Joint errors of the coefficients, where they were asked for.
+    pub(super) errors: Option<Errors>,
 }
 
 /// The choices of a whole law: by regression, by target.
@@ -72,6 +75,36 @@ impl<'a> Fold<'a> {
         let mut coefficients = BTreeMap::new();
         self.prepared.iter().zip(choices).for_each(|(prepared, choices)| unmix(prepared, choices, &mut coefficients));
         coefficients
+    }
+}
+
+impl Fold<'_> {
+    /// Names of the coefficients, and half the second derivative by them of what [`Fold::solve`] makes least, each acceleration
+    /// by its residual variance.
+    pub(super) fn curvature(&self, choices: &Choices) -> (Vec<String>, DMatrix<f64>) {
+        let sizes = self.prepared.iter().map(|p| p.block.axes.len() * p.block.regressors()).sum();
+        let (mut names, mut all) = (Vec::new(), DMatrix::zeros(sizes, sizes));
+        for (prepared, choices) in self.prepared.iter().zip(choices) {
+            let start = names.len();
+            names.extend(prepared.block.names.iter().flatten().cloned());
+            prepared.add_curvature(choices, start, &mut all);
+        }
+        (names, all)
+    }
+}
+
+impl Prepared<'_> {
+    fn add_curvature(&self, choices: &[Choice], start: usize, all: &mut DMatrix<f64>) {
+        let (q, p) = (self.block.axes.len(), self.block.regressors());
+        for (target, choice) in choices.iter().enumerate() {
+            let variance = self.path.residual_variance(target, *choice).max(f64::MIN_POSITIVE);
+            let own = self.path.curvature(choice.lambda) / variance;
+            for (a, b) in (0..q).flat_map(|a| (0..q).map(move |b| (a, b))) {
+                let shared = self.block.mixing[(target, a)] * self.block.mixing[(target, b)];
+                let mut part = all.view_mut((start + a * p, start + b * p), (p, p));
+                part += &own * shared;
+            }
+        }
     }
 }
 
@@ -127,7 +160,7 @@ fn log_spaced(low: f64, high: f64, count: usize) -> impl Iterator<Item = f64> {
 }
 
 /// The source's coefficients as the regression sees them.
-fn mixed_source(block: &Block, model: &Model) -> Vec<Vec<f64>> {
+pub(super) fn mixed_source(block: &Block, model: &Model) -> Vec<Vec<f64>> {
     let q = block.axes.len();
     let mut mixed = vec![vec![0.0; block.regressors()]; q];
     for i in 0..block.regressors() {
@@ -138,9 +171,23 @@ fn mixed_source(block: &Block, model: &Model) -> Vec<Vec<f64>> {
     mixed
 }
 
+impl Fit {
+    /// With joint errors, from which each coefficient's own is taken.
+    pub(super) fn with_errors(mut self, errors: Option<Errors>) -> Self {
+        if let Some(errors) = &errors {
+            for (k, name) in errors.names.iter().enumerate() {
+                let fitted = self.coefficients.get_mut(name).into_iter();
+                fitted.for_each(|fitted| fitted.standard_error = errors.covariance[(k, k)].max(0.0).sqrt());
+            }
+        }
+        self.errors = errors;
+        self
+    }
+}
+
 /// Fits every regression at its choices on the given statistics (one set per regression).
 pub fn fit(blocks: &Blocks, moments: &[Moments], model: &Model, choices: &Choices) -> Fit {
-    let mut result = Fit { coefficients: BTreeMap::new(), condition_number: 1.0, collinear_groups: Vec::new() };
+    let mut result = Fit { coefficients: BTreeMap::new(), condition_number: 1.0, collinear_groups: Vec::new(), errors: None };
     for ((block, moments), choices) in blocks.blocks.iter().zip(moments).zip(choices) {
         let prepared = Prepared::new(block, moments, model);
         unmix(&prepared, choices, &mut result.coefficients);

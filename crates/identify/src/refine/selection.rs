@@ -105,6 +105,13 @@ pub(super) struct Simulated {
     reason: Option<String>,
 }
 
+impl Simulated {
+    /// Of an option that is out of the question.
+    fn refused(reason: String) -> Self {
+        Self { total: SquaredError::default(), each: Vec::new(), reason: Some(reason) }
+    }
+}
+
 impl<'a> Task<'a> {
     fn new(
         request: &'a Request<'a>,
@@ -133,13 +140,13 @@ impl<'a> Task<'a> {
 
     /// The source itself, and options from it outwards for each family of terms.
     fn options(&self, variants: &[Variant], progress: Progress<'_>) -> Result<Vec<Trying>, RefineError> {
-        let mut options = vec![self.source_option()?];
+        let mut options = vec![self.source_option(variants)?];
         for (index, variant) in variants.iter().enumerate() {
             let folds = self.folds(variant)?;
             let share = 0.7 / variants.len() as f64;
             let told = |done: f64, what: &str| step(progress, 0.1 + share * (index as f64 + done), what);
             match self.settings.method {
-                Method::Published => self.by_range(index, &folds, &told, &mut options)?,
+                Method::Published => self.by_range(index, variant, &folds, &told, &mut options)?,
                 _ => self.by_strength(index, variant, &folds, &told, &mut options)?,
             }
         }
@@ -147,15 +154,22 @@ impl<'a> Task<'a> {
     }
 
     /// One option for each range; a single trial allows the first range only.
-    fn by_range(&self, variant: usize, folds: &[Fold<'_>], told: Told<'_>, options: &mut Vec<Trying>) -> Result<(), RefineError> {
+    fn by_range(
+        &self,
+        at: usize,
+        variant: &Variant,
+        folds: &[Fold<'_>],
+        told: Told<'_>,
+        options: &mut Vec<Trying>,
+    ) -> Result<(), RefineError> {
         let ranges = &self.request.settings.ranges;
         let allowed = if self.training.len() == 1 { 1 } else { ranges.len() };
         for (index, range) in ranges.iter().take(allowed).enumerate() {
             let what = format!("lambda from {:.0e}: simulating manoeuvres left out", range.lambda_min);
             told(index as f64 / allowed as f64, &what)?;
             let choices = tune(folds, range, self.request.settings.lambda_count);
-            let taken = Taken::Ridge { variant, choices };
-            options.push(self.ridge_option((index + 1).to_string(), range.lambda_min, taken, folds)?);
+            let taken = Taken::Ridge { variant: at, choices };
+            options.push(self.ridge_option((index + 1).to_string(), range.lambda_min, taken, variant, folds)?);
         }
         Ok(())
     }
@@ -175,19 +189,35 @@ impl<'a> Task<'a> {
             let label = format!("{}, lambda {lambda:.0e}", variant.family.name());
             told(k as f64 / allowed as f64, &format!("{label}: simulating manoeuvres left out"))?;
             let choices = self.common_choices(variant, lambda)?;
-            options.push(self.ridge_option(label, lambda, Taken::Ridge { variant: index, choices }, folds)?);
+            options.push(self.ridge_option(label, lambda, Taken::Ridge { variant: index, choices }, variant, folds)?);
         }
         Ok(())
     }
 
-    fn source_option(&self) -> Result<Trying, RefineError> {
+    /// The source as it is, where it keeps what the settings ask of a model.
+    fn source_option(&self, variants: &[Variant]) -> Result<Trying, RefineError> {
+        let limits = variants.iter().find_map(|variant| variant.limits.as_ref());
+        if let Some(Err(reason)) = limits.map(|limits| limits.check(&self.transferred)) {
+            return Ok(self.trying("source".into(), None, Taken::Source, 0, Simulated::refused(reason)));
+        }
         let simulated = self.simulate_all(&self.training, &|_| self.transferred.clone())?;
         Ok(self.trying("source".into(), None, Taken::Source, 0, simulated))
     }
 
-    fn ridge_option(&self, label: String, lambda_min: f64, taken: Taken, folds: &[Fold<'_>]) -> Result<Trying, RefineError> {
-        let Taken::Ridge { choices, .. } = &taken else { return self.source_option() };
-        let models: Vec<Model> = folds.iter().map(|fold| self.model_with(&fold.solve(choices))).collect();
+    fn ridge_option(
+        &self,
+        label: String,
+        lambda_min: f64,
+        taken: Taken,
+        variant: &Variant,
+        folds: &[Fold<'_>],
+    ) -> Result<Trying, RefineError> {
+        let Taken::Ridge { choices, .. } = &taken else { return Err(RefineError::Law("no ridge".into())) };
+        let model = |fold: &Fold<'_>| Ok(self.model_with(&variant.solve(fold, choices)?));
+        let models: Vec<Model> = match folds.iter().map(model).collect::<Result<_, String>>() {
+            Ok(models) => models,
+            Err(reason) => return Ok(self.trying(label, Some(lambda_min), taken, 0, Simulated::refused(reason))),
+        };
         let simulated = self.simulate_all(&self.training, &|trial| models[self.fold_of(trial)].clone())?;
         let size = models.first().map_or(0, |model| model.coefficients.len());
         Ok(self.trying(label, Some(lambda_min), taken, size, simulated))

@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::constraints::Constraints;
 use super::family::Family;
+use crate::bands::Sampling;
 
 /// The estimator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -91,6 +93,11 @@ pub struct Settings {
     pub folds: usize,
     /// Names of trials that are kept out of fit and choice altogether, to be judged on.
     pub held_out: Vec<String>,
+    /// What the refined model must keep to.
+    #[serde(skip_serializing_if = "Constraints::is_empty")]
+    pub constraints: Constraints,
+    /// How the posterior is sampled for the bands of the standard manoeuvres; no samples leave them out.
+    pub bands: Sampling,
 }
 
 impl Default for Settings {
@@ -115,6 +122,8 @@ impl Default for Settings {
             restart_s: None,
             folds: 8,
             held_out: Vec::new(),
+            constraints: Constraints::default(),
+            bands: Sampling::default(),
         }
     }
 }
@@ -153,6 +162,11 @@ impl Settings {
         if !(2..=100).contains(&self.folds) {
             return refuse("folds", "must be from 2 to 100");
         }
+        if self.method == Method::Trajectory && !self.constraints.is_empty() {
+            return refuse("constraints", "are kept by the methods `published` and `weak` only");
+        }
+        self.constraints.check().map_err(|message| ("constraints".to_owned(), message))?;
+        self.bands.check().map_err(|message| ("bands".to_owned(), message))?;
         if self.strengths.len() > 100 || self.strengths.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
             return refuse("strengths", "give at most 100, each above 0");
         }

@@ -1,17 +1,23 @@
 //! The term families of a refinement, each with its regressions, statistics and training sets.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
+use sistership_model::trial::{Channel, Trial};
 
 use super::blocks::Blocks;
+use super::constraints::Limits;
 use super::family::Family;
 use super::outcome::RefineError;
-use super::published::{Choices, Fold, most_likely};
-use super::rows::trial_moments;
+use super::parts::slice;
+use super::posterior::{Errors, Rows, errors, rows};
+use super::published::{Choices, Fitted, Fold, most_likely};
+use super::rows::{Table, trial_moments, trial_tables};
 use super::selection::Task;
 use super::settings::{Method, Range};
-use super::weak::{Windows, weak_moments};
+use super::weak::{Windows, weak_moments, weak_tables};
 use crate::regression::{Choice, Moments};
 
 /// One family of terms.
@@ -24,6 +30,27 @@ pub(super) struct Variant {
     pub blocks: Blocks,
     /// Its statistics, by trial and regression.
     pub moments: Vec<Vec<Moments>>,
+    /// What its coefficients must keep to, if anything.
+    pub limits: Option<Limits>,
+}
+
+impl Variant {
+    /// Coefficients fitted by a training set, within the limits.
+    ///
+    /// # Errors
+    /// Names the limits that cannot be kept together.
+    pub fn solve(&self, fold: &Fold<'_>, choices: &Choices) -> Result<BTreeMap<String, Fitted>, String> {
+        let mut fitted = fold.solve(choices);
+        let Some(limits) = &self.limits else { return Ok(fitted) };
+        let (names, curvature) = fold.curvature(choices);
+        let solution = fitted.iter().map(|(name, fitted)| (name.clone(), fitted.value)).collect();
+        let prior = |name: &str| fitted.get(name).map_or(0.0, |fitted| fitted.prior_deviation);
+        let nearest = limits.nearest(&solution, &names, &curvature, &prior)?;
+        nearest.into_iter().for_each(|(name, value)| {
+            fitted.get_mut(&name).into_iter().for_each(|fitted| fitted.value = value);
+        });
+        Ok(fitted)
+    }
 }
 
 impl Task<'_> {
@@ -46,7 +73,20 @@ impl Task<'_> {
     fn variant(&self, family: Family, model: Model) -> Result<Variant, RefineError> {
         let blocks = Blocks::new(&model, self.request.law)?;
         let moments = self.moments(&blocks)?;
-        Ok(Variant { family, model, blocks, moments })
+        let limits = self.limits(&model)?;
+        Ok(Variant { family, model, blocks, moments, limits })
+    }
+
+    /// What the settings ask of a model's coefficients.
+    fn limits(&self, model: &Model) -> Result<Option<Limits>, RefineError> {
+        let asked = &self.settings.constraints;
+        if asked.is_empty() {
+            return Ok(None);
+        }
+        let speeds = self.whole.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
+        let speeds = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], u| [low.min(*u), high.max(*u)]);
+        let limits = Limits::new(asked, model, self.request.law, speeds);
+        limits.map(Some).map_err(|message| RefineError::Setting { field: "constraints".into(), message })
     }
 
     fn moments(&self, blocks: &Blocks) -> Result<Vec<Vec<Moments>>, RefineError> {
@@ -64,6 +104,28 @@ impl Task<'_> {
             return Err(RefineError::Data(message));
         }
         Ok(moments)
+    }
+
+    /// How far a ridge's coefficients on all trials may be from the truth.
+    pub(super) fn errors(&self, variant: &Variant, choices: &Choices) -> Result<Option<Errors>, RefineError> {
+        let Some(all) = merged(&variant.moments, |_| true) else { return Ok(None) };
+        Ok(errors(&variant.blocks, &all, &self.rows(&variant.blocks)?, &variant.model, choices))
+    }
+
+    /// The rows behind a variant's statistics. Differences of neighbouring samples share most of what they say: they are merged
+    /// over the time of a difference.
+    fn rows(&self, blocks: &Blocks) -> Result<Rows, RefineError> {
+        let windows = self.windows();
+        let parts = |trial: &&Trial| trial.segments().into_iter().map(|part| slice(trial, part)).collect::<Vec<_>>();
+        let parts: Vec<Trial> = self.training.iter().flat_map(parts).filter(|part| part.len() > 1).collect();
+        let one = |part: &Trial| match windows {
+            Some(windows) => weak_tables(blocks, part, windows),
+            None => trial_tables(blocks, part, self.settings.difference_s),
+        };
+        let tables: Vec<Vec<Table>> = parts.par_iter().map(one).collect::<Result<_, _>>()?;
+        let interval_s = parts.first().map_or(1.0, Trial::interval_s);
+        let merged = windows.is_none().then(|| self.settings.difference_s.map_or(1.0, |s| (s / interval_s).round()));
+        Ok(rows(blocks, &tables, merged.unwrap_or(1.0) as usize, windows.is_none()))
     }
 
     /// The windows of the weak form; none where differences are taken.

@@ -134,6 +134,18 @@ impl RidgePath {
         self.deviations.iter().enumerate().map(one).collect()
     }
 
+    /// Half the second derivative of what a solution at `lambda` makes least, the sum of squares and of the prior's pull, in the
+    /// units of the regressors; 1 for a regressor that does not vary.
+    pub fn curvature(&self, lambda: f64) -> DMatrix<f64> {
+        let weights = self.eigenvalues.map(|d| self.count * (d + lambda));
+        let standard = &self.eigenvectors * DMatrix::from_diagonal(&weights) * self.eigenvectors.transpose();
+        let still = |j: usize| self.deviations[j] == 0.0;
+        DMatrix::from_fn(self.deviations.len(), self.deviations.len(), |i, j| match still(i) || still(j) {
+            true => f64::from(u8::from(i == j)),
+            false => standard[(i, j)] * self.deviations[i] * self.deviations[j],
+        })
+    }
+
     /// Largest eigenvalue of the correlation matrix over the smallest of those that belong to varying regressors.
     pub fn condition_number(&self) -> f64 {
         let still = self.deviations.iter().filter(|sigma| **sigma == 0.0).count();

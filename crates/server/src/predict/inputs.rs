@@ -68,7 +68,7 @@ impl InputsRequest {
         ship.set_envelope_speed(self.start.u_m_s.hypot(self.start.v_m_s));
         let run = replay(ship, &trial, &settings).map_err(|error| Problem::invalid("inputs", error.to_string()))?;
         let stopped = run.stopped.map(|stopped| json!({ "t_s": stopped.t_s, "reason": stopped.reason }));
-        Ok(json!({ "metrics": null, "trajectory": columns(&run.track), "stopped": stopped }))
+        Ok(json!({ "metrics": null, "trajectory": columns(&run.track), "stopped": stopped, "outside": run.outside }))
     }
 
     /// The inputs as a trial that starts where the request says.

@@ -4,6 +4,8 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, standard, turn, zigzag};
 use sistership_dynamics::{Ship, Stopped};
+use sistership_identify::bands::{Bands, Sampling, bands};
+use sistership_model::{Law, Model};
 use utoipa::ToSchema;
 
 use super::{bounded, columns, positive};
@@ -11,6 +13,8 @@ use crate::problem::{Problem, Result};
 
 /// Longest step.
 const STEP_S: f64 = 0.1;
+/// Most models drawn for bands.
+const MOST_SAMPLES: usize = 1000;
 
 /// One of `turn_deg`, `zigzag` and `all`.
 #[derive(Debug, Deserialize, ToSchema)]
@@ -27,6 +31,18 @@ pub(crate) struct ManoeuvreRequest {
     speed_m_s: Option<f64>,
     /// Propeller revolutions; those of the approach speed where absent.
     n_rps: Option<f64>,
+    /// With `all`: confidence bands by models drawn from the posterior of a refined one.
+    bands: Option<BandsRequest>,
+}
+
+/// How a posterior is sampled.
+#[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct BandsRequest {
+    /// Models drawn, at most 1000; 100 where absent.
+    samples: Option<usize>,
+    /// What the draws follow from; 1 where absent.
+    seed: Option<u64>,
 }
 
 /// A zigzag.
@@ -40,20 +56,31 @@ pub(crate) struct ZigzagRequest {
 }
 
 impl ManoeuvreRequest {
-    pub(super) fn sail(&self, ship: &mut Ship, most: usize) -> Result<Value> {
+    pub(super) fn sail(&self, ship: &mut Ship, whose: Whose<'_>, most: usize) -> Result<Value> {
         let settings = self.settings(ship, most)?;
+        if self.bands.is_some() && !self.all {
+            return Err(Problem::invalid("manoeuvre.bands", "are those of all standard manoeuvres: give `all`"));
+        }
         match (self.turn_deg, &self.zigzag, self.all) {
             (Some(rudder), None, false) => {
                 let sailed = turn(ship, angle("manoeuvre.turn_deg", rudder)?, &settings).map_err(diverged)?;
-                Ok(json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null }))
+                Ok(json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null,
+                    "outside": ship.leaves(&sailed.track) }))
             }
             (None, Some(ZigzagRequest { rudder_deg, switch_deg }), false) => {
                 let rudder = angle("manoeuvre.zigzag.rudder_deg", *rudder_deg)?;
                 let switch = angle("manoeuvre.zigzag.switch_deg", *switch_deg)?.abs();
                 let sailed = zigzag(ship, rudder, switch, &settings).map_err(diverged)?;
-                Ok(json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null }))
+                Ok(json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null,
+                    "outside": ship.leaves(&sailed.track) }))
             }
-            (None, None, true) => serde_json::to_value(standard(ship, &settings)).map_err(Problem::internal),
+            (None, None, true) => {
+                let mut sailed = serde_json::to_value(standard(ship, &settings)).map_err(Problem::internal)?;
+                if let Some(request) = self.bands {
+                    sailed["bands"] = serde_json::to_value(request.drawn(whose, &settings)?).map_err(Problem::internal)?;
+                }
+                Ok(sailed)
+            }
             _ => Err(Problem::invalid("manoeuvre", "give one of `turn_deg`, `zigzag` and `all`")),
         }
     }
@@ -70,6 +97,30 @@ impl ManoeuvreRequest {
         ship.set_envelope_speed(speed);
         let (speed_m_s, n_rps, step_s) = (self.speed_m_s, self.n_rps, Some(step_s));
         Ok(ManoeuvreSettings { speed_m_s, n_rps, step_s, ..ManoeuvreSettings::default() })
+    }
+}
+
+/// The model that sails, for drawing others like it.
+#[derive(Clone, Copy)]
+pub(super) struct Whose<'a> {
+    pub model: &'a Model,
+    pub law: &'a Law,
+    pub depth_m: Option<f64>,
+}
+
+impl BandsRequest {
+    fn drawn(self, whose: Whose<'_>, settings: &ManoeuvreSettings) -> Result<Bands> {
+        let default = Sampling::default();
+        let sampling = Sampling { samples: self.samples.unwrap_or(default.samples), seed: self.seed.unwrap_or(default.seed) };
+        if !(2..=MOST_SAMPLES).contains(&sampling.samples) {
+            return Err(Problem::invalid("manoeuvre.bands.samples", format!("must be from 2 to {MOST_SAMPLES}")));
+        }
+        let none = || {
+            let why = "only a refined one whose coefficients are those that were estimated has one";
+            Problem::invalid("manoeuvre.bands", format!("the model has no posterior to draw from; {why}"))
+        };
+        let coarse = ManoeuvreSettings { step_s: None, ..*settings };
+        bands(whose.model, whose.law, &coarse, whose.depth_m, sampling).ok_or_else(none)
     }
 }
 

@@ -14,6 +14,7 @@ pub(crate) use inputs::InputsRequest;
 pub(crate) use manoeuvre::ManoeuvreRequest;
 
 use crate::problem::{Problem, Result};
+use manoeuvre::Whose;
 
 /// What is to be simulated: a manoeuvre or recorded inputs.
 #[derive(Debug, Deserialize, ToSchema)]
@@ -36,7 +37,7 @@ pub(crate) fn predict(request: &PredictionRequest, model: &Model, law: &Law, mos
         ship.set_depth(positive("depth_m", depth)?);
     }
     match (&request.manoeuvre, &request.inputs) {
-        (Some(manoeuvre), None) => manoeuvre.sail(&mut ship, most),
+        (Some(manoeuvre), None) => manoeuvre.sail(&mut ship, Whose { model, law, depth_m: request.depth_m }, most),
         (None, Some(inputs)) => inputs.follow(&mut ship, most),
         _ => Err(Problem::invalid("manoeuvre", "give either `manoeuvre` or `inputs`")),
     }
@@ -87,6 +88,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use sistership_model::Zoo;
+    use sistership_model::posterior::Posterior;
+    use sistership_model::validity::Region;
 
     fn ask(ship: &str, request: Value) -> Result<Value> {
         let zoo = Zoo::embedded().unwrap();
@@ -104,6 +107,35 @@ mod tests {
         assert!(ask("mariner", zigzag).unwrap()["metrics"]["first_overshoot_deg"].is_number());
         let all = ask("kvlcc2-7m", json!({ "model": "kvlcc2-7m", "manoeuvre": { "all": true } })).unwrap();
         assert_eq!(all["turns"].as_array().unwrap().len(), 2);
+    }
+
+    #[test]
+    fn a_refined_model_says_how_sure_it_is_and_when_it_leaves_its_trials() {
+        let zoo = Zoo::embedded().unwrap();
+        let mut model = zoo.model("mariner").unwrap();
+        let names = vec!["N_delta".to_owned()];
+        let value = model.coefficient("N_delta");
+        model.posterior = Some(Posterior {
+            names,
+            values: vec![value],
+            deviations: vec![0.05 * value.abs()],
+            root_correlation: vec!["1".into()],
+        });
+        model.validity = Region::of(&[("delta".to_owned(), vec![-0.2, 0.2])].into());
+        let sail =
+            |request: Value| predict(&serde_json::from_value(request).unwrap(), &model, zoo.law("abkowitz").unwrap(), 100_000);
+        let asked = json!({ "model": "m", "manoeuvre": { "all": true, "bands": { "samples": 10 } } });
+        let all = sail(asked.clone()).unwrap();
+        let band = &all["bands"]["figures"][2];
+        let diameter = all["turns"][0]["tactical_diameter_m"].as_f64().unwrap();
+        assert_eq!(band["figure"], "turn 35 deg: tactical diameter");
+        assert!(band["low"].as_f64().unwrap() < diameter && diameter < band["high"].as_f64().unwrap());
+        assert_eq!(all["outside"]["turn 35 deg"]["along"], "delta");
+        assert_eq!(sail(asked).unwrap(), all);
+        let turn = sail(json!({ "model": "m", "manoeuvre": { "turn_deg": 10 } })).unwrap();
+        assert!(turn["outside"].is_null());
+        let published = ask("mariner", json!({ "model": "m", "manoeuvre": { "all": true, "bands": {} } }));
+        assert_eq!(published.unwrap_err().errors[0].field.as_deref(), Some("manoeuvre.bands"));
     }
 
     #[test]

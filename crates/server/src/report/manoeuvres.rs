@@ -1,7 +1,11 @@
 //! The standard manoeuvres and the IMO criteria before and after.
 
 use serde::Serialize;
+use std::collections::BTreeMap;
+
 use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+use sistership_identify::bands::Bands;
+use sistership_model::validity::Excursion;
 
 use super::Input;
 
@@ -20,6 +24,8 @@ pub(super) struct Figure {
     pub unit: &'static str,
     #[serde(flatten)]
     pub pair: Pair,
+    /// 95 % of models drawn from the refined one's posterior are between.
+    pub band: Option<[f64; 2]>,
 }
 
 /// One IMO criterion.
@@ -32,6 +38,10 @@ pub(super) struct Verdict<'a> {
     pub source_pass: Option<bool>,
     pub refined: Option<f64>,
     pub refined_pass: Option<bool>,
+    /// 95 % of models drawn from the refined one's posterior are between.
+    pub band: Option<[f64; 2]>,
+    /// Share of them that meet it.
+    pub pass_share: Option<f64>,
 }
 
 /// The whole comparison.
@@ -44,20 +54,23 @@ pub(super) struct Comparison<'a> {
     pub imo: Vec<Verdict<'a>>,
     pub source_failures: &'a [String],
     pub refined_failures: &'a [String],
+    /// Manoeuvres in which the refined model leaves what its trials covered.
+    pub outside: &'a BTreeMap<String, Excursion>,
 }
 
 impl<'a> Comparison<'a> {
     pub fn of(input: &Input<'a>) -> Self {
         let both = &input.refinement.manoeuvres;
-        let (source, refined) = (&both.source, &both.refined);
+        let (source, refined, bands) = (&both.source, &both.refined, both.bands.as_ref());
         Self {
             lpp_m: input.vessel.particular("lpp_m"),
             speed_m_s: input.refinement.model.speed_m_s,
-            turns: turns(&source.turns, &refined.turns),
-            zigzags: zigzags(&source.zigzags, &refined.zigzags),
-            imo: criteria(&source.imo, &refined.imo),
+            turns: turns(&source.turns, &refined.turns, bands),
+            zigzags: zigzags(&source.zigzags, &refined.zigzags, bands),
+            imo: criteria(&source.imo, &refined.imo, bands),
             source_failures: &source.failures,
             refined_failures: &refined.failures,
+            outside: &refined.outside,
         }
     }
 }
@@ -85,20 +98,26 @@ fn matched<'t, T>(source: &'t [T], refined: &'t [T], same: impl Fn(&T, &T) -> bo
     pairs
 }
 
-fn turns(source: &[TurningMetrics], refined: &[TurningMetrics]) -> Vec<Figure> {
+/// The edges of a figure's band.
+fn band(bands: Option<&Bands>, name: &str) -> Option<[f64; 2]> {
+    bands?.of(name).map(|band| [band.low, band.high])
+}
+
+fn turns(source: &[TurningMetrics], refined: &[TurningMetrics], bands: Option<&Bands>) -> Vec<Figure> {
     let mut figures = Vec::new();
     for (before, after) in matched(source, refined, |a, b| a.rudder_deg == b.rudder_deg) {
         let rudder = before.or(after).map_or(0.0, |turn| turn.rudder_deg);
         let manoeuvre = format!("turn, {} deg to {}", rudder.abs(), side(rudder));
         for (figure, read) in TURN {
             let pair = Pair { source: before.and_then(read), refined: after.and_then(read) };
-            figures.push(Figure { manoeuvre: manoeuvre.clone(), figure, unit: "m", pair });
+            let band = band(bands, &format!("turn {rudder} deg: {figure}"));
+            figures.push(Figure { manoeuvre: manoeuvre.clone(), figure, unit: "m", pair, band });
         }
     }
     figures
 }
 
-fn zigzags(source: &[ZigzagMetrics], refined: &[ZigzagMetrics]) -> Vec<Figure> {
+fn zigzags(source: &[ZigzagMetrics], refined: &[ZigzagMetrics], bands: Option<&Bands>) -> Vec<Figure> {
     let same = |a: &ZigzagMetrics, b: &ZigzagMetrics| a.rudder_deg == b.rudder_deg && a.switch_deg == b.switch_deg;
     let mut figures = Vec::new();
     for (before, after) in matched(source, refined, same) {
@@ -106,16 +125,18 @@ fn zigzags(source: &[ZigzagMetrics], refined: &[ZigzagMetrics]) -> Vec<Figure> {
         let manoeuvre = format!("zigzag {}/{}, first to {}", one.rudder_deg.abs(), one.switch_deg, side(one.rudder_deg));
         for (figure, unit, read) in ZIGZAG {
             let pair = Pair { source: before.and_then(read), refined: after.and_then(read) };
-            figures.push(Figure { manoeuvre: manoeuvre.clone(), figure, unit, pair });
+            let band = band(bands, &format!("zigzag {}/{}: {figure}", one.rudder_deg, one.switch_deg));
+            figures.push(Figure { manoeuvre: manoeuvre.clone(), figure, unit, pair, band });
         }
     }
     figures
 }
 
-fn criteria<'a>(source: &'a [Criterion], refined: &'a [Criterion]) -> Vec<Verdict<'a>> {
+fn criteria<'a>(source: &'a [Criterion], refined: &'a [Criterion], bands: Option<&Bands>) -> Vec<Verdict<'a>> {
     let pairs = matched(source, refined, |a, b| a.criterion == b.criterion);
     let one = |(before, after): (Option<&'a Criterion>, Option<&'a Criterion>)| {
         let any = after.or(before)?;
+        let drawn = bands.and_then(|bands| bands.of(&format!("IMO: {}", any.criterion)));
         Some(Verdict {
             criterion: &any.criterion,
             limit: any.limit,
@@ -124,6 +145,8 @@ fn criteria<'a>(source: &'a [Criterion], refined: &'a [Criterion]) -> Vec<Verdic
             source_pass: before.and_then(|criterion| criterion.pass),
             refined: after.and_then(|criterion| criterion.value),
             refined_pass: after.and_then(|criterion| criterion.pass),
+            band: drawn.map(|band| [band.low, band.high]),
+            pass_share: drawn.and_then(|band| band.pass),
         })
     };
     pairs.into_iter().filter_map(one).collect()

@@ -22,7 +22,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[utoipa::path(
     post, path = "/v1/predictions", tag = "predictions", request_body = PredictionRequest,
     responses((status = 200, body = Object, description = "`model`, `version`, `sha256`, `law`; `trajectory` under canonical names; `metrics`; \
-        `stopped` where recorded inputs led out of the physical range; for all standard manoeuvres `turns`, `zigzags`, `imo`"))
+        `stopped` where recorded inputs led out of the physical range; for all standard manoeuvres `turns`, `zigzags`, `imo` and, where asked for, `bands`; `outside` where the motion left \
+        what the model's trials covered"))
 )]
 async fn create(State(app): State<App>, payload: Payload) -> Result<Json<Value>> {
     let request: PredictionRequest = payload.json()?;

@@ -6,6 +6,7 @@
 //! Hessian by the mean square of each acceleration: a change of coefficients that changes every acceleration by its own
 //! size costs `mu` an axis.
 
+mod errors;
 mod normal;
 mod options;
 mod prior;

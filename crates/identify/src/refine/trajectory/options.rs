@@ -9,10 +9,12 @@ use sistership_model::Model;
 use sistership_model::quantity::Quantity;
 
 use super::super::outcome::RefineError;
+use super::super::posterior::Errors;
 use super::super::published::{Choices, Fit, Fitted, fit};
 use super::super::selection::{Progress, Taken, Task, Trying, step};
 use super::super::variant::{Variant, merged};
 use super::Cut;
+use super::errors::errors;
 use super::normal::{Normal, Pass, Passing};
 use super::prior::{Prior, Strength};
 use super::segments::{Plan, compared, cut};
@@ -37,6 +39,8 @@ pub(in super::super) struct Trajectory<'a> {
     choices: &'a Choices,
     passing: Passing<'a>,
     names: Vec<String>,
+    /// How far the weak form may be from the truth.
+    weak: Option<Errors>,
 }
 
 /// Coefficients with the pass at them.
@@ -75,7 +79,8 @@ impl Task<'_> {
         let trials = self.training.len();
         let passing = Passing { segments: &segments, plan: &plan, envelope: *ship.envelope(), thresholds, trials };
         let names = system.names().to_vec();
-        Trajectory { task: self, variant, choices: &choices, passing, names }.options(options, progress)
+        let weak = self.errors(variant, &choices)?;
+        Trajectory { task: self, variant, choices: &choices, passing, names, weak }.options(options, progress)
     }
 
     fn cut(&self) -> Cut {
@@ -203,17 +208,19 @@ impl Trajectory<'_> {
     fn fit(&self, prior: &Prior, strength: Strength, pass: &Pass, at: DVector<f64>) -> Fit {
         let normal = total(pass, |_| true);
         let held = Held::new(&normal, prior, strength, &at);
-        let errors = held.standard_errors(&pass.gradients, normal.count);
+        let joint = |weak: &Errors| errors(&self.names, &held, &pass.gradients, normal.count, (prior, strength), weak);
+        let errors = self.weak.as_ref().and_then(joint);
         let one = |(k, name): (usize, &String)| {
             let fitted = Fitted {
                 value: at[k],
-                standard_error: errors[k],
+                standard_error: 0.0,
                 prior_deviation: prior.deviation(k, strength) * (normal.cost / normal.count.max(1.0)).sqrt(),
             };
             (name.clone(), fitted)
         };
         let coefficients = self.names.iter().enumerate().map(one).collect();
-        Fit { coefficients, condition_number: held.condition_number(), collinear_groups: Vec::new() }
+        let condition_number = held.condition_number();
+        Fit { coefficients, condition_number, collinear_groups: Vec::new(), errors: None }.with_errors(errors)
     }
 }
 

@@ -75,7 +75,7 @@ impl Prior {
     }
 
     /// What the source's pull at strength 1 is on a coefficient.
-    fn own(&self, k: usize) -> f64 {
+    pub fn own(&self, k: usize) -> f64 {
         self.shrinkage[k] * self.hessian[(k, k)]
     }
 }

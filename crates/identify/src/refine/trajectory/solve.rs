@@ -44,17 +44,11 @@ impl Held {
         largest / values.min().max(largest * f64::EPSILON)
     }
 
-    /// Standard errors from the scatter of the segments' gradients, within which residuals may depend on each other (Huber
-    /// 1967, Proc. Fifth Berkeley Symposium 1, 221-233: `H^-1 sum g g' H^-1`).
-    pub fn standard_errors(&self, gradients: &[DVector<f64>], count: f64) -> DVector<f64> {
+    /// The inverse of the Hessian; none where it cannot be inverted.
+    pub fn inverse(&self) -> Option<DMatrix<f64>> {
         let (mut scaled, scales) = self.scaled();
         scaled.iter_mut().step_by(scales.len() + 1).for_each(|diagonal| *diagonal += 1e-12);
-        let Some(factor) = scaled.cholesky() else { return DVector::zeros(scales.len()) };
-        let columns: Vec<DVector<f64>> = gradients.iter().map(|g| g.component_mul(&scales) / count.max(1.0)).collect();
-        if columns.is_empty() {
-            return DVector::zeros(scales.len());
-        }
-        let moved = factor.solve(&DMatrix::from_columns(&columns));
-        DVector::from_fn(scales.len(), |k, _| moved.row(k).norm() * scales[k])
+        let inverse = scaled.cholesky()?.inverse();
+        Some(DMatrix::from_fn(scales.len(), scales.len(), |i, j| inverse[(i, j)] * scales[i] * scales[j]))
     }
 }

@@ -76,12 +76,14 @@ pub(in crate::report) fn turns(comparison: &Comparison<'_>) -> Table {
         Column::number("source", "L"),
         Column::number("refined", "L"),
         Column::number("change", "%"),
+        Column::number("95 % band", "m"),
     ];
     let lengths = |value: Option<f64>| known(value.zip(comparison.lpp_m).map(|(m, l)| m / l), |value| fixed(value, 2));
     let row = |figure: &Figure| {
         let mut cells = pair_cells(figure, |value| significant(value, 4));
         cells.extend([figure.pair.source, figure.pair.refined].map(|value| Cell::new(lengths(value))));
         cells.push(change_cell(figure));
+        cells.push(band_cell(figure.band, |value| significant(value, 4)));
         Row::of(cells)
     };
     Table { columns, rows: grouped(&comparison.turns, row) }
@@ -95,11 +97,13 @@ pub(in crate::report) fn zigzags(comparison: &Comparison<'_>) -> Table {
         Column::number("source", ""),
         Column::number("refined", ""),
         Column::number("change", "%"),
+        Column::number("95 % band", ""),
     ];
     let row = |figure: &Figure| {
         let mut cells = pair_cells(figure, |value| fixed(value, 1));
         cells.insert(1, Cell::new(figure.unit));
         cells.push(change_cell(figure));
+        cells.push(band_cell(figure.band, |value| fixed(value, 1)));
         Row::of(cells)
     };
     Table { columns, rows: grouped(&comparison.zigzags, row) }
@@ -108,6 +112,11 @@ pub(in crate::report) fn zigzags(comparison: &Comparison<'_>) -> Table {
 fn pair_cells(figure: &Figure, format: impl Fn(f64) -> String) -> Vec<Cell> {
     let value = |value: Option<f64>| Cell::new(known(value, &format));
     vec![Cell::new(figure.figure), value(figure.pair.source), value(figure.pair.refined)]
+}
+
+/// From where to where 95 % of models drawn from the posterior are.
+fn band_cell(band: Option<[f64; 2]>, write: impl Fn(f64) -> String) -> Cell {
+    Cell::new(band.map_or_else(|| known(None, &write), |[low, high]| format!("{} to {}", write(low), write(high))))
 }
 
 fn change_cell(figure: &Figure) -> Cell {
@@ -139,6 +148,8 @@ pub(in crate::report) fn imo(comparison: &Comparison<'_>) -> Table {
         Column::text("", ""),
         Column::number("refined", ""),
         Column::text("", ""),
+        Column::number("95 % band", ""),
+        Column::number("met by", "% of draws"),
     ];
     Table { columns, rows: comparison.imo.iter().map(imo_row).collect() }
 }
@@ -153,6 +164,8 @@ fn imo_row(verdict: &Verdict<'_>) -> Row {
         pass(verdict.source_pass),
         value(verdict.refined),
         pass(verdict.refined_pass),
+        band_cell(verdict.band, |value| fixed(value, 2)),
+        Cell::new(known(verdict.pass_share, |share| fixed(100.0 * share, 0))),
     ])
 }
 

@@ -1,0 +1,45 @@
+//! The standard manoeuvres as a list of figures, each by its name.
+
+use super::StandardManoeuvres;
+
+/// One figure of a manoeuvre or criterion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// What it is of: `turn 35 deg: tactical diameter`, `IMO: advance`.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Its value; absent where the manoeuvre did not reach it.
+    pub value: Option<f64>,
+    /// Whether a criterion is met.
+    pub pass: Option<bool>,
+}
+
+impl StandardManoeuvres {
+    /// Every figure, in an order that depends on what was sailed only.
+    pub fn figures(&self) -> Vec<Figure> {
+        let plain = |name: String, unit: &str, value| Figure { name, unit: unit.to_owned(), value, pass: None };
+        let mut all = Vec::new();
+        for turn in &self.turns {
+            let of = |what: &str, value| plain(format!("turn {} deg: {what}", turn.rudder_deg), "m", value);
+            all.push(of("advance", turn.advance_m));
+            all.push(of("transfer", turn.transfer_m));
+            all.push(of("tactical diameter", turn.tactical_diameter_m));
+            all.push(of("steady radius", turn.steady_radius_m));
+        }
+        for zigzag in &self.zigzags {
+            let of = |what: &str, unit, value| {
+                plain(format!("zigzag {}/{}: {what}", zigzag.rudder_deg, zigzag.switch_deg), unit, value)
+            };
+            all.push(of("first overshoot", "deg", zigzag.first_overshoot_deg));
+            all.push(of("second overshoot", "deg", zigzag.second_overshoot_deg));
+            all.push(of("period", "s", zigzag.period_s));
+        }
+        all.push(plain("initial turning".to_owned(), "m", self.initial_turning_m));
+        for criterion in &self.imo {
+            let name = format!("IMO: {}", criterion.criterion);
+            all.push(Figure { name, unit: criterion.unit.clone(), value: criterion.value, pass: criterion.pass });
+        }
+        all
+    }
+}

@@ -1,0 +1,71 @@
+//! The motion that trials covered, and simulations that leave it.
+
+use std::collections::BTreeMap;
+
+use sistership_model::law::Law;
+use sistership_model::trial::{Channel, Trial};
+use sistership_model::validity::{Excursion, Region};
+
+use crate::state::{StateVector, Trajectory, at};
+
+/// What bounds a region, with its place in the state; revolutions stand beside it.
+const BOUNDED: [(Channel, Option<usize>); 5] = [
+    (Channel::U, Some(at::U)),
+    (Channel::V, Some(at::V)),
+    (Channel::R, Some(at::R)),
+    (Channel::Delta, Some(at::DELTA)),
+    (Channel::N, None),
+];
+
+/// The region of `u, v, r, delta` and, where the law takes revolutions, `n` that trials covered; channels that one of them
+/// lacks are left out.
+pub fn covered(trials: &[&Trial], law: &Law) -> Option<Region> {
+    let bounds = |channel: Channel| channel != Channel::N || law.inputs.contains_key(channel.name());
+    let column = |channel: Channel| -> Option<(String, Vec<f64>)> {
+        let columns: Option<Vec<&[f64]>> = trials.iter().map(|trial| trial.channel(channel)).collect();
+        Some((channel.name().to_owned(), columns?.concat()))
+    };
+    let columns: BTreeMap<String, Vec<f64>> =
+        BOUNDED.into_iter().filter(|(channel, _)| bounds(*channel)).filter_map(|(channel, _)| column(channel)).collect();
+    Region::of(&columns)
+}
+
+/// How a motion leaves a region; none where it stays inside.
+pub fn leaves(region: &Region, track: &Trajectory) -> Option<Excursion> {
+    let of_state = |state: &StateVector, n_rps: f64, name: &str| {
+        let (_, place) = BOUNDED.into_iter().find(|(channel, _)| channel.name() == name)?;
+        Some(place.map_or(n_rps, |place| state[place]))
+    };
+    region.excursion(&track.t_s, &|k, name| of_state(&track.states[k], track.n_rps[k], name))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::Ship;
+    use crate::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+    use crate::state::RECORDED;
+    use sistership_model::Zoo;
+
+    fn recorded(track: &Trajectory) -> Trial {
+        let columns = RECORDED[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
+        let channels = columns.map(|&(channel, place)| (channel, track.column(place))).collect();
+        Trial { t_s: track.t_s.clone(), channels, ..Trial::default() }
+    }
+
+    #[test]
+    fn a_hard_turn_leaves_what_a_zigzag_covered() {
+        let zoo = Zoo::embedded().unwrap();
+        let model = zoo.model("mariner").unwrap();
+        let law = zoo.law(&model.law).unwrap();
+        let ship = Ship::new(&model, law).unwrap();
+        let settings = ManoeuvreSettings::default();
+        let trial = recorded(&zigzag(&ship, 10.0, 10.0, &settings).unwrap().track);
+        let region = covered(&[&trial], law).unwrap();
+        assert!(!region.ranges.contains_key("n"), "the Mariner's law takes no revolutions");
+        assert_eq!(leaves(&region, &zigzag(&ship, 10.0, 10.0, &settings).unwrap().track), None);
+        let hard = leaves(&region, &turn(&ship, 35.0, &settings).unwrap().track).unwrap();
+        assert!(hard.first_s < 10.0 && hard.share > 0.9 && hard.beyond > 1.0, "{hard:?}");
+    }
+}

@@ -1,0 +1,215 @@
+//! Confidence bands: the standard manoeuvres sailed by models drawn from a posterior.
+
+use std::collections::BTreeMap;
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha12Rng;
+use rand_distr::StandardNormal;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use sistership_dynamics::Ship;
+use sistership_dynamics::manoeuvre::{Figure, ManoeuvreSettings, standard};
+use sistership_model::Model;
+use sistership_model::law::Law;
+
+/// How a posterior is sampled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Sampling {
+    /// Models drawn, an even number: each draw has its mirror image about the estimate.
+    pub samples: usize,
+    /// What the draws follow from.
+    pub seed: u64,
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Self { samples: 100, seed: 1 }
+    }
+}
+
+impl Sampling {
+    /// Checks the number of samples.
+    ///
+    /// # Errors
+    /// Says what it may be.
+    pub fn check(&self) -> Result<(), String> {
+        let most = 10_000;
+        if self.samples > most { Err(format!("samples must be at most {most}")) } else { Ok(()) }
+    }
+}
+
+/// The bands of a model's standard manoeuvres.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Bands {
+    /// How the posterior was sampled.
+    pub sampling: Sampling,
+    /// Draws that left the physical range in some manoeuvre.
+    pub failed: usize,
+    /// By figure.
+    pub figures: Vec<Band>,
+}
+
+impl Bands {
+    /// The band of a figure.
+    pub fn of(&self, figure: &str) -> Option<&Band> {
+        self.figures.iter().find(|band| band.figure == figure)
+    }
+}
+
+/// The band of a figure: 95 % of the draws that reached it are inside.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Band {
+    /// The figure, as [`Figure::name`].
+    pub figure: String,
+    /// Its unit.
+    pub unit: String,
+    /// Quantile of 2.5 %.
+    pub low: f64,
+    /// Quantile of 97.5 %.
+    pub high: f64,
+    /// Share of the draws that reached it.
+    pub reached: f64,
+    /// Share of these that meet the criterion, where it is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pass: Option<f64>,
+}
+
+/// Models drawn from the posterior of one; none where it has none, or none of its present coefficients, or where no sample is
+/// asked for.
+pub fn draws(model: &Model, sampling: Sampling) -> Option<Vec<Model>> {
+    let posterior = model.posterior().filter(|_| sampling.samples > 0)?;
+    let root = posterior.root().ok()?;
+    // What the trials covered is asked of the estimate, not of every draw.
+    let bare = Model { posterior: None, uncertainty: None, validity: None, ..model.clone() };
+    let mut rng = ChaCha12Rng::seed_from_u64(sampling.seed);
+    let one = |_| {
+        let normal: Vec<f64> = (0..root.len()).map(|_| rng.sample(StandardNormal)).collect();
+        let moved: Vec<f64> = root.iter().map(|row| row.iter().zip(&normal).map(|(r, z)| r * z).sum()).collect();
+        [1.0, -1.0].map(|side| shifted(&bare, &posterior.names, &moved, side))
+    };
+    Some((0..sampling.samples.div_ceil(2)).flat_map(one).collect())
+}
+
+/// A model with coefficients moved.
+fn shifted(model: &Model, names: &[String], moved: &[f64], side: f64) -> Model {
+    let mut model = model.clone();
+    for (name, by) in names.iter().zip(moved) {
+        model.coefficients.get_mut(name).into_iter().for_each(|quantity| quantity.value += side * by);
+    }
+    model
+}
+
+/// The bands of the standard manoeuvres; none where the model has no posterior of its present coefficients. Where no step is
+/// given, a fiftieth of the time in which the ship sails her length. `depth_m` is for laws that know it.
+pub fn bands(model: &Model, law: &Law, settings: &ManoeuvreSettings, depth_m: Option<f64>, sampling: Sampling) -> Option<Bands> {
+    let draws = draws(model, sampling)?;
+    let sail = |draw: &Model| {
+        let mut ship = Ship::new(draw, law).ok()?;
+        let speed_m_s = settings.speed_m_s.unwrap_or(ship.approach_speed_m_s());
+        ship.set_envelope_speed(speed_m_s);
+        depth_m.into_iter().for_each(|depth_m| ship.set_depth(depth_m));
+        let coarse = 0.02 * ship.lpp_m() / speed_m_s;
+        let settings = ManoeuvreSettings { step_s: settings.step_s.or(Some(coarse)), ..*settings };
+        Some(standard(&ship, &settings))
+    };
+    let sailed: Vec<_> = draws.par_iter().map(sail).collect();
+    let failed = sailed.iter().filter(|s| s.as_ref().is_none_or(|s| !s.failures.is_empty())).count();
+    let mut figures: BTreeMap<String, Vec<Figure>> = BTreeMap::new();
+    let mut order = Vec::new();
+    for figure in sailed.into_iter().flatten().flat_map(|sailed| sailed.figures()) {
+        if !figures.contains_key(&figure.name) {
+            order.push(figure.name.clone());
+        }
+        figures.entry(figure.name.clone()).or_default().push(figure);
+    }
+    let figures = order.iter().filter_map(|name| band(&figures[name], draws.len())).collect();
+    Some(Bands { sampling, failed, figures })
+}
+
+/// The band of a figure over draws.
+fn band(figures: &[Figure], draws: usize) -> Option<Band> {
+    let mut values: Vec<f64> = figures.iter().filter_map(|figure| figure.value).collect();
+    values.sort_by(f64::total_cmp);
+    let first = figures.first()?;
+    let judged: Vec<bool> = figures.iter().filter_map(|figure| figure.pass).collect();
+    let share = |count: usize, all: usize| count as f64 / all as f64;
+    Some(Band {
+        figure: first.name.clone(),
+        unit: first.unit.clone(),
+        low: quantile(&values, 0.025)?,
+        high: quantile(&values, 0.975)?,
+        reached: share(values.len(), draws),
+        pass: (!judged.is_empty()).then(|| share(judged.iter().filter(|pass| **pass).count(), judged.len())),
+    })
+}
+
+/// A quantile of sorted values, straight between them (Hyndman and Fan 1996, The American Statistician 50, 361-365,
+/// definition 6: without the shrinking of the tails that definition 7 has).
+fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
+    let last = sorted.len().checked_sub(1)?;
+    let place = (share * (sorted.len() + 1) as f64 - 1.0).clamp(0.0, last as f64);
+    let (below, above) = (place.floor() as usize, place.ceil() as usize);
+    Some(sorted[below] + (place - below as f64) * (sorted[above] - sorted[below]))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_model::Zoo;
+    use sistership_model::posterior::Posterior;
+
+    fn mariner(deviation: f64) -> (Model, std::sync::Arc<Law>) {
+        let zoo = Zoo::embedded().unwrap();
+        let mut model = zoo.model("mariner").unwrap();
+        let names: Vec<String> = ["N_delta", "Y_delta"].map(str::to_owned).to_vec();
+        let values: Vec<f64> = names.iter().map(|name| model.coefficient(name)).collect();
+        let deviations = values.iter().map(|value| deviation * value.abs()).collect();
+        let root_correlation = Posterior::rows(2, &|i, j| [[1.0, 0.0], [-0.6, 0.8]][i][j]);
+        model.posterior = Some(Posterior { names, values, deviations, root_correlation });
+        (model, zoo.law("abkowitz").unwrap().clone())
+    }
+
+    #[test]
+    fn draws_have_the_posterior_s_covariance_and_the_estimate_in_their_midst() {
+        let (model, _) = mariner(0.1);
+        let draws = draws(&model, Sampling { samples: 4000, seed: 3 }).unwrap();
+        let moved = |name: &str| draws.iter().map(|d| d.coefficient(name) / model.coefficient(name) - 1.0).collect::<Vec<f64>>();
+        let (a, b) = (moved("N_delta"), moved("Y_delta"));
+        let mean = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>() / x.len() as f64;
+        assert!(a.iter().sum::<f64>().abs() < 1e-9);
+        assert!((mean(&a, &a).sqrt() - 0.1).abs() < 0.003);
+        // N_delta is negative: -0.6 between the coefficients is 0.6 between their relative changes.
+        assert!((mean(&a, &b) / mean(&a, &a) - 0.6).abs() < 0.05);
+    }
+
+    #[test]
+    fn bands_widen_with_the_posterior_and_follow_from_the_seed() {
+        let width = |deviation: f64, seed: u64| {
+            let (model, law) = mariner(deviation);
+            let bands = bands(&model, &law, &ManoeuvreSettings::default(), None, Sampling { samples: 20, seed }).unwrap();
+            let band = bands.figures.iter().find(|band| band.figure == "turn 35 deg: tactical diameter").unwrap().clone();
+            assert!(bands.figures.iter().any(|band| band.pass.is_some()));
+            band.high - band.low
+        };
+        assert_eq!(width(0.05, 1), width(0.05, 1));
+        assert_ne!(width(0.05, 1), width(0.05, 2));
+        assert!(width(0.1, 1) > 1.7 * width(0.05, 1));
+    }
+
+    #[test]
+    fn a_model_whose_coefficients_were_changed_has_no_bands() {
+        let (mut model, law) = mariner(0.1);
+        model.coefficients.get_mut("N_delta").unwrap().value *= 1.1;
+        assert_eq!(bands(&model, &law, &ManoeuvreSettings::default(), None, Sampling::default()), None);
+    }
+
+    #[test]
+    fn quantiles_lie_between_values() {
+        let values: Vec<f64> = (1..=99).map(f64::from).collect();
+        assert_eq!(quantile(&values, 0.025), Some(2.5));
+        assert_eq!(quantile(&values, 0.975), Some(97.5));
+        assert_eq!(quantile(&[], 0.5), None);
+    }
+}

@@ -1,0 +1,47 @@
+//! One limit: a half space or a cone of the coefficients.
+
+/// An affine function of the coefficients: normal and constant.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Affine {
+    pub normal: Vec<f64>,
+    pub constant: f64,
+}
+
+impl Affine {
+    pub fn at(&self, coefficients: &[f64]) -> f64 {
+        self.constant + self.normal.iter().zip(coefficients).map(|(n, c)| n * c).sum::<f64>()
+    }
+
+    /// `sign (c_k - bound)`.
+    pub fn of_one(size: usize, place: usize, sign: f64, bound: f64) -> Self {
+        let mut normal = vec![0.0; size];
+        normal[place] = sign;
+        Self { normal, constant: -sign * bound }
+    }
+
+    /// `a self + b other`.
+    pub fn with(&self, a: f64, other: &Self, b: f64) -> Self {
+        let normal = self.normal.iter().zip(&other.normal).map(|(x, y)| a * x + b * y).collect();
+        Self { normal, constant: a * self.constant + b * other.constant }
+    }
+}
+
+/// A limit with the name by which it is explained.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Limit {
+    pub name: String,
+    /// One function that is at least 0; or several, the first of which is at least the length of the others.
+    pub cone: Vec<Affine>,
+}
+
+impl Limit {
+    pub fn least(name: String, function: Affine) -> Self {
+        Self { name, cone: vec![function] }
+    }
+
+    /// A symmetric matrix of two rows without negative eigenvalues: `a + c >= |(a - c, 2 b)|` (Alizadeh and Goldfarb 2003,
+    /// Mathematical Programming 95, 3-51, section 2.3: such a matrix is a cone of second order in three dimensions).
+    pub fn matrix(name: String, [a, b, c]: [&Affine; 3]) -> Self {
+        Self { name, cone: vec![a.with(1.0, c, 1.0), a.with(1.0, c, -1.0), b.with(2.0, b, 0.0)] }
+    }
+}

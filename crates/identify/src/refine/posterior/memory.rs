@@ -1,0 +1,58 @@
+//! How residuals depend on each other: their autocovariance within each equation and between them.
+
+use nalgebra::DVector;
+
+/// Autocovariances up to a lag from which they count no more.
+pub(super) struct Memory {
+    /// By pair of equations, the later one's row of the lower triangle, then by lag.
+    pairs: Vec<Vec<f64>>,
+}
+
+impl Memory {
+    /// Of residuals by equation and sequence.
+    pub fn of(residuals: &[Vec<DVector<f64>>]) -> Self {
+        let longest = residuals.iter().flatten().map(DVector::len).max().unwrap_or(0);
+        let own = |own: &Vec<DVector<f64>>| lasts(longest, &|lag| covariance(own, own, lag));
+        let last = residuals.iter().map(own).max().unwrap_or(0);
+        let lags = (BANDWIDTH * (last + 1)).min(longest.max(1));
+        let pair = |i: usize, j: usize| {
+            // Bartlett's weights keep every variance made of them above zero (Newey and West 1987, Theorem 1).
+            let weight = |lag: usize| 1.0 - lag as f64 / lags as f64;
+            (0..lags).map(|lag| weight(lag) * both_ways(&residuals[i], &residuals[j], lag)).collect()
+        };
+        let pairs = (0..residuals.len()).flat_map(|i| (0..=i).map(move |j| (i, j)));
+        Self { pairs: pairs.map(|(i, j)| pair(i, j)).collect() }
+    }
+
+    /// Weighted covariance of two equations' residuals by lag, for `other <= one`.
+    pub fn kernel(&self, one: usize, other: usize) -> Vec<f64> {
+        self.pairs[one * (one + 1) / 2 + other].clone()
+    }
+
+    /// Mean square of an equation's residuals.
+    pub fn variance(&self, one: usize) -> f64 {
+        self.kernel(one, one).first().copied().unwrap_or(0.0)
+    }
+}
+
+/// Lags that count, by the lag at which residuals have forgotten.
+const BANDWIDTH: usize = 2;
+
+/// The lag until which sums of two neighbouring autocovariances stay above zero (Geyer 1992, Statistical Science 7,
+/// 473-483, section 3.3).
+fn lasts(longest: usize, covariance: &dyn Fn(usize) -> f64) -> usize {
+    let most = longest / 3;
+    let pair = |m: usize| covariance(2 * m) + covariance(2 * m + 1);
+    2 * (1..=most / 2).find(|&m| pair(m) <= 0.0).unwrap_or(most / 2)
+}
+
+/// Over all sequences, by the number of rows, so that covariances of all lags together are those of some process.
+fn covariance(one: &[DVector<f64>], other: &[DVector<f64>], lag: usize) -> f64 {
+    let count: usize = one.iter().map(DVector::len).sum();
+    let product = |(a, b): (&DVector<f64>, &DVector<f64>)| a.iter().zip(b.iter().skip(lag)).map(|(x, y)| x * y).sum::<f64>();
+    one.iter().zip(other).map(product).sum::<f64>() / (count as f64).max(1.0)
+}
+
+fn both_ways(one: &[DVector<f64>], other: &[DVector<f64>], lag: usize) -> f64 {
+    0.5 * (covariance(one, other, lag) + covariance(other, one, lag))
+}

@@ -1,0 +1,90 @@
+//! The rows behind a variant's statistics, in sequences without a gap.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::super::blocks::Blocks;
+use super::super::rows::Table;
+
+/// Rows that follow each other, of one regression.
+pub(in super::super) struct Sequence {
+    /// Regressors by column.
+    pub regressors: DMatrix<f64>,
+    targets: DMatrix<f64>,
+}
+
+impl Sequence {
+    /// A target over the rows.
+    pub fn target(&self, target: usize) -> DVector<f64> {
+        self.targets.column(target).into_owned()
+    }
+}
+
+/// Rows by regression and sequence.
+pub(in super::super) struct Rows {
+    pub blocks: Vec<Vec<Sequence>>,
+}
+
+/// Gathers tables, by sequence and regression. So many rows are merged into their mean where they follow each other closely;
+/// `centred` takes the mean of all rows off each column.
+pub(in super::super) fn rows(blocks: &Blocks, tables: &[Vec<Table>], merged: usize, centred: bool) -> Rows {
+    let of_block = |b: usize| {
+        let p = blocks.blocks[b].regressors();
+        let offsets = if centred { means(tables, b) } else { vec![0.0; tables.first().map_or(0, |t| t[b].len())] };
+        tables.iter().map(|tables| sequence(&tables[b], p, merged.max(1), &offsets)).collect()
+    };
+    Rows { blocks: (0..blocks.blocks.len()).map(of_block).collect() }
+}
+
+/// Means of a regression's columns over all sequences.
+fn means(tables: &[Vec<Table>], block: usize) -> Vec<f64> {
+    let columns = tables.first().map_or(0, |tables| tables[block].len());
+    let mean = |column: usize| {
+        let all = || tables.iter().flat_map(|tables| tables[block][column].iter());
+        all().sum::<f64>() / (all().count() as f64).max(1.0)
+    };
+    (0..columns).map(mean).collect()
+}
+
+fn sequence(table: &Table, regressors: usize, merged: usize, offsets: &[f64]) -> Sequence {
+    let count = table.first().map_or(0, |column| column.len() / merged);
+    let entry = |row: usize, column: usize| {
+        let values = &table[column][row * merged..(row + 1) * merged];
+        values.iter().sum::<f64>() / merged as f64 - offsets[column]
+    };
+    Sequence {
+        regressors: DMatrix::from_fn(count, regressors, entry),
+        targets: DMatrix::from_fn(count, table.len() - regressors, |row, target| entry(row, regressors + target)),
+    }
+}
+
+impl Rows {
+    /// Number of rows.
+    pub fn count(&self) -> f64 {
+        self.blocks.first().map_or(0.0, |sequences| sequences.iter().map(|s| s.regressors.nrows() as f64).sum())
+    }
+
+    /// `sum_kl F_k G_l' kernel(|k - l|) / n^2` of the regressors of two regressions over rows of the same sequence.
+    pub fn weighed(&self, one: usize, other: usize, kernel: &[f64]) -> DMatrix<f64> {
+        let (first, second) = (&self.blocks[one], &self.blocks[other]);
+        let columns = |sequences: &[Sequence]| sequences.first().map_or(0, |s| s.regressors.ncols());
+        let mut sum = DMatrix::zeros(columns(first), columns(second));
+        for (left, right) in first.iter().zip(second) {
+            sum.gemm_tr(1.0, &left.regressors, &smoothed(&right.regressors, kernel), 1.0);
+        }
+        sum / self.count().max(1.0).powi(2)
+    }
+}
+
+/// Columns under a symmetric kernel, which ends with them.
+fn smoothed(columns: &DMatrix<f64>, kernel: &[f64]) -> DMatrix<f64> {
+    let count = columns.nrows();
+    let mut result = columns * kernel.first().copied().unwrap_or(0.0);
+    for (column, mut sums) in columns.column_iter().zip(result.column_iter_mut()) {
+        let (column, sums) = (column.as_slice(), sums.as_mut_slice());
+        for (lag, weight) in kernel.iter().enumerate().take(count).skip(1) {
+            sums[lag..].iter_mut().zip(column).for_each(|(sum, x)| *sum += weight * x);
+            sums.iter_mut().zip(&column[lag..]).for_each(|(sum, x)| *sum += weight * x);
+        }
+    }
+    result
+}

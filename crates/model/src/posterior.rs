@@ -1,0 +1,109 @@
+//! How far the coefficients of a refined model may be from the truth, jointly.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The errors of estimated coefficients as a normal distribution about the estimate: variances of the estimator through
+/// the scatter of the trials, and of what the prior adds where it holds. docs/decisions/0012 says what an interval means.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Posterior {
+    /// Names of the coefficients.
+    pub names: Vec<String>,
+    /// The estimates that it is about, in the units of the coefficients; a model that has others has lost its posterior.
+    pub values: Vec<f64>,
+    /// Standard deviations, in the units of the coefficients.
+    pub deviations: Vec<f64>,
+    /// The lower triangle of the Cholesky root of the correlations, a row in a line: numbers up to the diagonal,
+    /// separated by spaces.
+    pub root_correlation: Vec<String>,
+}
+
+impl Posterior {
+    /// Writes a lower triangle row by row; `entry(i, j)` for `j <= i`.
+    pub fn rows(size: usize, entry: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
+        let row = |i: usize| (0..=i).map(|j| format!("{:.5e}", entry(i, j))).collect::<Vec<_>>().join(" ");
+        (0..size).map(row).collect()
+    }
+
+    /// The root of the covariance, row by row up to the diagonal, in the units of the coefficients.
+    ///
+    /// # Errors
+    /// Names the row that is not as long as it should be, or not of numbers.
+    pub fn root(&self) -> Result<Vec<Vec<f64>>, String> {
+        if self.root_correlation.len() != self.names.len() {
+            return Err(format!("root_correlation: {} rows for {} names", self.root_correlation.len(), self.names.len()));
+        }
+        let row = |(i, (text, deviation)): (usize, (&String, &f64))| {
+            let numbers: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
+            let numbers = numbers.ok().filter(|row| row.len() == i + 1 && row.iter().all(|x: &f64| x.is_finite()));
+            let numbers = numbers.ok_or_else(|| format!("root_correlation: row {} should be {0} finite numbers", i + 1))?;
+            Ok(numbers.into_iter().map(|x| x * deviation).collect())
+        };
+        self.root_correlation.iter().zip(&self.deviations).enumerate().map(row).collect()
+    }
+
+    /// Whether it is about these coefficients.
+    pub fn is_about(&self, value: impl Fn(&str) -> Option<f64>) -> bool {
+        self.names.iter().zip(&self.values).all(|(name, about)| value(name) == Some(*about))
+    }
+
+    /// Standard deviations by name.
+    pub fn deviations(&self) -> BTreeMap<&str, f64> {
+        self.names.iter().map(String::as_str).zip(self.deviations.iter().copied()).collect()
+    }
+
+    /// Checks that the lists go together.
+    ///
+    /// # Errors
+    /// Says which do not.
+    pub fn check(&self) -> Result<(), String> {
+        let size = self.names.len();
+        if self.values.len() != size || self.deviations.len() != size {
+            return Err("names, values and deviations should be equally many".into());
+        }
+        if !self.deviations.iter().all(|d| *d >= 0.0 && d.is_finite()) {
+            return Err("deviations should be at least 0".into());
+        }
+        self.root().map(|_| ())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn posterior() -> Posterior {
+        Posterior {
+            names: vec!["Y_v".into(), "N_v".into()],
+            values: vec![-1.0, 2.0],
+            deviations: vec![0.1, 0.2],
+            root_correlation: Posterior::rows(2, &|i, j| [[1.0, 0.0], [0.6, 0.8]][i][j]),
+        }
+    }
+
+    #[test]
+    fn the_root_is_in_the_units_of_the_coefficients() {
+        let root = posterior().root().unwrap();
+        assert!((root[0][0] - 0.1).abs() < 1e-12 && (root[1][0] - 0.12).abs() < 1e-12 && (root[1][1] - 0.16).abs() < 1e-12);
+    }
+
+    #[test]
+    fn lists_that_do_not_go_together_are_named() {
+        assert_eq!(posterior().check(), Ok(()));
+        let short = Posterior { root_correlation: vec!["1".into(), "0.6".into()], ..posterior() };
+        assert!(short.check().unwrap_err().contains("row 2"));
+        assert!(Posterior { deviations: vec![0.1], ..posterior() }.check().is_err());
+        assert!(Posterior { deviations: vec![0.1, f64::NAN], ..posterior() }.check().is_err());
+    }
+
+    #[test]
+    fn other_coefficients_have_lost_it() {
+        let posterior = posterior();
+        assert!(posterior.is_about(|name| Some(if name == "Y_v" { -1.0 } else { 2.0 })));
+        assert!(!posterior.is_about(|_| Some(-1.0)) && !posterior.is_about(|_| None));
+    }
+}

@@ -1,0 +1,201 @@
+//! The motion that a model's trials covered, and how far another motion leaves it.
+//!
+//! The region is the octagon of Miné 2006 (Higher-Order and Symbolic Computation 19, 31-100): the hull of what was seen,
+//! bounded along every channel and along every sum and difference of two, each scaled to its own range. It is convex, holds
+//! the convex hull, and needs two numbers for each of n^2 directions.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A convex region of some channels.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Region {
+    /// Least and greatest value by channel (`u`, `v`, `r`, `delta`, `n`), SI and radians.
+    pub ranges: BTreeMap<String, [f64; 2]>,
+    /// Least and greatest sum and difference of two channels, each scaled to -1 at its least and 1 at its greatest value:
+    /// `v+r`, `v-r`.
+    pub pairs: BTreeMap<String, [f64; 2]>,
+}
+
+/// How a motion left a region.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Excursion {
+    /// When it first did, s.
+    pub first_s: f64,
+    /// Share of the samples outside.
+    pub share: f64,
+    /// The channel, or the two together, along which it went furthest.
+    pub along: String,
+    /// How far, by half the range that the trials covered.
+    pub beyond: f64,
+}
+
+impl Region {
+    /// The least region that holds samples, given by channel; none where there is no sample.
+    pub fn of(columns: &BTreeMap<String, Vec<f64>>) -> Option<Self> {
+        let range = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+        };
+        let ranges: BTreeMap<String, [f64; 2]> =
+            columns.iter().map(|(name, column)| (name.clone(), range(&mut column.iter().copied()))).collect();
+        if ranges.is_empty() || ranges.values().flatten().any(|bound| !bound.is_finite()) {
+            return None;
+        }
+        let scaled = |name: &String| columns[name].iter().map(|x| scale(*x, ranges[name])).collect::<Vec<f64>>();
+        let of_pair = |(a, b): (&String, &String)| {
+            let (first, second) = (scaled(a), scaled(b));
+            let along = |sign: f64| range(&mut first.iter().zip(&second).map(|(x, y)| x + sign * y));
+            [(format!("{a}+{b}"), along(1.0)), (format!("{a}-{b}"), along(-1.0))]
+        };
+        let pairs = pairs(&ranges).flat_map(of_pair).collect();
+        Some(Self { ranges, pairs })
+    }
+
+    /// How far a point is outside, by half ranges, and along what; none where it is inside. Channels that the point lacks do
+    /// not count.
+    pub fn beyond(&self, value: &dyn Fn(&str) -> Option<f64>) -> Option<(String, f64)> {
+        let scaled = |name: &String| Some(scale(value(name)?, self.ranges[name]));
+        let single = self.ranges.keys().filter_map(|name| Some((name.clone(), excess(scaled(name)?, [-1.0, 1.0]))));
+        let together = pairs(&self.ranges).filter_map(|(a, b)| {
+            let (x, y) = (scaled(a)?, scaled(b)?);
+            let along = |sign: char, at: f64| Some((format!("{a}{sign}{b}"), at));
+            let one = |(name, at): (String, f64)| {
+                let beyond = self.pairs.get(&name).map_or(0.0, |bounds| excess(at, *bounds));
+                (name, beyond)
+            };
+            let (sum, difference) = (one(along('+', x + y)?), one(along('-', x - y)?));
+            Some(if sum.1 >= difference.1 { sum } else { difference })
+        });
+        // A channel alone is named before two together where it is as far.
+        single.chain(together).filter(|(_, beyond)| *beyond > ROUNDING).fold(None, |furthest, one| match furthest {
+            Some((_, beyond)) if one.1 <= beyond => furthest,
+            _ => Some(one),
+        })
+    }
+
+    /// How a motion leaves it; none where it stays inside. `value(k, name)` is a channel at sample `k`.
+    pub fn excursion(&self, t_s: &[f64], value: &dyn Fn(usize, &str) -> Option<f64>) -> Option<Excursion> {
+        let mut outside: Option<Excursion> = None;
+        let mut count = 0_usize;
+        for (k, t) in t_s.iter().enumerate() {
+            let Some((along, beyond)) = self.beyond(&|name| value(k, name)) else { continue };
+            count += 1;
+            let excursion = outside.get_or_insert_with(|| Excursion { first_s: *t, share: 0.0, along: along.clone(), beyond });
+            if beyond > excursion.beyond {
+                (excursion.along, excursion.beyond) = (along, beyond);
+            }
+        }
+        outside.map(|excursion| Excursion { share: count as f64 / t_s.len() as f64, ..excursion })
+    }
+
+    /// Checks that bounds are in order.
+    ///
+    /// # Errors
+    /// Names the channel.
+    pub fn check(&self) -> Result<(), String> {
+        let wrong = |(_, [low, high]): &(&String, &[f64; 2])| !(low.is_finite() && high.is_finite() && low <= high);
+        match self.ranges.iter().chain(&self.pairs).find(wrong) {
+            Some((name, [low, high])) => Err(format!("{name}: from {low} to {high} is no range")),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Excursion {
+    /// In words.
+    pub fn words(&self) -> String {
+        let Self { first_s, share, along, beyond } = self;
+        let percent = 100.0 * share;
+        format!(
+            "outside what its trials covered from {first_s:.0} s, {percent:.0} % of the time, furthest in {along}: {:.0} % of the half range beyond",
+            100.0 * beyond
+        )
+    }
+}
+
+/// What is no excursion: rounding, by half ranges.
+const ROUNDING: f64 = 1e-9;
+/// The half range of a channel that did not vary, by its size: a speed that was held to a per cent.
+const STILL: f64 = 0.01;
+
+/// A value with -1 at the low and 1 at the high end of a range.
+fn scale(x: f64, [low, high]: [f64; 2]) -> f64 {
+    let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let half = half.max(STILL * centre.abs());
+    if half > 0.0 { (x - centre) / half } else { x - centre }
+}
+
+fn excess(x: f64, [low, high]: [f64; 2]) -> f64 {
+    (low - x).max(x - high).max(0.0)
+}
+
+/// Every two names.
+fn pairs(ranges: &BTreeMap<String, [f64; 2]>) -> impl Iterator<Item = (&String, &String)> {
+    ranges.keys().enumerate().flat_map(|(i, a)| ranges.keys().skip(i + 1).map(move |b| (a, b)))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn region() -> Region {
+        // v and r along a line, u apart from both.
+        let t = || (0..100).map(|k| 0.1 * f64::from(k));
+        let columns = [
+            ("u", t().map(|t| 5.0 + t.cos()).collect()),
+            ("v", t().map(|t| 0.5 * (2.0 * t).sin()).collect()),
+            ("r", t().map(|t| -0.01 * (2.0 * t).sin()).collect()),
+        ];
+        Region::of(&columns.map(|(name, column): (_, Vec<f64>)| (name.to_owned(), column)).into()).unwrap()
+    }
+
+    fn beyond(u: f64, v: f64, r: f64) -> Option<(String, f64)> {
+        region().beyond(&|name| match name {
+            "u" => Some(u),
+            "v" => Some(v),
+            "r" => Some(r),
+            _ => None,
+        })
+    }
+
+    #[test]
+    fn what_was_seen_is_inside_and_so_is_what_lies_between() {
+        assert_eq!(beyond(5.0, 0.0, 0.0), None);
+        assert_eq!(beyond(5.5, 0.2, -0.004), None);
+    }
+
+    #[test]
+    fn each_channel_may_be_seen_and_both_together_not() {
+        let (along, far) = beyond(5.0, 0.4, 0.008).unwrap();
+        assert_eq!(along, "r+v");
+        assert!((far - 1.6).abs() < 0.1, "{far}");
+    }
+
+    #[test]
+    fn a_faster_ship_is_outside_by_speed() {
+        let (along, far) = beyond(8.0, 0.0, 0.0).unwrap();
+        assert!(along == "u" && (far - 2.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn an_excursion_says_when_how_long_and_how_far() {
+        let t_s: Vec<f64> = (0..10).map(f64::from).collect();
+        let inside = region().excursion(&t_s, &|_, name| (name == "u").then_some(5.0));
+        assert_eq!(inside, None);
+        let out = region().excursion(&t_s, &|k, name| (name == "u").then_some(if k < 4 { 5.0 } else { 4.0 + k as f64 })).unwrap();
+        assert_eq!((out.first_s, out.share, out.along.as_str()), (4.0, 0.6, "u"));
+        assert!(out.beyond > 5.0 && out.words().contains("from 4 s, 60 % of the time"));
+    }
+
+    #[test]
+    fn a_constant_channel_has_a_range_of_a_per_cent() {
+        let region = Region::of(&[("n".to_owned(), vec![2.0; 5])].into()).unwrap();
+        assert_eq!(region.beyond(&|_| Some(2.01)), None);
+        assert!(region.beyond(&|_| Some(2.1)).is_some());
+        assert_eq!(Region::of(&BTreeMap::new()), None);
+    }
+}
