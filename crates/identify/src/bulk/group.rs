@@ -61,7 +61,11 @@ fn group(
         None => DMatrix::from_diagonal(&inverse_deviations(regression, parts)?.into()),
     };
     let map = map(&root, &means, &regression.unmixing()?, axes.start);
-    let parts: Vec<Moments> = parts.iter().map(|part| part.mapped(&map, root.ncols())).collect();
+    let mut parts: Vec<Moments> = parts.iter().map(|part| part.mapped(&map, root.ncols())).collect();
+    if matches!(prior, Prior::Family { .. }) {
+        // As it was learned: a model has no intercept, and what is nearly constant must not be told by its small changes alone.
+        parts.iter_mut().for_each(|part| *part = part.about_origin());
+    }
     let (without, all) = Moments::leave_one_out(&parts).ok_or_else(unknown)?;
     Ok(Group { axes: regression.axes[axes].to_vec(), names, means, root, parts, whole: Whitened::new(&all), without })
 }

@@ -35,7 +35,7 @@ impl Place {
         let mut map = DMatrix::zeros(p + q, p + 1);
         (0..p).for_each(|j| map[(j, j)] = self.units[j]);
         (0..q).for_each(|target| map[(p + target, p)] = unmixing[(self.axis, target)]);
-        Some(trials.iter().map(|trial| trial.regressions[self.regression].moments.mapped(&map, p)).collect())
+        Some(trials.iter().map(|trial| trial.regressions[self.regression].moments.mapped(&map, p).about_origin()).collect())
     }
 
     /// What a member's trials say; none where they have no sample.

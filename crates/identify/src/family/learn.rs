@@ -100,7 +100,7 @@ fn places(members: &[&Member<'_>]) -> Vec<Place> {
 fn units(members: &[&Member<'_>], regression: usize, axis: usize) -> Vec<f64> {
     let p = members[0].trials[0].regressions[regression].moments.regressors();
     let of_member = |member: &&Member<'_>| -> Option<Vec<f64>> {
-        let all = Moments::sum(member.trials.iter().map(|trial| &trial.regressions[regression].moments))?;
+        let all = Moments::sum(member.trials.iter().map(|trial| &trial.regressions[regression].moments))?.about_origin();
         let unmixing = member.trials[0].regressions[regression].unmixing().ok()?;
         let q = all.targets();
         let target = (0..q).map(|t| unmixing[(axis, t)].powi(2) * all.target_variance(t)).sum::<f64>().sqrt();

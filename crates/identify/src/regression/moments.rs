@@ -120,6 +120,12 @@ impl Moments {
         Self { count: self.count, mean: &transposed * &self.mean, products: &transposed * (&self.products * map), regressors }
     }
 
+    /// The same samples about zero instead of their means, for models without intercept.
+    pub fn about_origin(&self) -> Self {
+        let products = self.raw_products() * self.count;
+        Self { count: self.count, mean: DVector::zeros(self.mean.len()), products, regressors: self.regressors }
+    }
+
     /// The same with the upper triangle of the products below as well: sums leave the two apart by a rounding.
     pub fn symmetric(mut self) -> Self {
         self.products.fill_lower_triangle_with_upper_triangle();
@@ -273,6 +279,12 @@ mod tests {
         let direct = Moments::of_columns(&[x.iter().map(|x| 5.0 * x).collect(), z.clone(), (0..4).map(less).collect()], 2);
         let map = DMatrix::from_row_slice(3, 3, &[5.0, 0.0, -0.3, 0.0, 1.0, 2.0, 0.0, 0.0, 1.0]);
         assert!(near(&Moments::of_columns(&[x, z, y], 2).mapped(&map, 2), &direct));
+    }
+
+    #[test]
+    fn about_the_origin_are_the_products_themselves() {
+        let columns = vec![vec![1.0, 2.0, 4.0], vec![3.0, 1.0, 0.0]];
+        assert!(near(&Moments::of_columns(&columns, 1).about_origin(), &Moments::about_zero(&columns, 1, 1.0)));
     }
 
     #[test]
