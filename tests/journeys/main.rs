@@ -6,6 +6,7 @@ mod command_line;
 mod crash;
 mod diagnosis_on_files;
 mod diagnosis_over_http;
+mod families;
 mod fleet;
 mod lacking;
 mod operation;

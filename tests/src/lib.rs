@@ -2,6 +2,7 @@
 
 pub mod binary;
 pub mod esso_osaka;
+pub mod fleet;
 pub mod server;
 pub mod shape;
 pub mod shared;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand, ValueEnum};
 use sistership_dynamics::Method;
 
-use crate::commands::{backup, fsck, gc, serve, verify, work};
+use crate::commands::{backup, family, fsck, gc, serve, verify, work};
 use crate::commands::{check, derive, diagnose, manoeuvre, refine, similar, simulate};
 use crate::demo::Demo;
 
@@ -61,6 +61,8 @@ pub enum Command {
     Work(work::Work),
     /// Derive a version again from its recipe and compare the bytes.
     Verify(verify::Verify),
+    /// Families of ships: make one, learn from it, refine all of it.
+    Family(family::Family),
     /// Check every hash and every reference of a store.
     Fsck(fsck::Fsck),
     /// Remove objects that nothing refers to.

@@ -54,6 +54,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Serve(serve) => commands::serve::run(serve, &arguments.zoo),
         Command::Work(work) => commands::work::run(work),
         Command::Verify(verify) => commands::verify::run(verify),
+        Command::Family(family) => commands::family::run(family),
         Command::Fsck(fsck) => commands::fsck::run(fsck),
         Command::Gc(gc) => commands::gc::run(gc),
         Command::Backup(backup) => commands::backup::backup(backup),

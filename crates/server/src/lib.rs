@@ -9,6 +9,7 @@ mod archive;
 mod catalogue;
 mod config;
 pub mod derive;
+pub mod fleet;
 mod jobs;
 #[cfg(test)]
 mod journey;

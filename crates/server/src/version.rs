@@ -5,6 +5,8 @@ use serde_json::Value;
 use sistership_model::Model;
 use sistership_model::version::{self, RecipeTrial, SourceVersion};
 
+use crate::fleet::FamilyRecipe;
+
 /// What a version holds. Its bytes are [`VersionDocument::canonical`]; the hash is over them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -27,6 +29,8 @@ pub struct VersionDocument {
 pub enum Recipe {
     /// By adding the effects that a diagnosis finds.
     Diagnosis(DiagnosisRecipe),
+    /// As a member of a family, from statistics.
+    Family(FamilyRecipe),
     /// From a ship's own document, or by refinement.
     Plain(version::Recipe),
 }
@@ -74,6 +78,7 @@ impl Recipe {
     pub fn law_sha256(&self) -> &str {
         match self {
             Self::Diagnosis(DiagnosisRecipe { law_sha256, .. })
+            | Self::Family(FamilyRecipe { law_sha256, .. })
             | Self::Plain(version::Recipe::Published { law_sha256, .. } | version::Recipe::Refinement { law_sha256, .. }) => {
                 law_sha256
             }
@@ -84,6 +89,7 @@ impl Recipe {
     pub fn code_revision(&self) -> Option<&str> {
         match self {
             Self::Diagnosis(DiagnosisRecipe { code_revision, .. })
+            | Self::Family(FamilyRecipe { code_revision, .. })
             | Self::Plain(version::Recipe::Refinement { code_revision, .. }) => Some(code_revision),
             Self::Plain(version::Recipe::Published { .. }) => None,
         }
@@ -92,7 +98,9 @@ impl Recipe {
     /// The trials that it names.
     pub fn trials(&self) -> &[RecipeTrial] {
         match self {
-            Self::Diagnosis(DiagnosisRecipe { trials, .. }) | Self::Plain(version::Recipe::Refinement { trials, .. }) => trials,
+            Self::Diagnosis(DiagnosisRecipe { trials, .. })
+            | Self::Family(FamilyRecipe { trials, .. })
+            | Self::Plain(version::Recipe::Refinement { trials, .. }) => trials,
             Self::Plain(version::Recipe::Published { .. }) => &[],
         }
     }
@@ -103,6 +111,7 @@ impl Recipe {
             Self::Plain(version::Recipe::Published { ship_sha256, .. } | version::Recipe::Refinement { ship_sha256, .. }) => {
                 Some(ship_sha256)
             }
+            Self::Family(recipe) => recipe.ship_sha256.as_deref(),
             Self::Diagnosis(_) => None,
         }
     }
@@ -112,6 +121,7 @@ impl Recipe {
         match self {
             Self::Plain(version::Recipe::Refinement { source, .. }) => Some(source),
             Self::Plain(version::Recipe::Published { .. }) => None,
+            Self::Family(recipe) => Some(&recipe.start),
             Self::Diagnosis(_) => self.diagnosed(),
         }
     }
@@ -120,7 +130,7 @@ impl Recipe {
     pub fn diagnosed(&self) -> Option<&SourceVersion> {
         match self {
             Self::Diagnosis(recipe) => Some(&recipe.diagnosed),
-            Self::Plain(_) => None,
+            Self::Family(_) | Self::Plain(_) => None,
         }
     }
 }

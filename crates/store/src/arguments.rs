@@ -11,7 +11,7 @@ pub(crate) type Args<'a> = &'a [(&'static str, Arg<'a>)];
 pub(crate) enum Arg<'a> {
     Text(Option<&'a str>),
     Integer(Option<i64>),
-    Real(f64),
+    Real(Option<f64>),
 }
 
 /// Writes [`Args`]: `args![name: name, created_us: now]`.
@@ -42,8 +42,8 @@ pub(crate) use bind;
 pub(crate) fn check(args: Args<'_>) -> Result<()> {
     args.iter().try_for_each(|(field, arg)| match arg {
         Arg::Text(Some(value)) => checks::text(field, value),
-        Arg::Real(value) => checks::finite(field, *value),
-        Arg::Text(None) | Arg::Integer(_) => Ok(()),
+        Arg::Real(Some(value)) => checks::finite(field, *value),
+        Arg::Text(None) | Arg::Integer(_) | Arg::Real(None) => Ok(()),
     })
 }
 
@@ -85,6 +85,12 @@ impl From<Option<i64>> for Arg<'_> {
 
 impl From<f64> for Arg<'_> {
     fn from(value: f64) -> Self {
+        Self::Real(Some(value))
+    }
+}
+
+impl From<Option<f64>> for Arg<'_> {
+    fn from(value: Option<f64>) -> Self {
         Self::Real(value)
     }
 }

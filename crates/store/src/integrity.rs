@@ -63,6 +63,24 @@ statements! {
         FROM diagnoses WHERE made_id IS NOT NULL AND made_id NOT IN (SELECT id FROM versions) ORDER BY id");
     DIAGNOSIS_REPORT = same("SELECT 'diagnosis ' || id AS place, 'its report ' || report_id || ' is missing' AS message \
         FROM diagnoses WHERE report_id NOT IN (SELECT id FROM reports) ORDER BY id");
+    FAMILY_FOUNDATION = same("SELECT 'family ' || name AS place, 'its foundation ' || foundation || ' is missing' AS message \
+        FROM families WHERE foundation NOT IN (SELECT id FROM versions) ORDER BY name");
+    MEMBER_SHIP = same("SELECT 'family ' || family AS place, 'there is no ship ' || ship AS message FROM family_members \
+        WHERE ship NOT IN (SELECT name FROM ships) ORDER BY family, ship");
+    PRIOR_GAP = same("SELECT 'family ' || family AS place, \
+        'has ' || COUNT(*) || ' priors up to revision ' || MAX(revision) AS message \
+        FROM family_priors GROUP BY family HAVING COUNT(*) <> MAX(revision) ORDER BY family");
+    CHUNK_JOB = same("SELECT 'bulk refinement ' || bulk AS place, 'the job of its chunk ' || number || ' is missing' AS message \
+        FROM bulk_chunks WHERE job NOT IN (SELECT id FROM jobs) ORDER BY bulk, number");
+    OUTCOME_VERSION = same("SELECT 'bulk refinement ' || bulk AS place, \
+        'its outcome of ' || ship || ', ' || outcome || ', has not the version that it should have' AS message FROM bulk_outcomes \
+        WHERE (outcome IN ('champion', 'candidate')) <> (version_id IS NOT NULL) \
+        OR (version_id IS NOT NULL AND version_id NOT IN (SELECT id FROM versions)) ORDER BY bulk, ship");
+    OUTCOME_COUNT = same("SELECT 'bulk refinement ' || b.id AS place, \
+        'all chunks are done, but ' || COUNT(o.ship) || ' of ' || b.ships || ' ships have an outcome' AS message \
+        FROM bulk_refinements b LEFT JOIN bulk_outcomes o ON o.bulk = b.id WHERE NOT EXISTS (SELECT 1 FROM bulk_chunks c \
+        JOIN jobs j ON j.id = c.job WHERE c.bulk = b.id AND j.state <> 'succeeded') \
+        GROUP BY b.id, b.ships HAVING COUNT(o.ship) <> b.ships ORDER BY b.id");
     JOB_SHIP = same("SELECT 'job ' || id AS place, 'there is no ship ' || ship AS message FROM jobs \
         WHERE ship IS NOT NULL AND ship NOT IN (SELECT name FROM ships) ORDER BY id");
     JOB_STATE = same("SELECT 'job ' || id AS place, 'is ' || state || ', which its lease, result, error or end contradicts' AS message \
@@ -91,6 +109,12 @@ const CHECKS: &[(&str, Statement)] = &[
     ("diagnosis-version", DIAGNOSIS_VERSION),
     ("diagnosis-made", DIAGNOSIS_MADE),
     ("diagnosis-report", DIAGNOSIS_REPORT),
+    ("family-foundation", FAMILY_FOUNDATION),
+    ("member-ship", MEMBER_SHIP),
+    ("prior-gap", PRIOR_GAP),
+    ("chunk-job", CHUNK_JOB),
+    ("outcome-version", OUTCOME_VERSION),
+    ("outcome-count", OUTCOME_COUNT),
     ("job-ship", JOB_SHIP),
     ("job-state", JOB_STATE),
 ];

@@ -37,11 +37,16 @@ mod prepare {
     use crate::database::Pool;
     use crate::error::{Result, StoreError};
     use crate::store::Store;
-    use crate::{aliases, diagnoses, garbage, idempotency, integrity, jobs, laws, reports, ships, store, trials, versions, work};
+    use crate::{
+        aliases, bulks, diagnoses, families, garbage, idempotency, integrity, jobs, laws, reports, ships, statistics, store,
+    };
+    use crate::{trials, versions, work};
 
     const ALL: &[(&str, &[(&str, super::Statement)])] = &[
         ("aliases", aliases::STATEMENTS),
+        ("bulks", bulks::STATEMENTS),
         ("diagnoses", diagnoses::STATEMENTS),
+        ("families", families::STATEMENTS),
         ("garbage", garbage::STATEMENTS),
         ("idempotency", idempotency::STATEMENTS),
         ("integrity", integrity::STATEMENTS),
@@ -49,6 +54,7 @@ mod prepare {
         ("laws", laws::STATEMENTS),
         ("reports", reports::STATEMENTS),
         ("ships", ships::STATEMENTS),
+        ("statistics", statistics::STATEMENTS),
         ("store", store::STATEMENTS),
         ("trials", trials::STATEMENTS),
         ("versions", versions::STATEMENTS),

@@ -4,11 +4,13 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::aliases::Aliases;
+use crate::bulks::Bulks;
 use crate::clock::{Clock, Ids, UuidIds};
 use crate::connect;
 use crate::database::{Database, Transaction};
 use crate::diagnoses::Diagnoses;
 use crate::error::Result;
+use crate::families::Families;
 use crate::idempotency::Idempotency;
 use crate::jobs::Jobs;
 use crate::laws::Laws;
@@ -16,6 +18,7 @@ use crate::record::record;
 use crate::reports::Reports;
 use crate::ships::Ships;
 use crate::statements::{same, statements};
+use crate::statistics::TrialStatistics;
 use crate::trials::Trials;
 use crate::versions::Versions;
 
@@ -117,6 +120,21 @@ impl Store {
     /// Diagnoses of versions.
     pub fn diagnoses(&self) -> Diagnoses<'_> {
         Diagnoses(self)
+    }
+
+    /// Families of ships.
+    pub fn families(&self) -> Families<'_> {
+        Families(self)
+    }
+
+    /// Refinements of whole families.
+    pub fn bulks(&self) -> Bulks<'_> {
+        Bulks(self)
+    }
+
+    /// Sufficient statistics of trials.
+    pub fn statistics(&self) -> TrialStatistics<'_> {
+        TrialStatistics(self)
     }
 
     pub(crate) fn new_id(&self) -> String {

@@ -6,6 +6,7 @@ mod config_file;
 pub mod derive;
 pub mod diagnose;
 mod diagnose_text;
+pub mod family;
 pub mod fsck;
 pub mod gc;
 mod log;

@@ -2,6 +2,8 @@
 
 mod moments;
 mod path;
+mod whitened;
 
 pub use moments::Moments;
 pub use path::{Choice, RidgePath, Validation};
+pub use whitened::Whitened;

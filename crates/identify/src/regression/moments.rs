@@ -92,6 +92,69 @@ impl Moments {
         Some(all)
     }
 
+    /// The statistics with each set of samples left out in turn, and those of all. Sums from both ends meet in the gap: nothing
+    /// is subtracted, so that a regressor which only the set left out excites is exactly still.
+    pub fn leave_one_out(parts: &[Self]) -> Option<(Vec<Self>, Self)> {
+        let first = parts.first()?;
+        let none = || Self::empty(first.regressors, first.targets());
+        let grown = |sum: &Self, part: &Self| {
+            let mut sum = sum.clone();
+            sum.merge(part);
+            sum
+        };
+        let mut after = vec![none()];
+        parts.iter().rev().for_each(|part| after.push(grown(&after[after.len() - 1], part)));
+        let mut before = none();
+        let mut without = Vec::with_capacity(parts.len());
+        for (index, part) in parts.iter().enumerate() {
+            without.push(grown(&before, &after[parts.len() - 1 - index]));
+            before.merge(part);
+        }
+        Some((without, after.swap_remove(parts.len())))
+    }
+
+    /// The statistics of `map' z` where these are those of the samples `z`, regressors then targets; the first `regressors`
+    /// columns of the map give the new regressors. Maps and merges may change places.
+    pub fn mapped(&self, map: &DMatrix<f64>, regressors: usize) -> Self {
+        let transposed = map.transpose();
+        Self { count: self.count, mean: &transposed * &self.mean, products: &transposed * (&self.products * map), regressors }
+    }
+
+    /// The same samples about zero instead of their means, for models without intercept.
+    pub fn about_origin(&self) -> Self {
+        let products = self.raw_products() * self.count;
+        Self { count: self.count, mean: DVector::zeros(self.mean.len()), products, regressors: self.regressors }
+    }
+
+    /// The same with the upper triangle of the products below as well: sums leave the two apart by a rounding.
+    pub fn symmetric(mut self) -> Self {
+        self.products.fill_lower_triangle_with_upper_triangle();
+        self
+    }
+
+    /// Count, means and the upper triangle of the centred products, a row after another.
+    pub fn numbers(&self) -> Vec<f64> {
+        let size = self.mean.len();
+        let triangle = (0..size).flat_map(|i| (i..size).map(move |j| (i, j))).map(|at| self.products[at]);
+        std::iter::once(self.count).chain(self.mean.iter().copied()).chain(triangle).collect()
+    }
+
+    /// From [`numbers`](Self::numbers); none where they are not as many as these regressors and targets need, or not finite.
+    pub fn from_numbers(numbers: &[f64], regressors: usize, targets: usize) -> Option<Self> {
+        let size = regressors + targets;
+        if numbers.len() != 1 + size + size * (size + 1) / 2 || numbers.iter().any(|x| !x.is_finite()) {
+            return None;
+        }
+        let mut triangle = numbers[1 + size..].iter();
+        let mut products = DMatrix::zeros(size, size);
+        for (i, j) in (0..size).flat_map(|i| (i..size).map(move |j| (i, j))) {
+            let product = *triangle.next()?;
+            products[(i, j)] = product;
+            products[(j, i)] = product;
+        }
+        Some(Self { count: numbers[0], mean: DVector::from_column_slice(&numbers[1..=size]), products, regressors })
+    }
+
     /// Number of regressors.
     pub fn regressors(&self) -> usize {
         self.regressors
@@ -100,6 +163,18 @@ impl Moments {
     /// Number of targets.
     pub fn targets(&self) -> usize {
         self.mean.len() - self.regressors
+    }
+
+    /// The sum over the samples of regressors times residuals of the first target at `coefficients`, both about the means of
+    /// `all`, of which these samples are a part.
+    pub fn score(&self, all: &Self, coefficients: &DVector<f64>) -> DVector<f64> {
+        let p = self.regressors;
+        let mut weights = DVector::zeros(self.mean.len());
+        weights.rows_mut(0, p).copy_from(&-coefficients);
+        weights[p] = 1.0;
+        let apart = &self.mean - &all.mean;
+        let own = &self.products * &weights + &apart * (self.count * apart.dot(&weights));
+        own.rows(0, p).into_owned()
     }
 
     /// Variance of a regressor.
@@ -126,6 +201,12 @@ impl Moments {
     pub fn target_variance(&self, target: usize) -> f64 {
         let t = self.regressors + target;
         self.products[(t, t)] / self.count
+    }
+
+    /// Covariances of the regressors with each other, and with the targets.
+    pub fn covariances(&self) -> (DMatrix<f64>, DMatrix<f64>) {
+        let (p, q) = (self.regressors, self.targets());
+        (self.products.view((0, 0), (p, p)) / self.count, self.products.view((0, p), (p, q)) / self.count)
     }
 
     /// Mean products without centring: `E[x x']`, as the error of a model without intercept needs them; zero of no samples.
@@ -168,5 +249,50 @@ mod tests {
             assert!((whole.covariance(i, j) - merged.covariance(i, j)).abs() < 1e-10);
         }
         assert!((whole.variance(0) - 0.5).abs() < 0.01, "no cancellation at a mean of 1e4");
+    }
+
+    fn parts() -> Vec<Moments> {
+        let part = |phase: f64| {
+            let column = |f: &dyn Fn(f64) -> f64| (0..50).map(|k| f(f64::from(k) + phase)).collect::<Vec<f64>>();
+            Moments::of_columns(&[column(&|k| (0.3 * k).sin()), column(&|k| 2.0 + (0.1 * k).cos()), column(&|k| 0.01 * k)], 2)
+        };
+        [0.0, 11.0, 37.0].map(part).to_vec()
+    }
+
+    fn near(a: &Moments, b: &Moments) -> bool {
+        a.numbers().iter().zip(b.numbers()).all(|(a, b)| (a - b).abs() < 1e-9 * (1.0 + b.abs()))
+    }
+
+    #[test]
+    fn leaving_one_out_gives_the_others() {
+        let parts = parts();
+        let (without, all) = Moments::leave_one_out(&parts).expect("three parts");
+        assert!(near(&all, &Moments::sum(&parts).expect("three parts")));
+        assert!(near(&without[1], &Moments::sum([&parts[0], &parts[2]]).expect("two parts")));
+        assert!(near(&without[0], &Moments::sum(&parts[1..]).expect("two parts")));
+    }
+
+    #[test]
+    fn mapping_statistics_is_mapping_samples() {
+        let (x, z, y) = (vec![1.0, 2.0, 4.0, 7.0], vec![0.5, -1.0, 2.0, 0.0], vec![3.0, 1.0, 0.0, 2.0]);
+        let less = |k: usize| y[k] - 0.3 * x[k] + 2.0 * z[k];
+        let direct = Moments::of_columns(&[x.iter().map(|x| 5.0 * x).collect(), z.clone(), (0..4).map(less).collect()], 2);
+        let map = DMatrix::from_row_slice(3, 3, &[5.0, 0.0, -0.3, 0.0, 1.0, 2.0, 0.0, 0.0, 1.0]);
+        assert!(near(&Moments::of_columns(&[x, z, y], 2).mapped(&map, 2), &direct));
+    }
+
+    #[test]
+    fn about_the_origin_are_the_products_themselves() {
+        let columns = vec![vec![1.0, 2.0, 4.0], vec![3.0, 1.0, 0.0]];
+        assert!(near(&Moments::of_columns(&columns, 1).about_origin(), &Moments::about_zero(&columns, 1, 1.0)));
+    }
+
+    #[test]
+    fn numbers_come_back() {
+        let one = &parts()[0];
+        let numbers = one.numbers();
+        assert_eq!(Moments::from_numbers(&numbers, 2, 1).as_ref(), Some(one));
+        assert_eq!(Moments::from_numbers(&numbers[1..], 2, 1), None);
+        assert_eq!(Moments::from_numbers(&numbers, 3, 1), None);
     }
 }

@@ -1,8 +1,10 @@
 //! Long work: what is asked for, and the workers that do it.
 
+mod chunk;
 mod commit;
 mod commit_diagnosis;
 mod diagnosis;
+mod family_prior;
 mod outcome;
 mod progress;
 mod refinement;

@@ -10,8 +10,9 @@ use uuid::Uuid;
 use super::outcome::JobError;
 use super::progress::{Progress, Stop};
 use super::request::{DIAGNOSIS, REFINEMENT};
-use super::{diagnosis, refinement};
+use super::{chunk, diagnosis, family_prior, refinement};
 use crate::app::App;
+use crate::fleet::{BULK, LEARN};
 use crate::stopping::Stopping;
 
 /// How often progress is written while it changes.
@@ -138,6 +139,8 @@ async fn work(app: App, job: Job, progress: Progress) -> Result<(), JobError> {
     match job.kind.as_str() {
         REFINEMENT => refinement::run(&app, &job, progress).await,
         DIAGNOSIS => diagnosis::run(&app, &job, progress).await,
+        BULK => chunk::run(&app, &job, progress).await,
+        LEARN => family_prior::run(&app, &job, progress).await,
         other => Err(JobError::Failed(format!("this server does not know jobs of the kind `{other}`"))),
     }
 }

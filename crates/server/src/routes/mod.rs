@@ -1,11 +1,14 @@
 //! The endpoints, one file a group, and the document that describes them.
 
 mod aliases;
+mod bulk_refinements;
 mod champion;
 mod condition;
 mod diagnoses;
 mod document;
+mod drift;
 mod events;
+mod families;
 mod health;
 mod jobs;
 mod laws;
@@ -63,6 +66,9 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .merge(health::routes())
         .merge(metrics::routes())
+        .merge(families::routes())
+        .merge(drift::routes())
+        .merge(bulk_refinements::routes())
         .merge(laws::routes())
         .merge(ships::routes())
         .merge(ship_changes::routes())

@@ -87,12 +87,24 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     (DIAGNOSIS, "diagnosis-made", "diagnosis d"),
     (DIAGNOSIS, "diagnosis-report", "diagnosis d"),
     (DIAGNOSIS, "diagnosis-trials", "diagnosis d"),
+    (FAMILY, "family-foundation", "family f"),
+    (MEMBER, "member-ship", "family f"),
+    (PRIOR, "prior-gap", "family f"),
+    (BULK, "outcome-count", "bulk refinement b"),
+    (CHUNK, "chunk-job", "bulk refinement b"),
+    (OUTCOME, "outcome-version", "bulk refinement b"),
     (JOB, "job-ship", "job j"),
     (JOB, "job-state", "job j"),
     (JOB, "job-result", "job j"),
 ];
 const REPORT: &str = "INSERT INTO reports VALUES ('r', 'none', 'nobody', 'refinement', '{}', '', 0)";
 const DIAGNOSIS: &str = "INSERT INTO diagnoses VALUES ('d', 'none', 'none', 'none', 'effects', '[]', '[\"none\"]', 0)";
+const FAMILY: &str = "INSERT INTO families VALUES ('f', 'F', 'none', 0)";
+const MEMBER: &str = "INSERT INTO family_members VALUES ('f', 'nobody', 0)";
+const PRIOR: &str = "INSERT INTO family_priors VALUES ('f', 2, '{}', 'x', 0)";
+const BULK: &str = "INSERT INTO bulk_refinements VALUES ('b', 'f', '{}', 1, 0)";
+const CHUNK: &str = "INSERT INTO bulk_chunks VALUES ('b', 1, 'none')";
+const OUTCOME: &str = "INSERT INTO bulk_outcomes VALUES ('b', 'mariner', 'champion', NULL, NULL, '{}', 0)";
 const JOB: &str = "INSERT INTO jobs VALUES ('j', 'refinement', 'nobody', '{}', 'succeeded', 1, '', \
     '{\"model\": \"mariner\", \"version\": 1, \"sha256\": \"x\", \"report\": \"none\"}', NULL, 1, 1, 5, NULL, 0, 0, NULL, 0)";
 
@@ -127,8 +139,25 @@ async fn damaged(database: TestDatabase) {
     assert!(found(&archive).await.clean, "healed again");
 }
 
-const TABLES: [&str; 11] =
-    ["laws", "ships", "ship_revisions", "trials", "models", "versions", "aliases", "alias_moves", "jobs", "reports", "diagnoses"];
+const TABLES: [&str; 17] = [
+    "laws",
+    "ships",
+    "ship_revisions",
+    "trials",
+    "models",
+    "versions",
+    "aliases",
+    "alias_moves",
+    "jobs",
+    "reports",
+    "diagnoses",
+    "families",
+    "family_members",
+    "family_priors",
+    "bulk_refinements",
+    "bulk_chunks",
+    "bulk_outcomes",
+];
 
 #[tokio::test(flavor = "multi_thread")]
 async fn each_damage_to_objects_is_named() {

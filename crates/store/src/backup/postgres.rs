@@ -29,6 +29,13 @@ pub(crate) const TABLES: &[&str] = &[
     "jobs",
     "reports",
     "diagnoses",
+    "trial_statistics",
+    "families",
+    "family_members",
+    "family_priors",
+    "bulk_refinements",
+    "bulk_chunks",
+    "bulk_outcomes",
 ];
 const FOLDER: &str = "tables";
 const COLUMNS: &str = "SELECT CAST(column_name AS TEXT) FROM information_schema.columns \

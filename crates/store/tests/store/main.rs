@@ -8,6 +8,7 @@ mod aliases;
 mod backup;
 mod concurrency;
 mod diagnoses;
+mod fleets;
 mod idempotency;
 mod jobs;
 mod laws;

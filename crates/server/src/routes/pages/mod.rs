@@ -1,5 +1,6 @@
 //! Pages for people: what there is, at a glance. They stand alone: no script, nothing from elsewhere.
 
+mod family;
 mod index;
 mod ship;
 
@@ -19,7 +20,10 @@ pub(super) const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; form-action 'none'; frame-ancestors 'none'";
 
 pub(super) fn routes() -> Router<App> {
-    Router::new().route("/", get(index::page)).route("/ships/{ship}", get(ship::page))
+    Router::new()
+        .route("/", get(index::page))
+        .route("/ships/{ship}", get(ship::page))
+        .route("/families/{family}", get(family::page))
 }
 
 fn answer(page: &impl Template) -> Result<Response> {

@@ -1,0 +1,78 @@
+//! The model that a member is refined from: her champion, or the foundation carried over to her.
+
+use sistership_identify::transfer::transfer;
+use sistership_model::version::{SourceVersion, sha256};
+use sistership_model::{Law, Model};
+use sistership_store::Version;
+
+use super::asked::Start;
+use crate::archive::{Archive, document, vessel};
+use crate::derive::DeriveError;
+use crate::publish::CHAMPION;
+
+/// Finds the frames of a family's members.
+pub(crate) struct Frames<'a> {
+    pub archive: &'a Archive,
+    pub foundation: &'a SourceVersion,
+    pub model: &'a Model,
+    pub law: &'a Law,
+}
+
+/// Where a member starts.
+#[derive(Debug)]
+pub(crate) struct Framed {
+    pub model: Model,
+    pub from: SourceVersion,
+    /// The hash of her document, where the foundation was carried over to it.
+    pub ship_sha256: Option<String>,
+    /// The id of the version, if it is hers.
+    pub version_id: Option<String>,
+    /// The revision of her champion.
+    pub champion: Option<i64>,
+}
+
+impl Frames<'_> {
+    /// Where a member starts now.
+    pub(crate) async fn of(&self, ship: &str, start: Start) -> Result<Framed, DeriveError> {
+        let store = &self.archive.store;
+        let champion = match store.aliases().get(ship, CHAMPION).await {
+            Ok(alias) => Some(alias),
+            Err(sistership_store::StoreError::NotFound { .. }) => None,
+            Err(error) => return Err(error.into()),
+        };
+        let revision = champion.as_ref().map(|alias| alias.revision);
+        if let (Start::Champion, Some(alias)) = (start, champion) {
+            let version = store.versions().get(ship, alias.version_number).await?;
+            return Ok(Framed { champion: revision, ..self.own(version)? });
+        }
+        let row = store.ships().get(ship).await?;
+        let model = transfer(self.model, self.law, &vessel(ship, &row.document)?, None);
+        let ship_sha256 = Some(sha256(row.document.as_bytes()));
+        Ok(Framed { model, from: self.foundation.clone(), ship_sha256, version_id: None, champion: revision })
+    }
+
+    fn own(&self, version: Version) -> Result<Framed, DeriveError> {
+        let model = document(&version)?.model;
+        if model.law != self.model.law || !model.coefficients.keys().eq(self.model.coefficients.keys()) {
+            let (own, family) = (&model.name, &self.model.name);
+            let message =
+                format!("`{own}` does not have the law and coefficients of the foundation `{family}`; start at the foundation");
+            return Err(DeriveError::Lost(message));
+        }
+        let from = SourceVersion { ship: version.head.model, number: version.head.number, sha256: version.head.sha256 };
+        Ok(Framed { model, from, ship_sha256: None, version_id: Some(version.head.id), champion: None })
+    }
+
+    /// Where a member started, as a recipe has it.
+    pub(crate) async fn recorded(
+        &self,
+        ship: &str,
+        from: &SourceVersion,
+        ship_sha256: Option<&str>,
+    ) -> Result<Model, DeriveError> {
+        match ship_sha256 {
+            Some(hash) => Ok(transfer(self.model, self.law, &self.archive.ship(ship, hash).await?, None)),
+            None => self.archive.source(from).await,
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! What a bulk refinement is to do, with everything looked up: its row and its recipes keep it.
+
+use serde::{Deserialize, Serialize};
+use sistership_identify::bulk::{AxisPrior, BulkSettings, Prior};
+use sistership_identify::family::FamilyPrior;
+use sistership_model::version::SourceVersion;
+use sistership_model::{Law, Model};
+use std::collections::BTreeMap;
+
+use super::asked::{Rule, Start};
+use crate::archive::Archive;
+use crate::derive::DeriveError;
+
+/// The kind of the jobs that refine a chunk of ships.
+pub(crate) const BULK: &str = "bulk-refinement";
+
+/// A bulk refinement to be done.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Order {
+    /// The family.
+    pub family: String,
+    /// What the members' models are founded on.
+    pub foundation: SourceVersion,
+    /// The law's file.
+    pub law_sha256: String,
+    /// Where each member starts.
+    pub start: Start,
+    /// The family's prior; where absent, the foundation holds the coefficients.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prior: Option<PriorName>,
+    /// Settings.
+    pub settings: BulkSettings,
+    /// What makes a champion.
+    pub rule: Rule,
+}
+
+/// What a family has taught, by name.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PriorName {
+    /// The family.
+    pub family: String,
+    /// Which time.
+    pub revision: i64,
+    /// The hash of its document.
+    pub sha256: String,
+}
+
+/// What a job of the kind [`BULK`] is asked to do.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Chunk {
+    /// The bulk refinement.
+    pub bulk: String,
+    /// Its ships.
+    pub ships: Vec<String>,
+}
+
+/// An order with the documents that it names.
+#[derive(Debug)]
+pub(crate) struct Loaded {
+    pub order: Order,
+    pub foundation: Model,
+    pub law: Law,
+    held: Held,
+}
+
+/// What holds the coefficients.
+#[derive(Debug)]
+enum Held {
+    Foundation(BTreeMap<String, f64>),
+    Family { axes: Vec<AxisPrior>, design_effect: f64 },
+}
+
+impl Loaded {
+    pub(crate) async fn of(archive: &Archive, order: Order) -> Result<Self, DeriveError> {
+        let foundation = archive.source(&order.foundation).await?;
+        let law = archive.law(&foundation.law, &order.law_sha256).await?;
+        let held = match &order.prior {
+            Some(name) => family(archive, name).await?,
+            None => Held::Foundation(foundation.coefficients.iter().map(|(name, q)| (name.clone(), q.value)).collect()),
+        };
+        Ok(Self { order, foundation, law, held })
+    }
+
+    pub(crate) fn prior(&self) -> Prior<'_> {
+        match &self.held {
+            Held::Foundation(values) => Prior::Source(values),
+            Held::Family { axes, design_effect } => Prior::Family { axes, design_effect: *design_effect },
+        }
+    }
+
+    /// What held the coefficients, in words.
+    pub(crate) fn held_by(&self) -> String {
+        match &self.order.prior {
+            Some(name) => format!("{}, held by the family {} at revision {}", self.foundation.name, name.family, name.revision),
+            None => self.foundation.name.clone(),
+        }
+    }
+}
+
+async fn family(archive: &Archive, name: &PriorName) -> Result<Held, DeriveError> {
+    let row = archive.store.families().prior(&name.family, Some(name.revision)).await?;
+    let lost = |what: String| {
+        DeriveError::Lost(format!("the prior of the family `{}` at revision {} {what}", name.family, name.revision))
+    };
+    if row.sha256 != name.sha256 || sistership_model::version::sha256(row.document.as_bytes()) != name.sha256 {
+        return Err(lost(format!("does not have the hash {}", name.sha256)));
+    }
+    let prior: FamilyPrior = serde_json::from_str(&row.document)?;
+    Ok(Held::Family { axes: prior.axes().map_err(lost)?, design_effect: prior.design_effect })
+}

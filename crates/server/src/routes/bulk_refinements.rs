@@ -1,0 +1,225 @@
+//! Refinements of all members of a family.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sistership_store::{AliasMove, Bulk, BulkOutcome, Expect, MAX_LIMIT, Page};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use crate::app::App;
+use crate::fleet::{Asked, Standing, queue};
+use crate::problem::{Problem, Result};
+use crate::publish::CHAMPION;
+use crate::web::{Key, Listing, Params, Payload, Place, Reply, page};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(refine))
+        .routes(routes!(list))
+        .routes(routes!(get, cancel))
+        .routes(routes!(retry))
+        .routes(routes!(ships))
+        .routes(routes!(promote))
+}
+
+/// A refinement of all members of a family.
+#[derive(Debug, Serialize, ToSchema)]
+struct BulkView {
+    id: String,
+    family: String,
+    created_us: i64,
+    /// What was asked, with everything looked up.
+    #[schema(value_type = Object)]
+    request: Value,
+    #[serde(flatten)]
+    standing: Standing,
+}
+
+/// What has become of a ship.
+#[derive(Debug, Serialize, ToSchema)]
+struct OutcomeView {
+    ship: String,
+    /// `champion`, `candidate`, `unchanged` or `refused`.
+    outcome: String,
+    /// The version that came of it.
+    version: Option<i64>,
+    /// By how much her worst axis is worse than before, as a share; below zero where all are better.
+    worst_change: Option<f64>,
+    /// Errors by axis and manoeuvres before and after, or the reason why not.
+    #[schema(value_type = Object)]
+    comparison: Value,
+}
+
+/// A person's word for candidates of this refinement.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct Word {
+    /// Who says so.
+    actor: String,
+    /// Why.
+    reason: String,
+    /// The ships; every candidate where absent.
+    ships: Option<Vec<String>>,
+}
+
+/// What a person's word has done.
+#[derive(Debug, Serialize, ToSchema)]
+struct Promoted {
+    /// How many candidates have become champions.
+    champions: usize,
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct ListQuery {
+    /// Of this family only.
+    family: Option<String>,
+    /// The most items to return, 1 to 1000.
+    limit: Option<i64>,
+    /// `next` of the page before.
+    after: Option<String>,
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct ShipQuery {
+    /// With this outcome only.
+    outcome: Option<String>,
+    /// The most items to return, 1 to 1000.
+    limit: Option<i64>,
+    /// `next` of the page before.
+    after: Option<String>,
+}
+
+impl BulkView {
+    async fn of(app: &App, bulk: Bulk) -> Result<Self> {
+        let standing = Standing::of(app.store(), &bulk).await?;
+        let request = serde_json::from_str(&bulk.request).unwrap_or_default();
+        Ok(Self { id: bulk.id, family: bulk.family, created_us: bulk.created_us, request, standing })
+    }
+}
+
+impl OutcomeView {
+    fn of(outcome: BulkOutcome) -> Self {
+        let comparison = serde_json::from_str(&outcome.document).unwrap_or_default();
+        let BulkOutcome { ship, outcome, version, worst_change, .. } = outcome;
+        Self { ship, outcome, version, worst_change, comparison }
+    }
+}
+
+/// Refine every member of a family from the statistics of her trials
+///
+/// The ships are shared out among all workers in chunks, each a job. Nothing becomes champion but by the rule given here, or by
+/// a person's word afterwards.
+#[utoipa::path(
+    post, path = "/v1/families/{family}/refinements", tag = "families",
+    params(("family" = String, Path), ("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
+    request_body = Asked, responses((status = 202, body = BulkView, headers(("Location" = String))))
+)]
+async fn refine(State(app): State<App>, Place(family): Place<String>, key: Key, payload: Payload) -> Result<Response> {
+    let asked: Asked = payload.json()?;
+    let inner = app.clone();
+    let work = async move {
+        let bulk = queue(inner.store(), &family, &asked).await?;
+        inner.wake().notify_waiters();
+        let location = format!("/v1/bulk-refinements/{}", bulk.id);
+        Ok(Reply::new(StatusCode::ACCEPTED, &BulkView::of(&inner, bulk).await?)?.at(location))
+    };
+    key.once(&app, payload.bytes(), work).await
+}
+
+/// List the refinements of families, the latest first
+#[utoipa::path(
+    get, path = "/v1/bulk-refinements", tag = "families", params(ListQuery), responses((status = 200, body = Listing<BulkView>))
+)]
+async fn list(State(app): State<App>, Params(query): Params<ListQuery>) -> Result<Json<Listing<BulkView>>> {
+    let bulks = app.store().bulks().list(query.family.as_deref(), &page::page(query.limit, query.after)).await?;
+    let mut items = Vec::with_capacity(bulks.items.len());
+    for bulk in bulks.items {
+        items.push(BulkView::of(&app, bulk).await?);
+    }
+    Ok(Json(Listing { items, next: bulks.next }))
+}
+
+/// How far a refinement of a family is
+#[utoipa::path(
+    get, path = "/v1/bulk-refinements/{id}", tag = "families", params(("id" = String, Path)), responses((status = 200, body = BulkView))
+)]
+async fn get(State(app): State<App>, Place(id): Place<String>) -> Result<Json<BulkView>> {
+    let bulk = app.store().bulks().get(&id).await?;
+    Ok(Json(BulkView::of(&app, bulk).await?))
+}
+
+/// Cancel what is left of a refinement; ships that are done stay so
+#[utoipa::path(
+    delete, path = "/v1/bulk-refinements/{id}", tag = "families", params(("id" = String, Path)),
+    responses((status = 200, body = BulkView))
+)]
+async fn cancel(State(app): State<App>, Place(id): Place<String>) -> Result<Json<BulkView>> {
+    let bulk = app.store().bulks().get(&id).await?;
+    app.store().bulks().request_cancel(&id).await?;
+    Ok(Json(BulkView::of(&app, bulk).await?))
+}
+
+/// Go on with the chunks that failed or were cancelled
+#[utoipa::path(
+    post, path = "/v1/bulk-refinements/{id}/retry", tag = "families", params(("id" = String, Path)),
+    responses((status = 200, body = BulkView))
+)]
+async fn retry(State(app): State<App>, Place(id): Place<String>) -> Result<Json<BulkView>> {
+    let bulk = app.store().bulks().get(&id).await?;
+    app.store().bulks().retry(&id).await?;
+    app.wake().notify_waiters();
+    Ok(Json(BulkView::of(&app, bulk).await?))
+}
+
+/// Every ship of a refinement, before and after
+#[utoipa::path(
+    get, path = "/v1/bulk-refinements/{id}/ships", tag = "families", params(("id" = String, Path), ShipQuery),
+    responses((status = 200, body = Listing<OutcomeView>))
+)]
+async fn ships(
+    State(app): State<App>,
+    Place(id): Place<String>,
+    Params(query): Params<ShipQuery>,
+) -> Result<Json<Listing<OutcomeView>>> {
+    let bulk = app.store().bulks().get(&id).await?;
+    let page = page::page(query.limit, query.after);
+    let outcomes = app.store().bulks().outcomes(&bulk.id, query.outcome.as_deref(), &page).await?;
+    Ok(Json(Listing::of(outcomes, OutcomeView::of)))
+}
+
+/// Make candidates of a refinement champions, by a person's word
+#[utoipa::path(
+    post, path = "/v1/bulk-refinements/{id}/champions", tag = "families", params(("id" = String, Path)), request_body = Word,
+    responses((status = 200, body = Promoted))
+)]
+async fn promote(State(app): State<App>, Place(id): Place<String>, payload: Payload) -> Result<Json<Promoted>> {
+    let word: Word = payload.json()?;
+    let bulk = app.store().bulks().get(&id).await?;
+    if word.actor.trim().is_empty() || word.reason.trim().is_empty() {
+        return Err(Problem::invalid("actor", "say who decides, and why (`reason`)"));
+    }
+    let change =
+        AliasMove { alias: CHAMPION.to_owned(), expect: Expect::Any, reason: word.reason.clone(), actor: word.actor.clone() };
+    let (mut champions, mut page) = (0, Page::first(MAX_LIMIT));
+    loop {
+        let list = app.store().bulks().outcomes(&bulk.id, Some("candidate"), &page).await?;
+        for outcome in &list.items {
+            let meant = word.ships.as_ref().is_none_or(|ships| ships.contains(&outcome.ship));
+            if let (true, Some(version)) = (meant, outcome.version) {
+                app.store().bulks().promote(&bulk.id, &outcome.ship, version, &change).await?;
+                champions += 1;
+            }
+        }
+        let Some(next) = list.next else { return Ok(Json(Promoted { champions })) };
+        page = Page::after(next, MAX_LIMIT);
+    }
+}

@@ -1,0 +1,264 @@
+//! Families of ships.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sistership_store::{Family, FamilyMember, FamilyPrior, MAX_LIMIT, NewJob, StoreError};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::jobs::JobView;
+use super::model_ref::resolve;
+use super::queue::accepted;
+use crate::app::App;
+use crate::fleet::{LEARN, LearnJob};
+use crate::problem::{Problem, Result};
+use crate::web::{Key, Listing, Params, Payload, Place, Reply, page};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(list, create))
+        .routes(routes!(get, found))
+        .routes(routes!(members, add))
+        .routes(routes!(remove))
+        .routes(routes!(prior, learn))
+}
+
+/// A family: ships whose models share a foundation.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct FamilyView {
+    pub name: String,
+    /// What people call it.
+    pub title: String,
+    /// The version that the members' models are founded on, `ship/number`.
+    pub foundation: String,
+    /// How many ships it has.
+    pub members: i64,
+    /// How often it has taught something; null where it has not.
+    pub prior: Option<i64>,
+    pub created_us: i64,
+}
+
+/// A member of a family.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct MemberView {
+    pub ship: String,
+    pub added_us: i64,
+    /// The number of her champion, if she has one.
+    pub champion: Option<i64>,
+    /// How that was made.
+    pub method: Option<String>,
+}
+
+/// What a family has taught.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct PriorView {
+    pub family: String,
+    /// 1, 2, 3, ...
+    pub revision: i64,
+    /// The hash of the document.
+    pub sha256: String,
+    pub created_us: i64,
+    /// Means, deviations and correlations of the coefficients by axis, and what they were learned from.
+    #[schema(value_type = Object)]
+    pub document: Value,
+}
+
+/// A family to be made.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct NewFamily {
+    /// Its name, which stands in URLs.
+    name: String,
+    /// What people call it; the name where absent.
+    title: Option<String>,
+    /// The version that the members' models are founded on: `ship` (her champion), `ship/number`, `ship/alias`.
+    foundation: String,
+    /// Its first members.
+    #[serde(default)]
+    members: Vec<String>,
+}
+
+/// Another foundation.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct NewFoundation {
+    /// The version: `ship` (her champion), `ship/number`, `ship/alias`.
+    foundation: String,
+}
+
+/// Ships to add.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct NewMembers {
+    /// Names of ships.
+    ships: Vec<String>,
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct Query {
+    /// The most items to return, 1 to 1000.
+    limit: Option<i64>,
+    /// `next` of the page before.
+    after: Option<String>,
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct Revision {
+    /// Which time it was learned; the last one where absent.
+    revision: Option<i64>,
+}
+
+impl FamilyView {
+    async fn of(app: &App, family: Family) -> Result<Self> {
+        let store = app.store();
+        let foundation = store.versions().by_id(&family.foundation).await?.head;
+        let prior = match store.families().prior(&family.name, None).await {
+            Err(StoreError::NotFound { .. }) => None,
+            other => Some(other?.revision),
+        };
+        let members = store.families().count(&family.name).await?;
+        let foundation = format!("{}/{}", foundation.model, foundation.number);
+        let Family { name, title, created_us, .. } = family;
+        Ok(Self { name, title, foundation, members, prior, created_us })
+    }
+}
+
+impl MemberView {
+    pub(super) fn of(member: FamilyMember) -> Self {
+        let FamilyMember { ship, added_us, champion, method } = member;
+        Self { ship, added_us, champion, method }
+    }
+}
+
+/// List the families by name
+#[utoipa::path(get, path = "/v1/families", tag = "families", params(Query), responses((status = 200, body = Listing<FamilyView>)))]
+async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<FamilyView>>> {
+    let families = app.store().families().list(&page::page(query.limit, query.after)).await?;
+    let mut items = Vec::with_capacity(families.items.len());
+    for family in families.items {
+        items.push(FamilyView::of(&app, family).await?);
+    }
+    Ok(Json(Listing { items, next: families.next }))
+}
+
+/// Make a family on a foundation
+#[utoipa::path(
+    post, path = "/v1/families", tag = "families",
+    params(("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
+    request_body = NewFamily, responses((status = 201, body = FamilyView, headers(("Location" = String))))
+)]
+async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
+    let new: NewFamily = payload.json()?;
+    let inner = app.clone();
+    let work = async move {
+        bounded(new.members.len())?;
+        let foundation = resolve(inner.store(), "foundation", &new.foundation).await?.head;
+        let title = new.title.as_deref().unwrap_or(&new.name);
+        let family = inner.store().families().create(&new.name, title, &foundation.id).await?;
+        inner.store().families().add(&family.name, &new.members).await?;
+        let location = format!("/v1/families/{}", family.name);
+        Ok(Reply::new(StatusCode::CREATED, &FamilyView::of(&inner, family).await?)?.at(location))
+    };
+    key.once(&app, payload.bytes(), work).await
+}
+
+/// A family
+#[utoipa::path(
+    get, path = "/v1/families/{family}", tag = "families", params(("family" = String, Path)),
+    responses((status = 200, body = FamilyView))
+)]
+async fn get(State(app): State<App>, Place(name): Place<String>) -> Result<Json<FamilyView>> {
+    let family = app.store().families().get(&name).await?;
+    Ok(Json(FamilyView::of(&app, family).await?))
+}
+
+/// Put a family on another foundation; models are refined from it when the family is refined next
+#[utoipa::path(
+    put, path = "/v1/families/{family}", tag = "families", params(("family" = String, Path)),
+    request_body = NewFoundation, responses((status = 200, body = FamilyView))
+)]
+async fn found(State(app): State<App>, Place(name): Place<String>, payload: Payload) -> Result<Json<FamilyView>> {
+    let new: NewFoundation = payload.json()?;
+    let foundation = resolve(app.store(), "foundation", &new.foundation).await?.head;
+    let family = app.store().families().found(&name, &foundation.id).await?;
+    Ok(Json(FamilyView::of(&app, family).await?))
+}
+
+/// List the members of a family by name
+#[utoipa::path(
+    get, path = "/v1/families/{family}/members", tag = "families", params(("family" = String, Path), Query),
+    responses((status = 200, body = Listing<MemberView>))
+)]
+async fn members(
+    State(app): State<App>,
+    Place(name): Place<String>,
+    Params(query): Params<Query>,
+) -> Result<Json<Listing<MemberView>>> {
+    let family = app.store().families().get(&name).await?;
+    let members = app.store().families().members(&family.name, &page::page(query.limit, query.after)).await?;
+    Ok(Json(Listing::of(members, MemberView::of)))
+}
+
+/// Add ships to a family, all or none; those that are members already stay so
+#[utoipa::path(
+    post, path = "/v1/families/{family}/members", tag = "families", params(("family" = String, Path)),
+    request_body = NewMembers, responses((status = 200, body = FamilyView))
+)]
+async fn add(State(app): State<App>, Place(name): Place<String>, payload: Payload) -> Result<Json<FamilyView>> {
+    let new: NewMembers = payload.json()?;
+    bounded(new.ships.len())?;
+    app.store().families().add(&name, &new.ships).await?;
+    get(State(app), Place(name)).await
+}
+
+/// Take a ship out of a family
+#[utoipa::path(
+    delete, path = "/v1/families/{family}/members/{ship}", tag = "families",
+    params(("family" = String, Path), ("ship" = String, Path)), responses((status = 200, body = FamilyView))
+)]
+async fn remove(State(app): State<App>, Place((name, ship)): Place<(String, String)>) -> Result<Json<FamilyView>> {
+    match app.store().families().remove(&name, &ship).await? {
+        true => get(State(app), Place(name)).await,
+        false => Err(StoreError::NotFound { kind: "member", id: format!("{name}/{ship}") }.into()),
+    }
+}
+
+/// What a family has taught: how each coefficient varies over its members
+#[utoipa::path(
+    get, path = "/v1/families/{family}/prior", tag = "families", params(("family" = String, Path), Revision),
+    responses((status = 200, body = PriorView))
+)]
+async fn prior(State(app): State<App>, Place(name): Place<String>, Params(query): Params<Revision>) -> Result<Json<PriorView>> {
+    let prior = app.store().families().prior(&name, query.revision).await?;
+    let document = serde_json::from_str(&prior.document).map_err(Problem::internal)?;
+    let FamilyPrior { family, revision, sha256, created_us, .. } = prior;
+    Ok(Json(PriorView { family, revision, sha256, created_us, document }))
+}
+
+/// Learn from the members' trials how their coefficients vary; the work is a job
+#[utoipa::path(
+    post, path = "/v1/families/{family}/prior", tag = "families", params(("family" = String, Path)),
+    responses((status = 202, body = JobView, headers(("Location" = String))))
+)]
+async fn learn(State(app): State<App>, Place(name): Place<String>) -> Result<Reply> {
+    let family = app.store().families().get(&name).await?;
+    let request = serde_json::to_string(&LearnJob { family: family.name }).map_err(Problem::internal)?;
+    let job = app.store().jobs().enqueue(&NewJob { kind: LEARN.to_owned(), ship: None, request }).await?;
+    accepted(&app, job)
+}
+
+fn bounded(ships: usize) -> Result<()> {
+    match i64::try_from(ships) {
+        Ok(count) if count <= MAX_LIMIT => Ok(()),
+        _ => Err(Problem::invalid("ships", format!("are more than {MAX_LIMIT}; add them in several requests"))),
+    }
+}

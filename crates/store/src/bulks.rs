@@ -1,0 +1,234 @@
+//! Refinements of all members of a family: chunks of ships as jobs, and one outcome for each ship.
+
+use crate::aliases::AliasMove;
+use crate::arguments::{Arg, args};
+use crate::checks;
+use crate::database::Transaction;
+use crate::error::{Result, StoreError};
+use crate::job::{Job, JobState, NewJob, job};
+use crate::jobs;
+use crate::page::{List, Page};
+use crate::record::record;
+use crate::statements::{same, statements};
+use crate::store::Store;
+use crate::versions::{self, NewVersion, VersionHead};
+use crate::work;
+
+statements! {
+    INSERT = same("INSERT INTO bulk_refinements (id, family, request, ships, created_us) VALUES ($1, $2, $3, $4, $5) \
+        RETURNING id, family, request, ships, created_us");
+    GET = same("SELECT id, family, request, ships, created_us FROM bulk_refinements WHERE id = $1");
+    LIST = same("SELECT id, family, request, ships, created_us FROM bulk_refinements \
+        WHERE family = COALESCE($1, family) AND id < COALESCE($2, '~') ORDER BY id DESC LIMIT $3");
+    CHUNK = same("INSERT INTO bulk_chunks (bulk, number, job) VALUES ($1, $2, $3)");
+    CHUNKS = same("SELECT j.state, COUNT(*) AS jobs, MIN(j.started_us) AS started_us, MAX(j.finished_us) AS finished_us \
+        FROM bulk_chunks c JOIN jobs j ON j.id = c.job WHERE c.bulk = $1 GROUP BY j.state ORDER BY j.state");
+    JOBS = same(job!("SELECT", "FROM jobs WHERE id IN (SELECT job FROM bulk_chunks WHERE bulk = $1) \
+        AND state = COALESCE($2, state) ORDER BY id"));
+    CANCEL = same("UPDATE jobs SET cancel_requested = 1, \
+        finished_us = CASE WHEN state = 'queued' THEN $2 ELSE finished_us END, \
+        state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END \
+        WHERE id IN (SELECT job FROM bulk_chunks WHERE bulk = $1) AND state IN ('queued', 'running')");
+    RETRY = same("UPDATE jobs SET state = 'queued', attempt = 0, progress = 0, message = '', error = NULL, worker = NULL, \
+        finished_us = NULL, cancel_requested = 0 \
+        WHERE id IN (SELECT job FROM bulk_chunks WHERE bulk = $1) AND state IN ('failed', 'cancelled')");
+    KEEP = same("INSERT INTO bulk_outcomes (bulk, ship, outcome, version_id, worst_change, document, created_us) \
+        VALUES ($1, $2, $3, $4, $5, $6, $7)");
+    PROMOTED = same("UPDATE bulk_outcomes SET outcome = 'champion' WHERE bulk = $1 AND ship = $2 AND outcome = 'candidate'");
+    OUTCOMES = same("SELECT o.bulk, o.ship, o.outcome, v.number AS version, o.worst_change, o.document, o.created_us \
+        FROM bulk_outcomes o LEFT JOIN versions v ON v.id = o.version_id \
+        WHERE o.bulk = $1 AND o.outcome = COALESCE($2, o.outcome) AND o.ship > COALESCE($3, '') ORDER BY o.ship LIMIT $4");
+    COUNTS = same("SELECT outcome, COUNT(*) AS ships FROM bulk_outcomes WHERE bulk = $1 GROUP BY outcome ORDER BY outcome");
+}
+
+record! {
+    /// A refinement of all members of a family.
+    pub struct Bulk {
+        /// Its id.
+        pub id: String,
+        /// The family.
+        pub family: String,
+        /// What was asked, JSON.
+        pub request: String,
+        /// How many ships are to be refined.
+        pub ships: i64,
+        /// When it was asked for.
+        pub created_us: i64,
+    }
+}
+
+record! {
+    /// Chunks in one state.
+    pub struct ChunkCount {
+        /// The state.
+        pub state: JobState,
+        /// How many.
+        pub jobs: i64,
+        /// When the first of them was begun.
+        pub started_us: Option<i64>,
+        /// When the last of them ended.
+        pub finished_us: Option<i64>,
+    }
+}
+
+record! {
+    /// Ships with one outcome.
+    pub struct OutcomeCount {
+        /// `champion`, `candidate`, `unchanged` or `refused`.
+        pub outcome: String,
+        /// How many.
+        pub ships: i64,
+    }
+}
+
+record! {
+    /// What has become of a ship.
+    pub struct BulkOutcome {
+        /// The refinement.
+        pub bulk: String,
+        /// The ship.
+        pub ship: String,
+        /// `champion`, `candidate`, `unchanged` or `refused`.
+        pub outcome: String,
+        /// The number of the version that came of it, if one did.
+        pub version: Option<i64>,
+        /// By how much her worst metric is worse than before; below zero where all are better.
+        pub worst_change: Option<f64>,
+        /// Before and after, or why not, JSON.
+        pub document: String,
+        /// When.
+        pub created_us: i64,
+    }
+}
+
+/// What a worker has made of a ship.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewOutcome {
+    /// The ship.
+    pub ship: String,
+    /// `champion`, `candidate`, `unchanged` or `refused`.
+    pub outcome: String,
+    /// The version and the aliases that move to it.
+    pub version: Option<(NewVersion, Vec<AliasMove>)>,
+    /// By how much her worst metric is worse than before.
+    pub worst_change: Option<f64>,
+    /// Before and after, or why not, JSON.
+    pub document: String,
+}
+
+/// The bulk refinements of a store.
+#[derive(Debug, Clone, Copy)]
+pub struct Bulks<'a>(pub(crate) &'a Store);
+
+impl Bulks<'_> {
+    /// Queues a refinement with its chunks, all or nothing. `chunk` writes the request of a chunk from the id of the refinement
+    /// and the ships of the chunk.
+    pub async fn create(
+        &self,
+        family: &str,
+        request: &str,
+        kind: &str,
+        chunks: &[Vec<String>],
+        chunk: impl Fn(&str, &[String]) -> String,
+    ) -> Result<Bulk> {
+        checks::json("request", request)?;
+        let id = self.0.new_id();
+        let ships = i64::try_from(chunks.iter().map(Vec::len).sum::<usize>()).unwrap_or(i64::MAX);
+        let mut tx = self.0.begin().await?;
+        let values = args![id: &id, family: family, request: request, ships: ships, created_us: self.0.now_us()];
+        let bulk = tx.one(INSERT, values).await?;
+        for (number, ships) in (1..).zip(chunks) {
+            let new = NewJob { kind: kind.to_owned(), ship: None, request: chunk(&id, ships) };
+            let job = jobs::insert(self.0, &mut tx, &new).await?;
+            tx.execute(CHUNK, args![bulk: &id, number: number, job: &job.id]).await?;
+        }
+        tx.commit().await?;
+        Ok(bulk)
+    }
+
+    /// A refinement.
+    pub async fn get(&self, id: &str) -> Result<Bulk> {
+        let bulk = self.0.database().optional(GET, args![id: id]).await?;
+        bulk.ok_or_else(|| StoreError::missing("bulk refinement", id))
+    }
+
+    /// Refinements, the latest first.
+    pub async fn list(&self, family: Option<&str>, page: &Page) -> Result<List<Bulk>> {
+        let values = args![family: family, after: &page.after, limit: page.fetch()?];
+        let bulks = self.0.database().all(LIST, values).await?;
+        Ok(page.of(bulks, |bulk: &Bulk| bulk.id.clone()))
+    }
+
+    /// How many chunks stand where.
+    pub async fn chunks(&self, id: &str) -> Result<Vec<ChunkCount>> {
+        self.0.database().all(CHUNKS, args![bulk: id]).await
+    }
+
+    /// The jobs of the chunks in a state, or all.
+    pub async fn jobs(&self, id: &str, state: Option<JobState>) -> Result<Vec<Job>> {
+        self.0.database().all(JOBS, args![bulk: id, state: state.map(JobState::as_str)]).await
+    }
+
+    /// Cancels the chunks that wait, and asks the workers of those that run to stop.
+    pub async fn request_cancel(&self, id: &str) -> Result<u64> {
+        self.all(CANCEL, &[("bulk", id.into()), ("finished_us", self.0.now_us().into())]).await
+    }
+
+    /// Puts the chunks that failed or were cancelled back in the queue; ships that have an outcome keep it.
+    pub async fn retry(&self, id: &str) -> Result<u64> {
+        self.all(RETRY, &[("bulk", id.into())]).await
+    }
+
+    async fn all(&self, statement: crate::statements::Statement, values: &[(&'static str, Arg<'_>)]) -> Result<u64> {
+        let mut tx = self.0.begin().await?;
+        let changed = tx.execute(statement, values).await?;
+        tx.commit().await?;
+        Ok(changed)
+    }
+
+    /// What has become of the ships, by name.
+    pub async fn outcomes(&self, id: &str, outcome: Option<&str>, page: &Page) -> Result<List<BulkOutcome>> {
+        let values = args![bulk: id, outcome: outcome, after: &page.after, limit: page.fetch()?];
+        let outcomes = self.0.database().all(OUTCOMES, values).await?;
+        Ok(page.of(outcomes, |outcome: &BulkOutcome| outcome.ship.clone()))
+    }
+
+    /// How many ships have which outcome.
+    pub async fn counts(&self, id: &str) -> Result<Vec<OutcomeCount>> {
+        self.0.database().all(COUNTS, args![bulk: id]).await
+    }
+
+    /// Makes a candidate of this refinement champion, by a person's word.
+    pub async fn promote(&self, id: &str, ship: &str, version: i64, change: &AliasMove) -> Result<()> {
+        let mut tx = self.0.begin().await?;
+        crate::aliases::shift(self.0, &mut tx, ship, version, change).await?;
+        if tx.execute(PROMOTED, args![bulk: id, ship: ship]).await? == 0 {
+            return Err(StoreError::conflict("outcome", ship, "is no candidate of this refinement"));
+        }
+        tx.commit().await
+    }
+
+    /// Keeps what a worker has made of a chunk and ends its job, all or nothing: a worker that has lost the job to another (an
+    /// older `fence`) leaves nothing behind, and no ship gets two outcomes.
+    pub async fn commit(&self, bulk: &str, job: (&str, i64), outcomes: &[NewOutcome], result: &str) -> Result<Job> {
+        let mut tx = self.0.begin().await?;
+        for outcome in outcomes {
+            keep(self.0, &mut tx, bulk, outcome).await?;
+        }
+        let job = work::complete(&mut tx, job.0, job.1, result, self.0.now_us()).await?;
+        tx.commit().await?;
+        Ok(job)
+    }
+}
+
+async fn keep(store: &Store, tx: &mut Transaction, bulk: &str, new: &NewOutcome) -> Result<()> {
+    checks::json("document", &new.document)?;
+    let version: Option<VersionHead> = match &new.version {
+        Some((version, moves)) => Some(versions::insert(store, tx, version, moves).await?),
+        None => None,
+    };
+    let version_id = version.as_ref().map(|version| version.id.as_str());
+    let values = args![bulk: bulk, ship: &new.ship, outcome: &new.outcome, version_id: version_id,
+        worst_change: new.worst_change, document: &new.document, created_us: store.now_us()];
+    tx.execute(KEEP, values).await.map(drop)
+}

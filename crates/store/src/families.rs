@@ -1,0 +1,215 @@
+//! Families of ships whose models share a foundation, and what each has taught.
+
+use crate::arguments::args;
+use crate::checks;
+use crate::database::Transaction;
+use crate::error::{Result, StoreError};
+use crate::objects::sha256_hex;
+use crate::page::{List, Page};
+use crate::record::{Counted, record};
+use crate::statements::{same, statements};
+use crate::store::Store;
+use crate::versions;
+
+statements! {
+    INSERT = same("INSERT INTO families (name, title, foundation, created_us) VALUES ($1, $2, $3, $4) ON CONFLICT (name) DO NOTHING \
+        RETURNING name, title, foundation, created_us");
+    GET = same("SELECT name, title, foundation, created_us FROM families WHERE name = $1");
+    LIST = same("SELECT name, title, foundation, created_us FROM families WHERE name > COALESCE($1, '') ORDER BY name LIMIT $2");
+    FOUND = same("UPDATE families SET foundation = $2 WHERE name = $1 RETURNING name, title, foundation, created_us");
+    ADD = same("INSERT INTO family_members (family, ship, added_us) VALUES ($1, $2, $3) ON CONFLICT (family, ship) DO NOTHING");
+    REMOVE = same("DELETE FROM family_members WHERE family = $1 AND ship = $2");
+    SHIP = same("SELECT COUNT(*) AS rows FROM ships WHERE name = $1 AND deleted_us IS NULL");
+    COUNT = same("SELECT COUNT(*) AS rows FROM family_members m JOIN ships s ON s.name = m.ship \
+        WHERE m.family = $1 AND s.deleted_us IS NULL");
+    MEMBERS = same("SELECT m.ship, m.added_us, v.number AS champion, v.method FROM family_members m \
+        JOIN ships s ON s.name = m.ship AND s.deleted_us IS NULL \
+        LEFT JOIN aliases a ON a.model = m.ship AND a.alias = 'champion' \
+        LEFT JOIN versions v ON v.model = a.model AND v.number = a.version_number \
+        WHERE m.family = $1 AND m.ship > COALESCE($2, '') ORDER BY m.ship LIMIT $3");
+    DRIFTED = same("SELECT m.ship, m.added_us, v.number AS champion, v.method FROM family_members m \
+        JOIN ships s ON s.name = m.ship AND s.deleted_us IS NULL \
+        JOIN aliases a ON a.model = m.ship AND a.alias = 'champion' \
+        JOIN versions v ON v.model = a.model AND v.number = a.version_number \
+        WHERE m.family = $1 AND (SELECT d.verdict FROM diagnoses d WHERE d.version_id = v.id OR d.made_id = v.id \
+        ORDER BY d.id DESC LIMIT 1) NOT IN ('complete') ORDER BY m.ship LIMIT $2");
+    TEACH = same("INSERT INTO family_priors (family, revision, document, sha256, created_us) \
+        SELECT $1, COALESCE(MAX(revision), 0) + 1, $2, $3, $4 FROM family_priors WHERE family = $1 \
+        RETURNING family, revision, document, sha256, created_us");
+    PRIOR = same("SELECT family, revision, document, sha256, created_us FROM family_priors WHERE family = $1 AND revision = $2");
+    LAST_PRIOR = same("SELECT family, revision, document, sha256, created_us FROM family_priors WHERE family = $1 \
+        ORDER BY revision DESC LIMIT 1");
+}
+
+record! {
+    /// A family.
+    pub struct Family {
+        /// Its name, for ever.
+        pub name: String,
+        /// What people call it.
+        pub title: String,
+        /// The id of the version that its members' models start from.
+        pub foundation: String,
+        /// When it was made.
+        pub created_us: i64,
+    }
+}
+
+record! {
+    /// A member of a family.
+    pub struct FamilyMember {
+        /// The ship.
+        pub ship: String,
+        /// Since when she is a member.
+        pub added_us: i64,
+        /// The number of her champion, if she has one.
+        pub champion: Option<i64>,
+        /// How that was made.
+        pub method: Option<String>,
+    }
+}
+
+record! {
+    /// What a family has taught.
+    pub struct FamilyPrior {
+        /// The family.
+        pub family: String,
+        /// 1, 2, 3, ...
+        pub revision: i64,
+        /// Means and covariances, JSON.
+        pub document: String,
+        /// The hash of the document.
+        pub sha256: String,
+        /// When it was learned.
+        pub created_us: i64,
+    }
+}
+
+/// The families of a store.
+#[derive(Debug, Clone, Copy)]
+pub struct Families<'a>(pub(crate) &'a Store);
+
+impl Families<'_> {
+    /// Makes a family on a version, `foundation`.
+    pub async fn create(&self, name: &str, title: &str, foundation: &str) -> Result<Family> {
+        checks::name("name", name)?;
+        let mut tx = self.0.begin().await?;
+        versions::check_id(&mut tx, "foundation", foundation).await?;
+        let values = args![name: name, title: title, foundation: foundation, created_us: self.0.now_us()];
+        let family = tx.optional(INSERT, values).await?;
+        let family = family.ok_or_else(|| StoreError::conflict("family", name, "there is one of this name already"))?;
+        tx.commit().await?;
+        Ok(family)
+    }
+
+    /// A family.
+    pub async fn get(&self, name: &str) -> Result<Family> {
+        let family = self.0.database().optional(GET, args![name: name]).await?;
+        family.ok_or_else(|| StoreError::missing("family", name))
+    }
+
+    /// The families by name.
+    pub async fn list(&self, page: &Page) -> Result<List<Family>> {
+        let families = self.0.database().all(LIST, args![after: &page.after, limit: page.fetch()?]).await?;
+        Ok(page.of(families, |family: &Family| family.name.clone()))
+    }
+
+    /// Puts a family on another foundation.
+    pub async fn found(&self, name: &str, foundation: &str) -> Result<Family> {
+        let mut tx = self.0.begin().await?;
+        versions::check_id(&mut tx, "foundation", foundation).await?;
+        let family = tx.optional(FOUND, args![name: name, foundation: foundation]).await?;
+        let family = family.ok_or_else(|| StoreError::missing("family", name))?;
+        tx.commit().await?;
+        Ok(family)
+    }
+
+    /// Adds ships, all or none; those that are members already stay so. Returns how many are new.
+    pub async fn add(&self, family: &str, ships: &[String]) -> Result<u64> {
+        let mut tx = self.0.begin().await?;
+        exists(&mut tx, family).await?;
+        let mut added = 0;
+        for ship in ships {
+            let Counted { rows } = tx.one(SHIP, args![name: ship]).await?;
+            if rows == 0 {
+                return Err(StoreError::invalid("ships", format!("there is no ship `{ship}`")));
+            }
+            added += tx.execute(ADD, args![family: family, ship: ship, added_us: self.0.now_us()]).await?;
+        }
+        tx.commit().await?;
+        Ok(added)
+    }
+
+    /// Takes a ship out of a family; returns whether she was in it.
+    pub async fn remove(&self, family: &str, ship: &str) -> Result<bool> {
+        let mut tx = self.0.begin().await?;
+        let removed = tx.execute(REMOVE, args![family: family, ship: ship]).await?;
+        tx.commit().await?;
+        Ok(removed > 0)
+    }
+
+    /// How many members a family has.
+    pub async fn count(&self, family: &str) -> Result<i64> {
+        let counted: Option<Counted> = self.0.database().optional(COUNT, args![family: family]).await?;
+        Ok(counted.map_or(0, |counted| counted.rows))
+    }
+
+    /// The members by name.
+    pub async fn members(&self, family: &str, page: &Page) -> Result<List<FamilyMember>> {
+        let values = args![family: family, after: &page.after, limit: page.fetch()?];
+        let members = self.0.database().all(MEMBERS, values).await?;
+        Ok(page.of(members, |member: &FamilyMember| member.ship.clone()))
+    }
+
+    /// Members whose champion does not hold by its newest diagnosis, by name.
+    pub async fn drifted(&self, family: &str, limit: i64) -> Result<Vec<FamilyMember>> {
+        self.0.database().all(DRIFTED, args![family: family, limit: limit]).await
+    }
+
+    /// Keeps what a family has taught now, as its next revision.
+    pub async fn teach(&self, family: &str, document: &str) -> Result<FamilyPrior> {
+        let mut tx = self.0.begin().await?;
+        let prior = teach(self.0, &mut tx, family, document).await?;
+        tx.commit().await?;
+        Ok(prior)
+    }
+
+    /// What a family has taught: at a revision, or last.
+    pub async fn prior(&self, family: &str, revision: Option<i64>) -> Result<FamilyPrior> {
+        let prior = match revision {
+            Some(revision) => self.0.database().optional(PRIOR, args![family: family, revision: revision]).await?,
+            None => self.0.database().optional(LAST_PRIOR, args![family: family]).await?,
+        };
+        prior.ok_or_else(|| StoreError::missing("family prior", family))
+    }
+}
+
+/// Keeps what a family has taught within a transaction.
+pub(crate) async fn teach(store: &Store, tx: &mut Transaction, family: &str, document: &str) -> Result<FamilyPrior> {
+    checks::json("document", document)?;
+    exists(tx, family).await?;
+    let sha256 = sha256_hex(document.as_bytes());
+    tx.one(TEACH, args![family: family, document: document, sha256: &sha256, created_us: store.now_us()]).await
+}
+
+async fn exists(tx: &mut Transaction, family: &str) -> Result<()> {
+    let family_row: Option<Family> = tx.optional(GET, args![name: family]).await?;
+    family_row.map(drop).ok_or_else(|| StoreError::missing("family", family))
+}
+
+impl Families<'_> {
+    /// Keeps what a family has taught and ends the job that learned it, all or nothing. `result` writes the job's result, JSON.
+    pub async fn commit(
+        &self,
+        family: &str,
+        document: &str,
+        job: (&str, i64),
+        result: impl FnOnce(&FamilyPrior) -> String,
+    ) -> Result<FamilyPrior> {
+        let mut tx = self.0.begin().await?;
+        let prior = teach(self.0, &mut tx, family, document).await?;
+        crate::work::complete(&mut tx, job.0, job.1, &result(&prior), self.0.now_us()).await?;
+        tx.commit().await?;
+        Ok(prior)
+    }
+}

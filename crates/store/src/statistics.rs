@@ -1,0 +1,56 @@
+//! Sufficient statistics of trials, under the hash of everything that shapes them. They can be made again from the samples, so
+//! that whoever comes first keeps them and nobody minds who.
+
+use crate::arguments::args;
+use crate::checks;
+use crate::error::{Result, StoreError};
+use crate::objects::sha256_hex;
+use crate::record::record;
+use crate::statements::{same, statements};
+use crate::store::Store;
+
+statements! {
+    PUT = same("INSERT INTO trial_statistics (key, document, sha256, created_us) VALUES ($1, $2, $3, $4) \
+        ON CONFLICT (key) DO NOTHING");
+    GET = same("SELECT key, document, sha256 FROM trial_statistics WHERE key = $1");
+}
+
+record! {
+    /// The statistics of a trial.
+    pub struct Statistics {
+        /// The hash of everything that shapes them.
+        pub key: String,
+        /// The statistics, JSON.
+        pub document: String,
+        /// The hash of the document.
+        pub sha256: String,
+    }
+}
+
+/// The statistics that a store keeps.
+#[derive(Debug, Clone, Copy)]
+pub struct TrialStatistics<'a>(pub(crate) &'a Store);
+
+impl TrialStatistics<'_> {
+    /// Keeps statistics by key and document, all or nothing; those that are there stay as they are.
+    pub async fn put(&self, all: &[(String, String)]) -> Result<()> {
+        let mut tx = self.0.begin().await?;
+        for (key, document) in all {
+            checks::sha256("key", key)?;
+            checks::json("document", document)?;
+            let sha256 = sha256_hex(document.as_bytes());
+            let values = args![key: key, document: document, sha256: &sha256, created_us: self.0.now_us()];
+            tx.execute(PUT, values).await?;
+        }
+        tx.commit().await
+    }
+
+    /// The document under a key, if it is there. One that is not what was kept is refused.
+    pub async fn get(&self, key: &str) -> Result<Option<String>> {
+        let Some(found) = self.0.database().optional::<Statistics>(GET, args![key: key]).await? else { return Ok(None) };
+        match sha256_hex(found.document.as_bytes()) == found.sha256 {
+            true => Ok(Some(found.document)),
+            false => Err(StoreError::conflict("statistics", key, "the document does not have its hash: the database is damaged")),
+        }
+    }
+}

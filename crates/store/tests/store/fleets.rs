@@ -1,0 +1,119 @@
+use sistership_store::{AliasMove, Expect, Job, JobState, NewOutcome, Page, Result};
+
+use crate::jobs::{claim, let_the_lease_run_out};
+use crate::support::*;
+
+async fn family(on: &TestStore, ships: &[&str]) -> Vec<String> {
+    for name in ships {
+        on.store.ships().create(&ship(name)).await.unwrap();
+    }
+    let foundation = versions(on, "foundation", 1).await.remove(0).id;
+    on.store.families().create("sisters", "Sisters", &foundation).await.unwrap();
+    let ships: Vec<String> = ships.iter().map(|&name| name.to_owned()).collect();
+    assert_eq!(on.store.families().add("sisters", &ships).await.unwrap(), ships.len() as u64);
+    ships
+}
+
+async fn bulk(on: &TestStore, chunks: &[Vec<String>]) -> String {
+    let chunk = |bulk: &str, ships: &[String]| format!(r#"{{"bulk":"{bulk}","ships":{}}}"#, ships.len());
+    on.store.bulks().create("sisters", "{}", "bulk-refinement", chunks, chunk).await.unwrap().id
+}
+
+fn outcome(ship: &str, moves: Vec<AliasMove>) -> NewOutcome {
+    let version = Some((version(ship), moves));
+    NewOutcome { ship: ship.into(), outcome: "candidate".into(), version, worst_change: Some(-0.1), document: "{}".into() }
+}
+
+async fn commit(on: &TestStore, bulk: &str, job: &Job, outcomes: &[NewOutcome]) -> Result<Job> {
+    on.store.bulks().commit(bulk, (&job.id, job.fence), outcomes, "{}").await
+}
+
+async fn families_have_members_and_teach(on: &TestStore) {
+    family(on, &["a", "b", "c"]).await;
+    let families = on.store.families();
+    assert_invalid(families.add("sisters", &["c".into(), "nobody".into()]).await, "ships");
+    assert_eq!(families.add("sisters", &["c".into()]).await.unwrap(), 0, "she is a member already");
+    on.store.ships().delete("b", None).await.unwrap();
+    let members = families.members("sisters", &Page::first(2)).await.unwrap();
+    assert_eq!(members.items.iter().map(|m| m.ship.as_str()).collect::<Vec<_>>(), ["a", "c"], "a deleted ship is none");
+    assert_eq!((families.count("sisters").await.unwrap(), members.items[0].champion), (2, None));
+    assert!(families.remove("sisters", "a").await.unwrap() && !families.remove("sisters", "a").await.unwrap());
+    assert_conflict(families.create("sisters", "Again", &versions(on, "other", 1).await[0].id).await, "already");
+    assert_not_found(families.prior("sisters", None).await, "family prior");
+    for revision in 1..=2 {
+        let prior = families.teach("sisters", &format!(r#"{{"n":{revision}}}"#)).await.unwrap();
+        assert_eq!(prior.revision, revision);
+    }
+    assert_eq!(families.prior("sisters", None).await.unwrap().document, r#"{"n":2}"#);
+    assert_eq!(families.prior("sisters", Some(1)).await.unwrap().document, r#"{"n":1}"#);
+    assert_not_found(families.teach("nobody", "{}").await, "family");
+}
+
+async fn statistics_are_kept_once(on: &TestStore) {
+    let key = sistership_store::sha256_hex(b"rows");
+    assert_eq!(on.store.statistics().get(&key).await.unwrap(), None);
+    for document in [r#"{"first":1}"#, r#"{"second":2}"#] {
+        on.store.statistics().put(&[(key.clone(), document.to_owned())]).await.unwrap();
+    }
+    assert_eq!(on.store.statistics().get(&key).await.unwrap().as_deref(), Some(r#"{"first":1}"#));
+    assert_invalid(on.store.statistics().put(&[("short".into(), "{}".into())]).await, "key");
+}
+
+async fn a_ship_has_one_outcome_whoever_comes_twice(on: &TestStore) {
+    let ships = family(on, &["a", "b"]).await;
+    let id = bulk(on, &[ships]).await;
+    let old = claim(on, "old").await.unwrap();
+    let_the_lease_run_out(on).await;
+    let new = claim(on, "new").await.unwrap();
+    let done = [outcome("a", vec![]), outcome("b", vec![champion(Expect::Absent)])];
+    assert_conflict(commit(on, &id, &old, &done).await, "lost");
+    assert!(on.store.bulks().counts(&id).await.unwrap().is_empty(), "a fenced worker leaves nothing behind");
+    assert_eq!(commit(on, &id, &new, &done).await.unwrap().state, JobState::Succeeded);
+    let outcomes = on.store.bulks().outcomes(&id, None, &Page::first(9)).await.unwrap().items;
+    assert_eq!(outcomes.iter().map(|o| (o.ship.as_str(), o.version)).collect::<Vec<_>>(), [("a", Some(1)), ("b", Some(1))]);
+    assert_eq!(on.store.versions().latest("a").await.unwrap().head.number, 1);
+}
+
+async fn a_chunk_is_kept_whole_or_not_at_all(on: &TestStore) {
+    let ships = family(on, &["a", "b"]).await;
+    let id = bulk(on, &[ships]).await;
+    let job = claim(on, "w").await.unwrap();
+    let done = [outcome("a", vec![]), outcome("b", vec![champion(Expect::Revision(7))])];
+    assert_stale(commit(on, &id, &job, &done).await, None);
+    assert!(on.store.bulks().counts(&id).await.unwrap().is_empty());
+    assert_not_found(on.store.versions().latest("a").await, "model");
+}
+
+async fn what_is_left_is_cancelled_and_goes_on(on: &TestStore) {
+    let ships = family(on, &["a", "b", "c"]).await;
+    let chunks: Vec<Vec<String>> = ships.iter().map(|ship| vec![ship.clone()]).collect();
+    let id = bulk(on, &chunks).await;
+    let first = claim(on, "w").await.unwrap();
+    commit(on, &id, &first, &[outcome("a", vec![])]).await.unwrap();
+    assert_eq!(on.store.bulks().request_cancel(&id).await.unwrap(), 2);
+    let states = |counts: Vec<sistership_store::ChunkCount>| counts.into_iter().map(|c| (c.state, c.jobs)).collect::<Vec<_>>();
+    let expected = [(JobState::Cancelled, 2), (JobState::Succeeded, 1)];
+    assert_eq!(states(on.store.bulks().chunks(&id).await.unwrap()), expected);
+    assert_eq!(on.store.bulks().retry(&id).await.unwrap(), 2);
+    for ship in ["b", "c"] {
+        let job = claim(on, "w").await.unwrap();
+        commit(on, &id, &job, &[outcome(ship, vec![])]).await.unwrap();
+    }
+    assert_eq!(states(on.store.bulks().chunks(&id).await.unwrap()), [(JobState::Succeeded, 3)]);
+    let word = champion(Expect::Any);
+    on.store.bulks().promote(&id, "b", 1, &word).await.unwrap();
+    assert_conflict(on.store.bulks().promote(&id, "b", 1, &word).await, "no candidate");
+    let counts = on.store.bulks().counts(&id).await.unwrap();
+    assert_eq!(
+        counts.into_iter().map(|c| (c.outcome, c.ships)).collect::<Vec<_>>(),
+        [("candidate".to_owned(), 2), ("champion".into(), 1)]
+    );
+}
+
+on_both_databases!(
+    families_have_members_and_teach,
+    statistics_are_kept_once,
+    a_ship_has_one_outcome_whoever_comes_twice,
+    a_chunk_is_kept_whole_or_not_at_all,
+    what_is_left_is_cancelled_and_goes_on
+);
