@@ -4,6 +4,7 @@
 //! [`derive`](mod@derive) and [`verify`](mod@verify) make versions again from their recipes, for the server's jobs and for
 //! the command line alike.
 
+mod answers;
 mod app;
 mod archive;
 mod catalogue;
@@ -21,6 +22,7 @@ mod process;
 mod publish;
 pub mod report;
 mod routes;
+pub mod search;
 mod seed;
 mod server;
 mod start_error;

@@ -63,6 +63,12 @@ statements! {
         FROM diagnoses WHERE made_id IS NOT NULL AND made_id NOT IN (SELECT id FROM versions) ORDER BY id");
     DIAGNOSIS_REPORT = same("SELECT 'diagnosis ' || id AS place, 'its report ' || report_id || ' is missing' AS message \
         FROM diagnoses WHERE report_id NOT IN (SELECT id FROM reports) ORDER BY id");
+    TAG_SHIP = same("SELECT 'tag ' || ship || '/' || tag AS place, 'there is no such ship' AS message FROM ship_tags \
+        WHERE ship NOT IN (SELECT name FROM ships) ORDER BY ship, tag");
+    SEARCH_SHIP = same("SELECT 'ship ' || name AS place, 'is neither found by a search nor waits to be' AS message FROM ships \
+        WHERE name NOT IN (SELECT ship FROM ship_vectors) AND name NOT IN (SELECT ship FROM search_queue) ORDER BY name");
+    SEARCH_FACT = same("SELECT DISTINCT 'ship ' || ship AS place, 'has facts, but is not there' AS message FROM ship_facts \
+        WHERE ship NOT IN (SELECT name FROM ships) ORDER BY 1");
     JOB_SHIP = same("SELECT 'job ' || id AS place, 'there is no ship ' || ship AS message FROM jobs \
         WHERE ship IS NOT NULL AND ship NOT IN (SELECT name FROM ships) ORDER BY id");
     JOB_STATE = same("SELECT 'job ' || id AS place, 'is ' || state || ', which its lease, result, error or end contradicts' AS message \
@@ -91,6 +97,9 @@ const CHECKS: &[(&str, Statement)] = &[
     ("diagnosis-version", DIAGNOSIS_VERSION),
     ("diagnosis-made", DIAGNOSIS_MADE),
     ("diagnosis-report", DIAGNOSIS_REPORT),
+    ("tag-ship", TAG_SHIP),
+    ("search-ship", SEARCH_SHIP),
+    ("search-fact", SEARCH_FACT),
     ("job-ship", JOB_SHIP),
     ("job-state", JOB_STATE),
 ];

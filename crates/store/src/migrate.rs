@@ -11,10 +11,12 @@ type Source = (i64, &'static str, &'static str);
 const SQLITE: &[Source] = &[
     (1, "initial", include_str!("../../../migrations/sqlite/0001_initial.sql")),
     (2, "diagnoses", include_str!("../../../migrations/sqlite/0002_diagnoses.sql")),
+    (3, "search", include_str!("../../../migrations/sqlite/0003_search.sql")),
 ];
 const POSTGRES: &[Source] = &[
     (1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql")),
     (2, "diagnoses", include_str!("../../../migrations/postgres/0002_diagnoses.sql")),
+    (3, "search", include_str!("../../../migrations/postgres/0003_search.sql")),
 ];
 
 fn migrator(sources: &'static [Source]) -> Migrator {

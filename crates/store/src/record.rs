@@ -29,7 +29,7 @@ macro_rules! stored_as_is {
         }
     )*};
 }
-stored_as_is!(String, i64, f64, Option<String>, Option<i64>);
+stored_as_is!(String, i64, f64, Option<String>, Option<i64>, Option<f64>);
 
 impl Column for bool {
     type Stored = i64;

@@ -11,6 +11,7 @@ use tempfile::TempDir;
 use crate::clock::ManualClock;
 use crate::store::Store;
 
+mod plans;
 mod server;
 
 /// An empty database that goes when this is dropped (on PostgreSQL, when the test process ends).

@@ -17,6 +17,7 @@ pub(crate) mod refine_text;
 mod running;
 mod sailed;
 pub mod serve;
+pub mod ships;
 pub mod similar;
 pub mod simulate;
 mod simulated;

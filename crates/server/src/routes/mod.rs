@@ -16,11 +16,14 @@ mod pages;
 mod predictions;
 mod queue;
 mod refinements;
+mod register;
 mod reports;
 mod samples;
 mod ship_changes;
+mod ship_search;
 mod ships;
 mod similar;
+mod tags;
 mod trials;
 mod uploads;
 mod versions;
@@ -66,6 +69,7 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(laws::routes())
         .merge(ships::routes())
         .merge(ship_changes::routes())
+        .merge(tags::routes())
         .merge(similar::routes())
         .merge(champion::routes())
         .merge(trials::routes())
@@ -75,6 +79,7 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(jobs::routes())
         .merge(events::routes())
         .merge(versions::routes())
+        .merge(register::routes())
         .merge(aliases::routes())
         .merge(predictions::routes())
         .merge(reports::routes())

@@ -87,12 +87,17 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     (DIAGNOSIS, "diagnosis-made", "diagnosis d"),
     (DIAGNOSIS, "diagnosis-report", "diagnosis d"),
     (DIAGNOSIS, "diagnosis-trials", "diagnosis d"),
+    (TAG, "tag-ship", "tag nobody/own"),
+    ("DELETE FROM ship_vectors; DELETE FROM search_queue", "search-ship", "ship mariner"),
+    (FACT, "search-fact", "ship nobody"),
     (JOB, "job-ship", "job j"),
     (JOB, "job-state", "job j"),
     (JOB, "job-result", "job j"),
 ];
 const REPORT: &str = "INSERT INTO reports VALUES ('r', 'none', 'nobody', 'refinement', '{}', '', 0)";
 const DIAGNOSIS: &str = "INSERT INTO diagnoses VALUES ('d', 'none', 'none', 'none', 'effects', '[]', '[\"none\"]', 0)";
+const TAG: &str = "INSERT INTO ship_tags VALUES ('nobody', 'own')";
+const FACT: &str = "INSERT INTO ship_facts VALUES ('nobody', 'particular lpp_m', 1)";
 const JOB: &str = "INSERT INTO jobs VALUES ('j', 'refinement', 'nobody', '{}', 'succeeded', 1, '', \
     '{\"model\": \"mariner\", \"version\": 1, \"sha256\": \"x\", \"report\": \"none\"}', NULL, 1, 1, 5, NULL, 0, 0, NULL, 0)";
 
@@ -127,8 +132,23 @@ async fn damaged(database: TestDatabase) {
     assert!(found(&archive).await.clean, "healed again");
 }
 
-const TABLES: [&str; 11] =
-    ["laws", "ships", "ship_revisions", "trials", "models", "versions", "aliases", "alias_moves", "jobs", "reports", "diagnoses"];
+const TABLES: [&str; 15] = [
+    "laws",
+    "ships",
+    "ship_revisions",
+    "trials",
+    "models",
+    "versions",
+    "aliases",
+    "alias_moves",
+    "jobs",
+    "reports",
+    "diagnoses",
+    "ship_facts",
+    "ship_vectors",
+    "ship_tags",
+    "search_queue",
+];
 
 #[tokio::test(flavor = "multi_thread")]
 async fn each_damage_to_objects_is_named() {

@@ -16,6 +16,7 @@ mod refinements;
 mod refusals;
 mod reports;
 mod schema;
+mod search;
 mod ships;
 mod trials;
 mod versions;
