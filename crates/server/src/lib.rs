@@ -38,5 +38,6 @@ pub use archive::Archive;
 pub use config::{Config, DEFAULT_LISTEN, Leases, Limits, sqlite_url};
 pub use routes::openapi;
 pub use server::{Running, Server};
+pub use sistership_store::{ObjectsPlace, S3Place};
 pub use start_error::StartError;
 pub use workers::Workers;

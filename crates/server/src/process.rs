@@ -25,7 +25,7 @@ pub(crate) struct Process {
 impl Process {
     /// Opens the store, brings the zoo in, and sets the workers to work; keeps up what ships are found by, if it `indexes`.
     pub(crate) async fn start(config: &Config, indexes: bool) -> Result<(Self, App), StartError> {
-        let archive = Archive::open(&config.database_url, &config.data_dir).await?;
+        let archive = Archive::open_at(&config.database_url, &config.objects).await?;
         let catalogue = Catalogue::default();
         seed::seed(&archive.store, &catalogue).await?;
         let (stop, stopping) = Stopping::new();

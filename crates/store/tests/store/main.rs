@@ -15,6 +15,7 @@ mod objects;
 mod refinements;
 mod refusals;
 mod reports;
+mod scale;
 mod schema;
 mod search;
 mod ships;
