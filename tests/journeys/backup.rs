@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use reqwest::Method;
 use serde_json::{Value, json};
-use sistership_store::testing::TestDatabase;
+use sistership_store::testing::{TestDatabase, TestS3};
 use sistership_tests::binary;
-use sistership_tests::server::{TestServer, json as answer};
+use sistership_tests::server::{Bucket, TestServer, json as answer};
 
 use super::over_http::{create, refine, upload};
 use super::sea_trials::NAME;
@@ -45,16 +45,22 @@ async fn until(ledger: &Ledger, acknowledged: usize) {
 }
 
 /// Runs a command beside the writer.
-async fn run(arguments: Vec<String>) -> Value {
-    let run = move || binary::json(&arguments.iter().map(String::as_str).collect::<Vec<_>>(), 0);
+async fn run(arguments: Vec<String>, bucket: Option<&Bucket>) -> Value {
+    let environment = bucket.map_or_else(Vec::new, |bucket| bucket.environment.clone());
+    let run = move || binary::json_with(&arguments.iter().map(String::as_str).collect::<Vec<_>>(), &environment, 0);
     tokio::task::spawn_blocking(run).await.expect("a command")
 }
 
-fn command(name: &str, folder: &Path, store: [String; 4]) -> Vec<String> {
-    [name.to_owned(), folder.display().to_string(), "--json".to_owned()].into_iter().chain(store).collect()
+fn command(name: &str, folder: &Path, store: &[String; 4], bucket: Option<&Bucket>) -> Vec<String> {
+    let words = [name.to_owned(), folder.display().to_string(), "--json".to_owned()].into_iter().chain(store.clone());
+    words.chain(bucket.into_iter().flat_map(|bucket| bucket.arguments.clone())).collect()
 }
 
-async fn backed_up(server: TestServer, empty: TestDatabase) {
+/// Where the samples of the store are, and where those of the restored one shall be, if in buckets.
+type Buckets = Option<[Bucket; 2]>;
+
+async fn backed_up(server: TestServer, empty: TestDatabase, buckets: Buckets) {
+    let (from, to) = (buckets.as_ref().map(|[from, _]| from), buckets.as_ref().map(|[_, to]| to));
     create(&server).await;
     upload(&server).await;
     let done = server.finished(&refine(&server, "before").await).await;
@@ -64,7 +70,7 @@ async fn backed_up(server: TestServer, empty: TestDatabase) {
     let during = async {
         until(&ledger, 10).await;
         let before = ledger.acknowledged.load(Ordering::SeqCst);
-        let manifest = run(command("backup", &folder, server.store_arguments())).await;
+        let manifest = run(command("backup", &folder, &server.store_arguments(), from), from).await;
         let after = ledger.begun.load(Ordering::SeqCst);
         until(&ledger, after + 5).await;
         stop.store(1, Ordering::SeqCst);
@@ -73,7 +79,7 @@ async fn backed_up(server: TestServer, empty: TestDatabase) {
     };
     let ((), (before, after)) = tokio::join!(write(&server, &ledger, &stop), during);
     let original = contents(&server).await;
-    let restored = restored(&folder, empty).await;
+    let restored = restored(&folder, empty, to).await;
     let kept = restored.get(&format!("/v1/trials?ship={NAME}&limit=1000")).await;
     let names: Vec<&str> = kept["items"].as_array().expect("trials").iter().filter_map(|trial| trial["name"].as_str()).collect();
     let written: Vec<&str> = names.iter().copied().filter(|name| name.starts_with("written-")).collect();
@@ -106,27 +112,41 @@ fn same(original: &[Value], restored: &[Value], trials: usize) {
 }
 
 /// A server on what a backup gives; its store is clean, and a second restoration into it is refused.
-async fn restored(folder: &Path, empty: TestDatabase) -> TestServer {
+async fn restored(folder: &Path, empty: TestDatabase, bucket: Option<&Bucket>) -> TestServer {
     let data = empty.folder.path().join("data");
     let store = ["--database-url".into(), empty.url.clone(), "--data-dir".into(), data.display().to_string()];
-    run(command("restore", folder, store.clone())).await;
-    let findings = run(["fsck".into(), "--json".into()].into_iter().chain(store.clone()).collect()).await;
+    run(command("restore", folder, &store, bucket), bucket).await;
+    let fsck = command("fsck", folder, &store, bucket).into_iter().filter(|word| *word != folder.display().to_string());
+    let findings = run(fsck.collect(), bucket).await;
     assert_eq!((&findings["clean"], &findings["unreferred"]["objects"]), (&json!(true), &json!(0)), "{findings}");
-    let again = command("restore", folder, store);
-    let refused = binary::run(&again.iter().map(String::as_str).collect::<Vec<_>>());
+    let again = command("restore", folder, &store, bucket);
+    let environment = bucket.map_or_else(Vec::new, |bucket| bucket.environment.clone());
+    let refused = binary::run_with(&again.iter().map(String::as_str).collect::<Vec<_>>(), &environment);
     assert_eq!(refused.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&refused.stderr).contains("empty"), "{refused:?}");
-    TestServer::on(empty, &[]).await
+    match bucket {
+        Some(bucket) => TestServer::with_bucket(empty, bucket).await,
+        None => TestServer::on(empty, &[]).await,
+    }
 }
 
 #[tokio::test]
 async fn backed_up_on_sqlite() {
-    backed_up(TestServer::sqlite().await, TestDatabase::sqlite()).await;
+    backed_up(TestServer::sqlite().await, TestDatabase::sqlite(), None).await;
 }
 
 #[tokio::test]
 async fn backed_up_on_postgres() {
     if let (Some(server), Some(empty)) = (TestServer::postgres().await, TestDatabase::postgres().await) {
-        backed_up(server, empty).await;
+        backed_up(server, empty, None).await;
     }
+}
+
+/// Samples in one bucket, restored into another; on two threads, because the S3 server is in this process.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn backed_up_from_a_bucket_into_another() {
+    let s3 = TestS3::start().await;
+    let buckets = ["one", "another"].map(|prefix| Bucket::of(&s3, prefix));
+    let server = TestServer::with_bucket(TestDatabase::sqlite(), &buckets[0]).await;
+    backed_up(server, TestDatabase::sqlite(), Some(buckets)).await;
 }

@@ -108,11 +108,13 @@ async fn repeated(server: &TestServer) {
 
 /// `sistership verify` derives the version again from its recipe, byte for byte.
 pub async fn verified(server: &TestServer, number: i64) {
-    let name = format!("{NAME}/{number}");
-    let store = server.store_arguments();
-    let mut arguments = vec!["verify", name.as_str(), "--json"];
-    arguments.extend(store.iter().map(String::as_str));
-    let verification = binary::json(&arguments, 0);
+    let arguments: Vec<String> = ["verify".to_owned(), format!("{NAME}/{number}"), "--json".to_owned()]
+        .into_iter()
+        .chain(server.store_arguments())
+        .collect();
+    // Beside the client, which must notice that the server closes connections which rest.
+    let verify = move || binary::json(&arguments.iter().map(String::as_str).collect::<Vec<_>>(), 0);
+    let verification = tokio::task::spawn_blocking(verify).await.expect("a verification");
     assert_eq!(verification["identical"], true, "{verification}");
 }
 

@@ -35,7 +35,17 @@ fn build() -> PathBuf {
 /// # Panics
 /// Where it cannot be started.
 pub fn run(arguments: &[&str]) -> Output {
-    Command::new(path()).args(arguments).env_remove("SISTERSHIP_ZOO").output().expect("the program runs")
+    run_with(arguments, &[])
+}
+
+/// Runs the program to its end, with more in its environment.
+///
+/// # Panics
+/// Where it cannot be started.
+pub fn run_with(arguments: &[&str], environment: &[(&str, &str)]) -> Output {
+    let mut command = Command::new(path());
+    command.args(arguments).env_remove("SISTERSHIP_ZOO").envs(environment.iter().copied());
+    command.output().expect("the program runs")
 }
 
 /// Runs it with `--json` in mind: asserts the exit status and reads standard output as one JSON document.
@@ -43,7 +53,15 @@ pub fn run(arguments: &[&str]) -> Output {
 /// # Panics
 /// Where the exit status is another, or the output is not one JSON document.
 pub fn json(arguments: &[&str], status: i32) -> serde_json::Value {
-    let output = run(arguments);
+    json_with(arguments, &[], status)
+}
+
+/// The same with more in its environment.
+///
+/// # Panics
+/// As [`json`].
+pub fn json_with(arguments: &[&str], environment: &[(&str, &str)], status: i32) -> serde_json::Value {
+    let output = run_with(arguments, environment);
     let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert_eq!(output.status.code(), Some(status), "{arguments:?}: {err}");
     serde_json::from_str(&out).unwrap_or_else(|error| panic!("{arguments:?}: {error}: {out}"))

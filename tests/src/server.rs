@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use reqwest::{Client, Method, RequestBuilder, Response};
 use serde_json::Value;
-use sistership_store::testing::TestDatabase;
+use sistership_store::testing::{TestDatabase, TestS3};
 
 use crate::binary;
 
@@ -19,6 +19,25 @@ pub struct TestServer {
     database: TestDatabase,
     data: PathBuf,
     extra: Vec<String>,
+    /// The bucket of its samples, where they are in one.
+    bucket: Option<Bucket>,
+}
+
+/// A part of an S3-compatible server that holds the samples of one store.
+#[derive(Debug, Clone)]
+pub struct Bucket {
+    /// What the command line is told of it.
+    pub arguments: Vec<String>,
+    /// What the environment is told of it.
+    pub environment: Vec<(&'static str, &'static str)>,
+}
+
+impl Bucket {
+    /// What is below a prefix.
+    pub fn of(s3: &TestS3, prefix: &str) -> Self {
+        let arguments = s3.settings(prefix).into_iter().flat_map(|(flag, value)| [flag.to_owned(), value]).collect();
+        Self { arguments, environment: s3.credentials().to_vec() }
+    }
 }
 
 impl TestServer {
@@ -36,8 +55,18 @@ impl TestServer {
     pub async fn on(database: TestDatabase, extra: &[&str]) -> Self {
         let data = database.folder.path().join("data");
         let extra: Vec<String> = extra.iter().map(|&argument| argument.to_owned()).collect();
-        let (process, url) = start(&database.url, &data, &extra, Stdio::inherit(), Some("warn"));
-        let server = Self { process, url, client: client(), database, data, extra };
+        let (process, url) = start(&database.url, &data, &extra, None, Stdio::inherit(), Some("warn"));
+        let server = Self { process, url, client: client(), database, data, extra, bucket: None };
+        server.until_ready().await;
+        server
+    }
+
+    /// On a database, with its samples in a bucket.
+    pub async fn with_bucket(database: TestDatabase, bucket: &Bucket) -> Self {
+        let data = database.folder.path().join("data");
+        let (process, url) = start(&database.url, &data, &[], Some(bucket), Stdio::inherit(), Some("warn"));
+        let (extra, bucket) = (Vec::new(), Some(bucket.clone()));
+        let server = Self { process, url, client: client(), database, data, extra, bucket };
         server.until_ready().await;
         server
     }
@@ -51,8 +80,8 @@ impl TestServer {
         let log = database.folder.path().join("log");
         let extra: Vec<String> = extra.iter().map(|&argument| argument.to_owned()).collect();
         let file = std::fs::File::create(&log).expect("a log");
-        let (process, url) = start(&database.url, &data, &extra, file.into(), None);
-        let server = Self { process, url, client: client(), database, data, extra };
+        let (process, url) = start(&database.url, &data, &extra, None, file.into(), None);
+        let server = Self { process, url, client: client(), database, data, extra, bucket: None };
         server.until_ready().await;
         (server, log)
     }
@@ -78,7 +107,8 @@ impl TestServer {
 
     /// Starts it again on the same database and folder.
     pub async fn restart(&mut self) {
-        (self.process, self.url) = start(&self.database.url, &self.data, &self.extra, Stdio::inherit(), Some("warn"));
+        let bucket = self.bucket.as_ref();
+        (self.process, self.url) = start(&self.database.url, &self.data, &self.extra, bucket, Stdio::inherit(), Some("warn"));
         self.until_ready().await;
     }
 
@@ -159,13 +189,25 @@ pub async fn json(response: Response) -> (u16, Value) {
 }
 
 /// Starts the program and reads its address from the line it prints when it listens.
-fn start(database_url: &str, data: &Path, extra: &[String], log: Stdio, level: Option<&str>) -> (Child, String) {
+fn start(
+    database_url: &str,
+    data: &Path,
+    extra: &[String],
+    bucket: Option<&Bucket>,
+    log: Stdio,
+    level: Option<&str>,
+) -> (Child, String) {
     let mut command = Command::new(binary::path());
+    if let Some(bucket) = bucket {
+        command.envs(bucket.environment.iter().copied()).args(["serve"]).args(&bucket.arguments);
+    } else {
+        command.arg("serve");
+    }
     if let Some(level) = level {
         command.env("SISTERSHIP_LOG", level);
     }
     let mut process = command
-        .args(["serve", "--listen", "127.0.0.1:0", "--database-url", database_url, "--data-dir"])
+        .args(["--listen", "127.0.0.1:0", "--database-url", database_url, "--data-dir"])
         .arg(data)
         .args(extra)
         .stdout(Stdio::piped())

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand, ValueEnum};
 use sistership_dynamics::Method;
 
-use crate::commands::{backup, family, fsck, gc, serve, verify, work};
+use crate::commands::{backup, family, fsck, gc, serve, ships, verify, work};
 use crate::commands::{check, derive, diagnose, manoeuvre, refine, similar, simulate};
 use crate::demo::Demo;
 
@@ -59,6 +59,8 @@ pub enum Command {
     Serve(serve::Serve),
     /// Work on the jobs that servers queue, without serving.
     Work(work::Work),
+    /// Find ships of a store by category, tag, particulars, metrics and similarity.
+    Ships(Box<ships::Ships>),
     /// Derive a version again from its recipe and compare the bytes.
     Verify(verify::Verify),
     /// Families of ships: make one, learn from it, refine all of it.

@@ -53,6 +53,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Demo(demo) => demo::run(demo, &zoo()?),
         Command::Serve(serve) => commands::serve::run(serve, &arguments.zoo),
         Command::Work(work) => commands::work::run(work),
+        Command::Ships(ships) => commands::ships::run(ships),
         Command::Verify(verify) => commands::verify::run(verify),
         Command::Family(family) => commands::family::run(family),
         Command::Fsck(fsck) => commands::fsck::run(fsck),

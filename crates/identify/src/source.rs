@@ -20,12 +20,16 @@ pub struct Similarity {
     pub ranking: Vec<RankedSource>,
 }
 
-/// Ranks the zoo for a target. Without a `definition`, Mei's where the target has every component of it, else Kanazawa's.
+/// The definition by which ships are compared with a target: Mei's where she has every component of it, else Kanazawa's.
+pub fn definition_for(target: &Vessel) -> Definition {
+    let complete = CharacteristicVector::of(target, Definition::Mei2019).missing().is_empty();
+    if complete { Definition::Mei2019 } else { Definition::Kanazawa2023 }
+}
+
+/// Ranks the zoo for a target. Without a `definition`, by that of [`definition_for`].
 /// `trials` let the third step of eligibility be measured.
 pub fn similar(zoo: &Zoo, target: &Vessel, definition: Option<Definition>, trials: &[&Trial]) -> Similarity {
-    let complete = CharacteristicVector::of(target, Definition::Mei2019).missing().is_empty();
-    let default = if complete { Definition::Mei2019 } else { Definition::Kanazawa2023 };
-    let definition = definition.unwrap_or(default);
+    let definition = definition.unwrap_or_else(|| definition_for(target));
     let models: Vec<(&Vessel, Option<Model>)> =
         zoo.vessels().map(|vessel| (&**vessel, zoo.published(vessel, None).ok())).collect();
     let candidates: Vec<Candidate<'_>> =

@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use sistership_model::{Law, Zoo};
+use sistership_model::{Law, Vessel, Zoo};
 use sistership_store::{Objects, Store};
 use tokio::sync::{Notify, Semaphore};
 
+use crate::answers::Answers;
 use crate::archive::Archive;
-use crate::catalogue::Catalogue;
+use crate::catalogue::{Catalogue, KnownLaw};
 use crate::config::{Config, Leases, Limits};
 use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
@@ -29,6 +30,7 @@ struct Inner {
     seats: Arc<Semaphore>,
     wake: Notify,
     metrics: Metrics,
+    answers: Answers,
     stopping: Stopping,
 }
 
@@ -45,6 +47,7 @@ impl App {
             seats: Arc::new(Semaphore::new(seats)),
             wake: Notify::new(),
             metrics: Metrics::default(),
+            answers: Answers::default(),
             stopping,
         }))
     }
@@ -87,20 +90,36 @@ impl App {
         &self.0.metrics
     }
 
+    /// Champions as they were answered before.
+    pub(crate) fn answers(&self) -> &Answers {
+        &self.0.answers
+    }
+
     /// The word that the server shall stop.
     pub(crate) fn stopping(&self) -> Stopping {
         self.0.stopping.clone()
     }
 
-    /// The laws and ships as the database has them now.
-    pub(crate) async fn zoo(&self) -> Result<Arc<Zoo>> {
-        Ok(self.0.catalogue.refresh(self.store()).await?)
+    /// The laws of the database, and no ships.
+    pub(crate) async fn laws(&self) -> sistership_store::Result<Arc<Zoo>> {
+        self.0.catalogue.laws(self.store()).await
+    }
+
+    /// The laws of the database, with the ships that a ship is compared with: all of them where they are few, else those of
+    /// her category that are most similar to her.
+    pub(crate) async fn zoo_around(&self, target: &Vessel) -> Result<Arc<Zoo>> {
+        Ok(self.0.catalogue.around(self.archive(), target).await?)
     }
 
     /// A law of the database.
     pub(crate) async fn law(&self, name: &str) -> Result<Arc<Law>> {
-        let law = self.0.catalogue.law(self.store(), name).await?;
-        law.ok_or_else(|| Problem::internal(format!("the law `{name}` does not read")))
+        let known = self.find_law(name).await?;
+        known.map(|known| known.law).ok_or_else(|| Problem::internal(format!("the law `{name}` does not read")))
+    }
+
+    /// A law that may not be there.
+    pub(crate) async fn find_law(&self, name: &str) -> Result<Option<KnownLaw>> {
+        Ok(self.0.catalogue.law(self.store(), name).await?)
     }
 
     /// Runs numerics away from the threads that serve; as many at a time as there are cores.

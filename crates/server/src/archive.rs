@@ -7,7 +7,7 @@ use bytes::Bytes;
 use sistership_model::version::{RecipeTrial, SourceVersion, sha256};
 use sistership_model::vessel::VesselFile;
 use sistership_model::{Law, Model, Vessel};
-use sistership_store::{MAX_LIMIT, Objects, Page, Store, SystemClock, Version};
+use sistership_store::{MAX_LIMIT, Objects, ObjectsPlace, Page, Store, SystemClock, Version};
 
 use crate::derive::DeriveError;
 use crate::version::VersionDocument;
@@ -24,12 +24,20 @@ pub struct Archive {
 type Result<T> = std::result::Result<T, DeriveError>;
 
 impl Archive {
-    /// Opens the database at the URL and the samples in the data folder.
+    /// Opens the database at the URL and the samples in a folder.
     ///
     /// # Errors
     /// Says which of them cannot be opened.
     pub async fn open(database_url: &str, data_dir: &Path) -> sistership_store::Result<Self> {
-        let objects = Objects::local(data_dir)?;
+        Self::open_at(database_url, &ObjectsPlace::Folder(data_dir.to_path_buf())).await
+    }
+
+    /// Opens the database at the URL and the samples where they are.
+    ///
+    /// # Errors
+    /// Says which of them cannot be opened.
+    pub async fn open_at(database_url: &str, samples: &ObjectsPlace) -> sistership_store::Result<Self> {
+        let objects = Objects::at(samples)?;
         objects.mark().await?;
         Ok(Self { store: Store::connect(database_url, Arc::new(SystemClock)).await?, objects })
     }

@@ -5,6 +5,8 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use sistership_store::ObjectsPlace;
+
 use crate::start_error::StartError;
 
 /// Where the server listens when nobody says otherwise.
@@ -17,8 +19,10 @@ pub struct Config {
     pub listen: SocketAddr,
     /// `sqlite://path/file.db` or `postgres://...`.
     pub database_url: String,
-    /// Folder of the samples and of uploads under way; made if it is not there.
+    /// Folder of uploads under way; made if it is not there.
     pub data_dir: PathBuf,
+    /// Where the samples are; in the data folder unless set.
+    pub objects: ObjectsPlace,
     /// What every request must present as `Authorization: Bearer KEY`, if one is set.
     pub api_key: Option<String>,
     /// Bounds on what is sent.
@@ -74,6 +78,7 @@ impl Config {
         Self {
             listen: DEFAULT_LISTEN,
             database_url: sqlite_url(&data_dir),
+            objects: ObjectsPlace::Folder(data_dir.clone()),
             data_dir,
             api_key: None,
             limits: Limits::default(),

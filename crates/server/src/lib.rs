@@ -4,6 +4,7 @@
 //! [`derive`](mod@derive) and [`verify`](mod@verify) make versions again from their recipes, for the server's jobs and for
 //! the command line alike.
 
+mod answers;
 mod app;
 mod archive;
 mod catalogue;
@@ -22,6 +23,7 @@ mod process;
 mod publish;
 pub mod report;
 mod routes;
+pub mod search;
 mod seed;
 mod server;
 mod start_error;
@@ -37,5 +39,6 @@ pub use archive::Archive;
 pub use config::{Config, DEFAULT_LISTEN, Leases, Limits, sqlite_url};
 pub use routes::openapi;
 pub use server::{Running, Server};
+pub use sistership_store::{ObjectsPlace, S3Place};
 pub use start_error::StartError;
 pub use workers::Workers;

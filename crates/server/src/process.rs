@@ -9,6 +9,7 @@ use crate::archive::Archive;
 use crate::catalogue::Catalogue;
 use crate::config::Config;
 use crate::jobs::Worker;
+use crate::search;
 use crate::seed;
 use crate::start_error::StartError;
 use crate::stopping::Stopping;
@@ -22,14 +23,17 @@ pub(crate) struct Process {
 }
 
 impl Process {
-    /// Opens the store, brings the zoo in, and sets the workers to work.
-    pub(crate) async fn start(config: &Config) -> Result<(Self, App), StartError> {
-        let archive = Archive::open(&config.database_url, &config.data_dir).await?;
+    /// Opens the store, brings the zoo in, and sets the workers to work; keeps up what ships are found by, if it `indexes`.
+    pub(crate) async fn start(config: &Config, indexes: bool) -> Result<(Self, App), StartError> {
+        let archive = Archive::open_at(&config.database_url, &config.objects).await?;
         let catalogue = Catalogue::default();
         seed::seed(&archive.store, &catalogue).await?;
         let (stop, stopping) = Stopping::new();
         let app = App::new(config, archive.clone(), catalogue, stopping);
         let mut tasks = JoinSet::new();
+        if indexes {
+            tasks.spawn(search::keep(app.clone()));
+        }
         for _ in 0..config.workers {
             tasks.spawn(Worker::new(app.clone()).run());
         }

@@ -15,7 +15,7 @@ pub(crate) const CHAMPION: &str = "champion";
 pub(crate) const CANDIDATE: &str = "candidate";
 /// The alias of the last version. Everyone who makes a version moves it, so that the number that a version is going to
 /// have is known beforehand.
-const LATEST: &str = "latest";
+pub(crate) const LATEST: &str = "latest";
 /// How a published version is made.
 const METHOD: &str = "published-source";
 const PUBLISHED: &str = "published-";

@@ -3,7 +3,8 @@
 use sistership_model::{Vessel, Zoo};
 use sistership_store::{NewShip, Store, StoreError};
 
-use crate::catalogue::{Catalogue, all_ships};
+use crate::archive::vessel;
+use crate::catalogue::Catalogue;
 use crate::problem::Problem;
 use crate::publish::publish;
 use crate::start_error::StartError;
@@ -13,12 +14,27 @@ pub(crate) async fn seed(store: &Store, catalogue: &Catalogue) -> Result<(), Sta
     let embedded = tokio::task::spawn_blocking(Zoo::embedded).await.map_err(|error| broken(&error))??;
     laws(store, &embedded).await?;
     ships(store, &embedded).await?;
-    let zoo = catalogue.refresh(store).await?;
-    for ship in all_ships(store).await? {
-        let Some(vessel) = zoo.vessel(&ship.name) else { continue };
-        publish(store, &zoo, vessel, &ship.document).await.map_err(|error| publishing(&ship.name, &error))?;
+    let zoo = catalogue.laws(store).await?;
+    for name in embedded.vessels().map(|vessel| vessel.name()) {
+        publish_one(store, &zoo, name).await?;
     }
     Ok(())
+}
+
+/// Makes the versions of a ship of the program's own, unless she was deleted. Those of other ships are looked after by
+/// [`crate::search`].
+async fn publish_one(store: &Store, zoo: &Zoo, name: &str) -> Result<(), StartError> {
+    let ship = match store.ships().get(name).await {
+        Err(StoreError::NotFound { .. }) => return Ok(()),
+        other => other?,
+    };
+    match vessel(name, &ship.document) {
+        Ok(vessel) => publish(store, zoo, &vessel, &ship.document).await.map_err(|error| publishing(name, &error)),
+        Err(error) => {
+            tracing::error!(ship = name, %error, "a ship of the database does not read");
+            Ok(())
+        }
+    }
 }
 
 async fn laws(store: &Store, embedded: &Zoo) -> Result<(), StartError> {
@@ -70,7 +86,7 @@ fn damaged(file: &str, message: String) -> StartError {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::archive::{document, vessel};
+    use crate::archive::document;
     use sistership_store::SystemClock;
     use std::sync::Arc;
 

@@ -34,7 +34,7 @@ impl Server {
         // The address first: a process that cannot have it takes no job from others.
         let listener = bind(config.listen).await?;
         let addr = listener.local_addr().map_err(|error| StartError::Listen { listen: config.listen, error })?;
-        let (mut process, app) = Process::start(&config).await?;
+        let (mut process, app) = Process::start(&config, true).await?;
         process.archive.store.idempotency().purge().await?;
         let stopping = app.stopping();
         process.tasks.spawn(listen(listener, routes::router(app), config.limits, stopping));

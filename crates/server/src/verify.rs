@@ -9,6 +9,7 @@ use utoipa::ToSchema;
 
 use crate::archive::{Archive, document};
 use crate::derive::{DeriveError, Progress, code_revision, derive};
+use crate::version::{Recipe, VersionDocument};
 
 /// What came of deriving a version again.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
@@ -48,7 +49,10 @@ pub async fn verify(archive: &Archive, ship: &str, number: i64) -> Result<Verifi
 pub async fn verify_with(archive: &Archive, ship: &str, number: i64, progress: Progress) -> Result<Verification, DeriveError> {
     let version = archive.store.versions().get(ship, number).await?;
     let stored = document(&version)?;
-    let derived = derive(archive, ship, &stored.recipe, progress).await?.document.canonical()?;
+    let derived = match &stored.recipe {
+        Recipe::Registered(recipe) => checked(archive, &stored, &recipe.law_sha256).await?,
+        recipe => derive(archive, ship, recipe, progress).await?.document.canonical()?,
+    };
     let (stored_sha256, derived_sha256) = (sha256(version.document.as_bytes()), sha256(derived.as_bytes()));
     let made_by = stored.recipe.code_revision().map(str::to_owned);
     let identical = version.head.sha256 == stored_sha256 && version.document == derived;
@@ -64,6 +68,14 @@ pub async fn verify_with(archive: &Archive, ship: &str, number: i64, progress: P
         checked_by: code_revision().to_owned(),
         remarks,
     })
+}
+
+/// A model that was made elsewhere comes of nothing but itself: it is written again, and checked against its law.
+async fn checked(archive: &Archive, stored: &VersionDocument, law_sha256: &str) -> Result<String, DeriveError> {
+    let law = archive.law(&stored.model.law, law_sha256).await?;
+    let wrong = |(field, message): (String, String)| DeriveError::Lost(format!("{field}: {message}"));
+    stored.model.check(&law).map_err(wrong)?;
+    Ok(stored.canonical()?)
 }
 
 fn remarks(made_by: Option<&str>, (stored, derived): (&str, &str), undamaged: bool) -> Vec<String> {

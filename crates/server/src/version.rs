@@ -31,6 +31,8 @@ pub enum Recipe {
     Diagnosis(DiagnosisRecipe),
     /// As a member of a family, from statistics.
     Family(FamilyRecipe),
+    /// Not at all: the model was made elsewhere.
+    Registered(RegisteredRecipe),
     /// From a ship's own document, or by refinement.
     Plain(version::Recipe),
 }
@@ -53,6 +55,27 @@ pub struct DiagnosisRecipe {
     pub settings: Value,
     /// The program that did it.
     pub code_revision: String,
+}
+
+/// What is known of a model that was made elsewhere.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RegisteredRecipe {
+    /// Always `registered`.
+    pub kind: RegisteredKind,
+    /// The law's file.
+    pub law_sha256: String,
+    /// Who made it, with what, in the words of whoever registered it.
+    pub origin: String,
+}
+
+/// The word `registered`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum RegisteredKind {
+    /// The only one.
+    #[default]
+    Registered,
 }
 
 /// The word `diagnosis`.
@@ -79,6 +102,7 @@ impl Recipe {
         match self {
             Self::Diagnosis(DiagnosisRecipe { law_sha256, .. })
             | Self::Family(FamilyRecipe { law_sha256, .. })
+            | Self::Registered(RegisteredRecipe { law_sha256, .. })
             | Self::Plain(version::Recipe::Published { law_sha256, .. } | version::Recipe::Refinement { law_sha256, .. }) => {
                 law_sha256
             }
@@ -91,7 +115,7 @@ impl Recipe {
             Self::Diagnosis(DiagnosisRecipe { code_revision, .. })
             | Self::Family(FamilyRecipe { code_revision, .. })
             | Self::Plain(version::Recipe::Refinement { code_revision, .. }) => Some(code_revision),
-            Self::Plain(version::Recipe::Published { .. }) => None,
+            Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => None,
         }
     }
 
@@ -101,7 +125,7 @@ impl Recipe {
             Self::Diagnosis(DiagnosisRecipe { trials, .. })
             | Self::Family(FamilyRecipe { trials, .. })
             | Self::Plain(version::Recipe::Refinement { trials, .. }) => trials,
-            Self::Plain(version::Recipe::Published { .. }) => &[],
+            Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => &[],
         }
     }
 
@@ -112,7 +136,7 @@ impl Recipe {
                 Some(ship_sha256)
             }
             Self::Family(recipe) => recipe.ship_sha256.as_deref(),
-            Self::Diagnosis(_) => None,
+            Self::Diagnosis(_) | Self::Registered(_) => None,
         }
     }
 
@@ -120,7 +144,7 @@ impl Recipe {
     pub fn starts_from(&self) -> Option<&SourceVersion> {
         match self {
             Self::Plain(version::Recipe::Refinement { source, .. }) => Some(source),
-            Self::Plain(version::Recipe::Published { .. }) => None,
+            Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => None,
             Self::Family(recipe) => Some(&recipe.start),
             Self::Diagnosis(_) => self.diagnosed(),
         }
@@ -130,7 +154,7 @@ impl Recipe {
     pub fn diagnosed(&self) -> Option<&SourceVersion> {
         match self {
             Self::Diagnosis(recipe) => Some(&recipe.diagnosed),
-            Self::Family(_) | Self::Plain(_) => None,
+            Self::Family(_) | Self::Plain(_) | Self::Registered(_) => None,
         }
     }
 }
@@ -147,7 +171,8 @@ mod tests {
         let diagnosed = json!({ "kind": "diagnosis", "diagnosed": { "ship": "kcs", "number": 2, "sha256": "c" },
             "law_sha256": "b", "trials": [{ "name": "t.csv", "sha256": "d" }], "effects_sha256": "e",
             "settings": { "slack": 0.02 }, "code_revision": "1" });
-        for (value, kind) in [(published, None), (diagnosed, Some(2))] {
+        let registered = json!({ "kind": "registered", "law_sha256": "b", "origin": "a towing tank" });
+        for (value, kind) in [(published, None), (registered, None), (diagnosed, Some(2))] {
             let recipe: Recipe = serde_json::from_value(value.clone()).unwrap();
             assert_eq!(recipe.diagnosed().map(|source| source.number), kind);
             assert_eq!(serde_json::to_value(&recipe).unwrap(), value);

@@ -16,7 +16,7 @@ impl Workers {
     /// Says what is wrong with the configuration, or what cannot be opened.
     pub async fn start(config: Config) -> Result<Self, StartError> {
         config.check()?;
-        let (process, _) = Process::start(&config).await?;
+        let (process, _) = Process::start(&config, false).await?;
         tracing::info!(workers = config.workers, "working");
         Ok(Self(process))
     }

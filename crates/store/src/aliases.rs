@@ -6,6 +6,7 @@ use crate::database::Transaction;
 use crate::error::{Result, StoreError};
 use crate::page::{List, Page};
 use crate::record::record;
+use crate::search_index;
 use crate::statements::{pair, same, statements};
 use crate::store::Store;
 use crate::versions;
@@ -152,6 +153,7 @@ pub(crate) async fn shift(store: &Store, tx: &mut Transaction, model: &str, to: 
     }
     let after = tx.one(PUT, args![model: model, alias: &change.alias, version_number: to]).await?;
     remember(store, tx, before, &after, change).await?;
+    search_index::mark_moved(store, tx, model, &change.alias).await?;
     Ok(after)
 }
 

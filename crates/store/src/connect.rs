@@ -5,16 +5,19 @@ use std::time::Duration;
 
 use sqlx::postgres::{PgConnectOptions, PgPoolOptions};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
-use sqlx::{PgPool, SqlitePool};
+use sqlx::{Connection as _, PgPool, SqlitePool};
 
-use crate::database::{Database, Pool};
+use crate::database::{Database, Pool, Writer};
 use crate::error::{Result, StoreError};
 use crate::folders;
+use crate::group::Group;
 use crate::migrate;
 
 const BUSY: Duration = Duration::from_secs(10);
 const SQLITE_READERS: u32 = 4;
-const POSTGRES_CONNECTIONS: u32 = 10;
+const POSTGRES_CONNECTIONS: u32 = 16;
+/// After this long without use, a connection is asked whether it is still there.
+const RESTED: Duration = Duration::from_secs(5);
 
 /// Opens the database at `url` and brings its schema up to date.
 pub(crate) async fn connect(url: &str) -> Result<Database> {
@@ -32,7 +35,7 @@ async fn memory(url: &str) -> Result<Database> {
     let pool = SqlitePoolOptions::new().max_connections(1).min_connections(1).idle_timeout(None).max_lifetime(None);
     let pool = pool.connect_with(options).await?;
     migrate::sqlite(&pool).await?;
-    Ok(Database { read: Pool::Sqlite(pool.clone()), write: Pool::Sqlite(pool) })
+    Ok(Database { read: Pool::Sqlite(pool.clone()), write: Writer::Sqlite(Group::new(pool)) })
 }
 
 async fn file(url: &str) -> Result<Database> {
@@ -41,9 +44,10 @@ async fn file(url: &str) -> Result<Database> {
     let write = options.clone().create_if_missing(true).synchronous(SqliteSynchronous::Full);
     let write = writer(write.journal_mode(SqliteJournalMode::Wal)).await?;
     migrate::sqlite(&write).await?;
-    let readers = SqlitePoolOptions::new().max_connections(SQLITE_READERS);
+    // A file's connection does not go stale.
+    let readers = SqlitePoolOptions::new().max_connections(SQLITE_READERS).test_before_acquire(false);
     let read = readers.connect_with(options.pragma("query_only", "ON")).await?;
-    Ok(Database { read: Pool::Sqlite(read), write: Pool::Sqlite(write) })
+    Ok(Database { read: Pool::Sqlite(read), write: Writer::Sqlite(Group::new(write)) })
 }
 
 /// The one connection that writes. Turning on the write-ahead log needs the file for itself and does not wait for it, so
@@ -51,7 +55,7 @@ async fn file(url: &str) -> Result<Database> {
 async fn writer(options: SqliteConnectOptions) -> Result<SqlitePool> {
     let mut tries = 100;
     loop {
-        let pool = SqlitePoolOptions::new().max_connections(1).connect_with(options.clone()).await;
+        let pool = SqlitePoolOptions::new().max_connections(1).test_before_acquire(false).connect_with(options.clone()).await;
         match pool {
             Err(error) if tries > 0 && is_locked(&error) => tries -= 1,
             other => return Ok(other?),
@@ -66,9 +70,19 @@ fn is_locked(error: &sqlx::Error) -> bool {
 
 async fn postgres(url: &str) -> Result<Database> {
     let options = PgConnectOptions::from_str(url)?.application_name("sistership");
-    let pool: PgPool = PgPoolOptions::new().max_connections(POSTGRES_CONNECTIONS).connect_with(options).await?;
+    let pool = PgPoolOptions::new().max_connections(POSTGRES_CONNECTIONS).test_before_acquire(false);
+    // A connection that was used a moment ago is there; asking each time would cost as much as the query.
+    let pool = pool.before_acquire(|connection, about| {
+        Box::pin(async move {
+            match about.idle_for > RESTED {
+                true => connection.ping().await.map(|()| true),
+                false => Ok(true),
+            }
+        })
+    });
+    let pool: PgPool = pool.connect_with(options).await?;
     migrate::postgres(&pool).await?;
-    Ok(Database { read: Pool::Postgres(pool.clone()), write: Pool::Postgres(pool) })
+    Ok(Database { read: Pool::Postgres(pool.clone()), write: Writer::Postgres(pool) })
 }
 
 #[cfg(test)]
@@ -85,10 +99,11 @@ mod tests {
     async fn a_sqlite_file_is_durable_and_its_readers_only_read() {
         let folder = tempfile::tempdir().unwrap();
         let url = format!("sqlite://{}", folder.path().join("new/store.db").display());
-        let Database { read: Pool::Sqlite(read), write: Pool::Sqlite(write) } = connect(&url).await.unwrap() else { panic!() };
-        assert_eq!(pragma(&write, "SELECT journal_mode FROM pragma_journal_mode").await, "wal");
-        assert_eq!(pragma(&write, "SELECT CAST(synchronous AS TEXT) FROM pragma_synchronous").await, "2");
-        assert_eq!(pragma(&write, "SELECT CAST(foreign_keys AS TEXT) FROM pragma_foreign_keys").await, "1");
+        let Database { read: Pool::Sqlite(read), write: Writer::Sqlite(write) } = connect(&url).await.unwrap() else { panic!() };
+        let write = write.pool();
+        assert_eq!(pragma(write, "SELECT journal_mode FROM pragma_journal_mode").await, "wal");
+        assert_eq!(pragma(write, "SELECT CAST(synchronous AS TEXT) FROM pragma_synchronous").await, "2");
+        assert_eq!(pragma(write, "SELECT CAST(foreign_keys AS TEXT) FROM pragma_foreign_keys").await, "1");
         assert_eq!(pragma(&read, "SELECT CAST(query_only AS TEXT) FROM pragma_query_only").await, "1");
     }
 }

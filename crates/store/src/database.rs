@@ -1,9 +1,10 @@
 //! The two databases behind one set of operations. Every operation is written once and expanded for both by [`on!`].
 
-use sqlx::{PgPool, Postgres, Sqlite, SqlitePool};
+use sqlx::{PgPool, Postgres, SqlitePool};
 
 use crate::arguments::{Args, bind, check};
 use crate::error::Result;
+use crate::group::{Group, Part};
 use crate::record::Record;
 use crate::statements::Statement;
 
@@ -11,7 +12,14 @@ use crate::statements::Statement;
 #[derive(Debug, Clone)]
 pub(crate) struct Database {
     pub(crate) read: Pool,
-    pub(crate) write: Pool,
+    pub(crate) write: Writer,
+}
+
+/// Who writes.
+#[derive(Debug, Clone)]
+pub(crate) enum Writer {
+    Sqlite(Group),
+    Postgres(PgPool),
 }
 
 /// A pool of connections.
@@ -23,7 +31,7 @@ pub(crate) enum Pool {
 
 /// A transaction that may write; it is undone unless [committed](Self::commit).
 pub(crate) enum Transaction {
-    Sqlite(sqlx::Transaction<'static, Sqlite>),
+    Sqlite(Part),
     Postgres(sqlx::Transaction<'static, Postgres>),
 }
 
@@ -47,8 +55,8 @@ impl Database {
     /// Begins to write. On SQLite the lock is taken at once, so that what is read stays true until the commit.
     pub(crate) async fn begin(&self) -> Result<Transaction> {
         Ok(match &self.write {
-            Pool::Sqlite(pool) => Transaction::Sqlite(pool.begin_with("BEGIN IMMEDIATE").await?),
-            Pool::Postgres(pool) => Transaction::Postgres(pool.begin().await?),
+            Writer::Sqlite(group) => Transaction::Sqlite(group.begin().await?),
+            Writer::Postgres(pool) => Transaction::Postgres(pool.begin().await?),
         })
     }
 
@@ -66,11 +74,13 @@ impl Database {
 
     /// Ends all connections.
     pub(crate) async fn close(&self) {
-        for pool in [&self.read, &self.write] {
-            match pool {
-                Pool::Sqlite(pool) => pool.close().await,
-                Pool::Postgres(pool) => pool.close().await,
-            }
+        match &self.read {
+            Pool::Sqlite(pool) => pool.close().await,
+            Pool::Postgres(pool) => pool.close().await,
+        }
+        match &self.write {
+            Writer::Sqlite(group) => group.pool().close().await,
+            Writer::Postgres(pool) => pool.close().await,
         }
     }
 }

@@ -1,8 +1,11 @@
 //! Objects that no row refers to: what is left of uploads that were refused or broke off between object and row.
 
+use futures::stream::{self, StreamExt as _, TryStreamExt as _};
+
 use crate::arguments::args;
 use crate::database::Transaction;
 use crate::error::Result;
+use crate::object_list::AT_ONCE;
 use crate::objects::Objects;
 use crate::record::Counted;
 use crate::statements::{pair, same, statements};
@@ -28,9 +31,8 @@ impl Store {
         let mut tx = self.begin().await?;
         tx.execute(LOCK, &[]).await?;
         let removed = unreferred(&mut tx, keys).await?;
-        for key in &removed {
-            objects.remove(key).await?;
-        }
+        let removal = |key: &String| objects.remove(key.clone());
+        stream::iter(removed.iter().map(removal).collect::<Vec<_>>()).buffer_unordered(AT_ONCE).try_collect::<()>().await?;
         tx.commit().await?;
         Ok(removed)
     }

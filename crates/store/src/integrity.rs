@@ -81,6 +81,12 @@ statements! {
         FROM bulk_refinements b LEFT JOIN bulk_outcomes o ON o.bulk = b.id WHERE NOT EXISTS (SELECT 1 FROM bulk_chunks c \
         JOIN jobs j ON j.id = c.job WHERE c.bulk = b.id AND j.state <> 'succeeded') \
         GROUP BY b.id, b.ships HAVING COUNT(o.ship) <> b.ships ORDER BY b.id");
+    TAG_SHIP = same("SELECT 'tag ' || ship || '/' || tag AS place, 'there is no such ship' AS message FROM ship_tags \
+        WHERE ship NOT IN (SELECT name FROM ships) ORDER BY ship, tag");
+    SEARCH_SHIP = same("SELECT 'ship ' || name AS place, 'is neither found by a search nor waits to be' AS message FROM ships \
+        WHERE name NOT IN (SELECT ship FROM ship_vectors) AND name NOT IN (SELECT ship FROM search_queue) ORDER BY name");
+    SEARCH_FACT = same("SELECT DISTINCT 'ship ' || ship AS place, 'has facts, but is not there' AS message FROM ship_facts \
+        WHERE ship NOT IN (SELECT name FROM ships) ORDER BY 1");
     JOB_SHIP = same("SELECT 'job ' || id AS place, 'there is no ship ' || ship AS message FROM jobs \
         WHERE ship IS NOT NULL AND ship NOT IN (SELECT name FROM ships) ORDER BY id");
     JOB_STATE = same("SELECT 'job ' || id AS place, 'is ' || state || ', which its lease, result, error or end contradicts' AS message \
@@ -115,6 +121,9 @@ const CHECKS: &[(&str, Statement)] = &[
     ("chunk-job", CHUNK_JOB),
     ("outcome-version", OUTCOME_VERSION),
     ("outcome-count", OUTCOME_COUNT),
+    ("tag-ship", TAG_SHIP),
+    ("search-ship", SEARCH_SHIP),
+    ("search-fact", SEARCH_FACT),
     ("job-ship", JOB_SHIP),
     ("job-state", JOB_STATE),
 ];

@@ -13,8 +13,10 @@ statements! {
     INSERT = same(job!("INSERT INTO jobs (id, kind, ship, request, state, progress, message, attempt, fence, created_us, \
         cancel_requested) VALUES ($1, $2, $3, $4, 'queued', 0, '', 0, 0, $5, 0) RETURNING", ""));
     GET = same(job!("SELECT", "FROM jobs WHERE id = $1"));
-    LIST = same(job!("SELECT", "FROM jobs WHERE id < COALESCE($1, '~') AND (CAST($2 AS TEXT) IS NULL OR ship = $2) \
-        AND state = COALESCE($3, state) ORDER BY id DESC LIMIT $4"));
+    LIST = same(job!("SELECT", "FROM jobs WHERE id < COALESCE($1, '~') ORDER BY id DESC LIMIT $2"));
+    LIST_SHIP = same(job!("SELECT", "FROM jobs WHERE ship = $3 AND id < COALESCE($1, '~') \
+        AND (CAST($4 AS TEXT) IS NULL OR state = $4) ORDER BY id DESC LIMIT $2"));
+    LIST_STATE = same(job!("SELECT", "FROM jobs WHERE state = $3 AND id < COALESCE($1, '~') ORDER BY id DESC LIMIT $2"));
     COUNTS = same("SELECT kind, state, COUNT(*) AS jobs, MIN(created_us) AS oldest_us FROM jobs \
         GROUP BY kind, state ORDER BY kind, state");
     CANCEL = same(job!("UPDATE jobs SET cancel_requested = 1, \
@@ -47,8 +49,14 @@ impl Jobs<'_> {
     /// Jobs, the latest first.
     pub async fn list(&self, filter: &JobFilter, page: &Page) -> Result<List<Job>> {
         let state = filter.state.map(JobState::as_str);
-        let values = args![after: &page.after, ship: &filter.ship, state: state, limit: page.fetch()?];
-        let jobs = self.0.database().all(LIST, values).await?;
+        let (database, limit) = (self.0.database(), page.fetch()?);
+        let jobs = match (&filter.ship, state) {
+            (None, None) => database.all(LIST, args![after: &page.after, limit: limit]).await?,
+            (None, Some(state)) => database.all(LIST_STATE, args![after: &page.after, limit: limit, state: state]).await?,
+            (Some(ship), state) => {
+                database.all(LIST_SHIP, args![after: &page.after, limit: limit, ship: ship, state: state]).await?
+            }
+        };
         Ok(page.of(jobs, |job: &Job| job.id.clone()))
     }
 

@@ -10,7 +10,7 @@ use crate::error::{Result, StoreError};
 use crate::objects::{FOLDER, Objects, ObjectsError};
 
 /// How many objects are asked after at a time.
-const AT_ONCE: usize = 32;
+pub(crate) const AT_ONCE: usize = 32;
 
 /// What an object is called.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -35,7 +35,7 @@ pub struct ObjectHead {
 impl Objects {
     /// Every object, in no order.
     pub fn list(&self) -> BoxStream<'_, Result<ObjectHead>> {
-        let all = self.0.list(Some(&ObjectPath::from(FOLDER)));
+        let all = self.store.list(Some(&ObjectPath::from(FOLDER)));
         all.map(|meta| Ok(head(&meta.map_err(ObjectsError::from)?))).boxed()
     }
 

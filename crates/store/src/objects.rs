@@ -1,9 +1,12 @@
-//! Objects: bytes named by their SHA-256, in a local folder now and an S3-compatible store when one is configured.
+//! Objects: bytes named by their SHA-256, in a local folder or in a bucket of an S3-compatible store, see
+//! [`crate::ObjectsPlace`].
 //!
-//! What [`Objects::put`] has acknowledged is on the disk, folder entries included, so that a row may refer to it.
+//! What [`Objects::put`] has acknowledged is durable, so that a row may refer to it: on the disk, folder entries included, or
+//! by the word of the bucket's server.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 use bytes::Bytes;
 use object_store::local::LocalFileSystem;
@@ -33,6 +36,9 @@ pub enum ObjectsError {
     /// The folder could not be made.
     #[error(transparent)]
     Folder(#[from] std::io::Error),
+    /// The store did not answer in time.
+    #[error("no answer in time")]
+    Late(#[from] tokio::time::error::Elapsed),
     /// The hash could not be computed: the task was stopped.
     #[error(transparent)]
     Stopped(#[from] tokio::task::JoinError),
@@ -40,49 +46,55 @@ pub enum ObjectsError {
 
 /// A content-addressed store. A clone is another handle on the same one.
 #[derive(Debug, Clone)]
-pub struct Objects(pub(crate) Arc<dyn ObjectStore>);
+pub struct Objects {
+    pub(crate) store: Arc<dyn ObjectStore>,
+    /// The folder, where it is one.
+    pub(crate) folder: Option<PathBuf>,
+}
 
 impl Objects {
     /// Objects below the folder `root`, which is made if it is not there.
     pub fn local(root: &Path) -> Result<Self> {
         folders::make(root).map_err(ObjectsError::from)?;
         let store = LocalFileSystem::new_with_prefix(root).map_err(ObjectsError::from)?;
-        Ok(Self(Arc::new(store.with_fsync(true))))
+        Ok(Self { store: Arc::new(store.with_fsync(true)), folder: Some(root.to_path_buf()) })
     }
 
     /// Objects that go with the process.
     pub fn memory() -> Self {
-        Self(Arc::new(InMemory::new()))
+        Self::over(Arc::new(InMemory::new()))
     }
 
     /// Objects in any store.
     pub fn over(store: Arc<dyn ObjectStore>) -> Self {
-        Self(store)
+        Self { store, folder: None }
     }
 
     /// Leaves the mark that [`health`](Self::health) looks for: a folder that is no longer mounted does not have it.
     pub async fn mark(&self) -> Result<()> {
         let about = PutPayload::from_static(b"The objects of a Sistership store, named by the SHA-256 of their bytes.\n");
-        self.0.put(&ObjectPath::from(MARK), about).await.map_err(ObjectsError::from)?;
+        self.store.put(&ObjectPath::from(MARK), about).await.map_err(ObjectsError::from)?;
         Ok(())
     }
 
-    /// Whether the store answers and is the one that was [marked](Self::mark).
+    /// Whether the store answers in time and is the one that was [marked](Self::mark).
     pub async fn health(&self) -> Result<()> {
-        self.0.head(&ObjectPath::from(MARK)).await.map(drop).map_err(|error| failure(MARK, error))
+        let mark = ObjectPath::from(MARK);
+        let looked = tokio::time::timeout(PATIENCE, self.store.head(&mark)).await;
+        looked.map_err(ObjectsError::from)?.map(drop).map_err(|error| failure(MARK, error))
     }
 
     /// Keeps the bytes and returns their key, once they are durable. They are written even when the key is there: another
     /// writer may not have made them durable yet, and a damaged object is healed.
     pub async fn put(&self, bytes: Bytes) -> Result<String> {
         let key = hash(bytes.clone()).await?;
-        self.0.put(&path(&key)?, PutPayload::from(bytes)).await.map_err(ObjectsError::from)?;
+        self.store.put(&path(&key)?, PutPayload::from(bytes)).await.map_err(ObjectsError::from)?;
         Ok(key)
     }
 
     /// The bytes of this key, verified.
     pub async fn get(&self, key: &str) -> Result<Bytes> {
-        let found = self.0.get(&path(key)?).await.map_err(|error| failure(key, error))?;
+        let found = self.store.get(&path(key)?).await.map_err(|error| failure(key, error))?;
         let bytes = found.bytes().await.map_err(|error| failure(key, error))?;
         let actual = hash(bytes.clone()).await?;
         match actual == key {
@@ -93,8 +105,8 @@ impl Objects {
 
     /// Removes the object of this key, if it is there. Only who knows that no row refers to it may do so, see
     /// [`crate::Store::remove_unreferred`].
-    pub(crate) async fn remove(&self, key: &str) -> Result<()> {
-        match self.0.delete(&path(key)?).await {
+    pub(crate) async fn remove(&self, key: String) -> Result<()> {
+        match self.store.delete(&path(&key)?).await {
             Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
             Err(error) => Err(ObjectsError::from(error).into()),
         }
@@ -102,7 +114,7 @@ impl Objects {
 
     /// Whether there is an object of this key.
     pub async fn exists(&self, key: &str) -> Result<bool> {
-        match self.0.head(&path(key)?).await {
+        match self.store.head(&path(key)?).await {
             Ok(_) => Ok(true),
             Err(object_store::Error::NotFound { .. }) => Ok(false),
             Err(error) => Err(ObjectsError::from(error).into()),
@@ -120,6 +132,8 @@ async fn hash(bytes: Bytes) -> Result<String, ObjectsError> {
     Ok(tokio::task::spawn_blocking(move || sha256_hex(&bytes)).await?)
 }
 
+/// How long a look at the mark may take.
+const PATIENCE: Duration = Duration::from_secs(5);
 /// What every store of ours has beside its objects.
 const MARK: &str = "about.txt";
 /// The folder of all objects.

@@ -26,6 +26,14 @@ impl<K> Page<K> {
         Self { after: Some(key.into()), limit }
     }
 
+    /// Refuses a page that is too large or has no items.
+    ///
+    /// # Errors
+    /// Names the limit.
+    pub fn check(&self) -> Result<()> {
+        self.fetch().map(drop)
+    }
+
     /// How many rows to ask for: one more than wanted, which tells whether there is a next page.
     pub(crate) fn fetch(&self) -> Result<i64> {
         match (1..=MAX_LIMIT).contains(&self.limit) {
@@ -34,8 +42,8 @@ impl<K> Page<K> {
         }
     }
 
-    /// The page made of what [`fetch`](Self::fetch) brought.
-    pub(crate) fn of<T>(&self, mut items: Vec<T>, key: impl Fn(&T) -> K) -> List<T, K> {
+    /// The page made of items that come after [`Page::after`], of which there may be more than one page.
+    pub fn of<T>(&self, mut items: Vec<T>, key: impl Fn(&T) -> K) -> List<T, K> {
         let limit = usize::try_from(self.limit).unwrap_or(0);
         let more = items.len() > limit;
         items.truncate(limit);

@@ -6,6 +6,7 @@ use crate::database::Transaction;
 use crate::error::{Result, StoreError};
 use crate::page::{List, Page};
 use crate::record::record;
+use crate::search_index;
 use crate::statements::{same, statements};
 use crate::store::Store;
 
@@ -25,7 +26,9 @@ statements! {
         SELECT name, revision, title, category, document, updated_us FROM ships WHERE name = $1");
     GET = same("SELECT name, title, category, document, revision, created_us, updated_us, deleted_us FROM ships WHERE name = $1");
     LIST = same("SELECT name, title, category, document, revision, created_us, updated_us, deleted_us FROM ships \
-        WHERE name > COALESCE($1, '') AND category = COALESCE($2, category) AND deleted_us IS NULL ORDER BY name LIMIT $3");
+        WHERE name > COALESCE($1, '') AND deleted_us IS NULL ORDER BY name LIMIT $2");
+    LIST_CATEGORY = same("SELECT name, title, category, document, revision, created_us, updated_us, deleted_us FROM ships \
+        WHERE name > COALESCE($1, '') AND category = $3 AND deleted_us IS NULL ORDER BY name LIMIT $2");
     REVISIONS = same("SELECT ship, revision, title, category, document, created_us FROM ship_revisions \
         WHERE ship = $1 AND revision < COALESCE($2, 9223372036854775807) ORDER BY revision DESC LIMIT $3");
 }
@@ -106,6 +109,7 @@ impl Ships<'_> {
             return Err(taken(name, find(&mut tx, name).await));
         };
         tx.execute(REMEMBER, args![name: name]).await?;
+        search_index::mark(self.0, &mut tx, name).await?;
         tx.commit().await?;
         Ok(ship)
     }
@@ -127,6 +131,7 @@ impl Ships<'_> {
             return Err(stale(&mut tx, name).await);
         };
         tx.execute(REMEMBER, args![name: name]).await?;
+        search_index::mark(self.0, &mut tx, name).await?;
         tx.commit().await?;
         Ok(ship)
     }
@@ -146,14 +151,18 @@ impl Ships<'_> {
     pub async fn undelete(&self, name: &str) -> Result<Ship> {
         let mut tx = self.0.begin().await?;
         let ship = tx.optional(UNDELETE, args![name: name]).await?;
+        search_index::mark(self.0, &mut tx, name).await?;
         tx.commit().await?;
         ship.ok_or_else(|| StoreError::missing("ship", name))
     }
 
     /// All ships by name, or those of one category.
     pub async fn list(&self, category: Option<&str>, page: &Page) -> Result<List<Ship>> {
-        let values = args![after: &page.after, category: category, limit: page.fetch()?];
-        let ships = self.0.database().all(LIST, values).await?;
+        let (database, limit) = (self.0.database(), page.fetch()?);
+        let ships = match category {
+            None => database.all(LIST, args![after: &page.after, limit: limit]).await?,
+            Some(category) => database.all(LIST_CATEGORY, args![after: &page.after, limit: limit, category: category]).await?,
+        };
         Ok(page.of(ships, |ship: &Ship| ship.name.clone()))
     }
 

@@ -31,18 +31,21 @@ macro_rules! statements {
 pub(crate) use statements;
 
 #[cfg(feature = "testing")]
+pub(crate) use prepare::ALL;
+
+#[cfg(feature = "testing")]
 mod prepare {
     use sqlx::{Executor as _, SqlSafeStr as _};
 
-    use crate::database::Pool;
+    use crate::database::Writer;
     use crate::error::{Result, StoreError};
     use crate::store::Store;
     use crate::{
-        aliases, bulks, diagnoses, families, garbage, idempotency, integrity, jobs, laws, reports, ships, statistics, store,
+        aliases, bulks, diagnoses, families, garbage, idempotency, integrity, jobs, laws, reports, search, search_index, ships,
+        statistics, store, tags, trials, versions, work,
     };
-    use crate::{trials, versions, work};
 
-    const ALL: &[(&str, &[(&str, super::Statement)])] = &[
+    pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[
         ("aliases", aliases::STATEMENTS),
         ("bulks", bulks::STATEMENTS),
         ("diagnoses", diagnoses::STATEMENTS),
@@ -53,9 +56,12 @@ mod prepare {
         ("jobs", jobs::STATEMENTS),
         ("laws", laws::STATEMENTS),
         ("reports", reports::STATEMENTS),
+        ("search", search::STATEMENTS),
+        ("search_index", search_index::STATEMENTS),
         ("ships", ships::STATEMENTS),
         ("statistics", statistics::STATEMENTS),
         ("store", store::STATEMENTS),
+        ("tags", tags::STATEMENTS),
         ("trials", trials::STATEMENTS),
         ("versions", versions::STATEMENTS),
         ("work", work::STATEMENTS),
@@ -76,8 +82,8 @@ mod prepare {
 
         async fn prepare(&self, statement: super::Statement) -> sqlx::Result<()> {
             match &self.database().write {
-                Pool::Sqlite(pool) => pool.prepare(statement.sqlite.into_sql_str()).await.map(drop),
-                Pool::Postgres(pool) => pool.prepare(statement.postgres.into_sql_str()).await.map(drop),
+                Writer::Sqlite(group) => group.pool().prepare(statement.sqlite.into_sql_str()).await.map(drop),
+                Writer::Postgres(pool) => pool.prepare(statement.postgres.into_sql_str()).await.map(drop),
             }
         }
     }

@@ -16,6 +16,7 @@ use crate::jobs::Jobs;
 use crate::laws::Laws;
 use crate::record::record;
 use crate::reports::Reports;
+use crate::search_index::SearchIndex;
 use crate::ships::Ships;
 use crate::statements::{same, statements};
 use crate::statistics::TrialStatistics;
@@ -115,6 +116,11 @@ impl Store {
     /// Reports on versions and ships.
     pub fn reports(&self) -> Reports<'_> {
         Reports(self)
+    }
+
+    /// What ships are found by.
+    pub fn search_index(&self) -> SearchIndex<'_> {
+        SearchIndex(self)
     }
 
     /// Diagnoses of versions.

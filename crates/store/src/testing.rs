@@ -8,9 +8,13 @@ use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{AssertSqlSafe, ConnectOptions as _, Connection as _, Executor as _, PgConnection};
 use tempfile::TempDir;
 
+pub use s3::TestS3;
+
 use crate::clock::ManualClock;
 use crate::store::Store;
 
+mod plans;
+mod s3;
 mod server;
 
 /// An empty database that goes when this is dropped (on PostgreSQL, when the test process ends).

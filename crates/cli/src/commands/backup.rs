@@ -69,9 +69,9 @@ pub fn backup(backup: &Backup) -> Result<(), Failure> {
 /// The place is not empty, the backup is damaged or of another kind of database, or something cannot be written.
 pub fn restore(restore: &Restore) -> Result<(), Failure> {
     let Restore { folder, store, json } = restore;
-    let place = store.place(&store.file()?);
+    let place = store.place(&store.file()?)?;
     let manifest = block_on(async {
-        let restored = upkeep::restore(folder, &place.database_url, &place.data_dir).await;
+        let restored = upkeep::restore(folder, &place.database_url, &place.objects).await;
         restored.map_err(|error| Failure::Refused(error.to_string()))
     })?;
     output::print(*json, &manifest, || text("restored", &manifest))

@@ -18,6 +18,12 @@ pub struct ConfigFile {
     pub database_url: Option<String>,
     /// `--data-dir`
     pub data_dir: Option<PathBuf>,
+    /// `--objects-url`
+    pub objects_url: Option<String>,
+    /// `--objects-endpoint`
+    pub objects_endpoint: Option<String>,
+    /// `--objects-region`
+    pub objects_region: Option<String>,
     /// `--api-key-file`
     pub api_key_file: Option<PathBuf>,
     /// `--workers`

@@ -37,7 +37,7 @@ pub fn run(fsck: &Fsck) -> Result<(), Failure> {
 }
 
 fn text(findings: &Findings) -> String {
-    let Findings { faults, checked, unreferred, .. } = findings;
+    let Findings { faults, checked, unreferred, unfinished, .. } = findings;
     let Checked { laws, versions, trials, jobs, diagnoses, objects } = checked;
     let fault = |fault: &Fault| format!("{}: {}: {}\n", fault.check, fault.place, fault.message);
     let mut text: String = faults.iter().map(fault).collect();
@@ -48,6 +48,10 @@ fn text(findings: &Findings) -> String {
     if unreferred.objects > 0 {
         let (objects, bytes) = (count(unreferred.objects, "object"), unreferred.bytes);
         text += &format!("{objects} ({bytes} bytes) that no trial refers to; `sistership gc` removes what is old enough\n");
+    }
+    if unfinished.objects > 0 {
+        let (puts, bytes) = (count(unfinished.objects, "put"), unfinished.bytes);
+        text += &format!("{puts} ({bytes} bytes) under way or never ended; `sistership gc` removes what is old enough\n");
     }
     text
 }

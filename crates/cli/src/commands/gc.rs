@@ -52,10 +52,11 @@ pub fn run(gc: &Gc) -> Result<(), Failure> {
 }
 
 fn text(collected: &Collected) -> String {
-    let Collected { dry_run, removed, bytes, objects } = collected;
-    let lines: String = removed.iter().map(|key| format!("{key}\n")).collect();
+    let Collected { dry_run, removed, unfinished, bytes, objects } = collected;
+    let lines: String = removed.iter().chain(unfinished).map(|place| format!("{place}\n")).collect();
     let done = if *dry_run { "would be removed" } else { "removed" };
-    format!("{lines}{} of {objects} ({bytes} bytes) {done}\n", count(removed.len(), "object"))
+    let puts = count(unfinished.len(), "put");
+    format!("{lines}{} of {objects} and {puts} that never ended ({bytes} bytes) {done}\n", count(removed.len(), "object"))
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ pub(crate) mod refine_text;
 mod running;
 mod sailed;
 pub mod serve;
+pub mod ships;
 pub mod similar;
 pub mod simulate;
 mod simulated;

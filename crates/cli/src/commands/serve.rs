@@ -77,8 +77,9 @@ pub fn run(serve: &Serve, zoo: &[PathBuf]) -> Result<(), Failure> {
 }
 
 fn config(serve: &Serve, file: &ConfigFile) -> Result<Config, Failure> {
-    let place = serve.store.place(file);
+    let place = serve.store.place(file)?;
     let mut config = Config::new(place.data_dir);
+    config.objects = place.objects;
     config.listen = serve.listen.or(file.listen).unwrap_or(DEFAULT_LISTEN);
     config.database_url = place.database_url;
     config.workers = if serve.no_worker { 0 } else { workers(serve.workers, file, 0)? };

@@ -34,7 +34,7 @@ pub struct Similar {
     json: bool,
 }
 
-fn definition(name: &str) -> Result<Definition, String> {
+pub(super) fn definition(name: &str) -> Result<Definition, String> {
     let known: Vec<&str> = Definition::ALL.into_iter().map(Definition::name).collect();
     Definition::by_name(name).ok_or_else(|| format!("there are {}", known.join(" and ")))
 }

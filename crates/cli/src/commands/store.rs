@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use sistership_server::Archive;
+use sistership_server::{Archive, ObjectsPlace};
 
 use super::config_file::{self, ConfigFile};
 use crate::failure::Failure;
@@ -12,7 +12,7 @@ use crate::failure::Failure;
 const DATA_DIR: &str = "sistership-data";
 
 /// Where the store is, as it is told.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub struct StoreArguments {
     /// YAML file of settings, named as the flags are; flags and environment win over it.
     #[arg(long, value_name = "FILE", env = "SISTERSHIP_CONFIG")]
@@ -20,9 +20,19 @@ pub struct StoreArguments {
     /// `sqlite://path/file.db` or `postgres://...`; the file sistership.db in the data folder where absent.
     #[arg(long, value_name = "URL", env = "SISTERSHIP_DATABASE_URL", hide_env_values = true)]
     database_url: Option<String>,
-    /// Folder of trial samples, and of the embedded database [default: sistership-data].
+    /// Folder of trial samples, of uploads under way, and of the embedded database [default: sistership-data].
     #[arg(long, value_name = "DIR", env = "SISTERSHIP_DATA_DIR")]
     data_dir: Option<PathBuf>,
+    /// `s3://bucket/prefix`: where trial samples are instead, with the credentials that AWS_ACCESS_KEY_ID and
+    /// AWS_SECRET_ACCESS_KEY or the machine's role give.
+    #[arg(long, value_name = "URL", env = "SISTERSHIP_OBJECTS_URL")]
+    objects_url: Option<String>,
+    /// The S3-compatible server, such as http://host:9000; Amazon's where absent.
+    #[arg(long, value_name = "URL", env = "SISTERSHIP_OBJECTS_ENDPOINT")]
+    objects_endpoint: Option<String>,
+    /// The bucket's region [default: AWS_REGION, else us-east-1].
+    #[arg(long, value_name = "NAME", env = "SISTERSHIP_OBJECTS_REGION")]
+    objects_region: Option<String>,
 }
 
 /// Where the store is.
@@ -30,8 +40,10 @@ pub struct StoreArguments {
 pub struct StorePlace {
     /// The database's URL.
     pub database_url: String,
-    /// The folder of samples.
+    /// The folder of uploads under way, and of what has no other place.
     pub data_dir: PathBuf,
+    /// Where the samples are.
+    pub objects: ObjectsPlace,
 }
 
 impl StoreArguments {
@@ -44,11 +56,24 @@ impl StoreArguments {
     }
 
     /// Where they and the file say that the store is.
-    pub fn place(&self, file: &ConfigFile) -> StorePlace {
+    ///
+    /// # Errors
+    /// The samples cannot be where they say.
+    pub fn place(&self, file: &ConfigFile) -> Result<StorePlace, Failure> {
         let data_dir = self.data_dir.as_ref().or(file.data_dir.as_ref()).map_or(Path::new(DATA_DIR), PathBuf::as_path);
         let url = self.database_url.as_ref().or(file.database_url.as_ref());
         let database_url = url.cloned().unwrap_or_else(|| sistership_server::sqlite_url(data_dir));
-        StorePlace { database_url, data_dir: data_dir.to_path_buf() }
+        Ok(StorePlace { database_url, objects: self.objects(file, data_dir)?, data_dir: data_dir.to_path_buf() })
+    }
+
+    fn objects(&self, file: &ConfigFile, data_dir: &Path) -> Result<ObjectsPlace, Failure> {
+        let endpoint = self.objects_endpoint.clone().or_else(|| file.objects_endpoint.clone());
+        let region = self.objects_region.clone().or_else(|| file.objects_region.clone());
+        match self.objects_url.as_ref().or(file.objects_url.as_ref()) {
+            Some(url) => ObjectsPlace::s3(url, endpoint, region).map_err(|error| Failure::Call(error.to_string())),
+            None if endpoint.is_some() => Err(Failure::Call("objects_endpoint: say where on it, with objects_url".into())),
+            None => Ok(ObjectsPlace::Folder(data_dir.to_path_buf())),
+        }
     }
 }
 
@@ -64,10 +89,12 @@ impl StorePlace {
                 file.display()
             )));
         }
-        if self.data_dir.is_dir() {
-            return Ok(());
+        match self.objects.folder().filter(|folder| !folder.is_dir()) {
+            Some(folder) => {
+                Err(Failure::Refused(format!("there is no data folder {}; name it with --data-dir", folder.display())))
+            }
+            None => Ok(()),
         }
-        Err(Failure::Refused(format!("there is no data folder {}; name it with --data-dir", self.data_dir.display())))
     }
 }
 
@@ -86,10 +113,10 @@ pub fn with_archive<T, E: std::fmt::Display>(
     store: &StoreArguments,
     work: impl AsyncFnOnce(&Archive) -> Result<T, E>,
 ) -> Result<T, Failure> {
-    let place = store.place(&store.file()?);
+    let place = store.place(&store.file()?)?;
     place.must_exist()?;
     block_on(async {
-        let archive = Archive::open(&place.database_url, &place.data_dir).await;
+        let archive = Archive::open_at(&place.database_url, &place.objects).await;
         let archive = archive.map_err(|error| Failure::Refused(format!("cannot open the store: {error}")))?;
         let done = work(&archive).await;
         archive.store.close().await;
@@ -120,9 +147,23 @@ mod tests {
 
     #[test]
     fn a_store_that_is_not_there_is_not_made() {
-        let arguments = StoreArguments { config: None, database_url: None, data_dir: Some("/nowhere/at/all".into()) };
-        let place = arguments.place(&ConfigFile::default());
+        let arguments = StoreArguments { data_dir: Some("/nowhere/at/all".into()), ..StoreArguments::default() };
+        let Ok(place) = arguments.place(&ConfigFile::default()) else { panic!("a place") };
         assert!(place.must_exist().is_err_and(|failure| failure.message().is_some_and(|m| m.contains("there is no database"))));
         assert!(!Path::new("/nowhere").exists());
+    }
+
+    #[test]
+    fn samples_may_be_in_a_bucket() {
+        let place = |url: Option<&str>, endpoint: Option<&str>| {
+            let file = ConfigFile { objects_url: url.map(str::to_owned), ..ConfigFile::default() };
+            let arguments = StoreArguments { objects_endpoint: endpoint.map(str::to_owned), ..StoreArguments::default() };
+            arguments.place(&file).map(|place| place.objects.to_string())
+        };
+        assert_eq!(place(None, None), Ok("sistership-data".to_owned()));
+        assert_eq!(place(Some("s3://samples/fleet"), Some("http://localhost:9000")), Ok("s3://samples/fleet".to_owned()));
+        for (url, endpoint, field) in [(Some("samples"), None, "objects_url"), (None, Some("http://a"), "objects_endpoint")] {
+            assert!(place(url, endpoint).is_err_and(|failure| failure.message().is_some_and(|m| m.starts_with(field))));
+        }
     }
 }

@@ -51,8 +51,9 @@ pub fn run(work: &Work) -> Result<(), Failure> {
 }
 
 fn config(work: &Work, file: &ConfigFile) -> Result<Config, Failure> {
-    let place = work.store.place(file);
+    let place = work.store.place(file)?;
     let mut config = Config::new(place.data_dir);
+    config.objects = place.objects;
     config.database_url = place.database_url;
     config.workers = workers(work.workers, file, 1)?;
     config.leases = work.lease.leases(file)?;

@@ -74,6 +74,9 @@ pub async fn derive(archive: &Archive, ship: &str, recipe: &Recipe, progress: Pr
             tokio::task::spawn_blocking(move || refined::refined(ingredients, &samples, &recipe, &progress)).await?
         }
         Recipe::Family(recipe) => Ok(Derived { document: crate::fleet::derived(archive, ship, recipe).await?, refined: None }),
+        Recipe::Registered(_) => {
+            Err(DeriveError::Lost("the model was made elsewhere: its own bytes are all there is of it".into()))
+        }
         Recipe::Diagnosis(recipe) => {
             let document = diagnosed(archive, recipe.clone(), progress).await?.document()?;
             let nothing = || DeriveError::Lost("the diagnosis finds no effect now, so that no version comes of it".into());

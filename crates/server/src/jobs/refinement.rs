@@ -77,7 +77,7 @@ pub(super) async fn trials(app: &App, ids: &[String]) -> Result<Vec<RecipeTrial>
 
 /// The best eligible ship of the zoo, measured on the trials.
 async fn choose(app: &App, target: Vessel, trials: &[RecipeTrial]) -> Result<(Version, Similarity)> {
-    let zoo = app.zoo().await?;
+    let zoo = app.zoo_around(&target).await?;
     let samples = app.archive().samples(trials).await?;
     let choice = move || {
         let trials: Vec<Recording> =

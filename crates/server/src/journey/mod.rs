@@ -6,3 +6,5 @@ mod harness;
 mod loops;
 mod observed;
 mod refusals;
+mod registry;
+mod search;

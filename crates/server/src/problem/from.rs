@@ -79,8 +79,15 @@ impl From<QueryRejection> for Problem {
     fn from(rejection: QueryRejection) -> Self {
         let text = rejection.body_text();
         let message = text.strip_prefix("Failed to deserialize query string: ").unwrap_or(&text);
-        Self::bad_request(format!("query: {message}")).with(Fault::at("query", message))
+        Self::bad_request(format!("query: {message}")).with(Fault::at(parameter(message), message))
     }
+}
+
+/// The parameter that a message is about: `limit: invalid digit`, or "unknown field `limt`, expected ...".
+fn parameter(message: &str) -> &str {
+    let quoted = message.split('`').nth(1);
+    let before = message.split_once(": ").map(|(name, _)| name).filter(|name| !name.contains(' '));
+    before.or(quoted).unwrap_or("query")
 }
 
 impl From<PathRejection> for Problem {
@@ -109,6 +116,14 @@ mod tests {
         let finding = Finding { row: Some(7), column: Some("u".into()), message: "not a number".into() };
         let problem = Problem::from(vec![Refusal { file: "a.csv".into(), findings: vec![finding] }]);
         assert_eq!((problem.status, problem.errors[0].row, problem.errors[0].field.as_deref()), (422, Some(7), Some("a.csv")));
+    }
+
+    #[test]
+    fn the_wrong_parameter_is_named() {
+        assert_eq!(parameter("limit: invalid digit found in string"), "limit");
+        assert_eq!(parameter("unknown field `limt`, expected one of `limit`, `after`"), "limt");
+        assert_eq!(parameter("missing field `ship`"), "ship");
+        assert_eq!(parameter("something else"), "query");
     }
 
     #[test]

@@ -75,7 +75,7 @@ struct Revisions {
     /// The most items to return, 1 to 1000.
     limit: Option<i64>,
     /// `next` of the page before.
-    after: Option<i64>,
+    after: Option<String>,
 }
 
 impl AliasView {
@@ -107,7 +107,7 @@ async fn list(
     Params(query): Params<Names>,
 ) -> Result<Json<Listing<AliasView>>> {
     exists(&app, &model).await?;
-    let aliases = app.store().aliases().list(&model, &page::page(query.limit, query.after)).await?;
+    let aliases = app.store().aliases().list(&model, &page::page(query.limit, query.after.as_deref())?).await?;
     Ok(Json(Listing::of(aliases, AliasView::of)))
 }
 
@@ -170,6 +170,6 @@ async fn history(
     Params(query): Params<Revisions>,
 ) -> Result<Json<Listing<AliasStep>>> {
     app.store().aliases().get(&model, &name).await?;
-    let changes = app.store().aliases().history(&model, &name, &page::page(query.limit, query.after)).await?;
+    let changes = app.store().aliases().history(&model, &name, &page::page(query.limit, query.after.as_deref())?).await?;
     Ok(Json(Listing::of(changes, AliasStep::of)))
 }

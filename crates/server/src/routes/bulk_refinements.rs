@@ -140,7 +140,7 @@ async fn refine(State(app): State<App>, Place(family): Place<String>, key: Key, 
     get, path = "/v1/bulk-refinements", tag = "families", params(ListQuery), responses((status = 200, body = Listing<BulkView>))
 )]
 async fn list(State(app): State<App>, Params(query): Params<ListQuery>) -> Result<Json<Listing<BulkView>>> {
-    let bulks = app.store().bulks().list(query.family.as_deref(), &page::page(query.limit, query.after)).await?;
+    let bulks = app.store().bulks().list(query.family.as_deref(), &page::page(query.limit, query.after.as_deref())?).await?;
     let mut items = Vec::with_capacity(bulks.items.len());
     for bulk in bulks.items {
         items.push(BulkView::of(&app, bulk).await?);
@@ -191,7 +191,7 @@ async fn ships(
     Params(query): Params<ShipQuery>,
 ) -> Result<Json<Listing<OutcomeView>>> {
     let bulk = app.store().bulks().get(&id).await?;
-    let page = page::page(query.limit, query.after);
+    let page = page::page(query.limit, query.after.as_deref())?;
     let outcomes = app.store().bulks().outcomes(&bulk.id, query.outcome.as_deref(), &page).await?;
     Ok(Json(Listing::of(outcomes, OutcomeView::of)))
 }

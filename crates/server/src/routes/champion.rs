@@ -3,10 +3,11 @@
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use bytes::Bytes;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sistership_model::Model;
-use sistership_store::Version;
+use sistership_store::CurrentVersion;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -15,7 +16,7 @@ use super::versions::VersionHead;
 use crate::app::App;
 use crate::archive::document;
 use crate::problem::{Problem, Result};
-use crate::publish::{CHAMPION, alias};
+use crate::publish::CHAMPION;
 use crate::web::{Conditions, Params, Place, accept};
 
 const JSON: &str = "application/json";
@@ -74,33 +75,45 @@ async fn champion(
         Some(Format::Yaml) => YAML,
         None => accept::choose(&headers, &[JSON, YAML])?,
     };
-    let version = current(&app, &ship).await?;
-    let etag = if media == YAML { format!("\"{}.yaml\"", version.head.sha256) } else { format!("\"{}\"", version.head.sha256) };
+    let Some(current) = app.store().versions().current(&ship, CHAMPION).await? else { return Err(missing(&app, &ship).await) };
+    let sha256 = &current.head.sha256;
+    let etag = if media == YAML { format!("\"{sha256}.yaml\"") } else { format!("\"{sha256}\"") };
     let head = [(header::ETAG, etag.clone()), (header::VARY, "accept".to_owned()), (header::CONTENT_TYPE, media.to_owned())];
     if conditions.has(&etag) {
         return Ok((StatusCode::NOT_MODIFIED, head).into_response());
     }
-    let model = document(&version)?.model;
-    let body = if media == YAML { yaml(&model)? } else { json(&app, ship, version, &model).await? };
-    Ok((head, body).into_response())
+    Ok((head, body(&app, current, media).await?).into_response())
 }
 
-async fn current(app: &App, ship: &str) -> Result<Version> {
-    app.store().ships().get(ship).await?;
-    let missing = || {
-        let todo = "upload trials to /v1/trials and POST a refinement to /v1/refinements";
-        Problem::not_found(format!("the ship `{ship}` is known by particulars only and has no model yet; {todo}"))
-    };
-    let champion = alias(app.store(), ship, CHAMPION).await?.ok_or_else(missing)?;
-    Ok(app.store().versions().get(ship, champion.version_number).await?)
+/// The answer, as it was given before where it was.
+async fn body(app: &App, current: CurrentVersion, media: &'static str) -> Result<Bytes> {
+    let key = (current.head.id.clone(), current.report.clone(), media);
+    if let Some(answer) = app.answers().get(&key) {
+        return Ok(answer);
+    }
+    let version = app.store().versions().get(&current.head.model, current.head.number).await?;
+    let model = document(&version)?.model;
+    let answer = Bytes::from(if media == YAML { yaml(&model)? } else { json(version.head, current.report, &model)? });
+    app.answers().keep(key, answer.clone());
+    Ok(answer)
+}
+
+/// Why there is no champion.
+async fn missing(app: &App, ship: &str) -> Problem {
+    if let Err(error) = app.store().ships().get(ship).await {
+        return error.into();
+    }
+    let todo = "upload trials to /v1/trials and POST a refinement to /v1/refinements";
+    Problem::not_found(format!("the ship `{ship}` is known by particulars only and has no model yet; {todo}"))
 }
 
 fn yaml(model: &Model) -> Result<String> {
     serde_yaml::to_string(model).map_err(Problem::internal)
 }
 
-async fn json(app: &App, ship: String, version: Version, model: &Model) -> Result<String> {
-    let version = VersionHead::with_report(app, version.head).await?;
+fn json(head: sistership_store::VersionHead, report: Option<String>, model: &Model) -> Result<String> {
+    let ship = head.model.clone();
+    let version = VersionHead { report, ..VersionHead::of(head) };
     let model = serde_json::to_value(model).map_err(Problem::internal)?;
     serde_json::to_string(&Champion { ship, version, model }).map_err(Problem::internal)
 }

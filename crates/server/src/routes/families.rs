@@ -142,7 +142,7 @@ impl MemberView {
 /// List the families by name
 #[utoipa::path(get, path = "/v1/families", tag = "families", params(Query), responses((status = 200, body = Listing<FamilyView>)))]
 async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<FamilyView>>> {
-    let families = app.store().families().list(&page::page(query.limit, query.after)).await?;
+    let families = app.store().families().list(&page::page(query.limit, query.after.as_deref())?).await?;
     let mut items = Vec::with_capacity(families.items.len());
     for family in families.items {
         items.push(FamilyView::of(&app, family).await?);
@@ -204,7 +204,7 @@ async fn members(
     Params(query): Params<Query>,
 ) -> Result<Json<Listing<MemberView>>> {
     let family = app.store().families().get(&name).await?;
-    let members = app.store().families().members(&family.name, &page::page(query.limit, query.after)).await?;
+    let members = app.store().families().members(&family.name, &page::page(query.limit, query.after.as_deref())?).await?;
     Ok(Json(Listing::of(members, MemberView::of)))
 }
 

@@ -98,7 +98,7 @@ impl JobView {
 async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<JobView>>> {
     let state = query.state.as_deref().map(str::parse).transpose()?;
     let filter = JobFilter { ship: query.ship, state };
-    let jobs = app.store().jobs().list(&filter, &page::page(query.limit, query.after)).await?;
+    let jobs = app.store().jobs().list(&filter, &page::page(query.limit, query.after.as_deref())?).await?;
     Ok(Json(Listing::of(jobs, JobView::of)))
 }
 

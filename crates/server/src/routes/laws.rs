@@ -57,7 +57,7 @@ impl LawHead {
 /// List the laws
 #[utoipa::path(get, path = "/v1/laws", tag = "laws", params(Query), responses((status = 200, body = Listing<LawHead>)))]
 async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<LawHead>>> {
-    let laws = app.store().laws().list(&page::page(query.limit, query.after)).await?;
+    let laws = app.store().laws().list(&page::page(query.limit, query.after.as_deref())?).await?;
     Ok(Json(Listing::of(laws, LawHead::of)))
 }
 

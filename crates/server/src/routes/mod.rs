@@ -19,11 +19,14 @@ mod pages;
 mod predictions;
 mod queue;
 mod refinements;
+mod register;
 mod reports;
 mod samples;
 mod ship_changes;
+mod ship_search;
 mod ships;
 mod similar;
+mod tags;
 mod trials;
 mod uploads;
 mod versions;
@@ -72,6 +75,7 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(laws::routes())
         .merge(ships::routes())
         .merge(ship_changes::routes())
+        .merge(tags::routes())
         .merge(similar::routes())
         .merge(champion::routes())
         .merge(trials::routes())
@@ -81,6 +85,7 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(jobs::routes())
         .merge(events::routes())
         .merge(versions::routes())
+        .merge(register::routes())
         .merge(aliases::routes())
         .merge(predictions::routes())
         .merge(reports::routes())

@@ -46,7 +46,7 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
 }
 
 async fn created(app: &App, vessel: &Vessel, keyed: bool) -> Result<Reply> {
-    let zoo = app.zoo().await?;
+    let zoo = app.laws().await?;
     zoo.check_models(vessel)?;
     let new = new_ship(vessel).map_err(Problem::internal)?;
     let ship = match app.store().ships().create(&new).await {
@@ -88,7 +88,7 @@ async fn replace(
             format!("is `{}`, but the path says `{name}`; a ship keeps her name", vessel.name()),
         ));
     }
-    let zoo = app.zoo().await?;
+    let zoo = app.laws().await?;
     zoo.check_models(&vessel)?;
     let new = new_ship(&vessel).map_err(Problem::internal)?;
     let ship: Ship = app.store().ships().update(&new, revision).await?;

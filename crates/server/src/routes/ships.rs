@@ -4,18 +4,21 @@ use axum::Json;
 use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::Value;
-use sistership_store::Ship;
-use utoipa::{IntoParams, ToSchema};
+use sistership_store::{FoundShip, Ship, StoreError};
+use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::condition::Condition;
+use super::ship_search::{self, Query};
 use crate::app::App;
+use crate::derive::DeriveError;
 use crate::problem::{Problem, Result};
+use crate::search;
 use crate::web::conditions::tag;
-use crate::web::{Conditions, Listing, Params, Place, page};
+use crate::web::{Conditions, Listing, Params, Place};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get))
@@ -33,6 +36,9 @@ pub(super) struct ShipHead {
     pub revision: i64,
     pub created_us: i64,
     pub updated_us: i64,
+    /// The correlation with `similar_to`, else the value of the first particular or metric that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
 }
 
 /// A ship with her document.
@@ -54,22 +60,10 @@ pub(super) struct ShipDetail {
     pub document: Value,
 }
 
-#[derive(Debug, Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
-#[into_params(parameter_in = Query)]
-struct Query {
-    /// The most items to return, 1 to 1000.
-    limit: Option<i64>,
-    /// `next` of the page before.
-    after: Option<String>,
-    /// Of this category only.
-    category: Option<String>,
-}
-
 impl ShipHead {
-    pub(super) fn of(ship: Ship) -> Self {
-        let Ship { name, title, category, revision, created_us, updated_us, .. } = ship;
-        Self { name, title, category, revision, created_us, updated_us }
+    fn of(ship: FoundShip) -> Self {
+        let FoundShip { name, title, category, revision, created_us, updated_us, value } = ship;
+        Self { name, title, category, revision, created_us, updated_us, value }
     }
 }
 
@@ -91,11 +85,17 @@ impl ShipDetail {
     }
 }
 
-/// List the ships by name
+/// Find ships: by category, tag, particulars, metrics of the champion, and similarity
+///
+/// By name; with ranges by the first of them, rising; with `similar_to` the most similar first. Particulars and metrics follow
+/// a change of ship or champion within a second or so.
 #[utoipa::path(get, path = "/v1/ships", tag = "ships", params(Query), responses((status = 200, body = Listing<ShipHead>)))]
-async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<ShipHead>>> {
-    let page = page::page(query.limit, query.after);
-    let ships = app.store().ships().list(query.category.as_deref(), &page).await?;
+async fn list(State(app): State<App>, Params(query): Params<Vec<(String, String)>>) -> Result<Json<Listing<ShipHead>>> {
+    let (asked, page) = ship_search::read(query)?;
+    let ships = search::ships(app.archive(), &asked, &page).await.map_err(|error| match error {
+        DeriveError::Store(StoreError::NotFound { kind: "ship", .. }) => Problem::invalid("similar_to", error.to_string()),
+        other => other.into(),
+    })?;
     Ok(Json(Listing::of(ships, ShipHead::of)))
 }
 

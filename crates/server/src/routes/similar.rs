@@ -38,6 +38,9 @@ fn yes() -> bool {
 }
 
 /// Rank the zoo for a ship, and say which ships may be her source
+///
+/// Of a zoo of more than 250 ships only the 250 of her category that are most similar to her are ranked;
+/// `GET /v1/ships?similar_to=` has all of them.
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/similar", tag = "ships", params(("ship" = String, Path), Query),
     responses((status = 200, body = Object, description = "`target`, `definition`, `vector` and `ranking`, as `sistership similar --json`"))
@@ -51,7 +54,7 @@ async fn similar(State(app): State<App>, Place(name): Place<String>, Params(quer
             samples.push(app.objects().get(&trial.object_key).await?);
         }
     }
-    let zoo = app.zoo().await?;
+    let zoo = app.zoo_around(&target).await?;
     let ranked = app.compute(move || {
         let trials = samples.into_iter().map(from_parquet).collect::<Result<Vec<_>, SamplesError>>()?;
         let trials: Vec<_> = trials.iter().collect();

@@ -67,7 +67,7 @@ impl TrialView {
 #[utoipa::path(get, path = "/v1/trials", tag = "trials", params(Query), responses((status = 200, body = Listing<TrialView>)))]
 async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<TrialView>>> {
     app.store().ships().get(&query.ship).await?;
-    let trials = app.store().trials().list(&query.ship, &page::page(query.limit, query.after)).await?;
+    let trials = app.store().trials().list(&query.ship, &page::page(query.limit, query.after.as_deref())?).await?;
     Ok(Json(Listing::of(trials, TrialView::of)))
 }
 

@@ -35,7 +35,7 @@ pub(super) struct VersionHead {
     /// The id of the version it was made from.
     pub parent: Option<String>,
     pub law: String,
-    /// `published-source`, the method of the refinement, or `diagnosis`.
+    /// `published-source`, the method of the refinement, `diagnosis`, or `registered`.
     pub method: String,
     /// The SHA-256 of its document.
     pub sha256: String,
@@ -61,11 +61,11 @@ struct Query {
     /// The most items to return, 1 to 1000.
     limit: Option<i64>,
     /// `next` of the page before.
-    after: Option<i64>,
+    after: Option<String>,
 }
 
 impl VersionHead {
-    fn of(head: sistership_store::VersionHead) -> Self {
+    pub(super) fn of(head: sistership_store::VersionHead) -> Self {
         let sistership_store::VersionHead { id, model, number, parent, law, method, sha256, created_us } = head;
         Self { id, model, number, parent, law, method, sha256, report: None, created_us }
     }
@@ -88,7 +88,7 @@ async fn list(
     Params(query): Params<Query>,
 ) -> Result<Json<Listing<VersionHead>>> {
     exists(&app, &model).await?;
-    let versions = app.store().versions().list(&model, &page::page(query.limit, query.after)).await?;
+    let versions = app.store().versions().list(&model, &page::page(query.limit, query.after.as_deref())?).await?;
     Ok(Json(Listing::of(versions, VersionHead::of)))
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sistership_store::{BackupManifest, Objects, Result, Store};
+use sistership_store::{BackupManifest, Objects, ObjectsPlace, Result, Store};
 
 use crate::archive::Archive;
 
@@ -18,8 +18,8 @@ pub async fn backup(archive: &Archive, folder: &Path) -> Result<BackupManifest> 
 ///
 /// # Errors
 /// The place is not empty, the backup is damaged or of another kind of database, or something cannot be written.
-pub async fn restore(folder: &Path, database_url: &str, data_dir: &Path) -> Result<BackupManifest> {
+pub async fn restore(folder: &Path, database_url: &str, samples: &ObjectsPlace) -> Result<BackupManifest> {
     // Before the data folder is made: a backup that does not read leaves nothing behind.
     BackupManifest::read(folder)?;
-    Store::restore(folder, database_url, &Objects::local(data_dir)?).await
+    Store::restore(folder, database_url, &Objects::at(samples)?).await
 }

@@ -12,6 +12,8 @@ use crate::archive::{Archive, document};
 
 /// Keys looked at in one transaction, which keeps uploads waiting.
 const AT_ONCE: usize = 100;
+/// What was last written longer ago than this is not being put any more: an hour.
+const LONGEST_PUT_US: i64 = 3_600_000_000;
 
 /// What was removed, or would have been.
 #[derive(Debug, Default, Clone, PartialEq, Eq, Serialize)]
@@ -20,7 +22,9 @@ pub struct Collected {
     pub dry_run: bool,
     /// The keys.
     pub removed: Vec<String>,
-    /// Their size.
+    /// Files of puts that never ended.
+    pub unfinished: Vec<String>,
+    /// The size of both.
     pub bytes: u64,
     /// Objects that were looked at.
     pub objects: usize,
@@ -50,7 +54,21 @@ pub async fn gc(archive: &Archive, grace: Duration, dry_run: bool) -> Result<Col
         collected.bytes += some.iter().filter(|(key, _)| removed.contains(key)).map(|(_, bytes)| bytes).sum::<u64>();
         collected.removed.extend(removed);
     }
+    unfinished(archive, before_us, &mut collected).await?;
     Ok(collected)
+}
+
+/// Removes what puts have left that never ended. No row can refer to it.
+async fn unfinished(archive: &Archive, before_us: i64, collected: &mut Collected) -> Result<()> {
+    let before_us = before_us.min(archive.store.now_us() - LONGEST_PUT_US);
+    for staged in archive.objects.staged().await?.into_iter().filter(|staged| staged.modified_us < before_us) {
+        if !collected.dry_run {
+            archive.objects.remove_staged(&staged).await?;
+        }
+        collected.bytes += staged.bytes;
+        collected.unfinished.push(staged.path);
+    }
+    Ok(())
 }
 
 /// Key and size of an object that is old enough and that no version names. What is not named by a hash is not ours.

@@ -10,7 +10,7 @@ use super::fsck::Findings;
 use super::{ROWS, store_fault, there};
 use crate::archive::Archive;
 
-/// Objects that no trial refers to.
+/// Objects that nothing refers to.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Unreferred {
     /// How many.
@@ -32,6 +32,8 @@ pub(super) async fn check(archive: &Archive, findings: &mut Findings) -> Result<
     }
     trials(archive, &mut objects, findings).await?;
     findings.unreferred = Unreferred { objects: objects.len(), bytes: objects.values().sum() };
+    let staged = archive.objects.staged().await?;
+    findings.unfinished = Unreferred { objects: staged.len(), bytes: staged.iter().map(|staged| staged.bytes).sum() };
     Ok(())
 }
 

@@ -1,11 +1,12 @@
 #![allow(clippy::unwrap_used)]
 
-use std::time::Duration;
+use std::sync::Arc;
+use std::time::{Duration, SystemTime};
 
 use bytes::Bytes;
 use serde_json::json;
-use sistership_store::testing::TestDatabase;
-use sistership_store::{Expect, NewTrial, Objects, sha256_hex};
+use sistership_store::testing::{TestDatabase, TestS3};
+use sistership_store::{Expect, NewTrial, Objects, Store, SystemClock, sha256_hex};
 
 use super::{Findings, fsck, gc};
 use crate::archive::Archive;
@@ -15,7 +16,10 @@ use crate::seed;
 
 /// An archive with the zoo, one trial of the Mariner, and all that a job may leave.
 async fn archive(database: &TestDatabase) -> Archive {
-    let archive = Archive::open(&database.url, database.folder.path()).await.unwrap();
+    filled(Archive::open(&database.url, database.folder.path()).await.unwrap()).await
+}
+
+async fn filled(archive: Archive) -> Archive {
     seed::seed(&archive.store, &Catalogue::default()).await.unwrap();
     let key = archive.objects.put(Bytes::from_static(b"samples")).await.unwrap();
     archive.store.trials().insert(&trial(&key)).await.unwrap();
@@ -46,11 +50,31 @@ async fn databases() -> Vec<TestDatabase> {
     [Some(TestDatabase::sqlite()), TestDatabase::postgres().await].into_iter().flatten().collect()
 }
 
+/// An archive, and what must live as long as it does.
+struct Place {
+    archive: Archive,
+    _database: TestDatabase,
+    _s3: Option<TestS3>,
+}
+
+/// Each database with samples in a folder, and with samples in a bucket.
+async fn places() -> Vec<Place> {
+    let mut places = Vec::new();
+    for database in databases().await {
+        places.push(Place { archive: archive(&database).await, _database: database, _s3: None });
+    }
+    for database in databases().await {
+        let s3 = TestS3::start().await;
+        let (store, objects) = (Store::connect(&database.url, Arc::new(SystemClock)).await.unwrap(), s3.objects("fleet"));
+        places.push(Place { archive: filled(Archive { store, objects }).await, _database: database, _s3: Some(s3) });
+    }
+    places
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn a_healthy_archive_is_clean() {
-    for database in databases().await {
-        let archive = archive(&database).await;
-        let findings = found(&archive).await;
+    for Place { archive, .. } in &places().await {
+        let findings = found(archive).await;
         assert!(findings.clean && findings.faults.is_empty(), "{findings:#?}");
         assert_eq!((findings.checked.trials, findings.checked.objects, findings.unreferred.objects), (1, 1, 0));
         assert!(findings.checked.laws > 3 && findings.checked.versions > 5, "{:?}", findings.checked);
@@ -93,6 +117,9 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     (BULK, "outcome-count", "bulk refinement b"),
     (CHUNK, "chunk-job", "bulk refinement b"),
     (OUTCOME, "outcome-version", "bulk refinement b"),
+    (TAG, "tag-ship", "tag nobody/own"),
+    ("DELETE FROM ship_vectors; DELETE FROM search_queue", "search-ship", "ship mariner"),
+    (FACT, "search-fact", "ship nobody"),
     (JOB, "job-ship", "job j"),
     (JOB, "job-state", "job j"),
     (JOB, "job-result", "job j"),
@@ -105,6 +132,8 @@ const PRIOR: &str = "INSERT INTO family_priors VALUES ('f', 2, '{}', 'x', 0)";
 const BULK: &str = "INSERT INTO bulk_refinements VALUES ('b', 'f', '{}', 1, 0)";
 const CHUNK: &str = "INSERT INTO bulk_chunks VALUES ('b', 1, 'none')";
 const OUTCOME: &str = "INSERT INTO bulk_outcomes VALUES ('b', 'mariner', 'champion', NULL, NULL, '{}', 0)";
+const TAG: &str = "INSERT INTO ship_tags VALUES ('nobody', 'own')";
+const FACT: &str = "INSERT INTO ship_facts VALUES ('nobody', 'particular lpp_m', 1)";
 const JOB: &str = "INSERT INTO jobs VALUES ('j', 'refinement', 'nobody', '{}', 'succeeded', 1, '', \
     '{\"model\": \"mariner\", \"version\": 1, \"sha256\": \"x\", \"report\": \"none\"}', NULL, 1, 1, 5, NULL, 0, 0, NULL, 0)";
 
@@ -139,7 +168,7 @@ async fn damaged(database: TestDatabase) {
     assert!(found(&archive).await.clean, "healed again");
 }
 
-const TABLES: [&str; 17] = [
+const TABLES: [&str; 21] = [
     "laws",
     "ships",
     "ship_revisions",
@@ -157,6 +186,10 @@ const TABLES: [&str; 17] = [
     "bulk_refinements",
     "bulk_chunks",
     "bulk_outcomes",
+    "ship_facts",
+    "ship_vectors",
+    "ship_tags",
+    "search_queue",
 ];
 
 #[tokio::test(flavor = "multi_thread")]
@@ -199,20 +232,37 @@ async fn a_source_that_has_changed_is_named() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn garbage_goes_when_it_is_old_and_nobodys() {
-    for database in databases().await {
-        let archive = archive(&database).await;
+    for Place { archive, .. } in &places().await {
         let orphan = archive.objects.put(Bytes::from_static(b"orphan")).await.unwrap();
-        assert_eq!(found(&archive).await.unreferred, super::Unreferred { objects: 1, bytes: 6 });
-        let young = gc(&archive, Duration::from_secs(3600), false).await.unwrap();
+        assert_eq!(found(archive).await.unreferred, super::Unreferred { objects: 1, bytes: 6 });
+        let young = gc(archive, Duration::from_secs(3600), false).await.unwrap();
         assert_eq!((young.removed.len(), young.objects), (0, 2), "what was put just now may still get its row");
         tokio::time::sleep(Duration::from_millis(20)).await;
-        let asked = gc(&archive, Duration::ZERO, true).await.unwrap();
+        let asked = gc(archive, Duration::ZERO, true).await.unwrap();
         assert_eq!((asked.removed.as_slice(), asked.bytes), ([orphan.clone()].as_slice(), 6));
         assert!(archive.objects.exists(&orphan).await.unwrap(), "a dry run removes nothing");
-        assert_eq!(gc(&archive, Duration::ZERO, false).await.unwrap().removed, std::slice::from_ref(&orphan));
+        assert_eq!(gc(archive, Duration::ZERO, false).await.unwrap().removed, std::slice::from_ref(&orphan));
         assert!(!archive.objects.exists(&orphan).await.unwrap());
-        assert!(found(&archive).await.clean);
+        assert!(found(archive).await.clean);
     }
+}
+
+/// As a process leaves them that is killed in the middle of an upload.
+#[tokio::test(flavor = "multi_thread")]
+async fn puts_that_never_ended_are_seen_and_go_when_they_are_old() {
+    let database = TestDatabase::sqlite();
+    let archive = archive(&database).await;
+    let place = database.folder.path().join("objects/00/11#1");
+    std::fs::create_dir_all(place.parent().unwrap()).unwrap();
+    let file = std::fs::File::create(&place).unwrap();
+    std::io::Write::write_all(&mut &file, b"half").unwrap();
+    let findings = found(&archive).await;
+    assert!(findings.clean && findings.unfinished == super::Unreferred { objects: 1, bytes: 4 }, "{findings:#?}");
+    assert!(gc(&archive, Duration::ZERO, false).await.unwrap().unfinished.is_empty(), "it may be under way");
+    file.set_modified(SystemTime::now() - Duration::from_secs(7200)).unwrap();
+    assert_eq!(gc(&archive, Duration::ZERO, true).await.unwrap().unfinished, ["objects/00/11#1"]);
+    assert_eq!(gc(&archive, Duration::ZERO, false).await.unwrap().bytes, 4);
+    assert!(!place.exists() && found(&archive).await.unfinished.objects == 0);
 }
 
 #[tokio::test(flavor = "multi_thread")]
@@ -229,8 +279,7 @@ async fn samples_of_deleted_trials_and_of_versions_stay() {
 /// Uploads of the same bytes against a collector that takes everything that nobody refers to: no trial loses its samples.
 #[tokio::test(flavor = "multi_thread")]
 async fn an_upload_and_the_collector_do_not_miss_each_other() {
-    for database in databases().await {
-        let archive = archive(&database).await;
+    for Place { archive, .. } in &places().await {
         let collector = archive.clone();
         let collecting = tokio::spawn(async move {
             loop {
@@ -238,10 +287,10 @@ async fn an_upload_and_the_collector_do_not_miss_each_other() {
             }
         });
         for number in 0..60 {
-            upload(&archive, &archive.objects, number).await;
+            upload(archive, &archive.objects, number).await;
         }
         collecting.abort();
-        let findings = found(&archive).await;
+        let findings = found(archive).await;
         assert!(findings.clean, "{findings:#?}");
         assert_eq!(findings.checked.trials, 61);
     }

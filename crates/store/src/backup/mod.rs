@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub use manifest::{BackupManifest, DatabaseKind, FileHead, TableHead};
 
 use crate::clock::SystemClock;
-use crate::database::Pool;
+use crate::database::Writer;
 use crate::error::{Result, StoreError};
 use crate::objects::Objects;
 use crate::store::Store;
@@ -38,8 +38,8 @@ impl Store {
         files::claim(folder)?;
         let created_us = self.now_us();
         let taken = match &self.database().write {
-            Pool::Sqlite(pool) => sqlite::take(pool, folder).await?,
-            Pool::Postgres(pool) => postgres::take(pool, folder).await?,
+            Writer::Sqlite(group) => sqlite::take(group.pool(), folder).await?,
+            Writer::Postgres(pool) => postgres::take(pool, folder).await?,
         };
         let copied = objects::copy(objects, &taken.keys, &Objects::local(folder)?).await?;
         let manifest = BackupManifest::new(folder, created_us, taken, copied).await?;

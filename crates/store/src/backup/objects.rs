@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use futures::TryStreamExt as _;
+use futures::stream::{self, StreamExt as _, TryStreamExt as _};
 
 use super::manifest::BackupManifest;
 use super::not_a_backup;
 use crate::error::{Result, StoreError};
-use crate::object_list::ObjectName;
+use crate::object_list::{AT_ONCE, ObjectName};
 use crate::objects::{Objects, ObjectsError};
 
 /// What has been copied.
@@ -21,20 +21,33 @@ pub(super) struct Copied {
 /// Copies objects, each verified by its hash; goes on where one is lost.
 pub(super) async fn copy(from: &Objects, keys: &[String], to: &Objects) -> Result<Copied> {
     let mut copied = Copied::default();
-    for key in keys {
-        match from.get(key).await {
+    let copies: Vec<_> = keys.iter().map(|key| copy_one(from, key.clone(), to)).collect();
+    let mut copies = stream::iter(copies).buffered(AT_ONCE);
+    while let Some(copy) = copies.try_next().await? {
+        match copy {
             Ok(bytes) => {
                 copied.objects += 1;
-                copied.bytes += bytes.len() as u64;
-                to.put(bytes).await?;
+                copied.bytes += bytes;
             }
-            Err(StoreError::NotFound { .. } | StoreError::Invalid { .. } | StoreError::Objects(ObjectsError::Damaged { .. })) => {
-                copied.lost.push(key.clone());
-            }
-            Err(error) => return Err(error),
+            Err(lost) => copied.lost.push(lost),
         }
     }
     Ok(copied)
+}
+
+/// Copies an object and tells its size; the key of one that is lost.
+async fn copy_one(from: &Objects, key: String, to: &Objects) -> Result<std::result::Result<u64, String>> {
+    match from.get(&key).await {
+        Ok(bytes) => {
+            let size = bytes.len() as u64;
+            to.put(bytes).await?;
+            Ok(Ok(size))
+        }
+        Err(StoreError::NotFound { .. } | StoreError::Invalid { .. } | StoreError::Objects(ObjectsError::Damaged { .. })) => {
+            Ok(Err(key))
+        }
+        Err(error) => Err(error),
+    }
 }
 
 pub(super) async fn must_be_empty(objects: &Objects) -> Result<()> {

@@ -36,6 +36,10 @@ pub(crate) const TABLES: &[&str] = &[
     "bulk_refinements",
     "bulk_chunks",
     "bulk_outcomes",
+    "ship_facts",
+    "ship_vectors",
+    "ship_tags",
+    "search_queue",
 ];
 const FOLDER: &str = "tables";
 const COLUMNS: &str = "SELECT CAST(column_name AS TEXT) FROM information_schema.columns \

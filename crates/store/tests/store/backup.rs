@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use sistership_store::testing::TestS3;
 use sistership_store::{BackupManifest, Expect, Objects, Page, Store, SystemClock};
 
 use crate::support::*;
@@ -51,6 +52,21 @@ async fn what_is_restored_is_what_was_backed_up(on: &TestStore) {
     let latest = on.store.versions().latest("kcs").await.unwrap().head.number;
     let next = store.versions().create(&version("kcs"), &[champion(Expect::Any)]).await.unwrap();
     assert_eq!(next.number, latest + 1, "what is made next is numbered on");
+}
+
+async fn a_bucket_is_backed_up_and_restored_into_another(on: &TestStore) {
+    let s3 = TestS3::start().await;
+    let (objects, copies) = (s3.objects("one"), s3.objects("another"));
+    drop(filled(on).await);
+    for samples in ["turn", "nobody's"] {
+        objects.put(samples.into()).await.unwrap();
+    }
+    let backup = folder(on, "backup");
+    let manifest = on.store.backup(&objects, &backup).await.unwrap();
+    assert_eq!((manifest.objects, manifest.object_bytes, manifest.lost.len()), (1, 4, 0));
+    assert_conflict(Store::restore(&backup, &empty(on).await.url, &objects).await, "is not empty");
+    Store::restore(&backup, &empty(on).await.url, &copies).await.unwrap();
+    assert_eq!(copies.get(&trial("kcs", "turn").object_key).await.unwrap(), "turn");
 }
 
 async fn a_place_that_is_not_empty_is_refused(on: &TestStore) {
@@ -123,6 +139,7 @@ async fn a_database_in_memory_is_refused() {
 
 on_both_databases!(
     what_is_restored_is_what_was_backed_up,
+    a_bucket_is_backed_up_and_restored_into_another,
     a_place_that_is_not_empty_is_refused,
     a_backup_that_is_damaged_is_refused,
     a_backup_of_another_kind_or_a_newer_program_is_refused,

@@ -1,5 +1,9 @@
+use std::path::Path;
+
 use bytes::Bytes;
-use sistership_store::{Objects, ObjectsError, StoreError, sha256_hex};
+use futures::TryStreamExt as _;
+use sistership_store::testing::TestS3;
+use sistership_store::{ObjectName, Objects, ObjectsError, StoreError, sha256_hex};
 
 use crate::support::*;
 
@@ -22,24 +26,77 @@ async fn objects_in_memory() {
     put_and_get(&Objects::memory()).await;
 }
 
-#[tokio::test]
-async fn a_damaged_object_is_found_out_and_healed() {
-    let folder = tempfile::tempdir().unwrap();
-    let root = folder.path().join("not/yet/there");
-    let objects = Objects::local(&root).unwrap();
-    let key = put_and_get(&objects).await;
+/// An object whose bytes another program has changed.
+async fn damaged_and_healed(objects: &Objects, root: &Path) {
+    let key = put_and_get(objects).await;
     let file = root.join("objects").join(&key[..2]).join(&key[2..]);
     std::fs::write(&file, b"PAR1 damaged PAR1").unwrap();
     let damaged = objects.get(&key).await;
     assert!(matches!(&damaged, Err(StoreError::Objects(ObjectsError::Damaged { key: at, .. })) if *at == key), "{damaged:?}");
     objects.put(SAMPLES).await.unwrap();
-    assert_eq!(Objects::local(&root).unwrap().get(&key).await.unwrap(), SAMPLES);
+    assert_eq!(objects.get(&key).await.unwrap(), SAMPLES);
+}
+
+#[tokio::test]
+async fn a_damaged_object_is_found_out_and_healed() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path().join("not/yet/there");
+    damaged_and_healed(&Objects::local(&root).unwrap(), &root).await;
+    assert_eq!(Objects::local(&root).unwrap().get(&sha256_hex(&SAMPLES)).await.unwrap(), SAMPLES);
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn objects_in_a_bucket() {
+    let s3 = TestS3::start().await;
+    let objects = s3.objects("fleet/a");
+    assert_not_found(objects.health().await, "object");
+    objects.mark().await.unwrap();
+    objects.health().await.unwrap();
+    damaged_and_healed(&objects, &s3.folder.path().join("samples/fleet/a")).await;
+    many(&objects).await;
+    let others = objects.put(Bytes::from_static(b"others")).await.unwrap();
+    let mut listed: Vec<_> = objects.list().map_ok(|head| (head.name, head.bytes)).try_collect().await.unwrap();
+    listed.sort_by_key(|(_, bytes)| *bytes);
+    let expected = [(others, 6), (sha256_hex(&SAMPLES), SAMPLES.len() as u64)].map(|(key, bytes)| (ObjectName::Key(key), bytes));
+    assert_eq!(listed, expected);
+    // Another prefix of the bucket is another store.
+    assert_not_found(s3.objects("fleet/b").get(&sha256_hex(&SAMPLES)).await, "object");
+    assert_eq!(objects.staged().await.unwrap(), []);
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_bucket_that_does_not_let_one_in_is_an_error_and_no_missing_object() {
+    let s3 = TestS3::start().await;
+    let stranger = s3.objects_as("somebody", "fleet/a");
+    assert!(matches!(stranger.put(SAMPLES).await, Err(StoreError::Objects(ObjectsError::Store(_)))));
+    assert!(matches!(stranger.exists(&sha256_hex(&SAMPLES)).await, Err(StoreError::Objects(ObjectsError::Store(_)))));
+    assert!(stranger.health().await.is_err());
+}
+
+/// As a process leaves them that is killed in the middle of a put.
+#[tokio::test]
+async fn puts_that_never_ended_are_seen() {
+    let folder = tempfile::tempdir().unwrap();
+    let objects = Objects::local(folder.path()).unwrap();
+    assert_eq!(objects.staged().await.unwrap(), []);
+    let key = objects.put(SAMPLES).await.unwrap();
+    let place = format!("objects/{}/{}#1", &key[..2], &key[2..]);
+    std::fs::write(folder.path().join(&place), b"PAR1").unwrap();
+    let staged = objects.staged().await.unwrap();
+    assert_eq!(staged.iter().map(|staged| (staged.path.as_str(), staged.bytes)).collect::<Vec<_>>(), [(place.as_str(), 4)]);
+    objects.remove_staged(&staged[0]).await.unwrap();
+    objects.remove_staged(&staged[0]).await.unwrap();
+    assert_eq!(objects.staged().await.unwrap(), []);
+    assert_eq!(objects.get(&key).await.unwrap(), SAMPLES);
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn many_put_the_same_bytes_at_once() {
     let folder = tempfile::tempdir().unwrap();
-    let objects = Objects::local(folder.path()).unwrap();
+    many(&Objects::local(folder.path()).unwrap()).await;
+}
+
+async fn many(objects: &Objects) {
     let keys = futures::future::try_join_all((0..20).map(|_| objects.put(SAMPLES))).await.unwrap();
     assert!(keys.iter().all(|key| *key == keys[0]));
     assert_eq!(objects.get(&keys[0]).await.unwrap(), SAMPLES);

@@ -11,6 +11,10 @@ async fn every_statement_prepares(on: &TestStore) {
     on.store.health().await.unwrap();
 }
 
+async fn no_statement_reads_a_whole_table(on: &TestStore) {
+    assert_eq!(on.store.full_scans().await.unwrap(), Vec::<String>::new());
+}
+
 async fn opening_twice_keeps_what_is_there(on: &TestStore) {
     on.store.ships().create(&ship("kcs")).await.unwrap();
     let again = Store::connect(&on.database.url, Arc::new(SystemClock)).await.unwrap();
@@ -108,4 +112,9 @@ async fn another_kind_of_database_is_refused() {
     assert_invalid(Store::connect("mysql://localhost/x", Arc::new(SystemClock)).await, "database_url");
 }
 
-on_both_databases!(every_statement_prepares, opening_twice_keeps_what_is_there, insert_only_holds_below_the_store_too);
+on_both_databases!(
+    every_statement_prepares,
+    no_statement_reads_a_whole_table,
+    opening_twice_keeps_what_is_there,
+    insert_only_holds_below_the_store_too
+);

@@ -4,13 +4,13 @@ use askama::Template;
 use axum::extract::State;
 use axum::response::Response;
 use serde::Deserialize;
-use sistership_store::{JobFilter, Page, Ship};
+use sistership_store::{FoundShip, JobFilter, Page, ShipSearch};
 
 use super::{JobRow, answer};
 use crate::app::App;
 use crate::problem::Result;
 use crate::publish::{CHAMPION, alias};
-use crate::web::Params;
+use crate::web::{Params, page};
 
 /// Ships on one page.
 const SHIPS: i64 = 100;
@@ -49,17 +49,23 @@ struct Champion {
 }
 
 pub(super) async fn page(State(app): State<App>, Params(query): Params<Query>) -> Result<Response> {
-    let ships = app.store().ships().list(None, &Page { after: query.after, limit: SHIPS }).await?;
+    let page = page::page(Some(SHIPS), query.after.as_deref())?;
+    let ships = app.store().ships().search(&ShipSearch::default(), &page).await?;
     let mut rows = Vec::with_capacity(ships.items.len());
     for ship in ships.items {
         rows.push(row(&app, ship).await?);
     }
     let laws = app.store().laws().list(&Page::first(SHIPS)).await?.items.into_iter().map(|law| law.name).collect();
     let jobs = app.store().jobs().list(&JobFilter::default(), &Page::first(JOBS)).await?;
-    answer(&Index { ships: rows, next: ships.next, laws, jobs: jobs.items.into_iter().map(JobRow::of).collect() })
+    answer(&Index {
+        ships: rows,
+        next: ships.next.as_ref().and_then(page::cursor),
+        laws,
+        jobs: jobs.items.into_iter().map(JobRow::of).collect(),
+    })
 }
 
-async fn row(app: &App, ship: Ship) -> Result<ShipRow> {
+async fn row(app: &App, ship: FoundShip) -> Result<ShipRow> {
     let champion = match alias(app.store(), &ship.name, CHAMPION).await? {
         Some(alias) => Some(champion(app, &ship.name, alias.version_number).await?),
         None => None,

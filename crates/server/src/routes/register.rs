@@ -1,0 +1,116 @@
+//! Versions that were made elsewhere.
+
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+use serde::Deserialize;
+use serde_json::Value;
+use sistership_model::Model;
+use sistership_model::version::FORMAT;
+use sistership_store::{Expect, NewVersion};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::versions::VersionHead;
+use crate::app::App;
+use crate::problem::{Problem, Result};
+use crate::publish::{LATEST, step};
+use crate::version::{Recipe, RegisteredRecipe, VersionDocument};
+use crate::web::{Key, Payload, Place, Reply};
+
+/// The longest word on where a model comes from.
+const ORIGIN_BYTES: usize = 1000;
+const METHOD: &str = "registered";
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(register))
+}
+
+/// A model that was made elsewhere.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct RegisterRequest {
+    /// The model, as `models/schema/model.schema.json` describes it and `GET /v1/ships/{ship}/model` answers.
+    #[schema(value_type = Object)]
+    model: Value,
+    /// Who made it, with what; kept in its recipe.
+    origin: String,
+    /// The number of the version that it was made from.
+    parent: Option<i64>,
+}
+
+/// Keep a model that was made elsewhere as the next version
+///
+/// It is checked against its law. It becomes champion only when that alias is moved to it.
+#[utoipa::path(
+    post, path = "/v1/models/{model}/versions", tag = "models",
+    params(
+        ("model" = String, Path, description = "The ship"),
+        ("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")
+    ),
+    request_body = RegisterRequest,
+    responses((status = 201, body = VersionHead, headers(("Location" = String))))
+)]
+async fn register(State(app): State<App>, Place(ship): Place<String>, key: Key, payload: Payload) -> Result<Response> {
+    let request: RegisterRequest = payload.json()?;
+    let inner = app.clone();
+    key.once(&app, payload.bytes(), async move { registered(&inner, ship, request).await }).await
+}
+
+async fn registered(app: &App, ship: String, request: RegisterRequest) -> Result<Reply> {
+    let RegisterRequest { model, origin, parent } = request;
+    let model: Model = serde_path_to_error::deserialize(model).map_err(|error| {
+        let field = format!("model.{}", error.path());
+        Problem::invalid(field.trim_end_matches('.'), error.inner().to_string())
+    })?;
+    if model.ship != ship {
+        return Err(Problem::invalid("model.ship", format!("is `{}`, but the path says `{ship}`", model.ship)));
+    }
+    if origin.trim().is_empty() || origin.len() > ORIGIN_BYTES {
+        return Err(Problem::invalid("origin", format!("say in 1 to {ORIGIN_BYTES} bytes where the model comes from")));
+    }
+    app.store().ships().get(&ship).await?;
+    let law_sha256 = checked(app, &model).await?;
+    let new = NewVersion {
+        parent: parent_id(app, &ship, parent).await?,
+        law: model.law.clone(),
+        method: METHOD.to_owned(),
+        document: document(&ship, model, law_sha256, origin)?,
+        model: ship,
+    };
+    // Nothing of the document depends on the number, so that it does not matter who else makes versions.
+    let follow = step(LATEST, Expect::Any, METHOD);
+    let version = app.store().versions().create(&new, &[follow]).await?;
+    let location = format!("/v1/models/{}/versions/{}", version.model, version.number);
+    Ok(Reply::new(StatusCode::CREATED, &VersionHead::of(version))?.at(location))
+}
+
+/// Checks a model against its law, and returns the hash of the law's text.
+async fn checked(app: &App, model: &Model) -> Result<String> {
+    let no_law = || Problem::invalid("model.law", format!("there is no law `{}`; GET /v1/laws lists them", model.law));
+    let law = app.find_law(&model.law).await?.ok_or_else(no_law)?;
+    model.check(&law.law).map_err(|(field, message)| Problem::invalid(&format!("model.{field}"), message))?;
+    Ok(law.sha256)
+}
+
+async fn parent_id(app: &App, ship: &str, parent: Option<i64>) -> Result<Option<String>> {
+    let Some(number) = parent else { return Ok(None) };
+    match app.store().versions().get(ship, number).await {
+        Err(sistership_store::StoreError::NotFound { .. }) => {
+            Err(Problem::invalid("parent", format!("there is no version {ship}/{number}")))
+        }
+        other => Ok(Some(other?.head.id)),
+    }
+}
+
+fn document(ship: &str, model: Model, law_sha256: String, origin: String) -> Result<String> {
+    let document = VersionDocument {
+        format: FORMAT.to_owned(),
+        ship: ship.to_owned(),
+        recipe: Recipe::Registered(RegisteredRecipe { kind: Default::default(), law_sha256, origin }),
+        model,
+        report: Value::Null,
+    };
+    document.canonical().map_err(Problem::internal)
+}

@@ -1,0 +1,125 @@
+//! The query of the list of ships.
+
+use serde::Deserialize;
+use sistership_identify::similarity::Definition;
+use sistership_store::{FactRange, MAX_RANGES, Page, ShipKey};
+use utoipa::IntoParams;
+
+use crate::problem::{Fault, Problem, Result};
+use crate::search::{Search, metric, particular};
+use crate::web::page;
+
+/// What the query may hold. Everything that is given must be true of a ship.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[allow(dead_code, reason = "it only describes the query, whose parameters may come several times")]
+pub(super) struct Query {
+    /// The most items to return, 1 to 1000.
+    limit: Option<i64>,
+    /// `next` of the page before.
+    after: Option<String>,
+    /// Of this category only.
+    category: Option<String>,
+    /// With this tag only.
+    tag: Option<String>,
+    /// Ranges of particulars in SI, such as `lpp_m:100..200`, `beam_m:..32`; with those of metrics at most four.
+    #[param(style = Form, explode)]
+    particular: Option<Vec<String>>,
+    /// Ranges of the champion's metrics, such as `turn_35.tactical_diameter_m:..900`: `turn_35.` with `advance_m`,
+    /// `transfer_m`, `tactical_diameter_m`, `steady_radius_m`; `zigzag_10.` and `zigzag_20.` with `first_overshoot_deg`,
+    /// `second_overshoot_deg`, `period_s`; `initial_turning_m`. The greater of both sides counts.
+    #[param(style = Form, explode)]
+    metric: Option<Vec<String>>,
+    /// Ships of this ship's category, the most similar first.
+    similar_to: Option<String>,
+    /// The vector by which ships are similar: `mei-2019` or `kanazawa-2023`.
+    #[param(value_type = Option<String>)]
+    vector: Option<Definition>,
+}
+
+/// Reads the query, parameter by parameter.
+pub(super) fn read(pairs: Vec<(String, String)>) -> Result<(Search, Page<ShipKey>)> {
+    let (mut search, mut limit, mut after) = (Search::default(), None, None);
+    for (name, value) in pairs {
+        match name.as_str() {
+            "limit" => once(&name, &mut limit, value.parse().map_err(|_| wrong(&name, "is a whole number from 1 to 1000"))?)?,
+            "after" => once(&name, &mut after, value)?,
+            "category" => once(&name, &mut search.ships.category, value)?,
+            "tag" => once(&name, &mut search.ships.tag, value)?,
+            "particular" => add(&name, &mut search.ships.ranges, particular(&value))?,
+            "metric" => add(&name, &mut search.ships.ranges, metric(&value))?,
+            "similar_to" => once(&name, &mut search.similar_to, value)?,
+            "vector" => once(&name, &mut search.vector, definition(&value)?)?,
+            _ => return Err(unknown(&name)),
+        }
+    }
+    Ok((search, page::page(limit, after.as_deref())?))
+}
+
+fn once<T>(name: &str, slot: &mut Option<T>, value: T) -> Result<()> {
+    match slot.replace(value) {
+        None => Ok(()),
+        Some(_) => Err(wrong(name, "may be given once only")),
+    }
+}
+
+fn add(name: &str, ranges: &mut Vec<FactRange>, range: std::result::Result<FactRange, String>) -> Result<()> {
+    ranges.push(range.map_err(|message| wrong(name, message))?);
+    match ranges.len() <= MAX_RANGES {
+        true => Ok(()),
+        false => Err(wrong(name, format!("at most {MAX_RANGES} ranges can be asked for at once"))),
+    }
+}
+
+fn definition(value: &str) -> Result<Definition> {
+    let known = Definition::ALL.map(Definition::name).join(" and ");
+    Definition::by_name(value).ok_or_else(|| wrong("vector", format!("there are {known}, not `{value}`")))
+}
+
+fn unknown(name: &str) -> Problem {
+    wrong(name, "is no parameter here; there are limit, after, category, tag, particular, metric, similar_to, vector")
+}
+
+fn wrong(name: &str, message: impl Into<String>) -> Problem {
+    let message = message.into();
+    Problem::bad_request(format!("{name}: {message}")).with(Fault::at(name, message))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn pairs(text: &str) -> Vec<(String, String)> {
+        let pair = |pair: &str| pair.split_once('=').map(|(name, value)| (name.to_owned(), value.to_owned()));
+        text.split('&').filter_map(pair).collect()
+    }
+
+    #[test]
+    fn every_parameter_is_read() {
+        let text =
+            "category=tanker&tag=own&particular=lpp_m:1..2&metric=initial_turning_m:..9&similar_to=kcs&vector=mei-2019&limit=7";
+        let (search, page) = read(pairs(text)).unwrap();
+        assert_eq!((page.limit, search.ships.ranges.len(), search.vector), (7, 2, Some(Definition::Mei2019)));
+        assert_eq!(search.ships.category.as_deref(), Some("tanker"));
+        assert_eq!((search.ships.tag.as_deref(), search.similar_to.as_deref()), (Some("own"), Some("kcs")));
+    }
+
+    #[test]
+    fn the_wrong_parameter_is_named() {
+        let five = "particular=lpp_m:1..2&".repeat(5);
+        for (text, field) in [
+            ("limit=many", "limit"),
+            ("after=7", "after"),
+            ("tag=a&tag=b", "tag"),
+            ("particular=length_m:1..2", "particular"),
+            ("metric=speed", "metric"),
+            (five.as_str(), "particular"),
+            ("vector=other", "vector"),
+            ("categorie=tanker", "categorie"),
+        ] {
+            let problem = read(pairs(text)).unwrap_err();
+            assert_eq!((problem.status, problem.errors[0].field.as_deref()), (400, Some(field)), "{text}");
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Tags of ships.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::StatusCode;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use crate::app::App;
+use crate::problem::Result;
+use crate::web::Place;
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(list)).routes(routes!(put, remove))
+}
+
+/// The tags of a ship, in alphabetical order, at most 100
+#[utoipa::path(
+    get, path = "/v1/ships/{ship}/tags", tag = "ships", params(("ship" = String, Path)),
+    responses((status = 200, body = Vec<String>))
+)]
+async fn list(State(app): State<App>, Place(ship): Place<String>) -> Result<Json<Vec<String>>> {
+    app.store().ships().get(&ship).await?;
+    Ok(Json(app.store().ships().tags(&ship).await?))
+}
+
+/// Put a tag on a ship, to find her by
+#[utoipa::path(
+    put, path = "/v1/ships/{ship}/tags/{tag}", tag = "ships",
+    params(("ship" = String, Path), ("tag" = String, Path, description = "A word without white space and slashes")),
+    responses((status = 204, description = "She has it"))
+)]
+async fn put(State(app): State<App>, Place((ship, tag)): Place<(String, String)>) -> Result<StatusCode> {
+    app.store().ships().tag(&ship, &tag).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// Take a tag off a ship
+#[utoipa::path(
+    delete, path = "/v1/ships/{ship}/tags/{tag}", tag = "ships", params(("ship" = String, Path), ("tag" = String, Path)),
+    responses((status = 204, description = "She no longer has it"))
+)]
+async fn remove(State(app): State<App>, Place((ship, tag)): Place<(String, String)>) -> Result<StatusCode> {
+    app.store().ships().untag(&ship, &tag).await?;
+    Ok(StatusCode::NO_CONTENT)
+}

@@ -1,0 +1,103 @@
+//! Finding ships: by category, tag, particulars, metrics of the champion, and similarity to a ship.
+
+mod facts;
+mod index;
+mod metrics;
+mod similar;
+
+pub use index::catch_up;
+pub(crate) use index::keep;
+pub(crate) use similar::nearest;
+
+use sistership_identify::similarity::Definition;
+use sistership_model::particulars;
+pub use sistership_store::{FactRange, FoundShip, MAX_RANGES, Page, ShipSearch};
+use sistership_store::{List, ShipKey};
+
+use crate::archive::Archive;
+use crate::derive::DeriveError;
+
+/// What is asked of ships; everything must hold.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Search {
+    /// Category, tag and ranges; the first range orders what is found.
+    pub ships: ShipSearch,
+    /// Similarity to this ship orders what is found, and only ships of her category are.
+    pub similar_to: Option<String>,
+    /// The definition of the vector by which ships are similar.
+    pub vector: Option<Definition>,
+}
+
+/// A fault of a range: what would be right.
+pub type RangeFault = String;
+
+/// Reads `lpp_m:100..200`, in SI; either end may be left out.
+///
+/// # Errors
+/// Says what would be right, with the names that there are.
+pub fn particular(text: &str) -> Result<FactRange, RangeFault> {
+    range(text, "particular", &particulars::names().collect::<Vec<_>>())
+}
+
+/// Reads `turn_35.tactical_diameter_m:..900`.
+///
+/// # Errors
+/// As [`particular`].
+pub fn metric(text: &str) -> Result<FactRange, RangeFault> {
+    range(text, "metric", &metrics::names().collect::<Vec<_>>())
+}
+
+fn range(text: &str, kind: &str, known: &[&str]) -> Result<FactRange, RangeFault> {
+    let form =
+        || format!("write {}:MIN..MAX, with either end left out where it is open, not `{text}`", known.first().unwrap_or(&""));
+    let (name, ends) = text.split_once(':').ok_or_else(form)?;
+    if !known.contains(&name) {
+        return Err(format!("there is no {kind} `{name}`; there are {}", known.join(", ")));
+    }
+    let (min, max) = ends.split_once("..").ok_or_else(form)?;
+    let end = |text: &str, open: f64| match text.trim() {
+        "" => Ok(open),
+        number => number.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(form),
+    };
+    let (min, max) = (end(min, f64::MIN)?, end(max, f64::MAX)?);
+    match min <= max {
+        true => Ok(FactRange { fact: fact(kind, name), min, max }),
+        false => Err(format!("`{text}` holds nothing: {min} is above {max}")),
+    }
+}
+
+/// The name under which the store keeps a particular or a metric.
+fn fact(kind: &str, name: &str) -> String {
+    format!("{kind} {name}")
+}
+
+/// The ships that a search finds. With `similar_to` their `value` is the correlation of the vectors.
+///
+/// # Errors
+/// There is no such ship to be similar to, or the store does not answer.
+pub async fn ships(archive: &Archive, search: &Search, page: &Page<ShipKey>) -> Result<List<FoundShip, ShipKey>, DeriveError> {
+    match &search.similar_to {
+        None => Ok(archive.store.ships().search(&search.ships, page).await?),
+        Some(ship) => similar::ships(archive, search, ship, page).await,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn ranges_are_read_or_refused_with_what_would_be_right() {
+        let read = particular("lpp_m:100..200.5").unwrap();
+        assert_eq!((read.fact.as_str(), read.min, read.max), ("particular lpp_m", 100.0, 200.5));
+        assert_eq!(particular("x_g_m:-3..").unwrap().max, f64::MAX);
+        assert_eq!(metric("turn_35.tactical_diameter_m:..900").unwrap().min, f64::MIN);
+        assert!(particular("length_m:1..2").unwrap_err().contains("there is no particular `length_m`; there are lpp_m, "));
+        assert!(metric("lpp_m:1..2").unwrap_err().contains("turn_35.advance_m"));
+        assert!(particular("lpp_m:2..1").unwrap_err().contains("2 is above 1"));
+        for wrong in ["lpp_m", "lpp_m:", "lpp_m:1", "lpp_m:a..b", "lpp_m:NaN..1", "lpp_m:..inf"] {
+            assert!(particular(wrong).unwrap_err().contains("lpp_m:MIN..MAX"), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,279 @@
+//! Group commit: SQLite has one writer, and what makes its commits durable is the disk's word, for which each would wait
+//! alone. Here those who write in turn, each within a savepoint of its own, share one transaction, and all of them wait for
+//! its one commit. Nobody is told that something is kept before that commit has returned.
+//!
+//! The turns are those of a fair lock. Who has written queues for it once more behind those who wait to write; whose turn
+//! comes first after that commits for all. Alone, one commits at once.
+
+use std::ops::{Deref, DerefMut};
+use std::sync::{Arc, OnceLock};
+
+use sqlx::pool::PoolConnection;
+use sqlx::{Sqlite, SqliteConnection, SqlitePool};
+use tokio::runtime::Handle;
+use tokio::sync::{Mutex, OwnedMutexGuard};
+
+/// What became of a transaction that several shared: the reason where it failed.
+type Outcome = Arc<OnceLock<Result<(), String>>>;
+
+/// The writers of one SQLite database in this process.
+#[derive(Debug, Clone)]
+pub(crate) struct Group {
+    pool: SqlitePool,
+    shared: Arc<Mutex<Option<Shared>>>,
+}
+
+/// The transaction under way.
+#[derive(Debug)]
+struct Shared {
+    connection: PoolConnection<Sqlite>,
+    outcome: Outcome,
+    /// Whether somebody has written and waits for the commit.
+    awaited: bool,
+}
+
+/// One writer's part of the transaction, in her turn; undone unless [committed](Self::commit).
+pub(crate) struct Part(Option<Turn>);
+
+struct Turn {
+    lock: OwnedMutexGuard<Option<Shared>>,
+    shared: Shared,
+}
+
+impl Group {
+    /// The writers on a pool of one connection.
+    pub(crate) fn new(pool: SqlitePool) -> Self {
+        Self { pool, shared: Arc::default() }
+    }
+
+    /// The pool of that connection.
+    pub(crate) fn pool(&self) -> &SqlitePool {
+        &self.pool
+    }
+
+    /// Waits for the turn to write. Nobody else writes until the part ends, in this process and in others.
+    pub(crate) async fn begin(&self) -> sqlx::Result<Part> {
+        let Self { pool, shared } = self.clone();
+        uninterrupted(async move {
+            let mut lock = shared.lock_owned().await;
+            let mut shared = match lock.take() {
+                Some(shared) => shared,
+                None => Shared::begin(&pool).await?,
+            };
+            match shared.run("SAVEPOINT part").await {
+                Ok(()) => Ok(Part(Some(Turn { lock, shared }))),
+                Err(error) => Err(shared.give_up(error)),
+            }
+        })
+        .await
+    }
+}
+
+impl Part {
+    /// Makes it last, together with the parts of others.
+    pub(crate) async fn commit(mut self) -> sqlx::Result<()> {
+        match self.0.take() {
+            Some(turn) => uninterrupted(turn.commit()).await,
+            None => Ok(()),
+        }
+    }
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        if let (Some(turn), Ok(runtime)) = (self.0.take(), Handle::try_current()) {
+            runtime.spawn(turn.undo());
+        }
+    }
+}
+
+impl Deref for Part {
+    type Target = SqliteConnection;
+
+    fn deref(&self) -> &SqliteConnection {
+        match &self.0 {
+            Some(turn) => &turn.shared.connection,
+            None => unreachable!("a part has its turn until it ends"),
+        }
+    }
+}
+
+impl DerefMut for Part {
+    fn deref_mut(&mut self) -> &mut SqliteConnection {
+        match &mut self.0 {
+            Some(turn) => &mut turn.shared.connection,
+            None => unreachable!("a part has its turn until it ends"),
+        }
+    }
+}
+
+impl Turn {
+    async fn commit(mut self) -> sqlx::Result<()> {
+        if let Err(error) = self.shared.run("RELEASE part").await {
+            return Err(self.shared.give_up(error));
+        }
+        self.shared.awaited = true;
+        let outcome = Arc::clone(&self.shared.outcome);
+        let queue = self.hand_over();
+        let mut lock = queue.lock_owned().await;
+        // Without an outcome the transaction under way is still the one that this part belongs to.
+        if outcome.get().is_none()
+            && let Some(shared) = lock.take()
+        {
+            shared.end().await;
+        }
+        drop(lock);
+        match outcome.get() {
+            Some(Ok(())) => Ok(()),
+            Some(Err(reason)) => Err(not_kept(reason)),
+            None => Err(not_kept("it was given up")),
+        }
+    }
+
+    /// Takes this part back; those of others stay, and they commit them in their next turns.
+    async fn undo(mut self) {
+        let undone = match self.shared.run("ROLLBACK TO part").await {
+            Ok(()) if self.shared.awaited => self.shared.run("RELEASE part").await,
+            Ok(()) => self.shared.run("ROLLBACK").await,
+            Err(error) => Err(error),
+        };
+        match undone {
+            Err(error) => drop(self.shared.give_up(error)),
+            Ok(()) if self.shared.awaited => drop(self.hand_over()),
+            Ok(()) => {}
+        }
+    }
+
+    /// Leaves the transaction to whoever comes next.
+    fn hand_over(self) -> Arc<Mutex<Option<Shared>>> {
+        let Self { mut lock, shared } = self;
+        *lock = Some(shared);
+        Arc::clone(OwnedMutexGuard::mutex(&lock))
+    }
+}
+
+impl Shared {
+    async fn begin(pool: &SqlitePool) -> sqlx::Result<Self> {
+        let mut begun = Self { connection: pool.acquire().await?, outcome: Outcome::default(), awaited: false };
+        match begun.run("BEGIN IMMEDIATE").await {
+            Ok(()) => Ok(begun),
+            Err(error) => Err(begun.give_up(error)),
+        }
+    }
+
+    async fn run(&mut self, sql: &'static str) -> sqlx::Result<()> {
+        sqlx::query(sql).execute(&mut *self.connection).await.map(drop)
+    }
+
+    async fn end(mut self) {
+        match self.run("COMMIT").await {
+            Ok(()) => drop(self.outcome.set(Ok(()))),
+            Err(error) => drop(self.give_up(error)),
+        }
+    }
+
+    /// Ends the transaction for all of its parts, together with a connection whose state is not known.
+    fn give_up(self, error: sqlx::Error) -> sqlx::Error {
+        let _ = self.outcome.set(Err(error.to_string()));
+        drop(self.connection.detach());
+        error
+    }
+}
+
+fn not_kept(reason: &str) -> sqlx::Error {
+    sqlx::Error::Protocol(format!("the transaction was not kept: {reason}"))
+}
+
+/// Does work to its end even if nobody waits for it any more: half a transaction must not be left behind.
+async fn uninterrupted<T: Send + 'static>(work: impl Future<Output = sqlx::Result<T>> + Send + 'static) -> sqlx::Result<T> {
+    match tokio::spawn(work).await {
+        Ok(done) => done,
+        Err(error) => Err(not_kept(&error.to_string())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use std::time::Duration;
+
+    use sqlx::sqlite::SqlitePoolOptions;
+
+    use super::*;
+
+    async fn group() -> (Group, SqlitePool) {
+        let pool = SqlitePoolOptions::new().max_connections(1).connect("sqlite::memory:").await.unwrap();
+        sqlx::query("CREATE TABLE kept (n INTEGER PRIMARY KEY)").execute(&pool).await.unwrap();
+        (Group::new(pool.clone()), pool)
+    }
+
+    async fn put(part: &mut Part, n: i64) -> sqlx::Result<()> {
+        sqlx::query("INSERT INTO kept VALUES ($1)").bind(n).execute(&mut **part).await.map(drop)
+    }
+
+    async fn kept(pool: &SqlitePool) -> Vec<i64> {
+        sqlx::query_scalar("SELECT n FROM kept ORDER BY n").fetch_all(pool).await.unwrap()
+    }
+
+    #[tokio::test]
+    async fn those_who_wait_share_a_commit_and_one_undone_takes_nothing_from_the_others() {
+        let (group, pool) = group().await;
+        let mut first = group.begin().await.unwrap();
+        let others = [2, 3, 4].map(|n| {
+            let group = group.clone();
+            tokio::spawn(async move {
+                let mut part = group.begin().await?;
+                put(&mut part, n).await?;
+                // The third changes her mind.
+                if n == 3 { Ok(()) } else { part.commit().await }
+            })
+        });
+        put(&mut first, 1).await.unwrap();
+        tokio::time::sleep(Duration::from_millis(50)).await;
+        first.commit().await.unwrap();
+        for other in others {
+            other.await.unwrap().unwrap();
+        }
+        assert_eq!(kept(&pool).await, [1, 2, 4]);
+    }
+
+    #[tokio::test]
+    async fn whoever_fails_or_gives_up_leaves_the_turn_to_others() {
+        let (group, pool) = group().await;
+        let mut part = group.begin().await.unwrap();
+        put(&mut part, 1).await.unwrap();
+        assert!(put(&mut part, 1).await.is_err());
+        drop(part);
+        let mut part = group.begin().await.unwrap();
+        let waiting = tokio::time::timeout(Duration::from_millis(20), group.begin()).await;
+        assert!(waiting.is_err());
+        put(&mut part, 2).await.unwrap();
+        // Whoever does not wait for the answer has written all the same.
+        drop(tokio::time::timeout(Duration::ZERO, part.commit()).await);
+        let mut part = group.begin().await.unwrap();
+        put(&mut part, 3).await.unwrap();
+        part.commit().await.unwrap();
+        assert_eq!(kept(&pool).await, [2, 3]);
+    }
+
+    #[tokio::test]
+    async fn a_transaction_that_fails_is_kept_for_nobody() {
+        let (group, pool) = group().await;
+        let mut first = group.begin().await.unwrap();
+        put(&mut first, 1).await.unwrap();
+        let second = tokio::spawn({
+            let group = group.clone();
+            async move {
+                let mut part = group.begin().await?;
+                // As the database does by itself where the disk is full.
+                sqlx::query("ROLLBACK").execute(&mut *part).await?;
+                part.commit().await
+            }
+        });
+        tokio::time::sleep(Duration::from_millis(50)).await;
+        let reason = first.commit().await.unwrap_err().to_string();
+        assert!(reason.contains("was not kept"), "{reason}");
+        assert!(second.await.unwrap().is_err());
+        drop(pool);
+    }
+}

@@ -1,0 +1,97 @@
+//! What a process that was killed in the middle of a put leaves in a local folder: the bytes so far, in a file beside the
+//! object's name with `#` and a number behind it, which the object store itself does not show. A put into a bucket is one
+//! request and leaves nothing.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+use crate::clock::micros;
+use crate::error::Result;
+use crate::objects::{FOLDER, Objects, ObjectsError};
+
+/// A put that has not ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Staged {
+    /// The file below the folder of the objects.
+    pub path: String,
+    /// Its size so far.
+    pub bytes: u64,
+    /// When it was last written, microseconds since 1970.
+    pub modified_us: i64,
+}
+
+impl Objects {
+    /// Every put that has not ended, or never will; none in a bucket.
+    pub async fn staged(&self) -> Result<Vec<Staged>> {
+        let Some(root) = self.folder.clone() else { return Ok(Vec::new()) };
+        blocking(move || find(&root)).await
+    }
+
+    /// Removes what a put has left that never ended. Only who knows that it is not under way may do so.
+    pub async fn remove_staged(&self, staged: &Staged) -> Result<()> {
+        let Some(root) = self.folder.clone() else { return Ok(()) };
+        let path = root.join(&staged.path);
+        blocking(move || gone(fs::remove_file(path))).await
+    }
+}
+
+async fn blocking<T: Send + 'static>(work: impl FnOnce() -> io::Result<T> + Send + 'static) -> Result<T> {
+    let done = tokio::task::spawn_blocking(work).await.map_err(ObjectsError::from)?;
+    Ok(done.map_err(ObjectsError::from)?)
+}
+
+fn find(root: &Path) -> io::Result<Vec<Staged>> {
+    let mut found = Vec::new();
+    for folder in entries(&root.join(FOLDER))?.into_iter().filter(|path| path.is_dir()) {
+        for file in entries(&folder)?.into_iter().filter(|path| is_staged(path)) {
+            found.extend(staged(root, &file)?);
+        }
+    }
+    Ok(found)
+}
+
+/// The entries of a folder; none where it is not there.
+fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    match fs::read_dir(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
+        entries => entries?.map(|entry| Ok(entry?.path())).collect(),
+    }
+}
+
+fn is_staged(path: &Path) -> bool {
+    let suffix = path.file_name().and_then(|name| name.to_str()).and_then(|name| name.rsplit_once('#')).map(|(_, suffix)| suffix);
+    suffix.is_some_and(|suffix| !suffix.is_empty() && suffix.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
+/// The file, unless its put has ended by now.
+fn staged(root: &Path, file: &Path) -> io::Result<Option<Staged>> {
+    let about = match fs::metadata(file) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        about => about?,
+    };
+    let path = file.strip_prefix(root).unwrap_or(file).to_string_lossy().into_owned();
+    let modified_us = about.modified()?.duration_since(UNIX_EPOCH).map_or(0, micros);
+    Ok(Some(Staged { path, bytes: about.len(), modified_us }))
+}
+
+/// What is gone already is gone.
+fn gone(removed: io::Result<()>) -> io::Result<()> {
+    match removed {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_number_behind_the_sign_is_a_put_under_way() {
+        for (name, staged) in [("ab#1", true), ("ab#12", true), ("ab", false), ("ab#", false), ("ab#x", false), ("#x#3", true)] {
+            assert_eq!(is_staged(Path::new(name)), staged, "{name}");
+        }
+    }
+}

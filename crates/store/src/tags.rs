@@ -1,0 +1,65 @@
+//! Tags: words that people put on ships, to find them by.
+
+use crate::arguments::args;
+use crate::checks;
+use crate::database::Transaction;
+use crate::error::{Result, StoreError};
+use crate::record::{Counted, record};
+use crate::ships::{self, Ships};
+use crate::statements::{pair, same, statements};
+
+/// The most tags of one ship.
+pub const MAX_TAGS: usize = 100;
+
+statements! {
+    // Taggers of one ship wait for each other, so that none counts past another. SQLite's writers do so anyway.
+    LOCK = pair("SELECT 1 WHERE $1 = ''", "SELECT 1 FROM ships WHERE name = $1 FOR NO KEY UPDATE");
+    PUT = same("INSERT INTO ship_tags (ship, tag) VALUES ($1, $2) ON CONFLICT (ship, tag) DO NOTHING");
+    REMOVE = same("DELETE FROM ship_tags WHERE ship = $1 AND tag = $2");
+    OF_SHIP = same("SELECT tag FROM ship_tags WHERE ship = $1 ORDER BY tag");
+    COUNT = same("SELECT COUNT(*) AS rows FROM ship_tags WHERE ship = $1");
+}
+
+record! {
+    /// A tag of a ship.
+    pub struct Tag {
+        /// The word.
+        pub tag: String,
+    }
+}
+
+impl Ships<'_> {
+    /// The tags of a ship, in alphabetical order.
+    pub async fn tags(&self, name: &str) -> Result<Vec<String>> {
+        let tags: Vec<Tag> = self.0.database().all(OF_SHIP, args![ship: name]).await?;
+        Ok(tags.into_iter().map(|tag| tag.tag).collect())
+    }
+
+    /// Puts a tag on a ship, at most [`MAX_TAGS`]; one that she has already stays.
+    pub async fn tag(&self, name: &str, tag: &str) -> Result<()> {
+        checks::name("tag", tag)?;
+        let mut tx = self.0.begin().await?;
+        ships::find(&mut tx, name).await?;
+        tx.execute(LOCK, args![ship: name]).await?;
+        tx.execute(PUT, args![ship: name, tag: tag]).await?;
+        check_count(&mut tx, name).await?;
+        tx.commit().await
+    }
+
+    /// Takes a tag off a ship.
+    pub async fn untag(&self, name: &str, tag: &str) -> Result<()> {
+        let mut tx = self.0.begin().await?;
+        ships::find(&mut tx, name).await?;
+        let removed = tx.execute(REMOVE, args![ship: name, tag: tag]).await?;
+        tx.commit().await?;
+        if removed > 0 { Ok(()) } else { Err(StoreError::missing("tag", format!("{name}/{tag}"))) }
+    }
+}
+
+async fn check_count(tx: &mut Transaction, name: &str) -> Result<()> {
+    let count: Counted = tx.one(COUNT, args![ship: name]).await?;
+    match usize::try_from(count.rows).is_ok_and(|rows| rows <= MAX_TAGS) {
+        true => Ok(()),
+        false => Err(StoreError::conflict("ship", name, format!("has {MAX_TAGS} tags already, which is the most"))),
+    }
+}

@@ -1,0 +1,98 @@
+//! How each database would carry out each statement: none may read a whole table.
+
+use serde_json::Value;
+use sqlx::{AssertSqlSafe, Executor as _, PgConnection, PgPool, Row as _, SqlitePool};
+
+use crate::database::Writer;
+use crate::error::{Result, StoreError};
+use crate::statements::{ALL, Statement};
+use crate::store::Store;
+
+/// What may read all rows, and why.
+const MAY: &[(&str, &str)] = &[
+    // Checks of the whole store.
+    ("integrity", ""),
+    // Counts all of them, from the index by kind and state.
+    ("jobs", "COUNTS"),
+    // Not a query.
+    ("garbage", "LOCK"),
+];
+/// An index of what waits or runs only, read in its order.
+const SHORT: &str = "jobs_to_claim";
+
+impl Store {
+    /// Every statement whose plan reads all rows of a table, with the step that does, where no such statement is expected to.
+    pub async fn full_scans(&self) -> Result<Vec<String>> {
+        let mut found = Vec::new();
+        for (table, statements) in ALL {
+            for (name, statement) in *statements {
+                if MAY.iter().any(|(of, which)| of == table && (which.is_empty() || which == name)) {
+                    continue;
+                }
+                let scans = self.scans(*statement).await;
+                let scans = scans.map_err(|error| StoreError::conflict(table, *name, error.to_string()))?;
+                found.extend(scans.into_iter().map(|scan| format!("{table}::{name}: {scan}")));
+            }
+        }
+        Ok(found)
+    }
+
+    async fn scans(&self, statement: Statement) -> sqlx::Result<Vec<String>> {
+        match &self.database().write {
+            Writer::Sqlite(group) => sqlite(group.pool(), statement.sqlite).await,
+            Writer::Postgres(pool) => postgres(pool, statement.postgres).await,
+        }
+    }
+}
+
+async fn sqlite(pool: &SqlitePool, sql: &str) -> sqlx::Result<Vec<String>> {
+    let rows = pool.fetch_all(AssertSqlSafe(format!("EXPLAIN QUERY PLAN {sql}"))).await?;
+    let steps = rows.into_iter().map(|row| row.try_get::<String, _>("detail")).collect::<sqlx::Result<Vec<_>>>()?;
+    Ok(steps
+        .into_iter()
+        .filter(|step| step.starts_with("SCAN ") && step != "SCAN CONSTANT ROW")
+        .filter(|step| !step.contains(SHORT))
+        .collect())
+}
+
+/// The plan for any values, on a server that avoids reading tables whole if it can.
+async fn postgres(pool: &PgPool, sql: &str) -> sqlx::Result<Vec<String>> {
+    let mut connection = pool.acquire().await?;
+    let plan = explained(&mut connection, sql).await;
+    connection.execute("RESET ALL").await?;
+    connection.execute("DEALLOCATE ALL").await?;
+    connection.close().await?;
+    let mut scans = Vec::new();
+    collect(&plan?, &mut scans);
+    Ok(scans)
+}
+
+async fn explained(connection: &mut PgConnection, sql: &str) -> sqlx::Result<Value> {
+    connection.execute("SET enable_seqscan = off; SET plan_cache_mode = force_generic_plan").await?;
+    connection.execute(AssertSqlSafe(format!("PREPARE explained AS {sql}"))).await?;
+    let values = match (1..).take_while(|n| sql.contains(&format!("${n}"))).count() {
+        0 => String::new(),
+        count => format!("({})", vec!["NULL"; count].join(", ")),
+    };
+    let row = connection.fetch_one(AssertSqlSafe(format!("EXPLAIN (FORMAT JSON) EXECUTE explained{values}"))).await?;
+    let text: String = row.try_get_unchecked(0)?;
+    serde_json::from_str(&text).map_err(|error| sqlx::Error::Decode(Box::new(error)))
+}
+
+/// The steps below a plan that read all rows: a table's, or an index without a condition on it.
+fn collect(plan: &Value, scans: &mut Vec<String>) {
+    match plan {
+        Value::Array(all) => all.iter().for_each(|one| collect(one, scans)),
+        Value::Object(fields) => {
+            let text = |field: &str| fields.get(field).and_then(Value::as_str).unwrap_or_default();
+            let kind = text("Node Type");
+            let index = kind.starts_with("Index") || kind == "Bitmap Index Scan";
+            let whole = kind == "Seq Scan" || index && !fields.contains_key("Index Cond") && text("Index Name") != SHORT;
+            if whole {
+                scans.push(format!("{kind} on {}{}", text("Relation Name"), text("Index Name")));
+            }
+            fields.values().for_each(|value| collect(value, scans));
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,86 @@
+//! An S3-compatible server within the test's process: s3s, on a temporary folder, behind real HTTP and real signatures.
+
+use std::net::SocketAddr;
+
+use hyper_util::rt::{TokioExecutor, TokioIo};
+use hyper_util::server::conn::auto::Builder;
+use s3s::auth::SimpleAuth;
+use s3s::service::{S3Service, S3ServiceBuilder};
+use s3s_fs::FileSystem;
+use tempfile::TempDir;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::task::JoinHandle;
+
+use crate::objects::Objects;
+use crate::objects_place::{ObjectsPlace, S3Place, bucket, builder};
+
+/// The one bucket there is.
+const BUCKET: &str = "samples";
+/// Who is let in.
+const KEY: (&str, &str) = ("test", "only-for-tests");
+
+/// A server that goes when this is dropped.
+#[derive(Debug)]
+pub struct TestS3 {
+    address: SocketAddr,
+    /// Where the server keeps what it is sent, `samples/...`.
+    pub folder: TempDir,
+    serving: JoinHandle<()>,
+}
+
+impl TestS3 {
+    /// A server with an empty bucket.
+    pub async fn start() -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        std::fs::create_dir(folder.path().join(BUCKET)).expect("a bucket");
+        let mut service = S3ServiceBuilder::new(FileSystem::new(folder.path()).expect("a file system"));
+        service.set_auth(SimpleAuth::from_single(KEY.0, KEY.1));
+        let listener = TcpListener::bind(("127.0.0.1", 0)).await.expect("a free port");
+        let address = listener.local_addr().expect("an address");
+        Self { address, folder, serving: tokio::spawn(serve(listener, service.build())) }
+    }
+
+    /// The settings of a store in it, as the command line takes them: the URL of the objects and the endpoint.
+    pub fn settings(&self, prefix: &str) -> [(&'static str, String); 2] {
+        [("--objects-url", format!("s3://{BUCKET}/{prefix}")), ("--objects-endpoint", format!("http://{}", self.address))]
+    }
+
+    /// What another process must find in its environment to be let in.
+    pub fn credentials(&self) -> [(&'static str, &'static str); 2] {
+        [("AWS_ACCESS_KEY_ID", KEY.0), ("AWS_SECRET_ACCESS_KEY", KEY.1)]
+    }
+
+    /// A store in it, below a prefix.
+    pub fn objects(&self, prefix: &str) -> Objects {
+        self.objects_as(KEY.0, prefix)
+    }
+
+    /// The same for whoever calls himself so.
+    pub fn objects_as(&self, user: &str, prefix: &str) -> Objects {
+        let [(_, url), (_, endpoint)] = self.settings(prefix);
+        let ObjectsPlace::S3(place) = ObjectsPlace::s3(&url, Some(endpoint), None).expect("a place") else { unreachable!() };
+        Objects::over(made(&place, user))
+    }
+}
+
+/// The store of a place, with the credentials that the environment of a test does not have.
+fn made(place: &S3Place, user: &str) -> std::sync::Arc<dyn object_store::ObjectStore> {
+    bucket(builder(place).with_access_key_id(user).with_secret_access_key(KEY.1), place).expect("a bucket")
+}
+
+impl Drop for TestS3 {
+    fn drop(&mut self) {
+        self.serving.abort();
+    }
+}
+
+async fn serve(listener: TcpListener, service: S3Service) {
+    while let Ok((stream, _)) = listener.accept().await {
+        tokio::spawn(connection(stream, service.clone()));
+    }
+}
+
+async fn connection(stream: TcpStream, service: S3Service) {
+    // A client that hangs up is no matter.
+    let _ = Builder::new(TokioExecutor::new()).serve_connection(TokioIo::new(stream), service).await;
+}

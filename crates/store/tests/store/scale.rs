@@ -1,0 +1,115 @@
+//! A hundred thousand ships and a million versions feel like ten.
+//!
+//! `cargo test --release -p sistership-store --test store -- --ignored --nocapture scale` prints the times of each list and look-up
+//! with few rows and with many. `SCALE_SHIPS=10000` is a smaller one.
+
+use std::time::{Duration, Instant};
+
+use sistership_store::{FactRange, JobFilter, JobState, Page, ShipSearch};
+
+use crate::support::*;
+
+/// How often each is asked; the median counts.
+const TIMES: usize = 21;
+/// What a page may take with many rows.
+const MOST: Duration = Duration::from_millis(50);
+
+fn numbers(count: usize) -> String {
+    format!("WITH RECURSIVE n (i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < {count})")
+}
+
+/// Fills the tables as a large fleet would: ten categories, four facts, ten versions and two jobs a ship, each hundredth tagged.
+async fn fill(on: &TestStore, ships: usize) {
+    let n = numbers(ships);
+    let ten = numbers(10);
+    for sql in [
+        format!("INSERT INTO ships SELECT 'ship-' || (1000000 + i), 'Ship ' || i, 'category-' || (i % 10), '{{}}', 1, i, i, NULL \
+            FROM (SELECT i FROM ({n} SELECT i FROM n) AS m) AS k"),
+        "INSERT INTO ship_facts SELECT name, 'lpp_m', 1.0 * ((created_us * 7919) % 100003) FROM ships".into(),
+        "INSERT INTO ship_facts SELECT name, 'beam_m', 1.0 * ((created_us * 104729) % 100003) FROM ships".into(),
+        "INSERT INTO ship_facts SELECT name, 'diameter_m', 1.0 * ((created_us * 1299709) % 100003) FROM ships".into(),
+        "INSERT INTO ship_facts SELECT name, 'overshoot_deg', 1.0 * ((created_us * 15485863) % 100003) FROM ships".into(),
+        "INSERT INTO ship_vectors SELECT name, category, '{\"mei-2019\":{\"C_b\":0.8,\"L/B\":5.5,\"B/T\":2.8,\"L/V0\":40.1}}' \
+            FROM ships".into(),
+        "INSERT INTO ship_tags SELECT name, 'own' FROM ships WHERE created_us % 100 = 0".into(),
+        "INSERT INTO models SELECT name, 11 FROM ships".into(),
+        format!("INSERT INTO versions SELECT name || '-' || (10 + i), name, i, NULL, 'law', 'published', '{{}}', 'x', created_us \
+            FROM ships, ({ten} SELECT i FROM n) AS k"),
+        "INSERT INTO aliases SELECT name, 'champion', 10, 1 FROM ships".into(),
+        "INSERT INTO jobs SELECT name || '-a', 'refinement', name, '{}', 'succeeded', 1, '', '{}', NULL, 1, 1, NULL, NULL, 0, 0, 0, 0 \
+            FROM ships".into(),
+        "INSERT INTO jobs SELECT name || '-b', 'diagnosis', name, '{}', 'failed', 1, '', NULL, 'x', 1, 1, NULL, NULL, 0, 0, 0, 0 \
+            FROM ships".into(),
+        "ANALYZE".into(),
+    ] {
+        on.database.damage(&sql).await;
+    }
+}
+
+async fn median<T>(work: impl AsyncFn() -> T) -> Duration {
+    let mut times = Vec::new();
+    for _ in 0..TIMES {
+        let start = Instant::now();
+        work().await;
+        times.push(start.elapsed());
+    }
+    times.sort_unstable();
+    times[TIMES / 2]
+}
+
+/// The times of everything that lists or looks up.
+async fn times(on: &TestStore, ships: usize) -> Vec<(&'static str, Duration)> {
+    let (store, middle) = (&on.store, format!("ship-{}", 1_000_000 + ships / 2));
+    let range = |fact: &str, min: f64| FactRange { fact: fact.into(), min, max: 1e9 };
+    let by = |ranges| ShipSearch { ranges, ..ShipSearch::default() };
+    let category = ShipSearch { category: Some("category-7".into()), ..ShipSearch::default() };
+    let page = |name: &str| Page { after: Some((None, name.to_owned())), limit: 100 };
+    let find = async |search: &ShipSearch, page: Page<_>| store.ships().search(search, &page).await.unwrap();
+    let failed = JobFilter { state: Some(JobState::Failed), ..JobFilter::default() };
+    let hers = JobFilter { ship: Some(middle.clone()), ..JobFilter::default() };
+    let both = by(vec![range("lpp_m", 0.0), range("diameter_m", 50_000.0)]);
+    let tag = ShipSearch { tag: Some("own".into()), ..ShipSearch::default() };
+    vec![
+        ("ships by name, from the middle", median(async || find(&ShipSearch::default(), page(&middle)).await).await),
+        ("ships of a category, from the middle", median(async || find(&category, page(&middle)).await).await),
+        ("ships with a tag", median(async || find(&tag, page("")).await).await),
+        ("ships by a range", median(async || find(&by(vec![range("lpp_m", 50_000.0)]), page("")).await).await),
+        ("ships by two ranges", median(async || find(&both, page("")).await).await),
+        ("vectors of a category", median(async || store.ships().vectors(&category).await.unwrap()).await),
+        ("champion", median(async || store.versions().current(&middle, "champion").await.unwrap().unwrap()).await),
+        ("versions of a model", median(async || store.versions().list(&middle, &Page::first(100)).await.unwrap()).await),
+        ("jobs", median(async || store.jobs().list(&JobFilter::default(), &Page::first(100)).await.unwrap()).await),
+        ("jobs in a state", median(async || store.jobs().list(&failed, &Page::first(100)).await.unwrap()).await),
+        ("jobs of a ship", median(async || store.jobs().list(&hers, &Page::first(100)).await.unwrap()).await),
+        ("counts of jobs", median(async || store.jobs().counts().await.unwrap()).await),
+    ]
+}
+
+/// What cannot but look at all of something.
+const LINEAR: [&str; 2] = ["vectors of a category", "counts of jobs"];
+
+async fn scale(few: &TestStore, many: &TestStore) {
+    let ships = std::env::var("SCALE_SHIPS").map_or(100_000, |ships| ships.parse().unwrap());
+    let start = Instant::now();
+    fill(few, 10).await;
+    fill(many, ships).await;
+    println!("{ships} ships, {} versions filled in {:.0} s", 10 * ships, start.elapsed().as_secs_f64());
+    println!("| | 10 ships, ms | {ships} ships, ms |\n| --- | --- | --- |");
+    for ((what, few), (_, many)) in times(few, 10).await.into_iter().zip(times(many, ships).await) {
+        println!("| {what} | {:.2} | {:.2} |", 1e3 * few.as_secs_f64(), 1e3 * many.as_secs_f64());
+        assert!(many < MOST || LINEAR.contains(&what), "{what} takes {many:?}");
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "takes minutes and gigabytes; see the head of the file"]
+async fn scale_on_sqlite() {
+    scale(&TestDatabase::sqlite().open().await, &TestDatabase::sqlite().open().await).await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "takes minutes and gigabytes; see the head of the file"]
+async fn scale_on_postgres() {
+    let (Some(few), Some(many)) = (TestDatabase::postgres().await, TestDatabase::postgres().await) else { return };
+    scale(&few.open().await, &many.open().await).await;
+}

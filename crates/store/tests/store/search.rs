@@ -1,0 +1,149 @@
+use sistership_store::{Expect, FactRange, FoundShip, List, NewShip, Page, ShipFacts, ShipKey, ShipSearch};
+
+use crate::support::*;
+
+/// Ships `s-00`, `s-01`, ... as long as their number in tens of metres, every third one a tanker and every fourth tagged.
+async fn fleet(on: &TestStore, count: usize) {
+    for number in 0..count {
+        let name = format!("s-{number:02}");
+        let category = if number % 3 == 0 { "tanker" } else { "ferry" };
+        on.store.ships().create(&NewShip { category: category.into(), ..ship(&name) }).await.unwrap();
+        if number % 4 == 0 {
+            on.store.ships().tag(&name, "own-fleet").await.unwrap();
+        }
+    }
+    index(on).await;
+}
+
+/// Does for every ship that waits what the server does: her length is ten times her number.
+async fn index(on: &TestStore) -> usize {
+    let waiting = on.store.search_index().waiting("", 1000).await.unwrap();
+    let facts = |waiting: &sistership_store::Waiting| {
+        let number: f64 = waiting.ship.trim_start_matches("s-").parse().unwrap();
+        let facts = vec![("lpp_m".to_owned(), 10.0 * number), ("beam_m".to_owned(), 20.0 - number)];
+        ShipFacts { waiting: waiting.clone(), category: "tanker".into(), facts, vectors: format!("[{number}]") }
+    };
+    on.store.search_index().write(&waiting.iter().map(facts).collect::<Vec<_>>()).await.unwrap();
+    waiting.len()
+}
+
+fn range(fact: &str, min: f64, max: f64) -> FactRange {
+    FactRange { fact: fact.into(), min, max }
+}
+
+fn names(list: &List<FoundShip, ShipKey>) -> Vec<&str> {
+    list.items.iter().map(|ship| ship.name.as_str()).collect()
+}
+
+async fn every(on: &TestStore, search: &ShipSearch, limit: i64) -> Vec<String> {
+    let (mut all, mut page) = (Vec::new(), Page::first(limit));
+    loop {
+        let list = on.store.ships().search(search, &page).await.unwrap();
+        assert!(list.items.len() <= usize::try_from(limit).unwrap());
+        all.extend(names(&list).into_iter().map(str::to_owned));
+        let Some(next) = list.next else { return all };
+        page = Page { after: Some(next), limit };
+    }
+}
+
+async fn ships_are_found_by_each_condition_and_all_together(on: &TestStore) {
+    fleet(on, 13).await;
+    let own = || Some("own-fleet".to_owned());
+    let tanker = || Some("tanker".to_owned());
+    let find = async |search: ShipSearch| {
+        let all = every(on, &search, 100).await;
+        assert_eq!(every(on, &search, 2).await, all, "{search:?}");
+        all.join(" ")
+    };
+    assert_eq!(find(ShipSearch { category: tanker(), ..ShipSearch::default() }).await, "s-00 s-03 s-06 s-09 s-12");
+    assert_eq!(find(ShipSearch { tag: own(), ..ShipSearch::default() }).await, "s-00 s-04 s-08 s-12");
+    assert_eq!(find(ShipSearch { category: tanker(), tag: own(), ..ShipSearch::default() }).await, "s-00 s-12");
+    let long = vec![range("lpp_m", 40.0, 90.0)];
+    assert_eq!(find(ShipSearch { ranges: long.clone(), ..ShipSearch::default() }).await, "s-04 s-05 s-06 s-07 s-08 s-09");
+    assert_eq!(find(ShipSearch { ranges: long.clone(), tag: own(), category: tanker() }).await, "");
+    assert_eq!(find(ShipSearch { ranges: long, tag: own(), category: None }).await, "s-04 s-08");
+    let narrow = vec![range("beam_m", 0.0, 15.0), range("lpp_m", 0.0, 80.0)];
+    assert_eq!(find(ShipSearch { ranges: narrow, ..ShipSearch::default() }).await, "s-08 s-07 s-06 s-05");
+    assert_eq!(find(ShipSearch { ranges: vec![range("draught_m", 0.0, 9.0)], ..ShipSearch::default() }).await, "");
+    assert_eq!(find(ShipSearch::default()).await.split(' ').count(), 13);
+    let vectors =
+        on.store.ships().vectors(&ShipSearch { category: tanker(), tag: own(), ..ShipSearch::default() }).await.unwrap();
+    let vectors: Vec<_> = vectors.iter().map(|ship| (ship.head.name.as_str(), ship.vectors.as_str())).collect();
+    assert_eq!(vectors, [("s-00", "[0]"), ("s-12", "[12]")]);
+}
+
+async fn a_page_goes_on_where_the_last_one_ended_whatever_is_added(on: &TestStore) {
+    fleet(on, 6).await;
+    let all = ShipSearch { ranges: vec![range("lpp_m", 0.0, 1000.0)], ..ShipSearch::default() };
+    // Each time one ship comes in before the page's end and one behind it.
+    for (search, ends, new, expected) in [
+        (ShipSearch::default(), "s-00 s-01 s-02", ["s-0.1", "s-3.1"], "s-03 s-04 s-05 s-3.1"),
+        (all, "s-00 s-0.1 s-01", ["s-0.2", "s-3.2"], "s-02 s-03 s-3.1 s-3.2 s-04 s-05"),
+    ] {
+        let first = on.store.ships().search(&search, &Page::first(3)).await.unwrap();
+        assert_eq!(names(&first).join(" "), ends);
+        for name in new {
+            on.store.ships().create(&ship(name)).await.unwrap();
+        }
+        index(on).await;
+        let second = on.store.ships().search(&search, &Page { after: first.next, limit: 9 }).await.unwrap();
+        assert_eq!(names(&second).join(" "), expected);
+    }
+}
+
+async fn what_changes_is_written_anew(on: &TestStore) {
+    fleet(on, 2).await;
+    assert_eq!(index(on).await, 0);
+    on.store.ships().update(&ship("s-00"), 1).await.unwrap();
+    on.store.versions().create(&version("s-01"), &[champion(Expect::Any)]).await.unwrap();
+    on.store.versions().create(&version("no-ship"), &[champion(Expect::Any)]).await.unwrap();
+    let waiting = on.store.search_index().waiting("", 10).await.unwrap();
+    assert_eq!(waiting.iter().map(|ship| ship.ship.as_str()).collect::<Vec<_>>(), ["s-00", "s-01"]);
+    // Changed again before the facts of the first change are written: they are not, and she waits on.
+    on.store.ships().update(&ship("s-00"), 2).await.unwrap();
+    let [old, same] = &waiting[..] else { panic!() };
+    let facts = |waiting: &sistership_store::Waiting, value| {
+        let facts = vec![("lpp_m".to_owned(), value)];
+        ShipFacts { waiting: waiting.clone(), category: "tanker".into(), facts, vectors: "[]".into() }
+    };
+    on.store.search_index().write(&[facts(old, 7.0), facts(same, 8.0)]).await.unwrap();
+    let search = ShipSearch { ranges: vec![range("lpp_m", 5.0, 9.0)], ..ShipSearch::default() };
+    let found = on.store.ships().search(&search, &Page::first(9)).await.unwrap();
+    assert_eq!((names(&found), found.items[0].value), (vec!["s-01"], Some(8.0)));
+    assert_eq!(on.store.search_index().waiting("", 10).await.unwrap().len(), 1);
+}
+
+async fn tags_are_put_on_and_taken_off(on: &TestStore) {
+    let ships = on.store.ships();
+    ships.create(&ship("kcs")).await.unwrap();
+    for tag in ["b", "a", "b"] {
+        ships.tag("kcs", tag).await.unwrap();
+    }
+    assert_eq!(ships.tags("kcs").await.unwrap(), ["a", "b"]);
+    ships.untag("kcs", "a").await.unwrap();
+    assert_not_found(ships.untag("kcs", "a").await, "tag");
+    assert_not_found(ships.tag("pcc", "a").await, "ship");
+    assert_invalid(ships.tag("kcs", "two words").await, "tag");
+    for number in 1..sistership_store::MAX_TAGS {
+        ships.tag("kcs", &format!("t-{number}")).await.unwrap();
+    }
+    assert_conflict(ships.tag("kcs", "one-more").await, "100 tags already");
+    ships.tag("kcs", "b").await.unwrap();
+}
+
+async fn a_search_that_cannot_be_is_refused(on: &TestStore) {
+    let ships = on.store.ships();
+    let search = |ranges| ShipSearch { ranges, ..ShipSearch::default() };
+    assert_invalid(ships.search(&search(vec![range("lpp_m", f64::NAN, 1.0)]), &Page::first(1)).await, "min");
+    assert_invalid(ships.search(&search(vec![range("lpp_m", 0.0, 1.0); 5]), &Page::first(1)).await, "ranges");
+    assert_invalid(ships.search(&search(Vec::new()), &Page::first(1001)).await, "limit");
+    assert_invalid(ships.vectors(&search(Vec::new())).await, "category");
+}
+
+on_both_databases!(
+    ships_are_found_by_each_condition_and_all_together,
+    a_page_goes_on_where_the_last_one_ended_whatever_is_added,
+    what_changes_is_written_anew,
+    tags_are_put_on_and_taken_off,
+    a_search_that_cannot_be_is_refused
+);
