@@ -20,6 +20,7 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 #[tokio::main]
 async fn main() -> ExitCode {
+    sistership_store::provide_cryptography();
     match run().await {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

@@ -60,4 +60,8 @@ CREATE TABLE bulk_outcomes (
     PRIMARY KEY (bulk, ship)
 );
 
+CREATE INDEX families_by_foundation ON families (foundation);
+CREATE INDEX bulk_outcomes_by_ship ON bulk_outcomes (ship, bulk);
+CREATE INDEX bulk_outcomes_by_version ON bulk_outcomes (version_id);
+
 CREATE TRIGGER family_priors_insert_only BEFORE UPDATE OR DELETE ON family_priors FOR EACH ROW EXECUTE FUNCTION refuse_change();

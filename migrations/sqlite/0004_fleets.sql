@@ -60,5 +60,9 @@ CREATE TABLE bulk_outcomes (
     PRIMARY KEY (bulk, ship)
 ) STRICT;
 
+CREATE INDEX families_by_foundation ON families (foundation);
+CREATE INDEX bulk_outcomes_by_ship ON bulk_outcomes (ship, bulk);
+CREATE INDEX bulk_outcomes_by_version ON bulk_outcomes (version_id);
+
 CREATE TRIGGER family_priors_no_update BEFORE UPDATE ON family_priors BEGIN SELECT RAISE(ABORT, 'family_priors is insert-only'); END;
 CREATE TRIGGER family_priors_no_delete BEFORE DELETE ON family_priors BEGIN SELECT RAISE(ABORT, 'family_priors is insert-only'); END;

@@ -223,5 +223,6 @@ fn start(
 /// A client that opens a connection for every request: while a test waits for a command, the server may close an idle one, which the
 /// next request would meet half way.
 fn client() -> Client {
+    sistership_store::provide_cryptography();
     Client::builder().pool_max_idle_per_host(0).build().unwrap_or_default()
 }

@@ -30,6 +30,7 @@ impl Server {
     /// Says what is wrong with the configuration, or what cannot be opened.
     pub async fn start(config: Config) -> Result<Running, StartError> {
         config.check()?;
+        sistership_store::provide_cryptography();
         spool(&config)?;
         // The address first: a process that cannot have it takes no job from others.
         let listener = bind(config.listen).await?;

@@ -65,7 +65,7 @@ pub use jobs::Jobs;
 pub use laws::{Law, Laws};
 pub use object_list::{ObjectHead, ObjectName};
 pub use objects::{Objects, ObjectsError, sha256_hex};
-pub use objects_place::{ObjectsPlace, S3Place};
+pub use objects_place::{ObjectsPlace, S3Place, provide_cryptography};
 pub use page::{List, MAX_LIMIT, Page};
 pub use reports::{NewReport, Report, ReportHead, Reports};
 pub use search::{FactRange, FoundShip, MAX_RANGES, ShipKey, ShipSearch, ShipVectors};

@@ -111,10 +111,15 @@ pub(crate) fn builder(place: &S3Place) -> AmazonS3Builder {
     builder.with_region(place.region.clone().or_else(environment).unwrap_or_else(|| REGION.to_owned()))
 }
 
+/// Gives the process the cryptography of TLS, once: no HTTP client can be made without it, not even for plain HTTP.
+pub fn provide_cryptography() {
+    // Whoever comes second finds it installed.
+    let _ = rustls::crypto::ring::default_provider().install_default();
+}
+
 /// The bucket, below its prefix.
 pub(crate) fn bucket(builder: AmazonS3Builder, place: &S3Place) -> object_store::Result<Arc<dyn ObjectStore>> {
-    // The second of two stores in one process finds it installed.
-    let _ = rustls::crypto::ring::default_provider().install_default();
+    provide_cryptography();
     let store = builder.build()?;
     Ok(match place.prefix.as_str() {
         "" => Arc::new(store),
