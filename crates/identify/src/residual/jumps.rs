@@ -78,6 +78,7 @@ fn scatter(magnitudes: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     /// A straight run of a hundred seconds with a receiver that scatters by 5 mm.
@@ -102,7 +103,7 @@ mod tests {
 
     #[test]
     fn scatter_does_not() {
-        assert_eq!(undisturbed(&run(0.0), 3.0), [0..1000]);
+        assert_eq!(undisturbed(&run(0.0), 3.0), vec![0..1000; 1]);
     }
 
     #[test]
@@ -112,6 +113,6 @@ mod tests {
             let values = held.channels.get_mut(&channel).unwrap();
             *values = (0..1000).map(|k| values[k / 10 * 10]).collect();
         }
-        assert_eq!(undisturbed(&held, 3.0), [0..1000]);
+        assert_eq!(undisturbed(&held, 3.0), vec![0..1000; 1]);
     }
 }
