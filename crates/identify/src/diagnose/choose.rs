@@ -1,5 +1,7 @@
 //! From single effects to those that are missing together.
 
+use std::collections::BTreeSet;
+
 use rayon::prelude::*;
 
 use super::Request;
@@ -162,7 +164,9 @@ impl Choice {
 
     /// This choice, with what an earlier one has tried besides.
     pub(super) fn after(mut self, earlier: Self) -> Self {
-        self.tried.extend(earlier.tried);
+        let keys = |judged: &Judged| judged.candidates.iter().map(Candidate::key).collect::<Vec<_>>();
+        let again: BTreeSet<Vec<String>> = self.tried.iter().map(keys).collect();
+        self.tried.extend(earlier.tried.into_iter().filter(|judged| !again.contains(&keys(judged))));
         self
     }
 

@@ -18,16 +18,11 @@ impl Search<'_> {
     /// Names what a trial lacks.
     pub fn is_placebo(&self, judged: &Judged, base: &Base<'_>) -> Result<bool, RefineError> {
         let Some(last) = judged.candidates.last().filter(|candidate| is_from_outside(candidate)) else { return Ok(false) };
-        for share in SHIFTS {
-            let shifted: Vec<Trial> = self.trials.iter().map(|trial| shifted(trial, share)).collect();
-            let trials: Vec<&Trial> = shifted.iter().collect();
-            let search = self.on(&trials);
+        let again = |search: &Search<'_>| {
             let there = search.bare(&base.taken, &search.levels)?;
-            if search.judge(&there, last, judged.level)?.log_evidence > judged.log_evidence {
-                return Ok(true);
-            }
-        }
-        Ok(false)
+            Ok(search.judge(&there, last, judged.level)?.log_evidence)
+        };
+        self.exceeds(judged.log_evidence, &again)
     }
 
     /// Whether effects explain the trials better, by a margin, than with records from outside of any other time.
@@ -35,16 +30,23 @@ impl Search<'_> {
     /// # Errors
     /// Names what a trial lacks.
     pub fn follow_records(&self, judged: &Judged, margin: f64) -> Result<bool, RefineError> {
+        let again = |search: &Search<'_>| {
+            let there = search.bare(&judged.candidates, &search.levels)?;
+            Ok(search.alone(&there)?.1.log_evidence)
+        };
+        Ok(!self.exceeds(judged.log_evidence - margin, &again)?)
+    }
+
+    /// Whether with the records of any other time the evidence is more than so much.
+    fn exceeds(&self, limit: f64, evidence: &dyn Fn(&Search<'_>) -> Result<f64, RefineError>) -> Result<bool, RefineError> {
         for share in SHIFTS {
             let shifted: Vec<Trial> = self.trials.iter().map(|trial| shifted(trial, share)).collect();
             let trials: Vec<&Trial> = shifted.iter().collect();
-            let search = self.on(&trials);
-            let there = search.bare(&judged.candidates, &search.levels)?;
-            if search.alone(&there)?.1.log_evidence > judged.log_evidence - margin {
-                return Ok(false);
+            if evidence(&self.on(&trials))? > limit {
+                return Ok(true);
             }
         }
-        Ok(true)
+        Ok(false)
     }
 
     /// The same search on other trials.

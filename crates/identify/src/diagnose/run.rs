@@ -36,7 +36,7 @@ fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineE
 }
 
 fn answer(request: &Request<'_>, first: &Search<'_>, choice: Choice, progress: Progress<'_>) -> Result<Diagnosis, RefineError> {
-    let Believed { choice, settled, remaining, refused } = believed(request, first, choice)?;
+    let Believed { choice, settled, remaining, refused } = believed(request, first, choice, progress)?;
     let Settled { search, base, best } = &settled;
     let workspace = &base.workspace;
     let length_s = workspace.lpp_m / workspace.speed_m_s;
@@ -85,7 +85,12 @@ struct Believed<'a> {
 
 /// The effects taken, as far as each is the same at all times where something remains unexplained. Where one is not, the
 /// choice is made again without it: it may have stood before another.
-fn believed<'a>(request: &Request<'_>, search: &Search<'a>, choice: Choice) -> Result<Believed<'a>, RefineError> {
+fn believed<'a>(
+    request: &Request<'_>,
+    search: &Search<'a>,
+    choice: Choice,
+    progress: Progress<'_>,
+) -> Result<Believed<'a>, RefineError> {
     let (mut search, mut choice, mut refused) = (search.clone(), choice, Vec::new());
     loop {
         let settled = choice.settled(&search, request)?;
@@ -100,6 +105,7 @@ fn believed<'a>(request: &Request<'_>, search: &Search<'a>, choice: Choice) -> R
         }
         let names = inconstant.into_iter().map(|place| settled.best.candidates[place].effect.clone());
         refused.extend(names.inspect(|name| search.forget(name)));
+        step(progress, 0.8, "effects without those that only resemble what is missing")?;
         choice = choose(&search, request.settings)?.after(choice);
     }
 }
