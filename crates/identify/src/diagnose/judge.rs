@@ -10,8 +10,7 @@ use sistership_model::{Model, Trial};
 
 use super::Request;
 use super::outcome::{SailedManoeuvre, TrialErrors};
-use super::refit::{STRENGTHS, refitted};
-use super::search::{Judged, Search};
+use super::refit::Refit;
 use crate::transfer::ready;
 
 /// Errors and manoeuvres of all trials.
@@ -20,8 +19,8 @@ pub(super) struct Errors {
     pub after: BTreeMap<String, f64>,
     pub trials: Vec<TrialErrors>,
     pub manoeuvres: Vec<SailedManoeuvre>,
-    /// Strength of the prior by which coefficients were refitted; none where they stay.
-    pub strength: Option<f64>,
+    /// Place of the way of fitting that is best on all trials.
+    pub taken: usize,
     /// Mean over channels of the logarithm of the errors' ratio, after by before.
     pub change: f64,
 }
@@ -29,43 +28,28 @@ pub(super) struct Errors {
 /// Errors of each trial; none where the simulation stopped.
 type Each = Vec<Option<SquaredError>>;
 
-/// Simulates each trial by the model as it is, and by the model with the effects and coefficients fitted on the others.
-pub(super) fn errors(request: &Request<'_>, search: &Search<'_>, judged: &Judged, restart_s: f64) -> Errors {
-    let models: Vec<Model> = (0..request.trials.len()).map(|trial| without(request, search, judged, trial)).collect();
-    let before = simulated(request, &vec![request.model; models.len()], restart_s);
-    let strengths = if judged.candidates.is_empty() { &STRENGTHS[..1] } else { &STRENGTHS[..] };
-    let tried = strengths.iter().map(|&strength| {
-        let fitted: Vec<Model> = (0..models.len()).map(|trial| fitted(request, &models[trial], trial, strength)).collect();
-        let after = simulated(request, &fitted.iter().collect::<Vec<_>>(), restart_s);
-        (change(&before, &after), strength, fitted, after)
-    });
-    let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
-    let (change, strength, fitted, after) = best.unwrap_or_else(|| (0.0, None, models.clone(), before.clone()));
-    Errors {
-        before: total(&before),
-        after: total(&after),
-        trials: (0..before.len()).map(|trial| of_trial(request.trials[trial], &before[trial], &after[trial])).collect(),
-        manoeuvres: fitted.iter().zip(request.trials).filter_map(|(model, trial)| manoeuvre(request, model, trial)).collect(),
-        strength,
-        change,
-    }
-}
-
-/// The trials but one; of a single one, itself.
-fn others<'a>(request: &Request<'a>, but: usize) -> Vec<&'a Trial> {
+/// Simulates each trial by the model as it is, and by a model fitted on the others in the way that does best on the others:
+/// neither the fit nor its choice has seen the trial.
+pub(super) fn errors(request: &Request<'_>, refits: &[Refit], restart_s: f64) -> Errors {
     let count = request.trials.len();
-    (0..count).filter(|&other| other != but || count == 1).map(|other| request.trials[other]).collect()
-}
-
-/// The model with effects as the other trials ask for them.
-fn without(request: &Request<'_>, search: &Search<'_>, judged: &Judged, trial: usize) -> Model {
-    let keep = |other: usize| other != trial || request.trials.len() == 1;
-    let fitted = judged.of_trials(&search.fixed, &keep).filter(|(_, candidates)| !candidates.is_empty());
-    fitted.map_or_else(|| request.model.clone(), |(_, candidates)| search.model_with(&candidates, None))
-}
-
-fn fitted(request: &Request<'_>, model: &Model, trial: usize, strength: Option<f64>) -> Model {
-    refitted(model, request.law, &others(request, trial), strength).into_owned()
+    let before = simulated(request, &vec![request.model; count], restart_s);
+    let each: Vec<Each> =
+        refits.iter().map(|refit| simulated(request, &refit.without.iter().collect::<Vec<_>>(), restart_s)).collect();
+    let best = |keep: &dyn Fn(usize) -> bool| {
+        let changes = each.iter().map(|after| change(&before, after, keep)).enumerate();
+        changes.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(place, _)| place)
+    };
+    let ways: Vec<usize> = (0..count).map(|trial| best(&|other| other != trial || count == 1)).collect();
+    let after: Each = ways.iter().enumerate().map(|(trial, &way)| each[way][trial].clone()).collect();
+    let model = |trial: usize| &refits[ways[trial]].without[trial];
+    Errors {
+        before: total(&before, &|_| true),
+        after: total(&after, &|_| true),
+        trials: (0..count).map(|trial| of_trial(request.trials[trial], &before[trial], &after[trial])).collect(),
+        manoeuvres: (0..count).filter_map(|trial| manoeuvre(request, model(trial), request.trials[trial])).collect(),
+        taken: best(&|_| true),
+        change: change(&before, &after, &|_| true),
+    }
 }
 
 fn simulated(request: &Request<'_>, models: &[&Model], restart_s: f64) -> Each {
@@ -78,20 +62,22 @@ fn simulated(request: &Request<'_>, models: &[&Model], restart_s: f64) -> Each {
     models.par_iter().zip(request.trials).map(one).collect()
 }
 
-fn total(each: &Each) -> BTreeMap<String, f64> {
+fn total(each: &Each, keep: &dyn Fn(usize) -> bool) -> BTreeMap<String, f64> {
     let mut sum = SquaredError::default();
-    each.iter().flatten().for_each(|error| sum.add(error));
+    let kept = each.iter().enumerate().filter(|(trial, _)| keep(*trial)).filter_map(|(_, error)| error.as_ref());
+    kept.for_each(|error| sum.add(error));
     sum.rmse()
 }
 
-/// Mean over channels of the logarithm of the ratio; infinite where a simulation stops that did not before.
-fn change(before: &Each, after: &Each) -> f64 {
-    if before.iter().zip(after).any(|(before, after)| before.is_some() && after.is_none()) {
+/// Mean over channels of the logarithm of the ratio over some trials; infinite where a simulation stops that did not before.
+fn change(before: &Each, after: &Each, keep: &dyn Fn(usize) -> bool) -> f64 {
+    let stops = |trial: usize| keep(trial) && before[trial].is_some() && after[trial].is_none();
+    if (0..before.len()).any(stops) {
         return f64::INFINITY;
     }
-    let (before, after) = (total(before), total(after));
-    let logs: Vec<f64> = before.iter().filter_map(|(channel, before)| Some((after.get(channel)? / before).ln())).collect();
-    let logs: Vec<f64> = logs.into_iter().filter(|log| log.is_finite()).collect();
+    let (before, after) = (total(before, keep), total(after, keep));
+    let logs = before.iter().filter_map(|(channel, before)| Some((after.get(channel)? / before).ln()));
+    let logs: Vec<f64> = logs.filter(|log| log.is_finite()).collect();
     if logs.is_empty() { 0.0 } else { logs.iter().sum::<f64>() / logs.len() as f64 }
 }
 

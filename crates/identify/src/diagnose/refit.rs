@@ -1,25 +1,81 @@
 //! The coefficients once more, with the effects in place: what they had taken over from what was missing they give back.
 
-use std::borrow::Cow;
-
 use sistership_dynamics::plant::dressed;
-use sistership_model::effect::ActsOn;
+use sistership_model::effect::{ActsOn, AsTerms, TIME};
 use sistership_model::law::Law;
 use sistership_model::{Model, Trial, particulars};
 
-use crate::refine::{Blocks, fit, trial_moments};
+use super::Request;
+use super::search::{Judged, Search};
+use crate::refine::{Alternative, Blocks, alternatives, fit, trial_moments};
 use crate::regression::{Choice, Moments};
 use crate::transfer::approach_of;
 
-/// Strengths of the prior that are weighed; the first leaves the coefficients as they are.
-pub(super) const STRENGTHS: [Option<f64>; 5] = [None, Some(1000.0), Some(100.0), Some(10.0), Some(1.0)];
+/// Strengths of the prior that are weighed where the effects stay as they were found.
+const STRENGTHS: [f64; 4] = [1000.0, 100.0, 10.0, 1.0];
 
-/// A model that carries effects, its coefficients refitted on trials with its own as the prior; as it is where that cannot be
-/// done: instruments that err would mislead the regression.
-pub(super) fn refitted<'a>(model: &'a Model, law: &Law, trials: &[&Trial], strength: Option<f64>) -> Cow<'a, Model> {
+/// A model with effects, on all trials and without each of them.
+pub(super) struct Refit {
+    /// How its coefficients were fitted; none where they are as they were.
+    pub how: Option<String>,
+    pub all: Model,
+    pub without: Vec<Model>,
+}
+
+/// What is weighed: the coefficients as they are; fitted with the effects as they were found; and, where the effects are
+/// linear, fitted together with them.
+pub(super) fn refits(request: &Request<'_>, search: &Search<'_>, judged: &Judged, restart_s: f64) -> Vec<Refit> {
+    let all = search.model_with(&judged.candidates, Some(&judged.covariance));
+    let without = (0..request.trials.len()).map(|trial| without(request, search, judged, trial)).collect();
+    let mut refits = vec![Refit { how: None, all, without }];
+    if judged.candidates.is_empty() || misleads(&refits[0].all, request.law) {
+        return refits;
+    }
+    refits.extend(STRENGTHS.iter().filter_map(|&lambda| ridge(request, &refits[0], lambda)).collect::<Vec<_>>());
+    refits.extend(jointly(request, &refits[0].all, restart_s));
+    refits
+}
+
+/// Whether instruments err, or something changes with time: a regression knows neither.
+fn misleads(model: &Model, law: &Law) -> bool {
     let errs = model.effects.iter().any(|effect| effect.acts_on == ActsOn::Measurement);
-    let fitted = strength.filter(|_| !errs).and_then(|lambda| with_coefficients(model, law, trials, lambda));
-    fitted.map_or(Cow::Borrowed(model), Cow::Owned)
+    errs || law.with_effects(model).map_or(true, |law| law.inputs.contains_key(TIME))
+}
+
+/// The trials but one; of a single one, itself.
+fn others<'a>(request: &Request<'a>, but: usize) -> Vec<&'a Trial> {
+    let count = request.trials.len();
+    (0..count).filter(|&other| other != but || count == 1).map(|other| request.trials[other]).collect()
+}
+
+/// The model with effects as the other trials ask for them.
+fn without(request: &Request<'_>, search: &Search<'_>, judged: &Judged, trial: usize) -> Model {
+    let keep = |other: usize| other != trial || request.trials.len() == 1;
+    let fitted = judged.of_trials(&search.fixed, &keep).filter(|(_, candidates)| !candidates.is_empty());
+    fitted.map_or_else(|| request.model.clone(), |(_, candidates)| search.model_with(&candidates, None))
+}
+
+fn ridge(request: &Request<'_>, found: &Refit, lambda: f64) -> Option<Refit> {
+    let one = |(trial, model): (usize, &Model)| with_coefficients(model, request.law, &others(request, trial), lambda);
+    Some(Refit {
+        how: Some(format!("prior strength {lambda}")),
+        all: with_coefficients(&found.all, request.law, request.trials, lambda)?,
+        without: found.without.iter().enumerate().map(one).collect::<Option<_>>()?,
+    })
+}
+
+/// Coefficients and effects fitted together, by the weak form and by trajectories. Of the effects nothing is taken from the
+/// diagnosis but which they are, so that a trial left out has no part in what simulates it.
+fn jointly(request: &Request<'_>, found: &Model, restart_s: f64) -> Vec<Refit> {
+    let Ok(Some(terms)) = AsTerms::new(found, request.law) else { return Vec::new() };
+    let all = alternatives(&terms.model, &terms.law, request.trials, restart_s).unwrap_or_default();
+    let back = |model: Model| Model { uncertainty: None, posterior: None, ..terms.fitted(&model.coefficients) };
+    let one = |Alternative { label, all, without }: Alternative| Refit {
+        how: Some(format!("together with the effects: {label}")),
+        all: back(all),
+        without: without.into_iter().map(back).collect(),
+    };
+    all.into_iter().map(one).collect()
 }
 
 fn with_coefficients(model: &Model, law: &Law, trials: &[&Trial], lambda: f64) -> Option<Model> {
@@ -40,6 +96,6 @@ fn with_coefficients(model: &Model, law: &Law, trials: &[&Trial], lambda: f64) -
         (quantity.value, quantity.standard_error) = (fitted.value, Some(fitted.standard_error));
     }
     // What was known of the coefficients before is not known of these.
-    model.uncertainty = None;
+    (model.uncertainty, model.posterior) = (None, None);
     Some(model)
 }

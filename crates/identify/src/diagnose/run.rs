@@ -6,7 +6,7 @@ use super::confounded::Responses;
 use super::judge::errors;
 use super::next_trial::next_trial;
 use super::outcome::{Diagnosis, Found, Hypothesis, NextTrial, Unexplained, Verdict};
-use super::refit::refitted;
+use super::refit::refits;
 use super::remainder::unexplained;
 use super::search::{Judged, Search};
 use super::series::{levels, residuals};
@@ -41,7 +41,10 @@ fn answer(request: &Request<'_>, first: &Search<'_>, choice: Choice, progress: P
     let workspace = &base.workspace;
     let length_s = workspace.lpp_m / workspace.speed_m_s;
     step(progress, 0.85, "simulating each trial by a fit on the others")?;
-    let errors = errors(request, search, best, request.settings.restart_s.unwrap_or(10.0 * length_s));
+    let restart_s = request.settings.restart_s.unwrap_or(10.0 * length_s);
+    let mut refits = refits(request, search, best, restart_s);
+    let errors = errors(request, &refits, restart_s);
+    let taken = refits.swap_remove(errors.taken);
     step(progress, 0.95, "what these trials cannot tell apart")?;
     let (found, next_trial) = apart(request, search, best, choice.best().log_evidence - choice.alone.log_evidence)?;
     let verdict = match (remaining.is_empty(), found.is_empty()) {
@@ -49,9 +52,7 @@ fn answer(request: &Request<'_>, first: &Search<'_>, choice: Choice, progress: P
         (true, true) => Verdict::Complete,
         (true, false) => Verdict::Effects,
     };
-    let with_effects = search.model_with(&best.candidates, Some(&best.covariance));
-    let with_effects = refitted(&with_effects, request.law, request.trials, errors.strength).into_owned();
-    let model = (!found.is_empty() && errors.change < 0.0).then_some(with_effects);
+    let model = (!found.is_empty() && errors.change < 0.0).then_some(taken.all);
     let is_better = found.is_empty() || model.is_some();
     Ok(Diagnosis {
         verdict,
@@ -61,7 +62,7 @@ fn answer(request: &Request<'_>, first: &Search<'_>, choice: Choice, progress: P
         before: errors.before,
         after: errors.after,
         noise: workspace.noise.iter().map(|(channel, instrument)| (channel.name().to_owned(), instrument.deviation)).collect(),
-        how: how(request, errors.strength),
+        how: how(request, taken.how.as_deref()),
         diagnosed: request.model.name.clone(),
         hypotheses: hypotheses(request, search, &choice),
         trials: errors.trials,
@@ -152,13 +153,13 @@ fn remaining(
 /// The discrepancy that is forgiven a model that brings none, by the typical acceleration.
 const REMAINDER: f64 = 3e-4;
 
-fn how(request: &Request<'_>, strength: Option<f64>) -> String {
+fn how(request: &Request<'_>, refit: Option<&str>) -> String {
     let fitted = match request.trials.len() {
         1 => "there is one trial only: these are errors on the trial that the effects were fitted on".to_owned(),
         count => format!("each of {count} trials simulated with effects fitted on the others"),
     };
-    match strength {
-        Some(strength) => format!("{fitted}, and so were the coefficients (prior strength {strength}, chosen by these errors)"),
+    match refit {
+        Some(refit) => format!("{fitted}, and so were the coefficients, in the way that does best on the others ({refit})"),
         None => fitted,
     }
 }

@@ -43,7 +43,7 @@ impl Task<'_> {
                 fitted => fitted?,
             };
             let mut model = fitted.as_ref().map_or_else(|| self.transferred.clone(), |fit| self.model_with(&fit.coefficients));
-            model.validity = covered(&self.whole, self.request.law);
+            model.validity = covered(&self.whole, self.law);
             let after = self.standard_manoeuvres(&model);
             let worse = after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
             if let Some(failure) = worse {
@@ -55,14 +55,14 @@ impl Task<'_> {
             model.posterior = self.posterior(&model, fitted.as_ref(), variants)?;
             let measured = self.measured_manoeuvres(&model);
             step(progress, 0.93, "confidence bands")?;
-            let bands = bands(&model, self.request.law, &ManoeuvreSettings::default(), None, self.settings.bands);
+            let bands = bands(&model, self.law, &ManoeuvreSettings::default(), None, self.settings.bands);
             let manoeuvres = Manoeuvres { source: before, refined: after, bands, measured };
             return self.refinement(options, best, model, fitted, manoeuvres);
         }
     }
 
     /// What an option gives on all trials.
-    fn fitted(&self, taken: &Taken, variants: &[Variant]) -> Result<Option<Fit>, RefineError> {
+    pub(super) fn fitted(&self, taken: &Taken, variants: &[Variant]) -> Result<Option<Fit>, RefineError> {
         let (variant, choices) = match taken {
             Taken::Source => return Ok(None),
             Taken::Trajectory { fit } => return Ok(Some((**fit).clone())),
@@ -95,7 +95,7 @@ impl Task<'_> {
             let recognised = Recognised::of(trial)?;
             let samples: Vec<usize> = (0..trial.len()).collect();
             let simulated = |model: &Model| {
-                let ship = ready(model, self.request.law, &[trial]).ok()?;
+                let ship = ready(model, self.law, &[trial]).ok()?;
                 let run = replay(&ship, trial, &ReplaySettings::default()).ok().filter(|run| run.stopped.is_none())?;
                 recognised.metrics(&run.track, &run.samples)
             };
@@ -111,7 +111,7 @@ impl Task<'_> {
     }
 
     fn standard_manoeuvres(&self, model: &Model) -> StandardManoeuvres {
-        match Ship::new(model, self.request.law) {
+        match Ship::new(model, self.law) {
             Ok(ship) => standard(&ship, &ManoeuvreSettings::default()),
             Err(error) => StandardManoeuvres { failures: vec![error.to_string()], ..Default::default() },
         }
@@ -130,9 +130,9 @@ impl Task<'_> {
         let (condition_number, collinear_groups) =
             fitted.as_ref().map_or((1.0, Vec::new()), |fit| (fit.condition_number, fit.collinear_groups.clone()));
         Ok(Refinement {
-            ship: self.request.target.name().to_owned(),
-            source: self.request.source.name.clone(),
-            method: self.request.settings.method.name().to_owned(),
+            ship: self.transferred.ship.clone(),
+            source: self.source.to_owned(),
+            method: self.settings.method.name().to_owned(),
             coefficients: self.changes(&model, fitted.as_ref()),
             model,
             transferred: self.transferred.clone(),
@@ -174,7 +174,7 @@ impl Task<'_> {
             let source = self.transferred.coefficient(name);
             let fitted = fitted.and_then(|fit| fit.coefficients.get(name));
             let prior = fitted.map_or(0.0, |f| f.prior_deviation);
-            let unit = self.request.law.coefficient_dimension(name).map_or_else(|_| "?".to_owned(), |d| d.to_string());
+            let unit = self.law.coefficient_dimension(name).map_or_else(|_| "?".to_owned(), |d| d.to_string());
             CoefficientChange {
                 name: name.clone(),
                 unit,

@@ -1,5 +1,6 @@
 //! Refinement of a source model against trials.
 
+mod alternatives;
 mod blocks;
 mod constraints;
 mod family;
@@ -15,6 +16,7 @@ mod trajectory;
 mod variant;
 mod weak;
 
+pub(crate) use alternatives::{Alternative, alternatives};
 pub use blocks::{Block, Blocks};
 pub use constraints::{Bound, Constraints, StraightLine};
 pub use family::Family;

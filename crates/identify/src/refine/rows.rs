@@ -2,6 +2,7 @@
 
 use sistership_dynamics::tape::Lanes;
 use sistership_model::coefficient::Axis;
+use sistership_model::effect::input_channel;
 use sistership_model::trial::{Channel, Trial};
 
 use super::blocks::{Block, Blocks};
@@ -76,7 +77,7 @@ impl<'a> Record<'a> {
         let mut columns = vec![Ok(need(Channel::U)?), Ok(need(Channel::V)?), Ok(need(Channel::R)?)];
         columns.extend([Channel::P, Channel::Phi, Channel::Psi].map(or_zero));
         for (name, default) in &blocks.inputs {
-            let channel = Channel::by_name(name);
+            let channel = input_channel(name);
             let recorded = channel.and_then(|channel| trial.channel(channel));
             let constant = if channel == Some(Channel::Depth) { trial.depth_m.or(*default) } else { *default };
             columns.push(match (recorded, constant, channel) {

@@ -44,7 +44,7 @@ pub type Progress<'a> = &'a (dyn Fn(f64, &str) -> bool + Sync);
 pub fn refine(request: &Request<'_>, progress: Progress<'_>) -> Result<Refinement, RefineError> {
     request.settings.check().map_err(|(field, message)| RefineError::Setting { field, message })?;
     let (judged, whole) = divided(request)?;
-    let settings = resolved(request, &whole);
+    let settings = resolved(request.settings, request.target.particular("lpp_m"), &whole);
     let parts = parts(&whole, request.law, &settings);
     let task = Task::new(request, judged, whole, &parts, settings);
     step(progress, 0.05, "sufficient statistics of each trial")?;
@@ -66,7 +66,9 @@ type Told<'a> = &'a dyn Fn(f64, &str) -> Result<(), RefineError>;
 
 /// A request with everything that does not change while options are tried.
 pub(super) struct Task<'a> {
-    pub(super) request: &'a Request<'a>,
+    pub(super) law: &'a Law,
+    /// The source's name.
+    pub(super) source: &'a str,
     /// What is fitted and left out: the trials, or parts of them.
     pub(super) training: Vec<&'a Trial>,
     /// The trials of which that is.
@@ -95,6 +97,8 @@ pub(super) struct Trying {
     pub(super) each: Vec<f64>,
     /// Number of coefficients that are fitted.
     pub(super) size: usize,
+    /// The model of each fold, which did not see it; none of the source.
+    pub(super) left_out: Vec<Model>,
 }
 
 /// Trials as simulated by models that did not see them.
@@ -126,7 +130,14 @@ impl<'a> Task<'a> {
             transfer(request.source, request.law, request.target, approach_of(&whole))
         };
         let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
-        Self { request, training, whole, judged, transferred, settings }
+        Self { law: request.law, source: &request.source.name, training, whole, judged, transferred, settings }
+    }
+
+    /// Of a model with itself as the source, on whole trials.
+    pub(super) fn of_model(model: &'a Model, law: &'a Law, trials: &[&'a Trial], settings: Settings) -> Self {
+        let training = trials.to_vec();
+        let (whole, judged) = (training.clone(), Vec::new());
+        Self { law, source: &model.name, training, whole, judged, transferred: model.clone(), settings }
     }
 
     /// Which fold a training trial is left out in.
@@ -135,11 +146,11 @@ impl<'a> Task<'a> {
     }
 
     pub(super) fn fold_count(&self) -> usize {
-        self.training.len().min(self.request.settings.folds)
+        self.training.len().min(self.settings.folds)
     }
 
     /// The source itself, and options from it outwards for each family of terms.
-    fn options(&self, variants: &[Variant], progress: Progress<'_>) -> Result<Vec<Trying>, RefineError> {
+    pub(super) fn options(&self, variants: &[Variant], progress: Progress<'_>) -> Result<Vec<Trying>, RefineError> {
         let mut options = vec![self.source_option(variants)?];
         for (index, variant) in variants.iter().enumerate() {
             let folds = self.folds(variant)?;
@@ -162,12 +173,12 @@ impl<'a> Task<'a> {
         told: Told<'_>,
         options: &mut Vec<Trying>,
     ) -> Result<(), RefineError> {
-        let ranges = &self.request.settings.ranges;
+        let ranges = &self.settings.ranges;
         let allowed = if self.training.len() == 1 { 1 } else { ranges.len() };
         for (index, range) in ranges.iter().take(allowed).enumerate() {
             let what = format!("lambda from {:.0e}: simulating manoeuvres left out", range.lambda_min);
             told(index as f64 / allowed as f64, &what)?;
-            let choices = tune(folds, range, self.request.settings.lambda_count);
+            let choices = tune(folds, range, self.settings.lambda_count);
             let taken = Taken::Ridge { variant: at, choices };
             options.push(self.ridge_option((index + 1).to_string(), range.lambda_min, taken, variant, folds)?);
         }
@@ -220,7 +231,7 @@ impl<'a> Task<'a> {
         };
         let simulated = self.simulate_all(&self.training, &|trial| models[self.fold_of(trial)].clone())?;
         let size = models.first().map_or(0, |model| model.coefficients.len());
-        Ok(self.trying(label, Some(lambda_min), taken, size, simulated))
+        Ok(Trying { left_out: models, ..self.trying(label, Some(lambda_min), taken, size, simulated) })
     }
 
     pub(super) fn trying(
@@ -239,7 +250,8 @@ impl<'a> Task<'a> {
             taken.choices().iter().flat_map(|choices| choices.iter().flatten()).map(of).collect()
         };
         let (lambda, alpha) = (flat(&|c| c.lambda), flat(&|c| c.alpha));
-        Trying { option: StepOption { step, lambda_min, lambda, alpha, error, chosen: false, reason }, taken, errors, each, size }
+        let option = StepOption { step, lambda_min, lambda, alpha, error, chosen: false, reason };
+        Trying { option, taken, errors, each, size, left_out: Vec::new() }
     }
 
     /// Simulates trials, each with the model that did not see it; the first divergence is the reason against the option.
@@ -250,7 +262,7 @@ impl<'a> Task<'a> {
     ) -> Result<Simulated, RefineError> {
         let settings = ReplaySettings { restart_s: self.settings.restart_s, ..ReplaySettings::default() };
         let one = |(index, trial): (usize, &&Trial)| -> Result<(SquaredError, Option<String>), RefineError> {
-            let ship = match ready(&model_of(index), self.request.law, trials) {
+            let ship = match ready(&model_of(index), self.law, trials) {
                 Ok(ship) => ship,
                 Err(reason) => return Ok((SquaredError::default(), Some(reason))),
             };
@@ -273,7 +285,7 @@ impl<'a> Task<'a> {
         for (name, fitted) in coefficients {
             let quantity = Quantity {
                 standard_error: Some(fitted.standard_error),
-                ..Quantity::new(fitted.value, format!("refined from {}", self.request.source.name))
+                ..Quantity::new(fitted.value, format!("refined from {}", self.source))
             };
             model.coefficients.insert(name.clone(), quantity);
         }
@@ -305,9 +317,9 @@ fn divided<'a>(request: &'a Request<'a>) -> Result<(Vec<&'a Trial>, Vec<&'a Tria
 }
 
 /// The settings with the times that depend on the ship filled in, so that a version records what was used.
-fn resolved(request: &Request<'_>, training: &[&Trial]) -> Settings {
-    let length_s = request.target.particular("lpp_m").zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s);
-    let mut settings = request.settings.clone();
+pub(super) fn resolved(settings: &Settings, lpp_m: Option<f64>, training: &[&Trial]) -> Settings {
+    let length_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s);
+    let mut settings = settings.clone();
     if settings.method == Method::Published {
         settings.difference_s = settings.difference_s.or(length_s.map(|s| 0.1 * s));
     } else {

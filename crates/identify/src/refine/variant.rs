@@ -60,7 +60,7 @@ impl Task<'_> {
         let families = if self.settings.families.is_empty() { &[Family::Own][..] } else { &self.settings.families };
         let mut variants = Vec::new();
         for &family in families {
-            let Some(model) = family.of(&self.transferred, self.request.law) else { continue };
+            let Some(model) = family.of(&self.transferred, self.law) else { continue };
             match self.variant(family, model) {
                 Ok(variant) => variants.push(variant),
                 Err(RefineError::Data(_)) if !variants.is_empty() => {}
@@ -71,7 +71,7 @@ impl Task<'_> {
     }
 
     fn variant(&self, family: Family, model: Model) -> Result<Variant, RefineError> {
-        let blocks = Blocks::new(&model, self.request.law)?;
+        let blocks = Blocks::new(&model, self.law)?;
         let moments = self.moments(&blocks)?;
         let limits = self.limits(&model)?;
         Ok(Variant { family, model, blocks, moments, limits })
@@ -85,7 +85,7 @@ impl Task<'_> {
         }
         let speeds = self.whole.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
         let speeds = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], u| [low.min(*u), high.max(*u)]);
-        let limits = Limits::new(asked, model, self.request.law, speeds);
+        let limits = Limits::new(asked, model, self.law, speeds);
         limits.map(Some).map_err(|message| RefineError::Setting { field: "constraints".into(), message })
     }
 

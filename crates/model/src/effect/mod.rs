@@ -1,5 +1,6 @@
 //! An effect: what changes a law from outside, as data.
 
+mod as_terms;
 mod dress;
 mod file;
 mod form;
@@ -18,6 +19,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use as_terms::AsTerms;
 pub use dress::{Dressing, TIME, input_channel, qualified};
 pub use file::{ActsOn, EffectFile, EffectParameterFile, FormFile, GrammarFile, Mirror, PriorFile};
 pub use grammar::Grammar;

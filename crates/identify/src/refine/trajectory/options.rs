@@ -66,15 +66,15 @@ impl Task<'_> {
         step(progress, 0.6, "trajectories from the weak form")?;
         let cutting = self.cut();
         let model = self.model_at(variant, &weak_values(variant, &choices)?);
-        let system = SensitiveSystem::new(&model, self.request.law).map_err(|e| RefineError::Law(e.to_string()))?;
+        let system = SensitiveSystem::new(&model, self.law).map_err(|e| RefineError::Law(e.to_string()))?;
         let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;
         let compared = compared(&system, &standard_deviations(&self.training));
         let plan = Plan { compared, stride, step_s: cutting.step_s };
-        let segments = cut(&self.training, self.request.law, &system, cutting, &plan)?;
+        let segments = cut(&self.training, self.law, &system, cutting, &plan)?;
         if segments.is_empty() {
             return Ok(());
         }
-        let ship = ready(&model, self.request.law, &self.training).map_err(RefineError::Law)?;
+        let ship = ready(&model, self.law, &self.training).map_err(RefineError::Law)?;
         let thresholds = vec![f64::INFINITY; plan.compared.len()];
         let trials = self.training.len();
         let passing = Passing { segments: &segments, plan: &plan, envelope: *ship.envelope(), thresholds, trials };
@@ -122,7 +122,8 @@ impl Trajectory<'_> {
                 priors.iter().enumerate().map(|(fold, prior)| self.left_out(fold, prior, strength(pull), &middle)).collect();
             let simulated = self.task.simulate_all(&self.task.training, &|t| models[self.task.fold_of(t)].clone())?;
             let taken = Taken::Trajectory { fit: self.one_step(&prior, strength(pull), &middle) };
-            options.push(self.task.trying(label, Some(pull), taken, self.names.len(), simulated));
+            let trying = self.task.trying(label, Some(pull), taken, self.names.len(), simulated);
+            options.push(Trying { left_out: models, ..trying });
         }
         self.fit_best(&prior, middle, options)
     }
@@ -165,7 +166,7 @@ impl Trajectory<'_> {
 
     fn pass(&self, at: &DVector<f64>) -> Result<Pass, RefineError> {
         let model = self.task.model_at(self.variant, &self.values(at));
-        let system = SensitiveSystem::new(&model, self.task.request.law).map_err(|e| RefineError::Law(e.to_string()))?;
+        let system = SensitiveSystem::new(&model, self.task.law).map_err(|e| RefineError::Law(e.to_string()))?;
         Ok(self.passing.pass(&system))
     }
 

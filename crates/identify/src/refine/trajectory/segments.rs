@@ -6,6 +6,7 @@ use sistership_dynamics::error::wrapped;
 use sistership_dynamics::interpolate::MonotoneCubic;
 use sistership_dynamics::sensitivity::SensitiveSystem;
 use sistership_dynamics::state::{RECORDED, StateVector, at};
+use sistership_model::effect::input_channel;
 use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 
@@ -82,7 +83,7 @@ enum Input<'a> {
 impl<'a> Record<'a> {
     fn new(trial: &'a Trial, law: &Law, system: &SensitiveSystem, plan: &'a Plan) -> Result<Self, RefineError> {
         let input = |name: &String| {
-            let channel = Channel::by_name(name);
+            let channel = input_channel(name);
             if let Some((channel, column)) = channel.and_then(|channel| Some((channel, trial.channel(channel)?))) {
                 let cubic = MonotoneCubic::new(&trial.t_s, column);
                 return Ok(Input::Recorded { column, cubic, angle: channel == Channel::WindFrom });

@@ -1,0 +1,167 @@
+//! Effects whose forces are affine in their parameters, as terms of the law: what fits coefficients then fits them too.
+
+use std::collections::BTreeMap;
+
+use indexmap::IndexMap;
+
+use super::dress::qualified;
+use super::probe::{Probe, SEEDS};
+use super::{AppliedEffect, Dressing};
+use crate::Model;
+use crate::coefficient::Axis;
+use crate::formula::Expr;
+use crate::law::Law;
+use crate::quantity::Quantity;
+
+/// A model and its law with parameters of effects among the coefficients. The law is in the dress of the other effects.
+#[derive(Debug, Clone)]
+pub struct AsTerms {
+    /// The law.
+    pub law: Law,
+    /// The model, without effects of its own.
+    pub model: Model,
+    /// The model as it was.
+    of: Model,
+    /// Coefficients with the effect's place and the parameter that they stand for.
+    terms: Vec<(String, usize, String)>,
+}
+
+impl AsTerms {
+    /// A model whose effects do nothing but add forces, affine in parameters that each act on one axis; none where an effect
+    /// does otherwise, or where there is none. Each parameter is at the mean of its prior, which is its source.
+    ///
+    /// # Errors
+    /// As [`Law::with_effects`].
+    pub fn new(model: &Model, law: &Law) -> Result<Option<Self>, (String, String)> {
+        let dressed = law.with_effects(model)?;
+        let Dressing { accelerations, lags, measures, .. } = &dressed.dressing;
+        if !(accelerations.is_empty() && lags.is_empty() && measures.is_empty()) {
+            return Ok(None);
+        }
+        let bare = Model { effects: Vec::new(), ..model.clone() };
+        let mut as_terms = Self { law: dressed.clone(), model: bare, of: model.clone(), terms: Vec::new() };
+        for (place, effect) in model.effects.iter().enumerate() {
+            let Some(by_axis) = (Affine { law: &dressed, effect }).by_axis() else { return Ok(None) };
+            by_axis.iter().for_each(|(axis, parameters)| as_terms.add(place, effect, *axis, parameters));
+        }
+        Ok((!as_terms.terms.is_empty()).then_some(as_terms))
+    }
+
+    fn add(&mut self, place: usize, effect: &AppliedEffect, axis: Axis, parameters: &[String]) {
+        let (still, terms) = Affine { law: &self.law, effect }.taken_apart(axis, parameters);
+        let Some(of_axis) = self.law.axes.get_mut(&axis) else { return };
+        of_axis.rest = still;
+        for (parameter, term) in parameters.iter().zip(terms) {
+            let factor = qualified(&effect.name, &effect.form.name, parameter);
+            let name = format!("{axis}_{factor}");
+            of_axis.terms.insert(name.clone(), term.clone());
+            self.law.dressing.parameters.remove(&factor);
+            self.law.factors.insert(factor, term);
+            let mean = effect.form.parameters.get(parameter).map_or(0.0, |own| own.prior.mean);
+            self.model.coefficients.insert(name.clone(), Quantity::new(mean, format!("prior of {}", effect.name)));
+            self.terms.push((name, place, parameter.clone()));
+        }
+    }
+
+    /// The model as it was, with what was fitted.
+    pub fn fitted(&self, coefficients: &BTreeMap<String, Quantity>) -> Model {
+        let mut model = self.of.clone();
+        for (name, fitted) in coefficients {
+            let of_effect = self.terms.iter().find(|(term, ..)| term == name);
+            let old = match of_effect {
+                Some((_, place, parameter)) => model.effects[*place].parameters.get_mut(parameter),
+                None => model.coefficients.get_mut(name),
+            };
+            old.into_iter().for_each(|old| (old.value, old.standard_error) = (fitted.value, fitted.standard_error));
+        }
+        model
+    }
+}
+
+/// An effect in a dressed law.
+struct Affine<'a> {
+    law: &'a Law,
+    effect: &'a AppliedEffect,
+}
+
+impl Affine<'_> {
+    /// The parameters that act on each axis; none where one acts on several, elsewhere, or not in proportion.
+    fn by_axis(&self) -> Option<Vec<(Axis, Vec<String>)>> {
+        let acts = |parameter: &String| {
+            let mut axes = self.law.axes.iter().filter(|(_, axis)| self.depends(&axis.rest, parameter)).map(|(axis, _)| *axis);
+            axes.next().filter(|_| axes.next().is_none() && !self.acts_elsewhere(parameter))
+        };
+        let mut by_axis: Vec<(Axis, Vec<String>)> = Vec::new();
+        for parameter in self.effect.parameters.keys() {
+            let axis = acts(parameter)?;
+            match by_axis.iter_mut().find(|(other, _)| *other == axis) {
+                Some((_, parameters)) => parameters.push(parameter.clone()),
+                None => by_axis.push((axis, vec![parameter.clone()])),
+            }
+        }
+        by_axis.iter().all(|(axis, parameters)| self.is_affine(*axis, parameters)).then_some(by_axis)
+    }
+
+    fn name(&self, parameter: &str) -> String {
+        qualified(&self.effect.name, &self.effect.form.name, parameter)
+    }
+
+    /// Whether a formula mentions a parameter, itself or through values.
+    fn depends(&self, expr: &Expr, parameter: &str) -> bool {
+        let wanted = self.name(parameter);
+        let by_value = |name: &str| self.law.values.get(name).is_some_and(|value| self.depends(value, parameter));
+        expr.names().into_iter().any(|name| name == wanted || by_value(name))
+    }
+
+    /// Whether anything but what is added to the axes mentions a parameter.
+    fn acts_elsewhere(&self, parameter: &str) -> bool {
+        let law = self.law;
+        let of_axes = law.axes.values().flat_map(|axis| axis.terms.values().chain([&axis.scale]));
+        let of_coefficients = law.dressing.coefficients.iter().map(|(_, expr)| expr);
+        let all = of_axes.chain(of_coefficients).chain(law.factors.values()).chain(law.mass.values());
+        all.chain(law.kinematics.values()).any(|expr| self.depends(expr, parameter))
+    }
+
+    /// What is added to an axis without the effect, and the term of each parameter.
+    fn taken_apart(&self, axis: Axis, parameters: &[String]) -> (Expr, Vec<Expr>) {
+        let still = self.rest(axis, &|_| 0.0);
+        let term = |own: &String| {
+            let unit = self.rest(axis, &|name| f64::from(u8::from(name == own)));
+            let force = Expr::Subtract(Box::new(unit), Box::new(still.clone()));
+            Expr::Divide(Box::new(force), Box::new(self.law.axes[&axis].scale.clone()))
+        };
+        let terms = parameters.iter().map(term).collect();
+        (still, terms)
+    }
+
+    /// What is added to an axis with numbers for the effect's parameters.
+    fn rest(&self, axis: Axis, number: &dyn Fn(&str) -> f64) -> Expr {
+        self.with(&self.law.axes[&axis].rest, number)
+    }
+
+    fn with(&self, expr: &Expr, number: &dyn Fn(&str) -> f64) -> Expr {
+        let parameters: Vec<&String> = self.effect.parameters.keys().collect();
+        expr.renamed(&|name| {
+            if let Some(own) = parameters.iter().find(|own| self.name(own) == name) {
+                return Some(Expr::Number(number(own)));
+            }
+            let value = self.law.values.get(name)?;
+            parameters.iter().any(|own| self.depends(value, own)).then(|| self.with(value, number))
+        })
+    }
+
+    /// Whether what is added to an axis is its value without the effect and a multiple of each parameter, at a few points.
+    fn is_affine(&self, axis: Axis, parameters: &[String]) -> bool {
+        let none = IndexMap::new();
+        SEEDS.iter().all(|&seed| {
+            let probe = Probe { parameters: &none, values: &self.law.values, seed, mirrored: false, absent: false };
+            let of = |number: &dyn Fn(&str) -> f64| probe.of(&self.rest(axis, number));
+            let size = |own: &str| probe.of(&Expr::Name(self.name(own))).unwrap_or(1.0);
+            let Some((together, still)) = of(&size).zip(of(&|_| 0.0)) else { return false };
+            let one = |own: &String| Some(size(own) * (of(&|name| f64::from(u8::from(name == own)))? - still));
+            let Some(each) = parameters.iter().map(one).collect::<Option<Vec<f64>>>() else { return false };
+            let scale = together.abs() + still.abs() + each.iter().map(|one| one.abs()).sum::<f64>();
+            (together - still - each.iter().sum::<f64>()).abs() <= 1e-9 * scale
+        })
+    }
+}
