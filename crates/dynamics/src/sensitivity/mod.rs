@@ -12,6 +12,7 @@ mod system;
 
 pub use run::SensitiveRun;
 pub use system::SensitiveSystem;
+pub(crate) use system::mobility;
 
 #[cfg(test)]
 mod tests;

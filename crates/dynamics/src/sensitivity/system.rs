@@ -94,7 +94,7 @@ impl SensitiveSystem {
 }
 
 /// Accelerations that unit forces cause; not a number where the matrix cannot be solved.
-fn mobility(n: usize, mass: impl Fn(usize, usize) -> f64) -> Matrix4<f64> {
+pub(crate) fn mobility(n: usize, mass: impl Fn(usize, usize) -> f64) -> Matrix4<f64> {
     let padded = Matrix4::from_fn(|i, j| if i < n && j < n { mass(i, j) } else { f64::from(u8::from(i == j)) });
     padded.lu().solve(&Matrix4::identity()).unwrap_or_else(|| Matrix4::repeat(f64::NAN))
 }

@@ -21,6 +21,12 @@ impl Tape {
         work[self.outputs[output] as usize]
     }
 
+    /// As [`Tape::read`], without a copy.
+    #[inline(always)]
+    pub(crate) fn at<'w, const N: usize>(&self, output: usize, work: &'w [Lanes<N>]) -> &'w Lanes<N> {
+        &work[self.outputs[output] as usize]
+    }
+
     /// Every output at one point, for callers in no hurry.
     pub fn values(&self, inputs: &[f64]) -> Vec<f64> {
         let inputs: Vec<Lanes<1>> = inputs.iter().map(|&value| [value]).collect();

@@ -64,22 +64,7 @@ impl<'a> TapeBuilder<'a> {
 
     /// The finished tape, without operations that no output needs.
     pub fn finish(self) -> Tape {
-        let Self { inputs, ops, outputs, .. } = self;
-        let mut needed = vec![false; ops.len()];
-        outputs.iter().for_each(|&slot| needed[slot as usize] = true);
-        for (index, op) in ops.iter().enumerate().rev() {
-            if needed[index] {
-                op.operands().into_iter().flatten().for_each(|slot| needed[slot as usize] = true);
-            }
-        }
-        let mut place = vec![0; ops.len()];
-        let mut kept = Vec::new();
-        for (index, op) in ops.iter().enumerate().filter(|(index, _)| needed[*index]) {
-            place[index] = kept.len() as Slot;
-            kept.push(op.moved(&|slot| place[slot as usize]));
-        }
-        let outputs = outputs.iter().map(|&slot| place[slot as usize]).collect();
-        Tape { inputs, ops: kept, outputs }
+        super::hoist::needed(self.inputs, &self.ops, &self.outputs)
     }
 
     fn lower(&mut self, expr: &Expr) -> Result<Slot, String> {

@@ -5,6 +5,7 @@
 
 mod derive;
 mod eval;
+mod hoist;
 mod lower;
 mod op;
 

@@ -1,0 +1,343 @@
+//! Many sets of coefficients for one law, simulated without sensitivities: the tape holds regressors, coefficients are data.
+//!
+//! A search by populations evaluates thousands of sets. Lowering each to a tape of its own takes longer than to simulate it, so
+//! that here the tape ends at the terms of the law, and forces are sums of them. Terms of a submodel share one condition, and
+//! what depends on recorded inputs alone is calculated once for all sets ([`CandidateSystem::prepared`]). Only what forces
+//! depend on is simulated: velocities, heading and roll, not the track.
+
+use sistership_model::Model;
+use sistership_model::coefficient::{Axis, split_submodel};
+use sistership_model::formula::Expr;
+use sistership_model::law::{Law, STATES, indicator};
+
+use crate::integrate::Method;
+use crate::plant::{MAX_INPUTS, PlantError, binding, dressed};
+use crate::sensitivity::mobility;
+use crate::state::{StateVector, at};
+use crate::tape::{Lanes, Tape, TapeBuilder};
+use crate::wide::{Wide, widest};
+
+const PLANE: [usize; 4] = [at::U, at::V, at::R, at::PSI];
+const ROLL: [usize; 6] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI];
+/// Where the tape takes each state.
+const TAPE_ORDER: [usize; 6] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI];
+
+/// A law for a model's particulars and parameters, ready for any coefficients of the names that the model has.
+#[derive(Debug, Clone)]
+pub struct CandidateSystem {
+    front: Tape,
+    tape: Tape,
+    states: &'static [usize],
+    axes: Vec<Sum>,
+    /// Mass matrix entries over the axes, row by row.
+    mass: Vec<Option<usize>>,
+    /// What a force on each axis accelerates, where masses do not change.
+    constant: Option<Vec<f64>>,
+    /// What effects add to each acceleration.
+    additions: Vec<Option<usize>>,
+    /// Rates of heading and roll where the law says them, by place among the states.
+    kinematics: Vec<(usize, usize)>,
+    names: Vec<String>,
+    input_names: Vec<String>,
+}
+
+/// The right-hand side of an axis.
+#[derive(Debug, Clone)]
+struct Sum {
+    scale: usize,
+    rest: usize,
+    /// Terms under one condition: its output, then each coefficient with its output.
+    groups: Vec<(Option<usize>, Vec<(usize, usize)>)>,
+}
+
+impl CandidateSystem {
+    /// For the coefficients that a model has; their values do not matter.
+    ///
+    /// # Errors
+    /// Names what the model does not give; refuses effects on instruments and lags.
+    pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
+        let law = &*dressed(model, law)?;
+        if law.inputs.len() > MAX_INPUTS || !law.dressing.lags.is_empty() || !law.dressing.measures.is_empty() {
+            return Err(PlantError::Law(format!("`{}` carries a lag or an effect on instruments: no candidates", model.name)));
+        }
+        let bind = |name: &str| binding(model, law, name);
+        let names: Vec<&str> = STATES.iter().map(|&(name, _)| name).chain(law.inputs.keys().map(String::as_str)).collect();
+        let builder = TapeBuilder::new(&names, &bind);
+        let axes = if law.has_roll() { vec![Axis::X, Axis::Y, Axis::N, Axis::K] } else { vec![Axis::X, Axis::Y, Axis::N] };
+        Builder { model, law, builder, axes, names: Vec::new() }.build()
+    }
+
+    /// The coefficients, in the order in which their values are given.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Places in the state vector of what is simulated.
+    pub fn states(&self) -> &'static [usize] {
+        self.states
+    }
+
+    /// The inputs that the law takes, in their order.
+    pub fn input_names(&self) -> &[String] {
+        &self.input_names
+    }
+
+    /// What a step takes for the inputs of the law at an instant: these, and what follows from them alone.
+    pub fn prepared(&self, inputs: &[f64]) -> Vec<f64> {
+        // The front depends on no state: any will do.
+        let point: Vec<f64> = std::iter::repeat_n(0.0, STATES.len()).chain(inputs.iter().copied()).collect();
+        inputs.iter().copied().chain(self.front.values(&point)).collect()
+    }
+}
+
+struct Builder<'a, 'b> {
+    model: &'a Model,
+    law: &'a Law,
+    builder: TapeBuilder<'b>,
+    axes: Vec<Axis>,
+    names: Vec<String>,
+}
+
+impl Builder<'_, '_> {
+    fn build(mut self) -> Result<CandidateSystem, PlantError> {
+        let order = self.axes.clone();
+        let axes = order.iter().map(|&axis| self.sum(axis)).collect::<Result<_, _>>()?;
+        let mass = self.mass()?;
+        let additions = order.iter().map(|&axis| self.addition(axis)).collect::<Result<_, _>>()?;
+        let states: &'static [usize] = if self.law.has_roll() { &ROLL } else { &PLANE };
+        let kinematics = self.kinematics(states)?;
+        let (front, tape) = self.builder.finish().hoisted(STATES.len());
+        let n = order.len();
+        let entries: Option<Vec<f64>> = mass.iter().map(|o| o.map_or(Some(0.0), |o| tape.constant_output(o))).collect();
+        let constant = entries.map(|entries| {
+            let solved = mobility(n, |i, j| entries[i * n + j]);
+            (0..n * n).map(|k| solved[(k / n, k % n)]).collect::<Vec<f64>>()
+        });
+        if constant.as_ref().is_some_and(|constant| constant.iter().any(|value| !value.is_finite())) {
+            return Err(PlantError::Mass(self.model.name.clone()));
+        }
+        let input_names = self.law.inputs.keys().cloned().collect();
+        let names = self.names;
+        Ok(CandidateSystem { front, tape, states, axes, mass, constant, additions, kinematics, names, input_names })
+    }
+
+    fn output(&mut self, expr: &Expr) -> Result<usize, PlantError> {
+        let (law, model) = (&self.law.name, &self.model.name);
+        self.builder.output(expr).map_err(|name| PlantError::Missing { law: law.clone(), name, model: model.clone() })
+    }
+
+    fn sum(&mut self, axis: Axis) -> Result<Sum, PlantError> {
+        let law = self.law;
+        let of_law = &law.axes[&axis];
+        let (scale, rest) = (self.output(&of_law.scale)?, self.output(&of_law.rest)?);
+        let mut groups: Vec<(Option<&str>, Vec<(usize, usize)>)> = Vec::new();
+        let prefix = format!("{axis}_");
+        let model = self.model;
+        for name in model.coefficients.keys().filter(|name| name.starts_with(&prefix)) {
+            let (shared, submodel) = split_submodel(name);
+            // The deviation must exist; its condition is multiplied once for all terms under it.
+            law.term(name).map_err(PlantError::Law)?;
+            let (_, term) = law.term(shared).map_err(PlantError::Law)?;
+            let entry = (self.names.len(), self.output(&term)?);
+            self.names.push(name.clone());
+            match groups.iter_mut().find(|(of, _)| *of == submodel) {
+                Some((_, terms)) => terms.push(entry),
+                None => groups.push((submodel, vec![entry])),
+            }
+        }
+        let gate = |submodel: Option<&str>| submodel.map(|s| self.output(&Expr::Name(indicator(s)))).transpose();
+        let (gates, terms): (Vec<_>, Vec<_>) = groups.into_iter().unzip();
+        let gates: Vec<Option<usize>> = gates.into_iter().map(gate).collect::<Result<_, _>>()?;
+        Ok(Sum { scale, rest, groups: gates.into_iter().zip(terms).collect() })
+    }
+
+    fn mass(&mut self) -> Result<Vec<Option<usize>>, PlantError> {
+        let axes = self.axes.clone();
+        let pairs: Vec<(Axis, Axis)> = axes.iter().flat_map(|&row| axes.iter().map(move |&column| (row, column))).collect();
+        let law = self.law;
+        pairs.into_iter().map(|pair| law.mass.get(&pair).map(|expr| self.output(expr)).transpose()).collect()
+    }
+
+    fn addition(&mut self, axis: Axis) -> Result<Option<usize>, PlantError> {
+        let added = self.law.dressing.accelerations.iter().filter(|(of, _)| *of == axis).map(|(_, expr)| expr.clone());
+        let sum = added.reduce(|a, b| Expr::Add(Box::new(a), Box::new(b)));
+        sum.map(|sum| self.output(&sum)).transpose()
+    }
+
+    fn kinematics(&mut self, states: &[usize]) -> Result<Vec<(usize, usize)>, PlantError> {
+        let mut all = Vec::new();
+        for (name, plain, place) in [("psi", "r", at::PSI), ("phi", "p", at::PHI)] {
+            let Some(row) = states.iter().position(|&state| state == place) else { continue };
+            let expr = self.law.kinematics.get(name).cloned().unwrap_or_else(|| Expr::Name(plain.to_owned()));
+            all.push((row, self.output(&expr)?));
+        }
+        Ok(all)
+    }
+}
+
+/// Runs of one set of coefficients in lockstep: by lane another start and other inputs.
+#[derive(Debug)]
+pub struct CandidateRun<'a, const L: usize> {
+    system: &'a CandidateSystem,
+    states: Vec<Lanes<L>>,
+    at: Vec<Lanes<L>>,
+    rates: [Vec<Lanes<L>>; 4],
+    inputs: Vec<Lanes<L>>,
+    work: Vec<Lanes<L>>,
+    forces: Vec<Lanes<L>>,
+}
+
+impl<'a, const L: usize> CandidateRun<'a, L> {
+    /// Of nothing yet; every lane must be started.
+    pub fn new(system: &'a CandidateSystem) -> Self {
+        let states = || vec![[0.0; L]; system.states.len()];
+        Self {
+            system,
+            states: states(),
+            at: states(),
+            rates: std::array::from_fn(|_| states()),
+            inputs: Vec::with_capacity(STATES.len() + system.tape.inputs().len()),
+            work: Vec::with_capacity(system.tape.len()),
+            forces: vec![[0.0; L]; system.axes.len()],
+        }
+    }
+
+    /// Starts a lane anew at a state.
+    pub fn start(&mut self, lane: usize, state: &StateVector) {
+        self.states.iter_mut().zip(self.system.states).for_each(|(lanes, &place)| lanes[lane] = state[place]);
+    }
+
+    /// A simulated state in every lane, counted as [`CandidateSystem::states`] does: u, v and r come first.
+    pub fn state(&self, row: usize) -> &Lanes<L> {
+        &self.states[row]
+    }
+
+    /// The rate of change of a state at the start of the last step.
+    pub fn rate(&self, row: usize) -> &Lanes<L> {
+        &self.rates[0][row]
+    }
+
+    /// One step of every lane; `inputs` are [prepared](CandidateSystem::prepared) ones at its start, middle and end, of which
+    /// Euler's method reads the first only.
+    pub fn step(&mut self, method: Method, step_s: f64, inputs: [&[Lanes<L>]; 3], coefficients: &[f64]) {
+        widest(Step { run: self, method, step_s, inputs, coefficients });
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, method: Method, h: f64, [start, middle, end]: [&[Lanes<L>]; 3], coefficients: &[f64]) {
+        self.stage(0, 0.0, start, coefficients);
+        if method == Method::Rk4 {
+            self.stage(1, 0.5 * h, middle, coefficients);
+            self.stage(2, 0.5 * h, middle, coefficients);
+            self.stage(3, h, end, coefficients);
+        }
+        let [a, b, c, d] = &self.rates;
+        for (row, state) in self.states.iter_mut().enumerate() {
+            for lane in 0..L {
+                state[lane] += match method {
+                    Method::Euler => h * a[row][lane],
+                    Method::Rk4 => h / 6.0 * (a[row][lane] + 2.0 * (b[row][lane] + c[row][lane]) + d[row][lane]),
+                };
+            }
+        }
+    }
+
+    /// The rates at the state reached along those of the stage before.
+    #[inline(always)]
+    fn stage(&mut self, i: usize, reach: f64, inputs: &[Lanes<L>], coefficients: &[f64]) {
+        for (row, at) in self.at.iter_mut().enumerate() {
+            *at = self.states[row];
+            if i > 0 {
+                let rate = &self.rates[i - 1][row];
+                (0..L).for_each(|lane| at[lane] += reach * rate[lane]);
+            }
+        }
+        self.inputs.clear();
+        for place in TAPE_ORDER {
+            let row = self.system.states.iter().position(|&state| state == place);
+            self.inputs.push(row.map_or([0.0; L], |row| self.at[row]));
+        }
+        self.inputs.extend_from_slice(inputs);
+        self.system.tape.run(&self.inputs, &mut self.work);
+        self.system.forces(&self.work, coefficients, &mut self.forces);
+        self.system.rates(&self.work, &self.forces, &mut self.rates[i]);
+    }
+}
+
+struct Step<'r, 'a, 'i, const L: usize> {
+    run: &'r mut CandidateRun<'a, L>,
+    method: Method,
+    step_s: f64,
+    inputs: [&'i [Lanes<L>]; 3],
+    coefficients: &'i [f64],
+}
+
+impl<const L: usize> Wide for Step<'_, '_, '_, L> {
+    #[inline(always)]
+    fn go(self) {
+        self.run.advance(self.method, self.step_s, self.inputs, self.coefficients);
+    }
+}
+
+impl CandidateSystem {
+    #[inline(always)]
+    fn forces<const L: usize>(&self, work: &[Lanes<L>], coefficients: &[f64], out: &mut [Lanes<L>]) {
+        for (sum, out) in self.axes.iter().zip(out) {
+            let mut total = [0.0; L];
+            for (gate, terms) in &sum.groups {
+                let gate = gate.map_or([1.0; L], |gate| self.tape.read(gate, work));
+                if gate.iter().all(|gate| *gate == 0.0) {
+                    continue;
+                }
+                let mut own = [0.0; L];
+                for &(coefficient, term) in terms {
+                    let (c, term) = (coefficients[coefficient], self.tape.at(term, work));
+                    (0..L).for_each(|lane| own[lane] += c * term[lane]);
+                }
+                (0..L).for_each(|lane| total[lane] += gate[lane] * own[lane]);
+            }
+            let (scale, rest) = (self.tape.at(sum.scale, work), self.tape.at(sum.rest, work));
+            (0..L).for_each(|lane| out[lane] = scale[lane] * total[lane] + rest[lane]);
+        }
+    }
+
+    #[inline(always)]
+    fn rates<const L: usize>(&self, work: &[Lanes<L>], forces: &[Lanes<L>], out: &mut [Lanes<L>]) {
+        let n = self.axes.len();
+        match &self.constant {
+            Some(mobility) => {
+                for (row, out) in out[..n].iter_mut().enumerate() {
+                    *out = [0.0; L];
+                    for (force, m) in forces.iter().zip(&mobility[row * n..]) {
+                        (0..L).for_each(|lane| out[lane] += m * force[lane]);
+                    }
+                }
+            }
+            None => self.solved(work, forces, out),
+        }
+        for (out, output) in out.iter_mut().zip(&self.additions) {
+            if let Some(output) = output {
+                let added = self.tape.at(*output, work);
+                (0..L).for_each(|lane| out[lane] += added[lane]);
+            }
+        }
+        for &(row, output) in &self.kinematics {
+            out[row] = self.tape.read(output, work);
+        }
+    }
+
+    /// Where masses change with the motion, each lane has its own.
+    fn solved<const L: usize>(&self, work: &[Lanes<L>], forces: &[Lanes<L>], out: &mut [Lanes<L>]) {
+        let n = self.axes.len();
+        for lane in 0..L {
+            let entry = |output: Option<usize>| output.map_or(0.0, |output| self.tape.at(output, work)[lane]);
+            let solved = mobility(n, |i, j| entry(self.mass[i * n + j]));
+            for (row, out) in out[..n].iter_mut().enumerate() {
+                out[lane] = forces.iter().enumerate().map(|(axis, force)| solved[(row, axis)] * force[lane]).sum();
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
