@@ -2,6 +2,7 @@
 
 pub mod bands;
 pub mod bulk;
+pub mod cma_es;
 pub mod diagnose;
 pub mod family;
 pub mod refine;

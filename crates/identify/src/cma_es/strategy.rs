@@ -1,0 +1,169 @@
+//! One run: a normal distribution that is asked for candidates and told what they are worth.
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha12Rng;
+use rand_distr::StandardNormal;
+
+use super::weights::Weights;
+
+/// The distribution of candidates with the paths by which it adapts.
+#[derive(Debug, Clone)]
+pub struct Strategy {
+    weights: Weights,
+    mean: DVector<f64>,
+    sigma: f64,
+    covariance: DMatrix<f64>,
+    /// Eigenvectors of the covariance by the roots of its eigenvalues.
+    axes: DMatrix<f64>,
+    vectors: DMatrix<f64>,
+    roots: DVector<f64>,
+    step_path: DVector<f64>,
+    path: DVector<f64>,
+    generation: usize,
+    decomposed: usize,
+    /// The candidates that were asked for: standard normal, and so shaped.
+    normal: DMatrix<f64>,
+    shaped: DMatrix<f64>,
+    rng: ChaCha12Rng,
+}
+
+impl Strategy {
+    /// About a point, with one standard deviation for every coordinate. A population below 4 is taken as 4.
+    pub fn new(start: &[f64], sigma: f64, population: usize, seed: u64) -> Self {
+        let (n, population) = (start.len(), population.max(4));
+        let identity = || DMatrix::identity(n, n);
+        Self {
+            weights: Weights::new(n, population),
+            mean: DVector::from_column_slice(start),
+            sigma,
+            covariance: identity(),
+            axes: identity(),
+            vectors: identity(),
+            roots: DVector::repeat(n, 1.0),
+            step_path: DVector::zeros(n),
+            path: DVector::zeros(n),
+            generation: 0,
+            decomposed: 0,
+            normal: DMatrix::zeros(n, population),
+            shaped: DMatrix::zeros(n, population),
+            rng: ChaCha12Rng::seed_from_u64(seed),
+        }
+    }
+
+    /// The same shape about the same mean with another step and other random numbers, its paths forgotten.
+    #[must_use]
+    pub fn renewed(&self, sigma: f64, seed: u64) -> Self {
+        let mut renewed = self.clone();
+        renewed.step_path.fill(0.0);
+        renewed.path.fill(0.0);
+        renewed.generation = 0;
+        renewed.decomposed = 0;
+        renewed.sigma = sigma;
+        renewed.rng = ChaCha12Rng::seed_from_u64(seed);
+        renewed
+    }
+
+    /// Candidates, one a column.
+    pub fn ask(&mut self) -> DMatrix<f64> {
+        let rng = &mut self.rng;
+        self.normal.iter_mut().for_each(|value| *value = rng.sample(StandardNormal));
+        self.shaped = &self.axes * &self.normal;
+        let mut candidates = &self.shaped * self.sigma;
+        candidates.column_iter_mut().for_each(|mut candidate| candidate += &self.mean);
+        candidates
+    }
+
+    /// What the candidates last asked for cost; only their order counts.
+    pub fn tell(&mut self, costs: &[f64]) {
+        let mut order: Vec<usize> = (0..costs.len()).collect();
+        order.sort_by(|a, b| costs[*a].total_cmp(&costs[*b]));
+        self.generation += 1;
+        let parents = self.weights.parents;
+        let weighted = |of: &DMatrix<f64>| {
+            let sum = |sum: DVector<f64>, (k, w): (&usize, &f64)| sum + of.column(*k) * *w;
+            order[..parents].iter().zip(&self.weights.all).fold(DVector::zeros(of.nrows()), sum)
+        };
+        let (moved, normal) = (weighted(&self.shaped), weighted(&self.normal));
+        self.mean += &moved * self.sigma;
+        let steady = self.follow(&moved, &normal);
+        self.adapt(&order, steady);
+        let Weights { step_rate, step_damping, expected_length, .. } = self.weights;
+        self.sigma *= (step_rate / step_damping * (self.step_path.norm() / expected_length - 1.0)).min(1.0).exp();
+        if self.generation - self.decomposed >= self.weights.patience(self.mean.len()) {
+            self.decompose();
+        }
+    }
+
+    /// Lengthens both paths by a step; says whether that of the covariance went on.
+    fn follow(&mut self, moved: &DVector<f64>, normal: &DVector<f64>) -> bool {
+        let Weights { step_rate, path_rate, mass, expected_length, .. } = self.weights;
+        self.step_path *= 1.0 - step_rate;
+        self.step_path += (&self.vectors * normal) * (step_rate * (2.0 - step_rate) * mass).sqrt();
+        let settled = (1.0 - (1.0 - step_rate).powi(2 * self.generation.min(1 << 20) as i32)).sqrt();
+        let longest = (1.4 + 2.0 / (self.mean.len() as f64 + 1.0)) * expected_length;
+        let steady = self.step_path.norm() / settled < longest;
+        self.path *= 1.0 - path_rate;
+        if steady {
+            self.path += moved * (path_rate * (2.0 - path_rate) * mass).sqrt();
+        }
+        steady
+    }
+
+    /// The covariance towards what was good and away from what was bad.
+    fn adapt(&mut self, order: &[usize], steady: bool) {
+        let Weights { rank_one_rate, rank_mu_rate, path_rate, .. } = self.weights;
+        let n = self.mean.len() as f64;
+        let missed = if steady { 0.0 } else { path_rate * (2.0 - path_rate) };
+        let kept = 1.0 + rank_one_rate * missed - rank_one_rate - rank_mu_rate * self.weights.all.iter().sum::<f64>();
+        let mut scaled = self.shaped.clone();
+        for (k, w) in order.iter().zip(&self.weights.all) {
+            let factor = if *w >= 0.0 { *w } else { w * n / self.normal.column(*k).norm_squared().max(f64::MIN_POSITIVE) };
+            scaled.column_mut(*k).scale_mut(factor);
+        }
+        self.covariance.gemm(rank_mu_rate, &scaled, &self.shaped.transpose(), kept);
+        self.covariance.ger(rank_one_rate, &self.path, &self.path, 1.0);
+    }
+
+    fn decompose(&mut self) {
+        self.decomposed = self.generation;
+        self.covariance = (&self.covariance + self.covariance.transpose()) * 0.5;
+        let SymmetricEigen { eigenvectors, eigenvalues } = self.covariance.clone().symmetric_eigen();
+        let least = 1e-14 * eigenvalues.max();
+        self.roots = eigenvalues.map(|value| value.max(least).sqrt());
+        self.axes = &eigenvectors * DMatrix::from_diagonal(&self.roots);
+        self.vectors = eigenvectors;
+    }
+
+    /// Candidates that are asked for at a time.
+    pub fn population(&self) -> usize {
+        self.normal.ncols()
+    }
+
+    /// The mean of the distribution.
+    pub fn mean(&self) -> &DVector<f64> {
+        &self.mean
+    }
+
+    /// The step size.
+    pub fn sigma(&self) -> f64 {
+        self.sigma
+    }
+
+    /// Variances of the coordinates.
+    pub fn variances(&self) -> DVector<f64> {
+        self.covariance.diagonal() * self.sigma.powi(2)
+    }
+
+    /// Variance effective selection mass.
+    pub(super) fn mass(&self) -> f64 {
+        self.weights.mass
+    }
+
+    /// Whether no axis can move the mean any more, or the covariance has become as good as singular (Auger and Hansen 2005).
+    pub(super) fn exhausted(&self) -> bool {
+        let (low, high) = (self.roots.min(), self.roots.max());
+        let still = self.mean.iter().zip(self.variances().iter()).all(|(m, v)| m + 0.2 * v.sqrt() == *m);
+        still || !self.sigma.is_finite() || high >= 1e7 * low
+    }
+}
