@@ -28,6 +28,16 @@ impl Envelope {
         Self { speed_m_s: 3.0 * reference, yaw_rate_rad_s: 6.0 * reference / lpp_m, roll_rad: 80_f64.to_radians() }
     }
 
+    /// Greatest speed, m/s.
+    pub fn speed_m_s(&self) -> f64 {
+        self.speed_m_s
+    }
+
+    /// Greatest yaw rate, rad/s.
+    pub fn yaw_rate_rad_s(&self) -> f64 {
+        self.yaw_rate_rad_s
+    }
+
     /// Checks a state.
     ///
     /// # Errors

@@ -51,10 +51,14 @@ impl Strategy {
         }
     }
 
-    /// The same shape about the same mean with another step and other random numbers, its paths forgotten.
+    /// The same shape about another mean with other random numbers, its paths forgotten; with at least a standard deviation in the
+    /// mean over the coordinates, so that what has converged moves again.
     #[must_use]
-    pub fn renewed(&self, sigma: f64, seed: u64) -> Self {
+    pub fn renewed(&self, mean: &[f64], deviation: f64, seed: u64) -> Self {
         let mut renewed = self.clone();
+        let variance = self.covariance.diagonal().mean().max(f64::MIN_POSITIVE);
+        let sigma = self.sigma.max(deviation / variance.sqrt());
+        renewed.mean = DVector::from_column_slice(mean);
         renewed.step_path.fill(0.0);
         renewed.path.fill(0.0);
         renewed.generation = 0;

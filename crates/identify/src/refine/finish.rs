@@ -11,10 +11,12 @@ use sistership_model::quantity::Quantity;
 use sistership_model::trial::Trial;
 
 use super::blocks::Blocks;
+use super::cma_es::SearchReport;
 use super::family::Family;
 use super::outcome::{CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement};
 use super::published::{Choices, Fit, Fold, fit};
 use super::selection::{Progress, Taken, Task, Trying, step};
+use super::settings::Settings;
 use super::variant::{Variant, merged};
 use crate::bands::bands;
 use crate::regression::Choice;
@@ -65,7 +67,7 @@ impl Task<'_> {
     pub(super) fn fitted(&self, taken: &Taken, variants: &[Variant]) -> Result<Option<Fit>, RefineError> {
         let (variant, choices) = match taken {
             Taken::Source => return Ok(None),
-            Taken::Trajectory { fit } => return Ok(Some((**fit).clone())),
+            Taken::Fitted { fit } => return Ok(Some((**fit).clone())),
             Taken::Ridge { variant, choices } => (&variants[*variant], choices),
         };
         let all = merged(&variant.moments, |_| true).ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
@@ -129,6 +131,11 @@ impl Task<'_> {
         let lambdas = options[best].option.lambda.clone();
         let (condition_number, collinear_groups) =
             fitted.as_ref().map_or((1.0, Vec::new()), |fit| (fit.condition_number, fit.collinear_groups.clone()));
+        let mut remarks = self.remarks(best, &lambdas);
+        if options[best].search.is_some() {
+            remarks.push(SEARCHED.to_owned());
+        }
+        let search = options[best].search.clone().or_else(|| options.iter().find_map(|trying| trying.search.clone()));
         Ok(Refinement {
             ship: self.transferred.ship.clone(),
             source: self.source.to_owned(),
@@ -136,14 +143,24 @@ impl Task<'_> {
             coefficients: self.changes(&model, fitted.as_ref()),
             model,
             transferred: self.transferred.clone(),
-            settings: self.settings.clone(),
+            settings: self.recorded(search.as_ref()),
+            search,
             condition_number,
             collinear_groups,
             held_out,
             options: options.into_iter().map(|trying| trying.option).collect(),
             manoeuvres,
-            remarks: self.remarks(best, &lambdas),
+            remarks,
         })
+    }
+
+    /// The settings that give the same again: a search that time has ended has its evaluations for a budget.
+    fn recorded(&self, search: Option<&SearchReport>) -> Settings {
+        let mut settings = self.settings.clone();
+        if let (Some(given), Some(search)) = (&mut settings.cma_es, search) {
+            (given.evaluations, given.wall_s, given.cpu_s) = (search.evaluations, None, None);
+        }
+        settings
     }
 
     fn held_out(&self, options: &[Trying], best: usize, model: &Model) -> Result<HeldOut, RefineError> {
@@ -208,6 +225,10 @@ impl Task<'_> {
         remarks
     }
 }
+
+/// What a search leaves out.
+const SEARCHED: &str = "a search gives no standard errors and no confidence bands; its fits with trials left out start at the \
+     optimum for all of them, so that errors on trials left out are somewhat too small unless the budget is large";
 
 /// Choices that keep the source.
 fn held(blocks: &Blocks) -> Choices {

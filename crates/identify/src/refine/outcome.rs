@@ -8,6 +8,7 @@ use sistership_dynamics::metrics::ManoeuvreMetrics;
 use sistership_model::Model;
 use sistership_model::trial::Channel;
 
+use super::cma_es::SearchReport;
 use super::settings::Settings;
 use crate::bands::Bands;
 
@@ -128,6 +129,9 @@ pub struct Refinement {
     pub held_out: HeldOut,
     /// Every coefficient.
     pub coefficients: Vec<CoefficientChange>,
+    /// What a search did, where one was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub search: Option<SearchReport>,
     /// Every step of the widening ranges.
     pub options: Vec<StepOption>,
     /// Standard manoeuvres of the source carried over and of the refined model.

@@ -12,6 +12,7 @@ use sistership_model::trial::Trial;
 use sistership_model::vessel::Status;
 use sistership_model::{Model, Vessel};
 
+use super::cma_es::SearchReport;
 use super::outcome::{RefineError, Refinement, StepOption};
 use super::parts::parts;
 use super::published::{Choices, Fit, Fitted, Fold, tune};
@@ -42,16 +43,40 @@ pub type Progress<'a> = &'a (dyn Fn(f64, &str) -> bool + Sync);
 /// # Errors
 /// Says which setting, trial or channel is at fault; never leaves a model half refined.
 pub fn refine(request: &Request<'_>, progress: Progress<'_>) -> Result<Refinement, RefineError> {
+    refine_watched(request, progress, &|_| ())
+}
+
+/// What the fit on all trials passes by on its way: for learning curves.
+pub struct Glimpse<'a> {
+    /// Simulations of all trials so far, by a search; 0 for the trajectory form, which does not count them.
+    pub evaluations: usize,
+    /// What the estimator makes least, so far; each estimator has its own.
+    pub objective: f64,
+    /// The model that it would give if it ended here.
+    pub model: &'a dyn Fn() -> Model,
+}
+
+/// Shown what a fit passes by.
+pub type Watch<'a> = &'a (dyn Fn(&Glimpse<'_>) + Sync);
+
+/// As [`refine`], and shows what `trajectory` and `cma-es` pass by.
+///
+/// # Errors
+/// As [`refine`].
+pub fn refine_watched(request: &Request<'_>, progress: Progress<'_>, watch: Watch<'_>) -> Result<Refinement, RefineError> {
     request.settings.check().map_err(|(field, message)| RefineError::Setting { field, message })?;
     let (judged, whole) = divided(request)?;
     let settings = resolved(request.settings, request.target.particular("lpp_m"), &whole);
     let parts = parts(&whole, request.law, &settings);
-    let task = Task::new(request, judged, whole, &parts, settings);
+    let task = Task::new(request, (judged, whole), &parts, settings, watch);
     step(progress, 0.05, "sufficient statistics of each trial")?;
     let variants = task.variants()?;
     let mut options = task.options(&variants, progress)?;
     if task.settings.method == Method::Trajectory {
         task.by_trajectory(&variants, &mut options, progress)?;
+    }
+    if task.settings.method == Method::CmaEs {
+        task.by_cma_es(&variants, &mut options, progress)?;
     }
     step(progress, 0.8, "fitting all trials")?;
     task.finish(options, &variants, progress)
@@ -76,6 +101,7 @@ pub(super) struct Task<'a> {
     pub(super) judged: Vec<&'a Trial>,
     pub(super) transferred: Model,
     pub(super) settings: Settings,
+    watch: Option<Watch<'a>>,
 }
 
 /// What an option takes.
@@ -84,8 +110,8 @@ pub(super) enum Taken {
     Source,
     /// A ridge of a variant at its choices.
     Ridge { variant: usize, choices: Choices },
-    /// What the trajectory form gives on all trials.
-    Trajectory { fit: Box<Fit> },
+    /// What the trajectory form or the search gives on all trials.
+    Fitted { fit: Box<Fit> },
 }
 
 /// An option with what it takes to compare and to take it.
@@ -99,6 +125,8 @@ pub(super) struct Trying {
     pub(super) size: usize,
     /// The model of each fold, which did not see it; none of the source.
     pub(super) left_out: Vec<Model>,
+    /// What a search did.
+    pub(super) search: Option<SearchReport>,
 }
 
 /// Trials as simulated by models that did not see them.
@@ -119,10 +147,10 @@ impl Simulated {
 impl<'a> Task<'a> {
     fn new(
         request: &'a Request<'a>,
-        judged: Vec<&'a Trial>,
-        whole: Vec<&'a Trial>,
+        (judged, whole): (Vec<&'a Trial>, Vec<&'a Trial>),
         parts: &'a [Trial],
         settings: Settings,
+        watch: Watch<'a>,
     ) -> Self {
         let transferred = if request.source.ship == request.target.name() {
             request.source.clone()
@@ -130,14 +158,20 @@ impl<'a> Task<'a> {
             transfer(request.source, request.law, request.target, approach_of(&whole))
         };
         let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
-        Self { law: request.law, source: &request.source.name, training, whole, judged, transferred, settings }
+        let (law, source, watch) = (request.law, request.source.name.as_str(), Some(watch));
+        Self { law, source, training, whole, judged, transferred, settings, watch }
     }
 
     /// Of a model with itself as the source, on whole trials.
     pub(super) fn of_model(model: &'a Model, law: &'a Law, trials: &[&'a Trial], settings: Settings) -> Self {
         let training = trials.to_vec();
         let (whole, judged) = (training.clone(), Vec::new());
-        Self { law, source: &model.name, training, whole, judged, transferred: model.clone(), settings }
+        Self { law, source: &model.name, training, whole, judged, transferred: model.clone(), settings, watch: None }
+    }
+
+    /// Shows what a fit passes by to whoever watches.
+    pub(super) fn glimpse(&self, glimpse: &Glimpse<'_>) {
+        self.watch.into_iter().for_each(|watch| watch(glimpse));
     }
 
     /// Which fold a training trial is left out in.
@@ -158,6 +192,8 @@ impl<'a> Task<'a> {
             let told = |done: f64, what: &str| step(progress, 0.1 + share * (index as f64 + done), what);
             match self.settings.method {
                 Method::Published => self.by_range(index, variant, &folds, &told, &mut options)?,
+                // The search alone is weighed against the source.
+                Method::CmaEs => {}
                 _ => self.by_strength(index, variant, &folds, &told, &mut options)?,
             }
         }
@@ -251,7 +287,7 @@ impl<'a> Task<'a> {
         };
         let (lambda, alpha) = (flat(&|c| c.lambda), flat(&|c| c.alpha));
         let option = StepOption { step, lambda_min, lambda, alpha, error, chosen: false, reason };
-        Trying { option, taken, errors, each, size, left_out: Vec::new() }
+        Trying { option, taken, errors, each, size, left_out: Vec::new(), search: None }
     }
 
     /// Simulates trials, each with the model that did not see it; the first divergence is the reason against the option.
@@ -297,7 +333,7 @@ impl Taken {
     fn choices(&self) -> Option<&Choices> {
         match self {
             Self::Ridge { choices, .. } => Some(choices),
-            Self::Source | Self::Trajectory { .. } => None,
+            Self::Source | Self::Fitted { .. } => None,
         }
     }
 }
@@ -326,6 +362,12 @@ pub(super) fn resolved(settings: &Settings, lpp_m: Option<f64>, training: &[&Tri
         settings.window_s = settings.window_s.or(length_s);
         settings.hop_s = settings.hop_s.or(settings.window_s.map(|s| 0.1 * s));
         settings.fill_selection();
+    }
+    if settings.method == Method::CmaEs {
+        // The paper's 0.1 s and 100 s, for a ship of 3 m at 0.4 m/s, or as long as this ship needs for as many lengths.
+        settings.cma_es.get_or_insert_default();
+        settings.step_s = settings.step_s.or(length_s.map(|s| s / 75.0));
+        settings.segment_s = settings.segment_s.or(length_s.map(|s| (10.0 * s).max(100.0)));
     }
     if settings.method == Method::Trajectory {
         settings.step_s = settings.step_s.or(length_s.map(|s| s / 30.0));

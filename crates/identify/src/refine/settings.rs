@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::cma_es::CmaEs;
 use super::constraints::Constraints;
 use super::family::Family;
 use crate::bands::Sampling;
@@ -17,11 +18,14 @@ pub enum Method {
     Weak,
     /// Simulated segments against the trials by forward sensitivities, started from the weak form and held by it.
     Trajectory,
+    /// Simulated subsequences against the trials by a random search with a covariance that adapts: Miyauchi 2024, Eqs. 19-33.
+    #[serde(rename = "cma-es")]
+    CmaEs,
 }
 
 impl Method {
     /// Every estimator.
-    pub const ALL: [Self; 3] = [Self::Published, Self::Weak, Self::Trajectory];
+    pub const ALL: [Self; 4] = [Self::Published, Self::Weak, Self::Trajectory, Self::CmaEs];
 
     /// The estimator of that name.
     pub fn by_name(name: &str) -> Option<Self> {
@@ -34,6 +38,7 @@ impl Method {
             Self::Published => "published",
             Self::Weak => "weak",
             Self::Trajectory => "trajectory",
+            Self::CmaEs => "cma-es",
         }
     }
 }
@@ -69,17 +74,21 @@ pub struct Settings {
     /// From one window of the weak form to the next, s. Where absent, a tenth of a window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hop_s: Option<f64>,
-    /// Length of the trajectory form's segments, s. Where absent, five times the time in which the ship sails her length.
+    /// Length of the trajectory form's segments, s. Where absent, five times the time in which the ship sails her length;
+    /// for the search ten times, and at least 100 s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub segment_s: Option<f64>,
     /// From one residual of the trajectory form to the next, s. Where absent, a 7.5th of the time in which
-    /// she sails her length.
+    /// she sails her length; for the search one sampling interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub residual_s: Option<f64>,
     /// Integration step of the trajectory form, s, rounded to sampling intervals. Where absent, a
-    /// thirtieth of the time in which she sails her length.
+    /// thirtieth of the time in which she sails her length; for the search a 75th, whole or in whole parts of an interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step_s: Option<f64>,
+    /// Of the search; absent for other methods.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cma_es: Option<CmaEs>,
     /// Families of terms among which the weak and the trajectory form choose. Where empty, all of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub families: Vec<Family>,
@@ -117,6 +126,7 @@ impl Default for Settings {
             segment_s: None,
             residual_s: None,
             step_s: None,
+            cma_es: None,
             families: Vec::new(),
             strengths: Vec::new(),
             restart_s: None,
@@ -132,7 +142,9 @@ impl Settings {
     /// Fills in what model selection chooses among, so that a version records it.
     pub(super) fn fill_selection(&mut self) {
         if self.families.is_empty() {
-            self.families = vec![Family::Own, Family::Symmetric, Family::ThirdOrder];
+            // A search is too dear to be repeated for families that nobody asked for.
+            let others = [Family::Symmetric, Family::ThirdOrder].into_iter().filter(|_| self.method != Method::CmaEs);
+            self.families = std::iter::once(Family::Own).chain(others).collect();
         }
         if self.strengths.is_empty() {
             self.strengths = (0..=18).map(|k| 10_f64.powf(1.0 - 0.5 * f64::from(k))).collect();
@@ -162,9 +174,10 @@ impl Settings {
         if !(2..=100).contains(&self.folds) {
             return refuse("folds", "must be from 2 to 100");
         }
-        if self.method == Method::Trajectory && !self.constraints.is_empty() {
+        if matches!(self.method, Method::Trajectory | Method::CmaEs) && !self.constraints.is_empty() {
             return refuse("constraints", "are kept by the methods `published` and `weak` only");
         }
+        self.cma_es.as_ref().map_or(Ok(()), CmaEs::check).map_err(|message| ("cma_es".to_owned(), message))?;
         self.constraints.check().map_err(|message| ("constraints".to_owned(), message))?;
         self.bands.check().map_err(|message| ("bands".to_owned(), message))?;
         if self.strengths.len() > 100 || self.strengths.iter().any(|s| !(*s > 0.0 && s.is_finite())) {

@@ -13,6 +13,9 @@ mod prior;
 mod segments;
 mod solve;
 
+pub(super) use prior::Prior;
+pub(super) use segments::{Plan, Segment, compared, cut};
+
 /// How a motion is cut and weighed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cut {

@@ -11,7 +11,7 @@ use sistership_model::quantity::Quantity;
 use super::super::outcome::RefineError;
 use super::super::posterior::Errors;
 use super::super::published::{Choices, Fit, Fitted, fit};
-use super::super::selection::{Progress, Taken, Task, Trying, step};
+use super::super::selection::{Glimpse, Progress, Taken, Task, Trying, step};
 use super::super::variant::{Variant, merged};
 use super::Cut;
 use super::errors::errors;
@@ -68,9 +68,9 @@ impl Task<'_> {
         let model = self.model_at(variant, &weak_values(variant, &choices)?);
         let system = SensitiveSystem::new(&model, self.law).map_err(|e| RefineError::Law(e.to_string()))?;
         let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;
-        let compared = compared(&system, &standard_deviations(&self.training));
+        let compared = compared(system.states(), &standard_deviations(&self.training));
         let plan = Plan { compared, stride, step_s: cutting.step_s };
-        let segments = cut(&self.training, self.law, &system, cutting, &plan)?;
+        let segments = cut(&self.training, self.law, system.input_names(), cutting, &plan)?;
         if segments.is_empty() {
             return Ok(());
         }
@@ -92,7 +92,7 @@ impl Task<'_> {
     }
 
     /// The variant's model with other coefficients.
-    fn model_at(&self, variant: &Variant, values: &BTreeMap<String, f64>) -> Model {
+    pub(in super::super) fn model_at(&self, variant: &Variant, values: &BTreeMap<String, f64>) -> Model {
         let mut model = variant.model.clone();
         let all = values.iter().map(|(name, value)| (name.clone(), Quantity::new(*value, "refined")));
         model.coefficients.extend(all);
@@ -121,7 +121,7 @@ impl Trajectory<'_> {
             let models: Vec<Model> =
                 priors.iter().enumerate().map(|(fold, prior)| self.left_out(fold, prior, strength(pull), &middle)).collect();
             let simulated = self.task.simulate_all(&self.task.training, &|t| models[self.task.fold_of(t)].clone())?;
-            let taken = Taken::Trajectory { fit: self.one_step(&prior, strength(pull), &middle) };
+            let taken = Taken::Fitted { fit: self.one_step(&prior, strength(pull), &middle) };
             let trying = self.task.trying(label, Some(pull), taken, self.names.len(), simulated);
             options.push(Trying { left_out: models, ..trying });
         }
@@ -131,7 +131,7 @@ impl Trajectory<'_> {
     /// Carries the best option to its end; the others stay one step from where the equations were linearised.
     fn fit_best(&self, prior: &Prior, middle: Reached, options: &mut [Trying]) -> Result<(), RefineError> {
         let Some(best) = super::super::finish::best(options) else { return Ok(()) };
-        let (Taken::Trajectory { fit }, Some(pull)) = (&mut options[best].taken, options[best].option.lambda_min) else {
+        let (Taken::Fitted { fit }, Some(pull)) = (&mut options[best].taken, options[best].option.lambda_min) else {
             return Ok(());
         };
         let reached = self.descend(prior, strength(pull), middle.at)?;
@@ -176,6 +176,8 @@ impl Trajectory<'_> {
         let mut damping = 1e-3;
         let mut held = Held::new(&total(&here.pass, |_| true), prior, strength, &here.at);
         for _ in 0..STEPS {
+            let model = || self.task.model_at(self.variant, &self.values(&here.at));
+            self.task.glimpse(&Glimpse { evaluations: 0, objective: held.cost, model: &model });
             let Some(step) = held.step(damping) else { break };
             let at = &here.at + step;
             let pass = self.pass(&at)?;

@@ -9,7 +9,7 @@ use crate::regression::Moments;
 
 /// Strengths of the two pulls.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Strength {
+pub(in super::super) struct Strength {
     /// Towards the weak form.
     pub mu: f64,
     /// Towards the source.
@@ -18,7 +18,7 @@ pub(super) struct Strength {
 
 /// The weak form's Hessian and solution, and the source.
 #[derive(Debug, Clone)]
-pub(super) struct Prior {
+pub(in super::super) struct Prior {
     /// By the mean square of each acceleration.
     pub hessian: DMatrix<f64>,
     pub weak: DVector<f64>,

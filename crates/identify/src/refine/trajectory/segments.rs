@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use sistership_dynamics::error::wrapped;
 use sistership_dynamics::interpolate::MonotoneCubic;
-use sistership_dynamics::sensitivity::SensitiveSystem;
 use sistership_dynamics::state::{RECORDED, StateVector, at};
 use sistership_model::effect::input_channel;
 use sistership_model::law::Law;
@@ -14,7 +13,8 @@ use super::super::outcome::RefineError;
 use super::Cut;
 
 /// One segment.
-pub(super) struct Segment {
+#[derive(Debug)]
+pub(in super::super) struct Segment {
     /// Place of its trial among all.
     pub trial: usize,
     /// The measured state at its start.
@@ -28,7 +28,8 @@ pub(super) struct Segment {
 }
 
 /// What is the same for every segment.
-pub(super) struct Plan {
+#[derive(Debug)]
+pub(in super::super) struct Plan {
     /// Compared states: row among the sensitivities, place in the state vector, standard deviation.
     pub compared: Vec<(usize, usize, f64)>,
     /// Steps from one residual to the next.
@@ -41,16 +42,16 @@ pub(super) struct Plan {
 ///
 /// # Errors
 /// Names the channel that a trial lacks.
-pub(super) fn cut(
+pub(in super::super) fn cut(
     trials: &[&Trial],
     law: &Law,
-    system: &SensitiveSystem,
+    input_names: &[String],
     cut: Cut,
     plan: &Plan,
 ) -> Result<Vec<Segment>, RefineError> {
     let mut segments = Vec::new();
     for (index, trial) in trials.iter().enumerate() {
-        let record = Record::new(trial, law, system, plan)?;
+        let record = Record::new(trial, law, input_names, plan)?;
         for part in trial.segments() {
             let (mut from, end) = (trial.t_s[part.start], trial.t_s[part.end - 1]);
             while end - from >= cut.segment_s / 3.0 {
@@ -81,7 +82,7 @@ enum Input<'a> {
 }
 
 impl<'a> Record<'a> {
-    fn new(trial: &'a Trial, law: &Law, system: &SensitiveSystem, plan: &'a Plan) -> Result<Self, RefineError> {
+    fn new(trial: &'a Trial, law: &Law, input_names: &[String], plan: &'a Plan) -> Result<Self, RefineError> {
         let input = |name: &String| {
             let channel = input_channel(name);
             if let Some((channel, column)) = channel.and_then(|channel| Some((channel, trial.channel(channel)?))) {
@@ -93,7 +94,7 @@ impl<'a> Record<'a> {
             let missing = || RefineError::Channel { trial: trial.name.clone(), channel: channel.unwrap_or(Channel::Delta) };
             constant.map(Input::Constant).ok_or_else(missing)
         };
-        let inputs = system.input_names().iter().map(input).collect::<Result<_, _>>()?;
+        let inputs = input_names.iter().map(input).collect::<Result<_, _>>()?;
         let states: Vec<(usize, &[f64])> = RECORDED.iter().filter_map(|&(c, place)| Some((place, trial.channel(c)?))).collect();
         Ok(Self { trial, plan, inputs, states })
     }
@@ -155,12 +156,12 @@ impl<'a> Record<'a> {
 }
 
 /// The states that are compared: all that some trial records, by their standard deviation over the trials.
-pub(super) fn compared(
-    system: &SensitiveSystem,
+pub(in super::super) fn compared(
+    states: &[usize],
     deviations: &std::collections::BTreeMap<Channel, f64>,
 ) -> Vec<(usize, usize, f64)> {
     let of = |&(channel, place): &(Channel, usize)| {
-        let row = system.states().iter().position(|&state| state == place)?;
+        let row = states.iter().position(|&state| state == place)?;
         let deviation = *deviations.get(&channel)?;
         (deviation > 0.0).then_some((row, place, deviation))
     };
