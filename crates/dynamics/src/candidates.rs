@@ -5,6 +5,8 @@
 //! what depends on recorded inputs alone is calculated once for all sets ([`CandidateSystem::prepared`]). Only what forces
 //! depend on is simulated: velocities, heading and roll, not the track.
 
+use std::collections::BTreeMap;
+
 use sistership_model::Model;
 use sistership_model::coefficient::{Axis, split_submodel};
 use sistership_model::formula::Expr;
@@ -46,8 +48,16 @@ pub struct CandidateSystem {
 struct Sum {
     scale: usize,
     rest: usize,
-    /// Terms under one condition: its output, then each coefficient with its output.
-    groups: Vec<(Option<usize>, Vec<(usize, usize)>)>,
+    groups: Vec<Group>,
+}
+
+/// Terms under one condition.
+#[derive(Debug, Clone)]
+struct Group {
+    /// The condition's output.
+    gate: Option<usize>,
+    /// Each coefficient with its term's output.
+    terms: Vec<(usize, usize)>,
 }
 
 impl CandidateSystem {
@@ -130,7 +140,7 @@ impl Builder<'_, '_> {
         let law = self.law;
         let of_law = &law.axes[&axis];
         let (scale, rest) = (self.output(&of_law.scale)?, self.output(&of_law.rest)?);
-        let mut groups: Vec<(Option<&str>, Vec<(usize, usize)>)> = Vec::new();
+        let mut groups: BTreeMap<Option<&str>, Vec<(usize, usize)>> = BTreeMap::new();
         let prefix = format!("{axis}_");
         let model = self.model;
         for name in model.coefficients.keys().filter(|name| name.starts_with(&prefix)) {
@@ -140,15 +150,14 @@ impl Builder<'_, '_> {
             let (_, term) = law.term(shared).map_err(PlantError::Law)?;
             let entry = (self.names.len(), self.output(&term)?);
             self.names.push(name.clone());
-            match groups.iter_mut().find(|(of, _)| *of == submodel) {
-                Some((_, terms)) => terms.push(entry),
-                None => groups.push((submodel, vec![entry])),
-            }
+            groups.entry(submodel).or_default().push(entry);
         }
-        let gate = |submodel: Option<&str>| submodel.map(|s| self.output(&Expr::Name(indicator(s)))).transpose();
-        let (gates, terms): (Vec<_>, Vec<_>) = groups.into_iter().unzip();
-        let gates: Vec<Option<usize>> = gates.into_iter().map(gate).collect::<Result<_, _>>()?;
-        Ok(Sum { scale, rest, groups: gates.into_iter().zip(terms).collect() })
+        let group = |(submodel, terms): (Option<&str>, Vec<(usize, usize)>)| {
+            let gate = submodel.map(|submodel| self.output(&Expr::Name(indicator(submodel)))).transpose()?;
+            Ok(Group { gate, terms })
+        };
+        let groups = groups.into_iter().map(group).collect::<Result<_, _>>()?;
+        Ok(Sum { scale, rest, groups })
     }
 
     fn mass(&mut self) -> Result<Vec<Option<usize>>, PlantError> {
@@ -284,7 +293,7 @@ impl CandidateSystem {
     fn forces<const L: usize>(&self, work: &[Lanes<L>], coefficients: &[f64], out: &mut [Lanes<L>]) {
         for (sum, out) in self.axes.iter().zip(out) {
             let mut total = [0.0; L];
-            for (gate, terms) in &sum.groups {
+            for Group { gate, terms } in &sum.groups {
                 let gate = gate.map_or([1.0; L], |gate| self.tape.read(gate, work));
                 if gate.iter().all(|gate| *gate == 0.0) {
                     continue;

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha12Rng;
 use rayon::prelude::*;
@@ -125,16 +125,18 @@ impl Search {
         let patience = 10 + (30 * self.widths.len()).div_ceil(strategy.population());
         while outcome.spent.share(&self.budget) < 1.0 {
             let candidates = strategy.ask();
-            let (points, costs) = evaluated(&bounds, &candidates, cost);
+            let (mut points, mut costs) = evaluated(&bounds, &candidates, strategy.mean(), cost);
             outcome.spent.evaluations += costs.len();
+            // Among hundreds of coordinates the mean is better than most of what is drawn about it: it is evaluated too.
+            let of_mean = costs.pop().zip(points.pop());
             let penalised: Vec<f64> =
                 candidates.column_iter().zip(&costs).map(|(x, cost)| cost + bounds.penalty(x.as_slice())).collect();
-            let least = costs.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1));
-            if let Some((k, cost)) = least {
-                if *cost < outcome.cost {
-                    (outcome.best, outcome.cost, found) = (points[k].clone(), *cost, true);
+            let generation = costs.iter().copied().zip(points).chain(of_mean);
+            if let Some((cost, point)) = generation.min_by(|a, b| a.0.total_cmp(&b.0)) {
+                recent.push_front(cost);
+                if cost < outcome.cost {
+                    (outcome.best, outcome.cost, found) = (point, cost, true);
                 }
-                recent.push_front(*cost);
             }
             recent.truncate(patience);
             strategy.tell(&penalised);
@@ -158,9 +160,15 @@ impl Search {
     }
 }
 
-/// Candidates brought inside, and what they cost there.
-fn evaluated(bounds: &Bounds, candidates: &DMatrix<f64>, cost: &(dyn Fn(&[f64]) -> f64 + Sync)) -> (Vec<Vec<f64>>, Vec<f64>) {
-    let points: Vec<Vec<f64>> = candidates.column_iter().map(|x| bounds.inside(x.as_slice())).collect();
+/// Candidates and the mean brought inside, and what they cost there.
+fn evaluated(
+    bounds: &Bounds,
+    candidates: &DMatrix<f64>,
+    mean: &DVector<f64>,
+    cost: &(dyn Fn(&[f64]) -> f64 + Sync),
+) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let inside = candidates.column_iter().map(|x| bounds.inside(x.as_slice()));
+    let points: Vec<Vec<f64>> = inside.chain([bounds.inside(mean.as_slice())]).collect();
     let costs = points.par_iter().map(|point| cost(point)).map(|cost| if cost.is_nan() { f64::INFINITY } else { cost });
     let costs = costs.collect();
     (points, costs)

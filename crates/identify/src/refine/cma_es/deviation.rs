@@ -56,11 +56,11 @@ impl Deviation {
             for step in 0..self.steps {
                 run.step(method, self.step_s, [inputs, inputs, inputs], coefficients);
                 for (row, limit) in self.limits.iter().enumerate() {
-                    let rates = run.rate(row);
-                    // What is not a number is beyond any limit.
-                    let beyond = |lane: &usize| !(rates[*lane].abs() <= *limit) && over[*lane] > step;
-                    let now: Vec<usize> = (0..LANES).filter(beyond).collect();
-                    now.into_iter().for_each(|lane| over[lane] = step);
+                    for (over, rate) in over.iter_mut().zip(run.rate(row)) {
+                        // What is not a number is beyond any limit.
+                        let within = rate.abs() <= *limit;
+                        *over = if within { *over } else { step.min(*over) };
+                    }
                 }
             }
             let soon = |over: &usize| if *over < self.steps { 1.0 - (*over as f64 - 1.0) / self.steps as f64 } else { 0.0 };
