@@ -157,7 +157,7 @@ mod tests {
         let refused = |line: &str| Arguments::try_parse_from(line.split(' ')).err().map(|e| e.to_string()).unwrap_or_default();
         assert!(
             refused("sistership refine --ship a --trials t --method lasso")
-                .contains("there are `published`, `weak`, `trajectory`")
+                .contains("there are `published`, `weak`, `trajectory`, `cma-es`")
         );
         assert!(refused("sistership manoeuvre --model a --turn 35 --zigzag 10/10").contains("cannot be used with"));
         assert!(refused("sistership diagnose --model a").contains("--trials"));

@@ -4,6 +4,7 @@
 //! refines the derived law of third order without a source by either method, and keeps what each passes by: seconds, evaluations, its own
 //! objective, and the error of simulations of manoeuvres that neither has seen (standardised mean squared error of u, v and r
 //! together, started anew every 100 s). The curves in the folder are complete whenever it is stopped.
+//! On a machine that others use, `--minutes 300 --cpu-minutes 120` gives the search an hour of two cores.
 //! `--method trajectory` or `cma-es` runs one of them; `--spread`, `--seed` and `--rk4` change the search.
 
 mod curve;
@@ -25,6 +26,7 @@ const SUBSEQUENCE_S: f64 = 100.0;
 
 struct Arguments {
     minutes: f64,
+    cpu_minutes: Option<f64>,
     out: String,
     method: Option<Method>,
     search: CmaEs,
@@ -48,7 +50,8 @@ fn main() {
 }
 
 fn arguments() -> Arguments {
-    let mut arguments = Arguments { minutes: 60.0, out: "hybrid-race".into(), method: None, search: CmaEs::default() };
+    let mut arguments =
+        Arguments { minutes: 60.0, cpu_minutes: None, out: "hybrid-race".into(), method: None, search: CmaEs::default() };
     let mut given = std::env::args().skip(1);
     while let Some(flag) = given.next() {
         if flag == "--rk4" {
@@ -59,12 +62,13 @@ fn arguments() -> Arguments {
         let number = || value.parse::<f64>().unwrap_or_else(|_| panic!("{flag} needs a number, not {value}"));
         match flag.as_str() {
             "--minutes" => arguments.minutes = number(),
+            "--cpu-minutes" => arguments.cpu_minutes = Some(number()),
             "--out" => arguments.out = value,
             "--method" => arguments.method = Some(Method::by_name(&value).expect("an estimator")),
             "--seed" => arguments.search.seed = number() as u64,
             "--spread" => arguments.search.spread = number(),
             "--box" => arguments.search.box_width = number(),
-            _ => panic!("there are --minutes, --out, --method, --seed, --spread, --box and --rk4, not {flag}"),
+            _ => panic!("there are --minutes, --cpu-minutes, --out, --method, --seed, --spread, --box and --rk4, not {flag}"),
         }
     }
     arguments
@@ -140,7 +144,12 @@ fn chosen(options: &[sistership_identify::refine::StepOption]) -> &str {
 }
 
 fn settings(method: Method, arguments: &Arguments) -> Settings {
-    let search = CmaEs { evaluations: usize::MAX, wall_s: Some(60.0 * arguments.minutes), ..arguments.search.clone() };
+    let search = CmaEs {
+        evaluations: usize::MAX,
+        wall_s: Some(60.0 * arguments.minutes),
+        cpu_s: arguments.cpu_minutes.map(|m| 60.0 * m),
+        ..arguments.search.clone()
+    };
     let cma_es = (method == Method::CmaEs).then_some(search);
     Settings { method, families: vec![Family::Own], restart_s: Some(SUBSEQUENCE_S), folds: 4, cma_es, ..Settings::default() }
 }

@@ -46,8 +46,8 @@ pub struct Refine {
     /// Trial manifests, CSV or Parquet files.
     #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
     trials: Vec<PathBuf>,
-    /// The estimator: `published` (one-step differences), `weak` (integrated over windows) or `trajectory` (simulated
-    /// segments).
+    /// The estimator: `published` (one-step differences), `weak` (integrated over windows), `trajectory` (simulated
+    /// segments) or `cma-es` (simulated segments by a random search, slow).
     #[arg(long, value_name = "NAME", value_parser = method)]
     method: Option<Method>,
     /// Settings of the refinement (YAML); the flags below win over it.

@@ -99,6 +99,7 @@ pub(super) fn method(name: &str) -> &'static str {
         "published" => "one-step differences, ridge regression drawn towards the source (Kanazawa 2023)",
         "weak" => "motions integrated over windows, ridge regression drawn towards the source",
         "trajectory" => "simulated segments matched to the measured ones, drawn towards the source",
+        "cma-es" => "simulated subsequences matched to the measured ones by a random search (Miyauchi 2024)",
         _ => "",
     }
 }

@@ -17,3 +17,6 @@ mod options;
 mod settings;
 
 pub use settings::{CmaEs, SearchReport};
+
+#[cfg(test)]
+mod tests;
