@@ -13,20 +13,24 @@ pub fn path() -> &'static PathBuf {
     PATH.get_or_init(build)
 }
 
-/// Cargo does not build another package's program for a test, so it is asked to: for the whole workspace, with the features
-/// that the tests were built with.
+/// Cargo does not build another package's program for a test, so it is asked to build a test of that package, which brings the
+/// program. Asked for the whole workspace it takes the features that the tests were built with, and has nothing left to do.
 fn build() -> PathBuf {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
-    command.args(["build", "--workspace", "--bin", "sistership", "--message-format", "json"]);
+    command.args(["test", "--no-run", "--workspace", "--test", "program", "--message-format", "json"]);
     if !cfg!(debug_assertions) {
         command.arg("--release");
     }
+    // Build scripts watch what cargo tells a test about its own package, and would run again because of it.
+    let of_this_test = |name: &str| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_");
+    std::env::vars().map(|(name, _)| name).filter(|name| of_this_test(name)).for_each(|name| drop(command.env_remove(name)));
     let built = command.current_dir(env!("CARGO_MANIFEST_DIR")).stderr(Stdio::inherit()).output().expect("cargo runs");
     assert!(built.status.success(), "the program does not build");
     let messages = String::from_utf8_lossy(&built.stdout);
     let executables = messages.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
-    let path = executables.filter_map(|message| message["executable"].as_str().map(PathBuf::from)).next_back();
+    let programs = executables.filter(|message| message["target"]["kind"][0] == "bin");
+    let path = programs.filter_map(|message| message["executable"].as_str().map(PathBuf::from)).next_back();
     path.expect("cargo names the program it built")
 }
 

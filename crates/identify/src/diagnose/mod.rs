@@ -17,6 +17,7 @@ mod placebo;
 mod refit;
 mod remainder;
 mod run;
+mod said;
 mod search;
 mod series;
 mod settings;

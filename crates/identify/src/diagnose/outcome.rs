@@ -83,6 +83,9 @@ pub struct Found {
     pub acts_on: ActsOn,
     /// Its parameters and what follows from them.
     pub parameters: BTreeMap<String, Value>,
+    /// Its parameters in the model that is given, where they were fitted together with the coefficients.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub in_model: BTreeMap<String, Value>,
     /// Natural logarithm of how much more probable the trials are with it than without, the other effects found being there:
     /// after what the number of hypotheses tried costs, and discounted by what the effect explains of clean trials.
     pub evidence: f64,

@@ -1,17 +1,17 @@
 //! The whole diagnosis.
 
+use std::collections::BTreeMap;
+
 use super::Request;
 use super::choose::{Choice, Settled, choose};
-use super::confounded::Responses;
 use super::judge::errors;
-use super::next_trial::next_trial;
-use super::outcome::{Diagnosis, Found, Hypothesis, NextTrial, Unexplained, Verdict};
+use super::outcome::{Diagnosis, Unexplained, Verdict};
 use super::refit::refits;
 use super::remainder::unexplained;
+use super::said::{apart, how, hypotheses, in_model, remarks};
 use super::search::{Judged, Search};
 use super::series::{levels, residuals};
 use super::setup::search;
-use super::values::{acts_on, own_covariance, values};
 use crate::refine::{Progress, RefineError};
 
 /// Diagnoses a model on trials.
@@ -46,14 +46,16 @@ fn answer(request: &Request<'_>, first: &Search<'_>, choice: Choice, progress: P
     let errors = errors(request, &refits, restart_s);
     let taken = refits.swap_remove(errors.taken);
     step(progress, 0.95, "what these trials cannot tell apart")?;
-    let (found, next_trial) = apart(request, search, best, choice.best().log_evidence - choice.alone.log_evidence)?;
+    let (mut found, next_trial) = apart(request, search, best, choice.best().log_evidence - choice.alone.log_evidence)?;
     let verdict = match (remaining.is_empty(), found.is_empty()) {
         (false, _) => Verdict::Unexplained,
         (true, true) => Verdict::Complete,
         (true, false) => Verdict::Effects,
     };
     let model = (!found.is_empty() && errors.change < 0.0).then_some(taken.all);
+    found.iter_mut().for_each(|found| found.in_model = model.as_ref().map_or_else(BTreeMap::new, |model| in_model(found, model)));
     let is_better = found.is_empty() || model.is_some();
+    let remarks = remarks(&refused, is_better, &found);
     Ok(Diagnosis {
         verdict,
         effects: found,
@@ -71,7 +73,7 @@ fn answer(request: &Request<'_>, first: &Search<'_>, choice: Choice, progress: P
         discrepancies: levels(search, workspace, &choice.alone, best),
         model,
         settings: request.settings.clone(),
-        remarks: remarks(&refused, is_better),
+        remarks,
     })
 }
 
@@ -111,18 +113,6 @@ fn believed<'a>(
     }
 }
 
-/// What is said of effects that were refused.
-fn remarks(refused: &[String], is_better: bool) -> Vec<String> {
-    let one = |name: &String| {
-        format!(
-            "`{name}` would explain a part of what remains, but in one size here and in another there: it resembles what is \
-             missing and is not named"
-        )
-    };
-    let worse = "with what was found the model does not simulate trials better that the fit has not seen: no model is given";
-    refused.iter().map(one).chain((!is_better).then(|| worse.to_owned())).collect()
-}
-
 fn remaining(
     search: &Search<'_>,
     best: &Judged,
@@ -152,74 +142,3 @@ fn remaining(
 
 /// The discrepancy that is forgiven a model that brings none, by the typical acceleration.
 const REMAINDER: f64 = 3e-4;
-
-fn how(request: &Request<'_>, refit: Option<&str>) -> String {
-    let fitted = match request.trials.len() {
-        1 => "there is one trial only: these are errors on the trial that the effects were fitted on".to_owned(),
-        count => format!("each of {count} trials simulated with effects fitted on the others"),
-    };
-    match refit {
-        Some(refit) => format!("{fitted}, and so were the coefficients, in the way that does best on the others ({refit})"),
-        None => fitted,
-    }
-}
-
-/// The effects found with those they are confounded with, the strongest first, and the trial that would separate them.
-fn apart(
-    request: &Request<'_>,
-    search: &Search<'_>,
-    best: &Judged,
-    of_all: f64,
-) -> Result<(Vec<Found>, Option<NextTrial>), RefineError> {
-    let mut all: Vec<Found> = (0..best.candidates.len()).map(|place| found(request, search, best, place, of_all)).collect();
-    let mut next = None;
-    if !all.is_empty() {
-        let level = best.level.min(search.levels.len() - 1);
-        let base = search.base(&best.candidates, &search.levels[level..=level])?;
-        let responses = Responses::new(search, &base, best, &base.total(0));
-        for (place, found) in all.iter_mut().enumerate() {
-            found.confounded_with = responses.as_ref().map(|responses| responses.beside(place)).unwrap_or_default();
-        }
-        next = next_trial(search, &base, best, &all);
-    }
-    all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-    Ok((all, next))
-}
-
-/// `of_all` is the evidence of all effects together where the model alone may have any discrepancy: none has more.
-fn found(request: &Request<'_>, search: &Search<'_>, best: &Judged, place: usize, of_all: f64) -> Found {
-    let candidate = &best.candidates[place];
-    let covariance = search.covariance(best, place);
-    Found {
-        name: candidate.effect.clone(),
-        form: candidate.form.file.name.clone(),
-        meaning: candidate.form.file.meaning.clone(),
-        acts_on: acts_on(candidate),
-        parameters: values(candidate, &covariance, request.model),
-        evidence: search.evidence(best, place).unwrap_or_default().min(of_all),
-        confounded_with: Vec::new(),
-    }
-}
-
-/// Everything that was judged where it stands, the most probable first.
-fn hypotheses(request: &Request<'_>, search: &Search<'_>, choice: &Choice) -> Vec<Hypothesis> {
-    let alone = choice.alone.held_out(&search.fixed);
-    let one = |(place, judged): (usize, &Judged)| Hypothesis {
-        effects: judged.candidates.iter().map(crate::residual::Candidate::key).collect(),
-        evidence: judged.log_evidence - choice.alone.log_evidence,
-        held_out: judged.held_out(&search.fixed).zip(alone).map(|(with, without)| with - without),
-        parameters: parameters(request, judged),
-        taken: choice.taken == Some(place),
-    };
-    let mut all: Vec<Hypothesis> = choice.tried.iter().enumerate().map(one).collect();
-    all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-    all
-}
-
-fn parameters(request: &Request<'_>, judged: &Judged) -> std::collections::BTreeMap<String, super::outcome::Value> {
-    let of = |place: usize| {
-        let covariance = own_covariance(&judged.candidates, place, &judged.covariance);
-        values(&judged.candidates[place], &covariance, request.model)
-    };
-    (0..judged.candidates.len()).flat_map(of).collect()
-}

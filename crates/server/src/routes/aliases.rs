@@ -6,7 +6,7 @@ use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
 use sistership_store::{Alias, AliasChange, AliasMove, Expect};
-use utoipa::{IntoParams, ToSchema};
+use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -15,7 +15,7 @@ use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::publish::{alias, is_reserved};
 use crate::web::conditions::tag;
-use crate::web::{Conditions, Listing, Params, Payload, Place, page};
+use crate::web::{Conditions, Listing, Paged, Params, Payload, Place};
 
 /// The longest reason.
 const REASON_BYTES: usize = 1000;
@@ -58,26 +58,6 @@ struct AliasRequest {
     reason: String,
 }
 
-#[derive(Debug, Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
-#[into_params(parameter_in = Query)]
-struct Names {
-    /// The most items to return, 1 to 1000.
-    limit: Option<i64>,
-    /// `next` of the page before.
-    after: Option<String>,
-}
-
-#[derive(Debug, Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
-#[into_params(parameter_in = Query)]
-struct Revisions {
-    /// The most items to return, 1 to 1000.
-    limit: Option<i64>,
-    /// `next` of the page before.
-    after: Option<String>,
-}
-
 impl AliasView {
     fn of(alias: Alias) -> Self {
         let Alias { model, alias, version_number: version, revision } = alias;
@@ -98,16 +78,16 @@ impl AliasStep {
 
 /// List the aliases of a model
 #[utoipa::path(
-    get, path = "/v1/models/{model}/aliases", tag = "models", params(("model" = String, Path), Names),
+    get, path = "/v1/models/{model}/aliases", tag = "models", params(("model" = String, Path), Paged),
     responses((status = 200, body = Listing<AliasView>))
 )]
 async fn list(
     State(app): State<App>,
     Place(model): Place<String>,
-    Params(query): Params<Names>,
+    Params(query): Params<Paged>,
 ) -> Result<Json<Listing<AliasView>>> {
     exists(&app, &model).await?;
-    let aliases = app.store().aliases().list(&model, &page::page(query.limit, query.after.as_deref())?).await?;
+    let aliases = app.store().aliases().list(&model, &query.page()?).await?;
     Ok(Json(Listing::of(aliases, AliasView::of)))
 }
 
@@ -161,15 +141,15 @@ fn check(name: &str, reason: &str) -> Result<()> {
 /// How an alias has moved, the latest first
 #[utoipa::path(
     get, path = "/v1/models/{model}/aliases/{alias}/history", tag = "models",
-    params(("model" = String, Path), ("alias" = String, Path), Revisions),
+    params(("model" = String, Path), ("alias" = String, Path), Paged),
     responses((status = 200, body = Listing<AliasStep>))
 )]
 async fn history(
     State(app): State<App>,
     Place((model, name)): Place<(String, String)>,
-    Params(query): Params<Revisions>,
+    Params(query): Params<Paged>,
 ) -> Result<Json<Listing<AliasStep>>> {
     app.store().aliases().get(&model, &name).await?;
-    let changes = app.store().aliases().history(&model, &name, &page::page(query.limit, query.after.as_deref())?).await?;
+    let changes = app.store().aliases().history(&model, &name, &query.page()?).await?;
     Ok(Json(Listing::of(changes, AliasStep::of)))
 }

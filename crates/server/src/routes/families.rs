@@ -17,7 +17,7 @@ use super::queue::accepted;
 use crate::app::App;
 use crate::fleet::{LEARN, LearnJob};
 use crate::problem::{Problem, Result};
-use crate::web::{Key, Listing, Params, Payload, Place, Reply, page};
+use crate::web::{Key, Listing, Paged, Params, Payload, Place, Reply};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
@@ -102,16 +102,6 @@ struct NewMembers {
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-struct Query {
-    /// The most items to return, 1 to 1000.
-    limit: Option<i64>,
-    /// `next` of the page before.
-    after: Option<String>,
-}
-
-#[derive(Debug, Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
-#[into_params(parameter_in = Query)]
 struct Revision {
     /// Which time it was learned; the last one where absent.
     revision: Option<i64>,
@@ -140,9 +130,9 @@ impl MemberView {
 }
 
 /// List the families by name
-#[utoipa::path(get, path = "/v1/families", tag = "families", params(Query), responses((status = 200, body = Listing<FamilyView>)))]
-async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<FamilyView>>> {
-    let families = app.store().families().list(&page::page(query.limit, query.after.as_deref())?).await?;
+#[utoipa::path(get, path = "/v1/families", tag = "families", params(Paged), responses((status = 200, body = Listing<FamilyView>)))]
+async fn list(State(app): State<App>, Params(query): Params<Paged>) -> Result<Json<Listing<FamilyView>>> {
+    let families = app.store().families().list(&query.page()?).await?;
     let mut items = Vec::with_capacity(families.items.len());
     for family in families.items {
         items.push(FamilyView::of(&app, family).await?);
@@ -195,16 +185,16 @@ async fn found(State(app): State<App>, Place(name): Place<String>, payload: Payl
 
 /// List the members of a family by name
 #[utoipa::path(
-    get, path = "/v1/families/{family}/members", tag = "families", params(("family" = String, Path), Query),
+    get, path = "/v1/families/{family}/members", tag = "families", params(("family" = String, Path), Paged),
     responses((status = 200, body = Listing<MemberView>))
 )]
 async fn members(
     State(app): State<App>,
     Place(name): Place<String>,
-    Params(query): Params<Query>,
+    Params(query): Params<Paged>,
 ) -> Result<Json<Listing<MemberView>>> {
     let family = app.store().families().get(&name).await?;
-    let members = app.store().families().members(&family.name, &page::page(query.limit, query.after.as_deref())?).await?;
+    let members = app.store().families().members(&family.name, &query.page()?).await?;
     Ok(Json(Listing::of(members, MemberView::of)))
 }
 

@@ -4,15 +4,15 @@ use axum::Json;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use sistership_model::Law;
-use utoipa::{IntoParams, ToSchema};
+use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::problem::Result;
-use crate::web::{Key, Listing, Params, Payload, Place, Reply, accept, page};
+use crate::web::{Key, Listing, Paged, Params, Payload, Place, Reply, accept};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list, create)).routes(routes!(get))
@@ -38,16 +38,6 @@ struct LawText {
     document: String,
 }
 
-#[derive(Debug, Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
-#[into_params(parameter_in = Query)]
-struct Query {
-    /// The most items to return, 1 to 1000.
-    limit: Option<i64>,
-    /// `next` of the page before.
-    after: Option<String>,
-}
-
 impl LawHead {
     fn of(law: sistership_store::Law) -> Self {
         Self { name: law.name, sha256: law.sha256, created_us: law.created_us }
@@ -55,9 +45,9 @@ impl LawHead {
 }
 
 /// List the laws
-#[utoipa::path(get, path = "/v1/laws", tag = "laws", params(Query), responses((status = 200, body = Listing<LawHead>)))]
-async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<LawHead>>> {
-    let laws = app.store().laws().list(&page::page(query.limit, query.after.as_deref())?).await?;
+#[utoipa::path(get, path = "/v1/laws", tag = "laws", params(Paged), responses((status = 200, body = Listing<LawHead>)))]
+async fn list(State(app): State<App>, Params(query): Params<Paged>) -> Result<Json<Listing<LawHead>>> {
+    let laws = app.store().laws().list(&query.page()?).await?;
     Ok(Json(Listing::of(laws, LawHead::of)))
 }
 

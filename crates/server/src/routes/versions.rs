@@ -4,17 +4,17 @@ use axum::Json;
 use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::Value;
 use sistership_store::{Page, StoreError};
-use utoipa::{IntoParams, ToSchema};
+use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::verify::{self, Verification};
-use crate::web::{Conditions, Listing, Params, Place, page};
+use crate::web::{Conditions, Listing, Paged, Params, Place};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get)).routes(routes!(bytes))
@@ -54,16 +54,6 @@ struct VersionDetail {
     document: Value,
 }
 
-#[derive(Debug, Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
-#[into_params(parameter_in = Query)]
-struct Query {
-    /// The most items to return, 1 to 1000.
-    limit: Option<i64>,
-    /// `next` of the page before.
-    after: Option<String>,
-}
-
 impl VersionHead {
     pub(super) fn of(head: sistership_store::VersionHead) -> Self {
         let sistership_store::VersionHead { id, model, number, parent, law, method, sha256, created_us } = head;
@@ -79,16 +69,16 @@ impl VersionHead {
 
 /// List the versions of a model, the latest first
 #[utoipa::path(
-    get, path = "/v1/models/{model}/versions", tag = "models", params(("model" = String, Path), Query),
+    get, path = "/v1/models/{model}/versions", tag = "models", params(("model" = String, Path), Paged),
     responses((status = 200, body = Listing<VersionHead>))
 )]
 async fn list(
     State(app): State<App>,
     Place(model): Place<String>,
-    Params(query): Params<Query>,
+    Params(query): Params<Paged>,
 ) -> Result<Json<Listing<VersionHead>>> {
     exists(&app, &model).await?;
-    let versions = app.store().versions().list(&model, &page::page(query.limit, query.after.as_deref())?).await?;
+    let versions = app.store().versions().list(&model, &query.page()?).await?;
     Ok(Json(Listing::of(versions, VersionHead::of)))
 }
 

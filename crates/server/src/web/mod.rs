@@ -12,7 +12,7 @@ pub(crate) mod reply;
 
 pub(crate) use conditions::Conditions;
 pub(crate) use idempotency::Key;
-pub(crate) use page::Listing;
+pub(crate) use page::{Listing, Paged};
 pub(crate) use params::{Params, Place};
 pub(crate) use payload::Payload;
 pub(crate) use reply::Reply;

@@ -2,15 +2,32 @@
 
 use base64::Engine as _;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD;
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use sistership_store::{List, Page};
-use utoipa::ToSchema;
+use utoipa::{IntoParams, ToSchema};
 
 use crate::problem::{Fault, Problem, Result};
 
 /// How many items a page has where nobody says.
 const LIMIT: i64 = 100;
+
+/// The query of a list that is not filtered.
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub(crate) struct Paged {
+    /// The most items to return, 1 to 1000.
+    limit: Option<i64>,
+    /// `next` of the page before.
+    after: Option<String>,
+}
+
+impl Paged {
+    pub(crate) fn page<K: DeserializeOwned>(&self) -> Result<Page<K>> {
+        page(self.limit, self.after.as_deref())
+    }
+}
 
 /// One page of a list.
 #[derive(Debug, Serialize, ToSchema)]

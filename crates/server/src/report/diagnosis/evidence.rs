@@ -91,9 +91,9 @@ fn parameter_list(parameters: &BTreeMap<String, Value>) -> String {
     texts.join("; ")
 }
 
-/// The parameters of an effect that was found.
+/// The parameters of an effect that was found, and what they are in the new version where they were fitted there once more.
 pub(super) fn parameters(found: &Found) -> Table {
-    let columns = vec![
+    let mut columns = vec![
         Column::text("parameter", ""),
         Column::text("", ""),
         Column::number("value", ""),
@@ -101,19 +101,29 @@ pub(super) fn parameters(found: &Found) -> Table {
         Column::text("unit", ""),
         Column::number("value ÷ error", ""),
     ];
-    Table { columns, rows: Parameter::all(&found.parameters).iter().map(parameter).collect() }
+    if !found.in_model.is_empty() {
+        columns.extend([Column::number("in the new version", ""), Column::number("standard error", "")]);
+    }
+    let row = |named: &(&str, Parameter)| parameter(named, &found.in_model);
+    Table { columns, rows: Parameter::all(&found.parameters).iter().map(row).collect() }
 }
 
-fn parameter((name, parameter): &(&str, Parameter)) -> Row {
+fn parameter((name, parameter): &(&str, Parameter), in_model: &BTreeMap<String, Value>) -> Row {
     let ratio = (parameter.se > 0.0).then(|| (parameter.value / parameter.se).abs());
-    Row::of(vec![
+    let mut cells = vec![
         Cell::new(&parameter.words),
         Cell::code(*name),
         Cell::new(parameter.value_text()),
         Cell::new(parameter.se_text()),
         Cell::new(if parameter.unit.is_empty() { "–" } else { parameter.unit }),
         Cell::new(known(ratio, |ratio| significant(ratio, 2))),
-    ])
+    ];
+    if !in_model.is_empty() {
+        let own = in_model.get(*name).map(|value| Parameter::of(name, value));
+        let text = |of: &dyn Fn(&Parameter) -> String| Cell::new(own.as_ref().map_or_else(|| "–".to_owned(), of));
+        cells.extend([text(&Parameter::value_text), text(&Parameter::se_text)]);
+    }
+    Row::of(cells)
 }
 
 /// What it is confounded with.

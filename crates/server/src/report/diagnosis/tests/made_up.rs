@@ -78,6 +78,7 @@ fn current() -> Found {
             ("towards_deg", 45.2, 1.9),
         ]),
         evidence: 41.2,
+        in_model: BTreeMap::new(),
         confounded_with: vec![Confounded { name: "wind".into(), angle_deg: 4.1, behind: 1.2 }],
     }
 }
