@@ -24,7 +24,9 @@ fn build() -> PathBuf {
     }
     // Build scripts watch what cargo tells a test about its own package, and would run again because of it.
     let of_this_test = |name: &str| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_");
-    std::env::vars().map(|(name, _)| name).filter(|name| of_this_test(name)).for_each(|name| drop(command.env_remove(name)));
+    for (name, _) in std::env::vars().filter(|(name, _)| of_this_test(name)) {
+        command.env_remove(name);
+    }
     let built = command.current_dir(env!("CARGO_MANIFEST_DIR")).stderr(Stdio::inherit()).output().expect("cargo runs");
     assert!(built.status.success(), "the program does not build");
     let messages = String::from_utf8_lossy(&built.stdout);
