@@ -31,6 +31,7 @@ fn cases(harness: &Harness) -> Vec<Case> {
         Case(json("/v1/refinements", r#"{"ship":"#), 400, "EOF"),
         Case(json("/v1/refinements", r#"{"ship":"mariner","settings":{"fold":3}}"#), 422, "settings.fold: unknown field"),
         Case(json("/v1/refinements", r#"{"ship":"mariner","settings":{"folds":1}}"#), 422, "from 2 to 100"),
+        Case(json("/v1/refinements", r#"{"ship":"mariner","settings":{"cma_es":{"wall_s":9}}}"#), 422, "limit `evaluations`"),
         Case(json("/v1/refinements", r#"{"ship":"mariner"}"#), 422, "POST /v1/trials"),
         Case(json("/v1/refinements", r#"{"ship":"mariner","trials":["x"]}"#), 422, "trials[0]"),
         Case(post("/v1/refinements", "text/csv", "a"), 415, "application/json"),

@@ -80,8 +80,16 @@ async fn settled(app: &App, request: RefinementRequest, key_sha256: Option<Strin
         other => drop(other?),
     }
     settings.check().map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
+    repeatable(&settings)?;
     let trials = trial_ids(app, &ship, trials).await?;
     Ok(RefinementJob { source: choice(app, &source).await?, ship, trials, settings, key_sha256 })
+}
+
+/// A version must follow from its recipe again, which it does not where a clock ended the search.
+fn repeatable(settings: &Settings) -> Result<()> {
+    let timed = settings.cma_es.as_ref().is_some_and(|search| search.wall_s.is_some() || search.cpu_s.is_some());
+    let message = "a search that time ends cannot be derived again; limit `evaluations` in place of wall_s and cpu_s";
+    if timed { Err(Problem::invalid("settings.cma_es", message)) } else { Ok(()) }
 }
 
 async fn choice(app: &App, source: &str) -> Result<SourceChoice> {
