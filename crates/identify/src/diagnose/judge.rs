@@ -28,8 +28,8 @@ pub(super) struct Errors {
 /// Errors of each trial; none where the simulation stopped.
 type Each = Vec<Option<SquaredError>>;
 
-/// Simulates each trial by the model as it is, and by a model fitted on the others in the way that does best on the others:
-/// neither the fit nor its choice has seen the trial.
+/// Simulates each trial by the model as it is, and by a model fitted on the others in the way that does best on the others.
+/// A fit by trajectories leaves a trial out by one step from where all of them were fitted.
 pub(super) fn errors(request: &Request<'_>, refits: &[Refit], restart_s: f64) -> Errors {
     let count = request.trials.len();
     let before = simulated(request, &vec![request.model; count], restart_s);

@@ -65,7 +65,8 @@ fn ridge(request: &Request<'_>, found: &Refit, lambda: f64) -> Option<Refit> {
 }
 
 /// Coefficients and effects fitted together, by the weak form and by trajectories. Of the effects nothing is taken from the
-/// diagnosis but which they are, so that a trial left out has no part in what simulates it.
+/// diagnosis but which they are. A trial left out has a part in the point about which trajectories are linearised, and in the
+/// strength of the weak form that they start from, but in no residual.
 fn jointly(request: &Request<'_>, found: &Model, restart_s: f64) -> Vec<Refit> {
     let Ok(Some(terms)) = AsTerms::new(found, request.law) else { return Vec::new() };
     let all = alternatives(&terms.model, &terms.law, request.trials, restart_s).unwrap_or_default();

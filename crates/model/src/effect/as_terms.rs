@@ -13,7 +13,7 @@ use crate::formula::Expr;
 use crate::law::Law;
 use crate::quantity::Quantity;
 
-/// A model and its law with parameters of effects among the coefficients. The law is in the dress of the other effects.
+/// A model and its law with the parameters of all its effects among the coefficients.
 #[derive(Debug, Clone)]
 pub struct AsTerms {
     /// The law.
