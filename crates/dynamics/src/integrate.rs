@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::state::StateVector;
+use crate::state::{StateVector, States};
+use crate::tape::Lanes;
 
 /// An integration method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -29,6 +30,62 @@ impl Method {
             }
         }
     }
+}
+
+impl Method {
+    /// As [`Method::step`] for ships in lockstep, each with a step of her own; rounds as that does.
+    pub fn steps<const N: usize>(
+        self,
+        states: &States<N>,
+        steps_s: &Lanes<N>,
+        mut rates: impl FnMut(Stage, &States<N>) -> States<N>,
+    ) -> States<N> {
+        let first = rates(Stage::Start, states);
+        if self == Self::Euler {
+            return moved(states, &first, steps_s);
+        }
+        let half = steps_s.map(|step_s| 0.5 * step_s);
+        let second = rates(Stage::Middle, &moved(states, &first, &half));
+        let third = rates(Stage::Middle, &moved(states, &second, &half));
+        let fourth = rates(Stage::End, &moved(states, &third, steps_s));
+        let mut slope = first;
+        for (place, slope) in slope.iter_mut().enumerate() {
+            for lane in 0..N {
+                slope[lane] = slope[lane] + (second[place][lane] + third[place][lane]) * 2.0 + fourth[place][lane];
+            }
+        }
+        moved(states, &slope, &steps_s.map(|step_s| step_s / 6.0))
+    }
+}
+
+/// Where in a step a rate is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// At its start.
+    Start,
+    /// Halfway.
+    Middle,
+    /// At its end.
+    End,
+}
+
+impl Stage {
+    /// Every stage.
+    pub const ALL: [Self; 3] = [Self::Start, Self::Middle, Self::End];
+
+    /// The fraction of the step.
+    pub fn fraction(self) -> f64 {
+        [0.0, 0.5, 1.0][self as usize]
+    }
+}
+
+#[inline]
+fn moved<const N: usize>(states: &States<N>, rates: &States<N>, by_s: &Lanes<N>) -> States<N> {
+    let mut out = *states;
+    for (out, rate) in out.iter_mut().zip(rates) {
+        (0..N).for_each(|lane| out[lane] += rate[lane] * by_s[lane]);
+    }
+    out
 }
 
 #[cfg(test)]

@@ -1,16 +1,19 @@
-//! A model made ready to run: its law and figures on one tape, and the accelerations that follow.
+//! A model made ready to run: its law and figures on one tape.
+
+mod rate;
 
 use std::borrow::Cow;
 
-use nalgebra::{LU, Matrix4, U4, Vector4};
+use nalgebra::{LU, Matrix4};
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
 use sistership_model::formula::Expr;
 use sistership_model::law::{Law, STATES};
 use sistership_model::particulars;
 
-use crate::state::{StateVector, at};
-use crate::tape::{Binding, Lanes, Tape, TapeBuilder};
+use crate::tape::{Binding, Tape, TapeBuilder};
+
+pub use rate::Work;
 
 /// Why a model cannot be made ready.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -44,8 +47,11 @@ pub const MAX_INPUTS: usize = 16;
 pub struct Plant {
     tape: Tape,
     layout: Layout,
-    constant_mass: Option<LU<f64, U4, U4>>,
+    /// What a force on each axis accelerates, where masses do not change.
+    mobility: Option<Matrix4<f64>>,
     input_names: Vec<String>,
+    /// Coefficients that are data, given with each state; all others are folded into the tape.
+    open: Vec<String>,
     input_defaults: Vec<Option<f64>>,
     lags_s: Vec<(usize, f64)>,
 }
@@ -63,41 +69,46 @@ struct Layout {
     accelerations: [Option<usize>; 4],
 }
 
-/// Room to evaluate in, kept from step to step so that the time loop allocates nothing.
-#[derive(Debug, Default)]
-pub struct Work {
-    inputs: Vec<Lanes<1>>,
-    work: Vec<Lanes<1>>,
-    pub(crate) instruments: crate::instruments::Room,
-}
-
-/// Forces in N and moments in N m, accelerations in SI: X, Y, K, N.
-type ByAxis = Vector4<f64>;
-
 impl Plant {
     /// Lowers a model onto a tape, with the effects that it carries.
     ///
     /// # Errors
     /// Names what the model does not give, or says that the mass matrix cannot be solved.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
+        Self::lowered(model, law, Vec::new())
+    }
+
+    /// As [`Plant::new`], for any values of the coefficients that the model has: its own are not read.
+    ///
+    /// # Errors
+    /// As [`Plant::new`].
+    pub fn open(model: &Model, law: &Law) -> Result<Self, PlantError> {
+        Self::lowered(model, law, model.coefficients.keys().cloned().collect())
+    }
+
+    fn lowered(model: &Model, law: &Law, open: Vec<String>) -> Result<Self, PlantError> {
         let law = &dressed(model, law)?;
         let bind = |name: &str| binding(model, law, name);
-        let names: Vec<&str> = STATES.iter().map(|&(name, _)| name).chain(law.inputs.keys().map(String::as_str)).collect();
+        let states = STATES.iter().map(|&(name, _)| name);
+        let names: Vec<&str> =
+            states.chain(law.inputs.keys().map(String::as_str)).chain(open.iter().map(String::as_str)).collect();
         if law.inputs.len() > MAX_INPUTS {
             return Err(PlantError::Law(format!("law `{}` has more than {MAX_INPUTS} inputs", law.name)));
         }
         let mut builder = TapeBuilder::new(&names, &bind);
         let missing = |name: String| PlantError::Missing { law: law.name.clone(), name, model: model.name.clone() };
-        let layout = lay_out(model, law, &mut builder, &missing)?;
+        let layout = lay_out(model, law, &mut builder, (!open.is_empty(), &missing))?;
         let tape = builder.finish();
-        let constant_mass = constant_mass(&tape, &layout).map(LU::new);
-        if constant_mass.as_ref().is_some_and(|lu| !lu.is_invertible() || lu.determinant() <= 0.0) {
-            return Err(PlantError::Mass(model.name.clone()));
-        }
+        let mobility = match constant_mass(&tape, &layout).map(LU::new) {
+            Some(lu) if lu.determinant() > 0.0 => Some(lu.try_inverse().ok_or_else(|| PlantError::Mass(model.name.clone()))?),
+            Some(_) => return Err(PlantError::Mass(model.name.clone())),
+            None => None,
+        };
         Ok(Self {
             tape,
             layout,
-            constant_mass,
+            mobility,
+            open,
             input_names: law.inputs.keys().cloned().collect(),
             input_defaults: law.inputs.values().map(|input| input.default).collect(),
             lags_s: lags(model, law, &missing)?,
@@ -107,6 +118,11 @@ impl Plant {
     /// The inputs that the law takes, in their order.
     pub fn input_names(&self) -> &[String] {
         &self.input_names
+    }
+
+    /// The coefficients that are given with each state, in their order.
+    pub fn open_coefficients(&self) -> &[String] {
+        &self.open
     }
 
     /// Inputs that reach the ship through a lag: their place and its time constant, s.
@@ -122,47 +138,6 @@ impl Plant {
     /// The default of each input.
     pub fn input_defaults(&self) -> &[Option<f64>] {
         &self.input_defaults
-    }
-
-    /// The rate of change of the state; that of the rudder is left at zero, the steering gear's business.
-    pub fn rate(&self, state: &StateVector, inputs: &Inputs, room: &mut Work) -> StateVector {
-        let Work { inputs: lanes, work, .. } = room;
-        lanes.clear();
-        lanes.extend([at::U, at::V, at::R, at::P, at::PHI, at::PSI].map(|index| [state[index]]));
-        lanes.extend(inputs[..self.input_names.len()].iter().map(|&value| [value]));
-        self.tape.run(lanes, work);
-        let mut acceleration = self.accelerations(work);
-        for (sum, output) in acceleration.iter_mut().zip(self.layout.accelerations) {
-            *sum += output.map_or(0.0, |output| self.tape.read(output, work)[0]);
-        }
-        let mut rate = StateVector::zeros();
-        rate[at::U] = acceleration[0];
-        rate[at::V] = acceleration[1];
-        rate[at::P] = acceleration[2];
-        rate[at::R] = acceleration[3];
-        self.kinematics(state, work, &mut rate);
-        rate
-    }
-
-    fn accelerations(&self, work: &[Lanes<1>]) -> ByAxis {
-        let read = |output: Option<usize>| output.map_or(0.0, |output| self.tape.read(output, work)[0]);
-        let forces = ByAxis::from_fn(|row, _| read(self.layout.forces[row]));
-        if let Some(mass) = &self.constant_mass {
-            return mass.solve(&forces).unwrap_or_else(|| ByAxis::repeat(f64::NAN));
-        }
-        let mass = Matrix4::from_fn(|row, column| {
-            self.layout.mass[row][column].map_or(f64::from(u8::from(row == column)), |output| self.tape.read(output, work)[0])
-        });
-        mass.lu().solve(&forces).unwrap_or_else(|| ByAxis::repeat(f64::NAN))
-    }
-
-    fn kinematics(&self, state: &StateVector, work: &[Lanes<1>], rate: &mut StateVector) {
-        let (u, v) = (state[at::U], state[at::V]);
-        let (sin, cos) = state[at::PSI].sin_cos();
-        let plain = [u * cos - v * sin, u * sin + v * cos, state[at::R], if self.has_roll() { state[at::P] } else { 0.0 }];
-        for (place, (index, plain)) in [at::X, at::Y, at::PSI, at::PHI].into_iter().zip(plain).enumerate() {
-            rate[index] = self.layout.kinematics[place].map_or(plain, |output| self.tape.read(output, work)[0]);
-        }
     }
 }
 
@@ -180,12 +155,13 @@ fn lay_out(
     model: &Model,
     law: &Law,
     builder: &mut TapeBuilder<'_>,
-    missing: &dyn Fn(String) -> PlantError,
+    (open, missing): (bool, &dyn Fn(String) -> PlantError),
 ) -> Result<Layout, PlantError> {
     let mut layout = Layout::default();
     for (row, axis) in Axis::ALL.into_iter().enumerate() {
         if law.axes.contains_key(&axis) {
-            layout.forces[row] = Some(builder.output(&force(model, law, axis)?).map_err(missing)?);
+            let force = if open { open_force(model, law, axis) } else { force(model, law, axis) }?;
+            layout.forces[row] = Some(builder.output(&force).map_err(missing)?);
         }
         for (column, other) in Axis::ALL.into_iter().enumerate() {
             if let Some(expr) = law.mass.get(&(axis, other)) {
@@ -229,12 +205,22 @@ fn lags(model: &Model, law: &Law, missing: &dyn Fn(String) -> PlantError) -> Res
 /// # Errors
 /// Names the coefficient that the law does not have.
 pub fn force(model: &Model, law: &Law, axis: Axis) -> Result<Expr, PlantError> {
+    let given = model.coefficients.iter().filter(|(_, quantity)| quantity.value != 0.0);
+    summed(law, axis, given.map(|(name, quantity)| (name, Expr::Number(quantity.value))))
+}
+
+/// As [`force`], by the names of the coefficients.
+fn open_force(model: &Model, law: &Law, axis: Axis) -> Result<Expr, PlantError> {
+    summed(law, axis, model.coefficients.keys().map(|name| (name, Expr::Name(name.clone()))))
+}
+
+fn summed<'n>(law: &Law, axis: Axis, factors: impl Iterator<Item = (&'n String, Expr)>) -> Result<Expr, PlantError> {
     let axis_law = &law.axes[&axis];
     let mut sum = Expr::Number(0.0);
-    for (name, quantity) in &model.coefficients {
+    for (name, factor) in factors {
         let (acts_on, term) = law.term(name).map_err(PlantError::Law)?;
-        if acts_on == axis && quantity.value != 0.0 {
-            sum = Expr::Add(Box::new(sum), Box::new(term.times(Expr::Number(quantity.value))));
+        if acts_on == axis {
+            sum = Expr::Add(Box::new(sum), Box::new(term.times(factor)));
         }
     }
     Ok(Expr::Add(Box::new(axis_law.scale.clone().times(sum)), Box::new(axis_law.rest.clone())))

@@ -1,5 +1,7 @@
 //! Simulation of a recorded trial: the recorded rudder and revolutions drive the model, and the motion is compared.
 
+mod part;
+
 use sistership_model::effect::{TIME, input_channel};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::validity::Excursion;
@@ -7,9 +9,11 @@ use sistership_model::validity::Excursion;
 use crate::envelope::Stopped;
 use crate::integrate::Method;
 use crate::interpolate::{MonotoneCubic, lagged};
-use crate::plant::{Inputs, MAX_INPUTS, Work};
+use crate::lockstep;
+use crate::plant::{Inputs, MAX_INPUTS};
 use crate::ship::Ship;
 use crate::state::{RECORDED, StateVector, Trajectory, at};
+use part::Part;
 
 /// How a trial is simulated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,22 +57,47 @@ pub struct Replay {
     pub outside: Option<Excursion>,
 }
 
+/// A trial to be simulated by one of some ships that differ in their coefficients alone.
+#[derive(Debug, Clone, Copy)]
+pub struct Recorded<'a> {
+    /// The trial.
+    pub trial: &'a Trial,
+    /// The ship's coefficients, in the order of [`Ship::open_coefficients`]; none for a ship with her own.
+    pub coefficients: &'a [f64],
+}
+
 /// Simulates a trial with its recorded inputs.
 ///
 /// # Errors
 /// Names the channel that the trial lacks: velocities, rudder, or another input of the law that has no default.
 pub fn replay(ship: &Ship, trial: &Trial, settings: &ReplaySettings) -> Result<Replay, MissingChannel> {
-    let record = Record::new(ship, trial)?;
-    let (track, samples) = (Trajectory::default(), Vec::new());
-    let mut result = Replay { track, samples, stopped: None, has_roll: ship.has_roll(), outside: None };
-    let mut work = Work::default();
-    for part in parts(trial, settings.restart_s) {
-        if let Err(stopped) = record.run(ship, part, settings, &mut result, &mut work) {
-            result.stopped.get_or_insert(stopped);
-        }
+    let mut all = replay_all(ship, &[Recorded { trial, coefficients: &[] }], settings)?;
+    Ok(all.remove(0))
+}
+
+/// Simulates trials in lockstep, each as [`replay`] would.
+///
+/// # Errors
+/// As [`replay`], of the first trial that lacks something.
+pub fn replay_all(ship: &Ship, trials: &[Recorded<'_>], settings: &ReplaySettings) -> Result<Vec<Replay>, MissingChannel> {
+    let records = trials.iter().map(|recorded| Record::new(ship, recorded.trial)).collect::<Result<Vec<_>, _>>()?;
+    let mut passages: Vec<Part<'_>> = Vec::new();
+    for (index, (record, recorded)) in records.iter().zip(trials).enumerate() {
+        let parts = parts(recorded.trial, settings.restart_s).into_iter();
+        passages.extend(parts.map(|part| Part::new(index, record, recorded.coefficients, part, settings.step_s)));
     }
-    result.outside = ship.leaves(&result.track);
-    Ok(result)
+    lockstep::sail(ship, settings.method, &mut passages);
+    let nothing = || Replay::nothing(ship.has_roll());
+    let mut replays: Vec<Replay> = trials.iter().map(|_| nothing()).collect();
+    passages.into_iter().for_each(|part| part.join(&mut replays));
+    replays.iter_mut().for_each(|replay| replay.outside = ship.leaves(&replay.track));
+    Ok(replays)
+}
+
+impl Replay {
+    fn nothing(has_roll: bool) -> Self {
+        Self { track: Trajectory::default(), samples: Vec::new(), stopped: None, has_roll, outside: None }
+    }
 }
 
 /// The gap-free parts of a trial, cut where the simulation starts anew.
@@ -128,43 +157,6 @@ impl<'a> Record<'a> {
             *value = input.as_ref().map_or_else(|constant| *constant, |column| column.at(k, w));
         }
         inputs
-    }
-
-    fn run(
-        &self,
-        ship: &Ship,
-        part: std::ops::Range<usize>,
-        settings: &ReplaySettings,
-        result: &mut Replay,
-        work: &mut Work,
-    ) -> Result<(), Stopped> {
-        let frame = self.trial.velocity;
-        let mut state = ship.truth(frame, &self.state_at(part.start), &self.inputs_at(part.start, 0.0), work);
-        for k in part.clone() {
-            state[at::DELTA] = self.delta[k];
-            ship.envelope().check(self.trial.t_s[k], &state)?;
-            let said = ship.says(frame, &state, &self.inputs_at(k, 0.0), work);
-            result.track.push(self.trial.t_s[k], said, self.n.map_or(0.0, |n| n[k]));
-            result.samples.push(k);
-            if k + 1 < part.end {
-                state = self.advance(ship, k, state, settings, work);
-            }
-        }
-        Ok(())
-    }
-
-    /// From one sample to the next.
-    fn advance(&self, ship: &Ship, k: usize, mut state: StateVector, settings: &ReplaySettings, work: &mut Work) -> StateVector {
-        let interval = self.trial.t_s[k + 1] - self.trial.t_s[k];
-        let steps = (interval / settings.step_s - 1e-9).ceil().max(1.0) as usize;
-        let step_s = interval / steps as f64;
-        for i in 0..steps {
-            state = settings.method.step(&state, step_s, |fraction, s| {
-                let inputs = self.inputs_at(k, (i as f64 + fraction) / steps as f64);
-                ship.rate_with(s, &inputs, work)
-            });
-        }
-        state
     }
 }
 

@@ -10,7 +10,9 @@ use crate::gear::Gear;
 use crate::instruments::{Instruments, truth};
 use crate::integrate::Method;
 use crate::plant::{Inputs, MAX_INPUTS, Plant, PlantError, Work, dressed};
-use crate::state::{StateVector, Trajectory, at};
+use crate::sailing::{Sailing, sail_all};
+use crate::state::{StateVector, States, Trajectory, at};
+use crate::tape::Lanes;
 use crate::validity::leaves;
 
 /// What the bridge orders at an instant.
@@ -53,7 +55,18 @@ impl Ship {
     /// # Errors
     /// As [`Plant::new`]; also where the model has no length or no approach speed.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
-        let plant = Plant::new(model, law)?;
+        Self::with_plant(model, law, Plant::new(model, law)?)
+    }
+
+    /// As [`Ship::new`], for sisters whose coefficients are given with each passage: those of the model are not read.
+    ///
+    /// # Errors
+    /// As [`Ship::new`].
+    pub fn sisters(model: &Model, law: &Law) -> Result<Self, PlantError> {
+        Self::with_plant(model, law, Plant::open(model, law)?)
+    }
+
+    fn with_plant(model: &Model, law: &Law, plant: Plant) -> Result<Self, PlantError> {
         let dressed = dressed(model, law)?;
         let instruments = |frame| Instruments::new(model, &dressed, frame);
         let instruments = [instruments(VelocityFrame::Ground)?, instruments(VelocityFrame::Water)?];
@@ -123,6 +136,23 @@ impl Ship {
         self.plant.input_names().iter().map(String::as_str).zip(self.plant.input_defaults().iter().copied())
     }
 
+    /// A sister's coefficients as passages take them; none where hers are not those of the others by name.
+    pub fn sister(&self, model: &Model) -> Option<Vec<f64>> {
+        let names = self.plant.open_coefficients();
+        let same = model.coefficients.len() == names.len() && model.coefficients.keys().all(|name| names.contains(name));
+        same.then(|| names.iter().map(|name| model.coefficient(name)).collect())
+    }
+
+    /// How many inputs the law takes.
+    pub(crate) fn input_count(&self) -> usize {
+        self.plant.input_names().len()
+    }
+
+    /// Whether some instrument says something else than the truth.
+    pub(crate) fn reads_instruments(&self) -> bool {
+        self.instruments.iter().any(Option::is_some)
+    }
+
     /// Inputs that reach the ship through a lag: their place and its time constant, s.
     pub fn lags_s(&self) -> &[(usize, f64)] {
         self.plant.lags_s()
@@ -146,6 +176,11 @@ impl Ship {
     /// How a motion leaves what the model's trials covered; none where it stays inside, or where nobody knows what they did.
     pub fn leaves(&self, track: &Trajectory) -> Option<Excursion> {
         leaves(self.validity.as_ref()?, track)
+    }
+
+    /// Leaves out whether motions leave what the model's trials covered.
+    pub fn forget_validity(&mut self) {
+        self.validity = None;
     }
 
     /// The range outside which runs are stopped.
@@ -186,6 +221,16 @@ impl Ship {
         self.plant.rate(state, inputs, work)
     }
 
+    /// The rates of change of several states, each with every input of the law.
+    pub(crate) fn rates<const N: usize>(&self, states: &States<N>, inputs: &[Lanes<N>], work: &mut Work<N>) -> States<N> {
+        self.plant.rates(states, inputs, work)
+    }
+
+    /// How fast the steering gear moves the rudder towards what is ordered, rad/s.
+    pub(crate) fn rudder_rate(&self, order_rad: f64, angle_rad: f64, step_s: f64) -> f64 {
+        self.gear.rate(order_rad, angle_rad, step_s)
+    }
+
     /// Sails for a time; `bridge` gives the order at each step, which is held over it, or `None` to end the run.
     ///
     /// # Errors
@@ -194,21 +239,11 @@ impl Ship {
         &self,
         run: Run,
         track: &mut Trajectory,
-        mut bridge: impl FnMut(f64, &StateVector) -> Option<Order>,
+        bridge: impl FnMut(f64, &StateVector) -> Option<Order>,
     ) -> Result<(), Stopped> {
-        let mut work = Work::default();
-        let mut state = run.start;
-        let steps = (run.duration_s / run.step_s).round() as usize;
-        for k in 0..=steps {
-            let t_s = k as f64 * run.step_s;
-            self.envelope.check(t_s, &state)?;
-            let Some(order) = bridge(t_s, &state) else { return Ok(()) };
-            track.push(t_s, state, order.n_rps);
-            if k < steps {
-                state = run.method.step(&state, run.step_s, |_, s| self.rate_under(s, order, run.step_s, &mut work));
-            }
-        }
-        Ok(())
+        let sailed = sail_all(self, run.method, vec![Sailing::new(run, &[], bridge)]).remove(0);
+        track.append(sailed.track);
+        sailed.stopped.map_or(Ok(()), Err)
     }
 }
 

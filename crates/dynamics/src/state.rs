@@ -3,8 +3,23 @@
 use nalgebra::SVector;
 use sistership_model::trial::Channel;
 
+use crate::tape::Lanes;
+
 /// The state vector: `u, v, r, p, phi, psi, x, y, delta` in SI and radians; `delta` is the actual rudder angle.
 pub type StateVector = SVector<f64, 9>;
+
+/// States of ships in lockstep: by component, by ship.
+pub type States<const N: usize> = [Lanes<N>; 9];
+
+/// The state of one of several ships.
+pub fn lane_of<const N: usize>(states: &States<N>, lane: usize) -> StateVector {
+    StateVector::from_fn(|place, _| states[place][lane])
+}
+
+/// Sets the state of one of several ships.
+pub fn set_lane<const N: usize>(states: &mut States<N>, lane: usize, state: &StateVector) {
+    states.iter_mut().zip(state.iter()).for_each(|(lanes, value)| lanes[lane] = *value);
+}
 
 /// Places in the state vector.
 pub mod at {
@@ -74,6 +89,13 @@ impl Trajectory {
         self.t_s.push(t_s);
         self.states.push(state);
         self.n_rps.push(n_rps);
+    }
+
+    /// Adds the samples of another.
+    pub fn append(&mut self, other: Self) {
+        self.t_s.extend(other.t_s);
+        self.states.extend(other.states);
+        self.n_rps.extend(other.n_rps);
     }
 
     /// The last state.

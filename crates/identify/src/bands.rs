@@ -8,9 +8,12 @@ use rand_distr::StandardNormal;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use sistership_dynamics::Ship;
-use sistership_dynamics::manoeuvre::{Figure, ManoeuvreSettings, standard};
+use sistership_dynamics::manoeuvre::{Figure, ManoeuvreSettings, standard_of_sisters};
 use sistership_model::Model;
 use sistership_model::law::Law;
+
+/// Draws that sail in lockstep.
+const TOGETHER: usize = 10;
 
 /// How a posterior is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -104,20 +107,23 @@ fn shifted(model: &Model, names: &[String], moved: &[f64], side: f64) -> Model {
 /// given, a fiftieth of the time in which the ship sails her length. `depth_m` is for laws that know it.
 pub fn bands(model: &Model, law: &Law, settings: &ManoeuvreSettings, depth_m: Option<f64>, sampling: Sampling) -> Option<Bands> {
     let draws = draws(model, sampling)?;
-    let sail = |draw: &Model| {
-        let mut ship = Ship::new(draw, law).ok()?;
-        let speed_m_s = settings.speed_m_s.unwrap_or(ship.approach_speed_m_s());
-        ship.set_envelope_speed(speed_m_s);
-        depth_m.into_iter().for_each(|depth_m| ship.set_depth(depth_m));
-        let coarse = 0.02 * ship.lpp_m() / speed_m_s;
-        let settings = ManoeuvreSettings { step_s: settings.step_s.or(Some(coarse)), ..*settings };
-        Some(standard(&ship, &settings))
+    let mut ship = Ship::sisters(model, law).ok()?;
+    let speed_m_s = settings.speed_m_s.unwrap_or(ship.approach_speed_m_s());
+    ship.set_envelope_speed(speed_m_s);
+    ship.forget_validity();
+    depth_m.into_iter().for_each(|depth_m| ship.set_depth(depth_m));
+    let coarse = 0.02 * ship.lpp_m() / speed_m_s;
+    let settings = ManoeuvreSettings { step_s: settings.step_s.or(Some(coarse)), ..*settings };
+    let sisters: Vec<Vec<f64>> = draws.iter().map(|draw| ship.sister(draw)).collect::<Option<_>>()?;
+    let together = |sisters: &[Vec<f64>]| {
+        let sisters: Vec<&[f64]> = sisters.iter().map(Vec::as_slice).collect();
+        standard_of_sisters(&ship, &sisters, &settings)
     };
-    let sailed: Vec<_> = draws.par_iter().map(sail).collect();
-    let failed = sailed.iter().filter(|s| s.as_ref().is_none_or(|s| !s.failures.is_empty())).count();
+    let sailed: Vec<_> = sisters.par_chunks(TOGETHER).flat_map_iter(together).collect();
+    let failed = sailed.iter().filter(|sailed| !sailed.failures.is_empty()).count();
     let mut figures: BTreeMap<String, Vec<Figure>> = BTreeMap::new();
     let mut order = Vec::new();
-    for figure in sailed.into_iter().flatten().flat_map(|sailed| sailed.figures()) {
+    for figure in sailed.into_iter().flat_map(|sailed| sailed.figures()) {
         if !figures.contains_key(&figure.name) {
             order.push(figure.name.clone());
         }

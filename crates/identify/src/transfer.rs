@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use sistership_dynamics::Ship;
 use sistership_dynamics::recorded::{ReplaySettings, replay};
 use sistership_dynamics::state::at;
+use sistership_dynamics::{PlantError, Ship};
 use sistership_model::formula::Expr;
 use sistership_model::law::Law;
 use sistership_model::model::{DERIVED, ModelKind};
@@ -142,7 +142,18 @@ pub fn trend(model: &Model, law: &Law, trials: &[&Trial], restart_s: f64) -> Res
 
 /// A ship whose envelope covers the speeds of the trials.
 pub(crate) fn ready(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, String> {
-    let mut ship = Ship::new(model, law).map_err(|e| e.to_string())?;
+    widened(Ship::new(model, law), trials)
+}
+
+/// As [`ready`], for all models that have the same names of coefficients.
+pub(crate) fn ready_for_sisters(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, String> {
+    let mut ship = widened(Ship::sisters(model, law), trials)?;
+    ship.forget_validity();
+    Ok(ship)
+}
+
+fn widened(ship: Result<Ship, PlantError>, trials: &[&Trial]) -> Result<Ship, String> {
+    let mut ship = ship.map_err(|e| e.to_string())?;
     let fastest = trials.iter().flat_map(|t| t.channel(Channel::U).into_iter().flatten()).fold(0.0_f64, |a, b| a.max(b.abs()));
     ship.set_envelope_speed(fastest);
     Ok(ship)

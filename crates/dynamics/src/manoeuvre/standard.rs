@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use sistership_model::validity::Excursion;
 
-use super::{ManoeuvreSettings, turn, zigzag};
+use super::ManoeuvreSettings;
+use super::helm::{self, Manoeuvre, Sailed};
 use crate::envelope::Stopped;
 use crate::metrics::{Criterion, TurningMetrics, ZigzagMetrics, criteria, initial_turning_distance};
 use crate::ship::Ship;
@@ -54,26 +55,78 @@ impl StandardManoeuvres {
     }
 }
 
+impl Turn {
+    pub(super) fn of(sailed: Sailed, rudder_deg: f64) -> Result<Self, Stopped> {
+        let metrics = TurningMetrics::of(&sailed.after, rudder_deg).ok_or_else(nothing_sailed)?;
+        Ok(Self { track: sailed.track, metrics })
+    }
+}
+
+impl Zigzag {
+    pub(super) fn of(sailed: Sailed, rudder_deg: f64, switch_deg: f64) -> Result<Self, Stopped> {
+        let metrics = ZigzagMetrics::of(&sailed.after, rudder_deg, switch_deg, &sailed.reversals_s).ok_or_else(nothing_sailed)?;
+        Ok(Self { track: sailed.track, metrics })
+    }
+}
+
+fn nothing_sailed() -> Stopped {
+    Stopped { t_s: 0.0, reason: "nothing was sailed".into() }
+}
+
+/// What the standard manoeuvres are: hard turns, zigzags, and turns that begin with 10 deg of rudder.
+const STANDARD: [Manoeuvre; 8] = [
+    Manoeuvre::Turn { rudder: 35.0 },
+    Manoeuvre::Turn { rudder: -35.0 },
+    Manoeuvre::Zigzag { rudder: 10.0, switch: 10.0 },
+    Manoeuvre::Zigzag { rudder: -10.0, switch: 10.0 },
+    Manoeuvre::Zigzag { rudder: 20.0, switch: 20.0 },
+    Manoeuvre::Zigzag { rudder: -20.0, switch: 20.0 },
+    Manoeuvre::Turn { rudder: INITIAL_DEG },
+    Manoeuvre::Turn { rudder: -INITIAL_DEG },
+];
+
+/// Rudder and change of heading of the initial turning test.
+const INITIAL_DEG: f64 = 10.0;
+
 /// Sails the standard manoeuvres; one that diverges is reported and the others go on.
 pub fn standard(ship: &Ship, settings: &ManoeuvreSettings) -> StandardManoeuvres {
+    standard_of_sisters(ship, &[&[]], settings).remove(0)
+}
+
+/// Sails the standard manoeuvres with every sister in lockstep, each given by her coefficients, as [`standard`] would.
+pub fn standard_of_sisters(ship: &Ship, sisters: &[&[f64]], settings: &ManoeuvreSettings) -> Vec<StandardManoeuvres> {
+    let manoeuvres: Vec<(Manoeuvre, &[f64])> =
+        sisters.iter().flat_map(|coefficients| STANDARD.map(|manoeuvre| (manoeuvre, *coefficients))).collect();
+    let mut sailed = helm::sail(ship, &manoeuvres, settings).into_iter();
+    sisters.iter().map(|_| judged(ship, settings, sailed.by_ref().take(STANDARD.len()))).collect()
+}
+
+/// What came of one ship's standard manoeuvres.
+fn judged(
+    ship: &Ship,
+    settings: &ManoeuvreSettings,
+    sailed: impl Iterator<Item = Result<Sailed, Stopped>>,
+) -> StandardManoeuvres {
     let mut all = StandardManoeuvres::default();
-    for rudder_deg in [35.0, -35.0] {
-        let sailed = turn(ship, rudder_deg, settings);
-        if let Some(turn) = kept(ship, sailed, &format!("turn {rudder_deg} deg"), &mut all, |turn| &turn.track) {
-            all.turns.push(turn.metrics);
-        }
-    }
-    for angle in [10.0, -10.0, 20.0, -20.0_f64] {
-        let sailed = zigzag(ship, angle, angle.abs(), settings);
-        if let Some(zigzag) = kept(ship, sailed, &format!("zigzag {angle}/{}", angle.abs()), &mut all, |zigzag| &zigzag.track) {
-            all.zigzags.push(zigzag.metrics);
-        }
-    }
     let mut initial = Vec::new();
-    for rudder_deg in [10.0, -10.0] {
-        let sailed = turn(ship, rudder_deg, settings);
-        if let Some(turn) = kept(ship, sailed, &format!("turn {rudder_deg} deg"), &mut all, |turn| &turn.track) {
-            initial.push(initial_turning_distance(&turn.track, rudder_deg, 10.0));
+    for (manoeuvre, sailed) in STANDARD.into_iter().zip(sailed) {
+        match manoeuvre {
+            Manoeuvre::Turn { rudder } => {
+                let turn = sailed.and_then(|sailed| Turn::of(sailed, rudder));
+                let turn = kept(ship, turn, &format!("turn {rudder} deg"), &mut all, |turn| &turn.track);
+                match turn {
+                    Some(turn) if rudder.abs() == INITIAL_DEG => {
+                        initial.push(initial_turning_distance(&turn.track, rudder, INITIAL_DEG));
+                    }
+                    turn => all.turns.extend(turn.map(|turn| turn.metrics)),
+                }
+            }
+            Manoeuvre::Zigzag { rudder, switch } => {
+                let zigzag = sailed.and_then(|sailed| Zigzag::of(sailed, rudder, switch));
+                let name = format!("zigzag {rudder}/{switch}");
+                let zigzag = kept(ship, zigzag, &name, &mut all, |zigzag| &zigzag.track);
+                all.zigzags.extend(zigzag.map(|zigzag| zigzag.metrics));
+            }
         }
     }
     let both: Option<Vec<f64>> = initial.into_iter().collect();

@@ -3,7 +3,7 @@
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard};
 use sistership_dynamics::metrics::{Recognised, recorded_track};
-use sistership_dynamics::recorded::{ReplaySettings, replay};
+use sistership_dynamics::recorded::{Recorded, Replay, ReplaySettings, replay_all};
 use sistership_dynamics::validity::covered;
 use sistership_model::Model;
 use sistership_model::posterior::Posterior;
@@ -93,23 +93,32 @@ impl Task<'_> {
     /// The turning circles and zigzags among the trials, beside what both models make of the recorded rudder.
     fn measured_manoeuvres(&self, refined: &Model) -> Vec<MeasuredManoeuvre> {
         let trials = self.whole.iter().map(|trial| (*trial, true)).chain(self.judged.iter().map(|trial| (*trial, false)));
-        let one = |(trial, fitted): (&Trial, bool)| {
-            let recognised = Recognised::of(trial)?;
+        let recognised: Vec<(&Trial, bool, Recognised)> =
+            trials.filter_map(|(trial, fitted)| Some((trial, fitted, Recognised::of(trial)?))).collect();
+        let trials: Vec<&Trial> = recognised.iter().map(|(trial, ..)| *trial).collect();
+        let [source, refined] = [&self.transferred, refined].map(|model| self.sailed(model, &trials));
+        let one = |(k, (trial, fitted, recognised)): (usize, &(&Trial, bool, Recognised))| {
             let samples: Vec<usize> = (0..trial.len()).collect();
-            let simulated = |model: &Model| {
-                let ship = ready(model, self.law, &[trial]).ok()?;
-                let run = replay(&ship, trial, &ReplaySettings::default()).ok().filter(|run| run.stopped.is_none())?;
+            let simulated = |runs: &[Replay]| {
+                let run = runs.get(k).filter(|run| run.stopped.is_none())?;
                 recognised.metrics(&run.track, &run.samples)
             };
             Some(MeasuredManoeuvre {
                 trial: trial.name.clone(),
-                fitted,
+                fitted: *fitted,
                 measured: recognised.metrics(&recorded_track(trial)?, &samples)?,
-                source: simulated(&self.transferred),
-                refined: simulated(refined),
+                source: simulated(&source),
+                refined: simulated(&refined),
             })
         };
-        trials.filter_map(one).collect()
+        recognised.iter().enumerate().filter_map(one).collect()
+    }
+
+    /// Trials from beginning to end by a model; nothing where it cannot sail them.
+    fn sailed(&self, model: &Model, trials: &[&Trial]) -> Vec<Replay> {
+        let Ok(ship) = ready(model, self.law, trials) else { return Vec::new() };
+        let recorded: Vec<Recorded<'_>> = trials.iter().map(|trial| Recorded { trial, coefficients: &[] }).collect();
+        replay_all(&ship, &recorded, &ReplaySettings::default()).unwrap_or_default()
     }
 
     fn standard_manoeuvres(&self, model: &Model) -> StandardManoeuvres {
@@ -176,8 +185,8 @@ impl Task<'_> {
             };
             return Ok(HeldOut { source: options[0].errors.rmse(), refined: options[best].errors.rmse(), how });
         }
-        let source = self.simulate_all(&self.judged, &|_| self.transferred.clone())?.total;
-        let refined = self.simulate_all(&self.judged, &|_| model.clone())?.total;
+        let source = self.simulate_all(&self.judged, std::slice::from_ref(&self.transferred), &|_| 0)?.total;
+        let refined = self.simulate_all(&self.judged, std::slice::from_ref(model), &|_| 0)?.total;
         let names: Vec<&str> = self.judged.iter().map(|trial| trial.name.as_str()).collect();
         Ok(HeldOut {
             source: source.rmse(),

@@ -13,6 +13,7 @@ mod published;
 mod rows;
 mod selection;
 mod settings;
+mod simulated;
 mod trajectory;
 mod variant;
 mod weak;

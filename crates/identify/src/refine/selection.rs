@@ -3,9 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
 use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
-use sistership_dynamics::recorded::{ReplaySettings, replay};
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::Trial;
@@ -17,8 +15,9 @@ use super::outcome::{RefineError, Refinement, StepOption};
 use super::parts::parts;
 use super::published::{Choices, Fit, Fitted, Fold, tune};
 use super::settings::{Method, Settings};
+use super::simulated::Simulated;
 use super::variant::Variant;
-use crate::transfer::{approach_of, ready, transfer};
+use crate::transfer::{approach_of, transfer};
 
 /// What is to be refined, and against what.
 #[derive(Debug, Clone, Copy)]
@@ -129,21 +128,6 @@ pub(super) struct Trying {
     pub(super) search: Option<SearchReport>,
 }
 
-/// Trials as simulated by models that did not see them.
-pub(super) struct Simulated {
-    pub(super) total: SquaredError,
-    each: Vec<SquaredError>,
-    /// The first divergence.
-    reason: Option<String>,
-}
-
-impl Simulated {
-    /// Of an option that is out of the question.
-    fn refused(reason: String) -> Self {
-        Self { total: SquaredError::default(), each: Vec::new(), reason: Some(reason) }
-    }
-}
-
 impl<'a> Task<'a> {
     fn new(
         request: &'a Request<'a>,
@@ -247,7 +231,7 @@ impl<'a> Task<'a> {
         if let Some(Err(reason)) = limits.map(|limits| limits.check(&self.transferred)) {
             return Ok(self.trying("source".into(), None, Taken::Source, 0, Simulated::refused(reason)));
         }
-        let simulated = self.simulate_all(&self.training, &|_| self.transferred.clone())?;
+        let simulated = self.simulate_all(&self.training, std::slice::from_ref(&self.transferred), &|_| 0)?;
         Ok(self.trying("source".into(), None, Taken::Source, 0, simulated))
     }
 
@@ -265,7 +249,7 @@ impl<'a> Task<'a> {
             Ok(models) => models,
             Err(reason) => return Ok(self.trying(label, Some(lambda_min), taken, 0, Simulated::refused(reason))),
         };
-        let simulated = self.simulate_all(&self.training, &|trial| models[self.fold_of(trial)].clone())?;
+        let simulated = self.simulate_all(&self.training, &models, &|trial| self.fold_of(trial))?;
         let size = models.first().map_or(0, |model| model.coefficients.len());
         Ok(Trying { left_out: models, ..self.trying(label, Some(lambda_min), taken, size, simulated) })
     }
@@ -288,29 +272,6 @@ impl<'a> Task<'a> {
         let (lambda, alpha) = (flat(&|c| c.lambda), flat(&|c| c.alpha));
         let option = StepOption { step, lambda_min, lambda, alpha, error, chosen: false, reason };
         Trying { option, taken, errors, each, size, left_out: Vec::new(), search: None }
-    }
-
-    /// Simulates trials, each with the model that did not see it; the first divergence is the reason against the option.
-    pub(super) fn simulate_all(
-        &self,
-        trials: &[&Trial],
-        model_of: &(dyn Fn(usize) -> Model + Sync),
-    ) -> Result<Simulated, RefineError> {
-        let settings = ReplaySettings { restart_s: self.settings.restart_s, ..ReplaySettings::default() };
-        let one = |(index, trial): (usize, &&Trial)| -> Result<(SquaredError, Option<String>), RefineError> {
-            let ship = match ready(&model_of(index), self.law, trials) {
-                Ok(ship) => ship,
-                Err(reason) => return Ok((SquaredError::default(), Some(reason))),
-            };
-            let run = replay(&ship, trial, &settings).map_err(|e| RefineError::Channel { trial: e.trial, channel: e.channel })?;
-            let reason = run.stopped.as_ref().map(|stopped| format!("{} {stopped}", trial.name));
-            Ok((SquaredError::of(trial, &run), reason))
-        };
-        let runs: Vec<_> = trials.par_iter().enumerate().map(one).collect::<Result<_, _>>()?;
-        let mut total = SquaredError::default();
-        runs.iter().for_each(|(error, _)| total.add(error));
-        let (each, reasons): (Vec<_>, Vec<_>) = runs.into_iter().unzip();
-        Ok(Simulated { total, each, reason: reasons.into_iter().flatten().next() })
     }
 
     /// The transferred model with these coefficients and no others.

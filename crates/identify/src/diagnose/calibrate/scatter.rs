@@ -141,7 +141,8 @@ fn refined(workspace: &Workspace<'_>, start: Scatter, coefficients: &[Vec<f64>],
                         break;
                     }
                     let deviance = deviance(&parts, &tried);
-                    if deviance > best.0 - 0.1 {
+                    // What is no number is no gain.
+                    if deviance.is_nan() || deviance > best.0 - 0.1 {
                         break;
                     }
                     best = (deviance, tried);

@@ -172,7 +172,7 @@ impl<'a> Searching<'a> {
 
     fn option(&self, found: Found) -> Result<Trying, RefineError> {
         let models: Vec<Model> = found.left_out.iter().map(|coefficients| self.model(coefficients)).collect();
-        let simulated = self.task.simulate_all(&self.task.training, &|trial| models[self.task.fold_of(trial)].clone())?;
+        let simulated = self.task.simulate_all(&self.task.training, &models, &|trial| self.task.fold_of(trial))?;
         let one = |(k, name): (usize, &String)| {
             let deviation = self.objective.sizes[k];
             (name.clone(), Fitted { value: found.all[k], standard_error: 0.0, prior_deviation: deviation })

@@ -21,10 +21,9 @@ use super::segments::{Plan, compared, cut};
 use super::solve::Held;
 use crate::transfer::ready;
 
-/// Pulls towards the weak form that are tried, strongest first; the source pulls with a hundredth of them.
-const PULLS: [f64; 5] = [1.0, 0.1, 0.01, 1e-3, 1e-4];
-/// The pull at which the equations are linearised for choosing among them.
-const MIDDLE: f64 = 0.01;
+/// Pulls towards the weak form that are tried, strongest first, each from where the one before has ended; the source pulls with
+/// a hundredth of them.
+const PULLS: [f64; 7] = [100.0, 10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4];
 /// Huber's threshold in robust standard deviations of a state's residuals.
 const HUBER: f64 = 3.0;
 /// Most steps.
@@ -110,40 +109,23 @@ fn weak_values(variant: &Variant, choices: &Choices) -> Result<BTreeMap<String, 
 impl Trajectory<'_> {
     fn options(mut self, options: &mut Vec<Trying>, progress: Progress<'_>) -> Result<(), RefineError> {
         let prior = self.prior(&|_| true)?;
-        let first = self.pass(&prior.weak)?;
-        self.passing.thresholds = first.sizes.into_iter().map(threshold).collect();
-        let middle = self.descend(&prior, strength(MIDDLE), prior.weak.clone())?;
+        self.passing.thresholds = self.pass(&prior.weak)?.sizes.into_iter().map(threshold).collect();
         let priors: Vec<Prior> =
             (0..self.task.fold_count()).map(|fold| self.prior(&|t| self.inside(t, fold))).collect::<Result<_, _>>()?;
+        let mut reached = self.reached(prior.weak.clone())?;
         for pull in PULLS {
             let label = format!("trajectory, {}, pull {pull:.0e}", self.variant.family.name());
+            step(progress, 0.7, &label)?;
+            reached = self.descend(&prior, strength(pull), reached)?;
             step(progress, 0.7, &format!("{label}: simulating manoeuvres left out"))?;
             let models: Vec<Model> =
-                priors.iter().enumerate().map(|(fold, prior)| self.left_out(fold, prior, strength(pull), &middle)).collect();
-            let simulated = self.task.simulate_all(&self.task.training, &|t| models[self.task.fold_of(t)].clone())?;
-            let taken = Taken::Fitted { fit: self.one_step(&prior, strength(pull), &middle) };
+                priors.iter().enumerate().map(|(fold, prior)| self.left_out(fold, prior, strength(pull), &reached)).collect();
+            let simulated = self.task.simulate_all(&self.task.training, &models, &|trial| self.task.fold_of(trial))?;
+            let taken = Taken::Fitted { fit: Box::new(self.fit(&prior, strength(pull), &reached)) };
             let trying = self.task.trying(label, Some(pull), taken, self.names.len(), simulated);
             options.push(Trying { left_out: models, ..trying });
         }
-        self.fit_best(&prior, middle, options)
-    }
-
-    /// Carries the best option to its end; the others stay one step from where the equations were linearised.
-    fn fit_best(&self, prior: &Prior, middle: Reached, options: &mut [Trying]) -> Result<(), RefineError> {
-        let Some(best) = super::super::finish::best(options) else { return Ok(()) };
-        let (Taken::Fitted { fit }, Some(pull)) = (&mut options[best].taken, options[best].option.lambda_min) else {
-            return Ok(());
-        };
-        let reached = self.descend(prior, strength(pull), middle.at)?;
-        **fit = self.fit(prior, strength(pull), &reached.pass, reached.at.clone());
         Ok(())
-    }
-
-    /// One step from where the equations were linearised.
-    fn one_step(&self, prior: &Prior, strength: Strength, middle: &Reached) -> Box<Fit> {
-        let held = Held::new(&total(&middle.pass, |_| true), prior, strength, &middle.at);
-        let at = held.step(1e-6).map_or_else(|| middle.at.clone(), |step| &middle.at + step);
-        Box::new(self.fit(prior, strength, &middle.pass, at))
     }
 
     fn inside(&self, trial: usize, fold: usize) -> bool {
@@ -170,21 +152,23 @@ impl Trajectory<'_> {
         Ok(self.passing.pass(&system))
     }
 
+    fn reached(&self, at: DVector<f64>) -> Result<Reached, RefineError> {
+        Ok(Reached { pass: self.pass(&at)?, at })
+    }
+
     /// From coefficients to the least cost nearby.
-    fn descend(&self, prior: &Prior, strength: Strength, from: DVector<f64>) -> Result<Reached, RefineError> {
-        let mut here = Reached { pass: self.pass(&from)?, at: from };
+    fn descend(&self, prior: &Prior, strength: Strength, mut here: Reached) -> Result<Reached, RefineError> {
         let mut damping = 1e-3;
         let mut held = Held::new(&total(&here.pass, |_| true), prior, strength, &here.at);
         for _ in 0..STEPS {
             let model = || self.task.model_at(self.variant, &self.values(&here.at));
             self.task.glimpse(&Glimpse { evaluations: 0, objective: held.cost, model: &model });
             let Some(step) = held.step(damping) else { break };
-            let at = &here.at + step;
-            let pass = self.pass(&at)?;
-            let next = Held::new(&total(&pass, |_| true), prior, strength, &at);
+            let there = self.reached(&here.at + step)?;
+            let next = Held::new(&total(&there.pass, |_| true), prior, strength, &there.at);
             if next.cost.is_finite() && next.cost < held.cost {
                 let gained = 1.0 - next.cost / held.cost;
-                (here, held) = (Reached { at, pass }, next);
+                (here, held) = (there, next);
                 damping *= 0.1;
                 if gained < ENOUGH {
                     break;
@@ -200,17 +184,17 @@ impl Trajectory<'_> {
     }
 
     /// The model of a fold: one step from where all trials are fitted, on the trials inside it and their weak form.
-    fn left_out(&self, fold: usize, prior: &Prior, strength: Strength, middle: &Reached) -> Model {
-        let normal = total(&middle.pass, |trial| self.inside(trial, fold));
-        let held = Held::new(&normal, prior, strength, &middle.at);
-        let at = held.step(1e-6).map_or_else(|| middle.at.clone(), |step| &middle.at + step);
+    fn left_out(&self, fold: usize, prior: &Prior, strength: Strength, reached: &Reached) -> Model {
+        let normal = total(&reached.pass, |trial| self.inside(trial, fold));
+        let held = Held::new(&normal, prior, strength, &reached.at);
+        let at = held.step(1e-6).map_or_else(|| reached.at.clone(), |step| &reached.at + step);
         self.task.model_at(self.variant, &self.values(&at))
     }
 
     /// Coefficients with what a pass near them says of their errors.
-    fn fit(&self, prior: &Prior, strength: Strength, pass: &Pass, at: DVector<f64>) -> Fit {
+    fn fit(&self, prior: &Prior, strength: Strength, Reached { at, pass }: &Reached) -> Fit {
         let normal = total(pass, |_| true);
-        let held = Held::new(&normal, prior, strength, &at);
+        let held = Held::new(&normal, prior, strength, at);
         let joint = |weak: &Errors| errors(&self.names, &held, &pass.gradients, normal.count, (prior, strength), weak);
         let errors = self.weak.as_ref().and_then(joint);
         let one = |(k, name): (usize, &String)| {

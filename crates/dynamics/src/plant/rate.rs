@@ -1,0 +1,128 @@
+//! The equations of motion at a state, for a block of ships in lockstep.
+
+use nalgebra::{Matrix4, Vector4};
+
+use super::{Inputs, Plant};
+use crate::state::{StateVector, States, at, lane_of};
+use crate::tape::Lanes;
+
+/// States that the tape takes, in its order.
+const ON_TAPE: [usize; 6] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI];
+
+/// Room to evaluate in, kept from step to step so that the time loop allocates nothing.
+#[derive(Debug)]
+pub struct Work<const N: usize = 1> {
+    /// What the tape takes: states, inputs of the law, open coefficients.
+    point: Vec<Lanes<N>>,
+    work: Vec<Lanes<N>>,
+    coefficients: Vec<Lanes<N>>,
+    pub(crate) instruments: crate::instruments::Room,
+}
+
+impl<const N: usize> Default for Work<N> {
+    fn default() -> Self {
+        Self { point: Vec::new(), work: Vec::new(), coefficients: Vec::new(), instruments: crate::instruments::Room::default() }
+    }
+}
+
+impl<const N: usize> Work<N> {
+    /// Sets the open coefficients of the ship in a lane.
+    pub fn set_coefficients(&mut self, lane: usize, values: &[f64]) {
+        self.coefficients.resize(values.len(), [0.0; N]);
+        self.coefficients.iter_mut().zip(values).for_each(|(lanes, value)| lanes[lane] = *value);
+        // The point is made anew with them.
+        self.point.clear();
+    }
+
+    fn fill(&mut self, states: &States<N>, inputs: &[Lanes<N>]) {
+        let fixed = ON_TAPE.len() + inputs.len();
+        if self.point.len() != fixed + self.coefficients.len() {
+            self.point.clear();
+            self.point.resize(fixed, [0.0; N]);
+            self.point.extend_from_slice(&self.coefficients);
+        }
+        self.point.iter_mut().zip(ON_TAPE).for_each(|(lanes, place)| *lanes = states[place]);
+        self.point[ON_TAPE.len()..fixed].copy_from_slice(inputs);
+    }
+}
+
+impl Plant {
+    /// The rate of change of the state; that of the rudder is left at zero, the steering gear's business.
+    pub fn rate(&self, state: &StateVector, inputs: &Inputs, work: &mut Work) -> StateVector {
+        let states = std::array::from_fn(|place| [state[place]]);
+        let inputs = inputs.map(|value| [value]);
+        lane_of(&self.rates(&states, &inputs, work), 0)
+    }
+
+    /// The rates of change of the states of several ships, each with her own inputs and open coefficients. `inputs` has at
+    /// least as many as the law takes.
+    pub fn rates<const N: usize>(&self, states: &States<N>, inputs: &[Lanes<N>], room: &mut Work<N>) -> States<N> {
+        room.fill(states, &inputs[..self.input_names.len()]);
+        self.tape.run(&room.point, &mut room.work);
+        let mut rates = [[0.0; N]; 9];
+        self.accelerate(&room.work, &mut rates);
+        self.turn(states, &room.work, &mut rates);
+        rates
+    }
+
+    fn accelerate<const N: usize>(&self, work: &[Lanes<N>], rates: &mut States<N>) {
+        let read = |output: Option<usize>| output.map_or([0.0; N], |output| self.tape.read(output, work));
+        let forces = self.layout.forces.map(read);
+        let accelerations = match &self.mobility {
+            Some(mobility) => product(mobility, &forces),
+            None => self.solved(work, &forces),
+        };
+        for ((place, acceleration), output) in
+            [at::U, at::V, at::P, at::R].into_iter().zip(accelerations).zip(self.layout.accelerations)
+        {
+            let added = read(output);
+            rates[place] = std::array::from_fn(|lane| acceleration[lane] + added[lane]);
+        }
+    }
+
+    /// Where masses change with the motion, each ship has her own.
+    fn solved<const N: usize>(&self, work: &[Lanes<N>], forces: &[Lanes<N>; 4]) -> [Lanes<N>; 4] {
+        let mut out = [[0.0; N]; 4];
+        for lane in 0..N {
+            let entry = |row: usize, column: usize| {
+                let output = self.layout.mass[row][column];
+                output.map_or(f64::from(u8::from(row == column)), |output| self.tape.at(output, work)[lane])
+            };
+            let own = Vector4::from_fn(|row, _| forces[row][lane]);
+            let solved = Matrix4::from_fn(entry).lu().solve(&own).unwrap_or_else(|| Vector4::repeat(f64::NAN));
+            out.iter_mut().zip(solved.iter()).for_each(|(out, value)| out[lane] = *value);
+        }
+        out
+    }
+
+    /// Where she goes, and how her attitude changes.
+    fn turn<const N: usize>(&self, states: &States<N>, work: &[Lanes<N>], rates: &mut States<N>) {
+        let (u, v) = (&states[at::U], &states[at::V]);
+        for lane in 0..N {
+            let (sin, cos) = states[at::PSI][lane].sin_cos();
+            rates[at::X][lane] = u[lane] * cos - v[lane] * sin;
+            rates[at::Y][lane] = u[lane] * sin + v[lane] * cos;
+        }
+        rates[at::PSI] = states[at::R];
+        if self.has_roll() {
+            rates[at::PHI] = states[at::P];
+        }
+        for (place, output) in [at::X, at::Y, at::PSI, at::PHI].into_iter().zip(self.layout.kinematics) {
+            output.into_iter().for_each(|output| rates[place] = self.tape.read(output, work));
+        }
+    }
+}
+
+fn product<const N: usize>(matrix: &Matrix4<f64>, vectors: &[Lanes<N>; 4]) -> [Lanes<N>; 4] {
+    let mut out = [[0.0; N]; 4];
+    for (row, out) in out.iter_mut().enumerate() {
+        for (column, vector) in vectors.iter().enumerate() {
+            let factor = matrix[(row, column)];
+            // An axis that the law does not have adds nothing, and may not be a number.
+            if factor != 0.0 {
+                (0..N).for_each(|lane| out[lane] += factor * vector[lane]);
+            }
+        }
+    }
+    out
+}

@@ -1,0 +1,101 @@
+//! A gap-free part of a trial, on which a simulation runs without starting anew.
+
+use std::ops::Range;
+
+use super::{Record, Replay};
+use crate::envelope::Stopped;
+use crate::integrate::Stage;
+use crate::lockstep::Passage;
+use crate::plant::{Inputs, Work};
+use crate::ship::Ship;
+use crate::state::{StateVector, Trajectory, at};
+
+pub(super) struct Part<'a> {
+    /// Place of the trial among all.
+    trial: usize,
+    record: &'a Record<'a>,
+    coefficients: &'a [f64],
+    part: Range<usize>,
+    /// Longest step, s.
+    longest_s: f64,
+    /// The sample behind, and the steps taken since.
+    sample: usize,
+    taken: usize,
+    /// Steps from that sample to the next; none before the first.
+    steps: usize,
+    track: Trajectory,
+    samples: Vec<usize>,
+    stopped: Option<Stopped>,
+}
+
+impl<'a> Part<'a> {
+    pub fn new(trial: usize, record: &'a Record<'a>, coefficients: &'a [f64], part: Range<usize>, longest_s: f64) -> Self {
+        let (track, samples) = (Trajectory::default(), Vec::with_capacity(part.len()));
+        let sample = part.start;
+        Self { trial, record, coefficients, part, longest_s, sample, taken: 0, steps: 0, track, samples, stopped: None }
+    }
+
+    /// Adds what was simulated to that of its trial.
+    pub fn join(self, replays: &mut [Replay]) {
+        let replay = &mut replays[self.trial];
+        replay.track.append(self.track);
+        replay.samples.extend(self.samples);
+        if replay.stopped.is_none() {
+            replay.stopped = self.stopped;
+        }
+    }
+
+    /// At a sample: how far to the next step, s.
+    fn at_sample(&mut self, ship: &Ship, state: &mut StateVector, work: &mut Work) -> Option<f64> {
+        let (k, trial) = (self.sample, self.record.trial);
+        state[at::DELTA] = self.record.delta[k];
+        if let Err(stopped) = ship.envelope().check(trial.t_s[k], state) {
+            self.stopped = Some(stopped);
+            return None;
+        }
+        let said = ship.says(trial.velocity, state, &self.record.inputs_at(k, 0.0), work);
+        self.track.push(trial.t_s[k], said, self.record.n.map_or(0.0, |n| n[k]));
+        self.samples.push(k);
+        if k + 1 >= self.part.end {
+            return None;
+        }
+        self.steps = (self.interval_s() / self.longest_s - 1e-9).ceil().max(1.0) as usize;
+        self.taken = 0;
+        Some(self.interval_s() / self.steps as f64)
+    }
+
+    fn interval_s(&self) -> f64 {
+        self.record.trial.t_s[self.sample + 1] - self.record.trial.t_s[self.sample]
+    }
+}
+
+impl Passage for Part<'_> {
+    fn coefficients(&self) -> &[f64] {
+        self.coefficients
+    }
+
+    fn start(&mut self, ship: &Ship, work: &mut Work) -> StateVector {
+        let (k, frame) = (self.part.start, self.record.trial.velocity);
+        ship.truth(frame, &self.record.state_at(k), &self.record.inputs_at(k, 0.0), work)
+    }
+
+    fn arrive(&mut self, ship: &Ship, state: &mut StateVector, work: &mut Work) -> Option<f64> {
+        if self.steps == 0 {
+            return self.at_sample(ship, state, work);
+        }
+        self.taken += 1;
+        if self.taken < self.steps {
+            return Some(self.interval_s() / self.steps as f64);
+        }
+        self.sample += 1;
+        self.at_sample(ship, state, work)
+    }
+
+    fn inputs(&self, _: &Ship, stage: Stage, _: f64) -> Inputs {
+        self.record.inputs_at(self.sample, (self.taken as f64 + stage.fraction()) / self.steps as f64)
+    }
+
+    fn rudder_rate(&self, _: &Ship, _: f64) -> f64 {
+        0.0
+    }
+}
