@@ -3,7 +3,7 @@
 //! `cargo run --release -p sistership-tests --example fleet -- 10000` (four trials a ship; SQLite in a temporary folder, or
 //! `SISTERSHIP_DATABASE_URL`). Prints ships a second for each step, so that the cost a ship can be compared between sizes.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use sistership_server::fleet::{Asked, PriorChoice, Rule, Standing, learn, order_refinement};
 use sistership_server::{Archive, Config, Workers};
@@ -12,6 +12,7 @@ use sistership_tests::fleet::{FOUNDATION, Yard, name};
 
 const TRIALS: usize = 4;
 const WORKERS: usize = 2;
+const POLL: Duration = Duration::from_millis(10);
 
 #[tokio::main]
 async fn main() {
@@ -22,6 +23,8 @@ async fn main() {
         config.database_url = url;
     }
     config.workers = WORKERS;
+    // A worker with nothing to do looks for work twice a second, which is most of what a small fleet takes; not measured here.
+    config.leases.poll = POLL;
     let begun = Workers::start(Config { workers: 0, ..config.clone() }).await.expect("the zoo");
     let (archive, store) = (begun.archive().clone(), begun.archive().store.clone());
     timed("loaded", ships, load(&archive, ships)).await;
@@ -90,6 +93,6 @@ async fn until_done(store: &Store, bulk: &Bulk) -> Standing {
         if !matches!(standing.state, "queued" | "running") {
             return standing;
         }
-        tokio::time::sleep(std::time::Duration::from_millis(200)).await;
+        tokio::time::sleep(POLL).await;
     }
 }

@@ -8,15 +8,33 @@ use crate::state::{StateVector, Trajectory, at, straight};
 
 /// A manoeuvre by its angles, deg.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Manoeuvre {
+pub enum Manoeuvre {
     /// A turning circle.
-    Turn { rudder: f64 },
+    Turn {
+        /// Rudder.
+        rudder: f64,
+    },
     /// A zigzag of four reversals.
-    Zigzag { rudder: f64, switch: f64 },
+    Zigzag {
+        /// Rudder, to the side of the first execute.
+        rudder: f64,
+        /// Change of heading at which the rudder is reversed.
+        switch: f64,
+    },
+}
+
+impl std::fmt::Display for Manoeuvre {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Turn { rudder } => write!(out, "turn {rudder} deg"),
+            Self::Zigzag { rudder, switch } => write!(out, "zigzag {rudder}/{switch}"),
+        }
+    }
 }
 
 /// What was sailed.
-pub(super) struct Sailed {
+#[derive(Debug)]
+pub struct Sailed {
     /// From the execution of the rudder on.
     pub after: Trajectory,
     /// With the run before it.
@@ -25,8 +43,10 @@ pub(super) struct Sailed {
     pub reversals_s: Vec<f64>,
 }
 
-/// Sails manoeuvres in lockstep, each by a ship with her own coefficients among sisters, or none.
-pub(super) fn sail(
+/// Sails manoeuvres in lockstep, each by a sister with her own coefficients ([`Ship::sister`]); none for a ship with hers.
+///
+/// Each fails by itself where the motion leaves the physical range, and says when and why.
+pub fn sail_together(
     ship: &Ship,
     manoeuvres: &[(Manoeuvre, &[f64])],
     settings: &ManoeuvreSettings,

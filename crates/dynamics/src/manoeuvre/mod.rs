@@ -7,13 +7,13 @@ mod standard;
 use serde::{Deserialize, Serialize};
 
 pub use figures::Figure;
+pub use helm::{Manoeuvre, Sailed, sail_together};
 pub use standard::{StandardManoeuvres, Turn, Zigzag, standard, standard_of_sisters};
 
 use crate::envelope::Stopped;
 use crate::integrate::Method;
 use crate::ship::{Run, Ship};
 use crate::state::StateVector;
-use helm::Manoeuvre;
 
 /// How manoeuvres are sailed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -64,7 +64,7 @@ impl ManoeuvreSettings {
 /// Says when and why the motion left the physical range.
 pub fn turn(ship: &Ship, rudder_deg: f64, settings: &ManoeuvreSettings) -> Result<Turn, Stopped> {
     let turn = Manoeuvre::Turn { rudder: rudder_deg };
-    Turn::of(helm::sail(ship, &[(turn, &[])], settings).remove(0)?, rudder_deg)
+    Turn::of(sail_together(ship, &[(turn, &[])], settings).remove(0)?, rudder_deg)
 }
 
 /// Sails a zigzag of four reversals.
@@ -73,5 +73,5 @@ pub fn turn(ship: &Ship, rudder_deg: f64, settings: &ManoeuvreSettings) -> Resul
 /// Says when and why the motion left the physical range.
 pub fn zigzag(ship: &Ship, rudder_deg: f64, switch_deg: f64, settings: &ManoeuvreSettings) -> Result<Zigzag, Stopped> {
     let zigzag = Manoeuvre::Zigzag { rudder: rudder_deg, switch: switch_deg };
-    Zigzag::of(helm::sail(ship, &[(zigzag, &[])], settings).remove(0)?, rudder_deg, switch_deg)
+    Zigzag::of(sail_together(ship, &[(zigzag, &[])], settings).remove(0)?, rudder_deg, switch_deg)
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use sistership_model::validity::Excursion;
 
 use super::ManoeuvreSettings;
-use super::helm::{self, Manoeuvre, Sailed};
+use super::helm::{Manoeuvre, Sailed, sail_together};
 use crate::envelope::Stopped;
 use crate::metrics::{Criterion, TurningMetrics, ZigzagMetrics, criteria, initial_turning_distance};
 use crate::ship::Ship;
@@ -56,14 +56,22 @@ impl StandardManoeuvres {
 }
 
 impl Turn {
-    pub(super) fn of(sailed: Sailed, rudder_deg: f64) -> Result<Self, Stopped> {
+    /// Of a track that was steered so.
+    ///
+    /// # Errors
+    /// Says that the track ends before the rudder is executed.
+    pub fn of(sailed: Sailed, rudder_deg: f64) -> Result<Self, Stopped> {
         let metrics = TurningMetrics::of(&sailed.after, rudder_deg).ok_or_else(nothing_sailed)?;
         Ok(Self { track: sailed.track, metrics })
     }
 }
 
 impl Zigzag {
-    pub(super) fn of(sailed: Sailed, rudder_deg: f64, switch_deg: f64) -> Result<Self, Stopped> {
+    /// Of a track that was steered so.
+    ///
+    /// # Errors
+    /// Says that the track ends before the rudder is executed.
+    pub fn of(sailed: Sailed, rudder_deg: f64, switch_deg: f64) -> Result<Self, Stopped> {
         let metrics = ZigzagMetrics::of(&sailed.after, rudder_deg, switch_deg, &sailed.reversals_s).ok_or_else(nothing_sailed)?;
         Ok(Self { track: sailed.track, metrics })
     }
@@ -97,7 +105,7 @@ pub fn standard(ship: &Ship, settings: &ManoeuvreSettings) -> StandardManoeuvres
 pub fn standard_of_sisters(ship: &Ship, sisters: &[&[f64]], settings: &ManoeuvreSettings) -> Vec<StandardManoeuvres> {
     let manoeuvres: Vec<(Manoeuvre, &[f64])> =
         sisters.iter().flat_map(|coefficients| STANDARD.map(|manoeuvre| (manoeuvre, *coefficients))).collect();
-    let mut sailed = helm::sail(ship, &manoeuvres, settings).into_iter();
+    let mut sailed = sail_together(ship, &manoeuvres, settings).into_iter();
     sisters.iter().map(|_| judged(ship, settings, sailed.by_ref().take(STANDARD.len()))).collect()
 }
 
@@ -113,7 +121,7 @@ fn judged(
         match manoeuvre {
             Manoeuvre::Turn { rudder } => {
                 let turn = sailed.and_then(|sailed| Turn::of(sailed, rudder));
-                let turn = kept(ship, turn, &format!("turn {rudder} deg"), &mut all, |turn| &turn.track);
+                let turn = kept(ship, turn, &manoeuvre.to_string(), &mut all, |turn| &turn.track);
                 match turn {
                     Some(turn) if rudder.abs() == INITIAL_DEG => {
                         initial.push(initial_turning_distance(&turn.track, rudder, INITIAL_DEG));
@@ -123,8 +131,7 @@ fn judged(
             }
             Manoeuvre::Zigzag { rudder, switch } => {
                 let zigzag = sailed.and_then(|sailed| Zigzag::of(sailed, rudder, switch));
-                let name = format!("zigzag {rudder}/{switch}");
-                let zigzag = kept(ship, zigzag, &name, &mut all, |zigzag| &zigzag.track);
+                let zigzag = kept(ship, zigzag, &manoeuvre.to_string(), &mut all, |zigzag| &zigzag.track);
                 all.zigzags.extend(zigzag.map(|zigzag| zigzag.metrics));
             }
         }

@@ -2,9 +2,8 @@
 //! diverges in these, and thousands of ships can be asked.
 
 use serde::{Deserialize, Serialize};
-use sistership_dynamics::Ship;
-use sistership_dynamics::envelope::Stopped;
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+use sistership_dynamics::manoeuvre::{Manoeuvre, ManoeuvreSettings, Sailed as Track, Turn, Zigzag, sail_together};
+use sistership_dynamics::{PlantError, Ship, Stopped};
 use sistership_model::{Law, Model};
 
 /// Steps in which a ship sails her length.
@@ -40,33 +39,48 @@ impl Sailed {
     }
 }
 
-/// Sails both.
-pub fn sail(model: &Model, law: &Law) -> Sailed {
-    let mut sailed = Sailed::default();
-    let ship = match Ship::new(model, law) {
-        Ok(ship) => ship,
-        Err(error) => return Sailed { failures: vec![error.to_string()], ..sailed },
-    };
-    let length = ship.lpp_m();
-    let step_s = length / (STEPS_A_LENGTH * ship.approach_speed_m_s());
-    let settings = ManoeuvreSettings { step_s: Some(step_s), ..ManoeuvreSettings::default() };
-    match turn(&ship, 35.0, &settings) {
-        Ok(turn) => {
-            sailed.tactical_diameter_l = turn.metrics.tactical_diameter_m.map(|diameter| diameter / length);
-            sailed.advance_l = turn.metrics.advance_m.map(|advance| advance / length);
-        }
-        Err(stopped) => sailed.failures.push(failure("turn 35 deg", &stopped)),
-    }
-    match zigzag(&ship, 20.0, 20.0, &settings) {
-        Ok(zigzag) => {
-            sailed.first_overshoot_deg = zigzag.metrics.first_overshoot_deg;
-            sailed.second_overshoot_deg = zigzag.metrics.second_overshoot_deg;
-        }
-        Err(stopped) => sailed.failures.push(failure("zigzag 20/20", &stopped)),
-    }
-    sailed
+/// What is sailed: rudder and switching angle, deg.
+const SAILED: [Manoeuvre; 2] = [Manoeuvre::Turn { rudder: 35.0 }, Manoeuvre::Zigzag { rudder: 20.0, switch: 20.0 }];
+
+/// Sails both manoeuvres with each model of a ship; those that differ in the values of their coefficients alone sail in lockstep.
+pub fn sail(models: &[&Model], law: &Law) -> Vec<Sailed> {
+    let alone = || models.iter().map(|model| together(Ship::new(model, law), &[Vec::new()]).remove(0)).collect();
+    let Some(Ok(ship)) = models.first().map(|model| Ship::sisters(model, law)) else { return alone() };
+    let sisters: Option<Vec<Vec<f64>>> = models.iter().map(|model| ship.sister(model)).collect();
+    sisters.map_or_else(alone, |sisters| together(Ok(ship), &sisters))
 }
 
-fn failure(manoeuvre: &str, stopped: &Stopped) -> String {
-    format!("{manoeuvre}: {stopped}")
+fn together(ship: Result<Ship, PlantError>, sisters: &[Vec<f64>]) -> Vec<Sailed> {
+    let ship = match ship {
+        Ok(ship) => ship,
+        Err(error) => return vec![Sailed { failures: vec![error.to_string()], ..Sailed::default() }; sisters.len()],
+    };
+    let step_s = ship.lpp_m() / (STEPS_A_LENGTH * ship.approach_speed_m_s());
+    let settings = ManoeuvreSettings { step_s: Some(step_s), ..ManoeuvreSettings::default() };
+    let manoeuvres: Vec<(Manoeuvre, &[f64])> =
+        sisters.iter().flat_map(|sister| SAILED.map(|manoeuvre| (manoeuvre, sister.as_slice()))).collect();
+    let mut sailed = sail_together(&ship, &manoeuvres, &settings).into_iter();
+    sisters.iter().map(|_| Sailed::of(&ship, sailed.by_ref().take(SAILED.len()))).collect()
+}
+
+impl Sailed {
+    fn of(ship: &Ship, sailed: impl Iterator<Item = Result<Track, Stopped>>) -> Self {
+        let mut own = Self::default();
+        for (manoeuvre, sailed) in SAILED.into_iter().zip(sailed) {
+            let noted = match manoeuvre {
+                Manoeuvre::Turn { rudder } => sailed.and_then(|track| Turn::of(track, rudder)).map(|turn| {
+                    own.tactical_diameter_l = turn.metrics.tactical_diameter_m.map(|diameter| diameter / ship.lpp_m());
+                    own.advance_l = turn.metrics.advance_m.map(|advance| advance / ship.lpp_m());
+                }),
+                Manoeuvre::Zigzag { rudder, switch } => {
+                    sailed.and_then(|track| Zigzag::of(track, rudder, switch)).map(|zigzag| {
+                        own.first_overshoot_deg = zigzag.metrics.first_overshoot_deg;
+                        own.second_overshoot_deg = zigzag.metrics.second_overshoot_deg;
+                    })
+                }
+            };
+            own.failures.extend(noted.err().map(|stopped| format!("{manoeuvre}: {stopped}")));
+        }
+        own
+    }
 }

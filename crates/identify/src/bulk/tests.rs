@@ -92,7 +92,7 @@ fn a_model_that_no_longer_sails_is_pulled_back() {
         settings: &BulkSettings::default(),
     };
     let solved = solve(&trials, request.prior, request.settings).unwrap();
-    let loose = sail(&refined_model(&model, &solved.coefficients(0).0, "test"), &law);
+    let loose = sail(&[&refined_model(&model, &solved.coefficients(0).0, "test")], &law).remove(0);
     assert!(!loose.failures.is_empty(), "the case is one that diverges: {loose:?}");
     let refined = refine(&request).unwrap();
     assert!(refined.pulled > 0 && refined.after.failures.is_empty(), "{refined:?}");
