@@ -70,9 +70,6 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// Every stage.
-    pub const ALL: [Self; 3] = [Self::Start, Self::Middle, Self::End];
-
     /// The fraction of the step.
     pub fn fraction(self) -> f64 {
         [0.0, 0.5, 1.0][self as usize]
