@@ -6,7 +6,7 @@ use sistership_dynamics::recorded::{ReplaySettings, replay};
 use sistership_identify::refine::{CmaEs, Family, Method, Refinement, Request, Settings, refine};
 use sistership_identify::source::{best_source, similar};
 use sistership_identify::transfer::{approach_of, blank, transfer};
-use sistership_model::{Trial, Zoo};
+use sistership_model::{Law, Model, Trial, Zoo};
 use sistership_tests::{esso_osaka, shared};
 
 /// Turning and zigzag trials; the `turn_cut` files overlap their parents and are left out.
@@ -32,7 +32,7 @@ fn refined(trials: &[Trial], held_out: Vec<String>) -> Refinement {
     let source = best_source(&zoo, &ranking).unwrap_or_else(|reason| panic!("{reason}"));
     let law = zoo.law(&source.law).expect("the law of a zoo model");
     let settings = Settings { held_out, ..Settings::default() };
-    let request = Request { target, source: &source, law, trials: &trials, settings: &settings };
+    let request = Request { target, source: &source, source_law: None, law, trials: &trials, settings: &settings };
     refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -82,16 +82,10 @@ fn left_out(trials: &[Trial], settings: &Settings) -> Vec<(String, SquaredError)
     for fold in 0..4 {
         let inside: Vec<&Trial> = trials.iter().enumerate().filter(|(k, t)| fold_of(t, *k) != fold).map(|(_, t)| t).collect();
         let source = blank(law, target, approach_of(&inside)).unwrap_or_else(|error| panic!("{error}"));
-        let request = Request { target, source: &source, law, trials: &inside, settings };
+        let request = Request { target, source: &source, source_law: None, law, trials: &inside, settings };
         let model = refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}")).model;
-        for (_, trial) in trials.iter().enumerate().filter(|(k, trial)| fold_of(trial, *k) == fold) {
-            let mut ship = Ship::new(&model, law).expect("a ready ship");
-            ship.set_envelope_speed(1.0);
-            let restarted = ReplaySettings { restart_s: Some(RESTART_S), ..ReplaySettings::default() };
-            let run = replay(&ship, trial, &restarted).expect("every channel that the law needs");
-            assert_eq!(run.stopped, None, "{} by {}", trial.name, settings.method.name());
-            errors.push((trial.name.clone(), SquaredError::of(trial, &run)));
-        }
+        let outside: Vec<&Trial> = trials.iter().enumerate().filter(|(k, t)| fold_of(t, *k) == fold).map(|(_, t)| t).collect();
+        errors.extend(simulated(&model, law, &outside));
     }
     errors
 }
@@ -151,6 +145,55 @@ fn estimators_on_every_trial_of_esso_osaka() {
     }
     assert!(totals[2] < 0.75 * totals[0].min(totals[1]), "{totals:?}");
     assert!(totals[2] < 0.030, "{totals:?}");
+}
+
+/// Few files, and a source of another law: each set is some files of every kind, evenly spread.
+const FEW: [(usize, usize); 6] = [(2, 0), (2, 5), (4, 1), (4, 7), (8, 2), (8, 3)];
+
+/// What the KVLCC2's MMG model says, as the prior of a polynomial fitted on few files, against the same fit without a source. With two
+/// files nothing but a source makes a model of so many coefficients.
+#[test]
+fn a_source_of_another_law_helps_where_trials_are_few() {
+    let Some(folder) = shared::data("esso-osaka") else { return };
+    let trials = esso_osaka::trials(&folder, &KINDS);
+    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let (target, law) = (zoo.vessel("esso-osaka-3m").expect("in the zoo"), zoo.law("low-speed").expect("in the zoo"));
+    let kvlcc2 = zoo.model("kvlcc2").unwrap_or_else(|error| panic!("{error}"));
+    let own = zoo.law(&kvlcc2.law).expect("in the zoo");
+    let settings = Settings { strengths: vec![1e1, 1.0, 1e-1, 1e-2, 1e-3], ..compared(Method::Weak) };
+    let as_it_is = over_all(&trials, &by_source(&trials, "kvlcc2"), "all");
+    println!("standardised mean squared error of the other files; the source as it is: {as_it_is:.4}");
+    println!("files  first  without  with the source");
+    let mut sums = [0.0; 2];
+    for (count, first) in FEW {
+        let chosen = |k: usize| (0..count).any(|i| (first + i * (trials.len() / count)) % trials.len() == k);
+        let (inside, outside): (Vec<_>, Vec<_>) = trials.iter().enumerate().partition(|(k, _)| chosen(*k));
+        let [inside, outside] = [inside, outside].map(|some| some.into_iter().map(|(_, trial)| trial).collect::<Vec<_>>());
+        let nothing = blank(law, target, approach_of(&inside)).unwrap_or_else(|error| panic!("{error}"));
+        let error = |source: &Model, source_law: &Law| {
+            let request = Request { target, source, source_law: Some(source_law), law, trials: &inside, settings: &settings };
+            let model = refine(&request, &|_, _| true).ok()?.model;
+            Some(over_all(&trials, &simulated(&model, law, &outside), "all"))
+        };
+        let (without, with) = (error(&nothing, law), error(&kvlcc2, own).expect("a refined model"));
+        println!("{count:5}  {first:5}  {}  {with:.4}", without.map_or("   none".into(), |error| format!("{error:.4} ")));
+        assert!(with < 0.6 * as_it_is, "{count} files from {first}: {with} against the source's {as_it_is}");
+        sums = [sums[0] + without.unwrap_or(as_it_is).ln(), sums[1] + with.ln()];
+    }
+    assert!(sums[1] < sums[0], "{sums:?}");
+}
+
+/// Trials simulated by a model that must sail them all.
+fn simulated(model: &Model, law: &Law, trials: &[&Trial]) -> Vec<(String, SquaredError)> {
+    let mut ship = Ship::new(model, law).expect("a ready ship");
+    ship.set_envelope_speed(1.0);
+    let restarted = ReplaySettings { restart_s: Some(RESTART_S), ..ReplaySettings::default() };
+    let one = |trial: &&Trial| {
+        let run = replay(&ship, trial, &restarted).expect("every channel that the law needs");
+        assert_eq!(run.stopped, None, "{}", trial.name);
+        (trial.name.clone(), SquaredError::of(trial, &run))
+    };
+    trials.iter().map(one).collect()
 }
 
 /// The search given ten times the time that `trajectory` takes, on the same folds; its fits with trials left out, by which it is

@@ -43,8 +43,14 @@ impl Case<'_> {
             |(k, orders): (usize, &Orders)| trial(&ship, &format!("trial {k}"), *orders, 30.0, &Trouble::default(), &mut rng);
         let trials: Vec<Trial> = ORDERS.iter().enumerate().map(sail).collect();
         let trials: Vec<&Trial> = trials.iter().collect();
-        let request =
-            Request { target: self.vessel, source: &self.source, law: self.law, trials: &trials, settings: &self.settings };
+        let request = Request {
+            target: self.vessel,
+            source: &self.source,
+            source_law: None,
+            law: self.law,
+            trials: &trials,
+            settings: &self.settings,
+        };
         let refined = refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("replica {index}: {error}"));
         held(&self.source, &truth, &refined.model, self.law)
     }

@@ -50,7 +50,7 @@ fn turned(zoo: &Zoo, (seed, index): (u64, usize), method: Method) -> Turned {
     let bands = Sampling { samples: 0, ..Sampling::default() };
     let settings = Settings { method, strengths, bands, ..Settings::default() };
     let target = zoo.vessel(ship).expect("the ship");
-    let request = Request { target, source: &source, law, trials: &trials, settings: &settings };
+    let request = Request { target, source: &source, source_law: None, law, trials: &trials, settings: &settings };
     let refined = refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{ship} {index}: {error}")).model;
     of(ship, law, [&truth, &source, &refined], index)
 }

@@ -41,7 +41,7 @@ pub fn refined(source: &Model, ship: &str, trials: &[&Trial]) -> Baseline {
 /// As [`refined`], by a law and settings.
 pub fn by(source: &Model, law: &Arc<Law>, ship: &str, trials: &[&Trial], settings: &Settings) -> Baseline {
     let target = ZOO.vessel(ship).unwrap();
-    let request = Request { target, source, law, trials, settings };
+    let request = Request { target, source, source_law: None, law, trials, settings };
     let refinement = refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"));
     let (before, after) = (&refinement.held_out.source, &refinement.held_out.refined);
     println!("refined from {}, held-out errors:", refinement.source);

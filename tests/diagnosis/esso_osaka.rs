@@ -68,7 +68,7 @@ fn refined_without_wind(baseline: &Baseline, trials: &[Trial]) -> BTreeMap<Strin
     let trials: Vec<&Trial> = trials.iter().collect();
     let settings = refine::Settings { folds: trials.len(), ..by_trajectories() };
     let (target, source) = (ZOO.vessel(SHIP).unwrap(), &baseline.model);
-    let request = refine::Request { target, source, law: &baseline.law, trials: &trials, settings: &settings };
+    let request = refine::Request { target, source, source_law: None, law: &baseline.law, trials: &trials, settings: &settings };
     refine::refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}")).held_out.refined
 }
 

@@ -58,6 +58,10 @@ fn similar_ranks_as_published() {
 #[test]
 fn exit_status_tells_a_wrong_call_from_a_refusal() {
     assert_eq!(binary::run(&["refine", "--ship", "mariner"]).status.code(), Some(2), "a missing argument");
+    let unknown = binary::run(&["refine", "--ship", "mariner", "--law", "low-sped", "--trials", "none.csv"]);
+    let message = String::from_utf8_lossy(&unknown.stderr).into_owned();
+    assert_eq!(unknown.status.code(), Some(1));
+    assert!(message.contains("low-sped") && message.contains("low-speed"), "the laws are listed: {message}");
     let unknown = binary::run(&["similar", "marriner"]);
     let message = String::from_utf8_lossy(&unknown.stderr).into_owned();
     assert_eq!(unknown.status.code(), Some(1));

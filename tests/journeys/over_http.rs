@@ -52,6 +52,7 @@ async fn journey(server: TestServer) {
     aliases(&server).await;
     repeated(&server).await;
     verified(&server, 1).await;
+    across_laws(&server).await;
     let report = done["result"]["report"].as_str().expect("a report");
     let page = server.request(Method::GET, &format!("/v1/reports/{report}?format=html")).send().await.expect("an answer");
     assert!(page.text().await.expect("a page").contains("<svg"), "the report has plots");
@@ -104,6 +105,22 @@ async fn repeated(server: &TestServer) {
     assert_eq!(server.send(Method::POST, "/v1/refinements", &body, &[("Idempotency-Key", "second")]).await.0, 422);
     let versions = server.get(&format!("/v1/models/{NAME}/versions")).await;
     assert_eq!(versions["items"].as_array().map(Vec::len), Some(2), "{versions}");
+}
+
+/// The SR108's trials refine a polynomial, of which the MMG source of the KVLCC2 is the prior.
+async fn across_laws(server: &TestServer) {
+    let body = json!({ "ship": NAME, "source": "kvlcc2", "law": "low-sped" });
+    let (status, refused) = server.send(Method::POST, "/v1/refinements", &body, &[]).await;
+    assert_eq!((status, refused["errors"][0]["field"].as_str()), (422, Some("law")), "{refused}");
+    let body = json!({ "ship": NAME, "source": "kvlcc2", "law": "low-speed", "settings": { "method": "weak", "strengths": [1.0, 0.1] } });
+    let (status, job) = server.send(Method::POST, "/v1/refinements", &body, &[]).await;
+    assert_eq!(status, 202, "{job}");
+    let done = server.finished(job["id"].as_str().expect("an id")).await;
+    assert_eq!((done["state"].as_str(), done["result"]["version"].as_i64()), (Some("succeeded"), Some(3)), "{done}");
+    let version = server.get(&format!("/v1/models/{NAME}/versions/3")).await;
+    assert_eq!(version["document"]["recipe"]["across"]["law"], "low-speed", "{}", version["document"]["recipe"]);
+    assert_eq!(version["document"]["model"]["law"], "low-speed");
+    verified(server, 3).await;
 }
 
 /// `sistership verify` derives the version again from its recipe, byte for byte.

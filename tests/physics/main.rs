@@ -1,5 +1,6 @@
 //! Properties that hold whatever the numbers: symmetry, the prime system, coefficients recovered, runs that stop.
 
+mod across_laws;
 mod recovery;
 mod scaling;
 mod stopping;

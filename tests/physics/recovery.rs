@@ -46,7 +46,7 @@ fn coefficients_are_recovered_from_noise_free_trials() {
             ..Settings::default()
         };
         let target = zoo.vessel(name).expect("in the zoo");
-        let request = Request { target, source: &source, law: &law, trials: &trials, settings: &settings };
+        let request = Request { target, source: &source, source_law: None, law: &law, trials: &trials, settings: &settings };
         let refined = refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{name}: {error}"));
         for linear in ["Y_v", "Y_r", "N_v", "N_r"] {
             let (found, true_value) = (refined.model.coefficient(linear), truth.coefficient(linear));

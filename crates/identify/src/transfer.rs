@@ -43,11 +43,7 @@ fn median(values: &mut [f64]) -> Option<f64> {
 /// A source model on the target's particulars. What the law needs and the target does not state is scaled from the source
 /// by Froude's law and marked so; the steering gear's rate is scaled likewise.
 pub fn transfer(source: &Model, law: &Law, target: &Vessel, approach: Option<Approach>) -> Model {
-    let of_source = |name: &str| particulars::value(&source.particulars, name);
-    let ratio = match (target.particular("lpp_m"), of_source("lpp_m")) {
-        (Some(here), Some(there)) => here / there,
-        _ => 1.0,
-    };
+    let ratio = ratio(source, target);
     let particulars = complete(source, law, target, ratio);
     let service = particulars::value(&particulars, "service_speed_m_s");
     let froude = source.speed_m_s.map(|speed| speed * ratio.sqrt());
@@ -60,6 +56,19 @@ pub fn transfer(source: &Model, law: &Law, target: &Vessel, approach: Option<App
     model.steering.time_constant_s = source.steering.time_constant_s * ratio.sqrt();
     model.steering.source = Some(format!("scaled from {}", source.name));
     model
+}
+
+/// Of the lengths of target and source; 1 where one is not known.
+fn ratio(source: &Model, target: &Vessel) -> f64 {
+    let there = particulars::value(&source.particulars, "lpp_m");
+    target.particular("lpp_m").zip(there).map_or(1.0, |(here, there)| here / there)
+}
+
+/// As [`blank`], with what the target does not state scaled from a source.
+pub(crate) fn blank_of(law: &Law, target: &Vessel, source: &Model, approach: Option<Approach>) -> Result<Model, String> {
+    let mut target = target.clone();
+    target.particulars = complete(source, law, &target, ratio(source, &target));
+    blank(law, &target, approach)
 }
 
 /// A model of a law for a ship of which nothing is known but her particulars: every coefficient that the law lists is zero, so

@@ -45,6 +45,9 @@ pub enum Recipe {
         ship_sha256: String,
         /// The law's file.
         law_sha256: String,
+        /// Where the source is of another law.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        across: Option<AcrossLaws>,
         /// The trials, in the order in which they were given.
         trials: Vec<RecipeTrial>,
         /// Every setting.
@@ -52,6 +55,16 @@ pub enum Recipe {
         /// The program that did it.
         code_revision: String,
     },
+}
+
+/// Two laws of a refinement whose source is of another law than what is fitted.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AcrossLaws {
+    /// The name of the law that is fitted.
+    pub law: String,
+    /// The file of the source's law.
+    pub source_law_sha256: String,
 }
 
 /// A version that another starts from.

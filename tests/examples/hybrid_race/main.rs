@@ -108,8 +108,14 @@ impl Race {
         let deviations = standard_deviations(&training);
         let curve = Mutex::new(Curve::new(method.name(), folder));
         let settings = settings(method, arguments);
-        let request =
-            Request { target: &self.vessel, source: &self.blank, law: &self.law, trials: &training, settings: &settings };
+        let request = Request {
+            target: &self.vessel,
+            source: &self.blank,
+            source_law: None,
+            law: &self.law,
+            trials: &training,
+            settings: &settings,
+        };
         let look = |glimpse: &Glimpse<'_>| {
             let error = || held_out_error(&(glimpse.model)(), &self.law, &self.held_out, &deviations, SUBSEQUENCE_S);
             curve.lock().expect("a curve").see(glimpse.evaluations, glimpse.objective, method == Method::Trajectory, &error);

@@ -1,6 +1,7 @@
 //! `sistership refine`: a source model fitted to a ship's trials.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -8,7 +9,7 @@ use sistership_identify::refine::{Constraints, Method, Refinement, Request, Sett
 use sistership_identify::similarity::RankedSource;
 use sistership_identify::source::{Similarity, best_source, similar};
 use sistership_identify::transfer::{approach_of, blank};
-use sistership_model::{Model, Vessel, Zoo};
+use sistership_model::{Law, Model, Vessel, Zoo};
 use sistership_server::derive::with_uncertainty;
 use sistership_server::report::{Input, render};
 
@@ -25,6 +26,7 @@ const EXAMPLES: &str = "\
 Examples:
   sistership refine --ship esso-osaka-3m --trials trials.yaml --out refined.yaml
   sistership refine --ship my-ship.yaml --source mariner --trials a.csv b.csv c.csv --json
+  sistership refine --ship my-ship.yaml --source kvlcc2 --law low-speed --trials trials.yaml --method weak
   sistership refine --ship my-ship.yaml --source old-model.yaml --trials trials.yaml --held-out zigzag/last.csv
 
 The source's coefficients are the prior: ranges of tuning widen from the source outwards, and the option that is best on
@@ -37,11 +39,12 @@ pub struct Refine {
     /// The ship: a name in the zoo or a vessel file.
     #[arg(long)]
     ship: String,
-    /// The source: a model's name or file, or `auto` for the most similar eligible ship of the zoo.
-    #[arg(long, value_name = "MODEL|auto", default_value = "auto")]
-    source: String,
-    /// Start from nothing but a law of the zoo, such as `low-speed`, instead of a source: the trials alone make the model.
-    #[arg(long, value_name = "LAW", conflicts_with = "source")]
+    /// The source: a model's name or file, or `auto` for the most similar eligible ship of the zoo [default: auto].
+    #[arg(long, value_name = "MODEL|auto")]
+    source: Option<String>,
+    /// The law to fit, such as `low-speed`. With a source of another law, what that says over the states of the trials and of
+    /// its standard manoeuvres becomes the prior; without --source, the trials alone make the model.
+    #[arg(long, value_name = "LAW")]
     law: Option<String>,
     /// Trial manifests, CSV or Parquet files.
     #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
@@ -137,7 +140,9 @@ pub struct Files<'a> {
 pub fn run(zoo: &Zoo, arguments: &Refine) -> Result<(), Failure> {
     let target = named::ship(zoo, &arguments.ship)?;
     let mut settings = settings(arguments)?;
-    let given = if arguments.source == "auto" { None } else { Some(named::model(zoo, &arguments.source)?.0) };
+    let named = arguments.source.as_deref().filter(|source| *source != "auto");
+    let given = named.map(|source| named::model(zoo, source)).transpose()?.map(|(model, _)| model);
+    let law = arguments.law.as_deref().map(|name| law(zoo, name)).transpose()?;
     let out = promised(arguments.out.as_deref(), arguments)?;
     let report = promised(arguments.report.as_deref(), arguments)?;
     let read = trials::read(&arguments.trials)?;
@@ -145,12 +150,15 @@ pub fn run(zoo: &Zoo, arguments: &Refine) -> Result<(), Failure> {
     note(&format!("{}: {} read", target.name(), count(read.len(), "trial")));
     guard(arguments, &read)?;
     settings.held_out = held_out(&settings.held_out, &read)?;
-    let (source, similarity) = match (given, &arguments.law) {
+    let (source, similarity) = match (given, &law) {
         (Some(model), _) => (model, None),
-        (None, Some(law)) => (of_law(zoo, law, &target, &settings, &read)?, None),
-        (None, None) => chosen(zoo, &target, &settings, &read).map(|(model, similarity)| (model, Some(similarity)))?,
+        (None, Some(law)) if arguments.source.is_none() => (of_law(law, &target, &settings, &read)?, None),
+        (None, _) => chosen(zoo, &target, &settings, &read).map(|(model, similarity)| (model, Some(similarity)))?,
     };
-    let refinement = refined(zoo, &target, &source, &settings, &read)?;
+    let source_law = named::law_of(zoo, &source)?;
+    let law = law.unwrap_or_else(|| source_law.clone());
+    let laws = (&*source_law, &*law);
+    let refinement = refined(zoo, &target, &source, laws, &settings, &read)?;
     if let Some(out) = out {
         let how = format!("method {}", refinement.method);
         out.write(model_file(zoo, &refinement.model, &how)?.as_bytes())?;
@@ -206,9 +214,14 @@ fn guard(arguments: &Refine, read: &[ReadTrial]) -> Result<(), Failure> {
     files.try_for_each(|path| Promised::new(path, &inputs).map(|_| ()))
 }
 
+fn law(zoo: &Zoo, name: &str) -> Result<Arc<Law>, Failure> {
+    let known = || zoo.laws().map(|law| law.name.as_str()).collect::<Vec<_>>().join(", ");
+    let missing = || Failure::Refused(format!("--law {name}: the zoo has no such law; it has {}", known()));
+    zoo.law(name).cloned().ok_or_else(missing)
+}
+
 /// A law without coefficients, for the approach of the trials that are fitted.
-fn of_law(zoo: &Zoo, name: &str, target: &Vessel, settings: &Settings, read: &[ReadTrial]) -> Result<Model, Failure> {
-    let law = zoo.law(name).ok_or_else(|| Failure::Refused(format!("--law {name}: the zoo has no such law")))?;
+fn of_law(law: &Law, target: &Vessel, settings: &Settings, read: &[ReadTrial]) -> Result<Model, Failure> {
     let fitted = trials::trials(read).into_iter().filter(|trial| !settings.held_out.contains(&trial.name));
     let approach = approach_of(&fitted.collect::<Vec<_>>());
     blank(law, target, approach).map_err(Failure::Refused)
@@ -225,10 +238,16 @@ fn chosen(zoo: &Zoo, target: &Vessel, settings: &Settings, read: &[ReadTrial]) -
     Ok((source, similarity))
 }
 
-fn refined(zoo: &Zoo, target: &Vessel, source: &Model, settings: &Settings, read: &[ReadTrial]) -> Result<Refinement, Failure> {
-    let law = named::law_of(zoo, source)?;
+fn refined(
+    zoo: &Zoo,
+    target: &Vessel,
+    source: &Model,
+    (source_law, law): (&Law, &Law),
+    settings: &Settings,
+    read: &[ReadTrial],
+) -> Result<Refinement, Failure> {
     let trials = trials::trials(read);
-    let request = Request { target, source, law: &law, trials: &trials, settings };
+    let request = Request { target, source, source_law: Some(source_law), law, trials: &trials, settings };
     let told = |fraction: f64, what: &str| {
         note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true
@@ -236,7 +255,7 @@ fn refined(zoo: &Zoo, target: &Vessel, source: &Model, settings: &Settings, read
     let refinement = refine(&request, &told).map_err(|error| Failure::Refused(error.to_string()))?;
     note("learning what these trials leave open");
     let effects: Vec<_> = zoo.effects().cloned().collect();
-    Ok(with_uncertainty(refinement, &law, &effects, &trials))
+    Ok(with_uncertainty(refinement, law, &effects, &trials))
 }
 
 /// The model as a file, read back once to be sure that it is one; `how` says how it was made.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 pub use figures::Figure;
 pub use helm::{Manoeuvre, Sailed, sail_together};
-pub use standard::{StandardManoeuvres, Turn, Zigzag, standard, standard_of_sisters};
+pub use standard::{STANDARD, StandardManoeuvres, Turn, Zigzag, standard, standard_of_sisters};
 
 use crate::envelope::Stopped;
 use crate::integrate::Method;

@@ -82,7 +82,7 @@ fn nothing_sailed() -> Stopped {
 }
 
 /// What the standard manoeuvres are: hard turns, zigzags, and turns that begin with 10 deg of rudder.
-const STANDARD: [Manoeuvre; 8] = [
+pub const STANDARD: [Manoeuvre; 8] = [
     Manoeuvre::Turn { rudder: 35.0 },
     Manoeuvre::Turn { rudder: -35.0 },
     Manoeuvre::Zigzag { rudder: 10.0, switch: 10.0 },

@@ -13,6 +13,7 @@ use sistership_model::coefficient::Axis;
 use sistership_model::law::{Law, STATES};
 
 use super::outcome::RefineError;
+use crate::regression::{Metric, Moments};
 
 /// One regression: its axes, the coefficients of each, and where its pieces stand on the tape.
 #[derive(Debug, Clone)]
@@ -25,6 +26,8 @@ pub struct Block {
     pub(crate) terms: Vec<usize>,
     /// How many times the precision of each one's prior is the common one: more than 1 for deviations of submodels.
     pub(crate) shrinkage: Vec<f64>,
+    /// Joint precision of the prior at strength 1, in the units of the regressors, where a source has earned one.
+    pub(crate) precision: Option<DMatrix<f64>>,
     /// Scale by axis.
     pub(crate) scales: Vec<usize>,
     /// Rest by axis.
@@ -144,13 +147,19 @@ fn block(
     }
     let mixing = DMatrix::identity(axes.len(), axes.len());
     let shrinkage = names[0].iter().map(|name| law.deviation(name).map_or(1.0, |submodel| submodel.shrinkage)).collect();
-    Ok(Some(Block { axes, names, terms, shrinkage, scales, rests, mass, columns: group.to_vec(), mixing }))
+    Ok(Some(Block { axes, names, terms, shrinkage, precision: None, scales, rests, mass, columns: group.to_vec(), mixing }))
 }
 
 impl Block {
     /// Number of regressors.
     pub fn regressors(&self) -> usize {
         self.terms.len()
+    }
+
+    /// How its prior measures coefficients.
+    pub(crate) fn metric(&self, moments: &Moments) -> Metric {
+        let earned = self.precision.as_ref().and_then(Metric::of_precision);
+        earned.unwrap_or_else(|| Metric::of_regressors(moments, &self.shrinkage))
     }
 
     /// Whether the force of one axis of a coupled group is regressed, and not accelerations.

@@ -10,10 +10,12 @@ use sistership_model::posterior::Posterior;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::Trial;
 
+use super::across::Imitation;
 use super::blocks::Blocks;
 use super::cma_es::SearchReport;
 use super::family::Family;
 use super::outcome::{CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement};
+use super::posterior::Errors;
 use super::published::{Choices, Fit, Fold, fit};
 use super::selection::{Progress, Taken, Task, Trying, step};
 use super::settings::Settings;
@@ -21,6 +23,9 @@ use super::variant::{Variant, merged};
 use crate::bands::bands;
 use crate::regression::Choice;
 use crate::transfer::ready;
+
+/// What an option gives with its standard manoeuvres, or why it may not be taken.
+type Accepted = Result<(Option<Fit>, StandardManoeuvres), String>;
 
 impl Task<'_> {
     /// Takes the best option whose model, fitted on all trials, also sails the standard manoeuvres that the source sails.
@@ -37,37 +42,60 @@ impl Task<'_> {
                 return Err(RefineError::Diverged(reasons.join("; ")));
             };
             step(progress, 0.9, &format!("standard manoeuvres of option {}", options[best].option.step))?;
-            let fitted = match self.fitted(&options[best].taken, variants) {
-                Err(RefineError::Constraints(reason)) => {
-                    (options[best].option.reason, options[best].option.error) = (Some(reason), None);
-                    continue;
-                }
-                fitted => fitted?,
-            };
-            let mut model = fitted.as_ref().map_or_else(|| self.transferred.clone(), |fit| self.model_with(&fit.coefficients));
-            model.validity = covered(&self.whole, self.law);
-            let after = self.standard_manoeuvres(&model);
-            let worse = after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
-            if let Some(failure) = worse {
-                options[best].option.reason = Some(format!("fails a standard manoeuvre that the source sails: {failure}"));
-                options[best].option.error = None;
-                continue;
+            match self.accepted(&options[best].taken, variants, &before)? {
+                Ok((fitted, after)) => return self.take(options, best, (fitted, variants), (before, after), progress),
+                Err(reason) => (options[best].option.reason, options[best].option.error) = (Some(reason), None),
             }
-            options[best].option.chosen = true;
-            model.posterior = self.posterior(&model, fitted.as_ref(), variants)?;
-            let measured = self.measured_manoeuvres(&model);
-            step(progress, 0.93, "confidence bands")?;
-            let bands = bands(&model, self.law, &ManoeuvreSettings::default(), None, self.settings.bands);
-            let manoeuvres = Manoeuvres { source: before, refined: after, bands, measured };
-            return self.refinement(options, best, model, fitted, manoeuvres);
         }
     }
 
-    /// What an option gives on all trials.
+    /// What an option gives on all trials, where it keeps the constraints and sails what the source sails; else the reason.
+    fn accepted(&self, taken: &Taken, variants: &[Variant], before: &StandardManoeuvres) -> Result<Accepted, RefineError> {
+        let fitted = match self.fitted(taken, variants) {
+            Err(RefineError::Constraints(reason)) => return Ok(Err(reason)),
+            fitted => fitted?,
+        };
+        let after = self.standard_manoeuvres(&self.model_of(fitted.as_ref()));
+        let worse = after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
+        Ok(match worse {
+            Some(failure) => Err(format!("fails a standard manoeuvre that the source sails: {failure}")),
+            None => Ok((fitted, after)),
+        })
+    }
+
+    /// The refined model; the source where nothing was fitted.
+    fn model_of(&self, fitted: Option<&Fit>) -> Model {
+        let mut model = fitted.map_or_else(|| self.transferred.clone(), |fit| self.model_with(&fit.coefficients));
+        model.validity = covered(&self.whole, self.law);
+        model
+    }
+
+    /// The refinement by an option, with its errors.
+    fn take(
+        &self,
+        mut options: Vec<Trying>,
+        best: usize,
+        (fitted, variants): (Option<Fit>, &[Variant]),
+        (before, after): (StandardManoeuvres, StandardManoeuvres),
+        progress: Progress<'_>,
+    ) -> Result<Refinement, RefineError> {
+        options[best].option.chosen = true;
+        let errors = self.errors_of(&options[best].taken, variants)?;
+        let fitted = fitted.map(|fit| fit.with_errors(errors));
+        let mut model = self.model_of(fitted.as_ref());
+        model.posterior = self.posterior(&model, fitted.as_ref(), variants)?;
+        let measured = self.measured_manoeuvres(&model);
+        step(progress, 0.93, "confidence bands")?;
+        let bands = bands(&model, self.law, &ManoeuvreSettings::default(), None, self.settings.bands);
+        let manoeuvres = Manoeuvres { source: before, refined: after, bands, measured };
+        self.refinement(options, best, model, fitted, manoeuvres)
+    }
+
+    /// What an option gives on all trials, without errors.
     pub(super) fn fitted(&self, taken: &Taken, variants: &[Variant]) -> Result<Option<Fit>, RefineError> {
         let (variant, choices) = match taken {
             Taken::Source => return Ok(None),
-            Taken::Fitted { fit } => return Ok(Some((**fit).clone())),
+            Taken::Fitted { fit, .. } => return Ok(Some((**fit).clone())),
             Taken::Ridge { variant, choices } => (&variants[*variant], choices),
         };
         let all = merged(&variant.moments, |_| true).ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
@@ -76,7 +104,19 @@ impl Task<'_> {
             let fold = Fold::new(&variant.blocks, &variant.model, &all, &[]);
             fitted.coefficients = variant.solve(&fold, choices).map_err(RefineError::Constraints)?;
         }
-        Ok(Some(fitted.with_errors(self.errors(variant, choices)?)))
+        Ok(Some(fitted))
+    }
+
+    /// The joint errors of what an option gives.
+    fn errors_of(&self, taken: &Taken, variants: &[Variant]) -> Result<Option<Errors>, RefineError> {
+        match taken {
+            Taken::Ridge { variant, choices } => self.errors(&variants[*variant], choices),
+            Taken::Fitted { bend: Some(bend), .. } => {
+                let weak = self.errors(&variants[bend.variant], &bend.choices)?;
+                Ok(weak.and_then(|weak| bend.errors(&weak)))
+            }
+            Taken::Source | Taken::Fitted { bend: None, .. } => Ok(None),
+        }
     }
 
     /// How far the model's coefficients may be from the truth. Those of a source that is kept are as far as the trials say
@@ -213,6 +253,13 @@ impl Task<'_> {
         model.coefficients.iter().map(one).collect()
     }
 
+    /// What became of a source of another law.
+    fn said_across(&self) -> Option<String> {
+        let blocks = Blocks::new(&self.transferred, self.law).ok()?;
+        let imitation = Imitation::new(self.across.as_ref()?, &blocks, &self.transferred).ok()?;
+        Some(imitation.words(&blocks, &self.law.name))
+    }
+
     fn remarks(&self, best: usize, lambdas: &[f64]) -> Vec<String> {
         let mut remarks = Vec::new();
         let strongest = self.settings.ranges.iter().map(|range| range.lambda_max).fold(0.0, f64::max);
@@ -220,6 +267,7 @@ impl Task<'_> {
             let what = "an acceleration took the strongest prior allowed: its coefficients are the source's, scaled as a whole by 1 - alpha";
             remarks.push(format!("{what}, and their standard errors say nothing"));
         }
+        remarks.extend(self.said_across());
         if best == 0 {
             remarks.push("no option beat the source on manoeuvres left out: the source is kept as it is".to_owned());
         }

@@ -1,5 +1,6 @@
 //! Refinement of a source model against trials.
 
+mod across;
 mod alternatives;
 mod blocks;
 mod cma_es;
@@ -14,6 +15,7 @@ mod rows;
 mod selection;
 mod settings;
 mod simulated;
+mod thinned;
 mod trajectory;
 mod variant;
 mod weak;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 use sistership_model::Model;
+use sistership_model::coefficient::Axis;
 
 use super::blocks::{Block, Blocks};
 use super::posterior::Errors;
@@ -48,7 +49,7 @@ struct Prepared<'a> {
 impl<'a> Prepared<'a> {
     fn new(block: &'a Block, moments: &Moments, model: &Model) -> Self {
         let source = mixed_source(block, model);
-        Self { block, path: RidgePath::shrunken(moments, &source, &block.shrinkage), source }
+        Self { block, path: RidgePath::measured(moments, &source, block.metric(moments)), source }
     }
 
     fn solve(&self, choices: &[Choice]) -> Vec<Vec<f64>> {
@@ -90,6 +91,20 @@ impl Fold<'_> {
             prepared.add_curvature(choices, start, &mut all);
         }
         (names, all)
+    }
+}
+
+impl Fold<'_> {
+    /// The share of the mean square of each acceleration that a strength about the source leaves on the left-out samples.
+    pub(super) fn shares(&self, lambda: f64) -> Vec<(Axis, f64)> {
+        let of_block = |(prepared, validation): (&Prepared<'_>, &Validation)| {
+            let one = |(target, axis): (usize, &Axis)| {
+                let (_, error) = prepared.path.best_alpha(target, lambda, &prepared.source[target], validation, (0.0, 0.0));
+                (*axis, error / prepared.path.target_variance(target).max(f64::MIN_POSITIVE))
+            };
+            prepared.block.axes.iter().enumerate().map(one).collect::<Vec<_>>()
+        };
+        self.prepared.iter().zip(&self.validations).flat_map(of_block).collect()
     }
 }
 

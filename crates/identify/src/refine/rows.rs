@@ -31,7 +31,28 @@ pub type Table = Vec<Vec<f64>>;
 /// As [`trial_moments`].
 pub fn trial_tables(blocks: &Blocks, trial: &Trial, difference_s: Option<f64>) -> Result<Vec<Table>, RefineError> {
     let record = Record::new(blocks, trial)?;
-    let pairs = pairs(trial, difference_s);
+    let difference = |axis: Axis, pair: (usize, usize)| record.acceleration(axis, pair);
+    Ok(tables(blocks, &record, &pairs(trial, difference_s), &difference))
+}
+
+/// The columns of each regression over the samples of a trial where the accelerations are known; `known` has those of an axis.
+///
+/// # Errors
+/// As [`trial_moments`].
+pub(super) fn known_tables<'k>(
+    blocks: &Blocks,
+    trial: &Trial,
+    known: &dyn Fn(Axis) -> &'k [f64],
+) -> Result<Vec<Table>, RefineError> {
+    let record = Record::new(blocks, trial)?;
+    let samples: Vec<(usize, usize)> = (0..trial.len()).map(|k| (k, k)).collect();
+    Ok(tables(blocks, &record, &samples, &|axis, (k, _)| known(axis)[k]))
+}
+
+/// The acceleration of an axis at a pair of samples.
+type Acceleration<'a> = &'a dyn Fn(Axis, (usize, usize)) -> f64;
+
+fn tables(blocks: &Blocks, record: &Record<'_>, pairs: &[(usize, usize)], acceleration: Acceleration<'_>) -> Vec<Table> {
     let mut tables: Vec<Table> = blocks.blocks.iter().map(|b| vec![Vec::with_capacity(pairs.len()); b.width()]).collect();
     let mut work = Vec::new();
     let mut lanes = vec![[0.0; LANES]; record.columns.len()];
@@ -39,10 +60,10 @@ pub fn trial_tables(blocks: &Blocks, trial: &Trial, difference_s: Option<f64>) -
         record.load(chunk, &mut lanes);
         blocks.tape.run(&lanes, &mut work);
         for (block, table) in blocks.blocks.iter().zip(&mut tables) {
-            append(blocks, block, &record, chunk, &work, table);
+            append(blocks, block, acceleration, chunk, &work, table);
         }
     }
-    Ok(tables)
+    tables
 }
 
 impl Block {
@@ -124,7 +145,7 @@ impl<'a> Record<'a> {
 fn append(
     blocks: &Blocks,
     block: &Block,
-    record: &Record<'_>,
+    acceleration: Acceleration<'_>,
     chunk: &[(usize, usize)],
     work: &[Lanes<LANES>],
     table: &mut [Vec<f64>],
@@ -139,7 +160,7 @@ fn append(
     }
     let targets = &mut table[block.terms.len()..];
     for (lane, &pair) in chunk.iter().enumerate() {
-        let values = target(blocks, block, record, pair, work, lane);
+        let values = target(blocks, block, acceleration, pair, work, lane);
         for (column, value) in targets.iter_mut().zip(values.iter()) {
             column.push(divided(*value, lane));
         }
@@ -151,7 +172,7 @@ fn append(
 fn target(
     blocks: &Blocks,
     block: &Block,
-    record: &Record<'_>,
+    acceleration: Acceleration<'_>,
     pair: (usize, usize),
     work: &[Lanes<LANES>],
     lane: usize,
@@ -163,11 +184,11 @@ fn target(
         let inertia: f64 = block.mass[0]
             .iter()
             .zip(&block.columns)
-            .filter_map(|(mass, &axis)| Some(read((*mass)?) * record.acceleration(axis, pair)))
+            .filter_map(|(mass, &axis)| Some(read((*mass)?) * acceleration(axis, pair)))
             .sum();
         return nalgebra::DVector::from_element(1, inertia - rests[0]);
     }
-    let accelerations = nalgebra::DVector::from_iterator(q, block.axes.iter().map(|&axis| record.acceleration(axis, pair)));
+    let accelerations = nalgebra::DVector::from_iterator(q, block.axes.iter().map(|&axis| acceleration(axis, pair)));
     if rests.iter().all(|rest| *rest == 0.0) {
         return accelerations;
     }

@@ -8,14 +8,18 @@ use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::Trial;
 use sistership_model::vessel::Status;
-use sistership_model::{Model, Vessel};
+use sistership_model::{Model, Vessel, particulars};
 
+use super::across::{self, Imitation, OperatingEnvelope};
+use super::blocks::Blocks;
 use super::cma_es::SearchReport;
 use super::outcome::{RefineError, Refinement, StepOption};
 use super::parts::parts;
 use super::published::{Choices, Fit, Fitted, Fold, tune};
 use super::settings::{Method, Settings};
 use super::simulated::Simulated;
+use super::thinned::thinned;
+use super::trajectory::Bend;
 use super::variant::Variant;
 use crate::transfer::{approach_of, transfer};
 
@@ -26,7 +30,9 @@ pub struct Request<'a> {
     pub target: &'a Vessel,
     /// The source model, as published or as refined earlier.
     pub source: &'a Model,
-    /// The source's law.
+    /// The source's law where it is another than what is fitted: what it says becomes the prior.
+    pub source_law: Option<&'a Law>,
+    /// The law of what is fitted.
     pub law: &'a Law,
     /// Her trials.
     pub trials: &'a [&'a Trial],
@@ -67,7 +73,11 @@ pub fn refine_watched(request: &Request<'_>, progress: Progress<'_>, watch: Watc
     let (judged, whole) = divided(request)?;
     let settings = resolved(request.settings, request.target.particular("lpp_m"), &whole);
     let parts = parts(&whole, request.law, &settings);
-    let task = Task::new(request, (judged, whole), &parts, settings, watch);
+    let (transferred, across) = starting(request, &whole)?;
+    let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
+    let (law, source, watch) = (request.law, request.source.name.as_str(), Some(watch));
+    let thinned = fewer(request.target.particular("lpp_m"), &training);
+    let task = Task { law, source, training, thinned, whole, judged, transferred, across, settings, watch };
     step(progress, 0.05, "sufficient statistics of each trial")?;
     let variants = task.variants()?;
     let mut options = task.options(&variants, progress)?;
@@ -95,10 +105,14 @@ pub(super) struct Task<'a> {
     pub(super) source: &'a str,
     /// What is fitted and left out: the trials, or parts of them.
     pub(super) training: Vec<&'a Trial>,
+    /// The same with no more samples than a simulation needs.
+    pub(super) thinned: Vec<Trial>,
     /// The trials of which that is.
     pub(super) whole: Vec<&'a Trial>,
     pub(super) judged: Vec<&'a Trial>,
     pub(super) transferred: Model,
+    /// Where a source of another law is asked what it says.
+    pub(super) across: Option<OperatingEnvelope>,
     pub(super) settings: Settings,
     watch: Option<Watch<'a>>,
 }
@@ -109,8 +123,8 @@ pub(super) enum Taken {
     Source,
     /// A ridge of a variant at its choices.
     Ridge { variant: usize, choices: Choices },
-    /// What the trajectory form or the search gives on all trials.
-    Fitted { fit: Box<Fit> },
+    /// What the trajectory form or the search gives on all trials, and what its errors follow from.
+    Fitted { fit: Box<Fit>, bend: Option<Box<Bend>> },
 }
 
 /// An option with what it takes to compare and to take it.
@@ -129,28 +143,12 @@ pub(super) struct Trying {
 }
 
 impl<'a> Task<'a> {
-    fn new(
-        request: &'a Request<'a>,
-        (judged, whole): (Vec<&'a Trial>, Vec<&'a Trial>),
-        parts: &'a [Trial],
-        settings: Settings,
-        watch: Watch<'a>,
-    ) -> Self {
-        let transferred = if request.source.ship == request.target.name() {
-            request.source.clone()
-        } else {
-            transfer(request.source, request.law, request.target, approach_of(&whole))
-        };
-        let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
-        let (law, source, watch) = (request.law, request.source.name.as_str(), Some(watch));
-        Self { law, source, training, whole, judged, transferred, settings, watch }
-    }
-
     /// Of a model with itself as the source, on whole trials.
     pub(super) fn of_model(model: &'a Model, law: &'a Law, trials: &[&'a Trial], settings: Settings) -> Self {
         let training = trials.to_vec();
-        let (whole, judged) = (training.clone(), Vec::new());
-        Self { law, source: &model.name, training, whole, judged, transferred: model.clone(), settings, watch: None }
+        let (whole, judged, transferred) = (training.clone(), Vec::new(), model.clone());
+        let thinned = fewer(particulars::value(&model.particulars, "lpp_m"), &training);
+        Self { law, source: &model.name, training, thinned, whole, judged, transferred, across: None, settings, watch: None }
     }
 
     /// Shows what a fit passes by to whoever watches.
@@ -231,7 +229,7 @@ impl<'a> Task<'a> {
         if let Some(Err(reason)) = limits.map(|limits| limits.check(&self.transferred)) {
             return Ok(self.trying("source".into(), None, Taken::Source, 0, Simulated::refused(reason)));
         }
-        let simulated = self.simulate_all(&self.training, std::slice::from_ref(&self.transferred), &|_| 0)?;
+        let simulated = self.simulate_training(std::slice::from_ref(&self.transferred), &|_| 0)?;
         Ok(self.trying("source".into(), None, Taken::Source, 0, simulated))
     }
 
@@ -249,7 +247,7 @@ impl<'a> Task<'a> {
             Ok(models) => models,
             Err(reason) => return Ok(self.trying(label, Some(lambda_min), taken, 0, Simulated::refused(reason))),
         };
-        let simulated = self.simulate_all(&self.training, &models, &|trial| self.fold_of(trial))?;
+        let simulated = self.simulate_training(&models, &|trial| self.fold_of(trial))?;
         let size = models.first().map_or(0, |model| model.coefficients.len());
         Ok(Trying { left_out: models, ..self.trying(label, Some(lambda_min), taken, size, simulated) })
     }
@@ -297,6 +295,26 @@ impl Taken {
             Self::Source | Self::Fitted { .. } => None,
         }
     }
+}
+
+/// Trials with samples as far apart as a thirtieth of the time in which the ship sails her length.
+fn fewer(lpp_m: Option<f64>, training: &[&Trial]) -> Vec<Trial> {
+    let step_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s / 30.0);
+    training.iter().map(|trial| thinned(trial, step_s)).collect()
+}
+
+/// What the prior is about: the source carried over, by its own law or as another law says what it says.
+fn starting(request: &Request<'_>, whole: &[&Trial]) -> Result<(Model, Option<OperatingEnvelope>), RefineError> {
+    let Request { target, source, source_law, law, .. } = *request;
+    let approach = approach_of(whole);
+    let Some(own) = source_law.filter(|own| own.name != law.name) else {
+        let same = source.ship == target.name();
+        return Ok((if same { source.clone() } else { transfer(source, law, target, approach) }, None));
+    };
+    let (mut model, envelope) = across::begun((source, own), law, target, approach, whole)?;
+    let blocks = Blocks::new(&model, law)?;
+    Imitation::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);
+    Ok((model, Some(envelope)))
 }
 
 /// The trials that are kept out of fit and choice, and the others.

@@ -38,6 +38,15 @@ impl Simulated {
 }
 
 impl Task<'_> {
+    /// Simulates what is fitted and left out, each with its model, at no finer steps than it takes.
+    pub(super) fn simulate_training(
+        &self,
+        models: &[Model],
+        model_of: &(dyn Fn(usize) -> usize + Sync),
+    ) -> Result<Simulated, RefineError> {
+        self.simulate_all(&self.thinned.iter().collect::<Vec<_>>(), models, model_of)
+    }
+
     /// Simulates trials, each with its model; the first divergence is the reason against the option.
     pub(super) fn simulate_all(
         &self,

@@ -6,12 +6,12 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use super::Moments;
+use super::{Metric, Moments};
 
 /// Everything that one set of samples and one source need for all (lambda, alpha).
 #[derive(Debug, Clone)]
 pub struct RidgePath {
-    deviations: DVector<f64>,
+    metric: Metric,
     eigenvalues: DVector<f64>,
     eigenvectors: DMatrix<f64>,
     /// Per target: the data's and the source's part in the eigenbasis.
@@ -40,20 +40,19 @@ impl RidgePath {
     /// The same with a prior whose precision is `shrinkage[j]` times the common one for regressor `j`: each is measured
     /// not by its standard deviation but by that times the root of its shrinkage.
     pub fn shrunken(moments: &Moments, source: &[Vec<f64>], shrinkage: &[f64]) -> Self {
-        let p = moments.regressors();
-        let scale = (0..p).map(|j| moments.variance(j).sqrt() / moments.mean(j).abs().max(1e-300));
-        let varies: Vec<bool> = scale.map(|ratio| ratio > 1e-10).collect();
-        let deviations = DVector::from_fn(p, |j, _| if varies[j] { (moments.variance(j) * shrinkage[j]).sqrt() } else { 0.0 });
-        let inverse = deviations.map(|sigma| if sigma > 0.0 { 1.0 / sigma } else { 0.0 });
-        let correlation = DMatrix::from_fn(p, p, |i, j| moments.covariance(i, j) * inverse[i] * inverse[j]);
-        let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(correlation);
-        let in_basis = |f: &dyn Fn(usize) -> f64| tr_mul(&eigenvectors, &DVector::from_fn(p, |j, _| f(j)));
+        Self::measured(moments, source, Metric::of_regressors(moments, shrinkage))
+    }
+
+    /// The same with any measure of the coefficients.
+    pub fn measured(moments: &Moments, source: &[Vec<f64>], metric: Metric) -> Self {
+        let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(metric.products(moments));
         let targets = 0..moments.targets();
-        let data = targets.clone().map(|t| in_basis(&|j| moments.covariance_with_target(j, t) * inverse[j])).collect();
-        let source = source.iter().map(|beta| in_basis(&|j| beta[j] * deviations[j])).collect();
+        let data = targets.clone().map(|t| tr_mul(&eigenvectors, &metric.products_with_target(moments, t))).collect();
+        let source = source.iter().map(|beta| tr_mul(&eigenvectors, &(metric.root() * DVector::from_column_slice(beta))));
+        let source = source.collect();
         let target_variance = targets.map(|t| moments.target_variance(t)).collect();
         let eigenvalues = eigenvalues.map(|value| value.max(0.0));
-        Self { deviations, eigenvalues, eigenvectors, data, source, target_variance, count: moments.count }
+        Self { metric, eigenvalues, eigenvectors, data, source, target_variance, count: moments.count }
     }
 
     /// The coefficients of a target in the units of the regressors.
@@ -71,8 +70,9 @@ impl RidgePath {
     }
 
     fn unscaled(&self, beta: &DVector<f64>, source: &[f64]) -> Vec<f64> {
-        let one = |((b, sigma), kept): ((&f64, &f64), &f64)| if *sigma > 0.0 { b / sigma } else { *kept };
-        beta.iter().zip(self.deviations.iter()).zip(source).map(one).collect()
+        let coefficients = self.metric.back() * beta;
+        let one = |(j, kept): (usize, &f64)| if self.metric.is_still(j) { *kept } else { coefficients[j] };
+        source.iter().enumerate().map(one).collect()
     }
 
     /// The alpha within a range that is best at `lambda` on other samples, and the mean squared error there; the error is
@@ -109,6 +109,11 @@ impl RidgePath {
         mean * self.count / (self.count - freedom - 1.0).max(1.0)
     }
 
+    /// Mean square of a target about its mean, or about zero where the statistics are.
+    pub fn target_variance(&self, target: usize) -> f64 {
+        self.target_variance[target]
+    }
+
     /// How badly a strength of the prior explains a target: twice the negative logarithm of the marginal likelihood by the number
     /// of samples, with the residual variance at its best and without what does not depend on lambda. Where the prior has the
     /// variance `s^2/(n lambda)` about the source, the samples less what the source explains are normal with eigenvalues
@@ -126,12 +131,11 @@ impl RidgePath {
     /// the regressors.
     pub fn deviations(&self, lambda: f64) -> Vec<(f64, f64)> {
         let weights = self.eigenvalues.map(|d| 1.0 / (self.count * (d + lambda).max(1e-300)));
-        let posterior = |j: usize| self.eigenvectors.row(j).iter().zip(weights.iter()).map(|(v, w)| v * v * w).sum::<f64>();
+        let directions = self.metric.back() * &self.eigenvectors;
+        let posterior = |j: usize| directions.row(j).iter().zip(weights.iter()).map(|(v, w)| v * v * w).sum::<f64>();
         let prior = 1.0 / (self.count * lambda.max(1e-300));
-        let one = |(j, sigma): (usize, &f64)| {
-            if *sigma > 0.0 { (posterior(j).sqrt() / sigma, prior.sqrt() / sigma) } else { (0.0, 0.0) }
-        };
-        self.deviations.iter().enumerate().map(one).collect()
+        let held = |j: usize| prior * self.metric.back().row(j).norm_squared();
+        (0..self.metric.size()).map(|j| (posterior(j).sqrt(), held(j).sqrt())).collect()
     }
 
     /// Half the second derivative of what a solution at `lambda` makes least, the sum of squares and of the prior's pull, in the
@@ -139,16 +143,17 @@ impl RidgePath {
     pub fn curvature(&self, lambda: f64) -> DMatrix<f64> {
         let weights = self.eigenvalues.map(|d| self.count * (d + lambda));
         let standard = &self.eigenvectors * DMatrix::from_diagonal(&weights) * self.eigenvectors.transpose();
-        let still = |j: usize| self.deviations[j] == 0.0;
-        DMatrix::from_fn(self.deviations.len(), self.deviations.len(), |i, j| match still(i) || still(j) {
+        let own = self.metric.root().transpose() * standard * self.metric.root();
+        let still = |j: usize| self.metric.is_still(j);
+        DMatrix::from_fn(self.metric.size(), self.metric.size(), |i, j| match still(i) || still(j) {
             true => f64::from(u8::from(i == j)),
-            false => standard[(i, j)] * self.deviations[i] * self.deviations[j],
+            false => own[(i, j)],
         })
     }
 
     /// Largest eigenvalue of the correlation matrix over the smallest of those that belong to varying regressors.
     pub fn condition_number(&self) -> f64 {
-        let still = self.deviations.iter().filter(|sigma| **sigma == 0.0).count();
+        let still = (0..self.metric.size()).filter(|j| self.metric.is_still(*j)).count();
         let mut values: Vec<f64> = self.eigenvalues.iter().copied().collect();
         values.sort_by(f64::total_cmp);
         let smallest = values.get(still).copied().unwrap_or(0.0);
@@ -161,9 +166,9 @@ impl RidgePath {
         let largest = self.eigenvalues.max();
         let small = (0..self.eigenvalues.len()).filter(|&i| self.eigenvalues[i] < tolerance * largest);
         let members = |i: usize| -> Vec<usize> {
-            let column = self.eigenvectors.column(i);
-            let moving = (0..column.len()).filter(|&j| column[j].abs() > 0.3 && self.deviations[j] > 0.0);
-            moving.collect()
+            let moved = self.metric.back() * self.eigenvectors.column(i);
+            let moved = DVector::from_fn(moved.len(), |j, _| moved[j] * self.metric.root().column(j).norm()).normalize();
+            (0..moved.len()).filter(|&j| moved[j].abs() > 0.3).collect()
         };
         let mut groups: Vec<Vec<usize>> = small.map(members).filter(|group| group.len() > 1).collect();
         groups.sort();

@@ -31,7 +31,9 @@ pub struct Ingredients {
     pub source: SourceVersion,
     /// Its model.
     pub model: Model,
-    /// Its law.
+    /// Its law, where it is another than what is fitted.
+    pub source_law: Option<Law>,
+    /// The law of what is fitted.
     pub law: Law,
     /// The trials, in the recipe's order.
     pub trials: Vec<Trial>,
@@ -41,15 +43,20 @@ pub struct Ingredients {
 
 /// Loads what a recipe names, each by its hash; the samples are not yet read.
 pub(super) async fn gather(archive: &Archive, ship: &str, recipe: &Recipe) -> Result<(Ingredients, Vec<Bytes>), DeriveError> {
-    let Recipe::Refinement { source, ship_sha256, law_sha256, trials, settings: recorded, .. } = recipe else {
+    let Recipe::Refinement { source, ship_sha256, law_sha256, across, trials, settings: recorded, .. } = recipe else {
         return Err(DeriveError::Lost("the recipe is not that of a refinement".into()));
     };
     let model = archive.source(source).await?;
-    let law = archive.law(&model.law, law_sha256).await?;
+    let law = archive.law(across.as_ref().map_or(&model.law, |across| &across.law), law_sha256).await?;
+    let source_law = match across {
+        Some(across) => Some(archive.law(&model.law, &across.source_law_sha256).await?),
+        None => None,
+    };
     let target = archive.ship(ship, ship_sha256).await?;
     let samples = archive.samples(trials).await?;
     let settings: Settings = serde_json::from_value(recorded.clone())?;
-    Ok((Ingredients { target, source: source.clone(), model, law, trials: Vec::new(), settings }, samples))
+    let (source, trials) = (source.clone(), Vec::new());
+    Ok((Ingredients { target, source, model, source_law, law, trials, settings }, samples))
 }
 
 pub(super) fn refined(
@@ -72,9 +79,10 @@ pub fn refined_document(
     recipe: &Recipe,
     progress: &(dyn Fn(f64, &str) -> bool + Sync),
 ) -> Result<(VersionDocument, Refinement), DeriveError> {
-    let Ingredients { target, model, law, settings, .. } = ingredients;
+    let Ingredients { target, model, source_law, law, settings, .. } = ingredients;
     let trials: Vec<&Trial> = ingredients.trials.iter().collect();
-    let refinement = refine(&Request { target, source: model, law, trials: &trials, settings }, progress)?;
+    let refinement =
+        refine(&Request { target, source: model, source_law: source_law.as_ref(), law, trials: &trials, settings }, progress)?;
     if !progress(0.97, "learning what the trials leave open") {
         return Err(RefineError::Cancelled.into());
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use sistership_identify::source::{Similarity, best_source, similar};
 use sistership_model::trial::Trial as Recording;
-use sistership_model::version::{Recipe, RecipeTrial, SourceVersion, sha256};
+use sistership_model::version::{AcrossLaws, Recipe, RecipeTrial, SourceVersion, sha256};
 use sistership_model::{Vessel, Zoo};
 use sistership_store::{Job, Version};
 use sistership_trials::samples::from_parquet;
@@ -54,11 +54,19 @@ async fn prepare(app: &App, asked: &RefinementJob, progress: &Progress) -> Resul
             (version, Some(similarity))
         }
     };
-    let law = app.store().laws().get(&source.head.law).await?;
+    let source_law = app.store().laws().get(&source.head.law).await?;
+    let (law, across) = match asked.law.as_ref().filter(|law| **law != source.head.law) {
+        None => (source_law, None),
+        Some(law) => {
+            let across = AcrossLaws { law: law.clone(), source_law_sha256: source_law.sha256 };
+            (app.store().laws().get(law).await?, Some(across))
+        }
+    };
     let recipe = Recipe::Refinement {
         source: SourceVersion { ship: source.head.model.clone(), number: source.head.number, sha256: source.head.sha256.clone() },
         ship_sha256: sha256(ship.document.as_bytes()),
         law_sha256: law.sha256,
+        across,
         trials,
         settings: sorted(serde_json::to_value(&asked.settings).map_err(failed)?),
         code_revision: code_revision().to_owned(),

@@ -15,6 +15,9 @@ pub(crate) struct RefinementJob {
     pub ship: String,
     /// Where to start.
     pub source: SourceChoice,
+    /// The law to fit; the source's where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<String>,
     /// The trials' ids.
     pub trials: Vec<String>,
     /// Every setting.

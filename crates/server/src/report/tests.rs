@@ -45,7 +45,7 @@ impl Case {
         let (source, settings) = (zoo.model("mariner").unwrap(), Settings { lambda_count: 5, ..Settings::default() });
         let given: Vec<&Trial> = trials.iter().collect();
         let law = zoo.law(&source.law).unwrap();
-        let request = Request { target: &vessel, source: &source, law, trials: &given, settings: &settings };
+        let request = Request { target: &vessel, source: &source, source_law: None, law, trials: &given, settings: &settings };
         let refinement = refine(&request, &|_, _| true).unwrap();
         Self { zoo, vessel, trials, refinement }
     }

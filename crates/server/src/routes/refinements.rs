@@ -33,6 +33,9 @@ struct RefinementRequest {
     /// `auto`, or a version to start from: `ship` (her champion), `ship/number`, `ship/alias`.
     #[serde(default = "auto")]
     source: String,
+    /// The law to fit, such as `low-speed`; the source's where absent. What a source of another law says over the states of the
+    /// trials and of its standard manoeuvres becomes the prior.
+    law: Option<String>,
     /// Ids of the trials; all of the ship's where absent.
     trials: Option<Vec<String>>,
     /// Settings of the estimator; each has a default, and all are kept with the version.
@@ -72,7 +75,7 @@ async fn queued(app: &App, request: RefinementRequest, key_sha256: Option<String
 
 /// The request with everything looked up, so that a job that is wrong is refused at once.
 async fn settled(app: &App, request: RefinementRequest, key_sha256: Option<String>) -> Result<RefinementJob> {
-    let RefinementRequest { ship, source, trials, settings } = request;
+    let RefinementRequest { ship, source, law, trials, settings } = request;
     match app.store().ships().get(&ship).await {
         Err(StoreError::NotFound { .. }) => {
             return Err(Problem::invalid("ship", format!("there is no ship `{ship}`; create her with POST /v1/ships")));
@@ -81,8 +84,9 @@ async fn settled(app: &App, request: RefinementRequest, key_sha256: Option<Strin
     }
     settings.check().map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
     repeatable(&settings)?;
+    known(app, law.as_deref()).await?;
     let trials = trial_ids(app, &ship, trials).await?;
-    Ok(RefinementJob { source: choice(app, &source).await?, ship, trials, settings, key_sha256 })
+    Ok(RefinementJob { source: choice(app, &source).await?, ship, law, trials, settings, key_sha256 })
 }
 
 /// A version must follow from its recipe again, which it does not where a clock ended the search.
@@ -90,6 +94,17 @@ fn repeatable(settings: &Settings) -> Result<()> {
     let timed = settings.cma_es.as_ref().is_some_and(|search| search.wall_s.is_some() || search.cpu_s.is_some());
     let message = "a search that time ends cannot be derived again; limit `evaluations` in place of wall_s and cpu_s";
     if timed { Err(Problem::invalid("settings.cma_es", message)) } else { Ok(()) }
+}
+
+/// Whether there is such a law.
+async fn known(app: &App, law: Option<&str>) -> Result<()> {
+    let Some(law) = law else { return Ok(()) };
+    match app.store().laws().get(law).await {
+        Err(StoreError::NotFound { .. }) => {
+            Err(Problem::invalid("law", format!("there is no law `{law}`; GET /v1/laws lists those that there are")))
+        }
+        other => other.map(drop).map_err(Problem::from),
+    }
 }
 
 async fn choice(app: &App, source: &str) -> Result<SourceChoice> {

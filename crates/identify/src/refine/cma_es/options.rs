@@ -172,7 +172,7 @@ impl<'a> Searching<'a> {
 
     fn option(&self, found: Found) -> Result<Trying, RefineError> {
         let models: Vec<Model> = found.left_out.iter().map(|coefficients| self.model(coefficients)).collect();
-        let simulated = self.task.simulate_all(&self.task.training, &models, &|trial| self.task.fold_of(trial))?;
+        let simulated = self.task.simulate_training(&models, &|trial| self.task.fold_of(trial))?;
         let one = |(k, name): (usize, &String)| {
             let deviation = self.objective.sizes[k];
             (name.clone(), Fitted { value: found.all[k], standard_error: 0.0, prior_deviation: deviation })
@@ -180,7 +180,7 @@ impl<'a> Searching<'a> {
         let coefficients = self.objective.system.names().iter().enumerate().map(one).collect();
         let fit = Fit { coefficients, condition_number: 1.0, collinear_groups: Vec::new(), errors: None };
         let label = format!("cma-es, {}", self.variant.family.name());
-        let trying = self.task.trying(label, None, Taken::Fitted { fit: Box::new(fit) }, self.moved.len(), simulated);
+        let trying = self.task.trying(label, None, Taken::Fitted { fit: Box::new(fit), bend: None }, self.moved.len(), simulated);
         Ok(Trying { left_out: models, search: Some(found.report), ..trying })
     }
 }

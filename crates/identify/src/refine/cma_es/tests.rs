@@ -30,7 +30,8 @@ fn refined(evaluations: usize) -> Refinement {
         bands: Sampling { samples: 0, ..Sampling::default() },
         ..Settings::default()
     };
-    refine(&Request { target, source: &source, law: &law, trials: &trials, settings: &settings }, &|_, _| true).unwrap()
+    refine(&Request { target, source: &source, source_law: None, law: &law, trials: &trials, settings: &settings }, &|_, _| true)
+        .unwrap()
 }
 
 #[test]

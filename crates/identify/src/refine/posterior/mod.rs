@@ -19,7 +19,7 @@ use sistership_model::posterior::Posterior;
 
 use super::blocks::{Block, Blocks};
 use super::published::{Choices, mixed_source};
-use crate::regression::{Choice, Moments};
+use crate::regression::{Choice, Metric, Moments};
 use memory::Memory;
 pub(super) use rows::{Rows, rows};
 use spread::spread;
@@ -71,8 +71,8 @@ struct Equation<'a> {
     block: usize,
     target: usize,
     choice: Choice,
-    /// What standardises its regressors; 0 for one that does not vary.
-    scales: &'a DVector<f64>,
+    /// What standardises its coefficients.
+    metric: &'a Metric,
     /// `C`, standardised.
     products: &'a DMatrix<f64>,
     /// `F'y/n`, standardised.
@@ -90,7 +90,7 @@ struct Equation<'a> {
 /// The errors of the ridge at its choices; `rows` are those behind `moments`, `model` is the source. None where the
 /// equations cannot be solved.
 pub(super) fn errors(blocks: &Blocks, moments: &[Moments], rows: &Rows, model: &Model, choices: &Choices) -> Option<Errors> {
-    let standard: Vec<(DVector<f64>, DMatrix<f64>)> = blocks.blocks.iter().zip(moments).map(standardised).collect();
+    let standard: Vec<(Metric, DMatrix<f64>)> = blocks.blocks.iter().zip(moments).map(standardised).collect();
     let mut equations = Vec::new();
     for (b, block) in blocks.blocks.iter().enumerate() {
         let sources = mixed_source(block, model);
@@ -105,18 +105,11 @@ pub(super) fn errors(blocks: &Blocks, moments: &[Moments], rows: &Rows, model: &
     Some(gathered(blocks, &equations, &scatter.all, &spreads))
 }
 
-/// What standardises a block's regressors, and their mean products so standardised.
-fn standardised((block, moments): (&Block, &Moments)) -> (DVector<f64>, DMatrix<f64>) {
-    let p = block.regressors();
-    let scale = |j: usize| {
-        let variance = moments.variance(j);
-        let varies = variance.sqrt() > 1e-10 * moments.mean(j).abs().max(1e-300);
-        if varies { (variance * block.shrinkage[j]).sqrt() } else { 0.0 }
-    };
-    let scales = DVector::from_fn(p, |j, _| scale(j));
-    let inverse = scales.map(reciprocal);
-    let products = DMatrix::from_fn(p, p, |i, j| moments.covariance(i, j) * inverse[i] * inverse[j]);
-    (scales, products)
+/// What standardises a block's coefficients, and the mean products of its regressors so standardised.
+fn standardised((block, moments): (&Block, &Moments)) -> (Metric, DMatrix<f64>) {
+    let metric = block.metric(moments);
+    let products = metric.products(moments);
+    (metric, products)
 }
 
 /// One over a scale; 0 for what does not vary.
@@ -128,36 +121,35 @@ impl<'a> Equation<'a> {
     fn new(
         (block, target): (usize, usize),
         moments: &Moments,
-        (scales, products): &'a (DVector<f64>, DMatrix<f64>),
+        (metric, products): &'a (Metric, DMatrix<f64>),
         source: &[f64],
         choice: Choice,
     ) -> Option<Self> {
-        let p = scales.len();
         let inverse = |lambda: f64| {
             let mut sum = products.clone();
-            (0..p).for_each(|j| sum[(j, j)] += if scales[j] > 0.0 { lambda.max(1e-12) } else { 1.0 });
+            (0..metric.size()).for_each(|j| sum[(j, j)] += if metric.is_still(j) { 1.0 } else { lambda.max(1e-12) });
             Some(sum.cholesky()?.inverse())
         };
-        let data = DVector::from_fn(p, |j, _| moments.covariance_with_target(j, target) * reciprocal(scales[j]));
-        let source = DVector::from_fn(p, |j, _| source[j] * scales[j]);
+        let data = metric.products_with_target(moments, target);
+        let source = metric.root() * DVector::from_column_slice(source);
         let lambda = choice.lambda.min(FREE);
         let free = inverse(lambda)?;
         let solution = &free * (&data + &source * lambda);
         let square = moments.target_variance(target);
         let (inverse, free) = (inverse(choice.lambda)?, (free, solution));
-        Some(Self { block, target, choice, scales, products, data, square, source, inverse, free })
+        Some(Self { block, target, choice, metric, products, data, square, source, inverse, free })
     }
 
     /// What the law leaves of its target, by sequence, where no source holds it: else the source's error would seem noise.
     fn residuals(&self, rows: &Rows) -> Vec<DVector<f64>> {
-        let coefficients = self.free.1.zip_map(self.scales, |value, scale| value * reciprocal(scale));
+        let coefficients = self.metric.back() * &self.free.1;
         let of = |sequence: &rows::Sequence| sequence.target(self.target) - &sequence.regressors * &coefficients;
         rows.blocks[self.block].iter().map(of).collect()
     }
 
     /// Places of its coefficients that the trials moved.
     fn size(&self) -> usize {
-        self.scales.len()
+        self.metric.size()
     }
 }
 
@@ -176,13 +168,8 @@ fn scatter(equations: &[Equation<'_>], rows: &Rows, memory: &Memory) -> Scatter 
     let mut factors = Vec::new();
     for (i, one) in equations.iter().enumerate() {
         for (j, other) in equations.iter().enumerate().take(i + 1) {
-            let mut part = rows.weighed(one.block, other.block, &memory.kernel(i, j));
-            for (row, mut values) in part.row_iter_mut().enumerate() {
-                values *= reciprocal(one.scales[row]);
-            }
-            for (column, mut values) in part.column_iter_mut().enumerate() {
-                values *= reciprocal(other.scales[column]);
-            }
+            let part = rows.weighed(one.block, other.block, &memory.kernel(i, j));
+            let part = one.metric.back().transpose() * part * other.metric.back();
             if i == j {
                 factors.push(one.taken_up(&part, memory.variance(i), rows.count()).sqrt());
             }
@@ -235,7 +222,7 @@ fn gathered(blocks: &Blocks, equations: &[Equation<'_>], scatter: &DMatrix<f64>,
         let (size, Choice { lambda, alpha }) = (equation.size(), equation.choice);
         inverse.view_mut((at, at), (size, size)).copy_from(&equation.inverse);
         pulled.rows_mut(at, size).copy_from(&(&equation.source * (lambda * alpha)));
-        (0..size).filter(|j| equation.scales[*j] > 0.0).for_each(|j| {
+        (0..size).filter(|j| !equation.metric.is_still(*j)).for_each(|j| {
             source[at + j] = spread[j];
             strengths[at + j] = lambda;
         });
@@ -258,10 +245,9 @@ fn place(block: &Block, equations: &[Equation<'_>], starts: &[usize], first: usi
     let unmixing = block.mixing.clone().lu().solve(&DMatrix::identity(q, q)).unwrap_or_else(|| DMatrix::identity(q, q));
     for axis in 0..q {
         for target in 0..q {
-            for i in 0..block.regressors() {
-                let scale = equations[first + target].scales[i];
-                map[(starts[first + axis] + i, starts[first + target] + i)] = unmixing[(axis, target)] * reciprocal(scale);
-            }
+            let part = equations[first + target].metric.back() * unmixing[(axis, target)];
+            let size = block.regressors();
+            map.view_mut((starts[first + axis], starts[first + target]), (size, size)).copy_from(&part);
         }
     }
 }

@@ -7,32 +7,42 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::super::posterior::Errors;
+use super::super::published::Choices;
 use super::prior::{Prior, Strength};
 use super::solve::Held;
 
-/// Joint errors of coefficients in the order of the normal equations; `weak` are those of the weak form, in any order.
-pub(super) fn errors(
-    names: &[String],
-    held: &Held,
-    gradients: &[DVector<f64>],
-    count: f64,
-    pulls: (&Prior, Strength),
-    weak: &Errors,
-) -> Option<Errors> {
-    let (prior, strength) = pulls;
-    let inverse = held.inverse()?;
-    let weak = weak.ordered(names)?;
-    let size = names.len();
-    let to_weak = &prior.hessian * strength.mu;
-    let to_source = DMatrix::from_diagonal(&DVector::from_fn(size, |k, _| strength.lambda * prior.own(k)));
-    let both = &to_weak * &weak.cross * &to_source;
-    let middle = scatter(gradients, count, size)
-        + &to_weak * &weak.covariance * &to_weak
-        + &to_source * &weak.source * &to_source
-        + &both
-        + both.transpose();
-    let cross = &inverse * (&to_weak * &weak.cross + &to_source * &weak.source);
-    Some(Errors { names: names.to_vec(), covariance: &inverse * middle * &inverse, source: weak.source, cross })
+/// What the errors of a fit follow from.
+pub(in super::super) struct Bend {
+    /// The weak form from which it started: place of its variant, and choices.
+    pub variant: usize,
+    pub choices: Choices,
+    /// The coefficients in the order of the normal equations.
+    pub(super) names: Vec<String>,
+    pub(super) held: Held,
+    /// By segment.
+    pub(super) gradients: Vec<DVector<f64>>,
+    pub(super) count: f64,
+    pub(super) prior: Prior,
+    pub(super) strength: Strength,
+}
+
+impl Bend {
+    /// Joint errors of the coefficients; `weak` are those of the weak form, in any order.
+    pub fn errors(&self, weak: &Errors) -> Option<Errors> {
+        let Self { names, prior, strength, .. } = self;
+        let inverse = self.held.inverse()?;
+        let weak = weak.ordered(names)?;
+        let to_weak = &prior.hessian * strength.mu;
+        let to_source = &prior.own * strength.lambda;
+        let both = &to_weak * &weak.cross * &to_source;
+        let middle = scatter(&self.gradients, self.count, names.len())
+            + &to_weak * &weak.covariance * &to_weak
+            + &to_source * &weak.source * &to_source
+            + &both
+            + both.transpose();
+        let cross = &inverse * (&to_weak * &weak.cross + &to_source * &weak.source);
+        Some(Errors { names: names.clone(), covariance: &inverse * middle * &inverse, source: weak.source, cross })
+    }
 }
 
 /// Covariance of the mean gradient from that of the segments', which have one direction less than there are segments.

@@ -13,6 +13,7 @@ mod prior;
 mod segments;
 mod solve;
 
+pub(super) use errors::Bend;
 pub(super) use prior::Prior;
 pub(super) use segments::{Plan, Segment, compared, cut};
 

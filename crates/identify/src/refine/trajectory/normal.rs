@@ -31,8 +31,6 @@ pub(super) struct Normal {
 pub(super) struct Pass {
     pub trials: Vec<Normal>,
     pub gradients: Vec<DVector<f64>>,
-    /// Absolute residuals by compared state, where they were asked for.
-    pub sizes: Vec<Vec<f64>>,
 }
 
 impl Normal {
@@ -63,17 +61,23 @@ impl Passing<'_> {
     pub fn pass(&self, system: &SensitiveSystem) -> Pass {
         let size = system.names().len();
         let blocks: Vec<Vec<Lane>> = self.segments.par_chunks(LANES).map(|block| self.block(system, block)).collect();
-        let mut pass = Pass {
-            trials: vec![Normal::zeros(size); self.trials],
-            gradients: Vec::new(),
-            sizes: vec![Vec::new(); self.plan.compared.len()],
-        };
+        let mut pass = Pass { trials: vec![Normal::zeros(size); self.trials], gradients: Vec::new() };
         for (segment, lane) in self.segments.iter().zip(blocks.into_iter().flatten()) {
             pass.trials[segment.trial].add(&lane.normal);
             pass.gradients.push(lane.normal.gradient);
-            pass.sizes.iter_mut().zip(lane.sizes).for_each(|(all, own)| all.extend(own));
         }
         pass
+    }
+
+    /// Absolute residuals by compared state, of every `some`th block of segments.
+    pub fn sizes(&self, system: &SensitiveSystem, some: usize) -> Vec<Vec<f64>> {
+        let blocks: Vec<&[Segment]> = self.segments.chunks(LANES).step_by(some).collect();
+        let lanes: Vec<Vec<Lane>> = blocks.into_par_iter().map(|block| self.block(system, block)).collect();
+        let mut sizes = vec![Vec::new(); self.plan.compared.len()];
+        for lane in lanes.into_iter().flatten() {
+            sizes.iter_mut().zip(lane.sizes).for_each(|(all, own)| all.extend(own));
+        }
+        sizes
     }
 
     fn block(&self, system: &SensitiveSystem, block: &[Segment]) -> Vec<Lane> {

@@ -9,37 +9,38 @@ use sistership_model::Model;
 use sistership_model::quantity::Quantity;
 
 use super::super::outcome::RefineError;
-use super::super::posterior::Errors;
 use super::super::published::{Choices, Fit, Fitted, fit};
 use super::super::selection::{Glimpse, Progress, Taken, Task, Trying, step};
 use super::super::variant::{Variant, merged};
 use super::Cut;
-use super::errors::errors;
+use super::errors::Bend;
 use super::normal::{Normal, Pass, Passing};
 use super::prior::{Prior, Strength};
 use super::segments::{Plan, compared, cut};
 use super::solve::Held;
 use crate::transfer::ready;
 
-/// Pulls towards the weak form that are tried, strongest first, each from where the one before has ended; the source pulls with
-/// a hundredth of them.
+/// Pulls towards the weak form that are tried, strongest first, each from where the one before has ended, until two in a row are
+/// no better; the source pulls with a hundredth of them.
 const PULLS: [f64; 7] = [100.0, 10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4];
 /// Huber's threshold in robust standard deviations of a state's residuals.
 const HUBER: f64 = 3.0;
+/// A median needs no more than so many times fewer segments, where there are many.
+const SOME: usize = 4;
 /// Most steps.
 const STEPS: usize = 12;
-/// Steps end when one gains less than this share.
+/// Steps end when one gains, or would gain, less than this share.
 const ENOUGH: f64 = 2e-3;
 
 /// What the trajectory form makes of one variant.
 pub(in super::super) struct Trajectory<'a> {
     task: &'a Task<'a>,
     variant: &'a Variant,
+    /// Its place among all.
+    index: usize,
     choices: &'a Choices,
     passing: Passing<'a>,
     names: Vec<String>,
-    /// How far the weak form may be from the truth.
-    weak: Option<Errors>,
 }
 
 /// Coefficients with the pass at them.
@@ -56,12 +57,13 @@ impl Task<'_> {
         options: &mut Vec<Trying>,
         progress: Progress<'_>,
     ) -> Result<(), RefineError> {
-        let Some((variant, choices)) = super::super::finish::best(options).and_then(|best| match &options[best].taken {
-            Taken::Ridge { variant, choices } => Some((&variants[*variant], choices.clone())),
+        let Some((index, choices)) = super::super::finish::best(options).and_then(|best| match &options[best].taken {
+            Taken::Ridge { variant, choices } => Some((*variant, choices.clone())),
             _ => None,
         }) else {
             return Ok(());
         };
+        let variant = &variants[index];
         step(progress, 0.6, "trajectories from the weak form")?;
         let cutting = self.cut();
         let model = self.model_at(variant, &weak_values(variant, &choices)?);
@@ -78,8 +80,7 @@ impl Task<'_> {
         let trials = self.training.len();
         let passing = Passing { segments: &segments, plan: &plan, envelope: *ship.envelope(), thresholds, trials };
         let names = system.names().to_vec();
-        let weak = self.errors(variant, &choices)?;
-        Trajectory { task: self, variant, choices: &choices, passing, names, weak }.options(options, progress)
+        Trajectory { task: self, variant, index, choices: &choices, passing, names }.options(options, progress)
     }
 
     fn cut(&self) -> Cut {
@@ -109,10 +110,11 @@ fn weak_values(variant: &Variant, choices: &Choices) -> Result<BTreeMap<String, 
 impl Trajectory<'_> {
     fn options(mut self, options: &mut Vec<Trying>, progress: Progress<'_>) -> Result<(), RefineError> {
         let prior = self.prior(&|_| true)?;
-        self.passing.thresholds = self.pass(&prior.weak)?.sizes.into_iter().map(threshold).collect();
+        self.passing.thresholds = self.thresholds(&prior.weak)?;
         let priors: Vec<Prior> =
             (0..self.task.fold_count()).map(|fold| self.prior(&|t| self.inside(t, fold))).collect::<Result<_, _>>()?;
         let mut reached = self.reached(prior.weak.clone())?;
+        let mut errors = Vec::new();
         for pull in PULLS {
             let label = format!("trajectory, {}, pull {pull:.0e}", self.variant.family.name());
             step(progress, 0.7, &label)?;
@@ -120,12 +122,24 @@ impl Trajectory<'_> {
             step(progress, 0.7, &format!("{label}: simulating manoeuvres left out"))?;
             let models: Vec<Model> =
                 priors.iter().enumerate().map(|(fold, prior)| self.left_out(fold, prior, strength(pull), &reached)).collect();
-            let simulated = self.task.simulate_all(&self.task.training, &models, &|trial| self.task.fold_of(trial))?;
-            let taken = Taken::Fitted { fit: Box::new(self.fit(&prior, strength(pull), &reached)) };
+            let simulated = self.task.simulate_training(&models, &|trial| self.task.fold_of(trial))?;
+            let bend = self.bend(&prior, strength(pull), &reached);
+            let taken = Taken::Fitted { fit: Box::new(self.fit(&bend, &reached)), bend: Some(Box::new(bend)) };
             let trying = self.task.trying(label, Some(pull), taken, self.names.len(), simulated);
+            errors.push(trying.option.error.unwrap_or(f64::INFINITY));
             options.push(Trying { left_out: models, ..trying });
+            if is_past_best(&errors) {
+                break;
+            }
         }
         Ok(())
+    }
+
+    /// Huber's thresholds from every [`SOME`]th segment.
+    fn thresholds(&self, at: &DVector<f64>) -> Result<Vec<f64>, RefineError> {
+        let model = self.task.model_at(self.variant, &self.values(at));
+        let system = SensitiveSystem::new(&model, self.task.law).map_err(|e| RefineError::Law(e.to_string()))?;
+        Ok(self.passing.sizes(&system, SOME).into_iter().map(threshold).collect())
     }
 
     fn inside(&self, trial: usize, fold: usize) -> bool {
@@ -163,7 +177,7 @@ impl Trajectory<'_> {
         for _ in 0..STEPS {
             let model = || self.task.model_at(self.variant, &self.values(&here.at));
             self.task.glimpse(&Glimpse { evaluations: 0, objective: held.cost, model: &model });
-            let Some(step) = held.step(damping) else { break };
+            let Some(step) = held.step(damping).filter(|step| held.foretold(step) > ENOUGH) else { break };
             let there = self.reached(&here.at + step)?;
             let next = Held::new(&total(&there.pass, |_| true), prior, strength, &there.at);
             if next.cost.is_finite() && next.cost < held.cost {
@@ -191,24 +205,39 @@ impl Trajectory<'_> {
         self.task.model_at(self.variant, &self.values(&at))
     }
 
-    /// Coefficients with what a pass near them says of their errors.
-    fn fit(&self, prior: &Prior, strength: Strength, Reached { at, pass }: &Reached) -> Fit {
+    /// What the errors at coefficients follow from.
+    fn bend(&self, prior: &Prior, strength: Strength, Reached { at, pass }: &Reached) -> Bend {
         let normal = total(pass, |_| true);
-        let held = Held::new(&normal, prior, strength, at);
-        let joint = |weak: &Errors| errors(&self.names, &held, &pass.gradients, normal.count, (prior, strength), weak);
-        let errors = self.weak.as_ref().and_then(joint);
+        Bend {
+            variant: self.index,
+            choices: self.choices.clone(),
+            names: self.names.clone(),
+            held: Held::new(&normal, prior, strength, at),
+            gradients: pass.gradients.clone(),
+            count: normal.count,
+            prior: prior.clone(),
+            strength,
+        }
+    }
+
+    /// The coefficients, without their errors.
+    fn fit(&self, bend: &Bend, Reached { at, pass }: &Reached) -> Fit {
+        let deviations = bend.prior.deviations(bend.strength);
+        let cost: f64 = pass.trials.iter().map(|normal| normal.cost).sum();
         let one = |(k, name): (usize, &String)| {
-            let fitted = Fitted {
-                value: at[k],
-                standard_error: 0.0,
-                prior_deviation: prior.deviation(k, strength) * (normal.cost / normal.count.max(1.0)).sqrt(),
-            };
-            (name.clone(), fitted)
+            let prior_deviation = deviations[k] * (cost / bend.count.max(1.0)).sqrt();
+            (name.clone(), Fitted { value: at[k], standard_error: 0.0, prior_deviation })
         };
         let coefficients = self.names.iter().enumerate().map(one).collect();
-        let condition_number = held.condition_number();
-        Fit { coefficients, condition_number, collinear_groups: Vec::new(), errors: None }.with_errors(errors)
+        Fit { coefficients, condition_number: bend.held.condition_number(), collinear_groups: Vec::new(), errors: None }
     }
+}
+
+/// Whether the last two were no better than one before them: weaker pulls would be worse still.
+fn is_past_best(errors: &[f64]) -> bool {
+    let Some(before) = errors.len().checked_sub(2) else { return false };
+    let best = errors[..before].iter().copied().fold(f64::INFINITY, f64::min);
+    best.is_finite() && errors[before..].iter().all(|error| *error >= best)
 }
 
 fn strength(pull: f64) -> Strength {

@@ -23,8 +23,8 @@ pub(in super::super) struct Prior {
     pub hessian: DMatrix<f64>,
     pub weak: DVector<f64>,
     pub source: DVector<f64>,
-    /// How many times stronger the source pulls each coefficient than it pulls others: deviations of submodels.
-    shrinkage: DVector<f64>,
+    /// What the source's pull at strength 1 is.
+    pub own: DMatrix<f64>,
 }
 
 impl Prior {
@@ -37,61 +37,68 @@ impl Prior {
         source: &dyn Fn(&str) -> f64,
     ) -> Self {
         let place: BTreeMap<&str, usize> = names.iter().enumerate().map(|(k, name)| (name.as_str(), k)).collect();
-        let mut hessian = DMatrix::zeros(names.len(), names.len());
+        let size = names.len();
+        let (mut hessian, mut own) = (DMatrix::zeros(size, size), DMatrix::zeros(size, size));
         for (block, moments) in blocks.blocks.iter().zip(moments) {
-            add_block(&mut hessian, block, moments, &place);
+            let raw = moments.raw_products();
+            let weights: Vec<f64> = (block.regressors()..raw.nrows()).map(|t| 1.0 / raw[(t, t)].max(f64::MIN_POSITIVE)).collect();
+            add_block(&mut hessian, block, (&raw, &weights), &place);
+            if let Some(precision) = &block.precision {
+                add_block(&mut own, block, (precision, &weights), &place);
+            }
         }
-        let vector = |of: &dyn Fn(&str) -> f64| DVector::from_iterator(names.len(), names.iter().map(|name| of(name)));
-        let mut shrinkage = DVector::repeat(names.len(), 1.0);
-        for (name, factor) in
-            blocks.blocks.iter().flat_map(|block| block.names.iter().flat_map(|own| own.iter().zip(&block.shrinkage)))
-        {
-            place.get(name.as_str()).into_iter().for_each(|&k| shrinkage[k] = *factor);
+        for (block, name, shrinkage) in blocks.blocks.iter().flat_map(each) {
+            if let (None, Some(&k)) = (&block.precision, place.get(name.as_str())) {
+                own[(k, k)] = shrinkage * hessian[(k, k)];
+            }
         }
-        Self { hessian, weak: vector(weak), source: vector(source), shrinkage }
+        let vector = |of: &dyn Fn(&str) -> f64| DVector::from_iterator(size, names.iter().map(|name| of(name)));
+        Self { hessian, weak: vector(weak), source: vector(source), own }
     }
 
     /// What the pulls cost at coefficients.
     pub fn cost(&self, at: &DVector<f64>, strength: Strength) -> f64 {
         let (weak, source) = (at - &self.weak, at - &self.source);
-        let own: f64 = source.iter().enumerate().map(|(k, d)| self.own(k) * d * d).sum();
-        strength.mu * weak.dot(&(&self.hessian * &weak)) + strength.lambda * own
+        strength.mu * weak.dot(&(&self.hessian * &weak)) + strength.lambda * source.dot(&(&self.own * &source))
     }
 
     /// Adds the pulls to normal equations at coefficients.
     pub fn add(&self, at: &DVector<f64>, strength: Strength, hessian: &mut DMatrix<f64>, gradient: &mut DVector<f64>) {
         *hessian += &self.hessian * strength.mu;
         *gradient += &self.hessian * (at - &self.weak) * strength.mu;
-        for k in 0..at.len() {
-            let own = strength.lambda * self.own(k);
-            hessian[(k, k)] += own;
-            gradient[k] += own * (at[k] - self.source[k]);
-        }
+        *hessian += &self.own * strength.lambda;
+        *gradient += &self.own * (at - &self.source) * strength.lambda;
     }
 
-    /// How far the source's pull alone lets a coefficient be, as if the motion were missed by its own size.
-    pub fn deviation(&self, k: usize, strength: Strength) -> f64 {
-        1.0 / (strength.lambda * self.own(k)).max(1e-300).sqrt()
-    }
-
-    /// What the source's pull at strength 1 is on a coefficient.
-    pub fn own(&self, k: usize) -> f64 {
-        self.shrinkage[k] * self.hessian[(k, k)]
+    /// How far the source's pull alone lets each coefficient be, as if the motion were missed by its own size.
+    pub fn deviations(&self, strength: Strength) -> DVector<f64> {
+        let scales = self.own.diagonal().map(|own| 1.0 / own.max(1e-300).sqrt());
+        let unit = DMatrix::from_fn(scales.len(), scales.len(), |i, j| self.own[(i, j)] * scales[i] * scales[j]);
+        let free = DMatrix::identity(scales.len(), scales.len());
+        let inverse = unit.cholesky().map_or(free, |root| root.inverse());
+        DVector::from_fn(scales.len(), |k, _| inverse[(k, k)].sqrt() * scales[k] / strength.lambda.max(1e-300).sqrt())
     }
 }
 
+/// The coefficients of a block with how many times stronger the source pulls them than it pulls others.
+fn each(block: &Block) -> impl Iterator<Item = (&Block, &String, f64)> {
+    block.names.iter().flat_map(move |own| own.iter().zip(&block.shrinkage).map(move |(name, factor)| (block, name, *factor)))
+}
+
 /// Products of regressors by what each coefficient does to each acceleration.
-fn add_block(hessian: &mut DMatrix<f64>, block: &Block, moments: &Moments, place: &BTreeMap<&str, usize>) {
-    let raw = moments.raw_products();
-    let p = block.regressors();
-    let weights: Vec<f64> = (0..block.axes.len()).map(|t| 1.0 / raw[(p + t, p + t)].max(f64::MIN_POSITIVE)).collect();
+fn add_block(
+    into: &mut DMatrix<f64>,
+    block: &Block,
+    (products, weights): (&DMatrix<f64>, &[f64]),
+    place: &BTreeMap<&str, usize>,
+) {
     for (a, names) in block.names.iter().enumerate() {
         for (b, others) in block.names.iter().enumerate() {
             let shared: f64 = weights.iter().enumerate().map(|(t, w)| w * block.mixing[(t, a)] * block.mixing[(t, b)]).sum();
             for (i, name) in names.iter().enumerate() {
                 for (j, other) in others.iter().enumerate() {
                     let (Some(&row), Some(&column)) = (place.get(name.as_str()), place.get(other.as_str())) else { continue };
-                    hessian[(row, column)] += shared * raw[(i, j)];
+                    into[(row, column)] += shared * products[(i, j)];
                 }
             }
         }

@@ -30,6 +30,11 @@ impl Held {
         Some(-step.component_mul(&scales))
     }
 
+    /// The share of the cost that a step gains where everything is as linear as it seems.
+    pub fn foretold(&self, step: &DVector<f64>) -> f64 {
+        -(2.0 * self.gradient.dot(step) + step.dot(&(&self.hessian * step))) / self.cost.max(f64::MIN_POSITIVE)
+    }
+
     /// The Hessian with ones on its diagonal, and the scales that make it so.
     fn scaled(&self) -> (DMatrix<f64>, DVector<f64>) {
         let scales = self.hessian.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });

@@ -1,0 +1,34 @@
+//! A source of one law as the prior of another.
+//!
+//! What a source says of a ship is not its coefficients but her accelerations. Where they are to hold another law, they are
+//! regressed on its terms over the envelope in which the model will be used ([`OperatingEnvelope`]): mean and covariance of that
+//! regression are the prior ([`Imitation`]). docs/decisions/0015 has the reasons.
+
+mod envelope;
+mod imitation;
+
+use sistership_model::law::Law;
+use sistership_model::trial::Trial;
+use sistership_model::{Model, Vessel};
+
+use super::outcome::RefineError;
+use crate::transfer::{Approach, blank_of, transfer};
+pub(super) use envelope::OperatingEnvelope;
+pub(super) use imitation::Imitation;
+
+/// A source carried over to the target by its own law, and a model of the law to be fitted that knows nothing yet.
+pub(super) fn begun(
+    (source, own): (&Model, &Law),
+    law: &Law,
+    target: &Vessel,
+    approach: Option<Approach>,
+    trials: &[&Trial],
+) -> Result<(Model, OperatingEnvelope), RefineError> {
+    let carried = if source.ship == target.name() { source.clone() } else { transfer(source, own, target, approach) };
+    let envelope = OperatingEnvelope::new(&carried, own, trials)?;
+    let mut model = blank_of(law, target, &carried, approach).map_err(RefineError::Law)?;
+    (model.speed_m_s, model.revolutions_rps) = (carried.speed_m_s, carried.revolutions_rps);
+    model.steering = carried.steering;
+    model.note = Some(format!("regressed on what {} says", source.name));
+    Ok((model, envelope))
+}

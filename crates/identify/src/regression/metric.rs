@@ -1,0 +1,108 @@
+//! How a prior measures coefficients.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::Moments;
+
+/// A root of a prior's precision at strength 1: in the coordinates `z = root b` of coefficients `b`, the prior holds every
+/// direction alike.
+#[derive(Debug, Clone)]
+pub struct Metric {
+    root: DMatrix<f64>,
+    /// The root's inverse; zero for what is still.
+    back: DMatrix<f64>,
+    /// Coefficients that nothing moves: their regressor does not vary.
+    still: Vec<bool>,
+}
+
+impl Metric {
+    /// Each coefficient by the standard deviation of its regressor times the root of `shrinkage`, which is how many times the
+    /// precision of its prior is the common one (Kanazawa 2023, Eq. 5.11, with every shrinkage 1).
+    pub fn of_regressors(moments: &Moments, shrinkage: &[f64]) -> Self {
+        let p = moments.regressors();
+        let deviation = |j: usize| moments.variance(j).sqrt();
+        let still: Vec<bool> = (0..p).map(|j| deviation(j) / moments.mean(j).abs().max(1e-300) <= 1e-10).collect();
+        let scales = DVector::from_fn(p, |j, _| if still[j] { 0.0 } else { (moments.variance(j) * shrinkage[j]).sqrt() });
+        let inverse = scales.map(|scale| if scale > 0.0 { 1.0 / scale } else { 0.0 });
+        Self { root: DMatrix::from_diagonal(&scales), back: DMatrix::from_diagonal(&inverse), still }
+    }
+
+    /// All coefficients jointly by a precision; one that has none is still. None where it is not positive definite.
+    pub fn of_precision(precision: &DMatrix<f64>) -> Option<Self> {
+        let p = precision.nrows();
+        let still: Vec<bool> = precision.diagonal().iter().map(|own| *own == 0.0).collect();
+        let scales = precision.diagonal().map(f64::sqrt);
+        let inverse = scales.map(|scale| if scale > 0.0 { 1.0 / scale } else { 0.0 });
+        let entry = |i: usize, j: usize| if i == j { 1.0 } else { precision[(i, j)] * inverse[i] * inverse[j] };
+        let unit = DMatrix::from_fn(p, p, entry).cholesky()?.unpack().transpose();
+        let back = DMatrix::from_diagonal(&inverse) * unit.solve_upper_triangular(&DMatrix::identity(p, p))?;
+        Some(Self { root: unit * DMatrix::from_diagonal(&scales), back, still })
+    }
+
+    /// Number of coefficients.
+    pub fn size(&self) -> usize {
+        self.still.len()
+    }
+
+    /// Whether nothing moves a coefficient.
+    pub fn is_still(&self, coefficient: usize) -> bool {
+        self.still[coefficient]
+    }
+
+    /// From coefficients to coordinates.
+    pub fn root(&self) -> &DMatrix<f64> {
+        &self.root
+    }
+
+    /// From coordinates to coefficients.
+    pub fn back(&self) -> &DMatrix<f64> {
+        &self.back
+    }
+
+    /// Mean products of the regressors that belong to the coordinates.
+    pub fn products(&self, moments: &Moments) -> DMatrix<f64> {
+        let p = self.size();
+        let own = DMatrix::from_fn(p, p, |i, j| moments.covariance(i, j));
+        self.back.transpose() * own * &self.back
+    }
+
+    /// Their mean products with a target.
+    pub fn products_with_target(&self, moments: &Moments, target: usize) -> DVector<f64> {
+        let own = DVector::from_fn(self.size(), |j, _| moments.covariance_with_target(j, target));
+        self.back.tr_mul(&own)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn moments() -> Moments {
+        let x: Vec<f64> = (0..400).map(|k| (0.11 * f64::from(k)).sin()).collect();
+        let z: Vec<f64> = (0..400).map(|k| 3.0 + 1e-3 * (0.07 * f64::from(k)).cos()).collect();
+        let y = x.iter().zip(&z).map(|(x, z)| 2.0 * x - 0.5 * z).collect();
+        Moments::of_columns(&[x, z, vec![5.0; 400], y], 3)
+    }
+
+    #[test]
+    fn regressors_in_their_own_deviations_have_ones_on_the_diagonal_and_what_is_still_has_none() {
+        let metric = Metric::of_regressors(&moments(), &[1.0, 4.0, 1.0]);
+        let products = metric.products(&moments());
+        assert!((products[(0, 0)] - 1.0).abs() < 1e-12 && (products[(1, 1)] - 0.25).abs() < 1e-12 && products[(2, 2)] == 0.0);
+        assert!(metric.is_still(2) && !metric.is_still(0));
+    }
+
+    #[test]
+    fn a_precision_has_its_root_and_its_inverse() {
+        let precision = DMatrix::from_row_slice(2, 2, &[4e8, 3e3, 3e3, 0.09]);
+        let metric = Metric::of_precision(&precision).unwrap();
+        let again = metric.root().transpose() * metric.root();
+        assert!((0..4).all(|k| (again[k] - precision[k]).abs() < 1e-9 * precision[k]));
+        let one = metric.root() * metric.back();
+        assert!((one - DMatrix::identity(2, 2)).abs().max() < 1e-9);
+        let with_none = Metric::of_precision(&DMatrix::from_row_slice(2, 2, &[4.0, 0.0, 0.0, 0.0])).unwrap();
+        assert!(with_none.is_still(1) && with_none.back()[(0, 0)] == 0.5 && with_none.back()[(1, 1)] == 0.0);
+        assert!(Metric::of_precision(&DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 1.0])).is_none());
+    }
+}
