@@ -134,10 +134,12 @@ async fn scale(few: &TestStore, many: &TestStore) {
     fill(many, ships).await;
     println!("{ships} ships, {} versions filled in {:.0} s", 10 * ships, start.elapsed().as_secs_f64());
     println!("| | 10 ships, ms | {ships} ships, ms |\n| --- | --- | --- |");
+    let mut slow = Vec::new();
     for ((what, few), (_, many)) in times(few, 10).await.into_iter().zip(times(many, ships).await) {
         println!("| {what} | {:.2} | {:.2} |", 1e3 * few.as_secs_f64(), 1e3 * many.as_secs_f64());
-        assert!(many < MOST || LINEAR.contains(&what), "{what} takes {many:?}");
+        slow.extend((many >= MOST && !LINEAR.contains(&what)).then_some(what));
     }
+    assert!(slow.is_empty(), "longer than {MOST:?}: {slow:?}");
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
