@@ -45,6 +45,7 @@ fn name(model: usize) -> String {
 
 pub async fn drive(registry: &Registry, sizes: &Sizes) -> Result<Figures, Failure> {
     let mut figures = load(registry, sizes).await?;
+    registry.settle(&Client::new(), sizes.models).await?;
     let fast = read(registry, sizes, None).await?;
     figures.push((format!("champion, {READERS} connections without pause: requests/s"), rate(sizes.reads, fast.elapsed)));
     figures.push(("the same: p50, p99, ms".to_owned(), fast.quantiles()));

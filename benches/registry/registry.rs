@@ -55,6 +55,14 @@ impl Registry {
         }
     }
 
+    /// Waits until what the registry does in the background about so many models is done.
+    pub async fn settle(&self, client: &Client, models: usize) -> Result<(), Failure> {
+        match self {
+            Self::Sistership(url) => sistership::settle(client, url, models).await,
+            Self::Mlflow(_) => Ok(()),
+        }
+    }
+
     /// Reads the champion of a model.
     pub async fn champion(&self, client: &Client, model: &str) -> Result<(), Failure> {
         match self {

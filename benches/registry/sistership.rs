@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, Instant};
 
 use reqwest::{Client, Method, RequestBuilder, Response};
 use serde_json::{Value, json};
@@ -11,6 +12,9 @@ use crate::registry::Moved;
 
 /// The model that every version is a variation of.
 static TEMPLATE: OnceLock<Value> = OnceLock::new();
+
+/// How long the server may take over what it does in the background.
+const PATIENCE: Duration = Duration::from_secs(300);
 
 fn ask(client: &Client, method: Method, url: String) -> RequestBuilder {
     let request = client.request(method, url);
@@ -51,6 +55,21 @@ pub async fn create(client: &Client, url: &str, model: &str) -> Result<u64, Fail
     let made: Value =
         done(ask(client, Method::POST, format!("{url}/v1/models/{model}/versions")).json(&body)).await?.json().await?;
     made["number"].as_u64().ok_or_else(|| format!("no number in {made}").into())
+}
+
+/// Waits until the ships are found by the metrics of their champions: the server sails manoeuvres for that in the background,
+/// which would otherwise be measured with whatever comes next.
+pub async fn settle(client: &Client, url: &str, models: usize) -> Result<(), Failure> {
+    let place = format!("{url}/v1/ships?category=bench&metric=turn_35.tactical_diameter_m:..&limit=1000");
+    let start = Instant::now();
+    while start.elapsed() < PATIENCE {
+        let page: Value = done(ask(client, Method::GET, place.clone())).await?.json().await?;
+        if page["items"].as_array().is_some_and(|found| found.len() >= models.min(1000)) {
+            return Ok(());
+        }
+        tokio::time::sleep(Duration::from_millis(100)).await;
+    }
+    Err("the ships are not found by the metrics of their champions".into())
 }
 
 fn alias(client: &Client, url: &str, model: &str, version: u64) -> RequestBuilder {

@@ -15,6 +15,7 @@ use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Vessel, Zoo};
 use sistership_store::{NewShip, NewTrial, Objects, Store};
 use sistership_trials::samples::to_parquet;
+use tokio::task::JoinSet;
 
 /// The ship whose model the fleet is founded on.
 pub const FOUNDATION: &str = "mariner";
@@ -126,14 +127,20 @@ impl Yard {
         let numbers: Vec<usize> = numbers.collect();
         for some in numbers.chunks(64) {
             let made: Vec<Made> = some.par_iter().map(|&number| self.build(number, trials)).collect();
-            for Made { ship, trials } in made {
-                store.ships().create(&ship).await.expect("a new ship");
-                for (trial, samples) in &trials {
-                    objects.put(samples.clone()).await.expect("kept samples");
-                    store.trials().insert(trial).await.expect("a kept trial");
-                }
+            let mut kept: JoinSet<()> = made.into_iter().map(|made| keep(store.clone(), objects.clone(), made)).collect();
+            while let Some(kept) = kept.join_next().await {
+                kept.expect("a kept ship");
             }
         }
+    }
+}
+
+/// One ship after the other would wait for the disk by itself.
+async fn keep(store: Store, objects: Objects, Made { ship, trials }: Made) {
+    store.ships().create(&ship).await.expect("a new ship");
+    for (trial, samples) in trials {
+        objects.put(samples).await.expect("kept samples");
+        store.trials().insert(&trial).await.expect("a kept trial");
     }
 }
 

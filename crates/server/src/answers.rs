@@ -1,5 +1,6 @@
 //! Champions as they were answered before: a version never changes, so that its answer does not either.
 
+use axum::http::HeaderValue;
 use bytes::Bytes;
 use quick_cache::Weighter;
 use quick_cache::sync::Cache;
@@ -12,16 +13,23 @@ const COUNT: usize = 4096;
 /// What makes an answer: the version, the report on it, and the form.
 pub(crate) type AnswerKey = (String, Option<String>, &'static str);
 
+/// An answer.
+#[derive(Debug, Clone)]
+pub(crate) struct Answer {
+    pub etag: HeaderValue,
+    pub body: Bytes,
+}
+
 /// Answers by what makes them, the least used of which go first.
 #[derive(Debug)]
-pub(crate) struct Answers(Cache<AnswerKey, Bytes, Size>);
+pub(crate) struct Answers(Cache<AnswerKey, Answer, Size>);
 
 #[derive(Debug, Clone)]
 struct Size;
 
-impl Weighter<AnswerKey, Bytes> for Size {
-    fn weight(&self, _: &AnswerKey, answer: &Bytes) -> u64 {
-        answer.len() as u64 + 200
+impl Weighter<AnswerKey, Answer> for Size {
+    fn weight(&self, _: &AnswerKey, answer: &Answer) -> u64 {
+        answer.body.len() as u64 + 300
     }
 }
 
@@ -33,12 +41,12 @@ impl Default for Answers {
 
 impl Answers {
     /// An answer that was given before.
-    pub(crate) fn get(&self, key: &AnswerKey) -> Option<Bytes> {
+    pub(crate) fn get(&self, key: &AnswerKey) -> Option<Answer> {
         self.0.get(key)
     }
 
     /// Keeps an answer for the next time.
-    pub(crate) fn keep(&self, key: AnswerKey, answer: Bytes) {
+    pub(crate) fn keep(&self, key: AnswerKey, answer: Answer) {
         self.0.insert(key, answer);
     }
 }

@@ -35,16 +35,32 @@ pub(crate) enum Transaction {
     Postgres(sqlx::Transaction<'static, Postgres>),
 }
 
-/// Expands one body for both databases, with the connection and the statement's text for it.
+/// Expands one body for both databases, with the connections and the statement's text for them.
 macro_rules! on {
-    ($of:ident, $value:expr, $statement:expr, |$connection:ident, $sql:ident| $body:expr) => {
-        match $value {
-            $of::Sqlite($connection) => {
+    ($pool:expr, $statement:expr, |$connections:ident, $sql:ident| $body:expr) => {
+        match $pool {
+            Pool::Sqlite($connections) => {
                 let $sql = $statement.sqlite;
                 $body
             }
-            $of::Postgres($connection) => {
+            Pool::Postgres($connections) => {
                 let $sql = $statement.postgres;
+                $body
+            }
+        }
+    };
+}
+
+/// The same with the connection that a transaction has.
+macro_rules! within {
+    ($transaction:expr, $statement:expr, |$connection:ident, $sql:ident| $body:expr) => {
+        match $transaction {
+            Transaction::Sqlite(part) => {
+                let ($connection, $sql) = (part.connection()?, $statement.sqlite);
+                $body
+            }
+            Transaction::Postgres(transaction) => {
+                let ($connection, $sql) = (&mut **transaction, $statement.postgres);
                 $body
             }
         }
@@ -63,13 +79,13 @@ impl Database {
     /// The row that a reading statement finds, if any.
     pub(crate) async fn optional<T: Record>(&self, statement: Statement, args: Args<'_>) -> Result<Option<T>> {
         check(args)?;
-        Ok(on!(Pool, &self.read, statement, |pool, sql| bind!(sqlx::query_as(sql), args).fetch_optional(pool).await)?)
+        Ok(on!(&self.read, statement, |pool, sql| bind!(sqlx::query_as(sql), args).fetch_optional(pool).await)?)
     }
 
     /// The rows that a reading statement finds.
     pub(crate) async fn all<T: Record>(&self, statement: Statement, args: Args<'_>) -> Result<Vec<T>> {
         check(args)?;
-        Ok(on!(Pool, &self.read, statement, |pool, sql| bind!(sqlx::query_as(sql), args).fetch_all(pool).await)?)
+        Ok(on!(&self.read, statement, |pool, sql| bind!(sqlx::query_as(sql), args).fetch_all(pool).await)?)
     }
 
     /// Ends all connections.
@@ -89,21 +105,20 @@ impl Transaction {
     /// The number of rows that a writing statement changed.
     pub(crate) async fn execute(&mut self, statement: Statement, args: Args<'_>) -> Result<u64> {
         check(args)?;
-        let changed =
-            on!(Self, self, statement, |tx, sql| bind!(sqlx::query(sql), args).execute(&mut **tx).await?.rows_affected());
+        let changed = within!(self, statement, |to, sql| bind!(sqlx::query(sql), args).execute(to).await?.rows_affected());
         Ok(changed)
     }
 
     /// The row that a statement finds or returns, if any.
     pub(crate) async fn optional<T: Record>(&mut self, statement: Statement, args: Args<'_>) -> Result<Option<T>> {
         check(args)?;
-        Ok(on!(Self, self, statement, |tx, sql| bind!(sqlx::query_as(sql), args).fetch_optional(&mut **tx).await)?)
+        Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args).fetch_optional(to).await)?)
     }
 
     /// The row that a statement is sure to return.
     pub(crate) async fn one<T: Record>(&mut self, statement: Statement, args: Args<'_>) -> Result<T> {
         check(args)?;
-        Ok(on!(Self, self, statement, |tx, sql| bind!(sqlx::query_as(sql), args).fetch_one(&mut **tx).await)?)
+        Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args).fetch_one(to).await)?)
     }
 
     /// Makes it last.

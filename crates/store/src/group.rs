@@ -5,7 +5,6 @@
 //! The turns are those of a fair lock. Who has written queues for it once more behind those who wait to write; whose turn
 //! comes first after that commits for all. Alone, one commits at once.
 
-use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, OnceLock};
 
 use sqlx::pool::PoolConnection;
@@ -32,7 +31,7 @@ struct Shared {
     awaited: bool,
 }
 
-/// One writer's part of the transaction, in her turn; undone unless [committed](Self::commit).
+/// One writer's part of the transaction, in her turn; undone unless [committed](Self::commit). The turn leaves it as it ends.
 pub(crate) struct Part(Option<Turn>);
 
 struct Turn {
@@ -70,12 +69,16 @@ impl Group {
 }
 
 impl Part {
+    /// The connection to write by.
+    pub(crate) fn connection(&mut self) -> sqlx::Result<&mut SqliteConnection> {
+        let turn = self.0.as_mut().ok_or_else(|| not_kept("it has ended"))?;
+        Ok(&mut turn.shared.connection)
+    }
+
     /// Makes it last, together with the parts of others.
     pub(crate) async fn commit(mut self) -> sqlx::Result<()> {
-        match self.0.take() {
-            Some(turn) => uninterrupted(turn.commit()).await,
-            None => Ok(()),
-        }
+        let turn = self.0.take().ok_or_else(|| not_kept("it has ended"))?;
+        uninterrupted(turn.commit()).await
     }
 }
 
@@ -83,26 +86,6 @@ impl Drop for Part {
     fn drop(&mut self) {
         if let (Some(turn), Ok(runtime)) = (self.0.take(), Handle::try_current()) {
             runtime.spawn(turn.undo());
-        }
-    }
-}
-
-impl Deref for Part {
-    type Target = SqliteConnection;
-
-    fn deref(&self) -> &SqliteConnection {
-        match &self.0 {
-            Some(turn) => &turn.shared.connection,
-            None => unreachable!("a part has its turn until it ends"),
-        }
-    }
-}
-
-impl DerefMut for Part {
-    fn deref_mut(&mut self) -> &mut SqliteConnection {
-        match &mut self.0 {
-            Some(turn) => &mut turn.shared.connection,
-            None => unreachable!("a part has its turn until it ends"),
         }
     }
 }
@@ -208,7 +191,7 @@ mod tests {
     }
 
     async fn put(part: &mut Part, n: i64) -> sqlx::Result<()> {
-        sqlx::query("INSERT INTO kept VALUES ($1)").bind(n).execute(&mut **part).await.map(drop)
+        sqlx::query("INSERT INTO kept VALUES ($1)").bind(n).execute(part.connection()?).await.map(drop)
     }
 
     async fn kept(pool: &SqlitePool) -> Vec<i64> {
@@ -266,7 +249,7 @@ mod tests {
             async move {
                 let mut part = group.begin().await?;
                 // As the database does by itself where the disk is full.
-                sqlx::query("ROLLBACK").execute(&mut *part).await?;
+                sqlx::query("ROLLBACK").execute(part.connection()?).await?;
                 part.commit().await
             }
         });

@@ -1,24 +1,31 @@
 //! Which ships there are: by category, tag and ranges of what is known of them.
 //!
 //! Each way of asking starts at the index that its order follows, and tests the other conditions row by row: a page costs
-//! the same however many ships there are, as long as most of what it passes is what is wanted.
+//! the same however many ships there are, as long as most of what it passes is what is wanted. Where only few ships meet one of
+//! the other conditions, those are taken and put in order instead.
 
 use crate::arguments::{Arg, Args, args};
 use crate::checks;
 use crate::error::{Result, StoreError};
 use crate::page::{List, Page};
-use crate::record::record;
+use crate::record::{Counted, record};
 use crate::ships::Ships;
 use crate::statements::{Statement, same, statements};
 
 /// The most ranges that one search may have.
 pub const MAX_RANGES: usize = 4;
+/// So many ships are few: looking at all of them costs no more than what a page may pass over.
+const FEW: i64 = 2000;
 
 /// One text: what is found, and the conditions `$1` (category), `$2` (tag), `$3` to `$14` (four times fact, least, most),
 /// each of which may be absent.
 macro_rules! search {
     ($columns:literal, $from:literal, $order:literal) => {
+        search!("", $columns, $from, $order)
+    };
+    ($with:expr, $columns:literal, $from:literal, $order:literal) => {
         same(concat!(
+            $with,
             "SELECT s.name, s.title, s.category, s.revision, s.created_us, s.updated_us, ",
             $columns,
             " FROM ",
@@ -38,6 +45,19 @@ macro_rules! search {
     };
 }
 
+/// Ships of a list of few, by the value of the first range. It is read first, whatever a planner thinks of it.
+macro_rules! of_few {
+    ($few:literal) => {
+        search!(
+            concat!("WITH few AS MATERIALIZED (", $few, ") "),
+            "f.value AS value",
+            "few CROSS JOIN ship_facts f CROSS JOIN ships s WHERE f.ship = few.ship AND f.fact = $3 AND s.name = few.ship \
+            AND (f.value, f.ship) > (CAST($17 AS DOUBLE PRECISION), $15)",
+            "ORDER BY f.value, f.ship LIMIT $16"
+        )
+    };
+}
+
 statements! {
     BY_NAME = search!("CAST(NULL AS DOUBLE PRECISION) AS value", "ships s WHERE s.name > $15", "ORDER BY s.name LIMIT $16");
     BY_CATEGORY = search!("CAST(NULL AS DOUBLE PRECISION) AS value", "ships s WHERE s.category = $1 AND s.name > $15",
@@ -46,6 +66,14 @@ statements! {
         "ship_tags t JOIN ships s ON s.name = t.ship WHERE t.tag = $2 AND t.ship > $15", "ORDER BY t.ship LIMIT $16");
     BY_VALUE = search!("f.value AS value", "ship_facts f JOIN ships s ON s.name = f.ship WHERE f.fact = $3 AND f.value <= $5 \
         AND (f.value, f.ship) > (CAST($17 AS DOUBLE PRECISION), $15)", "ORDER BY f.value, f.ship LIMIT $16");
+    OF_TAG = of_few!("SELECT t.ship FROM ship_tags t WHERE t.tag = $2");
+    OF_CATEGORY = of_few!("SELECT c.name AS ship FROM ships c WHERE c.category = $1");
+    OF_RANGE = of_few!("SELECT r.ship FROM ship_facts r WHERE r.fact = $18 AND r.value BETWEEN $19 AND $20");
+    // Whether there are more than some.
+    MORE_OF_TAG = same("SELECT CAST(1 AS BIGINT) AS rows FROM ship_tags WHERE tag = $1 LIMIT 1 OFFSET $2");
+    MORE_OF_CATEGORY = same("SELECT CAST(1 AS BIGINT) AS rows FROM ships WHERE category = $1 LIMIT 1 OFFSET $2");
+    MORE_OF_RANGE = same("SELECT CAST(1 AS BIGINT) AS rows FROM ship_facts WHERE fact = $1 AND value BETWEEN $2 AND $3 \
+        LIMIT 1 OFFSET $4");
     VECTORS = search!("CAST(NULL AS DOUBLE PRECISION) AS value, v.vectors",
         "ship_vectors v JOIN ships s ON s.name = v.ship WHERE v.category = $1", "");
 }
@@ -104,7 +132,31 @@ pub struct FactRange {
 /// Where a page of ships ends: the value of the first range's fact where there is one, and the name.
 pub type ShipKey = (Option<f64>, String);
 
+/// A condition beside the range that orders.
+#[derive(Clone, Copy)]
+enum Beside<'a> {
+    Tag(&'a str),
+    Category(&'a str),
+    Range(&'a FactRange),
+}
+
+impl Beside<'_> {
+    /// The text that begins with the ships that meet it.
+    fn statement(self) -> Statement {
+        match self {
+            Self::Tag(_) => OF_TAG,
+            Self::Category(_) => OF_CATEGORY,
+            Self::Range(_) => OF_RANGE,
+        }
+    }
+}
+
 impl ShipSearch {
+    fn beside(&self) -> impl Iterator<Item = Beside<'_>> {
+        let ranges = self.ranges.iter().skip(1).map(Beside::Range);
+        self.tag.as_deref().map(Beside::Tag).into_iter().chain(self.category.as_deref().map(Beside::Category)).chain(ranges)
+    }
+
     /// The text whose index has the order: of the first range where there is one, else of the names.
     fn statement(&self) -> Statement {
         match self {
@@ -144,17 +196,43 @@ impl Ships<'_> {
     pub async fn search(&self, search: &ShipSearch, page: &Page<ShipKey>) -> Result<List<FoundShip, ShipKey>> {
         search.check()?;
         let (value, name) = page.after.clone().unwrap_or_default();
-        let limit = page.fetch()?;
-        let database = self.0.database();
+        let (limit, database) = (page.fetch()?, self.0.database());
         let found = match search.ranges.first() {
             Some(first) => {
                 let from = value.unwrap_or(first.min);
-                let values = args![after: &name, limit: limit, from: from];
-                database.all(search.statement(), &search.values(values)).await?
+                let few = self.few(search).await?;
+                let others = args![after: &name, limit: limit, from: from];
+                let mut values = search.values(others);
+                if let Some(Beside::Range(FactRange { fact, min, max })) = few {
+                    values.extend_from_slice(args![fact: fact, min: *min, max: *max]);
+                }
+                database.all(few.map_or(search.statement(), Beside::statement), &values).await?
             }
             None => database.all(search.statement(), &search.values(args![after: &name, limit: limit])).await?,
         };
         Ok(page.of(found, |ship: &FoundShip| (ship.value, ship.name.clone())))
+    }
+
+    /// A condition that few ships meet, if there is one.
+    async fn few<'a>(&self, search: &'a ShipSearch) -> Result<Option<Beside<'a>>> {
+        for condition in search.beside() {
+            if self.more(condition).await?.is_none() {
+                return Ok(Some(condition));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Something if more than few ships meet a condition.
+    async fn more(&self, condition: Beside<'_>) -> Result<Option<Counted>> {
+        let database = self.0.database();
+        match condition {
+            Beside::Tag(tag) => database.optional(MORE_OF_TAG, args![tag: tag, few: FEW]).await,
+            Beside::Category(category) => database.optional(MORE_OF_CATEGORY, args![category: category, few: FEW]).await,
+            Beside::Range(FactRange { fact, min, max }) => {
+                database.optional(MORE_OF_RANGE, args![fact: fact, min: *min, max: *max, few: FEW]).await
+            }
+        }
     }
 
     /// The vectors of every ship of a category that a search finds, in no order.

@@ -41,13 +41,14 @@ mod prepare {
     use crate::error::{Result, StoreError};
     use crate::store::Store;
     use crate::{
-        aliases, bulks, diagnoses, families, garbage, idempotency, integrity, jobs, laws, reports, search, search_index, ships,
-        statistics, store, tags, trials, versions, work,
+        aliases, bulks, current, diagnoses, families, garbage, idempotency, integrity, jobs, laws, reports, search, search_index,
+        ships, statistics, store, tags, trials, versions, work,
     };
 
     pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[
         ("aliases", aliases::STATEMENTS),
         ("bulks", bulks::STATEMENTS),
+        ("current", current::STATEMENTS),
         ("diagnoses", diagnoses::STATEMENTS),
         ("families", families::STATEMENTS),
         ("garbage", garbage::STATEMENTS),

@@ -7,6 +7,7 @@ use crate::aliases::Aliases;
 use crate::bulks::Bulks;
 use crate::clock::{Clock, Ids, UuidIds};
 use crate::connect;
+use crate::current::Questions;
 use crate::database::{Database, Transaction};
 use crate::diagnoses::Diagnoses;
 use crate::error::Result;
@@ -43,6 +44,7 @@ struct Inner {
     database: Database,
     clock: Arc<dyn Clock>,
     ids: Arc<dyn Ids>,
+    questions: Questions,
 }
 
 impl fmt::Debug for Store {
@@ -60,7 +62,8 @@ impl Store {
 
     /// The same, with ids made by `ids`.
     pub async fn connect_with(url: &str, clock: Arc<dyn Clock>, ids: Arc<dyn Ids>) -> Result<Self> {
-        Ok(Self(Arc::new(Inner { database: connect::connect(url).await?, clock, ids })))
+        let database = connect::connect(url).await?;
+        Ok(Self(Arc::new(Inner { database, clock, ids, questions: Questions::default() })))
     }
 
     /// Whether the database answers.
@@ -149,6 +152,10 @@ impl Store {
 
     pub(crate) fn database(&self) -> &Database {
         &self.0.database
+    }
+
+    pub(crate) fn questions(&self) -> &Questions {
+        &self.0.questions
     }
 
     pub(crate) async fn begin(&self) -> Result<Transaction> {

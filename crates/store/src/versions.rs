@@ -3,6 +3,7 @@
 use crate::aliases::{self, AliasMove};
 use crate::arguments::args;
 use crate::checks;
+use crate::current::CurrentVersion;
 use crate::database::Transaction;
 use crate::error::{Result, StoreError};
 use crate::objects::sha256_hex;
@@ -27,10 +28,6 @@ statements! {
         WHERE model = $1 ORDER BY number DESC LIMIT 1");
     LIST = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions \
         WHERE model = $1 AND number < COALESCE($2, 9223372036854775807) ORDER BY number DESC LIMIT $3");
-    CURRENT = same("SELECT v.id, v.model, v.number, v.parent, v.law, v.method, v.sha256, v.created_us, \
-        (SELECT r.id FROM reports r WHERE r.version_id = v.id ORDER BY r.id DESC LIMIT 1) AS report FROM aliases a \
-        JOIN ships s ON s.name = a.model JOIN versions v ON v.model = a.model AND v.number = a.version_number \
-        WHERE a.model = $1 AND a.alias = $2 AND s.deleted_us IS NULL");
     ALL = same("SELECT id, model, number, parent, law, method, document, sha256, created_us FROM versions \
         WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
     CHILDREN = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions \
@@ -65,15 +62,6 @@ record! {
         flatten head: VersionHead,
         /// The whole record of the version as canonical JSON, byte for byte.
         pub document: String,
-    }
-}
-
-record! {
-    /// The version that an alias of a ship stands for.
-    pub struct CurrentVersion {
-        flatten head: VersionHead,
-        /// The id of the newest report on it.
-        pub report: Option<String>,
     }
 }
 
@@ -128,9 +116,9 @@ impl Versions<'_> {
         version.ok_or_else(|| missing(model, number))
     }
 
-    /// The version that an alias of a ship stands for, but for its document; none where ship or alias are not there.
+    /// The version that an alias of a ship stands for now; none where ship or alias are not there.
     pub async fn current(&self, ship: &str, alias: &str) -> Result<Option<CurrentVersion>> {
-        self.0.database().optional(CURRENT, args![model: ship, alias: alias]).await
+        self.0.current(ship, alias).await
     }
 
     /// A version by its id.

@@ -1,7 +1,7 @@
 //! The query the product exists for: the model of a ship.
 
 use axum::extract::State;
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use bytes::Bytes;
 use serde::{Deserialize, Serialize};
@@ -13,10 +13,12 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::versions::VersionHead;
+use crate::answers::Answer;
 use crate::app::App;
 use crate::archive::document;
 use crate::problem::{Problem, Result};
 use crate::publish::CHAMPION;
+use crate::web::conditions::tag;
 use crate::web::{Conditions, Params, Place, accept};
 
 const JSON: &str = "application/json";
@@ -76,24 +78,26 @@ async fn champion(
         None => accept::choose(&headers, &[JSON, YAML])?,
     };
     let Some(current) = app.store().versions().current(&ship, CHAMPION).await? else { return Err(missing(&app, &ship).await) };
-    let sha256 = &current.head.sha256;
-    let etag = if media == YAML { format!("\"{sha256}.yaml\"") } else { format!("\"{sha256}\"") };
-    let head = [(header::ETAG, etag.clone()), (header::VARY, "accept".to_owned()), (header::CONTENT_TYPE, media.to_owned())];
-    if conditions.has(&etag) {
-        return Ok((StatusCode::NOT_MODIFIED, head).into_response());
-    }
-    Ok((head, body(&app, current, media).await?).into_response())
+    let Answer { etag, body } = answer(&app, current, media).await?;
+    let known = etag.to_str().is_ok_and(|etag| conditions.has(etag));
+    let (vary, media) = (HeaderValue::from_static("accept"), HeaderValue::from_static(media));
+    let head = [(header::ETAG, etag), (header::VARY, vary), (header::CONTENT_TYPE, media)];
+    Ok(if known { (StatusCode::NOT_MODIFIED, head).into_response() } else { (head, body).into_response() })
 }
 
 /// The answer, as it was given before where it was.
-async fn body(app: &App, current: CurrentVersion, media: &'static str) -> Result<Bytes> {
-    let key = (current.head.id.clone(), current.report.clone(), media);
+async fn answer(app: &App, current: CurrentVersion, media: &'static str) -> Result<Answer> {
+    let key = (current.id, current.report, media);
     if let Some(answer) = app.answers().get(&key) {
         return Ok(answer);
     }
-    let version = app.store().versions().get(&current.head.model, current.head.number).await?;
-    let model = document(&version)?.model;
-    let answer = Bytes::from(if media == YAML { yaml(&model)? } else { json(version.head, current.report, &model)? });
+    let version = app.store().versions().by_id(&key.0).await?;
+    let (model, sha256) = (document(&version)?.model, &version.head.sha256);
+    let (etag, body) = match media {
+        YAML => (tag(format!("{sha256}.yaml")), yaml(&model)?),
+        _ => (tag(sha256), json(version.head, key.1.clone(), &model)?),
+    };
+    let answer = Answer { etag: HeaderValue::try_from(etag).map_err(Problem::internal)?, body: Bytes::from(body) };
     app.answers().keep(key, answer.clone());
     Ok(answer)
 }

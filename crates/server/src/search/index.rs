@@ -62,10 +62,7 @@ async fn pass(archive: &Archive, laws: &Arc<Zoo>) -> Result<usize, StoreError> {
         let waiting = archive.store.search_index().waiting(&after, AT_ONCE).await?;
         let Some(last) = waiting.last() else { return Ok(left) };
         after.clone_from(&last.ship);
-        let mut known = Vec::with_capacity(waiting.len());
-        for ship in waiting {
-            known.push(facts::of_ship(archive, laws, ship).await?);
-        }
+        let known = facts::of_ships(archive, laws, waiting).await?;
         left += known.len() - archive.store.search_index().write(&known).await?;
     }
 }

@@ -8,7 +8,7 @@ use sistership_model::Vessel;
 use sistership_store::{FoundShip, List, Page, ShipKey, ShipSearch, ShipVectors, StoreError};
 
 use super::Search;
-use super::facts::Vectors;
+use super::facts;
 use crate::archive::{Archive, vessel};
 use crate::derive::DeriveError;
 
@@ -25,7 +25,8 @@ pub(super) async fn ships(
     let definition = search.vector.unwrap_or_else(|| definition_for(&target));
     let mut found = ranked(archive, &search.ships, &target, definition).await?;
     if let Some(after) = &page.after {
-        found.retain(|ship| order(&key(ship), after) == Ordering::Greater);
+        let after = (after.0, after.1.as_str());
+        found.retain(|ship| order(place(ship), after) == Ordering::Greater);
     }
     Ok(page.of(found, key))
 }
@@ -52,12 +53,12 @@ async fn ranked(
 /// Those that share enough components with the target to be compared.
 fn rank(all: Vec<ShipVectors>, name: &str, target: &CharacteristicVector) -> Vec<FoundShip> {
     let correlated = |ship: ShipVectors| {
-        let values = serde_json::from_str::<Vectors>(&ship.vectors).ok()?.remove(target.definition.name())?;
+        let values = facts::vector(&ship.vectors, target.definition.name())?;
         let correlation = target.correlation(&CharacteristicVector { definition: target.definition, values })?;
         Some(FoundShip { value: Some(correlation), ..ship.head })
     };
     let mut found: Vec<FoundShip> = all.into_iter().filter(|ship| ship.head.name != name).filter_map(correlated).collect();
-    found.sort_by(|a, b| order(&key(a), &key(b)));
+    found.sort_unstable_by(|a, b| order(place(a), place(b)));
     found
 }
 
@@ -65,10 +66,15 @@ fn key(ship: &FoundShip) -> ShipKey {
     (ship.value, ship.name.clone())
 }
 
+/// The key, borrowed: there are as many comparisons as ships, times a dozen.
+fn place(ship: &FoundShip) -> (Option<f64>, &str) {
+    (ship.value, &ship.name)
+}
+
 /// Falling by value, then rising by name.
-fn order(a: &ShipKey, b: &ShipKey) -> Ordering {
-    let value = |key: &ShipKey| key.0.unwrap_or(f64::NEG_INFINITY);
-    value(b).total_cmp(&value(a)).then_with(|| a.1.cmp(&b.1))
+fn order(a: (Option<f64>, &str), b: (Option<f64>, &str)) -> Ordering {
+    let value = |value: Option<f64>| value.unwrap_or(f64::NEG_INFINITY);
+    value(b.0).total_cmp(&value(a.0)).then_with(|| a.1.cmp(b.1))
 }
 
 #[cfg(test)]
@@ -77,9 +83,8 @@ mod tests {
 
     #[test]
     fn the_most_similar_comes_first() {
-        let mut keys: Vec<ShipKey> =
-            [(0.5, "b"), (0.9, "z"), (0.5, "a")].map(|(value, name)| (Some(value), name.to_owned())).into();
-        keys.sort_by(order);
-        assert_eq!(keys.iter().map(|key| key.1.as_str()).collect::<String>(), "zab");
+        let mut keys = [(Some(0.5), "b"), (Some(0.9), "z"), (Some(0.5), "a")];
+        keys.sort_by(|a, b| order(*a, *b));
+        assert_eq!(keys.map(|key| key.1).concat(), "zab");
     }
 }

@@ -7,6 +7,7 @@ mod support;
 mod aliases;
 mod backup;
 mod concurrency;
+mod current;
 mod diagnoses;
 mod fleets;
 mod idempotency;

@@ -72,6 +72,38 @@ async fn ships_are_found_by_each_condition_and_all_together(on: &TestStore) {
     assert_eq!(vectors, [("s-00", "[0]"), ("s-12", "[12]")]);
 }
 
+/// Ships as long as their number, as broad as what is missing to 3000, each hundredth tagged.
+async fn many(on: &TestStore) {
+    let n = "WITH RECURSIVE n (i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 3000)";
+    for sql in [
+        format!(
+            "INSERT INTO ships SELECT 'm-' || (10000 + i), '', 'barge', '{{}}', 1, i, i, NULL FROM ({n} SELECT i FROM n) AS k"
+        ),
+        "INSERT INTO ship_facts SELECT name, 'lpp_m', 1.0 * created_us FROM ships".into(),
+        "INSERT INTO ship_facts SELECT name, 'beam_m', 3000.0 - created_us FROM ships".into(),
+        "INSERT INTO ship_tags SELECT name, 'own-fleet' FROM ships WHERE created_us % 100 = 0".into(),
+    ] {
+        on.database.damage(&sql).await;
+    }
+}
+
+/// Whether few or many ships meet a condition, the same are found.
+async fn few_are_found_among_many(on: &TestStore) {
+    many(on).await;
+    let ships = |numbers: Vec<usize>| numbers.iter().map(|number| format!("m-{}", 10_000 + number)).collect::<Vec<_>>();
+    let long = || range("lpp_m", 100.0, 2950.0);
+    let with = |ranges| ShipSearch { ranges, ..ShipSearch::default() };
+    let broad = with(vec![long(), range("beam_m", 10.0, 2800.0)]);
+    assert_eq!(every(on, &broad, 1000).await, ships((200..=2950).collect()));
+    let narrow = with(vec![long(), range("beam_m", 40.0, 60.0)]);
+    assert_eq!(every(on, &narrow, 4).await, ships((2940..=2950).collect()));
+    let barge = ShipSearch { category: Some("barge".into()), ..broad.clone() };
+    assert_eq!(every(on, &barge, 1000).await.len(), 2751);
+    let own = ShipSearch { tag: Some("own-fleet".into()), ..barge };
+    assert_eq!(every(on, &own, 10).await, ships((2..=29).map(|number| 100 * number).collect()));
+    assert!(every(on, &ShipSearch { category: Some("tanker".into()), ..broad }, 10).await.is_empty());
+}
+
 async fn a_page_goes_on_where_the_last_one_ended_whatever_is_added(on: &TestStore) {
     fleet(on, 6).await;
     let all = ShipSearch { ranges: vec![range("lpp_m", 0.0, 1000.0)], ..ShipSearch::default() };
@@ -142,6 +174,7 @@ async fn a_search_that_cannot_be_is_refused(on: &TestStore) {
 
 on_both_databases!(
     ships_are_found_by_each_condition_and_all_together,
+    few_are_found_among_many,
     a_page_goes_on_where_the_last_one_ended_whatever_is_added,
     what_changes_is_written_anew,
     tags_are_put_on_and_taken_off,

@@ -1,7 +1,10 @@
-//! A whole fleet in one bulk refinement: ships with trials are loaded, listed, learned from and refined.
+//! A whole fleet in one bulk refinement: ships with trials are loaded, listed, searched, learned from and refined.
 //!
 //! `cargo run --release -p sistership-tests --example fleet -- 10000` (four trials a ship; SQLite in a temporary folder, or
-//! `SISTERSHIP_DATABASE_URL`). Prints ships a second for each step, so that the cost a ship can be compared between sizes.
+//! `SISTERSHIP_DATABASE_URL`). Prints ships a second for each step, so that the cost a ship can be compared between sizes, and the
+//! times of searches.
+
+mod search;
 
 use std::time::{Duration, Instant};
 
@@ -29,6 +32,9 @@ async fn main() {
     let (archive, store) = (begun.archive().clone(), begun.archive().store.clone());
     timed("loaded", ships, load(&archive, ships)).await;
     timed("listed", ships, list(&store)).await;
+    search::tag(&archive, ships).await;
+    timed("indexed", ships, search::index(&archive)).await;
+    search::search(&config, ships).await;
     timed("statistics made, and learned from (at most 1000)", ships.min(1000), teach(&archive)).await;
     let workers = Workers::start(config.clone()).await.expect("workers");
     for (what, prior) in [
@@ -39,6 +45,8 @@ async fn main() {
         timed(what, ships, refine(&store, prior)).await;
     }
     workers.stop().await;
+    timed("indexed with the metrics of their champions", ships, search::index(&archive)).await;
+    search::search(&config, ships).await;
     begun.stop().await;
 }
 
