@@ -70,7 +70,7 @@ impl Region {
             Some(if sum.1 >= difference.1 { sum } else { difference })
         });
         // A channel alone is named before two together where it is as far.
-        single.chain(together).filter(|(_, beyond)| *beyond > ROUNDING).fold(None, |furthest, one| match furthest {
+        single.chain(together).filter(|(_, beyond)| *beyond > SLACK).fold(None, |furthest, one| match furthest {
             Some((_, beyond)) if one.1 <= beyond => furthest,
             _ => Some(one),
         })
@@ -116,8 +116,8 @@ impl Excursion {
     }
 }
 
-/// What is no excursion: rounding, by half ranges.
-const ROUNDING: f64 = 1e-9;
+/// What is no excursion, by half ranges: a hard turn at 35 deg where the rudder was recorded at 34.9.
+const SLACK: f64 = 0.005;
 /// The half range of a channel that did not vary, by its size: a speed that was held to a per cent.
 const STILL: f64 = 0.01;
 
@@ -173,6 +173,12 @@ mod tests {
         let (along, far) = beyond(5.0, 0.4, 0.008).unwrap();
         assert_eq!(along, "r+v");
         assert!((far - 1.6).abs() < 0.1, "{far}");
+    }
+
+    #[test]
+    fn what_is_hardly_outside_is_not() {
+        assert_eq!(beyond(6.004, 0.0, 0.0), None);
+        assert!(beyond(6.02, 0.0, 0.0).is_some());
     }
 
     #[test]

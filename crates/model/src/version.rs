@@ -1,28 +1,10 @@
-//! A version: a model with everything that it takes to derive it again, as immutable bytes under a hash.
+//! What it takes to derive a version again. The server has the document that holds it with the model.
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::model::Model;
-
-/// The format of [`VersionDocument`].
+/// The format of a version's document.
 pub const FORMAT: &str = "sistership-version/1";
-
-/// What a version holds. Its bytes are [`VersionDocument::canonical`]; the hash is over them.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct VersionDocument {
-    /// Always [`FORMAT`].
-    pub format: String,
-    /// The ship, whose name is also that of the line of versions.
-    pub ship: String,
-    /// How to derive it.
-    pub recipe: Recipe,
-    /// The model.
-    pub model: Model,
-    /// What the refinement reported: errors, coefficients, options, manoeuvres. Null for a published model.
-    pub report: serde_json::Value,
-}
 
 /// How a version is derived. Everything it starts from is named by the SHA-256 of its bytes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -87,16 +69,6 @@ pub struct RecipeTrial {
     pub name: String,
     /// The hash of its samples.
     pub sha256: String,
-}
-
-impl VersionDocument {
-    /// The bytes that are stored and hashed: JSON with fields in the order of this type and maps in order of their keys.
-    ///
-    /// # Errors
-    /// Where a number is not finite, which no checked model has.
-    pub fn canonical(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string(self)
-    }
 }
 
 /// The SHA-256 of some bytes, in hexadecimal.
