@@ -30,6 +30,11 @@ use turn::{Metrics, NAMES, RADIUS, SPEED_LOSS};
 /// The seed on which the test stands; fixed before any result was seen.
 const SEED: u64 = 1;
 
+/// Turns that no choice was made with, deg, and their noise.
+const OTHER_TURNS: [f64; 4] = [5.0, -5.0, 10.0, -10.0];
+const SPEEDS_RPM: [f64; 3] = [80.0, 100.0, 120.0];
+const OTHER_SEED: u64 = 11;
+
 /// A block of the table as it came out.
 struct Row {
     paper: &'static Block,
@@ -76,27 +81,53 @@ fn the_weak_form_beats_the_published_refinement_on_paper_v() {
     let [plane, roll, pooled] = [&plane, &roll, &pooled].map(|errors| mean_of(errors));
     println!("mean of 24 cells      {:.2} {plane:7.2} {roll:10.2} {pooled:12.2}", 5.03);
     assert!(plane <= 2.7 && pooled <= 0.5, "{plane} {pooled}");
-    // A single zigzag is left out part by part, since nothing else in its set excites roll.
-    assert!(roll <= 3.2, "{roll}");
+    assert!(roll <= 1.9, "{roll}");
+}
+
+/// The same on turns that are in no table, with other noise: what was settled with the table in sight is judged here.
+#[test]
+#[ignore = "half a minute; for people"]
+fn the_weak_form_on_turns_of_5_and_10_degrees() {
+    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let mean = |law: &str, sets: &[Vec<(f64, f64)>]| {
+        let mut rng = ChaCha8Rng::seed_from_u64(OTHER_SEED);
+        let of_speed = |n_rpm| by_weak_on(&zoo, law, sets, (n_rpm, &OTHER_TURNS), &mut rng);
+        mean_of(&SPEEDS_RPM.into_iter().flat_map(of_speed).collect::<Vec<_>>())
+    };
+    let [plane, roll] = ["abkowitz", "abkowitz-roll"].map(|law| mean(law, &weak::single()));
+    let pooled = mean("abkowitz-roll", &weak::pooled());
+    println!("mean of 48 cells: weak {plane:.2}, weak with roll {roll:.2}, pooled {pooled:.2} %");
+    assert!(plane <= 2.7 && roll <= 1.9 && pooled <= 0.5);
 }
 
 fn mean_of(errors: &[Metrics]) -> f64 {
     errors.iter().flat_map(|metrics| metrics.0).sum::<f64>() / (NAMES.len() * errors.len()) as f64
 }
 
-/// Errors of each block of the table by the weak form, the mean over the data sets.
+/// Errors of each block of the table by the weak form, the mean over the data sets; the noise is one stream.
 fn by_weak(zoo: &Zoo, law: &str, sets: &[Vec<(f64, f64)>]) -> Vec<Metrics> {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
-    let law = zoo.law(law).expect("a law of the zoo");
-    let plane = zoo.law("abkowitz").expect("a law of the zoo");
     let speeds = TABLE_5.chunks(2).flat_map(|blocks| {
-        let truth = Truth::new(zoo, blocks[0].n_rpm);
-        let source = source(zoo, plane, &truth);
-        let source = if law.has_roll() { weak::with_roll(&source, law, &truth) } else { source };
-        let models: Vec<Model> = sets.iter().map(|set| weak::refined(zoo, law, &source, &truth, set, &mut rng)).collect();
-        blocks.iter().map(|block| judged(&models, law, &truth.turn(block.rudder_deg))).collect::<Vec<_>>()
+        let rudders: Vec<f64> = blocks.iter().map(|block| block.rudder_deg).collect();
+        by_weak_on(zoo, law, sets, (blocks[0].n_rpm, &rudders), &mut rng)
     });
     speeds.collect()
+}
+
+/// The same for turns at one speed.
+fn by_weak_on(
+    zoo: &Zoo,
+    law: &str,
+    sets: &[Vec<(f64, f64)>],
+    (n_rpm, rudders_deg): (f64, &[f64]),
+    rng: &mut ChaCha8Rng,
+) -> Vec<Metrics> {
+    let [law, plane] = [law, "abkowitz"].map(|name| zoo.law(name).expect("a law of the zoo"));
+    let truth = Truth::new(zoo, n_rpm);
+    let source = source(zoo, plane, &truth);
+    let source = if law.has_roll() { weak::with_roll(&source, law, &truth) } else { source };
+    let models: Vec<Model> = sets.iter().map(|set| weak::refined(zoo, law, &source, &truth, set, rng)).collect();
+    rudders_deg.iter().map(|&rudder_deg| judged(&models, law, &truth.turn(rudder_deg))).collect()
 }
 
 /// Mean errors of models on a turn; they are of continuous time, and so is the method that simulates them.

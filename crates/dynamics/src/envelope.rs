@@ -48,15 +48,20 @@ impl Envelope {
             return stop("the state is no longer a number".into());
         }
         if speed(state) > self.speed_m_s {
-            return stop(format!("speed {:.2} m/s exceeds {:.2} m/s", speed(state), self.speed_m_s));
+            return stop(format!("speed {} m/s exceeds {:.2} m/s", figure(speed(state)), self.speed_m_s));
         }
         if state[at::R].abs() > self.yaw_rate_rad_s {
             let limit = self.yaw_rate_rad_s.to_degrees();
-            return stop(format!("yaw rate {:.2} deg/s exceeds {limit:.2} deg/s", state[at::R].to_degrees()));
+            return stop(format!("yaw rate {} deg/s exceeds {limit:.2} deg/s", figure(state[at::R].to_degrees())));
         }
         if state[at::PHI].abs() > self.roll_rad {
             return stop(format!("roll {:.0} deg: the ship has capsized", state[at::PHI].to_degrees()));
         }
         Ok(())
     }
+}
+
+/// A number that may be of any size, once a motion has left what is physical.
+fn figure(value: f64) -> String {
+    if value.abs() < 1e4 { format!("{value:.2}") } else { format!("{value:.1e}") }
 }

@@ -10,7 +10,6 @@ use sistership_model::posterior::Posterior;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::Trial;
 
-use super::across::Imitation;
 use super::blocks::Blocks;
 use super::cma_es::SearchReport;
 use super::family::Family;
@@ -253,13 +252,6 @@ impl Task<'_> {
         model.coefficients.iter().map(one).collect()
     }
 
-    /// What became of a source of another law.
-    fn said_across(&self) -> Option<String> {
-        let blocks = Blocks::new(&self.transferred, self.law).ok()?;
-        let imitation = Imitation::new(self.across.as_ref()?, &blocks, &self.transferred).ok()?;
-        Some(imitation.words(&blocks, &self.law.name))
-    }
-
     fn remarks(&self, best: usize, lambdas: &[f64]) -> Vec<String> {
         let mut remarks = Vec::new();
         let strongest = self.settings.ranges.iter().map(|range| range.lambda_max).fold(0.0, f64::max);
@@ -267,7 +259,7 @@ impl Task<'_> {
             let what = "an acceleration took the strongest prior allowed: its coefficients are the source's, scaled as a whole by 1 - alpha";
             remarks.push(format!("{what}, and their standard errors say nothing"));
         }
-        remarks.extend(self.said_across());
+        remarks.extend(self.measure.words(&self.transferred, self.law));
         if best == 0 {
             remarks.push("no option beat the source on manoeuvres left out: the source is kept as it is".to_owned());
         }

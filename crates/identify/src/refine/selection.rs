@@ -10,9 +10,10 @@ use sistership_model::trial::Trial;
 use sistership_model::vessel::Status;
 use sistership_model::{Model, Vessel, particulars};
 
-use super::across::{self, Imitation, OperatingEnvelope};
+use super::across::{self, Imitation};
 use super::blocks::Blocks;
 use super::cma_es::SearchReport;
+use super::measure::Measure;
 use super::outcome::{RefineError, Refinement, StepOption};
 use super::parts::parts;
 use super::published::{Choices, Fit, Fitted, Fold, tune};
@@ -73,11 +74,11 @@ pub fn refine_watched(request: &Request<'_>, progress: Progress<'_>, watch: Watc
     let (judged, whole) = divided(request)?;
     let settings = resolved(request.settings, request.target.particular("lpp_m"), &whole);
     let parts = parts(&whole, request.law, &settings);
-    let (transferred, across) = starting(request, &whole)?;
+    let (transferred, measure) = starting(request, &whole, !parts.is_empty())?;
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
     let (law, source, watch) = (request.law, request.source.name.as_str(), Some(watch));
     let thinned = fewer(request.target.particular("lpp_m"), &training);
-    let task = Task { law, source, training, thinned, whole, judged, transferred, across, settings, watch };
+    let task = Task { law, source, training, thinned, whole, judged, transferred, measure, settings, watch };
     step(progress, 0.05, "sufficient statistics of each trial")?;
     let variants = task.variants()?;
     let mut options = task.options(&variants, progress)?;
@@ -111,8 +112,8 @@ pub(super) struct Task<'a> {
     pub(super) whole: Vec<&'a Trial>,
     pub(super) judged: Vec<&'a Trial>,
     pub(super) transferred: Model,
-    /// Where a source of another law is asked what it says.
-    pub(super) across: Option<OperatingEnvelope>,
+    /// What the prior measures coefficients by.
+    pub(super) measure: Measure,
     pub(super) settings: Settings,
     watch: Option<Watch<'a>>,
 }
@@ -148,7 +149,18 @@ impl<'a> Task<'a> {
         let training = trials.to_vec();
         let (whole, judged, transferred) = (training.clone(), Vec::new(), model.clone());
         let thinned = fewer(particulars::value(&model.particulars, "lpp_m"), &training);
-        Self { law, source: &model.name, training, thinned, whole, judged, transferred, across: None, settings, watch: None }
+        Self {
+            law,
+            source: &model.name,
+            training,
+            thinned,
+            whole,
+            judged,
+            transferred,
+            measure: Measure::Trials,
+            settings,
+            watch: None,
+        }
     }
 
     /// Shows what a fit passes by to whoever watches.
@@ -304,17 +316,19 @@ fn fewer(lpp_m: Option<f64>, training: &[&Trial]) -> Vec<Trial> {
 }
 
 /// What the prior is about: the source carried over, by its own law or as another law says what it says.
-fn starting(request: &Request<'_>, whole: &[&Trial]) -> Result<(Model, Option<OperatingEnvelope>), RefineError> {
+fn starting(request: &Request<'_>, whole: &[&Trial], in_parts: bool) -> Result<(Model, Measure), RefineError> {
     let Request { target, source, source_law, law, .. } = *request;
     let approach = approach_of(whole);
     let Some(own) = source_law.filter(|own| own.name != law.name) else {
         let same = source.ship == target.name();
-        return Ok((if same { source.clone() } else { transfer(source, law, target, approach) }, None));
+        let carried = if same { source.clone() } else { transfer(source, law, target, approach) };
+        let measure = Measure::own(&carried, law, whole, in_parts);
+        return Ok((carried, measure));
     };
     let (mut model, envelope) = across::begun((source, own), law, target, approach, whole)?;
     let blocks = Blocks::new(&model, law)?;
     Imitation::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);
-    Ok((model, Some(envelope)))
+    Ok((model, Measure::Source(envelope)))
 }
 
 /// The trials that are kept out of fit and choice, and the others.

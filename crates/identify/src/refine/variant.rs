@@ -7,7 +7,6 @@ use sistership_model::Model;
 use sistership_model::coefficient::Axis;
 use sistership_model::trial::{Channel, Trial};
 
-use super::across::Imitation;
 use super::blocks::Blocks;
 use super::constraints::Limits;
 use super::family::Family;
@@ -74,10 +73,8 @@ impl Task<'_> {
     fn variant(&self, family: Family, mut model: Model) -> Result<Variant, RefineError> {
         let mut blocks = Blocks::new(&model, self.law)?;
         let moments = self.moments(&blocks)?;
-        if let (Some(envelope), Some(all)) = (&self.across, merged(&moments, |_| true)) {
-            let imitation = Imitation::new(envelope, &blocks, &model)?;
-            imitation.fill(&blocks, &mut model);
-            imitation.hold(&mut blocks, &all);
+        if let Some(all) = merged(&moments, |_| true) {
+            self.measure.hold(&mut blocks, &mut model, &all)?;
         }
         let limits = self.limits(&model)?;
         Ok(Variant { family, model, blocks, moments, limits })
@@ -104,10 +101,10 @@ impl Task<'_> {
         let samples: f64 = moments.iter().map(|m| m.first().map_or(0.0, |m| m.count)).sum();
         let widest = blocks.blocks.iter().map(super::Block::regressors).max().unwrap_or(0) as f64;
         // A prior as strong as a source's lets windows be fewer than a difference a sample, which are far from independent.
-        let least = match (&self.across, self.windows()) {
-            (Some(_), _) => 1.0,
-            (None, Some(_)) => widest,
-            (None, None) => 4.0 * widest,
+        let least = match (self.measure.is_source(), self.windows()) {
+            (true, _) => 1.0,
+            (false, Some(_)) => widest,
+            (false, None) => 4.0 * widest,
         };
         if samples < least {
             let message = format!("{samples:.0} samples are too few for {widest} coefficients an axis; give at least {least}");

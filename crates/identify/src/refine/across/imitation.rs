@@ -6,16 +6,12 @@ use sistership_model::coefficient::Axis;
 use sistership_model::quantity::Quantity;
 
 use super::super::blocks::{Block, Blocks};
+use super::super::envelope::OperatingEnvelope;
 use super::super::outcome::RefineError;
 use super::super::published::{Choices, Fold, fit};
-use super::super::rows::{Table, known_tables};
 use super::super::variant::merged;
-use super::OperatingEnvelope;
-use super::envelope::Group;
 use crate::regression::{Choice, Moments};
 
-/// What is smaller than this by the largest regressor is rounding.
-const ROUNDING: f64 = 1e-13;
 /// Groups that are left out together at most so many times.
 const FOLDS: usize = 8;
 /// How strongly a coefficient is held of which the source says nothing, by one of which it says all; chosen by the trials of the
@@ -40,7 +36,7 @@ impl<'a> Imitation<'a> {
     /// # Errors
     /// The law takes something that the trials do not record.
     pub fn new(envelope: &'a OperatingEnvelope, blocks: &Blocks, model: &Model) -> Result<Self, RefineError> {
-        let moments = envelope.groups.iter().map(|group| of_group(blocks, group)).collect::<Result<Vec<_>, _>>()?;
+        let moments = envelope.moments(blocks)?;
         let mut zero = model.clone();
         zero.coefficients.values_mut().for_each(|quantity| quantity.value = 0.0);
         let mut imitation = Self { envelope, moments, ridge: RIDGES[0], zero };
@@ -115,20 +111,4 @@ fn earned(block: &Block, source: &Moments, trials: &Moments) -> DMatrix<f64> {
         precision[(j, j)] += IGNORANCE * block.shrinkage[j] * source.variance(j).max(trials.variance(j));
     }
     precision
-}
-
-fn of_group(blocks: &Blocks, group: &Group) -> Result<Vec<Moments>, RefineError> {
-    let mut tables = known_tables(blocks, &group.samples, &|axis| group.rate(axis))?;
-    let one = |(block, table): (&Block, &mut Table)| {
-        silence(&mut table[..block.regressors()]);
-        Moments::about_zero(table, block.regressors(), group.weight)
-    };
-    Ok(blocks.blocks.iter().zip(&mut tables).map(one).collect())
-}
-
-/// Regressors that are nothing but rounding become zero: the source says nothing of them.
-fn silence(regressors: &mut [Vec<f64>]) {
-    let size = |column: &Vec<f64>| column.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let least = ROUNDING * regressors.iter().map(size).fold(0.0, f64::max);
-    regressors.iter_mut().filter(|column| size(column) < least).for_each(|column| column.fill(0.0));
 }

@@ -4,16 +4,15 @@
 //! regressed on its terms over the envelope in which the model will be used ([`OperatingEnvelope`]): mean and covariance of that
 //! regression are the prior ([`Imitation`]). docs/decisions/0015 has the reasons.
 
-mod envelope;
 mod imitation;
 
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel};
 
+use super::envelope::OperatingEnvelope;
 use super::outcome::RefineError;
 use crate::transfer::{Approach, blank_of, transfer};
-pub(super) use envelope::OperatingEnvelope;
 pub(super) use imitation::Imitation;
 
 /// A source carried over to the target by its own law, and a model of the law to be fitted that knows nothing yet.
@@ -25,7 +24,7 @@ pub(super) fn begun(
     trials: &[&Trial],
 ) -> Result<(Model, OperatingEnvelope), RefineError> {
     let carried = if source.ship == target.name() { source.clone() } else { transfer(source, own, target, approach) };
-    let envelope = OperatingEnvelope::new(&carried, own, trials)?;
+    let envelope = OperatingEnvelope { source: source.name.clone(), ..OperatingEnvelope::new(&carried, own, trials)? };
     let mut model = blank_of(law, target, &carried, approach).map_err(RefineError::Law)?;
     (model.speed_m_s, model.revolutions_rps) = (carried.speed_m_s, carried.revolutions_rps);
     model.steering = carried.steering;

@@ -21,8 +21,10 @@ use super::solve::Held;
 use crate::transfer::ready;
 
 /// Pulls towards the weak form that are tried, strongest first, each from where the one before has ended, until two in a row are
-/// no better; the source pulls with a hundredth of them.
+/// no better.
 const PULLS: [f64; 7] = [100.0, 10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4];
+/// How strongly the source pulls by the weak form, at most.
+const SOURCE: f64 = 0.01;
 /// Huber's threshold in robust standard deviations of a state's residuals.
 const HUBER: f64 = 3.0;
 /// A median needs no more than so many times fewer segments, where there are many.
@@ -118,12 +120,15 @@ impl Trajectory<'_> {
         for pull in PULLS {
             let label = format!("trajectory, {}, pull {pull:.0e}", self.variant.family.name());
             step(progress, 0.7, &label)?;
-            reached = self.descend(&prior, strength(pull), reached)?;
+            reached = self.descend(&prior, self.strength(pull), reached)?;
             step(progress, 0.7, &format!("{label}: simulating manoeuvres left out"))?;
-            let models: Vec<Model> =
-                priors.iter().enumerate().map(|(fold, prior)| self.left_out(fold, prior, strength(pull), &reached)).collect();
+            let models: Vec<Model> = priors
+                .iter()
+                .enumerate()
+                .map(|(fold, prior)| self.left_out(fold, prior, self.strength(pull), &reached))
+                .collect();
             let simulated = self.task.simulate_training(&models, &|trial| self.task.fold_of(trial))?;
-            let bend = self.bend(&prior, strength(pull), &reached);
+            let bend = self.bend(&prior, self.strength(pull), &reached);
             let taken = Taken::Fitted { fit: Box::new(self.fit(&bend, &reached)), bend: Some(Box::new(bend)) };
             let trying = self.task.trying(label, Some(pull), taken, self.names.len(), simulated);
             errors.push(trying.option.error.unwrap_or(f64::INFINITY));
@@ -140,6 +145,12 @@ impl Trajectory<'_> {
         let model = self.task.model_at(self.variant, &self.values(at));
         let system = SensitiveSystem::new(&model, self.task.law).map_err(|e| RefineError::Law(e.to_string()))?;
         Ok(self.passing.sizes(&system, SOME).into_iter().map(threshold).collect())
+    }
+
+    /// The source pulls no more strongly than it does within the weak form.
+    fn strength(&self, pull: f64) -> Strength {
+        let within = self.choices.iter().flatten().map(|choice| choice.lambda).fold(0.0, f64::max);
+        Strength { mu: pull, lambda: SOURCE.min(within) * pull }
     }
 
     fn inside(&self, trial: usize, fold: usize) -> bool {
@@ -238,10 +249,6 @@ fn is_past_best(errors: &[f64]) -> bool {
     let Some(before) = errors.len().checked_sub(2) else { return false };
     let best = errors[..before].iter().copied().fold(f64::INFINITY, f64::min);
     best.is_finite() && errors[before..].iter().all(|error| *error >= best)
-}
-
-fn strength(pull: f64) -> Strength {
-    Strength { mu: pull, lambda: 0.01 * pull }
 }
 
 /// Sums over some trials.

@@ -1,4 +1,5 @@
-//! Where a source is asked what it says: the states of the trials, and those of its own standard manoeuvres.
+//! Where a model will be used, and what its source says there: the states of the trials, and those of the source's own
+//! standard manoeuvres.
 
 use std::collections::BTreeMap;
 
@@ -11,17 +12,22 @@ use sistership_model::coefficient::Axis;
 use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 
-use super::super::outcome::RefineError;
+use super::blocks::{Block, Blocks};
+use super::outcome::RefineError;
+use super::rows::{Table, known_tables};
+use crate::regression::Moments;
 use crate::transfer::ready;
 
 /// Most samples of a trial or manoeuvre: neighbours say the same.
 const SAMPLES: usize = 400;
 /// A law that is expanded about an approach speed says nothing of much slower motion.
 const LEAST_OF_APPROACH: f64 = 0.3;
+/// What is smaller than this by the largest regressor is rounding.
+const ROUNDING: f64 = 1e-13;
 
 /// What a source says where a model will be used.
 #[derive(Debug)]
-pub(in super::super) struct OperatingEnvelope {
+pub(super) struct OperatingEnvelope {
     /// The source, for people.
     pub source: String,
     /// Its law.
@@ -34,7 +40,7 @@ pub(in super::super) struct OperatingEnvelope {
 
 /// The samples of a trial or of a manoeuvre, with the source's accelerations at each.
 #[derive(Debug)]
-pub(in super::super) struct Group {
+pub(super) struct Group {
     /// States and inputs; time only counts them.
     pub samples: Trial,
     /// By axis, in the order of [`Axis`].
@@ -45,8 +51,17 @@ pub(in super::super) struct Group {
 
 impl Group {
     /// The source's acceleration of an axis at each sample.
-    pub fn rate(&self, axis: Axis) -> &[f64] {
+    fn rate(&self, axis: Axis) -> &[f64] {
         &self.rates[axis as usize]
+    }
+
+    fn moments(&self, blocks: &Blocks) -> Result<Vec<Moments>, RefineError> {
+        let mut tables = known_tables(blocks, &self.samples, &|axis| self.rate(axis))?;
+        let one = |(block, table): (&Block, &mut Table)| {
+            silence(&mut table[..block.regressors()]);
+            Moments::about_zero(table, block.regressors(), self.weight)
+        };
+        Ok(blocks.blocks.iter().zip(&mut tables).map(one).collect())
     }
 }
 
@@ -67,6 +82,14 @@ impl OperatingEnvelope {
         }
         let groups = [recorded, sailed].into_iter().flat_map(evened).collect();
         Ok(Self { source: source.name.clone(), law: law.name.clone(), roll: law.has_roll(), groups })
+    }
+
+    /// The statistics of what the source says, as a law's regressions see it: by group and regression.
+    ///
+    /// # Errors
+    /// The law takes something that the trials do not record.
+    pub fn moments(&self, blocks: &Blocks) -> Result<Vec<Vec<Moments>>, RefineError> {
+        self.groups.iter().map(|group| group.moments(blocks)).collect()
     }
 }
 
@@ -111,13 +134,19 @@ impl<'a> Asked<'a> {
         let one = |k: usize| {
             let mut state = StateVector::zeros();
             columns.iter().for_each(|(place, column)| state[*place] = column[k]);
+            state[at::PSI] = 0.0;
             (state, trial.channel(Channel::N).map_or(self.n_rps, |n| n[k]))
         };
         spread(trial.len()).map(one).collect()
     }
 
     fn sailed(&self, track: &Trajectory) -> Vec<Point> {
-        spread(track.t_s.len()).map(|k| (track.states[k], track.n_rps[k])).collect()
+        let one = |k: usize| {
+            let mut state = track.states[k];
+            state[at::PSI] = 0.0;
+            (state, track.n_rps[k])
+        };
+        spread(track.t_s.len()).map(one).collect()
     }
 
     fn knows(&self, (state, n_rps): &Point) -> bool {
@@ -128,8 +157,7 @@ impl<'a> Asked<'a> {
     fn group(&self, depth_m: Option<f64>, mut points: Vec<Point>) -> Option<Group> {
         points.retain(|point| self.knows(point));
         let mut work = Work::default();
-        let rate =
-            |(state, n_rps): &Point| self.ship.rate_with(state, &self.inputs(state[at::DELTA], *n_rps, depth_m), &mut work);
+        let rate = |point: &Point| self.ship.rate_with(&point.0, &self.inputs(point, depth_m), &mut work);
         let rates: Vec<StateVector> = points.iter().map(rate).collect();
         let of = |place: usize| rates.iter().map(|rate| rate[place]).collect::<Vec<f64>>();
         let rates = [at::U, at::V, at::P, at::R].map(of);
@@ -137,12 +165,15 @@ impl<'a> Asked<'a> {
         (finite && !points.is_empty()).then(|| Group { samples: self.samples(&points, depth_m), rates, weight: 1.0 })
     }
 
-    fn inputs(&self, delta_rad: f64, n_rps: f64, depth_m: Option<f64>) -> Inputs {
+    fn inputs(&self, (state, n_rps): &Point, depth_m: Option<f64>) -> Inputs {
+        let (wind_m_s, wind_from) = calm(state);
         let mut inputs = [0.0; MAX_INPUTS];
         for (value, (name, default)) in inputs.iter_mut().zip(self.ship.law_inputs()) {
             *value = match name {
-                "delta" => delta_rad,
-                "n" => n_rps,
+                "delta" => state[at::DELTA],
+                "n" => *n_rps,
+                "wind_speed" => wind_m_s,
+                "wind_from" => wind_from,
                 "depth" => depth_m.or(default).unwrap_or(0.0),
                 _ => default.unwrap_or(0.0),
             };
@@ -158,16 +189,26 @@ impl<'a> Asked<'a> {
         let mut channels: BTreeMap<Channel, Vec<f64>> = columns.map(|(channel, place)| (channel, column(place))).collect();
         let n = points.iter().map(|(_, n_rps)| if self.propeller { *n_rps } else { self.n_rps });
         channels.insert(Channel::N, n.collect());
-        // Of the wind the source says nothing: the air moves with the ship.
-        let air =
-            |of: &dyn Fn(f64, f64) -> f64| points.iter().map(|(state, _)| of(state[at::U], state[at::V])).collect::<Vec<f64>>();
-        channels.insert(Channel::WindSpeed, air(&|u, v| u.hypot(v)));
-        channels.insert(Channel::WindFrom, air(&|u, v| (-v).atan2(-u)));
+        let (wind_m_s, wind_from) = points.iter().map(|(state, _)| calm(state)).unzip();
+        channels.extend([(Channel::WindSpeed, wind_m_s), (Channel::WindFrom, wind_from)]);
         Trial { t_s: (0..points.len()).map(|k| k as f64).collect(), channels, depth_m, ..Trial::default() }
     }
+}
+
+/// Speed and direction of a wind that the ship does not feel: of the air's forces the source is not asked. Heading is north.
+fn calm(state: &StateVector) -> (f64, f64) {
+    let (u, v) = (state[at::U], state[at::V]);
+    (u.hypot(v), (-v).atan2(-u))
 }
 
 /// At most [`SAMPLES`] places, evenly spread.
 fn spread(count: usize) -> impl Iterator<Item = usize> {
     (0..count).step_by(count.div_ceil(SAMPLES).max(1))
+}
+
+/// Regressors that are nothing but rounding become zero: the source says nothing of them.
+fn silence(regressors: &mut [Vec<f64>]) {
+    let size = |column: &Vec<f64>| column.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let least = ROUNDING * regressors.iter().map(size).fold(0.0, f64::max);
+    regressors.iter_mut().filter(|column| size(column) < least).for_each(|column| column.fill(0.0));
 }
