@@ -17,7 +17,7 @@ const BUSY: Duration = Duration::from_secs(10);
 const SQLITE_READERS: u32 = 4;
 const POSTGRES_CONNECTIONS: u32 = 16;
 /// After this long without use, a connection is asked whether it is still there.
-const RESTED: Duration = Duration::from_secs(5);
+pub(crate) const RESTED: Duration = Duration::from_secs(5);
 
 /// Opens the database at `url` and brings its schema up to date.
 pub(crate) async fn connect(url: &str) -> Result<Database> {

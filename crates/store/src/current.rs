@@ -4,11 +4,14 @@
 //! asked for at once.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 use tokio::sync::oneshot;
 
 use crate::arguments::{Arg, args};
 use crate::checks;
+use crate::connect::RESTED;
+use crate::database::Reader;
 use crate::error::Result;
 use crate::record::record;
 use crate::statements::{same, statements};
@@ -59,6 +62,9 @@ pub(crate) struct Questions(Mutex<Open>);
 struct Open {
     waiting: Vec<Question>,
     rounds: usize,
+    /// Connections of rounds that have ended, and when: the next goes on with one, which a pool would have asked twice whether it
+    /// is still there.
+    kept: Vec<(Reader, Instant)>,
 }
 
 struct Question {
@@ -101,6 +107,24 @@ impl Questions {
         begins
     }
 
+    /// A connection that was used a moment ago, if there is one; what has rested longer goes back to its pool.
+    fn kept(&self) -> Option<Reader> {
+        let kept = &mut self.open().kept;
+        kept.retain(|(_, since)| since.elapsed() < RESTED);
+        kept.pop().map(|(reader, _)| reader)
+    }
+
+    /// SQLite's goes back at once: it is given out again without a question, and may be the only one.
+    fn keep(&self, reader: Option<Reader>) {
+        let reader = reader.filter(|reader| matches!(reader, Reader::Postgres(_)));
+        self.open().kept.extend(reader.map(|reader| (reader, Instant::now())));
+    }
+
+    /// Gives connections back to their pool, which ends only then.
+    pub(crate) fn close(&self) {
+        self.open().kept.clear();
+    }
+
     /// The questions of one alias that wait the longest.
     fn take(&self) -> Vec<Question> {
         let waiting = &mut self.open().waiting;
@@ -111,25 +135,31 @@ impl Questions {
 
 impl Round {
     async fn run(self) {
+        let mut reader = self.0.questions().kept();
         loop {
             let questions = self.0.questions().take();
-            let Some(first) = questions.first() else { return };
-            match self.ask(&first.alias, &questions).await {
+            let Some(first) = questions.first() else { return self.0.questions().keep(reader) };
+            match self.ask(&mut reader, &first.alias, &questions).await {
                 Ok(found) => tell(questions, &found),
-                Err(_) => drop(questions),
+                // With another connection next time.
+                Err(_) => reader = None,
             }
         }
     }
 
-    async fn ask(&self, alias: &str, questions: &[Question]) -> Result<Vec<CurrentVersion>> {
+    async fn ask(&self, reader: &mut Option<Reader>, alias: &str, questions: &[Question]) -> Result<Vec<CurrentVersion>> {
         let mut values = [("ship", Arg::Text(None)); AT_ONCE + 1];
         values[0] = ("alias", Arg::from(alias));
         for (place, question) in values[1..].iter_mut().zip(questions) {
             place.1 = Arg::from(&question.ship);
         }
+        let reader = match reader {
+            Some(reader) => reader,
+            None => reader.insert(self.0.database().reader().await?),
+        };
         match questions.len() {
-            1 => self.0.database().all(CURRENT, &values[..2]).await,
-            _ => self.0.database().all(CURRENT_OF, &values).await,
+            1 => reader.all(CURRENT, &values[..2]).await,
+            _ => reader.all(CURRENT_OF, &values).await,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The two databases behind one set of operations. Every operation is written once and expanded for both by [`on!`].
 
-use sqlx::{PgPool, Postgres, SqlitePool};
+use sqlx::pool::PoolConnection;
+use sqlx::{PgPool, Postgres, Sqlite, SqlitePool};
 
 use crate::arguments::{Args, bind, check};
 use crate::error::Result;
@@ -33,6 +34,12 @@ pub(crate) enum Pool {
 pub(crate) enum Transaction {
     Sqlite(Part),
     Postgres(sqlx::Transaction<'static, Postgres>),
+}
+
+/// A connection that one reader keeps while there is more to ask: giving it back costs a round trip.
+pub(crate) enum Reader {
+    Sqlite(PoolConnection<Sqlite>),
+    Postgres(PoolConnection<Postgres>),
 }
 
 /// Expands one body for both databases, with the connections and the statement's text for them.
@@ -88,6 +95,14 @@ impl Database {
         Ok(on!(&self.read, statement, |pool, sql| bind!(sqlx::query_as(sql), args).fetch_all(pool).await)?)
     }
 
+    /// A connection for several reading statements in a row.
+    pub(crate) async fn reader(&self) -> Result<Reader> {
+        Ok(match &self.read {
+            Pool::Sqlite(pool) => Reader::Sqlite(pool.acquire().await?),
+            Pool::Postgres(pool) => Reader::Postgres(pool.acquire().await?),
+        })
+    }
+
     /// Ends all connections.
     pub(crate) async fn close(&self) {
         match &self.read {
@@ -98,6 +113,17 @@ impl Database {
             Writer::Sqlite(group) => group.pool().close().await,
             Writer::Postgres(pool) => pool.close().await,
         }
+    }
+}
+
+impl Reader {
+    /// The rows that a reading statement finds.
+    pub(crate) async fn all<T: Record>(&mut self, statement: Statement, args: Args<'_>) -> Result<Vec<T>> {
+        check(args)?;
+        Ok(match self {
+            Self::Sqlite(one) => bind!(sqlx::query_as(statement.sqlite), args).fetch_all(&mut **one).await,
+            Self::Postgres(one) => bind!(sqlx::query_as(statement.postgres), args).fetch_all(&mut **one).await,
+        }?)
     }
 }
 

@@ -73,6 +73,7 @@ impl Store {
 
     /// Ends all connections once what is under way has ended.
     pub async fn close(&self) {
+        self.questions().close();
         self.database().close().await;
     }
 
