@@ -65,6 +65,8 @@ struct Open {
     /// Connections of rounds that have ended, and when: the next goes on with one, which a pool would have asked twice whether it
     /// is still there.
     kept: Vec<(Reader, Instant)>,
+    /// Nothing is kept any more.
+    closed: bool,
 }
 
 struct Question {
@@ -116,13 +118,16 @@ impl Questions {
 
     /// SQLite's goes back at once: it is given out again without a question, and may be the only one.
     fn keep(&self, reader: Option<Reader>) {
-        let reader = reader.filter(|reader| matches!(reader, Reader::Postgres(_)));
-        self.open().kept.extend(reader.map(|reader| (reader, Instant::now())));
+        let mut open = self.open();
+        let reader = reader.filter(|reader| matches!(reader, Reader::Postgres(_)) && !open.closed);
+        open.kept.extend(reader.map(|reader| (reader, Instant::now())));
     }
 
-    /// Gives connections back to their pool, which ends only then.
+    /// Gives connections back to their pool, which ends only then, also those of rounds that still end.
     pub(crate) fn close(&self) {
-        self.open().kept.clear();
+        let mut open = self.open();
+        open.closed = true;
+        open.kept.clear();
     }
 
     /// The questions of one alias that wait the longest.
