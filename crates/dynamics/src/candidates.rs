@@ -16,7 +16,7 @@ use crate::integrate::Method;
 use crate::plant::{MAX_INPUTS, PlantError, binding, dressed};
 use crate::sensitivity::mobility;
 use crate::state::{StateVector, at};
-use crate::tape::{Lanes, Tape, TapeBuilder};
+use crate::tape::{Lanes, Slots, Tape, TapeBuilder};
 use crate::wide::{Wide, widest};
 
 const PLANE: [usize; 4] = [at::U, at::V, at::R, at::PSI];
@@ -116,7 +116,7 @@ impl Builder<'_, '_> {
         let additions = order.iter().map(|&axis| self.addition(axis)).collect::<Result<_, _>>()?;
         let states: &'static [usize] = if self.law.has_roll() { &ROLL } else { &PLANE };
         let kinematics = self.kinematics(states)?;
-        let (front, tape) = self.builder.finish().hoisted(STATES.len());
+        let (front, tape) = self.builder.finish_hoisted(STATES.len());
         let n = order.len();
         let entries: Option<Vec<f64>> = mass.iter().map(|o| o.map_or(Some(0.0), |o| tape.constant_output(o))).collect();
         let constant = entries.map(|entries| {
@@ -192,7 +192,7 @@ pub struct CandidateRun<'a, const L: usize> {
     at: Vec<Lanes<L>>,
     rates: [Vec<Lanes<L>>; 4],
     inputs: Vec<Lanes<L>>,
-    work: Vec<Lanes<L>>,
+    work: Slots<L>,
     forces: Vec<Lanes<L>>,
 }
 
@@ -206,7 +206,7 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
             at: states(),
             rates: std::array::from_fn(|_| states()),
             inputs: Vec::with_capacity(STATES.len() + system.tape.inputs().len()),
-            work: Vec::with_capacity(system.tape.len()),
+            work: Slots::default(),
             forces: vec![[0.0; L]; system.axes.len()],
         }
     }

@@ -7,7 +7,7 @@ use sistership_model::trial::Channel;
 
 use crate::plant::{PlantError, binding};
 use crate::state::{RECORDED, StateVector, at};
-use crate::tape::{Lanes, Tape, TapeBuilder};
+use crate::tape::{Lanes, Slots, Tape, TapeBuilder};
 
 /// The names that the formula of an instrument may use, with their places: states, then their rates.
 const STATES: [(&str, usize); 8] =
@@ -25,7 +25,7 @@ pub struct Instruments {
 #[derive(Debug, Default)]
 pub struct Room {
     values: Vec<Lanes<1>>,
-    work: Vec<Lanes<1>>,
+    work: Slots<1>,
 }
 
 impl Instruments {

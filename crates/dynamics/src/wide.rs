@@ -1,26 +1,35 @@
 //! Wide vector instructions where the processor has them.
 //!
-//! The same code is compiled twice, once with AVX2, and the processor is asked which to run. Nothing else differs: without fused
-//! multiplication every lane is rounded as it is in the plain code, so that results are the same to the last bit.
+//! The same code is compiled three times, with AVX-512, with AVX2 and plainly, and the processor is asked which to run. Nothing
+//! else differs: without fused multiplication every lane is rounded as it is in the plain code, so that results are the same to
+//! the last bit.
 
-/// What is worth compiling twice.
+/// What is worth compiling for each width.
 pub(crate) trait Wide {
     /// Does it; to be `#[inline(always)]`, and so all that it calls in its loops.
     fn go(self);
 }
 
-/// Does it with AVX2 where the processor has that, else as it is.
+/// Does it with the widest instructions that the processor has.
 #[inline]
+#[allow(unsafe_code)]
 pub(crate) fn widest(work: impl Wide) {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx512f") {
+        // SAFETY: the processor has just been found to have AVX-512.
+        return unsafe { with_avx512(work) };
+    }
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {
         // SAFETY: the processor has just been found to have AVX2.
-        #[allow(unsafe_code)]
-        unsafe {
-            with_avx2(work);
-        }
-        return;
+        return unsafe { with_avx2(work) };
     }
+    work.go();
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f")]
+fn with_avx512(work: impl Wide) {
     work.go();
 }
 

@@ -4,7 +4,7 @@ use nalgebra::{Matrix4, Vector4};
 
 use super::{Inputs, Plant};
 use crate::state::{StateVector, States, at, lane_of};
-use crate::tape::Lanes;
+use crate::tape::{Lanes, Slots};
 
 /// States that the tape takes, in its order.
 const ON_TAPE: [usize; 6] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI];
@@ -14,14 +14,19 @@ const ON_TAPE: [usize; 6] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI];
 pub struct Work<const N: usize = 1> {
     /// What the tape takes: states, inputs of the law, open coefficients.
     point: Vec<Lanes<N>>,
-    work: Vec<Lanes<N>>,
+    work: Slots<N>,
     coefficients: Vec<Lanes<N>>,
     pub(crate) instruments: crate::instruments::Room,
 }
 
 impl<const N: usize> Default for Work<N> {
     fn default() -> Self {
-        Self { point: Vec::new(), work: Vec::new(), coefficients: Vec::new(), instruments: crate::instruments::Room::default() }
+        Self {
+            point: Vec::new(),
+            work: Slots::default(),
+            coefficients: Vec::new(),
+            instruments: crate::instruments::Room::default(),
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 
 mod run;
 mod small;
+mod sums;
 mod system;
 
 pub use run::SensitiveRun;

@@ -1,10 +1,11 @@
 //! Simulation of a block of lanes with their sensitivities; nothing is allocated from step to step.
 
 use super::small::Small;
+use super::sums::{Sums, WIDE};
 use super::system::{SensitiveSystem, Sloped};
 use crate::integrate::Method;
 use crate::state::{StateVector, at};
-use crate::tape::Lanes;
+use crate::tape::{Lanes, Slots};
 use crate::wide::{Wide, widest};
 
 /// Runs in lockstep: states and sensitivities of each lane.
@@ -12,7 +13,7 @@ use crate::wide::{Wide, widest};
 pub struct SensitiveRun<'a, const L: usize> {
     system: &'a SensitiveSystem,
     states: Vec<Lanes<L>>,
-    /// By lane, state and column: coefficients, then the starting state.
+    /// By lane, state and column: coefficients, then the starting state; after them room to read on.
     sensitivities: Vec<f64>,
     columns: usize,
     stages: [Stage<L>; 4],
@@ -24,7 +25,7 @@ pub struct SensitiveRun<'a, const L: usize> {
 struct Stage<const L: usize> {
     rate: Vec<Lanes<L>>,
     slopes: Small<L>,
-    /// Regressors by lane.
+    /// Regressors by lane; after them room to read on.
     regressors: Vec<f64>,
     mobility: Vec<Lanes<L>>,
 }
@@ -33,13 +34,12 @@ struct Stage<const L: usize> {
 struct Room<const L: usize> {
     at: Vec<Lanes<L>>,
     inputs: Vec<Lanes<L>>,
-    work: Vec<Lanes<L>>,
+    work: Slots<L>,
     gains: [Small<L>; 4],
     product: Small<L>,
     transition: Small<L>,
-    /// Gain times mobility of a stage: state by axis.
-    reach: Vec<Lanes<L>>,
-    next: Vec<f64>,
+    /// Gain times mobility of each stage: state by axis.
+    reach: [Vec<Lanes<L>>; 4],
 }
 
 impl<'a, const L: usize> SensitiveRun<'a, L> {
@@ -50,21 +50,20 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         let stage = || Stage {
             rate: vec![[0.0; L]; order],
             slopes: Small::zeros(order),
-            regressors: vec![0.0; L * count],
+            regressors: vec![0.0; L * count + WIDE],
             mobility: vec![[0.0; L]; axes * axes],
         };
         let small = || Small::zeros(order);
         let room = Room {
             at: vec![[0.0; L]; order],
             inputs: Vec::with_capacity(6 + system.input_names().len()),
-            work: Vec::with_capacity(system.tape.len()),
+            work: Slots::default(),
             gains: std::array::from_fn(|_| small()),
             product: small(),
             transition: small(),
-            reach: vec![[0.0; L]; order * axes],
-            next: vec![0.0; order * columns],
+            reach: std::array::from_fn(|_| vec![[0.0; L]; order * axes]),
         };
-        let sensitivities = vec![0.0; L * order * columns];
+        let sensitivities = vec![0.0; L * order * columns + WIDE];
         Self { system, states: vec![[0.0; L]; order], sensitivities, columns, stages: std::array::from_fn(|_| stage()), room }
     }
 
@@ -165,27 +164,11 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
 
     #[inline(always)]
     fn advance_sensitivities(&mut self, stages: usize) {
-        let size = self.states.len() * self.columns;
-        for lane in 0..L {
-            self.transport(lane);
-            self.sensitivities[lane * size..(lane + 1) * size].copy_from_slice(&self.room.next);
-        }
         for i in 0..stages {
             self.reach(i);
-            (0..L).for_each(|lane| self.push(i, lane));
         }
-    }
-
-    /// `next = P S` for a lane.
-    #[inline(always)]
-    fn transport(&mut self, lane: usize) {
-        let (order, columns) = (self.states.len(), self.columns);
-        let own = &self.sensitivities[lane * order * columns..(lane + 1) * order * columns];
-        for (row, out) in self.room.next.chunks_exact_mut(columns).enumerate() {
-            out.fill(0.0);
-            for (k, from) in own.chunks_exact(columns).enumerate() {
-                add_scaled(out, self.room.transition.at(row, k)[lane], from);
-            }
+        for lane in 0..L {
+            self.transport(lane, stages);
         }
     }
 
@@ -194,27 +177,40 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
     fn reach(&mut self, i: usize) {
         let axes = self.system.axes.len();
         let (gain, mobility) = (&self.room.gains[i], &self.stages[i].mobility);
-        for (index, out) in self.room.reach.iter_mut().enumerate() {
+        for (index, out) in self.room.reach[i].iter_mut().enumerate() {
             let (row, axis) = (index / axes, index % axes);
             *out = [0.0; L];
             for k in 0..axes {
                 let (g, m) = (gain.at(row, k), &mobility[k * axes + axis]);
-                (0..L).for_each(|lane| out[lane] += g[lane] * m[lane]);
+                for lane in 0..L {
+                    out[lane] += g[lane] * m[lane];
+                }
             }
         }
     }
 
-    /// Adds what the coefficients push at a stage.
+    /// `P S`, and what the coefficients push at each stage, for a lane.
     #[inline(always)]
-    fn push(&mut self, i: usize, lane: usize) {
+    fn transport(&mut self, lane: usize, stages: usize) {
         let (order, axes, columns) = (self.states.len(), self.system.axes.len(), self.columns);
-        let count = columns - order;
-        let regressors = &self.stages[i].regressors[lane * count..(lane + 1) * count];
-        let own = &mut self.sensitivities[lane * order * columns..(lane + 1) * order * columns];
-        for (row, out) in own.chunks_exact_mut(columns).enumerate() {
-            for (axis, range) in self.system.of_axis.iter().enumerate() {
-                add_scaled(&mut out[range.clone()], self.room.reach[row * axes + axis][lane], &regressors[range.clone()]);
+        let (size, count) = (order * columns, columns - order);
+        let Self { system, sensitivities, stages: pushing, room, .. } = self;
+        let own = &mut sensitivities[lane * size..(lane + 1) * size + WIDE];
+        let pushing: [&[f64]; 4] = std::array::from_fn(|i| &pushing[i].regressors[lane * count..(lane + 1) * count + WIDE]);
+        let starting = count..columns;
+        for (axis, range) in system.of_axis.iter().chain(std::iter::once(&starting)).enumerate() {
+            // Where she started pushes no more.
+            let pushes = if axis < axes { stages } else { 0 };
+            let mut sums = Sums::new(order);
+            for row in 0..order {
+                for k in 0..order {
+                    sums.add(row, k, room.transition.at(row, k)[lane]);
+                }
+                for i in 0..pushes {
+                    sums.add(row, order + i, room.reach[i][row * axes + axis][lane]);
+                }
             }
+            sums.replace(own, columns, &pushing[..pushes], range.clone());
         }
     }
 }
@@ -267,13 +263,5 @@ impl<const L: usize> Stage<L> {
             let entry = self.slopes.at_mut(row, column);
             (0..L).for_each(|lane| entry[lane] += factor[lane] * slope[lane]);
         }
-    }
-}
-
-/// `out += factor x`.
-#[inline(always)]
-fn add_scaled(out: &mut [f64], factor: f64, x: &[f64]) {
-    if factor != 0.0 {
-        out.iter_mut().zip(x).for_each(|(out, x)| *out += factor * x);
     }
 }

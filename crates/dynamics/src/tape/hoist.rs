@@ -1,20 +1,19 @@
-//! What depends on some inputs alone, taken out of a tape: a sine of a recorded rudder is the same for every model.
+//! What depends on some inputs alone, taken out of a listing: a sine of a recorded rudder is the same for every model.
 
-use super::{Op, Slot, Tape};
+use super::{Listing, Op, Slot};
 
-impl Tape {
-    /// Splits off what calls functions or divides and depends on no input before `from`: the first tape calculates that from
-    /// all inputs, and the second, whose outputs are those of this one, takes the results after its inputs.
-    pub fn hoisted(&self, from: usize) -> (Self, Self) {
+impl Listing {
+    /// Splits off what calls functions or divides and depends on no input before `from`: the first calculates that from all
+    /// inputs, and the second, whose outputs are those of this one, takes the results after its inputs.
+    pub fn hoisted(mut self, from: usize) -> (Self, Self) {
         let ahead = self.ahead(from);
-        let mut ops: Vec<Op> = self.ops.clone();
-        let mut inputs = self.inputs.clone();
+        let front = Self { outputs: ahead.clone(), ..self.clone() }.needed();
+        let given = self.inputs.len();
         for (place, &slot) in ahead.iter().enumerate() {
-            ops[slot as usize] = Op::Input((self.inputs.len() + place) as u32);
-            inputs.push(format!("hoisted {place}"));
+            self.ops[slot as usize] = Op::Input((given + place) as u32);
+            self.inputs.push(format!("hoisted {place}"));
         }
-        let front = needed(self.inputs.clone(), &self.ops, &ahead);
-        (front, needed(inputs, &ops, &self.outputs))
+        (front, self.needed())
     }
 
     /// The operations that are worth doing ahead.
@@ -32,24 +31,6 @@ impl Tape {
     }
 }
 
-/// The tape of some outputs, without operations that none of them needs.
-pub(super) fn needed(inputs: Vec<String>, ops: &[Op], outputs: &[Slot]) -> Tape {
-    let mut wanted = vec![false; ops.len()];
-    outputs.iter().for_each(|&slot| wanted[slot as usize] = true);
-    for (index, op) in ops.iter().enumerate().rev() {
-        if wanted[index] {
-            op.operands().into_iter().flatten().for_each(|slot| wanted[slot as usize] = true);
-        }
-    }
-    let mut place = vec![0; ops.len()];
-    let mut kept = Vec::new();
-    for (index, op) in ops.iter().enumerate().filter(|(index, _)| wanted[*index]) {
-        place[index] = kept.len() as Slot;
-        kept.push(op.moved(&|slot| place[slot as usize]));
-    }
-    Tape { inputs, ops: kept, outputs: outputs.iter().map(|&slot| place[slot as usize]).collect() }
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
@@ -58,11 +39,14 @@ mod tests {
 
     #[test]
     fn what_is_done_ahead_changes_nothing() {
-        let mut builder = TapeBuilder::new(&["u", "delta", "n"], &|_| None);
         let texts = ["u*sin(delta)/(2 + cos(u)) + n/delta", "sin(delta)*n", "u*cos(sin(delta)) + abs(n)"];
-        texts.iter().for_each(|text| assert!(builder.output(&parse(text).unwrap()).is_ok()));
-        let tape = builder.finish();
-        let (front, back) = tape.hoisted(1);
+        let builder = || {
+            let mut builder = TapeBuilder::new(&["u", "delta", "n"], &|_| None);
+            texts.iter().for_each(|text| assert!(builder.output(&parse(text).unwrap()).is_ok()));
+            builder
+        };
+        let tape = builder().finish();
+        let (front, back) = builder().finish_hoisted(1);
         let point = [0.7, -0.3, 1.9];
         let ahead = front.values(&point);
         assert_eq!(ahead.len(), 4, "sine, cosine of it, quotient and modulus");

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use sistership_model::formula::{Comparison, Expr, Function, builtin};
 
-use super::{Op, Slot, Tape};
+use super::{Listing, Op, Slot, Tape};
 
 /// What a name stands for while a formula is lowered.
 pub enum Binding {
@@ -64,7 +64,18 @@ impl<'a> TapeBuilder<'a> {
 
     /// The finished tape, without operations that no output needs.
     pub fn finish(self) -> Tape {
-        super::hoist::needed(self.inputs, &self.ops, &self.outputs)
+        self.listing().needed().fused()
+    }
+
+    /// In two parts: what calls functions or divides and depends on no input before `from`, and the rest, which takes the results
+    /// of the first after its inputs.
+    pub fn finish_hoisted(self, from: usize) -> (Tape, Tape) {
+        let (front, rest) = self.listing().needed().hoisted(from);
+        (front.fused(), rest.fused())
+    }
+
+    fn listing(self) -> Listing {
+        Listing { inputs: self.inputs, ops: self.ops, outputs: self.outputs }
     }
 
     fn lower(&mut self, expr: &Expr) -> Result<Slot, String> {

@@ -5,20 +5,29 @@
 
 mod derive;
 mod eval;
+mod fuse;
 mod hoist;
+mod listing;
 mod lower;
 mod op;
+mod slots;
+mod tangent;
 
 pub use eval::Lanes;
+pub(crate) use fuse::Instruction;
+use listing::Listing;
 pub use lower::{Binding, TapeBuilder};
 pub(crate) use op::Op;
 pub use op::Slot;
+pub use slots::Slots;
 
-/// A list of operations with named inputs and numbered outputs.
+/// A list of instructions with named inputs and numbered outputs.
 #[derive(Debug, Clone, Default)]
 pub struct Tape {
     inputs: Vec<String>,
-    ops: Vec<Op>,
+    instructions: Vec<Instruction>,
+    /// Factors of the sums of products.
+    terms: Vec<[Slot; 2]>,
     outputs: Vec<Slot>,
 }
 
@@ -28,20 +37,20 @@ impl Tape {
         &self.inputs
     }
 
-    /// How many operations it takes.
+    /// How many instructions it takes.
     pub fn len(&self) -> usize {
-        self.ops.len()
+        self.instructions.len()
     }
 
     /// Whether it computes nothing.
     pub fn is_empty(&self) -> bool {
-        self.ops.is_empty()
+        self.instructions.is_empty()
     }
 
     /// The value of an output that does not depend on the inputs.
     pub fn constant_output(&self, output: usize) -> Option<f64> {
-        match self.ops[self.outputs[output] as usize] {
-            Op::Constant(value) => Some(value),
+        match self.instructions[self.outputs[output] as usize] {
+            Instruction::Op(Op::Constant(value)) => Some(value),
             _ => None,
         }
     }

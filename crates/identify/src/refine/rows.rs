@@ -1,6 +1,6 @@
 //! From a trial to the sufficient statistics of each regression: one-step differences against regressors.
 
-use sistership_dynamics::tape::Lanes;
+use sistership_dynamics::tape::{Lanes, Slots};
 use sistership_model::coefficient::Axis;
 use sistership_model::effect::input_channel;
 use sistership_model::trial::{Channel, Trial};
@@ -54,7 +54,7 @@ type Acceleration<'a> = &'a dyn Fn(Axis, (usize, usize)) -> f64;
 
 fn tables(blocks: &Blocks, record: &Record<'_>, pairs: &[(usize, usize)], acceleration: Acceleration<'_>) -> Vec<Table> {
     let mut tables: Vec<Table> = blocks.blocks.iter().map(|b| vec![Vec::with_capacity(pairs.len()); b.width()]).collect();
-    let mut work = Vec::new();
+    let mut work = Slots::default();
     let mut lanes = vec![[0.0; LANES]; record.columns.len()];
     for chunk in pairs.chunks(LANES) {
         record.load(chunk, &mut lanes);

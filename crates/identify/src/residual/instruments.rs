@@ -1,6 +1,6 @@
 //! How what instruments say goes with the states and with the effects on them.
 
-use sistership_dynamics::tape::Lanes;
+use sistership_dynamics::tape::{Lanes, Slots};
 
 use super::System;
 use super::linearised::Detail;
@@ -22,7 +22,7 @@ impl InstrumentJacobian {
         let states = if detail == Detail::Whole { system.states } else { &[] };
         let seeds: Vec<usize> = states.iter().map(of_state).chain(measured.iter().map(of_column)).collect();
         let mut outputs = vec![Vec::new(); system.says.len()];
-        let mut work = Vec::new();
+        let mut work = Slots::default();
         for chunk in seeds.chunks(LANES) {
             let mut moved = vec![[0.0; LANES]; inputs];
             chunk.iter().enumerate().for_each(|(lane, &input)| moved[input][lane] = 1.0);

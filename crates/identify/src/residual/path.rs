@@ -2,7 +2,7 @@
 
 use sistership_dynamics::interpolate::lagged;
 use sistership_dynamics::state::at;
-use sistership_dynamics::tape::Lanes;
+use sistership_dynamics::tape::{Lanes, Slots};
 use sistership_model::trial::Channel;
 
 use super::record::smoothed;
@@ -54,7 +54,7 @@ impl<'a> Path<'a> {
         }
         let t_s = &self.record.trial.t_s;
         let smooth = self.states.clone();
-        let mut work = Vec::new();
+        let mut work = Slots::default();
         for k in 0..t_s.len() {
             let inputs = self.instrument_inputs(system, k, &|state| slope(t_s, &smooth[state], k));
             system.instruments.run(&inputs, &mut work);

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 use sistership_dynamics::state::at;
-use sistership_dynamics::tape::{Lanes, Slot};
+use sistership_dynamics::tape::{Lanes, Slot, Slots};
 use sistership_model::coefficient::Axis;
 use sistership_model::law::STATES;
 
@@ -21,7 +21,7 @@ pub(super) struct Walker<'a> {
     detail: Detail,
     sizes: Sizes,
     point: Vec<f64>,
-    primal: Vec<Lanes<1>>,
+    primal: Slots<1>,
     sweeps: Vec<Sweep>,
 }
 
@@ -46,7 +46,7 @@ struct Sweep {
     seeds: Vec<Seed>,
     lanes: Vec<Lanes<LANES>>,
     reached: Vec<Slot>,
-    tangents: Vec<Lanes<LANES>>,
+    tangents: Slots<LANES>,
 }
 
 impl Sweep {
@@ -55,7 +55,7 @@ impl Sweep {
         let mut lanes = vec![[0.0; LANES]; tape.inputs().len()];
         seeds.iter().enumerate().for_each(|(lane, seed)| lanes[seed.input()][lane] = 1.0);
         let inputs: Vec<usize> = seeds.iter().map(|seed| seed.input()).collect();
-        Self { seeds: seeds.to_vec(), lanes, reached: tape.depending_on(&inputs), tangents: Vec::new() }
+        Self { seeds: seeds.to_vec(), lanes, reached: tape.depending_on(&inputs), tangents: Slots::default() }
     }
 }
 
@@ -78,7 +78,7 @@ impl<'a> Walker<'a> {
         let parameters = (0..system.lagged.len()).map(|j| Seed::Parameter(first + j, system.columns.nuisance.len() + j));
         let parameters: Vec<Seed> = parameters.collect();
         let sweeps = states.chunks(LANES).chain(parameters.chunks(LANES)).map(|seeds| Sweep::new(system, seeds)).collect();
-        Self { system, path, detail, sizes, point: Vec::new(), primal: Vec::new(), sweeps }
+        Self { system, path, detail, sizes, point: Vec::new(), primal: Slots::default(), sweeps }
     }
 
     pub fn walk(mut self, part: &[usize]) -> Linearised {
@@ -205,7 +205,7 @@ impl<'a> Walker<'a> {
             return;
         }
         let inputs: Vec<Lanes<1>> = self.point.iter().map(|&value| [value]).collect();
-        let mut work = Vec::new();
+        let mut work = Slots::default();
         self.system.regressors.run(&inputs, &mut work);
         for (column, nuisance) in self.system.columns.nuisance.iter().enumerate() {
             let forces = match nuisance.kind {
@@ -270,7 +270,7 @@ impl<'a> Walker<'a> {
         let mut says: Vec<f64> = system.channels.iter().map(|&(_, place)| self.path.states[place][k]).collect();
         if let Some(by_state) = &mut out.by_state {
             let inputs = self.path.instrument_inputs(system, k, &|state| rate[state]);
-            let mut work = Vec::new();
+            let mut work = Slots::default();
             system.instruments.run(&inputs, &mut work);
             system.says.iter().enumerate().for_each(|(output, &place)| says[place] = system.instruments.read(output, &work)[0]);
             let jacobian = InstrumentJacobian::new(system, &work, inputs.len(), &out.measured, self.detail);

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use nalgebra::DVector;
-use sistership_dynamics::tape::Lanes;
+use sistership_dynamics::tape::{Lanes, Slots};
 use sistership_model::trial::Trial;
 
 use super::super::blocks::{Block, Blocks};
@@ -34,7 +34,7 @@ pub(super) fn columns<'a>(blocks: &Blocks, trial: &'a Trial) -> Result<Vec<Colum
     let record = Record::new(blocks, trial)?;
     let mut all: Vec<Columns<'a>> = blocks.blocks.iter().map(|block| Columns::new(block, &record, trial.len())).collect();
     let mut lanes = vec![[0.0; LANES]; record.columns.len()];
-    let mut work = Vec::new();
+    let mut work = Slots::default();
     let samples: Vec<(usize, usize)> = (0..trial.len()).map(|k| (k, k)).collect();
     for chunk in samples.chunks(LANES) {
         record.load(chunk, &mut lanes);

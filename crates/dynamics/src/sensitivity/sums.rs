@@ -1,0 +1,96 @@
+//! Rows replaced by sums of themselves and of others, a few columns at a time.
+
+use std::ops::Range;
+
+/// Columns that are done at once: what is replaced, and what is added, must be so many longer than it is.
+pub(super) const WIDE: usize = 16;
+/// Most rows that are replaced: eight states move.
+const ROWS: usize = 8;
+/// Most rows of a sum: those, and one of each stage of a step.
+const TERMS: usize = ROWS + 4;
+
+/// By row, what it becomes: factors of rows, those that are replaced first.
+pub(super) struct Sums {
+    rows: usize,
+    terms: [[(f64, u8); TERMS]; ROWS],
+    counts: [u8; ROWS],
+}
+
+impl Sums {
+    #[inline(always)]
+    pub fn new(rows: usize) -> Self {
+        Self { rows, terms: [[(0.0, 0); TERMS]; ROWS], counts: [0; ROWS] }
+    }
+
+    /// Adds a multiple of a row to what a row becomes; nothing where the factor is zero.
+    #[inline(always)]
+    pub fn add(&mut self, row: usize, of: usize, factor: f64) {
+        if factor != 0.0 {
+            self.terms[row][usize::from(self.counts[row])] = (factor, of as u8);
+            self.counts[row] += 1;
+        }
+    }
+
+    /// Replaces some columns of rows that lie one after the other, `stride` apart, by the sums of them and of `others`.
+    #[inline(always)]
+    pub fn replace(&self, own: &mut [f64], stride: usize, others: &[&[f64]], columns: Range<usize>) {
+        let mut block = [[0.0; WIDE]; TERMS];
+        let mut from = columns.start;
+        while from < columns.end {
+            for row in 0..self.rows {
+                block[row].copy_from_slice(&own[row * stride + from..][..WIDE]);
+            }
+            for (row, other) in others.iter().enumerate() {
+                block[self.rows + row].copy_from_slice(&other[from..][..WIDE]);
+            }
+            let width = columns.end - from;
+            for row in 0..self.rows {
+                let mut sum = self.sum(row, &block);
+                for k in 0..WIDE {
+                    // What stands beyond the columns is written as it was: that is faster than to write less.
+                    sum[k] = if k < width { sum[k] } else { block[row][k] };
+                }
+                own[row * stride + from..][..WIDE].copy_from_slice(&sum);
+            }
+            from += WIDE;
+        }
+    }
+
+    #[inline(always)]
+    fn sum(&self, row: usize, block: &[[f64; WIDE]; TERMS]) -> [f64; WIDE] {
+        let mut sum = [0.0; WIDE];
+        for &(factor, of) in &self.terms[row][..usize::from(self.counts[row])] {
+            let term = &block[usize::from(of)];
+            for k in 0..WIDE {
+                sum[k] += factor * term[k];
+            }
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_replaced_in_some_columns_and_kept_in_others() {
+        const STRIDE: usize = 41;
+        let row = |of: f64, length: usize| (0..length).map(|k| (of * k as f64).sin()).collect::<Vec<f64>>();
+        let (own, other) = (row(0.3, 2 * STRIDE + WIDE), row(1.1, STRIDE + WIDE));
+        let mut sums = Sums::new(2);
+        [(0, 1, 0.5), (0, 0, 0.0), (0, 2, -2.0), (1, 1, 1.0), (1, 0, 3.0)]
+            .into_iter()
+            .for_each(|(row, of, f)| sums.add(row, of, f));
+        for columns in [0..0, 0..STRIDE, 3..10, 7..23, 5..40] {
+            let mut out = own.clone();
+            sums.replace(&mut out, STRIDE, &[&other], columns.clone());
+            for k in 0..STRIDE {
+                let (a, b, inside) = (own[k], own[STRIDE + k], columns.contains(&k));
+                let expected = if inside { [0.5 * b - 2.0 * other[k], b + 3.0 * a] } else { [a, b] };
+                assert_eq!([out[k], out[STRIDE + k]], expected, "column {k} of {columns:?}");
+            }
+            assert_eq!(out[2 * STRIDE..], own[2 * STRIDE..]);
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Sums of products as single instructions: a polynomial's are most of what a law calculates, and one after the other they
+//! wait for each other's results.
+
+use super::{Listing, Op, Slot, Tape};
+
+/// What a tape does at one place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Instruction {
+    /// One operation.
+    Op(Op),
+    /// A result, and added to it one after the other the products of the [terms](Tape) from a place to another.
+    Products { first: Slot, from: u32, to: u32 },
+}
+
+/// A sum so far.
+#[derive(Default)]
+struct Sum {
+    first: Slot,
+    terms: Vec<[Slot; 2]>,
+}
+
+/// Which operations become part of others.
+struct Fusing<'a> {
+    ops: &'a [Op],
+    uses: Vec<u32>,
+    sums: Vec<Option<Sum>>,
+    /// Done by another instruction.
+    absorbed: Vec<bool>,
+}
+
+impl Listing {
+    /// The tape that does the same, rounding as it does.
+    pub fn fused(self) -> Tape {
+        let mut fusing = Fusing::new(&self);
+        (0..self.ops.len()).for_each(|index| fusing.look(index));
+        let Fusing { sums, absorbed, .. } = fusing;
+        let mut place = vec![0; self.ops.len()];
+        let (mut instructions, mut terms) = (Vec::new(), Vec::new());
+        for (index, sum) in sums.iter().enumerate().filter(|(index, _)| !absorbed[*index]) {
+            place[index] = instructions.len() as Slot;
+            let to = |slot: Slot| place[slot as usize];
+            instructions.push(match sum {
+                None => Instruction::Op(self.ops[index].moved(&to)),
+                Some(sum) => {
+                    let from = terms.len() as u32;
+                    terms.extend(sum.terms.iter().map(|&[a, b]| [to(a), to(b)]));
+                    Instruction::Products { first: to(sum.first), from, to: terms.len() as u32 }
+                }
+            });
+        }
+        let outputs = self.outputs.iter().map(|&slot| place[slot as usize]).collect();
+        Tape { inputs: self.inputs, instructions, terms, outputs }
+    }
+}
+
+impl<'a> Fusing<'a> {
+    fn new(listing: &'a Listing) -> Self {
+        let ops = &listing.ops;
+        let mut uses = vec![0; ops.len()];
+        let read = ops.iter().flat_map(|op| op.operands().into_iter().flatten());
+        read.chain(listing.outputs.iter().copied()).for_each(|slot| uses[slot as usize] += 1);
+        Self { ops, uses, sums: ops.iter().map(|_| None).collect(), absorbed: vec![false; ops.len()] }
+    }
+
+    /// A product that an addition reads, and nothing else, becomes a term; so does the sum before it.
+    fn look(&mut self, index: usize) {
+        let Op::Add(a, b) = self.ops[index] else { return };
+        let Some((before, product, factors)) = self.product(a, b).or_else(|| self.product(b, a)) else { return };
+        let kept = if self.is_only_here(before) { self.sums[before as usize].take() } else { None };
+        self.absorbed[before as usize] |= kept.is_some();
+        self.absorbed[product as usize] = true;
+        let mut sum = kept.unwrap_or(Sum { first: before, terms: Vec::new() });
+        sum.terms.push(factors);
+        self.sums[index] = Some(sum);
+    }
+
+    fn product(&self, before: Slot, product: Slot) -> Option<(Slot, Slot, [Slot; 2])> {
+        let Op::Multiply(a, b) = self.ops[product as usize] else { return None };
+        self.is_only_here(product).then_some((before, product, [a, b]))
+    }
+
+    fn is_only_here(&self, slot: Slot) -> bool {
+        self.uses[slot as usize] == 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::{Slots, TapeBuilder};
+    use super::*;
+    use sistership_model::formula::parse;
+
+    /// As a tape, and with every operation by itself.
+    fn both(texts: &[&str]) -> [Tape; 2] {
+        let mut builder = TapeBuilder::new(&["u", "v", "r"], &|_| None);
+        texts.iter().for_each(|text| assert!(builder.output(&parse(text).unwrap()).is_ok()));
+        let (inputs, ops, outputs) = (builder.inputs.clone(), builder.ops.clone(), builder.outputs.clone());
+        let listing = Listing { inputs, ops, outputs }.needed();
+        let plain = Tape {
+            inputs: listing.inputs.clone(),
+            instructions: listing.ops.iter().map(|op| Instruction::Op(*op)).collect(),
+            terms: Vec::new(),
+            outputs: listing.outputs.clone(),
+        };
+        [listing.fused(), plain]
+    }
+
+    #[test]
+    fn sums_of_products_round_as_one_by_one() {
+        let texts = ["0.3*u + 1.7*v*v - r + u*v*r + 0.1*(u*v + r*r) + v*r", "u*v + (u*v + v*r)", "u + v"];
+        let [fused, plain] = both(&texts);
+        assert!(fused.len() < plain.len());
+        for k in 0..50 {
+            let x = 0.37 * f64::from(k);
+            let point = [x.sin(), (2.0 * x).cos(), x.exp().sin()];
+            assert_eq!(fused.values(&point), plain.values(&point));
+            assert_eq!(fused.jacobian(&point), plain.jacobian(&point));
+        }
+    }
+
+    #[test]
+    fn products_that_are_read_elsewhere_too_stay_by_themselves() {
+        let [fused, plain] = both(&["u*v + v*r", "v*r"]);
+        assert_eq!((fused.len(), plain.len()), (5, 6));
+        let [fused, plain] = both(&["u*v + (v*r + 2)", "v*r + 2", "u*v"]);
+        assert_eq!(fused.values(&[2.0, 3.0, 5.0]), [23.0, 17.0, 6.0]);
+        assert_eq!(plain.values(&[2.0, 3.0, 5.0]), [23.0, 17.0, 6.0]);
+    }
+
+    #[test]
+    fn a_sum_depends_on_what_its_terms_do() {
+        let [fused, plain] = both(&["u*u + v*r"]);
+        let seeds = [[0.0], [0.0], [1.0]];
+        for tape in [fused, plain] {
+            let (mut primal, mut some) = (Slots::default(), Slots::default());
+            tape.run(&[[2.0], [3.0], [5.0]], &mut primal);
+            tape.tangents_among(&tape.depending_on(&[2]), &primal, &seeds, &mut some);
+            assert_eq!(tape.read(0, &some), [3.0]);
+        }
+    }
+}
