@@ -1,8 +1,8 @@
 //! A whole fleet in one bulk refinement: ships with trials are loaded, listed, searched, learned from and refined.
 //!
 //! `cargo run --release -p sistership-tests --example fleet -- 10000 10` (in ten families, one by default, each refined by one bulk
-//! job; four trials a ship; SQLite in a temporary folder, or `SISTERSHIP_DATABASE_URL`). Prints ships a second for each step, so that the cost a ship can be compared between sizes, and the
-//! times of searches.
+//! job; four trials a ship; SQLite in a temporary folder, or `SISTERSHIP_DATABASE_URL`). Prints ships a second for each step, so
+//! that the cost a ship can be compared between sizes, and the times of searches. Of several families the last is told about.
 
 mod search;
 

@@ -134,28 +134,23 @@ impl<'a> Asked<'a> {
         let one = |k: usize| {
             let mut state = StateVector::zeros();
             columns.iter().for_each(|(place, column)| state[*place] = column[k]);
-            state[at::PSI] = 0.0;
             (state, trial.channel(Channel::N).map_or(self.n_rps, |n| n[k]))
         };
         spread(trial.len()).map(one).collect()
     }
 
     fn sailed(&self, track: &Trajectory) -> Vec<Point> {
-        let one = |k: usize| {
-            let mut state = track.states[k];
-            state[at::PSI] = 0.0;
-            (state, track.n_rps[k])
-        };
-        spread(track.t_s.len()).map(one).collect()
+        spread(track.t_s.len()).map(|k| (track.states[k], track.n_rps[k])).collect()
     }
 
     fn knows(&self, (state, n_rps): &Point) -> bool {
         state[at::U] > self.least_m_s && (!self.propeller || *n_rps > 0.0)
     }
 
-    /// What the source says at the points that it knows; none where there is none.
+    /// What the source says at the points that it knows, heading north; none where there is none.
     fn group(&self, depth_m: Option<f64>, mut points: Vec<Point>) -> Option<Group> {
         points.retain(|point| self.knows(point));
+        points.iter_mut().for_each(|(state, _)| state[at::PSI] = 0.0);
         let mut work = Work::default();
         let rate = |point: &Point| self.ship.rate_with(&point.0, &self.inputs(point, depth_m), &mut work);
         let rates: Vec<StateVector> = points.iter().map(rate).collect();

@@ -34,6 +34,7 @@ impl Task<'_> {
         variants: &[Variant],
         progress: Progress<'_>,
     ) -> Result<Refinement, RefineError> {
+        step(progress, 0.9, "standard manoeuvres of the source")?;
         let before = self.standard_manoeuvres(&self.transferred);
         loop {
             let Some(best) = best(&options) else {
@@ -94,7 +95,8 @@ impl Task<'_> {
     pub(super) fn fitted(&self, taken: &Taken, variants: &[Variant]) -> Result<Option<Fit>, RefineError> {
         let (variant, choices) = match taken {
             Taken::Source => return Ok(None),
-            Taken::Fitted { fit, .. } => return Ok(Some((**fit).clone())),
+            Taken::Reached(bend) => return Ok(Some(bend.fit())),
+            Taken::Found(fit) => return Ok(Some((**fit).clone())),
             Taken::Ridge { variant, choices } => (&variants[*variant], choices),
         };
         let all = merged(&variant.moments, |_| true).ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
@@ -110,11 +112,11 @@ impl Task<'_> {
     fn errors_of(&self, taken: &Taken, variants: &[Variant]) -> Result<Option<Errors>, RefineError> {
         match taken {
             Taken::Ridge { variant, choices } => self.errors(&variants[*variant], choices),
-            Taken::Fitted { bend: Some(bend), .. } => {
+            Taken::Reached(bend) => {
                 let weak = self.errors(&variants[bend.variant], &bend.choices)?;
                 Ok(weak.and_then(|weak| bend.errors(&weak)))
             }
-            Taken::Source | Taken::Fitted { bend: None, .. } => Ok(None),
+            Taken::Source | Taken::Found(_) => Ok(None),
         }
     }
 

@@ -124,8 +124,10 @@ pub(super) enum Taken {
     Source,
     /// A ridge of a variant at its choices.
     Ridge { variant: usize, choices: Choices },
-    /// What the trajectory form or the search gives on all trials, and what its errors follow from.
-    Fitted { fit: Box<Fit>, bend: Option<Box<Bend>> },
+    /// Where the trajectory form comes to on all trials.
+    Reached(Box<Bend>),
+    /// What the search finds on all trials.
+    Found(Box<Fit>),
 }
 
 /// An option with what it takes to compare and to take it.
@@ -304,7 +306,7 @@ impl Taken {
     fn choices(&self) -> Option<&Choices> {
         match self {
             Self::Ridge { choices, .. } => Some(choices),
-            Self::Source | Self::Fitted { .. } => None,
+            Self::Source | Self::Reached(_) | Self::Found(_) => None,
         }
     }
 }

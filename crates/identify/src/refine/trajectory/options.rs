@@ -9,22 +9,23 @@ use sistership_model::Model;
 use sistership_model::quantity::Quantity;
 
 use super::super::outcome::RefineError;
-use super::super::published::{Choices, Fit, Fitted, fit};
+use super::super::published::{Choices, Fold};
 use super::super::selection::{Glimpse, Progress, Taken, Task, Trying, step};
 use super::super::variant::{Variant, merged};
 use super::Cut;
 use super::errors::Bend;
 use super::normal::{Normal, Pass, Passing};
-use super::prior::{Prior, Strength};
+use super::prior::Prior;
 use super::segments::{Plan, compared, cut};
 use super::solve::Held;
+use crate::regression::Moments;
 use crate::transfer::ready;
 
-/// Pulls towards the weak form that are tried, strongest first, each from where the one before has ended, until two in a row are
-/// no better.
-const PULLS: [f64; 7] = [100.0, 10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4];
-/// How strongly the source pulls by the weak form, at most.
-const SOURCE: f64 = 0.01;
+/// Pulls towards the weak form that are tried, strongest first, each from where the one before has ended, until [the best is
+/// past](is_past_best). A stronger one would give the weak form.
+const PULLS: [f64; 6] = [10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4];
+/// So many times the error of another is clearly worse.
+const CLEARLY: f64 = 1.02;
 /// Huber's threshold in robust standard deviations of a state's residuals.
 const HUBER: f64 = 3.0;
 /// A median needs no more than so many times fewer segments, where there are many.
@@ -59,16 +60,13 @@ impl Task<'_> {
         options: &mut Vec<Trying>,
         progress: Progress<'_>,
     ) -> Result<(), RefineError> {
-        let Some((index, choices)) = super::super::finish::best(options).and_then(|best| match &options[best].taken {
-            Taken::Ridge { variant, choices } => Some((*variant, choices.clone())),
-            _ => None,
-        }) else {
-            return Ok(());
-        };
+        let best = super::super::finish::best(options).map(|best| &options[best]);
+        let Some(Trying { taken: Taken::Ridge { variant: index, choices }, option, .. }) = best else { return Ok(()) };
+        let (index, choices, error) = (*index, choices.clone(), option.error);
         let variant = &variants[index];
         step(progress, 0.6, "trajectories from the weak form")?;
         let cutting = self.cut();
-        let model = self.model_at(variant, &weak_values(variant, &choices)?);
+        let model = self.model_at(variant, &weak_form(variant, &choices, &|_| true)?.1);
         let system = SensitiveSystem::new(&model, self.law).map_err(|e| RefineError::Law(e.to_string()))?;
         let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;
         let compared = compared(system.states(), &standard_deviations(&self.training));
@@ -82,7 +80,7 @@ impl Task<'_> {
         let trials = self.training.len();
         let passing = Passing { segments: &segments, plan: &plan, envelope: *ship.envelope(), thresholds, trials };
         let names = system.names().to_vec();
-        Trajectory { task: self, variant, index, choices: &choices, passing, names }.options(options, progress)
+        Trajectory { task: self, variant, index, choices: &choices, passing, names }.options(error, options, progress)
     }
 
     fn cut(&self) -> Cut {
@@ -102,34 +100,35 @@ impl Task<'_> {
     }
 }
 
-/// The weak form's coefficients on all trials.
-fn weak_values(variant: &Variant, choices: &Choices) -> Result<BTreeMap<String, f64>, RefineError> {
-    let all = merged(&variant.moments, |_| true).ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
-    let fitted = fit(&variant.blocks, &all, &variant.model, choices);
-    Ok(fitted.coefficients.into_iter().map(|(name, fitted)| (name, fitted.value)).collect())
+/// The statistics of some trials, and the weak form's coefficients on them.
+fn weak_form(
+    variant: &Variant,
+    choices: &Choices,
+    keep: &dyn Fn(usize) -> bool,
+) -> Result<(Vec<Moments>, BTreeMap<String, f64>), RefineError> {
+    let moments = merged(&variant.moments, keep).ok_or_else(|| RefineError::Data("a fold has no sample".into()))?;
+    let solved = Fold::new(&variant.blocks, &variant.model, &moments, &[]).solve(choices);
+    Ok((moments, solved.into_iter().map(|(name, fitted)| (name, fitted.value)).collect()))
 }
 
 impl Trajectory<'_> {
-    fn options(mut self, options: &mut Vec<Trying>, progress: Progress<'_>) -> Result<(), RefineError> {
+    /// Options after the weak form's, which has an error.
+    fn options(mut self, weak: Option<f64>, options: &mut Vec<Trying>, progress: Progress<'_>) -> Result<(), RefineError> {
         let prior = self.prior(&|_| true)?;
         self.passing.thresholds = self.thresholds(&prior.weak)?;
         let priors: Vec<Prior> =
             (0..self.task.fold_count()).map(|fold| self.prior(&|t| self.inside(t, fold))).collect::<Result<_, _>>()?;
         let mut reached = self.reached(prior.weak.clone())?;
-        let mut errors = Vec::new();
+        let mut errors = vec![weak.unwrap_or(f64::INFINITY)];
         for pull in PULLS {
             let label = format!("trajectory, {}, pull {pull:.0e}", self.variant.family.name());
             step(progress, 0.7, &label)?;
-            reached = self.descend(&prior, self.strength(pull), reached)?;
+            reached = self.descend(&prior, pull, reached)?;
             step(progress, 0.7, &format!("{label}: simulating manoeuvres left out"))?;
-            let models: Vec<Model> = priors
-                .iter()
-                .enumerate()
-                .map(|(fold, prior)| self.left_out(fold, prior, self.strength(pull), &reached))
-                .collect();
+            let models: Vec<Model> =
+                priors.iter().enumerate().map(|(fold, prior)| self.left_out(fold, prior, pull, &reached)).collect();
             let simulated = self.task.simulate_training(&models, &|trial| self.task.fold_of(trial))?;
-            let bend = self.bend(&prior, self.strength(pull), &reached);
-            let taken = Taken::Fitted { fit: Box::new(self.fit(&bend, &reached)), bend: Some(Box::new(bend)) };
+            let taken = Taken::Reached(Box::new(self.bend(&prior, pull, &reached)));
             let trying = self.task.trying(label, Some(pull), taken, self.names.len(), simulated);
             errors.push(trying.option.error.unwrap_or(f64::INFINITY));
             options.push(Trying { left_out: models, ..trying });
@@ -147,24 +146,16 @@ impl Trajectory<'_> {
         Ok(self.passing.sizes(&system, SOME).into_iter().map(threshold).collect())
     }
 
-    /// The source pulls no more strongly than it does within the weak form.
-    fn strength(&self, pull: f64) -> Strength {
-        let within = self.choices.iter().flatten().map(|choice| choice.lambda).fold(0.0, f64::max);
-        Strength { mu: pull, lambda: SOURCE.min(within) * pull }
-    }
-
     fn inside(&self, trial: usize, fold: usize) -> bool {
         self.task.training.len() == 1 || self.task.fold_of(trial) != fold
     }
 
-    /// The pulls of some trials.
+    /// What the weak form says on some trials.
     fn prior(&self, keep: &dyn Fn(usize) -> bool) -> Result<Prior, RefineError> {
-        let nothing = || RefineError::Data("a fold has no sample".into());
-        let moments = merged(&self.variant.moments, keep).ok_or_else(nothing)?;
-        let fitted = fit(&self.variant.blocks, &moments, &self.variant.model, self.choices);
-        let weak = |name: &str| fitted.coefficients.get(name).map_or(0.0, |fitted| fitted.value);
-        let source = |name: &str| self.variant.model.coefficient(name);
-        Ok(Prior::new(&self.names, &self.variant.blocks, &moments, &weak, &source))
+        let (moments, values) = weak_form(self.variant, self.choices, keep)?;
+        let values = |name: &str| (values.get(name).copied().unwrap_or_default(), self.variant.model.coefficient(name));
+        let lambda = self.choices.iter().flatten().map(|choice| choice.lambda).fold(0.0, f64::max);
+        Ok(Prior::new(&self.names, &self.variant.blocks, &moments, &values, lambda))
     }
 
     fn values(&self, at: &DVector<f64>) -> BTreeMap<String, f64> {
@@ -182,15 +173,15 @@ impl Trajectory<'_> {
     }
 
     /// From coefficients to the least cost nearby.
-    fn descend(&self, prior: &Prior, strength: Strength, mut here: Reached) -> Result<Reached, RefineError> {
+    fn descend(&self, prior: &Prior, pull: f64, mut here: Reached) -> Result<Reached, RefineError> {
         let mut damping = 1e-3;
-        let mut held = Held::new(&total(&here.pass, |_| true), prior, strength, &here.at);
+        let mut held = Held::new(&total(&here.pass, |_| true), prior, pull, &here.at);
         for _ in 0..STEPS {
             let model = || self.task.model_at(self.variant, &self.values(&here.at));
             self.task.glimpse(&Glimpse { evaluations: 0, objective: held.cost, model: &model });
             let Some(step) = held.step(damping).filter(|step| held.foretold(step) > ENOUGH) else { break };
             let there = self.reached(&here.at + step)?;
-            let next = Held::new(&total(&there.pass, |_| true), prior, strength, &there.at);
+            let next = Held::new(&total(&there.pass, |_| true), prior, pull, &there.at);
             if next.cost.is_finite() && next.cost < held.cost {
                 let gained = 1.0 - next.cost / held.cost;
                 (here, held) = (there, next);
@@ -209,46 +200,39 @@ impl Trajectory<'_> {
     }
 
     /// The model of a fold: one step from where all trials are fitted, on the trials inside it and their weak form.
-    fn left_out(&self, fold: usize, prior: &Prior, strength: Strength, reached: &Reached) -> Model {
+    fn left_out(&self, fold: usize, prior: &Prior, pull: f64, reached: &Reached) -> Model {
         let normal = total(&reached.pass, |trial| self.inside(trial, fold));
-        let held = Held::new(&normal, prior, strength, &reached.at);
+        let held = Held::new(&normal, prior, pull, &reached.at);
         let at = held.step(1e-6).map_or_else(|| reached.at.clone(), |step| &reached.at + step);
         self.task.model_at(self.variant, &self.values(&at))
     }
 
-    /// What the errors at coefficients follow from.
-    fn bend(&self, prior: &Prior, strength: Strength, Reached { at, pass }: &Reached) -> Bend {
+    /// The fit at coefficients.
+    fn bend(&self, prior: &Prior, pull: f64, Reached { at, pass }: &Reached) -> Bend {
         let normal = total(pass, |_| true);
         Bend {
             variant: self.index,
             choices: self.choices.clone(),
             names: self.names.clone(),
-            held: Held::new(&normal, prior, strength, at),
+            at: at.clone(),
+            held: Held::new(&normal, prior, pull, at),
             gradients: pass.gradients.clone(),
+            cost: normal.cost,
             count: normal.count,
             prior: prior.clone(),
-            strength,
+            pull,
         }
-    }
-
-    /// The coefficients, without their errors.
-    fn fit(&self, bend: &Bend, Reached { at, pass }: &Reached) -> Fit {
-        let deviations = bend.prior.deviations(bend.strength);
-        let cost: f64 = pass.trials.iter().map(|normal| normal.cost).sum();
-        let one = |(k, name): (usize, &String)| {
-            let prior_deviation = deviations[k] * (cost / bend.count.max(1.0)).sqrt();
-            (name.clone(), Fitted { value: at[k], standard_error: 0.0, prior_deviation })
-        };
-        let coefficients = self.names.iter().enumerate().map(one).collect();
-        Fit { coefficients, condition_number: bend.held.condition_number(), collinear_groups: Vec::new(), errors: None }
     }
 }
 
-/// Whether the last two were no better than one before them: weaker pulls would be worse still.
+/// Whether weaker pulls would be worse still: after the weak form, whose error is the first, the last two were no better than one
+/// before them, or the last is clearly worse than another pull.
 fn is_past_best(errors: &[f64]) -> bool {
-    let Some(before) = errors.len().checked_sub(2) else { return false };
-    let best = errors[..before].iter().copied().fold(f64::INFINITY, f64::min);
-    best.is_finite() && errors[before..].iter().all(|error| *error >= best)
+    let best = |errors: &[f64]| errors.iter().copied().fold(f64::INFINITY, f64::min);
+    let [weak, .., before, last] = *errors else { return false };
+    let (best, best_before) = (best(errors), best(&errors[..errors.len() - 2]));
+    let none_better = best_before.is_finite() && before.min(last) >= best_before;
+    none_better || (best < weak && last > CLEARLY * best)
 }
 
 /// Sums over some trials.
@@ -263,4 +247,22 @@ fn threshold(mut sizes: Vec<f64>) -> f64 {
     sizes.sort_by(f64::total_cmp);
     let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
     if median > 0.0 { HUBER * 1.4826 * median } else { f64::INFINITY }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_past_best;
+
+    #[test]
+    fn weaker_pulls_are_tried_until_they_are_worse() {
+        // Of the weak form, then of pulls.
+        assert!(!is_past_best(&[1.0]));
+        assert!(!is_past_best(&[1.0, 1.2]), "one that is worse than the weak form may be followed by better ones");
+        assert!(is_past_best(&[1.0, 1.2, 1.1]));
+        assert!(!is_past_best(&[1.0, 0.9, 0.91]), "hardly worse");
+        assert!(is_past_best(&[1.0, 0.9, 0.91, 0.905]));
+        assert!(is_past_best(&[1.0, 0.9, 0.95]));
+        assert!(!is_past_best(&[f64::INFINITY, f64::INFINITY, f64::INFINITY]), "nothing has sailed yet");
+        assert!(is_past_best(&[f64::INFINITY, 0.9, f64::INFINITY]));
+    }
 }
