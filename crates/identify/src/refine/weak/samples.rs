@@ -40,16 +40,17 @@ pub(super) fn columns<'a>(blocks: &Blocks, trial: &'a Trial) -> Result<Vec<Colum
         record.load(chunk, &mut lanes);
         blocks.tape.run(&lanes, &mut work);
         for (block, columns) in blocks.blocks.iter().zip(&mut all) {
-            columns.append(blocks, block, &work, chunk.len());
+            columns.append(blocks, block, &work);
         }
     }
+    all.iter_mut().for_each(|columns| columns.truncate(trial.len()));
     Ok(all)
 }
 
 impl<'a> Columns<'a> {
     fn new(block: &Block, record: &Record<'a>, samples: usize) -> Self {
         let velocity = |axis| Cow::Borrowed(record.velocity(axis));
-        let room = || Vec::with_capacity(samples);
+        let room = || Vec::with_capacity(samples + LANES);
         let target = |own| Target {
             inertia: match block.axes.len() {
                 1 => {
@@ -64,7 +65,8 @@ impl<'a> Columns<'a> {
         Self { regressors: vec![room(); block.regressors()], targets }
     }
 
-    fn append(&mut self, blocks: &Blocks, block: &Block, work: &[Lanes<LANES>], count: usize) {
+    /// Every lane, also of a chunk that has fewer samples.
+    fn append(&mut self, blocks: &Blocks, block: &Block, work: &[Lanes<LANES>]) {
         let read = |output: usize| blocks.tape.read(output, work);
         let own_mass = if block.is_force() || block.axes.len() > 1 { None } else { block.mass[0][0].map(read) };
         let divided = |value: Lanes<LANES>| -> Lanes<LANES> {
@@ -73,23 +75,32 @@ impl<'a> Columns<'a> {
         let scale = read(block.scales[0]);
         for (column, &term) in self.regressors.iter_mut().zip(&block.terms) {
             let term = read(term);
-            column.extend_from_slice(&divided(std::array::from_fn(|lane| scale[lane] * term[lane]))[..count]);
+            column.extend(divided(std::array::from_fn(|lane| scale[lane] * term[lane])));
         }
         if let [target] = self.targets.as_mut_slice() {
             let masses = block.mass[0].iter().flatten();
             for ((column, _), &mass) in target.inertia.iter_mut().zip(masses) {
-                column.get_or_insert_default().extend_from_slice(&divided(read(mass))[..count]);
+                column.get_or_insert_default().extend(divided(read(mass)));
             }
-            target.rest.extend_from_slice(&divided(read(block.rests[0]))[..count]);
+            target.rest.extend(divided(read(block.rests[0])));
             return;
         }
-        self.append_rests(block, &read, count);
+        self.append_rests(block, &read);
+    }
+
+    /// Back to as many samples as there are.
+    fn truncate(&mut self, samples: usize) {
+        self.regressors.iter_mut().for_each(|column| column.truncate(samples));
+        for target in &mut self.targets {
+            target.rest.truncate(samples);
+            target.inertia.iter_mut().filter_map(|(mass, _)| mass.as_mut()).for_each(|mass| mass.truncate(samples));
+        }
     }
 
     /// The accelerations that the rests of coupled axes cause.
-    fn append_rests(&mut self, block: &Block, read: &dyn Fn(usize) -> Lanes<LANES>, count: usize) {
+    fn append_rests(&mut self, block: &Block, read: &dyn Fn(usize) -> Lanes<LANES>) {
         let (scales, rests): (Vec<_>, Vec<_>) = block.scales.iter().zip(&block.rests).map(|(&s, &r)| (read(s), read(r))).unzip();
-        for lane in 0..count {
+        for lane in 0..LANES {
             let unscaled = rests.iter().zip(&scales).map(|(rest, scale)| match rest[lane] {
                 0.0 => 0.0,
                 rest => rest * scales[0][lane] / scale[lane],
