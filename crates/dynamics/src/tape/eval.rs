@@ -128,14 +128,9 @@ fn call<const N: usize>(function: Function, a: &Lanes<N>) -> Lanes<N> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::super::TapeBuilder;
+    use super::super::testing::tape;
     use super::*;
     use sistership_model::formula::parse;
-
-    fn tape(text: &str) -> Tape {
-        let mut builder = TapeBuilder::new(&["u", "v"], &|_| None);
-        builder.output(&parse(text).unwrap()).unwrap();
-        builder.finish()
-    }
 
     #[test]
     fn shared_subexpressions_and_constants_cost_one_operation() {

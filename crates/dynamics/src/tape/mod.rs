@@ -12,6 +12,8 @@ mod lower;
 mod op;
 mod slots;
 mod tangent;
+#[cfg(test)]
+mod testing;
 
 pub use eval::Lanes;
 pub(crate) use fuse::Instruction;

@@ -151,15 +151,8 @@ fn slopes(function: Function, a: f64, b: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::TapeBuilder;
+    use super::super::testing::tape;
     use super::*;
-    use sistership_model::formula::parse;
-
-    fn tape(text: &str) -> Tape {
-        let mut builder = TapeBuilder::new(&["u", "v"], &|_| None);
-        builder.output(&parse(text).unwrap()).unwrap();
-        builder.finish()
-    }
 
     #[test]
     fn what_does_not_depend_on_a_direction_is_not_visited() {

@@ -15,15 +15,17 @@ use super::super::variant::{Variant, merged};
 use super::Cut;
 use super::errors::Bend;
 use super::normal::{Normal, Pass, Passing};
-use super::prior::Prior;
+use super::prior::{Prior, Strength};
 use super::segments::{Plan, compared, cut};
 use super::solve::Held;
 use crate::regression::Moments;
 use crate::transfer::ready;
 
 /// Pulls towards the weak form that are tried, strongest first, each from where the one before has ended, until [the best is
-/// past](is_past_best). A stronger one would give the weak form.
-const PULLS: [f64; 6] = [10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4];
+/// past](is_past_best).
+const PULLS: [f64; 7] = [100.0, 10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4];
+/// How strongly the source pulls by the weak form, at most.
+const SOURCE: f64 = 0.01;
 /// So many times the error of another is clearly worse.
 const CLEARLY: f64 = 1.02;
 /// Huber's threshold in robust standard deviations of a state's residuals.
@@ -123,12 +125,15 @@ impl Trajectory<'_> {
         for pull in PULLS {
             let label = format!("trajectory, {}, pull {pull:.0e}", self.variant.family.name());
             step(progress, 0.7, &label)?;
-            reached = self.descend(&prior, pull, reached)?;
+            reached = self.descend(&prior, self.strength(pull), reached)?;
             step(progress, 0.7, &format!("{label}: simulating manoeuvres left out"))?;
-            let models: Vec<Model> =
-                priors.iter().enumerate().map(|(fold, prior)| self.left_out(fold, prior, pull, &reached)).collect();
+            let models: Vec<Model> = priors
+                .iter()
+                .enumerate()
+                .map(|(fold, prior)| self.left_out(fold, prior, self.strength(pull), &reached))
+                .collect();
             let simulated = self.task.simulate_training(&models, &|trial| self.task.fold_of(trial))?;
-            let taken = Taken::Reached(Box::new(self.bend(&prior, pull, &reached)));
+            let taken = Taken::Reached(Box::new(self.bend(&prior, self.strength(pull), &reached)));
             let trying = self.task.trying(label, Some(pull), taken, self.names.len(), simulated);
             errors.push(trying.option.error.unwrap_or(f64::INFINITY));
             options.push(Trying { left_out: models, ..trying });
@@ -146,16 +151,22 @@ impl Trajectory<'_> {
         Ok(self.passing.sizes(&system, SOME).into_iter().map(threshold).collect())
     }
 
+    /// The source pulls no more strongly than it does within the weak form.
+    fn strength(&self, pull: f64) -> Strength {
+        let within = self.choices.iter().flatten().map(|choice| choice.lambda).fold(0.0, f64::max);
+        Strength { mu: pull, lambda: SOURCE.min(within) * pull }
+    }
+
     fn inside(&self, trial: usize, fold: usize) -> bool {
         self.task.training.len() == 1 || self.task.fold_of(trial) != fold
     }
 
-    /// What the weak form says on some trials.
+    /// The pulls of some trials.
     fn prior(&self, keep: &dyn Fn(usize) -> bool) -> Result<Prior, RefineError> {
         let (moments, values) = weak_form(self.variant, self.choices, keep)?;
-        let values = |name: &str| (values.get(name).copied().unwrap_or_default(), self.variant.model.coefficient(name));
-        let lambda = self.choices.iter().flatten().map(|choice| choice.lambda).fold(0.0, f64::max);
-        Ok(Prior::new(&self.names, &self.variant.blocks, &moments, &values, lambda))
+        let weak = |name: &str| values.get(name).copied().unwrap_or_default();
+        let source = |name: &str| self.variant.model.coefficient(name);
+        Ok(Prior::new(&self.names, &self.variant.blocks, &moments, &weak, &source))
     }
 
     fn values(&self, at: &DVector<f64>) -> BTreeMap<String, f64> {
@@ -173,15 +184,15 @@ impl Trajectory<'_> {
     }
 
     /// From coefficients to the least cost nearby.
-    fn descend(&self, prior: &Prior, pull: f64, mut here: Reached) -> Result<Reached, RefineError> {
+    fn descend(&self, prior: &Prior, strength: Strength, mut here: Reached) -> Result<Reached, RefineError> {
         let mut damping = 1e-3;
-        let mut held = Held::new(&total(&here.pass, |_| true), prior, pull, &here.at);
+        let mut held = Held::new(&total(&here.pass, |_| true), prior, strength, &here.at);
         for _ in 0..STEPS {
             let model = || self.task.model_at(self.variant, &self.values(&here.at));
             self.task.glimpse(&Glimpse { evaluations: 0, objective: held.cost, model: &model });
             let Some(step) = held.step(damping).filter(|step| held.foretold(step) > ENOUGH) else { break };
             let there = self.reached(&here.at + step)?;
-            let next = Held::new(&total(&there.pass, |_| true), prior, pull, &there.at);
+            let next = Held::new(&total(&there.pass, |_| true), prior, strength, &there.at);
             if next.cost.is_finite() && next.cost < held.cost {
                 let gained = 1.0 - next.cost / held.cost;
                 (here, held) = (there, next);
@@ -200,27 +211,27 @@ impl Trajectory<'_> {
     }
 
     /// The model of a fold: one step from where all trials are fitted, on the trials inside it and their weak form.
-    fn left_out(&self, fold: usize, prior: &Prior, pull: f64, reached: &Reached) -> Model {
+    fn left_out(&self, fold: usize, prior: &Prior, strength: Strength, reached: &Reached) -> Model {
         let normal = total(&reached.pass, |trial| self.inside(trial, fold));
-        let held = Held::new(&normal, prior, pull, &reached.at);
+        let held = Held::new(&normal, prior, strength, &reached.at);
         let at = held.step(1e-6).map_or_else(|| reached.at.clone(), |step| &reached.at + step);
         self.task.model_at(self.variant, &self.values(&at))
     }
 
     /// The fit at coefficients.
-    fn bend(&self, prior: &Prior, pull: f64, Reached { at, pass }: &Reached) -> Bend {
+    fn bend(&self, prior: &Prior, strength: Strength, Reached { at, pass }: &Reached) -> Bend {
         let normal = total(pass, |_| true);
         Bend {
             variant: self.index,
             choices: self.choices.clone(),
             names: self.names.clone(),
             at: at.clone(),
-            held: Held::new(&normal, prior, pull, at),
+            held: Held::new(&normal, prior, strength, at),
             gradients: pass.gradients.clone(),
             cost: normal.cost,
             count: normal.count,
             prior: prior.clone(),
-            pull,
+            strength,
         }
     }
 }

@@ -1,0 +1,13 @@
+//! Tapes for tests.
+#![allow(clippy::unwrap_used)]
+
+use sistership_model::formula::parse;
+
+use super::{Tape, TapeBuilder};
+
+/// Of one formula of `u` and `v`.
+pub(super) fn tape(text: &str) -> Tape {
+    let mut builder = TapeBuilder::new(&["u", "v"], &|_| None);
+    builder.output(&parse(text).unwrap()).unwrap();
+    builder.finish()
+}
