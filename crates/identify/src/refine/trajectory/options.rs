@@ -63,8 +63,8 @@ impl Task<'_> {
         progress: Progress<'_>,
     ) -> Result<(), RefineError> {
         let best = super::super::finish::best(options).map(|best| &options[best]);
-        let Some(Trying { taken: Taken::Ridge { variant: index, choices }, option, .. }) = best else { return Ok(()) };
-        let (index, choices, error) = (*index, choices.clone(), option.error);
+        let Some(Trying { taken: Taken::Ridge { variant: index, choices }, .. }) = best else { return Ok(()) };
+        let (index, choices) = (*index, choices.clone());
         let variant = &variants[index];
         step(progress, 0.6, "trajectories from the weak form")?;
         let cutting = self.cut();
@@ -82,7 +82,7 @@ impl Task<'_> {
         let trials = self.training.len();
         let passing = Passing { segments: &segments, plan: &plan, envelope: *ship.envelope(), thresholds, trials };
         let names = system.names().to_vec();
-        Trajectory { task: self, variant, index, choices: &choices, passing, names }.options(error, options, progress)
+        Trajectory { task: self, variant, index, choices: &choices, passing, names }.options(options, progress)
     }
 
     fn cut(&self) -> Cut {
@@ -114,14 +114,13 @@ fn weak_form(
 }
 
 impl Trajectory<'_> {
-    /// Options after the weak form's, which has an error.
-    fn options(mut self, weak: Option<f64>, options: &mut Vec<Trying>, progress: Progress<'_>) -> Result<(), RefineError> {
+    fn options(mut self, options: &mut Vec<Trying>, progress: Progress<'_>) -> Result<(), RefineError> {
         let prior = self.prior(&|_| true)?;
         self.passing.thresholds = self.thresholds(&prior.weak)?;
         let priors: Vec<Prior> =
             (0..self.task.fold_count()).map(|fold| self.prior(&|t| self.inside(t, fold))).collect::<Result<_, _>>()?;
         let mut reached = self.reached(prior.weak.clone())?;
-        let mut errors = vec![weak.unwrap_or(f64::INFINITY)];
+        let mut errors = Vec::new();
         for pull in PULLS {
             let label = format!("trajectory, {}, pull {pull:.0e}", self.variant.family.name());
             step(progress, 0.7, &label)?;
@@ -236,14 +235,14 @@ impl Trajectory<'_> {
     }
 }
 
-/// Whether weaker pulls would be worse still: after the weak form, whose error is the first, the last two were no better than one
-/// before them, or the last is clearly worse than another pull.
+/// Whether weaker pulls would be worse still: the last two were no better than one before them, or the last is clearly worse than
+/// the best.
 fn is_past_best(errors: &[f64]) -> bool {
     let best = |errors: &[f64]| errors.iter().copied().fold(f64::INFINITY, f64::min);
-    let [weak, .., before, last] = *errors else { return false };
-    let (best, best_before) = (best(errors), best(&errors[..errors.len() - 2]));
+    let [.., before, last] = *errors else { return false };
+    let best_before = best(&errors[..errors.len() - 2]);
     let none_better = best_before.is_finite() && before.min(last) >= best_before;
-    none_better || (best < weak && last > CLEARLY * best)
+    none_better || last > CLEARLY * best(errors)
 }
 
 /// Sums over some trials.
@@ -266,10 +265,8 @@ mod tests {
 
     #[test]
     fn weaker_pulls_are_tried_until_they_are_worse() {
-        // Of the weak form, then of pulls.
         assert!(!is_past_best(&[1.0]));
-        assert!(!is_past_best(&[1.0, 1.2]), "one that is worse than the weak form may be followed by better ones");
-        assert!(is_past_best(&[1.0, 1.2, 1.1]));
+        assert!(!is_past_best(&[1.0, 0.9]));
         assert!(!is_past_best(&[1.0, 0.9, 0.91]), "hardly worse");
         assert!(is_past_best(&[1.0, 0.9, 0.91, 0.905]));
         assert!(is_past_best(&[1.0, 0.9, 0.95]));
