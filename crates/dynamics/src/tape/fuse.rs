@@ -13,7 +13,6 @@ pub(crate) enum Instruction {
 }
 
 /// A sum so far.
-#[derive(Default)]
 struct Sum {
     first: Slot,
     terms: Vec<[Slot; 2]>,
