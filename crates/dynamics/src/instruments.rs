@@ -88,12 +88,20 @@ pub fn readings(law: &Law, frame: VelocityFrame) -> Vec<(Channel, sistership_mod
     readings
 }
 
-/// The true state of which instruments say `said`; effects on instruments are small, so that a few rounds suffice.
+/// Rounds in which a true state is sought.
+const ROUNDS: usize = 64;
+/// Where the search ends, in any state.
+const FOUND: f64 = 1e-9;
+
+/// The true state of which instruments say `said`, by moving against what is said too much.
 pub fn truth(said: &StateVector, mut read: impl FnMut(&StateVector) -> StateVector) -> StateVector {
     let mut state = *said;
-    for _ in 0..8 {
+    for _ in 0..ROUNDS {
         let error = read(&state) - said;
         state -= error;
+        if error.amax() < FOUND {
+            break;
+        }
     }
     state
 }

@@ -1,6 +1,7 @@
 //! Simulation of a recorded trial: the recorded rudder and revolutions drive the model, and the motion is compared.
 
 mod part;
+mod truth;
 
 use sistership_model::effect::{TIME, input_channel};
 use sistership_model::trial::{Channel, Trial};
@@ -14,6 +15,7 @@ use crate::plant::{Inputs, MAX_INPUTS};
 use crate::ship::Ship;
 use crate::state::{RECORDED, StateVector, Trajectory, at};
 use part::Part;
+pub use truth::as_true_instruments_say;
 
 /// How a trial is simulated.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -51,6 +51,7 @@ pub(super) fn choose(search: &Search<'_>, settings: &Settings) -> Result<Choice,
     while choice.taken.is_some() && choice.kept().len() < settings.most_effects {
         let kept = choice.kept();
         let base = search.base(&kept, &choice.levels)?;
+        choice.seen_from(search, &base)?;
         if !choice.add(search, settings, &base, COMPANIONS)? {
             break;
         }
@@ -101,6 +102,14 @@ impl Choice {
     fn take(&mut self, found: Vec<Judged>, best: Option<usize>) {
         self.taken = best.map(|best| self.tried.len() + best).or(self.taken);
         self.tried.extend(found);
+    }
+
+    /// What is taken judged anew by the filter of a base that stands where it does: what is tried beside it passes the same.
+    fn seen_from(&mut self, search: &Search<'_>, base: &Base<'_>) -> Result<(), RefineError> {
+        if let Some(taken) = self.taken {
+            self.tried[taken] = search.alone(base)?.1;
+        }
+        Ok(())
     }
 
     /// One effect more, if any is believed.

@@ -16,6 +16,7 @@ mod outcome;
 mod placebo;
 mod refit;
 mod remainder;
+mod righted;
 mod run;
 mod said;
 mod search;

@@ -1,11 +1,12 @@
 //! The coefficients once more, with the effects in place: what they had taken over from what was missing they give back.
 
 use sistership_dynamics::plant::dressed;
-use sistership_model::effect::{ActsOn, AsTerms, TIME};
+use sistership_model::effect::{AppliedEffect, AsTerms};
 use sistership_model::law::Law;
 use sistership_model::{Model, Trial, particulars};
 
 use super::Request;
+use super::righted::{Righted, joined, split};
 use super::search::{Judged, Search};
 use crate::refine::{Alternative, Blocks, alternatives, fit, trial_moments};
 use crate::regression::{Choice, Moments};
@@ -22,24 +23,20 @@ pub(super) struct Refit {
     pub without: Vec<Model>,
 }
 
-/// What is weighed: the coefficients as they are; fitted with the effects as they were found; and, where the effects are
-/// linear, fitted together with them.
+/// What is weighed: the coefficients as they are; fitted with the effects as they were found; and, where the effects on the ship
+/// are linear, fitted together with them. Regressions read the trials as instruments would have shown them that do not err.
 pub(super) fn refits(request: &Request<'_>, search: &Search<'_>, judged: &Judged, restart_s: f64) -> Vec<Refit> {
     let all = search.model_with(&judged.candidates, Some(&judged.covariance));
     let without = (0..request.trials.len()).map(|trial| without(request, search, judged, trial)).collect();
-    let mut refits = vec![Refit { how: None, all, without }];
-    if judged.candidates.is_empty() || misleads(&refits[0].all, request.law) {
-        return refits;
+    let found = Refit { how: None, all, without };
+    let righted = (!judged.candidates.is_empty()).then(|| Righted::new(request, &found.all)).flatten();
+    let mut fitted = Vec::new();
+    if let Some(righted) = righted {
+        let request = &Request { trials: &righted.trials(), ..*request };
+        fitted.extend(STRENGTHS.iter().filter_map(|&lambda| ridge(request, &found, lambda)));
+        fitted.extend(jointly(request, &found, restart_s));
     }
-    refits.extend(STRENGTHS.iter().filter_map(|&lambda| ridge(request, &refits[0], lambda)).collect::<Vec<_>>());
-    refits.extend(jointly(request, &refits[0].all, restart_s));
-    refits
-}
-
-/// Whether instruments err, or something changes with time: a regression knows neither.
-fn misleads(model: &Model, law: &Law) -> bool {
-    let errs = model.effects.iter().any(|effect| effect.acts_on == ActsOn::Measurement);
-    errs || law.with_effects(model).map_or(true, |law| law.inputs.contains_key(TIME))
+    std::iter::once(found).chain(fitted).collect()
 }
 
 /// The trials but one; of a single one, itself.
@@ -56,25 +53,33 @@ fn without(request: &Request<'_>, search: &Search<'_>, judged: &Judged, trial: u
 }
 
 fn ridge(request: &Request<'_>, found: &Refit, lambda: f64) -> Option<Refit> {
-    let one = |(trial, model): (usize, &Model)| with_coefficients(model, request.law, &others(request, trial), lambda);
+    let fitted = |model: &Model, trials: &[&Trial]| {
+        let (ship, instruments) = split(model);
+        Some(joined(with_coefficients(&ship, request.law, trials, lambda)?, instruments))
+    };
+    let one = |(trial, model): (usize, &Model)| fitted(model, &others(request, trial));
     Some(Refit {
         how: Some(format!("prior strength {lambda}")),
-        all: with_coefficients(&found.all, request.law, request.trials, lambda)?,
+        all: fitted(&found.all, request.trials)?,
         without: found.without.iter().enumerate().map(one).collect::<Option<_>>()?,
     })
 }
 
-/// Coefficients and effects fitted together, by the weak form and by trajectories. Of the effects nothing is taken from the
-/// diagnosis but which they are. A trial left out has a part in the point about which trajectories are linearised, and in the
-/// strength of the weak form that they start from, but in no residual.
-fn jointly(request: &Request<'_>, found: &Model, restart_s: f64) -> Vec<Refit> {
-    let Ok(Some(terms)) = AsTerms::new(found, request.law) else { return Vec::new() };
+/// Coefficients and effects on the ship fitted together, by the weak form and by trajectories. Of these effects nothing is taken
+/// from the diagnosis but which they are. A trial left out has a part in the point about which trajectories are linearised, in the
+/// strength of the weak form that they start from, and in how records are put right, but in no residual.
+fn jointly(request: &Request<'_>, found: &Refit, restart_s: f64) -> Vec<Refit> {
+    let (ship, instruments) = split(&found.all);
+    let Ok(Some(terms)) = AsTerms::new(&ship, request.law) else { return Vec::new() };
     let all = alternatives(&terms.model, &terms.law, request.trials, restart_s).unwrap_or_default();
-    let back = |model: Model| Model { uncertainty: None, posterior: None, ..terms.fitted(&model.coefficients) };
+    let back = |model: Model, instruments: Vec<AppliedEffect>| {
+        let fitted = Model { uncertainty: None, posterior: None, ..terms.fitted(&model.coefficients) };
+        joined(fitted, instruments)
+    };
     let one = |Alternative { label, all, without }: Alternative| Refit {
         how: Some(format!("together with the effects: {label}")),
-        all: back(all),
-        without: without.into_iter().map(back).collect(),
+        all: back(all, instruments.clone()),
+        without: without.into_iter().zip(&found.without).map(|(model, found)| back(model, split(found).1)).collect(),
     };
     all.into_iter().map(one).collect()
 }

@@ -1,0 +1,27 @@
+//! A recorded trial as instruments would have shown it that do not err.
+
+use sistership_model::trial::Trial;
+
+use super::{MissingChannel, Record};
+use crate::plant::Work;
+use crate::ship::Ship;
+use crate::state::RECORDED;
+
+/// A trial with the errors undone that a ship's instruments are known to have. Rates of change, which a late instrument needs,
+/// are those of the ship at the recorded state: they are not rougher than the record.
+///
+/// # Errors
+/// As [`replay`](super::replay).
+pub fn as_true_instruments_say(ship: &Ship, trial: &Trial) -> Result<Trial, MissingChannel> {
+    let record = Record::new(ship, trial)?;
+    let (mut truth, mut work) = (trial.clone(), Work::default());
+    for sample in 0..trial.len() {
+        let state = ship.truth(trial.velocity, &record.state_at(sample), &record.inputs_at(sample, 0.0), &mut work);
+        for (channel, place) in RECORDED {
+            if let Some(column) = truth.channels.get_mut(&channel) {
+                column[sample] = state[place];
+            }
+        }
+    }
+    Ok(truth)
+}
