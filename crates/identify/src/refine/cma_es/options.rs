@@ -202,7 +202,7 @@ fn plan(task: &Task<'_>, system: &CandidateSystem, cutting: Cut) -> Result<Plan,
 /// The change of each coefficient that changes an acceleration by the acceleration's own size; zero where the trials say nothing of it.
 fn natural_sizes(variant: &Variant, names: &[String]) -> Result<Vec<f64>, RefineError> {
     let all = merged(&variant.moments, |_| true).ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
-    let prior = Prior::new(names, &variant.blocks, &all, &|_| 0.0, &|_| 0.0);
+    let prior = Prior::new(names, &variant.blocks, &all, &|_| (0.0, 0.0), 0.0);
     let size = |square: &f64| if *square > 0.0 && square.is_finite() { 1.0 / square.sqrt() } else { 0.0 };
     Ok(prior.hessian.diagonal().iter().map(size).collect())
 }

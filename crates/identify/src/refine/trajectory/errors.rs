@@ -1,14 +1,14 @@
 //! A fit by the trajectory form, and how far its coefficients may be from the truth.
 //!
-//! With `H` the Hessian, `g` the gradient of the residuals and `W`, `L` the pulls, the error is
-//! `H^-1 (g + mu W (c_weak - c) + lambda L (c_source - c))`: the scatter of the segments' gradients, within which residuals
-//! may depend on each other (Huber 1967, Proc. Fifth Berkeley Symposium 1, 221-233), and the errors of what pulls.
+//! With `H` the Hessian, `g` the gradient of the residuals, and `W` and `L` as in [the form](super), the error is
+//! `H^-1 (g + mu W (c_weak - c) + mu/(1 + mu) L (c_source - c))`: the scatter of the segments' gradients, within which residuals may depend
+//! on each other (Huber 1967, Proc. Fifth Berkeley Symposium 1, 221-233), and the errors of what pulls.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::super::posterior::Errors;
 use super::super::published::{Choices, Fit, Fitted};
-use super::prior::{Prior, Strength};
+use super::prior::{Prior, by_source};
 use super::solve::Held;
 
 /// A fit, and what its errors follow from.
@@ -26,13 +26,13 @@ pub(in super::super) struct Bend {
     pub(super) cost: f64,
     pub(super) count: f64,
     pub(super) prior: Prior,
-    pub(super) strength: Strength,
+    pub(super) pull: f64,
 }
 
 impl Bend {
     /// The coefficients, without their errors.
     pub fn fit(&self) -> Fit {
-        let deviations = self.prior.deviations(self.strength);
+        let deviations = self.prior.deviations(self.pull);
         let one = |(k, name): (usize, &String)| {
             let prior_deviation = deviations[k] * (self.cost / self.count.max(1.0)).sqrt();
             (name.clone(), Fitted { value: self.at[k], standard_error: 0.0, prior_deviation })
@@ -43,18 +43,18 @@ impl Bend {
 
     /// Joint errors of the coefficients; `weak` are those of the weak form, in any order.
     pub fn errors(&self, weak: &Errors) -> Option<Errors> {
-        let Self { names, prior, strength, .. } = self;
+        let Self { names, prior, pull, .. } = self;
         let inverse = self.held.inverse()?;
         let weak = weak.ordered(names)?;
-        let to_weak = &prior.hessian * strength.mu;
-        let to_source = &prior.own * strength.lambda;
+        let to_weak = &prior.hessian * *pull;
+        let to_source = &prior.of_source * by_source(*pull);
         let both = &to_weak * &weak.cross * &to_source;
         let middle = scatter(&self.gradients, self.count, names.len())
             + &to_weak * &weak.covariance * &to_weak
             + &to_source * &weak.source * &to_source
             + &both
             + both.transpose();
-        let cross = &inverse * (&to_weak * &weak.cross + &to_source * &weak.source);
+        let cross = &inverse * (&to_weak * &weak.cross + to_source * &weak.source);
         Some(Errors { names: names.clone(), covariance: &inverse * middle * &inverse, source: weak.source, cross })
     }
 }

@@ -11,6 +11,8 @@ use super::segments::{Plan, Segment, difference};
 const LANES: usize = 8;
 /// Rows of residuals gathered before they are multiplied.
 const ROWS: usize = 96;
+/// Columns of the Hessian that are multiplied together.
+const COLUMNS: usize = 48;
 /// What a residual counts that a simulation never came to, in standard deviations.
 const LOST: f64 = 10.0;
 
@@ -66,6 +68,7 @@ impl Passing<'_> {
             pass.trials[segment.trial].add(&lane.normal);
             pass.gradients.push(lane.normal.gradient);
         }
+        pass.trials.iter_mut().for_each(|normal| normal.hessian.fill_upper_triangle_with_lower_triangle());
         pass
     }
 
@@ -163,9 +166,14 @@ impl Lane {
         }
     }
 
+    /// Below the diagonal, and as much above it as comes with columns done together.
     fn flush(&mut self) {
-        let rows = self.rows.columns(0, self.waiting);
-        self.normal.hessian.gemm(1.0, &rows, &rows.transpose(), 1.0);
+        let (rows, size) = (self.rows.columns(0, self.waiting), self.rows.nrows());
+        for from in (0..size).step_by(COLUMNS) {
+            let width = COLUMNS.min(size - from);
+            let mut part = self.normal.hessian.view_mut((from, from), (size - from, width));
+            part.gemm(1.0, &rows.rows(from, size - from), &rows.rows(from, width).transpose(), 1.0);
+        }
         self.waiting = 0;
     }
 }

@@ -15,16 +15,16 @@ use super::super::variant::{Variant, merged};
 use super::Cut;
 use super::errors::Bend;
 use super::normal::{Normal, Pass, Passing};
-use super::prior::{Prior, Strength};
+use super::prior::Prior;
 use super::segments::{Plan, compared, cut};
 use super::solve::Held;
 use crate::regression::Moments;
 use crate::transfer::ready;
 
 /// Pulls towards the weak form that are tried, strongest first, each from where the one before has ended, until [the best is
-/// past](is_past_best).
-const PULLS: [f64; 7] = [100.0, 10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4];
-/// How strongly the source pulls by the weak form, at most.
+/// past](is_past_best). A stronger one would give the weak form.
+const PULLS: [f64; 6] = [10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4];
+/// How strongly the source holds trajectories, at most, however much of it the weak form needs.
 const SOURCE: f64 = 0.01;
 /// So many times the error of another is clearly worse.
 const CLEARLY: f64 = 1.02;
@@ -55,16 +55,18 @@ struct Reached {
 }
 
 impl Task<'_> {
-    /// Adds options of the trajectory form, started from the best option of the weak form.
+    /// Adds options of the trajectory form, started from the best option of the weak form; where every option stops while manoeuvres
+    /// are simulated, from the first, which the source holds most.
     pub(in super::super) fn by_trajectory(
         &self,
         variants: &[Variant],
         options: &mut Vec<Trying>,
         progress: Progress<'_>,
     ) -> Result<(), RefineError> {
-        let best = super::super::finish::best(options).map(|best| &options[best]);
-        let Some(Trying { taken: Taken::Ridge { variant: index, choices }, .. }) = best else { return Ok(()) };
-        let (index, choices) = (*index, choices.clone());
+        let first = || options.iter().position(|trying| matches!(trying.taken, Taken::Ridge { .. }));
+        let start = super::super::finish::best(options).or_else(first).map(|start| &options[start]);
+        let Some(Trying { taken: Taken::Ridge { variant: index, choices }, option, .. }) = start else { return Ok(()) };
+        let (index, choices, error) = (*index, choices.clone(), option.error);
         let variant = &variants[index];
         step(progress, 0.6, "trajectories from the weak form")?;
         let cutting = self.cut();
@@ -82,7 +84,7 @@ impl Task<'_> {
         let trials = self.training.len();
         let passing = Passing { segments: &segments, plan: &plan, envelope: *ship.envelope(), thresholds, trials };
         let names = system.names().to_vec();
-        Trajectory { task: self, variant, index, choices: &choices, passing, names }.options(options, progress)
+        Trajectory { task: self, variant, index, choices: &choices, passing, names }.options(error, options, progress)
     }
 
     fn cut(&self) -> Cut {
@@ -114,25 +116,23 @@ fn weak_form(
 }
 
 impl Trajectory<'_> {
-    fn options(mut self, options: &mut Vec<Trying>, progress: Progress<'_>) -> Result<(), RefineError> {
+    /// Options after the weak form's, which has an error.
+    fn options(mut self, weak: Option<f64>, options: &mut Vec<Trying>, progress: Progress<'_>) -> Result<(), RefineError> {
         let prior = self.prior(&|_| true)?;
         self.passing.thresholds = self.thresholds(&prior.weak)?;
         let priors: Vec<Prior> =
             (0..self.task.fold_count()).map(|fold| self.prior(&|t| self.inside(t, fold))).collect::<Result<_, _>>()?;
         let mut reached = self.reached(prior.weak.clone())?;
-        let mut errors = Vec::new();
+        let mut errors = vec![weak.unwrap_or(f64::INFINITY)];
         for pull in PULLS {
             let label = format!("trajectory, {}, pull {pull:.0e}", self.variant.family.name());
             step(progress, 0.7, &label)?;
-            reached = self.descend(&prior, self.strength(pull), reached)?;
+            reached = self.descend(&prior, pull, reached)?;
             step(progress, 0.7, &format!("{label}: simulating manoeuvres left out"))?;
-            let models: Vec<Model> = priors
-                .iter()
-                .enumerate()
-                .map(|(fold, prior)| self.left_out(fold, prior, self.strength(pull), &reached))
-                .collect();
+            let models: Vec<Model> =
+                priors.iter().enumerate().map(|(fold, prior)| self.left_out(fold, prior, pull, &reached)).collect();
             let simulated = self.task.simulate_training(&models, &|trial| self.task.fold_of(trial))?;
-            let taken = Taken::Reached(Box::new(self.bend(&prior, self.strength(pull), &reached)));
+            let taken = Taken::Reached(Box::new(self.bend(&prior, pull, &reached)));
             let trying = self.task.trying(label, Some(pull), taken, self.names.len(), simulated);
             errors.push(trying.option.error.unwrap_or(f64::INFINITY));
             options.push(Trying { left_out: models, ..trying });
@@ -150,22 +150,16 @@ impl Trajectory<'_> {
         Ok(self.passing.sizes(&system, SOME).into_iter().map(threshold).collect())
     }
 
-    /// The source pulls no more strongly than it does within the weak form.
-    fn strength(&self, pull: f64) -> Strength {
-        let within = self.choices.iter().flatten().map(|choice| choice.lambda).fold(0.0, f64::max);
-        Strength { mu: pull, lambda: SOURCE.min(within) * pull }
-    }
-
     fn inside(&self, trial: usize, fold: usize) -> bool {
         self.task.training.len() == 1 || self.task.fold_of(trial) != fold
     }
 
-    /// The pulls of some trials.
+    /// What the weak form says on some trials.
     fn prior(&self, keep: &dyn Fn(usize) -> bool) -> Result<Prior, RefineError> {
         let (moments, values) = weak_form(self.variant, self.choices, keep)?;
-        let weak = |name: &str| values.get(name).copied().unwrap_or_default();
-        let source = |name: &str| self.variant.model.coefficient(name);
-        Ok(Prior::new(&self.names, &self.variant.blocks, &moments, &weak, &source))
+        let values = |name: &str| (values.get(name).copied().unwrap_or_default(), self.variant.model.coefficient(name));
+        let lambda = self.choices.iter().flatten().map(|choice| choice.lambda).fold(0.0, f64::max).min(SOURCE);
+        Ok(Prior::new(&self.names, &self.variant.blocks, &moments, &values, lambda))
     }
 
     fn values(&self, at: &DVector<f64>) -> BTreeMap<String, f64> {
@@ -183,15 +177,15 @@ impl Trajectory<'_> {
     }
 
     /// From coefficients to the least cost nearby.
-    fn descend(&self, prior: &Prior, strength: Strength, mut here: Reached) -> Result<Reached, RefineError> {
+    fn descend(&self, prior: &Prior, pull: f64, mut here: Reached) -> Result<Reached, RefineError> {
         let mut damping = 1e-3;
-        let mut held = Held::new(&total(&here.pass, |_| true), prior, strength, &here.at);
+        let mut held = Held::new(&total(&here.pass, |_| true), prior, pull, &here.at);
         for _ in 0..STEPS {
             let model = || self.task.model_at(self.variant, &self.values(&here.at));
             self.task.glimpse(&Glimpse { evaluations: 0, objective: held.cost, model: &model });
             let Some(step) = held.step(damping).filter(|step| held.foretold(step) > ENOUGH) else { break };
             let there = self.reached(&here.at + step)?;
-            let next = Held::new(&total(&there.pass, |_| true), prior, strength, &there.at);
+            let next = Held::new(&total(&there.pass, |_| true), prior, pull, &there.at);
             if next.cost.is_finite() && next.cost < held.cost {
                 let gained = 1.0 - next.cost / held.cost;
                 (here, held) = (there, next);
@@ -210,39 +204,39 @@ impl Trajectory<'_> {
     }
 
     /// The model of a fold: one step from where all trials are fitted, on the trials inside it and their weak form.
-    fn left_out(&self, fold: usize, prior: &Prior, strength: Strength, reached: &Reached) -> Model {
+    fn left_out(&self, fold: usize, prior: &Prior, pull: f64, reached: &Reached) -> Model {
         let normal = total(&reached.pass, |trial| self.inside(trial, fold));
-        let held = Held::new(&normal, prior, strength, &reached.at);
+        let held = Held::new(&normal, prior, pull, &reached.at);
         let at = held.step(1e-6).map_or_else(|| reached.at.clone(), |step| &reached.at + step);
         self.task.model_at(self.variant, &self.values(&at))
     }
 
     /// The fit at coefficients.
-    fn bend(&self, prior: &Prior, strength: Strength, Reached { at, pass }: &Reached) -> Bend {
+    fn bend(&self, prior: &Prior, pull: f64, Reached { at, pass }: &Reached) -> Bend {
         let normal = total(pass, |_| true);
         Bend {
             variant: self.index,
             choices: self.choices.clone(),
             names: self.names.clone(),
             at: at.clone(),
-            held: Held::new(&normal, prior, strength, at),
+            held: Held::new(&normal, prior, pull, at),
             gradients: pass.gradients.clone(),
             cost: normal.cost,
             count: normal.count,
             prior: prior.clone(),
-            strength,
+            pull,
         }
     }
 }
 
-/// Whether weaker pulls would be worse still: the last two were no better than one before them, or the last is clearly worse than
-/// the best.
+/// Whether weaker pulls would be worse still: after the weak form, whose error is the first, the last two were no better than one
+/// before them, or the last is clearly worse than another pull.
 fn is_past_best(errors: &[f64]) -> bool {
     let best = |errors: &[f64]| errors.iter().copied().fold(f64::INFINITY, f64::min);
-    let [.., before, last] = *errors else { return false };
-    let best_before = best(&errors[..errors.len() - 2]);
+    let [weak, .., before, last] = *errors else { return false };
+    let (best, best_before) = (best(errors), best(&errors[..errors.len() - 2]));
     let none_better = best_before.is_finite() && before.min(last) >= best_before;
-    none_better || last > CLEARLY * best(errors)
+    none_better || (best < weak && last > CLEARLY * best)
 }
 
 /// Sums over some trials.
@@ -265,8 +259,10 @@ mod tests {
 
     #[test]
     fn weaker_pulls_are_tried_until_they_are_worse() {
+        // Of the weak form, then of pulls.
         assert!(!is_past_best(&[1.0]));
-        assert!(!is_past_best(&[1.0, 0.9]));
+        assert!(!is_past_best(&[1.0, 1.2]), "one that is worse than the weak form may be followed by better ones");
+        assert!(is_past_best(&[1.0, 1.2, 1.1]));
         assert!(!is_past_best(&[1.0, 0.9, 0.91]), "hardly worse");
         assert!(is_past_best(&[1.0, 0.9, 0.91, 0.905]));
         assert!(is_past_best(&[1.0, 0.9, 0.95]));

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::normal::Normal;
-use super::prior::{Prior, Strength};
+use super::prior::Prior;
 
 /// Normal equations with what holds the coefficients, by the number of residuals.
 pub(super) struct Held {
@@ -14,11 +14,11 @@ pub(super) struct Held {
 
 impl Held {
     /// At coefficients.
-    pub fn new(normal: &Normal, prior: &Prior, strength: Strength, at: &DVector<f64>) -> Self {
+    pub fn new(normal: &Normal, prior: &Prior, pull: f64, at: &DVector<f64>) -> Self {
         let count = normal.count.max(1.0);
         let (mut hessian, mut gradient) = (&normal.hessian / count, &normal.gradient / count);
-        prior.add(at, strength, &mut hessian, &mut gradient);
-        Self { hessian, gradient, cost: normal.cost / count + prior.cost(at, strength) }
+        prior.add(at, pull, &mut hessian, &mut gradient);
+        Self { hessian, gradient, cost: normal.cost / count + prior.cost(at, pull) }
     }
 
     /// The step with every curvature enlarged by a share; none where the equations cannot be solved.

@@ -76,7 +76,7 @@ impl Bump {
 
     /// The weighted mean of a column of the trial.
     pub fn mean(&self, column: &[f64]) -> f64 {
-        self.weights.iter().zip(&column[self.samples.clone()]).map(|(w, x)| w * x).sum()
+        product(&self.weights, &column[self.samples.clone()])
     }
 
     /// The weighted mean of mass times a velocity's rate of change, by parts: `-int v d(b m)`, summed so that a constant
@@ -93,4 +93,16 @@ impl Bump {
         }
         sum + (before * v[v.len() - 1] - weighted(0) * v[0])
     }
+}
+
+/// The sum of products, eight sums side by side: one alone would wait for each of its additions.
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    let ((a, a_left), (b, b_left)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
+    let mut sums = [0.0; 8];
+    for (a, b) in a.iter().zip(b) {
+        for k in 0..8 {
+            sums[k] += a[k] * b[k];
+        }
+    }
+    sums.iter().sum::<f64>() + a_left.iter().zip(b_left).map(|(a, b)| a * b).sum::<f64>()
 }
