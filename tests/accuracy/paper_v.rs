@@ -17,7 +17,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use sistership_dynamics::recorded::{ReplaySettings, replay};
 use sistership_dynamics::{Method, Ship, Trajectory};
-use sistership_identify::transfer::{Approach, transfer};
+use sistership_estimate::transfer::{Approach, transfer};
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, Zoo};

@@ -1,7 +1,7 @@
 //! Mei et al. 2019, Tables 5 and 6, from Table 4; and SR108's sources by the three steps of Kanazawa 2023, 5.1.2.
 
-use sistership_identify::similarity::{CharacteristicVector, Definition};
-use sistership_identify::source::similar;
+use sistership_estimate::similarity::{CharacteristicVector, Definition};
+use sistership_estimate::source::similar;
 use sistership_model::Zoo;
 
 /// Table 5 as printed: the normalised vectors.

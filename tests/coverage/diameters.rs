@@ -2,7 +2,7 @@
 
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{Manoeuvre, ManoeuvreSettings, Turn, sail_together};
-use sistership_identify::bands::{Sampling, draws};
+use sistership_estimate::bands::{Sampling, draws};
 use sistership_model::{Law, Model};
 
 const TURN_DEG: f64 = 35.0;

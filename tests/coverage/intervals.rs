@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use sistership_dynamics::Ship;
-use sistership_identify::bands::Sampling;
-use sistership_identify::refine::{Family, Method, Request, Settings, refine};
+use sistership_estimate::bands::Sampling;
+use sistership_estimate::refine::{Family, Method, Request, Settings, refine};
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model, Vessel, Zoo};
 use sistership_tests::synthetic::{Orders, Trouble, relative, replica, trial};

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 use sistership_dynamics::Ship;
-use sistership_identify::bands::Sampling;
-use sistership_identify::refine::{Method, Request, Settings, refine};
+use sistership_estimate::bands::Sampling;
+use sistership_estimate::refine::{Method, Request, Settings, refine};
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model, Zoo};
 use sistership_tests::synthetic::{Orders, Trouble, relative, replica, trial};

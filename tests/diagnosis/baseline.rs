@@ -2,8 +2,8 @@
 
 use std::sync::{Arc, LazyLock};
 
-use sistership_identify::diagnose::calibrate;
-use sistership_identify::refine::{Request, Settings, refine};
+use sistership_diagnose::calibrate;
+use sistership_estimate::refine::{Request, Settings, refine};
 use sistership_model::{Effect, Law, Model, Trial};
 
 use super::truth::{Hidden, Manoeuvre, Sailing, ZOO, trials};

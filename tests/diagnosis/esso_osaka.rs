@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use sistership_identify::diagnose::{Diagnosis, Request, Settings, diagnose};
-use sistership_identify::refine::{self, Family, Method};
-use sistership_identify::transfer::{approach_of, blank};
+use sistership_diagnose::{Diagnosis, Request, Settings, diagnose};
+use sistership_estimate::refine::{self, Family, Method};
+use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::Trial;
 use sistership_model::law::Law;
 use sistership_model::trial::Channel;

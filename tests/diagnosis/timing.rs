@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use sistership_identify::diagnose::{Request, Settings, diagnose};
+use sistership_diagnose::{Request, Settings, diagnose};
 use sistership_model::Trial;
 
 use super::baseline::{BASELINE, library};

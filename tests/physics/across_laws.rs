@@ -2,8 +2,8 @@
 
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
 use sistership_dynamics::state::{RECORDED, at};
-use sistership_identify::refine::{Family, Method, Refinement, Request, Settings, refine};
-use sistership_identify::transfer::{approach_of, blank};
+use sistership_estimate::refine::{Family, Method, Refinement, Request, Settings, refine};
+use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
 

@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
 use sistership_dynamics::state::{RECORDED, at};
 use sistership_dynamics::{Method, Trajectory};
-use sistership_identify::refine::{Range, Request, Settings, refine};
+use sistership_estimate::refine::{Range, Request, Settings, refine};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Zoo};
 

@@ -1,7 +1,7 @@
 //! The prime system: a geometrically similar ship sails the same path in lengths.
 
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn};
-use sistership_identify::transfer::transfer;
+use sistership_estimate::transfer::transfer;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Vessel, Zoo};
 

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
 use sistership_dynamics::state::{RECORDED, Trajectory, at};
-use sistership_identify::transfer::transfer;
+use sistership_estimate::transfer::transfer;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Vessel, Zoo};
 use sistership_store::{NewShip, NewTrial, Objects, Store};

@@ -1,20 +1,19 @@
 //! Simulation of a recorded trial: the recorded rudder and revolutions drive the model, and the motion is compared.
 
 mod part;
+mod record;
+mod replayed;
 mod truth;
 
-use sistership_model::effect::{TIME, input_channel};
-use sistership_model::trial::{Channel, Trial};
-use sistership_model::validity::Excursion;
+use sistership_model::trial::Trial;
 
-use crate::envelope::Stopped;
 use crate::integrate::Method;
-use crate::interpolate::{MonotoneCubic, lagged};
 use crate::lockstep;
-use crate::plant::{Inputs, MAX_INPUTS};
 use crate::ship::Ship;
-use crate::state::{RECORDED, StateVector, Trajectory, at};
 use part::Part;
+pub use record::MissingChannel;
+use record::Record;
+pub use replayed::Replay;
 pub use truth::as_true_instruments_say;
 
 /// How a trial is simulated.
@@ -32,31 +31,6 @@ impl Default for ReplaySettings {
     fn default() -> Self {
         Self { restart_s: None, method: Method::Rk4, step_s: 0.5 }
     }
-}
-
-/// Why a trial cannot be simulated at all.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("trial `{trial}` has no channel `{channel}`, which the simulation needs")]
-pub struct MissingChannel {
-    /// The trial.
-    pub trial: String,
-    /// The channel it lacks.
-    pub channel: Channel,
-}
-
-/// A simulated trial.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Replay {
-    /// Simulated states at the recorded times, as the instruments would say them; after a divergence, until then only.
-    pub track: Trajectory,
-    /// Sample of the trial to which each state belongs.
-    pub samples: Vec<usize>,
-    /// Why the simulation stopped early, if it did.
-    pub stopped: Option<Stopped>,
-    /// Whether roll was simulated.
-    pub has_roll: bool,
-    /// How the motion left what the model's trials covered, if it did.
-    pub outside: Option<Excursion>,
 }
 
 /// A trial to be simulated by one of some ships that differ in their coefficients alone.
@@ -96,12 +70,6 @@ pub fn replay_all(ship: &Ship, trials: &[Recorded<'_>], settings: &ReplaySetting
     Ok(replays)
 }
 
-impl Replay {
-    fn nothing(has_roll: bool) -> Self {
-        Self { track: Trajectory::default(), samples: Vec::new(), stopped: None, has_roll, outside: None }
-    }
-}
-
 /// The gap-free parts of a trial, cut where the simulation starts anew.
 fn parts(trial: &Trial, restart_s: Option<f64>) -> Vec<std::ops::Range<usize>> {
     let cut = |segment: std::ops::Range<usize>| {
@@ -118,71 +86,4 @@ fn parts(trial: &Trial, restart_s: Option<f64>) -> Vec<std::ops::Range<usize>> {
         starts.windows(2).map(|pair| pair[0]..pair[1]).collect::<Vec<_>>()
     };
     trial.segments().into_iter().flat_map(cut).collect()
-}
-
-/// The channels of a trial that a simulation reads.
-struct Record<'a> {
-    trial: &'a Trial,
-    delta: &'a [f64],
-    n: Option<&'a [f64]>,
-    /// Each input of the law: recorded, or constant.
-    inputs: Vec<Result<MonotoneCubic<'a>, f64>>,
-    start: Vec<(usize, &'a [f64])>,
-}
-
-impl<'a> Record<'a> {
-    fn new(ship: &Ship, trial: &'a Trial) -> Result<Self, MissingChannel> {
-        let need = |channel| trial.channel(channel).ok_or_else(|| MissingChannel { trial: trial.name.clone(), channel });
-        // Velocities must be known at the start of a part; heading and position start at zero where they are not.
-        for (channel, _) in &RECORDED[..3] {
-            need(*channel)?;
-        }
-        let start = RECORDED.iter().filter_map(|&(channel, index)| Some((index, trial.channel(channel)?))).collect();
-        let lag_s = |place: usize| ship.lags_s().iter().find(|(of, _)| *of == place).map(|&(_, lag_s)| lag_s);
-        let inputs = ship.law_inputs().enumerate();
-        let inputs =
-            inputs.map(|(place, (name, default))| input(trial, name, default, lag_s(place))).collect::<Result<_, _>>()?;
-        Ok(Self { trial, delta: need(Channel::Delta)?, n: trial.channel(Channel::N), inputs, start })
-    }
-
-    fn state_at(&self, sample: usize) -> StateVector {
-        let mut state = StateVector::zeros();
-        self.start.iter().for_each(|(index, column)| state[*index] = column[sample]);
-        state[at::DELTA] = self.delta[sample];
-        state
-    }
-
-    /// The inputs at a fraction of the way from a sample to the next.
-    fn inputs_at(&self, k: usize, w: f64) -> Inputs {
-        let mut inputs = [0.0; MAX_INPUTS];
-        for (value, input) in inputs.iter_mut().zip(&self.inputs) {
-            *value = input.as_ref().map_or_else(|constant| *constant, |column| column.at(k, w));
-        }
-        inputs
-    }
-}
-
-/// An input of the law on a trial: time, its channel, the trial's constant depth, or the law's default.
-fn input<'a>(
-    trial: &'a Trial,
-    name: &str,
-    default: Option<f64>,
-    lag_s: Option<f64>,
-) -> Result<Result<MonotoneCubic<'a>, f64>, MissingChannel> {
-    if name == TIME {
-        let start = trial.t_s.first().copied().unwrap_or_default();
-        return Ok(Ok(MonotoneCubic::new(&trial.t_s, trial.t_s.iter().map(|t| t - start).collect::<Vec<f64>>())));
-    }
-    let channel = input_channel(name);
-    if let Some(column) = channel.and_then(|channel| trial.channel(channel)) {
-        return Ok(Ok(match lag_s {
-            Some(lag_s) if lag_s > 0.0 => MonotoneCubic::new(&trial.t_s, lagged(&trial.t_s, column, lag_s)),
-            _ => MonotoneCubic::new(&trial.t_s, column),
-        }));
-    }
-    let constant = if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
-    match (constant, channel) {
-        (Some(value), _) => Ok(Err(value)),
-        (None, channel) => Err(MissingChannel { trial: trial.name.clone(), channel: channel.unwrap_or(Channel::Delta) }),
-    }
 }

@@ -32,6 +32,23 @@ impl<'a, B: FnMut(f64, &StateVector) -> Option<Order>> Sailing<'a, B> {
     }
 }
 
+impl Ship {
+    /// Sails for a time; `bridge` gives the order at each step, which is held over it, or `None` to end the run.
+    ///
+    /// # Errors
+    /// Says when and why the motion left the physical range; what was sailed until then is in `track`.
+    pub fn sail(
+        &self,
+        run: Run,
+        track: &mut Trajectory,
+        bridge: impl FnMut(f64, &StateVector) -> Option<Order>,
+    ) -> Result<(), Stopped> {
+        let sailed = sail_all(self, run.method, vec![Sailing::new(run, &[], bridge)]).remove(0);
+        track.append(sailed.track);
+        sailed.stopped.map_or(Ok(()), Err)
+    }
+}
+
 /// Sails runs in lockstep.
 pub(crate) fn sail_all<'a, B>(ship: &Ship, method: Method, mut sailings: Vec<Sailing<'a, B>>) -> Vec<Sailed>
 where

@@ -5,12 +5,11 @@ use sistership_model::manifest::VelocityFrame;
 use sistership_model::validity::{Excursion, Region};
 use sistership_model::{Model, particulars};
 
-use crate::envelope::{Envelope, Stopped};
+use crate::envelope::Envelope;
 use crate::gear::Gear;
 use crate::instruments::{Instruments, truth};
 use crate::integrate::Method;
 use crate::plant::{Inputs, MAX_INPUTS, Plant, PlantError, Work, dressed};
-use crate::sailing::{Sailing, sail_all};
 use crate::state::{StateVector, States, Trajectory, at};
 use crate::tape::Lanes;
 use crate::validity::leaves;
@@ -229,21 +228,6 @@ impl Ship {
     /// How fast the steering gear moves the rudder towards what is ordered, rad/s.
     pub(crate) fn rudder_rate(&self, order_rad: f64, angle_rad: f64, step_s: f64) -> f64 {
         self.gear.rate(order_rad, angle_rad, step_s)
-    }
-
-    /// Sails for a time; `bridge` gives the order at each step, which is held over it, or `None` to end the run.
-    ///
-    /// # Errors
-    /// Says when and why the motion left the physical range; what was sailed until then is in `track`.
-    pub fn sail(
-        &self,
-        run: Run,
-        track: &mut Trajectory,
-        bridge: impl FnMut(f64, &StateVector) -> Option<Order>,
-    ) -> Result<(), Stopped> {
-        let sailed = sail_all(self, run.method, vec![Sailing::new(run, &[], bridge)]).remove(0);
-        track.append(sailed.track);
-        sailed.stopped.map_or(Ok(()), Err)
     }
 }
 

@@ -1,8 +1,8 @@
 //! The estimators on one law without a source.
 
 use sistership_dynamics::error::SquaredError;
-use sistership_identify::refine::{CmaEs, Method, Request, Settings, refine};
-use sistership_identify::transfer::{approach_of, blank};
+use sistership_estimate::refine::{CmaEs, Method, Request, Settings, refine};
+use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::{Trial, Zoo};
 use sistership_tests::{esso_osaka, shared};
 

@@ -1,7 +1,7 @@
 //! Few trials, and a source of another law.
 
-use sistership_identify::refine::{Method, Request, Settings, refine};
-use sistership_identify::transfer::{approach_of, blank};
+use sistership_estimate::refine::{Method, Request, Settings, refine};
+use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::{Law, Model, Zoo};
 use sistership_tests::{esso_osaka, shared};
 

@@ -1,7 +1,7 @@
 //! The Esso Osaka model refined from the zoo with `auto`, judged on manoeuvres left out.
 
-use sistership_identify::refine::{Refinement, Request, Settings, refine};
-use sistership_identify::source::{best_source, similar};
+use sistership_estimate::refine::{Refinement, Request, Settings, refine};
+use sistership_estimate::source::{best_source, similar};
 use sistership_model::{Trial, Zoo};
 use sistership_tests::{esso_osaka, shared};
 

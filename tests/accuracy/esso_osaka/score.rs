@@ -3,7 +3,7 @@
 use sistership_dynamics::Ship;
 use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
 use sistership_dynamics::recorded::{ReplaySettings, replay};
-use sistership_identify::transfer::{approach_of, transfer};
+use sistership_estimate::transfer::{approach_of, transfer};
 use sistership_model::{Law, Model, Trial, Zoo};
 
 /// Restart and scatter of the score of Wakita et al. 2022, Eq. 26.

@@ -1,7 +1,7 @@
 //! How long a refinement takes.
 
-use sistership_identify::refine::{Method, Request, refine};
-use sistership_identify::transfer::{approach_of, blank};
+use sistership_estimate::refine::{Method, Request, refine};
+use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::{Trial, Zoo};
 use sistership_tests::{esso_osaka, shared};
 

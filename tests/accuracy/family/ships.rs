@@ -9,7 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
 use sistership_dynamics::state::{RECORDED, Trajectory, at};
-use sistership_identify::statistics::{Frame, TrialStatistics};
+use sistership_fleet::statistics::{Frame, TrialStatistics};
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};

@@ -4,7 +4,7 @@
 
 use rand_chacha::ChaCha8Rng;
 use sistership_dynamics::state::at;
-use sistership_identify::refine::{Family, Method, Request, Settings, refine};
+use sistership_estimate::refine::{Family, Method, Request, Settings, refine};
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};

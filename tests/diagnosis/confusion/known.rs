@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use sistership_diagnose::Diagnosis;
 use sistership_dynamics::Ship;
 use sistership_dynamics::error::SquaredError;
 use sistership_dynamics::recorded::{ReplaySettings, replay};
-use sistership_identify::diagnose::Diagnosis;
 use sistership_model::Trial;
 use sistership_model::effect::AppliedEffect;
 

@@ -1,6 +1,6 @@
 //! What a diagnosis made of a case.
 
-use sistership_identify::diagnose::{Diagnosis, Found, Unexplained, Value, Verdict};
+use sistership_diagnose::{Diagnosis, Found, Unexplained, Value, Verdict};
 use sistership_model::Trial;
 use sistership_model::effect::AppliedEffect;
 

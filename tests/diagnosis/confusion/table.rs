@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sistership_identify::diagnose::Verdict;
+use sistership_diagnose::Verdict;
 
 use super::super::cases::Kind;
 use super::outcome::Outcome;

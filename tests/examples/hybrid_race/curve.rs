@@ -10,9 +10,9 @@ use rayon::prelude::*;
 use sistership_dynamics::Ship;
 use sistership_dynamics::error::SquaredError;
 use sistership_dynamics::recorded::{ReplaySettings, replay};
-use sistership_identify::cma_es::Spent;
 use sistership_model::trial::Channel;
 use sistership_model::{Law, Model, Trial};
+use sistership_regression::cma_es::Spent;
 
 /// A method with its points.
 type Kept = (String, Vec<Point>);

@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex};
 
 use sistership_dynamics::Method as Integration;
 use sistership_dynamics::error::standard_deviations;
-use sistership_identify::refine::{CmaEs, Family, Glimpse, Method, Request, Settings, refine_watched};
+use sistership_estimate::refine::{CmaEs, Family, Iterate, Method, Request, Settings, refine_watched};
 use sistership_model::{Law, Model, Trial, Vessel, Zoo};
 
 use curve::{Curve, Folder, held_out_error};
@@ -116,7 +116,7 @@ impl Race {
             trials: &training,
             settings: &settings,
         };
-        let look = |glimpse: &Glimpse<'_>| {
+        let look = |glimpse: &Iterate<'_>| {
             let error = || held_out_error(&(glimpse.model)(), &self.law, &self.held_out, &deviations, SUBSEQUENCE_S);
             curve.lock().expect("a curve").see(glimpse.evaluations, glimpse.objective, method == Method::Trajectory, &error);
         };
@@ -145,7 +145,7 @@ impl Race {
     }
 }
 
-fn chosen(options: &[sistership_identify::refine::StepOption]) -> &str {
+fn chosen(options: &[sistership_estimate::refine::StepOption]) -> &str {
     options.iter().find(|option| option.chosen).map_or("nothing", |option| option.step.as_str())
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use clap::Args;
 use serde::Serialize;
 use serde_json::Value;
-use sistership_identify::diagnose::{Diagnosis, Request, Settings, diagnose};
+use sistership_diagnose::{Diagnosis, Request, Settings, diagnose};
 use sistership_model::{Effect, Law, Model, Zoo};
 use sistership_server::report::{DiagnosisInput, render_diagnosis};
 

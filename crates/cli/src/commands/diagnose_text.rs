@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sistership_identify::diagnose::{Confounded, Diagnosis, Found, Hypothesis, NextTrial, Unexplained, Verdict};
+use sistership_diagnose::{Confounded, Diagnosis, Found, Hypothesis, NextTrial, Unexplained, Verdict};
 use sistership_model::Model;
 use sistership_server::report::distinct;
 

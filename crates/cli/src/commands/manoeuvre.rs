@@ -8,7 +8,7 @@ use serde::Serialize;
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres};
 use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
-use sistership_identify::bands::{Bands, Sampling, bands};
+use sistership_estimate::bands::{Bands, Sampling, bands};
 use sistership_model::validity::Excursion;
 use sistership_model::{Law, Model, Zoo};
 

@@ -2,7 +2,7 @@
 
 use sistership_dynamics::Ship;
 use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
-use sistership_identify::bands::Bands;
+use sistership_estimate::bands::Bands;
 use sistership_model::{Law, Model};
 
 use super::manoeuvre::Document;

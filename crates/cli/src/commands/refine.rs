@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use sistership_identify::refine::{Constraints, Method, Refinement, Request, Settings, StraightLine, refine};
-use sistership_identify::similarity::RankedSource;
-use sistership_identify::source::{Similarity, best_source, similar};
-use sistership_identify::transfer::{approach_of, blank};
+use sistership_estimate::refine::{Constraints, Method, Refinement, Request, Settings, StraightLine, refine};
+use sistership_estimate::similarity::RankedSource;
+use sistership_estimate::source::{Similarity, best_source, similar};
+use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::{Law, Model, Vessel, Zoo};
 use sistership_server::derive::with_uncertainty;
 use sistership_server::report::{Input, render};

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sistership_identify::refine::Settings;
+use sistership_estimate::refine::Settings;
 use sistership_model::FileError;
 
 use crate::failure::Failure;

@@ -1,9 +1,9 @@
 //! A refinement in words and tables.
 
 use sistership_dynamics::manoeuvre::Figure;
-use sistership_identify::bands::Band;
-use sistership_identify::refine::{CoefficientChange, HeldOut, Manoeuvres, Refinement, StepOption};
-use sistership_identify::similarity::RankedSource;
+use sistership_estimate::bands::Band;
+use sistership_estimate::refine::{CoefficientChange, HeldOut, Manoeuvres, Refinement, StepOption};
+use sistership_estimate::similarity::RankedSource;
 use sistership_model::Model;
 
 use super::refine::Files;

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use serde_json::{Value, json};
-use sistership_identify::similarity::Definition;
+use sistership_estimate::similarity::Definition;
 use sistership_server::Archive;
 use sistership_server::search::{self, FactRange, FoundShip, MAX_RANGES, Page, Search, ShipSearch};
 

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use sistership_identify::similarity::{Definition, RankedSource};
-use sistership_identify::source::{Similarity, similar};
+use sistership_estimate::similarity::{Definition, RankedSource};
+use sistership_estimate::source::{Similarity, similar};
 use sistership_model::{Vessel, Zoo};
 
 use crate::failure::Failure;

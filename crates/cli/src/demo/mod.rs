@@ -9,7 +9,7 @@ use std::time::Duration;
 use clap::Args;
 use serde_json::{Value, json};
 use sistership_dynamics::Ship;
-use sistership_identify::refine::HeldOut;
+use sistership_estimate::refine::HeldOut;
 use sistership_model::{Trial, Zoo};
 use sistership_server::{Config, Running, Server};
 use sistership_trials::samples::to_csv;

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::{Record, Replay};
+use super::record::Record;
+use super::replayed::Replay;
 use crate::envelope::Stopped;
 use crate::integrate::Stage;
 use crate::lockstep::Passage;

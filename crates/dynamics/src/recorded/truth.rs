@@ -2,7 +2,7 @@
 
 use sistership_model::trial::Trial;
 
-use super::{MissingChannel, Record};
+use super::record::{MissingChannel, Record};
 use crate::plant::Work;
 use crate::ship::Ship;
 use crate::state::RECORDED;

@@ -2,11 +2,8 @@
 
 use sistership_model::formula::Function;
 
-use super::{Instruction, Op, Slot, Slots, Tape};
+use super::{Instruction, Lanes, Op, Slot, Slots, Tape};
 use crate::wide::{Wide, widest};
-
-/// Values of one quantity in every lane.
-pub type Lanes<const N: usize> = [f64; N];
 
 impl Tape {
     /// Evaluates every operation; `work` is reused from call to call and holds the results afterwards.

@@ -15,13 +15,12 @@ mod tangent;
 #[cfg(test)]
 mod testing;
 
-pub use eval::Lanes;
 pub(crate) use fuse::Instruction;
 use listing::Listing;
 pub use lower::{Binding, TapeBuilder};
 pub(crate) use op::Op;
 pub use op::Slot;
-pub use slots::Slots;
+pub use slots::{Lanes, Slots};
 
 /// A list of instructions with named inputs and numbered outputs.
 #[derive(Debug, Clone, Default)]

@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
-use sistership_identify::diagnose::calibrate;
-use sistership_identify::refine::Refinement;
+use sistership_diagnose::calibrate;
+use sistership_estimate::refine::Refinement;
 use sistership_model::trial::Trial;
 use sistership_model::{Effect, Law};
 

@@ -1,7 +1,7 @@
 //! Deriving a diagnosis, and the version with the effects that it finds: a function of what its recipe names by hash.
 
 use serde_json::Value;
-use sistership_identify::diagnose::{Diagnosis, Request, Settings, diagnose};
+use sistership_diagnose::{Diagnosis, Request, Settings, diagnose};
 use sistership_model::trial::Trial;
 use sistership_model::version::FORMAT;
 use sistership_model::{Law, Model};

@@ -8,7 +8,7 @@ mod refined;
 use std::sync::Arc;
 
 use serde_json::{Map, Value};
-use sistership_identify::refine::RefineError;
+use sistership_estimate::refine::RefineError;
 use sistership_model::version::{self, FORMAT};
 use sistership_model::{FileError, Law, Model, Vessel};
 use sistership_store::StoreError;

@@ -2,7 +2,7 @@
 
 use bytes::Bytes;
 use serde_json::Value;
-use sistership_identify::refine::{RefineError, Refinement, Request, Settings, refine};
+use sistership_estimate::refine::{RefineError, Refinement, Request, Settings, refine};
 use sistership_model::trial::Trial;
 use sistership_model::version::{FORMAT, Recipe, SourceVersion};
 use sistership_model::{Law, Model, Vessel};

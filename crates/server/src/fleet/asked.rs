@@ -1,7 +1,7 @@
 //! Asking for the refinement of a family.
 
 use serde::{Deserialize, Serialize};
-use sistership_identify::bulk::BulkSettings;
+use sistership_fleet::bulk::BulkSettings;
 use sistership_model::version::SourceVersion;
 use sistership_store::{Bulk, MAX_LIMIT, Page, Store, StoreError};
 use utoipa::ToSchema;

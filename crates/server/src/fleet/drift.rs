@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use sistership_identify::statistics::{Frame, TrialStatistics};
+use sistership_fleet::statistics::{Frame, TrialStatistics};
 use sistership_model::coefficient::Axis;
 use sistership_model::version::RecipeTrial;
 use sistership_store::{MAX_LIMIT, Page, StoreError};
@@ -107,7 +107,7 @@ impl Drift {
 
 fn residual(statistics: &TrialStatistics, coefficients: &BTreeMap<String, f64>) -> Result<BTreeMap<String, f64>, DeriveError> {
     let left = statistics.left_by(coefficients)?;
-    let share = |left: &sistership_identify::statistics::Left| {
+    let share = |left: &sistership_fleet::statistics::Left| {
         (left.target > 0.0).then(|| (left.axis.to_string(), (left.residual / left.target).sqrt()))
     };
     Ok(left.iter().filter_map(share).collect())

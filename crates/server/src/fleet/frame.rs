@@ -1,6 +1,6 @@
 //! The model that a member is refined from: her champion, or the foundation carried over to her.
 
-use sistership_identify::transfer::transfer;
+use sistership_estimate::transfer::transfer;
 use sistership_model::version::{SourceVersion, sha256};
 use sistership_model::{Law, Model};
 use sistership_store::Version;

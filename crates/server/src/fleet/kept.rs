@@ -1,6 +1,6 @@
 //! Statistics of trials: as they are kept, or made of the samples and kept from then on.
 
-use sistership_identify::statistics::{Frame, TrialStatistics};
+use sistership_fleet::statistics::{Frame, TrialStatistics};
 use sistership_model::version::RecipeTrial;
 use sistership_trials::samples::from_parquet;
 

@@ -1,8 +1,8 @@
 //! Learning what a family teaches.
 
 use serde::{Deserialize, Serialize};
-use sistership_identify::family::{self, FamilyPrior, Member};
-use sistership_identify::statistics::{Frame, TrialStatistics};
+use sistership_fleet::family::{self, FamilyPrior, Member};
+use sistership_fleet::statistics::{Frame, TrialStatistics};
 use sistership_model::version::{RecipeTrial, SourceVersion};
 
 use super::asked::{Start, members};
@@ -42,7 +42,7 @@ pub async fn learn(archive: &Archive, name: &str, told: &(dyn Fn(f64, &str) -> b
     let mut known: Vec<(String, Vec<TrialStatistics>)> = Vec::new();
     for (index, ship) in ships.iter().enumerate() {
         if !told(0.9 * index as f64 / ships.len() as f64, &format!("statistics of {ship}")) {
-            return Err(DeriveError::Refine(sistership_identify::refine::RefineError::Cancelled));
+            return Err(DeriveError::Refine(sistership_estimate::refine::RefineError::Cancelled));
         }
         known.extend(of_member(&frames, ship, &law_sha256).await?.map(|statistics| (ship.clone(), statistics)));
     }

@@ -1,8 +1,8 @@
 //! What a bulk refinement is to do, with everything looked up: its row and its recipes keep it.
 
 use serde::{Deserialize, Serialize};
-use sistership_identify::bulk::{AxisPrior, BulkSettings, Prior};
-use sistership_identify::family::FamilyPrior;
+use sistership_fleet::bulk::{AxisPrior, BulkSettings, Prior};
+use sistership_fleet::family::FamilyPrior;
 use sistership_model::version::SourceVersion;
 use sistership_model::{Law, Model};
 use std::collections::BTreeMap;

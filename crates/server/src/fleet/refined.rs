@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use sistership_identify::bulk::{BulkRefinement, BulkRequest, BulkSettings, refine, refined_model};
-use sistership_identify::refine::{Fitted, RefineError};
-use sistership_identify::statistics::{Frame, TrialStatistics};
+use sistership_estimate::refine::{Fitted, RefineError};
+use sistership_fleet::bulk::{BulkRefinement, BulkRequest, BulkSettings, refine, refined_model};
+use sistership_fleet::statistics::{Frame, TrialStatistics};
 use sistership_model::Model;
 use sistership_model::version::{FORMAT, RecipeTrial, SourceVersion};
 

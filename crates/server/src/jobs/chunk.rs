@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use sistership_identify::bulk::BulkRefinement;
-use sistership_identify::refine::RefineError;
-use sistership_identify::statistics::Frame;
+use sistership_estimate::refine::RefineError;
+use sistership_fleet::bulk::BulkRefinement;
+use sistership_fleet::statistics::Frame;
 use sistership_store::{AliasMove, Expect, Job, NewOutcome, NewVersion, StoreError};
 
 use super::outcome::{Result, failed};

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use serde_json::{Value, json};
-use sistership_identify::source::Similarity;
+use sistership_estimate::source::Similarity;
 use sistership_model::trial::Trial;
 use sistership_model::version::sha256;
 use sistership_store::{Expect, Job, NewReport, NewVersion, Refinement, ReportHead, StoreError, VersionHead};

@@ -1,6 +1,6 @@
 //! How a job ends that does not succeed.
 
-use sistership_identify::refine::RefineError;
+use sistership_estimate::refine::RefineError;
 use sistership_store::StoreError;
 
 use crate::derive::DeriveError;

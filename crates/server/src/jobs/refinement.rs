@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use sistership_identify::source::{Similarity, best_source, similar};
+use sistership_estimate::source::{Similarity, best_source, similar};
 use sistership_model::trial::Trial as Recording;
 use sistership_model::version::{AcrossLaws, Recipe, RecipeTrial, SourceVersion, sha256};
 use sistership_model::{Vessel, Zoo};

@@ -1,8 +1,7 @@
 //! What a job is asked to do, as its row keeps it.
 
 use serde::{Deserialize, Serialize};
-use sistership_identify::diagnose;
-use sistership_identify::refine::Settings;
+use sistership_estimate::refine::Settings;
 
 /// The kind of refinement jobs.
 pub(crate) const REFINEMENT: &str = "refinement";
@@ -41,7 +40,7 @@ pub(crate) struct DiagnosisJob {
     /// The trials' ids.
     pub trials: Vec<String>,
     /// Every setting.
-    pub settings: diagnose::Settings,
+    pub settings: sistership_diagnose::Settings,
     /// The hash of the request's idempotency key, by which a repeated request finds its job.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key_sha256: Option<String>,

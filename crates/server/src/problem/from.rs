@@ -2,7 +2,7 @@
 
 use axum::extract::rejection::{BytesRejection, PathRejection, QueryRejection};
 use axum::http::StatusCode;
-use sistership_identify::refine::RefineError;
+use sistership_estimate::refine::RefineError;
 use sistership_model::FileError;
 use sistership_model::trial::Finding;
 use sistership_store::StoreError;

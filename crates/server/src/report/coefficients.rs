@@ -1,7 +1,7 @@
 //! Which coefficients moved, and how far.
 
 use serde::Serialize;
-use sistership_identify::refine::CoefficientChange;
+use sistership_estimate::refine::CoefficientChange;
 
 use super::Input;
 

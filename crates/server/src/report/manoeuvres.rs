@@ -4,7 +4,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
-use sistership_identify::bands::Bands;
+use sistership_estimate::bands::Bands;
 use sistership_model::validity::Excursion;
 
 use super::Input;

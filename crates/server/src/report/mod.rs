@@ -26,8 +26,8 @@ pub use diagnosis::{DiagnosisInput, distinct, render_diagnosis};
 
 use serde::Serialize;
 use sistership_dynamics::PlantError;
-use sistership_identify::refine::Refinement;
-use sistership_identify::source::Similarity;
+use sistership_estimate::refine::Refinement;
+use sistership_estimate::source::Similarity;
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Vessel};
 

@@ -1,7 +1,7 @@
 //! The steps of the widening ranges.
 
 use serde::Serialize;
-use sistership_identify::refine::StepOption;
+use sistership_estimate::refine::StepOption;
 
 use super::Input;
 

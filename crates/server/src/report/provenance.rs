@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use sistership_identify::refine::Settings;
+use sistership_estimate::refine::Settings;
 use sistership_model::law::Parameter;
 use sistership_model::model::DERIVED;
 use sistership_model::quantity::Quantity;

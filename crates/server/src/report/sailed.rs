@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use sistership_dynamics::metrics::ManoeuvreMetrics;
-use sistership_identify::refine::MeasuredManoeuvre;
+use sistership_estimate::refine::MeasuredManoeuvre;
 
 use super::Input;
 use super::manoeuvres::{TURN, ZIGZAG};

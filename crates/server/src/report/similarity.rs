@@ -1,7 +1,7 @@
 //! Why this source: the ranking in a form that reads.
 
-use sistership_identify::similarity::{Definition, RankedSource};
-use sistership_identify::source::Similarity;
+use sistership_estimate::similarity::{Definition, RankedSource};
+use sistership_estimate::source::Similarity;
 
 use super::numbers::{fixed, known, significant};
 use super::tables::{Cell, Column, Row, Table};

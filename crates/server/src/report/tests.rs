@@ -1,8 +1,8 @@
 #![allow(clippy::unwrap_used)]
 //! A report of made-up trials: what it says, that it says it the same way twice, and that nothing leaks out of its text.
 
-use sistership_identify::refine::{Refinement, Request, Settings, refine};
-use sistership_identify::source::similar;
+use sistership_estimate::refine::{Refinement, Request, Settings, refine};
+use sistership_estimate::source::similar;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Vessel, Zoo};
 

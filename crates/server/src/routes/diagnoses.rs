@@ -3,7 +3,7 @@
 use axum::extract::State;
 use axum::response::Response;
 use serde::Deserialize;
-use sistership_identify::diagnose::Settings;
+use sistership_diagnose::Settings;
 use sistership_model::version::sha256;
 use sistership_store::{Trial, Version};
 use utoipa::ToSchema;

@@ -3,7 +3,7 @@
 use axum::extract::State;
 use axum::response::Response;
 use serde::Deserialize;
-use sistership_identify::refine::Settings;
+use sistership_estimate::refine::Settings;
 use sistership_model::version::sha256;
 use sistership_store::StoreError;
 use utoipa::ToSchema;

@@ -1,7 +1,7 @@
 //! The query of the list of ships.
 
 use serde::Deserialize;
-use sistership_identify::similarity::Definition;
+use sistership_estimate::similarity::Definition;
 use sistership_store::{FactRange, MAX_RANGES, Page, ShipKey};
 use utoipa::IntoParams;
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use serde::Deserializer;
 use serde::de::{DeserializeSeed, IgnoredAny, MapAccess, Visitor};
-use sistership_identify::similarity::{CharacteristicVector, Definition};
+use sistership_estimate::similarity::{CharacteristicVector, Definition};
 use sistership_model::{Vessel, Zoo, particulars};
 use sistership_store::{Ship, ShipFacts, StoreError, Waiting};
 

@@ -9,7 +9,7 @@ pub use index::catch_up;
 pub(crate) use index::keep;
 pub(crate) use similar::nearest;
 
-use sistership_identify::similarity::Definition;
+use sistership_estimate::similarity::Definition;
 use sistership_model::particulars;
 pub use sistership_store::{FactRange, FoundShip, MAX_RANGES, Page, ShipSearch};
 use sistership_store::{List, ShipKey};

@@ -2,8 +2,8 @@
 
 use std::cmp::Ordering;
 
-use sistership_identify::similarity::{CharacteristicVector, Definition};
-use sistership_identify::source::definition_for;
+use sistership_estimate::similarity::{CharacteristicVector, Definition};
+use sistership_estimate::source::definition_for;
 use sistership_model::Vessel;
 use sistership_store::{FoundShip, List, Page, ShipKey, ShipSearch, ShipVectors, StoreError};
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use sistership_identify::diagnose::Hypothesis;
+use sistership_diagnose::Hypothesis;
 
 /// Each set of effects once, in the order given: judged several times on the way, it stands where it was taken, or else
 /// where it was most probable.

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use sistership_diagnose::{Diagnosis, SailedManoeuvre, TrialErrors};
 use sistership_dynamics::metrics::ManoeuvreMetrics;
-use sistership_identify::diagnose::{Diagnosis, SailedManoeuvre, TrialErrors};
 
 use crate::report::numbers::{fixed, known, signed, significant};
 use crate::report::sailed::{Figure, read};

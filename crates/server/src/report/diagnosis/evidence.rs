@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sistership_identify::diagnose::{Confounded, Diagnosis, Found, Hypothesis, NextTrial, Value};
+use sistership_diagnose::{Confounded, Diagnosis, Found, Hypothesis, NextTrial, Value};
 use sistership_model::effect::ActsOn;
 
 use super::distinct::distinct;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use askama::Template;
-use sistership_identify::diagnose::{Found, ResidualSeries, Unexplained};
+use sistership_diagnose::{Found, ResidualSeries, Unexplained};
 
 use super::{DiagnosisInput, errors, evidence, provenance, remaining, sentence};
 use crate::derive::code_revision;
@@ -99,7 +99,7 @@ impl Page<'_> {
     }
 
     fn badge(&self) -> (&'static str, &'static str) {
-        use sistership_identify::diagnose::Verdict;
+        use sistership_diagnose::Verdict;
         match self.input.diagnosis.verdict {
             Verdict::Complete => ("published", "the model holds"),
             Verdict::Effects => ("transferred", "effects are missing"),

@@ -20,7 +20,7 @@ pub use distinct::distinct;
 pub(super) use remaining::acceleration;
 
 use serde_json::{Value, json};
-use sistership_identify::diagnose::Diagnosis;
+use sistership_diagnose::Diagnosis;
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model};
 

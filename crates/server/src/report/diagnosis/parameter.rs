@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sistership_identify::diagnose::Value;
+use sistership_diagnose::Value;
 
 use crate::report::numbers::{fixed, significant};
 

@@ -1,6 +1,6 @@
 //! What remains: stretches that nothing explains, the level of the discrepancy, and how the coefficients moved.
 
-use sistership_identify::diagnose::{DiscrepancyLevel, Settings, Unexplained};
+use sistership_diagnose::{DiscrepancyLevel, Settings, Unexplained};
 use sistership_model::Model;
 
 use super::sentence::motion;

@@ -1,9 +1,9 @@
 //! The trials that are plotted, simulated by the model before and after.
 
+use sistership_diagnose::ResidualSeries;
 use sistership_dynamics::error::SquaredError;
 use sistership_dynamics::recorded::{Replay, ReplaySettings, replay};
 use sistership_dynamics::{PlantError, Ship};
-use sistership_identify::diagnose::ResidualSeries;
 use sistership_model::Model;
 use sistership_model::trial::{Channel, Trial};
 

@@ -1,6 +1,6 @@
 //! The answer in one plain sentence.
 
-use sistership_identify::diagnose::{Diagnosis, Found, Verdict};
+use sistership_diagnose::{Diagnosis, Found, Verdict};
 
 use super::parameter::Parameter;
 use crate::report::numbers::{list, significant};

@@ -3,7 +3,7 @@
 
 mod made_up;
 
-use sistership_identify::diagnose::{Value, Verdict};
+use sistership_diagnose::{Value, Verdict};
 
 use crate::report::Rendered;
 use made_up::Case;

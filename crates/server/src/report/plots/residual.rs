@@ -1,6 +1,6 @@
 //! The residual of each acceleration over time, before and after, with the band of what noise alone would show.
 
-use sistership_identify::diagnose::{ResidualSeries, Unexplained};
+use sistership_diagnose::{ResidualSeries, Unexplained};
 
 use super::axes::{Scale, columns, extent, padded, rows};
 use super::decimate::{kept, path};

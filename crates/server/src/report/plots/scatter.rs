@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sistership_identify::diagnose::ResidualSeries;
+use sistership_diagnose::ResidualSeries;
 
 use super::axes::{Scale, columns, extent, padded, rows};
 use super::decimate::kept;

@@ -1,7 +1,7 @@
 //! Where every figure comes from.
 
 use serde_json::Value;
-use sistership_identify::refine::{Range, Settings};
+use sistership_estimate::refine::{Range, Settings};
 
 use super::{Cell, Column, Row, Table};
 use crate::report::numbers::{self, known};

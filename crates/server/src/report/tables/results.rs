@@ -1,6 +1,6 @@
 //! What came out: errors, options, manoeuvres, criteria.
 
-use sistership_identify::refine::StepOption;
+use sistership_estimate::refine::StepOption;
 
 use super::{Cell, Column, Row, Table};
 use crate::report::manoeuvres::{Comparison, Figure, Verdict};

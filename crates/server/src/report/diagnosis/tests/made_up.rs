@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use sistership_dynamics::metrics::{ManoeuvreMetrics, TurningMetrics};
-use sistership_identify::diagnose::{
+use sistership_diagnose::{
     Confounded, Diagnosis, DiscrepancyLevel, Found, Hypothesis, NextTrial, ResidualSeries, SailedManoeuvre, Settings,
     TrialErrors, Unexplained, Value, Verdict,
 };
+use sistership_dynamics::metrics::{ManoeuvreMetrics, TurningMetrics};
 use sistership_model::effect::ActsOn;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};

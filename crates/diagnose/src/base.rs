@@ -1,0 +1,174 @@
+//! A linearisation with everything that may show, filtered at each level of the discrepancy. A hypothesis near it is then
+//! judged by what it moves alone: its own columns pass the same filter, the coefficients' are there already.
+
+use std::ops::AddAssign;
+
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+use sistership_model::manifest::VelocityFrame;
+
+use super::evidence::Level;
+use super::learned::Learned;
+use super::workspace::Workspace;
+use crate::residual::{Candidate, Columns, Detail, Discrepancies, Gram, Linearised, System, linearise, whitened};
+use sistership_estimate::refine::RefineError;
+
+/// Effects that are taken, and all that is there when others are judged beside them.
+pub(super) struct Base<'a> {
+    pub taken: Vec<Candidate>,
+    pub workspace: Workspace<'a>,
+    pub levels: Vec<AtLevel>,
+    coefficients: usize,
+}
+
+/// The filter at one level.
+pub(super) struct AtLevel {
+    pub level: Level,
+    discrepancies: Discrepancies,
+    trials: Vec<Filtered>,
+}
+
+/// One trial through the filter.
+struct Filtered {
+    /// Whitened columns of the coefficients, by part: columns by readings.
+    coefficients: Vec<DMatrix<f64>>,
+    gram: Gram,
+}
+
+impl AtLevel {
+    pub fn discrepancies(&self) -> &Discrepancies {
+        &self.discrepancies
+    }
+}
+
+impl<'a> Base<'a> {
+    pub fn new(taken: &[Candidate], workspace: Workspace<'a>, levels: Vec<(Level, Discrepancies)>) -> Self {
+        let coefficients = workspace.columns().nuisance.len();
+        let at = |(level, discrepancies): (Level, Discrepancies)| {
+            let one = |parts: &Vec<Linearised>| Filtered::new(&workspace, parts, &discrepancies, coefficients);
+            let trials = workspace.linear().par_iter().map(one).collect();
+            AtLevel { level, discrepancies, trials }
+        };
+        Self { taken: taken.to_vec(), levels: levels.into_iter().map(at).collect(), coefficients, workspace }
+    }
+
+    /// Products of all columns over all trials, at one of the levels.
+    pub fn total(&self, level: usize) -> Gram {
+        Gram::sum(self.levels[level].trials.iter().map(|trial| &trial.gram), 1 + self.workspace.columns().len())
+    }
+
+    /// Products of coefficients alone, trial by trial.
+    pub fn alone(&self, level: usize) -> Vec<Gram> {
+        let columns: Vec<usize> = (0..self.coefficients).collect();
+        self.levels[level].trials.iter().map(|trial| trial.gram.select(&columns)).collect()
+    }
+
+    /// Readings and columns of a hypothesis where it stands, to be filtered at any level.
+    ///
+    /// # Errors
+    /// Names what the model or a trial lacks.
+    pub fn stand(&self, learned: &Learned, candidates: &[Candidate]) -> Result<Stand<'_, 'a>, RefineError> {
+        let frame: VelocityFrame = self.workspace.frame();
+        let columns = Columns { nuisance: Vec::new(), candidates: candidates.to_vec() };
+        let system = System::new(&learned.model, &learned.law, columns, frame)?;
+        let records = self.workspace.records();
+        let linear: Vec<Vec<Linearised>> =
+            records.par_iter().map(|record| linearise(&system, record, Detail::Columns)).collect::<Result<_, _>>()?;
+        let of = |(own, base): (Vec<Linearised>, &Vec<Linearised>)| {
+            own.into_iter().zip(base).map(|(own, base)| own.by_filter_of(base)).collect()
+        };
+        Ok(Stand { base: self, linear: linear.into_iter().zip(self.workspace.linear()).map(of).collect() })
+    }
+}
+
+impl Filtered {
+    fn new(workspace: &Workspace<'_>, parts: &[Linearised], discrepancies: &Discrepancies, coefficients: usize) -> Self {
+        let mut filtered = Self { coefficients: Vec::new(), gram: Gram::empty(1 + workspace.columns().len()) };
+        for part in parts {
+            let (rows, log_variance) = whitened(part, &workspace.noise, discrepancies);
+            let width = 1 + part.sizes.columns;
+            let rows = DMatrix::from_vec(width, rows.len() / width, rows);
+            filtered.coefficients.push(rows.rows(1, coefficients).into_owned());
+            filtered.gram.add(&Gram::of_columns(&rows, log_variance));
+        }
+        filtered
+    }
+}
+
+/// A hypothesis where it stands.
+pub(super) struct Stand<'b, 'a> {
+    base: &'b Base<'a>,
+    linear: Vec<Vec<Linearised>>,
+}
+
+impl Stand<'_, '_> {
+    /// The products of each trial: residual, coefficients, parameters of the hypothesis.
+    pub fn grams(&self, level: usize) -> Vec<Gram> {
+        let at = &self.base.levels[level];
+        let trials: Vec<_> = self.linear.iter().zip(&at.trials).collect();
+        trials.into_par_iter().map(|(parts, filtered)| self.gram(parts, filtered, &at.discrepancies)).collect()
+    }
+
+    /// The products of each trial in pieces of equal duration.
+    pub fn pieces(&self, level: usize, count: usize) -> Vec<Gram> {
+        let at = &self.base.levels[level];
+        let trials: Vec<_> = self.linear.iter().zip(&at.trials).collect();
+        let of = |(parts, filtered): (&Vec<Linearised>, &Filtered)| self.in_pieces(parts, filtered, &at.discrepancies, count);
+        trials.into_par_iter().flat_map_iter(of).collect()
+    }
+
+    fn in_pieces(&self, parts: &[Linearised], filtered: &Filtered, discrepancies: &Discrepancies, count: usize) -> Vec<Gram> {
+        let width = self.base.coefficients + self.width();
+        let mut pieces = vec![Gram::empty(width); count];
+        for (part, coefficients) in parts.iter().zip(&filtered.coefficients) {
+            let own = self.rows(part, discrepancies).0;
+            let readings = own.nrows();
+            for (piece, gram) in pieces.iter_mut().enumerate() {
+                let (from, to) = (piece * readings / count, (piece + 1) * readings / count);
+                let (known, own) = (coefficients.columns(from, to - from), own.rows(from, to - from));
+                let square = Gram::of_columns(&known.into_owned(), 0.0).products;
+                gram.products.view_mut((1, 1), square.shape()).add_assign(&square);
+                add(gram, &(known * own), &own.tr_mul(&own));
+            }
+        }
+        pieces
+    }
+
+    fn gram(&self, parts: &[Linearised], filtered: &Filtered, discrepancies: &Discrepancies) -> Gram {
+        let c = self.base.coefficients;
+        let mut gram = Gram::empty(c + self.width());
+        gram.products.view_mut((1, 1), (c, c)).copy_from(&filtered.gram.products.view((1, 1), (c, c)));
+        for (part, coefficients) in parts.iter().zip(&filtered.coefficients) {
+            let (rows, log_variance) = self.rows(part, discrepancies);
+            add(&mut gram, &(coefficients * &rows), &rows.tr_mul(&rows));
+            gram.log_variance += log_variance;
+            gram.count += rows.nrows();
+        }
+        gram
+    }
+
+    /// The residual and the parameters of the hypothesis.
+    fn width(&self) -> usize {
+        1 + self.linear.iter().flatten().next().map_or(0, |part| part.sizes.columns)
+    }
+
+    /// Whitened, readings by columns.
+    fn rows(&self, part: &Linearised, discrepancies: &Discrepancies) -> (DMatrix<f64>, f64) {
+        let (rows, log_variance) = whitened(part, &self.base.workspace.noise, discrepancies);
+        let width = self.width();
+        (DMatrix::from_vec(width, rows.len() / width, rows).transpose(), log_variance)
+    }
+}
+
+/// Adds products of coefficients with a hypothesis' own columns, and of these among themselves.
+fn add(gram: &mut Gram, cross: &DMatrix<f64>, square: &DMatrix<f64>) {
+    let (c, own) = cross.shape();
+    let place = |i: usize| if i == 0 { 0 } else { c + i };
+    for i in 0..own {
+        for k in 0..c {
+            gram.products[(1 + k, place(i))] += cross[(k, i)];
+            gram.products[(place(i), 1 + k)] += cross[(k, i)];
+        }
+        (0..own).for_each(|j| gram.products[(place(i), place(j))] += square[(i, j)]);
+    }
+}

@@ -1,0 +1,58 @@
+//! What trials say of the coefficients, some of them left out.
+
+use nalgebra::{Cholesky, DVector};
+
+use super::super::evidence::Fixed;
+use crate::residual::Gram;
+
+/// What is known of the coefficients, trial by trial.
+pub(super) struct Known<'a> {
+    pub fixed: &'a Fixed,
+    pub grams: &'a [Gram],
+    /// How much more coefficients differ from trial to trial than each trial by itself would say.
+    pub scatter: f64,
+}
+
+impl Known<'_> {
+    /// By the prior and some of the trials.
+    pub fn by(&self, keep: &dyn Fn(usize) -> bool) -> Fixed {
+        let mut known = self.fixed.clone();
+        let size = known.weighted_mean.len();
+        for (_, gram) in self.grams.iter().enumerate().filter(|(trial, _)| keep(*trial)) {
+            known.information += gram.products.view((1, 1), (size, size)) / self.scatter;
+            known.weighted_mean += gram.products.view((1, 0), (size, 1)).column(0) / self.scatter;
+        }
+        known
+    }
+
+    /// What coefficients fitted on the others leave of each trial and its own would explain, by what chance would: one where
+    /// the law is right, more where it only seems to be known so well.
+    pub fn scatter(&self) -> f64 {
+        let size = self.fixed.weighted_mean.len();
+        let mut sum = (0.0, 0.0);
+        for (trial, gram) in self.grams.iter().enumerate() {
+            let others = self.by(&|other| other != trial);
+            let (Some(mean), products) = (others.mean(), gram.products.view((1, 1), (size, size))) else { continue };
+            let left = gram.products.view((1, 0), (size, 1)).column(0) - products * mean;
+            let Some(factor) = Cholesky::new(products + &others.information) else { continue };
+            sum.0 += left.dot(&factor.solve(&left));
+            sum.1 += factor.solve(&products.into_owned()).trace();
+        }
+        if sum.1 > 0.0 { (sum.0 / sum.1).max(1.0) } else { 1.0 }
+    }
+
+    /// The change of the coefficients by the trials but one; all effects absent.
+    pub fn shift(&self, but: usize, width: usize) -> Option<Vec<f64>> {
+        let known = self.by(&|trial| trial != but);
+        let mut shift = known.mean()?.as_slice().to_vec();
+        shift.resize(width, 0.0);
+        Some(shift)
+    }
+}
+
+impl Fixed {
+    /// The expected change of the coefficients; `None` where the information is not positive.
+    pub(in super::super) fn mean(&self) -> Option<DVector<f64>> {
+        Some(Cholesky::new(self.information.clone())?.solve(&self.weighted_mean))
+    }
+}

@@ -1,0 +1,148 @@
+//! What the trials that a model was fitted on leave open.
+
+mod feigned;
+mod habits;
+mod known;
+mod scatter;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use known::Known;
+use nalgebra::{Cholesky, DMatrix, DVector};
+use scatter::Scatter;
+use sistership_model::law::Law;
+use sistership_model::trial::Channel;
+use sistership_model::uncertainty::{Discrepancy, InstrumentFit, Uncertainty};
+use sistership_model::{Effect, Model, Trial};
+
+use super::evidence::Fixed;
+use super::learned::Learned;
+use super::nuisance::{Terms, lacked, learned, prior, regressor};
+use super::remainder::largest;
+use super::setup::listed;
+use super::workspace::Workspace;
+use crate::residual::{Candidate, Columns, Discrepancies, Instrument, Noise, Nuisance};
+use sistership_estimate::refine::RefineError;
+
+/// How far coefficients may be from the model's before its own trials are asked.
+const WIDE: f64 = 1.0;
+
+/// What the trials that a model was fitted on leave open, to be kept with it. Terms of the library's grammar that the model
+/// lacks are learned too, as far as those trials show them; and what effects would explain of these trials, which do not
+/// have them, is kept to judge them by later.
+///
+/// # Errors
+/// Names the channel that a trial lacks, or says that the information is not positive.
+pub fn calibrate(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Result<Uncertainty, RefineError> {
+    let model = &Model { uncertainty: None, ..model.clone() };
+    let first = by_instruments(model, law, effects, trials)?;
+    let habits = habits::of(model, &first, law, effects, trials)?;
+    if habits.is_empty() {
+        return Ok(first);
+    }
+    let erring = Uncertainty { habits, instruments: BTreeMap::new(), ..first };
+    by_instruments(&Model { uncertainty: Some(erring), ..model.clone() }, law, effects, trials)
+}
+
+/// What the trials leave open where instruments err as the model's uncertainty says, or not at all.
+fn by_instruments(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Result<Uncertainty, RefineError> {
+    let terms = learned(model, law, effects, trials);
+    let extra: Vec<_> = terms.iter().filter_map(|(name, form)| Some((name.clone(), regressor(model, form)?.0))).collect();
+    let nuisance = Columns::nuisance(model, law, &extra);
+    let prior = prior(model, &nuisance, &terms, WIDE);
+    let (shift, rough) = taught(model, law, &terms, &nuisance, &prior, trials)?;
+    let candidates = listed(model, law, effects, trials);
+    let columns = Columns { nuisance: nuisance.clone(), candidates: candidates.clone() };
+    let mut workspace = Workspace::new(&Learned::new(model, law, &terms, &nuisance, &shift)?, columns, trials, None)?;
+    let fixed = prior.from(&shift);
+    let scatter = workspace.noise.clone();
+    let Scatter { discrepancies, noise } = scatter::most_probable(&workspace, &fixed, Some(rough))?;
+    workspace.noise = noise;
+    let grams = workspace.each(&discrepancies);
+    let freed = lacked(model, law, effects, trials);
+    let freed = freed.iter().map(|(effect, form)| Candidate::absent(effect, form));
+    let all: Vec<_> = candidates.into_iter().chain(freed).collect();
+    let known = Known { fixed: &fixed, grams: &grams, scatter: 1.0 };
+    let known = Known { scatter: known.scatter(), ..known };
+    Ok(Uncertainty {
+        instruments: instruments(&workspace.noise, &scatter),
+        habits: model.uncertainty.as_ref().map(|known| known.habits.clone()).unwrap_or_default(),
+        feigned: feigned::feigned(&workspace, &known, &all),
+        remainder: remainder(&workspace, &known, &discrepancies),
+        ..uncertainty(&workspace, &known, &shift, &discrepancies)?
+    })
+}
+
+/// What the trials teach by one linearisation about the model as it is, and the discrepancies by that.
+fn taught(
+    model: &Model,
+    law: &Law,
+    terms: &Terms,
+    nuisance: &[Nuisance],
+    prior: &Fixed,
+    trials: &[&Trial],
+) -> Result<(Vec<f64>, Scatter), RefineError> {
+    let columns = Columns { nuisance: nuisance.to_vec(), candidates: Vec::new() };
+    let as_it_is = Learned::new(model, law, terms, nuisance, &vec![0.0; nuisance.len()])?;
+    let mut workspace = Workspace::new(&as_it_is, columns, trials, None)?;
+    let scatter = scatter::most_probable(&workspace, prior, None)?;
+    workspace.noise.clone_from(&scatter.noise);
+    let grams = workspace.each(&scatter.discrepancies);
+    let shift = Known { fixed: prior, grams: &grams, scatter: 1.0 }.by(&|_| true).taught(nuisance);
+    Ok((shift.ok_or_else(|| RefineError::Data("the trials' information is not positive".into()))?, scatter))
+}
+
+/// Instruments by what their scatter alone says.
+fn instruments(fitted: &Noise, scatter: &Noise) -> BTreeMap<String, InstrumentFit> {
+    let one = |(channel, own): (&Channel, &Instrument)| {
+        let deviation_by_scatter = own.deviation / scatter.get(channel)?.deviation;
+        Some((channel.name().to_owned(), InstrumentFit { deviation_by_scatter, drift: own.drift }))
+    };
+    fitted.iter().filter_map(one).collect()
+}
+
+/// The largest remainder by channel, each trial under coefficients fitted on the others.
+fn remainder(workspace: &Workspace<'_>, known: &Known<'_>, discrepancies: &Discrepancies) -> BTreeMap<String, f64> {
+    let mut limits: BTreeMap<String, f64> = BTreeMap::new();
+    for trial in 0..workspace.trials.len() {
+        let Some(shift) = known.shift(trial, workspace.columns().len()) else { continue };
+        for (channel, size) in largest(workspace, trial, discrepancies, &shift) {
+            let limit = limits.entry(channel.name().to_owned()).or_default();
+            *limit = limit.max((1e3 * size).round() / 1e3);
+        }
+    }
+    limits
+}
+
+fn uncertainty(
+    workspace: &Workspace<'_>,
+    known: &Known<'_>,
+    shift: &[f64],
+    discrepancies: &Discrepancies,
+) -> Result<Uncertainty, RefineError> {
+    // From the model as it is, not as the trials taught it.
+    let back: Vec<f64> = shift.iter().map(|shift| -shift).collect();
+    let all = known.by(&|_| true).from(&back);
+    let size = all.weighted_mean.len();
+    let scales: Vec<f64> = (0..size).map(|i| known.fixed.information[(i, i)].sqrt().recip()).collect();
+    let scaled = DMatrix::from_fn(size, size, |i, j| all.information[(i, j)] * scales[i] * scales[j]);
+    let right = DVector::from_fn(size, |i, _| all.weighted_mean[i] * scales[i]);
+    let factor = Cholesky::new(scaled).ok_or_else(|| RefineError::Data("the trials' information is not positive".into()))?;
+    let lower = factor.l();
+    let offset = lower.solve_lower_triangular(&right).unwrap_or(right);
+    let axes = workspace.axes();
+    let discrepancy: BTreeMap<_, Discrepancy> = axes.iter().copied().zip(discrepancies.iter().copied()).collect();
+    Ok(Uncertainty {
+        names: workspace.columns().nuisance.iter().map(|n: &Nuisance| n.name.clone()).collect(),
+        scales,
+        root_information: Uncertainty::rows(size, &|i, j| lower[(j, i)]),
+        offset: offset.iter().copied().collect(),
+        discrepancy,
+        instruments: BTreeMap::new(),
+        habits: Vec::new(),
+        feigned: BTreeMap::new(),
+        remainder: BTreeMap::new(),
+        trials: workspace.trials.iter().map(|trial| trial.name.clone()).collect(),
+    })
+}

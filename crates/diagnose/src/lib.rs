@@ -1,0 +1,55 @@
+//! What the residual says: which effect a model lacks, if any.
+
+mod base;
+mod calibrate;
+mod choose;
+mod confounded;
+mod constancy;
+mod covariance;
+mod discount;
+mod evidence;
+mod judge;
+mod learned;
+mod next_trial;
+mod nuisance;
+mod outcome;
+mod placebo;
+mod refit;
+mod remainder;
+pub mod residual;
+mod righted;
+mod run;
+mod said;
+mod search;
+mod series;
+mod settings;
+mod setup;
+mod values;
+mod workspace;
+
+use std::sync::Arc;
+
+pub use calibrate::calibrate;
+pub use outcome::{
+    Confounded, Diagnosis, DiscrepancyLevel, Found, Hypothesis, NextTrial, ResidualSeries, SailedManoeuvre, TrialErrors,
+    Unexplained, Value, Verdict,
+};
+pub use run::diagnose;
+pub use settings::Settings;
+use sistership_model::law::Law;
+use sistership_model::{Effect, Model, Trial};
+
+/// What is to be diagnosed, on what.
+#[derive(Debug, Clone, Copy)]
+pub struct Request<'a> {
+    /// The model, with the effects it carries already.
+    pub model: &'a Model,
+    /// Its law, without effects.
+    pub law: &'a Law,
+    /// The library.
+    pub effects: &'a [Arc<Effect>],
+    /// New trials of the ship, that the model was not fitted on.
+    pub trials: &'a [&'a Trial],
+    /// Settings.
+    pub settings: &'a Settings,
+}

@@ -1,0 +1,121 @@
+//! The recorded motion that a model is linearised along.
+
+use sistership_dynamics::interpolate::lagged;
+use sistership_dynamics::state::at;
+use sistership_dynamics::tape::{Lanes, Slots};
+use sistership_model::trial::Channel;
+
+use super::record::smoothed;
+use super::{Record, System};
+use sistership_estimate::refine::RefineError;
+
+/// The recorded motion and inputs over the samples of a trial.
+pub(super) struct Path<'a> {
+    pub record: &'a Record<'a>,
+    /// By state of the filter.
+    pub states: Vec<Vec<f64>>,
+    /// What the instruments said, by channel of the system; absent where nothing was recorded.
+    pub said: Vec<Option<&'a [f64]>>,
+    pub inputs: Vec<Vec<f64>>,
+    /// For each parameter that acts through a lag: the delayed input with a slightly (or first) longer lag, and by how much.
+    pub delayed: Vec<Option<(Vec<f64>, f64)>>,
+}
+
+impl<'a> Path<'a> {
+    pub fn new(system: &System, record: &'a Record<'a>) -> Result<Self, RefineError> {
+        for channel in [Channel::U, Channel::V, Channel::R] {
+            record.need(channel)?;
+        }
+        if system.axes.len() > 3 {
+            record.need(Channel::Phi)?;
+            record.need(Channel::P)?;
+        }
+        let said: Vec<Option<&[f64]>> = system.channels.iter().map(|&(channel, _)| record.trial.channel(channel)).collect();
+        let mut states = vec![vec![0.0; record.trial.len()]; system.order()];
+        for (&(_, place), said) in system.channels.iter().zip(&said) {
+            if let Some(said) = said {
+                states[place] = smoothed(said);
+            }
+        }
+        let mut inputs = Vec::new();
+        for (name, default) in &system.inputs {
+            inputs.push(record.input(name, *default)?);
+        }
+        let delayed = delayed(system, record, &mut inputs);
+        let mut path = Self { record, states, said, inputs, delayed };
+        path.correct(system);
+        Ok(path)
+    }
+
+    /// Takes from the path what instruments say beside it: the model is linearised along where the ship was.
+    fn correct(&mut self, system: &System) {
+        if system.says.is_empty() {
+            return;
+        }
+        let t_s = &self.record.trial.t_s;
+        let smooth = self.states.clone();
+        let mut work = Slots::default();
+        for k in 0..t_s.len() {
+            let inputs = self.instrument_inputs(system, k, &|state| slope(t_s, &smooth[state], k));
+            system.instruments.run(&inputs, &mut work);
+            for (output, &channel) in system.says.iter().enumerate().filter(|(_, channel)| self.said[**channel].is_some()) {
+                let state = system.channels[channel].1;
+                let beside = system.instruments.read(output, &work)[0] - inputs[of_instruments(system.states[state])][0];
+                self.states[state][k] -= beside;
+            }
+        }
+    }
+
+    pub fn instrument_inputs(&self, system: &System, k: usize, rate: &dyn Fn(usize) -> f64) -> Vec<Lanes<1>> {
+        let by_place = |values: &dyn Fn(usize) -> f64| {
+            let of = |place: usize| system.states.iter().position(|&s| s == place).map_or(0.0, values);
+            INSTRUMENTS.map(of).map(|value| [value])
+        };
+        let mut inputs: Vec<Lanes<1>> = by_place(&|state| self.states[state][k]).to_vec();
+        inputs.extend(by_place(rate));
+        inputs.extend(self.inputs.iter().map(|input| [input[k]]));
+        inputs.extend(system.parameters().map(|value| [value]));
+        inputs
+    }
+}
+
+/// The states in the order in which instruments take them, followed by their rates.
+const INSTRUMENTS: [usize; 8] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI, at::X, at::Y];
+
+pub(super) fn of_instruments(place: usize) -> usize {
+    INSTRUMENTS.iter().position(|&known| known == place).unwrap_or(0)
+}
+
+/// Central differences; at the ends one-sided.
+fn slope(t_s: &[f64], values: &[f64], k: usize) -> f64 {
+    let (before, after) = (k.saturating_sub(1), (k + 1).min(values.len() - 1));
+    (values[after] - values[before]) / (t_s[after] - t_s[before]).max(1e-9)
+}
+
+impl Path<'_> {
+    /// Roll of a law without it is what was recorded, if anything was.
+    pub fn roll(&self, name: &str, k: usize) -> f64 {
+        let channel = Channel::by_name(name).and_then(|channel| self.record.trial.channel(channel));
+        channel.map_or(0.0, |values| values[k])
+    }
+}
+
+/// Puts lags into effect and prepares their derivatives.
+fn delayed(system: &System, record: &Record<'_>, inputs: &mut [Vec<f64>]) -> Vec<Option<(Vec<f64>, f64)>> {
+    let t_s = &record.trial.t_s;
+    let parameters = system.columns.candidates.iter().flat_map(|c| c.at.iter().copied().zip(c.form.parameters.values()));
+    let mut derivatives = Vec::new();
+    for ((value, parameter), input) in parameters.zip(&system.lagged) {
+        let Some(input) = *input else {
+            derivatives.push(None);
+            continue;
+        };
+        let more = if value > 0.0 { 0.05 * value + 0.01 } else { parameter.start.max(0.01) };
+        let longer = lagged(t_s, &inputs[input], value + more);
+        if value > 0.0 {
+            inputs[input] = lagged(t_s, &inputs[input], value);
+        }
+        derivatives.push(Some((longer, more)));
+    }
+    derivatives
+}

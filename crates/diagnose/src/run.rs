@@ -1,0 +1,144 @@
+//! The whole diagnosis.
+
+use std::collections::BTreeMap;
+
+use super::Request;
+use super::choose::{Choice, Settled, choose};
+use super::judge::errors;
+use super::outcome::{Diagnosis, Unexplained, Verdict};
+use super::refit::refits;
+use super::remainder::unexplained;
+use super::said::{apart, how, hypotheses, in_model, remarks};
+use super::search::{Judged, Search};
+use super::series::{levels, residuals};
+use super::setup::search;
+use sistership_estimate::refine::{Progress, RefineError};
+
+/// Diagnoses a model on trials.
+///
+/// # Errors
+/// Says which setting, trial or channel is at fault.
+pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Diagnosis, RefineError> {
+    request.settings.check().map_err(|(field, message)| RefineError::Setting { field, message })?;
+    if request.trials.is_empty() {
+        return Err(RefineError::Data("there is no trial to diagnose on".into()));
+    }
+    step(progress, 0.05, "which effects can be tried on these trials")?;
+    let search = search(request)?;
+    step(progress, 0.1, "every effect alone, then together")?;
+    let choice = choose(&search, request.settings)?;
+    step(progress, 0.8, "what remains")?;
+    answer(request, &search, choice, progress)
+}
+
+fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineError> {
+    if progress(fraction, what) { Ok(()) } else { Err(RefineError::Cancelled) }
+}
+
+fn answer(request: &Request<'_>, first: &Search<'_>, choice: Choice, progress: Progress<'_>) -> Result<Diagnosis, RefineError> {
+    let Believed { choice, settled, remaining, refused } = believed(request, first, choice, progress)?;
+    let Settled { search, base, best } = &settled;
+    let workspace = &base.workspace;
+    let length_s = workspace.lpp_m / workspace.speed_m_s;
+    step(progress, 0.85, "simulating each trial by a fit on the others")?;
+    let restart_s = request.settings.restart_s.unwrap_or(10.0 * length_s);
+    let mut refits = refits(request, search, best, restart_s);
+    let errors = errors(request, &refits, restart_s);
+    let taken = refits.swap_remove(errors.taken);
+    step(progress, 0.95, "what these trials cannot tell apart")?;
+    let (mut found, next_trial) = apart(request, search, best, choice.best().log_evidence - choice.alone.log_evidence)?;
+    let verdict = match (remaining.is_empty(), found.is_empty()) {
+        (false, _) => Verdict::Unexplained,
+        (true, true) => Verdict::Complete,
+        (true, false) => Verdict::Effects,
+    };
+    let model = (!found.is_empty() && errors.change < 0.0).then_some(taken.all);
+    found.iter_mut().for_each(|found| found.in_model = model.as_ref().map_or_else(BTreeMap::new, |model| in_model(found, model)));
+    let is_better = found.is_empty() || model.is_some();
+    let remarks = remarks(&refused, is_better, &found);
+    Ok(Diagnosis {
+        verdict,
+        effects: found,
+        unexplained: remaining,
+        next_trial,
+        before: errors.before,
+        after: errors.after,
+        noise: workspace.noise.iter().map(|(channel, instrument)| (channel.name().to_owned(), instrument.deviation)).collect(),
+        how: how(request, taken.how.as_deref()),
+        diagnosed: request.model.name.clone(),
+        hypotheses: hypotheses(request, search, &choice),
+        trials: errors.trials,
+        manoeuvres: errors.manoeuvres,
+        residuals: residuals(first, search, best)?,
+        discrepancies: levels(search, workspace, &choice.alone, best),
+        model,
+        settings: request.settings.clone(),
+        remarks,
+    })
+}
+
+/// What is taken in the end.
+struct Believed<'a> {
+    choice: Choice,
+    settled: Settled<'a>,
+    remaining: Vec<Unexplained>,
+    /// Names of effects that are not the same at all times.
+    refused: Vec<String>,
+}
+
+/// The effects taken, as far as each is the same at all times where something remains unexplained. Where one is not, the
+/// choice is made again without it: it may have stood before another.
+fn believed<'a>(
+    request: &Request<'_>,
+    search: &Search<'a>,
+    choice: Choice,
+    progress: Progress<'_>,
+) -> Result<Believed<'a>, RefineError> {
+    let (mut search, mut choice, mut refused) = (search.clone(), choice, Vec::new());
+    loop {
+        let settled = choice.settled(&search, request)?;
+        let remaining = remaining(&settled.search, &settled.best, &settled.base.workspace)?;
+        let margin = request.settings.least_evidence;
+        let inconstant = match remaining.is_empty() {
+            true => Vec::new(),
+            false => settled.search.inconstant(&settled.base, &settled.best, margin)?,
+        };
+        if inconstant.is_empty() {
+            return Ok(Believed { choice, settled, remaining, refused });
+        }
+        let names = inconstant.into_iter().map(|place| settled.best.candidates[place].effect.clone());
+        refused.extend(names.inspect(|name| search.forget(name)));
+        step(progress, 0.8, "effects without those that only resemble what is missing")?;
+        choice = choose(&search, request.settings)?.after(choice);
+    }
+}
+
+fn remaining(
+    search: &Search<'_>,
+    best: &Judged,
+    workspace: &super::workspace::Workspace<'_>,
+) -> Result<Vec<Unexplained>, RefineError> {
+    let expected = match search.model.uncertainty {
+        Some(_) => &search.expected,
+        None => &workspace.scales().discrepancies(REMAINDER),
+    };
+    let moved = best.candidates.iter().zip(&best.stood).flat_map(|(c, s)| c.at.iter().zip(&s.at).map(|(a, b)| a - b));
+    let parameters: Vec<f64> = best.shift.iter().copied().chain(moved).collect();
+    let clean = search.model.uncertainty.as_ref().map(|uncertainty| &uncertainty.remainder);
+    let changes: Vec<f64> = best.candidates.iter().flat_map(|candidate| candidate.change()).collect();
+    let effects: Vec<f64> = vec![0.0; best.shift.len()].into_iter().chain(changes).collect();
+    let found = unexplained(workspace, expected, &parameters, &effects, clean);
+    if clean.is_none() || found.is_empty() {
+        return Ok(found);
+    }
+    // Coefficients that gave way to what is missing have spread it over the trial: it is dated by those of clean trials.
+    let given_way = search.given_way().into_iter().map(|change| -change);
+    let as_taught: Vec<f64> = given_way.chain(parameters.iter().copied().skip(best.shift.len())).collect();
+    let dated = unexplained(workspace, expected, &as_taught, &effects, clean);
+    let same = |a: &Unexplained, b: &Unexplained| a.trial == b.trial && a.channel == b.channel;
+    let dated: Vec<Unexplained> = dated.into_iter().filter(|a| found.iter().any(|b| same(a, b))).collect();
+    Ok(if dated.is_empty() { found } else { dated })
+}
+
+/// The discrepancy that is forgiven a model that brings none, by the typical acceleration.
+const REMAINDER: f64 = 3e-4;

@@ -1,0 +1,124 @@
+//! A model, columns and trials made ready: linearised once, filtered at any level of discrepancy.
+
+use rayon::prelude::*;
+use sistership_model::coefficient::Axis;
+use sistership_model::manifest::VelocityFrame;
+use sistership_model::trial::Channel;
+use sistership_model::uncertainty::{InstrumentFit, Uncertainty};
+use sistership_model::{Trial, particulars};
+
+use super::learned::Learned;
+use crate::residual::{
+    Columns, Detail, Discrepancies, Gram, Instrument, Linearised, Noise, Record, System, filter, floor, linearise, scatter,
+    sparseness,
+};
+use sistership_estimate::refine::RefineError;
+use sistership_estimate::transfer::approach_of;
+
+/// How long before and after a jump readings are not used, by the time in which the ship sails her length: what was smoothed
+/// carries it on.
+const SETTLES: f64 = 0.2;
+
+/// Everything that does not change with the discrepancy.
+pub struct Workspace<'a> {
+    pub trials: &'a [&'a Trial],
+    pub noise: Noise,
+    pub lpp_m: f64,
+    pub speed_m_s: f64,
+    system: System,
+    records: Vec<Record<'a>>,
+    linear: Vec<Vec<Linearised>>,
+}
+
+/// What is typical of a ship.
+#[derive(Debug, Clone)]
+pub struct Scales {
+    /// Accelerations by axis: U^2/L, or (U/L)^2.
+    pub accelerations: Vec<f64>,
+    /// Time over which the discrepancy is correlated, s: the ship sails her length.
+    pub time_s: f64,
+}
+
+impl<'a> Workspace<'a> {
+    /// # Errors
+    /// Names what the model or a trial lacks.
+    pub fn new(
+        learned: &Learned,
+        columns: Columns,
+        trials: &'a [&'a Trial],
+        least_step_s: Option<f64>,
+    ) -> Result<Self, RefineError> {
+        let Learned { model, law } = learned;
+        let lpp_m = particulars::value(&model.particulars, "lpp_m");
+        let lpp_m = lpp_m.ok_or_else(|| RefineError::Law(format!("the model `{}` does not give `lpp_m`", model.name)))?;
+        let approach = approach_of(trials).map(|approach| approach.speed_m_s);
+        let speed_m_s = approach.or(model.speed_m_s).ok_or_else(|| RefineError::Data("the trials have no speed".into()))?;
+        let least_step_s = least_step_s.unwrap_or(0.02 * lpp_m / speed_m_s);
+        let settles_s = SETTLES * lpp_m / speed_m_s;
+        let mut records: Vec<Record<'a>> = trials.iter().map(|trial| Record::new(trial, least_step_s, settles_s)).collect();
+        let every = sparseness(&records);
+        records.iter_mut().for_each(|record| record.every = every);
+        let noise = noise(&records, lpp_m, speed_m_s, model.uncertainty.as_ref());
+        let frame = trials.first().map(|trial| trial.velocity).unwrap_or_default();
+        let system = System::new(model, law, columns, frame)?;
+        let linear = records.par_iter().map(|record| linearise(&system, record, Detail::Whole)).collect::<Result<_, _>>()?;
+        Ok(Self { trials, noise, lpp_m, speed_m_s, system, records, linear })
+    }
+
+    pub fn columns(&self) -> &Columns {
+        &self.system.columns
+    }
+
+    pub fn axes(&self) -> &[Axis] {
+        &self.system.axes
+    }
+
+    pub fn frame(&self) -> VelocityFrame {
+        self.system.frame
+    }
+
+    pub fn records(&self) -> &[Record<'a>] {
+        &self.records
+    }
+
+    pub fn linear(&self) -> &[Vec<Linearised>] {
+        &self.linear
+    }
+
+    pub fn scales(&self) -> Scales {
+        let rate = self.speed_m_s / self.lpp_m;
+        let of = |axis: &Axis| if matches!(axis, Axis::X | Axis::Y) { self.speed_m_s * rate } else { rate * rate };
+        Scales { accelerations: self.axes().iter().map(of).collect(), time_s: rate.recip() }
+    }
+
+    /// The products of each trial.
+    pub fn each(&self, discrepancies: &Discrepancies) -> Vec<Gram> {
+        self.each_under(&self.noise, discrepancies)
+    }
+
+    /// The products of each trial, by other instruments.
+    pub fn each_under(&self, noise: &Noise, discrepancies: &Discrepancies) -> Vec<Gram> {
+        let width = 1 + self.columns().len();
+        let of_trial = |parts: &Vec<Linearised>| {
+            let grams: Vec<Gram> = parts.iter().map(|part| filter(part, noise, discrepancies)).collect();
+            Gram::sum(&grams, width)
+        };
+        self.linear.par_iter().map(of_trial).collect()
+    }
+}
+
+/// Each instrument over all trials: its scatter, and what is known of it beside.
+fn noise(records: &[Record<'_>], lpp_m: f64, speed_m_s: f64, known: Option<&Uncertainty>) -> Noise {
+    let read = [Channel::U, Channel::V, Channel::R, Channel::P, Channel::Phi, Channel::Psi, Channel::X, Channel::Y];
+    let one = |channel: Channel| {
+        let scatter =
+            Instrument::of_scatter(scatter(records, channel, records.first()?.every)?.max(floor(channel, lpp_m, speed_m_s)));
+        let known = known.and_then(|known| known.instruments.get(channel.name()));
+        let of = |known: &InstrumentFit| Instrument {
+            deviation: scatter.deviation * known.deviation_by_scatter,
+            drift: scatter.drift.max(known.drift),
+        };
+        Some((channel, known.map_or(scatter, of)))
+    };
+    read.into_iter().filter_map(one).collect()
+}

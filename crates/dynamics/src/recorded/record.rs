@@ -1,0 +1,86 @@
+//! A trial as a simulation reads it.
+
+use sistership_model::effect::{TIME, input_channel};
+use sistership_model::trial::{Channel, Trial};
+
+use crate::interpolate::{MonotoneCubic, lagged};
+use crate::plant::{Inputs, MAX_INPUTS};
+use crate::ship::Ship;
+use crate::state::{RECORDED, StateVector, at};
+
+/// Why a trial cannot be simulated at all.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("trial `{trial}` has no channel `{channel}`, which the simulation needs")]
+pub struct MissingChannel {
+    /// The trial.
+    pub trial: String,
+    /// The channel it lacks.
+    pub channel: Channel,
+}
+
+/// The channels of a trial that a simulation reads.
+pub(super) struct Record<'a> {
+    pub trial: &'a Trial,
+    pub delta: &'a [f64],
+    pub n: Option<&'a [f64]>,
+    /// Each input of the law: recorded, or constant.
+    inputs: Vec<Result<MonotoneCubic<'a>, f64>>,
+    start: Vec<(usize, &'a [f64])>,
+}
+
+impl<'a> Record<'a> {
+    pub fn new(ship: &Ship, trial: &'a Trial) -> Result<Self, MissingChannel> {
+        let need = |channel| trial.channel(channel).ok_or_else(|| MissingChannel { trial: trial.name.clone(), channel });
+        // Velocities must be known at the start of a part; heading and position start at zero where they are not.
+        for (channel, _) in &RECORDED[..3] {
+            need(*channel)?;
+        }
+        let start = RECORDED.iter().filter_map(|&(channel, index)| Some((index, trial.channel(channel)?))).collect();
+        let lag_s = |place: usize| ship.lags_s().iter().find(|(of, _)| *of == place).map(|&(_, lag_s)| lag_s);
+        let inputs = ship.law_inputs().enumerate();
+        let inputs =
+            inputs.map(|(place, (name, default))| input(trial, name, default, lag_s(place))).collect::<Result<_, _>>()?;
+        Ok(Self { trial, delta: need(Channel::Delta)?, n: trial.channel(Channel::N), inputs, start })
+    }
+
+    pub fn state_at(&self, sample: usize) -> StateVector {
+        let mut state = StateVector::zeros();
+        self.start.iter().for_each(|(index, column)| state[*index] = column[sample]);
+        state[at::DELTA] = self.delta[sample];
+        state
+    }
+
+    /// The inputs at a fraction of the way from a sample to the next.
+    pub fn inputs_at(&self, k: usize, w: f64) -> Inputs {
+        let mut inputs = [0.0; MAX_INPUTS];
+        for (value, input) in inputs.iter_mut().zip(&self.inputs) {
+            *value = input.as_ref().map_or_else(|constant| *constant, |column| column.at(k, w));
+        }
+        inputs
+    }
+}
+
+/// An input of the law on a trial: time, its channel, the trial's constant depth, or the law's default.
+fn input<'a>(
+    trial: &'a Trial,
+    name: &str,
+    default: Option<f64>,
+    lag_s: Option<f64>,
+) -> Result<Result<MonotoneCubic<'a>, f64>, MissingChannel> {
+    if name == TIME {
+        let start = trial.t_s.first().copied().unwrap_or_default();
+        return Ok(Ok(MonotoneCubic::new(&trial.t_s, trial.t_s.iter().map(|t| t - start).collect::<Vec<f64>>())));
+    }
+    let channel = input_channel(name);
+    if let Some(column) = channel.and_then(|channel| trial.channel(channel)) {
+        return Ok(Ok(match lag_s {
+            Some(lag_s) if lag_s > 0.0 => MonotoneCubic::new(&trial.t_s, lagged(&trial.t_s, column, lag_s)),
+            _ => MonotoneCubic::new(&trial.t_s, column),
+        }));
+    }
+    let constant = if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
+    match (constant, channel) {
+        (Some(value), _) => Ok(Err(value)),
+        (None, channel) => Err(MissingChannel { trial: trial.name.clone(), channel: channel.unwrap_or(Channel::Delta) }),
+    }
+}

@@ -1,0 +1,9 @@
+//! From trials to models: similarity of ships, transfer of a model, and refinement of a source model by several estimators.
+
+pub mod bands;
+pub mod refine;
+pub mod similarity;
+pub mod source;
+#[cfg(any(test, feature = "testing"))]
+pub mod testing;
+pub mod transfer;

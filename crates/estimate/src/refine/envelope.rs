@@ -1,0 +1,209 @@
+//! Where a model will be used, and what its source says there: the states of the trials, and those of the source's own
+//! standard manoeuvres.
+
+use std::collections::BTreeMap;
+
+use sistership_dynamics::Ship;
+use sistership_dynamics::manoeuvre::{ManoeuvreSettings, STANDARD, sail_together};
+use sistership_dynamics::plant::{Inputs, MAX_INPUTS, Work};
+use sistership_dynamics::state::{RECORDED, StateVector, Trajectory, at};
+use sistership_model::Model;
+use sistership_model::coefficient::Axis;
+use sistership_model::law::Law;
+use sistership_model::trial::{Channel, Trial};
+
+use super::blocks::{Block, Blocks};
+use super::outcome::RefineError;
+use super::rows::{Table, known_tables};
+use crate::transfer::ready;
+use sistership_regression::Moments;
+
+/// Most samples of a trial or manoeuvre: neighbours say the same.
+const SAMPLES: usize = 400;
+/// A law that is expanded about an approach speed says nothing of much slower motion.
+const LEAST_OF_APPROACH: f64 = 0.3;
+/// What is smaller than this by the largest regressor is rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// What a source says where a model will be used.
+#[derive(Debug)]
+pub(super) struct OperatingEnvelope {
+    /// The source, for people.
+    pub source: String,
+    /// Its law.
+    pub law: String,
+    /// Whether it knows of roll.
+    pub roll: bool,
+    /// Samples that go together.
+    pub groups: Vec<Group>,
+}
+
+/// The samples of a trial or of a manoeuvre, with the source's accelerations at each.
+#[derive(Debug)]
+pub(super) struct Group {
+    /// States and inputs; time only counts them.
+    pub samples: Trial,
+    /// By axis, in the order of [`Axis`].
+    rates: [Vec<f64>; 4],
+    /// What each sample counts as.
+    pub weight: f64,
+}
+
+impl Group {
+    /// The source's acceleration of an axis at each sample.
+    fn rate(&self, axis: Axis) -> &[f64] {
+        &self.rates[axis as usize]
+    }
+
+    fn moments(&self, blocks: &Blocks) -> Result<Vec<Moments>, RefineError> {
+        let mut tables = known_tables(blocks, &self.samples, &|axis| self.rate(axis))?;
+        let one = |(block, table): (&Block, &mut Table)| {
+            silence(&mut table[..block.regressors()]);
+            Moments::about_zero(table, block.regressors(), self.weight)
+        };
+        Ok(blocks.blocks.iter().zip(&mut tables).map(one).collect())
+    }
+}
+
+impl OperatingEnvelope {
+    /// Of a source that is carried over to the ship, by its own law. The trials together weigh as much as the manoeuvres.
+    ///
+    /// # Errors
+    /// The source cannot sail, or the trials are nowhere that it knows.
+    pub fn new(source: &Model, law: &Law, trials: &[&Trial]) -> Result<Self, RefineError> {
+        let ship = ready(source, law, trials).map_err(RefineError::Law)?;
+        let asked = Asked::new(&ship, source, law);
+        let recorded = trials.iter().filter_map(|trial| asked.group(trial.depth_m, asked.recorded(trial)));
+        let sailed = sail_together(&ship, &STANDARD.map(|manoeuvre| (manoeuvre, &[][..])), &ManoeuvreSettings::default());
+        let sailed = sailed.into_iter().flatten().filter_map(|sailed| asked.group(None, asked.sailed(&sailed.track)));
+        let (recorded, sailed): (Vec<Group>, Vec<Group>) = (recorded.collect(), sailed.collect());
+        if recorded.is_empty() && sailed.is_empty() {
+            return Err(RefineError::Data(format!("`{}` can neither sail the standard manoeuvres nor the trials", source.name)));
+        }
+        let groups = [recorded, sailed].into_iter().flat_map(evened).collect();
+        Ok(Self { source: source.name.clone(), law: law.name.clone(), roll: law.has_roll(), groups })
+    }
+
+    /// The statistics of what the source says, as a law's regressions see it: by group and regression.
+    ///
+    /// # Errors
+    /// The law takes something that the trials do not record.
+    pub fn moments(&self, blocks: &Blocks) -> Result<Vec<Vec<Moments>>, RefineError> {
+        self.groups.iter().map(|group| group.moments(blocks)).collect()
+    }
+}
+
+/// Groups that together count as much as [`SAMPLES`] samples.
+fn evened(mut groups: Vec<Group>) -> Vec<Group> {
+    let all: usize = groups.iter().map(|group| group.samples.len()).sum();
+    groups.iter_mut().for_each(|group| group.weight = SAMPLES as f64 / all as f64);
+    groups
+}
+
+/// A state with its revolutions.
+type Point = (StateVector, f64);
+
+/// A source that is asked.
+struct Asked<'a> {
+    ship: &'a Ship,
+    /// Whether its law knows what revolutions do; else it holds for those of the approach.
+    propeller: bool,
+    n_rps: f64,
+    /// Slower motion than this it does not know.
+    least_m_s: f64,
+}
+
+impl<'a> Asked<'a> {
+    fn new(ship: &'a Ship, source: &Model, law: &Law) -> Self {
+        let expanded = law.approach_speed_parameter().is_some();
+        let least_m_s = if expanded { LEAST_OF_APPROACH * ship.approach_speed_m_s() } else { 0.0 };
+        Self { ship, propeller: ship.has_propeller(), n_rps: source.revolutions_rps.unwrap_or(0.0), least_m_s }
+    }
+
+    /// The states that a trial recorded; nothing where it lacks velocities or the rudder.
+    fn recorded(&self, trial: &Trial) -> Vec<Point> {
+        let need = [Channel::U, Channel::V, Channel::R, Channel::Delta];
+        if need.iter().any(|channel| trial.channel(*channel).is_none()) {
+            return Vec::new();
+        }
+        let columns: Vec<(usize, &[f64])> = RECORDED
+            .iter()
+            .chain(&[(Channel::Delta, at::DELTA)])
+            .filter_map(|&(channel, place)| Some((place, trial.channel(channel)?)))
+            .collect();
+        let one = |k: usize| {
+            let mut state = StateVector::zeros();
+            columns.iter().for_each(|(place, column)| state[*place] = column[k]);
+            (state, trial.channel(Channel::N).map_or(self.n_rps, |n| n[k]))
+        };
+        spread(trial.len()).map(one).collect()
+    }
+
+    fn sailed(&self, track: &Trajectory) -> Vec<Point> {
+        spread(track.t_s.len()).map(|k| (track.states[k], track.n_rps[k])).collect()
+    }
+
+    fn knows(&self, (state, n_rps): &Point) -> bool {
+        state[at::U] > self.least_m_s && (!self.propeller || *n_rps > 0.0)
+    }
+
+    /// What the source says at the points that it knows, heading north; none where there is none.
+    fn group(&self, depth_m: Option<f64>, mut points: Vec<Point>) -> Option<Group> {
+        points.retain(|point| self.knows(point));
+        points.iter_mut().for_each(|(state, _)| state[at::PSI] = 0.0);
+        let mut work = Work::default();
+        let rate = |point: &Point| self.ship.rate_with(&point.0, &self.inputs(point, depth_m), &mut work);
+        let rates: Vec<StateVector> = points.iter().map(rate).collect();
+        let of = |place: usize| rates.iter().map(|rate| rate[place]).collect::<Vec<f64>>();
+        let rates = [at::U, at::V, at::P, at::R].map(of);
+        let finite = rates.iter().flatten().all(|rate| rate.is_finite());
+        (finite && !points.is_empty()).then(|| Group { samples: self.samples(&points, depth_m), rates, weight: 1.0 })
+    }
+
+    fn inputs(&self, (state, n_rps): &Point, depth_m: Option<f64>) -> Inputs {
+        let (wind_m_s, wind_from) = calm(state);
+        let mut inputs = [0.0; MAX_INPUTS];
+        for (value, (name, default)) in inputs.iter_mut().zip(self.ship.law_inputs()) {
+            *value = match name {
+                "delta" => state[at::DELTA],
+                "n" => *n_rps,
+                "wind_speed" => wind_m_s,
+                "wind_from" => wind_from,
+                "depth" => depth_m.or(default).unwrap_or(0.0),
+                _ => default.unwrap_or(0.0),
+            };
+        }
+        inputs
+    }
+
+    fn samples(&self, points: &[Point], depth_m: Option<f64>) -> Trial {
+        let states =
+            [(Channel::U, at::U), (Channel::V, at::V), (Channel::R, at::R), (Channel::P, at::P), (Channel::Phi, at::PHI)];
+        let column = |place: usize| points.iter().map(|(state, _)| state[place]).collect::<Vec<f64>>();
+        let columns = states.into_iter().chain([(Channel::Delta, at::DELTA)]);
+        let mut channels: BTreeMap<Channel, Vec<f64>> = columns.map(|(channel, place)| (channel, column(place))).collect();
+        let n = points.iter().map(|(_, n_rps)| if self.propeller { *n_rps } else { self.n_rps });
+        channels.insert(Channel::N, n.collect());
+        let (wind_m_s, wind_from) = points.iter().map(|(state, _)| calm(state)).unzip();
+        channels.extend([(Channel::WindSpeed, wind_m_s), (Channel::WindFrom, wind_from)]);
+        Trial { t_s: (0..points.len()).map(|k| k as f64).collect(), channels, depth_m, ..Trial::default() }
+    }
+}
+
+/// Speed and direction of a wind that the ship does not feel: of the air's forces the source is not asked. Heading is north.
+fn calm(state: &StateVector) -> (f64, f64) {
+    let (u, v) = (state[at::U], state[at::V]);
+    (u.hypot(v), (-v).atan2(-u))
+}
+
+/// At most [`SAMPLES`] places, evenly spread.
+fn spread(count: usize) -> impl Iterator<Item = usize> {
+    (0..count).step_by(count.div_ceil(SAMPLES).max(1))
+}
+
+/// Regressors that are nothing but rounding become zero: the source says nothing of them.
+fn silence(regressors: &mut [Vec<f64>]) {
+    let size = |column: &Vec<f64>| column.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let least = ROUNDING * regressors.iter().map(size).fold(0.0, f64::max);
+    regressors.iter_mut().filter(|column| size(column) < least).for_each(|column| column.fill(0.0));
+}

@@ -1,0 +1,131 @@
+//! Which terms a law has while it is fitted: the source's own, or as many as its factors can spell.
+
+use serde::{Deserialize, Serialize};
+use sistership_model::Model;
+use sistership_model::coefficient::{Axis, CoefficientName};
+use sistership_model::law::Law;
+use sistership_model::quantity::Quantity;
+
+/// A set of terms among which model selection chooses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Family {
+    /// The source's own.
+    Own,
+    /// The source's own without those that break the symmetry of port and starboard, such as `Y_0` or `N_uu`.
+    Symmetric,
+    /// Symmetric, and every product of up to three of `u`, `v`, `r`, `phi` and `delta` that the law's factors can spell and
+    /// that has the symmetry of its axis; roll rate and the moment of heel linearly.
+    ThirdOrder,
+}
+
+/// Factors that may enter powers and products on an axis.
+const PRODUCTS: [&str; 4] = ["v", "r", "phi", "delta"];
+/// Factors that enter linearly only, where the law has them: they say the same as `phi` does, or too little.
+const LINEAR: [&str; 2] = ["p", "heel"];
+
+impl Family {
+    /// Every family, from the source's terms outwards.
+    pub(super) const ALL: [Self; 3] = [Self::Own, Self::Symmetric, Self::ThirdOrder];
+
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Own => "own terms",
+            Self::Symmetric => "symmetric terms",
+            Self::ThirdOrder => "third order",
+        }
+    }
+
+    /// A model with these terms; what it did not have starts at zero. `None` where that changes nothing.
+    pub fn of(self, model: &Model, law: &Law) -> Option<Model> {
+        let mut changed = model.clone();
+        if self != Self::Own {
+            changed.coefficients.retain(|name, _| !breaks_symmetry(name, law));
+        }
+        if self == Self::ThirdOrder {
+            for name in third_order(law) {
+                changed.coefficients.entry(name).or_insert_with(added);
+            }
+        }
+        (self == Self::Own || changed != *model).then_some(changed)
+    }
+}
+
+fn added() -> Quantity {
+    Quantity::new(0.0, "term added")
+}
+
+/// Whether mirrored motion would not give mirrored forces: the count of odd factors does not fit the axis.
+fn breaks_symmetry(name: &str, law: &Law) -> bool {
+    let Ok(parsed) = CoefficientName::parse(name, &law.extra_factors()) else { return false };
+    let odd = |symbol: &str| !matches!(symbol, "u" | "n" | "cosdelta");
+    let count = parsed.factors.iter().filter(|factor| !factor.absolute && odd(&factor.symbol)).count();
+    (count % 2 == 1) != parsed.axis.is_odd()
+}
+
+/// Every term of third order that an open axis can have.
+fn third_order(law: &Law) -> Vec<String> {
+    let known = |symbol: &&&str| law.factors.contains_key(**symbol);
+    let products: Vec<&str> = PRODUCTS.iter().filter(known).copied().collect();
+    let linear: Vec<&str> = LINEAR.iter().filter(known).copied().collect();
+    let open = law.axes.iter().filter(|(_, axis)| axis.open).map(|(axis, _)| *axis);
+    let of_axis = |axis: Axis| {
+        let terms = if axis.is_odd() { odd_terms(&products, &linear) } else { even_terms(&products) };
+        let spelled = terms.into_iter().map(move |factors| format!("{axis}_{factors}"));
+        spelled.filter(|name| law.term(name).is_ok()).collect::<Vec<_>>()
+    };
+    open.flat_map(of_axis).collect()
+}
+
+fn odd_terms(products: &[&str], linear: &[&str]) -> Vec<String> {
+    let singles = products.iter().chain(linear).map(|s| (*s).to_owned());
+    let with_u = products.iter().flat_map(|s| [format!("u{s}"), format!("uu{s}")]);
+    singles.chain(with_u).chain(monomials(products, 3)).collect()
+}
+
+fn even_terms(products: &[&str]) -> Vec<String> {
+    let squares = monomials(products, 2);
+    let with_u = squares.iter().map(|s| format!("u{s}")).collect::<Vec<_>>();
+    ["0", "u", "uu", "uuu"].into_iter().map(str::to_owned).chain(squares).chain(with_u).collect()
+}
+
+/// Every product of so many factors, in their order.
+fn monomials(factors: &[&str], degree: usize) -> Vec<String> {
+    if degree == 0 {
+        return vec![String::new()];
+    }
+    let from = |(i, first): (usize, &&str)| {
+        let rest = monomials(&factors[i..], degree - 1);
+        rest.into_iter().map(|rest| format!("{first}{rest}")).collect::<Vec<_>>()
+    };
+    factors.iter().enumerate().flat_map(from).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_model::Zoo;
+
+    #[test]
+    fn families_of_the_mariner() {
+        let zoo = Zoo::embedded().unwrap();
+        let (model, law) = (zoo.model("mariner").unwrap(), zoo.law("abkowitz").unwrap());
+        let symmetric = Family::Symmetric.of(&model, law).unwrap();
+        let dropped: Vec<&str> =
+            model.coefficients.keys().filter(|name| !symmetric.coefficients.contains_key(*name)).map(String::as_str).collect();
+        assert_eq!(dropped, ["N_0", "N_u", "N_uu", "Y_0", "Y_u", "Y_uu"]);
+        assert_eq!(Family::Symmetric.of(&symmetric, law), None);
+        let third = Family::ThirdOrder.of(&model, law).unwrap();
+        for name in ["Y_vrr", "N_rrdelta", "X_rdelta", "Y_vrdelta", "N_ur"] {
+            assert!(third.coefficients.contains_key(name), "{name}");
+        }
+        assert!(third.coefficients.iter().all(|(name, q)| q.value == model.coefficient(name)));
+    }
+
+    #[test]
+    fn monomials_are_spelled_as_names_are() {
+        assert_eq!(monomials(&["v", "r"], 3), ["vvv", "vvr", "vrr", "rrr"]);
+    }
+}

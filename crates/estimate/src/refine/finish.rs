@@ -1,0 +1,116 @@
+//! The end of a refinement: the best candidate whose model also sails the standard manoeuvres is taken.
+
+use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres};
+use sistership_dynamics::validity::covered;
+use sistership_model::Model;
+use sistership_model::posterior::Posterior;
+
+use super::blocks::Blocks;
+use super::candidate::{CandidateFit, Solution, best};
+use super::family::Family;
+use super::gathered::{Taken, refinement};
+use super::manoeuvres::{measured_manoeuvres, standard_manoeuvres};
+use super::outcome::{Manoeuvres, RefineError, Refinement};
+use super::problem::Problem;
+use super::progress::{Progress, step};
+use super::ridge::{Choices, Fit};
+use super::variant::Variant;
+use crate::bands::bands;
+use sistership_regression::Choice;
+
+/// What a candidate gives with its standard manoeuvres, or why it may not be taken.
+type Accepted = Result<(Option<Fit>, StandardManoeuvres), String>;
+
+/// Takes the best candidate whose model, fitted on all trials, also sails the standard manoeuvres that the source sails.
+///
+/// # Errors
+/// No candidate's simulations go on to their end, or it was cancelled.
+pub(super) fn finish(
+    problem: &Problem<'_>,
+    mut candidates: Vec<CandidateFit>,
+    variants: &[Variant],
+    progress: Progress<'_>,
+) -> Result<Refinement, RefineError> {
+    step(progress, 0.9, "standard manoeuvres of the source")?;
+    let before = standard_manoeuvres(&problem.transferred, problem.law);
+    loop {
+        let Some(best) = best(&candidates) else {
+            let reasons: Vec<String> = candidates.iter().filter_map(|one| one.option.reason.clone()).collect();
+            return Err(RefineError::Diverged(reasons.join("; ")));
+        };
+        step(progress, 0.9, &format!("standard manoeuvres of option {}", candidates[best].option.step))?;
+        match accepted(problem, candidates[best].solution.as_ref(), variants, &before)? {
+            Ok((fitted, after)) => {
+                return take(problem, (candidates, best), (fitted, variants), (before, after), progress);
+            }
+            Err(reason) => (candidates[best].option.reason, candidates[best].option.error) = (Some(reason), None),
+        }
+    }
+}
+
+/// What a candidate gives on all trials, where it keeps the constraints and sails what the source sails; else the reason.
+fn accepted(
+    problem: &Problem<'_>,
+    solution: &dyn Solution,
+    variants: &[Variant],
+    before: &StandardManoeuvres,
+) -> Result<Accepted, RefineError> {
+    let fitted = match solution.fit(variants) {
+        Err(RefineError::Constraints(reason)) => return Ok(Err(reason)),
+        fitted => fitted?,
+    };
+    let after = standard_manoeuvres(&model_of(problem, fitted.as_ref()), problem.law);
+    let worse = after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
+    Ok(match worse {
+        Some(failure) => Err(format!("fails a standard manoeuvre that the source sails: {failure}")),
+        None => Ok((fitted, after)),
+    })
+}
+
+/// The refined model; the source where nothing was fitted.
+fn model_of(problem: &Problem<'_>, fitted: Option<&Fit>) -> Model {
+    let mut model = fitted.map_or_else(|| problem.transferred.clone(), |fit| problem.model_with(&fit.coefficients));
+    model.validity = covered(&problem.whole, problem.law);
+    model
+}
+
+/// The refinement by a candidate, with its errors.
+fn take(
+    problem: &Problem<'_>,
+    (mut candidates, best): (Vec<CandidateFit>, usize),
+    (fitted, variants): (Option<Fit>, &[Variant]),
+    (before, after): (StandardManoeuvres, StandardManoeuvres),
+    progress: Progress<'_>,
+) -> Result<Refinement, RefineError> {
+    candidates[best].option.chosen = true;
+    let errors = candidates[best].solution.errors(problem, variants)?;
+    let fitted = fitted.map(|fit| fit.with_errors(errors));
+    let mut model = model_of(problem, fitted.as_ref());
+    model.posterior = posterior(problem, &model, fitted.as_ref(), variants)?;
+    let measured = measured_manoeuvres(problem, &model);
+    step(progress, 0.93, "confidence bands")?;
+    let bands = bands(&model, problem.law, &ManoeuvreSettings::default(), None, problem.settings.bands);
+    let manoeuvres = Manoeuvres { source: before, refined: after, bands, measured };
+    refinement(problem, Taken { candidates, best, model, fitted }, manoeuvres)
+}
+
+/// How far the model's coefficients may be from the truth. Those of a source that is kept are as far as the trials say
+/// that they are.
+fn posterior(
+    problem: &Problem<'_>,
+    model: &Model,
+    fitted: Option<&Fit>,
+    variants: &[Variant],
+) -> Result<Option<Posterior>, RefineError> {
+    let errors = match (fitted, variants.iter().find(|variant| variant.family == Family::Own)) {
+        (Some(fitted), _) => fitted.errors.clone(),
+        (None, Some(own)) => own.errors(&problem.training, &held(&own.blocks))?,
+        (None, None) => None,
+    };
+    Ok(errors.and_then(|errors| errors.posterior(model)))
+}
+
+/// Choices that keep the source.
+fn held(blocks: &Blocks) -> Choices {
+    blocks.blocks.iter().map(|block| vec![Choice { lambda: 1e9, alpha: 0.0 }; block.axes.len()]).collect()
+}

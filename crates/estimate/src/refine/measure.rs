@@ -1,0 +1,84 @@
+//! What a prior measures a change of coefficients by.
+
+use nalgebra::{DMatrix, DVector};
+use sistership_model::Model;
+use sistership_model::law::Law;
+use sistership_model::trial::Trial;
+
+use super::across::Imitation;
+use super::blocks::{Block, Blocks};
+use super::envelope::OperatingEnvelope;
+use super::merged::merged;
+use super::outcome::RefineError;
+use sistership_regression::Moments;
+
+/// Where the sizes of the regressors come from.
+pub(super) enum Measure {
+    /// The trials (Kanazawa 2023, Eq. 5.11).
+    Trials,
+    /// The trials and the source's standard manoeuvres, where trials are left out part by part. Such parts resemble what is
+    /// fitted, so that errors on them do not tell a cubic term that is wrong beyond the trials: in the sizes of the envelope it
+    /// takes more to move it than a linear one. docs/decisions/0006 has the evidence.
+    Envelope(OperatingEnvelope),
+    /// What a source of another law says over the envelope, jointly.
+    Source(OperatingEnvelope),
+}
+
+impl Measure {
+    /// Of a source by the law that is fitted. One that cannot sail has no envelope.
+    pub fn own(source: &Model, law: &Law, trials: &[&Trial], in_parts: bool) -> Self {
+        let envelope = in_parts.then(|| OperatingEnvelope::new(source, law, trials).ok()).flatten();
+        envelope.map_or(Self::Trials, Self::Envelope)
+    }
+
+    /// Whether the prior is what a source of another law says.
+    pub fn is_source(&self) -> bool {
+        matches!(self, Self::Source(_))
+    }
+
+    /// Gives a model's regressions their measure, and the model what a source of another law says.
+    ///
+    /// # Errors
+    /// The law takes something that the trials do not record.
+    pub fn hold(&self, blocks: &mut Blocks, model: &mut Model, trials: &[Moments]) -> Result<(), RefineError> {
+        match self {
+            Self::Trials => {}
+            Self::Envelope(envelope) => sized(blocks, &envelope.moments(blocks)?, trials),
+            Self::Source(envelope) => {
+                let imitation = Imitation::new(envelope, blocks, model)?;
+                imitation.fill(blocks, model);
+                imitation.hold(blocks, trials);
+            }
+        }
+        Ok(())
+    }
+
+    /// What it is, for people; nothing where it is as published.
+    pub fn words(&self, model: &Model, law: &Law) -> Option<String> {
+        match self {
+            Self::Trials => None,
+            Self::Envelope(_) => Some(
+                "few trials of a ship that rolls: they were left out part by part, and the prior measures each term by its size \
+                 in the source's standard manoeuvres too"
+                    .to_owned(),
+            ),
+            Self::Source(envelope) => {
+                let blocks = Blocks::new(model, law).ok()?;
+                Some(Imitation::new(envelope, &blocks, model).ok()?.words(&blocks, &law.name))
+            }
+        }
+    }
+}
+
+/// Measures each coefficient by its regressor's deviation over the envelope, or over the trials where that is more.
+fn sized(blocks: &mut Blocks, envelope: &[Vec<Moments>], trials: &[Moments]) {
+    let Some(all) = merged(envelope, |_| true) else { return };
+    for ((block, envelope), trials) in blocks.blocks.iter_mut().zip(&all).zip(trials) {
+        block.precision = Some(DMatrix::from_diagonal(&sizes(block, envelope, trials)));
+    }
+}
+
+fn sizes(block: &Block, envelope: &Moments, trials: &Moments) -> DVector<f64> {
+    let size = |j: usize, _| block.shrinkage[j] * envelope.variance(j).max(trials.variance(j));
+    DVector::from_fn(block.regressors(), size)
+}

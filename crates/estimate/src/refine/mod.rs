@@ -1,0 +1,48 @@
+//! Refinement of a source model against trials.
+
+mod across;
+mod alternatives;
+mod blocks;
+mod candidate;
+mod cma_es;
+mod constraints;
+mod envelope;
+mod equations;
+mod errors;
+mod estimator;
+mod estimators;
+mod family;
+mod finish;
+mod gathered;
+mod manoeuvres;
+mod measure;
+mod merged;
+mod outcome;
+mod parts;
+mod posterior;
+mod problem;
+mod progress;
+mod published;
+mod ridge;
+mod ridge_candidates;
+mod rows;
+mod selection;
+mod settings;
+mod simulated;
+mod thinned;
+mod trajectory;
+mod variant;
+mod weak;
+
+pub use alternatives::{Alternative, alternatives};
+pub use blocks::{Block, Blocks};
+pub use cma_es::{CmaEs, SearchReport};
+pub use constraints::{Bound, Constraints, StraightLine};
+pub use family::Family;
+pub use outcome::{CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement, StepOption};
+pub use progress::{Iterate, Progress, Watch};
+pub use ridge::{Choices, Fit, Fitted, Fold, fit, tune};
+pub use rows::{Table, trial_moments, trial_tables};
+pub use selection::{Request, refine, refine_watched};
+pub use settings::{Method, Range, Settings};
+pub use weak::{Windows, weak_moments, weak_tables};

@@ -1,0 +1,81 @@
+//! Trials in parts, where whole ones cannot be left out.
+//!
+//! Of roll a source of the plane says nothing, and one zigzag may be all that excites it. Where that is left out whole, the
+//! strength of the prior is chosen by models that know nothing of roll; left out part by part, what remains of it informs them.
+
+use std::ops::Range;
+
+use sistership_model::law::Law;
+use sistership_model::trial::Trial;
+
+use super::equations::Equations;
+use super::settings::Settings;
+
+/// The training trials in parts as long as simulations run between restarts, at least two of each, where a law rolls and there
+/// are fewer trials than folds; nothing where the trials stay whole.
+pub(super) fn parts(training: &[&Trial], law: &Law, equations: Equations, settings: &Settings) -> Vec<Trial> {
+    let Some(part_s) = settings.restart_s else { return Vec::new() };
+    if equations.are_differences() || !law.has_roll() || training.len() >= settings.folds {
+        return Vec::new();
+    }
+    training.iter().flat_map(|trial| cut(trial, part_s)).collect()
+}
+
+/// A trial in equal parts that neither overlap nor share a sample.
+fn cut(trial: &Trial, part_s: f64) -> Vec<Trial> {
+    let count = ((trial.duration_s() / part_s).round() as usize).max(2);
+    let size = trial.len().div_ceil(count).max(1);
+    (0..trial.len()).step_by(size).map(|from| slice(trial, from..(from + size).min(trial.len()))).collect()
+}
+
+pub(super) fn slice(trial: &Trial, samples: Range<usize>) -> Trial {
+    let of = |column: &[f64]| column[samples.clone()].to_vec();
+    Trial {
+        name: trial.name.clone(),
+        t_s: of(&trial.t_s),
+        channels: trial.channels.iter().map(|(channel, column)| (*channel, of(column))).collect(),
+        manoeuvre: trial.manoeuvre.clone(),
+        depth_m: trial.depth_m,
+        velocity: trial.velocity,
+        warnings: Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::weak::Windows;
+    use super::*;
+    use sistership_model::Zoo;
+    use sistership_model::trial::Channel;
+
+    fn trial(samples: usize) -> Trial {
+        let t_s: Vec<f64> = (0..samples).map(|k| 0.5 * k as f64).collect();
+        Trial { channels: [(Channel::U, t_s.clone())].into(), t_s, ..Trial::default() }
+    }
+
+    #[test]
+    fn parts_hold_every_sample_once() {
+        let whole = trial(1161);
+        for (part_s, count) in [(200.0, 3), (1000.0, 2)] {
+            let parts = cut(&whole, part_s);
+            assert_eq!(parts.len(), count);
+            let together: Vec<f64> = parts.iter().flat_map(|part| part.channel(Channel::U).unwrap().to_vec()).collect();
+            assert_eq!(together, whole.t_s);
+        }
+    }
+
+    #[test]
+    fn only_few_trials_of_ships_that_roll_are_cut() {
+        let zoo = Zoo::embedded().unwrap();
+        let one = trial(1000);
+        let settings = Settings { restart_s: Some(100.0), ..Settings::default() };
+        let windows = Equations::Windows(Windows { length_s: 20.0, hop_s: 2.0 });
+        let count =
+            |law: &str, trials: usize, equations| parts(&vec![&one; trials], zoo.law(law).unwrap(), equations, &settings).len();
+        assert_eq!(count("abkowitz-roll", 3, windows), 15);
+        assert_eq!(count("abkowitz-roll", 8, windows), 0);
+        assert_eq!(count("abkowitz", 3, windows), 0);
+        assert_eq!(count("abkowitz-roll", 3, Equations::Differences(None)), 0);
+    }
+}

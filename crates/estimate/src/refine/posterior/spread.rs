@@ -1,0 +1,101 @@
+//! How far a source is from the truth, as the trials themselves say.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::equation::Equation;
+
+/// Deviations tried of the source's coefficients by their own size.
+const RELATIVE: Tried = Tried { least: 1e-3, most: 3.0, count: 13 };
+/// Deviations tried of all coefficients alike, by the root mean square of the target.
+const COMMON: Tried = Tried { least: 1e-4, most: 10.0, count: 13 };
+/// Directions of regressors that vary less than this, by the one that varies most, say nothing.
+const SILENT: f64 = 1e-9;
+
+/// Values evenly spaced in their logarithm.
+struct Tried {
+    least: f64,
+    most: f64,
+    count: usize,
+}
+
+impl Tried {
+    fn values(&self) -> impl Iterator<Item = f64> {
+        let (low, step) = (self.least.ln(), (self.most / self.least).ln() / (self.count - 1) as f64);
+        (0..self.count).map(move |k| (low + k as f64 * step).exp())
+    }
+}
+
+/// The variances of the source's standardised coefficients about the true ones: a share of their squares, and a common part,
+/// without which a term that the source does not have would be known to be none. `F'y/n` less what the source makes of it is
+/// `C d + F'e/n`, normal with `C D C + M`; these are the squares of the mean deviations over both parts' distribution given
+/// the trials, with `1/(1 + x^2)` before them for deviations by their unit (Gelman 2006, Bayesian Analysis 1, 515-533). Means
+/// of the variances themselves are ruled by the far end of what cannot be excluded.
+pub(super) fn spread(equation: &Equation<'_>, scatter: &DMatrix<f64>) -> DVector<f64> {
+    let (own, unit) = (equation.source.component_mul(&equation.source), equation.square);
+    let variances = |relative: f64, common: f64| (&own * relative.powi(2)).add_scalar(common.powi(2) * unit);
+    let Some(seen) = Seen::new(equation, scatter, &variances(1.0, 1.0)) else { return variances(1.0, 1.0) };
+    let before = |x: f64| (x / (1.0 + x * x)).ln();
+    let pairs = RELATIVE.values().flat_map(|relative| COMMON.values().map(move |common| (relative, common)));
+    let weighed: Vec<(DVector<f64>, f64)> = pairs
+        .filter_map(|(relative, common)| {
+            let variances = variances(relative, common);
+            // Steps are even in the logarithm.
+            let weight = seen.log_likelihood(&variances)? + before(relative) + before(common);
+            Some((variances, weight))
+        })
+        .collect();
+    let most = weighed.iter().map(|(_, weight)| *weight).fold(f64::NEG_INFINITY, f64::max);
+    let all: f64 = weighed.iter().map(|(_, weight)| (weight - most).exp()).sum();
+    let none = DVector::zeros(own.len());
+    let deviations = |variances: &DVector<f64>| variances.map(f64::sqrt);
+    let mean = weighed.iter().fold(none, |sum, (variances, weight)| sum + deviations(variances) * ((weight - most).exp() / all));
+    mean.component_mul(&mean)
+}
+
+/// What the trials say in the eigenbasis of the regressors, each direction by its size.
+struct Seen {
+    surprise: DVector<f64>,
+    /// From coefficients to directions.
+    response: DMatrix<f64>,
+    scatter: DMatrix<f64>,
+}
+
+impl Seen {
+    fn new(equation: &Equation<'_>, scatter: &DMatrix<f64>, variances: &DVector<f64>) -> Option<Self> {
+        let basis = equation.products.clone().symmetric_eigen();
+        let least = SILENT * basis.eigenvalues.max();
+        let kept: Vec<usize> = (0..basis.eigenvalues.len()).filter(|&k| basis.eigenvalues[k] > least).collect();
+        if kept.is_empty() {
+            return None;
+        }
+        let vectors = basis.eigenvectors.select_columns(&kept);
+        let mut surprise = vectors.tr_mul(&(&equation.data - equation.products * &equation.source));
+        let mut response = vectors.transpose();
+        response.row_iter_mut().zip(&kept).for_each(|(mut row, &k)| row *= basis.eigenvalues[k]);
+        let mut scatter = vectors.tr_mul(scatter) * &vectors;
+        let spread = weighed(&response, variances);
+        for k in 0..kept.len() {
+            let size = 1.0 / (spread[(k, k)] + scatter[(k, k)]).max(1e-300).sqrt();
+            surprise[k] *= size;
+            response.row_mut(k).scale_mut(size);
+            scatter.row_mut(k).scale_mut(size);
+            scatter.column_mut(k).scale_mut(size);
+        }
+        Some(Self { surprise, response, scatter })
+    }
+
+    fn log_likelihood(&self, variances: &DVector<f64>) -> Option<f64> {
+        let mut covariance = &self.scatter + weighed(&self.response, variances);
+        covariance.iter_mut().step_by(self.surprise.len() + 1).for_each(|diagonal| *diagonal += 1e-9);
+        let factor = covariance.cholesky()?;
+        let width: f64 = factor.l_dirty().diagonal().iter().map(|d| d.ln()).sum();
+        Some(-0.5 * self.surprise.dot(&factor.solve(&self.surprise)) - width)
+    }
+}
+
+/// `A diag(w) A'`.
+fn weighed(matrix: &DMatrix<f64>, weights: &DVector<f64>) -> DMatrix<f64> {
+    let mut scaled = matrix.clone();
+    scaled.column_iter_mut().zip(weights.iter()).for_each(|(mut column, weight)| column *= *weight);
+    scaled * matrix.transpose()
+}

@@ -1,0 +1,101 @@
+//! A refinement's problem: what does not change while candidates are compared.
+
+use std::collections::BTreeMap;
+
+use sistership_model::law::Law;
+use sistership_model::quantity::Quantity;
+use sistership_model::trial::Trial;
+use sistership_model::vessel::Status;
+use sistership_model::{Model, particulars};
+
+use super::measure::Measure;
+use super::progress::{Iterate, Watch};
+use super::ridge::Fitted;
+use super::settings::Settings;
+use super::thinned::thinned;
+use crate::transfer::approach_of;
+
+/// What does not change while candidates are compared.
+pub(super) struct Problem<'a> {
+    pub law: &'a Law,
+    /// The source's name.
+    pub source: &'a str,
+    /// What is fitted and left out: the trials, or parts of them.
+    pub training: Vec<&'a Trial>,
+    /// The same with no more samples than a simulation needs.
+    pub thinned: Vec<Trial>,
+    /// The trials of which that is.
+    pub whole: Vec<&'a Trial>,
+    pub judged: Vec<&'a Trial>,
+    pub transferred: Model,
+    /// What the prior measures coefficients by.
+    pub measure: Measure,
+    pub settings: Settings,
+    pub watch: Option<Watch<'a>>,
+}
+
+impl<'a> Problem<'a> {
+    /// Of a model with itself as the source, on whole trials.
+    pub fn of_model(model: &'a Model, law: &'a Law, trials: &[&'a Trial], settings: Settings) -> Self {
+        let training = trials.to_vec();
+        let (whole, judged, transferred) = (training.clone(), Vec::new(), model.clone());
+        let thinned = for_simulation(particulars::value(&model.particulars, "lpp_m"), &training);
+        Self {
+            law,
+            source: &model.name,
+            training,
+            thinned,
+            whole,
+            judged,
+            transferred,
+            measure: Measure::Trials,
+            settings,
+            watch: None,
+        }
+    }
+
+    /// Shows an iterate to whoever watches.
+    pub fn show(&self, iterate: &Iterate<'_>) {
+        self.watch.into_iter().for_each(|watch| watch(iterate));
+    }
+
+    /// Which fold a training trial is left out in.
+    pub fn fold_of(&self, trial: usize) -> usize {
+        trial % self.fold_count()
+    }
+
+    pub fn fold_count(&self) -> usize {
+        self.training.len().min(self.settings.folds)
+    }
+
+    /// Whether a trial is fitted in a fold; a single trial can only judge itself.
+    pub fn is_fitted(&self, trial: usize, fold: usize) -> bool {
+        self.training.len() == 1 || self.fold_of(trial) != fold
+    }
+
+    /// The shortest sampling interval, s.
+    pub fn interval_s(&self) -> f64 {
+        self.training.iter().map(|trial| trial.interval_s()).fold(f64::INFINITY, f64::min).max(1e-3)
+    }
+
+    /// The transferred model with these coefficients and no others.
+    pub fn model_with(&self, coefficients: &BTreeMap<String, Fitted>) -> Model {
+        let mut model = self.transferred.clone();
+        model.status = Status::Refined;
+        model.coefficients.clear();
+        for (name, fitted) in coefficients {
+            let quantity = Quantity {
+                standard_error: Some(fitted.standard_error),
+                ..Quantity::new(fitted.value, format!("refined from {}", self.source))
+            };
+            model.coefficients.insert(name.clone(), quantity);
+        }
+        model
+    }
+}
+
+/// Trials with samples as far apart as a thirtieth of the time in which the ship sails its length.
+pub(super) fn for_simulation(lpp_m: Option<f64>, training: &[&Trial]) -> Vec<Trial> {
+    let step_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s / 30.0);
+    training.iter().map(|trial| thinned(trial, step_s)).collect()
+}

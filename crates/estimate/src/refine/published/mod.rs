@@ -1,0 +1,61 @@
+//! The published estimator: one-step differences and the ridge with the source as its prior (Kanazawa 2023, Eqs. 5.4-5.17), with
+//! tuning ranges that widen step by step from the source outwards.
+
+use super::candidate::CandidateFit;
+use super::equations::Equations;
+use super::estimator::Estimator;
+use super::outcome::RefineError;
+use super::problem::Problem;
+use super::progress::{PartProgress, Progress};
+use super::ridge::{Fold, tune};
+use super::ridge_candidates::{each_variant, ridge_candidate};
+use super::settings::Settings;
+use super::variant::Variant;
+
+/// The time over which accelerations are differenced, by that in which the ship sails its length; decision 2.
+const DIFFERENCE: f64 = 0.1;
+
+/// The published estimator.
+pub(super) struct Published;
+
+impl Estimator for Published {
+    fn resolve(&self, settings: &mut Settings, length_s: Option<f64>) {
+        settings.difference_s = settings.difference_s.or(length_s.map(|s| DIFFERENCE * s));
+    }
+
+    fn equations(&self, settings: &Settings) -> Equations {
+        Equations::Differences(settings.difference_s)
+    }
+
+    fn candidates(
+        &self,
+        problem: &Problem<'_>,
+        variants: &[Variant],
+        candidates: &mut Vec<CandidateFit>,
+        progress: Progress<'_>,
+    ) -> Result<(), RefineError> {
+        let mut ranges =
+            |at: (usize, &Variant), folds: &[Fold<'_>], told: PartProgress<'_>| by_range(problem, at, folds, told, candidates);
+        each_variant(problem, variants, progress, &mut ranges)
+    }
+}
+
+/// One candidate for each range; a single trial allows the first range only.
+fn by_range(
+    problem: &Problem<'_>,
+    at: (usize, &Variant),
+    folds: &[Fold<'_>],
+    told: PartProgress<'_>,
+    candidates: &mut Vec<CandidateFit>,
+) -> Result<(), RefineError> {
+    let ranges = &problem.settings.ranges;
+    let allowed = if problem.training.len() == 1 { 1 } else { ranges.len() };
+    for (index, range) in ranges.iter().take(allowed).enumerate() {
+        let what = format!("lambda from {:.0e}: simulating manoeuvres left out", range.lambda_min);
+        told(index as f64 / allowed as f64, &what)?;
+        let choices = tune(folds, range, problem.settings.lambda_count);
+        let name = ((index + 1).to_string(), range.lambda_min);
+        candidates.push(ridge_candidate(problem, name, at, choices, folds)?);
+    }
+    Ok(())
+}

@@ -1,0 +1,109 @@
+//! The whole refinement: an estimator gives candidates from the source outwards, and the one whose simulations of manoeuvres left
+//! out are best is taken.
+
+use sistership_model::law::Law;
+use sistership_model::trial::Trial;
+use sistership_model::{Model, Vessel};
+
+use super::across::{self, Imitation};
+use super::blocks::Blocks;
+use super::finish::finish;
+use super::measure::Measure;
+use super::outcome::{RefineError, Refinement};
+use super::parts::parts;
+use super::problem::{Problem, for_simulation};
+use super::progress::{MonotoneProgress, Progress, Watch, step};
+use super::ridge_candidates::source_candidate;
+use super::settings::Settings;
+use super::variant::variants;
+use crate::transfer::{approach_of, transfer};
+
+/// What is to be refined, and against what.
+#[derive(Debug, Clone, Copy)]
+pub struct Request<'a> {
+    /// The ship.
+    pub target: &'a Vessel,
+    /// The source model, as published or as refined earlier.
+    pub source: &'a Model,
+    /// The source's law where it is another than what is fitted: what it says becomes the prior.
+    pub source_law: Option<&'a Law>,
+    /// The law of what is fitted.
+    pub law: &'a Law,
+    /// Her trials.
+    pub trials: &'a [&'a Trial],
+    /// Settings.
+    pub settings: &'a Settings,
+}
+
+/// Refines a source model against trials.
+///
+/// # Errors
+/// Says which setting, trial or channel is at fault; never leaves a model half refined.
+pub fn refine(request: &Request<'_>, progress: Progress<'_>) -> Result<Refinement, RefineError> {
+    refine_watched(request, progress, &|_| ())
+}
+
+/// As [`refine`], and shows what `trajectory` and `cma-es` pass by.
+///
+/// # Errors
+/// As [`refine`].
+pub fn refine_watched(request: &Request<'_>, progress: Progress<'_>, watch: Watch<'_>) -> Result<Refinement, RefineError> {
+    request.settings.check().map_err(|(field, message)| RefineError::Setting { field, message })?;
+    let (judged, whole) = divided(request)?;
+    let progress = MonotoneProgress::new(progress);
+    let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
+    let settings = resolved(request.settings, request.target.particular("lpp_m"), &whole);
+    let estimator = settings.method.estimator();
+    let equations = estimator.equations(&settings);
+    let parts = parts(&whole, request.law, equations, &settings);
+    let (transferred, measure) = starting(request, &whole, !parts.is_empty())?;
+    let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
+    let (law, source, watch) = (request.law, request.source.name.as_str(), Some(watch));
+    let thinned = for_simulation(request.target.particular("lpp_m"), &training);
+    let problem = Problem { law, source, training, thinned, whole, judged, transferred, measure, settings, watch };
+    step(progress, 0.05, "sufficient statistics of each trial")?;
+    let variants = variants(&problem, equations)?;
+    let mut candidates = vec![source_candidate(&problem, &variants)?];
+    estimator.candidates(&problem, &variants, &mut candidates, progress)?;
+    step(progress, 0.8, "fitting all trials")?;
+    finish(&problem, candidates, &variants, progress)
+}
+
+/// What the prior is about: the source carried over, by its own law or as another law says what it says.
+fn starting(request: &Request<'_>, whole: &[&Trial], in_parts: bool) -> Result<(Model, Measure), RefineError> {
+    let Request { target, source, source_law, law, .. } = *request;
+    let approach = approach_of(whole);
+    let Some(own) = source_law.filter(|own| own.name != law.name) else {
+        let same = source.ship == target.name();
+        let carried = if same { source.clone() } else { transfer(source, law, target, approach) };
+        let measure = Measure::own(&carried, law, whole, in_parts);
+        return Ok((carried, measure));
+    };
+    let (mut model, envelope) = across::begun((source, own), law, target, approach, whole)?;
+    let blocks = Blocks::new(&model, law)?;
+    Imitation::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);
+    Ok((model, Measure::Source(envelope)))
+}
+
+/// The trials that are kept out of fit and choice, and the others.
+fn divided<'a>(request: &'a Request<'a>) -> Result<(Vec<&'a Trial>, Vec<&'a Trial>), RefineError> {
+    let names = &request.settings.held_out;
+    if let Some(unknown) = names.iter().find(|name| !request.trials.iter().any(|trial| trial.name == **name)) {
+        let message = format!("no trial is called `{unknown}`");
+        return Err(RefineError::Setting { field: "held_out".into(), message });
+    }
+    let (judged, whole): (Vec<&Trial>, Vec<&Trial>) = request.trials.iter().partition(|trial| names.contains(&trial.name));
+    if whole.is_empty() {
+        return Err(RefineError::Data("there is no trial to fit on".into()));
+    }
+    Ok((judged, whole))
+}
+
+/// The settings with the times that depend on the ship filled in, so that a version records what was used.
+pub(super) fn resolved(settings: &Settings, lpp_m: Option<f64>, training: &[&Trial]) -> Settings {
+    let length_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s);
+    let mut settings = settings.clone();
+    settings.method.estimator().resolve(&mut settings, length_s);
+    settings.restart_s = settings.restart_s.or(length_s.map(|s| 10.0 * s));
+    settings
+}

@@ -1,0 +1,203 @@
+//! What a refinement may be told.
+
+use serde::{Deserialize, Serialize};
+
+use super::cma_es::CmaEs;
+use super::constraints::Constraints;
+use super::family::Family;
+use crate::bands::Sampling;
+
+/// The estimator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// One-step differences and the ridge with the source as l2 prior: Kanazawa 2023, Eqs. 5.4-5.17.
+    #[default]
+    Published,
+    /// The equations of motion integrated over windows with smooth bumps, nothing differentiated; the same ridge.
+    Weak,
+    /// Simulated segments against the trials by forward sensitivities, started from the weak form and held by it.
+    Trajectory,
+    /// Simulated subsequences against the trials by a random search with a covariance that adapts: Miyauchi 2024, Eqs. 19-33.
+    #[serde(rename = "cma-es")]
+    CmaEs,
+}
+
+impl Method {
+    /// Every estimator.
+    pub const ALL: [Self; 4] = [Self::Published, Self::Weak, Self::Trajectory, Self::CmaEs];
+
+    /// The estimator of that name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.name() == name)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Published => "published",
+            Self::Weak => "weak",
+            Self::Trajectory => "trajectory",
+            Self::CmaEs => "cma-es",
+        }
+    }
+}
+
+/// A range in which (lambda, alpha) are tuned.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Range {
+    /// Least strength of the prior.
+    pub lambda_min: f64,
+    /// Greatest strength of the prior.
+    pub lambda_max: f64,
+    /// Largest share of the zero vector in the prior.
+    pub alpha_max: f64,
+}
+
+/// Settings of a refinement; every one is kept with the version.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Settings {
+    /// The estimator.
+    pub method: Method,
+    /// Tuning ranges from the source outwards; each gives an option, the best of which is chosen.
+    pub ranges: Vec<Range>,
+    /// Values of lambda tried in a range, evenly spaced in their logarithm.
+    pub lambda_count: usize,
+    /// Time over which accelerations are differenced, s, at least one sampling interval. Where absent, a tenth of the
+    /// time in which the ship sails her length: what the instruments add at a shorter one drowns the acceleration.
+    pub difference_s: Option<f64>,
+    /// Length of the weak form's windows, s. Where absent, the time in which the ship sails her length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub window_s: Option<f64>,
+    /// From one window of the weak form to the next, s. Where absent, a tenth of a window.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hop_s: Option<f64>,
+    /// Length of the trajectory form's segments, s. Where absent, five times the time in which the ship sails her length;
+    /// for the search ten times, and at least 100 s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub segment_s: Option<f64>,
+    /// From one residual of the trajectory form to the next, s. Where absent, a 7.5th of the time in which
+    /// she sails her length; for the search one sampling interval.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub residual_s: Option<f64>,
+    /// Integration step of the trajectory form, s, rounded to sampling intervals. Where absent, a
+    /// thirtieth of the time in which she sails her length; for the search a 75th, whole or in whole parts of an interval.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step_s: Option<f64>,
+    /// Of the search; absent for other methods.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cma_es: Option<CmaEs>,
+    /// Families of terms among which the weak and the trajectory form choose. Where empty, all of them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub families: Vec<Family>,
+    /// Strengths of the prior among which they choose, from the source outwards. Where empty, half decades from 10 to 1e-8.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub strengths: Vec<f64>,
+    /// Simulations of manoeuvres left out start anew every so often, s. Where absent, ten times the time in which the
+    /// ship sails her length; longer than a trial runs it whole.
+    pub restart_s: Option<f64>,
+    /// Most folds; with more manoeuvres than that, several are left out together.
+    pub folds: usize,
+    /// Names of trials that are kept out of fit and choice altogether, to be judged on.
+    pub held_out: Vec<String>,
+    /// What the refined model must keep to.
+    #[serde(skip_serializing_if = "Constraints::is_empty")]
+    pub constraints: Constraints,
+    /// How the posterior is sampled for the bands of the standard manoeuvres; no samples leave them out.
+    pub bands: Sampling,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        let range = |exponent: i32| Range {
+            lambda_min: 10_f64.powi(-exponent),
+            lambda_max: 1e10,
+            alpha_max: (0.1 * f64::from(1 + exponent)).min(1.0),
+        };
+        Self {
+            method: Method::Published,
+            ranges: (0..=6).map(range).collect(),
+            lambda_count: 100,
+            difference_s: None,
+            window_s: None,
+            hop_s: None,
+            segment_s: None,
+            residual_s: None,
+            step_s: None,
+            cma_es: None,
+            families: Vec::new(),
+            strengths: Vec::new(),
+            restart_s: None,
+            folds: 8,
+            held_out: Vec::new(),
+            constraints: Constraints::default(),
+            bands: Sampling::default(),
+        }
+    }
+}
+
+impl Settings {
+    /// Fills in what model selection chooses among, so that a version records it.
+    pub(super) fn fill_selection(&mut self, families: &[Family]) {
+        if self.families.is_empty() {
+            self.families = families.to_vec();
+        }
+        if self.strengths.is_empty() {
+            self.strengths = (0..=18).map(|k| 10_f64.powf(1.0 - 0.5 * f64::from(k))).collect();
+        }
+    }
+
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// Names the field and what it may be.
+    pub fn check(&self) -> Result<(), (String, String)> {
+        let refuse = |field: &str, message: &str| Err((field.to_owned(), message.to_owned()));
+        if self.ranges.is_empty() || self.ranges.len() > 20 {
+            return refuse("ranges", "give 1 to 20 tuning ranges");
+        }
+        for range in &self.ranges {
+            if !(range.lambda_min > 0.0 && range.lambda_min <= range.lambda_max && range.lambda_max.is_finite()) {
+                return refuse("ranges", "lambda_min must be above 0 and not above lambda_max");
+            }
+            if !(0.0..=1.0).contains(&range.alpha_max) {
+                return refuse("ranges", "alpha_max must be from 0 to 1");
+            }
+        }
+        if !(2..=1000).contains(&self.lambda_count) {
+            return refuse("lambda_count", "must be from 2 to 1000");
+        }
+        if !(2..=100).contains(&self.folds) {
+            return refuse("folds", "must be from 2 to 100");
+        }
+        if matches!(self.method, Method::Trajectory | Method::CmaEs) && !self.constraints.is_empty() {
+            return refuse("constraints", "are kept by the methods `published` and `weak` only");
+        }
+        self.cma_es.as_ref().map_or(Ok(()), CmaEs::check).map_err(|message| ("cma_es".to_owned(), message))?;
+        self.constraints.check().map_err(|message| ("constraints".to_owned(), message))?;
+        self.bands.check().map_err(|message| ("bands".to_owned(), message))?;
+        if self.strengths.len() > 100 || self.strengths.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
+            return refuse("strengths", "give at most 100, each above 0");
+        }
+        let positive = |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
+        if !positive(self.difference_s) {
+            return refuse("difference_s", "must be above 0 s");
+        }
+        if !positive(self.restart_s) {
+            return refuse("restart_s", "must be above 0 s");
+        }
+        let times = [
+            ("window_s", self.window_s),
+            ("hop_s", self.hop_s),
+            ("segment_s", self.segment_s),
+            ("residual_s", self.residual_s),
+            ("step_s", self.step_s),
+        ];
+        if let Some((field, _)) = times.into_iter().find(|(_, value)| !positive(*value)) {
+            return refuse(field, "must be above 0 s");
+        }
+        Ok(())
+    }
+}

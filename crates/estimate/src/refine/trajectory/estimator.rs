@@ -1,0 +1,45 @@
+//! The trajectory form as an estimator.
+
+use super::super::candidate::CandidateFit;
+use super::super::equations::Equations;
+use super::super::estimator::Estimator;
+use super::super::family::Family;
+use super::super::outcome::RefineError;
+use super::super::problem::Problem;
+use super::super::progress::Progress;
+use super::super::settings::Settings;
+use super::super::variant::Variant;
+use super::super::weak::{self, WeakForm};
+use super::candidates::from_weak_form;
+
+/// Integration step, from one residual to the next, and length of a segment, by the time in which the ship sails its length.
+const STEP: f64 = 30.0;
+const RESIDUAL: f64 = 7.5;
+const SEGMENT: f64 = 5.0;
+
+/// The trajectory form, after the weak form.
+pub(in super::super) struct TrajectoryForm;
+
+impl Estimator for TrajectoryForm {
+    fn resolve(&self, settings: &mut Settings, length_s: Option<f64>) {
+        weak::resolve(settings, length_s, &Family::ALL);
+        settings.step_s = settings.step_s.or(length_s.map(|s| s / STEP));
+        settings.segment_s = settings.segment_s.or(length_s.map(|s| SEGMENT * s));
+        settings.residual_s = settings.residual_s.or(length_s.map(|s| s / RESIDUAL));
+    }
+
+    fn equations(&self, settings: &Settings) -> Equations {
+        weak::equations(settings)
+    }
+
+    fn candidates(
+        &self,
+        problem: &Problem<'_>,
+        variants: &[Variant],
+        candidates: &mut Vec<CandidateFit>,
+        progress: Progress<'_>,
+    ) -> Result<(), RefineError> {
+        WeakForm.candidates(problem, variants, candidates, progress)?;
+        from_weak_form(problem, variants, candidates, progress)
+    }
+}

@@ -1,0 +1,83 @@
+//! A fit by the trajectory form, and how far its coefficients may be from the truth.
+//!
+//! With `H` the Hessian, `g` the gradient of the residuals, and `W` and `L` as in [the form](super), the error is
+//! `H^-1 (g + mu W (c_weak - c) + mu/(1 + mu) L (c_source - c))`: the scatter of the segments' gradients, within which residuals may depend
+//! on each other (Huber 1967, Proc. Fifth Berkeley Symposium 1, 221-233), and the errors of what pulls.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::super::candidate::Solution;
+use super::super::errors::Errors;
+use super::super::outcome::RefineError;
+use super::super::problem::Problem;
+use super::super::ridge::{Choices, Fit, Fitted};
+use super::super::variant::Variant;
+use super::prior::{Prior, by_source};
+use super::solve::Held;
+
+/// A fit, and what its errors follow from.
+pub(super) struct TrajectoryFit {
+    /// The weak form from which it started: place of its variant, and choices.
+    pub variant: usize,
+    pub choices: Choices,
+    /// The coefficients in the order of the normal equations.
+    pub(super) names: Vec<String>,
+    pub(super) at: DVector<f64>,
+    pub(super) held: Held,
+    /// By segment.
+    pub(super) gradients: Vec<DVector<f64>>,
+    /// Of the residuals, summed.
+    pub(super) cost: f64,
+    pub(super) count: f64,
+    pub(super) prior: Prior,
+    pub(super) pull: f64,
+}
+
+impl Solution for TrajectoryFit {
+    fn fit(&self, _: &[Variant]) -> Result<Option<Fit>, RefineError> {
+        Ok(Some(self.coefficients()))
+    }
+
+    fn errors(&self, problem: &Problem<'_>, variants: &[Variant]) -> Result<Option<Errors>, RefineError> {
+        let weak = variants[self.variant].errors(&problem.training, &self.choices)?;
+        Ok(weak.and_then(|weak| self.joint_errors(&weak)))
+    }
+}
+
+impl TrajectoryFit {
+    /// The coefficients, without their errors.
+    fn coefficients(&self) -> Fit {
+        let deviations = self.prior.deviations(self.pull);
+        let one = |(k, name): (usize, &String)| {
+            let prior_deviation = deviations[k] * (self.cost / self.count.max(1.0)).sqrt();
+            (name.clone(), Fitted { value: self.at[k], standard_error: 0.0, prior_deviation })
+        };
+        let coefficients = self.names.iter().enumerate().map(one).collect();
+        Fit { coefficients, condition_number: self.held.condition_number(), collinear_groups: Vec::new(), errors: None }
+    }
+
+    /// Joint errors of the coefficients; `weak` are those of the weak form, in any order.
+    fn joint_errors(&self, weak: &Errors) -> Option<Errors> {
+        let Self { names, prior, pull, .. } = self;
+        let inverse = self.held.inverse()?;
+        let weak = weak.ordered(names)?;
+        let to_weak = &prior.hessian * *pull;
+        let to_source = &prior.of_source * by_source(*pull);
+        let both = &to_weak * &weak.cross * &to_source;
+        let middle = scatter(&self.gradients, self.count, names.len())
+            + &to_weak * &weak.covariance * &to_weak
+            + &to_source * &weak.source * &to_source
+            + &both
+            + both.transpose();
+        let cross = &inverse * (&to_weak * &weak.cross + to_source * &weak.source);
+        Some(Errors { names: names.clone(), covariance: &inverse * middle * &inverse, source: weak.source, cross })
+    }
+}
+
+/// Covariance of the mean gradient from that of the segments', which have one direction less than there are segments.
+fn scatter(gradients: &[DVector<f64>], count: f64, size: usize) -> DMatrix<f64> {
+    let segments = gradients.len() as f64;
+    let mut sum = DMatrix::zeros(size, size);
+    gradients.iter().for_each(|gradient| sum.ger(1.0, gradient, gradient, 1.0));
+    sum * (segments / (segments - 1.0).max(1.0) / count.max(1.0).powi(2))
+}

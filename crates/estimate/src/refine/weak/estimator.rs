@@ -1,0 +1,77 @@
+//! The weak form as an estimator: the ridge on its windows, at strengths from the source outwards.
+
+use super::super::candidate::CandidateFit;
+use super::super::equations::Equations;
+use super::super::estimator::Estimator;
+use super::super::family::Family;
+use super::super::outcome::RefineError;
+use super::super::problem::Problem;
+use super::super::progress::{PartProgress, Progress};
+use super::super::ridge::Fold;
+use super::super::ridge_candidates::{each_variant, ridge_candidate};
+use super::super::settings::Settings;
+use super::super::variant::Variant;
+use super::Windows;
+
+/// From one window to the next, by a window.
+const HOP: f64 = 0.1;
+/// A single trial allows so many strengths: it cannot be left out.
+const OF_ONE_TRIAL: usize = 3;
+
+/// The weak form.
+pub(in super::super) struct WeakForm;
+
+impl Estimator for WeakForm {
+    fn resolve(&self, settings: &mut Settings, length_s: Option<f64>) {
+        resolve(settings, length_s, &Family::ALL);
+    }
+
+    fn equations(&self, settings: &Settings) -> Equations {
+        equations(settings)
+    }
+
+    fn candidates(
+        &self,
+        problem: &Problem<'_>,
+        variants: &[Variant],
+        candidates: &mut Vec<CandidateFit>,
+        progress: Progress<'_>,
+    ) -> Result<(), RefineError> {
+        let mut strengths =
+            |at: (usize, &Variant), folds: &[Fold<'_>], told: PartProgress<'_>| by_strength(problem, at, folds, told, candidates);
+        each_variant(problem, variants, progress, &mut strengths)
+    }
+}
+
+/// Fills in windows, strengths and families, among these where the settings name none. Estimators that begin with the weak form do
+/// so too.
+pub(in super::super) fn resolve(settings: &mut Settings, length_s: Option<f64>, families: &[Family]) {
+    settings.window_s = settings.window_s.or(length_s);
+    settings.hop_s = settings.hop_s.or(settings.window_s.map(|s| HOP * s));
+    settings.fill_selection(families);
+}
+
+/// Rows by windows.
+pub(in super::super) fn equations(settings: &Settings) -> Equations {
+    let length_s = settings.window_s.unwrap_or(0.0);
+    Equations::Windows(Windows { length_s, hop_s: settings.hop_s.unwrap_or(HOP * length_s) })
+}
+
+/// One candidate for each strength of the prior, from the source outwards.
+fn by_strength(
+    problem: &Problem<'_>,
+    at: (usize, &Variant),
+    folds: &[Fold<'_>],
+    told: PartProgress<'_>,
+    candidates: &mut Vec<CandidateFit>,
+) -> Result<(), RefineError> {
+    let strengths = &problem.settings.strengths;
+    let allowed = if problem.training.len() == 1 { strengths.len().min(OF_ONE_TRIAL) } else { strengths.len() };
+    for (k, &lambda) in strengths.iter().take(allowed).enumerate() {
+        let name = format!("{}, lambda {lambda:.0e}", at.1.family.name());
+        told(k as f64 / allowed as f64, &format!("{name}: simulating manoeuvres left out"))?;
+        let choices = at.1.common_choices(lambda)?;
+        candidates.push(ridge_candidate(problem, (name, lambda), at, choices, folds)?);
+    }
+    Ok(())
+}
