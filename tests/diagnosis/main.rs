@@ -10,6 +10,6 @@ mod cases;
 mod confusion;
 mod esso_osaka;
 mod examples;
-mod habits;
+mod systematic_errors;
 mod timing;
 mod truth;

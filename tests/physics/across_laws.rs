@@ -64,7 +64,7 @@ fn an_mmg_source_keeps_the_turn_of_a_polynomial_that_saw_only_zigzags() {
     let off = |refinement: &Refinement| diameter(&refinement.model, law).map_or(f64::INFINITY, |d| (d - wanted).abs());
     println!("truth {wanted:.3}, with the source off by {:.3}, without by {:.3} lengths", off(&across), off(&alone));
     assert!(off(&across) < 0.1 * wanted && off(&across) < 0.5 * off(&alone));
-    assert!(across.held_out.refined["psi"] < across.held_out.source["psi"], "the trials have taught something");
+    assert!(across.held_out.refined["psi"] < across.held_out.source["psi"], "the trials have improved it");
     let said = across.remarks.iter().find(|remark| remark.contains("the source `kvlcc2/mmg` is of law `mmg`"));
     assert!(said.is_some_and(|said| said.contains("low-speed")), "{:?}", across.remarks);
 }

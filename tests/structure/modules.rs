@@ -3,7 +3,7 @@
 //! files hold without a circle.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use proc_macro2::{TokenStream, TokenTree};
 use syn::visit::Visit;
@@ -66,8 +66,21 @@ fn begin<'a>(sources: &BTreeMap<Module, Source>, module: &Module, path: &'a [Str
     }
 }
 
+/// The source files of a crate, tests left out, with what stands in them before their own tests.
+pub fn texts(root: &Path) -> impl Iterator<Item = (PathBuf, String)> {
+    files(root).into_iter().map(|(_, path)| {
+        let text = text(&path);
+        let end = text.find("#[cfg(test)]\nmod tests {").unwrap_or(text.len());
+        (path, text[..end].to_owned())
+    })
+}
+
 fn read(root: &Path) -> BTreeMap<Module, Source> {
-    let mut sources = BTreeMap::new();
+    files(root).into_iter().map(|(module, path)| (module, source(&path))).collect()
+}
+
+fn files(root: &Path) -> Vec<(Module, PathBuf)> {
+    let mut files = Vec::new();
     let mut open = vec![root.to_owned()];
     while let Some(folder) = open.pop() {
         for entry in std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
@@ -75,11 +88,15 @@ fn read(root: &Path) -> BTreeMap<Module, Source> {
             if path.is_dir() {
                 open.push(path);
             } else if let Some(module) = module_of(root, &path).filter(|module| !is_test(module)) {
-                sources.insert(module, source(&path));
+                files.push((module, path));
             }
         }
     }
-    sources
+    files
+}
+
+fn text(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
 fn module_of(root: &Path, path: &Path) -> Option<Module> {
@@ -100,8 +117,7 @@ fn is_test(module: &Module) -> bool {
 }
 
 fn source(path: &Path) -> Source {
-    let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    let file = syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let file = syn::parse_file(&text(path)).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let mut source = Source::default();
     source.visit_file(&file);
     source

@@ -32,7 +32,7 @@ pub(super) struct Choice {
     levels: Vec<Level>,
 }
 
-/// Effects and coefficients where both stay, and the search about the model so taught.
+/// Effects and coefficients where both stay, and the search about the model so calibrated.
 pub(super) struct Settled<'a> {
     pub search: Search<'a>,
     pub base: Base<'a>,
@@ -76,7 +76,7 @@ fn companions(search: &Search<'_>, base: &Base<'_>, count: usize) -> Result<Vec<
     likely.par_iter().map(|likely| search.judge(base, &likely.candidate, likely.level)).collect()
 }
 
-/// The most probable, those that are believed most after what they feign, and whatever follows a record from outside: its
+/// The most probable, those that are believed most after their false-alarm levels, and whatever follows a record from outside: its
 /// sensor is there to be asked.
 fn likely(screened: Vec<Likely>, count: usize) -> Vec<Likely> {
     let mut by_belief = screened.clone();

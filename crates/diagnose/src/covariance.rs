@@ -13,7 +13,7 @@ use crate::residual::{Gram, NuisanceKind};
 const MASS: f64 = 0.08;
 
 impl Search<'_> {
-    /// The covariance of an effect's parameters, with what the effect feigns on clean trials, what its own law is uncertain
+    /// The covariance of an effect's parameters, with its false-alarm level on clean trials, what its own law is uncertain
     /// by, and what the virtual masses leave open.
     pub fn covariance(&self, judged: &Judged, place: usize) -> DMatrix<f64> {
         let candidate = &judged.candidates[place];

@@ -1,7 +1,7 @@
-//! How much less than they seem to say trials say of an effect, by what it feigned on clean trials.
+//! How much less than they seem to say trials say of an effect, by what it explained of clean trials.
 
 use sistership_model::trial::Channel;
-use sistership_model::uncertainty::{Feigned, Uncertainty};
+use sistership_model::uncertainty::{FalseAlarmLevel, Uncertainty};
 
 use crate::residual::Candidate;
 
@@ -15,16 +15,16 @@ const UNKNOWN: f64 = 10.0;
 /// The factor by which the information on an effect is divided.
 pub(super) fn discount(uncertainty: Option<&Uncertainty>, candidate: &Candidate, trials: usize) -> f64 {
     let Some(known) = uncertainty else { return UNKNOWN };
-    let of = |feigned: &Feigned| {
+    let of = |level: &FalseAlarmLevel| {
         // What one size of the effect would suit grows with the number of trials.
-        let together = 1.0 + (feigned.together - 1.0) * trials as f64 / known.trials.len().max(1) as f64;
-        feigned.each.max(together).max(1.0)
+        let together = 1.0 + (level.together - 1.0) * trials as f64 / known.trials.len().max(1) as f64;
+        level.each.max(together).max(1.0)
     };
     // What comes from outside was there on clean trials too where it is recorded at all: it is judged by records of other
     // times instead.
-    let own = known.feigned.get(&candidate.key()).filter(|_| !is_from_outside(candidate)).map(of);
+    let own = known.false_alarm_levels.get(&candidate.key()).filter(|_| !is_from_outside(candidate)).map(of);
     own.unwrap_or_else(|| {
-        let mut all: Vec<f64> = known.feigned.values().map(of).collect();
+        let mut all: Vec<f64> = known.false_alarm_levels.values().map(of).collect();
         all.sort_by(f64::total_cmp);
         all.get(all.len() / 2).copied().unwrap_or(1.0)
     })

@@ -1,4 +1,4 @@
-//! A model with what trials have taught of it: its coefficients moved, and the terms that it lacks added to its law.
+//! A calibrated model: its coefficients moved, and the terms that it lacks added to its law.
 //!
 //! Residuals are linearised about this one. The columns of coefficients alone would not do: how a lacked term answers to
 //! a sensor that errs would be left out.
@@ -27,8 +27,8 @@ impl Learned {
     /// Names the field of an effect that the model carries.
     pub fn new(model: &Model, law: &Law, terms: &Terms, nuisance: &[Nuisance], shift: &[f64]) -> Result<Self, RefineError> {
         let (mut model, mut law) = (model.clone(), law.clone());
-        let habits = model.uncertainty.iter().flat_map(|known| known.habits.clone()).collect::<Vec<_>>();
-        model.effects.extend(habits);
+        let systematic_errors = model.uncertainty.iter().flat_map(|known| known.systematic_errors.clone()).collect::<Vec<_>>();
+        model.effects.extend(systematic_errors);
         for (nuisance, shift) in nuisance.iter().zip(shift) {
             match nuisance.kind {
                 NuisanceKind::Own(_) => {
@@ -55,7 +55,7 @@ impl Learned {
 
 impl Fixed {
     /// The expected change of what a law can take over: of everything but masses, as if these were right.
-    pub(super) fn taught(&self, nuisance: &[Nuisance]) -> Option<Vec<f64>> {
+    pub(super) fn expected_shift(&self, nuisance: &[Nuisance]) -> Option<Vec<f64>> {
         let free: Vec<usize> =
             (0..nuisance.len()).filter(|&place| !matches!(nuisance[place].kind, NuisanceKind::Mass(..))).collect();
         let information = DMatrix::from_fn(free.len(), free.len(), |i, j| self.information[(free[i], free[j])]);

@@ -6,7 +6,7 @@ use sistership_model::law::Law;
 use sistership_model::{Model, Trial, particulars};
 
 use super::Request;
-use super::righted::{Righted, joined, split};
+use super::corrected::{CorrectedRecords, joined, split};
 use super::search::{Judged, Search};
 use sistership_estimate::refine::{Alternative, Blocks, alternatives, fit, trial_moments};
 use sistership_estimate::transfer::approach_of;
@@ -29,10 +29,10 @@ pub(super) fn refits(request: &Request<'_>, search: &Search<'_>, judged: &Judged
     let all = search.model_with(&judged.candidates, Some(&judged.covariance));
     let without = (0..request.trials.len()).map(|trial| without(request, search, judged, trial)).collect();
     let found = Refit { how: None, all, without };
-    let righted = (!judged.candidates.is_empty()).then(|| Righted::new(request, &found.all)).flatten();
+    let corrected = (!judged.candidates.is_empty()).then(|| CorrectedRecords::new(request, &found.all)).flatten();
     let mut fitted = Vec::new();
-    if let Some(righted) = righted {
-        let request = &Request { trials: &righted.trials(), ..*request };
+    if let Some(corrected) = corrected {
+        let request = &Request { trials: &corrected.trials(), ..*request };
         fitted.extend(STRENGTHS.iter().filter_map(|&lambda| ridge(request, &found, lambda)));
         fitted.extend(jointly(request, &found, restart_s));
     }

@@ -26,11 +26,11 @@ pub(super) struct Search<'a> {
     pub model: &'a Model,
     /// Its law, without effects.
     pub law: &'a Law,
-    /// The model as its own trials have taught it.
+    /// The model as its own trials have calibrated it.
     pub learned: Learned,
-    /// By how much, by column; and by how much before any hypothesis taught it more.
-    pub taught: Vec<f64>,
-    pub taught_at_first: Vec<f64>,
+    /// By how much, by column; and by how much before any hypothesis shifted it further.
+    pub calibrated: Vec<f64>,
+    pub calibrated_at_first: Vec<f64>,
     pub terms: Terms,
     pub trials: &'a [&'a Trial],
     pub nuisance: Vec<Nuisance>,
@@ -51,7 +51,7 @@ pub(super) struct Search<'a> {
 #[derive(Clone)]
 pub(super) struct Likely {
     pub evidence: f64,
-    /// Discounted by what the effect feigns.
+    /// Discounted by the effect's false-alarm level.
     pub believed: f64,
     /// The level of the discrepancy at which it is most probable, among those of the base.
     pub level: usize,
@@ -117,7 +117,7 @@ impl<'a> Search<'a> {
 
     /// How far coefficients have given way to the trials that are diagnosed.
     pub fn given_way(&self) -> Vec<f64> {
-        self.taught.iter().zip(&self.taught_at_first).map(|(now, before)| now - before).collect()
+        self.calibrated.iter().zip(&self.calibrated_at_first).map(|(now, before)| now - before).collect()
     }
 
     /// No form of an effect is tried any more.
@@ -184,7 +184,7 @@ impl<'a> Search<'a> {
         reduced.iter().filter_map(gain).min_by(f64::total_cmp)
     }
 
-    /// The evidence for one of the effects judged together, given the others: discounted by what it feigns on clean trials,
+    /// The evidence for one of the effects judged together, given the others: discounted by its false-alarm level on clean trials,
     /// after what the number of hypotheses costs.
     pub fn evidence(&self, judged: &Judged, place: usize) -> Option<f64> {
         let candidate = &judged.candidates[place];
@@ -266,12 +266,12 @@ impl<'a> Search<'a> {
             information: total.products.view((1, 1), (size, size)) + &self.fixed.information,
             weighted_mean: right + &self.fixed.weighted_mean,
         };
-        let shift = known.taught(&self.nuisance).ok_or_else(not_positive)?;
-        let taught: Vec<f64> = self.taught.iter().zip(&shift).map(|(before, more)| before + more).collect();
+        let shift = known.expected_shift(&self.nuisance).ok_or_else(not_positive)?;
+        let calibrated: Vec<f64> = self.calibrated.iter().zip(&shift).map(|(before, more)| before + more).collect();
         Ok(Self {
-            learned: Learned::new(request.model, request.law, &self.terms, &self.nuisance, &taught)?,
+            learned: Learned::new(request.model, request.law, &self.terms, &self.nuisance, &calibrated)?,
             fixed: self.fixed.clone().from(&shift),
-            taught,
+            calibrated,
             ..self.clone()
         })
     }

@@ -27,10 +27,11 @@ const LEAST: f64 = 1e-5;
 /// but for what its instruments are known to do.
 pub(super) fn listed(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Vec<Candidate> {
     let carried = |effect: &&Arc<Effect>| !model.effects.iter().any(|applied| applied.name == effect.name);
-    let habits = model.uncertainty.as_ref().map(|known| known.habits.as_slice()).unwrap_or_default();
+    let systematic_errors = model.uncertainty.as_ref().map(|known| known.systematic_errors.as_slice()).unwrap_or_default();
     let of = |effect: &Arc<Effect>| -> Vec<Candidate> {
-        let is_habit = |form: &Form| habits.iter().any(|habit| habit.name == effect.name && habit.form.name == form.file.name);
-        let forms = effect.forms.iter().filter(|form| fits(form, law, trials) && !is_habit(form));
+        let is_systematic =
+            |form: &Form| systematic_errors.iter().any(|error| error.name == effect.name && error.form.name == form.file.name);
+        let forms = effect.forms.iter().filter(|form| fits(form, law, trials) && !is_systematic(form));
         forms.map(|form| Candidate::absent(&effect.name, form)).collect()
     };
     effects.iter().filter(carried).flat_map(of).collect()
@@ -68,7 +69,8 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<Search<'a>, RefineErro
         Some(uncertainty) => (learned_prior(uncertainty).map_err(RefineError::Law)?, FACTORS.map(known).to_vec()),
         None => (prior(request.model, &nuisance, &terms, request.settings.slack), UNKNOWN.map(unknown).to_vec()),
     };
-    let shift = fixed.taught(&nuisance).ok_or_else(|| RefineError::Law("what it knows of itself is not positive".into()))?;
+    let shift =
+        fixed.expected_shift(&nuisance).ok_or_else(|| RefineError::Law("what it knows of itself is not positive".into()))?;
     let mut search = Search {
         model: request.model,
         law: request.law,
@@ -77,8 +79,8 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<Search<'a>, RefineErro
         nuisance,
         terms,
         fixed: fixed.from(&shift),
-        taught_at_first: shift.clone(),
-        taught: shift,
+        calibrated_at_first: shift.clone(),
+        calibrated: shift,
         expected: Vec::new(),
         levels,
         least_step_s: request.settings.least_step_s,

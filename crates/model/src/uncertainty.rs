@@ -27,12 +27,13 @@ pub struct Uncertainty {
     /// What the instruments did beside the scatter that their readings show, by channel.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub instruments: BTreeMap<String, InstrumentFit>,
-    /// Errors of instruments that these trials show, one size for all: what later trials are read with, too.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub habits: Vec<AppliedEffect>,
+    /// Systematic errors of instruments: those that these trials show, one size for all; later trials are read with them, too. Versions
+    /// are their bytes, so that documents keep the name under which the first were written.
+    #[serde(rename = "habits", default, skip_serializing_if = "Vec::is_empty")]
+    pub systematic_errors: Vec<AppliedEffect>,
     /// How much each form of an effect explained of these trials, which do not have it: by `effect/form`.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub feigned: BTreeMap<String, Feigned>,
+    #[serde(rename = "feigned", default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub false_alarm_levels: BTreeMap<String, FalseAlarmLevel>,
     /// The largest that any stretch of these trials left unexplained, in deviations, by channel.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub remainder: BTreeMap<String, f64>,
@@ -54,7 +55,7 @@ pub struct InstrumentFit {
 /// right. Each trial is judged by coefficients fitted on the others.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Feigned {
+pub struct FalseAlarmLevel {
     /// Of single trials, in the mean.
     pub each: f64,
     /// Of all together: more than `each` where one size of the effect would suit them all.

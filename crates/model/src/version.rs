@@ -75,3 +75,8 @@ pub struct RecipeTrial {
 pub fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
+
+/// The revision of this program, which every recipe records.
+pub fn code_revision() -> &'static str {
+    option_env!("SISTERSHIP_REVISION").unwrap_or(env!("CARGO_PKG_VERSION"))
+}

@@ -21,7 +21,6 @@ mod predict;
 mod problem;
 mod process;
 mod publish;
-pub mod report;
 mod routes;
 pub mod search;
 mod seed;

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use serde::Serialize;
 use serde_json::Value;
-use sistership_model::version::sha256;
+use sistership_model::version::{code_revision, sha256};
 use utoipa::ToSchema;
 
 use crate::archive::{Archive, document};
-use crate::derive::{DeriveError, Progress, code_revision, derive};
+use crate::derive::{DeriveError, Progress, derive};
 use crate::version::{Recipe, VersionDocument};
 
 /// What came of deriving a version again.

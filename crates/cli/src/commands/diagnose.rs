@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde_json::Value;
 use sistership_diagnose::{Diagnosis, Request, Settings, diagnose};
 use sistership_model::{Effect, Law, Model, Zoo};
-use sistership_server::report::{DiagnosisInput, render_diagnosis};
+use sistership_report::{DiagnosisInput, render_diagnosis};
 
 use super::diagnose_text;
 use super::refine::{Files, model_file};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use sistership_diagnose::{Confounded, Diagnosis, Found, Hypothesis, NextTrial, Unexplained, Verdict};
 use sistership_model::Model;
-use sistership_server::report::distinct;
+use sistership_report::distinct;
 
 use super::refine::Files;
 use super::worth;

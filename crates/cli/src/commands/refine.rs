@@ -10,8 +10,8 @@ use sistership_estimate::similarity::RankedSource;
 use sistership_estimate::source::{Similarity, best_source, similar};
 use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::{Law, Model, Vessel, Zoo};
+use sistership_report::{Input, render};
 use sistership_server::derive::with_uncertainty;
-use sistership_server::report::{Input, render};
 
 use super::refine_settings::{held_out, settings_file};
 use super::refine_text;

@@ -1,9 +1,9 @@
 //! What the trials that a model was fitted on leave open.
 
-mod feigned;
-mod habits;
+mod false_alarm;
 mod known;
 mod scatter;
+mod systematic_errors;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -37,11 +37,11 @@ const WIDE: f64 = 1.0;
 pub fn calibrate(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Result<Uncertainty, RefineError> {
     let model = &Model { uncertainty: None, ..model.clone() };
     let first = by_instruments(model, law, effects, trials)?;
-    let habits = habits::of(model, &first, law, effects, trials)?;
-    if habits.is_empty() {
+    let systematic_errors = systematic_errors::of(model, &first, law, effects, trials)?;
+    if systematic_errors.is_empty() {
         return Ok(first);
     }
-    let erring = Uncertainty { habits, instruments: BTreeMap::new(), ..first };
+    let erring = Uncertainty { systematic_errors, instruments: BTreeMap::new(), ..first };
     by_instruments(&Model { uncertainty: Some(erring), ..model.clone() }, law, effects, trials)
 }
 
@@ -51,7 +51,7 @@ fn by_instruments(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&
     let extra: Vec<_> = terms.iter().filter_map(|(name, form)| Some((name.clone(), regressor(model, form)?.0))).collect();
     let nuisance = Columns::nuisance(model, law, &extra);
     let prior = prior(model, &nuisance, &terms, WIDE);
-    let (shift, rough) = taught(model, law, &terms, &nuisance, &prior, trials)?;
+    let (shift, rough) = first_shift(model, law, &terms, &nuisance, &prior, trials)?;
     let candidates = listed(model, law, effects, trials);
     let columns = Columns { nuisance: nuisance.clone(), candidates: candidates.clone() };
     let mut workspace = Workspace::new(&Learned::new(model, law, &terms, &nuisance, &shift)?, columns, trials, None)?;
@@ -67,15 +67,15 @@ fn by_instruments(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&
     let known = Known { scatter: known.scatter(), ..known };
     Ok(Uncertainty {
         instruments: instruments(&workspace.noise, &scatter),
-        habits: model.uncertainty.as_ref().map(|known| known.habits.clone()).unwrap_or_default(),
-        feigned: feigned::feigned(&workspace, &known, &all),
+        systematic_errors: model.uncertainty.as_ref().map(|known| known.systematic_errors.clone()).unwrap_or_default(),
+        false_alarm_levels: false_alarm::levels(&workspace, &known, &all),
         remainder: remainder(&workspace, &known, &discrepancies),
         ..uncertainty(&workspace, &known, &shift, &discrepancies)?
     })
 }
 
 /// What the trials teach by one linearisation about the model as it is, and the discrepancies by that.
-fn taught(
+fn first_shift(
     model: &Model,
     law: &Law,
     terms: &Terms,
@@ -89,7 +89,7 @@ fn taught(
     let scatter = scatter::most_probable(&workspace, prior, None)?;
     workspace.noise.clone_from(&scatter.noise);
     let grams = workspace.each(&scatter.discrepancies);
-    let shift = Known { fixed: prior, grams: &grams, scatter: 1.0 }.by(&|_| true).taught(nuisance);
+    let shift = Known { fixed: prior, grams: &grams, scatter: 1.0 }.by(&|_| true).expected_shift(nuisance);
     Ok((shift.ok_or_else(|| RefineError::Data("the trials' information is not positive".into()))?, scatter))
 }
 
@@ -121,7 +121,7 @@ fn uncertainty(
     shift: &[f64],
     discrepancies: &Discrepancies,
 ) -> Result<Uncertainty, RefineError> {
-    // From the model as it is, not as the trials taught it.
+    // From the model as it is, not as the trials have shifted it.
     let back: Vec<f64> = shift.iter().map(|shift| -shift).collect();
     let all = known.by(&|_| true).from(&back);
     let size = all.weighted_mean.len();
@@ -140,8 +140,8 @@ fn uncertainty(
         offset: offset.iter().copied().collect(),
         discrepancy,
         instruments: BTreeMap::new(),
-        habits: Vec::new(),
-        feigned: BTreeMap::new(),
+        systematic_errors: Vec::new(),
+        false_alarm_levels: BTreeMap::new(),
         remainder: BTreeMap::new(),
         trials: workspace.trials.iter().map(|trial| trial.name.clone()).collect(),
     })

@@ -133,8 +133,3 @@ pub(crate) fn sorted(value: Value) -> Value {
         other => other,
     }
 }
-
-/// The revision of this program, which every recipe records.
-pub fn code_revision() -> &'static str {
-    option_env!("SISTERSHIP_REVISION").unwrap_or(env!("CARGO_PKG_VERSION"))
-}

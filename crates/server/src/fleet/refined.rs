@@ -15,8 +15,9 @@ use super::frame::Frames;
 use super::kept::make;
 use super::order::{Loaded, Order, PriorName};
 use crate::archive::Archive;
-use crate::derive::{DeriveError, code_revision, sorted};
+use crate::derive::{DeriveError, sorted};
 use crate::version::{Recipe, VersionDocument};
+use sistership_model::version::code_revision;
 
 /// How the model of a member is derived from statistics. Everything it starts from is named by the SHA-256 of its bytes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -13,7 +13,7 @@ use super::refinement::Prepared;
 use crate::app::App;
 use crate::derive::{Derived, Refined};
 use crate::publish::{CANDIDATE, CHAMPION, Standing, step};
-use crate::report::{self, Rendered, VersionLabel};
+use sistership_report::{self as report, Rendered, VersionLabel};
 
 /// A version that is to be kept, with what its report is made of.
 struct Made {

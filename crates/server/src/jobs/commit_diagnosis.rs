@@ -14,7 +14,7 @@ use super::outcome::{JobError, Result, failed};
 use crate::app::App;
 use crate::derive::Diagnosed;
 use crate::publish::{CANDIDATE, Standing, step};
-use crate::report::{DiagnosisInput, Rendered, VersionLabel, render_diagnosis};
+use sistership_report::{DiagnosisInput, Rendered, VersionLabel, render_diagnosis};
 
 /// The kind of the reports, and the method of the versions.
 const DIAGNOSIS: &str = "diagnosis";

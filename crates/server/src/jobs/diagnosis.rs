@@ -11,9 +11,10 @@ use super::progress::Progress;
 use super::refinement::{tell, trials};
 use super::request::DiagnosisJob;
 use crate::app::App;
-use crate::derive::{DeriveError, code_revision, diagnosed, sorted};
+use crate::derive::{DeriveError, diagnosed, sorted};
 use crate::library::library;
 use crate::version::{DiagnosisKind, DiagnosisRecipe};
+use sistership_model::version::code_revision;
 
 /// Does a diagnosis.
 pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {

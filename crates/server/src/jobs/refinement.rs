@@ -15,9 +15,10 @@ use super::progress::Progress;
 use super::request::{RefinementJob, SourceChoice};
 use crate::app::App;
 use crate::archive::vessel;
-use crate::derive::{code_revision, derive, sorted};
+use crate::derive::{derive, sorted};
 use crate::publish::{alias, alias_of};
 use crate::version;
+use sistership_model::version::code_revision;
 
 /// Does a refinement.
 pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {

@@ -1,0 +1,90 @@
+//! What remains: stretches that nothing explains, the level of the discrepancy, and how the coefficients moved.
+
+use sistership_diagnose::{DiscrepancyLevel, Settings, Unexplained};
+use sistership_model::Model;
+
+use super::sentence::motion;
+use crate::numbers::{fixed, known, signed, significant};
+use crate::tables::{Cell, Column, Row, Table, setting};
+
+/// The unit in which an acceleration is shown, and the factor to it from SI.
+pub(crate) fn acceleration(channel: &str) -> (&'static str, f64) {
+    match channel {
+        "r" | "p" | "psi" | "phi" => ("deg/s²", 180.0 / std::f64::consts::PI),
+        _ => ("m/s²", 1.0),
+    }
+}
+
+/// Stretches that no effect explains.
+pub(super) fn unexplained(stretches: &[Unexplained]) -> Table {
+    let columns = vec![
+        Column::text("trial", ""),
+        Column::text("equation", ""),
+        Column::number("from", "s"),
+        Column::number("to", "s"),
+        Column::number("remainder", "÷ noise"),
+    ];
+    let row = |stretch: &Unexplained| {
+        let times = [stretch.from_s, stretch.to_s].map(|time| Cell::new(fixed(time, 0)));
+        let names = [Cell::new(&stretch.trial), Cell::new(motion(&stretch.channel))];
+        let remainder = Cell::new(fixed(stretch.rms_over_noise, 1));
+        Row::of(names.into_iter().chain(times).chain([remainder]).collect())
+    };
+    Table { columns, rows: stretches.iter().map(row).collect() }
+}
+
+/// The level of what nothing explains.
+pub(super) fn discrepancies(levels: &[DiscrepancyLevel]) -> Table {
+    let columns = vec![
+        Column::text("equation", ""),
+        Column::number("expected", "std. deviation"),
+        Column::number("before", "std. deviation"),
+        Column::number("after", "std. deviation"),
+        Column::text("unit", ""),
+    ];
+    let row = |level: &DiscrepancyLevel| {
+        let (unit, factor) = acceleration(&level.channel);
+        let cell = |value: f64| Cell::new(significant(value * factor, 2));
+        let expected = Cell::new(known(level.expected, |value| significant(value * factor, 2)));
+        Row::of(vec![Cell::new(motion(&level.channel)), expected, cell(level.before), cell(level.after), Cell::new(unit)])
+    };
+    Table { columns, rows: levels.iter().map(row).collect() }
+}
+
+/// The coefficients that changed with the effects; none where all stay.
+pub(super) fn coefficients(before: &Model, after: &Model) -> Option<Table> {
+    let columns = vec![
+        Column::text("coefficient", ""),
+        Column::number("before", ""),
+        Column::number("after", ""),
+        Column::number("change", "%"),
+    ];
+    let row = |name: &String| {
+        let (before, after) = (before.coefficient(name), after.coefficient(name));
+        let change = (before != 0.0).then(|| 100.0 * (after - before) / before.abs());
+        let cells = [significant(before, 4), significant(after, 4), known(change, |change| signed(change, 1))];
+        Row::of(std::iter::once(Cell::code(name)).chain(cells.into_iter().map(Cell::new)).collect())
+    };
+    let changed = after.coefficients.keys().filter(|name| before.coefficient(name) != after.coefficient(name));
+    let rows: Vec<Row> = changed.map(row).collect();
+    (!rows.is_empty()).then_some(Table { columns, rows })
+}
+
+/// What the settings mean.
+const MEANINGS: [(&str, &str); 5] = [
+    ("restart_s", "simulations that judge start anew from the measured state every so often, s; by default ten times L/U"),
+    ("least_step_s", "shortest interval between samples that are used, s; by default a fiftieth of L/U"),
+    ("slack", "how far a published coefficient may be from the truth, as a share of its value, where the model does not say"),
+    ("least_evidence", "least evidence for an effect to be named"),
+    ("most_effects", "most effects that are named together"),
+];
+
+/// Every setting with what it means.
+pub(super) fn settings(settings: &Settings) -> Table {
+    let columns = vec![Column::text("setting", ""), Column::prose("value"), Column::prose("meaning")];
+    let written = serde_json::to_value(settings).unwrap_or_default();
+    let meaning = |name: &str| MEANINGS.iter().find(|(known, _)| *known == name).map_or("", |(_, meaning)| meaning);
+    let fields = written.as_object().into_iter().flatten();
+    let rows = fields.map(|(name, value)| Row::of(vec![Cell::code(name), Cell::new(setting(value)), Cell::new(meaning(name))]));
+    Table { columns, rows: rows.collect() }
+}

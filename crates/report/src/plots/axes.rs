@@ -1,0 +1,107 @@
+//! Scales, ticks and grids.
+
+use super::Shape;
+use crate::numbers::fixed;
+
+/// A linear scale from values to places along an axis.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scale {
+    pub low: f64,
+    pub high: f64,
+    pub length: f64,
+    /// Whether larger values stand at smaller places, as upwards on a screen.
+    pub reversed: bool,
+}
+
+impl Scale {
+    /// Where a value stands.
+    pub fn at(&self, value: f64) -> f64 {
+        let share = (value - self.low) / (self.high - self.low);
+        self.length * if self.reversed { 1.0 - share } else { share }
+    }
+
+    /// Values at which ticks stand, about so many, with their labels.
+    pub fn ticks(&self, about: usize) -> Vec<(f64, String)> {
+        let step = nice_step((self.high - self.low) / about.max(1) as f64);
+        let decimals = (-step.log10().floor()).max(0.0) as usize;
+        let (first, last) = ((self.low / step - 1e-9).ceil() as i64, (self.high / step + 1e-9).floor() as i64);
+        (first..=last).map(|k| k as f64 * step).map(|value| (value, fixed(value, decimals))).collect()
+    }
+}
+
+/// The next larger of 1, 2, 5 times a power of ten.
+pub(super) fn nice_step(least: f64) -> f64 {
+    let power = 10_f64.powf(least.log10().floor());
+    [1.0, 2.0, 5.0].into_iter().map(|of| of * power).find(|step| *step >= least * (1.0 - 1e-9)).unwrap_or(10.0 * power)
+}
+
+/// The range of values with a margin, never empty.
+pub(super) fn padded((low, high): (f64, f64), share: f64) -> (f64, f64) {
+    let margin = share * (high - low).max(1e-6 * low.abs().max(high.abs())).max(1e-9);
+    (low - margin, high + margin)
+}
+
+/// Least and greatest of some values.
+pub(super) fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    values.filter(|value| value.is_finite()).fold(None, |range, value| {
+        let (low, high) = range.unwrap_or((value, value));
+        Some((low.min(value), high.max(value)))
+    })
+}
+
+/// The range shown: that of the measured values, widened for the others by at most its own size on each side.
+pub(super) fn shown(measured: Option<(f64, f64)>, others: Option<(f64, f64)>) -> (f64, f64) {
+    match (measured, others) {
+        (Some((low, high)), Some((from, to))) => {
+            // What stays the same gets room too: its last digits mean nothing.
+            let room = (high - low).max(0.02 * low.abs().max(high.abs())).max(1e-6);
+            (low.min(from.max(low - room)), high.max(to.min(high + room)))
+        }
+        (Some(range), None) | (None, Some(range)) => range,
+        (None, None) => (0.0, 1.0),
+    }
+}
+
+/// A panel's grid lines across with labels to its left.
+pub(super) fn rows(at: (f64, f64), width: f64, scale: &Scale, about: usize) -> Vec<Shape> {
+    let mut shapes = Vec::new();
+    for (value, label) in scale.ticks(about) {
+        let y = at.1 + scale.at(value);
+        let class = if value == 0.0 { "zero" } else { "grid" };
+        shapes.push(Shape::Line { from: (at.0, y), to: (at.0 + width, y), class });
+        shapes.push(Shape::Text { at: (at.0 - 6.0, y + 3.6), text: label, class: "tick end" });
+    }
+    shapes
+}
+
+/// A panel's grid lines upwards, with labels below it where asked.
+pub(super) fn columns(at: (f64, f64), height: f64, scale: &Scale, about: usize, labelled: bool) -> Vec<Shape> {
+    let mut shapes = Vec::new();
+    for (value, label) in scale.ticks(about) {
+        let x = at.0 + scale.at(value);
+        shapes.push(Shape::Line { from: (x, at.1), to: (x, at.1 + height), class: if value == 0.0 { "zero" } else { "grid" } });
+        if labelled {
+            shapes.push(Shape::Text { at: (x, at.1 + height + 14.0), text: label, class: "tick mid" });
+        }
+    }
+    shapes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        let scale = Scale { low: -0.31, high: 0.52, length: 100.0, reversed: false };
+        let labels: Vec<String> = scale.ticks(4).into_iter().map(|(_, label)| label).collect();
+        assert_eq!(labels, ["0.0", "0.5"]);
+        assert!((nice_step(0.21) - 0.5).abs() < 1e-12 && (nice_step(0.1) - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_runaway_does_not_flatten_what_was_measured() {
+        assert_eq!(shown(Some((0.0, 10.0)), Some((-5.0, 1e6))), (-5.0, 20.0));
+        assert_eq!(shown(Some((5.0, 5.0)), Some((4.0, 6.0))), (4.9, 5.1));
+    }
+}

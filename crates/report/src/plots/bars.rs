@@ -1,0 +1,51 @@
+//! How far each coefficient of an axis moved, in standard deviations of the prior.
+
+use super::axes::{Scale, columns};
+use super::{Plot, Shape};
+use crate::coefficients::{AxisChanges, Change, Coefficients};
+use crate::numbers::signed;
+use crate::words;
+
+/// Narrower than other plots: three stand side by side.
+const WIDTH: f64 = 350.0;
+const LEFT: f64 = 142.0;
+const RIGHT: f64 = 54.0;
+const TOP: f64 = 10.0;
+const ROW: f64 = 18.0;
+const BOTTOM: f64 = 38.0;
+
+/// One plot an axis, all on the same scale.
+pub(crate) fn moved(coefficients: &Coefficients<'_>) -> Vec<(&'static str, Plot)> {
+    let most = coefficients.all().map(|c| c.change.moved_sd.abs()).filter(|sd| sd.is_finite()).fold(1.1, f64::max);
+    let scale = Scale { low: -1.06 * most, high: 1.06 * most, length: WIDTH - LEFT - RIGHT, reversed: false };
+    coefficients.axes.iter().map(|axis| (words::axis(axis.axis), plot(axis, &scale))).collect()
+}
+
+fn plot(axis: &AxisChanges<'_>, scale: &Scale) -> Plot {
+    let inner = ROW * axis.coefficients.len() as f64;
+    let one = (scale.at(-1.0), scale.at(1.0));
+    let mut shapes = vec![Shape::Rect { at: (LEFT + one.0, TOP), size: (one.1 - one.0, inner), class: "prior" }];
+    shapes.extend(columns((LEFT, TOP), inner, scale, 5, true));
+    for (index, change) in axis.coefficients.iter().enumerate() {
+        shapes.extend(row(change, TOP + ROW * (index as f64 + 0.5), scale));
+    }
+    let title = (LEFT + scale.length / 2.0, TOP + inner + 32.0);
+    shapes.push(Shape::Text { at: title, text: "moved [prior standard deviations]".into(), class: "title mid" });
+    let label = format!("How far the coefficients of {} moved", words::axis(axis.axis));
+    Plot { width: WIDTH, height: TOP + inner + BOTTOM, label, shapes }
+}
+
+fn row(change: &Change<'_>, y: f64, scale: &Scale) -> Vec<Shape> {
+    let name = match change.collinear_group {
+        Some(group) => format!("{} ◇{group}", change.change.name),
+        None => change.change.name.clone(),
+    };
+    let moved = if change.change.moved_sd.is_finite() { change.change.moved_sd } else { 0.0 };
+    let (zero, end) = (LEFT + scale.at(0.0), LEFT + scale.at(moved));
+    vec![
+        Shape::Text { at: (LEFT - 8.0, y + 3.8), text: name, class: "name end" },
+        Shape::Line { from: (zero, y), to: (end, y), class: "stem" },
+        Shape::Dot { at: (end, y), radius: 4.0, class: "dot refined" },
+        Shape::Text { at: (WIDTH - 4.0, y + 3.8), text: signed(moved, 2), class: "tick end" },
+    ]
+}

@@ -1,0 +1,71 @@
+//! Speeds, yaw rate, heading and rudder over time, panel under panel.
+
+use sistership_model::trial::Channel;
+
+use super::axes::{Scale, columns, extent, padded, rows, shown};
+use super::decimate::path;
+use super::lines::{self, Line};
+use super::{Plot, Shape, WIDTH};
+use crate::replays::Replayed;
+use crate::words::{self, Quantity, RUDDER};
+
+const LEFT: f64 = 46.0;
+const RIGHT: f64 = 18.0;
+const TITLE: f64 = 20.0;
+const HEIGHT: f64 = 78.0;
+const BOTTOM: f64 = 34.0;
+
+/// The panels of one trial.
+pub(crate) fn series(replayed: &Replayed<'_>) -> Plot {
+    let panels = panels(replayed.rolls);
+    let (time, mut shapes) = (time_scale(replayed), Vec::new());
+    for (index, (channel, quantity)) in panels.iter().enumerate() {
+        let top = TITLE + index as f64 * (TITLE + HEIGHT);
+        shapes.extend(panel(replayed, *channel, *quantity, &time, top, index + 1 == panels.len()));
+    }
+    let height = panels.len() as f64 * (TITLE + HEIGHT) + BOTTOM;
+    shapes.push(Shape::Text { at: (LEFT + time.length / 2.0, height - 4.0), text: "time [s]".into(), class: "title mid" });
+    Plot { width: WIDTH, height, label: format!("Time series of trial {}", replayed.trial.name), shapes }
+}
+
+/// What is shown: motions as they are called, then the rudder.
+fn panels(rolls: bool) -> Vec<(Channel, Quantity)> {
+    let motions = [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::Phi];
+    let motions = motions.into_iter().filter(|channel| rolls || *channel != Channel::Phi);
+    let mut panels: Vec<_> = motions.filter_map(|channel| Some((channel, words::channel(channel.name())?))).collect();
+    panels.push((Channel::Delta, RUDDER));
+    panels
+}
+
+fn time_scale(replayed: &Replayed<'_>) -> Scale {
+    let times = &replayed.trial.t_s;
+    let (low, high) = extent(times.iter().copied()).unwrap_or((0.0, 1.0));
+    Scale { low, high: high.max(low + 1e-9), length: WIDTH - LEFT - RIGHT, reversed: false }
+}
+
+fn panel(replayed: &Replayed<'_>, channel: Channel, quantity: Quantity, time: &Scale, top: f64, last: bool) -> Vec<Shape> {
+    let lines = lines::channel(replayed, channel, quantity.factor);
+    let range = |measured: bool| {
+        let own = lines.iter().filter(|line| (line.class == "measured") == measured);
+        extent(own.flat_map(|line| line.values.iter().copied()))
+    };
+    let (low, high) = padded(shown(range(true), range(false)), 0.06);
+    let scale = Scale { low, high, length: HEIGHT, reversed: true };
+    let given = if channel == Channel::Delta { ", given to both models" } else { "" };
+    let title = format!("{} {} [{}]{given}", quantity.name, quantity.symbol, quantity.unit);
+    let mut shapes = vec![Shape::Text { at: (LEFT, top - 6.0), text: title, class: "title" }];
+    shapes.extend(rows((LEFT, top), time.length, &scale, 5));
+    shapes.extend(columns((LEFT, top), HEIGHT, time, 6, last));
+    let curves = lines.iter().map(|line| curve(replayed, line, time, &scale)).collect();
+    shapes.push(Shape::Panel { at: (LEFT, top), size: (time.length, HEIGHT), shapes: curves });
+    shapes.push(Shape::Rect { at: (LEFT, top), size: (time.length, HEIGHT), class: "frame" });
+    shapes
+}
+
+fn curve(replayed: &Replayed<'_>, line: &Line<f64>, time: &Scale, scale: &Scale) -> Shape {
+    let starts = lines::starts(replayed.trial);
+    let place = |(value, sample): (&f64, &usize)| (time.at(replayed.trial.t_s[*sample]), scale.at(*value));
+    let points: Vec<(f64, f64)> = line.values.iter().zip(&line.samples).map(place).collect();
+    let jumps = |from: usize, to: usize| lines::has_gap(replayed.trial, &starts, line.samples[from], line.samples[to]);
+    Shape::Path { d: path(&points, jumps), class: line.class }
+}

@@ -1,0 +1,89 @@
+//! Where every figure comes from.
+
+use serde_json::Value;
+use sistership_estimate::refine::{Range, Settings};
+
+use super::{Cell, Column, Row, Table};
+use crate::numbers::{self, known};
+use crate::provenance::Stated;
+
+/// The ship's particulars.
+pub(crate) fn particulars(stated: &[Stated<'_>]) -> Table {
+    with_sources("particular", stated)
+}
+
+/// The parameters of the law.
+pub(crate) fn parameters(stated: &[Stated<'_>]) -> Table {
+    with_sources("parameter", stated)
+}
+
+fn with_sources(what: &str, stated: &[Stated<'_>]) -> Table {
+    let mut columns = vec![
+        Column::text(what, ""),
+        Column::prose("meaning"),
+        Column::number("value", ""),
+        Column::text("unit", ""),
+        Column::text("source", ""),
+    ];
+    let remarked = stated.iter().any(|stated| stated.quantity.note.is_some());
+    columns.extend(remarked.then(|| Column::prose("remark")));
+    Table { columns, rows: stated.iter().map(|stated| row(stated, remarked)).collect() }
+}
+
+fn row(stated: &Stated<'_>, remarked: bool) -> Row {
+    let source = Cell::new(&stated.quantity.source);
+    let source = match stated.kind {
+        Some("estimated") => source.mark("estimated", "warn"),
+        Some(kind) => source.mark(kind, "note"),
+        None => source,
+    };
+    let value = numbers::stated(stated.quantity.value, 5);
+    let mut cells = vec![Cell::code(stated.name), Cell::new(&stated.meaning), Cell::new(value), Cell::new(stated.unit), source];
+    cells.extend(remarked.then(|| Cell::new(stated.quantity.note.as_deref().unwrap_or(""))));
+    Row::of(cells)
+}
+
+/// What the settings mean, in the order in which they are shown; one that is not listed comes after these.
+const MEANINGS: [(&str, &str); 7] = [
+    ("method", "the estimator"),
+    ("ranges", "tuning ranges, from the source outwards"),
+    ("lambda_count", "values of λ tried in a range"),
+    ("difference_s", "time over which accelerations are differenced, s"),
+    ("restart_s", "simulations of manoeuvres left out start anew from the measured state every so often, s"),
+    ("folds", "most groups of manoeuvres that are left out in turn"),
+    ("held_out", "trials kept out of fit and choice altogether"),
+];
+
+/// Every setting with what it means.
+pub(crate) fn settings(settings: &Settings) -> Table {
+    let columns = vec![Column::text("setting", ""), Column::prose("value"), Column::prose("meaning")];
+    let written = serde_json::to_value(settings).unwrap_or_default();
+    let mut lines: Vec<(usize, Row)> = Vec::new();
+    for (name, value) in written.as_object().into_iter().flatten() {
+        let rank = MEANINGS.iter().position(|(known, _)| known == name).unwrap_or(MEANINGS.len());
+        let meaning = MEANINGS.get(rank).map_or("", |(_, meaning)| meaning);
+        let value = if name == "ranges" { ranges(&settings.ranges) } else { setting(value) };
+        lines.push((rank, Row::of(vec![Cell::code(name), Cell::new(value), Cell::new(meaning)])));
+    }
+    lines.sort_by_key(|(rank, _)| *rank);
+    Table { columns, rows: lines.into_iter().map(|(_, row)| row).collect() }
+}
+
+/// A setting as people read it.
+pub(crate) fn setting(value: &Value) -> String {
+    match value {
+        Value::Null => "–".into(),
+        Value::Bool(yes) => if *yes { "yes" } else { "no" }.into(),
+        Value::Number(number) => known(number.as_f64(), |number| numbers::stated(number, 4)),
+        Value::String(text) => text.clone(),
+        Value::Array(values) if values.is_empty() => "none".into(),
+        Value::Array(values) => values.iter().map(setting).collect::<Vec<_>>().join(", "),
+        Value::Object(_) => value.to_string(),
+    }
+}
+
+/// `7, least λ from 1 to 10⁻⁶`.
+fn ranges(ranges: &[Range]) -> String {
+    let least = |range: Option<&Range>| known(range.map(|range| range.lambda_min), |value| numbers::stated(value, 2));
+    format!("{}, least λ from {} to {}", ranges.len(), least(ranges.first()), least(ranges.last()))
+}
