@@ -44,6 +44,12 @@ pub(crate) async fn postgres_up_to(version: i64, connection: &mut PgConnection) 
     Ok(migrator(POSTGRES).run_direct(Some(version), connection, false).await.map_err(sqlx::Error::from)?)
 }
 
+/// The same on SQLite, for tests of upgrades.
+#[cfg(all(unix, feature = "testing"))]
+pub(crate) async fn sqlite_up_to(version: i64, connection: &mut sqlx::SqliteConnection) -> Result<()> {
+    Ok(migrator(SQLITE).run_direct(Some(version), connection, false).await.map_err(sqlx::Error::from)?)
+}
+
 /// The number of the newest migration.
 pub(crate) fn newest() -> i64 {
     SQLITE.iter().map(|(version, ..)| *version).max().unwrap_or(0)

@@ -8,11 +8,13 @@ use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{AssertSqlSafe, ConnectOptions as _, Connection as _, Executor as _, PgConnection};
 use tempfile::TempDir;
 
+pub use earlier::migrations;
 pub use s3::TestS3;
 
 use crate::clock::ManualClock;
 use crate::store::Store;
 
+mod earlier;
 mod plans;
 mod s3;
 mod server;
