@@ -140,6 +140,11 @@ impl Process {
         self.child.id()
     }
 
+    /// Its highest resident memory so far, MB.
+    pub fn peak_mb(&self) -> u64 {
+        peak_kb(self.id()).unwrap_or(0).div_ceil(1024)
+    }
+
     /// Whether it has ended, by whatever.
     pub fn ended(&mut self) -> bool {
         !matches!(self.child.try_wait(), Ok(None))

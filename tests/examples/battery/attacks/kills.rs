@@ -21,6 +21,8 @@ use crate::tally::Tally;
 use crate::writes::Write;
 
 const WRITERS: u64 = 4;
+/// Kills, however little time there is.
+const FEWEST: i64 = 3;
 /// Longer than a key is held for whoever carries it out.
 const AHEAD_S: i64 = 61;
 
@@ -61,7 +63,7 @@ async fn run(field: &Field) -> Result<(), Failure> {
     let (mut rng, mut kills) = (field.rng(WRITERS), 0);
     let until_check = field.left().mul_f64(0.75);
     let begun = std::time::Instant::now();
-    while begun.elapsed() < until_check {
+    while kills < FEWEST || begun.elapsed() < until_check {
         tokio::time::sleep(Duration::from_millis(rng.random_range(50..1000))).await;
         kills += 1;
         server.process.kill();

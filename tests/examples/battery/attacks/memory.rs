@@ -48,15 +48,18 @@ async fn run(field: &Field) -> Result<(), Failure> {
     let (mut rounds, mut said) = (0, Vec::new());
     while rounds == 0 || field.goes_on() {
         rounds += 1;
-        let steps: [(&str, String); 3] = [
-            ("documents", together(field, &server.client, &documents_of_size(rounds)).await),
-            ("Parquet", together(field, &server.client, &uploads()?).await),
-            ("downloads", downloads(field, &server, rounds).await?),
-        ];
-        for (step, statuses) in steps {
-            said.push(format!("{step} {} MB {statuses}", field.tally.counts().peak_mb));
+        for step in ["documents", "Parquet", "downloads"] {
+            let statuses = match step {
+                "documents" => together(field, &server.client, &documents_of_size(rounds)).await,
+                "Parquet" => together(field, &server.client, &uploads()?).await,
+                _ => downloads(field, &server, rounds).await?,
+            };
+            said.push(format!("{step} {} MB ({statuses})", server.process.peak_mb()));
+            if server.lives(&format!("large {step}")).await? {
+                // Each step by itself: what was once resident may stay so.
+                server.restart().await?;
+            }
         }
-        server.lives("what is small to send and large to hold").await?;
     }
     said.truncate(3);
     server.process.kill();
