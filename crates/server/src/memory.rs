@@ -12,8 +12,6 @@ use tokio::sync::{Notify, OwnedSemaphorePermit, Semaphore};
 
 use crate::problem::Problem;
 
-/// The least memory that a budget may be, bytes.
-pub const LEAST_BUDGET: u64 = 16 << 20;
 const KIB: u64 = 1 << 10;
 /// How often somebody waiting looks again, should a word of what is given back be missed.
 const LOOK: Duration = Duration::from_millis(100);
@@ -118,6 +116,7 @@ impl Budget {
     }
 
     /// Bytes that nobody has.
+    #[cfg(test)]
     pub fn free(&self) -> u64 {
         self.0.permits.available_permits() as u64 * KIB
     }
