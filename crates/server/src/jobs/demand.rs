@@ -11,7 +11,8 @@ use crate::app::App;
 use crate::memory::{Share, Shortage};
 
 /// Bytes of a refinement or diagnosis for each sample of its trials: what of it is held at a time of the linearised model, its
-/// columns and their products. Measured with the 34 trials of the Esso Osaka (135,120 samples, low-speed law, trajectory form).
+/// columns and their products. A provisional figure, a third of what the 34 trials of the Esso Osaka took before those columns were
+/// made on demand (1265 MB for 135,120 samples, low-speed law, trajectory form); to be set by a measurement of this tree.
 pub(crate) const DERIVING: u64 = 3 << 10;
 /// Bytes of any job beside that: simulations, bands, the report.
 const EVERY: u64 = 24 << 20;
