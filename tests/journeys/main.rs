@@ -9,6 +9,7 @@ mod diagnosis_over_http;
 mod families;
 mod fleet;
 mod lacking;
+mod memory;
 mod operation;
 mod over_http;
 mod sea_trials;

@@ -11,6 +11,7 @@ use crate::answers::Answers;
 use crate::archive::Archive;
 use crate::catalogue::{Catalogue, KnownLaw};
 use crate::config::{Config, Leases, Limits};
+use crate::memory::{self, Budget, Held};
 use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
 use crate::stopping::Stopping;
@@ -32,6 +33,8 @@ struct Inner {
     metrics: Metrics,
     answers: Answers,
     stopping: Stopping,
+    requests: Budget,
+    jobs: Budget,
 }
 
 impl App {
@@ -49,6 +52,8 @@ impl App {
             metrics: Metrics::default(),
             answers: Answers::default(),
             stopping,
+            requests: Budget::new(config.limits.request_memory, "--request-memory-mb"),
+            jobs: Budget::new(config.limits.job_memory, "--job-memory-mb"),
         }))
     }
 
@@ -100,6 +105,16 @@ impl App {
         self.0.stopping.clone()
     }
 
+    /// Memory for a request.
+    pub(crate) fn held(&self) -> Held {
+        Held::new(self.0.requests.clone(), self.0.limits.memory_wait)
+    }
+
+    /// Memory of jobs.
+    pub(crate) fn job_memory(&self) -> &Budget {
+        &self.0.jobs
+    }
+
     /// The laws of the database, and no ships.
     pub(crate) async fn laws(&self) -> sistership_store::Result<Arc<Zoo>> {
         self.0.catalogue.laws(self.store()).await
@@ -125,10 +140,10 @@ impl App {
     /// Runs numerics away from the threads that serve; as many at a time as there are cores.
     pub(crate) async fn compute<T: Send + 'static>(&self, work: impl FnOnce() -> T + Send + 'static) -> Result<T> {
         let seat = Arc::clone(&self.0.seats).acquire_owned().await.map_err(Problem::internal)?;
-        let task = tokio::task::spawn_blocking(move || {
+        let task = tokio::task::spawn_blocking(memory::carried(move || {
             let _seat = seat;
             work()
-        });
+        }));
         task.await.map_err(Problem::internal)
     }
 }

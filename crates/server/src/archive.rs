@@ -4,10 +4,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use bytes::Bytes;
+use sistership_model::trial::Trial;
 use sistership_model::version::{RecipeTrial, SourceVersion, sha256};
 use sistership_model::vessel::VesselFile;
 use sistership_model::{Law, Model, Vessel};
 use sistership_store::{MAX_LIMIT, Objects, ObjectsPlace, Page, Store, SystemClock, Version};
+use sistership_trials::samples::from_parquet;
 
 use crate::derive::DeriveError;
 use crate::version::VersionDocument;
@@ -74,13 +76,15 @@ impl Archive {
         Ok(document(&version)?.model)
     }
 
-    /// The samples of trials, in their order.
-    pub(crate) async fn samples(&self, trials: &[RecipeTrial]) -> Result<Vec<Bytes>> {
-        let mut samples = Vec::with_capacity(trials.len());
+    /// Trials with their samples, in their order. Each is read before the next is fetched, so that no more than one lies in
+    /// memory as it is stored.
+    pub(crate) async fn trials(&self, trials: &[RecipeTrial]) -> Result<Vec<Trial>> {
+        let mut read = Vec::with_capacity(trials.len());
         for trial in trials {
-            samples.push(self.objects.get(&trial.sha256).await?);
+            let samples: Bytes = self.objects.get(&trial.sha256).await?;
+            read.push(tokio::task::spawn_blocking(move || from_parquet(samples)).await??);
         }
-        Ok(samples)
+        Ok(read)
     }
 }
 

@@ -56,6 +56,14 @@ pub struct Limits {
     pub refinement_trials: usize,
     /// How long a server that is told to stop waits for what is under way.
     pub stop_time: Duration,
+    /// A YAML document, bytes: its tree is near a hundred times as large, see `web::payload`.
+    pub yaml_bytes: usize,
+    /// Memory that requests take together, bytes.
+    pub request_memory: u64,
+    /// Memory that jobs take together, bytes.
+    pub job_memory: u64,
+    /// How long a request waits for memory that others have.
+    pub memory_wait: Duration,
 }
 
 /// How workers hold their jobs.
@@ -132,6 +140,10 @@ impl Default for Limits {
             prediction_samples: 200_000,
             refinement_trials: 1000,
             stop_time: Duration::from_secs(10),
+            yaml_bytes: 1 << 20,
+            request_memory: 256 << 20,
+            job_memory: 256 << 20,
+            memory_wait: Duration::from_secs(5),
         }
     }
 }

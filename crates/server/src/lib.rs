@@ -16,6 +16,7 @@ mod jobs;
 mod journey;
 pub mod library;
 mod listen;
+mod memory;
 mod metrics;
 mod predict;
 mod problem;

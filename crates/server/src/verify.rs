@@ -9,6 +9,7 @@ use utoipa::ToSchema;
 
 use crate::archive::{Archive, document};
 use crate::derive::{DeriveError, Progress, code_revision, derive};
+use crate::jobs::{DERIVING, trial_bytes};
 use crate::version::{Recipe, VersionDocument};
 
 /// What came of deriving a version again.
@@ -40,6 +41,21 @@ pub struct Verification {
 /// Says what the recipe needs and the store does not have, or why the refinement is refused now.
 pub async fn verify(archive: &Archive, ship: &str, number: i64) -> Result<Verification, DeriveError> {
     verify_with(archive, ship, number, Arc::new(|_, _| true)).await
+}
+
+/// The memory that [`verify`] is estimated to take, bytes.
+pub(crate) async fn demand(archive: &Archive, ship: &str, number: i64) -> Result<u64, DeriveError> {
+    let trials = match document(&archive.store.versions().get(ship, number).await?)?.recipe {
+        Recipe::Plain(sistership_model::version::Recipe::Refinement { trials, .. }) => trials,
+        Recipe::Diagnosis(recipe) => recipe.trials,
+        _ => return Ok(0),
+    };
+    let mut bytes = 0;
+    for trial in &trials {
+        // Samples are compressed to about a third.
+        bytes += 3 * archive.objects.size(&trial.sha256).await? / trial_bytes(1) * DERIVING;
+    }
+    Ok(bytes)
 }
 
 /// The same with progress, and a way to stop it.

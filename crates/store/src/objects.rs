@@ -9,6 +9,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use bytes::Bytes;
+use futures::stream::BoxStream;
+use futures::{StreamExt as _, TryStreamExt as _};
 use object_store::local::LocalFileSystem;
 use object_store::memory::InMemory;
 use object_store::path::Path as ObjectPath;
@@ -103,6 +105,16 @@ impl Objects {
         }
     }
 
+    /// The bytes of this key as they come, not yet verified: whoever reads them to the end compares their hash.
+    ///
+    /// # Errors
+    /// There is no such object, or the store fails.
+    pub async fn stream(&self, key: &str) -> Result<(u64, BoxStream<'static, Result<Bytes>>)> {
+        let found = self.store.get(&path(key)?).await.map_err(|error| failure(key, error))?;
+        let (size, key) = (found.meta.size, key.to_owned());
+        Ok((size, found.into_stream().map_err(move |error| failure(&key, error)).boxed()))
+    }
+
     /// Removes the object of this key, if it is there. Only who knows that no row refers to it may do so, see
     /// [`crate::Store::remove_unreferred`].
     pub(crate) async fn remove(&self, key: String) -> Result<()> {
@@ -110,6 +122,11 @@ impl Objects {
             Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
             Err(error) => Err(ObjectsError::from(error).into()),
         }
+    }
+
+    /// Size of the object of this key, bytes.
+    pub async fn size(&self, key: &str) -> Result<u64> {
+        Ok(self.store.head(&path(key)?).await.map_err(|error| failure(key, error))?.size)
     }
 
     /// Whether there is an object of this key.

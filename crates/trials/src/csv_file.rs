@@ -22,13 +22,44 @@ pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings)
     let headers = headers(&mut reader, mapping, findings)?;
     meter.reset();
     let columns = resolve(&headers, mapping, findings)?;
-    let mut builder = Builder::new(columns, mapping.conventions.missing, findings);
+    let mut builder = Builder::new(columns, mapping.conventions.missing, findings).with_room(mapping.room);
     let stopped = rows(&mut reader, &meter, mapping.limits.rows, &mut builder);
     let table = builder.finish();
     if let Err((row, message)) = stopped {
         findings.error(Some(row), None, message);
     }
     Some(table)
+}
+
+/// The most rows that there can be, and the columns that are read; none where the header is no good.
+pub(crate) fn measure(mut input: impl Read, mapping: &Mapping) -> Option<(usize, usize)> {
+    let (mut rows, mut before, mut start) = (1, 0, Vec::new());
+    input.by_ref().take(mapping.limits.line_bytes as u64).read_to_end(&mut start).ok()?;
+    let columns = columns(&start[..], mapping)?;
+    let mut buffer = vec![0; 64 << 10];
+    let mut count = |bytes: &[u8]| {
+        for &byte in bytes {
+            rows += usize::from(byte == b'\r' || (byte == b'\n' && before != b'\r'));
+            before = byte;
+        }
+    };
+    count(&start);
+    loop {
+        match input.read(&mut buffer).ok()? {
+            0 => return Some((rows, columns)),
+            read => count(&buffer[..read]),
+        }
+    }
+}
+
+/// How many columns of the file that starts like this are read.
+fn columns(start: &[u8], mapping: &Mapping) -> Option<usize> {
+    let mut findings = Findings::default();
+    let mut buffered = BufReader::new(start);
+    let delimiter = delimiter(&mut buffered, &mut findings)?;
+    let mut reader = ReaderBuilder::new().delimiter(delimiter).flexible(true).from_reader(buffered);
+    let headers = headers(&mut reader, mapping, &mut findings)?;
+    Some(resolve(&headers, mapping, &mut findings)?.len())
 }
 
 /// Comma, semicolon or tab: whichever the header line holds most of.
@@ -128,7 +159,7 @@ mod tests {
     #[test]
     fn sizes_are_bounded() {
         let mut mapping = Mapping::canonical();
-        mapping.limits = crate::Limits { rows: 2, columns: 2, line_bytes: 100 };
+        mapping.limits = crate::Limits { rows: 2, columns: 2, line_bytes: 100, ..crate::Limits::default() };
         assert!(run("t_s,u_m_s\n0,1\n1,1\n", &mapping).1.is_empty());
         assert!(run("t_s,u_m_s\n0,1\n1,1\n2,1\n", &mapping).1[0].contains("more than the 2 rows"));
         assert!(run("t_s,u_m_s,v_m_s\n", &mapping).1[0].contains("3 columns"));

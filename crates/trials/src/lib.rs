@@ -7,6 +7,7 @@
 mod checks;
 mod convert;
 mod csv_file;
+mod demand;
 mod findings;
 mod limits;
 mod load;
@@ -15,6 +16,7 @@ mod mapping;
 mod metered;
 mod names;
 mod outcome;
+mod pages;
 mod parquet_file;
 mod read;
 mod recording;
@@ -29,6 +31,7 @@ mod table;
 mod testing;
 mod units;
 
+pub use demand::{Demand, demand, measuring};
 pub use limits::Limits;
 pub use load::{Loaded, check_path, load_path};
 pub use manifest::read_manifest;

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use sistership_model::trial::{Channel, Trial};
 
+use crate::findings::Hits;
 use crate::table::{Column, Target};
 use crate::units::Kind;
 
@@ -52,8 +53,10 @@ impl Recording {
     }
 
     /// Samples that a test holds for, each with its row.
-    pub(crate) fn hits(&self, samples: Range<usize>, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
-        samples.filter(|&k| holds(k)).map(|k| (k, self.row(k))).collect()
+    pub(crate) fn hits(&self, samples: Range<usize>, holds: impl Fn(usize) -> bool) -> Hits {
+        let mut hits = Hits::default();
+        samples.filter(|&k| holds(k)).for_each(|k| hits.add((k, self.row(k))));
+        hits
     }
 
     /// Learns interval and segments; time must be strictly increasing.

@@ -33,6 +33,13 @@ impl<'a> Builder<'a> {
         Self { table, missing, findings, run: None, faulty: 0, scratch: Vec::new() }
     }
 
+    /// With room for so many rows: columns that grow take half as much again.
+    pub(crate) fn with_room(mut self, rows: usize) -> Self {
+        self.table.rows.reserve_exact(rows);
+        self.table.values.iter_mut().for_each(|values| values.reserve_exact(rows));
+        self
+    }
+
     /// One row of the file; `cell` gives the number in the n-th mapped column.
     pub(crate) fn row(&mut self, row: usize, cell: impl Fn(usize, &Column) -> Result<f64, Fault>) {
         self.scratch.clear();
@@ -73,6 +80,8 @@ impl<'a> Builder<'a> {
 
     /// The table, once every row has been seen.
     pub(crate) fn finish(mut self) -> Table {
+        self.table.rows.shrink_to_fit();
+        self.table.values.iter_mut().for_each(Vec::shrink_to_fit);
         let last = self.run.as_ref().map(|run| run.last);
         self.end_run();
         if let Some(more @ 1..) = self.faulty.checked_sub(LISTED).filter(|_| self.missing == Missing::Refuse) {

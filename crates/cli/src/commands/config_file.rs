@@ -32,6 +32,10 @@ pub struct ConfigFile {
     pub lease_s: Option<f64>,
     /// `--drain-s`
     pub drain_s: Option<f64>,
+    /// `--request-memory-mb`
+    pub request_memory_mb: Option<u64>,
+    /// `--job-memory-mb`
+    pub job_memory_mb: Option<u64>,
     /// `--log`
     pub log: Option<String>,
     /// `--log-format`

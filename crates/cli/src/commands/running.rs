@@ -13,6 +13,10 @@ use crate::output;
 const WORKERS: u16 = 1;
 const MOST_WORKERS: u16 = 64;
 
+/// Memory that requests or jobs may be given, MB.
+const LEAST_MEMORY_MB: u64 = 32;
+const MOST_MEMORY_MB: u64 = 1 << 20;
+
 /// How workers hold their jobs.
 #[derive(Debug, Args)]
 pub struct LeaseArguments {
@@ -45,6 +49,18 @@ fn seconds(name: &str, value: f64, least: f64, most: Duration) -> Result<Duratio
     match (least..=most.as_secs_f64()).contains(&value) {
         true => Ok(Duration::from_secs_f64(value)),
         false => Err(Failure::Call(format!("{name} must be from {least} to {} s, not {value}", most.as_secs()))),
+    }
+}
+
+/// Memory in MB, as the flag or the file asks for, in bytes.
+///
+/// # Errors
+/// Names the setting that is out of bounds.
+pub fn memory(name: &str, given: Option<u64>, file: Option<u64>, default: u64) -> Result<u64, Failure> {
+    let Some(mb) = given.or(file) else { return Ok(default) };
+    match (LEAST_MEMORY_MB..=MOST_MEMORY_MB).contains(&mb) {
+        true => Ok(mb << 20),
+        false => Err(Failure::Call(format!("{name} must be from {LEAST_MEMORY_MB} to {MOST_MEMORY_MB} MB, not {mb}"))),
     }
 }
 
@@ -102,6 +118,15 @@ mod tests {
         assert_eq!(none.leases(&ConfigFile::default()).unwrap(), Leases::default());
         assert_eq!((workers(Some(5), &file, 1), workers(None, &file, 1)), (Ok(5), Ok(3)));
         assert_eq!(workers(None, &ConfigFile::default(), 1), Ok(1));
+    }
+
+    #[test]
+    fn memory_is_given_in_megabytes() {
+        assert_eq!(memory("job_memory_mb", None, Some(64), 7), Ok(64 << 20));
+        assert_eq!(memory("job_memory_mb", Some(32), Some(64), 7), Ok(32 << 20));
+        assert_eq!(memory("job_memory_mb", None, None, 7), Ok(7));
+        let wrong = memory("job_memory_mb", Some(8), None, 7).unwrap_err();
+        assert!(wrong.message().unwrap().contains("job_memory_mb must be from 32"));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use sistership_server::{Config, DEFAULT_LISTEN, Server, StartError};
 
 use super::config_file::ConfigFile;
 use super::log::LogArguments;
-use super::running::{LeaseArguments, until_stopped, workers};
+use super::running::{LeaseArguments, memory, until_stopped, workers};
 use super::store::{StoreArguments, block_on};
 use crate::failure::{Failure, about_file};
 use crate::output;
@@ -45,6 +45,12 @@ pub struct Serve {
     /// Work on no jobs, whatever --workers says.
     #[arg(long)]
     no_worker: bool,
+    /// Memory that requests may take together, MB, 32 or more; what does not fit waits or is refused [default: 256].
+    #[arg(long, value_name = "MB", env = "SISTERSHIP_REQUEST_MEMORY_MB")]
+    request_memory_mb: Option<u64>,
+    /// Memory that jobs may take together, MB, 32 or more [default: 256].
+    #[arg(long, value_name = "MB", env = "SISTERSHIP_JOB_MEMORY_MB")]
+    job_memory_mb: Option<u64>,
     #[command(flatten)]
     lease: LeaseArguments,
     #[command(flatten)]
@@ -84,6 +90,9 @@ fn config(serve: &Serve, file: &ConfigFile) -> Result<Config, Failure> {
     config.database_url = place.database_url;
     config.workers = if serve.no_worker { 0 } else { workers(serve.workers, file, 0)? };
     config.leases = serve.lease.leases(file)?;
+    let limits = &mut config.limits;
+    limits.request_memory = memory("request_memory_mb", serve.request_memory_mb, file.request_memory_mb, limits.request_memory)?;
+    limits.job_memory = memory("job_memory_mb", serve.job_memory_mb, file.job_memory_mb, limits.job_memory)?;
     config.api_key = api_key(serve, file)?;
     config.check().map_err(refused)?;
     Ok(config)

@@ -5,7 +5,6 @@ use sistership_identify::diagnose::{Diagnosis, Request, Settings, diagnose};
 use sistership_model::trial::Trial;
 use sistership_model::version::FORMAT;
 use sistership_model::{Law, Model};
-use sistership_trials::samples;
 
 use super::{DeriveError, Progress, sorted};
 use crate::archive::Archive;
@@ -34,9 +33,8 @@ pub struct Diagnosed {
 pub async fn diagnosed(archive: &Archive, recipe: DiagnosisRecipe, progress: Progress) -> Result<Diagnosed, DeriveError> {
     let model = archive.source(&recipe.diagnosed).await?;
     let law = archive.law(&model.law, &recipe.law_sha256).await?;
-    let samples = archive.samples(&recipe.trials).await?;
+    let trials = archive.trials(&recipe.trials).await?;
     let work = move || {
-        let trials = samples.into_iter().map(samples::from_parquet).collect::<Result<Vec<Trial>, _>>()?;
         let diagnosis = carry_out(&recipe, &model, &law, &trials, &progress)?;
         Ok(Diagnosed { diagnosis, recipe, model, law, trials })
     };

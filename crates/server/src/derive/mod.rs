@@ -69,9 +69,9 @@ pub async fn derive(archive: &Archive, ship: &str, recipe: &Recipe, progress: Pr
             published(archive, ship, model, ship_sha256, law_sha256).await
         }
         Recipe::Plain(recipe @ version::Recipe::Refinement { .. }) => {
-            let (ingredients, samples) = refined::gather(archive, ship, recipe).await?;
+            let ingredients = refined::gather(archive, ship, recipe).await?;
             let recipe = recipe.clone();
-            tokio::task::spawn_blocking(move || refined::refined(ingredients, &samples, &recipe, &progress)).await?
+            tokio::task::spawn_blocking(move || refined::refined(ingredients, &recipe, &progress)).await?
         }
         Recipe::Family(recipe) => Ok(Derived { document: crate::fleet::derived(archive, ship, recipe).await?, refined: None }),
         Recipe::Registered(_) => {

@@ -1,12 +1,10 @@
 //! Deriving a refined version: a function of its ingredients, each found by its hash.
 
-use bytes::Bytes;
 use serde_json::Value;
 use sistership_identify::refine::{RefineError, Refinement, Request, Settings, refine};
 use sistership_model::trial::Trial;
 use sistership_model::version::{FORMAT, Recipe, SourceVersion};
 use sistership_model::{Law, Model, Vessel};
-use sistership_trials::samples;
 
 use super::{DeriveError, Derived, Progress, sorted, with_uncertainty};
 use crate::archive::Archive;
@@ -41,8 +39,8 @@ pub struct Ingredients {
     pub settings: Settings,
 }
 
-/// Loads what a recipe names, each by its hash; the samples are not yet read.
-pub(super) async fn gather(archive: &Archive, ship: &str, recipe: &Recipe) -> Result<(Ingredients, Vec<Bytes>), DeriveError> {
+/// Loads what a recipe names, each by its hash.
+pub(super) async fn gather(archive: &Archive, ship: &str, recipe: &Recipe) -> Result<Ingredients, DeriveError> {
     let Recipe::Refinement { source, ship_sha256, law_sha256, across, trials, settings: recorded, .. } = recipe else {
         return Err(DeriveError::Lost("the recipe is not that of a refinement".into()));
     };
@@ -53,19 +51,13 @@ pub(super) async fn gather(archive: &Archive, ship: &str, recipe: &Recipe) -> Re
         None => None,
     };
     let target = archive.ship(ship, ship_sha256).await?;
-    let samples = archive.samples(trials).await?;
+    let trials = archive.trials(trials).await?;
     let settings: Settings = serde_json::from_value(recorded.clone())?;
-    let (source, trials) = (source.clone(), Vec::new());
-    Ok((Ingredients { target, source, model, source_law, law, trials, settings }, samples))
+    let source = source.clone();
+    Ok(Ingredients { target, source, model, source_law, law, trials, settings })
 }
 
-pub(super) fn refined(
-    mut ingredients: Ingredients,
-    samples: &[Bytes],
-    recipe: &Recipe,
-    progress: &Progress,
-) -> Result<Derived, DeriveError> {
-    ingredients.trials = samples.iter().cloned().map(samples::from_parquet).collect::<Result<_, _>>()?;
+pub(super) fn refined(ingredients: Ingredients, recipe: &Recipe, progress: &Progress) -> Result<Derived, DeriveError> {
     let (document, refinement) = refined_document(&ingredients, recipe, &**progress)?;
     Ok(Derived { document, refined: Some(Refined { refinement, ingredients }) })
 }

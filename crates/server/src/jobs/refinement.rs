@@ -7,7 +7,6 @@ use sistership_model::trial::Trial as Recording;
 use sistership_model::version::{AcrossLaws, Recipe, RecipeTrial, SourceVersion, sha256};
 use sistership_model::{Vessel, Zoo};
 use sistership_store::{Job, Version};
-use sistership_trials::samples::from_parquet;
 
 use super::commit::commit;
 use super::outcome::{JobError, Result, failed};
@@ -86,13 +85,8 @@ pub(super) async fn trials(app: &App, ids: &[String]) -> Result<Vec<RecipeTrial>
 /// The best eligible ship of the zoo, measured on the trials.
 async fn choose(app: &App, target: Vessel, trials: &[RecipeTrial]) -> Result<(Version, Similarity)> {
     let zoo = app.zoo_around(&target).await?;
-    let samples = app.archive().samples(trials).await?;
-    let choice = move || {
-        let trials: Vec<Recording> =
-            samples.into_iter().map(from_parquet).collect::<std::result::Result<_, _>>().map_err(failed)?;
-        best(&zoo, &target, &trials)
-    };
-    let (name, similarity) = app.compute(choice).await??;
+    let trials = app.archive().trials(trials).await?;
+    let (name, similarity) = app.compute(move || best(&zoo, &target, &trials)).await??;
     let (ship, model) = name.split_once('/').unwrap_or((&name, ""));
     let found = alias(app.store(), ship, &alias_of(model)).await?;
     let found = found.ok_or_else(|| failed(format!("the model `{name}` has no version; start the server again to make it")))?;

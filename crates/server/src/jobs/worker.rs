@@ -10,7 +10,7 @@ use uuid::Uuid;
 use super::outcome::JobError;
 use super::progress::{Progress, Stop};
 use super::request::{DIAGNOSIS, REFINEMENT};
-use super::{chunk, diagnosis, family_prior, refinement};
+use super::{chunk, demand, diagnosis, family_prior, refinement};
 use crate::app::App;
 use crate::fleet::{BULK, LEARN};
 use crate::stopping::Stopping;
@@ -136,6 +136,7 @@ async fn until(moment: Option<Instant>) {
 }
 
 async fn work(app: App, job: Job, progress: Progress) -> Result<(), JobError> {
+    let _share = demand::taken(&app, &job, &progress).await?;
     match job.kind.as_str() {
         REFINEMENT => refinement::run(&app, &job, progress).await,
         DIAGNOSIS => diagnosis::run(&app, &job, progress).await,

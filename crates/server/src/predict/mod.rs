@@ -13,6 +13,7 @@ use utoipa::ToSchema;
 pub(crate) use inputs::InputsRequest;
 pub(crate) use manoeuvre::ManoeuvreRequest;
 
+use crate::memory::take_now;
 use crate::problem::{Problem, Result};
 use manoeuvre::Whose;
 
@@ -50,10 +51,14 @@ fn positive(field: &str, value: f64) -> Result<f64> {
     }
 }
 
-/// Refuses a simulation of more steps than are allowed.
+/// Memory that a sample of a track takes until it is answered: 15 numbers simulated, 11 as JSON values of 32 bytes, and their
+/// text of some 20 bytes each.
+const SAMPLE_BYTES: u64 = 15 * 8 + 11 * (32 + 20);
+
+/// Takes the memory of a simulation; refuses a simulation of more steps than are allowed.
 fn bounded(field: &str, steps: f64, most: usize) -> Result<()> {
     match steps <= most as f64 {
-        true => Ok(()),
+        true => Ok(take_now(SAMPLE_BYTES * steps.max(0.0).ceil() as u64)?),
         false => Err(Problem::invalid(
             field,
             format!("would take {steps:.0} steps, at most {most} are made: give a higher speed or a shorter time"),

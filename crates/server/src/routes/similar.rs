@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde_json::Value;
 use sistership_identify::similarity::Definition;
 use sistership_identify::source;
-use sistership_trials::samples::{SamplesError, from_parquet};
+use sistership_model::version::RecipeTrial;
 use utoipa::IntoParams;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -14,6 +14,8 @@ use utoipa_axum::routes;
 use super::trials::all_of_ship;
 use crate::app::App;
 use crate::archive::vessel;
+use crate::jobs::trial_bytes;
+use crate::memory;
 use crate::problem::{Problem, Result};
 use crate::web::{Params, Place};
 
@@ -48,18 +50,12 @@ fn yes() -> bool {
 async fn similar(State(app): State<App>, Place(name): Place<String>, Params(query): Params<Query>) -> Result<Json<Value>> {
     let ship = app.store().ships().get(&name).await?;
     let target = vessel(&ship.name, &ship.document)?;
-    let mut samples = Vec::new();
-    if query.trials {
-        for trial in all_of_ship(&app, &name).await? {
-            samples.push(app.objects().get(&trial.object_key).await?);
-        }
-    }
+    let trials = if query.trials { all_of_ship(&app, &name).await? } else { Vec::new() };
+    memory::take(trials.iter().map(|trial| trial_bytes(trial.sample_rows)).sum()).await?;
+    let named = trials.into_iter().map(|trial| RecipeTrial { name: trial.name, sha256: trial.object_key });
+    let trials = app.archive().trials(&named.collect::<Vec<_>>()).await?;
     let zoo = app.zoo_around(&target).await?;
-    let ranked = app.compute(move || {
-        let trials = samples.into_iter().map(from_parquet).collect::<Result<Vec<_>, SamplesError>>()?;
-        let trials: Vec<_> = trials.iter().collect();
-        Ok::<_, SamplesError>(source::similar(&zoo, &target, query.vector, &trials))
-    });
-    let ranked = ranked.await?.map_err(Problem::internal)?;
+    let ranked = move || source::similar(&zoo, &target, query.vector, &trials.iter().collect::<Vec<_>>());
+    let ranked = app.compute(ranked).await?;
     Ok(Json(serde_json::to_value(ranked).map_err(Problem::internal)?))
 }

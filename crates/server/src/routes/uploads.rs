@@ -85,6 +85,6 @@ async fn kept(app: &App, upload: Upload) -> Result<Reply> {
     responses((status = 200, body = Object, description = "`trials`: `file`, `rows`, `duration_s`, `errors`, `warnings` of each"))
 )]
 async fn check(State(app): State<App>, upload: Upload) -> Result<Json<Value>> {
-    let outcomes = app.compute(move || upload.check()).await?;
+    let outcomes = upload.check(&app).await?;
     Ok(Json(json!({ "trials": outcomes })))
 }

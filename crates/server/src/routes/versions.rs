@@ -124,5 +124,7 @@ async fn bytes(State(app): State<App>, Place((model, number)): Place<(String, i6
     responses((status = 200, body = Verification, description = "`identical` tells whether they are the same"))
 )]
 async fn verify_again(State(app): State<App>, Place((model, number)): Place<(String, i64)>) -> Result<Json<Verification>> {
+    // It is the work of a job, in a request.
+    let _share = app.job_memory().take(verify::demand(app.archive(), &model, number).await?, app.limits().memory_wait).await?;
     Ok(Json(verify::verify(app.archive(), &model, number).await?))
 }

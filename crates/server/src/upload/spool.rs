@@ -7,7 +7,7 @@ use std::time::{Duration, SystemTime};
 use bytes::Bytes;
 use futures::{Stream, StreamExt as _};
 use sha2::{Digest as _, Sha256};
-use tempfile::{Builder, TempPath};
+use tempfile::{Builder, NamedTempFile, TempPath};
 use tokio::fs::File;
 use tokio::io::{AsyncWriteExt as _, BufWriter};
 
@@ -31,7 +31,7 @@ pub(crate) async fn spool<E: Into<Problem>>(
     folder: &Path,
     mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
 ) -> Result<Spooled> {
-    let (file, path) = Builder::new().prefix(PREFIX).tempfile_in(folder).map_err(full)?.into_parts();
+    let (file, path) = temporary(folder)?.into_parts();
     let (mut file, mut hash) = (BufWriter::new(File::from_std(file)), Sha256::new());
     while let Some(chunk) = stream.next().await {
         let chunk = chunk.map_err(Into::into)?;
@@ -39,8 +39,17 @@ pub(crate) async fn spool<E: Into<Problem>>(
         file.write_all(&chunk).await.map_err(full)?;
     }
     file.flush().await.map_err(full)?;
-    let sha256 = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-    Ok(Spooled { path, sha256 })
+    Ok(Spooled { path, sha256: hex(&hash.finalize()) })
+}
+
+/// A hash in lower-case hexadecimal.
+pub(crate) fn hex(hash: &[u8]) -> String {
+    hash.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// A file among the uploads under way; it goes when this is dropped.
+pub(crate) fn temporary(folder: &Path) -> Result<NamedTempFile> {
+    Builder::new().prefix(PREFIX).tempfile_in(folder).map_err(full)
 }
 
 fn full(error: io::Error) -> Problem {

@@ -11,6 +11,7 @@ use uuid::Uuid;
 
 use crate::app::App;
 use crate::problem::{MEDIA, Problem};
+use crate::web::large::counted;
 
 /// Gives the request an id, logs and counts it, and sees to it that an error is a problem with that id.
 pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Next) -> Response {
@@ -19,7 +20,8 @@ pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Nex
     let span = tracing::info_span!("request", %id, method = %request.method(), path = request.uri().path());
     async move {
         let start = Instant::now();
-        let response = finish(next.run(request).await, id);
+        let response = app.held().scope(async { counted(next.run(request).await).await }).await;
+        let response = finish(response, id);
         let elapsed = start.elapsed();
         tracing::info!(status = response.status().as_u16(), elapsed_ms = elapsed.as_millis() as u64, "answered");
         app.metrics().answered(&method, &route, response.status(), elapsed);

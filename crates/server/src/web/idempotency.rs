@@ -11,6 +11,7 @@ use tracing::Instrument as _;
 
 use super::reply::Reply;
 use crate::app::App;
+use crate::memory::{Held, carried_on};
 use crate::problem::{Problem, Result};
 
 const HEADER: &str = "idempotency-key";
@@ -64,6 +65,7 @@ impl Key {
 
 /// Waits for work that goes on if nobody waits.
 async fn finished<T: Send + 'static>(work: impl Future<Output = Result<T>> + Send + 'static) -> Result<T> {
+    let work = carried_on(Held::current(), work);
     tokio::spawn(work.in_current_span()).await.map_err(Problem::internal)?
 }
 

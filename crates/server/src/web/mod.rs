@@ -5,6 +5,7 @@ pub(crate) mod conditions;
 pub(crate) mod envelope;
 pub(crate) mod guard;
 pub(crate) mod idempotency;
+pub(crate) mod large;
 pub(crate) mod page;
 pub(crate) mod params;
 pub(crate) mod payload;
