@@ -5,6 +5,8 @@ mod calibrated;
 mod diagnosed;
 mod inputs;
 mod refined;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 

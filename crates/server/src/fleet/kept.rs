@@ -54,3 +54,19 @@ pub(super) async fn made(frame: &Frame, samples: Bytes) -> Result<TrialStatistic
     let work = move || Ok(TrialStatistics::of(&frame, &from_parquet(samples)?)?);
     tokio::task::spawn_blocking(work).await?
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_model::Zoo;
+
+    #[test]
+    fn statistics_of_another_release_are_not_taken() {
+        let zoo = Zoo::embedded().unwrap();
+        let model = zoo.model("sr108").unwrap();
+        let frame = Frame::new(&model, zoo.law(&model.law).unwrap(), "law", None).unwrap();
+        assert_eq!(key(&frame, "trial", "1"), key(&frame, "trial", "1"));
+        assert_ne!(key(&frame, "trial", "1"), key(&frame, "trial", "2"));
+    }
+}
