@@ -109,7 +109,8 @@ fn remarks(made_by: Option<&str>, (stored, derived): (&str, &str), undamaged: bo
 
 /// The largest relative difference of two documents that differ in the last digits of numbers only.
 fn rounding(stored: &Value, derived: &Value) -> Option<f64> {
-    let largest = |all: &mut dyn Iterator<Item = Option<f64>>| all.try_fold(0.0, |most: f64, one| Some(most.max(one?)));
+    let largest =
+        |mut all: &mut dyn Iterator<Item = Option<f64>>| (&mut all).try_fold(0.0, |most: f64, one| Some(most.max(one?)));
     match (stored, derived) {
         (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
             largest(&mut a.values().zip(b.values()).map(|(a, b)| rounding(a, b)))
