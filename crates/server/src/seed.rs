@@ -5,6 +5,7 @@ use sistership_store::{NewShip, Store, StoreError};
 
 use crate::archive::vessel;
 use crate::catalogue::Catalogue;
+use crate::library;
 use crate::problem::Problem;
 use crate::publish::publish;
 use crate::start_error::StartError;
@@ -12,6 +13,7 @@ use crate::start_error::StartError;
 /// Puts in what is missing; several processes may do so at once, and one that was killed half-way is continued.
 pub(crate) async fn seed(store: &Store, catalogue: &Catalogue) -> Result<(), StartError> {
     let embedded = tokio::task::spawn_blocking(Zoo::embedded).await.map_err(|error| broken(&error))??;
+    library::keep(store).await?;
     laws(store, &embedded).await?;
     ships(store, &embedded).await?;
     let zoo = catalogue.laws(store).await?;

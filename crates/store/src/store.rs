@@ -10,6 +10,7 @@ use crate::connect;
 use crate::current::Questions;
 use crate::database::{Database, Transaction};
 use crate::diagnoses::Diagnoses;
+use crate::effects::EffectLibraries;
 use crate::error::Result;
 use crate::families::Families;
 use crate::idempotency::Idempotency;
@@ -85,6 +86,11 @@ impl Store {
     /// Laws of motion, insert-only.
     pub fn laws(&self) -> Laws<'_> {
         Laws(self)
+    }
+
+    /// Libraries of effects, insert-only.
+    pub fn effects(&self) -> EffectLibraries<'_> {
+        EffectLibraries(self)
     }
 
     /// Ships and their history.

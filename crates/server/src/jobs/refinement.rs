@@ -14,7 +14,8 @@ use super::progress::Progress;
 use super::request::{RefinementJob, SourceChoice};
 use crate::app::App;
 use crate::archive::vessel;
-use crate::derive::{code_revision, derive, sorted};
+use crate::derive::{DeriveError, code_revision, derive, sorted};
+use crate::library::{self, Library, library};
 use crate::publish::{alias, alias_of};
 use crate::version;
 
@@ -25,7 +26,9 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
     let prepared = prepare(app, &asked, &progress).await?;
     let step = progress.clone();
     let scaled = move |fraction: f64, what: &str| step.tell(0.1 + 0.8 * fraction, what);
-    let derived = derive(app.archive(), &asked.ship, &version::Recipe::Plain(prepared.recipe.clone()), Arc::new(scaled)).await?;
+    let derived = derive(app.archive(), &asked.ship, &version::Recipe::Plain(prepared.recipe.clone()), Arc::new(scaled))
+        .await?
+        .spelled_out()?;
     tell(&progress, 0.92, "writing the report and keeping the version")?;
     commit(app, job, derived, prepared).await
 }
@@ -66,11 +69,18 @@ async fn prepare(app: &App, asked: &RefinementJob, progress: &Progress) -> Resul
         ship_sha256: sha256(ship.document.as_bytes()),
         law_sha256: law.sha256,
         across,
+        effects_sha256: Some(library_of(app).await?.sha256.clone()),
         trials,
         settings: sorted(serde_json::to_value(&asked.settings).map_err(failed)?),
         code_revision: code_revision().to_owned(),
     };
     Ok(Prepared { recipe, source, similarity })
+}
+
+/// This program's library of effects, which the store keeps from now on if it did not.
+pub(super) async fn library_of(app: &App) -> Result<&'static Library> {
+    library::keep(app.store()).await?;
+    library().map_err(|error| JobError::from(DeriveError::File(error)))
 }
 
 pub(super) async fn trials(app: &App, ids: &[String]) -> Result<Vec<RecipeTrial>> {

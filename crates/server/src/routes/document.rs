@@ -30,6 +30,7 @@ use crate::problem::{Fault, MEDIA, Problem};
         (name = "predictions", description = "Simulations with a version."),
         (name = "reports", description = "What a refinement or a diagnosis reported."),
         (name = "laws", description = "Laws of motion."),
+        (name = "effects", description = "Libraries of effects, as recipes name them."),
         (name = "health", description = "Whether the server lives and can work.")
     )
 )]

@@ -7,6 +7,7 @@ mod condition;
 mod diagnoses;
 mod document;
 mod drift;
+mod effects;
 mod events;
 mod families;
 mod health;
@@ -72,6 +73,7 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(families::routes())
         .merge(drift::routes())
         .merge(bulk_refinements::routes())
+        .merge(effects::routes())
         .merge(laws::routes())
         .merge(ships::routes())
         .merge(ship_changes::routes())

@@ -77,7 +77,11 @@ async fn a_healthy_archive_is_clean() {
         let findings = found(archive).await;
         assert!(findings.clean && findings.faults.is_empty(), "{findings:#?}");
         assert_eq!((findings.checked.trials, findings.checked.objects, findings.unreferred.objects), (1, 1, 0));
-        assert!(findings.checked.laws > 3 && findings.checked.versions > 5, "{:?}", findings.checked);
+        assert!(
+            findings.checked.laws > 3 && findings.checked.effects > 0 && findings.checked.versions > 5,
+            "{:?}",
+            findings.checked
+        );
     }
 }
 
@@ -93,6 +97,7 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ("UPDATE trials SET object_key = '00'", "trial-key", "trial "),
     ("UPDATE laws SET document = document || ' ' WHERE name = 'abkowitz'", "law-hash", "law abkowitz"),
     ("UPDATE laws SET sha256 = 'x' WHERE name = 'abkowitz'", "version-law", "version "),
+    ("UPDATE effect_libraries SET document = document || ' '", "effects-hash", "library of effects 4ffa"),
     ("DELETE FROM laws WHERE name = 'abkowitz'", "version-law", "version "),
     ("UPDATE versions SET document = document || ' ' WHERE model = 'mariner'", "version-hash", "version mariner/1"),
     ("UPDATE versions SET document = '{}' WHERE model = 'mariner'", "version-document", "version mariner/1"),
@@ -168,8 +173,9 @@ async fn damaged(database: TestDatabase) {
     assert!(found(&archive).await.clean, "healed again");
 }
 
-const TABLES: [&str; 21] = [
+const TABLES: [&str; 22] = [
     "laws",
+    "effect_libraries",
     "ships",
     "ship_revisions",
     "trials",
