@@ -38,7 +38,11 @@ impl Archive {
     /// Says which of them cannot be opened.
     pub async fn open_at(database_url: &str, samples: &ObjectsPlace) -> sistership_store::Result<Self> {
         let objects = Objects::at(samples)?;
-        objects.mark().await?;
+        match objects.mark().await {
+            // The server leaves it once there is room.
+            Err(error) if error.is_out_of_space() => tracing::error!(%error, "the objects could not be marked"),
+            other => other?,
+        }
         Ok(Self { store: Store::connect(database_url, Arc::new(SystemClock)).await?, objects })
     }
 

@@ -13,12 +13,14 @@ const SQLITE: &[Source] = &[
     (2, "diagnoses", include_str!("../../../migrations/sqlite/0002_diagnoses.sql")),
     (3, "search", include_str!("../../../migrations/sqlite/0003_search.sql")),
     (4, "fleets", include_str!("../../../migrations/sqlite/0004_fleets.sql")),
+    (5, "leases", include_str!("../../../migrations/sqlite/0005_leases.sql")),
 ];
 const POSTGRES: &[Source] = &[
     (1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql")),
     (2, "diagnoses", include_str!("../../../migrations/postgres/0002_diagnoses.sql")),
     (3, "search", include_str!("../../../migrations/postgres/0003_search.sql")),
     (4, "fleets", include_str!("../../../migrations/postgres/0004_fleets.sql")),
+    (5, "leases", include_str!("../../../migrations/postgres/0005_leases.sql")),
 ];
 
 fn migrator(sources: &'static [Source]) -> Migrator {

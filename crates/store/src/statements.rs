@@ -41,8 +41,8 @@ mod prepare {
     use crate::error::{Result, StoreError};
     use crate::store::Store;
     use crate::{
-        aliases, bulks, current, diagnoses, families, garbage, idempotency, integrity, jobs, laws, reports, search, search_index,
-        ships, statistics, store, tags, trials, versions, work,
+        aliases, bulks, current, diagnoses, families, garbage, idempotency, integrity, jobs, laws, reports, reserve, search,
+        search_index, ships, statistics, store, tags, trials, versions, work,
     };
 
     pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[
@@ -57,6 +57,7 @@ mod prepare {
         ("jobs", jobs::STATEMENTS),
         ("laws", laws::STATEMENTS),
         ("reports", reports::STATEMENTS),
+        ("reserve", reserve::STATEMENTS),
         ("search", search::STATEMENTS),
         ("search_index", search_index::STATEMENTS),
         ("ships", ships::STATEMENTS),

@@ -13,7 +13,7 @@ use sistership_trials::{CheckOutcome, Mapping, Refusal, Source, check};
 
 pub(crate) use keep::{Kept, keep};
 pub(crate) use raw::RawQuery;
-pub(crate) use spool::{Spooled, clear};
+pub(crate) use spool::{Spool, Spooled};
 
 use crate::app::App;
 use crate::problem::{Problem, Result};
