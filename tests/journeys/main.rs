@@ -8,6 +8,7 @@ mod diagnosis_on_files;
 mod diagnosis_over_http;
 mod families;
 mod fleet;
+mod full_disk;
 mod lacking;
 mod memory;
 mod operation;

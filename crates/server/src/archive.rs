@@ -43,9 +43,17 @@ impl Archive {
     /// Says which of them cannot be opened.
     pub async fn open_at(database_url: &str, samples: &ObjectsPlace) -> sistership_store::Result<Self> {
         let objects = Objects::at(samples)?;
-        objects.mark().await?;
+        match objects.mark().await {
+            // The server leaves it once there is room.
+            Err(error) if error.is_out_of_space() => tracing::error!(%error, "the objects could not be marked"),
+            other => other?,
+        }
         let store = Store::connect(database_url, Arc::new(SystemClock)).await?;
-        library::keep(&store).await?;
+        match library::keep(&store).await {
+            // Versions that this release makes wait for room, too.
+            Err(error) if error.is_out_of_space() => tracing::error!(%error, "the library of effects could not be kept"),
+            other => other?,
+        }
         Ok(Self { store, objects })
     }
 

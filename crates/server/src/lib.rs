@@ -29,6 +29,7 @@ mod seed;
 mod server;
 mod start_error;
 mod stopping;
+mod tidy;
 pub mod upkeep;
 mod upload;
 pub mod verify;

@@ -13,6 +13,7 @@ use crate::search;
 use crate::seed;
 use crate::start_error::StartError;
 use crate::stopping::Stopping;
+use crate::tidy;
 
 /// A process that runs until it is [stopped](Self::stop) or dropped.
 #[derive(Debug)]
@@ -30,7 +31,9 @@ impl Process {
         seed::seed(&archive.store, &catalogue).await?;
         let (stop, stopping) = Stopping::new();
         let app = App::new(config, archive.clone(), catalogue, stopping);
+        tidy::once(&app).await;
         let mut tasks = JoinSet::new();
+        tasks.spawn(tidy::keep(app.clone()));
         if indexes {
             tasks.spawn(search::keep(app.clone()));
         }

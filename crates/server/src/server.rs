@@ -4,13 +4,12 @@ use std::net::SocketAddr;
 
 use tokio::net::TcpListener;
 
-use crate::app;
 use crate::archive::Archive;
 use crate::config::Config;
 use crate::listen::listen;
 use crate::process::Process;
+use crate::routes;
 use crate::start_error::StartError;
-use crate::{routes, upload};
 
 /// The server of Sistership.
 #[derive(Debug, Clone, Copy)]
@@ -31,12 +30,10 @@ impl Server {
     pub async fn start(config: Config) -> Result<Running, StartError> {
         config.check()?;
         sistership_store::provide_cryptography();
-        spool(&config)?;
         // The address first: a process that cannot have it takes no job from others.
         let listener = bind(config.listen).await?;
         let addr = listener.local_addr().map_err(|error| StartError::Listen { listen: config.listen, error })?;
         let (mut process, app) = Process::start(&config, true).await?;
-        process.archive.store.idempotency().purge().await?;
         let stopping = app.stopping();
         process.tasks.spawn(listen(listener, routes::router(app), config.limits, stopping));
         tracing::info!(%addr, "listening");
@@ -69,11 +66,4 @@ impl Running {
 
 async fn bind(listen: SocketAddr) -> Result<TcpListener, StartError> {
     TcpListener::bind(listen).await.map_err(|error| StartError::Listen { listen, error })
-}
-
-/// The folder of uploads, without those of a process that was killed long ago.
-fn spool(config: &Config) -> Result<(), StartError> {
-    let folder = app::spool(config);
-    let cleared = std::fs::create_dir_all(&folder).and_then(|()| upload::clear(&folder));
-    cleared.map_err(|error| StartError::Folder { folder, error })
 }

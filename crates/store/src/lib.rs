@@ -36,6 +36,7 @@ mod objects_place;
 mod page;
 mod record;
 mod reports;
+mod reserve;
 mod search;
 mod search_index;
 mod ships;
@@ -47,6 +48,7 @@ mod tags;
 #[cfg(all(unix, feature = "testing"))]
 pub mod testing;
 mod trials;
+mod unit;
 mod versions;
 mod work;
 
@@ -60,9 +62,9 @@ pub use commit_diagnosis::{CommittedDiagnosis, Diagnosis};
 pub use current::CurrentVersion;
 pub use diagnoses::{Diagnosed, Diagnoses, NewDiagnosed};
 pub use effects::{EffectLibraries, EffectLibrary};
-pub use error::{Result, StoreError};
+pub use error::{Result, StoreError, is_out_of_space};
 pub use families::{Families, Family, FamilyMember, FamilyPrior};
-pub use idempotency::{Begun, Idempotency, KEEP_KEYS, TAKE_OVER_AFTER, Ticket};
+pub use idempotency::{Begun, Idempotency, KEEP_KEYS, PROLONG_EVERY, TAKE_OVER_AFTER, Ticket};
 pub use integrity::Fault;
 pub use job::{Job, JobCount, JobFilter, JobState, NewJob};
 pub use jobs::Jobs;
@@ -80,5 +82,8 @@ pub use statistics::TrialStatistics;
 pub use store::Store;
 pub use tags::MAX_TAGS;
 pub use trials::{Inserted, NewTrial, Trial, Trials};
+#[cfg(feature = "testing")]
+pub use unit::Moment;
+pub use unit::UnitOfWork;
 pub use versions::{NewVersion, Version, VersionHead, Versions};
-pub use work::MAX_ATTEMPTS;
+pub use work::{Claimed, MAX_LOST_WORKERS};

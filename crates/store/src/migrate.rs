@@ -14,6 +14,7 @@ const SQLITE: &[Source] = &[
     (3, "search", include_str!("../../../migrations/sqlite/0003_search.sql")),
     (4, "fleets", include_str!("../../../migrations/sqlite/0004_fleets.sql")),
     (5, "effects", include_str!("../../../migrations/sqlite/0005_effects.sql")),
+    (6, "leases", include_str!("../../../migrations/sqlite/0006_leases.sql")),
 ];
 const POSTGRES: &[Source] = &[
     (1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql")),
@@ -21,6 +22,7 @@ const POSTGRES: &[Source] = &[
     (3, "search", include_str!("../../../migrations/postgres/0003_search.sql")),
     (4, "fleets", include_str!("../../../migrations/postgres/0004_fleets.sql")),
     (5, "effects", include_str!("../../../migrations/postgres/0005_effects.sql")),
+    (6, "leases", include_str!("../../../migrations/postgres/0006_leases.sql")),
 ];
 
 fn migrator(sources: &'static [Source]) -> Migrator {

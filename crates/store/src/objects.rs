@@ -72,8 +72,12 @@ impl Objects {
         Self { store, folder: None }
     }
 
-    /// Leaves the mark that [`health`](Self::health) looks for: a folder that is no longer mounted does not have it.
+    /// Leaves the mark that [`health`](Self::health) looks for, where it is not there yet: a folder that is no longer mounted
+    /// does not have it.
     pub async fn mark(&self) -> Result<()> {
+        if self.store.head(&ObjectPath::from(MARK)).await.is_ok() {
+            return Ok(());
+        }
         let about = PutPayload::from_static(b"The objects of a Sistership store, named by the SHA-256 of their bytes.\n");
         self.store.put(&ObjectPath::from(MARK), about).await.map_err(ObjectsError::from)?;
         Ok(())
@@ -90,6 +94,7 @@ impl Objects {
     /// writer may not have made them durable yet, and a damaged object is healed.
     pub async fn put(&self, bytes: Bytes) -> Result<String> {
         let key = hash(bytes.clone()).await?;
+        let _held = self.putting().await?;
         self.store.put(&path(&key)?, PutPayload::from(bytes)).await.map_err(ObjectsError::from)?;
         Ok(key)
     }

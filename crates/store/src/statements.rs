@@ -41,7 +41,8 @@ mod prepare {
     use crate::error::{Result, StoreError};
     use crate::store::Store;
     use crate::{
-        aliases, bulks, current, diagnoses, effects, families, garbage, idempotency, integrity, jobs, laws, reports, search,
+        aliases, bulks, current, diagnoses, effects, families, garbage, idempotency, integrity, jobs, laws, reports, reserve,
+        search,
         search_index, ships, statistics, store, tags, trials, versions, work,
     };
 
@@ -58,6 +59,7 @@ mod prepare {
         ("effects", effects::STATEMENTS),
         ("laws", laws::STATEMENTS),
         ("reports", reports::STATEMENTS),
+        ("reserve", reserve::STATEMENTS),
         ("search", search::STATEMENTS),
         ("search_index", search_index::STATEMENTS),
         ("ships", ships::STATEMENTS),

@@ -93,7 +93,7 @@ fn zigzag(angle: i64) -> Value {
 }
 
 /// Every fifth sample.
-fn csv(track: &Value) -> String {
+pub(super) fn csv(track: &Value) -> String {
     let columns = ["t_s", "x_m", "y_m", "psi_rad", "u_m_s", "v_m_s", "r_rad_s", "phi_rad", "p_rad_s", "delta_rad", "n_rps"];
     let rows = track["t_s"].as_array().unwrap().len();
     let row = |k: usize| columns.map(|column| track[column][k].to_string()).join(",");

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod harness;
+mod keys;
 mod loops;
 mod observed;
 mod refusals;

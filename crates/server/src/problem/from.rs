@@ -15,6 +15,7 @@ impl From<StoreError> for Problem {
     fn from(error: StoreError) -> Self {
         let text = error.to_string();
         match error {
+            full if full.is_out_of_space() => Self::no_room(text),
             StoreError::NotFound { .. } => Self::not_found(text),
             StoreError::Conflict { .. } => Self::new(StatusCode::CONFLICT, text),
             StoreError::PreconditionFailed { .. } => {
@@ -124,6 +125,13 @@ mod tests {
         assert_eq!(parameter("unknown field `limt`, expected one of `limit`, `after`"), "limt");
         assert_eq!(parameter("missing field `ship`"), "ship");
         assert_eq!(parameter("something else"), "query");
+    }
+
+    #[test]
+    fn a_full_disk_is_no_failure_of_the_server() {
+        let problem = Problem::from(StoreError::no_room());
+        assert_eq!((problem.status, problem.kind), (507, "urn:sistership:problem:no-room"));
+        assert!(problem.detail.contains("no room"), "{}", problem.detail);
     }
 
     #[test]

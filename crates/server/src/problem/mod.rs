@@ -69,6 +69,7 @@ const KINDS: [(u16, &str, &str); 18] = [
     (500, "urn:sistership:problem:internal", "The server failed"),
     (503, "urn:sistership:problem:unavailable", "The server cannot answer at the moment"),
     (504, "urn:sistership:problem:timeout", "The request took too long"),
+    (507, "urn:sistership:problem:no-room", "There is no room to keep it"),
 ];
 
 impl Problem {
@@ -99,6 +100,14 @@ impl Problem {
             StatusCode::INTERNAL_SERVER_ERROR,
             "the server failed to do this; its log tells why, under the id in `instance`",
         )
+    }
+
+    /// There is no space left where it would be kept.
+    pub(crate) fn no_room(reason: impl std::fmt::Display) -> Self {
+        tracing::error!(%reason, "no room");
+        let detail =
+            "there is no room left where the server keeps this; nothing was kept. Reading goes on; make room and send it again";
+        Self::new(StatusCode::INSUFFICIENT_STORAGE, detail)
     }
 
     pub(crate) fn with(mut self, fault: Fault) -> Self {

@@ -125,12 +125,10 @@ impl OutcomeView {
 )]
 async fn refine(State(app): State<App>, Place(family): Place<String>, key: Key, payload: Payload) -> Result<Response> {
     let asked: Asked = payload.json()?;
-    let inner = app.clone();
-    let work = async move {
-        let bulk = queue(inner.store(), &family, &asked).await?;
-        inner.wake().notify_waiters();
+    let work = |app: App| async move {
+        let bulk = queue(app.store(), &family, &asked).await?;
         let location = format!("/v1/bulk-refinements/{}", bulk.id);
-        Ok(Reply::new(StatusCode::ACCEPTED, &BulkView::of(&inner, bulk).await?)?.at(location))
+        Ok(Reply::new(StatusCode::ACCEPTED, &BulkView::of(&app, bulk).await?)?.at(location).with_jobs())
     };
     key.once(&app, payload.bytes(), work).await
 }

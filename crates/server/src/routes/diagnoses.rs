@@ -4,7 +4,6 @@ use axum::extract::State;
 use axum::response::Response;
 use serde::Deserialize;
 use sistership_identify::diagnose::Settings;
-use sistership_model::version::sha256;
 use sistership_store::{Trial, Version};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -13,7 +12,7 @@ use utoipa_axum::routes;
 use super::jobs::JobView;
 use super::model_ref::resolve;
 use super::named_trials::{named, no_trials};
-use super::queue::{accepted, earlier, enqueue};
+use super::queue::{accepted, enqueue};
 use super::trials::all_of_ship;
 use crate::app::App;
 use crate::archive::document;
@@ -51,21 +50,16 @@ struct DiagnosisRequest {
 )]
 async fn diagnose(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
     let request: DiagnosisRequest = payload.json()?;
-    let (inner, key_sha256) = (app.clone(), key.value.as_ref().map(|key| sha256(key.as_bytes())));
-    key.once(&app, payload.bytes(), async move { queued(&inner, request, key_sha256).await }).await
+    key.once(&app, payload.bytes(), |app| async move { queued(&app, request).await }).await
 }
 
-async fn queued(app: &App, request: DiagnosisRequest, key_sha256: Option<String>) -> Result<Reply> {
+async fn queued(app: &App, request: DiagnosisRequest) -> Result<Reply> {
     let ship = request.model.split('/').next().unwrap_or_default().to_owned();
-    let job = match earlier(app, DIAGNOSIS, &ship, key_sha256.as_ref()).await? {
-        Some(job) => job,
-        None => enqueue(app, DIAGNOSIS, &ship, &settled(app, request, key_sha256).await?).await?,
-    };
-    accepted(app, job)
+    accepted(enqueue(app, DIAGNOSIS, &ship, &settled(app, request).await?).await?)
 }
 
 /// The request with everything looked up, so that a job that is wrong is refused at once.
-async fn settled(app: &App, request: DiagnosisRequest, key_sha256: Option<String>) -> Result<DiagnosisJob> {
+async fn settled(app: &App, request: DiagnosisRequest) -> Result<DiagnosisJob> {
     let DiagnosisRequest { model, trials, settings } = request;
     let version = resolve(app.store(), "model", &model).await?;
     settings.check().map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
@@ -74,7 +68,7 @@ async fn settled(app: &App, request: DiagnosisRequest, key_sha256: Option<String
         Some(ids) => named(app, &ship, ids, "those that the version was not made of").await?,
         None => unseen(app, &version).await?,
     };
-    Ok(DiagnosisJob { ship, number: version.head.number, trials, settings, key_sha256 })
+    Ok(DiagnosisJob { ship, number: version.head.number, trials, settings, key_sha256: None })
 }
 
 /// The trials of the ship that a version was not made of; all of them where none are left.

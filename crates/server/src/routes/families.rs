@@ -148,15 +148,14 @@ async fn list(State(app): State<App>, Params(query): Params<Paged>) -> Result<Js
 )]
 async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
     let new: NewFamily = payload.json()?;
-    let inner = app.clone();
-    let work = async move {
+    let work = |app: App| async move {
         bounded(new.members.len())?;
-        let foundation = resolve(inner.store(), "foundation", &new.foundation).await?.head;
+        let foundation = resolve(app.store(), "foundation", &new.foundation).await?.head;
         let title = new.title.as_deref().unwrap_or(&new.name);
-        let family = inner.store().families().create(&new.name, title, &foundation.id).await?;
-        inner.store().families().add(&family.name, &new.members).await?;
+        let family = app.store().families().create(&new.name, title, &foundation.id).await?;
+        app.store().families().add(&family.name, &new.members).await?;
         let location = format!("/v1/families/{}", family.name);
-        Ok(Reply::new(StatusCode::CREATED, &FamilyView::of(&inner, family).await?)?.at(location))
+        Ok(Reply::new(StatusCode::CREATED, &FamilyView::of(&app, family).await?)?.at(location))
     };
     key.once(&app, payload.bytes(), work).await
 }
@@ -243,7 +242,8 @@ async fn learn(State(app): State<App>, Place(name): Place<String>) -> Result<Rep
     let family = app.store().families().get(&name).await?;
     let request = serde_json::to_string(&LearnJob { family: family.name }).map_err(Problem::internal)?;
     let job = app.store().jobs().enqueue(&NewJob { kind: LEARN.to_owned(), ship: None, request }).await?;
-    accepted(&app, job)
+    app.wake_all();
+    accepted(job)
 }
 
 fn bounded(ships: usize) -> Result<()> {

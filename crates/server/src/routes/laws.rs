@@ -64,9 +64,8 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
     let text = payload.text()?.to_owned();
     let parse = text.clone();
     let name = app.compute(move || Law::parse("body", &parse)).await??.name;
-    let store = app.store().clone();
-    let work = async move {
-        let head = LawHead::of(store.laws().insert(&name, &text).await?);
+    let work = |app: App| async move {
+        let head = LawHead::of(app.store().laws().insert(&name, &text).await?);
         Ok(Reply::new(StatusCode::CREATED, &head)?.at(format!("/v1/laws/{name}")))
     };
     key.once(&app, payload.bytes(), work).await

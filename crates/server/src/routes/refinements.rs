@@ -4,7 +4,6 @@ use axum::extract::State;
 use axum::response::Response;
 use serde::Deserialize;
 use sistership_identify::refine::Settings;
-use sistership_model::version::sha256;
 use sistership_store::StoreError;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -13,7 +12,7 @@ use utoipa_axum::routes;
 use super::jobs::JobView;
 use super::model_ref::resolve;
 use super::named_trials::{named, no_trials};
-use super::queue::{accepted, earlier, enqueue};
+use super::queue::{accepted, enqueue};
 use super::trials::all_of_ship;
 use crate::app::App;
 use crate::jobs::{REFINEMENT, RefinementJob, SourceChoice};
@@ -60,21 +59,16 @@ fn auto() -> String {
 )]
 async fn refine(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
     let request: RefinementRequest = payload.json()?;
-    let (inner, key_sha256) = (app.clone(), key.value.as_ref().map(|key| sha256(key.as_bytes())));
-    key.once(&app, payload.bytes(), async move { queued(&inner, request, key_sha256).await }).await
+    key.once(&app, payload.bytes(), |app| async move { queued(&app, request).await }).await
 }
 
-async fn queued(app: &App, request: RefinementRequest, key_sha256: Option<String>) -> Result<Reply> {
+async fn queued(app: &App, request: RefinementRequest) -> Result<Reply> {
     let ship = request.ship.clone();
-    let job = match earlier(app, REFINEMENT, &ship, key_sha256.as_ref()).await? {
-        Some(job) => job,
-        None => enqueue(app, REFINEMENT, &ship, &settled(app, request, key_sha256).await?).await?,
-    };
-    accepted(app, job)
+    accepted(enqueue(app, REFINEMENT, &ship, &settled(app, request).await?).await?)
 }
 
 /// The request with everything looked up, so that a job that is wrong is refused at once.
-async fn settled(app: &App, request: RefinementRequest, key_sha256: Option<String>) -> Result<RefinementJob> {
+async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob> {
     let RefinementRequest { ship, source, law, trials, settings } = request;
     match app.store().ships().get(&ship).await {
         Err(StoreError::NotFound { .. }) => {
@@ -86,7 +80,7 @@ async fn settled(app: &App, request: RefinementRequest, key_sha256: Option<Strin
     repeatable(&settings)?;
     known(app, law.as_deref()).await?;
     let trials = trial_ids(app, &ship, trials).await?;
-    Ok(RefinementJob { source: choice(app, &source).await?, ship, law, trials, settings, key_sha256 })
+    Ok(RefinementJob { source: choice(app, &source).await?, ship, law, trials, settings, key_sha256: None })
 }
 
 /// A version must follow from its recipe again, which it does not where a clock ended the search.

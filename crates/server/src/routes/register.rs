@@ -54,8 +54,7 @@ struct RegisterRequest {
 )]
 async fn register(State(app): State<App>, Place(ship): Place<String>, key: Key, payload: Payload) -> Result<Response> {
     let request: RegisterRequest = payload.json()?;
-    let inner = app.clone();
-    key.once(&app, payload.bytes(), async move { registered(&inner, ship, request).await }).await
+    key.once(&app, payload.bytes(), |app| async move { registered(&app, ship, request).await }).await
 }
 
 async fn registered(app: &App, ship: String, request: RegisterRequest) -> Result<Reply> {

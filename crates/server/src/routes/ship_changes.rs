@@ -5,7 +5,7 @@ use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use sistership_model::Vessel;
 use sistership_model::vessel::VesselFile;
-use sistership_store::{NewShip, Ship, Store, StoreError};
+use sistership_store::Ship;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -41,29 +41,18 @@ async fn vessel(app: &App, payload: &Payload) -> Result<Vessel> {
 )]
 async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
     let vessel = vessel(&app, &payload).await?;
-    let (inner, keyed) = (app.clone(), key.value.is_some());
-    key.once(&app, payload.bytes(), async move { created(&inner, &vessel, keyed).await }).await
+    key.once(&app, payload.bytes(), |app| async move { created(&app, &vessel).await }).await
 }
 
-async fn created(app: &App, vessel: &Vessel, keyed: bool) -> Result<Reply> {
+async fn created(app: &App, vessel: &Vessel) -> Result<Reply> {
     let zoo = app.laws().await?;
     zoo.check_models(vessel)?;
     let new = new_ship(vessel).map_err(Problem::internal)?;
-    let ship = match app.store().ships().create(&new).await {
-        // The same request again, whose first answer was lost when the server was killed.
-        Err(StoreError::Conflict { .. }) if keyed && is_there(app.store(), &new).await => {
-            app.store().ships().get(&new.name).await?
-        }
-        other => other?,
-    };
+    let ship = app.store().ships().create(&new).await?;
     publish(app.store(), &zoo, vessel, &ship.document).await?;
     let ship = ShipDetail::of(app, ship).await?;
     let (location, etag) = (format!("/v1/ships/{}", ship.name), ship.etag());
     Ok(Reply::new(StatusCode::CREATED, &ship)?.at(location).tagged(etag))
-}
-
-async fn is_there(store: &Store, new: &NewShip) -> bool {
-    store.ships().get(&new.name).await.is_ok_and(|ship| ship.revision == 1 && ship.document == new.document)
 }
 
 /// Replace a ship's document, as you last read it

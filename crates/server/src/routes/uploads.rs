@@ -59,21 +59,21 @@ struct Form {
 )]
 async fn upload(State(app): State<App>, key: Key, upload: Upload) -> Result<Response> {
     let fingerprint = upload.fingerprint()?;
-    let inner = app.clone();
-    key.once(&app, fingerprint.as_bytes(), async move { kept(&inner, upload).await }).await
+    key.once(&app, fingerprint.as_bytes(), |app| async move { kept(&app, upload).await }).await
 }
 
 async fn kept(app: &App, upload: Upload) -> Result<Reply> {
     let ship = upload.manifest.ship.clone();
     let (kept, job): (Vec<Kept>, _) = keep(app, upload).await?;
-    app.wake().notify_one();
     let location = match kept.as_slice() {
         [only] => format!("/v1/trials/{}", only.row.id),
         _ => format!("/v1/trials?ship={ship}"),
     };
     let new = kept.iter().filter(|trial| trial.new).count();
     let trials = kept.into_iter().map(|trial| TrialView::of(trial.row)).collect();
-    Ok(Reply::new(StatusCode::CREATED, &Uploaded { ship, trials, new, diagnosis: job.map(|job| job.id) })?.at(location))
+    Ok(Reply::new(StatusCode::CREATED, &Uploaded { ship, trials, new, diagnosis: job.map(|job| job.id) })?
+        .at(location)
+        .with_jobs())
 }
 
 /// Check trials without keeping them

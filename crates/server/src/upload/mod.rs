@@ -15,7 +15,7 @@ use sistership_trials::{CheckOutcome, Mapping, Refusal, Source, check};
 pub(crate) use keep::{Kept, keep};
 pub(crate) use raw::RawQuery;
 use room::room;
-pub(crate) use spool::{Spooled, clear, hex, spool};
+pub(crate) use spool::{Spool, Spooled, hex, spool};
 
 use crate::app::App;
 use crate::problem::{Problem, Result};

@@ -1,5 +1,6 @@
 //! What wraps every request: an id, a line in the log, and problem details for errors that no handler made.
 
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use axum::extract::{MatchedPath, Request, State};
@@ -23,6 +24,9 @@ pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Nex
         let response = app.held().scope(async { counted(next.run(request).await).await }).await;
         let response = finish(response, id);
         let elapsed = start.elapsed();
+        if response.status() == StatusCode::INSUFFICIENT_STORAGE {
+            app.no_room().store(true, Ordering::Relaxed);
+        }
         tracing::info!(status = response.status().as_u16(), elapsed_ms = elapsed.as_millis() as u64, "answered");
         app.metrics().answered(&method, &route, response.status(), elapsed);
         response
