@@ -15,6 +15,7 @@ use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
 use crate::stopping::Stopping;
 use crate::web::guard::ApiKey;
+use crate::web::throttle::Throttle;
 
 /// The shared state of a server. A clone is another handle on the same one.
 #[derive(Clone)]
@@ -24,6 +25,7 @@ struct Inner {
     archive: Archive,
     catalogue: Catalogue,
     key: Option<ApiKey>,
+    throttle: Throttle,
     limits: Limits,
     leases: Leases,
     spool: PathBuf,
@@ -41,6 +43,7 @@ impl App {
             archive,
             catalogue,
             key: config.api_key.as_deref().map(ApiKey::new),
+            throttle: Throttle::default(),
             limits: config.limits,
             leases: config.leases,
             spool: spool(config),
@@ -66,6 +69,11 @@ impl App {
 
     pub(crate) fn key(&self) -> Option<&ApiKey> {
         self.0.key.as_ref()
+    }
+
+    /// Who has presented wrong keys.
+    pub(crate) fn throttle(&self) -> &Throttle {
+        &self.0.throttle
     }
 
     pub(crate) fn limits(&self) -> &Limits {

@@ -2,12 +2,10 @@
 
 use std::net::SocketAddr;
 
-use tokio::net::TcpListener;
-
 use crate::app;
 use crate::archive::Archive;
 use crate::config::Config;
-use crate::listen::listen;
+use crate::listen::{self, listen};
 use crate::process::Process;
 use crate::start_error::StartError;
 use crate::{routes, upload};
@@ -33,12 +31,13 @@ impl Server {
         sistership_store::provide_cryptography();
         spool(&config)?;
         // The address first: a process that cannot have it takes no job from others.
-        let listener = bind(config.listen).await?;
+        let limits = crate::descriptors::suited(config.limits);
+        let listener = listen::bind(config.listen).map_err(|error| StartError::Listen { listen: config.listen, error })?;
         let addr = listener.local_addr().map_err(|error| StartError::Listen { listen: config.listen, error })?;
         let (mut process, app) = Process::start(&config, true).await?;
         process.archive.store.idempotency().purge().await?;
         let stopping = app.stopping();
-        process.tasks.spawn(listen(listener, routes::router(app), config.limits, stopping));
+        process.tasks.spawn(listen(listener, routes::router(app), limits, stopping));
         tracing::info!(%addr, "listening");
         Ok(Running { addr, process })
     }
@@ -65,10 +64,6 @@ impl Running {
     pub async fn stop(self) {
         self.process.stop().await;
     }
-}
-
-async fn bind(listen: SocketAddr) -> Result<TcpListener, StartError> {
-    TcpListener::bind(listen).await.map_err(|error| StartError::Listen { listen, error })
 }
 
 /// The folder of uploads, without those of a process that was killed long ago.

@@ -47,7 +47,7 @@ pub(crate) struct Fault {
 }
 
 /// Status, URI and title of each kind.
-const KINDS: [(u16, &str, &str); 17] = [
+const KINDS: [(u16, &str, &str); 18] = [
     (400, "urn:sistership:problem:bad-request", "The request cannot be read"),
     (401, "urn:sistership:problem:unauthorized", "An API key is needed"),
     (403, "urn:sistership:problem:forbidden", "The request is not allowed from there"),
@@ -61,6 +61,7 @@ const KINDS: [(u16, &str, &str); 17] = [
     (415, "urn:sistership:problem:unsupported-media-type", "The content type is not one that is read here"),
     (422, "urn:sistership:problem:invalid", "The content is not valid"),
     (428, "urn:sistership:problem:precondition-required", "A precondition is needed"),
+    (429, "urn:sistership:problem:too-many", "Too many of these at a time"),
     (431, "urn:sistership:problem:headers-too-large", "The headers are too large"),
     (500, "urn:sistership:problem:internal", "The server failed"),
     (503, "urn:sistership:problem:unavailable", "The server cannot answer at the moment"),
