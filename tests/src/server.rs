@@ -112,6 +112,11 @@ impl TestServer {
         self.until_ready().await;
     }
 
+    /// Its address and port.
+    pub fn address(&self) -> String {
+        self.url.trim_start_matches("http://").to_owned()
+    }
+
     /// Its database.
     pub fn database(&self) -> &TestDatabase {
         &self.database

@@ -12,7 +12,12 @@ pub(crate) fn suited(limits: Limits) -> Limits {
     let fit = fitting(limits, have);
     if fit != limits {
         let needed = listen::descriptors(&limits);
-        tracing::warn!(have, needed, connections = fit.connections, "too few file descriptors for the connections that are set; raise `ulimit -n`");
+        tracing::warn!(
+            have,
+            needed,
+            connections = fit.connections,
+            "too few file descriptors for the connections that are set; raise `ulimit -n`"
+        );
     }
     fit
 }

@@ -76,10 +76,15 @@ pub fn run_until_stopped<T>(
     stop: impl AsyncFnOnce(T),
 ) -> Result<(), Failure> {
     let runtime = runtime()?;
+    let told = watch(bound)?;
     let ended = runtime.block_on(async {
-        let running = start.await?;
-        let told = watch(bound)?;
-        told.await.map_err(|_| Failure::Refused("signals cannot be heard".into()))??;
+        let unheard = || Failure::Refused("signals cannot be heard".into());
+        let mut told = told;
+        let running = tokio::select! {
+            running = start => running?,
+            told = &mut told => return told.map_err(|_| unheard()),
+        };
+        told.await.map_err(|_| unheard())?;
         stop(running).await;
         Ok(())
     });
@@ -87,22 +92,19 @@ pub fn run_until_stopped<T>(
     ended
 }
 
-/// Begins to hear signals, on a thread of its own; gives the first.
-fn watch(bound: Duration) -> Result<oneshot::Receiver<Result<(), Failure>>, Failure> {
+/// Begins to hear signals, on a thread of its own; tells of the first.
+fn watch(bound: Duration) -> Result<oneshot::Receiver<()>, Failure> {
     let (tell, told) = oneshot::channel();
     let none = |error| Failure::Refused(format!("no threads: {error}"));
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(none)?;
+    let mut signals = runtime.block_on(async { Signals::hear() })?;
     let heard = move || {
         runtime.block_on(async {
-            let mut tell = Some(tell);
-            let first = signal().await;
-            let failed = first.is_err();
-            drop(tell.take().map(|tell| tell.send(first)));
-            if failed {
-                return;
-            }
+            signals.next().await;
+            // Nobody listens where starting has failed meanwhile.
+            drop(tell.send(()));
             output::note("stopping; once more to stop at once");
-            if tokio::time::timeout(bound, signal()).await.is_err() {
+            if tokio::time::timeout(bound, signals.next()).await.is_err() {
                 output::note(&format!("not everything under way has ended within {} s", bound.as_secs()));
             }
             std::process::exit(i32::from(Failure::Told.status()));
@@ -112,19 +114,37 @@ fn watch(bound: Duration) -> Result<oneshot::Receiver<Result<(), Failure>>, Fail
     Ok(told)
 }
 
-/// Ctrl-C, or SIGTERM where there is one.
-async fn signal() -> Result<(), Failure> {
-    let unheard = |error: std::io::Error| Failure::Refused(format!("signals cannot be heard: {error}"));
+/// Ctrl-C, and SIGTERM where there is one.
+struct Signals {
     #[cfg(unix)]
-    {
-        let mut terminate = tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate()).map_err(unheard)?;
-        tokio::select! {
-            interrupted = tokio::signal::ctrl_c() => interrupted.map_err(unheard),
-            _ = terminate.recv() => Ok(()),
-        }
+    interrupt: tokio::signal::unix::Signal,
+    #[cfg(unix)]
+    terminate: tokio::signal::unix::Signal,
+}
+
+impl Signals {
+    #[cfg(unix)]
+    fn hear() -> Result<Self, Failure> {
+        use tokio::signal::unix::{SignalKind, signal};
+        let unheard = |error| Failure::Refused(format!("signals cannot be heard: {error}"));
+        let interrupt = signal(SignalKind::interrupt()).map_err(unheard)?;
+        Ok(Self { interrupt, terminate: signal(SignalKind::terminate()).map_err(unheard)? })
     }
+
     #[cfg(not(unix))]
-    tokio::signal::ctrl_c().await.map_err(unheard)
+    fn hear() -> Result<Self, Failure> {
+        Ok(Self {})
+    }
+
+    async fn next(&mut self) {
+        #[cfg(unix)]
+        tokio::select! {
+            _ = self.interrupt.recv() => {}
+            _ = self.terminate.recv() => {}
+        }
+        #[cfg(not(unix))]
+        drop(tokio::signal::ctrl_c().await);
+    }
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 
 mod harness;
 mod loops;
+mod network;
 mod observed;
 mod refusals;
 mod registry;

@@ -83,8 +83,7 @@ impl Seats {
             return true;
         }
         let most = table.shares.iter().max_by_key(|(_, seats)| **seats).map(|(party, _)| *party);
-        table.evict(PATIENCE, |entry| entry.seated && Some(entry.party) == most)
-            || table.evict(PATIENCE, |entry| entry.seated)
+        table.evict(PATIENCE, |entry| entry.seated && Some(entry.party) == most) || table.evict(PATIENCE, |entry| entry.seated)
     }
 
     /// Cuts who has waited longest, when the system has no more sockets.

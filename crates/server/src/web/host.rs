@@ -78,9 +78,7 @@ fn is_own(origin: &str, host: Option<&Authority>) -> bool {
     let Some((scheme, authority)) = origin.split_once("://") else { return false };
     let (Ok(authority), Some(host)) = (authority.parse::<Authority>(), host) else { return false };
     let port = |authority: &Authority| authority.port_u16().unwrap_or(80);
-    scheme.eq_ignore_ascii_case("http")
-        && authority.host().eq_ignore_ascii_case(host.host())
-        && port(&authority) == port(host)
+    scheme.eq_ignore_ascii_case("http") && authority.host().eq_ignore_ascii_case(host.host()) && port(&authority) == port(host)
 }
 
 fn is_local(host: &str) -> bool {
