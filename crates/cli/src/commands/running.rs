@@ -102,7 +102,7 @@ fn watch(bound: Duration) -> Result<oneshot::Receiver<()>, Failure> {
         runtime.block_on(async {
             signals.next().await;
             // Nobody listens where starting has failed meanwhile.
-            drop(tell.send(()));
+            tell.send(()).ok();
             output::note("stopping; once more to stop at once");
             if tokio::time::timeout(bound, signals.next()).await.is_err() {
                 output::note(&format!("not everything under way has ended within {} s", bound.as_secs()));
