@@ -16,7 +16,6 @@ pub(crate) fn party(address: IpAddr) -> IpAddr {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::*;
 
     #[test]
     fn a_network_of_ipv6_is_one_party() {
