@@ -122,6 +122,11 @@ impl TestServer {
         memory_mb(self.process.id())
     }
 
+    /// Its address and port.
+    pub fn address(&self) -> String {
+        self.url.trim_start_matches("http://").to_owned()
+    }
+
     /// Its database.
     pub fn database(&self) -> &TestDatabase {
         &self.database

@@ -17,6 +17,7 @@ use crate::problem::{Problem, Result};
 use crate::stopping::Stopping;
 use crate::upload::Spool;
 use crate::web::guard::ApiKey;
+use crate::web::throttle::Throttle;
 
 /// The shared state of a server. A clone is another handle on the same one.
 #[derive(Clone)]
@@ -25,6 +26,7 @@ pub(crate) struct App(Arc<Inner>, Arc<Archive>);
 struct Inner {
     catalogue: Catalogue,
     key: Option<ApiKey>,
+    throttle: Throttle,
     limits: Limits,
     leases: Leases,
     spool: Spool,
@@ -45,6 +47,7 @@ impl App {
         let inner = Inner {
             catalogue,
             key: config.api_key.as_deref().map(ApiKey::new),
+            throttle: Throttle::default(),
             limits: config.limits,
             leases: config.leases,
             spool: Spool::below(config.data_dir.join("uploads")),
@@ -81,6 +84,11 @@ impl App {
 
     pub(crate) fn key(&self) -> Option<&ApiKey> {
         self.0.key.as_ref()
+    }
+
+    /// Who has presented wrong keys.
+    pub(crate) fn throttle(&self) -> &Throttle {
+        &self.0.throttle
     }
 
     pub(crate) fn limits(&self) -> &Limits {

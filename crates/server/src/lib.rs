@@ -10,6 +10,7 @@ mod archive;
 mod catalogue;
 mod config;
 pub mod derive;
+mod descriptors;
 pub mod fleet;
 mod jobs;
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! What a process of Sistership consists of, whether it answers requests or only works: the shared state, its workers, and
 //! the word that stops them.
 
+use std::time::Duration;
+
 use tokio::sync::watch;
 use tokio::task::JoinSet;
 
@@ -21,6 +23,7 @@ pub(crate) struct Process {
     pub archive: Archive,
     pub tasks: JoinSet<()>,
     stop: watch::Sender<bool>,
+    bound: Duration,
 }
 
 impl Process {
@@ -40,13 +43,18 @@ impl Process {
         for _ in 0..config.workers {
             tasks.spawn(Worker::new(app.clone()).run());
         }
-        Ok((Self { archive, tasks, stop }, app))
+        Ok((Self { archive, tasks, stop, bound: config.stop_bound() }, app))
     }
 
-    /// Stops what runs, and waits for its end.
+    /// Stops what runs, and waits for its end, but not longer than [`Config::stop_bound`].
     pub(crate) async fn stop(mut self) {
         self.stop.send_replace(true);
-        while self.tasks.join_next().await.is_some() {}
-        self.archive.store.close().await;
+        let ended = async {
+            while self.tasks.join_next().await.is_some() {}
+            self.archive.store.close().await;
+        };
+        if tokio::time::timeout(self.bound, ended).await.is_err() {
+            tracing::warn!("not everything under way has ended in time");
+        }
     }
 }

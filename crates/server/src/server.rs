@@ -2,11 +2,9 @@
 
 use std::net::SocketAddr;
 
-use tokio::net::TcpListener;
-
 use crate::archive::Archive;
 use crate::config::Config;
-use crate::listen::listen;
+use crate::listen::{self, listen};
 use crate::process::Process;
 use crate::routes;
 use crate::start_error::StartError;
@@ -31,11 +29,12 @@ impl Server {
         config.check()?;
         sistership_store::provide_cryptography();
         // The address first: a process that cannot have it takes no job from others.
-        let listener = bind(config.listen).await?;
+        let limits = crate::descriptors::suited(config.limits);
+        let listener = listen::bind(config.listen).map_err(|error| StartError::Listen { listen: config.listen, error })?;
         let addr = listener.local_addr().map_err(|error| StartError::Listen { listen: config.listen, error })?;
         let (mut process, app) = Process::start(&config, true).await?;
         let stopping = app.stopping();
-        process.tasks.spawn(listen(listener, routes::router(app), config.limits, stopping));
+        process.tasks.spawn(listen(listener, routes::router(app), limits, stopping));
         tracing::info!(%addr, "listening");
         Ok(Running { addr, process })
     }
@@ -64,6 +63,4 @@ impl Running {
     }
 }
 
-async fn bind(listen: SocketAddr) -> Result<TcpListener, StartError> {
-    TcpListener::bind(listen).await.map_err(|error| StartError::Listen { listen, error })
 }

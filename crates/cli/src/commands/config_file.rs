@@ -28,6 +28,10 @@ pub struct ConfigFile {
     pub api_key_file: Option<PathBuf>,
     /// `--workers`
     pub workers: Option<u16>,
+    /// `--connections`
+    pub connections: Option<u32>,
+    /// `--connections-per-address`
+    pub connections_per_address: Option<u32>,
     /// `--lease-s`
     pub lease_s: Option<f64>,
     /// `--drain-s`

@@ -5,8 +5,8 @@ use sistership_server::{Config, Workers};
 
 use super::config_file::ConfigFile;
 use super::log::LogArguments;
-use super::running::{LeaseArguments, memory, until_stopped, workers};
-use super::store::{StoreArguments, block_on};
+use super::running::{LeaseArguments, memory, run_until_stopped, workers};
+use super::store::StoreArguments;
 use crate::failure::Failure;
 use crate::output;
 
@@ -46,11 +46,12 @@ pub fn run(work: &Work) -> Result<(), Failure> {
     let file = work.store.file()?;
     let config = config(work, &file)?;
     work.log.begin(&file)?;
-    block_on(async {
-        let workers = Workers::start(config).await.map_err(|error| Failure::Refused(error.to_string()))?;
+    let start = async {
+        let workers = Workers::start(config.clone()).await.map_err(|error| Failure::Refused(error.to_string()))?;
         output::print(false, &(), || format!("sistership works as process {}", std::process::id()))?;
-        until_stopped(workers.stop()).await
-    })
+        Ok(workers)
+    };
+    run_until_stopped(config.stop_bound(), start, Workers::stop)
 }
 
 fn config(work: &Work, file: &ConfigFile) -> Result<Config, Failure> {

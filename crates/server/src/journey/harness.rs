@@ -33,6 +33,8 @@ pub(super) fn config(database: &TestDatabase) -> Config {
     config.listen.set_port(0);
     config.database_url = database.url.clone();
     let (lease, beat, poll) = (Duration::from_secs(5), Duration::from_millis(200), Duration::from_millis(50));
+    // Two thousand clients of one address, see `registry`.
+    (config.limits.connections, config.limits.connections_per_address) = (4096, 4096);
     config.leases = Leases { lease, beat, poll, ..Leases::default() };
     config
 }

@@ -5,6 +5,7 @@
 mod harness;
 mod keys;
 mod loops;
+mod network;
 mod observed;
 mod refusals;
 mod registry;

@@ -11,6 +11,7 @@ use tracing::Instrument as _;
 use uuid::Uuid;
 
 use crate::app::App;
+use crate::listen::Peer;
 use crate::problem::{MEDIA, Problem};
 use crate::web::large::counted;
 
@@ -18,11 +19,13 @@ use crate::web::large::counted;
 pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Next) -> Response {
     let id = Uuid::now_v7();
     let (method, route) = (request.method().clone(), route(&request));
+    let peer = request.extensions().get::<Peer>().cloned();
     let span = tracing::info_span!("request", %id, method = %request.method(), path = request.uri().path());
     async move {
         let start = Instant::now();
         let response = app.held().scope(async { counted(next.run(request).await).await }).await;
-        let response = finish(response, id);
+        let slow = peer.is_some_and(|peer| peer.pace.is_too_slow());
+        let response = finish(if slow { too_slow() } else { response }, id);
         let elapsed = start.elapsed();
         if response.status() == StatusCode::INSUFFICIENT_STORAGE {
             app.no_room().store(true, Ordering::Relaxed);
@@ -49,6 +52,12 @@ fn finish(response: Response, id: Uuid) -> Response {
     }
     headers.insert(header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
     response
+}
+
+/// The answer to a request whose body did not come in time, whatever the handler has made of the half that did.
+fn too_slow() -> Response {
+    let why = "the body came too slowly, or not at all; send it at once, or over a faster link";
+    Problem::new(StatusCode::REQUEST_TIMEOUT, why).into_response()
 }
 
 /// The same answer with a problem as its body; other headers stay (`Allow`, `WWW-Authenticate`).

@@ -4,12 +4,14 @@ pub(crate) mod accept;
 pub(crate) mod conditions;
 pub(crate) mod envelope;
 pub(crate) mod guard;
+pub(crate) mod host;
 pub(crate) mod idempotency;
 pub(crate) mod large;
 pub(crate) mod page;
 pub(crate) mod params;
 pub(crate) mod payload;
 pub(crate) mod reply;
+pub(crate) mod throttle;
 
 pub(crate) use conditions::Conditions;
 pub(crate) use idempotency::Key;
