@@ -81,16 +81,28 @@ fn check_types<R: ChunkReader + 'static>(reader: &SerializedFileReader<R>, colum
     }
 }
 
-/// Dates and decimals are integers too, but not of the column's unit.
+/// Dates, times and decimals are integers too, but not of the column's unit: what is not known to be a number is refused.
 fn is_number(column: &ColumnDescriptor) -> bool {
+    use ConvertedType as C;
     let plain = matches!(column.logical_type_ref(), None | Some(LogicalType::Integer { .. }))
-        && !matches!(
+        && matches!(
             column.converted_type(),
-            ConvertedType::DECIMAL | ConvertedType::DATE | ConvertedType::TIMESTAMP_MILLIS | ConvertedType::TIMESTAMP_MICROS
+            C::NONE | C::INT_8 | C::INT_16 | C::INT_32 | C::INT_64 | C::UINT_8 | C::UINT_16 | C::UINT_32 | C::UINT_64
         );
     plain
         && column.max_rep_level() == 0
         && matches!(column.physical_type(), Type::DOUBLE | Type::FLOAT | Type::INT32 | Type::INT64)
+}
+
+fn is_unsigned(column: &ColumnDescriptor) -> bool {
+    use ConvertedType as C;
+    matches!(column.logical_type_ref(), Some(LogicalType::Integer(kind)) if !kind.is_signed)
+        || matches!(column.converted_type(), C::UINT_8 | C::UINT_16 | C::UINT_32 | C::UINT_64)
+}
+
+/// The integer as f64, or NaN where an f64 cannot tell it from its neighbours.
+fn exact(value: i128) -> f64 {
+    if value.unsigned_abs() <= 1 << 53 { value as f64 } else { f64::NAN }
 }
 
 fn type_name(column: &ColumnDescriptor) -> String {
@@ -125,18 +137,25 @@ fn group_rows(group: &dyn RowGroupReader) -> ParquetResult<usize> {
         .map_err(|_| ParquetError::General("a row group has a negative number of rows".into()))
 }
 
-/// A column of a row group as f64; a null becomes NaN.
+/// A column of a row group as f64; a null becomes NaN, and so does an integer beyond 2^53, which no f64 holds exactly.
 ///
 /// # Errors
 /// The column is damaged, of another type, or not as long as the group says.
 pub(crate) fn column_values(group: &dyn RowGroupReader, index: usize) -> ParquetResult<Vec<f64>> {
     let rows = group_rows(group)?;
-    let nullable = group.metadata().column(index).column_descr().max_def_level();
+    let descriptor = group.metadata().column(index).column_descr();
+    let (nullable, unsigned) = (descriptor.max_def_level(), is_unsigned(descriptor));
     match group.get_column_reader(index)? {
         ColumnReader::DoubleColumnReader(reader) => values(reader, rows, nullable, |value| value),
         ColumnReader::FloatColumnReader(reader) => values(reader, rows, nullable, f64::from),
+        ColumnReader::Int32ColumnReader(reader) if unsigned => {
+            values(reader, rows, nullable, |value| f64::from(value.cast_unsigned()))
+        }
         ColumnReader::Int32ColumnReader(reader) => values(reader, rows, nullable, f64::from),
-        ColumnReader::Int64ColumnReader(reader) => values(reader, rows, nullable, |value| value as f64),
+        ColumnReader::Int64ColumnReader(reader) if unsigned => {
+            values(reader, rows, nullable, |value| exact(value.cast_unsigned().into()))
+        }
+        ColumnReader::Int64ColumnReader(reader) => values(reader, rows, nullable, |value| exact(value.into())),
         _ => Err(ParquetError::General("a column is of an unexpected type".into())),
     }
 }
