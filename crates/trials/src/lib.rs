@@ -4,6 +4,7 @@
 //! with findings that name row and column; [`check`] tells the same without the samples. [`load_path`] reads what a
 //! command line names: a manifest or a single file. [`samples`] keeps trials as Parquet and writes them as CSV.
 
+mod cells;
 mod checks;
 mod convert;
 mod csv_file;
@@ -15,6 +16,7 @@ mod manifest;
 mod mapping;
 mod metered;
 mod names;
+mod number;
 mod outcome;
 mod pages;
 mod parquet_file;

@@ -139,16 +139,28 @@ fn check_types(schema: &SchemaDescriptor, columns: &[Column], findings: &mut Fin
     }
 }
 
-/// Dates and decimals are integers too, but not of the column's unit.
+/// Dates, times and decimals are integers too, but not of the column's unit: what is not known to be a number is refused.
 fn is_number(column: &ColumnDescriptor) -> bool {
+    use ConvertedType as C;
     let plain = matches!(column.logical_type_ref(), None | Some(LogicalType::Integer { .. }))
-        && !matches!(
+        && matches!(
             column.converted_type(),
-            ConvertedType::DECIMAL | ConvertedType::DATE | ConvertedType::TIMESTAMP_MILLIS | ConvertedType::TIMESTAMP_MICROS
+            C::NONE | C::INT_8 | C::INT_16 | C::INT_32 | C::INT_64 | C::UINT_8 | C::UINT_16 | C::UINT_32 | C::UINT_64
         );
     plain
         && column.max_rep_level() == 0
         && matches!(column.physical_type(), Type::DOUBLE | Type::FLOAT | Type::INT32 | Type::INT64)
+}
+
+fn is_unsigned(column: &ColumnDescriptor) -> bool {
+    use ConvertedType as C;
+    matches!(column.logical_type_ref(), Some(LogicalType::Integer(kind)) if !kind.is_signed)
+        || matches!(column.converted_type(), C::UINT_8 | C::UINT_16 | C::UINT_32 | C::UINT_64)
+}
+
+/// The integer as f64, or NaN where an f64 cannot tell it from its neighbours.
+fn exact(value: i128) -> f64 {
+    if value.unsigned_abs() <= 1 << 53 { value as f64 } else { f64::NAN }
 }
 
 fn type_name(column: &ColumnDescriptor) -> String {
@@ -190,10 +202,12 @@ fn group_rows(group: &dyn RowGroupReader) -> ParquetResult<usize> {
         .map_err(|_| ParquetError::General("a row group has a negative number of rows".into()))
 }
 
-/// A column of a row group, decoded some rows at a time.
+/// A column of a row group as f64, decoded some rows at a time; a null becomes NaN, and so does an integer beyond 2^53, which no
+/// f64 holds exactly.
 pub(crate) struct Cells {
     reader: ColumnReader,
     full: i16,
+    unsigned: bool,
     rows: usize,
     read: usize,
     /// The rows last read; a null is NaN.
@@ -202,9 +216,10 @@ pub(crate) struct Cells {
 
 impl Cells {
     pub(crate) fn new(group: &dyn RowGroupReader, index: usize) -> ParquetResult<Self> {
-        let full = group.metadata().column(index).column_descr().max_def_level();
+        let descriptor = group.metadata().column(index).column_descr();
+        let (full, unsigned) = (descriptor.max_def_level(), is_unsigned(descriptor));
         let (reader, rows) = (group.get_column_reader(index)?, group_rows(group)?);
-        Ok(Self { reader, full, rows, read: 0, values: Vec::new() })
+        Ok(Self { reader, full, unsigned, rows, read: 0, values: Vec::new() })
     }
 
     /// Reads so many further rows.
@@ -217,8 +232,14 @@ impl Cells {
         let records = match &mut self.reader {
             ColumnReader::DoubleColumnReader(reader) => batch(reader, count, full, |value| value, values),
             ColumnReader::FloatColumnReader(reader) => batch(reader, count, full, f64::from, values),
+            ColumnReader::Int32ColumnReader(reader) if self.unsigned => {
+                batch(reader, count, full, |value| f64::from(value.cast_unsigned()), values)
+            }
             ColumnReader::Int32ColumnReader(reader) => batch(reader, count, full, f64::from, values),
-            ColumnReader::Int64ColumnReader(reader) => batch(reader, count, full, |value| value as f64, values),
+            ColumnReader::Int64ColumnReader(reader) if self.unsigned => {
+                batch(reader, count, full, |value| exact(value.cast_unsigned().into()), values)
+            }
+            ColumnReader::Int64ColumnReader(reader) => batch(reader, count, full, |value| exact(value.into()), values),
             _ => Err(ParquetError::General("a column is of an unexpected type".into())),
         }?;
         self.read += self.values.len();

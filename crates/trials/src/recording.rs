@@ -14,6 +14,8 @@ use crate::units::Kind;
 pub(crate) struct Recording {
     pub trial: Trial,
     pub rows: Vec<u32>,
+    /// Rows before which others have been left out.
+    pub resumed: Vec<u32>,
     /// Header of the time column.
     pub time: String,
     pub columns: BTreeMap<Channel, Column>,

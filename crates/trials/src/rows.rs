@@ -29,7 +29,7 @@ const LISTED: usize = 5;
 impl<'a> Builder<'a> {
     pub(crate) fn new(columns: Vec<Column>, missing: Missing, findings: &'a mut Findings) -> Self {
         let values = vec![Vec::new(); columns.len()];
-        let table = Table { columns, values, rows: Vec::new() };
+        let table = Table { columns, values, ..Table::default() };
         Self { table, missing, findings, run: None, faulty: 0, scratch: Vec::new() }
     }
 
@@ -52,9 +52,28 @@ impl<'a> Builder<'a> {
                 }
             }
         }
+        let row = u32::try_from(row).unwrap_or(u32::MAX);
+        if self.run.is_some() {
+            self.table.resumed.push(row);
+        }
         self.end_run();
-        self.table.rows.push(u32::try_from(row).unwrap_or(u32::MAX));
+        self.table.rows.push(row);
         self.table.values.iter_mut().zip(&self.scratch).for_each(|(values, &value)| values.push(value));
+    }
+
+    /// A row that ends before the header does: left out as one without a value, or told by whoever counts the cells.
+    pub(crate) fn short(&mut self, row: usize) {
+        if self.drops()
+            && let Some(column) = self.table.columns.last()
+        {
+            let header = column.header.clone();
+            self.faulty(row, header, Fault::Short);
+        }
+    }
+
+    /// Whether rows without a value are left out.
+    pub(crate) fn drops(&self) -> bool {
+        self.missing == Missing::Drop
     }
 
     fn faulty(&mut self, row: usize, column: String, fault: Fault) {
