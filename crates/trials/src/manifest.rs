@@ -16,12 +16,7 @@ use crate::units::Kind;
 /// Names line and field of what is wrong: the YAML, an unknown channel or unit, a path that leaves the folder, a file
 /// named twice, impossible smoothing.
 pub fn read_manifest(file_name: &str, text: &str) -> Result<Manifest, FileError> {
-    let manifest: Manifest = serde_yaml::from_str(text).map_err(|error| FileError {
-        file: file_name.to_owned(),
-        line: error.location().map(|location| location.line()),
-        field: String::new(),
-        message: error.to_string(),
-    })?;
+    let manifest: Manifest = sistership_model::yaml::read(text).map_err(|error| FileError::of_yaml(file_name, error))?;
     let problem = columns(&manifest).or_else(|| trials(&manifest)).or_else(|| conventions(&manifest));
     match problem {
         None => Ok(manifest),
