@@ -15,6 +15,9 @@ pub const MAX_BYTES: usize = 8 << 20;
 /// Brackets and braces within each other.
 pub const MAX_DEPTH: usize = 64;
 
+/// Commas, brackets, colons, dashes and question marks that may each begin an item of a document, whichever of them do.
+pub const MAX_ITEMS: usize = 400_000;
+
 /// What is wrong with a text.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
@@ -41,12 +44,27 @@ fn check(text: &str) -> Result<(), YamlError> {
         let message = format!("a YAML document of {} bytes; {MAX_BYTES} are the most", text.len());
         return Err(YamlError { line: None, message });
     }
+    let items = items(text.as_bytes());
+    if items > MAX_ITEMS {
+        let message = format!("a YAML document of some {items} items; {MAX_ITEMS} are the most");
+        return Err(YamlError { line: None, message });
+    }
     let at = |(place, message): (usize, String)| {
         let line = 1 + text.as_bytes()[..place].iter().filter(|byte| **byte == b'\n').count();
         YamlError { line: Some(line), message: format!("{message} at line {line}") }
     };
     aliases::check(text.as_bytes()).map_err(at)?;
     brackets::check(text.as_bytes()).map_err(at)
+}
+
+/// How many items there may be.
+fn items(bytes: &[u8]) -> usize {
+    let is_mark = |at: usize| match bytes[at] {
+        b',' | b'[' | b'{' | b'?' => true,
+        b':' | b'-' => bytes.get(at + 1).is_none_or(|next| !next.is_ascii_graphic()),
+        _ => false,
+    };
+    (0..bytes.len()).filter(|&at| is_mark(at)).count()
 }
 
 /// Bytes of the line break that begins at a place, none where none does: also NEL, LS and PS, which libyaml takes for one.

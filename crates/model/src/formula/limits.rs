@@ -1,7 +1,7 @@
 //! How long and how deep a formula may be: whatever walks one must not run out of stack, nor out of time.
 //!
 //! Parsing recurses where a formula nests, so that the text is measured before it is parsed; every walk over the tree that
-//! comes out recurses at most as deep as there are operators. The largest formula of the zoo has 52 operators and nests 6 deep.
+//! comes out recurses at most as deep as there are operators. The largest formula of the zoo has 22 operators, and none nests more than 5 deep.
 
 /// Bytes of one formula.
 pub const MAX_LENGTH: usize = 8192;

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use super::{Law, LawFile};
 use crate::formula::{Expr, MAX_DEPTH};
 
-/// Terms of all axes; with the deviations of submodels, see [`MAX_COEFFICIENTS`]. The largest law of the zoo has 190.
+/// Terms of all axes; with the deviations of submodels, see [`MAX_COEFFICIENTS`]. The largest law of the zoo has 189, and none more than 189 coefficients.
 pub const MAX_TERMS: usize = 1500;
 
 /// Coefficients of a law, shared ones and deviations, or of a model.

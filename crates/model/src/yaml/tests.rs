@@ -32,7 +32,7 @@ fn brackets_are_bounded_however_they_are_written() {
 fn aliases_and_tags_are_refused() {
     assert!(refused("a: &x [1]\nb: *x").contains("write out what `&x` stands for at line 2"));
     assert!(refused("[&x 1,*x]").contains("alias"));
-    assert!(refused(&format!("a: &x \"{}\"\nb: [{}]", "y".repeat(1 << 20), "*x, ".repeat(700_000))).contains("alias"));
+    assert!(refused(&format!("a: &x \"{}\"\nb: [{}]", "y".repeat(1 << 20), "*x, ".repeat(300_000))).contains("alias"));
     assert!(refused("%TAG !a! b\n---\na: 1").contains("%TAG"));
     assert!(read::<serde_yaml::Value>("a: 2 *x & y\nb: R&D\nc: u *v\nd: '&'").is_ok());
 }
@@ -63,6 +63,8 @@ fn no_construct_takes_more_than_its_share() {
         ("unclosed comments", fill("[#")),
         ("small items", format!("[{}]", fill("a,"))),
         ("small maps", format!("[{}]", fill("{},"))),
+        ("as many items as may be", format!("[{}]", "a,".repeat(MAX_ITEMS - 2))),
+        ("as many sequences as may be", "- ".repeat(MAX_ITEMS)),
         ("a long key", format!("{}: 1", fill("k"))),
         ("long quoted key", format!("\"{}\": 1", fill("k"))),
         ("anchors", (0..300_000).map(|n| format!("- &a{n} 1\n")).collect()),
@@ -78,6 +80,6 @@ fn no_construct_takes_more_than_its_share() {
         let read = read::<serde_yaml::Value>(&text).map(|_| ()).map_err(|e| e.message.chars().take(60).collect::<String>());
         let took = began.elapsed();
         println!("{what}: {took:?}: {read:?}");
-        assert!(took < Duration::from_secs(8), "{what}: {took:?}: {read:?}");
+        assert!(took < Duration::from_secs(4), "{what}: {took:?}: {read:?}");
     }
 }
