@@ -58,7 +58,7 @@ fn laws_at_the_limits_are_read_and_beyond_refused() {
     assert!(read(law("a490", &twice(490), "X_u")).unwrap_err().contains("512 deep"));
     assert_eq!(read(law("a2", &chain(2, 240), "X_u")), Ok(()));
     assert!(read(law("a20", &chain(20, 240), "X_u")).unwrap_err().contains("512 deep"));
-    assert!(read(law("1", &twice(501), "X_u")).unwrap_err().contains("values: there are 502; 500"));
+    assert!(read(law("1", &twice(501), "X_u")).unwrap_err().contains("values: there are 503; 500"));
     let names = |count: usize| -> String { (0..count).map(|n| format!("X_{}, ", name(n))).collect() };
     assert_eq!(read(law("1", "", &names(MAX_TERMS - 2))), Ok(()));
     for count in [MAX_TERMS + 1, 3_320, 10 * MAX_TERMS] {
