@@ -16,15 +16,7 @@ use crate::units::Kind;
 /// Names line and field of what is wrong: the YAML, an unknown channel or unit, a path that leaves the folder, a file
 /// named twice, impossible smoothing.
 pub fn read_manifest(file_name: &str, text: &str) -> Result<Manifest, FileError> {
-    let refused = |error: serde_yaml::Error| FileError {
-        file: file_name.to_owned(),
-        line: error.location().map(|location| location.line()),
-        field: String::new(),
-        message: error.to_string(),
-    };
-    // Read as a value first: of a channel that is mapped twice, a map would silently keep the second.
-    serde_yaml::from_str::<serde_yaml::Value>(text).map_err(refused)?;
-    let manifest: Manifest = serde_yaml::from_str(text).map_err(refused)?;
+    let manifest: Manifest = sistership_model::yaml::read(text).map_err(|error| FileError::of_yaml(file_name, error))?;
     let problem = columns(&manifest).or_else(|| trials(&manifest)).or_else(|| conventions(&manifest));
     match problem {
         None => Ok(manifest),

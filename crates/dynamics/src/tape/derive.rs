@@ -18,8 +18,28 @@ impl TapeBuilder<'_> {
         Some(self.outputs.len() - 1)
     }
 
-    /// The slot of a slot's derivative.
+    /// The slot of a slot's derivative. A sum of thousands of terms is as deep: those of the operands are made before, in the
+    /// order in which recursion would make them.
     fn slope_of(&mut self, slot: Slot, input: u32) -> Slot {
+        if let Some(&known) = self.slopes.get(&(slot, input)) {
+            return known;
+        }
+        let mut waiting = vec![slot];
+        while let Some(&next) = waiting.last() {
+            let needed = self.ops[next as usize].differentiated().into_iter().flatten();
+            match needed.into_iter().find(|operand| !self.slopes.contains_key(&(*operand, input))) {
+                Some(operand) if !self.slopes.contains_key(&(next, input)) => waiting.push(operand),
+                _ => {
+                    waiting.pop();
+                    self.known_slope(next, input);
+                }
+            }
+        }
+        self.known_slope(slot, input)
+    }
+
+    /// The derivative of a slot whose operands' are there.
+    fn known_slope(&mut self, slot: Slot, input: u32) -> Slot {
         if let Some(&known) = self.slopes.get(&(slot, input)) {
             return known;
         }
