@@ -10,12 +10,10 @@ use utoipa::ToSchema;
 
 use super::{bounded, columns, positive};
 use crate::problem::{Problem, Result};
-use crate::web::field::{Angle, Positive};
+use crate::web::field::{Angle, Positive, SampleCount};
 
 /// Longest step.
 const STEP_S: f64 = 0.1;
-/// Most models drawn for bands.
-const MOST_SAMPLES: usize = 1000;
 
 /// One of `turn_deg`, `zigzag` and `all`.
 #[derive(Debug, Deserialize, ToSchema)]
@@ -43,8 +41,8 @@ pub(crate) struct ManoeuvreRequest {
 #[serde(deny_unknown_fields)]
 pub(crate) struct BandsRequest {
     /// Models drawn; 100 where absent.
-    #[schema(minimum = 2, maximum = 1000)]
-    samples: Option<usize>,
+    #[schema(inline)]
+    samples: Option<SampleCount>,
     /// What the draws follow from; 1 where absent.
     seed: Option<u64>,
 }
@@ -115,10 +113,8 @@ pub(super) struct Whose<'a> {
 impl BandsRequest {
     fn drawn(self, whose: Whose<'_>, settings: &ManoeuvreSettings) -> Result<Bands> {
         let default = Sampling::default();
-        let sampling = Sampling { samples: self.samples.unwrap_or(default.samples), seed: self.seed.unwrap_or(default.seed) };
-        if !(2..=MOST_SAMPLES).contains(&sampling.samples) {
-            return Err(Problem::invalid("manoeuvre.bands.samples", format!("must be from 2 to {MOST_SAMPLES}")));
-        }
+        let samples = usize::try_from(self.samples.unwrap_or_default().get()).unwrap_or(default.samples);
+        let sampling = Sampling { samples, seed: self.seed.unwrap_or(default.seed) };
         let none = || {
             let why = "only a refined one whose coefficients are those that were estimated has one";
             Problem::invalid("manoeuvre.bands", format!("the model has no posterior to draw from; {why}"))

@@ -100,7 +100,8 @@ mod tests {
     fn ask(ship: &str, request: Value) -> Result<Value> {
         let zoo = Zoo::embedded().unwrap();
         let model = zoo.model(ship).unwrap();
-        let request: PredictionRequest = serde_json::from_value(request).unwrap();
+        let request: PredictionRequest = serde_path_to_error::deserialize(request)
+            .map_err(|error| Problem::invalid(&error.path().to_string(), error.inner().to_string()))?;
         predict(&request, &model, zoo.law(&model.law).unwrap(), 100_000)
     }
 

@@ -19,6 +19,7 @@ use crate::archive::document;
 use crate::problem::{Problem, Result};
 use crate::publish::CHAMPION;
 use crate::web::conditions::tag;
+use crate::web::field::EntityTags;
 use crate::web::{Conditions, Name, Params, Place, accept};
 
 const JSON: &str = "application/json";
@@ -59,7 +60,8 @@ enum Format {
 ///
 /// As YAML it is a file that `sistership simulate --model` takes.
 #[utoipa::path(
-    get, path = "/v1/ships/{ship}/model", tag = "ships", params(("ship" = inline(Name), Path), Query),
+    get, path = "/v1/ships/{ship}/model", tag = "ships", params(("ship" = inline(Name), Path), Query,
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you have")),
     responses(
         (status = 200, content((Champion = "application/json"), (String = "application/yaml")), headers(("ETag" = String))),
         (status = 304, description = "As you have it")

@@ -18,6 +18,7 @@ use crate::derive::DeriveError;
 use crate::problem::{Problem, Result};
 use crate::search;
 use crate::web::conditions::tag;
+use crate::web::field::EntityTags;
 use crate::web::{Conditions, Listing, Name, Params, Place};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -101,7 +102,8 @@ async fn list(State(app): State<App>, Params(query): Params<Vec<(String, String)
 
 /// A ship; her ETag is what a change must present
 #[utoipa::path(
-    get, path = "/v1/ships/{ship}", tag = "ships", params(("ship" = inline(Name), Path)),
+    get, path = "/v1/ships/{ship}", tag = "ships", params(("ship" = inline(Name), Path),
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you have")),
     responses((status = 200, body = ShipDetail, headers(("ETag" = String))), (status = 304, description = "As you have her"))
 )]
 async fn get(State(app): State<App>, Place(name): Place<Name>, conditions: Conditions) -> Result<Response> {

@@ -14,6 +14,7 @@ use utoipa_axum::routes;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::verify::{self, Verification};
+use crate::web::field::EntityTags;
 use crate::web::{Conditions, Listing, Name, Number, Paged, Params, Place};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -104,7 +105,8 @@ async fn get(State(app): State<App>, Place((model, number)): Place<(Name, Number
 /// The document of a version, byte for byte as it was hashed
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions/{number}/document", tag = "models",
-    params(("model" = inline(Name), Path), ("number" = inline(Number), Path)),
+    params(("model" = inline(Name), Path), ("number" = inline(Number), Path),
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you have")),
     responses((status = 200, body = Object, headers(("ETag" = String))), (status = 304, description = "As you have it"))
 )]
 async fn bytes(

@@ -220,6 +220,10 @@ whole! {
     Number: 1, MAX_WHOLE, deserialize_str
 }
 whole! {
+    /// How many models are drawn from a posterior.
+    SampleCount: 2, 1000, deserialize_i64, default 100
+}
+whole! {
     /// The number of a version, in a body.
     VersionNumber: 1, MAX_WHOLE, deserialize_i64
 }
