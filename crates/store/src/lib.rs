@@ -55,7 +55,7 @@ mod work;
 pub use aliases::{Alias, AliasChange, AliasMove, Aliases, Expect};
 pub use backup::{BackupManifest, DatabaseKind, FileHead, TableHead};
 pub use bulks::{Bulk, BulkOutcome, Bulks, ChunkCount, NewOutcome, OutcomeCount};
-pub use checks::{MAX_NAME_BYTES, MAX_TEXT_BYTES};
+pub use checks::{MAX_NAME_CHARS, MAX_TEXT_BYTES};
 pub use clock::{Clock, Ids, ManualClock, SequentialIds, SystemClock, UuidIds};
 pub use commit::{Committed, Refinement};
 pub use commit_diagnosis::{CommittedDiagnosis, Diagnosis};

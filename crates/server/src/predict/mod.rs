@@ -15,6 +15,8 @@ pub(crate) use manoeuvre::ManoeuvreRequest;
 
 use crate::memory::take_now;
 use crate::problem::{Problem, Result};
+use crate::web::ModelName;
+use crate::web::field::Positive;
 use manoeuvre::Whose;
 
 /// What is to be simulated: a manoeuvre or recorded inputs.
@@ -22,9 +24,11 @@ use manoeuvre::Whose;
 #[serde(deny_unknown_fields)]
 pub(crate) struct PredictionRequest {
     /// `ship` (her champion), `ship/number` or `ship/alias`.
-    pub model: String,
+    #[schema(inline)]
+    pub model: ModelName,
     /// Water depth for laws that know it, m; deep where absent.
-    pub depth_m: Option<f64>,
+    #[schema(inline)]
+    pub depth_m: Option<Positive>,
     /// A standard manoeuvre; or give `inputs`.
     pub manoeuvre: Option<ManoeuvreRequest>,
     /// Recorded inputs; or give `manoeuvre`.
@@ -35,10 +39,12 @@ pub(crate) struct PredictionRequest {
 pub(crate) fn predict(request: &PredictionRequest, model: &Model, law: &Law, most: usize) -> Result<Value> {
     let mut ship = Ship::new(model, law).map_err(|error| Problem::invalid("model", error.to_string()))?;
     if let Some(depth) = request.depth_m {
-        ship.set_depth(positive("depth_m", depth)?);
+        ship.set_depth(depth.get());
     }
     match (&request.manoeuvre, &request.inputs) {
-        (Some(manoeuvre), None) => manoeuvre.sail(&mut ship, Whose { model, law, depth_m: request.depth_m }, most),
+        (Some(manoeuvre), None) => {
+            manoeuvre.sail(&mut ship, Whose { model, law, depth_m: request.depth_m.map(Positive::get) }, most)
+        }
         (None, Some(inputs)) => inputs.follow(&mut ship, most),
         _ => Err(Problem::invalid("manoeuvre", "give either `manoeuvre` or `inputs`")),
     }
@@ -99,7 +105,8 @@ mod tests {
     fn ask(ship: &str, request: Value) -> Result<Value> {
         let zoo = Zoo::embedded().unwrap();
         let model = zoo.model(ship).unwrap();
-        let request: PredictionRequest = serde_json::from_value(request).unwrap();
+        let request: PredictionRequest = serde_path_to_error::deserialize(request)
+            .map_err(|error| Problem::invalid(&error.path().to_string(), error.inner().to_string()))?;
         predict(&request, &model, zoo.law(&model.law).unwrap(), 100_000)
     }
 

@@ -1,5 +1,6 @@
 //! What the other crates refuse, as problems.
 
+use axum::extract::path::ErrorKind;
 use axum::extract::rejection::{BytesRejection, PathRejection, QueryRejection};
 use axum::http::StatusCode;
 use sistership_identify::refine::RefineError;
@@ -93,7 +94,15 @@ fn parameter(message: &str) -> &str {
 
 impl From<PathRejection> for Problem {
     fn from(rejection: PathRejection) -> Self {
-        Self::not_found(format!("there is nothing under this path: {}", rejection.body_text()))
+        let PathRejection::FailedToDeserializePathParams(failed) = &rejection else {
+            return Self::not_found(format!("there is nothing under this path: {}", rejection.body_text()));
+        };
+        match failed.kind() {
+            ErrorKind::DeserializeError { key, value, message } => {
+                Self::not_found(format!("{key}: there is no `{value}`: it {message}")).with(Fault::at(key, message))
+            }
+            other => Self::not_found(format!("there is nothing under this path: {other}")),
+        }
     }
 }
 

@@ -18,7 +18,8 @@ use crate::app::App;
 use crate::archive::document;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::problem::{Problem, Result};
-use crate::web::{Key, Payload, Reply};
+use crate::web::field::{RequestKey, described};
+use crate::web::{Id, Key, ModelName, Payload, Reply};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(diagnose))
@@ -29,12 +30,14 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[serde(deny_unknown_fields)]
 struct DiagnosisRequest {
     /// The version to diagnose: `ship` (her champion), `ship/number`, `ship/alias`.
-    model: String,
+    #[schema(inline)]
+    model: ModelName,
     /// Ids of trials of the ship; where absent, those that the version was not made of, or all where none are left.
-    trials: Option<Vec<String>>,
+    #[schema(inline, min_items = 1)]
+    trials: Option<Vec<Id>>,
     /// Settings of the diagnosis; each has a default, and all are kept with the report.
     #[serde(default)]
-    #[schema(value_type = Object)]
+    #[schema(schema_with = described::<Settings>)]
     settings: Settings,
 }
 
@@ -44,7 +47,7 @@ struct DiagnosisRequest {
 /// model with them becomes a version of the ship's line, `candidate`, whose parent is the version diagnosed.
 #[utoipa::path(
     post, path = "/v1/diagnoses", tag = "diagnoses",
-    params(("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
     request_body = DiagnosisRequest,
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]

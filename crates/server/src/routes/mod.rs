@@ -4,6 +4,7 @@ mod aliases;
 mod bulk_refinements;
 mod champion;
 mod condition;
+mod described;
 mod diagnoses;
 mod document;
 mod drift;
@@ -28,9 +29,12 @@ mod ship_search;
 mod ships;
 mod similar;
 mod tags;
+mod tidy;
 mod trials;
 mod uploads;
 mod versions;
+
+use std::sync::Arc;
 
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -45,11 +49,14 @@ pub use document::openapi;
 
 use crate::app::App;
 use crate::config::Limits;
+use crate::web::query::{self, KnownQuery};
 use crate::web::{envelope, guard};
 
 /// Everything that is served.
 pub(crate) fn router(app: App) -> Router {
-    let (api, _) = api(app.limits()).split_for_parts();
+    let (api, described) = api(app.limits()).split_for_parts();
+    let known = Arc::new(KnownQuery::of(&described));
+    let api = api.route_layer(from_fn_with_state(known, query::refuse_unknown));
     let text = document::text();
     api.route("/openapi.json", get(move || async move { document::served(text) }))
         .merge(pages::routes())

@@ -17,7 +17,8 @@ use super::trials::all_of_ship;
 use crate::app::App;
 use crate::jobs::{REFINEMENT, RefinementJob, SourceChoice};
 use crate::problem::{Problem, Result};
-use crate::web::{Key, Payload, Reply};
+use crate::web::field::{RequestKey, described};
+use crate::web::{Id, Key, ModelName, Name, Payload, Reply};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(refine))
@@ -28,24 +29,26 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[serde(deny_unknown_fields)]
 struct RefinementRequest {
     /// The ship to refine a model for.
-    ship: String,
-    /// `auto`, or a version to start from: `ship` (her champion), `ship/number`, `ship/alias`.
-    #[serde(default = "auto")]
-    source: String,
+    #[schema(inline)]
+    ship: Name,
+    /// `auto`, which it is where absent, or a version to start from: `ship` (her champion), `ship/number`, `ship/alias`.
+    #[schema(inline)]
+    source: Option<ModelName>,
     /// The law to fit, such as `low-speed`; the source's where absent. What a source of another law says over the states of the
     /// trials and of its standard manoeuvres becomes the prior.
-    law: Option<String>,
+    #[schema(inline)]
+    law: Option<Name>,
     /// Ids of the trials; all of the ship's where absent.
-    trials: Option<Vec<String>>,
+    #[schema(inline, min_items = 1)]
+    trials: Option<Vec<Id>>,
     /// Settings of the estimator; each has a default, and all are kept with the version.
     #[serde(default)]
-    #[schema(value_type = Object)]
+    #[schema(schema_with = described::<Settings>)]
     settings: Settings,
 }
 
-fn auto() -> String {
-    "auto".to_owned()
-}
+/// The source that is the most similar ship.
+const AUTO: &str = "auto";
 
 /// Refine a model against trials
 ///
@@ -53,7 +56,7 @@ fn auto() -> String {
 /// where she has none and else `candidate`, with a report.
 #[utoipa::path(
     post, path = "/v1/refinements", tag = "refinements",
-    params(("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
     request_body = RefinementRequest,
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]
@@ -63,7 +66,7 @@ async fn refine(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
 }
 
 async fn queued(app: &App, request: RefinementRequest) -> Result<Reply> {
-    let ship = request.ship.clone();
+    let ship = request.ship.to_string();
     accepted(enqueue(app, REFINEMENT, &ship, &settled(app, request).await?).await?)
 }
 
@@ -80,7 +83,8 @@ async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob>
     repeatable(&settings)?;
     known(app, law.as_deref()).await?;
     let trials = trial_ids(app, &ship, trials).await?;
-    Ok(RefinementJob { source: choice(app, &source).await?, ship, law, trials, settings, key_sha256: None })
+    let source = choice(app, source.as_deref().unwrap_or(AUTO)).await?;
+    Ok(RefinementJob { source, ship: ship.into_string(), law: law.map(Name::into_string), trials, settings, key_sha256: None })
 }
 
 /// A version must follow from its recipe again, which it does not where a clock ended the search.
@@ -102,14 +106,14 @@ async fn known(app: &App, law: Option<&str>) -> Result<()> {
 }
 
 async fn choice(app: &App, source: &str) -> Result<SourceChoice> {
-    if source == "auto" {
+    if source == AUTO {
         return Ok(SourceChoice::Auto);
     }
     let head = resolve(app.store(), "source", source).await?.head;
     Ok(SourceChoice::Version { ship: head.model, number: head.number })
 }
 
-async fn trial_ids(app: &App, ship: &str, ids: Option<Vec<String>>) -> Result<Vec<String>> {
+async fn trial_ids(app: &App, ship: &str, ids: Option<Vec<Id>>) -> Result<Vec<String>> {
     if let Some(ids) = ids {
         return named(app, ship, ids, "all of the ship's").await;
     }

@@ -21,7 +21,7 @@ use crate::app::App;
 use crate::memory::{self, Share};
 use crate::problem::{Problem, Result};
 use crate::upload::{hex, spool};
-use crate::web::{Place, accept};
+use crate::web::{Id, Place, accept};
 
 const CSV: &str = "text/csv";
 const PARQUET: &str = "application/vnd.apache.parquet";
@@ -34,10 +34,10 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 
 /// The samples of a trial, as CSV or as Parquet, under canonical names
 #[utoipa::path(
-    get, path = "/v1/trials/{id}/samples", tag = "trials", params(("id" = String, Path)),
+    get, path = "/v1/trials/{id}/samples", tag = "trials", params(("id" = inline(Id), Path)),
     responses((status = 200, content((String = "text/csv"), (Binary = "application/vnd.apache.parquet"))))
 )]
-async fn samples(State(app): State<App>, Place(id): Place<String>, headers: HeaderMap) -> Result<Response> {
+async fn samples(State(app): State<App>, Place(id): Place<Id>, headers: HeaderMap) -> Result<Response> {
     let media = accept::choose(&headers, &[CSV, PARQUET])?;
     let trial = app.store().trials().get(&id).await?;
     let (size, stream) = app.objects().stream(&trial.object_key).await?;

@@ -11,13 +11,14 @@ use utoipa::IntoParams;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::ship_search::vectors;
 use super::trials::all_of_ship;
 use crate::app::App;
 use crate::archive::vessel;
 use crate::jobs::trial_bytes;
 use crate::memory;
 use crate::problem::{Problem, Result};
-use crate::web::{Params, Place};
+use crate::web::{Name, Params, Place};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(similar))
@@ -28,7 +29,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[into_params(parameter_in = Query)]
 struct Query {
     /// `mei-2019` or `kanazawa-2023`; Mei's where the ship has every component of it, else Kanazawa's.
-    #[param(value_type = Option<String>)]
+    #[param(schema_with = vectors)]
     vector: Option<Definition>,
     /// Whether eligible ships are measured on the ship's trials, where she has any.
     #[serde(default = "yes")]
@@ -44,10 +45,10 @@ fn yes() -> bool {
 /// Of a zoo of more than 250 ships only the 250 of her category that are most similar to her are ranked;
 /// `GET /v1/ships?similar_to=` has all of them.
 #[utoipa::path(
-    get, path = "/v1/ships/{ship}/similar", tag = "ships", params(("ship" = String, Path), Query),
+    get, path = "/v1/ships/{ship}/similar", tag = "ships", params(("ship" = inline(Name), Path), Query),
     responses((status = 200, body = Object, description = "`target`, `definition`, `vector` and `ranking`, as `sistership similar --json`"))
 )]
-async fn similar(State(app): State<App>, Place(name): Place<String>, Params(query): Params<Query>) -> Result<Json<Value>> {
+async fn similar(State(app): State<App>, Place(name): Place<Name>, Params(query): Params<Query>) -> Result<Json<Value>> {
     let ship = app.store().ships().get(&name).await?;
     let target = vessel(&ship.name, &ship.document)?;
     let trials = if query.trials { all_of_ship(&app, &name).await? } else { Vec::new() };

@@ -15,6 +15,7 @@ use super::trials::TrialView;
 use crate::app::App;
 use crate::problem::Result;
 use crate::upload::{Kept, RawQuery, Upload, keep};
+use crate::web::field::RequestKey;
 use crate::web::{Key, Reply};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -37,7 +38,7 @@ struct Uploaded {
 #[derive(ToSchema)]
 #[allow(dead_code, reason = "it only describes the form")]
 struct Form {
-    /// The trial manifest, YAML (`models/schema/trials.schema.json`).
+    /// The trial manifest, YAML (`models/schema/trials.json`).
     manifest: Option<String>,
     /// The ship, instead of a manifest, for files with canonical columns.
     ship: Option<String>,
@@ -53,7 +54,7 @@ struct Form {
 /// follows that diagnoses it on the new trials, unless `diagnose=false`.
 #[utoipa::path(
     post, path = "/v1/trials", tag = "trials",
-    params(RawQuery, ("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
+    params(RawQuery, ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
     request_body(content((Form = "multipart/form-data"), (String = "text/csv"), (Binary = "application/vnd.apache.parquet"))),
     responses((status = 201, body = Uploaded, headers(("Location" = String))))
 )]

@@ -9,13 +9,13 @@ use axum::response::{IntoResponse, Response};
 use sistership_store::{Begun, PROLONG_EVERY, Store, Ticket, UnitOfWork, sha256_hex};
 use tracing::Instrument as _;
 
+use super::field::RequestKey;
 use super::reply::Reply;
 use crate::app::App;
 use crate::memory::{Held, carried_on};
-use crate::problem::{Problem, Result};
+use crate::problem::{Fault, Problem, Result};
 
 const HEADER: &str = "idempotency-key";
-const LONGEST: usize = 200;
 
 /// What names a request: its key, if it has one, and what it is made of.
 #[derive(Debug)]
@@ -37,13 +37,10 @@ impl<S: Send + Sync> FromRequestParts<S> for Key {
 }
 
 fn check(value: &HeaderValue) -> Result<String> {
-    let text = value.to_str().unwrap_or_default();
-    match !text.is_empty() && text.len() <= LONGEST && text.bytes().all(|byte| byte.is_ascii_graphic() && byte != b'/') {
-        true => Ok(text.to_owned()),
-        false => Err(Problem::bad_request(format!(
-            "Idempotency-Key: give 1 to {LONGEST} letters, digits and marks (no slash), such as a UUID"
-        ))),
-    }
+    let key = value.to_str().unwrap_or_default().parse::<RequestKey>();
+    key.map(RequestKey::into_string).map_err(|message| {
+        Problem::bad_request(format!("Idempotency-Key: {message}")).with(Fault::at("Idempotency-Key", message))
+    })
 }
 
 impl Key {
