@@ -62,5 +62,3 @@ impl Running {
         self.process.stop().await;
     }
 }
-
-}

@@ -36,7 +36,7 @@ pub enum ObjectsError {
     #[error(transparent)]
     Store(#[from] object_store::Error),
     /// The folder could not be made.
-    #[error(transparent)]
+    #[error("{0}")]
     Folder(#[from] std::io::Error),
     /// The store did not answer in time.
     #[error("no answer in time")]

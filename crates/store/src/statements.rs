@@ -42,8 +42,7 @@ mod prepare {
     use crate::store::Store;
     use crate::{
         aliases, bulks, current, diagnoses, effects, families, garbage, idempotency, integrity, jobs, laws, reports, reserve,
-        search,
-        search_index, ships, statistics, store, tags, trials, versions, work,
+        search, search_index, ships, statistics, store, tags, trials, versions, work,
     };
 
     pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[

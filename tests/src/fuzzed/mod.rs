@@ -8,12 +8,11 @@ pub mod formula;
 pub mod law;
 pub mod manifest;
 pub mod parquet;
-#[cfg(feature = "server")]
 pub mod version;
 pub mod vessel;
 
-use sistership_trials::{Limits, Mapping};
 use sistership_model::Trial;
+use sistership_trials::{Limits, Mapping};
 
 /// The input as text, where it is text.
 fn text(data: &[u8]) -> Option<&str> {
@@ -22,7 +21,7 @@ fn text(data: &[u8]) -> Option<&str> {
 
 /// Bounds small enough that an input of a few kB cannot ask for more.
 fn small() -> Mapping {
-    Mapping { limits: Limits { rows: 10_000, columns: 50, line_bytes: 4096 }, ..Mapping::canonical() }
+    Mapping { limits: Limits { rows: 10_000, columns: 50, line_bytes: 4096, ..Limits::default() }, ..Mapping::canonical() }
 }
 
 /// What holds of every trial that is accepted: as many samples in each channel as in time, all finite, time increasing,

@@ -217,6 +217,49 @@ mod tests {
         }
     }
 
+    /// The force of an axis with as many terms as a model may have coefficients, and more, on half of what a thread has.
+    #[test]
+    fn a_long_sum_is_lowered_and_differentiated_on_a_small_stack() {
+        use sistership_model::formula::Expr;
+        let small = std::thread::Builder::new().stack_size(1 << 20);
+        let tried = small.spawn(|| {
+            let term = |k: usize| parse(&format!("{k}.5*u*v")).unwrap();
+            let sum = (1..20_000).map(term).fold(Expr::Number(0.0), |sum, term| Expr::Add(Box::new(sum), Box::new(term)));
+            let mut builder = TapeBuilder::new(&["u", "v"], &|_| None);
+            builder.output(&sum).unwrap();
+            let slope = builder.derivative(0, "u").unwrap();
+            let tape = builder.finish();
+            let values = tape.values(&[2.0, 3.0]);
+            assert!((values[slope] * 2.0 - values[0]).abs() < 1e-6 * values[0].abs());
+            // Each power is a factor of the next: as deep as formulas may be through values.
+            let deep = parse(&format!("{}u{}", "sqrt(1+".repeat(24), ")".repeat(24))).unwrap();
+            let mut builder = TapeBuilder::new(&["u", "v"], &|_| None);
+            builder.output(&deep).unwrap();
+            assert!(builder.derivative(0, "u").is_some());
+        });
+        tried.unwrap().join().unwrap();
+    }
+
+    /// Values that each name the one before, down to the deepest that a law may have.
+    #[test]
+    fn values_of_values_are_lowered_on_a_small_stack() {
+        use super::super::Binding;
+        let deepest = sistership_model::formula::MAX_DEPTH;
+        let small = std::thread::Builder::new().stack_size(1 << 20);
+        let bind = move |name: &str| {
+            let number: usize = name.strip_prefix('a')?.parse().ok()?;
+            let text = if number == 0 { "u".to_owned() } else { format!("a{0}*a{0} + 1", number - 1) };
+            parse(&text).ok().map(Binding::Formula)
+        };
+        let tried = small.spawn(move || {
+            let mut builder = TapeBuilder::new(&["u", "v"], &bind);
+            builder.output(&parse(&format!("a{deepest}")).unwrap()).unwrap();
+            builder.derivative(0, "u").unwrap();
+            assert!(builder.finish().values(&[0.0, 0.0])[0] > 0.0);
+        });
+        tried.unwrap().join().unwrap();
+    }
+
     #[test]
     fn what_does_not_depend_on_an_input_has_no_derivative() {
         assert_eq!(with_slopes("3*v + sign(u)").1[0], None);

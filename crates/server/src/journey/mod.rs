@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod contract;
+mod documents;
 mod harness;
 mod keys;
 mod loops;

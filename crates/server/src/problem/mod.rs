@@ -50,7 +50,7 @@ pub(crate) struct Fault {
 }
 
 /// Status, URI and title of each kind.
-const KINDS: [(u16, &str, &str); 18] = [
+const KINDS: [(u16, &str, &str); 19] = [
     (400, "urn:sistership:problem:bad-request", "The request cannot be read"),
     (401, "urn:sistership:problem:unauthorized", "An API key is needed"),
     (403, "urn:sistership:problem:forbidden", "The request is not allowed from there"),

@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 pub(super) fn tidy(document: &mut Value) {
     match document {
         Value::Object(object) => {
+            described(object);
             parameter(object);
             events(object);
             if let Some(not) = object.remove("x-not") {
@@ -16,6 +17,23 @@ pub(super) fn tidy(document: &mut Value) {
         Value::Array(items) => items.iter_mut().for_each(tidy),
         _ => {}
     }
+}
+
+/// A schema and what is said of the field that has it are one schema, not two that both must hold: the second would be an object.
+fn described(object: &mut Map<String, Value>) {
+    let Some([Value::Object(schema), Value::Object(about)]) = object.get("allOf").and_then(Value::as_array).map(Vec::as_slice)
+    else {
+        return;
+    };
+    let only = |name: &String| ["description", "type", "deprecated", "example"].contains(&name.as_str());
+    if !about.keys().all(only) || about.get("type").is_some_and(|kind| kind != "object") {
+        return;
+    }
+    let (mut merged, mut about) = (schema.clone(), about.clone());
+    about.remove("type");
+    merged.extend(about);
+    object.remove("allOf");
+    object.extend(merged);
 }
 
 /// A parameter is there or not: none is null.
@@ -51,6 +69,17 @@ fn events(object: &mut Map<String, Value>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_said_of_a_field_is_no_schema_of_its_own() {
+        let mut document = json!({ "allOf": [{ "type": "string", "maxLength": 3 }, { "type": "object", "description": "a" }] });
+        tidy(&mut document);
+        assert_eq!(document, json!({ "type": "string", "maxLength": 3, "description": "a" }));
+        let both = json!({ "allOf": [{ "$ref": "#/a" }, { "type": "object", "properties": { "b": {} } }] });
+        let mut kept = both.clone();
+        tidy(&mut kept);
+        assert_eq!(kept, both);
+    }
 
     #[test]
     fn parameters_are_never_null_and_events_are_described_one_by_one() {

@@ -96,7 +96,7 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ("UPDATE trials SET sha256 = 'x'", "trial-key", "trial "),
     ("UPDATE trials SET object_key = '00'", "trial-key", "trial "),
     ("UPDATE laws SET document = document || ' ' WHERE name = 'abkowitz'", "law-hash", "law abkowitz"),
-    ("UPDATE laws SET sha256 = 'x' WHERE name = 'abkowitz'", "version-law", "version "),
+    ("UPDATE laws SET sha256 = 'x' WHERE name = 'abkowitz'", "law-hash", "law abkowitz"),
     ("UPDATE effect_libraries SET document = document || ' '", "effects-hash", "library of effects 4ffa"),
     ("DELETE FROM laws WHERE name = 'abkowitz'", "version-law", "version "),
     ("UPDATE versions SET document = document || ' ' WHERE model = 'mariner'", "version-hash", "version mariner/1"),

@@ -1,16 +1,16 @@
 //! From files that have arrived to trials that are kept.
 
 use std::io::BufWriter;
-use std::path::Path;
 
 use bytes::Bytes;
 use sistership_model::manifest::Manifest;
-use sistership_store::{Alias, Inserted, Job, NewJob, NewTrial, Objects, StoreError, Trial};
-use sistership_trials::{Mapping, Refusal, Source, read_trial, samples};
+use sistership_store::{Alias, Inserted, Job, NewJob, NewTrial, Objects, StoreError, Trial, is_out_of_space};
+use sistership_trials::samples::{self, SamplesError};
+use sistership_trials::{Mapping, Refusal, Source, read_trial};
 use tempfile::NamedTempFile;
 
 use super::room::room;
-use super::spool::{Spooled, temporary};
+use super::spool::{Spool, Spooled, temporary};
 use super::{Upload, lost};
 use crate::app::App;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
@@ -73,10 +73,10 @@ impl Upload {
         for (entry, file) in self.manifest.trials.iter().zip(self.files) {
             let mut mapping = Mapping::of(&self.manifest, entry);
             let share = room(app, &entry.file, &file.path, &mut mapping).await?;
-            let (only, spool) = (Manifest { trials: vec![entry.clone()], ..self.manifest.clone() }, app.spool().clone());
+            let (only, inner) = (Manifest { trials: vec![entry.clone()], ..self.manifest.clone() }, app.clone());
             let read = move || {
                 let _share = share;
-                read(&only, &file, &mapping, &spool)
+                read(&only, &file, &mapping, inner.spool())
             };
             match app.compute(read).await?? {
                 Ok(trial) => accepted.push(trial),
@@ -88,7 +88,7 @@ impl Upload {
 }
 
 /// Reads the file of a manifest that lists one.
-fn read(only: &Manifest, file: &Spooled, mapping: &Mapping, spool: &Path) -> Result<std::result::Result<Accepted, Refusal>> {
+fn read(only: &Manifest, file: &Spooled, mapping: &Mapping, spool: &Spool) -> Result<std::result::Result<Accepted, Refusal>> {
     let name = only.trials.first().map_or("", |entry| entry.file.as_str());
     let source = Source::open(name, &file.path).map_err(|error| lost(name, &error));
     match source.and_then(|source| read_trial(source, mapping)) {
@@ -98,9 +98,9 @@ fn read(only: &Manifest, file: &Spooled, mapping: &Mapping, spool: &Path) -> Res
 }
 
 impl Accepted {
-    fn new(only: &Manifest, trial: &sistership_model::trial::Trial, spool: &Path) -> Result<Self> {
+    fn new(only: &Manifest, trial: &sistership_model::trial::Trial, spool: &Spool) -> Result<Self> {
         let samples = temporary(spool)?;
-        samples::write_parquet(BufWriter::new(samples.as_file()), trial).map_err(Problem::internal)?;
+        samples::write_parquet(BufWriter::new(samples.as_file()), trial).map_err(unwritten)?;
         let new = NewTrial {
             ship: only.ship.clone(),
             sha256: String::new(),
@@ -114,6 +114,16 @@ impl Accepted {
             object_key: String::new(),
         };
         Ok(Self { new, samples })
+    }
+}
+
+/// Whether there was room is in what caused the error.
+fn unwritten(error: SamplesError) -> Problem {
+    let first: &(dyn std::error::Error + 'static) = &error;
+    let mut causes = std::iter::successors(Some(first), |cause| cause.source());
+    match causes.find_map(|cause| cause.downcast_ref::<std::io::Error>()).is_some_and(is_out_of_space) {
+        true => Problem::no_room(format!("an upload cannot be written: {error}")),
+        false => Problem::internal(error),
     }
 }
 

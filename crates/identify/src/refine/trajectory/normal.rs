@@ -13,8 +13,9 @@ const LANES: usize = 8;
 const ROWS: usize = 96;
 /// Columns of the Hessian that are multiplied together.
 const COLUMNS: usize = 48;
-/// Blocks of lanes that each thread takes before their sums are added: a lane holds a Hessian until then.
-const BLOCKS: usize = 2;
+/// Blocks of lanes that are simulated before their sums are added: a lane holds a Hessian until then. More threads than
+/// this have nothing to do; it is not their number, so that the memory of a fit does not depend on the machine.
+const BLOCKS: usize = 16;
 /// What a residual counts that a simulation never came to, in standard deviations.
 const LOST: f64 = 10.0;
 
@@ -65,7 +66,7 @@ impl Passing<'_> {
     pub fn pass(&self, system: &SensitiveSystem) -> Pass {
         let size = system.names().len();
         let mut pass = Pass { trials: vec![Normal::zeros(size); self.trials], gradients: Vec::new() };
-        for batch in self.segments.chunks(LANES * BLOCKS * rayon::current_num_threads()) {
+        for batch in self.segments.chunks(LANES * BLOCKS) {
             let blocks: Vec<Vec<Lane>> = batch.par_chunks(LANES).map(|block| self.block(system, block)).collect();
             for (segment, lane) in batch.iter().zip(blocks.into_iter().flatten()) {
                 pass.trials[segment.trial].add(&lane.normal);
