@@ -54,8 +54,9 @@ pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
     };
     let (rows, columns) = size.unwrap_or_default();
     let rows = rows.min(mapping.limits.rows);
-    // Numbers, the row of each, and whether the ship has way ahead; a smoothed column before it takes the other's place.
-    let row = 8 * columns as u64 + 5 + if mapping.conventions.smoothing.is_some() { 8 } else { 0 };
+    // Numbers, the row of each, whether the ship has way ahead, and one column more: the steps of time while their median is
+    // found, later a smoothed column before it takes the other's place.
+    let row = 8 * columns as u64 + 5 + 8;
     // A column as it is compressed.
     let writing = 8 * rows.min(GROUP_ROWS) as u64;
     Ok(Demand { rows, columns, bytes: EVERY + measuring(path)? + holding + rows as u64 * row + writing })
@@ -90,7 +91,7 @@ mod tests {
         let channels = [Channel::U, Channel::V, Channel::R].map(|channel| (channel, vec![1.0; t_s.len()]));
         let parquet = at(&to_parquet(&Trial { t_s, channels: channels.into(), ..Trial::default() }).unwrap());
         assert_eq!((parquet.rows, parquet.columns), (100_000, 4));
-        assert!((100_000 * 37..100_000 * 37 + (6 << 20)).contains(&parquet.bytes), "{parquet:?}");
+        assert!((100_000 * 45..100_000 * 45 + (6 << 20)).contains(&parquet.bytes), "{parquet:?}");
     }
 
     #[test]

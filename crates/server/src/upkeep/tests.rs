@@ -140,7 +140,7 @@ const OUTCOME: &str = "INSERT INTO bulk_outcomes VALUES ('b', 'mariner', 'champi
 const TAG: &str = "INSERT INTO ship_tags VALUES ('nobody', 'own')";
 const FACT: &str = "INSERT INTO ship_facts VALUES ('nobody', 'particular lpp_m', 1)";
 const JOB: &str = "INSERT INTO jobs VALUES ('j', 'refinement', 'nobody', '{}', 'succeeded', 1, '', \
-    '{\"model\": \"mariner\", \"version\": 1, \"sha256\": \"x\", \"report\": \"none\"}', NULL, 1, 1, 5, NULL, 0, 0, NULL, 0)";
+    '{\"model\": \"mariner\", \"version\": 1, \"sha256\": \"x\", \"report\": \"none\"}', NULL, 1, 1, 5, NULL, 0, 0, NULL, 0, 0)";
 
 #[tokio::test(flavor = "multi_thread")]
 async fn each_damage_to_rows_is_named_on_sqlite() {

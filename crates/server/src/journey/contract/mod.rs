@@ -95,9 +95,11 @@ impl Operation {
         let (status, problem) = read(request.send().await.unwrap()).await;
         let mut errors = problem["errors"].as_array().into_iter().flatten();
         let blamed = status.is_client_error() && errors.any(|error| error["field"] == field);
-        // What is named need not be there.
+        // What is named need not be there, and two fields may have a rule between them.
         let detail = problem["detail"].as_str().unwrap_or_default();
-        let missing = ["there is no", "has no trials", "nothing yet"].iter().any(|words| detail.contains(words));
+        let missing = ["there is no", "has no trials", "nothing yet", "keeps her name", "give either"]
+            .iter()
+            .any(|words| detail.contains(words));
         if (blamed && !missing) || status.is_server_error() {
             let short: String = shown.chars().take(300).collect();
             faults.push(format!("{} {}: `{field}` should be taken: {status} {problem}\n    {short}", self.method, self.path));
