@@ -165,7 +165,7 @@ impl Default for Limits {
             stop_time: Duration::from_secs(10),
             yaml_bytes: 1 << 20,
             request_memory: 256 << 20,
-            job_memory: 256 << 20,
+            job_memory: 1 << 30,
             memory_wait: Duration::from_secs(5),
         }
     }

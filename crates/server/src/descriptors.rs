@@ -36,7 +36,7 @@ fn raised(needed: usize) -> Option<usize> {
     let (mut limit, needed) = (getrlimit(Resource::Nofile), needed as u64);
     if limit.current.is_some_and(|current| current < needed) {
         limit.current = Some(limit.maximum.map_or(needed, |most| most.min(needed)));
-        if let Err(error) = setrlimit(Resource::Nofile, limit.clone()) {
+        if let Err(error) = setrlimit(Resource::Nofile, limit) {
             tracing::warn!(%error, "the bound on file descriptors cannot be raised");
         }
     }

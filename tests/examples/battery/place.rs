@@ -140,7 +140,8 @@ impl Place {
 
     /// Files of uploads under way: there are none where no server runs, but for those of a kill.
     pub fn uploads_under_way(&self) -> Vec<PathBuf> {
-        let entries = std::fs::read_dir(self.data.join("uploads")).into_iter().flatten().flatten();
-        entries.map(|entry| entry.path()).collect()
+        // Each process has a folder of its own among them.
+        let entries = |folder: PathBuf| std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+        entries(self.data.join("uploads")).flat_map(entries).collect()
     }
 }

@@ -59,6 +59,9 @@ pub struct Write {
     conditions: Vec<(&'static str, String)>,
 }
 
+/// Writes for one ship before the next one: a ship has at most 100 tags, and a refinement at most 1000 trials.
+pub const FOR_ONE_SHIP: u64 = 300;
+
 impl Write {
     /// A new ship.
     pub fn ship(name: &str) -> Self {
@@ -131,6 +134,14 @@ impl Write {
                 }
             }
         })
+    }
+
+    /// What a ship begins with, in the order of sending.
+    ///
+    /// # Errors
+    /// The zoo has no model for it.
+    pub fn first(ship: &str, number: u64) -> Result<[Self; 3], Failure> {
+        Ok([Self::ship(ship), Self::version(ship, "the first")?, Self::trial(ship, "the-first", number)])
     }
 
     /// The same without its key.

@@ -48,7 +48,7 @@ pub struct Serve {
     /// Memory that requests may take together, MB, 32 or more; what does not fit waits or is refused [default: 256].
     #[arg(long, value_name = "MB", env = "SISTERSHIP_REQUEST_MEMORY_MB")]
     request_memory_mb: Option<u64>,
-    /// Memory that jobs may take together, MB, 32 or more [default: 256].
+    /// Memory that jobs may take together, MB, 32 or more [default: 1024].
     #[arg(long, value_name = "MB", env = "SISTERSHIP_JOB_MEMORY_MB")]
     job_memory_mb: Option<u64>,
     /// Connections at a time, 16 to 65536 [default: 1024].

@@ -29,7 +29,7 @@ pub struct Work {
     /// Jobs worked on at a time, 1 to 64 [default: 1].
     #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS")]
     workers: Option<u16>,
-    /// Memory that jobs may take together, MB, 32 or more [default: 256].
+    /// Memory that jobs may take together, MB, 32 or more [default: 1024].
     #[arg(long, value_name = "MB", env = "SISTERSHIP_JOB_MEMORY_MB")]
     job_memory_mb: Option<u64>,
     #[command(flatten)]

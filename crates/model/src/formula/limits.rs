@@ -99,8 +99,11 @@ mod tests {
     use super::super::parse;
     use super::*;
 
+    /// What it is called, how to write it so many times, and the most of it.
+    type Way = (&'static str, fn(usize) -> String, usize);
+
     /// Each way of making a formula deep or long, and how many of it are just allowed.
-    fn ways() -> Vec<(&'static str, fn(usize) -> String, usize)> {
+    fn ways() -> Vec<Way> {
         fn around(open: &str, n: usize, close: &str) -> String {
             format!("{}u{}", open.repeat(n), close.repeat(n))
         }

@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use serde_json::json;
 use sistership_store::testing::TestDatabase;
 
 use super::harness::{Harness, SHIP, read};
@@ -55,6 +56,51 @@ async fn hostile_documents_are_refused_at_once() {
         let post = harness.client.post(harness.url(path)).header("content-type", "application/json").body(body);
         let (status, problem) = read(post.send().await.unwrap()).await;
         assert!(status.is_client_error(), "{path}: {problem}");
+    }
+    assert_eq!(harness.get("/v1/ships?limit=1").await["items"].as_array().unwrap().len(), 1);
+    harness.server.stop().await;
+}
+
+/// A law as deep as may be, through values, and with so many terms.
+fn deep(terms: usize) -> String {
+    let values: String = (0..240).map(|n| format!(", a{}: a{n} + 0", n + 1)).collect();
+    let symbols: Vec<String> = (0..56_u8).map(|n| format!("F{}{}", char::from(b'A' + n / 8), char::from(b'a' + n % 8))).collect();
+    let factors: String = symbols.iter().enumerate().map(|(n, symbol)| format!(", {symbol}: '(1 + 0.01*{n})*u'")).collect();
+    let pairs = symbols.iter().enumerate().flat_map(|(n, a)| symbols[n..].iter().map(move |b| format!("X_{a}{b}")));
+    let terms: Vec<String> = pairs.take(terms).collect();
+    format!(
+        "kind: law\nname: deep\ntitle: deep\nsources: {{}}\nvalues: {{ a0: '1'{values} }}\nfactors: {{ u: u, v: v, r: r{factors} }}\n\
+         axes:\n  X: {{ terms: [{}], rest: 'a240*0.0*mass_kg*g' }}\n  Y: {{ terms: [Y_v, Y_r] }}\n  N: {{ terms: [N_v, N_r] }}\n\
+         mass: {{ X: {{ X: mass_kg }}, Y: {{ Y: mass_kg }}, N: {{ N: 0.06*mass_kg*lpp_m^2 }} }}\n",
+        terms.join(", ")
+    )
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn jobs_on_a_law_as_deep_as_may_be_end_and_the_server_goes_on() {
+    jobs_on_a_law_of(200).await;
+}
+
+/// `cargo test --workspace --lib as_large_as_may_be -- --ignored --nocapture`
+#[tokio::test(flavor = "multi_thread")]
+#[ignore = "nine minutes in a build for tests"]
+async fn jobs_on_a_law_as_large_as_may_be_end_and_the_server_goes_on() {
+    jobs_on_a_law_of(1490).await;
+}
+
+async fn jobs_on_a_law_of(terms: usize) {
+    let harness = Harness::on(TestDatabase::sqlite()).await;
+    harness.create_ship().await;
+    harness.upload_trials().await;
+    let post = harness.client.post(harness.url("/v1/laws")).header("content-type", "application/yaml").body(deep(terms));
+    let (status, said) = read(post.send().await.unwrap()).await;
+    assert_eq!(status, 201, "{said}");
+    for method in ["weak", "trajectory"] {
+        let asked = json!({ "ship": "demo-ship", "source": "auto", "law": "deep", "settings": { "method": method } });
+        let (status, job) = harness.post("/v1/refinements", &asked).await;
+        assert_eq!(status, 202, "{job}");
+        let job = harness.follow(job["id"].as_str().unwrap()).await;
+        assert!(["succeeded", "failed"].contains(&job["state"].as_str().unwrap()), "{method}: {job}");
     }
     assert_eq!(harness.get("/v1/ships?limit=1").await["items"].as_array().unwrap().len(), 1);
     harness.server.stop().await;

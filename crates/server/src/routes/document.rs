@@ -75,7 +75,7 @@ pub fn openapi() -> Value {
 }
 
 /// Statuses of problems that operations have in common.
-const PROBLEMS: [u16; 15] = [400, 401, 403, 404, 406, 409, 412, 413, 415, 422, 428, 429, 500, 503, 504];
+const PROBLEMS: [u16; 17] = [400, 401, 403, 404, 406, 408, 409, 412, 413, 415, 422, 428, 429, 500, 503, 504, 507];
 
 fn problem_name(status: u16) -> String {
     format!("Problem{status}")
@@ -114,9 +114,9 @@ fn add_problems(method: &str, path: &str, operation: &mut Operation) {
         400 | 401 | 403 | 429 | 504 => key,
         404 => has(ParameterIn::Path, ""),
         406 => forms > 1,
-        409 => change,
+        409 | 507 => change,
         412 | 428 => if_match,
-        413 | 415 => body,
+        408 | 413 | 415 => body,
         422 => body || change,
         _ => true,
     });

@@ -9,6 +9,7 @@ pub(super) fn tidy(document: &mut Value) {
             described(object);
             parameter(object);
             events(object);
+            yaml(object);
             if let Some(not) = object.remove("x-not") {
                 object.insert("not".to_owned(), not);
             }
@@ -53,6 +54,13 @@ fn parameter(object: &mut Map<String, Value>) {
     let real = of.and_then(|of| of.iter().find(|kind| kind["type"] != "null").cloned());
     if let Some(real) = real {
         object.insert("schema".to_owned(), real);
+    }
+}
+
+/// A schema is about what YAML says, not about its text; all documents here are maps.
+fn yaml(object: &mut Map<String, Value>) {
+    if let Some(media) = object.get_mut("application/yaml").and_then(Value::as_object_mut) {
+        media.insert("schema".to_owned(), json!({ "type": "object" }));
     }
 }
 

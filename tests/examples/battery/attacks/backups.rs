@@ -1,17 +1,17 @@
 //! `backups`: backups while writers write, restored into an empty place, and compared with the ledger at the time.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use serde_json::Value;
 use tokio::task::JoinSet;
 
 use crate::attack::{Attack, Failure, Field, Running};
 use crate::client::Client;
-use crate::ledger::Ledger;
+use crate::ledger::{Entry, Ledger};
 use crate::place::Place;
 use crate::tally::Tally;
-use crate::writes::Write;
+use crate::writes::{FOR_ONE_SHIP, Write};
 
 const WRITERS: u64 = 2;
 
@@ -61,11 +61,14 @@ async fn run(field: &Field) -> Result<(), Failure> {
 
 async fn write(shared: Arc<Shared>, client: Client, number: u64, mut rng: rand_chacha::ChaCha12Rng) -> Result<(), Failure> {
     let Shared { ledger, tally, stop } = shared.as_ref();
-    let ship = format!("backed-{number}");
-    let mut writes = vec![Write::trial(&ship, "the-first", number), Write::version(&ship, "the first")?, Write::ship(&ship)];
+    let (mut ship, mut writes) = (String::new(), Vec::new());
     for count in 0.. {
         if stop.load(Ordering::SeqCst) {
             break;
+        }
+        if count % FOR_ONE_SHIP == 0 {
+            ship = format!("backed-{number}-{}", count / FOR_ONE_SHIP);
+            writes = Write::first(&ship, number)?.into_iter().rev().collect();
         }
         let write = match writes.pop() {
             Some(write) => write,
@@ -82,10 +85,11 @@ async fn write(shared: Arc<Shared>, client: Client, number: u64, mut rng: rand_c
 async fn one(field: &Field, place: &Place, ledger: &Ledger, number: usize) -> Result<(), Failure> {
     let folder = place.folder().join(format!("backup-{number}"));
     let folder = folder.display().to_string();
-    let before: Vec<_> = ledger.entries().iter().filter(|entry| entry.acknowledged.is_some()).cloned().collect();
+    let before = ledger.entries().clone();
     field.tally.tried(1);
     let taken = place.command(&["backup", &folder]).await?;
-    let begun = ledger.entries().len();
+    let all = ledger.entries().clone();
+    let begun = all.len();
     if taken.status != Some(0) {
         field.tally.wrong(format!("a backup: status {:?}: {} {}", taken.status, taken.json, taken.errors));
         return Ok(());
@@ -99,7 +103,9 @@ async fn one(field: &Field, place: &Place, ledger: &Ledger, number: usize) -> Re
     other.check("of a restored store").await?;
     let server = other.serve().await?;
     let known = Ledger::default();
-    known.entries().extend(before);
+    // What was sent while it was taken may be in it or not.
+    let sent = all.into_iter().skip(before.len()).map(|entry| Entry { acknowledged: None, ..entry });
+    known.entries().extend(before.into_iter().chain(sent));
     known.check(&server.client, &field.tally).await;
     let later = ledger.entries()[begun..].to_vec();
     none_of_later(field, &server.client, &later).await;
@@ -109,11 +115,12 @@ async fn one(field: &Field, place: &Place, ledger: &Ledger, number: usize) -> Re
 }
 
 /// What was begun after the end of the backup is not in it.
-async fn none_of_later(field: &Field, client: &Client, later: &[crate::ledger::Entry]) {
-    for number in 0..WRITERS {
-        let trials = client.items(&format!("/v1/trials?ship=backed-{number}")).await.unwrap_or_default();
-        let there = |mark: &str| trials.iter().any(|trial: &Value| trial["name"] == mark);
-        for entry in later.iter().filter(|entry| there(&entry.write.mark)) {
+async fn none_of_later(field: &Field, client: &Client, later: &[Entry]) {
+    let ships: BTreeSet<&str> = later.iter().map(|entry| entry.write.ship.as_str()).collect();
+    for ship in ships {
+        let trials = client.items(&format!("/v1/trials?ship={ship}")).await.unwrap_or_default();
+        let there = |entry: &&Entry| entry.write.ship == ship && trials.iter().any(|trial| trial["name"] == entry.write.mark);
+        for entry in later.iter().filter(there) {
             field.tally.wrong(format!("{} was begun after the backup, and is in it", entry.write.mark));
         }
     }

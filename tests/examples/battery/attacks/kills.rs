@@ -18,7 +18,7 @@ use crate::ledger::Ledger;
 use crate::place::Place;
 use crate::process::Server;
 use crate::tally::Tally;
-use crate::writes::Write;
+use crate::writes::{FOR_ONE_SHIP, Write};
 
 const WRITERS: u64 = 4;
 /// Kills, however little time there is.
@@ -91,7 +91,7 @@ async fn serve(field: &Field, place: &Place, control: &Control) -> Result<Server
     }
 }
 
-/// One writer, on a ship of its own.
+/// One writer, on ships of its own.
 async fn write(
     shared: Arc<Shared>,
     mut server: watch::Receiver<Client>,
@@ -99,14 +99,17 @@ async fn write(
     mut rng: ChaCha12Rng,
 ) -> Result<(), Failure> {
     let Shared { ledger, tally, stop } = shared.as_ref();
-    let ship = format!("writer-{number}");
-    let first = [Write::ship(&ship), Write::version(&ship, "the first")?, Write::trial(&ship, "the-first", number)];
-    for write in &first {
-        until_known(ledger, ledger.begin(write), &mut server, tally).await;
-    }
-    let mut count = 0;
-    while !stop.load(Ordering::SeqCst) {
-        count += 1;
+    let mut ship = String::new();
+    for count in 0.. {
+        if stop.load(Ordering::SeqCst) {
+            break;
+        }
+        if count % FOR_ONE_SHIP == 0 {
+            ship = format!("writer-{number}-{}", count / FOR_ONE_SHIP);
+            for write in &Write::first(&ship, number)? {
+                until_known(ledger, ledger.begin(write), &mut server, tally).await;
+            }
+        }
         let client = server.borrow_and_update().clone();
         let write = Write::any(&client, &ship, count, &mut rng).await?;
         let place = ledger.begin(&write);
@@ -135,7 +138,7 @@ async fn until_known(ledger: &Ledger, place: usize, server: &mut watch::Receiver
 /// A last kill in the middle of an upload: the next start, or the one after it, removes what was received.
 async fn leftovers(place: &Place, server: Server) -> Result<(), Failure> {
     let mut stream = tokio::net::TcpStream::connect(server.client.address).await?;
-    let head = "POST /v1/trials?ship=writer-0&name=cut.csv HTTP/1.1\r\nhost: localhost\r\ncontent-type: text/csv\r\n\
+    let head = "POST /v1/trials?ship=writer-0-0&name=cut.csv HTTP/1.1\r\nhost: localhost\r\ncontent-type: text/csv\r\n\
         content-length: 10000000\r\n\r\nt_s,u_m_s\n";
     stream.write_all(head.as_bytes()).await?;
     stream.write_all("0.0,1.0\n".repeat(1000).as_bytes()).await?;
