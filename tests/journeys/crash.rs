@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
+use sistership_store::testing::TestDatabase;
 use sistership_tests::server::TestServer;
+use sistership_tests::worker::TestWorker;
 
 use super::over_http::{create, refine, upload, verified};
 use super::sea_trials::NAME;
@@ -40,5 +42,55 @@ async fn killed_on_sqlite() {
 async fn killed_on_postgres() {
     if let Some(server) = TestServer::postgres().await {
         killed(server).await;
+    }
+}
+
+/// Waits until a job has been begun this often and runs.
+async fn running(server: &TestServer, job: &str, attempt: i64) {
+    for _ in 0..30_000 {
+        let state = server.get(&format!("/v1/jobs/{job}")).await;
+        if state["state"] == "running" && state["attempt"] == attempt {
+            return;
+        }
+        assert!(state["state"] == "queued" || state["attempt"] != attempt, "{state}");
+        tokio::time::sleep(Duration::from_millis(2)).await;
+    }
+    panic!("job {job} is not begun {attempt} times");
+}
+
+/// A job during which its worker's process ends twice is set aside, other jobs go on, and a person may have it done again.
+async fn set_aside(database: TestDatabase) {
+    let server = TestServer::on(database, &["--no-worker"]).await;
+    create(&server).await;
+    upload(&server).await;
+    let poison = refine(&server, "poison").await;
+    for attempt in 1..=2 {
+        let mut worker = TestWorker::start(&server, "1");
+        running(&server, &poison, attempt).await;
+        worker.kill();
+    }
+    let healthy = refine(&server, "healthy").await;
+    let _worker = TestWorker::start(&server, "1");
+    let failed = server.finished(&poison).await;
+    assert_eq!((&failed["state"], &failed["attempt"]), (&"failed".into(), &2.into()), "{failed}");
+    let error = failed["error"].as_str().unwrap_or_default();
+    assert!(error.contains("ended its process twice") && error.contains("set aside"), "{error}");
+    let done = server.finished(&healthy).await;
+    assert_eq!(done["state"], "succeeded", "{done}");
+    let again = server.send(reqwest::Method::POST, &format!("/v1/jobs/{poison}/retry"), &serde_json::Value::Null, &[]).await;
+    assert_eq!(again.0, 200, "{}", again.1);
+    let done = server.finished(&poison).await;
+    assert_eq!(done["state"], "succeeded", "{done}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_job_that_ends_its_process_twice_on_sqlite() {
+    set_aside(TestDatabase::sqlite()).await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_job_that_ends_its_process_twice_on_postgres() {
+    if let Some(database) = TestDatabase::postgres().await {
+        set_aside(database).await;
     }
 }

@@ -44,7 +44,7 @@ impl Fleet {
         self.workers.push(TestWorker::start(&self.server, LEASE_S));
     }
 
-    /// Kills a worker that holds a job which has not lost one yet (three losses would be the job's own fault).
+    /// Kills a worker that holds a job which has not lost one yet (two losses would be the job's own fault).
     async fn kill_one(&mut self) {
         loop {
             assert!(self.begun.elapsed() < PATIENCE, "no job is running that could lose its worker");

@@ -3,6 +3,7 @@
 pub mod binary;
 pub mod esso_osaka;
 pub mod fleet;
+pub mod fuzzed;
 pub mod server;
 pub mod shape;
 pub mod shared;

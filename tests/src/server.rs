@@ -112,6 +112,21 @@ impl TestServer {
         self.until_ready().await;
     }
 
+    /// Its URL, without a slash at the end.
+    pub fn url(&self) -> &str {
+        &self.url
+    }
+
+    /// The most memory that the process has had resident, and what it has now, MB.
+    pub fn memory_mb(&self) -> (u64, u64) {
+        memory_mb(self.process.id())
+    }
+
+    /// Its address and port.
+    pub fn address(&self) -> String {
+        self.url.trim_start_matches("http://").to_owned()
+    }
+
     /// Its database.
     pub fn database(&self) -> &TestDatabase {
         &self.database
@@ -176,6 +191,16 @@ impl Drop for TestServer {
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
+}
+
+/// The most memory that a process has had resident, and what it has now, MB, as Linux counts it; nothing where it has ended.
+pub fn memory_mb(process: u32) -> (u64, u64) {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
+    let of = |name: &str| {
+        let line = status.lines().find_map(|line| line.strip_prefix(name)).unwrap_or_default();
+        line.split_whitespace().next().and_then(|kib| kib.parse::<u64>().ok()).unwrap_or_default() / 1024
+    };
+    (of("VmHWM:"), of("VmRSS:"))
 }
 
 /// The status and the JSON of an answer; null for an answer without a body.

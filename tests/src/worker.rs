@@ -45,6 +45,16 @@ impl TestWorker {
         self.0.id()
     }
 
+    /// Tells it to stop, and waits until it has.
+    ///
+    /// # Panics
+    /// Where it cannot be told.
+    pub fn terminate(&mut self) -> std::process::ExitStatus {
+        let told = Command::new("kill").args(["-TERM", &self.id().to_string()]).status();
+        assert!(told.expect("a signal is sent").success());
+        self.0.wait().expect("the worker ends")
+    }
+
     /// Kills it without warning, as `kill -9` does.
     ///
     /// # Panics

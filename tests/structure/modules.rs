@@ -67,12 +67,13 @@ fn begin<'a>(sources: &BTreeMap<Module, Source>, module: &Module, path: &'a [Str
 }
 
 /// The source files of a crate, tests left out, with what stands in them before their own tests.
-pub fn texts(root: &Path) -> impl Iterator<Item = (PathBuf, String)> {
-    files(root).into_iter().map(|(_, path)| {
+pub fn texts(root: &Path) -> Vec<(PathBuf, String)> {
+    let product = |(_, path): (Module, PathBuf)| {
         let text = text(&path);
         let end = text.find("#[cfg(test)]\nmod tests {").unwrap_or(text.len());
         (path, text[..end].to_owned())
-    })
+    };
+    files(root).into_iter().map(product).collect()
 }
 
 fn read(root: &Path) -> BTreeMap<Module, Source> {

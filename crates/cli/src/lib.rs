@@ -3,6 +3,7 @@
 //! Exit status: 0 done, 1 the data or the model says no (with the reason), 2 the call is wrong. With `--json` one JSON
 //! document goes to standard output and nothing else; progress, warnings and errors go to standard error.
 
+mod allocator;
 mod arguments;
 mod close;
 mod commands;
@@ -28,6 +29,7 @@ use crate::failure::Failure;
 
 /// Runs what the process' arguments ask for.
 pub fn run() -> ExitCode {
+    allocator::give_back();
     let arguments = Arguments::parse();
     match dispatch(&arguments) {
         Ok(()) => ExitCode::SUCCESS,

@@ -119,7 +119,7 @@ enum Kind {
 }
 
 fn kind_of(text: &str) -> Kind {
-    match serde_yaml::from_str::<serde_yaml::Value>(text) {
+    match sistership_model::yaml::read::<serde_yaml::Value>(text) {
         Err(_) => Kind::Broken,
         Ok(document) => {
             document.get("kind").and_then(|kind| kind.as_str()).map_or(Kind::None, |kind| Kind::Named(kind.to_owned()))

@@ -2,6 +2,7 @@
 //! judged by what it moves alone: its own columns pass the same filter, the coefficients' are there already.
 
 use std::ops::AddAssign;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -25,15 +26,14 @@ pub(super) struct Base<'a> {
 pub(super) struct AtLevel {
     pub level: Level,
     discrepancies: Discrepancies,
-    trials: Vec<Filtered>,
+    /// Products of all columns, by trial.
+    grams: Vec<Gram>,
+    /// Made when a hypothesis is first judged at this level: they are many times as large as the trials.
+    coefficients: Mutex<Option<Coefficients>>,
 }
 
-/// One trial through the filter.
-struct Filtered {
-    /// Whitened columns of the coefficients, by part: columns by readings.
-    coefficients: Vec<DMatrix<f64>>,
-    gram: Gram,
-}
+/// Whitened columns of the coefficients, by trial and part: columns by readings.
+type Coefficients = Arc<Vec<Vec<DMatrix<f64>>>>;
 
 impl AtLevel {
     pub fn discrepancies(&self) -> &Discrepancies {
@@ -45,22 +45,43 @@ impl<'a> Base<'a> {
     pub fn new(taken: &[Candidate], workspace: Workspace<'a>, levels: Vec<(Level, Discrepancies)>) -> Self {
         let coefficients = workspace.columns().nuisance.len();
         let at = |(level, discrepancies): (Level, Discrepancies)| {
-            let one = |parts: &Vec<Linearised>| Filtered::new(&workspace, parts, &discrepancies, coefficients);
-            let trials = workspace.linear().par_iter().map(one).collect();
-            AtLevel { level, discrepancies, trials }
+            let one = |parts: &Vec<Linearised>| gram(&workspace, parts, &discrepancies);
+            let grams = workspace.linear().par_iter().map(one).collect();
+            AtLevel { level, discrepancies, grams, coefficients: Mutex::default() }
         };
         Self { taken: taken.to_vec(), levels: levels.into_iter().map(at).collect(), coefficients, workspace }
     }
 
     /// Products of all columns over all trials, at one of the levels.
     pub fn total(&self, level: usize) -> Gram {
-        Gram::sum(self.levels[level].trials.iter().map(|trial| &trial.gram), 1 + self.workspace.columns().len())
+        Gram::sum(self.levels[level].grams.iter(), 1 + self.workspace.columns().len())
     }
 
     /// Products of coefficients alone, trial by trial.
     pub fn alone(&self, level: usize) -> Vec<Gram> {
         let columns: Vec<usize> = (0..self.coefficients).collect();
-        self.levels[level].trials.iter().map(|trial| trial.gram.select(&columns)).collect()
+        self.levels[level].grams.iter().map(|gram| gram.select(&columns)).collect()
+    }
+
+    /// The whitened columns of the coefficients at a level. Those of levels that are not its neighbours are let go: hypotheses are
+    /// judged at a level and the one below.
+    fn coefficients(&self, level: usize) -> Coefficients {
+        for (_, far) in self.levels.iter().enumerate().filter(|(other, _)| other.abs_diff(level) > 1) {
+            *far.coefficients.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        }
+        let at = &self.levels[level];
+        let mut kept = at.coefficients.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(coefficients) = &*kept {
+            return Arc::clone(coefficients);
+        }
+        let of_part = |part: &Linearised| {
+            let rows = rows(&self.workspace, part, &at.discrepancies).0;
+            rows.rows(1, self.coefficients).into_owned()
+        };
+        let one = |parts: &Vec<Linearised>| parts.iter().map(of_part).collect();
+        let fresh: Coefficients = Arc::new(self.workspace.linear().par_iter().map(one).collect());
+        *kept = Some(Arc::clone(&fresh));
+        fresh
     }
 
     /// Readings and columns of a hypothesis where it stands, to be filtered at any level.
@@ -81,18 +102,21 @@ impl<'a> Base<'a> {
     }
 }
 
-impl Filtered {
-    fn new(workspace: &Workspace<'_>, parts: &[Linearised], discrepancies: &Discrepancies, coefficients: usize) -> Self {
-        let mut filtered = Self { coefficients: Vec::new(), gram: Gram::empty(1 + workspace.columns().len()) };
-        for part in parts {
-            let (rows, log_variance) = whitened(part, &workspace.noise, discrepancies);
-            let width = 1 + part.sizes.columns;
-            let rows = DMatrix::from_vec(width, rows.len() / width, rows);
-            filtered.coefficients.push(rows.rows(1, coefficients).into_owned());
-            filtered.gram.add(&Gram::of_columns(&rows, log_variance));
-        }
-        filtered
+/// Products of all columns over a trial.
+fn gram(workspace: &Workspace<'_>, parts: &[Linearised], discrepancies: &Discrepancies) -> Gram {
+    let mut gram = Gram::empty(1 + workspace.columns().len());
+    for part in parts {
+        let (rows, log_variance) = rows(workspace, part, discrepancies);
+        gram.add(&Gram::of_columns(&rows, log_variance));
     }
+    gram
+}
+
+/// A part through the filter: residual and columns by readings.
+fn rows(workspace: &Workspace<'_>, part: &Linearised, discrepancies: &Discrepancies) -> (DMatrix<f64>, f64) {
+    let (rows, log_variance) = whitened(part, &workspace.noise, discrepancies);
+    let width = 1 + part.sizes.columns;
+    (DMatrix::from_vec(width, rows.len() / width, rows), log_variance)
 }
 
 /// A hypothesis where it stands.
@@ -104,23 +128,23 @@ pub(super) struct Stand<'b, 'a> {
 impl Stand<'_, '_> {
     /// The products of each trial: residual, coefficients, parameters of the hypothesis.
     pub fn grams(&self, level: usize) -> Vec<Gram> {
-        let at = &self.base.levels[level];
-        let trials: Vec<_> = self.linear.iter().zip(&at.trials).collect();
-        trials.into_par_iter().map(|(parts, filtered)| self.gram(parts, filtered, &at.discrepancies)).collect()
+        let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level));
+        let trials: Vec<_> = self.linear.iter().zip(coefficients.iter().zip(&at.grams)).collect();
+        trials.into_par_iter().map(|(parts, known)| self.gram(parts, known, &at.discrepancies)).collect()
     }
 
     /// The products of each trial in pieces of equal duration.
     pub fn pieces(&self, level: usize, count: usize) -> Vec<Gram> {
-        let at = &self.base.levels[level];
-        let trials: Vec<_> = self.linear.iter().zip(&at.trials).collect();
-        let of = |(parts, filtered): (&Vec<Linearised>, &Filtered)| self.in_pieces(parts, filtered, &at.discrepancies, count);
+        let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level));
+        let trials: Vec<_> = self.linear.iter().zip(coefficients.iter()).collect();
+        let of = |(parts, known): (&Vec<Linearised>, &Vec<DMatrix<f64>>)| self.in_pieces(parts, known, &at.discrepancies, count);
         trials.into_par_iter().flat_map_iter(of).collect()
     }
 
-    fn in_pieces(&self, parts: &[Linearised], filtered: &Filtered, discrepancies: &Discrepancies, count: usize) -> Vec<Gram> {
+    fn in_pieces(&self, parts: &[Linearised], known: &[DMatrix<f64>], discrepancies: &Discrepancies, count: usize) -> Vec<Gram> {
         let width = self.base.coefficients + self.width();
         let mut pieces = vec![Gram::empty(width); count];
-        for (part, coefficients) in parts.iter().zip(&filtered.coefficients) {
+        for (part, coefficients) in parts.iter().zip(known) {
             let own = self.rows(part, discrepancies).0;
             let readings = own.nrows();
             for (piece, gram) in pieces.iter_mut().enumerate() {
@@ -134,11 +158,11 @@ impl Stand<'_, '_> {
         pieces
     }
 
-    fn gram(&self, parts: &[Linearised], filtered: &Filtered, discrepancies: &Discrepancies) -> Gram {
+    fn gram(&self, parts: &[Linearised], (known, all): (&Vec<DMatrix<f64>>, &Gram), discrepancies: &Discrepancies) -> Gram {
         let c = self.base.coefficients;
         let mut gram = Gram::empty(c + self.width());
-        gram.products.view_mut((1, 1), (c, c)).copy_from(&filtered.gram.products.view((1, 1), (c, c)));
-        for (part, coefficients) in parts.iter().zip(&filtered.coefficients) {
+        gram.products.view_mut((1, 1), (c, c)).copy_from(&all.products.view((1, 1), (c, c)));
+        for (part, coefficients) in parts.iter().zip(known) {
             let (rows, log_variance) = self.rows(part, discrepancies);
             add(&mut gram, &(coefficients * &rows), &rows.tr_mul(&rows));
             gram.log_variance += log_variance;

@@ -43,7 +43,7 @@ impl Learned {
                         let term = Expr::Name(name.clone()).times(Expr::Number(*shift));
                         axis.rest = Expr::Add(Box::new(axis.rest.clone()), Box::new(term));
                     }
-                    law.values.insert(name, expr);
+                    law.add_value(name, expr);
                 }
                 NuisanceKind::Mass(..) => {}
             }

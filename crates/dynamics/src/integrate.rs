@@ -6,8 +6,9 @@ use crate::state::{StateVector, States};
 use crate::tape::Lanes;
 
 /// An integration method.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[schemars(rename = "IntegrationMethod")]
 pub enum Method {
     /// The classical Runge-Kutta method of fourth order.
     #[default]

@@ -16,10 +16,11 @@ use sistership_model::law::Law;
 const TOGETHER: usize = 10;
 
 /// How a posterior is sampled.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Sampling {
     /// Models drawn, an even number: each draw has its mirror image about the estimate.
+    #[schemars(range(max = 10_000))]
     pub samples: usize,
     /// What the draws follow from.
     pub seed: u64,

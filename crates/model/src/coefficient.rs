@@ -72,6 +72,12 @@ pub struct CoefficientName {
     pub submodel: Option<String>,
 }
 
+/// Most bytes of a name.
+pub const MAX_NAME: usize = 512;
+
+/// Most factors of one name.
+pub const MAX_FACTORS: usize = 16;
+
 /// A name's shared part and its submodel: `X_uu@astern` is `X_uu` and `astern`.
 pub fn split_submodel(name: &str) -> (&str, Option<&str>) {
     name.split_once('@').map_or((name, None), |(shared, submodel)| (shared, Some(submodel)))
@@ -84,6 +90,10 @@ impl CoefficientName {
     /// Says what is wrong and, where it can tell, how the name is spelled here.
     pub fn parse(name: &str, extra: &[&str]) -> Result<Self, String> {
         let help = "a coefficient is written Axis_factors, such as X_uu, Y_vvr, N_v|v| or Y_0";
+        if name.len() > MAX_NAME {
+            let head = crate::formula::head(name);
+            return Err(format!("`{head}...`: a name of {} characters; {MAX_NAME} are the most", name.len()));
+        }
         let (shared, submodel) = split_submodel(name);
         let (axis, rest) = shared.split_once('_').ok_or_else(|| format!("`{name}`: {help}"))?;
         let axis = Axis::ALL.into_iter().find(|a| a.to_string() == axis);
@@ -126,6 +136,9 @@ fn split(mut rest: &str, extra: &[&str]) -> Result<Vec<Factor>, String> {
             rest = rest.strip_prefix('|').ok_or_else(|| format!("`|{symbol}` lacks its closing bar"))?;
         }
         factors.push(Factor { rank, absolute, symbol: symbol.to_owned() });
+        if factors.len() > MAX_FACTORS {
+            return Err(format!("it has more than {MAX_FACTORS} factors"));
+        }
     }
     if factors.is_empty() { Err("it has no factors".into()) } else { Ok(factors) }
 }

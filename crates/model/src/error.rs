@@ -25,6 +25,13 @@ impl fmt::Display for FileError {
     }
 }
 
+impl FileError {
+    /// What is wrong with a file as YAML.
+    pub fn of_yaml(file: &str, error: crate::yaml::YamlError) -> Self {
+        Self { file: file.to_owned(), line: error.line, field: String::new(), message: error.message }
+    }
+}
+
 /// Turns messages about fields into errors that know file and line.
 pub(crate) struct Blame<'a> {
     file: &'a str,
@@ -38,12 +45,7 @@ impl<'a> Blame<'a> {
 
     /// Deserialises the text; the parser's own line and column survive.
     pub(crate) fn read<T: serde::de::DeserializeOwned>(&self) -> Result<T, FileError> {
-        serde_yaml::from_str(self.text).map_err(|error| FileError {
-            file: self.file.to_owned(),
-            line: error.location().map(|location| location.line()),
-            field: String::new(),
-            message: error.to_string(),
-        })
+        crate::yaml::read(self.text).map_err(|error| FileError::of_yaml(self.file, error))
     }
 
     /// An error at a dotted field; the line is that of the path's keys, each looked for below the one before.

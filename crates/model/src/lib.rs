@@ -21,6 +21,7 @@ pub mod units;
 pub mod validity;
 pub mod version;
 pub mod vessel;
+pub mod yaml;
 pub mod zoo;
 
 pub use effect::Effect;

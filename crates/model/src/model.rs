@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::effect::AppliedEffect;
 use crate::error::{Blame, FileError};
-use crate::law::Law;
+use crate::law::limits::most;
+use crate::law::{Law, MAX_COEFFICIENTS};
 use crate::manifest::RudderSign;
 use crate::particulars::{self, Particulars};
 use crate::posterior::Posterior;
@@ -177,6 +178,7 @@ impl Model {
     /// # Errors
     /// The field at fault and what is wrong with it.
     pub fn check(&self, law: &Law) -> Result<(), (String, String)> {
+        most("coefficients", self.coefficients.len(), MAX_COEFFICIENTS)?;
         for name in self.coefficients.keys() {
             law.regressor(name).map_err(|e| (format!("coefficients.values.{name}"), e))?;
         }
@@ -220,8 +222,9 @@ impl Model {
 
     /// Turns coefficients that count positive rudder to port into canonical ones.
     fn flip_rudder(&mut self, law: &Law) {
+        let odd = law.odd_in_rudder().collect();
         for (name, quantity) in &mut self.coefficients {
-            if law.is_odd_in_rudder(name) {
+            if law.is_odd_in(name, &odd) {
                 quantity.value = -quantity.value;
             }
         }

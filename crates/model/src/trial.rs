@@ -153,8 +153,8 @@ impl Trial {
     /// The median time between samples, s.
     pub fn interval_s(&self) -> f64 {
         let mut steps: Vec<f64> = self.t_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        steps.sort_by(f64::total_cmp);
-        steps.get(steps.len() / 2).copied().unwrap_or(0.0)
+        let middle = steps.len() / 2;
+        if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 }
     }
 
     /// Ranges of samples without a gap: a step longer than 1.5 of the median starts a new one.

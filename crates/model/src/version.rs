@@ -30,6 +30,9 @@ pub enum Recipe {
         /// Where the source is of another law.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         across: Option<AcrossLaws>,
+        /// The library of effects that its calibration was learned with; absent in recipes of releases that had one only.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        effects_sha256: Option<String>,
         /// The trials, in the order in which they were given.
         trials: Vec<RecipeTrial>,
         /// Every setting.

@@ -19,10 +19,12 @@ pub struct VesselFile {
     /// Always `vessel`.
     pub kind: VesselKind,
     /// Name in the zoo: lower case, digits, hyphens.
+    #[schemars(length(min = 1, max = 64), regex(pattern = "^[a-z0-9][a-z0-9-]*$"))]
     pub name: String,
     /// One line for people.
     pub title: String,
     /// Ships are compared within a category: `tanker`, `dry-cargo`, `car-carrier`, ...
+    #[schemars(length(min = 1, max = 64), regex(pattern = "^[a-z0-9][a-z0-9-]*$"))]
     pub category: String,
     /// A finer word for people.
     #[serde(default, rename = "type", skip_serializing_if = "Option::is_none")]

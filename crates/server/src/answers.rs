@@ -6,7 +6,7 @@ use quick_cache::Weighter;
 use quick_cache::sync::Cache;
 
 /// What the answers may take, bytes.
-const MOST: u64 = 64 << 20;
+const MOST: u64 = 16 << 20;
 /// About as many answers as that is.
 const COUNT: usize = 4096;
 

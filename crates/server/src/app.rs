@@ -1,71 +1,94 @@
 //! What every handler and worker shares.
 
-use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use sistership_model::{Law, Vessel, Zoo};
 use sistership_store::{Objects, Store};
-use tokio::sync::{Notify, Semaphore};
+use tokio::sync::{Notify, RwLock, Semaphore};
 
 use crate::answers::Answers;
 use crate::archive::Archive;
 use crate::catalogue::{Catalogue, KnownLaw};
 use crate::config::{Config, Leases, Limits};
+use crate::memory::{self, Budget, Held};
 use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
 use crate::stopping::Stopping;
+use crate::upload::Spool;
 use crate::web::guard::ApiKey;
+use crate::web::throttle::Throttle;
 
 /// The shared state of a server. A clone is another handle on the same one.
 #[derive(Clone)]
-pub(crate) struct App(Arc<Inner>);
+pub(crate) struct App(Arc<Inner>, Arc<Archive>);
 
 struct Inner {
-    archive: Archive,
     catalogue: Catalogue,
     key: Option<ApiKey>,
+    throttle: Throttle,
     limits: Limits,
     leases: Leases,
-    spool: PathBuf,
+    spool: Spool,
+    no_room: AtomicBool,
     seats: Arc<Semaphore>,
     wake: Notify,
+    turns: Arc<RwLock<()>>,
     metrics: Metrics,
     answers: Answers,
     stopping: Stopping,
+    requests: Budget,
+    jobs: Budget,
 }
 
 impl App {
     pub(crate) fn new(config: &Config, archive: Archive, catalogue: Catalogue, stopping: Stopping) -> Self {
         let seats = std::thread::available_parallelism().map_or(2, std::num::NonZero::get);
-        Self(Arc::new(Inner {
-            archive,
+        let inner = Inner {
             catalogue,
             key: config.api_key.as_deref().map(ApiKey::new),
+            throttle: Throttle::default(),
             limits: config.limits,
             leases: config.leases,
-            spool: spool(config),
+            spool: Spool::below(config.data_dir.join("uploads")),
+            no_room: AtomicBool::new(false),
             seats: Arc::new(Semaphore::new(seats)),
             wake: Notify::new(),
+            turns: Arc::default(),
             metrics: Metrics::default(),
             answers: Answers::default(),
             stopping,
-        }))
+            requests: Budget::new(config.limits.request_memory, "--request-memory-mb"),
+            jobs: Budget::new(config.limits.job_memory, "--job-memory-mb"),
+        };
+        Self(Arc::new(inner), Arc::new(archive))
+    }
+
+    /// The same whose store is another handle: that of a unit of work.
+    pub(crate) fn within(&self, store: &Store) -> Self {
+        let archive = Archive { store: store.clone(), objects: self.objects().clone() };
+        Self(Arc::clone(&self.0), Arc::new(archive))
     }
 
     pub(crate) fn archive(&self) -> &Archive {
-        &self.0.archive
+        &self.1
     }
 
     pub(crate) fn store(&self) -> &Store {
-        &self.0.archive.store
+        &self.1.store
     }
 
     pub(crate) fn objects(&self) -> &Objects {
-        &self.0.archive.objects
+        &self.1.objects
     }
 
     pub(crate) fn key(&self) -> Option<&ApiKey> {
         self.0.key.as_ref()
+    }
+
+    /// Who has presented wrong keys.
+    pub(crate) fn throttle(&self) -> &Throttle {
+        &self.0.throttle
     }
 
     pub(crate) fn limits(&self) -> &Limits {
@@ -77,13 +100,29 @@ impl App {
     }
 
     /// Where uploads lie until they have been read.
-    pub(crate) fn spool(&self) -> &PathBuf {
+    pub(crate) fn spool(&self) -> &Spool {
         &self.0.spool
+    }
+
+    /// Whether there was no room to write when somebody last tried.
+    pub(crate) fn no_room(&self) -> &AtomicBool {
+        &self.0.no_room
+    }
+
+    /// What a worker holds while it has a job: for itself alone where a process has ended during the job before.
+    pub(crate) fn turns(&self) -> &Arc<RwLock<()>> {
+        &self.0.turns
     }
 
     /// Wakes this process' workers.
     pub(crate) fn wake(&self) -> &Notify {
         &self.0.wake
+    }
+
+    /// Wakes all of them, also one that is about to rest.
+    pub(crate) fn wake_all(&self) {
+        self.wake().notify_waiters();
+        self.wake().notify_one();
     }
 
     pub(crate) fn metrics(&self) -> &Metrics {
@@ -98,6 +137,16 @@ impl App {
     /// The word that the server shall stop.
     pub(crate) fn stopping(&self) -> Stopping {
         self.0.stopping.clone()
+    }
+
+    /// Memory for a request.
+    pub(crate) fn held(&self) -> Held {
+        Held::new(self.0.requests.clone(), self.0.limits.memory_wait)
+    }
+
+    /// Memory of jobs.
+    pub(crate) fn job_memory(&self) -> &Budget {
+        &self.0.jobs
     }
 
     /// The laws of the database, and no ships.
@@ -125,15 +174,10 @@ impl App {
     /// Runs numerics away from the threads that serve; as many at a time as there are cores.
     pub(crate) async fn compute<T: Send + 'static>(&self, work: impl FnOnce() -> T + Send + 'static) -> Result<T> {
         let seat = Arc::clone(&self.0.seats).acquire_owned().await.map_err(Problem::internal)?;
-        let task = tokio::task::spawn_blocking(move || {
+        let task = tokio::task::spawn_blocking(memory::carried(move || {
             let _seat = seat;
             work()
-        });
+        }));
         task.await.map_err(Problem::internal)
     }
-}
-
-/// The folder of uploads under way.
-pub(crate) fn spool(config: &Config) -> PathBuf {
-    config.data_dir.join("uploads")
 }

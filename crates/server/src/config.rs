@@ -12,6 +12,9 @@ use crate::start_error::StartError;
 /// Where the server listens when nobody says otherwise.
 pub const DEFAULT_LISTEN: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(std::net::Ipv4Addr::LOCALHOST), 8080);
 
+/// What closing the store may take.
+const CLOSING: Duration = Duration::from_secs(5);
+
 /// What a server is told before it starts.
 #[derive(Clone)]
 pub struct Config {
@@ -48,14 +51,31 @@ pub struct Limits {
     pub request_time: Duration,
     /// The same for uploads and for deriving a version again.
     pub long_request_time: Duration,
-    /// Connections at a time; further ones wait.
+    /// Connections at a time; where they are all at work, further ones are refused.
     pub connections: usize,
+    /// Connections of one address at a time (of IPv6: of a network of 64 bits).
+    pub connections_per_address: usize,
+    /// Bytes a second, on average, that a request's body must bring and a reader of an answer must take. Long below any
+    /// link in use: a satellite terminal for ships has 2400 bit/s and more.
+    pub least_rate: usize,
+    /// Without a byte of a body until it is given up; what comes faster than it must earns more, up to a minute.
+    pub body_grace: Duration,
+    /// The same for answers. Longer, as the system tells of reading by tens of kilobytes.
+    pub answer_grace: Duration,
     /// Samples of a predicted track.
     pub prediction_samples: usize,
     /// Trials of one refinement.
     pub refinement_trials: usize,
     /// How long a server that is told to stop waits for what is under way.
     pub stop_time: Duration,
+    /// A YAML document, bytes: its tree is near a hundred times as large, see `web::payload`.
+    pub yaml_bytes: usize,
+    /// Memory that requests take together, bytes.
+    pub request_memory: u64,
+    /// Memory that jobs take together, bytes.
+    pub job_memory: u64,
+    /// How long a request waits for memory that others have.
+    pub memory_wait: Duration,
 }
 
 /// How workers hold their jobs.
@@ -96,8 +116,15 @@ impl Config {
             None if !self.listen.ip().is_loopback() => Err(StartError::OpenWithoutKey(self.listen)),
             Some(key) if key.is_empty() || !key.bytes().all(|byte| byte.is_ascii_graphic()) => Err(StartError::Key),
             _ if self.leases.beat >= self.leases.lease => Err(StartError::Leases),
+            _ if !(1..=self.limits.connections).contains(&self.limits.connections_per_address) => Err(StartError::Connections),
             _ => Ok(()),
         }
+    }
+
+    /// The time within which a process that is told to stop has ended, whatever it does: what jobs have, what they and
+    /// requests have to break off, and some to close the store.
+    pub fn stop_bound(&self) -> Duration {
+        self.leases.drain + self.limits.stop_time + CLOSING
     }
 }
 
@@ -128,10 +155,18 @@ impl Default for Limits {
             header_time: Duration::from_secs(10),
             request_time: Duration::from_secs(60),
             long_request_time: Duration::from_secs(600),
-            connections: 512,
+            connections: 1024,
+            connections_per_address: 512,
+            least_rate: 256,
+            body_grace: Duration::from_secs(10),
+            answer_grace: Duration::from_secs(60),
             prediction_samples: 200_000,
             refinement_trials: 1000,
             stop_time: Duration::from_secs(10),
+            yaml_bytes: 1 << 20,
+            request_memory: 256 << 20,
+            job_memory: 1 << 30,
+            memory_wait: Duration::from_secs(5),
         }
     }
 }

@@ -1,6 +1,8 @@
 //! What a process of Sistership consists of, whether it answers requests or only works: the shared state, its workers, and
 //! the word that stops them.
 
+use std::time::Duration;
+
 use tokio::sync::watch;
 use tokio::task::JoinSet;
 
@@ -13,6 +15,7 @@ use crate::search;
 use crate::seed;
 use crate::start_error::StartError;
 use crate::stopping::Stopping;
+use crate::tidy;
 
 /// A process that runs until it is [stopped](Self::stop) or dropped.
 #[derive(Debug)]
@@ -20,6 +23,7 @@ pub(crate) struct Process {
     pub archive: Archive,
     pub tasks: JoinSet<()>,
     stop: watch::Sender<bool>,
+    bound: Duration,
 }
 
 impl Process {
@@ -30,20 +34,27 @@ impl Process {
         seed::seed(&archive.store, &catalogue).await?;
         let (stop, stopping) = Stopping::new();
         let app = App::new(config, archive.clone(), catalogue, stopping);
+        tidy::once(&app).await;
         let mut tasks = JoinSet::new();
+        tasks.spawn(tidy::keep(app.clone()));
         if indexes {
             tasks.spawn(search::keep(app.clone()));
         }
         for _ in 0..config.workers {
             tasks.spawn(Worker::new(app.clone()).run());
         }
-        Ok((Self { archive, tasks, stop }, app))
+        Ok((Self { archive, tasks, stop, bound: config.stop_bound() }, app))
     }
 
-    /// Stops what runs, and waits for its end.
+    /// Stops what runs, and waits for its end, but not longer than [`Config::stop_bound`].
     pub(crate) async fn stop(mut self) {
         self.stop.send_replace(true);
-        while self.tasks.join_next().await.is_some() {}
-        self.archive.store.close().await;
+        let ended = async {
+            while self.tasks.join_next().await.is_some() {}
+            self.archive.store.close().await;
+        };
+        if tokio::time::timeout(self.bound, ended).await.is_err() {
+            tracing::warn!("not everything under way has ended in time");
+        }
     }
 }

@@ -5,13 +5,26 @@ use sistership_store::{NewShip, Store, StoreError};
 
 use crate::archive::vessel;
 use crate::catalogue::Catalogue;
+use crate::library;
 use crate::problem::Problem;
 use crate::publish::publish;
 use crate::start_error::StartError;
 
-/// Puts in what is missing; several processes may do so at once, and one that was killed half-way is continued.
+/// Puts in what is missing; several processes may do so at once, and one that was killed half-way is continued. Where there is
+/// no room for it, the next start puts it in.
 pub(crate) async fn seed(store: &Store, catalogue: &Catalogue) -> Result<(), StartError> {
+    match put_in(store, catalogue).await {
+        Err(StartError::Store(error)) if error.is_out_of_space() => {
+            tracing::error!(%error, "there is no room for what is new in the program's own zoo; the next start puts it in");
+            Ok(())
+        }
+        other => other,
+    }
+}
+
+async fn put_in(store: &Store, catalogue: &Catalogue) -> Result<(), StartError> {
     let embedded = tokio::task::spawn_blocking(Zoo::embedded).await.map_err(|error| broken(&error))??;
+    library::keep(store).await?;
     laws(store, &embedded).await?;
     ships(store, &embedded).await?;
     let zoo = catalogue.laws(store).await?;
@@ -75,6 +88,9 @@ fn broken(error: &dyn std::fmt::Display) -> StartError {
 }
 
 fn publishing(ship: &str, problem: &Problem) -> StartError {
+    if problem.status == 507 {
+        return StartError::Store(StoreError::no_room());
+    }
     damaged(ship, problem.detail.clone())
 }
 

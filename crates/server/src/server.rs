@@ -2,15 +2,12 @@
 
 use std::net::SocketAddr;
 
-use tokio::net::TcpListener;
-
-use crate::app;
 use crate::archive::Archive;
 use crate::config::Config;
-use crate::listen::listen;
+use crate::listen::{self, listen};
 use crate::process::Process;
+use crate::routes;
 use crate::start_error::StartError;
-use crate::{routes, upload};
 
 /// The server of Sistership.
 #[derive(Debug, Clone, Copy)]
@@ -31,14 +28,13 @@ impl Server {
     pub async fn start(config: Config) -> Result<Running, StartError> {
         config.check()?;
         sistership_store::provide_cryptography();
-        spool(&config)?;
         // The address first: a process that cannot have it takes no job from others.
-        let listener = bind(config.listen).await?;
+        let limits = crate::descriptors::suited(config.limits);
+        let listener = listen::bind(config.listen).map_err(|error| StartError::Listen { listen: config.listen, error })?;
         let addr = listener.local_addr().map_err(|error| StartError::Listen { listen: config.listen, error })?;
         let (mut process, app) = Process::start(&config, true).await?;
-        process.archive.store.idempotency().purge().await?;
         let stopping = app.stopping();
-        process.tasks.spawn(listen(listener, routes::router(app), config.limits, stopping));
+        process.tasks.spawn(listen(listener, routes::router(app), limits, stopping));
         tracing::info!(%addr, "listening");
         Ok(Running { addr, process })
     }
@@ -65,15 +61,4 @@ impl Running {
     pub async fn stop(self) {
         self.process.stop().await;
     }
-}
-
-async fn bind(listen: SocketAddr) -> Result<TcpListener, StartError> {
-    TcpListener::bind(listen).await.map_err(|error| StartError::Listen { listen, error })
-}
-
-/// The folder of uploads, without those of a process that was killed long ago.
-fn spool(config: &Config) -> Result<(), StartError> {
-    let folder = app::spool(config);
-    let cleared = std::fs::create_dir_all(&folder).and_then(|()| upload::clear(&folder));
-    cleared.map_err(|error| StartError::Folder { folder, error })
 }

@@ -15,6 +15,9 @@ pub enum StartError {
     /// Every job would be taken over while it runs.
     #[error("the beat of a worker must be shorter than its lease")]
     Leases,
+    /// An address that could have no connection, or more than there are.
+    #[error("connections_per_address must be from 1 to the number of connections")]
+    Connections,
     /// The address is taken or not ours.
     #[error("cannot listen on {listen}: {error}")]
     Listen {

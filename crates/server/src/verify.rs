@@ -9,7 +9,11 @@ use utoipa::ToSchema;
 
 use crate::archive::{Archive, document};
 use crate::derive::{DeriveError, Progress, derive};
+use crate::jobs::{DERIVING, trial_bytes};
 use crate::version::{Recipe, VersionDocument};
+
+/// Numbers that differ by a smaller share of themselves have been rounded differently.
+const ROUNDING: f64 = 1e-6;
 
 /// What came of deriving a version again.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
@@ -40,6 +44,21 @@ pub struct Verification {
 /// Says what the recipe needs and the store does not have, or why the refinement is refused now.
 pub async fn verify(archive: &Archive, ship: &str, number: i64) -> Result<Verification, DeriveError> {
     verify_with(archive, ship, number, Arc::new(|_, _| true)).await
+}
+
+/// The memory that [`verify`] is estimated to take, bytes.
+pub(crate) async fn demand(archive: &Archive, ship: &str, number: i64) -> Result<u64, DeriveError> {
+    let trials = match document(&archive.store.versions().get(ship, number).await?)?.recipe {
+        Recipe::Plain(sistership_model::version::Recipe::Refinement { trials, .. }) => trials,
+        Recipe::Diagnosis(recipe) => recipe.trials,
+        _ => return Ok(0),
+    };
+    let mut bytes = 0;
+    for trial in &trials {
+        // Samples are compressed to about a third.
+        bytes += 3 * archive.objects.size(&trial.sha256).await? / trial_bytes(1) * DERIVING;
+    }
+    Ok(bytes)
 }
 
 /// The same with progress, and a way to stop it.
@@ -90,10 +109,36 @@ fn remarks(made_by: Option<&str>, (stored, derived): (&str, &str), undamaged: bo
         ));
     }
     let read = |text| serde_json::from_str::<Value>(text).unwrap_or_default();
-    if let Some(place) = (stored != derived).then(|| difference(&read(stored), &read(derived), String::new())) {
+    if stored != derived {
+        let (stored, derived) = (read(stored), read(derived));
+        let place = difference(&stored, &derived, String::new());
         remarks.push(place.unwrap_or_else(|| "the same values, written differently".to_owned()));
+        remarks.extend(rounding(&stored, &derived).map(|largest| {
+            format!(
+                "nothing but numbers differs, by at most {largest:.0e} of themselves: another processor (without fused \
+                 multiplication) or another C library rounds like that; no input differs"
+            )
+        }));
     }
     remarks
+}
+
+/// The largest relative difference of two documents that differ in the last digits of numbers only.
+fn rounding(stored: &Value, derived: &Value) -> Option<f64> {
+    let largest =
+        |mut all: &mut dyn Iterator<Item = Option<f64>>| (&mut all).try_fold(0.0, |most: f64, one| Some(most.max(one?)));
+    match (stored, derived) {
+        (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
+            largest(&mut a.values().zip(b.values()).map(|(a, b)| rounding(a, b)))
+        }
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => largest(&mut a.iter().zip(b).map(|(a, b)| rounding(a, b))),
+        (Value::Number(a), Value::Number(b)) => {
+            let (a, b) = (a.as_f64()?, b.as_f64()?);
+            let share = if a == b { 0.0 } else { (a - b).abs() / a.abs().max(b.abs()) };
+            (share < ROUNDING).then_some(share)
+        }
+        _ => (stored == derived).then_some(0.0),
+    }
 }
 
 /// The first place at which two documents differ.
@@ -125,6 +170,15 @@ mod tests {
         let place = difference(&a, &b, String::new()).unwrap_or_default();
         assert_eq!(place, "first difference at /model/X_uu/1: stored 2.5, derived 2.25");
         assert_eq!(difference(&a, &a, String::new()), None);
+    }
+
+    #[test]
+    fn rounding_is_told_from_another_input() {
+        let said = |derived: &str| remarks(None, (r#"{"a":[1.0,2],"b":"x"}"#, derived), true);
+        assert!(said(r#"{"a":[1.0000000001,2],"b":"x"}"#)[1].contains("by at most 1e-10"));
+        for other in [r#"{"a":[1.1,2],"b":"x"}"#, r#"{"a":[1.0,2],"b":"y"}"#, r#"{"a":[1.0],"b":"x"}"#] {
+            assert_eq!(said(other).len(), 1, "{other}");
+        }
     }
 
     #[test]

@@ -1,11 +1,15 @@
 //! What a version holds, with the recipes that [`sistership_model::version`] knows and that of a diagnosis.
 
+use std::collections::BTreeSet;
+
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sistership_model::Model;
 use sistership_model::version::{self, RecipeTrial, SourceVersion};
 
-use crate::fleet::FamilyRecipe;
+use crate::derive::{Input, InputKind};
+use crate::fleet::{FamilyRecipe, PriorName};
+use crate::library::FIRST_SHA256;
 
 /// What a version holds. Its bytes are [`VersionDocument::canonical`]; the hash is over them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -148,6 +152,48 @@ impl Recipe {
             Self::Family(recipe) => Some(&recipe.start),
             Self::Diagnosis(_) => self.diagnosed(),
         }
+    }
+
+    /// The hash of the library of effects; of a refinement that does not name one, that of the releases which made such.
+    pub fn effects_sha256(&self) -> Option<&str> {
+        match self {
+            Self::Diagnosis(recipe) => Some(&recipe.effects_sha256),
+            Self::Plain(version::Recipe::Refinement { effects_sha256, .. }) => {
+                Some(effects_sha256.as_deref().unwrap_or(FIRST_SHA256))
+            }
+            Self::Family(_) | Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => None,
+        }
+    }
+
+    /// What a family has taught, where it held the coefficients.
+    pub fn prior(&self) -> Option<&PriorName> {
+        match self {
+            Self::Family(recipe) => recipe.prior.as_ref(),
+            Self::Diagnosis(_) | Self::Plain(_) | Self::Registered(_) => None,
+        }
+    }
+
+    /// Every version that it names.
+    pub fn versions(&self) -> Vec<&SourceVersion> {
+        let foundation = match self {
+            Self::Family(recipe) => Some(&recipe.foundation),
+            Self::Diagnosis(_) | Self::Plain(_) | Self::Registered(_) => None,
+        };
+        self.starts_from().into_iter().chain(foundation).collect()
+    }
+
+    /// Everything that the version is derived from.
+    pub fn inputs(&self) -> BTreeSet<Input> {
+        let mut inputs = BTreeSet::from([InputKind::Law.of(self.law_sha256())]);
+        if let Self::Plain(version::Recipe::Refinement { across: Some(across), .. }) = self {
+            inputs.insert(InputKind::Law.of(&across.source_law_sha256));
+        }
+        inputs.extend(self.ship_sha256().map(|hash| InputKind::Ship.of(hash)));
+        inputs.extend(self.versions().into_iter().map(|version| InputKind::Version.of(&version.sha256)));
+        inputs.extend(self.trials().iter().map(|trial| InputKind::Samples.of(&trial.sha256)));
+        inputs.extend(self.effects_sha256().map(|hash| InputKind::Effects.of(hash)));
+        inputs.extend(self.prior().map(|prior| InputKind::Prior.of(&prior.sha256)));
+        inputs
     }
 
     /// The version that a diagnosis started from.

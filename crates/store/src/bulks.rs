@@ -29,7 +29,7 @@ statements! {
         finished_us = CASE WHEN state = 'queued' THEN $2 ELSE finished_us END, \
         state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END \
         WHERE id IN (SELECT job FROM bulk_chunks WHERE bulk = $1) AND state IN ('queued', 'running')");
-    RETRY = same("UPDATE jobs SET state = 'queued', attempt = 0, progress = 0, message = '', error = NULL, worker = NULL, \
+    RETRY = same("UPDATE jobs SET state = 'queued', attempt = 0, lost_workers = 0, progress = 0, message = '', error = NULL, worker = NULL, \
         finished_us = NULL, cancel_requested = 0 \
         WHERE id IN (SELECT job FROM bulk_chunks WHERE bulk = $1) AND state IN ('failed', 'cancelled')");
     KEEP = same("INSERT INTO bulk_outcomes (bulk, ship, outcome, version_id, worst_change, document, created_us) \

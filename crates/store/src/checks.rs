@@ -7,15 +7,15 @@ use crate::error::{Result, StoreError};
 /// The longest text that a field may hold.
 pub const MAX_TEXT_BYTES: usize = 16 << 20;
 /// The longest name of a ship, law, model, alias or kind.
-pub const MAX_NAME_BYTES: usize = 200;
+pub const MAX_NAME_CHARS: usize = 200;
 
 /// A name that can stand in a URL path: not empty, not long, no white space, control character or slash.
 pub(crate) fn name(field: &'static str, value: &str) -> Result<()> {
     if value.is_empty() {
         return Err(StoreError::invalid(field, "must not be empty"));
     }
-    if value.len() > MAX_NAME_BYTES {
-        return Err(StoreError::invalid(field, format!("longer than {MAX_NAME_BYTES} bytes")));
+    if value.chars().count() > MAX_NAME_CHARS {
+        return Err(StoreError::invalid(field, format!("longer than {MAX_NAME_CHARS} characters")));
     }
     match value.chars().find(|c| c.is_control() || c.is_whitespace() || *c == '/') {
         Some(c) => Err(StoreError::invalid(field, format!("must not contain {c:?}"))),

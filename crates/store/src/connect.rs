@@ -1,5 +1,6 @@
 //! Opening a database by its URL.
 
+use std::path::PathBuf;
 use std::str::FromStr as _;
 use std::time::Duration;
 
@@ -29,13 +30,20 @@ pub(crate) async fn connect(url: &str) -> Result<Database> {
     }
 }
 
+/// The file of an SQLite database; none of another one.
+pub(crate) fn sqlite_file(url: &str) -> Option<PathBuf> {
+    let is_file = url.starts_with("sqlite:") && !url.contains(":memory:");
+    let options = is_file.then(|| SqliteConnectOptions::from_str(url).ok()).flatten()?;
+    Some(options.get_filename().to_path_buf())
+}
+
 /// One connection that lasts as long as the store: with it the data would go.
 async fn memory(url: &str) -> Result<Database> {
     let options = SqliteConnectOptions::from_str(url)?.foreign_keys(true);
     let pool = SqlitePoolOptions::new().max_connections(1).min_connections(1).idle_timeout(None).max_lifetime(None);
     let pool = pool.connect_with(options).await?;
     migrate::sqlite(&pool).await?;
-    Ok(Database { read: Pool::Sqlite(pool.clone()), write: Writer::Sqlite(Group::new(pool)) })
+    Ok(Database { read: Pool::Sqlite(pool.clone()), write: Writer::Sqlite(Group::new(pool)), unit: None })
 }
 
 async fn file(url: &str) -> Result<Database> {
@@ -47,7 +55,7 @@ async fn file(url: &str) -> Result<Database> {
     // A file's connection does not go stale.
     let readers = SqlitePoolOptions::new().max_connections(SQLITE_READERS).test_before_acquire(false);
     let read = readers.connect_with(options.pragma("query_only", "ON")).await?;
-    Ok(Database { read: Pool::Sqlite(read), write: Writer::Sqlite(Group::new(write)) })
+    Ok(Database { read: Pool::Sqlite(read), write: Writer::Sqlite(Group::new(write)), unit: None })
 }
 
 /// The one connection that writes. Turning on the write-ahead log needs the file for itself and does not wait for it, so
@@ -82,7 +90,7 @@ async fn postgres(url: &str) -> Result<Database> {
     });
     let pool: PgPool = pool.connect_with(options).await?;
     migrate::postgres(&pool).await?;
-    Ok(Database { read: Pool::Postgres(pool.clone()), write: Writer::Postgres(pool) })
+    Ok(Database { read: Pool::Postgres(pool.clone()), write: Writer::Postgres(pool), unit: None })
 }
 
 #[cfg(test)]
@@ -99,7 +107,9 @@ mod tests {
     async fn a_sqlite_file_is_durable_and_its_readers_only_read() {
         let folder = tempfile::tempdir().unwrap();
         let url = format!("sqlite://{}", folder.path().join("new/store.db").display());
-        let Database { read: Pool::Sqlite(read), write: Writer::Sqlite(write) } = connect(&url).await.unwrap() else { panic!() };
+        let Database { read: Pool::Sqlite(read), write: Writer::Sqlite(write), .. } = connect(&url).await.unwrap() else {
+            panic!()
+        };
         let write = write.pool();
         assert_eq!(pragma(write, "SELECT journal_mode FROM pragma_journal_mode").await, "wal");
         assert_eq!(pragma(write, "SELECT CAST(synchronous AS TEXT) FROM pragma_synchronous").await, "2");

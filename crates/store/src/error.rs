@@ -1,5 +1,8 @@
 //! One error for everything the store refuses or cannot do; each variant maps to one kind of HTTP problem.
 
+use std::error::Error;
+use std::io::{self, ErrorKind};
+
 use crate::objects::ObjectsError;
 
 /// What an operation of the store returns.
@@ -65,6 +68,22 @@ fn at(current: Option<i64>) -> String {
 }
 
 impl StoreError {
+    /// Whether it failed for want of space where database or objects are kept: reading goes on, and so does writing once there
+    /// is room.
+    pub fn is_out_of_space(&self) -> bool {
+        match self {
+            Self::Database(error) => is_full(error),
+            Self::File { error, .. } => is_out_of_space(error),
+            Self::Objects(error) => io_errors(error).any(is_out_of_space),
+            _ => false,
+        }
+    }
+
+    /// The error of something that could not be kept for want of space.
+    pub fn no_room() -> Self {
+        Self::Objects(ObjectsError::Folder(ErrorKind::StorageFull.into()))
+    }
+
     pub(crate) fn missing(kind: &'static str, id: impl Into<String>) -> Self {
         Self::NotFound { kind, id: id.into() }
     }
@@ -79,5 +98,56 @@ impl StoreError {
 
     pub(crate) fn invalid(field: &'static str, message: impl Into<String>) -> Self {
         Self::Invalid { field, message: message.into() }
+    }
+}
+
+/// SQLite's codes for a disk that takes no more: `SQLITE_FULL`, and writes, flushes and memory maps that fail, which is how it tells
+/// of a quota or of the largest file that there may be.
+const SQLITE_FULL: [&str; 6] = ["13", "778", "1034", "1546", "4874", "8458"];
+/// PostgreSQL's code for the same, `disk_full`.
+const POSTGRES_FULL: &str = "53100";
+
+/// Whether a database failed for want of space.
+pub(crate) fn is_full(error: &sqlx::Error) -> bool {
+    match error {
+        sqlx::Error::Database(error) => {
+            let sqlite = error.try_downcast_ref::<sqlx::sqlite::SqliteError>().is_some();
+            let code = error.code();
+            code.is_some_and(|code| if sqlite { SQLITE_FULL.contains(&&*code) } else { code == POSTGRES_FULL })
+        }
+        sqlx::Error::Migrate(error) => {
+            io_errors(&**error).any(is_out_of_space)
+                || sources(&**error).any(|error| error.downcast_ref::<sqlx::Error>().is_some_and(is_full))
+        }
+        other => io_errors(other).any(is_out_of_space),
+    }
+}
+
+/// Whether the system has no room for what was to be written: the disk, the owner's share of it, or the longest file.
+pub fn is_out_of_space(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge)
+}
+
+/// An error and those behind it.
+fn sources<'a>(error: &'a (dyn Error + 'static)) -> impl Iterator<Item = &'a (dyn Error + 'static)> {
+    std::iter::successors(Some(error), |error: &&'a (dyn Error + 'static)| (*error).source())
+}
+
+fn io_errors<'a>(error: &'a (dyn Error + 'static)) -> impl Iterator<Item = &'a io::Error> {
+    sources(error).filter_map(|error| error.downcast_ref())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_disk_is_told_from_other_failures() {
+        for (kind, full) in [(ErrorKind::StorageFull, true), (ErrorKind::QuotaExceeded, true), (ErrorKind::NotFound, false)] {
+            let object = object_store::Error::Generic { store: "folder", source: Box::new(io::Error::from(kind)) };
+            assert_eq!(StoreError::from(ObjectsError::from(object)).is_out_of_space(), full, "{kind}");
+            assert_eq!(StoreError::from(sqlx::Error::Io(kind.into())).is_out_of_space(), full, "{kind}");
+        }
+        assert!(!StoreError::missing("ship", "kcs").is_out_of_space());
     }
 }

@@ -5,6 +5,7 @@
 //! The turns are those of a fair lock. Who has written queues for it once more behind those who wait to write; whose turn
 //! comes first after that commits for all. Alone, one commits at once.
 
+use std::io;
 use std::sync::{Arc, OnceLock};
 
 use sqlx::pool::PoolConnection;
@@ -12,8 +13,18 @@ use sqlx::{Sqlite, SqliteConnection, SqlitePool};
 use tokio::runtime::Handle;
 use tokio::sync::{Mutex, OwnedMutexGuard};
 
+use crate::error::is_full;
+
 /// What became of a transaction that several shared: the reason where it failed.
-type Outcome = Arc<OnceLock<Result<(), String>>>;
+type Outcome = Arc<OnceLock<Result<(), Reason>>>;
+
+/// Why a transaction failed.
+#[derive(Debug, Clone)]
+struct Reason {
+    text: String,
+    /// Whether there was no room for it.
+    full: bool,
+}
 
 /// The writers of one SQLite database in this process.
 #[derive(Debug, Clone)]
@@ -108,7 +119,7 @@ impl Turn {
         drop(lock);
         match outcome.get() {
             Some(Ok(())) => Ok(()),
-            Some(Err(reason)) => Err(not_kept(reason)),
+            Some(Err(reason)) => Err(reason.told()),
             None => Err(not_kept("it was given up")),
         }
     }
@@ -157,9 +168,22 @@ impl Shared {
 
     /// Ends the transaction for all of its parts, together with a connection whose state is not known.
     fn give_up(self, error: sqlx::Error) -> sqlx::Error {
-        let _ = self.outcome.set(Err(error.to_string()));
+        let text = error.to_string();
+        // Where the disk is full, the database takes the whole transaction back by itself.
+        let full = is_full(&error) || text.contains("no such savepoint");
+        let _ = self.outcome.set(Err(Reason { text, full }));
         drop(self.connection.detach());
         error
+    }
+}
+
+impl Reason {
+    fn told(&self) -> sqlx::Error {
+        let error = not_kept(&self.text);
+        match self.full {
+            true => sqlx::Error::Io(io::Error::new(io::ErrorKind::StorageFull, error)),
+            false => error,
+        }
     }
 }
 

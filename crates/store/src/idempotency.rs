@@ -13,6 +13,8 @@ use crate::store::Store;
 
 /// After this long without an answer, whoever carried a request out is taken for dead.
 pub const TAKE_OVER_AFTER: Duration = Duration::from_secs(60);
+/// How often who carries a request out tells that it still does.
+pub const PROLONG_EVERY: Duration = Duration::from_secs(15);
 /// How long an answer is kept for replay.
 pub const KEEP_KEYS: Duration = Duration::from_secs(7 * 24 * 3600);
 
@@ -20,8 +22,10 @@ statements! {
     INSERT = same("INSERT INTO idempotency_keys (scope, key, request_sha256, created_us) VALUES ($1, $2, $3, $4) \
         ON CONFLICT (scope, key) DO NOTHING");
     GET = same("SELECT request_sha256, status, response, created_us FROM idempotency_keys WHERE scope = $1 AND key = $2");
-    TAKE_OVER = same("UPDATE idempotency_keys SET created_us = $3 \
-        WHERE scope = $1 AND key = $2 AND status IS NULL AND created_us <= $4");
+    TAKE_OVER = same("UPDATE idempotency_keys SET created_us = $3, alive_us = NULL \
+        WHERE scope = $1 AND key = $2 AND status IS NULL AND COALESCE(alive_us, created_us) <= $4");
+    PROLONG = same("UPDATE idempotency_keys SET alive_us = $4 \
+        WHERE scope = $1 AND key = $2 AND created_us = $3 AND status IS NULL");
     FINISH = same("UPDATE idempotency_keys SET status = $4, response = $5 \
         WHERE scope = $1 AND key = $2 AND created_us = $3 AND status IS NULL");
     ABANDON = same("DELETE FROM idempotency_keys WHERE scope = $1 AND key = $2 AND created_us = $3 AND status IS NULL");
@@ -53,7 +57,7 @@ pub struct Ticket {
 /// What to do with a request that carries a key.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Begun {
-    /// Carry it out, then [finish](Idempotency::finish) or [abandon](Idempotency::abandon) the ticket.
+    /// Carry it out in a [unit of work](crate::UnitOfWork::keep) that keeps the answer, or [abandon](Idempotency::abandon) it.
     New(Ticket),
     /// Another is carrying it out right now.
     InProgress,
@@ -88,17 +92,15 @@ impl Idempotency<'_> {
         Ok(begun)
     }
 
-    /// Keeps the answer to a request for replay. A conflict when the request has been taken over meanwhile.
-    pub async fn finish(&self, ticket: &Ticket, status: i64, body: &str) -> Result<()> {
+    /// Tells that a request is still being carried out, so that nobody takes it over for [`TAKE_OVER_AFTER`] from now. A
+    /// conflict when somebody has.
+    pub async fn prolong(&self, ticket: &Ticket) -> Result<()> {
         let Ticket { scope, key, began_us } = ticket;
+        let values = args![scope: scope, key: key, created_us: *began_us, alive_us: self.0.now_us()];
         let mut tx = self.0.begin().await?;
-        let values = args![scope: scope, key: key, created_us: *began_us, status: status, response: body];
-        let finished = tx.execute(FINISH, values).await?;
+        let prolonged = tx.execute(PROLONG, values).await?;
         tx.commit().await?;
-        match finished {
-            0 => Err(StoreError::conflict("idempotency key", key, "the request has been taken over by another")),
-            _ => Ok(()),
-        }
+        if prolonged == 0 { Err(taken_over(key)) } else { Ok(()) }
     }
 
     /// Forgets a request that came to nothing, so that it can be tried again.
@@ -116,6 +118,20 @@ impl Idempotency<'_> {
         tx.commit().await?;
         Ok(purged)
     }
+}
+
+/// Keeps the answer to a request for replay, within the transaction of its work.
+pub(crate) async fn answered(tx: &mut Transaction, ticket: &Ticket, status: i64, body: &str) -> Result<()> {
+    let Ticket { scope, key, began_us } = ticket;
+    let values = args![scope: scope, key: key, created_us: *began_us, status: status, response: body];
+    match tx.execute(FINISH, values).await? {
+        0 => Err(taken_over(key)),
+        _ => Ok(()),
+    }
+}
+
+fn taken_over(key: &str) -> StoreError {
+    StoreError::conflict("idempotency key", key, "the request has been taken over by another; repeat it for its answer")
 }
 
 /// What to do with a key that is there already.

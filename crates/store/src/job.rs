@@ -12,7 +12,7 @@ macro_rules! job {
         concat!(
             $before,
             " id, kind, ship, request, state, progress, message, result, error, attempt, fence, lease_until_us, worker, \
-             created_us, started_us, finished_us, cancel_requested ",
+             created_us, started_us, finished_us, cancel_requested, lost_workers ",
             $after
         )
     };
@@ -114,6 +114,8 @@ record! {
         pub finished_us: Option<i64>,
         /// Whether its worker is asked to stop.
         pub cancel_requested: bool,
+        /// How many of its workers have let their lease run out without a word, as a process does that has ended.
+        pub lost_workers: i64,
     }
 }
 

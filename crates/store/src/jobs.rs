@@ -23,7 +23,7 @@ statements! {
         finished_us = CASE WHEN state = 'queued' THEN $2 ELSE finished_us END, \
         state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END \
         WHERE id = $1 AND state IN ('queued', 'running') RETURNING", ""));
-    RETRY = same(job!("UPDATE jobs SET state = 'queued', attempt = 0, progress = 0, message = '', error = NULL, worker = NULL, \
+    RETRY = same(job!("UPDATE jobs SET state = 'queued', attempt = 0, lost_workers = 0, progress = 0, message = '', error = NULL, worker = NULL, \
         finished_us = NULL, cancel_requested = 0 WHERE id = $1 AND state IN ('failed', 'cancelled') RETURNING", ""));
 }
 

@@ -13,12 +13,16 @@ const SQLITE: &[Source] = &[
     (2, "diagnoses", include_str!("../../../migrations/sqlite/0002_diagnoses.sql")),
     (3, "search", include_str!("../../../migrations/sqlite/0003_search.sql")),
     (4, "fleets", include_str!("../../../migrations/sqlite/0004_fleets.sql")),
+    (5, "effects", include_str!("../../../migrations/sqlite/0005_effects.sql")),
+    (6, "leases", include_str!("../../../migrations/sqlite/0006_leases.sql")),
 ];
 const POSTGRES: &[Source] = &[
     (1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql")),
     (2, "diagnoses", include_str!("../../../migrations/postgres/0002_diagnoses.sql")),
     (3, "search", include_str!("../../../migrations/postgres/0003_search.sql")),
     (4, "fleets", include_str!("../../../migrations/postgres/0004_fleets.sql")),
+    (5, "effects", include_str!("../../../migrations/postgres/0005_effects.sql")),
+    (6, "leases", include_str!("../../../migrations/postgres/0006_leases.sql")),
 ];
 
 fn migrator(sources: &'static [Source]) -> Migrator {
@@ -42,6 +46,12 @@ pub(crate) async fn postgres(pool: &PgPool) -> Result<()> {
 /// The schema as it was after a migration, within a transaction of the caller's.
 pub(crate) async fn postgres_up_to(version: i64, connection: &mut PgConnection) -> Result<()> {
     Ok(migrator(POSTGRES).run_direct(Some(version), connection, false).await.map_err(sqlx::Error::from)?)
+}
+
+/// The same on SQLite, for tests of upgrades.
+#[cfg(all(unix, feature = "testing"))]
+pub(crate) async fn sqlite_up_to(version: i64, connection: &mut sqlx::SqliteConnection) -> Result<()> {
+    Ok(migrator(SQLITE).run_direct(Some(version), connection, false).await.map_err(sqlx::Error::from)?)
 }
 
 /// The number of the newest migration.

@@ -9,6 +9,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use bytes::Bytes;
+use futures::stream::BoxStream;
+use futures::{StreamExt as _, TryStreamExt as _};
 use object_store::local::LocalFileSystem;
 use object_store::memory::InMemory;
 use object_store::path::Path as ObjectPath;
@@ -34,7 +36,7 @@ pub enum ObjectsError {
     #[error(transparent)]
     Store(#[from] object_store::Error),
     /// The folder could not be made.
-    #[error(transparent)]
+    #[error("{0}")]
     Folder(#[from] std::io::Error),
     /// The store did not answer in time.
     #[error("no answer in time")]
@@ -70,8 +72,12 @@ impl Objects {
         Self { store, folder: None }
     }
 
-    /// Leaves the mark that [`health`](Self::health) looks for: a folder that is no longer mounted does not have it.
+    /// Leaves the mark that [`health`](Self::health) looks for, where it is not there yet: a folder that is no longer mounted
+    /// does not have it.
     pub async fn mark(&self) -> Result<()> {
+        if self.store.head(&ObjectPath::from(MARK)).await.is_ok() {
+            return Ok(());
+        }
         let about = PutPayload::from_static(b"The objects of a Sistership store, named by the SHA-256 of their bytes.\n");
         self.store.put(&ObjectPath::from(MARK), about).await.map_err(ObjectsError::from)?;
         Ok(())
@@ -88,6 +94,7 @@ impl Objects {
     /// writer may not have made them durable yet, and a damaged object is healed.
     pub async fn put(&self, bytes: Bytes) -> Result<String> {
         let key = hash(bytes.clone()).await?;
+        let _held = self.putting().await?;
         self.store.put(&path(&key)?, PutPayload::from(bytes)).await.map_err(ObjectsError::from)?;
         Ok(key)
     }
@@ -103,6 +110,16 @@ impl Objects {
         }
     }
 
+    /// The bytes of this key as they come, not yet verified: whoever reads them to the end compares their hash.
+    ///
+    /// # Errors
+    /// There is no such object, or the store fails.
+    pub async fn stream(&self, key: &str) -> Result<(u64, BoxStream<'static, Result<Bytes>>)> {
+        let found = self.store.get(&path(key)?).await.map_err(|error| failure(key, error))?;
+        let (size, key) = (found.meta.size, key.to_owned());
+        Ok((size, found.into_stream().map_err(move |error| failure(&key, error)).boxed()))
+    }
+
     /// Removes the object of this key, if it is there. Only who knows that no row refers to it may do so, see
     /// [`crate::Store::remove_unreferred`].
     pub(crate) async fn remove(&self, key: String) -> Result<()> {
@@ -110,6 +127,11 @@ impl Objects {
             Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
             Err(error) => Err(ObjectsError::from(error).into()),
         }
+    }
+
+    /// Size of the object of this key, bytes.
+    pub async fn size(&self, key: &str) -> Result<u64> {
+        Ok(self.store.head(&path(key)?).await.map_err(|error| failure(key, error))?.size)
     }
 
     /// Whether there is an object of this key.

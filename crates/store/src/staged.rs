@@ -5,11 +5,14 @@
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::UNIX_EPOCH;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use crate::clock::micros;
 use crate::error::Result;
 use crate::objects::{FOLDER, Objects, ObjectsError};
+
+/// Nobody writes on at what has not been written for this long.
+const SETTLED: Duration = Duration::from_secs(60);
 
 /// A put that has not ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,6 +30,32 @@ impl Objects {
     pub async fn staged(&self) -> Result<Vec<Staged>> {
         let Some(root) = self.folder.clone() else { return Ok(Vec::new()) };
         blocking(move || find(&root)).await
+    }
+
+    /// Holds off [`clear_staged`](Self::clear_staged) while something is put; nothing where the file system knows no locks.
+    pub(crate) async fn putting(&self) -> Result<Option<fs::File>> {
+        let Some(root) = self.folder.clone() else { return Ok(None) };
+        blocking(move || Ok(fs::File::open(root).ok().filter(|folder| folder.lock_shared().is_ok()))).await
+    }
+
+    /// Removes what puts have left whose processes have ended: nobody puts anything while this holds the folder, and what was
+    /// written a moment ago stays for the sake of earlier programs, which do not hold it. Returns how many there were.
+    pub async fn clear_staged(&self) -> Result<usize> {
+        let Some(root) = self.folder.clone() else { return Ok(0) };
+        blocking(move || {
+            let folder = fs::File::open(&root)?;
+            if folder.try_lock().is_err() {
+                return Ok(0);
+            }
+            let settled = |staged: &Staged| {
+                let age = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, micros) - staged.modified_us;
+                age > micros(SETTLED)
+            };
+            let left: Vec<_> = find(&root)?.into_iter().filter(settled).collect();
+            left.iter().try_for_each(|staged| gone(fs::remove_file(root.join(&staged.path))))?;
+            Ok(left.len())
+        })
+        .await
     }
 
     /// Removes what a put has left that never ended. Only who knows that it is not under way may do so.
@@ -86,7 +115,27 @@ fn gone(removed: io::Result<()>) -> io::Result<()> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
+
+    /// What a put leaves that was cut by a kill goes, unless somebody may still be writing it.
+    #[tokio::test]
+    async fn what_a_kill_has_left_is_removed() {
+        let root = tempfile::tempdir().unwrap();
+        let objects = Objects::local(root.path()).unwrap();
+        let key = objects.put("samples".into()).await.unwrap();
+        let (left, fresh) = (root.path().join(FOLDER).join("ab#1"), root.path().join(FOLDER).join("ab#2"));
+        let folder = root.path().join(FOLDER).join(&key[..2]);
+        let [left, fresh] = [left, fresh].map(|path| folder.join(path.file_name().unwrap()));
+        let old = SystemTime::now() - 2 * SETTLED;
+        fs::File::create(&left).unwrap().set_modified(old).unwrap();
+        fs::File::create(&fresh).unwrap();
+        let putting = objects.putting().await.unwrap();
+        assert_eq!(objects.clear_staged().await.unwrap(), 0);
+        drop(putting);
+        assert_eq!(objects.clear_staged().await.unwrap(), 1);
+        assert!(!left.exists() && fresh.exists() && objects.exists(&key).await.unwrap());
+    }
 
     #[test]
     fn only_a_number_behind_the_sign_is_a_put_under_way() {

@@ -41,8 +41,8 @@ mod prepare {
     use crate::error::{Result, StoreError};
     use crate::store::Store;
     use crate::{
-        aliases, bulks, current, diagnoses, families, garbage, idempotency, integrity, jobs, laws, reports, search, search_index,
-        ships, statistics, store, tags, trials, versions, work,
+        aliases, bulks, current, diagnoses, effects, families, garbage, idempotency, integrity, jobs, laws, reports, reserve,
+        search, search_index, ships, statistics, store, tags, trials, versions, work,
     };
 
     pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[
@@ -55,8 +55,10 @@ mod prepare {
         ("idempotency", idempotency::STATEMENTS),
         ("integrity", integrity::STATEMENTS),
         ("jobs", jobs::STATEMENTS),
+        ("effects", effects::STATEMENTS),
         ("laws", laws::STATEMENTS),
         ("reports", reports::STATEMENTS),
+        ("reserve", reserve::STATEMENTS),
         ("search", search::STATEMENTS),
         ("search_index", search_index::STATEMENTS),
         ("ships", ships::STATEMENTS),

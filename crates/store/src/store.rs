@@ -10,6 +10,7 @@ use crate::connect;
 use crate::current::Questions;
 use crate::database::{Database, Transaction};
 use crate::diagnoses::Diagnoses;
+use crate::effects::EffectLibraries;
 use crate::error::Result;
 use crate::families::Families;
 use crate::idempotency::Idempotency;
@@ -17,11 +18,13 @@ use crate::jobs::Jobs;
 use crate::laws::Laws;
 use crate::record::record;
 use crate::reports::Reports;
+use crate::reserve;
 use crate::search_index::SearchIndex;
 use crate::ships::Ships;
 use crate::statements::{same, statements};
 use crate::statistics::TrialStatistics;
 use crate::trials::Trials;
+use crate::unit::Unit;
 use crate::versions::Versions;
 
 statements! {
@@ -45,6 +48,11 @@ struct Inner {
     clock: Arc<dyn Clock>,
     ids: Arc<dyn Ids>,
     questions: Questions,
+    /// The file that keeps room for the next start.
+    reserve: Option<std::path::PathBuf>,
+    /// Where a test wants a unit of work to end.
+    #[cfg(feature = "testing")]
+    ending: Arc<std::sync::Mutex<Option<crate::unit::Moment>>>,
 }
 
 impl fmt::Debug for Store {
@@ -62,8 +70,55 @@ impl Store {
 
     /// The same, with ids made by `ids`.
     pub async fn connect_with(url: &str, clock: Arc<dyn Clock>, ids: Arc<dyn Ids>) -> Result<Self> {
-        let database = connect::connect(url).await?;
-        Ok(Self(Arc::new(Inner { database, clock, ids, questions: Questions::default() })))
+        let database = match connect::connect(url).await {
+            Err(error) if error.is_out_of_space() && reserve::release(url) => connect::connect(url).await?,
+            other => other?,
+        };
+        Ok(Self::of(Inner {
+            database,
+            clock,
+            ids,
+            questions: Questions::default(),
+            reserve: reserve::of(url),
+            #[cfg(feature = "testing")]
+            ending: Arc::default(),
+        }))
+    }
+
+    fn of(inner: Inner) -> Self {
+        Self(Arc::new(inner))
+    }
+
+    /// A handle whose reads and writes belong to a unit of work.
+    pub(crate) fn within(&self, unit: Unit) -> Self {
+        let Inner { database, clock, ids, .. } = &*self.0;
+        Self::of(Inner {
+            database: Database { unit: Some(unit), ..database.clone() },
+            clock: Arc::clone(clock),
+            ids: Arc::clone(ids),
+            questions: Questions::default(),
+            reserve: self.0.reserve.clone(),
+            #[cfg(feature = "testing")]
+            ending: Arc::clone(&self.0.ending),
+        })
+    }
+
+    /// The next unit of work goes no further than this moment, as if its process had ended: for tests.
+    #[cfg(feature = "testing")]
+    pub fn end_at(&self, moment: crate::unit::Moment) {
+        *self.0.ending.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(moment);
+    }
+
+    /// Whether no unit of work is still to end so.
+    #[cfg(feature = "testing")]
+    pub fn has_ended(&self) -> bool {
+        self.0.ending.lock().unwrap_or_else(std::sync::PoisonError::into_inner).is_none()
+    }
+
+    #[cfg(feature = "testing")]
+    pub(crate) fn is_to_end_at(&self, moment: crate::unit::Moment) -> bool {
+        let mut ending = self.0.ending.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        ending.take_if(|at| *at == moment).is_some()
     }
 
     /// Whether the database answers.
@@ -85,6 +140,11 @@ impl Store {
     /// Laws of motion, insert-only.
     pub fn laws(&self) -> Laws<'_> {
         Laws(self)
+    }
+
+    /// Libraries of effects, insert-only.
+    pub fn effects(&self) -> EffectLibraries<'_> {
+        EffectLibraries(self)
     }
 
     /// Ships and their history.
@@ -145,6 +205,10 @@ impl Store {
     /// Sufficient statistics of trials.
     pub fn statistics(&self) -> TrialStatistics<'_> {
         TrialStatistics(self)
+    }
+
+    pub(crate) fn reserve_file(&self) -> Option<&std::path::Path> {
+        self.0.reserve.as_deref()
     }
 
     pub(crate) fn new_id(&self) -> String {

@@ -8,11 +8,15 @@ use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{AssertSqlSafe, ConnectOptions as _, Connection as _, Executor as _, PgConnection};
 use tempfile::TempDir;
 
+pub use earlier::migrations;
 pub use s3::TestS3;
 
+use crate::backup::TABLES;
 use crate::clock::ManualClock;
+use crate::database::Pool;
 use crate::store::Store;
 
+mod earlier;
 mod plans;
 mod s3;
 mod server;
@@ -87,6 +91,23 @@ async fn create(connection: &mut PgConnection, name: &str) -> sqlx::Result<()> {
     match connection.execute(AssertSqlSafe(sorted)).await {
         Ok(_) => Ok(()),
         Err(_) => connection.execute(AssertSqlSafe(plain)).await.map(drop),
+    }
+}
+
+impl Store {
+    /// How many rows each table has, but for what follows ships in the background.
+    pub async fn row_counts(&self) -> sqlx::Result<Vec<(&'static str, i64)>> {
+        let mut counts = Vec::new();
+        let kept = |table: &&&str| !["ship_facts", "ship_vectors", "search_queue", "idempotency_keys"].contains(*table);
+        for table in TABLES.iter().filter(kept) {
+            let count = AssertSqlSafe(format!("SELECT COUNT(*) FROM {table}"));
+            let rows = match &self.database().read {
+                Pool::Sqlite(pool) => sqlx::query_scalar(count).fetch_one(pool).await?,
+                Pool::Postgres(pool) => sqlx::query_scalar(count).fetch_one(pool).await?,
+            };
+            counts.push((*table, rows));
+        }
+        Ok(counts)
     }
 }
 

@@ -12,8 +12,8 @@ use crate::job::{Job, JobState, job};
 use crate::jobs::{Jobs, find};
 use crate::statements::{Statement, pair, same, statements};
 
-/// How often a job is begun before it is taken for one that kills its workers.
-pub const MAX_ATTEMPTS: i64 = 3;
+/// A job that has lost this many workers is taken for one that ends their processes, and is not begun again by itself.
+pub const MAX_LOST_WORKERS: i64 = 2;
 
 statements! {
     NEXT = pair(
@@ -23,7 +23,11 @@ statements! {
             ORDER BY id LIMIT 1 FOR UPDATE SKIP LOCKED"),
     );
     START = same(job!("UPDATE jobs SET state = 'running', attempt = attempt + 1, fence = fence + 1, worker = $2, \
-        lease_until_us = $3, started_us = COALESCE(started_us, $4) WHERE id = $1 RETURNING", ""));
+        lease_until_us = $3, started_us = COALESCE(started_us, $4), lost_workers = $5 WHERE id = $1 RETURNING", ""));
+    COUNT_LOST = same("UPDATE jobs SET lost_workers = $2 WHERE id = $1");
+    // Whoever took the job over counted a worker as lost that was not.
+    LIVES = same("UPDATE jobs SET lost_workers = lost_workers - 1 \
+        WHERE id = $1 AND fence > $2 AND lost_workers > 0 AND state IN ('queued', 'running')");
     HEARTBEAT = same(job!("UPDATE jobs SET progress = $3, message = $4, lease_until_us = $5 \
         WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
     END = same(job!("UPDATE jobs SET state = $3, result = $4, error = $5, finished_us = $6, lease_until_us = NULL, \
@@ -31,6 +35,18 @@ statements! {
         WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
     RELEASE = same(job!("UPDATE jobs SET state = 'queued', attempt = attempt - 1, lease_until_us = NULL, worker = NULL \
         WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
+}
+
+/// What there is to do for a worker.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Claimed {
+    /// This job, which is the worker's now.
+    Job(Box<Job>),
+    /// A job during which a process has ended: to be claimed by a process that does nothing else meanwhile, so that no other
+    /// job is taken for the cause if it happens again.
+    Alone,
+    /// Nothing.
+    Nothing,
 }
 
 /// How a job ends.
@@ -41,20 +57,34 @@ enum End<'a> {
 }
 
 impl Jobs<'_> {
-    /// Takes the oldest job that waits, or whose worker has let its lease run out. One that has lost [`MAX_ATTEMPTS`]
-    /// workers has failed; one that was to be cancelled when its worker died is cancelled.
-    pub async fn claim(&self, worker: &str, lease: Duration) -> Result<Option<Job>> {
+    /// Takes the oldest job that waits, or whose worker has let its lease run out. One that has lost [`MAX_LOST_WORKERS`]
+    /// workers is set aside as failed; one that was to be cancelled when its worker died is cancelled. `alone` says that the
+    /// worker's process does nothing else until the job ends.
+    pub async fn claim(&self, worker: &str, lease: Duration, alone: bool) -> Result<Claimed> {
         let mut tx = self.0.begin().await?;
         let now = self.0.now_us();
         let claimed = loop {
-            let Some(job) = tx.optional::<Job>(NEXT, args![now_us: now]).await? else { break None };
-            if !bury(&mut tx, &job, now).await? {
-                let values = args![id: &job.id, worker: worker, lease_until_us: until(now, lease), started_us: now];
-                break Some(tx.one(START, values).await?);
+            let Some(job) = tx.optional::<Job>(NEXT, args![now_us: now]).await? else { break Claimed::Nothing };
+            let lost = job.lost_workers + i64::from(job.state == JobState::Running);
+            if bury(&mut tx, &job, lost, now).await? {
+                continue;
             }
+            if lost > 0 && !alone {
+                break Claimed::Alone;
+            }
+            let values =
+                args![id: &job.id, worker: worker, lease_until_us: until(now, lease), started_us: now, lost_workers: lost];
+            break Claimed::Job(Box::new(tx.one(START, values).await?));
         };
         tx.commit().await?;
         Ok(claimed)
+    }
+
+    /// Tells that the worker which held a job under `fence` has lost it by coming late, not by its end.
+    pub async fn lives(&self, id: &str, fence: i64) -> Result<()> {
+        let mut tx = self.0.begin().await?;
+        tx.execute(LIVES, args![id: id, fence: fence]).await?;
+        tx.commit().await
     }
 
     /// Tells how far a job is and prolongs its lease. Returns whether its worker is asked to stop.
@@ -118,13 +148,20 @@ async fn end(tx: &mut Transaction, id: &str, fence: i64, how: End<'_>, now_us: i
 }
 
 /// Ends a job that must not be begun again, and tells whether it did.
-async fn bury(tx: &mut Transaction, job: &Job, now_us: i64) -> Result<bool> {
-    let message = format!("the worker died {} times; the last one was `{}`", job.attempt, job.worker.as_deref().unwrap_or("?"));
-    let how = match job {
-        Job { state: JobState::Running, cancel_requested: true, .. } => End::Cancelled,
-        Job { attempt: MAX_ATTEMPTS.., .. } => End::Failed { error: &message },
+async fn bury(tx: &mut Transaction, job: &Job, lost: i64, now_us: i64) -> Result<bool> {
+    let worker = job.worker.as_deref().unwrap_or("?");
+    let message = format!(
+        "the job ended its process {}; it is set aside and not begun again by itself (the last worker was `{worker}`). Send \
+         POST /v1/jobs/{}/retry once the cause is mended",
+        if lost == MAX_LOST_WORKERS { "twice".to_owned() } else { format!("{lost} times") },
+        job.id
+    );
+    let how = match job.state {
+        JobState::Running if job.cancel_requested => End::Cancelled,
+        JobState::Running if lost >= MAX_LOST_WORKERS => End::Failed { error: &message },
         _ => return Ok(false),
     };
+    tx.execute(COUNT_LOST, args![id: &job.id, lost_workers: lost]).await?;
     end(tx, &job.id, job.fence, how, now_us).await.map(|_| true)
 }
 

@@ -19,7 +19,7 @@ pub(crate) fn convert(name: &str, table: Table, mapping: &Mapping, findings: &mu
         velocity: mapping.conventions.velocity,
         ..Trial::default()
     };
-    let mut recording = Recording { trial, rows: table.rows, ..Recording::default() };
+    let mut recording = Recording { trial, rows: table.rows, resumed: table.resumed, ..Recording::default() };
     for (column, mut values) in table.columns.into_iter().zip(table.values) {
         match column.target {
             Target::Time => {

@@ -1,49 +1,124 @@
 //! CSV, streamed row by row.
 
-use std::io::{BufRead, BufReader, Read};
+use std::io::{Cursor, Read};
 
 use csv::{ByteRecord, ReaderBuilder};
 
+use crate::cells::{Cells, Counter};
 use crate::findings::Findings;
 use crate::mapping::Mapping;
 use crate::metered::{Meter, Metered};
+use crate::number::number;
 use crate::resolve::resolve;
 use crate::rows::Builder;
 use crate::table::{Fault, Table};
 
+/// Bytes that are asked for at once while the header is looked for.
+const CHUNK: u64 = 4096;
+
 /// Reads the mapped columns; nothing after errors that leave nothing to check.
 ///
-/// Rows are counted by records from 1, the header being row 1; blank lines do not count.
+/// A row's number is that of the line in which it starts, as an editor shows it: the first line is 1, blank lines count, and
+/// so do those within quoted cells.
 pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
-    let (metered, meter) = Metered::new(input, mapping.limits.line_bytes);
-    let mut buffered = BufReader::new(metered);
-    let delimiter = delimiter(&mut buffered, findings)?;
-    let mut reader = ReaderBuilder::new().delimiter(delimiter).flexible(true).from_reader(buffered);
+    let (mut metered, meter) = Metered::new(input, mapping.limits.line_bytes);
+    let start = start(&mut metered, &meter, mapping.limits.line_bytes, findings)?;
+    let separator = separator(&start);
+    let whole = Cursor::new(start).chain(metered);
+    let mut reader = ReaderBuilder::new().delimiter(separator).flexible(true).from_reader(whole);
     let headers = headers(&mut reader, mapping, findings)?;
     meter.reset();
     let columns = resolve(&headers, mapping, findings)?;
-    let mut builder = Builder::new(columns, mapping.conventions.missing, findings);
-    let stopped = rows(&mut reader, &meter, mapping.limits.rows, &mut builder);
+    let mut counter = Counter::new(separator, headers.len());
+    let mut builder = Builder::new(columns, mapping.conventions.missing, findings).with_room(mapping.room);
+    let stopped = rows(&mut reader, &meter, mapping.limits.rows, &mut counter, &mut builder);
+    let drops = builder.drops();
     let table = builder.finish();
+    counter.tell(drops, findings);
     if let Err((row, message)) = stopped {
         findings.error(Some(row), None, message);
     }
     Some(table)
 }
 
-/// Comma, semicolon or tab: whichever the header line holds most of.
-fn delimiter(input: &mut impl BufRead, findings: &mut Findings) -> Option<u8> {
-    let start = match input.fill_buf() {
-        Ok(start) => start,
-        Err(error) => {
-            findings.error(None, None, format!("cannot be read: {error}"));
-            return None;
+/// The most rows that there can be, and the columns that are read; none where the header is no good.
+pub(crate) fn measure(mut input: impl Read, mapping: &Mapping) -> Option<(usize, usize)> {
+    let (mut rows, mut before, mut start) = (1, 0, Vec::new());
+    input.by_ref().take(mapping.limits.line_bytes as u64).read_to_end(&mut start).ok()?;
+    let columns = columns(&start[..], mapping)?;
+    let mut buffer = vec![0; 64 << 10];
+    let mut count = |bytes: &[u8]| {
+        for &byte in bytes {
+            rows += usize::from(byte == b'\r' || (byte == b'\n' && before != b'\r'));
+            before = byte;
         }
     };
-    let header = start.split(|&byte| byte == b'\n').find(|line| !line.trim_ascii().is_empty()).unwrap_or_default();
-    let count = |delimiter: &u8| header.iter().filter(|&byte| byte == delimiter).count();
+    count(&start);
+    loop {
+        match input.read(&mut buffer).ok()? {
+            0 => return Some((rows, columns)),
+            read => count(&buffer[..read]),
+        }
+    }
+}
+
+/// How many columns of the file that starts like this are read.
+fn columns(start: &[u8], mapping: &Mapping) -> Option<usize> {
+    let mut findings = Findings::default();
+    let mut reader = ReaderBuilder::new().delimiter(separator(start)).flexible(true).from_reader(start);
+    let headers = headers(&mut reader, mapping, &mut findings)?;
+    Some(resolve(&headers, mapping, &mut findings)?.len())
+}
+
+/// The file up to the end of the header's line at least, however small the pieces are in which it comes.
+fn start(input: &mut impl Read, meter: &Meter, most: usize, findings: &mut Findings) -> Option<Vec<u8>> {
+    let mut start = Vec::new();
+    loop {
+        let read = match input.by_ref().take(CHUNK).read_to_end(&mut start) {
+            Ok(read) => read,
+            Err(error) => {
+                findings.error(None, None, format!("cannot be read: {error}"));
+                return None;
+            }
+        };
+        if start.starts_with(&[0xff, 0xfe]) || start.starts_with(&[0xfe, 0xff]) {
+            findings.error(Some(1), None, "the file is UTF-16 text; save it as UTF-8");
+            return None;
+        }
+        let complete = header_line(&start).is_some_and(|line| line.len() < text(&start).trim_ascii_start().len());
+        if read == 0 || complete || start.len() > most {
+            return Some(start);
+        }
+        // Blank lines before the header are no row without an end.
+        if header_line(&start).is_none() {
+            meter.reset();
+        }
+    }
+}
+
+/// What follows the byte order mark, if there is one.
+fn text(start: &[u8]) -> &[u8] {
+    start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start)
+}
+
+/// The first line that is not blank, as far as it goes.
+fn header_line(start: &[u8]) -> Option<&[u8]> {
+    text(start).split(|&byte| byte == b'\n').find(|line| !line.trim_ascii().is_empty())
+}
+
+/// Comma, semicolon or tab: whichever the header line holds most of outside quotes.
+fn separator(start: &[u8]) -> u8 {
+    let header = header_line(start).unwrap_or_default();
+    let bare = |separator: u8| {
+        let mut quoted = false;
+        let counts = |&byte: &u8| {
+            quoted ^= byte == b'"';
+            byte == separator && !quoted
+        };
+        header.iter().copied().filter(counts).count()
+    };
     // The last of equals wins, and a comma is the rule.
-    [b'\t', b';', b','].into_iter().max_by_key(count)
+    [b'\t', b';', b','].into_iter().max_by_key(|&separator| bare(separator)).unwrap_or(b',')
 }
 
 fn headers(reader: &mut csv::Reader<impl Read>, mapping: &Mapping, findings: &mut Findings) -> Option<Vec<String>> {
@@ -65,35 +140,39 @@ fn headers(reader: &mut csv::Reader<impl Read>, mapping: &Mapping, findings: &mu
 }
 
 /// Feeds every row to the builder; stops with row and reason at what cannot be read on.
-fn rows(reader: &mut csv::Reader<impl Read>, meter: &Meter, most: usize, builder: &mut Builder) -> Result<(), (usize, String)> {
+fn rows(
+    reader: &mut csv::Reader<impl Read>,
+    meter: &Meter,
+    most: usize,
+    counter: &mut Counter,
+    builder: &mut Builder,
+) -> Result<(), (usize, String)> {
     let mut record = ByteRecord::new();
-    let mut row = 1;
+    let mut count = 0;
     loop {
-        row += 1;
-        let more = reader.read_byte_record(&mut record).map_err(|error| (row, format!("cannot be read on: {error}")))?;
+        let next = usize::try_from(reader.position().line()).unwrap_or(usize::MAX);
+        let more = reader.read_byte_record(&mut record).map_err(|error| (next, format!("cannot be read on: {error}")))?;
         if !more {
             return Ok(());
         }
-        if row - 1 > most {
+        let row = line(reader, &record);
+        count += 1;
+        if count > most {
             return Err((row, format!("the file has more than the {most} rows that are read; split it")));
         }
         meter.reset();
-        builder.row(row, |_, column| record.get(column.index).map_or(Err(Fault::Absent), number));
+        match counter.row(row, &record) {
+            Cells::Fit => builder.row(row, |_, column| record.get(column.index).map_or(Err(Fault::Absent), number)),
+            Cells::Few(_) => builder.short(row),
+            Cells::Many => {}
+        }
     }
 }
 
-/// The number in a cell.
-fn number(cell: &[u8]) -> Result<f64, Fault> {
-    let text = cell.trim_ascii();
-    if text.is_empty() {
-        return Err(Fault::Empty);
-    }
-    let parsed = std::str::from_utf8(text).ok().and_then(|text| text.parse::<f64>().ok());
-    match parsed {
-        Some(value) if value.is_finite() => Ok(value),
-        Some(_) => Err(Fault::NotANumber),
-        None => Err(Fault::Text(String::from_utf8_lossy(&text[..text.len().min(40)]).into_owned())),
-    }
+/// The line in which the record that was just read starts. Its end is known: one line end after it, and those inside.
+fn line(reader: &csv::Reader<impl Read>, record: &ByteRecord) -> usize {
+    let inside = record.as_slice().iter().filter(|&&byte| byte == b'\n').count();
+    usize::try_from(reader.position().line()).unwrap_or(usize::MAX).saturating_sub(1 + inside)
 }
 
 #[cfg(test)]
@@ -120,7 +199,7 @@ mod tests {
         let (_, errors) = run("t_s,u_m_s\n0,1\n1,\n2,nan\n3,abc\n4\n", &Mapping::canonical());
         assert!(errors[0].starts_with("Some(3) the cell is empty"), "{errors:?}");
         assert!(errors[1].contains("not a finite number") && errors[2].contains("`abc`"));
-        assert!(errors[3].contains("ends before"));
+        assert!(errors[3].contains("row 6 has 1 cell; the header has 2"), "{errors:?}");
         let (_, errors) = run("t_s;u_m_s\n0;1,5\n", &Mapping::canonical());
         assert!(errors[0].contains("with a point"));
     }
@@ -128,7 +207,7 @@ mod tests {
     #[test]
     fn sizes_are_bounded() {
         let mut mapping = Mapping::canonical();
-        mapping.limits = crate::Limits { rows: 2, columns: 2, line_bytes: 100 };
+        mapping.limits = crate::Limits { rows: 2, columns: 2, line_bytes: 100, ..crate::Limits::default() };
         assert!(run("t_s,u_m_s\n0,1\n1,1\n", &mapping).1.is_empty());
         assert!(run("t_s,u_m_s\n0,1\n1,1\n2,1\n", &mapping).1[0].contains("more than the 2 rows"));
         assert!(run("t_s,u_m_s,v_m_s\n", &mapping).1[0].contains("3 columns"));
@@ -137,3 +216,7 @@ mod tests {
         assert!(run("", &mapping).1[0].contains("empty"));
     }
 }
+
+#[cfg(test)]
+#[path = "csv_file_tests.rs"]
+mod more_tests;

@@ -16,6 +16,28 @@ pub(crate) enum Severity {
     Warning,
 }
 
+/// Samples with the same fault: the first few with their rows, and how many there are.
+#[derive(Debug, Default)]
+pub(crate) struct Hits {
+    first: Vec<(usize, usize)>,
+    count: usize,
+    /// The row of the last.
+    last: Option<usize>,
+}
+
+impl Hits {
+    pub(crate) fn add(&mut self, hit: (usize, usize)) {
+        if self.count < MAX_ROWS {
+            self.first.push(hit);
+        }
+        (self.count, self.last) = (self.count + 1, Some(hit.1));
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+}
+
 /// Everything found in one file so far.
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
@@ -47,11 +69,11 @@ impl Findings {
     }
 
     /// The same fault in several rows: the first few one by one, the rest as a count.
-    pub(crate) fn rows(&mut self, severity: Severity, column: &str, hits: &[(usize, usize)], message: impl Fn(usize) -> String) {
-        for &(sample, row) in hits.iter().take(MAX_ROWS) {
+    pub(crate) fn rows(&mut self, severity: Severity, column: &str, hits: &Hits, message: impl Fn(usize) -> String) {
+        for &(sample, row) in &hits.first {
             self.add(severity, Some(row), Some(column), message(sample));
         }
-        if let (Some(more @ 1..), Some(&(_, last))) = (hits.len().checked_sub(MAX_ROWS), hits.last()) {
+        if let (Some(more @ 1..), Some(last)) = (hits.count.checked_sub(MAX_ROWS), hits.last) {
             self.add(severity, None, Some(column), format!("the same in {more} further rows, the last of them row {last}"));
         }
     }
@@ -80,7 +102,8 @@ mod tests {
     #[test]
     fn equal_faults_are_counted_and_the_list_is_bounded() {
         let mut findings = Findings::default();
-        let hits: Vec<(usize, usize)> = (0..10).map(|k| (k, k + 2)).collect();
+        let mut hits = Hits::default();
+        (0..10).for_each(|k| hits.add((k, k + 2)));
         findings.rows(Severity::Error, "u", &hits, |k| format!("fault {k}"));
         for k in 0..30 {
             findings.error(Some(k), None, "other");

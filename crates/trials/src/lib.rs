@@ -4,9 +4,11 @@
 //! with findings that name row and column; [`check`] tells the same without the samples. [`load_path`] reads what a
 //! command line names: a manifest or a single file. [`samples`] keeps trials as Parquet and writes them as CSV.
 
+mod cells;
 mod checks;
 mod convert;
 mod csv_file;
+mod demand;
 mod findings;
 mod limits;
 mod load;
@@ -14,7 +16,9 @@ mod manifest;
 mod mapping;
 mod metered;
 mod names;
+mod number;
 mod outcome;
+mod pages;
 mod parquet_file;
 mod read;
 mod recording;
@@ -29,6 +33,7 @@ mod table;
 mod testing;
 mod units;
 
+pub use demand::{Demand, demand, measuring};
 pub use limits::Limits;
 pub use load::{Loaded, check_path, load_path};
 pub use manifest::read_manifest;

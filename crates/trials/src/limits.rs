@@ -9,10 +9,14 @@ pub struct Limits {
     pub columns: usize,
     /// Bytes of one row of a CSV file.
     pub line_bytes: usize,
+    /// Bytes of one page of a Parquet file, as it is in memory.
+    pub page_bytes: usize,
+    /// Bytes of what a Parquet file says of itself at its end.
+    pub footer_bytes: usize,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { rows: 5_000_000, columns: 200, line_bytes: 64 * 1024 }
+        Self { rows: 5_000_000, columns: 200, line_bytes: 64 * 1024, page_bytes: 16 << 20, footer_bytes: 2 << 20 }
     }
 }

@@ -16,12 +16,7 @@ use crate::units::Kind;
 /// Names line and field of what is wrong: the YAML, an unknown channel or unit, a path that leaves the folder, a file
 /// named twice, impossible smoothing.
 pub fn read_manifest(file_name: &str, text: &str) -> Result<Manifest, FileError> {
-    let manifest: Manifest = serde_yaml::from_str(text).map_err(|error| FileError {
-        file: file_name.to_owned(),
-        line: error.location().map(|location| location.line()),
-        field: String::new(),
-        message: error.to_string(),
-    })?;
+    let manifest: Manifest = sistership_model::yaml::read(text).map_err(|error| FileError::of_yaml(file_name, error))?;
     let problem = columns(&manifest).or_else(|| trials(&manifest)).or_else(|| conventions(&manifest));
     match problem {
         None => Ok(manifest),
@@ -53,7 +48,7 @@ fn trials(manifest: &Manifest) -> Option<Problem> {
         return Some(Problem { field: "trials".into(), near: "trials:".into(), message: "lists no file".into() });
     }
     manifest.trials.iter().enumerate().find_map(|(index, trial)| {
-        let twice = manifest.trials[..index].iter().any(|other| other.file == trial.file);
+        let twice = manifest.trials[..index].iter().any(|other| same_file(&other.file, &trial.file));
         let message = match trial.depth_m {
             _ if !stays_inside(&trial.file) => "must be a path relative to the manifest that stays in its folder".to_owned(),
             _ if twice => "is listed twice; the same data would count twice".to_owned(),
@@ -68,6 +63,12 @@ fn trials(manifest: &Manifest) -> Option<Problem> {
             message: format!("`{}` {message}", trial.file),
         })
     })
+}
+
+/// Whether two paths name the same file: `a.csv` is `./a.csv`.
+fn same_file(one: &str, other: &str) -> bool {
+    let plain = |path| Path::new(path).components().filter(|part| *part != Component::CurDir).collect::<Vec<_>>();
+    plain(one) == plain(other)
 }
 
 /// Whether a path names something below the folder on any system: a backslash or colon would mean more on Windows.
@@ -136,5 +137,14 @@ trials:
         }
         assert!(refused("depth_m: null", "depth_m: -1").contains("positive"));
         assert!(refused("depth_m: null }\n", "depth_m: null }\n  - { file: zigzag/a.csv }\n").contains("twice"));
+        for again in ["./zigzag/a.csv", "zigzag//a.csv", "zigzag/./a.csv"] {
+            assert!(refused("depth_m: null }\n", &format!("depth_m: null }}\n  - {{ file: {again} }}\n")).contains("twice"));
+        }
+    }
+
+    #[test]
+    fn a_channel_is_mapped_once() {
+        let twice = "unit: rad }\n  delta: { column: \"other\", unit: rad }\n";
+        assert!(refused("unit: rad }\n", twice).contains("delta"));
     }
 }

@@ -19,6 +19,8 @@ pub struct Mapping {
     pub depth_m: Option<f64>,
     /// Bounds on the file.
     pub limits: Limits,
+    /// Rows that room is made for before any is read, so that columns need not grow; see [`crate::demand`].
+    pub room: usize,
 }
 
 impl Mapping {
@@ -35,6 +37,7 @@ impl Mapping {
             manoeuvre: trial.manoeuvre.clone(),
             depth_m: trial.depth_m,
             limits: Limits::default(),
+            room: 0,
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A reader that gives up on rows without an end.
+//! A reader that gives up on rows without an end, and in which every line ends alike.
 
 use std::cell::Cell;
 use std::io::{self, Read};
@@ -18,28 +18,60 @@ impl Meter {
 /// Passes bytes on until more than the limit (and one read) have gone by without a complete row.
 ///
 /// The limit is on what the CSV parser must hold in memory: a physical line, or a quoted cell whose quote never closes.
+/// Every line end (`\r\n`, `\r`, `\n`, also mixed) comes out as `\n`, and the last line has one, so that the parser's
+/// lines are the lines that a person counts.
 pub(crate) struct Metered<R> {
     inner: R,
     meter: Meter,
     limit: usize,
+    last: u8,
 }
 
 impl<R: Read> Metered<R> {
     pub(crate) fn new(inner: R, limit: usize) -> (Self, Meter) {
         let meter = Meter::default();
-        (Self { inner, meter: meter.clone(), limit }, meter)
+        (Self { inner, meter: meter.clone(), limit, last: b'\n' }, meter)
+    }
+
+    /// Makes every line end in the buffer a `\n`; how many bytes are left.
+    fn line_ends(&mut self, bytes: &mut [u8]) -> usize {
+        let last = bytes.last().copied().unwrap_or(self.last);
+        let before = std::mem::replace(&mut self.last, last);
+        if before != b'\r' && !bytes.contains(&b'\r') {
+            return bytes.len();
+        }
+        let (mut kept, mut previous) = (0, before);
+        for k in 0..bytes.len() {
+            let byte = bytes[k];
+            if !(byte == b'\n' && previous == b'\r') {
+                bytes[kept] = if byte == b'\r' { b'\n' } else { byte };
+                kept += 1;
+            }
+            previous = byte;
+        }
+        kept
     }
 }
 
 impl<R: Read> Read for Metered<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        if self.meter.0.get() > self.limit {
-            let message = format!("a row is longer than {} bytes; is a quote left open, or is this not a CSV file?", self.limit);
-            return Err(io::Error::new(io::ErrorKind::InvalidData, message));
+        loop {
+            if self.meter.0.get() > self.limit {
+                let message =
+                    format!("a row is longer than {} bytes; is a quote left open, or is this not a CSV file?", self.limit);
+                return Err(io::Error::new(io::ErrorKind::InvalidData, message));
+            }
+            let read = self.inner.read(buffer)?;
+            self.meter.0.set(self.meter.0.get() + read);
+            if read == 0 && !matches!(self.last, b'\n' | b'\r') && !buffer.is_empty() {
+                (buffer[0], self.last) = (b'\n', b'\n');
+                return Ok(1);
+            }
+            let kept = self.line_ends(&mut buffer[..read]);
+            if kept > 0 || read == 0 {
+                return Ok(kept);
+            }
         }
-        let read = self.inner.read(buffer)?;
-        self.meter.0.set(self.meter.0.get() + read);
-        Ok(read)
     }
 }
 
@@ -58,6 +90,21 @@ mod tests {
         for _ in 0..100 {
             rows.read_exact(&mut buffer).unwrap();
             meter.reset();
+        }
+    }
+
+    #[test]
+    fn every_line_end_becomes_one() {
+        for (text, wanted) in [("a\r\nb\rc\nd", "a\nb\nc\nd\n"), ("\r\r\n\r", "\n\n\n"), ("", ""), ("a\n\n", "a\n\n")] {
+            for size in 1..5 {
+                let mut out = Vec::new();
+                let (mut reader, _) = Metered::new(text.as_bytes(), 1000);
+                let mut buffer = vec![0; size];
+                while let Ok(read @ 1..) = reader.read(&mut buffer) {
+                    out.extend_from_slice(&buffer[..read]);
+                }
+                assert_eq!(String::from_utf8(out).unwrap(), wanted, "{text:?} by {size}");
+            }
         }
     }
 }

@@ -6,12 +6,14 @@ use parquet::basic::{ConvertedType, LogicalType, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::{ParquetError, Result as ParquetResult};
+use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader, RowGroupMetaData};
 use parquet::file::reader::{ChunkReader, FileReader, RowGroupReader, SerializedFileReader};
-use parquet::schema::types::ColumnDescriptor;
+use parquet::schema::types::{ColumnDescriptor, SchemaDescriptor};
 
 use crate::findings::Findings;
 use crate::limits::Limits;
 use crate::mapping::Mapping;
+use crate::pages::{Held, held};
 use crate::resolve::resolve;
 use crate::rows::Builder;
 use crate::table::{Column, Fault, Table};
@@ -20,20 +22,51 @@ use crate::table::{Column, Fault, Table};
 ///
 /// Rows are counted as in a CSV file: the first row of data is row 2.
 pub(crate) fn read<R: ChunkReader + 'static>(input: R, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
-    let opened = open(input, mapping.limits).map_err(|message| findings.error(None, None, message));
-    let reader = opened.ok()?;
-    let columns = resolve(&headers(&reader), mapping, findings)?;
-    check_types(&reader, &columns, findings);
-    if findings.has_errors() {
-        return None;
-    }
-    let mut builder = Builder::new(columns.clone(), mapping.conventions.missing, findings);
+    let columns = mapped(&input, mapping, findings)?.columns;
+    let reader = guarded(|| SerializedFileReader::new(input)).map_err(|error| findings.error(None, None, unread(&error)));
+    let reader = reader.ok()?;
+    let rows = reader.metadata().row_groups().iter().map(|group| group.num_rows()).sum::<i64>();
+    let builder = Builder::new(columns.clone(), mapping.conventions.missing, findings);
+    let mut builder = builder.with_room(usize::try_from(rows).unwrap_or(0));
     let outcome = guarded(|| groups(&reader, &columns, &mut builder));
     let table = builder.finish();
     if let Err(error) = outcome {
         findings.error(None, None, format!("the file is damaged: {error}"));
     }
     Some(table)
+}
+
+/// Rows, columns that are read, and bytes that pages take at a time; nothing of a file that will be refused.
+pub(crate) fn measure<R: ChunkReader + 'static>(input: &R, mapping: &Mapping) -> Option<(usize, usize, u64)> {
+    let mapped = mapped(input, mapping, &mut Findings::default())?;
+    Some((mapped.rows, mapped.columns.len(), mapped.holding))
+}
+
+/// What is read of a file.
+struct Mapped {
+    columns: Vec<Column>,
+    rows: usize,
+    /// Bytes that pages take at a time.
+    holding: u64,
+}
+
+/// Finds the columns to read, and holds their pages against the limits before any is decompressed.
+fn mapped<R: ChunkReader + 'static>(input: &R, mapping: &Mapping, findings: &mut Findings) -> Option<Mapped> {
+    let opened = metadata(input, mapping.limits).map_err(|message| findings.error(None, None, message));
+    let (meta, rows) = opened.ok()?;
+    let schema = meta.file_metadata().schema_descr();
+    let columns = resolve(&names(schema), mapping, findings)?;
+    check_types(schema, &columns, findings);
+    let mut holding = 0;
+    for column in columns.iter().filter(|_| !findings.has_errors()).collect::<Vec<_>>() {
+        let of_group = |group: &RowGroupMetaData| held(input, group.column(column.index), mapping.limits.page_bytes);
+        let parts: Result<Vec<Held>, String> = meta.row_groups().iter().map(of_group).collect();
+        match parts {
+            Ok(parts) => holding += parts.into_iter().fold(Held::default(), Held::max).bytes(),
+            Err(message) => findings.error(None, Some(&column.header), message),
+        }
+    }
+    (!findings.has_errors()).then_some(Mapped { columns, rows, holding })
 }
 
 /// The library asserts some of what a file says of itself; on a file that lies, such a panic becomes an error.
@@ -44,34 +77,59 @@ pub(crate) fn guarded<T>(work: impl FnOnce() -> ParquetResult<T>) -> ParquetResu
 
 /// Opens the file and holds it against the limits before any sample is decoded.
 pub(crate) fn open<R: ChunkReader + 'static>(input: R, limits: Limits) -> Result<SerializedFileReader<R>, String> {
-    let reader =
-        guarded(|| SerializedFileReader::new(input)).map_err(|error| format!("not a Parquet file that can be read: {error}"))?;
-    let meta = reader.metadata().file_metadata();
-    let columns = meta.schema_descr().num_columns();
-    let mut chunks = reader.metadata().row_groups().iter().flat_map(|group| group.columns());
+    metadata(&input, limits)?;
+    guarded(|| SerializedFileReader::new(input)).map_err(|error| unread(&error))
+}
+
+fn unread(error: &ParquetError) -> String {
+    format!("not a Parquet file that can be read: {error}")
+}
+
+/// What the file says of itself, as far as that is within the limits, and its rows.
+fn metadata<R: ChunkReader + 'static>(input: &R, limits: Limits) -> Result<(ParquetMetaData, usize), String> {
+    let footer = footer_bytes(input).map_err(|error| unread(&error))?;
+    if footer > limits.footer_bytes as u64 {
+        return Err(format!("{footer} bytes about the file at its end are more than the {} that are read", limits.footer_bytes));
+    }
+    let meta = guarded(|| ParquetMetaDataReader::new().parse_and_finish(input)).map_err(|error| unread(&error))?;
+    let columns = meta.file_metadata().schema_descr().num_columns();
+    let mut chunks = meta.row_groups().iter().flat_map(|group| group.columns());
     if chunks.any(|chunk| {
         chunk.compressed_size() < 0 || chunk.data_page_offset() < 0 || chunk.dictionary_page_offset().is_some_and(|at| at < 0)
     }) {
         return Err("not a Parquet file that can be read: a column lies outside the file".into());
     }
     // The groups are what is read, so they are counted, not the file's own total.
-    let rows: i64 = reader.metadata().row_groups().iter().map(|group| group.num_rows()).fold(0, i64::saturating_add);
-    if usize::try_from(rows).map_or(true, |rows| rows > limits.rows) {
+    let groups = meta.row_groups().iter().map(|group| group.num_rows());
+    let counted: Option<Vec<usize>> = groups.clone().map(|rows| usize::try_from(rows).ok()).collect();
+    let counted = counted.ok_or("not a Parquet file that can be read: a row group has a negative number of rows")?;
+    let rows = counted.into_iter().fold(0, usize::saturating_add);
+    if rows > limits.rows {
         return Err(format!("{rows} rows are more than the {} that are read; split the file", limits.rows));
     }
     if columns > limits.columns {
         return Err(format!("{columns} columns are more than the {} that are read", limits.columns));
     }
-    Ok(reader)
+    Ok((meta, rows))
+}
+
+/// Bytes of what the file says of itself; its last eight bytes hold their number and a mark.
+fn footer_bytes<R: ChunkReader>(input: &R) -> ParquetResult<u64> {
+    let at = input.len().checked_sub(8).ok_or_else(|| ParquetError::General("it is too short".into()))?;
+    let end = input.get_bytes(at, 8)?;
+    Ok(end.first_chunk().map_or(0, |bytes| u64::from(u32::from_le_bytes(*bytes))))
 }
 
 /// Dotted names of the columns.
 pub(crate) fn headers<R: ChunkReader + 'static>(reader: &SerializedFileReader<R>) -> Vec<String> {
-    reader.metadata().file_metadata().schema_descr().columns().iter().map(|column| column.path().string()).collect()
+    names(reader.metadata().file_metadata().schema_descr())
 }
 
-fn check_types<R: ChunkReader + 'static>(reader: &SerializedFileReader<R>, columns: &[Column], findings: &mut Findings) {
-    let schema = reader.metadata().file_metadata().schema_descr();
+fn names(schema: &SchemaDescriptor) -> Vec<String> {
+    schema.columns().iter().map(|column| column.path().string()).collect()
+}
+
+fn check_types(schema: &SchemaDescriptor, columns: &[Column], findings: &mut Findings) {
     for column in columns {
         let found = schema.column(column.index);
         if !is_number(&found) {
@@ -81,16 +139,28 @@ fn check_types<R: ChunkReader + 'static>(reader: &SerializedFileReader<R>, colum
     }
 }
 
-/// Dates and decimals are integers too, but not of the column's unit.
+/// Dates, times and decimals are integers too, but not of the column's unit: what is not known to be a number is refused.
 fn is_number(column: &ColumnDescriptor) -> bool {
+    use ConvertedType as C;
     let plain = matches!(column.logical_type_ref(), None | Some(LogicalType::Integer { .. }))
-        && !matches!(
+        && matches!(
             column.converted_type(),
-            ConvertedType::DECIMAL | ConvertedType::DATE | ConvertedType::TIMESTAMP_MILLIS | ConvertedType::TIMESTAMP_MICROS
+            C::NONE | C::INT_8 | C::INT_16 | C::INT_32 | C::INT_64 | C::UINT_8 | C::UINT_16 | C::UINT_32 | C::UINT_64
         );
     plain
         && column.max_rep_level() == 0
         && matches!(column.physical_type(), Type::DOUBLE | Type::FLOAT | Type::INT32 | Type::INT64)
+}
+
+fn is_unsigned(column: &ColumnDescriptor) -> bool {
+    use ConvertedType as C;
+    matches!(column.logical_type_ref(), Some(LogicalType::Integer(kind)) if !kind.is_signed)
+        || matches!(column.converted_type(), C::UINT_8 | C::UINT_16 | C::UINT_32 | C::UINT_64)
+}
+
+/// The integer as f64, or NaN where an f64 cannot tell it from its neighbours.
+fn exact(value: i128) -> f64 {
+    if value.unsigned_abs() <= 1 << 53 { value as f64 } else { f64::NAN }
 }
 
 fn type_name(column: &ColumnDescriptor) -> String {
@@ -101,6 +171,9 @@ fn type_name(column: &ColumnDescriptor) -> String {
     }
 }
 
+/// Rows that are decoded at a time.
+pub(crate) const BATCH: usize = 8192;
+
 fn groups<R: ChunkReader + 'static>(
     reader: &SerializedFileReader<R>,
     columns: &[Column],
@@ -109,12 +182,16 @@ fn groups<R: ChunkReader + 'static>(
     let mut row = 1;
     for index in 0..reader.num_row_groups() {
         let group = reader.get_row_group(index)?;
-        let values: Vec<Vec<f64>> =
-            columns.iter().map(|column| column_values(&*group, column.index)).collect::<Result<_, _>>()?;
-        let number = |k: usize, position: usize| values[position].get(k).copied().filter(|value| value.is_finite());
-        for k in 0..group_rows(&*group)? {
-            row += 1;
-            builder.row(row, |position, _| number(k, position).ok_or(Fault::NotANumber));
+        let mut cells: Vec<Cells> = columns.iter().map(|column| Cells::new(&*group, column.index)).collect::<Result<_, _>>()?;
+        let rows = group_rows(&*group)?;
+        for start in (0..rows).step_by(BATCH) {
+            let count = BATCH.min(rows - start);
+            cells.iter_mut().try_for_each(|cells| cells.next(count))?;
+            let number = |k: usize, at: usize| cells[at].values.get(k).copied().filter(|value| value.is_finite());
+            for k in 0..count {
+                row += 1;
+                builder.row(row, |position, _| number(k, position).ok_or(Fault::NotANumber));
+            }
         }
     }
     Ok(())
@@ -125,39 +202,70 @@ fn group_rows(group: &dyn RowGroupReader) -> ParquetResult<usize> {
         .map_err(|_| ParquetError::General("a row group has a negative number of rows".into()))
 }
 
-/// A column of a row group as f64; a null becomes NaN.
-///
-/// # Errors
-/// The column is damaged, of another type, or not as long as the group says.
-pub(crate) fn column_values(group: &dyn RowGroupReader, index: usize) -> ParquetResult<Vec<f64>> {
-    let rows = group_rows(group)?;
-    let nullable = group.metadata().column(index).column_descr().max_def_level();
-    match group.get_column_reader(index)? {
-        ColumnReader::DoubleColumnReader(reader) => values(reader, rows, nullable, |value| value),
-        ColumnReader::FloatColumnReader(reader) => values(reader, rows, nullable, f64::from),
-        ColumnReader::Int32ColumnReader(reader) => values(reader, rows, nullable, f64::from),
-        ColumnReader::Int64ColumnReader(reader) => values(reader, rows, nullable, |value| value as f64),
-        _ => Err(ParquetError::General("a column is of an unexpected type".into())),
+/// A column of a row group as f64, decoded some rows at a time; a null becomes NaN, and so does an integer beyond 2^53, which no
+/// f64 holds exactly.
+pub(crate) struct Cells {
+    reader: ColumnReader,
+    full: i16,
+    unsigned: bool,
+    rows: usize,
+    read: usize,
+    /// The rows last read; a null is NaN.
+    pub values: Vec<f64>,
+}
+
+impl Cells {
+    pub(crate) fn new(group: &dyn RowGroupReader, index: usize) -> ParquetResult<Self> {
+        let descriptor = group.metadata().column(index).column_descr();
+        let (full, unsigned) = (descriptor.max_def_level(), is_unsigned(descriptor));
+        let (reader, rows) = (group.get_column_reader(index)?, group_rows(group)?);
+        Ok(Self { reader, full, unsigned, rows, read: 0, values: Vec::new() })
+    }
+
+    /// Reads so many further rows.
+    ///
+    /// # Errors
+    /// The column is damaged, of another type, or not as long as the group says.
+    pub(crate) fn next(&mut self, count: usize) -> ParquetResult<()> {
+        let (full, values) = (self.full, &mut self.values);
+        values.clear();
+        let records = match &mut self.reader {
+            ColumnReader::DoubleColumnReader(reader) => batch(reader, count, full, |value| value, values),
+            ColumnReader::FloatColumnReader(reader) => batch(reader, count, full, f64::from, values),
+            ColumnReader::Int32ColumnReader(reader) if self.unsigned => {
+                batch(reader, count, full, |value| f64::from(value.cast_unsigned()), values)
+            }
+            ColumnReader::Int32ColumnReader(reader) => batch(reader, count, full, f64::from, values),
+            ColumnReader::Int64ColumnReader(reader) if self.unsigned => {
+                batch(reader, count, full, |value| exact(value.cast_unsigned().into()), values)
+            }
+            ColumnReader::Int64ColumnReader(reader) => batch(reader, count, full, |value| exact(value.into()), values),
+            _ => Err(ParquetError::General("a column is of an unexpected type".into())),
+        }?;
+        self.read += self.values.len();
+        if records == count && self.values.len() == count {
+            return Ok(());
+        }
+        let (read, rows) = (self.read, self.rows);
+        Err(ParquetError::General(format!("a column holds {read} values where {rows} are promised")))
     }
 }
 
-fn values<T: DataType>(
-    mut reader: ColumnReaderImpl<T>,
-    rows: usize,
+fn batch<T: DataType>(
+    reader: &mut ColumnReaderImpl<T>,
+    count: usize,
     full: i16,
     to_f64: impl Fn(T::T) -> f64,
-) -> ParquetResult<Vec<f64>> {
+    values: &mut Vec<f64>,
+) -> ParquetResult<usize> {
     let (mut levels, mut present) = (Vec::new(), Vec::new());
-    let (records, ..) = reader.read_records(rows, Some(&mut levels), None, &mut present)?;
+    let (records, ..) = reader.read_records(count, Some(&mut levels), None, &mut present)?;
     let mut present = present.into_iter().map(to_f64);
-    let values: Vec<f64> = match full {
-        0 => present.collect(),
-        _ => levels.iter().map(|&level| if level == full { present.next().unwrap_or(f64::NAN) } else { f64::NAN }).collect(),
-    };
-    if records == rows && values.len() == rows {
-        return Ok(values);
+    match full {
+        0 => values.extend(present),
+        _ => values.extend(levels.iter().map(|&at| if at == full { present.next().unwrap_or(f64::NAN) } else { f64::NAN })),
     }
-    Err(ParquetError::General(format!("a column holds {} values where {rows} are promised", values.len())))
+    Ok(records)
 }
 
 #[cfg(test)]

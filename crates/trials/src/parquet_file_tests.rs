@@ -56,3 +56,53 @@ fn text_is_no_channel_and_sizes_are_bounded() {
         assert!(open(foreign(), limits).err().unwrap().contains(said));
     }
 }
+
+/// A file of time and one column of integers of the given type.
+fn integers(kind: &str, small: &[i32], large: &[i64]) -> Bytes {
+    let schema = format!("message m {{ required double t_s; required {kind}; }}");
+    let schema = Arc::new(parse_message_type(&schema).unwrap());
+    let mut bytes = Vec::new();
+    let mut writer = SerializedFileWriter::new(&mut bytes, schema, Arc::new(WriterProperties::default())).unwrap();
+    let mut group = writer.next_row_group().unwrap();
+    let mut column = group.next_column().unwrap().unwrap();
+    let times: Vec<f64> = (0..small.len().max(large.len())).map(|k| k as f64).collect();
+    column.typed::<parquet::data_type::DoubleType>().write_batch(&times, None, None).unwrap();
+    column.close().unwrap();
+    let mut column = group.next_column().unwrap().unwrap();
+    match small {
+        [] => column.typed::<Int64Type>().write_batch(large, None, None).unwrap(),
+        _ => column.typed::<parquet::data_type::Int32Type>().write_batch(small, None, None).unwrap(),
+    };
+    column.close().unwrap();
+    group.close().unwrap();
+    writer.close().unwrap();
+    bytes.into()
+}
+
+#[test]
+fn unsigned_integers_are_not_taken_for_negative_ones() {
+    let mut findings = Findings::default();
+    let file = integers("int32 x_m (UINT_32)", &[1, -1, 3], &[]);
+    let table = read(file, &Mapping::canonical(), &mut findings).unwrap();
+    assert_eq!(table.values[1], [1.0, 4_294_967_295.0, 3.0]);
+}
+
+#[test]
+fn integers_that_no_f64_holds_are_told() {
+    for kind in ["int64 x_m", "int64 x_m (UINT_64)"] {
+        let mut findings = Findings::default();
+        let file = integers(kind, &[], &[1, 1 << 53, (1 << 53) + 1]);
+        read(file, &Mapping::canonical(), &mut findings).unwrap();
+        assert!(messages(findings).contains("error Some(4) Some(\"x_m\")"));
+    }
+}
+
+#[test]
+fn times_and_decimals_are_no_plain_integers() {
+    for kind in ["int32 x_m (TIME_MILLIS)", "int64 x_m (TIMESTAMP_MICROS)", "int32 x_m (DECIMAL(9,2))", "int32 x_m (DATE)"] {
+        let (small, large) = if kind.starts_with("int32") { (vec![1, 2, 3], vec![]) } else { (vec![], vec![1, 2, 3]) };
+        let mut findings = Findings::default();
+        assert!(read(integers(kind, &small, &large), &Mapping::canonical(), &mut findings).is_none(), "{kind}");
+        assert!(messages(findings).contains("write the column as DOUBLE"), "{kind}");
+    }
+}

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use sistership_model::trial::{Channel, Trial};
 
+use crate::findings::Hits;
 use crate::table::{Column, Target};
 use crate::units::Kind;
 
@@ -13,6 +14,8 @@ use crate::units::Kind;
 pub(crate) struct Recording {
     pub trial: Trial,
     pub rows: Vec<u32>,
+    /// Rows before which others have been left out.
+    pub resumed: Vec<u32>,
     /// Header of the time column.
     pub time: String,
     pub columns: BTreeMap<Channel, Column>,
@@ -52,8 +55,10 @@ impl Recording {
     }
 
     /// Samples that a test holds for, each with its row.
-    pub(crate) fn hits(&self, samples: Range<usize>, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
-        samples.filter(|&k| holds(k)).map(|k| (k, self.row(k))).collect()
+    pub(crate) fn hits(&self, samples: Range<usize>, holds: impl Fn(usize) -> bool) -> Hits {
+        let mut hits = Hits::default();
+        samples.filter(|&k| holds(k)).for_each(|k| hits.add((k, self.row(k))));
+        hits
     }
 
     /// Learns interval and segments; time must be strictly increasing.

@@ -43,9 +43,26 @@ impl Resolver<'_> {
                 continue;
             };
             match self.find(&mapped.column) {
-                Ok(index) => self.add(index, target, &mapped.unit),
+                Ok(index) => {
+                    self.contradicted(index, target, &mapped.unit);
+                    self.add(index, target, &mapped.unit);
+                }
                 Err(message) => self.findings.error(Some(1), Some(&mapped.column), message),
             }
+        }
+    }
+
+    /// A header that names one unit, where the manifest says another: one of the two is wrong.
+    fn contradicted(&mut self, index: usize, target: Target, unit: &str) {
+        let (kind, header) = (Kind::of(target), &self.headers[index]);
+        if let Some(named) = kind.named_in(header)
+            && let (Ok(one), Ok(other)) = (kind.factor(named), kind.factor(unit))
+            && one != other
+        {
+            let message =
+                format!("the header says `{named}`, the manifest says `{}`; correct the one that is wrong", unit.trim());
+            let header = header.clone();
+            self.findings.error(Some(1), Some(&header), message);
         }
     }
 

@@ -75,3 +75,23 @@ fn apparent_wind_has_channels_of_its_own() {
     let (columns, _) = run(&["t_s", "w"], &mapping);
     assert_eq!(columns.unwrap()[0].target, Target::Channel(Channel::ApparentWindSpeed));
 }
+
+#[test]
+fn a_header_and_a_manifest_agree_on_the_unit() {
+    for (name, header, unit) in [
+        ("u", "log_kn", "m/s"),
+        ("u", "log [kn]", "m/s"),
+        ("r", "r_deg_s", "rad/s"),
+        ("psi", "psi (deg)", "rad"),
+        ("t", "t_ms", "s"),
+    ] {
+        let time = if name == "t" { "u_m_s" } else { "t_s" };
+        let (columns, text) = run(&[time, header], &mapped(&[(name, header, unit)]));
+        assert!(columns.is_none() && text.contains("the header says"), "{header}: {text}");
+    }
+    for (name, header, unit) in
+        [("u", "log_kn", "kn"), ("u", "speed [m/s]", "m/s"), ("x", "east_m", "m"), ("psi", "hdg_s", "deg")]
+    {
+        assert!(run(&["t_s", header], &mapped(&[(name, header, unit)])).0.is_some(), "{header}");
+    }
+}

@@ -29,8 +29,15 @@ const LISTED: usize = 5;
 impl<'a> Builder<'a> {
     pub(crate) fn new(columns: Vec<Column>, missing: Missing, findings: &'a mut Findings) -> Self {
         let values = vec![Vec::new(); columns.len()];
-        let table = Table { columns, values, rows: Vec::new() };
+        let table = Table { columns, values, ..Table::default() };
         Self { table, missing, findings, run: None, faulty: 0, scratch: Vec::new() }
+    }
+
+    /// With room for so many rows: columns that grow take half as much again.
+    pub(crate) fn with_room(mut self, rows: usize) -> Self {
+        self.table.rows.reserve_exact(rows);
+        self.table.values.iter_mut().for_each(|values| values.reserve_exact(rows));
+        self
     }
 
     /// One row of the file; `cell` gives the number in the n-th mapped column.
@@ -45,9 +52,28 @@ impl<'a> Builder<'a> {
                 }
             }
         }
+        let row = u32::try_from(row).unwrap_or(u32::MAX);
+        if self.run.is_some() {
+            self.table.resumed.push(row);
+        }
         self.end_run();
-        self.table.rows.push(u32::try_from(row).unwrap_or(u32::MAX));
+        self.table.rows.push(row);
         self.table.values.iter_mut().zip(&self.scratch).for_each(|(values, &value)| values.push(value));
+    }
+
+    /// A row that ends before the header does: left out as one without a value, or told by whoever counts the cells.
+    pub(crate) fn short(&mut self, row: usize) {
+        if self.drops()
+            && let Some(column) = self.table.columns.last()
+        {
+            let header = column.header.clone();
+            self.faulty(row, header, Fault::Short);
+        }
+    }
+
+    /// Whether rows without a value are left out.
+    pub(crate) fn drops(&self) -> bool {
+        self.missing == Missing::Drop
     }
 
     fn faulty(&mut self, row: usize, column: String, fault: Fault) {
@@ -73,6 +99,8 @@ impl<'a> Builder<'a> {
 
     /// The table, once every row has been seen.
     pub(crate) fn finish(mut self) -> Table {
+        self.table.rows.shrink_to_fit();
+        self.table.values.iter_mut().for_each(Vec::shrink_to_fit);
         let last = self.run.as_ref().map(|run| run.last);
         self.end_run();
         if let Some(more @ 1..) = self.faulty.checked_sub(LISTED).filter(|_| self.missing == Missing::Refuse) {

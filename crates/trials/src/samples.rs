@@ -6,6 +6,7 @@
 //! name is fixed, and compression runs on one thread.
 
 use std::collections::BTreeMap;
+use std::fs::File;
 use std::io::Write;
 use std::sync::Arc;
 
@@ -23,14 +24,14 @@ use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::{Channel, Finding, Trial};
 
 use crate::limits::Limits;
-use crate::parquet_file;
+use crate::parquet_file::{self, BATCH, Cells};
 
 /// Key of the metadata.
 const KEY: &str = "sistership.trial";
 /// Canonical name of time.
 const TIME: &str = "t_s";
 /// Rows that are compressed and decoded together.
-const GROUP_ROWS: usize = 1 << 20;
+pub(crate) const GROUP_ROWS: usize = 1 << 20;
 
 /// Why samples could not be written or read back.
 #[derive(Debug, thiserror::Error)]
@@ -62,10 +63,19 @@ struct About {
 /// # Errors
 /// A channel is not as long as time, or the library refuses.
 pub fn to_parquet(trial: &Trial) -> Result<Vec<u8>, SamplesError> {
+    let mut bytes = Vec::new();
+    write_parquet(&mut bytes, trial)?;
+    Ok(bytes)
+}
+
+/// As [`to_parquet`], where the file does not lie in memory.
+///
+/// # Errors
+/// As [`to_parquet`], or the writer fails.
+pub fn write_parquet(out: impl Write + Send, trial: &Trial) -> Result<(), SamplesError> {
     let columns = columns(trial)?;
     let schema = schema(columns.iter().map(|(name, _)| *name))?;
-    let mut bytes = Vec::new();
-    let mut writer = SerializedFileWriter::new(&mut bytes, schema, Arc::new(properties(trial)?))?;
+    let mut writer = SerializedFileWriter::new(out, schema, Arc::new(properties(trial)?))?;
     for start in (0..trial.len()).step_by(GROUP_ROWS) {
         let rows = start..(start + GROUP_ROWS).min(trial.len());
         let mut group = writer.next_row_group()?;
@@ -75,7 +85,7 @@ pub fn to_parquet(trial: &Trial) -> Result<Vec<u8>, SamplesError> {
         group.close()?;
     }
     writer.close()?;
-    Ok(bytes)
+    Ok(())
 }
 
 /// The trial that [`to_parquet`] wrote.
@@ -171,16 +181,86 @@ fn about(reader: &SerializedFileReader<Bytes>) -> Result<About, SamplesError> {
 }
 
 fn read_columns(reader: &SerializedFileReader<Bytes>) -> ParquetResult<BTreeMap<String, Vec<f64>>> {
-    let names = parquet_file::headers(reader);
-    let mut columns: BTreeMap<String, Vec<f64>> = names.iter().map(|name| (name.clone(), Vec::new())).collect();
+    let (names, groups) = (parquet_file::headers(reader), reader.metadata().row_groups());
+    let rows: i64 = groups.iter().map(|group| group.num_rows()).sum();
+    let mut columns: Vec<Vec<f64>> = names.iter().map(|_| Vec::with_capacity(usize::try_from(rows).unwrap_or(0))).collect();
     for index in 0..reader.num_row_groups() {
         let group = reader.get_row_group(index)?;
-        for (position, name) in names.iter().enumerate() {
-            let values = parquet_file::column_values(&*group, position)?;
-            columns.entry(name.clone()).or_default().extend(values);
+        let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+        for (position, column) in columns.iter_mut().enumerate() {
+            let mut cells = Cells::new(&*group, position)?;
+            for start in (0..rows).step_by(BATCH) {
+                cells.next(BATCH.min(rows - start))?;
+                column.extend_from_slice(&cells.values);
+            }
         }
     }
-    Ok(columns)
+    Ok(names.into_iter().zip(columns).collect())
+}
+
+/// Samples as [`to_csv`] writes them, some rows at a time, from a file that [`to_parquet`] wrote.
+pub struct CsvPieces {
+    reader: SerializedFileReader<File>,
+    names: Vec<String>,
+    /// The next row group.
+    group: usize,
+    /// Of the row group that is being read.
+    cells: Vec<Cells>,
+    left: usize,
+    has_begun: bool,
+}
+
+/// Rows of a piece.
+const PIECE_ROWS: usize = 1024;
+
+impl CsvPieces {
+    /// Opens the file.
+    ///
+    /// # Errors
+    /// It is damaged, or too large.
+    pub fn open(file: File) -> Result<Self, SamplesError> {
+        let reader = parquet_file::open(file, Limits::default()).map_err(SamplesError::Content)?;
+        let names = parquet_file::headers(&reader);
+        Ok(Self { reader, names, group: 0, cells: Vec::new(), left: 0, has_begun: false })
+    }
+
+    /// The next lines; none after the last.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn next_piece(&mut self) -> Result<Option<Vec<u8>>, SamplesError> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        if !self.has_begun {
+            self.has_begun = true;
+            writer.write_record(&self.names)?;
+        }
+        let rows = parquet_file::guarded(|| self.decode())?;
+        let mut row = Vec::with_capacity(self.cells.len());
+        for k in 0..rows {
+            row.clear();
+            row.extend(self.cells.iter().map(|cells| cells.values[k]));
+            writer.serialize(&row)?;
+        }
+        let text = writer.into_inner().map_err(|error| SamplesError::Content(error.to_string()))?;
+        Ok((!text.is_empty()).then_some(text))
+    }
+
+    /// Decodes the next rows, and tells how many they are.
+    fn decode(&mut self) -> ParquetResult<usize> {
+        while self.left == 0 {
+            if self.group == self.reader.num_row_groups() {
+                return Ok(0);
+            }
+            let group = self.reader.get_row_group(self.group)?;
+            self.cells = (0..self.names.len()).map(|column| Cells::new(&*group, column)).collect::<Result<_, _>>()?;
+            self.left = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+            self.group += 1;
+        }
+        let rows = PIECE_ROWS.min(self.left);
+        self.cells.iter_mut().try_for_each(|cells| cells.next(rows))?;
+        self.left -= rows;
+        Ok(rows)
+    }
 }
 
 #[cfg(test)]

@@ -49,25 +49,60 @@ pub(crate) fn proportion(pairs: &[(f64, f64)]) -> Option<Proportion> {
     (pairs.len() >= 3 && aa > 0.0 && bb > 0.0).then(|| Proportion { slope: ab / aa, correlation: ab / (aa * bb).sqrt() })
 }
 
-/// Pearson's correlation; zero where one side is constant.
-pub(crate) fn correlation(pairs: &[(f64, f64)]) -> f64 {
-    let n = pairs.len().max(1) as f64;
-    let (mean_a, mean_b) = pairs.iter().fold((0.0, 0.0), |(a, b), pair| (a + pair.0 / n, b + pair.1 / n));
-    let centred: Vec<(f64, f64)> = pairs.iter().map(|&(a, b)| (a - mean_a, b - mean_b)).collect();
-    proportion(&centred).map_or(0.0, |found| found.correlation)
+/// Pearson's correlation of pairs that can be gone through again; zero where one side is constant.
+pub(crate) fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
+    let count = pairs.clone().count();
+    let n = count.max(1) as f64;
+    let (mean_a, mean_b) = pairs.clone().fold((0.0, 0.0), |(a, b), pair| (a + pair.0 / n, b + pair.1 / n));
+    let add = |(aa, ab, bb), (a, b)| {
+        let (a, b): (f64, f64) = (a - mean_a, b - mean_b);
+        (aa + a * a, ab + a * b, bb + b * b)
+    };
+    let (aa, ab, bb) = pairs.fold((0.0, 0.0, 0.0), add);
+    if count >= 3 && aa > 0.0 && bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 }
 }
 
 /// Largest less smallest.
 pub(crate) fn range(values: &[f64]) -> f64 {
-    let bounds = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)));
+    spread(values.iter().copied())
+}
+
+/// As [`range`].
+pub(crate) fn spread(values: impl Iterator<Item = f64>) -> f64 {
+    let bounds = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
     (bounds.1 - bounds.0).max(0.0)
 }
 
-/// The value below which the fraction of values lies; zero for none.
-pub(crate) fn quantile(mut values: Vec<f64>, fraction: f64) -> f64 {
-    let last = values.len().saturating_sub(1);
-    let at = ((last as f64 * fraction).round() as usize).min(last);
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(at, f64::total_cmp).1 }
+/// Bits of a number that are told apart in one pass over the values.
+const DIGIT: u32 = 16;
+
+/// The value below which the fraction of values lies; zero for none. Found digit by digit, in four passes: a copy of a column
+/// to be sorted would be as large as the column.
+pub(crate) fn quantile(values: impl Iterator<Item = f64> + Clone, fraction: f64) -> f64 {
+    let last = values.clone().count().saturating_sub(1);
+    let mut rank = ((last as f64 * fraction).round() as usize).min(last);
+    let (mut found, mut counts) = (0_u64, vec![0_usize; 1 << DIGIT]);
+    for shift in (0..u64::BITS).step_by(DIGIT as usize).rev() {
+        counts.fill(0);
+        let above = |key: u64| key.checked_shr(shift + DIGIT).unwrap_or(0);
+        let alike = values.clone().map(ordered).filter(|&key| above(key) == above(found));
+        alike.for_each(|key| counts[(key >> shift) as usize & ((1 << DIGIT) - 1)] += 1);
+        let Some(digit) = counts.iter().position(|&count| {
+            let here = rank < count;
+            rank -= if here { 0 } else { count };
+            here
+        }) else {
+            return 0.0;
+        };
+        found |= (digit as u64) << shift;
+    }
+    f64::from_bits(if found >> 63 == 1 { found & !(1 << 63) } else { !found })
+}
+
+/// Bits that are ordered as the numbers are.
+fn ordered(value: f64) -> u64 {
+    let bits = value.to_bits();
+    if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
 }
 
 #[cfg(test)]
@@ -87,11 +122,23 @@ mod tests {
     }
 
     #[test]
+    fn quantiles_are_those_of_sorted_values() {
+        let mut values: Vec<f64> = (0..1000).map(|k| f64::from(k * 7919 % 1000 - 500).powi(3) * 1e-3).collect();
+        values.extend([0.0, -0.0, 1e300, -1e-300, f64::MAX]);
+        let mut sorted = values.clone();
+        sorted.sort_by(f64::total_cmp);
+        for fraction in [0.0, 0.05, 0.5, 0.95, 1.0] {
+            let at = ((sorted.len() - 1) as f64 * fraction).round() as usize;
+            assert_eq!(quantile(values.iter().copied(), fraction).to_bits(), sorted[at].to_bits(), "{fraction}");
+        }
+    }
+
+    #[test]
     fn quantiles_and_correlations() {
-        assert_eq!(quantile(vec![3.0, 1.0, 2.0], 0.5), 2.0);
-        assert_eq!(quantile(Vec::new(), 0.5), 0.0);
-        assert!((correlation(&[(0.0, 5.0), (1.0, 3.0), (2.0, 1.0)]) + 1.0).abs() < 1e-12);
-        assert_eq!(correlation(&[(1.0, 5.0), (1.0, 3.0), (1.0, 1.0)]), 0.0);
+        assert_eq!(quantile([3.0, 1.0, 2.0].into_iter(), 0.5), 2.0);
+        assert_eq!(quantile(std::iter::empty(), 0.5), 0.0);
+        assert!((correlation([(0.0, 5.0), (1.0, 3.0), (2.0, 1.0)].into_iter()) + 1.0).abs() < 1e-12);
+        assert_eq!(correlation([(1.0, 5.0), (1.0, 3.0), (1.0, 1.0)].into_iter()), 0.0);
         assert_eq!(range(&[1.0, -2.0]), 3.0);
     }
 }

@@ -4,6 +4,8 @@ use std::fmt;
 
 use sistership_model::trial::Channel;
 
+use crate::number::remedy;
+
 /// What a column is read into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Target {
@@ -42,12 +44,15 @@ pub(crate) struct Table {
     pub columns: Vec<Column>,
     pub values: Vec<Vec<f64>>,
     pub rows: Vec<u32>,
+    /// Of these, the ones before which rows have been left out.
+    pub resumed: Vec<u32>,
 }
 
 /// Why a cell holds no number.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Fault {
     Absent,
+    Short,
     Empty,
     NotANumber,
     Text(String),
@@ -57,13 +62,10 @@ impl fmt::Display for Fault {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Absent => out.write_str("the row ends before this column"),
+            Self::Short => out.write_str("the row has fewer cells than the header"),
             Self::Empty => out.write_str("the cell is empty"),
             Self::NotANumber => out.write_str("the cell is not a finite number"),
-            Self::Text(text) if text.contains(',') => write!(out, "`{text}` is not a number; write decimals with a point"),
-            Self::Text(text) if text.contains(':') => {
-                write!(out, "`{text}` is not a number; write time as seconds, such as 12.5")
-            }
-            Self::Text(text) => write!(out, "`{text}` is not a number"),
+            Self::Text(text) => write!(out, "`{text}` is not a number{}", remedy(text)),
         }
     }
 }

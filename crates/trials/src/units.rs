@@ -65,6 +65,18 @@ impl Kind {
         SUFFIXES.iter().find(|(known, kind, _)| *kind == self && *known == suffix).map(|&(_, _, unit)| unit)
     }
 
+    /// The unit that a header ends in, as `log_kn`, `log [kn]` or `log (kn)`.
+    pub(crate) fn named_in(self, header: &str) -> Option<&'static str> {
+        let bracket =
+            |open: char, close: char| header.trim_end().strip_suffix(close)?.rsplit_once(open).map(|(_, unit)| unit.trim());
+        let written = bracket('[', ']').or_else(|| bracket('(', ')'));
+        if let Some(written) = written {
+            return self.accepted().into_iter().find(|unit| *unit == written);
+        }
+        // From the left, so that the longest suffix is found: `deg_s` before `s`.
+        header.match_indices('_').find_map(|(at, _)| self.suffix(&header[at + 1..]))
+    }
+
     /// Units accepted, the canonical one first.
     pub(crate) fn accepted(self) -> Vec<&'static str> {
         let mut units: Vec<&str> = SUFFIXES.iter().filter(|(_, kind, _)| *kind == self).map(|&(_, _, unit)| unit).collect();

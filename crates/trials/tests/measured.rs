@@ -134,8 +134,19 @@ fn broken_conventions_are_found_in_most_real_files() {
         files += 1;
         rudder += says(&mapping, "rudder_positive");
         if esso {
-            mapping.columns.iter_mut().filter(|(name, _)| name == "r").for_each(|(_, column)| column.unit = "deg/s".into());
-            degrees += says(&mapping, "57.3");
+            let told = |mapping: &Mapping, what: &str, text: &str| {
+                let outcome = check(Source::csv("a", text.as_bytes()), mapping);
+                usize::from(outcome.errors.iter().any(|error| error.message.contains(what)))
+            };
+            let text = std::fs::read_to_string(&file).unwrap();
+            let rate = mapping.columns.iter_mut().find(|(name, _)| name == "r").map(|(_, column)| column);
+            let rate = rate.unwrap();
+            rate.unit = "deg/s".into();
+            let header = std::mem::replace(&mut rate.column, "yaw rate".into());
+            // By what the header says of its unit, and by the samples where it says nothing.
+            degrees += told(&mapping, "57.3", &text.replacen(&header, "yaw rate", 1));
+            mapping.columns.iter_mut().filter(|(name, _)| name == "r").for_each(|(_, r)| r.column = header.clone());
+            assert_eq!(told(&mapping, "the header says `rad/s`", &text), 1);
         }
     }
     println!("{files} files: rudder sign found in {rudder}, yaw rate in wrong unit in {degrees}");

@@ -28,10 +28,18 @@ pub struct ConfigFile {
     pub api_key_file: Option<PathBuf>,
     /// `--workers`
     pub workers: Option<u16>,
+    /// `--connections`
+    pub connections: Option<u32>,
+    /// `--connections-per-address`
+    pub connections_per_address: Option<u32>,
     /// `--lease-s`
     pub lease_s: Option<f64>,
     /// `--drain-s`
     pub drain_s: Option<f64>,
+    /// `--request-memory-mb`
+    pub request_memory_mb: Option<u64>,
+    /// `--job-memory-mb`
+    pub job_memory_mb: Option<u64>,
     /// `--log`
     pub log: Option<String>,
     /// `--log-format`
@@ -48,7 +56,7 @@ pub fn read(path: Option<&Path>) -> Result<ConfigFile, Failure> {
     if text.lines().all(|line| line.trim().is_empty() || line.trim_start().starts_with('#')) {
         return Ok(ConfigFile::default());
     }
-    let mut file: ConfigFile = serde_yaml::from_str(&text).map_err(|error| about_file(path, error))?;
+    let mut file: ConfigFile = sistership_model::yaml::read(&text).map_err(|error| about_file(path, error))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     for relative in [&mut file.data_dir, &mut file.api_key_file].into_iter().flatten() {
         *relative = folder.join(&*relative);

@@ -38,11 +38,11 @@ pub fn run(fsck: &Fsck) -> Result<(), Failure> {
 
 fn text(findings: &Findings) -> String {
     let Findings { faults, checked, unreferred, unfinished, .. } = findings;
-    let Checked { laws, versions, trials, jobs, diagnoses, objects } = checked;
+    let Checked { laws, effects, versions, trials, jobs, diagnoses, objects } = checked;
     let fault = |fault: &Fault| format!("{}: {}: {}\n", fault.check, fault.place, fault.message);
     let mut text: String = faults.iter().map(fault).collect();
     text += &format!(
-        "looked at {laws} laws, {versions} versions, {trials} trials, {jobs} jobs, {diagnoses} diagnoses, {objects} objects: {}\n",
+        "looked at {laws} laws, {effects} libraries of effects, {versions} versions, {trials} trials, {jobs} jobs, {diagnoses} diagnoses, {objects} objects: {}\n",
         if faults.is_empty() { "clean".to_owned() } else { count(faults.len(), "fault") }
     );
     if unreferred.objects > 0 {

@@ -21,8 +21,8 @@ pub fn settings_file(path: &Path) -> Result<Settings, Failure> {
         field,
         message,
     };
-    let read: Result<Settings, _> = serde_yaml::from_str(&text);
-    let settings = read.map_err(|error| refuse(error.location().map(|place| place.line()), String::new(), error.to_string()))?;
+    let read: Result<Settings, _> = sistership_model::yaml::read(&text);
+    let settings = read.map_err(|error| FileError::of_yaml(&path.display().to_string(), error))?;
     let line_of = |field: &str| text.lines().position(|line| line.trim_start().starts_with(field)).map(|index| index + 1);
     settings.check().map_err(|(field, message)| refuse(line_of(&field), field, message))?;
     Ok(settings)

@@ -4,14 +4,20 @@ use std::time::Duration;
 
 use clap::Args;
 use sistership_server::Leases;
+use tokio::sync::oneshot;
 
 use super::config_file::ConfigFile;
+use super::store::runtime;
 use crate::failure::Failure;
 use crate::output;
 
 /// Jobs worked on at a time when nobody says otherwise, and at most.
 const WORKERS: u16 = 1;
 const MOST_WORKERS: u16 = 64;
+
+/// Memory that requests or jobs may be given, MB.
+const LEAST_MEMORY_MB: u64 = 32;
+const MOST_MEMORY_MB: u64 = 1 << 20;
 
 /// How workers hold their jobs.
 #[derive(Debug, Args)]
@@ -48,6 +54,18 @@ fn seconds(name: &str, value: f64, least: f64, most: Duration) -> Result<Duratio
     }
 }
 
+/// Memory in MB, as the flag or the file asks for, in bytes.
+///
+/// # Errors
+/// Names the setting that is out of bounds.
+pub fn memory(name: &str, given: Option<u64>, file: Option<u64>, default: u64) -> Result<u64, Failure> {
+    let Some(mb) = given.or(file) else { return Ok(default) };
+    match (LEAST_MEMORY_MB..=MOST_MEMORY_MB).contains(&mb) {
+        true => Ok(mb << 20),
+        false => Err(Failure::Call(format!("{name} must be from {LEAST_MEMORY_MB} to {MOST_MEMORY_MB} MB, not {mb}"))),
+    }
+}
+
 /// Jobs worked on at a time, as the flag or the file asks for.
 ///
 /// # Errors
@@ -60,32 +78,89 @@ pub fn workers(given: Option<u16>, file: &ConfigFile, least: u16) -> Result<usiz
     }
 }
 
-/// Waits for a signal, then for what `stop` waits for; a second signal does not wait.
+/// Runs something until a signal tells it to stop, then `stop`s it; has ended within `bound` after the signal.
+///
+/// The signal is heard on a thread of its own, and that thread ends the process (exit status 1) when `bound` has passed or a
+/// second signal comes: whatever holds the other threads holds neither. Computations that nothing waits for any more end
+/// with the process.
 ///
 /// # Errors
-/// Signals cannot be heard, or a second one came.
-pub async fn until_stopped(stop: impl Future<Output = ()>) -> Result<(), Failure> {
-    signal().await?;
-    output::note("stopping; once more to stop at once");
-    tokio::select! {
-        () = stop => Ok(()),
-        second = signal() => second.and(Err(Failure::Refused("stopped before everything under way had ended".into()))),
-    }
+/// What `start` says, or that signals cannot be heard.
+pub fn run_until_stopped<T>(
+    bound: Duration,
+    start: impl Future<Output = Result<T, Failure>>,
+    stop: impl AsyncFnOnce(T),
+) -> Result<(), Failure> {
+    let runtime = runtime()?;
+    let told = watch(bound)?;
+    let ended = runtime.block_on(async {
+        let unheard = || Failure::Refused("signals cannot be heard".into());
+        let mut told = told;
+        let running = tokio::select! {
+            running = start => running?,
+            told = &mut told => return told.map_err(|_| unheard()),
+        };
+        told.await.map_err(|_| unheard())?;
+        stop(running).await;
+        Ok(())
+    });
+    runtime.shutdown_background();
+    ended
 }
 
-/// Ctrl-C, or SIGTERM where there is one.
-async fn signal() -> Result<(), Failure> {
-    let unheard = |error: std::io::Error| Failure::Refused(format!("signals cannot be heard: {error}"));
+/// Begins to hear signals, on a thread of its own; tells of the first.
+fn watch(bound: Duration) -> Result<oneshot::Receiver<()>, Failure> {
+    let (tell, told) = oneshot::channel();
+    let none = |error| Failure::Refused(format!("no threads: {error}"));
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(none)?;
+    let mut signals = runtime.block_on(async { Signals::hear() })?;
+    let heard = move || {
+        runtime.block_on(async {
+            signals.next().await;
+            // Nobody listens where starting has failed meanwhile.
+            tell.send(()).ok();
+            output::note("stopping; once more to stop at once");
+            if tokio::time::timeout(bound, signals.next()).await.is_err() {
+                output::note(&format!("not everything under way has ended within {} s", bound.as_secs()));
+            }
+            std::process::exit(i32::from(Failure::Told.status()));
+        });
+    };
+    std::thread::Builder::new().name("signals".into()).spawn(heard).map_err(none)?;
+    Ok(told)
+}
+
+/// Ctrl-C, and SIGTERM where there is one.
+struct Signals {
     #[cfg(unix)]
-    {
-        let mut terminate = tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate()).map_err(unheard)?;
-        tokio::select! {
-            interrupted = tokio::signal::ctrl_c() => interrupted.map_err(unheard),
-            _ = terminate.recv() => Ok(()),
-        }
+    interrupt: tokio::signal::unix::Signal,
+    #[cfg(unix)]
+    terminate: tokio::signal::unix::Signal,
+}
+
+impl Signals {
+    #[cfg(unix)]
+    fn hear() -> Result<Self, Failure> {
+        use tokio::signal::unix::{SignalKind, signal};
+        let unheard = |error| Failure::Refused(format!("signals cannot be heard: {error}"));
+        let interrupt = signal(SignalKind::interrupt()).map_err(unheard)?;
+        Ok(Self { interrupt, terminate: signal(SignalKind::terminate()).map_err(unheard)? })
     }
+
     #[cfg(not(unix))]
-    tokio::signal::ctrl_c().await.map_err(unheard)
+    fn hear() -> Result<Self, Failure> {
+        Ok(Self {})
+    }
+
+    async fn next(&mut self) {
+        #[cfg(unix)]
+        tokio::select! {
+            _ = self.interrupt.recv() => {}
+            _ = self.terminate.recv() => {}
+        }
+        #[cfg(not(unix))]
+        drop(tokio::signal::ctrl_c().await);
+    }
 }
 
 #[cfg(test)]
@@ -105,6 +180,15 @@ mod tests {
     }
 
     #[test]
+    fn memory_is_given_in_megabytes() {
+        assert_eq!(memory("job_memory_mb", None, Some(64), 7), Ok(64 << 20));
+        assert_eq!(memory("job_memory_mb", Some(32), Some(64), 7), Ok(32 << 20));
+        assert_eq!(memory("job_memory_mb", None, None, 7), Ok(7));
+        let wrong = memory("job_memory_mb", Some(8), None, 7).unwrap_err();
+        assert!(wrong.message().unwrap().contains("job_memory_mb must be from 32"));
+    }
+
+    #[test]
     fn what_is_out_of_bounds_is_named() {
         let lease = |lease_s| LeaseArguments { lease_s: Some(lease_s), drain_s: None }.leases(&ConfigFile::default());
         for wrong in [0.1, 3601.0, f64::NAN] {
@@ -115,5 +199,63 @@ mod tests {
             LeaseArguments { lease_s: None, drain_s: None }.leases(&file).unwrap_err().message().unwrap().contains("drain_s")
         );
         assert!(workers(None, &file, 0).is_err() && workers(Some(0), &file, 1).is_err());
+    }
+
+    /// This test's program as another process, which runs one test in earnest.
+    #[cfg(unix)]
+    fn stopped(role: &str, test: &str) -> (Option<i32>, Duration) {
+        use std::io::{BufRead as _, BufReader};
+        use std::process::{Command, Stdio};
+        let mut command = Command::new(std::env::current_exe().unwrap());
+        let name = format!("commands::running::tests::{test}");
+        command.args(["--exact", &name, "--nocapture"]).env(ROLE, role).stdout(Stdio::piped());
+        let mut process = command.spawn().unwrap();
+        let mut lines = BufReader::new(process.stdout.take().unwrap()).lines();
+        assert!(lines.any(|line| line.unwrap().contains("begun")));
+        std::thread::sleep(Duration::from_millis(200));
+        let told = std::time::Instant::now();
+        assert!(Command::new("kill").args(["-TERM", &process.id().to_string()]).status().unwrap().success());
+        let code = process.wait().unwrap().code();
+        (code, told.elapsed())
+    }
+
+    #[cfg(unix)]
+    const ROLE: &str = "SISTERSHIP_TEST_ROLE";
+
+    #[cfg(unix)]
+    #[test]
+    fn a_process_ends_in_time_whatever_holds_its_threads() {
+        let long = || std::thread::sleep(Duration::from_secs(600));
+        let begun = || println!("begun");
+        match std::env::var(ROLE).ok().as_deref() {
+            Some("computes") => {
+                let start = async {
+                    drop(tokio::task::spawn_blocking(long));
+                    begun();
+                    Ok(())
+                };
+                run_until_stopped(Duration::from_secs(60), start, async |()| {}).unwrap();
+                std::process::exit(0);
+            }
+            Some("held") => {
+                let start = async {
+                    for _ in 0..64 {
+                        drop(tokio::spawn(async move { long() }));
+                    }
+                    begun();
+                    Ok(())
+                };
+                let stop = async |()| tokio::task::spawn(async {}).await.unwrap();
+                run_until_stopped(Duration::from_secs(2), start, stop).unwrap();
+                std::process::exit(0);
+            }
+            _ => {
+                let test = "a_process_ends_in_time_whatever_holds_its_threads";
+                let (code, took) = stopped("computes", test);
+                assert!(code == Some(0) && took < Duration::from_secs(2), "a blocking thread: {code:?} after {took:?}");
+                let (code, took) = stopped("held", test);
+                assert!(code == Some(1) && took < Duration::from_secs(5), "every thread: {code:?} after {took:?}");
+            }
+        }
     }
 }

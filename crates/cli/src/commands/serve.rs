@@ -4,12 +4,12 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use sistership_server::{Config, DEFAULT_LISTEN, Server, StartError};
+use sistership_server::{Config, DEFAULT_LISTEN, Limits, Running, Server, StartError};
 
 use super::config_file::ConfigFile;
 use super::log::LogArguments;
-use super::running::{LeaseArguments, until_stopped, workers};
-use super::store::{StoreArguments, block_on};
+use super::running::{LeaseArguments, memory, run_until_stopped, workers};
+use super::store::StoreArguments;
 use crate::failure::{Failure, about_file};
 use crate::output;
 use crate::zoo::text_of;
@@ -45,6 +45,18 @@ pub struct Serve {
     /// Work on no jobs, whatever --workers says.
     #[arg(long)]
     no_worker: bool,
+    /// Memory that requests may take together, MB, 32 or more; what does not fit waits or is refused [default: 256].
+    #[arg(long, value_name = "MB", env = "SISTERSHIP_REQUEST_MEMORY_MB")]
+    request_memory_mb: Option<u64>,
+    /// Memory that jobs may take together, MB, 32 or more [default: 1024].
+    #[arg(long, value_name = "MB", env = "SISTERSHIP_JOB_MEMORY_MB")]
+    job_memory_mb: Option<u64>,
+    /// Connections at a time, 16 to 65536 [default: 1024].
+    #[arg(long, value_name = "N", env = "SISTERSHIP_CONNECTIONS")]
+    connections: Option<u32>,
+    /// Connections of one address at a time; all of them where the clients are behind a proxy [default: half of the connections].
+    #[arg(long, value_name = "N", env = "SISTERSHIP_CONNECTIONS_PER_ADDRESS")]
+    connections_per_address: Option<u32>,
     #[command(flatten)]
     lease: LeaseArguments,
     #[command(flatten)]
@@ -68,12 +80,13 @@ pub fn run(serve: &Serve, zoo: &[PathBuf]) -> Result<(), Failure> {
     let file = serve.store.file()?;
     let config = config(serve, &file)?;
     serve.log.begin(&file)?;
-    block_on(async {
-        let running = Server::start(config).await.map_err(refused)?;
+    let start = async {
+        let running = Server::start(config.clone()).await.map_err(refused)?;
         let url = running.url();
         output::print(false, &(), || format!("sistership listens on {url}"))?;
-        until_stopped(running.stop()).await
-    })
+        Ok(running)
+    };
+    run_until_stopped(config.stop_bound(), start, Running::stop)
 }
 
 fn config(serve: &Serve, file: &ConfigFile) -> Result<Config, Failure> {
@@ -84,9 +97,30 @@ fn config(serve: &Serve, file: &ConfigFile) -> Result<Config, Failure> {
     config.database_url = place.database_url;
     config.workers = if serve.no_worker { 0 } else { workers(serve.workers, file, 0)? };
     config.leases = serve.lease.leases(file)?;
+    config.limits = limits(serve, file)?;
+    let limits = &mut config.limits;
+    limits.request_memory = memory("request_memory_mb", serve.request_memory_mb, file.request_memory_mb, limits.request_memory)?;
+    limits.job_memory = memory("job_memory_mb", serve.job_memory_mb, file.job_memory_mb, limits.job_memory)?;
     config.api_key = api_key(serve, file)?;
     config.check().map_err(refused)?;
     Ok(config)
+}
+
+/// Bounds on connections.
+fn limits(serve: &Serve, file: &ConfigFile) -> Result<Limits, Failure> {
+    let within = |name: &str, value: u32, least: u32, most: u32| match (least..=most).contains(&value) {
+        true => Ok(value as usize),
+        false => Err(Failure::Call(format!("{name} must be from {least} to {most}, not {value}"))),
+    };
+    let mut limits = Limits::default();
+    if let Some(connections) = serve.connections.or(file.connections) {
+        limits.connections = within("connections", connections, 16, 1 << 16)?;
+        limits.connections_per_address = limits.connections / 2;
+    }
+    if let Some(share) = serve.connections_per_address.or(file.connections_per_address) {
+        limits.connections_per_address = within("connections_per_address", share, 1, limits.connections as u32)?;
+    }
+    Ok(limits)
 }
 
 /// The key from the flag's file, from the environment, or from the file that the configuration names.

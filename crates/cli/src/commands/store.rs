@@ -129,8 +129,16 @@ pub fn with_archive<T, E: std::fmt::Display>(
 /// # Errors
 /// The work's own, or that no threads can be had.
 pub fn block_on<T>(work: impl Future<Output = Result<T, Failure>>) -> Result<T, Failure> {
+    runtime()?.block_on(work)
+}
+
+/// Threads for asynchronous work.
+///
+/// # Errors
+/// None can be had.
+pub fn runtime() -> Result<tokio::runtime::Runtime, Failure> {
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
-    runtime.map_err(|error| Failure::Refused(format!("no threads: {error}")))?.block_on(work)
+    runtime.map_err(|error| Failure::Refused(format!("no threads: {error}")))
 }
 
 #[cfg(test)]

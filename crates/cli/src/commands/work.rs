@@ -5,8 +5,8 @@ use sistership_server::{Config, Workers};
 
 use super::config_file::ConfigFile;
 use super::log::LogArguments;
-use super::running::{LeaseArguments, until_stopped, workers};
-use super::store::{StoreArguments, block_on};
+use super::running::{LeaseArguments, memory, run_until_stopped, workers};
+use super::store::StoreArguments;
 use crate::failure::Failure;
 use crate::output;
 
@@ -29,6 +29,9 @@ pub struct Work {
     /// Jobs worked on at a time, 1 to 64 [default: 1].
     #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS")]
     workers: Option<u16>,
+    /// Memory that jobs may take together, MB, 32 or more [default: 1024].
+    #[arg(long, value_name = "MB", env = "SISTERSHIP_JOB_MEMORY_MB")]
+    job_memory_mb: Option<u64>,
     #[command(flatten)]
     lease: LeaseArguments,
     #[command(flatten)]
@@ -43,11 +46,12 @@ pub fn run(work: &Work) -> Result<(), Failure> {
     let file = work.store.file()?;
     let config = config(work, &file)?;
     work.log.begin(&file)?;
-    block_on(async {
-        let workers = Workers::start(config).await.map_err(|error| Failure::Refused(error.to_string()))?;
+    let start = async {
+        let workers = Workers::start(config.clone()).await.map_err(|error| Failure::Refused(error.to_string()))?;
         output::print(false, &(), || format!("sistership works as process {}", std::process::id()))?;
-        until_stopped(workers.stop()).await
-    })
+        Ok(workers)
+    };
+    run_until_stopped(config.stop_bound(), start, Workers::stop)
 }
 
 fn config(work: &Work, file: &ConfigFile) -> Result<Config, Failure> {
@@ -56,6 +60,7 @@ fn config(work: &Work, file: &ConfigFile) -> Result<Config, Failure> {
     config.objects = place.objects;
     config.database_url = place.database_url;
     config.workers = workers(work.workers, file, 1)?;
+    config.limits.job_memory = memory("job_memory_mb", work.job_memory_mb, file.job_memory_mb, config.limits.job_memory)?;
     config.leases = work.lease.leases(file)?;
     Ok(config)
 }

@@ -82,14 +82,16 @@ impl<'a> Walker<'a> {
         let trial = self.path.record.trial;
         let recorded: Vec<usize> = (0..self.system.channels.len()).filter(|&c| self.path.said[c].is_some()).collect();
         let channels = recorded.iter().map(|&c| self.system.channels[c]).collect();
+        let (Sizes { states, axes, columns }, steps) = (self.sizes, part.len().saturating_sub(1));
         let mut out = Linearised {
             samples: part.to_vec(),
             t_s: part.iter().map(|&k| trial.t_s[k]).collect(),
             sizes: self.sizes,
-            jacobian: Vec::new(),
-            accelerations: Vec::new(),
-            defect: Vec::new(),
-            reading: Vec::new(),
+            // As large as they become: what a vector grows by would stay with it.
+            jacobian: Vec::with_capacity(steps * states * states),
+            accelerations: Vec::with_capacity(steps * axes * columns),
+            defect: Vec::with_capacity(steps * states),
+            reading: Vec::with_capacity(part.len() * recorded.len()),
             by_state: (!self.system.says.is_empty()).then(Vec::new),
             by_column: Vec::new(),
             measured: self.measuring(),

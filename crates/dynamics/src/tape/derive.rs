@@ -18,8 +18,28 @@ impl TapeBuilder<'_> {
         Some(self.outputs.len() - 1)
     }
 
-    /// The slot of a slot's derivative.
+    /// The slot of a slot's derivative. A sum of thousands of terms is as deep: those of the operands are made before, in the
+    /// order in which recursion would make them.
     fn slope_of(&mut self, slot: Slot, input: u32) -> Slot {
+        if let Some(&known) = self.slopes.get(&(slot, input)) {
+            return known;
+        }
+        let mut waiting = vec![slot];
+        while let Some(&next) = waiting.last() {
+            let needed = self.ops[next as usize].differentiated().into_iter().flatten();
+            match needed.into_iter().find(|operand| !self.slopes.contains_key(&(*operand, input))) {
+                Some(operand) if !self.slopes.contains_key(&(next, input)) => waiting.push(operand),
+                _ => {
+                    waiting.pop();
+                    self.known_slope(next, input);
+                }
+            }
+        }
+        self.known_slope(slot, input)
+    }
+
+    /// The derivative of a slot whose operands' are there.
+    fn known_slope(&mut self, slot: Slot, input: u32) -> Slot {
         if let Some(&known) = self.slopes.get(&(slot, input)) {
             return known;
         }
@@ -195,6 +215,49 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// The force of an axis with as many terms as a model may have coefficients, and more, on half of what a thread has.
+    #[test]
+    fn a_long_sum_is_lowered_and_differentiated_on_a_small_stack() {
+        use sistership_model::formula::Expr;
+        let small = std::thread::Builder::new().stack_size(1 << 20);
+        let tried = small.spawn(|| {
+            let term = |k: usize| parse(&format!("{k}.5*u*v")).unwrap();
+            let sum = (1..20_000).map(term).fold(Expr::Number(0.0), |sum, term| Expr::Add(Box::new(sum), Box::new(term)));
+            let mut builder = TapeBuilder::new(&["u", "v"], &|_| None);
+            builder.output(&sum).unwrap();
+            let slope = builder.derivative(0, "u").unwrap();
+            let tape = builder.finish();
+            let values = tape.values(&[2.0, 3.0]);
+            assert!((values[slope] * 2.0 - values[0]).abs() < 1e-6 * values[0].abs());
+            // Each power is a factor of the next: as deep as formulas may be through values.
+            let deep = parse(&format!("{}u{}", "sqrt(1+".repeat(24), ")".repeat(24))).unwrap();
+            let mut builder = TapeBuilder::new(&["u", "v"], &|_| None);
+            builder.output(&deep).unwrap();
+            assert!(builder.derivative(0, "u").is_some());
+        });
+        tried.unwrap().join().unwrap();
+    }
+
+    /// Values that each name the one before, down to the deepest that a law may have.
+    #[test]
+    fn values_of_values_are_lowered_on_a_small_stack() {
+        use super::super::Binding;
+        let deepest = sistership_model::formula::MAX_DEPTH;
+        let small = std::thread::Builder::new().stack_size(1 << 20);
+        let bind = move |name: &str| {
+            let number: usize = name.strip_prefix('a')?.parse().ok()?;
+            let text = if number == 0 { "u".to_owned() } else { format!("a{0}*a{0} + 1", number - 1) };
+            parse(&text).ok().map(Binding::Formula)
+        };
+        let tried = small.spawn(move || {
+            let mut builder = TapeBuilder::new(&["u", "v"], &bind);
+            builder.output(&parse(&format!("a{deepest}")).unwrap()).unwrap();
+            builder.derivative(0, "u").unwrap();
+            assert!(builder.finish().values(&[0.0, 0.0])[0] > 0.0);
+        });
+        tried.unwrap().join().unwrap();
     }
 
     #[test]

@@ -14,6 +14,19 @@ pub enum Binding {
     Formula(Expr),
 }
 
+type Make = fn(Slot, Slot) -> Op;
+
+/// The two sides of a sum, difference, product or quotient, and its operation.
+fn sides(expr: &Expr) -> Option<(&Expr, &Expr, Make)> {
+    match expr {
+        Expr::Add(a, b) => Some((a, b, Op::Add)),
+        Expr::Subtract(a, b) => Some((a, b, Op::Subtract)),
+        Expr::Multiply(a, b) => Some((a, b, Op::Multiply)),
+        Expr::Divide(a, b) => Some((a, b, Op::Divide)),
+        _ => None,
+    }
+}
+
 /// Builds a tape from formulas.
 pub struct TapeBuilder<'a> {
     pub(super) inputs: Vec<String>,
@@ -78,15 +91,27 @@ impl<'a> TapeBuilder<'a> {
         Listing { inputs: self.inputs, ops: self.ops, outputs: self.outputs }
     }
 
+    /// Sums lean to the left, that of an axis by thousands of terms: they are followed in a loop, all else by recursion.
     fn lower(&mut self, expr: &Expr) -> Result<Slot, String> {
+        let (mut first, mut after) = (expr, Vec::new());
+        while let Some((a, b, make)) = sides(first) {
+            after.push((b, make));
+            first = a;
+        }
+        let mut slot = self.operand(first)?;
+        while let Some((b, make)) = after.pop() {
+            let b = self.lower(b)?;
+            slot = self.push(make(slot, b));
+        }
+        Ok(slot)
+    }
+
+    fn operand(&mut self, expr: &Expr) -> Result<Slot, String> {
         Ok(match expr {
             Expr::Number(number) => self.push(Op::Constant(*number)),
             Expr::Name(name) => self.name(name)?,
             Expr::Negate(a) => self.unary(a, Op::Negate)?,
-            Expr::Add(a, b) => self.binary(a, b, Op::Add)?,
-            Expr::Subtract(a, b) => self.binary(a, b, Op::Subtract)?,
-            Expr::Multiply(a, b) => self.binary(a, b, Op::Multiply)?,
-            Expr::Divide(a, b) => self.binary(a, b, Op::Divide)?,
+            Expr::Add(..) | Expr::Subtract(..) | Expr::Multiply(..) | Expr::Divide(..) => self.lower(expr)?,
             Expr::Power(a, b) => self.power(a, b)?,
             Expr::Call(function, arguments) if arguments.len() == 1 => self.unary(&arguments[0], |a| Op::Call1(*function, a))?,
             Expr::Call(function, arguments) => self.binary(&arguments[0], &arguments[1], |a, b| Op::Call2(*function, a, b))?,

@@ -33,6 +33,14 @@ impl Op {
         }
     }
 
+    /// The results whose derivatives its own is made of: all but what a choice compares.
+    pub(crate) fn differentiated(&self) -> [Option<Slot>; 4] {
+        match *self {
+            Self::Select(_, _, _, c, d) => [Some(c), Some(d), None, None],
+            _ => self.operands(),
+        }
+    }
+
     /// The same operation with its operands elsewhere.
     pub(crate) fn moved(self, to: &dyn Fn(Slot) -> Slot) -> Self {
         match self {

@@ -9,6 +9,8 @@ use sistership_model::quantity::Quantity;
 /// A set of terms among which model selection chooses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[derive(schemars::JsonSchema)]
+#[schemars(rename = "TermFamily")]
 pub enum Family {
     /// The source's own.
     Own,

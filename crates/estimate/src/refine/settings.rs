@@ -1,5 +1,6 @@
 //! What a refinement may be told.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::cma_es::CmaEs;
@@ -8,8 +9,9 @@ use super::family::Family;
 use crate::bands::Sampling;
 
 /// The estimator.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[schemars(rename = "Estimator")]
 pub enum Method {
     /// One-step differences and the ridge with the source as l2 prior: Kanazawa 2023, Eqs. 5.4-5.17.
     #[default]
@@ -44,47 +46,60 @@ impl Method {
 }
 
 /// A range in which (lambda, alpha) are tuned.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "TuningRange")]
 pub struct Range {
     /// Least strength of the prior.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub lambda_min: f64,
     /// Greatest strength of the prior.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub lambda_max: f64,
     /// Largest share of the zero vector in the prior.
+    #[schemars(range(min = 0, max = 1))]
     pub alpha_max: f64,
 }
 
 /// Settings of a refinement; every one is kept with the version.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[schemars(rename = "RefinementSettings")]
 pub struct Settings {
     /// The estimator.
     pub method: Method,
     /// Tuning ranges from the source outwards; each gives an option, the best of which is chosen.
+    #[schemars(length(min = 1, max = 20))]
     pub ranges: Vec<Range>,
     /// Values of lambda tried in a range, evenly spaced in their logarithm.
+    #[schemars(range(min = 2, max = 1000))]
     pub lambda_count: usize,
     /// Time over which accelerations are differenced, s, at least one sampling interval. Where absent, a tenth of the
     /// time in which the ship sails her length: what the instruments add at a shorter one drowns the acceleration.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub difference_s: Option<f64>,
     /// Length of the weak form's windows, s. Where absent, the time in which the ship sails her length.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub window_s: Option<f64>,
     /// From one window of the weak form to the next, s. Where absent, a tenth of a window.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub hop_s: Option<f64>,
     /// Length of the trajectory form's segments, s. Where absent, five times the time in which the ship sails her length;
     /// for the search ten times, and at least 100 s.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub segment_s: Option<f64>,
     /// From one residual of the trajectory form to the next, s. Where absent, a 7.5th of the time in which
     /// she sails her length; for the search one sampling interval.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub residual_s: Option<f64>,
     /// Integration step of the trajectory form, s, rounded to sampling intervals. Where absent, a
     /// thirtieth of the time in which she sails her length; for the search a 75th, whole or in whole parts of an interval.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub step_s: Option<f64>,
     /// Of the search; absent for other methods.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -94,11 +109,14 @@ pub struct Settings {
     pub families: Vec<Family>,
     /// Strengths of the prior among which they choose, from the source outwards. Where empty, half decades from 10 to 1e-8.
     #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 100), extend("items" = { "type": "number", "format": "double", "exclusiveMinimum": 0 }))]
     pub strengths: Vec<f64>,
     /// Simulations of manoeuvres left out start anew every so often, s. Where absent, ten times the time in which the
     /// ship sails her length; longer than a trial runs it whole.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub restart_s: Option<f64>,
     /// Most folds; with more manoeuvres than that, several are left out together.
+    #[schemars(range(min = 2, max = 100))]
     pub folds: usize,
     /// Names of trials that are kept out of fit and choice altogether, to be judged on.
     pub held_out: Vec<String>,

@@ -5,17 +5,21 @@ use serde::{Deserialize, Serialize};
 use sistership_estimate::refine::RefineError;
 
 /// Settings of refinements from statistics.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BulkSettings {
     /// Strengths of the prior on the path.
+    #[schemars(range(min = 2, max = 1000))]
     pub lambda_count: usize,
     /// The weakest prior; for a family's prior, how many times tighter than it was learned.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub lambda_min: f64,
     /// The strongest.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub lambda_max: f64,
     /// Time over which accelerations are differenced, s. Where absent, a tenth of the time in which the ship sails her length.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub difference_s: Option<f64>,
 }
 

@@ -1,6 +1,7 @@
 //! Effects whose forces are affine in their parameters, as terms of the law: what fits coefficients then fits them too.
 
-use std::collections::BTreeMap;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use indexmap::IndexMap;
 
@@ -41,14 +42,14 @@ impl AsTerms {
         let bare = Model { effects: Vec::new(), ..model.clone() };
         let mut as_terms = Self { law: dressed.clone(), model: bare, of: model.clone(), terms: Vec::new() };
         for (place, effect) in model.effects.iter().enumerate() {
-            let Some(by_axis) = (Affine { law: &dressed, effect }).by_axis() else { return Ok(None) };
+            let Some(by_axis) = Affine::new(&dressed, effect).by_axis() else { return Ok(None) };
             by_axis.iter().for_each(|(axis, parameters)| as_terms.add(place, effect, *axis, parameters));
         }
         Ok((!as_terms.terms.is_empty()).then_some(as_terms))
     }
 
     fn add(&mut self, place: usize, effect: &AppliedEffect, axis: Axis, parameters: &[String]) {
-        let (still, terms) = Affine { law: &self.law, effect }.taken_apart(axis, parameters);
+        let (still, terms) = Affine::new(&self.law, effect).taken_apart(axis, parameters);
         let Some(of_axis) = self.law.axes.get_mut(&axis) else { return };
         of_axis.rest = still;
         for (parameter, term) in parameters.iter().zip(terms) {
@@ -78,18 +79,68 @@ impl AsTerms {
     }
 }
 
+/// Most numbers, names and operators of what is added to an axis, with the values that mention the effect written out.
+const MAX_SIZE: usize = 20_000;
+
 /// An effect in a dressed law.
 struct Affine<'a> {
     law: &'a Law,
     effect: &'a AppliedEffect,
+    /// Values that mention a parameter of the effect, themselves or through others.
+    acting: BTreeSet<&'a str>,
 }
 
-impl Affine<'_> {
+impl<'a> Affine<'a> {
+    fn new(law: &'a Law, effect: &'a AppliedEffect) -> Self {
+        let mut affine = Self { law, effect, acting: BTreeSet::new() };
+        let mut known = HashMap::new();
+        for parameter in effect.parameters.keys() {
+            known.clear();
+            for (name, value) in &law.values {
+                if affine.depends_given(value, &affine.name(parameter), &mut known) {
+                    affine.acting.insert(name);
+                }
+            }
+        }
+        affine
+    }
+
+    /// How large a formula is with the values that mention the effect written out.
+    fn written_out(&self, expr: &Expr, known: &mut HashMap<&'a str, usize>) -> usize {
+        let Expr::Name(name) = expr else {
+            let below = expr.children().into_iter().map(|child| self.written_out(child, known));
+            return below.fold(1, usize::saturating_add);
+        };
+        let Some((name, value)) =
+            self.law.values.get_key_value(name.as_str()).filter(|(name, _)| self.acting.contains(name.as_str()))
+        else {
+            return 1;
+        };
+        if let Some(size) = known.get(name.as_str()) {
+            return *size;
+        }
+        let size = self.written_out(value, known);
+        known.insert(name, size);
+        size
+    }
+
     /// The parameters that act on each axis; none where one acts on several, elsewhere, or not in proportion.
     fn by_axis(&self) -> Option<Vec<(Axis, Vec<String>)>> {
+        let mut sizes = HashMap::new();
+        if self.law.axes.values().any(|axis| self.written_out(&axis.rest, &mut sizes) > MAX_SIZE) {
+            return None;
+        }
         let acts = |parameter: &String| {
-            let mut axes = self.law.axes.iter().filter(|(_, axis)| self.depends(&axis.rest, parameter)).map(|(axis, _)| *axis);
-            axes.next().filter(|_| axes.next().is_none() && !self.acts_elsewhere(parameter))
+            let (wanted, mut known) = (self.name(parameter), HashMap::new());
+            let on: Vec<Axis> = self
+                .law
+                .axes
+                .iter()
+                .filter(|(_, axis)| self.depends_given(&axis.rest, &wanted, &mut known))
+                .map(|(axis, _)| *axis)
+                .collect();
+            let [axis] = on[..] else { return None };
+            (!self.acts_elsewhere(&wanted, &mut known)).then_some(axis)
         };
         let mut by_axis: Vec<(Axis, Vec<String>)> = Vec::new();
         for parameter in self.effect.parameters.keys() {
@@ -106,20 +157,30 @@ impl Affine<'_> {
         qualified(&self.effect.name, &self.effect.form.name, parameter)
     }
 
-    /// Whether a formula mentions a parameter, itself or through values.
-    fn depends(&self, expr: &Expr, parameter: &str) -> bool {
-        let wanted = self.name(parameter);
-        let by_value = |name: &str| self.law.values.get(name).is_some_and(|value| self.depends(value, parameter));
-        expr.names().into_iter().any(|name| name == wanted || by_value(name))
+    /// Whether a formula mentions a parameter by its whole name, itself or through values, each looked at once.
+    fn depends_given(&self, expr: &Expr, wanted: &str, known: &mut HashMap<&'a str, bool>) -> bool {
+        let Expr::Name(name) = expr else {
+            return expr.children().into_iter().any(|child| self.depends_given(child, wanted, known));
+        };
+        if name == wanted {
+            return true;
+        }
+        let Some((name, value)) = self.law.values.get_key_value(name.as_str()) else { return false };
+        if let Some(depends) = known.get(name.as_str()) {
+            return *depends;
+        }
+        let depends = self.depends_given(value, wanted, known);
+        known.insert(name, depends);
+        depends
     }
 
     /// Whether anything but what is added to the axes mentions a parameter.
-    fn acts_elsewhere(&self, parameter: &str) -> bool {
+    fn acts_elsewhere(&self, wanted: &str, known: &mut HashMap<&'a str, bool>) -> bool {
         let law = self.law;
         let of_axes = law.axes.values().flat_map(|axis| axis.terms.values().chain([&axis.scale]));
         let of_coefficients = law.dressing.coefficients.iter().map(|(_, expr)| expr);
         let all = of_axes.chain(of_coefficients).chain(law.factors.values()).chain(law.mass.values());
-        all.chain(law.kinematics.values()).any(|expr| self.depends(expr, parameter))
+        all.chain(law.kinematics.values()).any(|expr| self.depends_given(expr, wanted, known))
     }
 
     /// What is added to an axis without the effect, and the term of each parameter.
@@ -146,7 +207,7 @@ impl Affine<'_> {
                 return Some(Expr::Number(number(own)));
             }
             let value = self.law.values.get(name)?;
-            parameters.iter().any(|own| self.depends(value, own)).then(|| self.with(value, number))
+            self.acting.contains(name).then(|| self.with(value, number))
         })
     }
 
@@ -154,7 +215,14 @@ impl Affine<'_> {
     fn is_affine(&self, axis: Axis, parameters: &[String]) -> bool {
         let none = IndexMap::new();
         SEEDS.iter().all(|&seed| {
-            let probe = Probe { parameters: &none, values: &self.law.values, seed, mirrored: false, absent: false };
+            let probe = Probe {
+                parameters: &none,
+                values: &self.law.values,
+                seed,
+                mirrored: false,
+                absent: false,
+                known: RefCell::default(),
+            };
             let of = |number: &dyn Fn(&str) -> f64| probe.of(&self.rest(axis, number));
             let size = |own: &str| probe.of(&Expr::Name(self.name(own))).unwrap_or(1.0);
             let Some((together, still)) = of(&size).zip(of(&|_| 0.0)) else { return false };

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use super::{AppliedEffect, Form};
 use crate::Model;
 use crate::formula::Expr;
-use crate::law::{Input, Law, Parameter, STATES};
+use crate::law::limits::most;
+use crate::law::{Input, Law, MAX_EFFECTS, Parameter, STATES};
 use crate::trial::Channel;
 
 /// What effects add to a law, beside the formulas of its own that they change.
@@ -21,6 +22,15 @@ pub struct Dressing {
     pub lags: Vec<(String, Expr)>,
     /// What instruments say, by channel; several effects on one channel follow each other.
     pub measures: Vec<(Channel, Expr)>,
+}
+
+impl Dressing {
+    /// Its formulas.
+    pub(crate) fn formulas(&self) -> impl Iterator<Item = &Expr> {
+        let named = self.coefficients.iter().chain(&self.lags).map(|(_, expr)| expr);
+        let of_axes = self.accelerations.iter().map(|(_, expr)| expr);
+        named.chain(of_axes).chain(self.measures.iter().map(|(_, expr)| expr))
+    }
 }
 
 /// The name of an effect's parameter (or value) in a dressed law.
@@ -48,6 +58,7 @@ impl Law {
     /// # Errors
     /// The field of the model at fault, and why.
     pub fn with_effects(&self, model: &Model) -> Result<Self, (String, String)> {
+        most("effects", model.effects.len(), MAX_EFFECTS)?;
         let mut forms = Vec::new();
         for effect in &model.effects {
             let field = |(field, message): (String, String)| (format!("effects.{}.{field}", effect.name), message);
@@ -55,6 +66,9 @@ impl Law {
         }
         let listed: Vec<(&str, &Form)> = forms.iter().map(|(effect, form)| (effect.name.as_str(), form)).collect();
         let mut law = self.dressed(model, &listed);
+        if !listed.is_empty() {
+            law.check_depth().map_err(|message| ("effects".to_owned(), message))?;
+        }
         for (effect, _) in &forms {
             for (name, quantity) in &effect.parameters {
                 law.dressing.parameters.insert(qualified(&effect.name, &effect.form.name, name), quantity.value);
@@ -106,12 +120,12 @@ impl Dresser<'_> {
         self.inputs(law);
         self.parameters(law);
         for (name, expr) in &self.form.values {
-            law.values.insert(self.name(name), self.expr(expr));
+            law.add_value(self.name(name), self.expr(expr));
         }
         for (name, expr) in &self.form.sees {
             let seen = format!("{}/{}.seen.{name}", self.effect, self.form.file.name);
             law.rename_in_forces(name, &seen);
-            law.values.insert(seen, self.expr(expr));
+            law.add_value(seen, self.expr(expr));
         }
         for (axis, expr) in &self.form.forces {
             if let Some(axis) = law.axes.get_mut(axis) {
@@ -133,7 +147,7 @@ impl Dresser<'_> {
             law.dressing.parameters.insert(self.name(name), parameter.absent);
         }
         for (name, expr) in &self.form.particulars {
-            law.values.insert(self.name(name), self.expr(expr));
+            law.add_value(self.name(name), self.expr(expr));
         }
     }
 
@@ -181,7 +195,7 @@ impl Dresser<'_> {
 
 impl Form {
     /// Every formula that acts.
-    fn formulas(&self) -> impl Iterator<Item = &Expr> {
+    pub(super) fn formulas(&self) -> impl Iterator<Item = &Expr> {
         let named = self.values.values().chain(self.sees.values()).chain(self.coefficients.values()).chain(self.lags.values());
         named.chain(self.accelerates.values()).chain(self.forces.values()).chain(self.measures.values())
     }

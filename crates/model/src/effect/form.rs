@@ -5,7 +5,9 @@ use indexmap::IndexMap;
 use super::scope::{Refusal, Scope};
 use super::{ActsOn, EffectParameter, EffectParameterFile, Form, FormFile, Report, names, symmetry};
 use crate::coefficient::Axis;
+use crate::formula::Expr;
 use crate::law::axis_dimension;
+use crate::law::limits::{Depths, most};
 use crate::particulars;
 use crate::trial::Channel;
 use crate::units::{Dimension, Unit};
@@ -30,6 +32,7 @@ impl Form {
     /// a symmetry, or an effect that does not vanish at its absence.
     pub fn read(acts_on: ActsOn, file: &FormFile) -> Result<Self, (String, String)> {
         check_actions(acts_on, file)?;
+        check_counts(file)?;
         let mut scope = Scope::new(acts_on == ActsOn::Measurement);
         let parameters = parameters(&mut scope, file)?;
         let values = scope.values(&file.values)?;
@@ -47,8 +50,39 @@ impl Form {
             values,
         };
         scope.check_needs(&file.needs)?;
+        form.check_size()?;
         symmetry::check(&form)?;
         Ok(form)
+    }
+}
+
+/// Parameters, values, particulars, reports and each way of acting.
+const MAX_NAMES: usize = 100;
+
+/// Levels of operators from a formula of a form down through its values.
+const MAX_DEPTH: usize = 128;
+
+/// Numbers, names and operators of all formulas of a form.
+const MAX_SIZE: usize = 5000;
+
+fn check_counts(file: &FormFile) -> Result<(), Refusal> {
+    let sections =
+        [("parameters", file.parameters.len()), ("values", file.values.len()), ("particulars", file.particulars.len())];
+    let acting = [("sees", file.sees.len()), ("coefficients", file.coefficients.len()), ("lags", file.lags.len())];
+    let all = sections.into_iter().chain(acting).chain([("reports", file.reports.len())]);
+    all.into_iter().try_for_each(|(section, count)| most(section, count, MAX_NAMES))
+}
+
+impl Form {
+    /// Refuses formulas that are too many, or too deep through the values that they mention.
+    fn check_size(&self) -> Result<(), Refusal> {
+        let depths = Depths::of(&self.values);
+        let reports = self.reports.values().map(|report| &report.formula);
+        let all = || self.formulas().chain(self.particulars.values()).chain(reports.clone());
+        let size = all().map(Expr::size).sum();
+        most("", size, MAX_SIZE)
+            .map_err(|(_, e)| (String::new(), format!("numbers, names and operators of all formulas: {e}")))?;
+        all().try_for_each(|expr| depths.check("values", expr, MAX_DEPTH))
     }
 }
 

@@ -11,8 +11,12 @@ use super::{ActsOn, Form, GrammarFile, symmetry};
 use crate::coefficient::{Axis, STANDARD_FACTORS};
 use crate::formula::Expr;
 use crate::law::axis_dimension;
+use crate::law::limits::most;
 use crate::trial::Channel;
 use crate::units::Dimension;
+
+/// Most factors of a grammar: to the fourth order they make some 5000 terms.
+const MOST_FACTORS: usize = 16;
 
 /// A grammar, read and checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,6 +92,7 @@ fn check(file: &GrammarFile, scales: &BTreeMap<Axis, Expr>) -> Result<(), Refusa
     if !(1..=4).contains(&file.order) {
         return Err(("order".into(), format!("{} is not from 1 to 4", file.order)));
     }
+    most("factors", file.factors.len(), MOST_FACTORS)?;
     if let Some(symbol) = file.absolute.iter().find(|symbol| !file.factors.contains_key(*symbol)) {
         return Err((format!("absolute.{symbol}"), "is not one of the factors".into()));
     }

@@ -1,5 +1,8 @@
 //! Formulas at a few ordinary points: any numbers will do, as long as different names have different ones.
 
+use std::cell::RefCell;
+use std::collections::HashMap;
+
 use indexmap::IndexMap;
 
 use super::{EffectParameter, Mirror};
@@ -40,6 +43,8 @@ pub(super) struct Probe<'a> {
     pub mirrored: bool,
     /// Whether every parameter stands for the absence of the effect.
     pub absent: bool,
+    /// Values that were needed so far: each is found once.
+    pub known: RefCell<HashMap<String, Option<f64>>>,
 }
 
 impl Probe<'_> {
@@ -50,7 +55,12 @@ impl Probe<'_> {
 
     fn name(&self, name: &str) -> Option<f64> {
         if let Some(value) = self.values.get(name) {
-            return value.value(&|name| self.name(name));
+            if let Some(known) = self.known.borrow().get(name) {
+                return *known;
+            }
+            let found = value.value(&|name| self.name(name));
+            self.known.borrow_mut().insert(name.to_owned(), found);
+            return found;
         }
         if let Some((value, _)) = formula::builtin(name) {
             return Some(value);

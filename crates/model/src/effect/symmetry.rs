@@ -1,5 +1,7 @@
 //! Port/starboard symmetry of effects, and their absence.
 
+use std::cell::RefCell;
+
 use indexmap::IndexMap;
 
 use super::probe::{Probe, SEEDS, is_odd};
@@ -66,7 +68,7 @@ fn check_absence(form: &Form, action: &Action<'_>) -> Result<(), String> {
 }
 
 fn probe(form: &Form, seed: u32, absent: bool) -> Probe<'_> {
-    Probe { parameters: &form.parameters, values: &form.values, seed, mirrored: false, absent }
+    Probe { parameters: &form.parameters, values: &form.values, seed, mirrored: false, absent, known: RefCell::default() }
 }
 
 /// What is wrong with a formula that is not as odd (or even) as it should be.
@@ -84,7 +86,7 @@ pub(super) fn has_parity(
 ) -> bool {
     let sign = if odd { -1.0 } else { 1.0 };
     SEEDS.into_iter().all(|seed| {
-        let at = |mirrored| Probe { parameters, values, seed, mirrored, absent: false }.of(formula);
+        let at = |mirrored| Probe { parameters, values, seed, mirrored, absent: false, known: RefCell::default() }.of(formula);
         let pair = at(false).zip(at(true));
         pair.is_some_and(|(here, there)| (here - sign * there).abs() <= 1e-9 * (here.abs() + there.abs()))
     })

@@ -1,9 +1,12 @@
 //! Formulas of laws and effects: parsed once, checked for units, lowered later by the dynamics.
 
 mod dimension;
+mod limits;
 mod parse;
 mod syntax;
 
 pub use dimension::dimension_of;
+pub(crate) use limits::head;
+pub use limits::{MAX_DEPTH, MAX_LENGTH, MAX_NESTING, MAX_OPERATORS};
 pub use parse::{parse, parse_condition};
 pub use syntax::{Comparison, Expr, Function, builtin, constant};

@@ -15,8 +15,10 @@ type Result<T> = winnow::Result<T, ErrMode<ContextError>>;
 /// Parses one formula.
 ///
 /// # Errors
-/// Says at which character the formula stops making sense, and what was expected there.
+/// Says at which character the formula stops making sense, and what was expected there; or that it is longer or deeper than
+/// [`super::MAX_LENGTH`], [`super::MAX_NESTING`] and [`super::MAX_OPERATORS`] allow.
 pub fn parse(text: &str) -> std::result::Result<Expr, String> {
+    super::limits::check(text)?;
     let parsed = delimited(multispace0, sum, multispace0).parse(text);
     parsed.map_err(|error| {
         let rest: String = text.chars().skip(text[..error.offset()].chars().count()).take(12).collect();
@@ -33,7 +35,10 @@ pub fn parse(text: &str) -> std::result::Result<Expr, String> {
 /// As [`parse`]; also where there is no comparison.
 pub fn parse_condition(text: &str) -> std::result::Result<Expr, String> {
     match text.find(['<', '>']) {
-        Some(_) => parse(&format!("if({text}, 1, 0)")).map_err(|_| format!("condition `{text}` cannot be read: write `u < 0`")),
+        Some(_) => {
+            super::limits::check(text)?;
+            parse(&format!("if({text}, 1, 0)")).map_err(|_| format!("condition `{text}` cannot be read: write `u < 0`"))
+        }
         None => Err(format!("condition `{text}` lacks a comparison: write `u < 0`")),
     }
 }

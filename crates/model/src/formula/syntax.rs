@@ -166,6 +166,38 @@ impl Expr {
         }
     }
 
+    /// The operand on the left, leaving a number in its place; none where there are no operands further down.
+    fn take_left(&mut self) -> Option<Expr> {
+        let left = match self {
+            Self::Number(_) | Self::Name(_) | Self::Call(..) | Self::If(..) => return None,
+            Self::Negate(a) => a,
+            Self::Add(a, _) | Self::Subtract(a, _) | Self::Multiply(a, _) | Self::Divide(a, _) | Self::Power(a, _) => a,
+        };
+        match **left {
+            Self::Number(_) | Self::Name(_) => None,
+            _ => Some(std::mem::replace(&mut **left, Self::Number(0.0))),
+        }
+    }
+
+    /// How many numbers, names and operators it has.
+    pub fn size(&self) -> usize {
+        1 + self.children().into_iter().map(Expr::size).sum::<usize>()
+    }
+
+    /// How many operators are within each other, where `of_name` says how many a name stands for; none where there are more
+    /// than `most`, which is told without going further down.
+    pub fn depth(&self, most: usize, of_name: &dyn Fn(&str, usize) -> Option<usize>) -> Option<usize> {
+        match self {
+            Self::Number(_) => Some(0),
+            Self::Name(name) => of_name(name, most).filter(|depth| *depth <= most),
+            other => {
+                let below = most.checked_sub(1)?;
+                let depths = other.children().into_iter().map(|child| child.depth(below, of_name));
+                depths.collect::<Option<Vec<usize>>>().map(|depths| 1 + depths.into_iter().max().unwrap_or(0))
+            }
+        }
+    }
+
     /// The product of two expressions.
     pub fn times(self, other: Expr) -> Expr {
         Self::Multiply(Box::new(self), Box::new(other))
@@ -195,6 +227,16 @@ impl Expr {
                 }
             }
         })
+    }
+}
+
+/// A sum of thousands of terms, as the force of an axis, leans to the left: it is taken apart in a loop, not by recursion.
+impl Drop for Expr {
+    fn drop(&mut self) {
+        let mut left = self.take_left();
+        while let Some(mut expr) = left {
+            left = expr.take_left();
+        }
     }
 }
 

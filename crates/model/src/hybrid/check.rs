@@ -5,11 +5,15 @@ use super::file::{ActuatorFile, ActuatorKind, AngleFeature, HybridFile, Squares,
 use super::rules::AXES;
 use crate::coefficient::STANDARD_FACTORS;
 use crate::law::STATES;
+use crate::law::limits::most;
 use crate::name::check_slug;
 use crate::{formula, particulars};
 
 /// Most terms that an expansion may have.
 const MOST_TERMS: usize = 5000;
+
+/// Most actuators.
+const MOST_ACTUATORS: usize = 50;
 
 type Fault = (String, String);
 
@@ -29,6 +33,7 @@ pub(super) fn check(file: &HybridFile) -> Result<(), Fault> {
     if file.actuators.is_empty() {
         return fault("actuators", "name at least one actuator".into());
     }
+    most("actuators", file.actuators.len(), MOST_ACTUATORS)?;
     for (name, actuator) in &file.actuators {
         let field = |(key, message): (&str, String)| (format!("actuators.{name}{key}"), message);
         check_name(name).map_err(|e| field(("", e)))?;

@@ -1,15 +1,17 @@
 //! A law of motion: formulas over states, inputs, particulars and parameters, linear in its coefficients.
 
 mod file;
+pub(crate) mod limits;
 mod read;
 mod submodel;
 mod symmetry;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use indexmap::IndexMap;
 
 pub use file::{AxisFile, InputFile, LawFile, LawKind, ParameterFile, SubmodelFile, TermFile};
+pub use limits::{MAX_COEFFICIENTS, MAX_EFFECTS, MAX_SIZE, MAX_TERMS};
 
 use crate::coefficient::{Axis, CoefficientName, split_submodel};
 use crate::effect::Dressing;
@@ -44,6 +46,8 @@ pub struct Law {
     pub parameters: IndexMap<String, Parameter>,
     /// Intermediate values, in an order in which each needs only earlier ones.
     pub values: IndexMap<String, Expr>,
+    /// Their dimensions, each found once: found anew, that of a value named twice in the next would be found twice.
+    pub value_dimensions: BTreeMap<String, Dimension>,
     /// What a factor of a coefficient's name stands for in a regressor.
     pub factors: IndexMap<String, Expr>,
     /// Submodels by name, the first whose conditions hold applies; each one's indicator is the value [`indicator`].
@@ -129,6 +133,7 @@ impl Law {
             inputs: IndexMap::new(),
             parameters: IndexMap::new(),
             values: IndexMap::new(),
+            value_dimensions: BTreeMap::new(),
             factors: IndexMap::new(),
             submodels: IndexMap::new(),
             axes: BTreeMap::new(),
@@ -197,16 +202,20 @@ impl Law {
     /// The dimension of any name that a formula of this law may mention.
     pub fn dimension(&self, name: &str) -> Option<Dimension> {
         let state = STATES.iter().find(|(state, _)| *state == name).map(|&(_, dimension)| dimension);
-        let of_value = |name: &str| {
-            let expr = self.values.get(name)?;
-            crate::formula::dimension_of(expr, &|n| self.dimension(n)).ok()
-        };
         state
             .or_else(|| crate::formula::builtin(name).map(|(_, dimension)| dimension))
             .or_else(|| self.inputs.get(name).map(|input| input.dimension))
             .or_else(|| self.parameters.get(name).map(|parameter| parameter.dimension))
-            .or_else(|| of_value(name))
+            .or_else(|| self.value_dimensions.get(name).copied())
             .or_else(|| particulars::dimension(name))
+    }
+
+    /// Adds a value that needs only earlier ones.
+    pub fn add_value(&mut self, name: String, expr: Expr) {
+        if let Ok(dimension) = crate::formula::dimension_of(&expr, &|n| self.dimension(n)) {
+            self.value_dimensions.insert(name.clone(), dimension);
+        }
+        self.values.insert(name, expr);
     }
 
     /// The value of a parameter for a ship: how it follows from her particulars, where the law says so and they suffice.
@@ -223,11 +232,20 @@ impl Law {
     /// Whether a coefficient's regressor changes sign with the rudder: by `delta`, or by a factor of the law that does, such
     /// as a sine of it.
     pub fn is_odd_in_rudder(&self, coefficient: &str) -> bool {
+        let odd: BTreeSet<&str> = self.odd_in_rudder().collect();
+        self.is_odd_in(coefficient, &odd)
+    }
+
+    /// The factors of the law that change sign with the rudder.
+    pub(crate) fn odd_in_rudder(&self) -> impl Iterator<Item = &str> {
+        let own = self.factors.iter().filter(|(_, expr)| symmetry::is_odd_in_rudder(self, expr));
+        own.map(|(symbol, _)| symbol.as_str()).chain(["delta"])
+    }
+
+    /// Whether a coefficient's regressor changes sign with what is `odd`.
+    pub(crate) fn is_odd_in(&self, coefficient: &str, odd: &BTreeSet<&str>) -> bool {
         let Ok(name) = CoefficientName::parse(coefficient, &self.extra_factors()) else { return false };
-        let odd = |symbol: &str| {
-            symbol == "delta" || self.factors.get(symbol).is_some_and(|expr| symmetry::is_odd_in_rudder(self, expr))
-        };
-        name.factors.iter().filter(|factor| !factor.absolute && odd(&factor.symbol)).count() % 2 == 1
+        name.factors.iter().filter(|factor| !factor.absolute && odd.contains(factor.symbol.as_str())).count() % 2 == 1
     }
 
     /// Whether roll is a state of its own.

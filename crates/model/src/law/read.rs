@@ -6,7 +6,7 @@ use indexmap::IndexMap;
 
 use super::file::{AxisFile, LawFile, ParameterFile, ParameterRole, TermFile};
 use super::submodel::read_submodels;
-use super::{AxisLaw, Input, Law, Parameter, STATES, axis_dimension, symmetry};
+use super::{AxisLaw, Input, Law, Parameter, STATES, axis_dimension, limits, symmetry};
 use crate::coefficient::{Axis, CoefficientName};
 use crate::error::{Blame, FileError};
 use crate::formula::{self, Expr};
@@ -18,6 +18,7 @@ pub(super) fn read(file: &str, text: &str) -> Result<Law, FileError> {
     let blame = Blame::new(file, text);
     let raw: LawFile = blame.read()?;
     check_slug(&raw.name).map_err(|e| blame.at("name", e))?;
+    limits::check_counts(&raw).map_err(|(field, message)| blame.at(&field, message))?;
     let mut law = Law {
         name: raw.name,
         title: raw.title,
@@ -25,6 +26,7 @@ pub(super) fn read(file: &str, text: &str) -> Result<Law, FileError> {
         inputs: IndexMap::new(),
         parameters: IndexMap::new(),
         values: IndexMap::new(),
+        value_dimensions: BTreeMap::new(),
         factors: IndexMap::new(),
         submodels: IndexMap::new(),
         axes: BTreeMap::new(),
@@ -54,6 +56,7 @@ pub(super) fn read(file: &str, text: &str) -> Result<Law, FileError> {
     reader.terms(&mut law, &raw.axes)?;
     reader.mass(&mut law, &raw.mass)?;
     reader.kinematics(&mut law, &raw.kinematics)?;
+    limits::check(&law).map_err(|(field, message)| blame.at(&field, message))?;
     symmetry::check(&law).map_err(|(field, message)| blame.at(&field, message))?;
     Ok(law)
 }
@@ -100,7 +103,7 @@ impl Reader<'_> {
                 return Err(self.blame.at(&field, "this name is already a state, input, parameter or particular"));
             }
             let expr = self.formula(law, &field, formula, None)?;
-            law.values.insert(name.clone(), expr);
+            law.add_value(name.clone(), expr);
         }
         Ok(())
     }

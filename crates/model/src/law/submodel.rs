@@ -20,7 +20,7 @@ pub(super) fn read_submodels(law: &mut Law, raw: &IndexMap<String, SubmodelFile>
             return Err(field(format!("shrinkage must be above 0, not {}", file.shrinkage)));
         }
         let expr = applies(law, file).map_err(field)?;
-        law.values.insert(indicator(name), expr);
+        law.add_value(indicator(name), expr);
         law.submodels.insert(name.clone(), Submodel { meaning: file.meaning.clone(), shrinkage: file.shrinkage });
     }
     Ok(())

@@ -1,6 +1,7 @@
 //! Port/starboard symmetry: mirrored motion must give mirrored forces.
 
-use std::collections::BTreeMap;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, HashMap};
 
 use super::Law;
 use crate::coefficient::{Axis, CoefficientName};
@@ -30,14 +31,17 @@ pub(super) fn check(law: &Law) -> Result<(), (String, String)> {
             return Err((format!("mirrors.{first}"), "both must be parameters of the law, or both inputs".into()));
         }
     }
+    let places = Places::new(law);
+    let factors: BTreeMap<&str, Option<bool>> =
+        law.factors.iter().map(|(symbol, expr)| (symbol.as_str(), is_odd(&places, expr))).collect();
     for name in law.submodels.keys() {
-        check_parity(law, &Expr::Name(super::indicator(name)), false, &format!("submodels.{name}"))?;
+        check_parity(&places, &Expr::Name(super::indicator(name)), false, &format!("submodels.{name}"))?;
     }
     for (axis, axis_law) in &law.axes {
-        check_parity(law, &axis_law.rest, axis.is_odd(), &format!("axes.{axis}.rest"))?;
+        check_parity(&places, &axis_law.rest, axis.is_odd(), &format!("axes.{axis}.rest"))?;
         for (name, term) in &axis_law.terms {
             let field = format!("axes.{axis}.terms.{name}");
-            check_parity(law, term, spelled_parity(law, name, *axis), &field)?;
+            check_parity(&places, term, spelled_parity(law, &factors, name, *axis), &field)?;
         }
     }
     Ok(())
@@ -45,19 +49,19 @@ pub(super) fn check(law: &Law) -> Result<(), (String, String)> {
 
 /// Whether the factors that a name spells make an odd product in the mirror. Where one of them is neither odd nor even, as
 /// the angle of one rudder of a pair, the name cannot spell a bias and the axis decides.
-fn spelled_parity(law: &Law, name: &str, axis: Axis) -> bool {
+fn spelled_parity(law: &Law, factors: &BTreeMap<&str, Option<bool>>, name: &str, axis: Axis) -> bool {
     let Ok(parsed) = CoefficientName::parse(name, &law.extra_factors()) else { return axis.is_odd() };
     // A factor that only explicit formulas use is known by its symbol alone.
     let of_symbol =
-        |symbol: &String| law.factors.get(symbol).map_or(Some(ODD.contains(&symbol.as_str())), |expr| is_odd(law, expr));
+        |symbol: &String| factors.get(symbol.as_str()).copied().unwrap_or_else(|| Some(ODD.contains(&symbol.as_str())));
     let plain = parsed.factors.iter().filter(|f| !f.absolute).map(|f| of_symbol(&f.symbol));
     let odd = plain.collect::<Option<Vec<bool>>>();
     odd.map_or(axis.is_odd(), |odd| odd.into_iter().filter(|odd| *odd).count() % 2 == 1)
 }
 
-fn check_parity(law: &Law, expr: &Expr, odd: bool, field: &str) -> Result<(), (String, String)> {
-    let vanishes = POINTS.iter().all(|point| at(law, expr, point, false) == Some(0.0));
-    if vanishes || is_odd(law, expr) == Some(odd) {
+fn check_parity(places: &Places<'_>, expr: &Expr, odd: bool, field: &str) -> Result<(), (String, String)> {
+    let vanishes = places.0.iter().all(|[here, _]| here.of(expr) == Some(0.0));
+    if vanishes || is_odd(places, expr) == Some(odd) {
         return Ok(());
     }
     let wanted = if odd { "change its sign" } else { "stay as it is" };
@@ -67,9 +71,9 @@ fn check_parity(law: &Law, expr: &Expr, odd: bool, field: &str) -> Result<(), (S
 }
 
 /// Whether the formula is odd (`Some(true)`), even (`Some(false)`) or neither in the mirror.
-fn is_odd(law: &Law, expr: &Expr) -> Option<bool> {
+fn is_odd(places: &Places<'_>, expr: &Expr) -> Option<bool> {
     let parity = |sign: f64| {
-        POINTS.iter().all(|point| match (at(law, expr, point, false), at(law, expr, point, true)) {
+        places.0.iter().all(|[here, there]| match (here.of(expr), there.of(expr)) {
             (Some(here), Some(there)) => (here - sign * there).abs() <= 1e-9 * (here.abs() + there.abs()),
             _ => true,
         })
@@ -85,9 +89,9 @@ fn is_odd(law: &Law, expr: &Expr) -> Option<bool> {
 pub(super) fn is_odd_in_rudder(law: &Law, expr: &Expr) -> bool {
     let rudders = || law.inputs.keys().filter(|name| *name == "delta" || name.starts_with("delta_"));
     let value = |point: &[f64; 8], sign: f64| {
-        let mut known: BTreeMap<&str, f64> = AT.iter().copied().zip(point.iter().copied()).collect();
-        known.extend(rudders().enumerate().map(|(k, name)| (name.as_str(), sign * (0.2 + 0.1 * k as f64))));
-        lookup(law, expr, &known, false)
+        let mut place = Place::new(law, point, false);
+        place.known.extend(rudders().enumerate().map(|(k, name)| (name.as_str(), sign * (0.2 + 0.1 * k as f64))));
+        place.of(expr)
     };
     POINTS.iter().all(|point| match (value(point, 1.0), value(point, -1.0)) {
         (Some(here), Some(there)) => here != 0.0 && (here + there).abs() <= 1e-9 * here.abs(),
@@ -95,21 +99,49 @@ pub(super) fn is_odd_in_rudder(law: &Law, expr: &Expr) -> bool {
     })
 }
 
-fn at(law: &Law, expr: &Expr, point: &[f64; 8], mirrored: bool) -> Option<f64> {
-    let mut known: BTreeMap<&str, f64> = AT.iter().copied().zip(point.iter().copied()).collect();
-    if mirrored {
-        for name in ODD {
-            known.entry(name).and_modify(|value| *value = -*value).or_insert(0.0);
-        }
-    }
-    lookup(law, expr, &known, mirrored)
+/// The ship in one of the points, or its mirror image, with the values that were needed there so far: each is found once.
+struct Place<'a> {
+    law: &'a Law,
+    known: BTreeMap<&'a str, f64>,
+    mirrored: bool,
+    values: RefCell<HashMap<&'a str, f64>>,
 }
 
-fn lookup(law: &Law, expr: &Expr, known: &BTreeMap<&str, f64>, mirrored: bool) -> Option<f64> {
-    expr.value(&|name| {
-        let nested = |e: &Expr| lookup(law, e, known, mirrored);
-        known.get(name).copied().or_else(|| law.values.get(name).and_then(nested)).or_else(|| Some(stand_in(law, name, mirrored)))
-    })
+impl<'a> Place<'a> {
+    fn new(law: &'a Law, point: &[f64; 8], mirrored: bool) -> Self {
+        let mut known: BTreeMap<&str, f64> = AT.iter().copied().zip(point.iter().copied()).collect();
+        if mirrored {
+            for name in ODD {
+                known.entry(name).and_modify(|value| *value = -*value).or_insert(0.0);
+            }
+        }
+        Self { law, known, mirrored, values: RefCell::default() }
+    }
+
+    fn of(&self, expr: &Expr) -> Option<f64> {
+        expr.value(&|name| self.name(name))
+    }
+
+    fn name(&self, name: &str) -> Option<f64> {
+        if let Some(value) = self.known.get(name).or(self.values.borrow().get(name)) {
+            return Some(*value);
+        }
+        let Some((name, expr)) = self.law.values.get_key_value(name) else {
+            return Some(stand_in(self.law, name, self.mirrored));
+        };
+        let value = self.of(expr)?;
+        self.values.borrow_mut().insert(name, value);
+        Some(value)
+    }
+}
+
+/// Pairs of a point and its mirror image.
+struct Places<'a>(Vec<[Place<'a>; 2]>);
+
+impl<'a> Places<'a> {
+    fn new(law: &'a Law) -> Self {
+        Self(POINTS.iter().map(|point| [false, true].map(|mirrored| Place::new(law, point, mirrored))).collect())
+    }
 }
 
 /// Any number will do for particulars and parameters, as long as different names have different ones.

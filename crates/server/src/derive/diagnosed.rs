@@ -5,11 +5,10 @@ use sistership_diagnose::{Diagnosis, Request, Settings, diagnose};
 use sistership_model::trial::Trial;
 use sistership_model::version::FORMAT;
 use sistership_model::{Law, Model};
-use sistership_trials::samples;
 
-use super::{DeriveError, Progress, sorted};
+use super::{DeriveError, Inputs, Progress, sorted};
 use crate::archive::Archive;
-use crate::library::library;
+use crate::library::Library;
 use crate::version::{DiagnosisRecipe, Recipe, VersionDocument};
 
 /// A diagnosis with everything that went into it.
@@ -32,12 +31,25 @@ pub struct Diagnosed {
 /// # Errors
 /// Says what is missing or has changed, or why the diagnosis is refused.
 pub async fn diagnosed(archive: &Archive, recipe: DiagnosisRecipe, progress: Progress) -> Result<Diagnosed, DeriveError> {
-    let model = archive.source(&recipe.diagnosed).await?;
-    let law = archive.law(&model.law, &recipe.law_sha256).await?;
-    let samples = archive.samples(&recipe.trials).await?;
+    let inputs = Inputs::new(archive);
+    let named = Recipe::Diagnosis(recipe.clone());
+    let diagnosed = diagnosed_from(&inputs, recipe, progress).await?;
+    inputs.check(&named)?;
+    Ok(diagnosed)
+}
+
+/// The same from inputs that are noted.
+pub(super) async fn diagnosed_from(
+    inputs: &Inputs<'_>,
+    recipe: DiagnosisRecipe,
+    progress: Progress,
+) -> Result<Diagnosed, DeriveError> {
+    let model = inputs.source(&recipe.diagnosed).await?;
+    let law = inputs.law(&model.law, &recipe.law_sha256).await?;
+    let library = inputs.effects(&recipe.effects_sha256).await?;
+    let trials = inputs.trials(&recipe.trials).await?;
     let work = move || {
-        let trials = samples.into_iter().map(samples::from_parquet).collect::<Result<Vec<Trial>, _>>()?;
-        let diagnosis = carry_out(&recipe, &model, &law, &trials, &progress)?;
+        let diagnosis = carry_out(&recipe, (&model, &law, &library), &trials, &progress)?;
         Ok(Diagnosed { diagnosis, recipe, model, law, trials })
     };
     tokio::task::spawn_blocking(work).await?
@@ -45,16 +57,10 @@ pub async fn diagnosed(archive: &Archive, recipe: DiagnosisRecipe, progress: Pro
 
 fn carry_out(
     recipe: &DiagnosisRecipe,
-    model: &Model,
-    law: &Law,
+    (model, law, library): (&Model, &Law, &Library),
     trials: &[Trial],
     progress: &Progress,
 ) -> Result<Diagnosis, DeriveError> {
-    let library = library()?;
-    if library.sha256 != recipe.effects_sha256 {
-        let (now, then) = (&library.sha256, &recipe.effects_sha256);
-        return Err(DeriveError::Lost(format!("this program's library of effects has the hash {now}, not {then}")));
-    }
     let settings: Settings = serde_json::from_value(recipe.settings.clone())?;
     let trials: Vec<&Trial> = trials.iter().collect();
     let request = Request { model, law, effects: &library.effects, trials: &trials, settings: &settings };

@@ -3,7 +3,10 @@
 
 mod calibrated;
 mod diagnosed;
+mod inputs;
 mod refined;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 
@@ -16,6 +19,8 @@ use sistership_trials::samples::SamplesError;
 
 pub use calibrated::with_uncertainty;
 pub use diagnosed::{Diagnosed, diagnosed};
+pub(crate) use inputs::Inputs;
+pub use inputs::{Input, InputKind};
 pub use refined::{Ingredients, Refined, refined_document};
 
 use crate::archive::Archive;
@@ -64,38 +69,60 @@ pub struct Derived {
 /// # Errors
 /// Says what is missing or has changed, or why the refinement is refused.
 pub async fn derive(archive: &Archive, ship: &str, recipe: &Recipe, progress: Progress) -> Result<Derived, DeriveError> {
-    match recipe {
+    let inputs = &Inputs::new(archive);
+    let derived = match recipe {
         Recipe::Plain(version::Recipe::Published { model, ship_sha256, law_sha256 }) => {
-            published(archive, ship, model, ship_sha256, law_sha256).await
+            published(inputs, ship, model, ship_sha256, law_sha256).await
         }
         Recipe::Plain(recipe @ version::Recipe::Refinement { .. }) => {
-            let (ingredients, samples) = refined::gather(archive, ship, recipe).await?;
+            let ingredients = refined::gather(inputs, ship, recipe).await?;
             let recipe = recipe.clone();
-            tokio::task::spawn_blocking(move || refined::refined(ingredients, &samples, &recipe, &progress)).await?
+            tokio::task::spawn_blocking(move || refined::refined(ingredients, &recipe, &progress)).await?
         }
-        Recipe::Family(recipe) => Ok(Derived { document: crate::fleet::derived(archive, ship, recipe).await?, refined: None }),
+        Recipe::Family(recipe) => Ok(Derived { document: crate::fleet::derived(inputs, ship, recipe).await?, refined: None }),
         Recipe::Registered(_) => {
             Err(DeriveError::Lost("the model was made elsewhere: its own bytes are all there is of it".into()))
         }
         Recipe::Diagnosis(recipe) => {
-            let document = diagnosed(archive, recipe.clone(), progress).await?.document()?;
+            let document = diagnosed::diagnosed_from(inputs, recipe.clone(), progress).await?.document()?;
             let nothing = || DeriveError::Lost("the diagnosis finds no effect now, so that no version comes of it".into());
             Ok(Derived { document: document.ok_or_else(nothing)?, refined: None })
         }
+    }?;
+    inputs.check(recipe)?;
+    Ok(derived)
+}
+
+impl Derived {
+    /// The same with every setting that was used spelled out in the recipe of a refinement, so that no later default speaks for
+    /// it. Evaluations stay as they were asked for: they are a limit, and not what was spent.
+    ///
+    /// # Errors
+    /// A setting is not finite.
+    pub fn spelled_out(mut self) -> Result<Self, DeriveError> {
+        if let (Some(refined), Recipe::Plain(version::Recipe::Refinement { settings, .. })) =
+            (&self.refined, &mut self.document.recipe)
+        {
+            let mut used = refined.refinement.settings.clone();
+            let asked = refined.ingredients.settings.cma_es.clone().unwrap_or_default().evaluations;
+            used.cma_es.iter_mut().for_each(|search| search.evaluations = asked);
+            *settings = sorted(serde_json::to_value(used)?);
+        }
+        Ok(self)
     }
 }
 
 async fn published(
-    archive: &Archive,
+    inputs: &Inputs<'_>,
     ship: &str,
     model: &str,
     ship_sha256: &str,
     law_sha256: &str,
 ) -> Result<Derived, DeriveError> {
-    let vessel = archive.ship(ship, ship_sha256).await?;
+    let vessel = inputs.ship(ship, ship_sha256).await?;
     let lost = || DeriveError::Lost(format!("the ship `{ship}` has no model `{model}`"));
     let file = vessel.file.models.iter().find(|file| file.name == model).ok_or_else(lost)?;
-    let law = archive.law(&file.law, law_sha256).await?;
+    let law = inputs.law(&file.law, law_sha256).await?;
     let document = published_document(&vessel, model, &law, ship_sha256, law_sha256)?;
     Ok(Derived { document, refined: None })
 }

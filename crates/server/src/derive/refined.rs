@@ -1,16 +1,13 @@
 //! Deriving a refined version: a function of its ingredients, each found by its hash.
 
-use bytes::Bytes;
 use serde_json::Value;
 use sistership_estimate::refine::{RefineError, Refinement, Request, Settings, refine};
 use sistership_model::trial::Trial;
 use sistership_model::version::{FORMAT, Recipe, SourceVersion};
 use sistership_model::{Law, Model, Vessel};
-use sistership_trials::samples;
 
-use super::{DeriveError, Derived, Progress, sorted, with_uncertainty};
-use crate::archive::Archive;
-use crate::library::library;
+use super::{DeriveError, Derived, Inputs, Progress, sorted, with_uncertainty};
+use crate::library::{FIRST_SHA256, Library};
 use crate::version::{self, VersionDocument};
 
 /// A refinement with everything that went into it.
@@ -35,37 +32,35 @@ pub struct Ingredients {
     pub source_law: Option<Law>,
     /// The law of what is fitted.
     pub law: Law,
+    /// The library of effects that its calibration is learned with.
+    pub library: Library,
     /// The trials, in the recipe's order.
     pub trials: Vec<Trial>,
     /// The settings.
     pub settings: Settings,
 }
 
-/// Loads what a recipe names, each by its hash; the samples are not yet read.
-pub(super) async fn gather(archive: &Archive, ship: &str, recipe: &Recipe) -> Result<(Ingredients, Vec<Bytes>), DeriveError> {
-    let Recipe::Refinement { source, ship_sha256, law_sha256, across, trials, settings: recorded, .. } = recipe else {
+/// Loads what a recipe names, each by its hash.
+pub(super) async fn gather(inputs: &Inputs<'_>, ship: &str, recipe: &Recipe) -> Result<Ingredients, DeriveError> {
+    let Recipe::Refinement { source, ship_sha256, law_sha256, across, effects_sha256, trials, settings: recorded, .. } = recipe
+    else {
         return Err(DeriveError::Lost("the recipe is not that of a refinement".into()));
     };
-    let model = archive.source(source).await?;
-    let law = archive.law(across.as_ref().map_or(&model.law, |across| &across.law), law_sha256).await?;
+    let model = inputs.source(source).await?;
+    let law = inputs.law(across.as_ref().map_or(&model.law, |across| &across.law), law_sha256).await?;
     let source_law = match across {
-        Some(across) => Some(archive.law(&model.law, &across.source_law_sha256).await?),
+        Some(across) => Some(inputs.law(&model.law, &across.source_law_sha256).await?),
         None => None,
     };
-    let target = archive.ship(ship, ship_sha256).await?;
-    let samples = archive.samples(trials).await?;
+    let target = inputs.ship(ship, ship_sha256).await?;
+    let library = inputs.effects(effects_sha256.as_deref().unwrap_or(FIRST_SHA256)).await?;
+    let trials = inputs.trials(trials).await?;
     let settings: Settings = serde_json::from_value(recorded.clone())?;
-    let (source, trials) = (source.clone(), Vec::new());
-    Ok((Ingredients { target, source, model, source_law, law, trials, settings }, samples))
+    let source = source.clone();
+    Ok(Ingredients { target, source, model, source_law, law, library, trials, settings })
 }
 
-pub(super) fn refined(
-    mut ingredients: Ingredients,
-    samples: &[Bytes],
-    recipe: &Recipe,
-    progress: &Progress,
-) -> Result<Derived, DeriveError> {
-    ingredients.trials = samples.iter().cloned().map(samples::from_parquet).collect::<Result<_, _>>()?;
+pub(super) fn refined(ingredients: Ingredients, recipe: &Recipe, progress: &Progress) -> Result<Derived, DeriveError> {
     let (document, refinement) = refined_document(&ingredients, recipe, &**progress)?;
     Ok(Derived { document, refined: Some(Refined { refinement, ingredients }) })
 }
@@ -86,7 +81,7 @@ pub fn refined_document(
     if !progress(0.97, "learning what the trials leave open") {
         return Err(RefineError::Cancelled.into());
     }
-    let refinement = with_uncertainty(refinement, law, &library()?.effects, &trials);
+    let refinement = with_uncertainty(refinement, law, &ingredients.library.effects, &trials);
     let document = VersionDocument {
         format: FORMAT.to_owned(),
         ship: target.name().to_owned(),

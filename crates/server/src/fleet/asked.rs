@@ -8,6 +8,7 @@ use utoipa::ToSchema;
 
 use super::order::{BULK, Chunk, Order, PriorName};
 use crate::problem::{Problem, Result};
+use crate::web::field::described;
 
 /// Most ships in a chunk, and how many there are where nobody says: few enough that a worker which dies loses little.
 const MOST: usize = 500;
@@ -24,9 +25,10 @@ pub struct Asked {
     /// What makes a champion.
     pub rule: Rule,
     /// Ships that a worker takes at a time, 1 to 500; 50 where absent.
+    #[schema(minimum = 1, maximum = 500)]
     pub chunk_ships: Option<usize>,
     /// Settings; each has a default, and all are kept with the versions.
-    #[schema(value_type = Object)]
+    #[schema(schema_with = described::<BulkSettings>)]
     pub settings: BulkSettings,
 }
 

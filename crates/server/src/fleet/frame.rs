@@ -6,8 +6,10 @@ use sistership_model::{Law, Model};
 use sistership_store::Version;
 
 use super::asked::Start;
+use super::order::Loaded;
+use super::refined::FamilyRecipe;
 use crate::archive::{Archive, document, vessel};
-use crate::derive::DeriveError;
+use crate::derive::{DeriveError, Inputs};
 use crate::publish::CHAMPION;
 
 /// Finds the frames of a family's members.
@@ -62,17 +64,17 @@ impl Frames<'_> {
         let from = SourceVersion { ship: version.head.model, number: version.head.number, sha256: version.head.sha256 };
         Ok(Framed { model, from, ship_sha256: None, version_id: Some(version.head.id), champion: None })
     }
+}
 
-    /// Where a member started, as a recipe has it.
-    pub(crate) async fn recorded(
-        &self,
-        ship: &str,
-        from: &SourceVersion,
-        ship_sha256: Option<&str>,
-    ) -> Result<Model, DeriveError> {
-        match ship_sha256 {
-            Some(hash) => Ok(transfer(self.model, self.law, &self.archive.ship(ship, hash).await?, None)),
-            None => self.archive.source(from).await,
-        }
+/// Where a member started, as a recipe has it.
+pub(super) async fn recorded(
+    inputs: &Inputs<'_>,
+    loaded: &Loaded,
+    ship: &str,
+    recipe: &FamilyRecipe,
+) -> Result<Model, DeriveError> {
+    match &recipe.ship_sha256 {
+        Some(hash) => Ok(transfer(&loaded.foundation, &loaded.law, &inputs.ship(ship, hash).await?, None)),
+        None => inputs.source(&recipe.start).await,
     }
 }

@@ -1,7 +1,8 @@
 //! Statistics of trials: as they are kept, or made of the samples and kept from then on.
 
+use bytes::Bytes;
 use sistership_fleet::statistics::{Frame, TrialStatistics};
-use sistership_model::version::RecipeTrial;
+use sistership_model::version::{RecipeTrial, code_revision, sha256};
 use sistership_trials::samples::from_parquet;
 
 use crate::archive::Archive;
@@ -15,7 +16,7 @@ pub(crate) async fn statistics_of(
 ) -> Result<Vec<TrialStatistics>, DeriveError> {
     let (mut all, mut fresh) = (Vec::with_capacity(trials.len()), Vec::new());
     for trial in trials {
-        let key = frame.key(&trial.sha256);
+        let key = key(frame, &trial.sha256, code_revision());
         all.push(match archive.store.statistics().get(&key).await? {
             Some(document) => read(&document)?,
             None => {
@@ -31,6 +32,11 @@ pub(crate) async fn statistics_of(
     Ok(all)
 }
 
+/// What statistics are kept under: another release makes its own, since versions that it makes are to be derived again by it.
+fn key(frame: &Frame, trial_sha256: &str, revision: &str) -> String {
+    sha256(format!("{revision}\n{}", frame.key(trial_sha256)).as_bytes())
+}
+
 fn read(document: &str) -> Result<TrialStatistics, DeriveError> {
     let statistics: TrialStatistics = serde_json::from_str(document)?;
     statistics.check()?;
@@ -38,8 +44,29 @@ fn read(document: &str) -> Result<TrialStatistics, DeriveError> {
 }
 
 /// Of a trial's samples, away from the threads that serve.
-pub(crate) async fn make(archive: &Archive, frame: &Frame, trial: &RecipeTrial) -> Result<TrialStatistics, DeriveError> {
-    let (samples, frame) = (archive.objects.get(&trial.sha256).await?, frame.clone());
+async fn make(archive: &Archive, frame: &Frame, trial: &RecipeTrial) -> Result<TrialStatistics, DeriveError> {
+    made(frame, archive.objects.get(&trial.sha256).await?).await
+}
+
+/// Of samples themselves.
+pub(super) async fn made(frame: &Frame, samples: Bytes) -> Result<TrialStatistics, DeriveError> {
+    let frame = frame.clone();
     let work = move || Ok(TrialStatistics::of(&frame, &from_parquet(samples)?)?);
     tokio::task::spawn_blocking(work).await?
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_model::Zoo;
+
+    #[test]
+    fn statistics_of_another_release_are_not_taken() {
+        let zoo = Zoo::embedded().unwrap();
+        let model = zoo.model("sr108").unwrap();
+        let frame = Frame::new(&model, zoo.law(&model.law).unwrap(), "law", None).unwrap();
+        assert_eq!(key(&frame, "trial", "1"), key(&frame, "trial", "1"));
+        assert_ne!(key(&frame, "trial", "1"), key(&frame, "trial", "2"));
+    }
 }

@@ -2,14 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 use sistership_fleet::bulk::{AxisPrior, BulkSettings, Prior};
-use sistership_fleet::family::FamilyPrior;
 use sistership_model::version::SourceVersion;
 use sistership_model::{Law, Model};
 use std::collections::BTreeMap;
 
 use super::asked::{Rule, Start};
-use crate::archive::Archive;
-use crate::derive::DeriveError;
+use crate::derive::{DeriveError, Inputs};
 
 /// The kind of the jobs that refine a chunk of ships.
 pub(crate) const BULK: &str = "bulk-refinement";
@@ -74,11 +72,11 @@ enum Held {
 }
 
 impl Loaded {
-    pub(crate) async fn of(archive: &Archive, order: Order) -> Result<Self, DeriveError> {
-        let foundation = archive.source(&order.foundation).await?;
-        let law = archive.law(&foundation.law, &order.law_sha256).await?;
+    pub(crate) async fn of(inputs: &Inputs<'_>, order: Order) -> Result<Self, DeriveError> {
+        let foundation = inputs.source(&order.foundation).await?;
+        let law = inputs.law(&foundation.law, &order.law_sha256).await?;
         let held = match &order.prior {
-            Some(name) => family(archive, name).await?,
+            Some(name) => family(inputs, name).await?,
             None => Held::Foundation(foundation.coefficients.iter().map(|(name, q)| (name.clone(), q.value)).collect()),
         };
         Ok(Self { order, foundation, law, held })
@@ -100,14 +98,10 @@ impl Loaded {
     }
 }
 
-async fn family(archive: &Archive, name: &PriorName) -> Result<Held, DeriveError> {
-    let row = archive.store.families().prior(&name.family, Some(name.revision)).await?;
+async fn family(inputs: &Inputs<'_>, name: &PriorName) -> Result<Held, DeriveError> {
+    let prior = inputs.prior(name).await?;
     let lost = |what: String| {
         DeriveError::Lost(format!("the prior of the family `{}` at revision {} {what}", name.family, name.revision))
     };
-    if row.sha256 != name.sha256 || sistership_model::version::sha256(row.document.as_bytes()) != name.sha256 {
-        return Err(lost(format!("does not have the hash {}", name.sha256)));
-    }
-    let prior: FamilyPrior = serde_json::from_str(&row.document)?;
     Ok(Held::Family { axes: prior.axes().map_err(lost)?, design_effect: prior.design_effect })
 }

@@ -11,11 +11,10 @@ use sistership_model::Model;
 use sistership_model::version::{FORMAT, RecipeTrial, SourceVersion};
 
 use super::asked::{Rule, Start};
-use super::frame::Frames;
-use super::kept::make;
+use super::frame::recorded;
+use super::kept::made;
 use super::order::{Loaded, Order, PriorName};
-use crate::archive::Archive;
-use crate::derive::{DeriveError, sorted};
+use crate::derive::{DeriveError, Inputs, sorted};
 use crate::version::{Recipe, VersionDocument};
 use sistership_model::version::code_revision;
 
@@ -100,7 +99,7 @@ fn finite(report: &Value) -> Result<(), DeriveError> {
 }
 
 /// Derives a member's version again, from the samples themselves.
-pub(crate) async fn derived(archive: &Archive, ship: &str, recipe: &FamilyRecipe) -> Result<VersionDocument, DeriveError> {
+pub(crate) async fn derived(inputs: &Inputs<'_>, ship: &str, recipe: &FamilyRecipe) -> Result<VersionDocument, DeriveError> {
     let order = Order {
         family: String::new(),
         foundation: recipe.foundation.clone(),
@@ -110,13 +109,12 @@ pub(crate) async fn derived(archive: &Archive, ship: &str, recipe: &FamilyRecipe
         settings: recipe.settings,
         rule: Rule::default(),
     };
-    let loaded = Loaded::of(archive, order).await?;
-    let frames = Frames { archive, foundation: &recipe.foundation, model: &loaded.foundation, law: &loaded.law };
-    let model = frames.recorded(ship, &recipe.start, recipe.ship_sha256.as_deref()).await?;
+    let loaded = Loaded::of(inputs, order).await?;
+    let model = recorded(inputs, &loaded, ship, recipe).await?;
     let frame = Frame::new(&model, &loaded.law, &recipe.law_sha256, recipe.settings.difference_s)?;
     let mut statistics = Vec::with_capacity(recipe.trials.len());
     for trial in &recipe.trials {
-        statistics.push(make(archive, &frame, trial).await?);
+        statistics.push(made(&frame, inputs.samples(trial).await?).await?);
     }
     // The recorded program stays in the recipe, as in every other version that is derived again.
     let gathered = Gathered { model, statistics, recipe: recipe.clone() };

@@ -11,7 +11,7 @@ use super::outcome::{Result, failed};
 use super::progress::Progress;
 use super::refinement::tell;
 use crate::app::App;
-use crate::derive::DeriveError;
+use crate::derive::{DeriveError, Inputs};
 use crate::fleet::{Chunk, FamilyRecipe, Frames, Gathered, Loaded, Order, refined, statistics_of, trials_of};
 use crate::publish::{CANDIDATE, CHAMPION, Standing, step};
 use crate::version::VersionDocument;
@@ -38,7 +38,7 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
     let chunk: Chunk = serde_json::from_str(&job.request).map_err(failed)?;
     let bulk = app.store().bulks().get(&chunk.bulk).await?;
     let order: Order = serde_json::from_str(&bulk.request).map_err(failed)?;
-    let loaded = std::sync::Arc::new(Loaded::of(app.archive(), order).await?);
+    let loaded = std::sync::Arc::new(Loaded::of(&Inputs::new(app.archive()), order).await?);
     for _ in 0..super::TRIES {
         let members = members(app, &loaded, &chunk, &progress).await?;
         tell(&progress, 0.5, "refining")?;

@@ -6,13 +6,12 @@ use sistership_model::version::SourceVersion;
 use sistership_store::{Job, Version};
 
 use super::commit_diagnosis::commit;
-use super::outcome::{JobError, Result, failed};
+use super::outcome::{Result, failed};
 use super::progress::Progress;
-use super::refinement::{tell, trials};
+use super::refinement::{library_of, tell, trials};
 use super::request::DiagnosisJob;
 use crate::app::App;
-use crate::derive::{DeriveError, diagnosed, sorted};
-use crate::library::library;
+use crate::derive::{diagnosed, sorted};
 use crate::version::{DiagnosisKind, DiagnosisRecipe};
 use sistership_model::version::code_revision;
 
@@ -32,13 +31,12 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
 async fn recipe(app: &App, asked: &DiagnosisJob, version: &Version) -> Result<DiagnosisRecipe> {
     let (ship, number, sha256) = (version.head.model.clone(), version.head.number, version.head.sha256.clone());
     let law = app.store().laws().get(&version.head.law).await?;
-    let library = library().map_err(|error| JobError::from(DeriveError::File(error)))?;
     Ok(DiagnosisRecipe {
         kind: DiagnosisKind::Diagnosis,
         diagnosed: SourceVersion { ship, number, sha256 },
         law_sha256: law.sha256,
         trials: trials(app, &asked.trials).await?,
-        effects_sha256: library.sha256.clone(),
+        effects_sha256: library_of(app).await?.sha256.clone(),
         settings: sorted(serde_json::to_value(&asked.settings).map_err(failed)?),
         code_revision: code_revision().to_owned(),
     })

@@ -3,6 +3,7 @@
 mod chunk;
 mod commit;
 mod commit_diagnosis;
+mod demand;
 mod diagnosis;
 mod family_prior;
 mod outcome;
@@ -11,6 +12,7 @@ mod refinement;
 mod request;
 mod worker;
 
+pub(crate) use demand::{DERIVING, trial_bytes};
 pub(crate) use request::{DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob, SourceChoice};
 pub(crate) use worker::Worker;
 

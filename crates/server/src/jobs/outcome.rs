@@ -27,6 +27,7 @@ pub(super) fn failed(reason: impl std::fmt::Display) -> JobError {
 impl From<StoreError> for JobError {
     fn from(error: StoreError) -> Self {
         match error {
+            full if full.is_out_of_space() => Self::Store(full),
             StoreError::NotFound { .. } | StoreError::Invalid { .. } | StoreError::Objects(_) => failed(error),
             other => Self::Store(other),
         }
@@ -45,6 +46,9 @@ impl From<DeriveError> for JobError {
 
 impl From<Problem> for JobError {
     fn from(problem: Problem) -> Self {
-        failed(problem.detail)
+        match problem.status {
+            507 => Self::Store(StoreError::no_room()),
+            _ => failed(problem.detail),
+        }
     }
 }

@@ -7,7 +7,6 @@ use sistership_model::trial::Trial as Recording;
 use sistership_model::version::{AcrossLaws, Recipe, RecipeTrial, SourceVersion, sha256};
 use sistership_model::{Vessel, Zoo};
 use sistership_store::{Job, Version};
-use sistership_trials::samples::from_parquet;
 
 use super::commit::commit;
 use super::outcome::{JobError, Result, failed};
@@ -15,7 +14,8 @@ use super::progress::Progress;
 use super::request::{RefinementJob, SourceChoice};
 use crate::app::App;
 use crate::archive::vessel;
-use crate::derive::{derive, sorted};
+use crate::derive::{DeriveError, derive, sorted};
+use crate::library::{self, Library, library};
 use crate::publish::{alias, alias_of};
 use crate::version;
 use sistership_model::version::code_revision;
@@ -27,7 +27,9 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
     let prepared = prepare(app, &asked, &progress).await?;
     let step = progress.clone();
     let scaled = move |fraction: f64, what: &str| step.tell(0.1 + 0.8 * fraction, what);
-    let derived = derive(app.archive(), &asked.ship, &version::Recipe::Plain(prepared.recipe.clone()), Arc::new(scaled)).await?;
+    let derived = derive(app.archive(), &asked.ship, &version::Recipe::Plain(prepared.recipe.clone()), Arc::new(scaled))
+        .await?
+        .spelled_out()?;
     tell(&progress, 0.92, "writing the report and keeping the version")?;
     commit(app, job, derived, prepared).await
 }
@@ -68,11 +70,18 @@ async fn prepare(app: &App, asked: &RefinementJob, progress: &Progress) -> Resul
         ship_sha256: sha256(ship.document.as_bytes()),
         law_sha256: law.sha256,
         across,
+        effects_sha256: Some(library_of(app).await?.sha256.clone()),
         trials,
         settings: sorted(serde_json::to_value(&asked.settings).map_err(failed)?),
         code_revision: code_revision().to_owned(),
     };
     Ok(Prepared { recipe, source, similarity })
+}
+
+/// This program's library of effects, which the store keeps from now on if it did not.
+pub(super) async fn library_of(app: &App) -> Result<&'static Library> {
+    library::keep(app.store()).await?;
+    library().map_err(|error| JobError::from(DeriveError::File(error)))
 }
 
 pub(super) async fn trials(app: &App, ids: &[String]) -> Result<Vec<RecipeTrial>> {
@@ -87,13 +96,8 @@ pub(super) async fn trials(app: &App, ids: &[String]) -> Result<Vec<RecipeTrial>
 /// The best eligible ship of the zoo, measured on the trials.
 async fn choose(app: &App, target: Vessel, trials: &[RecipeTrial]) -> Result<(Version, Similarity)> {
     let zoo = app.zoo_around(&target).await?;
-    let samples = app.archive().samples(trials).await?;
-    let choice = move || {
-        let trials: Vec<Recording> =
-            samples.into_iter().map(from_parquet).collect::<std::result::Result<_, _>>().map_err(failed)?;
-        best(&zoo, &target, &trials)
-    };
-    let (name, similarity) = app.compute(choice).await??;
+    let trials = app.archive().trials(trials).await?;
+    let (name, similarity) = app.compute(move || best(&zoo, &target, &trials)).await??;
     let (ship, model) = name.split_once('/').unwrap_or((&name, ""));
     let found = alias(app.store(), ship, &alias_of(model)).await?;
     let found = found.ok_or_else(|| failed(format!("the model `{name}` has no version; start the server again to make it")))?;

@@ -21,7 +21,7 @@ pub(crate) struct RefinementJob {
     pub trials: Vec<String>,
     /// Every setting.
     pub settings: Settings,
-    /// The hash of the request's idempotency key, by which a repeated request finds its job.
+    /// The hash of the request's idempotency key, as earlier programs wrote it; now the key is kept with the job.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key_sha256: Option<String>,
 }
@@ -41,7 +41,7 @@ pub(crate) struct DiagnosisJob {
     pub trials: Vec<String>,
     /// Every setting.
     pub settings: sistership_diagnose::Settings,
-    /// The hash of the request's idempotency key, by which a repeated request finds its job.
+    /// The hash of the request's idempotency key, as earlier programs wrote it; now the key is kept with the job.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key_sha256: Option<String>,
 }

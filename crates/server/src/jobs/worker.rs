@@ -1,16 +1,17 @@
 //! A worker: claims jobs under a lease, tells how far they are, and ends them in one way or another.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use sistership_store::{Job, StoreError};
-use tokio::sync::watch;
+use sistership_store::{Claimed, Job, StoreError};
+use tokio::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, watch};
 use tokio::task::JoinHandle;
 use uuid::Uuid;
 
 use super::outcome::JobError;
 use super::progress::{Progress, Stop};
 use super::request::{DIAGNOSIS, REFINEMENT};
-use super::{chunk, diagnosis, family_prior, refinement};
+use super::{chunk, demand, diagnosis, family_prior, refinement};
 use crate::app::App;
 use crate::fleet::{BULK, LEARN};
 use crate::stopping::Stopping;
@@ -19,12 +20,29 @@ use crate::stopping::Stopping;
 const TELL: Duration = Duration::from_millis(250);
 /// A pause after the database has failed.
 const BREATH: Duration = Duration::from_secs(1);
+/// A pause where there is no room to write: it takes somebody to make some.
+const NO_ROOM: Duration = Duration::from_secs(5);
 
 /// One of the workers of this process.
 pub(crate) struct Worker {
     app: App,
     name: String,
     stopping: Stopping,
+}
+
+/// The right of a worker to its job: beside those of the other workers of the process, or instead of them.
+enum Turn<'a> {
+    Shared { _held: RwLockReadGuard<'a, ()> },
+    Alone { held: RwLockWriteGuard<'a, ()> },
+}
+
+impl Turn<'_> {
+    fn shared(self) -> Self {
+        match self {
+            Self::Alone { held } => Self::Shared { _held: held.downgrade() },
+            shared => shared,
+        }
+    }
 }
 
 /// The work as it runs, and what it tells.
@@ -42,15 +60,39 @@ impl Worker {
 
     /// Works until the server is told to stop.
     pub(crate) async fn run(mut self) {
+        let turns = Arc::clone(self.app.turns());
+        let mut alone = false;
         while !self.stopping.now() {
-            match self.app.store().jobs().claim(&self.name, self.app.leases().lease).await {
-                Ok(Some(job)) => self.attend(&job).await,
-                Ok(None) => self.rest(self.app.leases().poll).await,
+            let Some(turn) = self.turn(&turns, alone).await else { return };
+            match self.app.store().jobs().claim(&self.name, self.app.leases().lease, alone).await {
+                Ok(Claimed::Job(job)) => {
+                    // Only a job during which a process has ended before keeps the others waiting.
+                    let turn = if job.lost_workers > 0 { turn } else { turn.shared() };
+                    self.attend(&job).await;
+                    drop(turn);
+                    alone = false;
+                }
+                Ok(Claimed::Alone) => alone = true,
+                Ok(Claimed::Nothing) => {
+                    drop(turn);
+                    alone = false;
+                    self.rest(self.app.leases().poll).await;
+                }
                 Err(error) => {
+                    drop(turn);
                     tracing::error!(%error, "no job could be claimed");
-                    self.rest(BREATH).await;
+                    self.rest(if error.is_out_of_space() { NO_ROOM } else { BREATH }).await;
                 }
             }
+        }
+    }
+
+    /// Waits for the right to claim a job, while others work or alone; none when the server is told to stop.
+    async fn turn<'a>(&mut self, turns: &'a RwLock<()>, alone: bool) -> Option<Turn<'a>> {
+        tokio::select! {
+            () = self.stopping.wait() => None,
+            held = turns.write(), if alone => Some(Turn::Alone { held }),
+            held = turns.read(), if !alone => Some(Turn::Shared { _held: held }),
         }
     }
 
@@ -71,8 +113,25 @@ impl Worker {
         let mut watched = Watched { work, progress, seen };
         let ended = self.accompany(job, &mut watched).await;
         if let Err(error) = self.end(job, ended, watched.progress.stopped()).await {
-            // Whoever claims the job when its lease has run out does it again.
             tracing::error!(%error, "the end of a job could not be written");
+            self.give_back(job, error).await;
+        }
+    }
+
+    /// Gives a job back whose end could not be written, as soon as the database can be written again: this process has not ended,
+    /// and must not be counted as lost.
+    async fn give_back(&mut self, job: &Job, mut error: StoreError) {
+        while !self.stopping.now() {
+            self.rest(if error.is_out_of_space() { NO_ROOM } else { BREATH }).await;
+            let jobs = self.app.store().jobs();
+            let given = match jobs.release(&job.id, job.fence).await {
+                Err(StoreError::Conflict { .. } | StoreError::NotFound { .. }) => jobs.lives(&job.id, job.fence).await,
+                other => other.map(drop),
+            };
+            match given {
+                Ok(()) => return,
+                Err(again) => error = again,
+            }
         }
     }
 
@@ -115,14 +174,17 @@ impl Worker {
         let jobs = self.app.store().jobs();
         match (ended, stopped) {
             (Some(Ok(())), _) => tracing::info!("done"),
-            (_, Some(Stop::Lost)) => tracing::warn!("another worker has the job now"),
+            (_, Some(Stop::Lost)) => {
+                tracing::warn!("another worker has the job now");
+                jobs.lives(&job.id, job.fence).await?;
+            }
             (_, Some(Stop::Leaving)) => drop(jobs.release(&job.id, job.fence).await?),
             (Some(Err(JobError::Stopped)), _) => drop(jobs.cancelled(&job.id, job.fence).await?),
             (Some(Err(JobError::Failed(message))), _) => {
                 tracing::warn!(%message, "failed");
                 jobs.fail(&job.id, job.fence, &message).await?;
             }
-            // The lease runs out, and the job is done again once the database is back.
+            // The job is done again once the database is back.
             (Some(Err(JobError::Store(error))), _) => return Err(error),
             (None, _) => tracing::warn!("the work did not stop in time"),
         }
@@ -136,6 +198,7 @@ async fn until(moment: Option<Instant>) {
 }
 
 async fn work(app: App, job: Job, progress: Progress) -> Result<(), JobError> {
+    let _share = demand::taken(&app, &job, &progress).await?;
     match job.kind.as_str() {
         REFINEMENT => refinement::run(&app, &job, progress).await,
         DIAGNOSIS => diagnosis::run(&app, &job, progress).await,

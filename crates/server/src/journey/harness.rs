@@ -33,6 +33,8 @@ pub(super) fn config(database: &TestDatabase) -> Config {
     config.listen.set_port(0);
     config.database_url = database.url.clone();
     let (lease, beat, poll) = (Duration::from_secs(5), Duration::from_millis(200), Duration::from_millis(50));
+    // Two thousand clients of one address, see `registry`.
+    (config.limits.connections, config.limits.connections_per_address) = (4096, 4096);
     config.leases = Leases { lease, beat, poll, ..Leases::default() };
     config
 }
@@ -93,7 +95,7 @@ fn zigzag(angle: i64) -> Value {
 }
 
 /// Every fifth sample.
-fn csv(track: &Value) -> String {
+pub(super) fn csv(track: &Value) -> String {
     let columns = ["t_s", "x_m", "y_m", "psi_rad", "u_m_s", "v_m_s", "r_rad_s", "phi_rad", "p_rad_s", "delta_rad", "n_rps"];
     let rows = track["t_s"].as_array().unwrap().len();
     let row = |k: usize| columns.map(|column| track[column][k].to_string()).join(",");

@@ -2,8 +2,12 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod contract;
+mod documents;
 mod harness;
+mod keys;
 mod loops;
+mod network;
 mod observed;
 mod refusals;
 mod registry;

@@ -22,9 +22,9 @@ fn cases(harness: &Harness) -> Vec<Case> {
         Case(ask(Method::GET, "/v1/ships?limt=3"), 400, "limt: is no parameter"),
         Case(ask(Method::GET, "/v1/ships?particular=length_m:1..2"), 400, "there is no particular `length_m`"),
         Case(ask(Method::GET, "/v1/ships?similar_to=atlantis"), 422, "similar_to: there is no ship `atlantis`"),
-        Case(ask(Method::GET, "/v1/jobs?limt=3"), 400, "unknown field `limt`"),
+        Case(ask(Method::GET, "/v1/jobs?limt=3"), 400, "limt: is no parameter"),
         Case(ask(Method::GET, "/v1/jobs?after=mariner"), 400, "after: is not the `next`"),
-        Case(ask(Method::PUT, "/v1/ships/mariner/tags/two%20words"), 422, "tag: must not contain"),
+        Case(ask(Method::PUT, "/v1/ships/mariner/tags/two%20words"), 404, "tag: there is no `two words`"),
         Case(ask(Method::GET, "/v1/ships/atlantis"), 404, "no ship `atlantis`"),
         Case(ask(Method::GET, "/v1/models/mariner/versions/one"), 404, "one"),
         Case(ask(Method::GET, "/v1/ships/mariner/model").header("accept", "image/png"), 406, "application/yaml"),
@@ -90,6 +90,8 @@ async fn uploads_are_bounded_and_their_parts_named() {
     let (_, problem) = read(upload(Form::new().text("cargo", "grain")).send().await.unwrap()).await;
     assert!(problem["detail"].as_str().unwrap().contains("cargo"));
     assert_eq!(harness.client.get(harness.url("/")).send().await.unwrap().status(), StatusCode::UNAUTHORIZED);
-    assert_eq!(std::fs::read_dir(harness.database.folder.path().join("data/uploads")).unwrap().count(), 0);
+    let uploads = std::fs::read_dir(harness.database.folder.path().join("data/uploads")).unwrap();
+    let left = uploads.map(|process| std::fs::read_dir(process.unwrap().path()).unwrap().count());
+    assert_eq!(left.sum::<usize>(), 0);
     harness.server.stop().await;
 }

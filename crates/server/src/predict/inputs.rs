@@ -15,19 +15,22 @@ use crate::problem::{Problem, Result};
 #[serde(deny_unknown_fields)]
 pub(crate) struct InputsRequest {
     /// Times, increasing and without gaps.
+    #[schema(min_items = 2)]
     t_s: Vec<f64>,
     /// Rudder angle at each time, positive to starboard.
+    #[schema(min_items = 2)]
     delta_rad: Vec<f64>,
     /// Propeller revolutions at each time; those of steady running at the first speed where absent.
+    #[schema(min_items = 2)]
     n_rps: Option<Vec<f64>>,
     /// The state at the first time.
-    start: Start,
+    start: InitialState,
 }
 
 /// A state; what is not given is 0.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Start {
+pub(crate) struct InitialState {
     u_m_s: f64,
     #[serde(default)]
     v_m_s: f64,
@@ -45,7 +48,7 @@ pub(crate) struct Start {
     p_rad_s: f64,
 }
 
-impl Start {
+impl InitialState {
     fn channels(&self) -> [(Channel, f64); 8] {
         [
             (Channel::U, self.u_m_s),

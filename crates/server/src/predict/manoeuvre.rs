@@ -10,25 +10,26 @@ use utoipa::ToSchema;
 
 use super::{bounded, columns, positive};
 use crate::problem::{Problem, Result};
+use crate::web::field::{Angle, Positive, SampleCount};
 
 /// Longest step.
 const STEP_S: f64 = 0.1;
-/// Most models drawn for bands.
-const MOST_SAMPLES: usize = 1000;
 
 /// One of `turn_deg`, `zigzag` and `all`.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ManoeuvreRequest {
     /// A turning circle with this rudder angle, positive to starboard.
-    turn_deg: Option<f64>,
+    #[schema(inline)]
+    turn_deg: Option<Angle>,
     /// A zigzag.
     zigzag: Option<ZigzagRequest>,
     /// Turning circles, zigzags and the IMO criteria.
     #[serde(default)]
     all: bool,
     /// Approach speed; the model's own where absent.
-    speed_m_s: Option<f64>,
+    #[schema(inline)]
+    speed_m_s: Option<Positive>,
     /// Propeller revolutions; those of the approach speed where absent.
     n_rps: Option<f64>,
     /// With `all`: confidence bands by models drawn from the posterior of a refined one.
@@ -39,8 +40,9 @@ pub(crate) struct ManoeuvreRequest {
 #[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct BandsRequest {
-    /// Models drawn, at most 1000; 100 where absent.
-    samples: Option<usize>,
+    /// Models drawn; 100 where absent.
+    #[schema(inline)]
+    samples: Option<SampleCount>,
     /// What the draws follow from; 1 where absent.
     seed: Option<u64>,
 }
@@ -50,9 +52,11 @@ pub(crate) struct BandsRequest {
 #[serde(deny_unknown_fields)]
 pub(crate) struct ZigzagRequest {
     /// Rudder angle, positive where the first execution is to starboard.
-    rudder_deg: f64,
+    #[schema(inline)]
+    rudder_deg: Angle,
     /// Change of heading at which the rudder is reversed.
-    switch_deg: f64,
+    #[schema(inline)]
+    switch_deg: Angle,
 }
 
 impl ManoeuvreRequest {
@@ -63,14 +67,12 @@ impl ManoeuvreRequest {
         }
         match (self.turn_deg, &self.zigzag, self.all) {
             (Some(rudder), None, false) => {
-                let sailed = turn(ship, angle("manoeuvre.turn_deg", rudder)?, &settings).map_err(diverged)?;
+                let sailed = turn(ship, rudder.get(), &settings).map_err(diverged)?;
                 Ok(json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null,
                     "outside": ship.leaves(&sailed.track) }))
             }
             (None, Some(ZigzagRequest { rudder_deg, switch_deg }), false) => {
-                let rudder = angle("manoeuvre.zigzag.rudder_deg", *rudder_deg)?;
-                let switch = angle("manoeuvre.zigzag.switch_deg", *switch_deg)?.abs();
-                let sailed = zigzag(ship, rudder, switch, &settings).map_err(diverged)?;
+                let sailed = zigzag(ship, rudder_deg.get(), switch_deg.get().abs(), &settings).map_err(diverged)?;
                 Ok(json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null,
                     "outside": ship.leaves(&sailed.track) }))
             }
@@ -87,7 +89,7 @@ impl ManoeuvreRequest {
 
     /// The settings; they are refused where the run, of 60 lengths at most, would be out of all proportion.
     fn settings(&self, ship: &mut Ship, most: usize) -> Result<ManoeuvreSettings> {
-        let speed = positive("manoeuvre.speed_m_s", self.speed_m_s.unwrap_or(ship.approach_speed_m_s()))?;
+        let speed = positive("manoeuvre.speed_m_s", self.speed_m_s.map_or(ship.approach_speed_m_s(), Positive::get))?;
         if self.n_rps.is_some_and(|n| !n.is_finite()) {
             return Err(Problem::invalid("manoeuvre.n_rps", "must be a number"));
         }
@@ -95,7 +97,7 @@ impl ManoeuvreRequest {
         let step_s = STEP_S.min(0.02 * length_s);
         bounded("manoeuvre.speed_m_s", 60.0 * length_s / step_s, most)?;
         ship.set_envelope_speed(speed);
-        let (speed_m_s, n_rps, step_s) = (self.speed_m_s, self.n_rps, Some(step_s));
+        let (speed_m_s, n_rps, step_s) = (self.speed_m_s.map(Positive::get), self.n_rps, Some(step_s));
         Ok(ManoeuvreSettings { speed_m_s, n_rps, step_s, ..ManoeuvreSettings::default() })
     }
 }
@@ -111,23 +113,14 @@ pub(super) struct Whose<'a> {
 impl BandsRequest {
     fn drawn(self, whose: Whose<'_>, settings: &ManoeuvreSettings) -> Result<Bands> {
         let default = Sampling::default();
-        let sampling = Sampling { samples: self.samples.unwrap_or(default.samples), seed: self.seed.unwrap_or(default.seed) };
-        if !(2..=MOST_SAMPLES).contains(&sampling.samples) {
-            return Err(Problem::invalid("manoeuvre.bands.samples", format!("must be from 2 to {MOST_SAMPLES}")));
-        }
+        let samples = usize::try_from(self.samples.unwrap_or_default().get()).unwrap_or(default.samples);
+        let sampling = Sampling { samples, seed: self.seed.unwrap_or(default.seed) };
         let none = || {
             let why = "only a refined one whose coefficients are those that were estimated has one";
             Problem::invalid("manoeuvre.bands", format!("the model has no posterior to draw from; {why}"))
         };
         let coarse = ManoeuvreSettings { step_s: None, ..*settings };
         bands(whose.model, whose.law, &coarse, whose.depth_m, sampling).ok_or_else(none)
-    }
-}
-
-fn angle(field: &str, angle_deg: f64) -> Result<f64> {
-    match angle_deg != 0.0 && angle_deg.abs() <= 90.0 {
-        true => Ok(angle_deg),
-        false => Err(Problem::invalid(field, format!("must be an angle up to 90 deg and not 0, is {angle_deg}"))),
     }
 }
 

@@ -13,7 +13,10 @@ use utoipa::ToSchema;
 pub(crate) use inputs::InputsRequest;
 pub(crate) use manoeuvre::ManoeuvreRequest;
 
+use crate::memory::take_now;
 use crate::problem::{Problem, Result};
+use crate::web::ModelName;
+use crate::web::field::Positive;
 use manoeuvre::Whose;
 
 /// What is to be simulated: a manoeuvre or recorded inputs.
@@ -21,9 +24,11 @@ use manoeuvre::Whose;
 #[serde(deny_unknown_fields)]
 pub(crate) struct PredictionRequest {
     /// `ship` (her champion), `ship/number` or `ship/alias`.
-    pub model: String,
+    #[schema(inline)]
+    pub model: ModelName,
     /// Water depth for laws that know it, m; deep where absent.
-    pub depth_m: Option<f64>,
+    #[schema(inline)]
+    pub depth_m: Option<Positive>,
     /// A standard manoeuvre; or give `inputs`.
     pub manoeuvre: Option<ManoeuvreRequest>,
     /// Recorded inputs; or give `manoeuvre`.
@@ -34,10 +39,12 @@ pub(crate) struct PredictionRequest {
 pub(crate) fn predict(request: &PredictionRequest, model: &Model, law: &Law, most: usize) -> Result<Value> {
     let mut ship = Ship::new(model, law).map_err(|error| Problem::invalid("model", error.to_string()))?;
     if let Some(depth) = request.depth_m {
-        ship.set_depth(positive("depth_m", depth)?);
+        ship.set_depth(depth.get());
     }
     match (&request.manoeuvre, &request.inputs) {
-        (Some(manoeuvre), None) => manoeuvre.sail(&mut ship, Whose { model, law, depth_m: request.depth_m }, most),
+        (Some(manoeuvre), None) => {
+            manoeuvre.sail(&mut ship, Whose { model, law, depth_m: request.depth_m.map(Positive::get) }, most)
+        }
         (None, Some(inputs)) => inputs.follow(&mut ship, most),
         _ => Err(Problem::invalid("manoeuvre", "give either `manoeuvre` or `inputs`")),
     }
@@ -50,10 +57,14 @@ fn positive(field: &str, value: f64) -> Result<f64> {
     }
 }
 
-/// Refuses a simulation of more steps than are allowed.
+/// Memory that a sample of a track takes until it is answered: 15 numbers simulated, 11 as JSON values of 32 bytes, and their
+/// text of some 20 bytes each.
+const SAMPLE_BYTES: u64 = 15 * 8 + 11 * (32 + 20);
+
+/// Takes the memory of a simulation; refuses a simulation of more steps than are allowed.
 fn bounded(field: &str, steps: f64, most: usize) -> Result<()> {
     match steps <= most as f64 {
-        true => Ok(()),
+        true => Ok(take_now(SAMPLE_BYTES * steps.max(0.0).ceil() as u64)?),
         false => Err(Problem::invalid(
             field,
             format!("would take {steps:.0} steps, at most {most} are made: give a higher speed or a shorter time"),
@@ -94,7 +105,8 @@ mod tests {
     fn ask(ship: &str, request: Value) -> Result<Value> {
         let zoo = Zoo::embedded().unwrap();
         let model = zoo.model(ship).unwrap();
-        let request: PredictionRequest = serde_json::from_value(request).unwrap();
+        let request: PredictionRequest = serde_path_to_error::deserialize(request)
+            .map_err(|error| Problem::invalid(&error.path().to_string(), error.inner().to_string()))?;
         predict(&request, &model, zoo.law(&model.law).unwrap(), 100_000)
     }
 

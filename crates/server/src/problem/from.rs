@@ -1,5 +1,6 @@
 //! What the other crates refuse, as problems.
 
+use axum::extract::path::ErrorKind;
 use axum::extract::rejection::{BytesRejection, PathRejection, QueryRejection};
 use axum::http::StatusCode;
 use sistership_estimate::refine::RefineError;
@@ -15,6 +16,7 @@ impl From<StoreError> for Problem {
     fn from(error: StoreError) -> Self {
         let text = error.to_string();
         match error {
+            full if full.is_out_of_space() => Self::no_room(text),
             StoreError::NotFound { .. } => Self::not_found(text),
             StoreError::Conflict { .. } => Self::new(StatusCode::CONFLICT, text),
             StoreError::PreconditionFailed { .. } => {
@@ -92,7 +94,15 @@ fn parameter(message: &str) -> &str {
 
 impl From<PathRejection> for Problem {
     fn from(rejection: PathRejection) -> Self {
-        Self::not_found(format!("there is nothing under this path: {}", rejection.body_text()))
+        let PathRejection::FailedToDeserializePathParams(failed) = &rejection else {
+            return Self::not_found(format!("there is nothing under this path: {}", rejection.body_text()));
+        };
+        match failed.kind() {
+            ErrorKind::DeserializeError { key, value, message } => {
+                Self::not_found(format!("{key}: there is no `{value}`: it {message}")).with(Fault::at(key, message))
+            }
+            other => Self::not_found(format!("there is nothing under this path: {other}")),
+        }
     }
 }
 
@@ -124,6 +134,13 @@ mod tests {
         assert_eq!(parameter("unknown field `limt`, expected one of `limit`, `after`"), "limt");
         assert_eq!(parameter("missing field `ship`"), "ship");
         assert_eq!(parameter("something else"), "query");
+    }
+
+    #[test]
+    fn a_full_disk_is_no_failure_of_the_server() {
+        let problem = Problem::from(StoreError::no_room());
+        assert_eq!((problem.status, problem.kind), (507, "urn:sistership:problem:no-room"));
+        assert!(problem.detail.contains("no room"), "{}", problem.detail);
     }
 
     #[test]

@@ -11,6 +11,9 @@ use utoipa::ToSchema;
 /// The media type of [`Problem`].
 pub(crate) const MEDIA: &str = "application/problem+json";
 
+/// After how long a request may be repeated that was one too many, s.
+const RETRY_AFTER_S: &str = "5";
+
 /// What an operation of the server returns.
 pub(crate) type Result<T, E = Problem> = std::result::Result<T, E>;
 
@@ -47,7 +50,7 @@ pub(crate) struct Fault {
 }
 
 /// Status, URI and title of each kind.
-const KINDS: [(u16, &str, &str); 17] = [
+const KINDS: [(u16, &str, &str); 19] = [
     (400, "urn:sistership:problem:bad-request", "The request cannot be read"),
     (401, "urn:sistership:problem:unauthorized", "An API key is needed"),
     (403, "urn:sistership:problem:forbidden", "The request is not allowed from there"),
@@ -61,10 +64,12 @@ const KINDS: [(u16, &str, &str); 17] = [
     (415, "urn:sistership:problem:unsupported-media-type", "The content type is not one that is read here"),
     (422, "urn:sistership:problem:invalid", "The content is not valid"),
     (428, "urn:sistership:problem:precondition-required", "A precondition is needed"),
+    (429, "urn:sistership:problem:too-many-requests", "Too much is asked at a time"),
     (431, "urn:sistership:problem:headers-too-large", "The headers are too large"),
     (500, "urn:sistership:problem:internal", "The server failed"),
     (503, "urn:sistership:problem:unavailable", "The server cannot answer at the moment"),
     (504, "urn:sistership:problem:timeout", "The request took too long"),
+    (507, "urn:sistership:problem:no-room", "There is no room to keep it"),
 ];
 
 impl Problem {
@@ -97,6 +102,14 @@ impl Problem {
         )
     }
 
+    /// There is no space left where it would be kept.
+    pub(crate) fn no_room(reason: impl std::fmt::Display) -> Self {
+        tracing::error!(%reason, "no room");
+        let detail =
+            "there is no room left where the server keeps this; nothing was kept. Reading goes on; make room and send it again";
+        Self::new(StatusCode::INSUFFICIENT_STORAGE, detail)
+    }
+
     pub(crate) fn with(mut self, fault: Fault) -> Self {
         self.errors.push(fault);
         self
@@ -120,6 +133,9 @@ impl IntoResponse for Problem {
         if self.status == StatusCode::UNAUTHORIZED {
             let challenge = HeaderValue::from_static("Bearer, Basic realm=\"sistership\"");
             response.headers_mut().insert(header::WWW_AUTHENTICATE, challenge);
+        }
+        if self.status == StatusCode::TOO_MANY_REQUESTS {
+            response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from_static(RETRY_AFTER_S));
         }
         // Whoever knows the request's id writes it in, see `web::envelope`.
         response.extensions_mut().insert(self);

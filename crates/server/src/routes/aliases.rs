@@ -15,10 +15,8 @@ use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::publish::{alias, is_reserved};
 use crate::web::conditions::tag;
-use crate::web::{Conditions, Listing, Paged, Params, Payload, Place};
-
-/// The longest reason.
-const REASON_BYTES: usize = 1000;
+use crate::web::field::{EntityTags, Remark, VersionNumber};
+use crate::web::{Conditions, Listing, Name, Paged, Params, Payload, Place};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get, put)).routes(routes!(history))
@@ -53,9 +51,11 @@ struct AliasStep {
 #[serde(deny_unknown_fields)]
 struct AliasRequest {
     /// The number of the version.
-    version: i64,
+    #[schema(inline)]
+    version: VersionNumber,
     /// Why; kept in the history.
-    reason: String,
+    #[schema(inline)]
+    reason: Remark,
 }
 
 impl AliasView {
@@ -78,12 +78,12 @@ impl AliasStep {
 
 /// List the aliases of a model
 #[utoipa::path(
-    get, path = "/v1/models/{model}/aliases", tag = "models", params(("model" = String, Path), Paged),
+    get, path = "/v1/models/{model}/aliases", tag = "models", params(("model" = inline(Name), Path), Paged),
     responses((status = 200, body = Listing<AliasView>))
 )]
 async fn list(
     State(app): State<App>,
-    Place(model): Place<String>,
+    Place(model): Place<Name>,
     Params(query): Params<Paged>,
 ) -> Result<Json<Listing<AliasView>>> {
     exists(&app, &model).await?;
@@ -93,10 +93,10 @@ async fn list(
 
 /// Where an alias stands; its ETag is what a move must present
 #[utoipa::path(
-    get, path = "/v1/models/{model}/aliases/{alias}", tag = "models", params(("model" = String, Path), ("alias" = String, Path)),
+    get, path = "/v1/models/{model}/aliases/{alias}", tag = "models", params(("model" = inline(Name), Path), ("alias" = inline(Name), Path)),
     responses((status = 200, body = AliasView, headers(("ETag" = String))))
 )]
-async fn get(State(app): State<App>, Place((model, name)): Place<(String, String)>) -> Result<Response> {
+async fn get(State(app): State<App>, Place((model, name)): Place<(Name, Name)>) -> Result<Response> {
     Ok(AliasView::of(app.store().aliases().get(&model, &name).await?).answer(StatusCode::OK))
 }
 
@@ -104,49 +104,45 @@ async fn get(State(app): State<App>, Place((model, name)): Place<(String, String
 #[utoipa::path(
     put, path = "/v1/models/{model}/aliases/{alias}", tag = "models",
     params(
-        ("model" = String, Path), ("alias" = String, Path),
-        ("If-Match" = Option<String>, Header, description = "The ETag of the alias as you last read it, to move it"),
-        ("If-None-Match" = Option<String>, Header, description = "`*`, to create it")
+        ("model" = inline(Name), Path), ("alias" = inline(Name), Path),
+        ("If-Match" = inline(Option<EntityTags>), Header, description = "The ETag of the alias as you last read it, to move it"),
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "`*`, to create it")
     ),
     request_body = AliasRequest,
     responses((status = 200, body = AliasView, headers(("ETag" = String))), (status = 201, body = AliasView, headers(("ETag" = String))))
 )]
 async fn put(
     State(app): State<App>,
-    Place((model, name)): Place<(String, String)>,
+    Place((model, name)): Place<(Name, Name)>,
     conditions: Conditions,
     payload: Payload,
 ) -> Result<Response> {
     let AliasRequest { version, reason } = payload.json()?;
-    check(&name, &reason)?;
+    check(&name)?;
     let current = alias(app.store(), &model, &name).await?.map(|alias| alias.revision);
     let expect = conditions.expect(&format!("alias `{model}/{name}`"), current)?;
-    let change = AliasMove { alias: name, expect, reason, actor: "api".to_owned() };
-    let moved = app.store().aliases().move_to(&model, version, &change).await?;
+    let change = AliasMove { alias: name.into_string(), expect, reason: reason.into_string(), actor: "api".to_owned() };
+    let moved = app.store().aliases().move_to(&model, version.get(), &change).await?;
     let status = if expect == Expect::Absent { StatusCode::CREATED } else { StatusCode::OK };
     Ok(AliasView::of(moved).answer(status))
 }
 
-fn check(name: &str, reason: &str) -> Result<()> {
-    if is_reserved(name) {
-        return Err(Problem::invalid("alias", format!("`{name}` is moved by the server itself; choose another name")));
-    }
-    sistership_model::name::check_slug(name).map_err(|message| Problem::invalid("alias", message))?;
-    match !reason.trim().is_empty() && reason.len() <= REASON_BYTES {
-        true => Ok(()),
-        false => Err(Problem::invalid("reason", format!("say why in 1 to {REASON_BYTES} bytes; it is kept in the history"))),
+fn check(name: &str) -> Result<()> {
+    match is_reserved(name) {
+        true => Err(Problem::invalid("alias", format!("`{name}` is moved by the server itself; choose another name"))),
+        false => Ok(()),
     }
 }
 
 /// How an alias has moved, the latest first
 #[utoipa::path(
     get, path = "/v1/models/{model}/aliases/{alias}/history", tag = "models",
-    params(("model" = String, Path), ("alias" = String, Path), Paged),
+    params(("model" = inline(Name), Path), ("alias" = inline(Name), Path), Paged),
     responses((status = 200, body = Listing<AliasStep>))
 )]
 async fn history(
     State(app): State<App>,
-    Place((model, name)): Place<(String, String)>,
+    Place((model, name)): Place<(Name, Name)>,
     Params(query): Params<Paged>,
 ) -> Result<Json<Listing<AliasStep>>> {
     app.store().aliases().get(&model, &name).await?;

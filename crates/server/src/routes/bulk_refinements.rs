@@ -13,9 +13,10 @@ use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::fleet::{Asked, Standing, queue};
-use crate::problem::{Problem, Result};
+use crate::problem::Result;
 use crate::publish::CHAMPION;
-use crate::web::{Key, Listing, Params, Payload, Place, Reply, page};
+use crate::web::field::{Cursor, Limit, Remark, RequestKey};
+use crate::web::{Id, Key, Listing, Name, Params, Payload, Place, Reply, Word, page};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
@@ -58,13 +59,16 @@ struct OutcomeView {
 /// A person's word for candidates of this refinement.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-struct Word {
+struct Promotion {
     /// Who says so.
-    actor: String,
+    #[schema(inline)]
+    actor: Remark,
     /// Why.
-    reason: String,
+    #[schema(inline)]
+    reason: Remark,
     /// The ships; every candidate where absent.
-    ships: Option<Vec<String>>,
+    #[schema(inline)]
+    ships: Option<Vec<Name>>,
 }
 
 /// What a person's word has done.
@@ -79,11 +83,14 @@ struct Promoted {
 #[into_params(parameter_in = Query)]
 struct ListQuery {
     /// Of this family only.
-    family: Option<String>,
-    /// The most items to return, 1 to 1000.
-    limit: Option<i64>,
+    #[param(inline)]
+    family: Option<Word>,
+    /// The most items to return.
+    #[param(inline)]
+    limit: Option<Limit>,
     /// `next` of the page before.
-    after: Option<String>,
+    #[param(inline)]
+    after: Option<Cursor>,
 }
 
 #[derive(Debug, Deserialize, IntoParams)]
@@ -91,11 +98,35 @@ struct ListQuery {
 #[into_params(parameter_in = Query)]
 struct ShipQuery {
     /// With this outcome only.
-    outcome: Option<String>,
-    /// The most items to return, 1 to 1000.
-    limit: Option<i64>,
+    #[param(inline)]
+    outcome: Option<Outcome>,
+    /// The most items to return.
+    #[param(inline)]
+    limit: Option<Limit>,
     /// `next` of the page before.
-    after: Option<String>,
+    #[param(inline)]
+    after: Option<Cursor>,
+}
+
+/// What may have become of a ship.
+#[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+enum Outcome {
+    Champion,
+    Candidate,
+    Unchanged,
+    Refused,
+}
+
+impl Outcome {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Champion => "champion",
+            Self::Candidate => "candidate",
+            Self::Unchanged => "unchanged",
+            Self::Refused => "refused",
+        }
+    }
 }
 
 impl BulkView {
@@ -120,17 +151,15 @@ impl OutcomeView {
 /// a person's word afterwards.
 #[utoipa::path(
     post, path = "/v1/families/{family}/refinements", tag = "families",
-    params(("family" = String, Path), ("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
+    params(("family" = inline(Word), Path), ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
     request_body = Asked, responses((status = 202, body = BulkView, headers(("Location" = String))))
 )]
-async fn refine(State(app): State<App>, Place(family): Place<String>, key: Key, payload: Payload) -> Result<Response> {
+async fn refine(State(app): State<App>, Place(family): Place<Word>, key: Key, payload: Payload) -> Result<Response> {
     let asked: Asked = payload.json()?;
-    let inner = app.clone();
-    let work = async move {
-        let bulk = queue(inner.store(), &family, &asked).await?;
-        inner.wake().notify_waiters();
+    let work = |app: App| async move {
+        let bulk = queue(app.store(), &family, &asked).await?;
         let location = format!("/v1/bulk-refinements/{}", bulk.id);
-        Ok(Reply::new(StatusCode::ACCEPTED, &BulkView::of(&inner, bulk).await?)?.at(location))
+        Ok(Reply::new(StatusCode::ACCEPTED, &BulkView::of(&app, bulk).await?)?.at(location).with_jobs())
     };
     key.once(&app, payload.bytes(), work).await
 }
@@ -140,7 +169,7 @@ async fn refine(State(app): State<App>, Place(family): Place<String>, key: Key, 
     get, path = "/v1/bulk-refinements", tag = "families", params(ListQuery), responses((status = 200, body = Listing<BulkView>))
 )]
 async fn list(State(app): State<App>, Params(query): Params<ListQuery>) -> Result<Json<Listing<BulkView>>> {
-    let bulks = app.store().bulks().list(query.family.as_deref(), &page::page(query.limit, query.after.as_deref())?).await?;
+    let bulks = app.store().bulks().list(query.family.as_deref(), &page::page(query.limit, query.after.as_ref())?).await?;
     let mut items = Vec::with_capacity(bulks.items.len());
     for bulk in bulks.items {
         items.push(BulkView::of(&app, bulk).await?);
@@ -150,19 +179,19 @@ async fn list(State(app): State<App>, Params(query): Params<ListQuery>) -> Resul
 
 /// How far a refinement of a family is
 #[utoipa::path(
-    get, path = "/v1/bulk-refinements/{id}", tag = "families", params(("id" = String, Path)), responses((status = 200, body = BulkView))
+    get, path = "/v1/bulk-refinements/{id}", tag = "families", params(("id" = inline(Id), Path)), responses((status = 200, body = BulkView))
 )]
-async fn get(State(app): State<App>, Place(id): Place<String>) -> Result<Json<BulkView>> {
+async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<BulkView>> {
     let bulk = app.store().bulks().get(&id).await?;
     Ok(Json(BulkView::of(&app, bulk).await?))
 }
 
 /// Cancel what is left of a refinement; ships that are done stay so
 #[utoipa::path(
-    delete, path = "/v1/bulk-refinements/{id}", tag = "families", params(("id" = String, Path)),
+    delete, path = "/v1/bulk-refinements/{id}", tag = "families", params(("id" = inline(Id), Path)),
     responses((status = 200, body = BulkView))
 )]
-async fn cancel(State(app): State<App>, Place(id): Place<String>) -> Result<Json<BulkView>> {
+async fn cancel(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<BulkView>> {
     let bulk = app.store().bulks().get(&id).await?;
     app.store().bulks().request_cancel(&id).await?;
     Ok(Json(BulkView::of(&app, bulk).await?))
@@ -170,10 +199,10 @@ async fn cancel(State(app): State<App>, Place(id): Place<String>) -> Result<Json
 
 /// Go on with the chunks that failed or were cancelled
 #[utoipa::path(
-    post, path = "/v1/bulk-refinements/{id}/retry", tag = "families", params(("id" = String, Path)),
+    post, path = "/v1/bulk-refinements/{id}/retry", tag = "families", params(("id" = inline(Id), Path)),
     responses((status = 200, body = BulkView))
 )]
-async fn retry(State(app): State<App>, Place(id): Place<String>) -> Result<Json<BulkView>> {
+async fn retry(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<BulkView>> {
     let bulk = app.store().bulks().get(&id).await?;
     app.store().bulks().retry(&id).await?;
     app.wake().notify_waiters();
@@ -182,38 +211,35 @@ async fn retry(State(app): State<App>, Place(id): Place<String>) -> Result<Json<
 
 /// Every ship of a refinement, before and after
 #[utoipa::path(
-    get, path = "/v1/bulk-refinements/{id}/ships", tag = "families", params(("id" = String, Path), ShipQuery),
+    get, path = "/v1/bulk-refinements/{id}/ships", tag = "families", params(("id" = inline(Id), Path), ShipQuery),
     responses((status = 200, body = Listing<OutcomeView>))
 )]
 async fn ships(
     State(app): State<App>,
-    Place(id): Place<String>,
+    Place(id): Place<Id>,
     Params(query): Params<ShipQuery>,
 ) -> Result<Json<Listing<OutcomeView>>> {
     let bulk = app.store().bulks().get(&id).await?;
-    let page = page::page(query.limit, query.after.as_deref())?;
-    let outcomes = app.store().bulks().outcomes(&bulk.id, query.outcome.as_deref(), &page).await?;
+    let page = page::page(query.limit, query.after.as_ref())?;
+    let outcomes = app.store().bulks().outcomes(&bulk.id, query.outcome.map(Outcome::name), &page).await?;
     Ok(Json(Listing::of(outcomes, OutcomeView::of)))
 }
 
 /// Make candidates of a refinement champions, by a person's word
 #[utoipa::path(
-    post, path = "/v1/bulk-refinements/{id}/champions", tag = "families", params(("id" = String, Path)), request_body = Word,
+    post, path = "/v1/bulk-refinements/{id}/champions", tag = "families", params(("id" = inline(Id), Path)), request_body = Promotion,
     responses((status = 200, body = Promoted))
 )]
-async fn promote(State(app): State<App>, Place(id): Place<String>, payload: Payload) -> Result<Json<Promoted>> {
-    let word: Word = payload.json()?;
+async fn promote(State(app): State<App>, Place(id): Place<Id>, payload: Payload) -> Result<Json<Promoted>> {
+    let word: Promotion = payload.json()?;
     let bulk = app.store().bulks().get(&id).await?;
-    if word.actor.trim().is_empty() || word.reason.trim().is_empty() {
-        return Err(Problem::invalid("actor", "say who decides, and why (`reason`)"));
-    }
-    let change =
-        AliasMove { alias: CHAMPION.to_owned(), expect: Expect::Any, reason: word.reason.clone(), actor: word.actor.clone() };
+    let (reason, actor) = (word.reason.into_string(), word.actor.into_string());
+    let change = AliasMove { alias: CHAMPION.to_owned(), expect: Expect::Any, reason, actor };
     let (mut champions, mut page) = (0, Page::first(MAX_LIMIT));
     loop {
         let list = app.store().bulks().outcomes(&bulk.id, Some("candidate"), &page).await?;
         for outcome in &list.items {
-            let meant = word.ships.as_ref().is_none_or(|ships| ships.contains(&outcome.ship));
+            let meant = word.ships.as_ref().is_none_or(|ships| ships.iter().any(|ship| **ship == *outcome.ship));
             if let (true, Some(version)) = (meant, outcome.version) {
                 app.store().bulks().promote(&bulk.id, &outcome.ship, version, &change).await?;
                 champions += 1;

@@ -19,7 +19,8 @@ use crate::archive::document;
 use crate::problem::{Problem, Result};
 use crate::publish::CHAMPION;
 use crate::web::conditions::tag;
-use crate::web::{Conditions, Params, Place, accept};
+use crate::web::field::EntityTags;
+use crate::web::{Conditions, Name, Params, Place, accept};
 
 const JSON: &str = "application/json";
 const YAML: &str = "application/yaml";
@@ -34,7 +35,7 @@ struct Champion {
     ship: String,
     /// The version that the alias `champion` stands for.
     version: VersionHead,
-    /// The model, as `models/schema/model.schema.json` describes it.
+    /// The model, as `models/schema/model.json` describes it.
     #[schema(value_type = Object)]
     model: Value,
 }
@@ -44,11 +45,11 @@ struct Champion {
 #[into_params(parameter_in = Query)]
 struct Query {
     /// `json` or `yaml`, over what `Accept` says.
-    #[param(value_type = Option<String>)]
+    #[param(inline)]
     format: Option<Format>,
 }
 
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 enum Format {
     Json,
@@ -59,7 +60,8 @@ enum Format {
 ///
 /// As YAML it is a file that `sistership simulate --model` takes.
 #[utoipa::path(
-    get, path = "/v1/ships/{ship}/model", tag = "ships", params(("ship" = String, Path), Query),
+    get, path = "/v1/ships/{ship}/model", tag = "ships", params(("ship" = inline(Name), Path), Query,
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you have")),
     responses(
         (status = 200, content((Champion = "application/json"), (String = "application/yaml")), headers(("ETag" = String))),
         (status = 304, description = "As you have it")
@@ -67,7 +69,7 @@ enum Format {
 )]
 async fn champion(
     State(app): State<App>,
-    Place(ship): Place<String>,
+    Place(ship): Place<Name>,
     Params(query): Params<Query>,
     conditions: Conditions,
     headers: HeaderMap,

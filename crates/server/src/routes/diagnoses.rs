@@ -4,7 +4,6 @@ use axum::extract::State;
 use axum::response::Response;
 use serde::Deserialize;
 use sistership_diagnose::Settings;
-use sistership_model::version::sha256;
 use sistership_store::{Trial, Version};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -13,13 +12,14 @@ use utoipa_axum::routes;
 use super::jobs::JobView;
 use super::model_ref::resolve;
 use super::named_trials::{named, no_trials};
-use super::queue::{accepted, earlier, enqueue};
+use super::queue::{accepted, enqueue};
 use super::trials::all_of_ship;
 use crate::app::App;
 use crate::archive::document;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::problem::{Problem, Result};
-use crate::web::{Key, Payload, Reply};
+use crate::web::field::{RequestKey, described};
+use crate::web::{Id, Key, ModelName, Payload, Reply};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(diagnose))
@@ -30,12 +30,14 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[serde(deny_unknown_fields)]
 struct DiagnosisRequest {
     /// The version to diagnose: `ship` (her champion), `ship/number`, `ship/alias`.
-    model: String,
+    #[schema(inline)]
+    model: ModelName,
     /// Ids of trials of the ship; where absent, those that the version was not made of, or all where none are left.
-    trials: Option<Vec<String>>,
+    #[schema(inline, min_items = 1)]
+    trials: Option<Vec<Id>>,
     /// Settings of the diagnosis; each has a default, and all are kept with the report.
     #[serde(default)]
-    #[schema(value_type = Object)]
+    #[schema(schema_with = described::<Settings>)]
     settings: Settings,
 }
 
@@ -45,27 +47,22 @@ struct DiagnosisRequest {
 /// model with them becomes a version of the ship's line, `candidate`, whose parent is the version diagnosed.
 #[utoipa::path(
     post, path = "/v1/diagnoses", tag = "diagnoses",
-    params(("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
     request_body = DiagnosisRequest,
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]
 async fn diagnose(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
     let request: DiagnosisRequest = payload.json()?;
-    let (inner, key_sha256) = (app.clone(), key.value.as_ref().map(|key| sha256(key.as_bytes())));
-    key.once(&app, payload.bytes(), async move { queued(&inner, request, key_sha256).await }).await
+    key.once(&app, payload.bytes(), |app| async move { queued(&app, request).await }).await
 }
 
-async fn queued(app: &App, request: DiagnosisRequest, key_sha256: Option<String>) -> Result<Reply> {
+async fn queued(app: &App, request: DiagnosisRequest) -> Result<Reply> {
     let ship = request.model.split('/').next().unwrap_or_default().to_owned();
-    let job = match earlier(app, DIAGNOSIS, &ship, key_sha256.as_ref()).await? {
-        Some(job) => job,
-        None => enqueue(app, DIAGNOSIS, &ship, &settled(app, request, key_sha256).await?).await?,
-    };
-    accepted(app, job)
+    accepted(enqueue(app, DIAGNOSIS, &ship, &settled(app, request).await?).await?)
 }
 
 /// The request with everything looked up, so that a job that is wrong is refused at once.
-async fn settled(app: &App, request: DiagnosisRequest, key_sha256: Option<String>) -> Result<DiagnosisJob> {
+async fn settled(app: &App, request: DiagnosisRequest) -> Result<DiagnosisJob> {
     let DiagnosisRequest { model, trials, settings } = request;
     let version = resolve(app.store(), "model", &model).await?;
     settings.check().map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
@@ -74,7 +71,7 @@ async fn settled(app: &App, request: DiagnosisRequest, key_sha256: Option<String
         Some(ids) => named(app, &ship, ids, "those that the version was not made of").await?,
         None => unseen(app, &version).await?,
     };
-    Ok(DiagnosisJob { ship, number: version.head.number, trials, settings, key_sha256 })
+    Ok(DiagnosisJob { ship, number: version.head.number, trials, settings, key_sha256: None })
 }
 
 /// The trials of the ship that a version was not made of; all of them where none are left.

@@ -3,7 +3,7 @@
 use axum::Json;
 use axum::extract::State;
 use serde::{Deserialize, Serialize};
-use sistership_store::{MAX_LIMIT, Page};
+use sistership_store::Page;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -12,21 +12,20 @@ use super::condition::Condition;
 use crate::app::App;
 use crate::fleet::Drift;
 use crate::problem::{Problem, Result};
-use crate::web::{Params, Place};
+use crate::web::field::MemberLimit;
+use crate::web::{Name, Params, Place, Word};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(of_ship)).routes(routes!(of_family))
 }
 
-/// Ships that are looked at where nobody says.
-const LIMIT: i64 = 50;
-
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct Query {
-    /// How many members are looked at, 1 to 1000; those whose diagnosis says that their model does not hold come first.
-    limit: Option<i64>,
+    /// How many members are looked at; those whose diagnosis says that their model does not hold come first.
+    #[param(inline)]
+    limit: Option<MemberLimit>,
 }
 
 /// The members of a family, the one whose model holds least first.
@@ -51,9 +50,9 @@ pub(super) struct MemberDrift {
 
 /// What a ship's champion leaves of each of her trials, over time
 #[utoipa::path(
-    get, path = "/v1/ships/{ship}/drift", tag = "ships", params(("ship" = String, Path)), responses((status = 200, body = Drift))
+    get, path = "/v1/ships/{ship}/drift", tag = "ships", params(("ship" = inline(Name), Path)), responses((status = 200, body = Drift))
 )]
-async fn of_ship(State(app): State<App>, Place(ship): Place<String>) -> Result<Json<Drift>> {
+async fn of_ship(State(app): State<App>, Place(ship): Place<Name>) -> Result<Json<Drift>> {
     app.store().ships().get(&ship).await?;
     let drift = Drift::of(app.archive(), &ship).await?;
     drift.map(Json).ok_or_else(|| Problem::invalid("ship", format!("`{ship}` has no champion yet; refine a model for her first")))
@@ -61,24 +60,17 @@ async fn of_ship(State(app): State<App>, Place(ship): Place<String>) -> Result<J
 
 /// Ships of a family whose model no longer holds, the worst first, with the effects that their diagnosis names
 #[utoipa::path(
-    get, path = "/v1/families/{family}/drift", tag = "families", params(("family" = String, Path), Query),
+    get, path = "/v1/families/{family}/drift", tag = "families", params(("family" = inline(Word), Path), Query),
     responses((status = 200, body = FamilyDrift))
 )]
-async fn of_family(
-    State(app): State<App>,
-    Place(name): Place<String>,
-    Params(query): Params<Query>,
-) -> Result<Json<FamilyDrift>> {
-    let limit = query.limit.unwrap_or(LIMIT);
+async fn of_family(State(app): State<App>, Place(name): Place<Word>, Params(query): Params<Query>) -> Result<Json<FamilyDrift>> {
+    let limit = query.limit.unwrap_or_default().get();
     Ok(Json(FamilyDrift::of(&app, &name, limit).await?))
 }
 
 impl FamilyDrift {
     /// Of the members whose diagnosis says that they do not hold, and of the first others up to `limit`.
     pub(super) async fn of(app: &App, name: &str, limit: i64) -> Result<Self> {
-        if !(1..=MAX_LIMIT).contains(&limit) {
-            return Err(Problem::invalid("limit", format!("must be from 1 to {MAX_LIMIT}")));
-        }
         let families = app.store().families();
         let family = families.get(name).await?;
         let drifted = families.drifted(&family.name, limit).await?;

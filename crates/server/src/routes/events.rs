@@ -13,7 +13,7 @@ use utoipa_axum::routes;
 use super::jobs::JobView;
 use crate::app::App;
 use crate::problem::Result;
-use crate::web::Place;
+use crate::web::{Id, Place};
 
 /// How often the job is looked at: another process may work on it.
 const LOOK: Duration = Duration::from_millis(200);
@@ -27,10 +27,10 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 /// Each event is called `job` and holds the job as JSON; there is one at once and one with each change. The stream ends
 /// when the job is at its end, or when the server stops.
 #[utoipa::path(
-    get, path = "/v1/jobs/{id}/events", tag = "jobs", params(("id" = String, Path)),
-    responses((status = 200, body = String, content_type = "text/event-stream"))
+    get, path = "/v1/jobs/{id}/events", tag = "jobs", params(("id" = inline(Id), Path)),
+    responses((status = 200, body = JobView, content_type = "text/event-stream"))
 )]
-async fn events(State(app): State<App>, Place(id): Place<String>) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>> {
+async fn events(State(app): State<App>, Place(id): Place<Id>) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>> {
     let job = app.store().jobs().get(&id).await?;
     Ok(Sse::new(follow(app, job)).keep_alive(KeepAlive::default()))
 }

@@ -17,7 +17,8 @@ use super::queue::accepted;
 use crate::app::App;
 use crate::fleet::{LEARN, LearnJob};
 use crate::problem::{Problem, Result};
-use crate::web::{Key, Listing, Paged, Params, Payload, Place, Reply};
+use crate::web::field::{Remark, RequestKey};
+use crate::web::{Key, Listing, ModelName, Name, Number, Paged, Params, Payload, Place, Reply, Word};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
@@ -73,14 +74,18 @@ pub(super) struct PriorView {
 #[serde(deny_unknown_fields)]
 struct NewFamily {
     /// Its name, which stands in URLs.
-    name: String,
+    #[schema(inline)]
+    name: Word,
     /// What people call it; the name where absent.
-    title: Option<String>,
+    #[schema(inline)]
+    title: Option<Remark>,
     /// The version that the members' models are founded on: `ship` (her champion), `ship/number`, `ship/alias`.
-    foundation: String,
+    #[schema(inline)]
+    foundation: ModelName,
     /// Its first members.
     #[serde(default)]
-    members: Vec<String>,
+    #[schema(inline, max_items = 1000)]
+    members: Vec<Name>,
 }
 
 /// Another foundation.
@@ -88,7 +93,8 @@ struct NewFamily {
 #[serde(deny_unknown_fields)]
 struct NewFoundation {
     /// The version: `ship` (her champion), `ship/number`, `ship/alias`.
-    foundation: String,
+    #[schema(inline)]
+    foundation: ModelName,
 }
 
 /// Ships to add.
@@ -96,7 +102,8 @@ struct NewFoundation {
 #[serde(deny_unknown_fields)]
 struct NewMembers {
     /// Names of ships.
-    ships: Vec<String>,
+    #[schema(inline, max_items = 1000)]
+    ships: Vec<Name>,
 }
 
 #[derive(Debug, Deserialize, IntoParams)]
@@ -104,7 +111,8 @@ struct NewMembers {
 #[into_params(parameter_in = Query)]
 struct Revision {
     /// Which time it was learned; the last one where absent.
-    revision: Option<i64>,
+    #[param(inline)]
+    revision: Option<Number>,
 }
 
 impl FamilyView {
@@ -143,40 +151,39 @@ async fn list(State(app): State<App>, Params(query): Params<Paged>) -> Result<Js
 /// Make a family on a foundation
 #[utoipa::path(
     post, path = "/v1/families", tag = "families",
-    params(("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
     request_body = NewFamily, responses((status = 201, body = FamilyView, headers(("Location" = String))))
 )]
 async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
     let new: NewFamily = payload.json()?;
-    let inner = app.clone();
-    let work = async move {
-        bounded(new.members.len())?;
-        let foundation = resolve(inner.store(), "foundation", &new.foundation).await?.head;
+    let work = |app: App| async move {
+        let members = bounded("members", new.members)?;
+        let foundation = resolve(app.store(), "foundation", &new.foundation).await?.head;
         let title = new.title.as_deref().unwrap_or(&new.name);
-        let family = inner.store().families().create(&new.name, title, &foundation.id).await?;
-        inner.store().families().add(&family.name, &new.members).await?;
+        let family = app.store().families().create(&new.name, title, &foundation.id).await?;
+        app.store().families().add(&family.name, &members).await?;
         let location = format!("/v1/families/{}", family.name);
-        Ok(Reply::new(StatusCode::CREATED, &FamilyView::of(&inner, family).await?)?.at(location))
+        Ok(Reply::new(StatusCode::CREATED, &FamilyView::of(&app, family).await?)?.at(location))
     };
     key.once(&app, payload.bytes(), work).await
 }
 
 /// A family
 #[utoipa::path(
-    get, path = "/v1/families/{family}", tag = "families", params(("family" = String, Path)),
+    get, path = "/v1/families/{family}", tag = "families", params(("family" = inline(Word), Path)),
     responses((status = 200, body = FamilyView))
 )]
-async fn get(State(app): State<App>, Place(name): Place<String>) -> Result<Json<FamilyView>> {
+async fn get(State(app): State<App>, Place(name): Place<Word>) -> Result<Json<FamilyView>> {
     let family = app.store().families().get(&name).await?;
     Ok(Json(FamilyView::of(&app, family).await?))
 }
 
 /// Put a family on another foundation; models are refined from it when the family is refined next
 #[utoipa::path(
-    put, path = "/v1/families/{family}", tag = "families", params(("family" = String, Path)),
+    put, path = "/v1/families/{family}", tag = "families", params(("family" = inline(Word), Path)),
     request_body = NewFoundation, responses((status = 200, body = FamilyView))
 )]
-async fn found(State(app): State<App>, Place(name): Place<String>, payload: Payload) -> Result<Json<FamilyView>> {
+async fn found(State(app): State<App>, Place(name): Place<Word>, payload: Payload) -> Result<Json<FamilyView>> {
     let new: NewFoundation = payload.json()?;
     let foundation = resolve(app.store(), "foundation", &new.foundation).await?.head;
     let family = app.store().families().found(&name, &foundation.id).await?;
@@ -185,12 +192,12 @@ async fn found(State(app): State<App>, Place(name): Place<String>, payload: Payl
 
 /// List the members of a family by name
 #[utoipa::path(
-    get, path = "/v1/families/{family}/members", tag = "families", params(("family" = String, Path), Paged),
+    get, path = "/v1/families/{family}/members", tag = "families", params(("family" = inline(Word), Path), Paged),
     responses((status = 200, body = Listing<MemberView>))
 )]
 async fn members(
     State(app): State<App>,
-    Place(name): Place<String>,
+    Place(name): Place<Word>,
     Params(query): Params<Paged>,
 ) -> Result<Json<Listing<MemberView>>> {
     let family = app.store().families().get(&name).await?;
@@ -200,22 +207,22 @@ async fn members(
 
 /// Add ships to a family, all or none; those that are members already stay so
 #[utoipa::path(
-    post, path = "/v1/families/{family}/members", tag = "families", params(("family" = String, Path)),
+    post, path = "/v1/families/{family}/members", tag = "families", params(("family" = inline(Word), Path)),
     request_body = NewMembers, responses((status = 200, body = FamilyView))
 )]
-async fn add(State(app): State<App>, Place(name): Place<String>, payload: Payload) -> Result<Json<FamilyView>> {
+async fn add(State(app): State<App>, Place(name): Place<Word>, payload: Payload) -> Result<Json<FamilyView>> {
     let new: NewMembers = payload.json()?;
-    bounded(new.ships.len())?;
-    app.store().families().add(&name, &new.ships).await?;
+    let ships = bounded("ships", new.ships)?;
+    app.store().families().add(&name, &ships).await?;
     get(State(app), Place(name)).await
 }
 
 /// Take a ship out of a family
 #[utoipa::path(
     delete, path = "/v1/families/{family}/members/{ship}", tag = "families",
-    params(("family" = String, Path), ("ship" = String, Path)), responses((status = 200, body = FamilyView))
+    params(("family" = inline(Word), Path), ("ship" = inline(Name), Path)), responses((status = 200, body = FamilyView))
 )]
-async fn remove(State(app): State<App>, Place((name, ship)): Place<(String, String)>) -> Result<Json<FamilyView>> {
+async fn remove(State(app): State<App>, Place((name, ship)): Place<(Word, Name)>) -> Result<Json<FamilyView>> {
     match app.store().families().remove(&name, &ship).await? {
         true => get(State(app), Place(name)).await,
         false => Err(StoreError::NotFound { kind: "member", id: format!("{name}/{ship}") }.into()),
@@ -224,11 +231,11 @@ async fn remove(State(app): State<App>, Place((name, ship)): Place<(String, Stri
 
 /// What a family has taught: how each coefficient varies over its members
 #[utoipa::path(
-    get, path = "/v1/families/{family}/prior", tag = "families", params(("family" = String, Path), Revision),
+    get, path = "/v1/families/{family}/prior", tag = "families", params(("family" = inline(Word), Path), Revision),
     responses((status = 200, body = PriorView))
 )]
-async fn prior(State(app): State<App>, Place(name): Place<String>, Params(query): Params<Revision>) -> Result<Json<PriorView>> {
-    let prior = app.store().families().prior(&name, query.revision).await?;
+async fn prior(State(app): State<App>, Place(name): Place<Word>, Params(query): Params<Revision>) -> Result<Json<PriorView>> {
+    let prior = app.store().families().prior(&name, query.revision.map(Number::get)).await?;
     let document = serde_json::from_str(&prior.document).map_err(Problem::internal)?;
     let FamilyPrior { family, revision, sha256, created_us, .. } = prior;
     Ok(Json(PriorView { family, revision, sha256, created_us, document }))
@@ -236,19 +243,20 @@ async fn prior(State(app): State<App>, Place(name): Place<String>, Params(query)
 
 /// Learn from the members' trials how their coefficients vary; the work is a job
 #[utoipa::path(
-    post, path = "/v1/families/{family}/prior", tag = "families", params(("family" = String, Path)),
+    post, path = "/v1/families/{family}/prior", tag = "families", params(("family" = inline(Word), Path)),
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]
-async fn learn(State(app): State<App>, Place(name): Place<String>) -> Result<Reply> {
+async fn learn(State(app): State<App>, Place(name): Place<Word>) -> Result<Reply> {
     let family = app.store().families().get(&name).await?;
     let request = serde_json::to_string(&LearnJob { family: family.name }).map_err(Problem::internal)?;
     let job = app.store().jobs().enqueue(&NewJob { kind: LEARN.to_owned(), ship: None, request }).await?;
-    accepted(&app, job)
+    app.wake_all();
+    accepted(job)
 }
 
-fn bounded(ships: usize) -> Result<()> {
-    match i64::try_from(ships) {
-        Ok(count) if count <= MAX_LIMIT => Ok(()),
-        _ => Err(Problem::invalid("ships", format!("are more than {MAX_LIMIT}; add them in several requests"))),
+fn bounded(field: &str, ships: Vec<Name>) -> Result<Vec<String>> {
+    match i64::try_from(ships.len()) {
+        Ok(count) if count <= MAX_LIMIT => Ok(ships.into_iter().map(Name::into_string).collect()),
+        _ => Err(Problem::invalid(field, format!("are more than {MAX_LIMIT}; add them in several requests"))),
     }
 }

@@ -1,5 +1,7 @@
 //! Whether the server lives, and whether it can work.
 
+use std::sync::atomic::Ordering;
+
 use axum::Json;
 use axum::extract::State;
 use axum::http::StatusCode;
@@ -24,16 +26,19 @@ struct Health {
     status: &'static str,
     /// The program's revision.
     revision: &'static str,
+    /// `no space` where nothing can be kept at the moment: reading goes on, writes get 507. Only `/readyz` says so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    writes: Option<&'static str>,
 }
 
-fn ok() -> Json<Health> {
-    Json(Health { status: "ok", revision: code_revision() })
+fn ok(writes: Option<&'static str>) -> Json<Health> {
+    Json(Health { status: "ok", revision: code_revision(), writes })
 }
 
 /// Whether the server lives
 #[utoipa::path(get, path = "/healthz", tag = "health", responses((status = 200, body = Health)))]
 async fn healthz() -> Json<Health> {
-    ok()
+    ok(None)
 }
 
 /// Whether the server can work: its database and its object store answer, and it is not stopping
@@ -44,7 +49,8 @@ async fn readyz(State(app): State<App>) -> Result<Json<Health>> {
     }
     app.store().health().await.map_err(|error| unready("database", &error))?;
     app.objects().health().await.map_err(|error| unready("object store", &error))?;
-    Ok(ok())
+    let no_room = app.no_room().load(Ordering::Relaxed);
+    Ok(ok(Some(if no_room { "no space" } else { "ok" })))
 }
 
 fn unready(what: &str, error: &StoreError) -> Problem {

@@ -4,14 +4,15 @@ use axum::Json;
 use axum::extract::State;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use sistership_store::{Job, JobFilter};
+use sistership_store::{Job, JobFilter, JobState};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::problem::Result;
-use crate::web::{Listing, Params, Place, page};
+use crate::web::field::{Cursor, Limit};
+use crate::web::{Id, Listing, Name, Params, Place, page};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get, cancel)).routes(routes!(retry))
@@ -54,13 +55,40 @@ pub(super) struct JobView {
 #[into_params(parameter_in = Query)]
 struct Query {
     /// Of this ship only.
-    ship: Option<String>,
+    #[param(inline)]
+    ship: Option<Name>,
     /// In this state only.
-    state: Option<String>,
-    /// The most items to return, 1 to 1000.
-    limit: Option<i64>,
+    #[param(inline)]
+    state: Option<JobStateName>,
+    /// The most items to return.
+    #[param(inline)]
+    limit: Option<Limit>,
     /// `next` of the page before.
-    after: Option<String>,
+    #[param(inline)]
+    after: Option<Cursor>,
+}
+
+/// Where a job may stand.
+#[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+enum JobStateName {
+    Queued,
+    Running,
+    Succeeded,
+    Failed,
+    Cancelled,
+}
+
+impl From<JobStateName> for JobState {
+    fn from(name: JobStateName) -> Self {
+        match name {
+            JobStateName::Queued => Self::Queued,
+            JobStateName::Running => Self::Running,
+            JobStateName::Succeeded => Self::Succeeded,
+            JobStateName::Failed => Self::Failed,
+            JobStateName::Cancelled => Self::Cancelled,
+        }
+    }
 }
 
 impl JobView {
@@ -96,29 +124,28 @@ impl JobView {
 /// List the jobs, the latest first
 #[utoipa::path(get, path = "/v1/jobs", tag = "jobs", params(Query), responses((status = 200, body = Listing<JobView>)))]
 async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<JobView>>> {
-    let state = query.state.as_deref().map(str::parse).transpose()?;
-    let filter = JobFilter { ship: query.ship, state };
-    let jobs = app.store().jobs().list(&filter, &page::page(query.limit, query.after.as_deref())?).await?;
+    let filter = JobFilter { ship: query.ship.map(Name::into_string), state: query.state.map(JobState::from) };
+    let jobs = app.store().jobs().list(&filter, &page::page(query.limit, query.after.as_ref())?).await?;
     Ok(Json(Listing::of(jobs, JobView::of)))
 }
 
 /// A job
-#[utoipa::path(get, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = String, Path)), responses((status = 200, body = JobView)))]
-async fn get(State(app): State<App>, Place(id): Place<String>) -> Result<Json<JobView>> {
+#[utoipa::path(get, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = inline(Id), Path)), responses((status = 200, body = JobView)))]
+async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<JobView>> {
     Ok(Json(JobView::of(app.store().jobs().get(&id).await?)))
 }
 
 /// Cancel a job; one that runs stops at its next step
-#[utoipa::path(delete, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = String, Path)), responses((status = 200, body = JobView)))]
-async fn cancel(State(app): State<App>, Place(id): Place<String>) -> Result<Json<JobView>> {
+#[utoipa::path(delete, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = inline(Id), Path)), responses((status = 200, body = JobView)))]
+async fn cancel(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<JobView>> {
     Ok(Json(JobView::of(app.store().jobs().request_cancel(&id).await?)))
 }
 
 /// Do a job again that failed or was cancelled
 #[utoipa::path(
-    post, path = "/v1/jobs/{id}/retry", tag = "jobs", params(("id" = String, Path)), responses((status = 200, body = JobView))
+    post, path = "/v1/jobs/{id}/retry", tag = "jobs", params(("id" = inline(Id), Path)), responses((status = 200, body = JobView))
 )]
-async fn retry(State(app): State<App>, Place(id): Place<String>) -> Result<Json<JobView>> {
+async fn retry(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<JobView>> {
     let job = app.store().jobs().retry(&id).await?;
     app.wake().notify_one();
     Ok(Json(JobView::of(job)))

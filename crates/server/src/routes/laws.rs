@@ -12,7 +12,8 @@ use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::problem::Result;
-use crate::web::{Key, Listing, Paged, Params, Payload, Place, Reply, accept};
+use crate::web::field::RequestKey;
+use crate::web::{Key, Listing, Name, Paged, Params, Payload, Place, Reply, accept};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list, create)).routes(routes!(get))
@@ -56,7 +57,7 @@ async fn list(State(app): State<App>, Params(query): Params<Paged>) -> Result<Js
 /// The body is the law's YAML file. Its formulas, units and symmetry are checked before it is kept.
 #[utoipa::path(
     post, path = "/v1/laws", tag = "laws",
-    params(("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
     request_body(content = String, content_type = "application/yaml"),
     responses((status = 201, body = LawHead))
 )]
@@ -64,9 +65,8 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
     let text = payload.text()?.to_owned();
     let parse = text.clone();
     let name = app.compute(move || Law::parse("body", &parse)).await??.name;
-    let store = app.store().clone();
-    let work = async move {
-        let head = LawHead::of(store.laws().insert(&name, &text).await?);
+    let work = |app: App| async move {
+        let head = LawHead::of(app.store().laws().insert(&name, &text).await?);
         Ok(Reply::new(StatusCode::CREATED, &head)?.at(format!("/v1/laws/{name}")))
     };
     key.once(&app, payload.bytes(), work).await
@@ -74,10 +74,10 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
 
 /// A law, as JSON or as its YAML file
 #[utoipa::path(
-    get, path = "/v1/laws/{law}", tag = "laws", params(("law" = String, Path)),
+    get, path = "/v1/laws/{law}", tag = "laws", params(("law" = inline(Name), Path)),
     responses((status = 200, content((LawText = "application/json"), (String = "application/yaml"))))
 )]
-async fn get(State(app): State<App>, Place(name): Place<String>, headers: HeaderMap) -> Result<Response> {
+async fn get(State(app): State<App>, Place(name): Place<Name>, headers: HeaderMap) -> Result<Response> {
     let law = app.store().laws().get(&name).await?;
     if accept::choose(&headers, &["application/json", "application/yaml"])? == "application/yaml" {
         return Ok(([(header::CONTENT_TYPE, "application/yaml"), (header::VARY, "accept")], law.document).into_response());

@@ -4,9 +4,11 @@ mod aliases;
 mod bulk_refinements;
 mod champion;
 mod condition;
+mod described;
 mod diagnoses;
 mod document;
 mod drift;
+mod effects;
 mod events;
 mod families;
 mod health;
@@ -27,9 +29,12 @@ mod ship_search;
 mod ships;
 mod similar;
 mod tags;
+mod tidy;
 mod trials;
 mod uploads;
 mod versions;
+
+use std::sync::Arc;
 
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -44,11 +49,14 @@ pub use document::openapi;
 
 use crate::app::App;
 use crate::config::Limits;
+use crate::web::query::{self, KnownQuery};
 use crate::web::{envelope, guard};
 
 /// Everything that is served.
 pub(crate) fn router(app: App) -> Router {
-    let (api, _) = api(app.limits()).split_for_parts();
+    let (api, described) = api(app.limits()).split_for_parts();
+    let known = Arc::new(KnownQuery::of(&described));
+    let api = api.route_layer(from_fn_with_state(known, query::refuse_unknown));
     let text = document::text();
     api.route("/openapi.json", get(move || async move { document::served(text) }))
         .merge(pages::routes())
@@ -72,6 +80,7 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(families::routes())
         .merge(drift::routes())
         .merge(bulk_refinements::routes())
+        .merge(effects::routes())
         .merge(laws::routes())
         .merge(ships::routes())
         .merge(ship_changes::routes())

@@ -6,9 +6,10 @@ use sistership_store::StoreError;
 use super::trials::bounded;
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
+use crate::web::Id;
 
 /// The trials of these ids, checked.
-pub(super) async fn named(app: &App, ship: &str, ids: Vec<String>, left_out: &str) -> Result<Vec<String>> {
+pub(super) async fn named(app: &App, ship: &str, ids: Vec<Id>, left_out: &str) -> Result<Vec<String>> {
     bounded(app, ids.len())?;
     if ids.is_empty() {
         return Err(Problem::invalid("trials", format!("is empty; name at least one, or leave it out for {left_out}")));
@@ -20,7 +21,7 @@ pub(super) async fn named(app: &App, ship: &str, ids: Vec<String>, left_out: &st
             return Err(problem.with(Fault::at(format!("trials[{index}]"), message)));
         }
     }
-    Ok(ids)
+    Ok(ids.into_iter().map(Id::into_string).collect())
 }
 
 /// Why a trial cannot be one of the ship's.

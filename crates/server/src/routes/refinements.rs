@@ -4,7 +4,6 @@ use axum::extract::State;
 use axum::response::Response;
 use serde::Deserialize;
 use sistership_estimate::refine::Settings;
-use sistership_model::version::sha256;
 use sistership_store::StoreError;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -13,12 +12,13 @@ use utoipa_axum::routes;
 use super::jobs::JobView;
 use super::model_ref::resolve;
 use super::named_trials::{named, no_trials};
-use super::queue::{accepted, earlier, enqueue};
+use super::queue::{accepted, enqueue};
 use super::trials::all_of_ship;
 use crate::app::App;
 use crate::jobs::{REFINEMENT, RefinementJob, SourceChoice};
 use crate::problem::{Problem, Result};
-use crate::web::{Key, Payload, Reply};
+use crate::web::field::{RequestKey, described};
+use crate::web::{Id, Key, ModelName, Name, Payload, Reply};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(refine))
@@ -29,24 +29,26 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[serde(deny_unknown_fields)]
 struct RefinementRequest {
     /// The ship to refine a model for.
-    ship: String,
-    /// `auto`, or a version to start from: `ship` (her champion), `ship/number`, `ship/alias`.
-    #[serde(default = "auto")]
-    source: String,
+    #[schema(inline)]
+    ship: Name,
+    /// `auto`, which it is where absent, or a version to start from: `ship` (her champion), `ship/number`, `ship/alias`.
+    #[schema(inline)]
+    source: Option<ModelName>,
     /// The law to fit, such as `low-speed`; the source's where absent. What a source of another law says over the states of the
     /// trials and of its standard manoeuvres becomes the prior.
-    law: Option<String>,
+    #[schema(inline)]
+    law: Option<Name>,
     /// Ids of the trials; all of the ship's where absent.
-    trials: Option<Vec<String>>,
+    #[schema(inline, min_items = 1)]
+    trials: Option<Vec<Id>>,
     /// Settings of the estimator; each has a default, and all are kept with the version.
     #[serde(default)]
-    #[schema(value_type = Object)]
+    #[schema(schema_with = described::<Settings>)]
     settings: Settings,
 }
 
-fn auto() -> String {
-    "auto".to_owned()
-}
+/// The source that is the most similar ship.
+const AUTO: &str = "auto";
 
 /// Refine a model against trials
 ///
@@ -54,27 +56,22 @@ fn auto() -> String {
 /// where she has none and else `candidate`, with a report.
 #[utoipa::path(
     post, path = "/v1/refinements", tag = "refinements",
-    params(("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
     request_body = RefinementRequest,
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]
 async fn refine(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
     let request: RefinementRequest = payload.json()?;
-    let (inner, key_sha256) = (app.clone(), key.value.as_ref().map(|key| sha256(key.as_bytes())));
-    key.once(&app, payload.bytes(), async move { queued(&inner, request, key_sha256).await }).await
+    key.once(&app, payload.bytes(), |app| async move { queued(&app, request).await }).await
 }
 
-async fn queued(app: &App, request: RefinementRequest, key_sha256: Option<String>) -> Result<Reply> {
-    let ship = request.ship.clone();
-    let job = match earlier(app, REFINEMENT, &ship, key_sha256.as_ref()).await? {
-        Some(job) => job,
-        None => enqueue(app, REFINEMENT, &ship, &settled(app, request, key_sha256).await?).await?,
-    };
-    accepted(app, job)
+async fn queued(app: &App, request: RefinementRequest) -> Result<Reply> {
+    let ship = request.ship.to_string();
+    accepted(enqueue(app, REFINEMENT, &ship, &settled(app, request).await?).await?)
 }
 
 /// The request with everything looked up, so that a job that is wrong is refused at once.
-async fn settled(app: &App, request: RefinementRequest, key_sha256: Option<String>) -> Result<RefinementJob> {
+async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob> {
     let RefinementRequest { ship, source, law, trials, settings } = request;
     match app.store().ships().get(&ship).await {
         Err(StoreError::NotFound { .. }) => {
@@ -86,7 +83,8 @@ async fn settled(app: &App, request: RefinementRequest, key_sha256: Option<Strin
     repeatable(&settings)?;
     known(app, law.as_deref()).await?;
     let trials = trial_ids(app, &ship, trials).await?;
-    Ok(RefinementJob { source: choice(app, &source).await?, ship, law, trials, settings, key_sha256 })
+    let source = choice(app, source.as_deref().unwrap_or(AUTO)).await?;
+    Ok(RefinementJob { source, ship: ship.into_string(), law: law.map(Name::into_string), trials, settings, key_sha256: None })
 }
 
 /// A version must follow from its recipe again, which it does not where a clock ended the search.
@@ -108,14 +106,14 @@ async fn known(app: &App, law: Option<&str>) -> Result<()> {
 }
 
 async fn choice(app: &App, source: &str) -> Result<SourceChoice> {
-    if source == "auto" {
+    if source == AUTO {
         return Ok(SourceChoice::Auto);
     }
     let head = resolve(app.store(), "source", source).await?.head;
     Ok(SourceChoice::Version { ship: head.model, number: head.number })
 }
 
-async fn trial_ids(app: &App, ship: &str, ids: Option<Vec<String>>) -> Result<Vec<String>> {
+async fn trial_ids(app: &App, ship: &str, ids: Option<Vec<Id>>) -> Result<Vec<String>> {
     if let Some(ids) = ids {
         return named(app, ship, ids, "all of the ship's").await;
     }

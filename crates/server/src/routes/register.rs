@@ -17,10 +17,9 @@ use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::publish::{LATEST, step};
 use crate::version::{Recipe, RegisteredRecipe, VersionDocument};
-use crate::web::{Key, Payload, Place, Reply};
+use crate::web::field::{Remark, RequestKey, VersionNumber, described};
+use crate::web::{Key, Name, Payload, Place, Reply};
 
-/// The longest word on where a model comes from.
-const ORIGIN_BYTES: usize = 1000;
 const METHOD: &str = "registered";
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -31,13 +30,15 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct RegisterRequest {
-    /// The model, as `models/schema/model.schema.json` describes it and `GET /v1/ships/{ship}/model` answers.
-    #[schema(value_type = Object)]
+    /// The model, as `models/schema/model.json` describes it and `GET /v1/ships/{ship}/model` answers.
+    #[schema(schema_with = described::<Model>)]
     model: Value,
     /// Who made it, with what; kept in its recipe.
-    origin: String,
+    #[schema(inline)]
+    origin: Remark,
     /// The number of the version that it was made from.
-    parent: Option<i64>,
+    #[schema(inline)]
+    parent: Option<VersionNumber>,
 }
 
 /// Keep a model that was made elsewhere as the next version
@@ -46,16 +47,15 @@ struct RegisterRequest {
 #[utoipa::path(
     post, path = "/v1/models/{model}/versions", tag = "models",
     params(
-        ("model" = String, Path, description = "The ship"),
-        ("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")
+        ("model" = inline(Name), Path, description = "The ship"),
+        ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")
     ),
     request_body = RegisterRequest,
     responses((status = 201, body = VersionHead, headers(("Location" = String))))
 )]
-async fn register(State(app): State<App>, Place(ship): Place<String>, key: Key, payload: Payload) -> Result<Response> {
+async fn register(State(app): State<App>, Place(ship): Place<Name>, key: Key, payload: Payload) -> Result<Response> {
     let request: RegisterRequest = payload.json()?;
-    let inner = app.clone();
-    key.once(&app, payload.bytes(), async move { registered(&inner, ship, request).await }).await
+    key.once(&app, payload.bytes(), |app| async move { registered(&app, ship.into_string(), request).await }).await
 }
 
 async fn registered(app: &App, ship: String, request: RegisterRequest) -> Result<Reply> {
@@ -67,16 +67,13 @@ async fn registered(app: &App, ship: String, request: RegisterRequest) -> Result
     if model.ship != ship {
         return Err(Problem::invalid("model.ship", format!("is `{}`, but the path says `{ship}`", model.ship)));
     }
-    if origin.trim().is_empty() || origin.len() > ORIGIN_BYTES {
-        return Err(Problem::invalid("origin", format!("say in 1 to {ORIGIN_BYTES} bytes where the model comes from")));
-    }
     app.store().ships().get(&ship).await?;
     let law_sha256 = checked(app, &model).await?;
     let new = NewVersion {
-        parent: parent_id(app, &ship, parent).await?,
+        parent: parent_id(app, &ship, parent.map(VersionNumber::get)).await?,
         law: model.law.clone(),
         method: METHOD.to_owned(),
-        document: document(&ship, model, law_sha256, origin)?,
+        document: document(&ship, model, law_sha256, origin.into_string())?,
         model: ship,
     };
     // Nothing of the document depends on the number, so that it does not matter who else makes versions.

@@ -4,14 +4,14 @@ use axum::extract::State;
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
-use utoipa::IntoParams;
+use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::pages::POLICY;
 use crate::app::App;
 use crate::problem::Result;
-use crate::web::{Params, Place, accept};
+use crate::web::{Id, Params, Place, accept};
 
 const JSON: &str = "application/json";
 const HTML: &str = "text/html";
@@ -25,11 +25,11 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[into_params(parameter_in = Query)]
 struct Query {
     /// `json` or `html`, over what `Accept` says.
-    #[param(value_type = Option<String>)]
+    #[param(inline)]
     format: Option<Format>,
 }
 
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 enum Format {
     Json,
@@ -38,15 +38,10 @@ enum Format {
 
 /// A report, as JSON or as a page that stands alone
 #[utoipa::path(
-    get, path = "/v1/reports/{id}", tag = "reports", params(("id" = String, Path), Query),
+    get, path = "/v1/reports/{id}", tag = "reports", params(("id" = inline(Id), Path), Query),
     responses((status = 200, content((Object = "application/json"), (String = "text/html"))))
 )]
-async fn get(
-    State(app): State<App>,
-    Place(id): Place<String>,
-    Params(query): Params<Query>,
-    headers: HeaderMap,
-) -> Result<Response> {
+async fn get(State(app): State<App>, Place(id): Place<Id>, Params(query): Params<Query>, headers: HeaderMap) -> Result<Response> {
     let media = match query.format {
         Some(Format::Json) => JSON,
         Some(Format::Html) => HTML,

@@ -1,24 +1,32 @@
 //! The samples of a trial, in canonical units and signs.
 
+use std::fs::File;
+
+use axum::BoxError;
 use axum::body::Body;
 use axum::extract::State;
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use bytes::Bytes;
-use sistership_trials::samples::{from_parquet, to_csv};
-use tokio_util::io::{ReaderStream, SyncIoBridge};
+use futures::stream::BoxStream;
+use futures::{Stream, StreamExt as _};
+use sha2::{Digest as _, Sha256};
+use sistership_store::ObjectsError;
+use sistership_trials::samples::CsvPieces;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::document::Binary;
 use crate::app::App;
+use crate::memory::{self, Share};
 use crate::problem::{Problem, Result};
-use crate::web::{Place, accept};
+use crate::upload::{hex, spool};
+use crate::web::{Id, Place, accept};
 
 const CSV: &str = "text/csv";
 const PARQUET: &str = "application/vnd.apache.parquet";
-/// What may lie between the writer of a CSV file and the network.
-const PIPE_BYTES: usize = 64 << 10;
+/// What a CSV file holds of its samples while it is sent, bytes: a page of each column, as it is stored and as it is in memory.
+const DECODING: u64 = 4 << 20;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(samples))
@@ -26,26 +34,54 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 
 /// The samples of a trial, as CSV or as Parquet, under canonical names
 #[utoipa::path(
-    get, path = "/v1/trials/{id}/samples", tag = "trials", params(("id" = String, Path)),
+    get, path = "/v1/trials/{id}/samples", tag = "trials", params(("id" = inline(Id), Path)),
     responses((status = 200, content((String = "text/csv"), (Binary = "application/vnd.apache.parquet"))))
 )]
-async fn samples(State(app): State<App>, Place(id): Place<String>, headers: HeaderMap) -> Result<Response> {
+async fn samples(State(app): State<App>, Place(id): Place<Id>, headers: HeaderMap) -> Result<Response> {
     let media = accept::choose(&headers, &[CSV, PARQUET])?;
     let trial = app.store().trials().get(&id).await?;
-    let bytes = app.objects().get(&trial.object_key).await?;
-    let body = if media == CSV { csv(&app, bytes).await? } else { Body::from(bytes) };
-    Ok(([(header::CONTENT_TYPE, media), (header::VARY, "accept")], body).into_response())
+    let (size, stream) = app.objects().stream(&trial.object_key).await?;
+    let types = [(header::CONTENT_TYPE, media), (header::VARY, "accept")];
+    if media == CSV {
+        return Ok((types, csv(&app, &trial.object_key, stream).await?).into_response());
+    }
+    let body = Body::from_stream(verified(trial.object_key, stream));
+    Ok((types, [(header::CONTENT_LENGTH, size)], body).into_response())
 }
 
-/// CSV as it is written: it is never whole in memory.
-async fn csv(app: &App, bytes: Bytes) -> Result<Body> {
-    let trial = app.compute(move || from_parquet(bytes)).await?.map_err(Problem::internal)?;
-    let (reader, writer) = tokio::io::duplex(PIPE_BYTES);
-    let writer = SyncIoBridge::new(writer);
-    tokio::task::spawn_blocking(move || {
-        if let Err(error) = to_csv(writer, &trial) {
-            tracing::debug!(%error, "samples were not read to their end");
+/// The bytes as they come; where their hash is another than it was, the answer breaks off before its end.
+fn verified(key: String, mut bytes: Bytestream) -> impl Stream<Item = std::result::Result<Bytes, BoxError>> + Send {
+    async_stream::try_stream! {
+        let (mut hash, mut held) = (Sha256::new(), Bytes::new());
+        while let Some(next) = bytes.next().await {
+            let next = next?;
+            hash.update(&next);
+            let before = std::mem::replace(&mut held, next);
+            if !before.is_empty() {
+                yield before;
+            }
         }
-    });
-    Ok(Body::from_stream(ReaderStream::new(reader)))
+        damaged(&key, &hex(&hash.finalize()))?;
+        yield held;
+    }
+}
+
+type Bytestream = BoxStream<'static, sistership_store::Result<Bytes>>;
+
+fn damaged(key: &str, actual: &str) -> std::result::Result<(), BoxError> {
+    if key == actual { Ok(()) } else { Err(ObjectsError::Damaged { key: key.into(), actual: actual.into() }.into()) }
+}
+
+/// CSV as it is read, some rows at a time, from the samples on disk: nothing waits in memory for a caller who does not read.
+async fn csv(app: &App, key: &str, bytes: Bytestream) -> Result<Body> {
+    let share = memory::share(DECODING).await?;
+    let spooled = spool(app.spool(), bytes).await?;
+    damaged(key, &spooled.sha256).map_err(Problem::internal)?;
+    let open = move || CsvPieces::open(File::open(&spooled.path)?).map_err(BoxError::from);
+    let pieces = app.compute(open).await?.map_err(Problem::internal)?;
+    let next = |(mut pieces, share): (CsvPieces, Option<Share>)| async move {
+        let decode = move || pieces.next_piece().map(|piece| piece.map(|piece| (Bytes::from(piece), (pieces, share))));
+        tokio::task::spawn_blocking(decode).await.map_err(BoxError::from)?.map_err(BoxError::from)
+    };
+    Ok(Body::from_stream(futures::stream::try_unfold((pieces, share), next)))
 }

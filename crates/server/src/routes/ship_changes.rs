@@ -5,16 +5,18 @@ use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use sistership_model::Vessel;
 use sistership_model::vessel::VesselFile;
-use sistership_store::{NewShip, Ship, Store, StoreError};
+use sistership_store::Ship;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::described::Vessel as VesselBody;
 use super::ships::ShipDetail;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::publish::publish;
 use crate::seed::new_ship;
-use crate::web::{Conditions, Key, Payload, Place, Reply};
+use crate::web::field::{EntityTags, RequestKey};
+use crate::web::{Conditions, Key, Name, Payload, Place, Reply};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(create)).routes(routes!(replace, delete)).routes(routes!(undelete))
@@ -31,58 +33,42 @@ async fn vessel(app: &App, payload: &Payload) -> Result<Vessel> {
 
 /// Create a ship
 ///
-/// The body is a vessel document, YAML or JSON (`models/schema/vessel.schema.json`). Each model that it publishes becomes
+/// The body is a vessel document, YAML or JSON (`models/schema/vessel.json`). Each model that it publishes becomes
 /// a version; the first becomes champion. A ship known by particulars only gets her first model from a refinement.
 #[utoipa::path(
     post, path = "/v1/ships", tag = "ships",
-    params(("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
-    request_body(content((Object = "application/json"), (String = "application/yaml"))),
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
+    request_body(content((VesselBody = "application/json"), (String = "application/yaml"))),
     responses((status = 201, body = ShipDetail, headers(("ETag" = String), ("Location" = String))))
 )]
 async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
     let vessel = vessel(&app, &payload).await?;
-    let (inner, keyed) = (app.clone(), key.value.is_some());
-    key.once(&app, payload.bytes(), async move { created(&inner, &vessel, keyed).await }).await
+    key.once(&app, payload.bytes(), |app| async move { created(&app, &vessel).await }).await
 }
 
-async fn created(app: &App, vessel: &Vessel, keyed: bool) -> Result<Reply> {
+async fn created(app: &App, vessel: &Vessel) -> Result<Reply> {
     let zoo = app.laws().await?;
     zoo.check_models(vessel)?;
     let new = new_ship(vessel).map_err(Problem::internal)?;
-    let ship = match app.store().ships().create(&new).await {
-        // The same request again, whose first answer was lost when the server was killed.
-        Err(StoreError::Conflict { .. }) if keyed && is_there(app.store(), &new).await => {
-            app.store().ships().get(&new.name).await?
-        }
-        other => other?,
-    };
+    let ship = app.store().ships().create(&new).await?;
     publish(app.store(), &zoo, vessel, &ship.document).await?;
     let ship = ShipDetail::of(app, ship).await?;
     let (location, etag) = (format!("/v1/ships/{}", ship.name), ship.etag());
     Ok(Reply::new(StatusCode::CREATED, &ship)?.at(location).tagged(etag))
 }
 
-async fn is_there(store: &Store, new: &NewShip) -> bool {
-    store.ships().get(&new.name).await.is_ok_and(|ship| ship.revision == 1 && ship.document == new.document)
-}
-
 /// Replace a ship's document, as you last read it
 #[utoipa::path(
     put, path = "/v1/ships/{ship}", tag = "ships",
-    params(("ship" = String, Path), ("If-Match" = String, Header, description = "The ETag of the ship as you last read her")),
-    request_body(content((Object = "application/json"), (String = "application/yaml"))),
+    params(("ship" = inline(Name), Path), ("If-Match" = inline(EntityTags), Header, description = "The ETag of the ship as you last read her")),
+    request_body(content((VesselBody = "application/json"), (String = "application/yaml"))),
     responses((status = 200, body = ShipDetail, headers(("ETag" = String))))
 )]
-async fn replace(
-    State(app): State<App>,
-    Place(name): Place<String>,
-    conditions: Conditions,
-    payload: Payload,
-) -> Result<Response> {
+async fn replace(State(app): State<App>, Place(name): Place<Name>, conditions: Conditions, payload: Payload) -> Result<Response> {
     let current = app.store().ships().get(&name).await?;
     let revision = conditions.revision(&format!("ship `{name}`"), current.revision)?;
     let vessel = vessel(&app, &payload).await?;
-    if vessel.name() != name {
+    if vessel.name() != &*name {
         return Err(Problem::invalid(
             "name",
             format!("is `{}`, but the path says `{name}`; a ship keeps her name", vessel.name()),
@@ -99,10 +85,10 @@ async fn replace(
 /// Delete a ship; her versions stay, and `undelete` brings her back
 #[utoipa::path(
     delete, path = "/v1/ships/{ship}", tag = "ships",
-    params(("ship" = String, Path), ("If-Match" = Option<String>, Header, description = "Only if she is still as you last read her")),
+    params(("ship" = inline(Name), Path), ("If-Match" = inline(Option<EntityTags>), Header, description = "Only if she is still as you last read her")),
     responses((status = 204, description = "Deleted"))
 )]
-async fn delete(State(app): State<App>, Place(name): Place<String>, conditions: Conditions) -> Result<Response> {
+async fn delete(State(app): State<App>, Place(name): Place<Name>, conditions: Conditions) -> Result<Response> {
     let current = app.store().ships().get(&name).await?;
     let revision = conditions.optional_revision(&format!("ship `{name}`"), current.revision)?;
     app.store().ships().delete(&name, revision).await?;
@@ -111,10 +97,10 @@ async fn delete(State(app): State<App>, Place(name): Place<String>, conditions: 
 
 /// Bring a deleted ship back
 #[utoipa::path(
-    post, path = "/v1/ships/{ship}/undelete", tag = "ships", params(("ship" = String, Path)),
+    post, path = "/v1/ships/{ship}/undelete", tag = "ships", params(("ship" = inline(Name), Path)),
     responses((status = 200, body = ShipDetail, headers(("ETag" = String))))
 )]
-async fn undelete(State(app): State<App>, Place(name): Place<String>) -> Result<Response> {
+async fn undelete(State(app): State<App>, Place(name): Place<Name>) -> Result<Response> {
     let ship = app.store().ships().undelete(&name).await?;
     Ok(ShipDetail::of(&app, ship).await?.answer())
 }

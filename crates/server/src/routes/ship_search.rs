@@ -1,39 +1,49 @@
 //! The query of the list of ships.
 
+use std::str::FromStr;
+
 use serde::Deserialize;
 use sistership_estimate::similarity::Definition;
 use sistership_store::{FactRange, MAX_RANGES, Page, ShipKey};
 use utoipa::IntoParams;
+use utoipa::openapi::RefOr;
+use utoipa::openapi::schema::{ArrayBuilder, ObjectBuilder, Schema, Type};
 
 use crate::problem::{Fault, Problem, Result};
-use crate::search::{Search, metric, particular};
-use crate::web::page;
+use crate::search::{self, Search, metric, particular};
+use crate::web::field::{Cursor, Limit, one_of};
+use crate::web::{Name, Word, page};
 
 /// What the query may hold. Everything that is given must be true of a ship.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 #[allow(dead_code, reason = "it only describes the query, whose parameters may come several times")]
 pub(super) struct Query {
-    /// The most items to return, 1 to 1000.
-    limit: Option<i64>,
+    /// The most items to return.
+    #[param(inline)]
+    limit: Option<Limit>,
     /// `next` of the page before.
-    after: Option<String>,
+    #[param(inline)]
+    after: Option<Cursor>,
     /// Of this category only.
-    category: Option<String>,
+    #[param(inline)]
+    category: Option<Name>,
     /// With this tag only.
-    tag: Option<String>,
+    #[param(inline)]
+    tag: Option<Word>,
     /// Ranges of particulars in SI, such as `lpp_m:100..200`, `beam_m:..32`; with those of metrics at most four.
-    #[param(style = Form, explode)]
+    #[param(style = Form, explode, schema_with = particulars)]
     particular: Option<Vec<String>>,
     /// Ranges of the champion's metrics, such as `turn_35.tactical_diameter_m:..900`: `turn_35.` with `advance_m`,
     /// `transfer_m`, `tactical_diameter_m`, `steady_radius_m`; `zigzag_10.` and `zigzag_20.` with `first_overshoot_deg`,
     /// `second_overshoot_deg`, `period_s`; `initial_turning_m`. The greater of both sides counts.
-    #[param(style = Form, explode)]
+    #[param(style = Form, explode, schema_with = metrics)]
     metric: Option<Vec<String>>,
     /// Ships of this ship's category, the most similar first.
-    similar_to: Option<String>,
+    #[param(inline)]
+    similar_to: Option<Name>,
     /// The vector by which ships are similar: `mei-2019` or `kanazawa-2023`.
-    #[param(value_type = Option<String>)]
+    #[param(schema_with = vectors)]
     vector: Option<Definition>,
 }
 
@@ -42,18 +52,41 @@ pub(super) fn read(pairs: Vec<(String, String)>) -> Result<(Search, Page<ShipKey
     let (mut search, mut limit, mut after) = (Search::default(), None, None);
     for (name, value) in pairs {
         match name.as_str() {
-            "limit" => once(&name, &mut limit, value.parse().map_err(|_| wrong(&name, "is a whole number from 1 to 1000"))?)?,
-            "after" => once(&name, &mut after, value)?,
-            "category" => once(&name, &mut search.ships.category, value)?,
-            "tag" => once(&name, &mut search.ships.tag, value)?,
+            "limit" => once(&name, &mut limit, parsed::<Limit>(&name, &value)?)?,
+            "after" => once(&name, &mut after, parsed::<Cursor>(&name, &value)?)?,
+            "category" => once(&name, &mut search.ships.category, parsed::<Name>(&name, &value)?.into_string())?,
+            "tag" => once(&name, &mut search.ships.tag, parsed::<Word>(&name, &value)?.into_string())?,
             "particular" => add(&name, &mut search.ships.ranges, particular(&value))?,
             "metric" => add(&name, &mut search.ships.ranges, metric(&value))?,
-            "similar_to" => once(&name, &mut search.similar_to, value)?,
+            "similar_to" => once(&name, &mut search.similar_to, parsed::<Name>(&name, &value)?.into_string())?,
             "vector" => once(&name, &mut search.vector, definition(&value)?)?,
             _ => return Err(unknown(&name)),
         }
     }
-    Ok((search, page::page(limit, after.as_deref())?))
+    Ok((search, page::page(limit, after.as_ref())?))
+}
+
+fn parsed<T: FromStr<Err = String>>(name: &str, value: &str) -> Result<T> {
+    value.parse().map_err(|message: String| wrong(name, message))
+}
+
+/// The names of the vectors.
+pub(super) fn vectors() -> RefOr<Schema> {
+    one_of(Definition::ALL.map(Definition::name))
+}
+
+fn particulars() -> RefOr<Schema> {
+    ranges(search::particulars())
+}
+
+fn metrics() -> RefOr<Schema> {
+    ranges(search::metrics())
+}
+
+/// Ranges of what has one of these names.
+fn ranges(names: impl Iterator<Item = &'static str>) -> RefOr<Schema> {
+    let range = ObjectBuilder::new().schema_type(Type::String).pattern(Some(search::pattern(names))).build();
+    ArrayBuilder::new().items(range).min_items(Some(1)).max_items(Some(MAX_RANGES)).build().into()
 }
 
 fn once<T>(name: &str, slot: &mut Option<T>, value: T) -> Result<()> {

@@ -18,7 +18,8 @@ use crate::derive::DeriveError;
 use crate::problem::{Problem, Result};
 use crate::search;
 use crate::web::conditions::tag;
-use crate::web::{Conditions, Listing, Params, Place};
+use crate::web::field::EntityTags;
+use crate::web::{Conditions, Listing, Name, Params, Place};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get))
@@ -55,7 +56,7 @@ pub(super) struct ShipDetail {
     pub updated_us: i64,
     /// Whether her champion still holds.
     pub condition: Condition,
-    /// The vessel as `models/schema/vessel.schema.json` describes it.
+    /// The vessel as `models/schema/vessel.json` describes it.
     #[schema(value_type = Object)]
     pub document: Value,
 }
@@ -101,10 +102,11 @@ async fn list(State(app): State<App>, Params(query): Params<Vec<(String, String)
 
 /// A ship; her ETag is what a change must present
 #[utoipa::path(
-    get, path = "/v1/ships/{ship}", tag = "ships", params(("ship" = String, Path)),
+    get, path = "/v1/ships/{ship}", tag = "ships", params(("ship" = inline(Name), Path),
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you have")),
     responses((status = 200, body = ShipDetail, headers(("ETag" = String))), (status = 304, description = "As you have her"))
 )]
-async fn get(State(app): State<App>, Place(name): Place<String>, conditions: Conditions) -> Result<Response> {
+async fn get(State(app): State<App>, Place(name): Place<Name>, conditions: Conditions) -> Result<Response> {
     let ship = ShipDetail::of(&app, app.store().ships().get(&name).await?).await?;
     let etag = ship.etag();
     match conditions.has(&etag) {

@@ -6,16 +6,19 @@ use serde::Deserialize;
 use serde_json::Value;
 use sistership_estimate::similarity::Definition;
 use sistership_estimate::source;
-use sistership_trials::samples::{SamplesError, from_parquet};
+use sistership_model::version::RecipeTrial;
 use utoipa::IntoParams;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::ship_search::vectors;
 use super::trials::all_of_ship;
 use crate::app::App;
 use crate::archive::vessel;
+use crate::jobs::trial_bytes;
+use crate::memory;
 use crate::problem::{Problem, Result};
-use crate::web::{Params, Place};
+use crate::web::{Name, Params, Place};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(similar))
@@ -26,7 +29,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[into_params(parameter_in = Query)]
 struct Query {
     /// `mei-2019` or `kanazawa-2023`; Mei's where the ship has every component of it, else Kanazawa's.
-    #[param(value_type = Option<String>)]
+    #[param(schema_with = vectors)]
     vector: Option<Definition>,
     /// Whether eligible ships are measured on the ship's trials, where she has any.
     #[serde(default = "yes")]
@@ -42,24 +45,18 @@ fn yes() -> bool {
 /// Of a zoo of more than 250 ships only the 250 of her category that are most similar to her are ranked;
 /// `GET /v1/ships?similar_to=` has all of them.
 #[utoipa::path(
-    get, path = "/v1/ships/{ship}/similar", tag = "ships", params(("ship" = String, Path), Query),
+    get, path = "/v1/ships/{ship}/similar", tag = "ships", params(("ship" = inline(Name), Path), Query),
     responses((status = 200, body = Object, description = "`target`, `definition`, `vector` and `ranking`, as `sistership similar --json`"))
 )]
-async fn similar(State(app): State<App>, Place(name): Place<String>, Params(query): Params<Query>) -> Result<Json<Value>> {
+async fn similar(State(app): State<App>, Place(name): Place<Name>, Params(query): Params<Query>) -> Result<Json<Value>> {
     let ship = app.store().ships().get(&name).await?;
     let target = vessel(&ship.name, &ship.document)?;
-    let mut samples = Vec::new();
-    if query.trials {
-        for trial in all_of_ship(&app, &name).await? {
-            samples.push(app.objects().get(&trial.object_key).await?);
-        }
-    }
+    let trials = if query.trials { all_of_ship(&app, &name).await? } else { Vec::new() };
+    memory::take(trials.iter().map(|trial| trial_bytes(trial.sample_rows)).sum()).await?;
+    let named = trials.into_iter().map(|trial| RecipeTrial { name: trial.name, sha256: trial.object_key });
+    let trials = app.archive().trials(&named.collect::<Vec<_>>()).await?;
     let zoo = app.zoo_around(&target).await?;
-    let ranked = app.compute(move || {
-        let trials = samples.into_iter().map(from_parquet).collect::<Result<Vec<_>, SamplesError>>()?;
-        let trials: Vec<_> = trials.iter().collect();
-        Ok::<_, SamplesError>(source::similar(&zoo, &target, query.vector, &trials))
-    });
-    let ranked = ranked.await?.map_err(Problem::internal)?;
+    let ranked = move || source::similar(&zoo, &target, query.vector, &trials.iter().collect::<Vec<_>>());
+    let ranked = app.compute(ranked).await?;
     Ok(Json(serde_json::to_value(ranked).map_err(Problem::internal)?))
 }

@@ -8,7 +8,7 @@ use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::problem::Result;
-use crate::web::Place;
+use crate::web::{Name, Place, Word};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(put, remove))
@@ -16,10 +16,10 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 
 /// The tags of a ship, in alphabetical order, at most 100
 #[utoipa::path(
-    get, path = "/v1/ships/{ship}/tags", tag = "ships", params(("ship" = String, Path)),
+    get, path = "/v1/ships/{ship}/tags", tag = "ships", params(("ship" = inline(Name), Path)),
     responses((status = 200, body = Vec<String>))
 )]
-async fn list(State(app): State<App>, Place(ship): Place<String>) -> Result<Json<Vec<String>>> {
+async fn list(State(app): State<App>, Place(ship): Place<Name>) -> Result<Json<Vec<String>>> {
     app.store().ships().get(&ship).await?;
     Ok(Json(app.store().ships().tags(&ship).await?))
 }
@@ -27,20 +27,20 @@ async fn list(State(app): State<App>, Place(ship): Place<String>) -> Result<Json
 /// Put a tag on a ship, to find her by
 #[utoipa::path(
     put, path = "/v1/ships/{ship}/tags/{tag}", tag = "ships",
-    params(("ship" = String, Path), ("tag" = String, Path, description = "A word without white space and slashes")),
+    params(("ship" = inline(Name), Path), ("tag" = inline(Word), Path)),
     responses((status = 204, description = "She has it"))
 )]
-async fn put(State(app): State<App>, Place((ship, tag)): Place<(String, String)>) -> Result<StatusCode> {
+async fn put(State(app): State<App>, Place((ship, tag)): Place<(Name, Word)>) -> Result<StatusCode> {
     app.store().ships().tag(&ship, &tag).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
 /// Take a tag off a ship
 #[utoipa::path(
-    delete, path = "/v1/ships/{ship}/tags/{tag}", tag = "ships", params(("ship" = String, Path), ("tag" = String, Path)),
+    delete, path = "/v1/ships/{ship}/tags/{tag}", tag = "ships", params(("ship" = inline(Name), Path), ("tag" = inline(Word), Path)),
     responses((status = 204, description = "She no longer has it"))
 )]
-async fn remove(State(app): State<App>, Place((ship, tag)): Place<(String, String)>) -> Result<StatusCode> {
+async fn remove(State(app): State<App>, Place((ship, tag)): Place<(Name, Word)>) -> Result<StatusCode> {
     app.store().ships().untag(&ship, &tag).await?;
     Ok(StatusCode::NO_CONTENT)
 }

@@ -13,7 +13,8 @@ use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::web::{Listing, Params, Place, page};
+use crate::web::field::{Cursor, Limit};
+use crate::web::{Id, Listing, Name, Params, Place, page};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get, delete)).routes(routes!(undelete))
@@ -47,11 +48,14 @@ pub(super) struct TrialView {
 #[into_params(parameter_in = Query)]
 struct Query {
     /// The ship.
-    ship: String,
-    /// The most items to return, 1 to 1000.
-    limit: Option<i64>,
+    #[param(inline)]
+    ship: Name,
+    /// The most items to return.
+    #[param(inline)]
+    limit: Option<Limit>,
     /// `next` of the page before.
-    after: Option<String>,
+    #[param(inline)]
+    after: Option<Cursor>,
 }
 
 impl TrialView {
@@ -67,34 +71,34 @@ impl TrialView {
 #[utoipa::path(get, path = "/v1/trials", tag = "trials", params(Query), responses((status = 200, body = Listing<TrialView>)))]
 async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<TrialView>>> {
     app.store().ships().get(&query.ship).await?;
-    let trials = app.store().trials().list(&query.ship, &page::page(query.limit, query.after.as_deref())?).await?;
+    let trials = app.store().trials().list(&query.ship, &page::page(query.limit, query.after.as_ref())?).await?;
     Ok(Json(Listing::of(trials, TrialView::of)))
 }
 
 /// A trial
 #[utoipa::path(
-    get, path = "/v1/trials/{id}", tag = "trials", params(("id" = String, Path)), responses((status = 200, body = TrialView))
+    get, path = "/v1/trials/{id}", tag = "trials", params(("id" = inline(Id), Path)), responses((status = 200, body = TrialView))
 )]
-async fn get(State(app): State<App>, Place(id): Place<String>) -> Result<Json<TrialView>> {
+async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<TrialView>> {
     Ok(Json(TrialView::of(app.store().trials().get(&id).await?)))
 }
 
 /// Delete a trial; versions that were made with it stay, and `undelete` brings it back
 #[utoipa::path(
-    delete, path = "/v1/trials/{id}", tag = "trials", params(("id" = String, Path)),
+    delete, path = "/v1/trials/{id}", tag = "trials", params(("id" = inline(Id), Path)),
     responses((status = 204, description = "Deleted"))
 )]
-async fn delete(State(app): State<App>, Place(id): Place<String>) -> Result<Response> {
+async fn delete(State(app): State<App>, Place(id): Place<Id>) -> Result<Response> {
     app.store().trials().delete(&id).await?;
     Ok(StatusCode::NO_CONTENT.into_response())
 }
 
 /// Bring a deleted trial back
 #[utoipa::path(
-    post, path = "/v1/trials/{id}/undelete", tag = "trials", params(("id" = String, Path)),
+    post, path = "/v1/trials/{id}/undelete", tag = "trials", params(("id" = inline(Id), Path)),
     responses((status = 200, body = TrialView))
 )]
-async fn undelete(State(app): State<App>, Place(id): Place<String>) -> Result<Json<TrialView>> {
+async fn undelete(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<TrialView>> {
     Ok(Json(TrialView::of(app.store().trials().undelete(&id).await?)))
 }
 

@@ -15,6 +15,7 @@ use super::trials::TrialView;
 use crate::app::App;
 use crate::problem::Result;
 use crate::upload::{Kept, RawQuery, Upload, keep};
+use crate::web::field::RequestKey;
 use crate::web::{Key, Reply};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -37,7 +38,7 @@ struct Uploaded {
 #[derive(ToSchema)]
 #[allow(dead_code, reason = "it only describes the form")]
 struct Form {
-    /// The trial manifest, YAML (`models/schema/trials.schema.json`).
+    /// The trial manifest, YAML (`models/schema/trials.json`).
     manifest: Option<String>,
     /// The ship, instead of a manifest, for files with canonical columns.
     ship: Option<String>,
@@ -53,27 +54,27 @@ struct Form {
 /// follows that diagnoses it on the new trials, unless `diagnose=false`.
 #[utoipa::path(
     post, path = "/v1/trials", tag = "trials",
-    params(RawQuery, ("Idempotency-Key" = Option<String>, Header, description = "Repeat the request safely under this key")),
+    params(RawQuery, ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
     request_body(content((Form = "multipart/form-data"), (String = "text/csv"), (Binary = "application/vnd.apache.parquet"))),
     responses((status = 201, body = Uploaded, headers(("Location" = String))))
 )]
 async fn upload(State(app): State<App>, key: Key, upload: Upload) -> Result<Response> {
     let fingerprint = upload.fingerprint()?;
-    let inner = app.clone();
-    key.once(&app, fingerprint.as_bytes(), async move { kept(&inner, upload).await }).await
+    key.once(&app, fingerprint.as_bytes(), |app| async move { kept(&app, upload).await }).await
 }
 
 async fn kept(app: &App, upload: Upload) -> Result<Reply> {
     let ship = upload.manifest.ship.clone();
     let (kept, job): (Vec<Kept>, _) = keep(app, upload).await?;
-    app.wake().notify_one();
     let location = match kept.as_slice() {
         [only] => format!("/v1/trials/{}", only.row.id),
         _ => format!("/v1/trials?ship={ship}"),
     };
     let new = kept.iter().filter(|trial| trial.new).count();
     let trials = kept.into_iter().map(|trial| TrialView::of(trial.row)).collect();
-    Ok(Reply::new(StatusCode::CREATED, &Uploaded { ship, trials, new, diagnosis: job.map(|job| job.id) })?.at(location))
+    Ok(Reply::new(StatusCode::CREATED, &Uploaded { ship, trials, new, diagnosis: job.map(|job| job.id) })?
+        .at(location)
+        .with_jobs())
 }
 
 /// Check trials without keeping them
@@ -85,6 +86,6 @@ async fn kept(app: &App, upload: Upload) -> Result<Reply> {
     responses((status = 200, body = Object, description = "`trials`: `file`, `rows`, `duration_s`, `errors`, `warnings` of each"))
 )]
 async fn check(State(app): State<App>, upload: Upload) -> Result<Json<Value>> {
-    let outcomes = app.compute(move || upload.check()).await?;
+    let outcomes = upload.check(&app).await?;
     Ok(Json(json!({ "trials": outcomes })))
 }

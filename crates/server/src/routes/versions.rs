@@ -14,7 +14,8 @@ use utoipa_axum::routes;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::verify::{self, Verification};
-use crate::web::{Conditions, Listing, Paged, Params, Place};
+use crate::web::field::EntityTags;
+use crate::web::{Conditions, Listing, Name, Number, Paged, Params, Place};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get)).routes(routes!(bytes))
@@ -69,12 +70,12 @@ impl VersionHead {
 
 /// List the versions of a model, the latest first
 #[utoipa::path(
-    get, path = "/v1/models/{model}/versions", tag = "models", params(("model" = String, Path), Paged),
+    get, path = "/v1/models/{model}/versions", tag = "models", params(("model" = inline(Name), Path), Paged),
     responses((status = 200, body = Listing<VersionHead>))
 )]
 async fn list(
     State(app): State<App>,
-    Place(model): Place<String>,
+    Place(model): Place<Name>,
     Params(query): Params<Paged>,
 ) -> Result<Json<Listing<VersionHead>>> {
     exists(&app, &model).await?;
@@ -92,11 +93,11 @@ pub(super) async fn exists(app: &App, model: &str) -> Result<()> {
 
 /// A version with its document
 #[utoipa::path(
-    get, path = "/v1/models/{model}/versions/{number}", tag = "models", params(("model" = String, Path), ("number" = i64, Path)),
+    get, path = "/v1/models/{model}/versions/{number}", tag = "models", params(("model" = inline(Name), Path), ("number" = inline(Number), Path)),
     responses((status = 200, body = VersionDetail))
 )]
-async fn get(State(app): State<App>, Place((model, number)): Place<(String, i64)>) -> Result<Json<VersionDetail>> {
-    let version = app.store().versions().get(&model, number).await?;
+async fn get(State(app): State<App>, Place((model, number)): Place<(Name, Number)>) -> Result<Json<VersionDetail>> {
+    let version = app.store().versions().get(&model, number.get()).await?;
     let document = serde_json::from_str(&version.document).map_err(Problem::internal)?;
     Ok(Json(VersionDetail { version: VersionHead::with_report(&app, version.head).await?, document }))
 }
@@ -104,11 +105,16 @@ async fn get(State(app): State<App>, Place((model, number)): Place<(String, i64)
 /// The document of a version, byte for byte as it was hashed
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions/{number}/document", tag = "models",
-    params(("model" = String, Path), ("number" = i64, Path)),
+    params(("model" = inline(Name), Path), ("number" = inline(Number), Path),
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you have")),
     responses((status = 200, body = Object, headers(("ETag" = String))), (status = 304, description = "As you have it"))
 )]
-async fn bytes(State(app): State<App>, Place((model, number)): Place<(String, i64)>, conditions: Conditions) -> Result<Response> {
-    let version = app.store().versions().get(&model, number).await?;
+async fn bytes(
+    State(app): State<App>,
+    Place((model, number)): Place<(Name, Number)>,
+    conditions: Conditions,
+) -> Result<Response> {
+    let version = app.store().versions().get(&model, number.get()).await?;
     let etag = format!("\"{}\"", version.head.sha256);
     let head = [(header::ETAG, etag.clone()), (header::CONTENT_TYPE, "application/json".to_owned())];
     match conditions.has(&etag) {
@@ -120,9 +126,12 @@ async fn bytes(State(app): State<App>, Place((model, number)): Place<(String, i6
 /// Derive a version again from its recipe, and compare the bytes
 #[utoipa::path(
     post, path = "/v1/models/{model}/versions/{number}/verify", tag = "models",
-    params(("model" = String, Path), ("number" = i64, Path)),
+    params(("model" = inline(Name), Path), ("number" = inline(Number), Path)),
     responses((status = 200, body = Verification, description = "`identical` tells whether they are the same"))
 )]
-async fn verify_again(State(app): State<App>, Place((model, number)): Place<(String, i64)>) -> Result<Json<Verification>> {
+async fn verify_again(State(app): State<App>, Place((model, number)): Place<(Name, Number)>) -> Result<Json<Verification>> {
+    let number = number.get();
+    // It is the work of a job, in a request.
+    let _share = app.job_memory().take(verify::demand(app.archive(), &model, number).await?, app.limits().memory_wait).await?;
     Ok(Json(verify::verify(app.archive(), &model, number).await?))
 }

@@ -1,6 +1,7 @@
 //! Keeping up what ships are found by.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use sistership_model::Zoo;
 use sistership_store::StoreError;
@@ -12,6 +13,8 @@ use crate::catalogue::Catalogue;
 
 /// Ships whose facts are written at once.
 const AT_ONCE: i64 = 50;
+/// A pause after the database has failed.
+const BREATH: Duration = Duration::from_secs(5);
 /// How often ships that keep changing are tried; then it is the next time's turn.
 const PASSES: usize = 3;
 
@@ -23,14 +26,16 @@ pub(crate) async fn keep(app: App) {
             let laws = app.laws().await?;
             all(app.archive(), &laws).await
         };
+        let mut pause = app.leases().poll;
         tokio::select! {
             done = work => if let Err(error) = done {
                 tracing::error!(%error, "what ships are found by could not be written");
+                pause = pause.max(BREATH);
             },
             () = stopping.wait() => return,
         }
         tokio::select! {
-            () = tokio::time::sleep(app.leases().poll) => {}
+            () = tokio::time::sleep(pause) => {}
             () = stopping.wait() => {}
         }
     }

@@ -9,6 +9,9 @@ pub use index::catch_up;
 pub(crate) use index::keep;
 pub(crate) use similar::nearest;
 
+use std::sync::LazyLock;
+
+use regex::Regex;
 use sistership_estimate::similarity::Definition;
 use sistership_model::particulars;
 pub use sistership_store::{FactRange, FoundShip, MAX_RANGES, Page, ShipSearch};
@@ -47,6 +50,26 @@ pub fn metric(text: &str) -> Result<FactRange, RangeFault> {
     range(text, "metric", &metrics::names().collect::<Vec<_>>())
 }
 
+/// The names of particulars by which ships are found.
+pub(crate) fn particulars() -> impl Iterator<Item = &'static str> {
+    particulars::names()
+}
+
+/// The names of metrics by which ships are found.
+pub(crate) fn metrics() -> impl Iterator<Item = &'static str> {
+    metrics::names()
+}
+
+/// An end of a range.
+const END: &str = r"[+-]?[0-9]{1,15}(\.[0-9]{1,15})?(e[+-]?[0-9]{1,2})?";
+static ENDS: LazyLock<Option<Regex>> = LazyLock::new(|| Regex::new(&format!(r"^({END})?\.\.({END})?$")).ok());
+
+/// What a range of one of these names looks like, as a regular expression.
+pub(crate) fn pattern(names: impl Iterator<Item = &'static str>) -> String {
+    let names = names.collect::<Vec<_>>().join("|").replace('.', "\\.");
+    format!(r"^({names}):({END})?\.\.({END})?$")
+}
+
 fn range(text: &str, kind: &str, known: &[&str]) -> Result<FactRange, RangeFault> {
     let form =
         || format!("write {}:MIN..MAX, with either end left out where it is open, not `{text}`", known.first().unwrap_or(&""));
@@ -54,8 +77,8 @@ fn range(text: &str, kind: &str, known: &[&str]) -> Result<FactRange, RangeFault
     if !known.contains(&name) {
         return Err(format!("there is no {kind} `{name}`; there are {}", known.join(", ")));
     }
-    let (min, max) = ends.split_once("..").ok_or_else(form)?;
-    let end = |text: &str, open: f64| match text.trim() {
+    let (min, max) = ends.split_once("..").filter(|_| ENDS.as_ref().is_some_and(|form| form.is_match(ends))).ok_or_else(form)?;
+    let end = |text: &str, open: f64| match text {
         "" => Ok(open),
         number => number.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(form),
     };

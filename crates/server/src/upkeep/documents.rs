@@ -23,6 +23,20 @@ pub(super) async fn laws(archive: &Archive, findings: &mut Findings) -> Result<(
     }
 }
 
+pub(super) async fn effects(archive: &Archive, findings: &mut Findings) -> Result<()> {
+    let mut page = Page::first(ROWS);
+    loop {
+        let libraries = archive.store.effects().list(&page).await?;
+        for library in libraries.items {
+            findings.checked.effects += 1;
+            let place = format!("library of effects {}", library.sha256);
+            hash("effects-hash", place, &library.document, &library.sha256, findings);
+        }
+        let Some(next) = libraries.next else { return Ok(()) };
+        page = Page::after(next, ROWS);
+    }
+}
+
 pub(super) async fn versions(archive: &Archive, findings: &mut Findings) -> Result<()> {
     let mut page = Page::first(ROWS);
     loop {
@@ -65,8 +79,14 @@ async fn recipe(
     if let Some(hash) = recipe.ship_sha256() {
         told("version-ship", place, archive.ship(&document.ship, hash).await.map(drop), findings)?;
     }
-    if let Some(source) = recipe.starts_from() {
+    for source in recipe.versions() {
         told("version-source", place, archive.source(source).await.map(drop), findings)?;
+    }
+    if let Some(hash) = recipe.effects_sha256() {
+        told("version-effects", place, archive.effects(hash).await.map(drop), findings)?;
+    }
+    if let Some(prior) = recipe.prior() {
+        told("version-prior", place, archive.prior(prior).await.map(drop), findings)?;
     }
     for trial in recipe.trials() {
         if !there(&archive.objects, &trial.sha256).await? {

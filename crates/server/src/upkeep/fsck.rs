@@ -12,6 +12,8 @@ use crate::archive::Archive;
 pub struct Checked {
     /// Laws, by their hash.
     pub laws: usize,
+    /// Libraries of effects, by their hash.
+    pub effects: usize,
     /// Versions, by their hash and what their recipes name.
     pub versions: usize,
     /// Trials, by their objects.
@@ -52,6 +54,7 @@ impl Findings {
 pub async fn fsck(archive: &Archive) -> Result<Findings> {
     let mut findings = Findings { faults: archive.store.row_faults().await?, ..Findings::default() };
     documents::laws(archive, &mut findings).await?;
+    documents::effects(archive, &mut findings).await?;
     documents::versions(archive, &mut findings).await?;
     documents::jobs(archive, &mut findings).await?;
     documents::diagnoses(archive, &mut findings).await?;

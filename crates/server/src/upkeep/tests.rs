@@ -77,7 +77,11 @@ async fn a_healthy_archive_is_clean() {
         let findings = found(archive).await;
         assert!(findings.clean && findings.faults.is_empty(), "{findings:#?}");
         assert_eq!((findings.checked.trials, findings.checked.objects, findings.unreferred.objects), (1, 1, 0));
-        assert!(findings.checked.laws > 3 && findings.checked.versions > 5, "{:?}", findings.checked);
+        assert!(
+            findings.checked.laws > 3 && findings.checked.effects > 0 && findings.checked.versions > 5,
+            "{:?}",
+            findings.checked
+        );
     }
 }
 
@@ -92,7 +96,8 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ("UPDATE trials SET sha256 = 'x'", "trial-key", "trial "),
     ("UPDATE trials SET object_key = '00'", "trial-key", "trial "),
     ("UPDATE laws SET document = document || ' ' WHERE name = 'abkowitz'", "law-hash", "law abkowitz"),
-    ("UPDATE laws SET sha256 = 'x' WHERE name = 'abkowitz'", "version-law", "version "),
+    ("UPDATE laws SET sha256 = 'x' WHERE name = 'abkowitz'", "law-hash", "law abkowitz"),
+    ("UPDATE effect_libraries SET document = document || ' '", "effects-hash", "library of effects 4ffa"),
     ("DELETE FROM laws WHERE name = 'abkowitz'", "version-law", "version "),
     ("UPDATE versions SET document = document || ' ' WHERE model = 'mariner'", "version-hash", "version mariner/1"),
     ("UPDATE versions SET document = '{}' WHERE model = 'mariner'", "version-document", "version mariner/1"),
@@ -135,7 +140,7 @@ const OUTCOME: &str = "INSERT INTO bulk_outcomes VALUES ('b', 'mariner', 'champi
 const TAG: &str = "INSERT INTO ship_tags VALUES ('nobody', 'own')";
 const FACT: &str = "INSERT INTO ship_facts VALUES ('nobody', 'particular lpp_m', 1)";
 const JOB: &str = "INSERT INTO jobs VALUES ('j', 'refinement', 'nobody', '{}', 'succeeded', 1, '', \
-    '{\"model\": \"mariner\", \"version\": 1, \"sha256\": \"x\", \"report\": \"none\"}', NULL, 1, 1, 5, NULL, 0, 0, NULL, 0)";
+    '{\"model\": \"mariner\", \"version\": 1, \"sha256\": \"x\", \"report\": \"none\"}', NULL, 1, 1, 5, NULL, 0, 0, NULL, 0, 0)";
 
 #[tokio::test(flavor = "multi_thread")]
 async fn each_damage_to_rows_is_named_on_sqlite() {
@@ -168,8 +173,9 @@ async fn damaged(database: TestDatabase) {
     assert!(found(&archive).await.clean, "healed again");
 }
 
-const TABLES: [&str; 21] = [
+const TABLES: [&str; 22] = [
     "laws",
+    "effect_libraries",
     "ships",
     "ship_revisions",
     "trials",

@@ -1,13 +1,20 @@
 //! From files that have arrived to trials that are kept.
 
-use bytes::Bytes;
-use sistership_model::manifest::{Manifest, ManifestTrial};
-use sistership_store::{Alias, Inserted, Job, NewJob, NewTrial, Objects, StoreError, Trial};
-use sistership_trials::{Mapping, Refusal, Source, read_trial, samples};
+use std::io::BufWriter;
 
+use bytes::Bytes;
+use sistership_model::manifest::Manifest;
+use sistership_store::{Alias, Inserted, Job, NewJob, NewTrial, Objects, StoreError, Trial, is_out_of_space};
+use sistership_trials::samples::{self, SamplesError};
+use sistership_trials::{Mapping, Refusal, Source, read_trial};
+use tempfile::NamedTempFile;
+
+use super::room::room;
+use super::spool::{Spool, Spooled, temporary};
 use super::{Upload, lost};
 use crate::app::App;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
+use crate::memory;
 use crate::problem::{Problem, Result};
 use crate::publish::{CHAMPION, alias};
 
@@ -20,7 +27,8 @@ pub(crate) type Kept = Inserted<Trial>;
 /// A trial that has passed every check.
 struct Accepted {
     new: NewTrial,
-    samples: Bytes,
+    /// Its samples as they are to be kept: many trials of one upload do not lie in memory together.
+    samples: NamedTempFile,
 }
 
 /// Keeps the trials of an upload: all of them, or none where one is refused. The job that diagnoses the ship's champion on
@@ -31,7 +39,7 @@ pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option
         Err(StoreError::NotFound { .. }) => return Err(no_ship(&ship)),
         other => drop(other?),
     }
-    let accepted = app.compute(move || upload.accept()).await??;
+    let accepted = upload.accept(app).await?;
     let champion = if diagnose { alias(app.store(), &ship, CHAMPION).await? } else { None };
     let job = |kept: &[Kept]| champion.as_ref().and_then(|champion| follow_up(champion, kept));
     for _ in 0..TRIES {
@@ -59,14 +67,19 @@ fn no_ship(ship: &str) -> Problem {
 }
 
 impl Upload {
-    /// Reads every file; the refusals of all of them are told together.
-    fn accept(self) -> Result<Vec<Accepted>> {
+    /// Reads every file, one after the other; the refusals of all of them are told together.
+    async fn accept(self, app: &App) -> Result<Vec<Accepted>> {
         let (mut accepted, mut refused) = (Vec::new(), Vec::new());
-        for (entry, file) in self.manifest.trials.iter().zip(&self.files) {
-            let mapping = Mapping::of(&self.manifest, entry);
-            let read = Source::open(&entry.file, &file.path).map_err(|error| lost(&entry.file, &error));
-            match read.and_then(|source| read_trial(source, &mapping)) {
-                Ok(trial) => accepted.push(Accepted::new(&self.manifest, entry, &trial)?),
+        for (entry, file) in self.manifest.trials.iter().zip(self.files) {
+            let mut mapping = Mapping::of(&self.manifest, entry);
+            let share = room(app, &entry.file, &file.path, &mut mapping).await?;
+            let (only, inner) = (Manifest { trials: vec![entry.clone()], ..self.manifest.clone() }, app.clone());
+            let read = move || {
+                let _share = share;
+                read(&only, &file, &mapping, inner.spool())
+            };
+            match app.compute(read).await?? {
+                Ok(trial) => accepted.push(trial),
                 Err(refusal) => refused.push(refusal),
             }
         }
@@ -74,16 +87,26 @@ impl Upload {
     }
 }
 
+/// Reads the file of a manifest that lists one.
+fn read(only: &Manifest, file: &Spooled, mapping: &Mapping, spool: &Spool) -> Result<std::result::Result<Accepted, Refusal>> {
+    let name = only.trials.first().map_or("", |entry| entry.file.as_str());
+    let source = Source::open(name, &file.path).map_err(|error| lost(name, &error));
+    match source.and_then(|source| read_trial(source, mapping)) {
+        Ok(trial) => Accepted::new(only, &trial, spool).map(Ok),
+        Err(refusal) => Ok(Err(refusal)),
+    }
+}
+
 impl Accepted {
-    fn new(manifest: &Manifest, entry: &ManifestTrial, trial: &sistership_model::trial::Trial) -> Result<Self> {
-        let samples = Bytes::from(samples::to_parquet(trial).map_err(Problem::internal)?);
-        let only = Manifest { trials: vec![entry.clone()], ..manifest.clone() };
+    fn new(only: &Manifest, trial: &sistership_model::trial::Trial, spool: &Spool) -> Result<Self> {
+        let samples = temporary(spool)?;
+        samples::write_parquet(BufWriter::new(samples.as_file()), trial).map_err(unwritten)?;
         let new = NewTrial {
-            ship: manifest.ship.clone(),
+            ship: only.ship.clone(),
             sha256: String::new(),
             name: trial.name.clone(),
-            manifest: json(&only)?,
-            conventions: json(&manifest.conventions)?,
+            manifest: json(only)?,
+            conventions: json(&only.conventions)?,
             manoeuvre: trial.manoeuvre.clone(),
             sample_rows: i64::try_from(trial.len()).map_err(Problem::internal)?,
             duration_s: trial.duration_s(),
@@ -91,6 +114,16 @@ impl Accepted {
             object_key: String::new(),
         };
         Ok(Self { new, samples })
+    }
+}
+
+/// Whether there was room is in what caused the error.
+fn unwritten(error: SamplesError) -> Problem {
+    let first: &(dyn std::error::Error + 'static) = &error;
+    let mut causes = std::iter::successors(Some(first), |cause| cause.source());
+    match causes.find_map(|cause| cause.downcast_ref::<std::io::Error>()).is_some_and(is_out_of_space) {
+        true => Problem::no_room(format!("an upload cannot be written: {error}")),
+        false => Problem::internal(error),
     }
 }
 
@@ -102,7 +135,10 @@ fn json(value: &impl serde::Serialize) -> Result<String> {
 async fn put_samples(objects: &Objects, accepted: &[Accepted]) -> Result<Vec<String>> {
     let mut keys = Vec::with_capacity(accepted.len());
     for trial in accepted {
-        keys.push(objects.put(trial.samples.clone()).await?);
+        let size = trial.samples.as_file().metadata().map_err(Problem::internal)?.len();
+        let _share = memory::share(size).await?;
+        let bytes = tokio::fs::read(trial.samples.path()).await.map_err(Problem::internal)?;
+        keys.push(objects.put(Bytes::from(bytes)).await?);
     }
     Ok(keys)
 }

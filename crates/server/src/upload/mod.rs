@@ -3,6 +3,7 @@
 mod keep;
 mod multipart;
 mod raw;
+mod room;
 mod spool;
 
 use axum::extract::{FromRequest, Query, Request};
@@ -13,7 +14,8 @@ use sistership_trials::{CheckOutcome, Mapping, Refusal, Source, check};
 
 pub(crate) use keep::{Kept, keep};
 pub(crate) use raw::RawQuery;
-pub(crate) use spool::{Spooled, clear};
+use room::room;
+pub(crate) use spool::{Spool, Spooled, hex, spool};
 
 use crate::app::App;
 use crate::problem::{Problem, Result};
@@ -72,13 +74,23 @@ impl Upload {
         Ok(std::iter::once(manifest.as_str()).chain(files).collect::<Vec<_>>().join("\n"))
     }
 
-    /// Checks every file without keeping any.
-    pub(crate) fn check(self) -> Vec<CheckOutcome> {
-        let one = |(entry, file): (&ManifestTrial, &Spooled)| match Source::open(&entry.file, &file.path) {
-            Ok(source) => check(source, &Mapping::of(&self.manifest, entry)),
-            Err(error) => unreadable(&entry.file, &error),
-        };
-        self.manifest.trials.iter().zip(&self.files).map(one).collect()
+    /// Checks every file without keeping any, one after the other.
+    pub(crate) async fn check(self, app: &App) -> Result<Vec<CheckOutcome>> {
+        let mut outcomes = Vec::with_capacity(self.files.len());
+        for (entry, file) in self.manifest.trials.iter().zip(self.files) {
+            let mut mapping = Mapping::of(&self.manifest, entry);
+            let share = room(app, &entry.file, &file.path, &mut mapping).await?;
+            let name = entry.file.clone();
+            let one = move || {
+                let _share = share;
+                match Source::open(&name, &file.path) {
+                    Ok(source) => check(source, &mapping),
+                    Err(error) => unreadable(&name, &error),
+                }
+            };
+            outcomes.push(app.compute(one).await?);
+        }
+        Ok(outcomes)
     }
 }
 

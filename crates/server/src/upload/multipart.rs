@@ -9,7 +9,9 @@ use sistership_trials::read_manifest;
 use super::spool::{Spooled, spool};
 use super::{Upload, canonical};
 use crate::app::App;
+use crate::memory;
 use crate::problem::{Fault, Problem, Result};
+use crate::web::payload::read_yaml;
 
 /// The parts of a form as they have arrived.
 #[derive(Default)]
@@ -33,13 +35,18 @@ pub(super) async fn receive(request: Request, app: &App) -> Result<Upload> {
         parts.take(field, app).await?;
     }
     match (parts.manifest.take(), parts.ship.take()) {
-        (Some(manifest), None) => parts.listed(read_manifest("manifest", &manifest)?),
+        (Some(manifest), None) => parts.listed(read(&manifest).await?),
         (None, Some(ship)) => parts.canonical(ship),
         (Some(_), Some(_)) => Err(Problem::invalid("ship", "the manifest names the ship; leave the part `ship` out")),
         (None, None) => {
             Err(Problem::invalid("manifest", "send a part `manifest` (YAML), or a part `ship` for files with canonical columns"))
         }
     }
+}
+
+async fn read(manifest: &str) -> Result<Manifest> {
+    read_yaml(manifest.len()).await?;
+    Ok(read_manifest("manifest", manifest)?)
 }
 
 impl Parts {
@@ -118,8 +125,9 @@ fn set(place: &mut Option<String>, name: &str, text: String) -> Result<()> {
 async fn text(mut field: Field<'_>, app: &App) -> Result<String> {
     let mut bytes = Vec::new();
     while let Some(chunk) = field.chunk().await? {
+        memory::take(2 * chunk.len() as u64).await?;
         bytes.extend_from_slice(&chunk);
-        if bytes.len() > app.limits().document_bytes {
+        if bytes.len() > app.limits().yaml_bytes {
             return Err(Problem::new(StatusCode::PAYLOAD_TOO_LARGE, "the manifest is too large"));
         }
     }

@@ -12,6 +12,11 @@ use super::spool::spool;
 use super::{Upload, canonical};
 use crate::app::App;
 use crate::problem::{Problem, Result};
+use crate::web::Name;
+use crate::web::field::{FileName, Positive, Remark};
+
+/// The name of a trial that has none.
+const UNNAMED: &str = "trial";
 
 /// What is known of a file that comes without a manifest.
 #[derive(Debug, Deserialize, IntoParams)]
@@ -19,27 +24,27 @@ use crate::problem::{Problem, Result};
 #[into_params(parameter_in = Query)]
 pub(crate) struct RawQuery {
     /// The ship; needed for a body that is one file, as the others are only read then.
-    #[param(required = false)]
-    pub ship: String,
+    #[param(inline, required = false)]
+    pub ship: Name,
     /// What to call the trial; `trial` where absent.
-    #[serde(default = "unnamed")]
-    pub name: String,
+    #[param(inline)]
+    pub name: Option<FileName>,
     /// What was sailed, such as `zigzag 10/10`.
-    pub manoeuvre: Option<String>,
+    #[param(inline)]
+    pub manoeuvre: Option<Remark>,
     /// Water depth, m; absent for deep water.
-    pub depth_m: Option<f64>,
+    #[param(inline)]
+    pub depth_m: Option<Positive>,
     /// `false` where the ship's champion is not to be diagnosed on these trials; read for every form of upload.
     pub diagnose: Option<bool>,
-}
-
-fn unnamed() -> String {
-    "trial".to_owned()
 }
 
 pub(super) async fn receive(mut request: Request, app: &App) -> Result<Upload> {
     let Query(query) = request.extract_parts::<Query<RawQuery>>().await?;
     let RawQuery { ship, name, manoeuvre, depth_m, diagnose } = query;
-    let manifest = canonical(ship, vec![ManifestTrial { file: name, manoeuvre, depth_m }])?;
+    let file = name.map_or_else(|| UNNAMED.to_owned(), FileName::into_string);
+    let (manoeuvre, depth_m) = (manoeuvre.map(Remark::into_string), depth_m.map(Positive::get));
+    let manifest = canonical(ship.into_string(), vec![ManifestTrial { file, manoeuvre, depth_m }])?;
     let stream = request.with_limited_body().into_body().into_data_stream().map_err(interrupted);
     Ok(Upload { manifest, diagnose: diagnose.unwrap_or(true), files: vec![spool(app.spool(), stream).await?] })
 }

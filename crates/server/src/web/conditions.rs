@@ -5,7 +5,8 @@ use axum::http::request::Parts;
 use axum::http::{HeaderMap, HeaderName, StatusCode, header};
 use sistership_store::Expect;
 
-use crate::problem::{Problem, Result};
+use super::field::EntityTags;
+use crate::problem::{Fault, Problem, Result};
 
 /// The conditions of a request.
 #[derive(Debug, Default)]
@@ -37,16 +38,12 @@ impl<S: Send + Sync> FromRequestParts<S> for Conditions {
 impl Tags {
     fn read(headers: &HeaderMap, name: &HeaderName) -> Result<Option<Self>> {
         let Some(value) = headers.get(name) else { return Ok(None) };
-        let text = value.to_str().map_err(|_| Problem::bad_request(format!("{name} is not text")))?;
-        if text.trim() == "*" {
+        let text = value.to_str().map_err(|_| malformed(name, "must be text".to_owned()))?;
+        let tags: EntityTags = text.parse().map_err(|message| malformed(name, message))?;
+        if tags.trim() == "*" {
             return Ok(Some(Self::Any));
         }
-        let tags: Vec<String> = text.split(',').map(|tag| tag.trim().to_owned()).collect();
-        let quoted = |tag: &String| tag.ends_with('"') && (tag.starts_with('"') || tag.starts_with("W/\"")) && tag.len() > 2;
-        match tags.iter().all(quoted) {
-            true => Ok(Some(Self::These(tags))),
-            false => Err(Problem::bad_request(format!("{name}: give `*` or the quoted ETag of the last answer, such as \"3\""))),
-        }
+        Ok(Some(Self::These(tags.split(',').map(|tag| tag.trim().to_owned()).collect())))
     }
 
     /// Whether the tags name this one. A weak tag is no ground to overwrite something.
@@ -94,6 +91,11 @@ impl Conditions {
     pub(crate) fn has(&self, tag: &str) -> bool {
         self.if_none_match.as_ref().is_some_and(|tags| tags.name(tag))
     }
+}
+
+fn malformed(name: &HeaderName, message: String) -> Problem {
+    let name = if *name == header::IF_MATCH { "If-Match" } else { "If-None-Match" };
+    Problem::bad_request(format!("{name}: {message}")).with(Fault::at(name, message))
 }
 
 fn required(what: &str) -> Problem {

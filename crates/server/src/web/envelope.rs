@@ -1,5 +1,6 @@
 //! What wraps every request: an id, a line in the log, and problem details for errors that no handler made.
 
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use axum::extract::{MatchedPath, Request, State};
@@ -10,17 +11,25 @@ use tracing::Instrument as _;
 use uuid::Uuid;
 
 use crate::app::App;
+use crate::listen::Peer;
 use crate::problem::{MEDIA, Problem};
+use crate::web::large::counted;
 
 /// Gives the request an id, logs and counts it, and sees to it that an error is a problem with that id.
 pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Next) -> Response {
     let id = Uuid::now_v7();
     let (method, route) = (request.method().clone(), route(&request));
+    let peer = request.extensions().get::<Peer>().cloned();
     let span = tracing::info_span!("request", %id, method = %request.method(), path = request.uri().path());
     async move {
         let start = Instant::now();
-        let response = finish(next.run(request).await, id);
+        let response = app.held().scope(async { counted(next.run(request).await).await }).await;
+        let slow = peer.is_some_and(|peer| peer.pace.is_too_slow());
+        let response = finish(if slow { too_slow() } else { response }, id);
         let elapsed = start.elapsed();
+        if response.status() == StatusCode::INSUFFICIENT_STORAGE {
+            app.no_room().store(true, Ordering::Relaxed);
+        }
         tracing::info!(status = response.status().as_u16(), elapsed_ms = elapsed.as_millis() as u64, "answered");
         app.metrics().answered(&method, &route, response.status(), elapsed);
         response
@@ -43,6 +52,12 @@ fn finish(response: Response, id: Uuid) -> Response {
     }
     headers.insert(header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
     response
+}
+
+/// The answer to a request whose body did not come in time, whatever the handler has made of the half that did.
+fn too_slow() -> Response {
+    let why = "the body came too slowly, or not at all; send it at once, or over a faster link";
+    Problem::new(StatusCode::REQUEST_TIMEOUT, why).into_response()
 }
 
 /// The same answer with a problem as its body; other headers stay (`Allow`, `WWW-Authenticate`).

@@ -6,15 +6,16 @@ use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
 use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
-use sistership_store::{Begun, Store, Ticket, sha256_hex};
+use sistership_store::{Begun, PROLONG_EVERY, Store, Ticket, UnitOfWork, sha256_hex};
 use tracing::Instrument as _;
 
+use super::field::RequestKey;
 use super::reply::Reply;
 use crate::app::App;
-use crate::problem::{Problem, Result};
+use crate::memory::{Held, carried_on};
+use crate::problem::{Fault, Problem, Result};
 
 const HEADER: &str = "idempotency-key";
-const LONGEST: usize = 200;
 
 /// What names a request: its key, if it has one, and what it is made of.
 #[derive(Debug)]
@@ -36,51 +37,90 @@ impl<S: Send + Sync> FromRequestParts<S> for Key {
 }
 
 fn check(value: &HeaderValue) -> Result<String> {
-    let text = value.to_str().unwrap_or_default();
-    match !text.is_empty() && text.len() <= LONGEST && text.bytes().all(|byte| byte.is_ascii_graphic() && byte != b'/') {
-        true => Ok(text.to_owned()),
-        false => Err(Problem::bad_request(format!(
-            "Idempotency-Key: give 1 to {LONGEST} letters, digits and marks (no slash), such as a UUID"
-        ))),
-    }
+    let key = value.to_str().unwrap_or_default().parse::<RequestKey>();
+    key.map(RequestKey::into_string).map_err(|message| {
+        Problem::bad_request(format!("Idempotency-Key: {message}")).with(Fault::at("Idempotency-Key", message))
+    })
 }
 
 impl Key {
-    /// Carries a request out, once for each key. It runs to its end even when the caller hangs up.
-    pub(crate) async fn once<F>(self, app: &App, body: &[u8], work: F) -> Result<Response>
+    /// Carries a request out, once for each key. The work gets a handle of the server whose store keeps all that is written
+    /// together with the answer, or nothing of it. It runs to its end even when the caller hangs up.
+    pub(crate) async fn once<W, F>(self, app: &App, body: &[u8], work: W) -> Result<Response>
     where
+        W: FnOnce(App) -> F + Send + 'static,
         F: Future<Output = Result<Reply>> + Send + 'static,
     {
-        let Some(key) = self.value else { return Ok(finished(work).await?.into_response()) };
-        let store = app.store().clone();
-        match store.idempotency().begin(&self.scope, &key, &sha256_hex(body)).await? {
-            Begun::New(ticket) => Ok(finished(kept(store, ticket, work)).await?.into_response()),
-            Begun::Replay { body, .. } => replay(&body),
-            Begun::InProgress => Err(in_progress()),
-            Begun::Mismatch => Err(mismatch()),
-        }
+        let ticket = match &self.value {
+            None => None,
+            Some(key) => match app.store().idempotency().begin(&self.scope, key, &sha256_hex(body)).await? {
+                Begun::New(ticket) => Some(ticket),
+                Begun::Replay { body, .. } => return replay(&body),
+                Begun::InProgress => return Err(in_progress()),
+                Begun::Mismatch => return Err(mismatch()),
+            },
+        };
+        Ok(finished(carried_out(app.clone(), ticket, work)).await?.into_response())
     }
 }
 
 /// Waits for work that goes on if nobody waits.
 async fn finished<T: Send + 'static>(work: impl Future<Output = Result<T>> + Send + 'static) -> Result<T> {
+    let work = carried_on(Held::current(), work);
     tokio::spawn(work.in_current_span()).await.map_err(Problem::internal)?
 }
 
-/// Keeps the answer; a request that came to nothing is forgotten, so that it can be tried again.
-async fn kept(store: Store, ticket: Ticket, work: impl Future<Output = Result<Reply>>) -> Result<Reply> {
-    let reply = match work.await {
-        Ok(reply) => reply,
+/// Keeps the work with its answer; a request that came to nothing is forgotten, so that it can be tried again.
+async fn carried_out<W, F>(app: App, ticket: Option<Ticket>, work: W) -> Result<Reply>
+where
+    W: FnOnce(App) -> F,
+    F: Future<Output = Result<Reply>> + Send + 'static,
+{
+    let unit = app.store().unit();
+    let work = finished(work(app.within(unit.store())));
+    let kept = match held(app.store(), ticket.as_ref(), work).await {
+        Ok(reply) => keep(unit, ticket.as_ref(), reply).await,
         Err(problem) => {
-            store.idempotency().abandon(&ticket).await?;
-            return Err(problem);
+            unit.undo().await;
+            Err(problem)
         }
     };
-    let text = serde_json::to_string(&reply).map_err(Problem::internal)?;
-    if let Err(error) = store.idempotency().finish(&ticket, i64::from(reply.status), &text).await {
-        tracing::warn!(%error, "an answer could not be kept for replay");
+    match (&kept, &ticket) {
+        (Ok(reply), _) if reply.queued => app.wake_all(),
+        (Err(_), Some(ticket)) => abandon(app.store(), ticket).await,
+        _ => {}
     }
+    kept
+}
+
+/// The outcome of the work, with the ticket held as long as it takes.
+async fn held(store: &Store, ticket: Option<&Ticket>, work: impl Future<Output = Result<Reply>>) -> Result<Reply> {
+    let Some(ticket) = ticket else { return work.await };
+    let prolonging = async {
+        loop {
+            tokio::time::sleep(PROLONG_EVERY).await;
+            if let Err(error) = store.idempotency().prolong(ticket).await {
+                tracing::warn!(%error, "a request could not say that it goes on");
+            }
+        }
+    };
+    tokio::select! {
+        done = work => done,
+        () = prolonging => Err(Problem::internal("a loop without end has ended")),
+    }
+}
+
+async fn keep(unit: UnitOfWork, ticket: Option<&Ticket>, reply: Reply) -> Result<Reply> {
+    let text = serde_json::to_string(&reply).map_err(Problem::internal)?;
+    unit.keep(ticket.map(|ticket| (ticket, i64::from(reply.status), text.as_str()))).await?;
     Ok(reply)
+}
+
+/// What cannot be forgotten now is taken over later.
+async fn abandon(store: &Store, ticket: &Ticket) {
+    if let Err(error) = store.idempotency().abandon(ticket).await {
+        tracing::warn!(%error, "a request that came to nothing could not be forgotten");
+    }
 }
 
 fn replay(text: &str) -> Result<Response> {

@@ -7,25 +7,25 @@ use serde::{Deserialize, Serialize};
 use sistership_store::{List, Page};
 use utoipa::{IntoParams, ToSchema};
 
+use super::field::{Cursor, Limit};
 use crate::problem::{Fault, Problem, Result};
-
-/// How many items a page has where nobody says.
-const LIMIT: i64 = 100;
 
 /// The query of a list that is not filtered.
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(crate) struct Paged {
-    /// The most items to return, 1 to 1000.
-    limit: Option<i64>,
+    /// The most items to return.
+    #[param(inline)]
+    limit: Option<Limit>,
     /// `next` of the page before.
-    after: Option<String>,
+    #[param(inline)]
+    after: Option<Cursor>,
 }
 
 impl Paged {
     pub(crate) fn page<K: DeserializeOwned>(&self) -> Result<Page<K>> {
-        page(self.limit, self.after.as_deref())
+        page(self.limit, self.after.as_ref())
     }
 }
 
@@ -51,14 +51,14 @@ pub(crate) fn cursor<K: Serialize>(key: &K) -> Option<String> {
 }
 
 /// The page that a query asks for.
-pub(crate) fn page<K: DeserializeOwned>(limit: Option<i64>, after: Option<&str>) -> Result<Page<K>> {
+pub(crate) fn page<K: DeserializeOwned>(limit: Option<Limit>, after: Option<&Cursor>) -> Result<Page<K>> {
     let key = |text: &str| serde_json::from_slice(&BASE64_URL_SAFE_NO_PAD.decode(text).ok()?).ok();
     let wrong = || {
         let message = "is not the `next` of a page of this list; leave it out for the first page";
         Problem::bad_request(format!("after: {message}")).with(Fault::at("after", message))
     };
     let after = after.map(|text| key(text).ok_or_else(wrong)).transpose()?;
-    Ok(Page { after, limit: limit.unwrap_or(LIMIT) })
+    Ok(Page { after, limit: limit.unwrap_or_default().get() })
 }
 
 #[cfg(test)]
@@ -71,9 +71,9 @@ mod tests {
         let key = (Some(0.1 + 0.2), "a/b".to_owned());
         let text = cursor(&key).unwrap();
         assert!(text.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_'));
-        assert_eq!(page(None, Some(&text)).unwrap(), Page { after: Some(key), limit: 100 });
-        for wrong in ["", "7", "mariner", &cursor(&7).unwrap()] {
-            let problem = page::<String>(None, Some(wrong)).unwrap_err();
+        assert_eq!(page(None, Some(&text.parse().unwrap())).unwrap(), Page { after: Some(key), limit: 100 });
+        for wrong in ["7", "mariner", &cursor(&7).unwrap()] {
+            let problem = page::<String>(None, Some(&wrong.parse().unwrap())).unwrap_err();
             assert_eq!((problem.status, problem.errors[0].field.as_deref()), (400, Some("after")), "{wrong}");
         }
     }

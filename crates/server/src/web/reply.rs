@@ -13,16 +13,25 @@ pub(crate) struct Reply {
     pub location: Option<String>,
     pub etag: Option<String>,
     pub body: String,
+    /// Whether there is work for the workers now.
+    #[serde(skip)]
+    pub queued: bool,
 }
 
 impl Reply {
     pub(crate) fn new(status: StatusCode, body: &impl Serialize) -> Result<Self> {
         let body = serde_json::to_string(body).map_err(Problem::internal)?;
-        Ok(Self { status: status.as_u16(), location: None, etag: None, body })
+        Ok(Self { status: status.as_u16(), location: None, etag: None, body, queued: false })
     }
 
     pub(crate) fn at(mut self, location: String) -> Self {
         self.location = Some(location);
+        self
+    }
+
+    /// With jobs that wait, for which the workers are woken once they are kept.
+    pub(crate) fn with_jobs(mut self) -> Self {
+        self.queued = true;
         self
     }
 

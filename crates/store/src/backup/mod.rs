@@ -13,6 +13,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 pub use manifest::{BackupManifest, DatabaseKind, FileHead, TableHead};
+#[cfg(feature = "testing")]
+pub(crate) use postgres::TABLES;
 
 use crate::clock::SystemClock;
 use crate::database::Writer;

@@ -18,6 +18,7 @@ use crate::migrate;
 /// Every table, each after those that it refers to.
 pub(crate) const TABLES: &[&str] = &[
     "laws",
+    "effect_libraries",
     "ships",
     "ship_revisions",
     "trials",

@@ -2,7 +2,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use futures::future::join_all;
-use sistership_store::{Begun, Expect, Page, Store, StoreError, SystemClock, sha256_hex};
+use sistership_store::{Begun, Claimed, Expect, Page, Store, StoreError, SystemClock, sha256_hex};
 
 use crate::support::*;
 
@@ -43,9 +43,10 @@ async fn no_job_is_claimed_twice(on: &TestStore) {
     }
     let workers = (0..30).map(|n| {
         let store = on.store.clone();
-        tokio::spawn(async move { store.jobs().claim(&format!("worker-{n}"), crate::jobs::LEASE).await.unwrap() })
+        tokio::spawn(async move { store.jobs().claim(&format!("worker-{n}"), crate::jobs::LEASE, false).await.unwrap() })
     });
-    let claimed: Vec<_> = join_all(workers).await.into_iter().filter_map(|claim| claim.unwrap()).map(|job| job.id).collect();
+    let id = |claimed| if let Claimed::Job(job) = claimed { Some(job.id) } else { None };
+    let claimed: Vec<_> = join_all(workers).await.into_iter().filter_map(|claim| id(claim.unwrap())).collect();
     assert_eq!((claimed.len(), claimed.iter().collect::<HashSet<_>>().len()), (20, 20));
 }
 

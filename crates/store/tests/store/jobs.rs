@@ -1,13 +1,17 @@
 use std::time::Duration;
 
-use sistership_store::{Job, JobFilter, JobState, MAX_ATTEMPTS, Page};
+use sistership_store::{Claimed, Job, JobFilter, JobState, MAX_LOST_WORKERS, Page};
 
 use crate::support::*;
 
 pub const LEASE: Duration = Duration::from_secs(30);
 
 pub async fn claim(on: &TestStore, worker: &str) -> Option<Job> {
-    on.store.jobs().claim(worker, LEASE).await.unwrap()
+    match on.store.jobs().claim(worker, LEASE, true).await.unwrap() {
+        Claimed::Job(job) => Some(*job),
+        Claimed::Alone => panic!("a process that does nothing else may claim any job"),
+        Claimed::Nothing => None,
+    }
 }
 
 pub async fn let_the_lease_run_out(on: &TestStore) {
@@ -50,18 +54,53 @@ async fn a_lost_lease_fences_the_old_worker(on: &TestStore) {
     assert_eq!(jobs.get(&id).await.unwrap(), new);
 }
 
-async fn a_job_that_kills_its_workers_fails(on: &TestStore) {
-    let poison = on.store.jobs().enqueue(&job("kcs")).await.unwrap().id;
-    let healthy = on.store.jobs().enqueue(&job("pcc")).await.unwrap().id;
-    for _ in 0..MAX_ATTEMPTS {
+async fn a_job_that_ends_its_process_twice_is_set_aside(on: &TestStore) {
+    let jobs = on.store.jobs();
+    let poison = jobs.enqueue(&job("kcs")).await.unwrap().id;
+    let healthy = jobs.enqueue(&job("pcc")).await.unwrap().id;
+    for _ in 0..MAX_LOST_WORKERS {
         assert_eq!(claim(on, "mortal").await.unwrap().id, poison);
         let_the_lease_run_out(on).await;
     }
     assert_eq!(claim(on, "mortal").await.unwrap().id, healthy);
-    let failed = on.store.jobs().get(&poison).await.unwrap();
-    assert_eq!(failed.state, JobState::Failed);
-    assert!(failed.error.unwrap().contains("the worker died 3 times"));
+    let failed = jobs.get(&poison).await.unwrap();
+    assert_eq!((failed.state, failed.attempt, failed.lost_workers), (JobState::Failed, 2, 2));
+    let error = failed.error.unwrap();
+    assert!(error.contains("ended its process twice") && error.contains("set aside"), "{error}");
     assert!(failed.finished_us.is_some());
+    let again = jobs.retry(&poison).await.unwrap();
+    assert_eq!((again.state, again.lost_workers), (JobState::Queued, 0));
+    assert_eq!(claim(on, "mortal").await.unwrap().id, poison);
+}
+
+async fn a_job_during_which_a_process_ended_is_begun_alone(on: &TestStore) {
+    let jobs = on.store.jobs();
+    let suspect = jobs.enqueue(&job("kcs")).await.unwrap().id;
+    claim(on, "mortal").await.unwrap();
+    let_the_lease_run_out(on).await;
+    assert_eq!(jobs.claim("busy", LEASE, false).await.unwrap(), Claimed::Alone);
+    assert_eq!(claim(on, "idle").await.unwrap().id, suspect);
+}
+
+async fn only_the_end_of_a_process_counts(on: &TestStore) {
+    let jobs = on.store.jobs();
+    let id = jobs.enqueue(&job("kcs")).await.unwrap().id;
+    for _ in 0..5 {
+        let fence = claim(on, "drained").await.unwrap().fence;
+        jobs.release(&id, fence).await.unwrap();
+    }
+    for _ in 0..5 {
+        let late = claim(on, "late").await.unwrap();
+        // As where the database was away: the lease runs out, another takes the job, and the first comes back.
+        let_the_lease_run_out(on).await;
+        let fence = claim(on, "other").await.unwrap().fence;
+        assert_eq!(jobs.get(&id).await.unwrap().lost_workers, 1);
+        jobs.lives(&id, late.fence).await.unwrap();
+        assert_eq!(jobs.get(&id).await.unwrap().lost_workers, 0);
+        jobs.lives(&id, fence).await.unwrap();
+        jobs.release(&id, fence).await.unwrap();
+    }
+    assert_eq!(claim(on, "last").await.unwrap().lost_workers, 0);
 }
 
 async fn a_job_is_cancelled(on: &TestStore) {
@@ -124,7 +163,9 @@ async fn jobs_are_listed(on: &TestStore) {
 on_both_databases!(
     a_job_runs_and_ends,
     a_lost_lease_fences_the_old_worker,
-    a_job_that_kills_its_workers_fails,
+    a_job_that_ends_its_process_twice_is_set_aside,
+    a_job_during_which_a_process_ended_is_begun_alone,
+    only_the_end_of_a_process_counts,
     a_job_is_cancelled,
     a_dead_worker_cannot_keep_a_cancelled_job,
     a_failed_job_is_tried_again,

@@ -27,8 +27,9 @@ async fn insert_only_holds_below_the_store_too(on: &TestStore) {
     on.store.ships().create(&ship("kcs")).await.unwrap();
     crate::diagnoses::one(on).await;
     on.store.laws().insert("abkowitz", "").await.unwrap();
+    on.store.effects().keep("kind: effect").await.unwrap();
     on.store.versions().create(&version("kcs"), &[champion(Expect::Any)]).await.unwrap();
-    for table in ["laws", "ship_revisions", "versions", "alias_moves", "diagnoses"] {
+    for table in ["laws", "effect_libraries", "ship_revisions", "versions", "alias_moves", "diagnoses"] {
         for change in [format!("DELETE FROM {table}"), format!("UPDATE {table} SET id = id").replace("id = id", key(table))] {
             let error = execute(&on.database.url, change).await.unwrap_err().to_string();
             assert!(error.contains("is insert-only"), "{error}");
@@ -38,7 +39,7 @@ async fn insert_only_holds_below_the_store_too(on: &TestStore) {
 
 fn key(table: &str) -> &'static str {
     match table {
-        "laws" => "document = ''",
+        "laws" | "effect_libraries" => "document = ''",
         "ship_revisions" => "document = ''",
         _ => "id = id",
     }

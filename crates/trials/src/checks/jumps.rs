@@ -44,14 +44,14 @@ fn position(recording: &Recording, findings: &mut Findings) {
 
 /// Steps of a satellite fix are kept, but told: the largest of them and how many.
 fn unusual(recording: &Recording, step: impl Fn(usize) -> f64, findings: &mut Findings) {
-    let typical = quantile((1..recording.trial.len()).map(&step).collect(), 0.95);
+    let typical = quantile((1..recording.trial.len()).map(&step), 0.95);
     let steady = recording.segments.iter().flat_map(|segment| segment.start + 1..segment.end);
-    let hits: Vec<usize> = steady.filter(|&k| step(k) > UNUSUAL * typical && typical > 0.0).collect();
-    if let Some(&largest) = hits.iter().max_by(|&&a, &&b| step(a).total_cmp(&step(b))) {
+    let unusual = steady.filter(|&k| step(k) > UNUSUAL * typical && typical > 0.0);
+    let mut count = 0;
+    if let Some(largest) = unusual.inspect(|_| count += 1).max_by(|&a, &b| step(a).total_cmp(&step(b))) {
         let message = format!(
-            "the position steps {:.2} m here where 95 % of steps are below {typical:.3} m ({} such steps); satellite fixes do so",
-            step(largest),
-            hits.len()
+            "the position steps {:.2} m here where 95 % of steps are below {typical:.3} m ({count} such steps); satellite fixes do so",
+            step(largest)
         );
         findings.warning(Some(recording.row(largest)), Some(recording.header(Channel::X)), message);
     }

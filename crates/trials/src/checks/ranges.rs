@@ -62,7 +62,7 @@ fn tiny_rudder(recording: &Recording, findings: &mut Findings) {
 
 fn fast_propeller(recording: &Recording, findings: &mut Findings) {
     let Some(values) = recording.channel(Channel::N) else { return };
-    let typical = quantile(values.iter().map(|value| value.abs()).collect(), 0.5);
+    let typical = quantile(values.iter().map(|value| value.abs()), 0.5);
     if typical > 40.0 {
         let message =
             format!("the propeller typically makes {typical:.0} turns per second; if these are per minute declare `rpm`");

@@ -10,7 +10,7 @@ use sistership_model::trial::Channel;
 
 use crate::findings::Findings;
 use crate::recording::Recording;
-use crate::stats::{Block, blocks, correlation, quantile, range};
+use crate::stats::{Block, blocks, correlation, quantile, spread};
 
 /// rad; less rudder or less swing than this is course keeping, in which the rudder follows the yaw rate.
 const RUDDER: f64 = 0.05;
@@ -44,7 +44,7 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
 fn ahead(recording: &Recording) -> Vec<bool> {
     let all = vec![true; recording.trial.len()];
     let Some(u) = recording.channel(Channel::U) else { return all };
-    let enough = 0.5 * quantile(u.to_vec(), 0.95);
+    let enough = 0.5 * quantile(u.iter().copied(), 0.95);
     let n = recording.channel(Channel::N);
     (0..u.len()).map(|k| u[k] > 0.0 && u[k] > enough && n.is_none_or(|n| n[k] > 0.0)).collect()
 }
@@ -52,13 +52,11 @@ fn ahead(recording: &Recording) -> Vec<bool> {
 fn manoeuvres(recording: &Recording, r: &[f64], delta: &[f64]) -> bool {
     let mut heading = 0.0;
     let t = recording.time();
-    let swing: Vec<f64> = (1..t.len())
-        .map(|k| {
-            heading += r[k] * (t[k] - t[k - 1]);
-            heading
-        })
-        .collect();
-    range(&swing) > SWING && quantile(delta.iter().map(|value| value.abs()).collect(), 0.95) > RUDDER
+    let swing = (1..t.len()).map(|k| {
+        heading += r[k] * (t[k] - t[k - 1]);
+        heading
+    });
+    spread(swing) > SWING && quantile(delta.iter().map(|value| value.abs()), 0.95) > RUDDER
 }
 
 /// The correlation that is largest in magnitude among the lags.
@@ -66,7 +64,7 @@ fn lagged(r: &[f64], delta: &[f64], ahead: &[bool]) -> f64 {
     let at = |part: &f64| {
         let lag = (part * r.len() as f64) as usize;
         let both = (0..r.len() - lag).filter(|&k| ahead[k] && ahead[k + lag]);
-        correlation(&both.map(|k| (delta[k], r[k + lag])).collect::<Vec<_>>())
+        correlation(both.map(|k| (delta[k], r[k + lag])))
     };
     LAGS.iter().map(at).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
 }

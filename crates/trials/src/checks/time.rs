@@ -24,7 +24,8 @@ pub(crate) fn in_order(recording: &Recording, findings: &mut Findings) -> bool {
 /// Warns of gaps and of a start that is not zero. A gap left by dropped rows has been told already.
 pub(crate) fn gaps(recording: &Recording, findings: &mut Findings) {
     let (t, limit) = (recording.time(), GAP * recording.interval_s);
-    let hits = recording.hits(1..t.len(), |k| t[k] - t[k - 1] > limit && recording.rows[k] - recording.rows[k - 1] == 1);
+    let hits =
+        recording.hits(1..t.len(), |k| t[k] - t[k - 1] > limit && recording.resumed.binary_search(&recording.rows[k]).is_err());
     findings.rows(Severity::Warning, &recording.time, &hits, |k| {
         format!(
             "gap of {:.3} s (samples are {:.3} s apart); nothing is interpolated over it",

@@ -1,36 +1,47 @@
 //! What a search may be told, and what it reports.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sistership_dynamics::Method;
 
 /// Settings of the search.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct CmaEs {
     /// Seed of all random numbers.
     pub seed: u64,
     /// Population of the first run: Miyauchi 2024, sec. 3.5.
+    #[schemars(range(min = 4, max = 100_000))]
     pub population: usize,
     /// Largest population of a restart, each of which has twice that of the run before.
+    #[schemars(range(min = 4, max = 100_000))]
     pub largest_population: usize,
     /// Most evaluations of the fit on all trials. What was really evaluated is what a version records, so that it can be
     /// derived again.
+    #[schemars(range(min = 1))]
     pub evaluations: usize,
     /// Most time of the fit on all trials, s on the wall.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub wall_s: Option<f64>,
     /// Most time of the fit on all trials, s of the whole process on all cores.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub cpu_s: Option<f64>,
     /// Evaluations of each fit with trials left out, by those of the fit on all, at whose optimum it starts.
+    #[schemars(range(min = 0, max = 1))]
     pub fold_share: f64,
     /// Half width of the box by the natural size of a coefficient.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub box_width: f64,
     /// Standard deviation of the first candidates likewise.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub spread: f64,
     /// Weight of the deviation penalty, `alpha/T` for as many combinations as in the paper.
+    #[schemars(range(min = 0))]
     pub deviation: f64,
     /// Weight of the sizes of the parameters, `lambda/T` where 1 is the edge of the box.
+    #[schemars(range(min = 0))]
     pub absolute: f64,
     /// Integration method.
     pub integration: Method,

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub(super) use limits::Limits;
 
 /// Limits that a refinement keeps to; none by default.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Constraints {
     /// Signs that physics fixes, of those that the model has: drift and yaw are damped (`Y_v`, `N_r` at most 0), the rudder
@@ -27,6 +27,7 @@ pub struct Constraints {
     pub dissipative: bool,
     /// No coefficient is further from the source than so many standard deviations of its prior (`moved_sd`).
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub trust_sd: Option<f64>,
     /// Bounds by coefficient, in the law's units.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
@@ -37,7 +38,7 @@ pub struct Constraints {
 }
 
 /// Bounds of a coefficient.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Bound {
     /// Least value.
@@ -49,7 +50,7 @@ pub struct Bound {
 }
 
 /// What a ship does after a small disturbance with the rudder amidships.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StraightLine {
     /// She settles on a new straight line.

@@ -13,6 +13,9 @@ const LANES: usize = 8;
 const ROWS: usize = 96;
 /// Columns of the Hessian that are multiplied together.
 const COLUMNS: usize = 48;
+/// Blocks of lanes that are simulated before their sums are added: a lane holds a Hessian until then. More threads than
+/// this have nothing to do; it is not their number, so that the memory of a fit does not depend on the machine.
+const BLOCKS: usize = 16;
 /// What a residual counts that a simulation never came to, in standard deviations.
 const LOST: f64 = 10.0;
 
@@ -59,14 +62,16 @@ pub(super) struct Passing<'a> {
 }
 
 impl Passing<'_> {
-    /// Simulates every segment.
+    /// Simulates every segment. Sums are added in the segments' order, so that batches change nothing but the memory taken.
     pub fn pass(&self, system: &SensitiveSystem) -> Pass {
         let size = system.names().len();
-        let blocks: Vec<Vec<Lane>> = self.segments.par_chunks(LANES).map(|block| self.block(system, block)).collect();
         let mut pass = Pass { trials: vec![Normal::zeros(size); self.trials], gradients: Vec::new() };
-        for (segment, lane) in self.segments.iter().zip(blocks.into_iter().flatten()) {
-            pass.trials[segment.trial].add(&lane.normal);
-            pass.gradients.push(lane.normal.gradient);
+        for batch in self.segments.chunks(LANES * BLOCKS) {
+            let blocks: Vec<Vec<Lane>> = batch.par_chunks(LANES).map(|block| self.block(system, block)).collect();
+            for (segment, lane) in batch.iter().zip(blocks.into_iter().flatten()) {
+                pass.trials[segment.trial].add(&lane.normal);
+                pass.gradients.push(lane.normal.gradient);
+            }
         }
         pass.trials.iter_mut().for_each(|normal| normal.hessian.fill_upper_triangle_with_lower_triangle());
         pass
@@ -75,10 +80,11 @@ impl Passing<'_> {
     /// Absolute residuals by compared state, of every `some`th block of segments.
     pub fn sizes(&self, system: &SensitiveSystem, some: usize) -> Vec<Vec<f64>> {
         let blocks: Vec<&[Segment]> = self.segments.chunks(LANES).step_by(some).collect();
-        let lanes: Vec<Vec<Lane>> = blocks.into_par_iter().map(|block| self.block(system, block)).collect();
+        let of_block = |block: &[Segment]| self.block(system, block).into_iter().map(|lane| lane.sizes).collect();
+        let lanes: Vec<Vec<Vec<Vec<f64>>>> = blocks.into_par_iter().map(of_block).collect();
         let mut sizes = vec![Vec::new(); self.plan.compared.len()];
         for lane in lanes.into_iter().flatten() {
-            sizes.iter_mut().zip(lane.sizes).for_each(|(all, own)| all.extend(own));
+            sizes.iter_mut().zip(lane).for_each(|(all, own)| all.extend(own));
         }
         sizes
     }

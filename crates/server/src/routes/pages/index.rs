@@ -10,6 +10,7 @@ use super::{JobRow, answer};
 use crate::app::App;
 use crate::problem::Result;
 use crate::publish::{CHAMPION, alias};
+use crate::web::field::Cursor;
 use crate::web::{Params, page};
 
 /// Ships on one page.
@@ -22,7 +23,7 @@ const COUNTED: i64 = 1000;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Query {
-    after: Option<String>,
+    after: Option<Cursor>,
 }
 
 #[derive(Template)]
@@ -49,7 +50,7 @@ struct Champion {
 }
 
 pub(super) async fn page(State(app): State<App>, Params(query): Params<Query>) -> Result<Response> {
-    let page = page::page(Some(SHIPS), query.after.as_deref())?;
+    let page = Page { limit: SHIPS, ..page::page(None, query.after.as_ref())? };
     let ships = app.store().ships().search(&ShipSearch::default(), &page).await?;
     let mut rows = Vec::with_capacity(ships.items.len());
     for ship in ships.items {

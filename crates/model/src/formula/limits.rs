@@ -1,0 +1,155 @@
+//! How long and how deep a formula may be: whatever walks one must not run out of stack, nor out of time.
+//!
+//! Parsing recurses where a formula nests, so that the text is measured before it is parsed; every walk over the tree that
+//! comes out recurses at most as deep as there are operators. The largest formula of the zoo has 22 operators, and none nests more than 5 deep.
+
+/// Bytes of one formula.
+pub const MAX_LENGTH: usize = 8192;
+
+/// Operators, commas and opening parentheses of one formula: what its tree can be deep, too.
+pub const MAX_OPERATORS: usize = 256;
+
+/// Parentheses, signs and powers within each other.
+pub const MAX_NESTING: usize = 48;
+
+/// Levels of operators from a formula down through the values that it mentions.
+pub const MAX_DEPTH: usize = 512;
+
+/// Refuses a formula that is too long or too deep to be parsed.
+pub(super) fn check(text: &str) -> Result<(), String> {
+    if text.len() > MAX_LENGTH {
+        return Err(format!("a formula of {} characters; {MAX_LENGTH} are the most: write parts of it as values", text.len()));
+    }
+    let found = Measure::of(text.as_bytes());
+    if found.nesting > MAX_NESTING {
+        let nests = format!("formula `{}...` nests {} parentheses, signs and powers", head(text), found.nesting);
+        return Err(format!("{nests}; {MAX_NESTING} are the most: write parts of it as values"));
+    }
+    if found.operators > MAX_OPERATORS {
+        let has = format!("formula `{}...` has {} operators", head(text), found.operators);
+        return Err(format!("{has}; {MAX_OPERATORS} are the most: write parts of it as values"));
+    }
+    Ok(())
+}
+
+/// The beginning of a long text, for a message.
+pub(crate) fn head(text: &str) -> String {
+    text.chars().take(24).collect()
+}
+
+#[derive(Default)]
+struct Measure {
+    nesting: usize,
+    operators: usize,
+}
+
+impl Measure {
+    fn of(text: &[u8]) -> Self {
+        let mut found = Self::default();
+        // By open parenthesis, the signs and powers that are still waiting for their operand; together, how deep it is here.
+        let (mut waiting, mut depth) = (vec![0_usize], 0_usize);
+        let mut before = None;
+        for (at, &byte) in text.iter().enumerate().filter(|(_, byte)| !byte.is_ascii_whitespace()) {
+            let is_operand = before.is_some_and(|b: u8| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'.' | b')'));
+            match byte {
+                b'(' => {
+                    waiting.push(0);
+                    depth += 1;
+                }
+                b')' => {
+                    let closed = waiting.pop().unwrap_or(0);
+                    depth = depth.saturating_sub(closed + 1);
+                    if waiting.is_empty() {
+                        waiting.push(0);
+                    }
+                }
+                b'+' | b'-' if in_number(text, at) => {}
+                b'^' => wait(&mut waiting, &mut depth),
+                b'+' | b'-' if !is_operand => wait(&mut waiting, &mut depth),
+                b'+' | b'-' | b'*' | b'/' | b',' | b'<' | b'>' => {
+                    let done = waiting.last_mut().map_or(0, std::mem::take);
+                    depth = depth.saturating_sub(done);
+                }
+                _ => {}
+            }
+            found.operators += usize::from(b"(+-*/^,<>".contains(&byte));
+            found.nesting = found.nesting.max(depth);
+            before = Some(byte);
+        }
+        found
+    }
+}
+
+fn wait(waiting: &mut [usize], depth: &mut usize) {
+    if let Some(last) = waiting.last_mut() {
+        *last += 1;
+        *depth += 1;
+    }
+}
+
+/// Whether the sign at a place may be that of a number's exponent, as in `1e-3`.
+fn in_number(text: &[u8], at: usize) -> bool {
+    let before = |back: usize| at.checked_sub(back).map(|place| text[place]);
+    matches!(before(1), Some(b'e' | b'E')) && before(2).is_some_and(|b| b.is_ascii_digit() || b == b'.')
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::parse;
+    use super::*;
+
+    /// What it is called, how to write it so many times, and the most of it.
+    type Way = (&'static str, fn(usize) -> String, usize);
+
+    /// Each way of making a formula deep or long, and how many of it are just allowed.
+    fn ways() -> Vec<Way> {
+        fn around(open: &str, n: usize, close: &str) -> String {
+            format!("{}u{}", open.repeat(n), close.repeat(n))
+        }
+        vec![
+            ("parentheses", |n| around("(", n, ")"), MAX_NESTING),
+            ("signs", |n| around("-", n, ""), MAX_NESTING),
+            ("plus signs", |n| around("+ ", n, ""), MAX_NESTING),
+            ("calls", |n| around("sqrt(", n, ")"), MAX_NESTING),
+            ("calls of two", |n| around("max(1,", n, ")"), MAX_NESTING),
+            ("powers", |n| around("", n, "^2"), MAX_NESTING),
+            ("powers of numbers", |n| around("", n, "^1e-1"), MAX_NESTING),
+            ("signed powers", |n| around("", n / 2, "^-2"), MAX_NESTING),
+            ("conditions", |n| around("if(u<1,2,", n, ")"), MAX_NESTING),
+            ("a sum", |n| around("", n, "+u"), MAX_OPERATORS),
+            ("a difference", |n| around("", n, "-u"), MAX_OPERATORS),
+            ("a product", |n| around("", n, "*u"), MAX_OPERATORS),
+            ("a quotient", |n| around("", n, "/u"), MAX_OPERATORS),
+            ("a long name", |n| "u".repeat(n), MAX_LENGTH),
+        ]
+    }
+
+    #[test]
+    fn formulas_are_bounded_before_they_are_parsed() {
+        let small = std::thread::Builder::new().stack_size(512 << 10);
+        let tried = small.spawn(|| {
+            for (what, make, most) in ways() {
+                for n in [most / 2, most] {
+                    let expr = parse(&make(n)).unwrap_or_else(|e| panic!("{n} of {what}: {e}"));
+                    assert_eq!(expr.clone(), expr);
+                    let _ = (expr.value(&|_| Some(1.0)), expr.names().len(), expr.renamed(&|_| None));
+                }
+                for n in [most + 2, 10 * most, 1_000_000 / 8] {
+                    let refused = parse(&make(n)).unwrap_err();
+                    assert!(refused.contains("are the most") && refused.len() < 200, "{n} of {what}: {refused}");
+                }
+            }
+        });
+        tried.unwrap().join().unwrap();
+    }
+
+    #[test]
+    fn what_is_wide_is_not_deep() {
+        let nesting = |text: &str| Measure::of(text.as_bytes()).nesting;
+        assert_eq!(nesting("u^2 + v^2*r^2 - (u^3)/(v^2)"), 2);
+        assert_eq!(nesting("-u*-v + 1e-3 - 2E-5"), 1);
+        assert_eq!(nesting("2^1e-3^x"), 2);
+        assert_eq!(nesting(")))((u))"), 2);
+    }
+}

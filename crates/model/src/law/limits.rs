@@ -1,0 +1,123 @@
+//! How large a law may be, so that it can be read, simulated, refined and diagnosed in bounded time and stack.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+use super::{Law, LawFile};
+use crate::formula::{Expr, MAX_DEPTH};
+
+/// Terms of all axes; with the deviations of submodels, see [`MAX_COEFFICIENTS`]. The largest law of the zoo has 189, and none more than 189 coefficients.
+pub const MAX_TERMS: usize = 1500;
+
+/// Coefficients of a law, shared ones and deviations, or of a model.
+pub const MAX_COEFFICIENTS: usize = 3000;
+
+/// Effects of a model.
+pub const MAX_EFFECTS: usize = 64;
+
+/// Numbers, names and operators of all formulas of a law, or of a form of an effect.
+pub const MAX_SIZE: usize = 50_000;
+
+/// Values, parameters, inputs, factors or submodels, each.
+const MAX_NAMES: usize = 500;
+
+/// Comparisons of one submodel.
+const MAX_COMPARISONS: usize = 16;
+
+type Fault = (String, String);
+
+/// Refuses a law whose file lists too much, before any of it is read.
+pub(super) fn check_counts(raw: &LawFile) -> Result<(), Fault> {
+    let names = [
+        ("inputs", raw.inputs.len()),
+        ("parameters", raw.parameters.len()),
+        ("values", raw.values.len()),
+        ("factors", raw.factors.len()),
+        ("mirrors", raw.mirrors.len()),
+        ("submodels", raw.submodels.len()),
+    ];
+    names.into_iter().try_for_each(|(field, count)| most(field, count, MAX_NAMES))?;
+    for (name, submodel) in &raw.submodels {
+        most(&format!("submodels.{name}.when"), submodel.when.len(), MAX_COMPARISONS)?;
+    }
+    let terms = raw.axes.values().map(|axis| axis.terms.len()).sum::<usize>();
+    most("axes", terms, MAX_TERMS).map_err(|(field, message)| (field, format!("terms: {message}")))?;
+    let coefficients = terms * (1 + raw.submodels.len());
+    let told = |(field, message)| (field, format!("coefficients, {terms} for each condition: {message}"));
+    most("submodels", coefficients, MAX_COEFFICIENTS).map_err(told)
+}
+
+/// Refuses more than some number of what a field lists.
+pub(crate) fn most(field: &str, found: usize, most: usize) -> Result<(), Fault> {
+    if found > most { Err((field.to_owned(), format!("there are {found}; {most} are the most"))) } else { Ok(()) }
+}
+
+/// Refuses a law whose formulas are too many, or too deep through the values that they mention.
+pub(super) fn check(law: &Law) -> Result<(), Fault> {
+    let formulas = formulas(law);
+    most("axes", formulas.iter().map(|(_, expr)| expr.size()).sum(), MAX_SIZE)
+        .map_err(|(_, message)| (String::new(), format!("numbers, names and operators of all formulas: {message}")))?;
+    let depths = Depths::of(&law.values);
+    formulas.into_iter().try_for_each(|(field, expr)| depths.check(&field, expr, MAX_DEPTH))
+}
+
+impl Law {
+    /// Refuses what effects have made too deep.
+    pub(crate) fn check_depth(&self) -> Result<(), String> {
+        let depths = Depths::of(&self.values);
+        let more = self.dressing.formulas().map(|expr| ("effects".to_owned(), expr));
+        let mut all = formulas(self).into_iter().chain(more);
+        all.try_for_each(|(field, expr)| depths.check(&field, expr, 2 * MAX_DEPTH)).map_err(|(_, message)| message)
+    }
+}
+
+/// Every formula of a law with its field.
+fn formulas(law: &Law) -> Vec<(String, &Expr)> {
+    let mut all: Vec<(String, &Expr)> = law.values.iter().map(|(name, expr)| (format!("values.{name}"), expr)).collect();
+    all.extend(law.factors.iter().map(|(name, expr)| (format!("factors.{name}"), expr)));
+    for (axis, of_axis) in &law.axes {
+        all.push((format!("axes.{axis}.scale"), &of_axis.scale));
+        all.push((format!("axes.{axis}.rest"), &of_axis.rest));
+        all.extend(of_axis.terms.iter().map(|(name, expr)| (format!("axes.{axis}.terms.{name}"), expr)));
+    }
+    all.extend(law.mass.iter().map(|((row, column), expr)| (format!("mass.{row}.{column}"), expr)));
+    all.extend(law.kinematics.iter().map(|(name, expr)| (format!("kinematics.{name}"), expr)));
+    all.extend(law.parameters.iter().filter_map(|(name, p)| Some((format!("parameters.{name}"), p.from.as_ref()?))));
+    all
+}
+
+/// How deep formulas are through values, each looked at once.
+pub(crate) struct Depths<'a> {
+    values: &'a indexmap::IndexMap<String, Expr>,
+    known: RefCell<HashMap<String, usize>>,
+}
+
+impl<'a> Depths<'a> {
+    pub(crate) fn of(values: &'a indexmap::IndexMap<String, Expr>) -> Self {
+        Self { values, known: RefCell::default() }
+    }
+
+    /// Refuses a formula that is deeper than `most`.
+    pub(crate) fn check(&self, field: &str, expr: &Expr, most: usize) -> Result<(), Fault> {
+        match expr.depth(most, &|name, left| self.of_name(name, left)) {
+            Some(_) => Ok(()),
+            None => {
+                let message = format!("operators, through the values that it mentions, nest more than {most} deep");
+                Err((field.to_owned(), message))
+            }
+        }
+    }
+
+    fn of_name(&self, name: &str, left: usize) -> Option<usize> {
+        let Some(expr) = self.values.get(name) else { return Some(0) };
+        if let Some(depth) = self.known.borrow().get(name) {
+            return Some(*depth);
+        }
+        let depth = 1 + expr.depth(left.checked_sub(1)?, &|name, left| self.of_name(name, left))?;
+        self.known.borrow_mut().insert(name.to_owned(), depth);
+        Some(depth)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,38 @@
+//! Aliases and `%TAG`, found by what they look like: where one may be, there is one.
+
+use std::collections::HashSet;
+
+/// Refuses aliases of anchors, and directives of tags, at a byte.
+pub(super) fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
+    let marks: Vec<(usize, &[u8])> = (0..bytes.len()).filter_map(|at| Some((at, name(bytes, at)?))).collect();
+    let anchors: HashSet<&[u8]> = marks.iter().filter(|(at, _)| bytes[*at] == b'&').map(|(_, name)| *name).collect();
+    let alias = marks.iter().find(|(at, name)| bytes[*at] == b'*' && anchors.contains(name));
+    if let Some((at, name)) = alias {
+        let name = crate::formula::head(&String::from_utf8_lossy(name));
+        return Err((*at, format!("`*{name}` is an alias: write out what `&{name}` stands for")));
+    }
+    match (0..bytes.len()).find(|&at| begins_line(bytes, at) && bytes[at..].starts_with(b"%TAG")) {
+        Some(at) => Err((at, "`%TAG` is not known here: leave tags out".into())),
+        None => Ok(()),
+    }
+}
+
+/// The name of what may be an anchor or an alias at a place.
+fn name(bytes: &[u8], at: usize) -> Option<&[u8]> {
+    if !matches!(bytes[at], b'&' | b'*') || !may_begin(bytes, at) {
+        return None;
+    }
+    let rest = &bytes[at + 1..];
+    let length = rest.iter().take_while(|b| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-')).count();
+    (length > 0).then(|| &rest[..length])
+}
+
+/// Whether a token may begin at a place, by what stands before it; bytes above ASCII may be a line break or a mark of order.
+fn may_begin(bytes: &[u8], at: usize) -> bool {
+    let before = at.checked_sub(1).map(|place| bytes[place]);
+    before.is_none_or(|b| b.is_ascii_whitespace() || !b.is_ascii() || b"[]{},:?\"'".contains(&b))
+}
+
+fn begins_line(bytes: &[u8], at: usize) -> bool {
+    at.checked_sub(1).is_none_or(|before| matches!(bytes[before], b'\n' | b'\r') || !bytes[before].is_ascii())
+}

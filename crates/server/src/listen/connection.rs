@@ -1,0 +1,86 @@
+//! One connection: HTTP/1 over a stream that is watched.
+
+use std::net::IpAddr;
+use std::sync::Arc;
+
+use axum::Router;
+use axum::body::Body;
+use axum::extract::Request;
+use axum::response::Response;
+use hyper::body::Incoming;
+use hyper::server::conn::http1;
+use hyper::service::{Service as _, service_fn};
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::server::graceful::Watcher;
+use hyper_util::service::TowerToHyperService;
+use tokio::net::TcpStream;
+
+use super::Server;
+use super::body::{Received, Sent};
+use super::pace::Pace;
+use super::seats::{Seat, Seats};
+use super::stream::Stream;
+use crate::config::Limits;
+use crate::web::guard;
+
+/// Headers of one request.
+const MAX_HEADERS: usize = 100;
+/// What a connection may buffer before the body.
+const HEAD_BYTES: usize = 32 << 10;
+
+/// What a request's connection says of it.
+#[derive(Clone)]
+pub(crate) struct Peer {
+    /// Whom it comes from.
+    pub party: IpAddr,
+    /// How its connection gets on.
+    pub pace: Arc<Pace>,
+    /// There is no seat for it: it is refused, unless it asks for health.
+    pub crowded: bool,
+}
+
+/// A connection that has a place.
+pub(super) struct Connection {
+    router: Router,
+    limits: Limits,
+    party: IpAddr,
+    pace: Arc<Pace>,
+    seat: Seat,
+}
+
+impl Connection {
+    pub(super) fn new(server: &Server, party: IpAddr) -> Option<Self> {
+        let pace = Arc::new(Pace::new(&server.limits));
+        let seat = Seats::admit(&server.seats, party, &pace)?;
+        Some(Self { router: server.router.clone(), limits: server.limits, party, pace, seat })
+    }
+
+    pub(super) async fn serve(self, stream: TcpStream, watcher: Watcher) {
+        let stream = Stream::new(stream, Arc::clone(&self.pace));
+        let mut builder = http1::Builder::new();
+        builder.timer(TokioTimer::new()).header_read_timeout(self.limits.header_time);
+        builder.max_headers(MAX_HEADERS).max_buf_size(HEAD_BYTES);
+        let connection = Arc::new(self);
+        let serving = Arc::clone(&connection);
+        let service = service_fn(move |request| Arc::clone(&serving).answer(request));
+        let served = builder.serve_connection(TokioIo::new(stream), service);
+        tokio::select! {
+            served = watcher.watch(served) => if let Err(error) = served {
+                tracing::debug!(%error, "a connection broke off");
+            },
+            () = connection.pace.until_cut() => tracing::debug!("a connection gave way to others"),
+        }
+    }
+
+    async fn answer(self: Arc<Self>, request: Request<Incoming>) -> hyper::Result<Response<Sent>> {
+        self.pace.taken().await;
+        self.pace.begin();
+        let crowded = !guard::is_health(request.uri().path()) && !self.seat.taken().await;
+        let pace = Arc::clone(&self.pace);
+        let mut request = request.map(|body| Body::new(Received::new(body, Arc::clone(&pace))));
+        request.extensions_mut().insert(Peer { party: self.party, pace: Arc::clone(&pace), crowded });
+        let answered = TowerToHyperService::new(self.router.clone()).call(request).await;
+        let response = answered.unwrap_or_else(|never| match never {});
+        Ok(response.map(|body| Sent::new(body, pace)))
+    }
+}

@@ -1,0 +1,52 @@
+//! Libraries of effects, as recipes name them.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use crate::app::App;
+use crate::problem::Result;
+use crate::web::{Listing, Paged, Params, Place};
+
+pub(super) fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(list)).routes(routes!(get))
+}
+
+/// A library of effects as lists show it.
+#[derive(Debug, Serialize, ToSchema)]
+struct EffectLibraryHead {
+    /// The SHA-256 of its document, by which recipes name it.
+    sha256: String,
+    created_us: i64,
+}
+
+impl EffectLibraryHead {
+    fn of(library: sistership_store::EffectLibrary) -> Self {
+        Self { sha256: library.sha256, created_us: library.created_us }
+    }
+}
+
+/// List the libraries of effects, by hash
+#[utoipa::path(
+    get, path = "/v1/effects", tag = "effects", params(Paged),
+    responses((status = 200, body = Listing<EffectLibraryHead>))
+)]
+async fn list(State(app): State<App>, Params(query): Params<Paged>) -> Result<Json<Listing<EffectLibraryHead>>> {
+    let libraries = app.store().effects().list(&query.page()?).await?;
+    Ok(Json(Listing::of(libraries, EffectLibraryHead::of)))
+}
+
+/// A library of effects: the YAML files of its effects one after another, byte for byte as they were hashed
+#[utoipa::path(
+    get, path = "/v1/effects/{sha256}", tag = "effects", params(("sha256" = String, Path)),
+    responses((status = 200, content((String = "application/yaml"))))
+)]
+async fn get(State(app): State<App>, Place(sha256): Place<String>) -> Result<Response> {
+    let library = app.store().effects().get(&sha256).await?;
+    Ok(([(header::CONTENT_TYPE, "application/yaml")], library.document).into_response())
+}

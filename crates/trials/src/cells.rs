@@ -1,0 +1,146 @@
+//! Whether every row of a CSV file has as many cells as its header.
+//!
+//! A row with another count is an error: its numbers may stand under the wrong headings. There are two exceptions in which
+//! none can. One more empty cell at the end of *every* row (a separator that closes each line, the header's left out) is
+//! passed over, unless a decimal comma could explain it: that is where commas separate and no number has a point. And a row
+//! with too few cells is left out, with a warning, where the manifest says `missing: drop`.
+
+use csv::ByteRecord;
+
+use crate::findings::Findings;
+
+/// Rows named in one message.
+const NAMED: usize = 5;
+
+/// What is to be done with a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Cells {
+    /// It is read.
+    Fit,
+    /// It is not: it ends too early.
+    Few(usize),
+    /// It is not: it has cells that no heading names.
+    Many,
+}
+
+/// Rows of one kind: the first few, and how many.
+#[derive(Debug, Default)]
+struct Rows {
+    first: Vec<(usize, usize)>,
+    count: usize,
+    last: usize,
+}
+
+/// Counts the cells of each row.
+#[derive(Debug)]
+pub(crate) struct Counter {
+    separator: u8,
+    width: usize,
+    exact: bool,
+    point: bool,
+    decimal_commas: usize,
+    /// Rows that are closed by one separator more than the header.
+    closed: Rows,
+    few: Rows,
+    many: Rows,
+}
+
+impl Rows {
+    fn add(&mut self, row: usize, cells: usize) {
+        if self.first.len() < NAMED {
+            self.first.push((row, cells));
+        }
+        self.count += 1;
+        self.last = row;
+    }
+
+    /// `row 3 has 7 cells, row 5 has 8, and so on in 12 further rows, the last of them row 90`
+    fn named(&self) -> String {
+        let cells = |count: usize| if count == 1 { "1 cell".to_owned() } else { format!("{count} cells") };
+        let first: Vec<String> = self.first.iter().map(|&(row, count)| format!("row {row} has {}", cells(count))).collect();
+        match self.count - self.first.len() {
+            0 => first.join(", "),
+            more => format!("{}, and {more} further rows, the last of them row {}", first.join(", "), self.last),
+        }
+    }
+}
+
+impl Counter {
+    /// For a file with so many headings.
+    pub(crate) fn new(separator: u8, width: usize) -> Self {
+        let none = Rows::default;
+        Self { separator, width, exact: false, point: false, decimal_commas: 0, closed: none(), few: none(), many: none() }
+    }
+
+    /// Counts one row.
+    pub(crate) fn row(&mut self, row: usize, record: &ByteRecord) -> Cells {
+        let count = record.len();
+        self.point = self.point || record.as_slice().contains(&b'.');
+        if count == self.width {
+            self.exact = true;
+            return Cells::Fit;
+        }
+        if count < self.width {
+            self.few.add(row, count);
+            return Cells::Few(count);
+        }
+        if count == self.width + 1 && record.get(self.width).is_some_and(|cell| cell.trim_ascii().is_empty()) {
+            self.closed.add(row, count);
+            return Cells::Fit;
+        }
+        self.many.add(row, count);
+        self.decimal_commas += usize::from(self.separator == b',' && is_decimal_comma(record, self.width));
+        Cells::Many
+    }
+
+    /// Tells every row whose count is wrong; those with too few cells only where they are not left out.
+    pub(crate) fn tell(&self, drops: bool, findings: &mut Findings) {
+        if self.many.count > 0 {
+            let what = match self.decimal_commas {
+                0 => "quote a cell that holds the separator, or name every column in the header",
+                _ => {
+                    "this is what numbers with a decimal comma look like (`7,01` is read as 7 and 01): \
+                     write decimals with a point, as 7.01"
+                }
+            };
+            self.error(&self.many, what, findings);
+        }
+        if self.closed.count > 0 && !self.is_closed_throughout() {
+            let what = "the last is empty: close the header with a separator too, or take it from these rows; \
+                        if it comes of a decimal comma, write decimals with a point";
+            self.error(&self.closed, what, findings);
+        }
+        if self.few.count > 0 && !drops {
+            let what = "complete the rows (an empty cell still has its separator), or set `missing: drop` in the \
+                        manifest's conventions to leave them out";
+            self.error(&self.few, what, findings);
+        }
+    }
+
+    fn is_closed_throughout(&self) -> bool {
+        let alone = !self.exact && self.few.count == 0 && self.many.count == 0;
+        alone && (self.separator != b',' || self.point)
+    }
+
+    fn error(&self, rows: &Rows, what: &str, findings: &mut Findings) {
+        let separator = if self.separator == b'\t' { "tab".to_owned() } else { format!("`{}`", self.separator as char) };
+        let row = rows.first.first().map(|&(row, _)| row);
+        let (named, width) = (rows.named(), self.width);
+        findings.error(row, None, format!("{named}; the header has {width} (separated by {separator}); {what}"));
+    }
+}
+
+/// Whether as many pairs of neighbours as there are cells too many are the halves of a decimal number.
+fn is_decimal_comma(record: &ByteRecord, width: usize) -> bool {
+    let digits = |cell: &[u8]| !cell.is_empty() && cell.iter().all(u8::is_ascii_digit);
+    let whole = |cell: &[u8]| digits(cell.strip_prefix(b"-").or(cell.strip_prefix(b"+")).unwrap_or(cell));
+    let fraction = |cell: &[u8]| cell.split(|byte| matches!(byte, b'e' | b'E')).next().is_some_and(digits);
+    let cells: Vec<&[u8]> = record.iter().map(<[u8]>::trim_ascii).collect();
+    let (mut pairs, mut k) = (0, 0);
+    while k + 1 < cells.len() {
+        let pair = whole(cells[k]) && fraction(cells[k + 1]);
+        pairs += usize::from(pair);
+        k += if pair { 2 } else { 1 };
+    }
+    pairs >= cells.len() - width
+}

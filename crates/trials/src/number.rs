@@ -1,0 +1,83 @@
+//! From the text of a cell to a number, or to what is wrong with the text.
+
+use crate::table::Fault;
+
+/// Bytes of a cell that are shown.
+const SHOWN: usize = 40;
+
+/// The number in a cell: decimals with a point, perhaps an exponent, as `-1.5` or `1e-3`.
+pub(crate) fn number(cell: &[u8]) -> Result<f64, Fault> {
+    let text = cell.trim_ascii();
+    if text.is_empty() {
+        return Err(Fault::Empty);
+    }
+    let parsed = std::str::from_utf8(text).ok().and_then(|text| text.parse::<f64>().ok());
+    match parsed {
+        Some(value) if value.is_finite() => Ok(value),
+        Some(_) => Err(Fault::NotANumber),
+        None => Err(Fault::Text(String::from_utf8_lossy(&text[..text.len().min(SHOWN)]).into_owned())),
+    }
+}
+
+/// What to write instead, where the text shows what was meant.
+pub(crate) fn remedy(text: &str) -> &'static str {
+    let thousands = |c: char| matches!(c, ' ' | '\u{a0}' | '\u{2009}' | '\u{202f}' | '\'' | '\u{2019}' | '_');
+    let digits = text.chars().any(|c| c.is_ascii_digit());
+    if text.contains('\0') {
+        "; it holds a NUL byte: the file is damaged, or is not UTF-8 text"
+    } else if digits && text.contains(',') && (text.contains('.') || text.matches(',').count() > 1) {
+        "; leave out the thousands separator and write decimals with a point"
+    } else if digits && text.contains(',') {
+        "; write decimals with a point"
+    } else if digits && text.contains(':') {
+        "; write time as seconds, such as 12.5"
+    } else if digits && text.contains(['\u{2212}', '\u{2013}', '\u{2014}']) {
+        "; write the minus sign as `-`"
+    } else if digits && text.contains(thousands) {
+        "; write the number without separators in it"
+    } else if text.starts_with("0x") || text.starts_with("-0x") {
+        "; write it in decimals"
+    } else {
+        ""
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn numbers_are_read_as_they_are_written() {
+        for (text, value) in [("1", 1.0), (" -1.5 ", -1.5), ("+2", 2.0), ("1e-3", 1e-3), (".5", 0.5), ("5.", 5.0), ("1E5", 1e5)] {
+            assert_eq!(number(text.as_bytes()).unwrap(), value);
+        }
+        for text in ["nan", "NaN", "inf", "-Infinity", "1e400"] {
+            assert_eq!(number(text.as_bytes()), Err(Fault::NotANumber), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_told_with_what_to_write() {
+        let told = [
+            ("1,5", "with a point"),
+            ("1,234.5", "thousands"),
+            ("1,234,567", "thousands"),
+            ("1 000", "without separators"),
+            ("1\u{a0}000", "without separators"),
+            ("1'000", "without separators"),
+            ("1_000", "without separators"),
+            ("\u{2212}3", "minus sign"),
+            ("12:00:01", "seconds"),
+            ("0x1p3", "in decimals"),
+            ("1\0", "NUL"),
+        ];
+        for (text, wanted) in told {
+            let fault = number(text.as_bytes()).unwrap_err().to_string();
+            assert!(fault.contains("is not a number") && fault.contains(wanted), "{text:?}: {fault}");
+        }
+        for text in ["1d", "1.0f", "#N/A", "NULL", "--1", "1e", "1/2", "%"] {
+            assert!(number(text.as_bytes()).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! Version documents.
+
+use sistership_server::version::VersionDocument;
+
+/// What a document is written to, is read to the same document and written to the same bytes.
+pub fn run(data: &[u8]) {
+    let Ok(document) = serde_json::from_slice::<VersionDocument>(data) else { return };
+    let Ok(written) = document.canonical() else { return };
+    let again: VersionDocument = serde_json::from_str(&written).expect("what is written is read");
+    assert_eq!(again.canonical().ok(), Some(written), "other bytes the second time");
+}
