@@ -76,7 +76,9 @@ impl Ledger {
     /// Looks for every write on a server: what was acknowledged is there, once and unchanged, and nothing is there twice.
     pub async fn check(&self, client: &Client, tally: &Tally) {
         let entries = self.entries().clone();
-        let ships: BTreeSet<&str> = entries.iter().map(|entry| entry.write.ship.as_str()).collect();
+        // Of a ship of which nothing was acknowledged, nothing need be there.
+        let acknowledged = entries.iter().filter(|entry| entry.acknowledged.is_some());
+        let ships: BTreeSet<&str> = acknowledged.map(|entry| entry.write.ship.as_str()).collect();
         for ship in ships {
             let of = |kind: Kind| entries.iter().filter(move |entry| entry.write.kind == kind && entry.write.ship == ship);
             self::trials(&of(Kind::Trial).collect::<Vec<_>>(), ship, client, tally).await;
