@@ -1,7 +1,8 @@
 //! What was sent, what was acknowledged, and whether it is there: once, and unchanged.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use reqwest::Method;
 use serde_json::Value;
@@ -94,6 +95,23 @@ impl Ledger {
                 _ => {}
             }
         }
+    }
+}
+
+/// What writers at the same time share.
+pub struct Shared {
+    /// What they write.
+    pub ledger: Ledger,
+    /// What is wrong.
+    pub tally: Arc<Tally>,
+    /// They shall end.
+    pub stop: AtomicBool,
+}
+
+impl Shared {
+    /// With nothing written yet.
+    pub fn new(tally: &Arc<Tally>) -> Self {
+        Self { ledger: Ledger::default(), tally: Arc::clone(tally), stop: AtomicBool::new(false) }
     }
 }
 
