@@ -12,6 +12,8 @@ use parquet::file::reader::ChunkReader;
 
 /// Structures within structures of a page header; the format has two.
 const DEPTH: usize = 4;
+/// The same of what a file says of itself; the format has eight.
+const FOOTER_DEPTH: usize = 16;
 /// Bytes of a page header, its statistics included.
 const HEADER_BYTES: u64 = 64 << 10;
 
@@ -65,6 +67,17 @@ pub(crate) fn held<R: ChunkReader>(input: &R, chunk: &ColumnChunkMetaData, most:
         at = next;
     }
     Ok(held)
+}
+
+/// Goes through what a file says of itself: `bytes` of Thrift before the last eight. The library believes the length of each
+/// list, and goes on for seconds over one that is said to have two thousand million entries in a file of fifty bytes.
+///
+/// # Errors
+/// It holds less than it says, or is nested too deeply.
+pub(crate) fn footer<R: ChunkReader>(input: &R, bytes: u64) -> io::Result<()> {
+    let at = input.len().checked_sub(bytes + 8).ok_or_else(|| invalid("it is too short"))?;
+    let reader = input.get_read(at).map_err(io::Error::other)?.take(bytes);
+    Thrift { reader, read: 0 }.structure(FOOTER_DEPTH, &mut |_, _| ())
 }
 
 /// What is read of a page header.
@@ -162,9 +175,24 @@ impl<R: Read> Thrift<R> {
                 let length = self.varint()?;
                 self.skip(length)
             }
+            9 | 10 => self.list(path, depth, take),
             12 => self.fields(path, depth, take),
-            _ => Err(invalid("it holds what no page header holds")),
+            _ => Err(invalid("it holds what no Parquet file holds")),
         }
+    }
+
+    /// Each entry takes a byte or more, so that what is not there ends it.
+    fn list(&mut self, path: &mut Vec<i16>, depth: usize, take: Take<'_>) -> io::Result<()> {
+        let deeper = depth.checked_sub(1).ok_or_else(|| invalid("it is nested too deeply"))?;
+        let head = self.byte()?;
+        let count = if head >> 4 == 15 { self.varint()? } else { u64::from(head >> 4) };
+        for _ in 0..count {
+            match head & 15 {
+                1 | 2 => self.byte().map(drop)?,
+                kind => self.value(kind, path, deeper, take)?,
+            }
+        }
+        Ok(())
     }
 
     fn byte(&mut self) -> io::Result<u8> {

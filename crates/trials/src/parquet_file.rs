@@ -13,7 +13,7 @@ use parquet::schema::types::{ColumnDescriptor, SchemaDescriptor};
 use crate::findings::Findings;
 use crate::limits::Limits;
 use crate::mapping::Mapping;
-use crate::pages::{Held, held};
+use crate::pages::{self, Held, held};
 use crate::resolve::resolve;
 use crate::rows::Builder;
 use crate::table::{Column, Fault, Table};
@@ -91,6 +91,7 @@ fn metadata<R: ChunkReader + 'static>(input: &R, limits: Limits) -> Result<(Parq
     if footer > limits.footer_bytes as u64 {
         return Err(format!("{footer} bytes about the file at its end are more than the {} that are read", limits.footer_bytes));
     }
+    pages::footer(input, footer).map_err(|error| format!("not a Parquet file that can be read: {error}"))?;
     let meta = guarded(|| ParquetMetaDataReader::new().parse_and_finish(input)).map_err(|error| unread(&error))?;
     let columns = meta.file_metadata().schema_descr().num_columns();
     let mut chunks = meta.row_groups().iter().flat_map(|group| group.columns());

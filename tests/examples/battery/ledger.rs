@@ -1,7 +1,8 @@
 //! What was sent, what was acknowledged, and whether it is there: once, and unchanged.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use reqwest::Method;
 use serde_json::Value;
@@ -76,7 +77,9 @@ impl Ledger {
     /// Looks for every write on a server: what was acknowledged is there, once and unchanged, and nothing is there twice.
     pub async fn check(&self, client: &Client, tally: &Tally) {
         let entries = self.entries().clone();
-        let ships: BTreeSet<&str> = entries.iter().map(|entry| entry.write.ship.as_str()).collect();
+        // Of a ship of which nothing was acknowledged, nothing need be there.
+        let acknowledged = entries.iter().filter(|entry| entry.acknowledged.is_some());
+        let ships: BTreeSet<&str> = acknowledged.map(|entry| entry.write.ship.as_str()).collect();
         for ship in ships {
             let of = |kind: Kind| entries.iter().filter(move |entry| entry.write.kind == kind && entry.write.ship == ship);
             self::trials(&of(Kind::Trial).collect::<Vec<_>>(), ship, client, tally).await;
@@ -92,6 +95,23 @@ impl Ledger {
                 _ => {}
             }
         }
+    }
+}
+
+/// What writers at the same time share.
+pub struct Shared {
+    /// What they write.
+    pub ledger: Ledger,
+    /// What is wrong.
+    pub tally: Arc<Tally>,
+    /// They shall end.
+    pub stop: AtomicBool,
+}
+
+impl Shared {
+    /// With nothing written yet.
+    pub fn new(tally: &Arc<Tally>) -> Self {
+        Self { ledger: Ledger::default(), tally: Arc::clone(tally), stop: AtomicBool::new(false) }
     }
 }
 

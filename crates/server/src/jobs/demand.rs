@@ -52,8 +52,13 @@ async fn demand(app: &App, job: &Job) -> Result<u64> {
         }
         DIAGNOSIS => {
             let asked = serde_json::from_str::<DiagnosisJob>(&job.request).map_err(failed)?;
-            let version = app.store().versions().get(&asked.ship, asked.number).await;
-            (version.ok().map(|version| version.head.law), asked.trials)
+            let law = match app.store().versions().get(&asked.ship, asked.number).await {
+                Ok(version) => Some(version.head.law),
+                // The job itself says that it is missing.
+                Err(StoreError::NotFound { .. }) => None,
+                Err(error) => return Err(error.into()),
+            };
+            (law, asked.trials)
         }
         // These read one trial after the other.
         _ => (None, Vec::new()),

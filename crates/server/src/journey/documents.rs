@@ -1,9 +1,11 @@
 //! Documents that are too deep or too large are refused with field and limit, and the server goes on.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use serde_json::json;
 use sistership_store::testing::TestDatabase;
+use sistership_store::{Store, SystemClock};
 
 use super::harness::{Harness, SHIP, read};
 
@@ -103,5 +105,26 @@ async fn jobs_on_a_law_of(terms: usize) {
         assert!(["succeeded", "failed"].contains(&job["state"].as_str().unwrap()), "{method}: {job}");
     }
     assert_eq!(harness.get("/v1/ships?limit=1").await["items"].as_array().unwrap().len(), 1);
+    harness.server.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_law_that_an_earlier_release_took_fails_what_uses_it_and_nothing_else() {
+    let database = TestDatabase::sqlite();
+    let store = Store::connect(&database.url, Arc::new(SystemClock)).await.unwrap();
+    let endless = law("1", &"X_u, ".repeat(3_320)).replace("name: tried", "name: endless");
+    store.laws().insert("endless", &endless).await.unwrap();
+    drop(store);
+    let harness = Harness::on(database).await;
+    harness.create_ship().await;
+    harness.upload_trials().await;
+    let asked = json!({ "ship": "demo-ship", "law": "endless", "settings": { "method": "weak" } });
+    let (status, said) = harness.post("/v1/refinements", &asked).await;
+    assert_eq!(status, 202, "{said}");
+    let job = harness.follow(said["id"].as_str().unwrap()).await;
+    assert!(job["state"] == "failed" && job["error"].to_string().contains("endless"), "{job}");
+    let (status, job) = harness.post("/v1/refinements", &json!({ "ship": "demo-ship" })).await;
+    assert_eq!(status, 202, "{job}");
+    assert_eq!(harness.follow(job["id"].as_str().unwrap()).await["state"], "succeeded");
     harness.server.stop().await;
 }

@@ -66,6 +66,21 @@ async fn a_body_that_does_not_come_is_given_up_and_a_slow_one_is_not() {
 }
 
 #[tokio::test]
+async fn who_sends_too_much_is_told_so() {
+    let harness = harness(|_| ()).await;
+    let head = "POST /v1/laws HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/yaml\r\nConnection: close\r\n";
+    for bytes in [2 << 20, 12 << 20] {
+        let mut stream = harness.connect(&format!("{head}Content-Length: {bytes}\r\n\r\n")).await;
+        stream.write_all(&vec![b'a'; bytes]).await.unwrap();
+        let answer = rest(stream).await;
+        assert!(answer.starts_with("HTTP/1.1 413") && answer.contains("KiB that are read"), "{bytes}: {answer}");
+    }
+    let asks = harness.exchange(&format!("{head}Expect: 100-continue\r\nContent-Length: 9\r\nHost: elsewhere\r\n\r\n")).await;
+    assert!(asks.starts_with("HTTP/1.1 4"), "no body is asked for where it would not be read: {asks}");
+    harness.server.stop().await;
+}
+
+#[tokio::test]
 async fn answers_that_nobody_reads_do_not_pile_up_and_end_the_connection() {
     let harness = harness(|config| {
         // What the system's buffers swallow earns no time to speak of.

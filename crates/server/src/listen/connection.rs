@@ -6,6 +6,7 @@ use std::sync::Arc;
 use axum::Router;
 use axum::body::Body;
 use axum::extract::Request;
+use axum::http::header;
 use axum::response::Response;
 use hyper::body::Incoming;
 use hyper::server::conn::http1;
@@ -16,7 +17,7 @@ use hyper_util::service::TowerToHyperService;
 use tokio::net::TcpStream;
 
 use super::Server;
-use super::body::{Received, Sent};
+use super::body::{Received, Rest, Sent};
 use super::pace::Pace;
 use super::seats::{Seat, Seats};
 use super::stream::Stream;
@@ -76,11 +77,18 @@ impl Connection {
         self.pace.taken().await;
         self.pace.begin();
         let crowded = !guard::is_health(request.uri().path()) && !self.seat.taken().await;
-        let pace = Arc::clone(&self.pace);
-        let mut request = request.map(|body| Body::new(Received::new(body, Arc::clone(&pace))));
+        // Who waits to be told whether to send the body has not begun to.
+        let waits = request.headers().contains_key(header::EXPECT);
+        let (pace, rest) = (Arc::clone(&self.pace), Rest::default());
+        let mut request = request.map(|body| Body::new(Received::new(body, Arc::clone(&pace), rest.clone())));
         request.extensions_mut().insert(Peer { party: self.party, pace: Arc::clone(&pace), crowded });
         let answered = TowerToHyperService::new(self.router.clone()).call(request).await;
         let response = answered.unwrap_or_else(|never| match never {});
+        if !(crowded || waits || pace.is_too_slow()) {
+            pace.awaits_body();
+            rest.discard().await;
+            pace.received(0);
+        }
         Ok(response.map(|body| Sent::new(body, pace)))
     }
 }

@@ -2,15 +2,14 @@
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 use tokio::task::JoinSet;
 
 use crate::attack::{Attack, Failure, Field, Running};
 use crate::client::Client;
-use crate::ledger::{Entry, Ledger};
+use crate::ledger::{Entry, Ledger, Shared};
 use crate::place::Place;
-use crate::tally::Tally;
 use crate::writes::{FOR_ONE_SHIP, Write};
 
 const WRITERS: u64 = 2;
@@ -28,17 +27,10 @@ impl Attack for Backups {
     }
 }
 
-/// What writers share.
-struct Shared {
-    ledger: Ledger,
-    tally: Arc<Tally>,
-    stop: AtomicBool,
-}
-
 async fn run(field: &Field) -> Result<(), Failure> {
     let place = field.place().await?;
     let server = place.serve().await?;
-    let shared = Arc::new(Shared { ledger: Ledger::default(), tally: Arc::clone(&field.tally), stop: AtomicBool::new(false) });
+    let shared = Arc::new(Shared::new(&field.tally));
     let mut writers = JoinSet::new();
     for number in 0..WRITERS {
         writers.spawn(write(Arc::clone(&shared), server.client.clone(), number, field.rng(number)));

@@ -17,6 +17,8 @@ use crate::place::{Database, Place};
 use crate::writes::Write;
 
 const SIZE: &str = "size=48m";
+/// Rounds of writes for one ship before the next one: a refinement takes at most 1000 trials.
+const FOR_ONE_SHIP: u64 = 40;
 /// The largest room that is left when the disk is said to be full, bytes.
 const ROOM: u64 = 64 << 10;
 
@@ -91,11 +93,15 @@ async fn run(field: &Field) -> Result<(), Failure> {
 async fn filled(field: &Field, place: &Place, disk: &Disk) -> Result<(), Failure> {
     let (ledger, mut rng, mut round) = (Ledger::default(), field.rng(0), 0);
     let mut server = place.serve().await?;
-    let ship = "filled";
-    for write in [Write::ship(ship), Write::version(ship, "the first")?, Write::trial(ship, "the-first", 1)] {
-        ledger.send(ledger.begin(&write), &server.client, &field.tally).await;
-    }
+    let mut ship = String::new();
     while round == 0 || field.goes_on() {
+        if round % FOR_ONE_SHIP == 0 {
+            ship = format!("filled-{}", round / FOR_ONE_SHIP);
+            for write in Write::first(&ship, 1)? {
+                ledger.send(ledger.begin(&write), &server.client, &field.tally).await;
+            }
+        }
+        let ship = ship.as_str();
         round += 1;
         disk.fill(if round == 1 { 0 } else { rng.random_range(0..ROOM) })?;
         writes(field, &server.client, &ledger, ship, round).await?;

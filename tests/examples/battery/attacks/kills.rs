@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use rand::RngExt as _;
@@ -14,7 +14,7 @@ use tokio::task::JoinSet;
 use crate::attack::{Attack, Failure, Field, Running};
 use crate::client::Client;
 use crate::faults::Control;
-use crate::ledger::Ledger;
+use crate::ledger::{Ledger, Shared};
 use crate::place::Place;
 use crate::process::Server;
 use crate::tally::Tally;
@@ -43,18 +43,11 @@ impl Attack for Kills {
     }
 }
 
-/// What writers share.
-struct Shared {
-    ledger: Ledger,
-    tally: Arc<Tally>,
-    stop: AtomicBool,
-}
-
 async fn run(field: &Field) -> Result<(), Failure> {
     let place = field.place().await?;
     let control = Control::new(place.folder())?;
     let mut server = serve(field, &place, &control).await?;
-    let shared = Arc::new(Shared { ledger: Ledger::default(), tally: Arc::clone(&field.tally), stop: AtomicBool::new(false) });
+    let shared = Arc::new(Shared::new(&field.tally));
     let (tell, told) = watch::channel(server.client.clone());
     let mut writers = JoinSet::new();
     for number in 0..WRITERS {
