@@ -1,61 +1,18 @@
-//! The confusion table: every hidden effect against what the diagnosis names.
+//! A few cases of the confusion table, which `--example hidden_effects` prints whole.
 
-mod known;
-mod outcome;
-mod table;
-mod targets;
-
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
-
-use outcome::Outcome;
-use sistership_diagnose::{Request, Settings, diagnose};
-use sistership_model::Trial;
-
-use super::baseline::{BASELINE, library};
-use super::cases::{Case, Part, cases, programme};
-use super::truth::trials;
+use sistership_tests::hidden_effects::confusion::named;
 
 #[test]
-fn effects_are_named() {
-    let part = Part::of_environment();
-    let cases = cases(&part);
-    println!("model {}, {} cases", BASELINE.model.name, cases.len());
-    let started = Instant::now();
-    let outcomes = in_parallel(&cases, run);
-    println!("{:.0} s in all", started.elapsed().as_secs_f64());
-    table::print(&outcomes);
-    let misses = targets::print(&outcomes);
-    assert!(!part.is_judged || misses.is_empty(), "missed: {}", misses.join("; "));
+fn a_weak_current_is_named() {
+    assert_eq!(named("current", 0.3).first().map(String::as_str), Some("current"));
 }
 
-/// Every case in its place, on as many threads as there are cores.
-fn in_parallel<T: Send>(cases: &[Case], run: impl Fn(&Case) -> T + Sync) -> Vec<T> {
-    let next = AtomicUsize::new(0);
-    let done = Mutex::new(Vec::new());
-    let work = || {
-        while let Some((place, case)) = Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|k| Some((k, cases.get(k)?))) {
-            let outcome = run(case);
-            done.lock().unwrap().push((place, outcome));
-        }
-    };
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(work))));
-    let mut done = done.into_inner().unwrap();
-    done.sort_by_key(|(place, _)| *place);
-    done.into_iter().map(|(_, outcome)| outcome).collect()
+#[test]
+fn an_askew_rudder_is_named() {
+    assert_eq!(named("rudder-offset", 0.3).first().map(String::as_str), Some("rudder-offset"));
 }
 
-fn run(case: &Case) -> Outcome {
-    let trials = trials(&case.hidden, &programme(), case.seed);
-    let trials: Vec<&Trial> = trials.iter().collect();
-    let (settings, effects) = (Settings::default(), library());
-    let request = Request { model: &BASELINE.model, law: &BASELINE.law, effects: &effects, trials: &trials, settings: &settings };
-    let started = Instant::now();
-    let diagnosis = diagnose(&request, &|_, _| true).unwrap_or_else(|error| panic!("{}: {error}", case.label));
-    let seconds = started.elapsed().as_secs_f64();
-    let outcome = Outcome::new(case, &diagnosis, &trials, seconds);
-    println!("{}", outcome.line());
-    outcome
+#[test]
+fn nothing_is_named_where_nothing_is_hidden() {
+    assert_eq!(named("clean", 1.0), Vec::<String>::new());
 }

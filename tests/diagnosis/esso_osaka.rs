@@ -11,8 +11,8 @@ use sistership_model::law::Law;
 use sistership_model::trial::Channel;
 use sistership_tests::{esso_osaka, shared};
 
-use super::baseline::{self, Baseline, library};
-use super::truth::ZOO;
+use sistership_tests::hidden_effects::baseline::{self, Baseline, library};
+use sistership_tests::hidden_effects::truth::ZOO;
 
 const SHIP: &str = "esso-osaka-3m";
 /// Simulations start anew as for the score of Wakita et al. 2022.

@@ -8,8 +8,8 @@ use sistership_model::{Law, Model, Trial};
 use sistership_tests::shared;
 use sistership_trials::load_path;
 
-use super::baseline::{Baseline, fitted, library};
-use super::truth::{ZOO, published};
+use sistership_tests::hidden_effects::baseline::{Baseline, fitted, library};
+use sistership_tests::hidden_effects::truth::{ZOO, published};
 
 fn trials(folder: &Path, kind: &str) -> Vec<Trial> {
     let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path()).collect();

@@ -4,9 +4,9 @@ use sistership_diagnose::{Diagnosis, Request, Settings, diagnose};
 use sistership_model::Trial;
 use sistership_model::effect::AppliedEffect;
 
-use super::baseline::{Baseline, fitted, library, programme};
-use super::cases;
-use super::truth::{Hidden, effect, trials};
+use sistership_tests::hidden_effects::baseline::{Baseline, fitted, library, programme};
+use sistership_tests::hidden_effects::cases;
+use sistership_tests::hidden_effects::truth::{Hidden, effect, trials};
 
 /// Of a gyro whose compass is right.
 const BIAS_RAD_S: f64 = 1e-3;

@@ -4,6 +4,7 @@ pub mod binary;
 pub mod esso_osaka;
 pub mod fleet;
 pub mod fuzzed;
+pub mod hidden_effects;
 pub mod server;
 pub mod shape;
 pub mod shared;

@@ -1,5 +1,6 @@
 //! The true ship: SR108 by the law of Son and Nomoto, with something hidden that no model of her has been told.
 
+#[cfg(test)]
 mod checks;
 mod instruments;
 mod sailing;

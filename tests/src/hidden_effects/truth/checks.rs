@@ -4,7 +4,7 @@ use sistership_dynamics::Trajectory;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
 use sistership_dynamics::state::at;
 use sistership_dynamics::{Ship, StateVector};
-use sistership_tests::shared;
+use crate::shared;
 
 use super::instruments::{NOISE, said};
 use super::sailing::{DURATION_S, N_RPS};
