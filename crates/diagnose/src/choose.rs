@@ -158,7 +158,7 @@ impl Choice {
         let (mut search, mut best) = (search.clone(), self.best().clone());
         let mut rounds = SETTLED;
         loop {
-            search = search.taught_by(request, &best)?;
+            search = search.calibrated_by(request, &best)?;
             let base = search.bare(&best.candidates, &self.levels)?;
             best = search.alone(&base)?.1;
             rounds -= 1;

@@ -133,8 +133,8 @@ fn remaining(
     }
     // Coefficients that gave way to what is missing have spread it over the trial: it is dated by those of clean trials.
     let given_way = search.given_way().into_iter().map(|change| -change);
-    let as_taught: Vec<f64> = given_way.chain(parameters.iter().copied().skip(best.shift.len())).collect();
-    let dated = unexplained(workspace, expected, &as_taught, &effects, clean);
+    let as_calibrated: Vec<f64> = given_way.chain(parameters.iter().copied().skip(best.shift.len())).collect();
+    let dated = unexplained(workspace, expected, &as_calibrated, &effects, clean);
     let same = |a: &Unexplained, b: &Unexplained| a.trial == b.trial && a.channel == b.channel;
     let dated: Vec<Unexplained> = dated.into_iter().filter(|a| found.iter().any(|b| same(a, b))).collect();
     Ok(if dated.is_empty() { found } else { dated })

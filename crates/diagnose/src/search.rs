@@ -256,7 +256,7 @@ impl<'a> Search<'a> {
     ///
     /// # Errors
     /// Says that the information is not positive.
-    pub fn taught_by(&self, request: &Request<'_>, judged: &Judged) -> Result<Self, RefineError> {
+    pub fn calibrated_by(&self, request: &Request<'_>, judged: &Judged) -> Result<Self, RefineError> {
         let size = self.nuisance.len();
         let total = Gram::sum(&judged.grams, judged.grams.first().map_or(0, |gram| gram.products.nrows()));
         let moved = judged.candidates.iter().zip(&judged.stood).flat_map(|(c, s)| c.at.iter().zip(&s.at).map(|(a, b)| a - b));

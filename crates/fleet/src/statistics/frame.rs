@@ -6,8 +6,10 @@ use sistership_model::quantity::Quantity;
 use sistership_model::version::sha256;
 use sistership_model::{Law, Model};
 
-use super::FORMAT;
 use sistership_estimate::refine::{Blocks, RefineError};
+
+/// The format of [`TrialStatistics`](super::TrialStatistics).
+pub const FORMAT: &str = "sistership-statistics/1";
 
 /// The regressions of a model, without the values of its coefficients: two models that differ in those only have one frame.
 #[derive(Debug, Clone)]

@@ -13,14 +13,11 @@ use serde::{Deserialize, Serialize};
 use sistership_model::coefficient::Axis;
 use sistership_model::trial::Trial;
 
-pub use frame::Frame;
+pub use frame::{FORMAT, Frame};
 pub use residual::Left;
 
 use sistership_estimate::refine::{Block, RefineError, trial_moments};
 use sistership_regression::Moments;
-
-/// The format of [`TrialStatistics`].
-pub const FORMAT: &str = "sistership-statistics/1";
 
 /// The statistics of one trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
