@@ -11,7 +11,8 @@ use crate::page::{List, Page};
 use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
-use crate::versions::{self, NewVersion, VersionHead};
+use crate::version::{NewVersion, VersionHead};
+use crate::versions;
 use crate::work;
 
 statements! {
@@ -119,6 +120,13 @@ pub struct NewOutcome {
 /// The bulk refinements of a store.
 #[derive(Debug, Clone, Copy)]
 pub struct Bulks<'a>(pub(crate) &'a Store);
+
+impl Store {
+    /// Refinements of whole families.
+    pub fn bulks(&self) -> Bulks<'_> {
+        Bulks(self)
+    }
+}
 
 impl Bulks<'_> {
     /// Queues a refinement with its chunks, all or nothing. `chunk` writes the request of a chunk from the id of the refinement

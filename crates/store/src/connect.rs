@@ -8,7 +8,8 @@ use sqlx::postgres::{PgConnectOptions, PgPoolOptions};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
 use sqlx::{Connection as _, PgPool, SqlitePool};
 
-use crate::database::{Database, Pool, Writer};
+use crate::connections::{Pool, RESTED, Writer};
+use crate::database::Database;
 use crate::error::{Result, StoreError};
 use crate::folders;
 use crate::group::Group;
@@ -17,8 +18,6 @@ use crate::migrate;
 const BUSY: Duration = Duration::from_secs(10);
 const SQLITE_READERS: u32 = 4;
 const POSTGRES_CONNECTIONS: u32 = 16;
-/// After this long without use, a connection is asked whether it is still there.
-pub(crate) const RESTED: Duration = Duration::from_secs(5);
 
 /// Opens the database at `url` and brings its schema up to date.
 pub(crate) async fn connect(url: &str) -> Result<Database> {

@@ -76,6 +76,13 @@ pub enum Begun {
 #[derive(Debug, Clone, Copy)]
 pub struct Idempotency<'a>(pub(crate) &'a Store);
 
+impl Store {
+    /// Requests that must not be carried out twice.
+    pub fn idempotency(&self) -> Idempotency<'_> {
+        Idempotency(self)
+    }
+}
+
 impl Idempotency<'_> {
     /// Begins a request. `scope` is its method and path.
     pub async fn begin(&self, scope: &str, key: &str, request_sha256: &str) -> Result<Begun> {

@@ -59,6 +59,13 @@ impl ShipFacts {
 #[derive(Debug, Clone, Copy)]
 pub struct SearchIndex<'a>(pub(crate) &'a Store);
 
+impl Store {
+    /// What ships are found by.
+    pub fn search_index(&self) -> SearchIndex<'_> {
+        SearchIndex(self)
+    }
+}
+
 impl SearchIndex<'_> {
     /// Ships that have changed since their facts were written, by name, at most `limit` of those after `after`.
     pub async fn waiting(&self, after: &str, limit: i64) -> Result<Vec<Waiting>> {

@@ -31,6 +31,13 @@ record! {
 #[derive(Debug, Clone, Copy)]
 pub struct TrialStatistics<'a>(pub(crate) &'a Store);
 
+impl Store {
+    /// Sufficient statistics of trials.
+    pub fn statistics(&self) -> TrialStatistics<'_> {
+        TrialStatistics(self)
+    }
+}
+
 impl TrialStatistics<'_> {
     /// Keeps statistics by key and document, all or nothing; those that are there stay as they are.
     pub async fn put(&self, all: &[(String, String)]) -> Result<()> {
