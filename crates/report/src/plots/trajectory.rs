@@ -4,7 +4,7 @@ use super::axes::{Scale, columns, extent, nice_step, rows, shown};
 use super::decimate::path;
 use super::lines::{self, Line};
 use super::{Plot, Shape, WIDTH};
-use crate::replays::Replayed;
+use crate::replayed::ReplayedTrial;
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 18.0;
@@ -20,7 +20,7 @@ struct Chart {
 }
 
 /// The trajectory of one trial.
-pub(crate) fn trajectory(replayed: &Replayed<'_>) -> Plot {
+pub(crate) fn trajectory(replayed: &ReplayedTrial<'_>) -> Plot {
     let lines = lines::positions(replayed);
     let chart = Chart::of(&lines);
     let height = TOP + chart.north.length + BOTTOM;
@@ -75,7 +75,7 @@ impl Chart {
         shapes
     }
 
-    fn line(&self, replayed: &Replayed<'_>, line: &Line<(f64, f64)>) -> Shape {
+    fn line(&self, replayed: &ReplayedTrial<'_>, line: &Line<(f64, f64)>) -> Shape {
         let starts = lines::starts(replayed.trial);
         let points: Vec<(f64, f64)> = line.values.iter().map(|point| self.at(*point)).collect();
         let jumps = |from: usize, to: usize| lines::has_gap(replayed.trial, &starts, line.samples[from], line.samples[to]);
@@ -83,7 +83,7 @@ impl Chart {
     }
 
     /// Dots at the same instants on every path.
-    fn marks(&self, replayed: &Replayed<'_>, line: &Line<(f64, f64)>) -> Vec<Shape> {
+    fn marks(&self, replayed: &ReplayedTrial<'_>, line: &Line<(f64, f64)>) -> Vec<Shape> {
         let times = &replayed.trial.t_s;
         let interval = mark_interval_s(replayed.trial.duration_s());
         let number = |index: usize| ((times[line.samples[index]] - times[0]) / interval + 1e-9).floor();
