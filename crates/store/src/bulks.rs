@@ -93,7 +93,7 @@ record! {
         pub outcome: String,
         /// The number of the version that came of it, if one did.
         pub version: Option<i64>,
-        /// By how much her worst metric is worse than before; below zero where all are better.
+        /// By how much its worst metric is worse than before; below zero where all are better.
         pub worst_change: Option<f64>,
         /// Before and after, or why not, JSON.
         pub document: String,
@@ -111,7 +111,7 @@ pub struct NewOutcome {
     pub outcome: String,
     /// The version and the aliases that move to it.
     pub version: Option<(NewVersion, Vec<AliasMove>)>,
-    /// By how much her worst metric is worse than before.
+    /// By how much its worst metric is worse than before.
     pub worst_change: Option<f64>,
     /// Before and after, or why not, JSON.
     pub document: String,

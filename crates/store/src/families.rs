@@ -60,9 +60,9 @@ record! {
     pub struct FamilyMember {
         /// The ship.
         pub ship: String,
-        /// Since when she is a member.
+        /// Since when it is a member.
         pub added_us: i64,
-        /// The number of her champion, if she has one.
+        /// The number of its champion, if it has one.
         pub champion: Option<i64>,
         /// How that was made.
         pub method: Option<String>,
@@ -147,7 +147,7 @@ impl Families<'_> {
         Ok(added)
     }
 
-    /// Takes a ship out of a family; returns whether she was in it.
+    /// Takes a ship out of a family; returns whether it was in it.
     pub async fn remove(&self, family: &str, ship: &str) -> Result<bool> {
         let mut tx = self.0.begin().await?;
         let removed = tx.execute(REMOVE, args![family: family, ship: ship]).await?;

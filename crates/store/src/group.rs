@@ -42,7 +42,7 @@ struct Shared {
     awaited: bool,
 }
 
-/// One writer's part of the transaction, in her turn; undone unless [committed](Self::commit). The turn leaves it as it ends.
+/// One writer's part of the transaction, in its turn; undone unless [committed](Self::commit). The turn leaves it as it ends.
 pub(crate) struct Part(Option<Turn>);
 
 struct Turn {
@@ -231,7 +231,7 @@ mod tests {
             tokio::spawn(async move {
                 let mut part = group.begin().await?;
                 put(&mut part, n).await?;
-                // The third changes her mind.
+                // The third changes its mind.
                 if n == 3 { Ok(()) } else { part.commit().await }
             })
         });

@@ -99,10 +99,10 @@ record! {
 }
 
 record! {
-    /// A ship with what tells how similar she is to others.
+    /// A ship with what tells how similar it is to others.
     pub struct ShipVectors {
         flatten head: FoundShip,
-        /// What [`crate::SearchIndex`] was told of her, JSON.
+        /// What [`crate::SearchIndex`] was told of it, JSON.
         pub vectors: String,
     }
 }
@@ -110,11 +110,11 @@ record! {
 /// What is asked of a ship; everything must hold.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ShipSearch {
-    /// Her category.
+    /// Its category.
     pub category: Option<String>,
-    /// A tag that she has.
+    /// A tag that it has.
     pub tag: Option<String>,
-    /// Where her facts must lie, at most [`MAX_RANGES`]. The first one orders what is found.
+    /// Where its facts must lie, at most [`MAX_RANGES`]. The first one orders what is found.
     pub ranges: Vec<FactRange>,
 }
 

@@ -31,7 +31,7 @@ pub struct Check {
 }
 
 #[derive(Serialize)]
-struct Checked {
+struct CheckedTrials {
     trials: Vec<CheckOutcome>,
 }
 
@@ -40,7 +40,7 @@ struct Checked {
 /// # Errors
 /// A path cannot be read, or a trial is refused.
 pub fn run(check: &Check) -> Result<(), Failure> {
-    let mut checked = Checked { trials: Vec::new() };
+    let mut checked = CheckedTrials { trials: Vec::new() };
     for path in &check.trials {
         checked.trials.extend(check_path(path)?);
     }

@@ -9,7 +9,7 @@ use sistership_model::law::LawFile;
 use sistership_model::{FileError, Zoo};
 
 use crate::failure::Failure;
-use crate::files::Promised;
+use crate::files::PromisedFile;
 use crate::table::Table;
 use crate::zoo::text_of;
 use crate::{named, output};
@@ -22,7 +22,7 @@ Examples:
 
 A declaration is of `kind: hybrid`; models/hybrids/README.md has one with every field.";
 
-/// Derive the Abkowitz-MMG hybrid of a ship from her actuators, and count its unknowns rule by rule.
+/// Derive the Abkowitz-MMG hybrid of a ship from its actuators, and count its unknowns rule by rule.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Derive {
@@ -37,7 +37,7 @@ pub struct Derive {
 }
 
 #[derive(Serialize)]
-struct Document<'a> {
+struct DeriveDocument<'a> {
     name: &'a str,
     order: u32,
     #[serde(flatten)]
@@ -52,7 +52,7 @@ struct Document<'a> {
 /// The declaration is refused, or the law cannot be written.
 pub fn run(zoo: &Zoo, asked: &Derive) -> Result<(), Failure> {
     let path = &asked.declaration;
-    let promised = asked.out.as_deref().map(|out| Promised::new(out, std::slice::from_ref(path))).transpose()?;
+    let promised = asked.out.as_deref().map(|out| PromisedFile::new(out, std::slice::from_ref(path))).transpose()?;
     let text = text_of(path)?;
     named::must_be(path, &text, "hybrid", "a declaration")?;
     let derived = derive(&path.display().to_string(), &text)?;
@@ -61,8 +61,13 @@ pub fn run(zoo: &Zoo, asked: &Derive) -> Result<(), Failure> {
         promised.write(derived.text.as_bytes())?;
     }
     let submodels = derived.law.submodels.keys().map(String::as_str).collect();
-    let document =
-        Document { name: &derived.law.name, order: derived.file.order, unknowns: &unknowns, submodels, law: &derived.law_file };
+    let document = DeriveDocument {
+        name: &derived.law.name,
+        order: derived.file.order,
+        unknowns: &unknowns,
+        submodels,
+        law: &derived.law_file,
+    };
     output::print(asked.json, &document, || report(&derived, &unknowns, asked.out.as_deref()))
 }
 

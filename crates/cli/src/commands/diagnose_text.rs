@@ -6,27 +6,16 @@ use sistership_diagnose::{Confounded, Diagnosis, Found, Hypothesis, NextTrial, U
 use sistership_model::Model;
 use sistership_report::distinct;
 
-use super::refine::Files;
+use super::channels::CHANNELS;
 use super::worth;
+use super::written::WrittenFiles;
 use crate::table::{Table, number, optional};
 
 /// Most hypotheses that are listed.
 const MOST: usize = 8;
 
-/// Channels in the order of the table: name, unit, and the factor to it from SI.
-const CHANNELS: [(&str, &str, f64); 8] = [
-    ("u", "m/s", 1.0),
-    ("v", "m/s", 1.0),
-    ("r", "deg/s", 180.0 / std::f64::consts::PI),
-    ("psi", "deg", 180.0 / std::f64::consts::PI),
-    ("x", "m", 1.0),
-    ("y", "m", 1.0),
-    ("phi", "deg", 180.0 / std::f64::consts::PI),
-    ("p", "deg/s", 180.0 / std::f64::consts::PI),
-];
-
 /// Everything that came of a diagnosis.
-pub fn text(diagnosis: &Diagnosis, model: &Model, files: &Files<'_>) -> String {
+pub fn text(diagnosis: &Diagnosis, model: &Model, files: &WrittenFiles<'_>) -> String {
     let mut parts = vec![format!("{} ({})\n{}\n", diagnosis.diagnosed, worth(model.status), verdict(diagnosis))];
     parts.extend(diagnosis.effects.iter().map(effect));
     if !diagnosis.unexplained.is_empty() {
@@ -112,7 +101,7 @@ fn hypotheses(hypotheses: &[Hypothesis]) -> Table {
     table
 }
 
-fn end(diagnosis: &Diagnosis, files: &Files<'_>) -> String {
+fn end(diagnosis: &Diagnosis, files: &WrittenFiles<'_>) -> String {
     let mut lines: Vec<String> = diagnosis.remarks.iter().map(|remark| format!("remark: {remark}")).collect();
     lines.extend(match (files.out, &diagnosis.model) {
         (Some(path), _) => Some(format!("model with the effects written to {}", path.display())),

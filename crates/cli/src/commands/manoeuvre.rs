@@ -1,22 +1,19 @@
 //! `sistership manoeuvre`: turning circles and zigzags, their figures and the IMO criteria.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use clap::Args;
-use serde::Serialize;
 use sistership_dynamics::Ship;
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres};
-use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+use sistership_dynamics::manoeuvre::ManoeuvreSettings;
 use sistership_estimate::bands::{Bands, Sampling, bands};
-use sistership_model::validity::Excursion;
 use sistership_model::{Law, Model, Zoo};
 
+use super::manoeuvre_document::ManoeuvreDocument;
 use super::sailed::sail;
 use super::{manoeuvre_text, ready, set_depth};
-use crate::arguments::{Integration, positive, rudder_deg, zigzag_deg};
 use crate::failure::Failure;
-use crate::files::Promised;
+use crate::files::PromisedFile;
+use crate::values::{Integration, positive, rudder_deg, zigzag_deg};
 use crate::{named, output, track};
 
 const EXAMPLES: &str = "\
@@ -76,37 +73,6 @@ pub struct Manoeuvre {
     json: bool,
 }
 
-/// What is printed.
-#[derive(Debug, Serialize)]
-pub struct Document {
-    /// The model.
-    pub model: String,
-    /// Its law.
-    pub law: String,
-    /// Whether its figures are published, estimated, transferred or refined.
-    pub status: sistership_model::vessel::Status,
-    /// The approach speed, m/s.
-    pub speed_m_s: f64,
-    /// Turning circles.
-    pub turns: Vec<TurningMetrics>,
-    /// Zigzags.
-    pub zigzags: Vec<ZigzagMetrics>,
-    /// Distance to 10 deg of heading with 10 deg of rudder, the worse side, m.
-    pub initial_turning_m: Option<f64>,
-    /// The IMO criteria.
-    pub imo: Vec<Criterion>,
-    /// Manoeuvres that left the physical range.
-    pub failures: Vec<String>,
-    /// Manoeuvres that left what the model's trials covered.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub outside: BTreeMap<String, Excursion>,
-    /// Confidence bands, where they were asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub bands: Option<Bands>,
-    /// What must be known to read the figures.
-    pub remarks: Vec<String>,
-}
-
 /// Runs the command.
 ///
 /// # Errors
@@ -117,7 +83,7 @@ pub fn run(zoo: &Zoo, manoeuvre: &Manoeuvre) -> Result<(), Failure> {
     }
     let (mut model, law) = named::model(zoo, &manoeuvre.model)?;
     let inputs = [PathBuf::from(&manoeuvre.model)];
-    let file = manoeuvre.out.as_ref().map(|path| Promised::new(path, &inputs)).transpose()?;
+    let file = manoeuvre.out.as_ref().map(|path| PromisedFile::new(path, &inputs)).transpose()?;
     let remarks = remarks(manoeuvre, &mut model, &law);
     let ship = ship(manoeuvre, &model, &law)?;
     let (sailed, tracks) = sail(&ship, &manoeuvre.turn, &manoeuvre.zigzag, &settings(manoeuvre));
@@ -125,7 +91,7 @@ pub fn run(zoo: &Zoo, manoeuvre: &Manoeuvre) -> Result<(), Failure> {
         file.write(&track::csv(track, &law, ship.has_propeller())?)?;
     }
     let bands = drawn(manoeuvre, &model, &law)?;
-    let document = document(&model, &ship, sailed, bands, remarks);
+    let document = ManoeuvreDocument::of(&model, &ship, sailed, bands, remarks);
     output::print(manoeuvre.json, &document, || manoeuvre_text::text(&document, &model, &law, &ship))?;
     if document.failures.is_empty() { Ok(()) } else { Err(Failure::Told) }
 }
@@ -184,21 +150,4 @@ fn drawn(manoeuvre: &Manoeuvre, model: &Model, law: &Law) -> Result<Option<Bands
         Failure::Refused(format!("--bands: {} has no posterior to draw from; {why}", model.name))
     };
     bands(model, law, &settings(manoeuvre), manoeuvre.depth_m, sampling).ok_or_else(none).map(Some)
-}
-
-fn document(model: &Model, ship: &Ship, sailed: StandardManoeuvres, bands: Option<Bands>, remarks: Vec<String>) -> Document {
-    Document {
-        model: model.name.clone(),
-        law: model.law.clone(),
-        status: model.status,
-        speed_m_s: ship.approach_speed_m_s(),
-        turns: sailed.turns,
-        zigzags: sailed.zigzags,
-        initial_turning_m: sailed.initial_turning_m,
-        imo: sailed.imo,
-        failures: sailed.failures,
-        outside: sailed.outside,
-        bands,
-        remarks,
-    }
 }

@@ -5,12 +5,12 @@ use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
 use sistership_estimate::bands::Bands;
 use sistership_model::{Law, Model};
 
-use super::manoeuvre::Document;
+use super::manoeuvre_document::ManoeuvreDocument;
 use super::model_line;
 use crate::table::{Table, number, optional};
 
 /// Everything that was sailed.
-pub fn text(document: &Document, model: &Model, law: &Law, ship: &Ship) -> String {
+pub fn text(document: &ManoeuvreDocument, model: &Model, law: &Law, ship: &Ship) -> String {
     let head = format!(
         "{}\nlength {} m, approach at {} m/s\n",
         model_line(model, law),

@@ -6,24 +6,13 @@ use sistership_estimate::refine::{CoefficientChange, HeldOut, Manoeuvres, Refine
 use sistership_estimate::similarity::RankedSource;
 use sistership_model::Model;
 
-use super::refine::Files;
+use super::channels::CHANNELS;
+use super::written::WrittenFiles;
 use super::{similar, worth};
 use crate::table::{Table, number, optional};
 
-/// Channels in the order of the table: name, unit, and the factor to it from SI.
-const CHANNELS: [(&str, &str, f64); 8] = [
-    ("u", "m/s", 1.0),
-    ("v", "m/s", 1.0),
-    ("r", "deg/s", 180.0 / std::f64::consts::PI),
-    ("psi", "deg", 180.0 / std::f64::consts::PI),
-    ("x", "m", 1.0),
-    ("y", "m", 1.0),
-    ("phi", "deg", 180.0 / std::f64::consts::PI),
-    ("p", "deg/s", 180.0 / std::f64::consts::PI),
-];
-
 /// Everything that came of a refinement.
-pub fn text(refinement: &Refinement, source: &Model, ranking: Option<&[RankedSource]>, files: &Files<'_>) -> String {
+pub fn text(refinement: &Refinement, source: &Model, ranking: Option<&[RankedSource]>, files: &WrittenFiles<'_>) -> String {
     let ranked = ranking.map_or(String::new(), |ranking| format!("Similar ships\n{}\n", similar::ranking(ranking)));
     let head =
         format!("{} refined from {} ({}) by `{}`\n\n", refinement.ship, source.name, worth(source.status), refinement.method);
@@ -101,7 +90,7 @@ fn manoeuvres(manoeuvres: &Manoeuvres) -> Table {
     table
 }
 
-fn end(refinement: &Refinement, files: &Files<'_>) -> String {
+fn end(refinement: &Refinement, files: &WrittenFiles<'_>) -> String {
     let mut lines = vec![format!("condition number {}", number(refinement.condition_number))];
     lines.extend(
         refinement.collinear_groups.iter().map(|group| format!("cannot be told apart by these trials: {}", group.join(", "))),

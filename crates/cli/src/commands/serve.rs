@@ -12,6 +12,7 @@ use super::running::{LeaseArguments, memory, run_until_stopped, workers};
 use super::store::StoreArguments;
 use crate::failure::{Failure, about_file};
 use crate::output;
+use crate::values::address;
 use crate::zoo::text_of;
 
 /// Holds the API key.
@@ -61,10 +62,6 @@ pub struct Serve {
     lease: LeaseArguments,
     #[command(flatten)]
     log: LogArguments,
-}
-
-fn address(text: &str) -> Result<SocketAddr, String> {
-    text.parse().map_err(|_| "write an address and a port, such as 127.0.0.1:8080 or [::1]:8080".to_owned())
 }
 
 /// Runs the command until it is told to stop.
@@ -157,7 +154,7 @@ mod tests {
     #[test]
     fn addresses_are_read() {
         assert_eq!(address("127.0.0.1:8080"), Ok(DEFAULT_LISTEN));
-        assert!(address("8080").is_err_and(|message| message.contains("127.0.0.1:8080")));
+        assert!(address("8080").is_err_and(|error| error.to_string().contains("127.0.0.1:8080")));
     }
 
     #[test]

@@ -6,11 +6,11 @@ use sistership_estimate::similarity::Definition;
 use sistership_server::Archive;
 use sistership_server::search::{self, FactRange, FoundShip, MAX_RANGES, Page, Search, ShipSearch};
 
-use super::similar::definition;
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
 use crate::output;
 use crate::table::{Table, number};
+use crate::values::definition;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -39,7 +39,7 @@ pub struct Ships {
     /// A range of a metric of the champion, in the same way.
     #[arg(long, value_name = "NAME:MIN..MAX", value_parser = search::metric)]
     metric: Vec<FactRange>,
-    /// Ships like this one, of her category.
+    /// Ships like this one, of its category.
     #[arg(long, value_name = "SHIP")]
     similar_to: Option<String>,
     /// Definition of the characteristic vector; mei-2019 where the ship has every component of it.

@@ -9,6 +9,7 @@ use sistership_model::{Vessel, Zoo};
 
 use crate::failure::Failure;
 use crate::table::{Table, number};
+use crate::values::definition;
 use crate::{named, output, trials};
 
 const EXAMPLES: &str = "\
@@ -32,11 +33,6 @@ pub struct Similar {
     /// Print one JSON document.
     #[arg(long)]
     json: bool,
-}
-
-pub(super) fn definition(name: &str) -> Result<Definition, String> {
-    let known: Vec<&str> = Definition::ALL.into_iter().map(Definition::name).collect();
-    Definition::by_name(name).ok_or_else(|| format!("there are {}", known.join(" and ")))
 }
 
 /// Runs the command.
@@ -87,11 +83,5 @@ mod tests {
         for figures in [["mariner", "-0.576"], ["esso-tanker", "0.851"], ["sr108", "-0.887"], ["pcc", "-0.723"]] {
             assert!(text.lines().any(|line| figures.iter().all(|part| line.contains(part))), "{figures:?} in\n{text}");
         }
-    }
-
-    #[test]
-    fn definitions_have_names() {
-        assert_eq!(definition("mei-2019"), Ok(Definition::Mei2019));
-        assert!(definition("mei").unwrap_err().contains("kanazawa-2023"));
     }
 }

@@ -15,13 +15,13 @@ use sistership_server::{Config, Running, Server};
 use sistership_trials::samples::to_csv;
 
 use self::client::Api;
-use self::sea_trials::{Manoeuvre, record};
+use self::sea_trials::{TrialManoeuvre, record};
 use crate::commands::refine_text;
 use crate::commands::store::block_on;
 use crate::failure::{Failure, about_file};
 use crate::output;
 
-/// The ship of the demonstration: particulars only, nobody has a model of her.
+/// The ship of the demonstration: particulars only, nobody has a model of it.
 const SHIP: &str = include_str!("ship.yaml");
 const NAME: &str = "northern-star";
 /// Who sails the trials: a ship with roll, propeller and rudder of their own, by a law that no other ship of the zoo has.
@@ -29,22 +29,22 @@ const TRUTH: &str = "sr108";
 const SPEED_M_S: f64 = 10.47;
 const SEED: u64 = 1;
 /// What is sailed; the last two are kept out of fit and choice, to judge the model on.
-const PROGRAMME: [Manoeuvre; 8] = [
-    Manoeuvre::Zigzag(10.0, 10.0),
-    Manoeuvre::Zigzag(-10.0, 5.0),
-    Manoeuvre::Zigzag(20.0, 20.0),
-    Manoeuvre::Turn(12.0),
-    Manoeuvre::Turn(-15.0),
-    Manoeuvre::Turn(30.0),
-    Manoeuvre::Turn(-20.0),
-    Manoeuvre::Zigzag(15.0, 15.0),
+const PROGRAMME: [TrialManoeuvre; 8] = [
+    TrialManoeuvre::Zigzag(10.0, 10.0),
+    TrialManoeuvre::Zigzag(-10.0, 5.0),
+    TrialManoeuvre::Zigzag(20.0, 20.0),
+    TrialManoeuvre::Turn(12.0),
+    TrialManoeuvre::Turn(-15.0),
+    TrialManoeuvre::Turn(30.0),
+    TrialManoeuvre::Turn(-20.0),
+    TrialManoeuvre::Zigzag(15.0, 15.0),
 ];
 const JUDGED: usize = 2;
 
 const ABOUT: &str = "\
 Starts the server on a database in FOLDER, creates a ship, uploads trials, selects a source, refines, queries the champion,
 prints the errors before and after, and writes FOLDER/report.html. The trials are sailed by the four-degree-of-freedom ship
-SR108 with sensor noise; she is taken out of the zoo first, so that no model of her law can be chosen.";
+SR108 with sensor noise; it is taken out of the zoo first, so that no model of its law can be chosen.";
 
 /// Show the whole loop: ship, trials, source, refinement, champion, report.
 #[derive(Debug, Args)]
@@ -105,7 +105,7 @@ async fn tell(running: &Running, trials: &[Trial], out: &Path) -> Result<(), Fai
     let api = Api::new(running.url());
     output::note(&format!("2/8  server on {} with an embedded database in {}", running.url(), out.display()));
     api.delete(&format!("/v1/ships/{TRUTH}")).await?;
-    output::note("3/8  creating the ship northern-star; SR108 is taken out of the zoo, she made the trials");
+    output::note("3/8  creating the ship northern-star; SR108 is taken out of the zoo, as it made the trials");
     api.post_yaml("/v1/ships", SHIP.to_owned()).await?;
     upload(&api, trials).await?;
     let job = refine(&api, trials).await?;

@@ -18,7 +18,7 @@ pub struct RefinementInput<'a> {
     pub vessel: &'a Vessel,
     /// The trials that were given, fitted and held out.
     pub trials: &'a [&'a Trial],
-    /// How the source was found, where she was not named.
+    /// How the source was found, where it was not named.
     pub similarity: Option<&'a Similarity>,
     /// The version under which the model is kept, where it is kept.
     pub version: Option<VersionLabel>,

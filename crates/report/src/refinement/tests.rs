@@ -9,7 +9,7 @@ use sistership_model::{Vessel, Zoo};
 use super::{RefinementInput, render_refinement};
 use crate::rendered::{Rendered, VersionLabel};
 
-/// A record of a ship that answers her rudder, by a formula and not by the law that is fitted.
+/// A record of a ship that answers its rudder, by a formula and not by the law that is fitted.
 fn trial(name: &str, period_s: f64, rudder: f64) -> Trial {
     let mut trial = Trial { name: name.into(), ..Trial::default() };
     let (mut r, mut psi, mut x, mut y) = (0.0, 0.0_f64, 0.0, 0.0);
