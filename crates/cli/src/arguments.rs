@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 
 use crate::commands::{backup, family, fsck, gc, serve, ships, verify, work};
 use crate::commands::{check, derive, diagnose, manoeuvre, refine, similar, simulate};
-use crate::demo::Demo;
+use crate::demo::DemoArguments;
 
 const EXAMPLES: &str = "\
 SHIP and MODEL are a name in the zoo (`mariner`, `mariner/abkowitz`) or a YAML file.
@@ -39,39 +39,39 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Rank the ships of the zoo by similarity to a ship.
-    Similar(similar::Similar),
+    Similar(similar::SimilarArguments),
     /// Check trial files: units, signs, gaps, jumps, time.
-    Check(check::Check),
+    Check(check::CheckArguments),
     /// Refine a source model against a ship's trials.
-    Refine(Box<refine::Refine>),
+    Refine(Box<refine::RefineArguments>),
     /// Simulate recorded trials with a model and measure its errors.
-    Simulate(simulate::Simulate),
+    Simulate(simulate::SimulateArguments),
     /// Find what a model lacks, by trials that it has not seen.
-    Diagnose(diagnose::Diagnose),
+    Diagnose(diagnose::DiagnoseArguments),
     /// Sail turning circles and zigzags with a model and judge them by the IMO criteria.
-    Manoeuvre(manoeuvre::Manoeuvre),
+    Manoeuvre(manoeuvre::ManoeuvreArguments),
     /// Derive a law of motion from a list of actuators.
-    Derive(derive::Derive),
+    Derive(derive::DeriveArguments),
     /// Show the whole loop through the real server: ship, trials, source, refinement, champion, report.
-    Demo(Demo),
+    Demo(DemoArguments),
     /// Run the REST server.
-    Serve(serve::Serve),
+    Serve(serve::ServeArguments),
     /// Work on the jobs that servers queue, without serving.
-    Work(work::Work),
+    Work(work::WorkArguments),
     /// Find ships of a store by category, tag, particulars, metrics and similarity.
-    Ships(Box<ships::Ships>),
+    Ships(Box<ships::ShipsArguments>),
     /// Derive a version again from its recipe and compare the bytes.
-    Verify(verify::Verify),
+    Verify(verify::VerifyArguments),
     /// Families of ships: make one, learn from it, refine all of it.
-    Family(family::Family),
+    Family(family::FamilyArguments),
     /// Check every hash and every reference of a store.
-    Fsck(fsck::Fsck),
+    Fsck(fsck::FsckArguments),
     /// Remove objects that nothing refers to.
-    Gc(gc::Gc),
+    Gc(gc::GcArguments),
     /// Copy a store, while it is written, into a folder.
-    Backup(backup::Backup),
+    Backup(backup::BackupArguments),
     /// Make a store of a backup, in an empty place.
-    Restore(backup::Restore),
+    Restore(backup::RestoreArguments),
 }
 
 #[cfg(test)]

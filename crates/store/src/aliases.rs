@@ -67,7 +67,7 @@ record! {
 
 record! {
     /// A model whose row is locked.
-    pub struct Locked {
+    pub struct LockedModel {
         /// The model.
         pub name: String,
     }
@@ -165,7 +165,7 @@ pub(crate) async fn shift(store: &Store, tx: &mut Transaction, model: &str, to: 
 }
 
 async fn lock(tx: &mut Transaction, model: &str) -> Result<()> {
-    let locked: Option<Locked> = tx.optional(LOCK, args![model: model]).await?;
+    let locked: Option<LockedModel> = tx.optional(LOCK, args![model: model]).await?;
     locked.map(drop).ok_or_else(|| StoreError::missing("model", model))
 }
 

@@ -8,7 +8,7 @@ use sqlx::{PgPool, Postgres, Sqlite, SqlitePool};
 
 use crate::arguments::{Args, bind, check};
 use crate::error::Result;
-use crate::group::{Group, Part};
+use crate::group::{TransactionPart, WriterGroup};
 use crate::record::Record;
 use crate::statements::Statement;
 
@@ -18,7 +18,7 @@ pub(crate) const RESTED: Duration = Duration::from_secs(5);
 /// Who writes.
 #[derive(Debug, Clone)]
 pub(crate) enum Writer {
-    Sqlite(Group),
+    Sqlite(WriterGroup),
     Postgres(PgPool),
 }
 
@@ -31,7 +31,7 @@ pub(crate) enum Pool {
 
 /// A transaction of the database; it is undone unless [committed](Self::commit).
 pub(crate) enum DatabaseTransaction {
-    Sqlite(Part),
+    Sqlite(TransactionPart),
     Postgres(sqlx::Transaction<'static, Postgres>),
 }
 

@@ -32,7 +32,7 @@ statements! {
 }
 
 /// Somebody who asks as long as questions wait.
-struct Round(Store);
+struct QuestionRound(Store);
 
 impl Store {
     /// The version that an alias of a ship stands for; none where ship or alias are not there.
@@ -44,7 +44,7 @@ impl Store {
         }
         let (answer, answered) = oneshot::channel();
         if self.questions().enter(Question { ship: ship.to_owned(), alias: alias.to_owned(), answer }) {
-            tokio::spawn(Round(self.clone()).run());
+            tokio::spawn(QuestionRound(self.clone()).run());
         }
         match answered.await {
             Ok(found) => Ok(found),
@@ -54,7 +54,7 @@ impl Store {
     }
 }
 
-impl Round {
+impl QuestionRound {
     async fn run(self) {
         let mut reader = self.0.questions().kept();
         loop {
@@ -85,7 +85,7 @@ impl Round {
     }
 }
 
-impl Drop for Round {
+impl Drop for QuestionRound {
     /// However it ends, nobody waits for a round that is no more.
     fn drop(&mut self) {
         self.0.questions().ended();

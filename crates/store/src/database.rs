@@ -5,7 +5,7 @@ use crate::connections::{DatabaseTransaction, Pool, Reader, Writer};
 use crate::error::Result;
 use crate::record::Record;
 use crate::statements::Statement;
-use crate::unit::{Step, Unit};
+use crate::unit::{Unit, UnitStep};
 
 /// The connections of one database, to read and to write; the same ones but for SQLite, where one connection writes.
 #[derive(Debug, Clone)]
@@ -21,7 +21,7 @@ pub(crate) enum Transaction {
     /// One of its own.
     Alone(DatabaseTransaction),
     /// A part of a unit of work, which is kept with the whole of it.
-    Step(Step),
+    Step(UnitStep),
 }
 
 impl Database {

@@ -34,7 +34,7 @@ statements! {
 
 record! {
     /// A key as it is kept.
-    pub struct Entry {
+    pub struct KeyEntry {
         /// What was asked.
         pub request_sha256: String,
         /// The status that was answered.
@@ -143,12 +143,12 @@ fn taken_over(key: &str) -> StoreError {
 
 /// What to do with a key that is there already.
 async fn again(tx: &mut Transaction, scope: &str, key: &str, request_sha256: &str, now: i64) -> Result<Begun> {
-    let entry: Option<Entry> = tx.optional(GET, args![scope: scope, key: key]).await?;
+    let entry: Option<KeyEntry> = tx.optional(GET, args![scope: scope, key: key]).await?;
     Ok(match entry {
         // It was abandoned between two statements; the caller comes again.
         None => Begun::InProgress,
         Some(entry) if entry.request_sha256 != request_sha256 => Begun::Mismatch,
-        Some(Entry { status: Some(status), response, .. }) => Begun::Replay { status, body: response.unwrap_or_default() },
+        Some(KeyEntry { status: Some(status), response, .. }) => Begun::Replay { status, body: response.unwrap_or_default() },
         Some(_) => take_over(tx, scope, key, now).await?,
     })
 }

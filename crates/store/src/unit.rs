@@ -22,7 +22,7 @@ struct UnitState {
 }
 
 /// The unit while somebody uses it; a step of it is taken back unless [kept](Self::keep).
-pub(crate) struct Step {
+pub(crate) struct UnitStep {
     state: OwnedMutexGuard<UnitState>,
     writes: bool,
 }
@@ -35,7 +35,7 @@ impl fmt::Debug for Unit {
 
 impl Unit {
     /// Begins a step, and with the first one the transaction.
-    pub(crate) async fn step(&self, writer: &Writer) -> Result<Step> {
+    pub(crate) async fn step(&self, writer: &Writer) -> Result<UnitStep> {
         let mut step = self.enter().await?;
         if step.state.transaction.is_none() {
             step.state.transaction = Some(writer.begin().await?);
@@ -46,12 +46,12 @@ impl Unit {
     }
 
     /// The transaction to read in, if it has begun.
-    pub(crate) async fn open(&self) -> Result<Option<Step>> {
+    pub(crate) async fn open(&self) -> Result<Option<UnitStep>> {
         let step = self.enter().await?;
         Ok(step.state.transaction.is_some().then_some(step))
     }
 
-    async fn enter(&self) -> Result<Step> {
+    async fn enter(&self) -> Result<UnitStep> {
         let mut state = Arc::clone(&self.0).lock_owned().await;
         if state.ended {
             return Err(ended());
@@ -64,7 +64,7 @@ impl Unit {
             transaction.run("ROLLBACK TO SAVEPOINT step").await?;
             (state.transaction, state.ended) = (Some(transaction), false);
         }
-        Ok(Step { state, writes: false })
+        Ok(UnitStep { state, writes: false })
     }
 
     /// Ends it, and gives the transaction if it has begun.
@@ -75,7 +75,7 @@ impl Unit {
     }
 }
 
-impl Step {
+impl UnitStep {
     pub(crate) fn transaction(&mut self) -> Result<&mut DatabaseTransaction> {
         self.state.transaction.as_mut().ok_or_else(ended)
     }
@@ -87,7 +87,7 @@ impl Step {
     }
 }
 
-impl Drop for Step {
+impl Drop for UnitStep {
     fn drop(&mut self) {
         self.state.undo |= self.writes;
     }

@@ -33,7 +33,7 @@ statements! {
 
 record! {
     /// A number just taken.
-    pub struct Number {
+    pub struct NextNumber {
         /// The number.
         pub number: i64,
     }
@@ -109,7 +109,7 @@ pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewVersion
     if let Some(parent) = &new.parent {
         check_id(tx, "parent", parent).await?;
     }
-    let Number { number } = tx.one(NUMBER, args![model: &new.model]).await?;
+    let NextNumber { number } = tx.one(NUMBER, args![model: &new.model]).await?;
     let (id, sha256) = (store.new_id(), sha256_hex(new.document.as_bytes()));
     let values = args![id: &id, model: &new.model, number: number, parent: &new.parent, law: &new.law, method: &new.method,
         document: &new.document, sha256: &sha256, created_us: store.now_us()];

@@ -31,7 +31,7 @@ wind does look alike on one. The verdict is `complete`, `effects` or `unexplaine
 /// Find what a model lacks, by trials that it has not seen.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Diagnose {
+pub struct DiagnoseArguments {
     /// The model: a name in the zoo, a model file, or a vessel file with a model.
     #[arg(long)]
     model: String,
@@ -76,7 +76,7 @@ struct DiagnoseDocument<'a> {
 ///
 /// # Errors
 /// The model, a trial or a setting is refused, or a file cannot be written.
-pub fn run(zoo: &Zoo, arguments: &Diagnose) -> Result<(), Failure> {
+pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
     let settings = settings(arguments)?;
     let (model, law) = named::model(zoo, &arguments.model)?;
     let named: Vec<PathBuf> = arguments.trials.iter().cloned().chain([PathBuf::from(&arguments.model)]).collect();
@@ -98,7 +98,7 @@ pub fn run(zoo: &Zoo, arguments: &Diagnose) -> Result<(), Failure> {
 }
 
 /// What can be seen in the call alone is a call that is wrong.
-fn settings(arguments: &Diagnose) -> Result<Settings, Failure> {
+fn settings(arguments: &DiagnoseArguments) -> Result<Settings, Failure> {
     let default = Settings::default();
     let settings = Settings {
         restart_s: arguments.restart_s,

@@ -10,7 +10,7 @@ use sistership_store::StoreError;
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
 use crate::output::{self, count, note};
-use crate::table::{Table, number};
+use crate::table::{TextTable, number};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -23,7 +23,7 @@ Examples:
 /// Families of ships: make one, learn from it, refine all of it.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Family {
+pub struct FamilyArguments {
     #[command(subcommand)]
     what: FamilyAction,
     #[command(flatten)]
@@ -106,7 +106,7 @@ enum PriorArgument {
 ///
 /// # Errors
 /// What is named is not there, or the store says no.
-pub fn run(family: &Family) -> Result<(), Failure> {
+pub fn run(family: &FamilyArguments) -> Result<(), Failure> {
     let (document, text) = with_archive(&family.store, async |archive| done(&family.what, archive).await)?;
     output::print(family.json, &document, || text)
 }
@@ -127,9 +127,9 @@ enum FamilyError {
 }
 
 /// What was done, as a document and in words.
-type Done = Result<(Value, String), FamilyError>;
+type FamilyResult = Result<(Value, String), FamilyError>;
 
-async fn done(what: &FamilyAction, archive: &Archive) -> Done {
+async fn done(what: &FamilyAction, archive: &Archive) -> FamilyResult {
     let families = archive.store.families();
     match what {
         FamilyAction::Create { family, foundation, ship } => {
@@ -177,14 +177,14 @@ async fn version(archive: &Archive, name: &str) -> Result<String, FamilyError> {
     Ok(archive.store.versions().get(ship, number).await?.head.id)
 }
 
-async fn added(archive: &Archive, family: &str, ships: &[String]) -> Done {
+async fn added(archive: &Archive, family: &str, ships: &[String]) -> FamilyResult {
     let new = archive.store.families().add(family, ships).await?;
     let members = archive.store.families().count(family).await?;
     let text = format!("{family}: {new} added, {}", count(usize::try_from(members).unwrap_or(0), "member"));
     Ok((json!({ "family": family, "added": new, "members": members }), text))
 }
 
-async fn learned(archive: &Archive, family: &str) -> Done {
+async fn learned(archive: &Archive, family: &str) -> FamilyResult {
     let told = |fraction: f64, what: &str| {
         note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true
@@ -192,7 +192,7 @@ async fn learned(archive: &Archive, family: &str) -> Done {
     let prior = learn(archive, family, &told).await?;
     let document = serde_json::to_string(&prior)?;
     let kept = archive.store.families().teach(family, &document).await?;
-    let mut table = Table::new(["coefficient", "mean", "differs by", "told by trials"]);
+    let mut table = TextTable::new(["coefficient", "mean", "differs by", "told by trials"]);
     for axis in &prior.axes {
         for (j, name) in axis.names.iter().enumerate() {
             table.row([name.clone(), number(axis.mean[j]), number(axis.deviation[j]), format!("{:.2}", axis.told_by_trials[j])]);
@@ -208,7 +208,7 @@ async fn learned(archive: &Archive, family: &str) -> Done {
     Ok((json!({ "family": family, "revision": kept.revision, "prior": prior }), format!("{head}{table}")))
 }
 
-async fn status(archive: &Archive, id: &str) -> Done {
+async fn status(archive: &Archive, id: &str) -> FamilyResult {
     let bulk = archive.store.bulks().get(id).await?;
     let standing = Standing::of(&archive.store, &bulk).await?;
     let mut text = format!("{} of {}: {}, {} of {} ships done", bulk.id, bulk.family, standing.state, standing.done, bulk.ships);

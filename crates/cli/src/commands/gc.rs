@@ -21,7 +21,7 @@ Servers and workers may go on.";
 /// Remove objects that nothing refers to.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Gc {
+pub struct GcArguments {
     #[command(flatten)]
     store: StoreArguments,
     /// Hours for which an object is left alone after it was put.
@@ -39,7 +39,7 @@ pub struct Gc {
 ///
 /// # Errors
 /// The store is not there, or does not answer.
-pub fn run(gc: &Gc) -> Result<(), Failure> {
+pub fn run(gc: &GcArguments) -> Result<(), Failure> {
     let collected = with_archive(&gc.store, async |archive| upkeep::gc(archive, gc.grace_h, gc.dry_run).await)?;
     output::print(gc.json, &collected, || text(&collected))
 }

@@ -28,7 +28,7 @@ Exit status 1 when a manoeuvre leaves the physical range.";
 /// Sail turning circles and zigzags with a model and judge them by the IMO criteria.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Manoeuvre {
+pub struct ManoeuvreArguments {
     /// The model: a name in the zoo, a model file, or a vessel file with a model.
     #[arg(long)]
     model: String,
@@ -77,7 +77,7 @@ pub struct Manoeuvre {
 ///
 /// # Errors
 /// The model is refused or a manoeuvre leaves the physical range.
-pub fn run(zoo: &Zoo, manoeuvre: &Manoeuvre) -> Result<(), Failure> {
+pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     if manoeuvre.out.is_some() && manoeuvre.turn.len() + manoeuvre.zigzag.len() != 1 {
         return Err(Failure::Call("--out writes the track of a single manoeuvre: give one --turn or one --zigzag".into()));
     }
@@ -97,7 +97,7 @@ pub fn run(zoo: &Zoo, manoeuvre: &Manoeuvre) -> Result<(), Failure> {
 }
 
 /// Moves a law that is expanded about a speed to the speed asked for, and says so.
-fn remarks(manoeuvre: &Manoeuvre, model: &mut Model, law: &Law) -> Vec<String> {
+fn remarks(manoeuvre: &ManoeuvreArguments, model: &mut Model, law: &Law) -> Vec<String> {
     let mut remarks = Vec::new();
     if let (Some(speed), Some(own), Some(_)) = (manoeuvre.speed_m_s, model.speed_m_s, law.approach_speed_parameter())
         && speed != own
@@ -115,7 +115,7 @@ fn remarks(manoeuvre: &Manoeuvre, model: &mut Model, law: &Law) -> Vec<String> {
     remarks
 }
 
-fn ship(manoeuvre: &Manoeuvre, model: &Model, law: &Law) -> Result<Ship, Failure> {
+fn ship(manoeuvre: &ManoeuvreArguments, model: &Model, law: &Law) -> Result<Ship, Failure> {
     let mut ship = ready(model, law)?;
     let speed = manoeuvre.speed_m_s.unwrap_or(ship.approach_speed_m_s());
     ship.set_envelope_speed(speed);
@@ -129,7 +129,7 @@ fn ship(manoeuvre: &Manoeuvre, model: &Model, law: &Law) -> Result<Ship, Failure
     Ok(ship)
 }
 
-fn settings(manoeuvre: &Manoeuvre) -> ManoeuvreSettings {
+fn settings(manoeuvre: &ManoeuvreArguments) -> ManoeuvreSettings {
     ManoeuvreSettings {
         speed_m_s: manoeuvre.speed_m_s,
         n_rps: manoeuvre.n_rps,
@@ -141,7 +141,7 @@ fn settings(manoeuvre: &Manoeuvre) -> ManoeuvreSettings {
 }
 
 /// The bands that are asked for.
-fn drawn(manoeuvre: &Manoeuvre, model: &Model, law: &Law) -> Result<Option<Bands>, Failure> {
+fn drawn(manoeuvre: &ManoeuvreArguments, model: &Model, law: &Law) -> Result<Option<Bands>, Failure> {
     let Some(samples) = manoeuvre.bands else { return Ok(None) };
     let sampling = Sampling { samples, seed: manoeuvre.seed };
     sampling.check().map_err(|message| Failure::Call(format!("--bands: {message}")))?;

@@ -35,7 +35,7 @@ whole manoeuvres left out is taken. Give several manoeuvres; a single one allows
 /// Refine a source model against a ship's trials.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Refine {
+pub struct RefineArguments {
     /// The ship: a name in the zoo or a vessel file.
     #[arg(long)]
     ship: String,
@@ -121,7 +121,7 @@ struct RefineDocument<'a> {
 ///
 /// # Errors
 /// The ship, the source, a trial or the refinement is refused, or a file cannot be written.
-pub fn run(zoo: &Zoo, arguments: &Refine) -> Result<(), Failure> {
+pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     let target = named::ship(zoo, &arguments.ship)?;
     let mut settings = settings(arguments)?;
     let named = arguments.source.as_deref().filter(|source| *source != "auto");
@@ -172,7 +172,7 @@ fn report_html(
 }
 
 /// Settings from the file, if any, and the flags.
-fn settings(arguments: &Refine) -> Result<Settings, Failure> {
+fn settings(arguments: &RefineArguments) -> Result<Settings, Failure> {
     let mut settings = arguments.settings.as_deref().map(settings_file).transpose()?.unwrap_or_default();
     settings.method = arguments.method.unwrap_or(settings.method);
     settings.restart_s = arguments.restart_s.or(settings.restart_s);
@@ -183,7 +183,7 @@ fn settings(arguments: &Refine) -> Result<Settings, Failure> {
     Ok(settings)
 }
 
-fn named_files(arguments: &Refine) -> Vec<PathBuf> {
+fn named_files(arguments: &RefineArguments) -> Vec<PathBuf> {
     let files = arguments.trials.iter().chain(&arguments.settings).cloned();
     files.chain([PathBuf::from(&arguments.ship)]).collect()
 }

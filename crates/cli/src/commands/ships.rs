@@ -9,7 +9,7 @@ use sistership_server::search::{self, FactRange, FoundShip, MAX_RANGES, Page, Se
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
 use crate::output;
-use crate::table::{Table, number};
+use crate::table::{TextTable, number};
 use crate::values::definition;
 
 const EXAMPLES: &str = "\
@@ -24,7 +24,7 @@ similar first. Values are SI; metrics are those of the champion's standard manoe
 /// Find ships of a store.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Ships {
+pub struct ShipsArguments {
     #[command(flatten)]
     store: StoreArguments,
     /// Of this category only.
@@ -57,7 +57,7 @@ pub struct Ships {
 ///
 /// # Errors
 /// The store is not there or does not answer, or there is no ship to be similar to.
-pub fn run(ships: &Ships) -> Result<(), Failure> {
+pub fn run(ships: &ShipsArguments) -> Result<(), Failure> {
     let ranges: Vec<FactRange> = ships.particular.iter().chain(&ships.metric).cloned().collect();
     if ranges.len() > MAX_RANGES {
         return Err(Failure::Call(format!("at most {MAX_RANGES} ranges can be asked for at once")));
@@ -81,7 +81,7 @@ fn document(ships: &[FoundShip], more: bool) -> Value {
 }
 
 fn text(ships: &[FoundShip], more: bool) -> String {
-    let mut table = Table::new(["ship", "category", "value", "title"]);
+    let mut table = TextTable::new(["ship", "category", "value", "title"]);
     for ship in ships {
         let value = ship.value.map_or_else(|| "-".to_owned(), number);
         table.row([ship.name.clone(), ship.category.clone(), value, ship.title.clone()]);

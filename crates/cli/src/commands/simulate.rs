@@ -12,7 +12,7 @@ use sistership_model::{Law, Model, Zoo};
 use crate::commands::simulated::{SimulatedTrial, TrialSimulator, total};
 use crate::failure::Failure;
 use crate::output::{self, count, note};
-use crate::table::{Table, number};
+use crate::table::{TextTable, number};
 use crate::trials::{self, ReadTrial};
 use crate::values::{Integration, positive};
 use crate::{commands::model_line, folder, named, track};
@@ -29,7 +29,7 @@ standard deviation of the channel over the trials given. Exit status 1 when a si
 /// Simulate recorded trials with a model and measure its errors.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Simulate {
+pub struct SimulateArguments {
     /// The model: a name in the zoo, a model file, or a vessel file with a model.
     #[arg(long)]
     model: String,
@@ -65,7 +65,7 @@ struct SimulateDocument<'a> {
 ///
 /// # Errors
 /// The model or a trial is refused, a channel is missing, or a simulation leaves the physical range.
-pub fn run(zoo: &Zoo, simulate: &Simulate) -> Result<(), Failure> {
+pub fn run(zoo: &Zoo, simulate: &SimulateArguments) -> Result<(), Failure> {
     let (model, law) = named::model(zoo, &simulate.model)?;
     let read = trials::read(&simulate.trials)?;
     trials::remark_other_ship(&read, &model.ship);
@@ -77,14 +77,14 @@ pub fn run(zoo: &Zoo, simulate: &Simulate) -> Result<(), Failure> {
     if simulated.iter().any(|trial| trial.diverged) { Err(Failure::Told) } else { Ok(()) }
 }
 
-fn promised(simulate: &Simulate, read: &[ReadTrial]) -> Result<Vec<folder::PromisedTrack>, Failure> {
+fn promised(simulate: &SimulateArguments, read: &[ReadTrial]) -> Result<Vec<folder::PromisedTrack>, Failure> {
     let Some(out) = &simulate.out else { return Ok(Vec::new()) };
     let names: Vec<&str> = read.iter().map(|read| read.trial.name.as_str()).collect();
     folder::promise(out, &names, &trials::inputs(read, &simulate.trials))
 }
 
 fn simulate_all(
-    simulate: &Simulate,
+    simulate: &SimulateArguments,
     model: &Model,
     law: &Law,
     read: &[ReadTrial],
@@ -114,10 +114,10 @@ fn written(
     runs.into_iter().zip(read).map(one).collect()
 }
 
-fn text(simulate: &Simulate, model: &Model, law: &Law, document: &SimulateDocument<'_>) -> String {
+fn text(simulate: &SimulateArguments, model: &Model, law: &Law, document: &SimulateDocument<'_>) -> String {
     let restart = simulate.restart_s.map_or("once from the first sample".to_owned(), |s| format!("anew every {} s", number(s)));
     let head = format!("{}\nstarted {restart}; root mean square errors\n\n", model_line(model, law));
-    let mut table = Table::new(["trial", "s", "u m/s", "v m/s", "r deg/s", "psi deg", "x m", "y m", "std. MSE"]);
+    let mut table = TextTable::new(["trial", "s", "u m/s", "v m/s", "r deg/s", "psi deg", "x m", "y m", "std. MSE"]);
     document
         .trials
         .iter()

@@ -22,7 +22,7 @@ Exit status 1 when the bytes differ or the version cannot be derived.";
 /// Derive a version again from its recipe and compare the bytes.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Verify {
+pub struct VerifyArguments {
     /// The version: ship and number.
     #[arg(value_name = "SHIP/NUMBER", value_parser = version)]
     version: (String, i64),
@@ -37,7 +37,7 @@ pub struct Verify {
 ///
 /// # Errors
 /// The store or the version is not there, or the version is not what its recipe gives.
-pub fn run(verify: &Verify) -> Result<(), Failure> {
+pub fn run(verify: &VerifyArguments) -> Result<(), Failure> {
     let verification = with_archive(&verify.store, async |archive| verification(verify, archive).await)?;
     output::print(verify.json, &verification, || text(&verification))?;
     if verification.identical { Ok(()) } else { Err(Failure::Told) }
@@ -52,7 +52,7 @@ struct VerifyError {
     error: DeriveError,
 }
 
-async fn verification(verify: &Verify, archive: &Archive) -> Result<Verification, VerifyError> {
+async fn verification(verify: &VerifyArguments, archive: &Archive) -> Result<Verification, VerifyError> {
     let (ship, number) = &verify.version;
     let told = |fraction: f64, what: &str| {
         note(&format!("{:3.0} % {what}", 100.0 * fraction));

@@ -14,7 +14,7 @@ use sistership_model::{Trial, Zoo};
 use sistership_server::{Config, Running, Server};
 use sistership_trials::samples::to_csv;
 
-use self::client::Api;
+use self::client::ApiClient;
 use self::sea_trials::{TrialManoeuvre, record};
 use crate::commands::refine_text;
 use crate::commands::store::block_on;
@@ -49,7 +49,7 @@ SR108 with sensor noise; it is taken out of the zoo first, so that no model of i
 /// Show the whole loop: ship, trials, source, refinement, champion, report.
 #[derive(Debug, Args)]
 #[command(after_help = ABOUT)]
-pub struct Demo {
+pub struct DemoArguments {
     /// Where the database, the samples and the report go; emptied first.
     #[arg(long, value_name = "FOLDER", default_value = "demo-out")]
     out: PathBuf,
@@ -59,7 +59,7 @@ pub struct Demo {
 ///
 /// # Errors
 /// What the server refuses, or a file that cannot be written.
-pub fn run(demo: &Demo, zoo: &Zoo) -> Result<(), Failure> {
+pub fn run(demo: &DemoArguments, zoo: &Zoo) -> Result<(), Failure> {
     let trials = sail(zoo)?;
     empty(&demo.out)?;
     block_on(async {
@@ -102,7 +102,7 @@ fn empty(folder: &Path) -> Result<(), Failure> {
 }
 
 async fn tell(running: &Running, trials: &[Trial], out: &Path) -> Result<(), Failure> {
-    let api = Api::new(running.url());
+    let api = ApiClient::new(running.url());
     output::note(&format!("2/8  server on {} with an embedded database in {}", running.url(), out.display()));
     api.delete(&format!("/v1/ships/{TRUTH}")).await?;
     output::note("3/8  creating the ship northern-star; SR108 is taken out of the zoo, as it made the trials");
@@ -121,7 +121,7 @@ async fn tell(running: &Running, trials: &[Trial], out: &Path) -> Result<(), Fai
     output::print(false, &job, || format!("Root mean square errors, {}\n{}", held_out.how, refine_text::errors(&held_out, false)))
 }
 
-async fn upload(api: &Api, trials: &[Trial]) -> Result<(), Failure> {
+async fn upload(api: &ApiClient, trials: &[Trial]) -> Result<(), Failure> {
     let mut files = Vec::new();
     let mut entries = Vec::new();
     for trial in trials {
@@ -139,7 +139,7 @@ async fn upload(api: &Api, trials: &[Trial]) -> Result<(), Failure> {
 }
 
 /// Asks for a refinement and follows its job.
-async fn refine(api: &Api, trials: &[Trial]) -> Result<Value, Failure> {
+async fn refine(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failure> {
     let held_out: Vec<&str> = trials[trials.len() - JUDGED..].iter().map(|trial| trial.name.as_str()).collect();
     let request = json!({ "ship": NAME, "source": "auto", "settings": { "held_out": held_out } });
     let queued = api.post_json("/v1/refinements", &request).await?;

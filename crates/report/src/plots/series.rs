@@ -4,7 +4,7 @@ use sistership_model::trial::Channel;
 
 use super::axes::{Scale, columns, extent, padded, rows, shown};
 use super::decimate::path;
-use super::lines::{self, Line};
+use super::lines::{self, PlottedLine};
 use super::{Plot, Shape, WIDTH};
 use crate::replayed::ReplayedTrial;
 use crate::words::{self, RUDDER, ShownChannel};
@@ -69,7 +69,7 @@ fn panel(
     shapes
 }
 
-fn curve(replayed: &ReplayedTrial<'_>, line: &Line<f64>, time: &Scale, scale: &Scale) -> Shape {
+fn curve(replayed: &ReplayedTrial<'_>, line: &PlottedLine<f64>, time: &Scale, scale: &Scale) -> Shape {
     let starts = lines::starts(replayed.trial);
     let place = |(value, sample): (&f64, &usize)| (time.at(replayed.trial.t_s[*sample]), scale.at(*value));
     let points: Vec<(f64, f64)> = line.values.iter().zip(&line.samples).map(place).collect();
