@@ -1,4 +1,4 @@
-//! Leave-one-ship-out: a ship with little data, held by what her family teaches, or by the nearest ship's model.
+//! Leave-one-ship-out: a ship with little data, held by what its family teaches, or by the nearest ship's model.
 
 mod regressions;
 mod ships;
@@ -23,7 +23,7 @@ const NEW: [(Sailed, f64); 2] = [(Sailed::Zigzag(10.0), 20.0), (Sailed::Zigzag(-
 /// The weakest prior: of the whole path, and of its most conservative range, which may suit the nearest ship better.
 const PATH: f64 = 1e-6;
 const HELD: f64 = 1.0;
-/// What she is judged by, none of which she has sailed.
+/// What it is judged by, none of which it has sailed.
 const JUDGED: [(Sailed, f64); 3] = [(Sailed::Turn(35.0), 15.0), (Sailed::Turn(-35.0), 15.0), (Sailed::Zigzag(20.0), 25.0)];
 
 type Values = BTreeMap<String, f64>;
@@ -68,12 +68,12 @@ fn nearest<'a>(of: &Known, others: &[&'a Known]) -> &'a Known {
     others.iter().min_by(|a, b| far(a).total_cmp(&far(b))).expect("another ship")
 }
 
-/// Root mean square of the error in yaw rate by that of the yaw rate, over manoeuvres she has not sailed; none where it diverges.
+/// Root mean square of the error in yaw rate by that of the yaw rate, over manoeuvres it has not sailed; none where it diverges.
 fn error(model: &Model, truth: &Model, law: &Law) -> Option<f64> {
     let (mut wrong, mut whole) = (0.0_f64, 0.0);
     for (what, lengths) in JUDGED {
-        let (ours, hers) = (sail(model, law, what, lengths)?, sail(truth, law, what, lengths)?);
-        for (a, b) in ours.states.iter().zip(&hers.states) {
+        let (modelled, sailed) = (sail(model, law, what, lengths)?, sail(truth, law, what, lengths)?);
+        for (a, b) in modelled.states.iter().zip(&sailed.states) {
             wrong += (a[at::R] - b[at::R]).powi(2);
             whole += b[at::R].powi(2);
         }
@@ -94,13 +94,13 @@ fn a_family_tells_more_of_a_new_ship_than_her_nearest_sister() {
     let source = values(&foundation);
     let own: Vec<Model> = known.iter().map(|one| refined(&one.ship.frame, &one.all, Prior::Source(&source), PATH)).collect();
     println!("error in yaw rate, %: the model of the nearest ship, refined on two zigzags, and held more tightly; the family's");
-    println!("mean, and refined with the family's prior on the same zigzags; refined on all of her own trials");
+    println!("mean, and refined with the family's prior on the same zigzags; refined on all of its own trials");
     let mut table: [Vec<f64>; 6] = Default::default();
     for (index, out) in known.iter().enumerate() {
         let others: Vec<&Known> = known.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, one)| one).collect();
         let sister = nearest(out, &others);
         let place = known.iter().position(|one| one.ship.name == sister.ship.name).expect("a sister");
-        let hers = values(&own[place]);
+        let own_values = values(&own[place]);
         let members: Vec<Member<'_>> = others.iter().map(|one| Member { name: &one.ship.name, trials: &one.all }).collect();
         let family = learn(&members).expect("a family");
         let axes = family.axes().expect("its axes");
@@ -112,9 +112,9 @@ fn a_family_tells_more_of_a_new_ship_than_her_nearest_sister() {
         };
         let mean: Values = axes.iter().flat_map(|axis| axis.names.iter().cloned().zip(axis.mean.iter().copied())).collect();
         let models = [
-            with(&hers),
-            refined(&out.ship.frame, &out.few, Prior::Source(&hers), PATH),
-            refined(&out.ship.frame, &out.few, Prior::Source(&hers), HELD),
+            with(&own_values),
+            refined(&out.ship.frame, &out.few, Prior::Source(&own_values), PATH),
+            refined(&out.ship.frame, &out.few, Prior::Source(&own_values), HELD),
             with(&mean),
             refined(&out.ship.frame, &out.few, prior, PATH),
             own[index].clone(),

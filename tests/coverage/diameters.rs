@@ -7,7 +7,7 @@ use sistership_model::{Law, Model};
 
 const TURN_DEG: f64 = 35.0;
 
-/// That of a model, m; none where she does not come round.
+/// That of a model, m; none where it does not come round.
 pub fn diameter(model: &Model, law: &Law) -> Option<f64> {
     diameters(&Ship::new(model, law).ok()?, &[Vec::new()]).pop()?
 }

@@ -14,7 +14,7 @@ use super::setting;
 const SHIPS: [&str; 5] = ["mariner", "kvlcc2", "kcs", "kvlcc2-7m", "esso-tanker"];
 const ORDERS: [(f64, f64); 4] = [(10.0, 10.0), (-20.0, 20.0), (20.0, 20.0), (-10.0, 10.0)];
 
-/// Tactical diameters at 35 deg in lengths: the truth, the source's, the refined model's and her band.
+/// Tactical diameters at 35 deg in lengths: the truth, the source's, the refined model's and its band.
 struct Turned {
     ship: &'static str,
     truth: f64,
@@ -32,7 +32,7 @@ impl Turned {
     }
 }
 
-/// A ship like one of the zoo, refined from her on zigzags under gusts and noise.
+/// A ship like one of the zoo, refined from it on zigzags under gusts and noise.
 fn turned(zoo: &Zoo, (seed, index): (u64, usize), method: Method) -> Turned {
     let ship = SHIPS[index % SHIPS.len()];
     let source = zoo.model(ship).unwrap_or_else(|error| panic!("{error}"));

@@ -57,7 +57,7 @@ fn judge_rudder_offset(model: &Model, law: &Law) {
     assert!((offset - 1.5).abs() < 0.05, "{offset} deg");
 }
 
-/// The zoo's own model of her, as published.
+/// The zoo's own model of it, as published.
 fn as_published() -> (Model, &'static Law) {
     let model = published();
     let law = ZOO.law(&model.law).unwrap();

@@ -4,7 +4,7 @@ use sistership_tests::binary;
 
 use super::sea_trials::{NAME, csv, manifest, ship, trials};
 
-/// A folder with the ship, her trials and their manifest.
+/// A folder with the ship, its trials and their manifest.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let trials = trials();

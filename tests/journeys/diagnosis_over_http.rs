@@ -12,7 +12,7 @@ use super::lacking::{EFFECT, NAME, OFFSET_DEG, further, manifest, ship, sound, t
 use super::over_http::shapes;
 use super::sea_trials::csv;
 
-/// Creates the ship, whose document publishes a model: her first champion.
+/// Creates the ship, whose document publishes a model: its first champion.
 async fn create(server: &TestServer) {
     let request = server.request(Method::POST, "/v1/ships").header("content-type", "application/yaml").body(ship());
     let (status, created) = answer(request.send().await.expect("an answer")).await;

@@ -138,7 +138,7 @@ async fn a_family_is_learned_from_and_refined(database: TestDatabase) {
     fsck(&server);
 }
 
-/// A new trial of another ship's, under one's own name: her model no longer holds on it, and she is listed first.
+/// A new trial of another ship's, under one's own name: its model no longer holds on it, and it is listed first.
 async fn drift_is_seen(server: &TestServer, store: &Store) {
     let strange = store.trials().list(&name(7), &Page::first(1)).await.expect("trials").items.remove(0);
     let new = sistership_store::NewTrial {
@@ -155,7 +155,7 @@ async fn drift_is_seen(server: &TestServer, store: &Store) {
     };
     store.trials().insert(&new).await.expect("a new trial");
     let drift = server.get(&format!("/v1/ships/{}/drift", name(5))).await;
-    let trials = drift["trials"].as_array().expect("her trials");
+    let trials = drift["trials"].as_array().expect("its trials");
     assert_eq!(trials.iter().filter(|trial| trial["fitted"] == false).count(), 1, "{drift}");
     assert!(drift["worst"].as_f64().is_some_and(|worst| worst > 1.2), "{drift}");
     let family = server.get(&format!("{FAMILY}/drift")).await;

@@ -1,9 +1,9 @@
-//! A ship with a published model, and trials that she sails with her rudder 4 degrees off what its indicator says.
+//! A ship with a published model, and trials that it sails with its rudder 4 degrees off what its indicator says.
 
 use std::collections::BTreeMap;
 
 use serde_json::json;
-use sistership::sea_trials::{Manoeuvre, record};
+use sistership::sea_trials::{TrialManoeuvre, record};
 use sistership_dynamics::Ship;
 use sistership_model::effect::AppliedEffect;
 use sistership_model::quantity::Quantity;
@@ -11,7 +11,7 @@ use sistership_model::{Trial, Zoo};
 
 /// The name of the ship.
 pub const NAME: &str = "lacking";
-/// The effect that her model lacks, and how large it is, deg.
+/// The effect that its model lacks, and how large it is, deg.
 pub const EFFECT: &str = "rudder-offset";
 pub const OFFSET_DEG: f64 = 4.0;
 /// What is left of a trial: so many seconds, and one sample of so many (of 2 Hz).
@@ -29,20 +29,20 @@ pub fn ship() -> String {
 
 /// Three short trials sampled every two seconds, sailed with the rudder off.
 pub fn trials() -> Vec<Trial> {
-    sailed(&[Manoeuvre::Zigzag(10.0, 10.0), Manoeuvre::Turn(-12.0), Manoeuvre::Zigzag(-15.0, 10.0)], OFFSET_DEG, 5)
+    sailed(&[TrialManoeuvre::Zigzag(10.0, 10.0), TrialManoeuvre::Turn(-12.0), TrialManoeuvre::Zigzag(-15.0, 10.0)], OFFSET_DEG, 5)
 }
 
 /// One more of them.
 pub fn further() -> Vec<Trial> {
-    sailed(&[Manoeuvre::Turn(15.0), Manoeuvre::Zigzag(-10.0, 5.0)], OFFSET_DEG, 6)
+    sailed(&[TrialManoeuvre::Turn(15.0), TrialManoeuvre::Zigzag(-10.0, 5.0)], OFFSET_DEG, 6)
 }
 
 /// Trials whose indicator says what the rudder does.
 pub fn sound() -> Vec<Trial> {
-    sailed(&[Manoeuvre::Zigzag(10.0, 10.0), Manoeuvre::Turn(-12.0)], 0.0, 7)
+    sailed(&[TrialManoeuvre::Zigzag(10.0, 10.0), TrialManoeuvre::Turn(-12.0)], 0.0, 7)
 }
 
-fn sailed(programme: &[Manoeuvre], offset_deg: f64, seed: u64) -> Vec<Trial> {
+fn sailed(programme: &[TrialManoeuvre], offset_deg: f64, seed: u64) -> Vec<Trial> {
     let zoo = zoo();
     let mut model = zoo.model("mariner").unwrap_or_else(|error| panic!("{error}"));
     model.effects.extend((offset_deg != 0.0).then(|| rudder_off(&zoo, offset_deg)));

@@ -16,7 +16,7 @@ pub async fn create(server: &TestServer) {
     assert_eq!((status, created["name"].as_str()), (201, Some(NAME)), "{created}");
 }
 
-/// Uploads her trials by manifest.
+/// Uploads its trials by manifest.
 pub async fn upload(server: &TestServer) -> Value {
     let trials = trials();
     let form = Form::new().text("manifest", manifest(&trials));
@@ -36,7 +36,7 @@ pub async fn refine(server: &TestServer, key: &str) -> String {
 }
 
 async fn journey(server: TestServer) {
-    // SR108 made the trials: she must not be her own source.
+    // SR108 made the trials: it must not be its own source.
     assert_eq!(server.send(Method::DELETE, "/v1/ships/sr108", &Value::Null, &[]).await.0, 204);
     create(&server).await;
     upload(&server).await;

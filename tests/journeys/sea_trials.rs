@@ -1,7 +1,7 @@
 //! A ship to create and trials to upload, sailed by SR108's own law.
 
 use serde_json::json;
-use sistership::sea_trials::{Manoeuvre, record};
+use sistership::sea_trials::{TrialManoeuvre, record};
 use sistership_dynamics::Ship;
 use sistership_model::{Trial, Zoo};
 use sistership_trials::samples::to_csv;
@@ -16,12 +16,17 @@ pub fn ship() -> String {
     )
 }
 
-/// Her trials, with the noise of real instruments.
+/// Its trials, with the noise of real instruments.
 pub fn trials() -> Vec<Trial> {
     let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
     let model = zoo.model("sr108").unwrap_or_else(|error| panic!("{error}"));
     let ship = Ship::new(&model, zoo.law(&model.law).expect("the law of a zoo model")).expect("a ready ship");
-    let programme = [Manoeuvre::Zigzag(10.0, 10.0), Manoeuvre::Zigzag(20.0, 20.0), Manoeuvre::Turn(12.0), Manoeuvre::Turn(-20.0)];
+    let programme = [
+        TrialManoeuvre::Zigzag(10.0, 10.0),
+        TrialManoeuvre::Zigzag(20.0, 20.0),
+        TrialManoeuvre::Turn(12.0),
+        TrialManoeuvre::Turn(-20.0),
+    ];
     record(&ship, 10.47, &programme, 3).unwrap_or_else(|stopped| panic!("{stopped}"))
 }
 

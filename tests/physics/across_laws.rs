@@ -42,7 +42,7 @@ fn refined(source: &Model, own: &Law, law: &Law, trials: &[Trial]) -> Refinement
     refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Tactical diameter at 35 deg in lengths; none where she does not turn.
+/// Tactical diameter at 35 deg in lengths; none where it does not turn.
 fn diameter(model: &Model, law: &Law) -> Option<f64> {
     let ship = ready(model, law);
     let turn = turn(&ship, 35.0, &ManoeuvreSettings::default()).ok()?;
@@ -79,6 +79,6 @@ fn a_law_under_another_name_says_the_same() {
     let source = refined(&kvlcc2, &mmg, law, &trials).transferred;
     let renamed = Law { name: "low-speed-again".into(), ..(**law).clone() };
     let again = refined(&source, law, &renamed, &trials).transferred;
-    let [before, after] = [&source, &again].map(|model| diameter(model, law).expect("she turns"));
+    let [before, after] = [&source, &again].map(|model| diameter(model, law).expect("it turns"));
     assert!((before - after).abs() < 0.01 * before, "{before} became {after}");
 }

@@ -1,4 +1,4 @@
-//! Made-up fleets: ships like the Mariner in size and law, each with coefficients of her own, and trials that they have sailed.
+//! Made-up fleets: ships like the Mariner in size and law, each with coefficients of its own, and trials that they have sailed.
 
 use std::sync::Arc;
 
@@ -27,11 +27,11 @@ const NOISE: [(Channel, f64); 3] = [(Channel::U, 0.01), (Channel::V, 0.01), (Cha
 const INTERVAL_S: usize = 2;
 const DURATION_S: f64 = 500.0;
 
-/// A ship of a fleet with the samples of her trials.
+/// A ship of a fleet with the samples of its trials.
 pub struct Made {
-    /// Her row.
+    /// Its row.
     pub ship: NewShip,
-    /// Her trials.
+    /// Its trials.
     pub trials: Vec<(NewTrial, Bytes)>,
 }
 
@@ -46,7 +46,7 @@ impl Yard {
     /// The Mariner's.
     ///
     /// # Panics
-    /// Where the zoo does not have her.
+    /// Where the zoo does not have it.
     pub fn new() -> Self {
         let zoo = Zoo::embedded().expect("the zoo");
         let model = zoo.model(FOUNDATION).expect("the foundation");
@@ -69,12 +69,12 @@ impl Yard {
         truth.coefficients.values_mut().for_each(|quantity| quantity.value *= own(&mut rng));
         let ship = Ship::new(&truth, &self.law).expect("a ship");
         let trials = (0..trials).map(|trial| self.trial(&name, &ship, trial, &mut rng)).collect();
-        let document = serde_json::to_string(&vessel.file).expect("her document");
+        let document = serde_json::to_string(&vessel.file).expect("its document");
         let (title, category) = (vessel.file.title.clone(), vessel.file.category.clone());
         Made { ship: NewShip { name, title, category, document }, trials }
     }
 
-    /// The Mariner's particulars at another scale, without her models.
+    /// The Mariner's particulars at another scale, without its models.
     fn vessel(&self, name: &str, scale: f64) -> Vessel {
         let of = |particular: &str| self.vessel.particular(particular).expect("a particular of the Mariner");
         let text = format!(

@@ -113,7 +113,7 @@ impl Pilot {
     }
 }
 
-/// A ship like another: every coefficient times a normal number of mean 1, so drawn that she sails the standard
+/// A ship like another: every coefficient times a normal number of mean 1, so drawn that it sails the standard
 /// manoeuvres.
 pub fn relative(model: &Model, law: &Law, deviation: f64, rng: &mut ChaCha12Rng) -> Model {
     loop {

@@ -51,7 +51,7 @@ fn unknowns_of_the_hybrids_of_the_zoo() {
     assert_eq!(count("hybrid-single-screw"), 4 * 41 + 3 + 10);
 }
 
-/// The Esso Osaka 3 m model on the derived law; `values` are her coefficients.
+/// The Esso Osaka 3 m model on the derived law; `values` are its coefficients.
 fn esso_osaka(values: &str) -> Ship {
     let (zoo, model) = esso_osaka_model(values);
     Ship::new(&model, zoo.law(&model.law).expect("derived")).unwrap_or_else(|error| panic!("{error}"))
@@ -122,7 +122,7 @@ fn a_current_moves_the_conditions_with_the_water() {
     let ship = Ship::new(&model, zoo.law(&model.law).expect("derived")).unwrap_or_else(|error| panic!("{error}"));
     let mut state = StateVector::zeros();
     state[at::U] = 0.2;
-    // Ahead over the ground, but astern through water that follows her at 0.4 m/s.
+    // Ahead over the ground, but astern through water that follows it at 0.4 m/s.
     let drag = ship.rate_at(&state, 0.0, -8.0, &mut Work::default())[at::U];
     let wanted = 0.03 * 0.2_f64.powi(2) / (9.806_65 * 3.0) * 9.806_65 / 1.05;
     assert!((drag - wanted).abs() < 1e-12, "{drag} {wanted}");

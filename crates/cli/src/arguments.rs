@@ -1,13 +1,12 @@
-//! What may be written on the command line, and how its values are read.
+//! What may be written on the command line.
 
 use std::path::PathBuf;
 
-use clap::{Parser, Subcommand, ValueEnum};
-use sistership_dynamics::Method;
+use clap::{Parser, Subcommand};
 
 use crate::commands::{backup, family, fsck, gc, serve, ships, verify, work};
 use crate::commands::{check, derive, diagnose, manoeuvre, refine, similar, simulate};
-use crate::demo::Demo;
+use crate::demo::DemoArguments;
 
 const EXAMPLES: &str = "\
 SHIP and MODEL are a name in the zoo (`mariner`, `mariner/abkowitz`) or a YAML file.
@@ -24,7 +23,7 @@ Examples:
 
 Exit status: 0 done, 1 the data or the model says no, 2 the call is wrong.";
 
-/// Ship manoeuvring models: find the most similar ship, refine her model against trials, sail it.
+/// Ship manoeuvring models: find the most similar ship, refine its model against trials, sail it.
 #[derive(Debug, Parser)]
 #[command(name = "sistership", version, after_help = EXAMPLES, arg_required_else_help = true)]
 pub struct Arguments {
@@ -40,91 +39,39 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Rank the ships of the zoo by similarity to a ship.
-    Similar(similar::Similar),
+    Similar(similar::SimilarArguments),
     /// Check trial files: units, signs, gaps, jumps, time.
-    Check(check::Check),
+    Check(check::CheckArguments),
     /// Refine a source model against a ship's trials.
-    Refine(Box<refine::Refine>),
+    Refine(Box<refine::RefineArguments>),
     /// Simulate recorded trials with a model and measure its errors.
-    Simulate(simulate::Simulate),
+    Simulate(simulate::SimulateArguments),
     /// Find what a model lacks, by trials that it has not seen.
-    Diagnose(diagnose::Diagnose),
+    Diagnose(diagnose::DiagnoseArguments),
     /// Sail turning circles and zigzags with a model and judge them by the IMO criteria.
-    Manoeuvre(manoeuvre::Manoeuvre),
+    Manoeuvre(manoeuvre::ManoeuvreArguments),
     /// Derive a law of motion from a list of actuators.
-    Derive(derive::Derive),
+    Derive(derive::DeriveArguments),
     /// Show the whole loop through the real server: ship, trials, source, refinement, champion, report.
-    Demo(Demo),
+    Demo(DemoArguments),
     /// Run the REST server.
-    Serve(serve::Serve),
+    Serve(serve::ServeArguments),
     /// Work on the jobs that servers queue, without serving.
-    Work(work::Work),
+    Work(work::WorkArguments),
     /// Find ships of a store by category, tag, particulars, metrics and similarity.
-    Ships(Box<ships::Ships>),
+    Ships(Box<ships::ShipsArguments>),
     /// Derive a version again from its recipe and compare the bytes.
-    Verify(verify::Verify),
+    Verify(verify::VerifyArguments),
     /// Families of ships: make one, learn from it, refine all of it.
-    Family(family::Family),
+    Family(family::FamilyArguments),
     /// Check every hash and every reference of a store.
-    Fsck(fsck::Fsck),
+    Fsck(fsck::FsckArguments),
     /// Remove objects that nothing refers to.
-    Gc(gc::Gc),
+    Gc(gc::GcArguments),
     /// Copy a store, while it is written, into a folder.
-    Backup(backup::Backup),
+    Backup(backup::BackupArguments),
     /// Make a store of a backup, in an empty place.
-    Restore(backup::Restore),
-}
-
-/// Integration methods by the names they are called by.
-#[derive(Debug, Clone, Copy, Default, ValueEnum)]
-pub enum Integration {
-    /// Classical Runge-Kutta of fourth order.
-    #[default]
-    Rk4,
-    /// Explicit Euler.
-    Euler,
-}
-
-impl From<Integration> for Method {
-    fn from(method: Integration) -> Self {
-        match method {
-            Integration::Rk4 => Self::Rk4,
-            Integration::Euler => Self::Euler,
-        }
-    }
-}
-
-/// A finite number above zero.
-pub fn positive(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        value if value > 0.0 => Ok(value),
-        value => Err(format!("must be above 0, not {value}")),
-    }
-}
-
-/// A rudder angle in degrees that is no zero.
-pub fn rudder_deg(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        value if value != 0.0 && value.abs() <= 90.0 => Ok(value),
-        value => {
-            Err(format!("must be a rudder angle from -90 to 90 deg other than 0 (positive turns to starboard), not {value}"))
-        }
-    }
-}
-
-/// `DEG/DEG`: rudder angle and change of heading.
-pub fn zigzag_deg(text: &str) -> Result<(f64, f64), String> {
-    let (rudder, switch) = text.split_once('/').ok_or("write rudder angle and change of heading as `20/20`")?;
-    let switch = positive(switch).map_err(|e| format!("change of heading: {e}"))?;
-    if switch > 180.0 {
-        return Err(format!("change of heading: must be at most 180 deg, not {switch}"));
-    }
-    Ok((rudder_deg(rudder).map_err(|e| format!("rudder: {e}"))?, switch))
-}
-
-fn number(text: &str) -> Result<f64, String> {
-    let value: f64 = text.trim().parse().map_err(|_| format!("`{text}` is not a number"))?;
-    if value.is_finite() { Ok(value) } else { Err(format!("`{text}` is not a finite number")) }
+    Restore(backup::RestoreArguments),
 }
 
 #[cfg(test)]
@@ -135,21 +82,6 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Arguments::command().debug_assert();
-    }
-
-    #[test]
-    fn zigzags_are_read_or_refused_with_the_reason() {
-        assert_eq!(zigzag_deg("10/5"), Ok((10.0, 5.0)));
-        assert_eq!(zigzag_deg("-20/20"), Ok((-20.0, 20.0)));
-        for (text, part) in [("20", "20/20"), ("0/10", "other than 0"), ("10/0", "above 0"), ("10/x", "`x`"), ("10/200", "180")] {
-            assert!(zigzag_deg(text).is_err_and(|e| e.contains(part)), "{text}");
-        }
-    }
-
-    #[test]
-    fn numbers_are_finite() {
-        assert_eq!(positive("1.5"), Ok(1.5));
-        assert!(positive("inf").is_err() && positive("-1").is_err() && positive("NaN").is_err() && rudder_deg("91").is_err());
     }
 
     #[test]

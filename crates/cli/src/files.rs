@@ -9,12 +9,12 @@ use crate::failure::{Failure, about_file};
 
 /// A file to be written: the place is known to be writable before the work begins.
 #[derive(Debug)]
-pub struct Promised {
+pub struct PromisedFile {
     path: PathBuf,
     file: NamedTempFile,
 }
 
-impl Promised {
+impl PromisedFile {
     /// Makes sure that a file can be written, without touching what is there.
     ///
     /// # Errors
@@ -69,9 +69,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.yaml");
         std::fs::write(&path, "old").unwrap();
-        drop(Promised::new(&path, &[]).unwrap());
+        drop(PromisedFile::new(&path, &[]).unwrap());
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
-        Promised::new(&path, &[]).unwrap().write(b"new").unwrap();
+        PromisedFile::new(&path, &[]).unwrap().write(b"new").unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "new");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
@@ -81,7 +81,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.csv");
         std::fs::write(&path, "data").unwrap();
-        let refused = |place: &Path| Promised::new(place, std::slice::from_ref(&path)).unwrap_err().message().unwrap().to_owned();
+        let refused =
+            |place: &Path| PromisedFile::new(place, std::slice::from_ref(&path)).unwrap_err().message().unwrap().to_owned();
         assert!(refused(&path).contains("will not be overwritten"));
         assert!(refused(folder.path()).contains("is not a file"));
         assert!(refused(&folder.path().join("lost/b.csv")).contains("there is no folder"));

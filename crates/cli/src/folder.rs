@@ -7,9 +7,9 @@ use crate::files;
 
 /// A file of the folder.
 #[derive(Debug)]
-pub struct Promised {
+pub struct PromisedTrack {
     /// The file.
-    pub file: files::Promised,
+    pub file: files::PromisedFile,
     /// Its path as people are told.
     pub shown: String,
 }
@@ -18,11 +18,11 @@ pub struct Promised {
 ///
 /// # Errors
 /// The folder cannot be written, or a file of it is among the inputs.
-pub fn promise(folder: &Path, trials: &[&str], inputs: &[PathBuf]) -> Result<Vec<Promised>, Failure> {
+pub fn promise(folder: &Path, trials: &[&str], inputs: &[PathBuf]) -> Result<Vec<PromisedTrack>, Failure> {
     std::fs::create_dir_all(folder).map_err(|error| about_file(folder, format!("cannot be made a folder: {error}")))?;
     let one = |name: String| {
         let path = folder.join(name);
-        Ok(Promised { file: files::Promised::new(&path, inputs)?, shown: path.display().to_string() })
+        Ok(PromisedTrack { file: files::PromisedFile::new(&path, inputs)?, shown: path.display().to_string() })
     };
     file_names(trials).into_iter().map(one).collect()
 }

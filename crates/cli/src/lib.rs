@@ -16,6 +16,7 @@ mod output;
 mod table;
 mod track;
 mod trials;
+mod values;
 mod zoo;
 
 pub use demo::sea_trials;

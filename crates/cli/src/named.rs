@@ -30,13 +30,13 @@ pub fn ship(zoo: &Zoo, name: &str) -> Result<Arc<Vessel>, Failure> {
 fn vessel_file(zoo: &Zoo, path: &Path) -> Result<Arc<Vessel>, Failure> {
     let text = text_of(path)?;
     match kind_of(&text) {
-        Kind::Named(kind) if kind == "model" => {
+        DocumentKind::Named(kind) if kind == "model" => {
             Err(about_file(path, "is a model; a ship is asked for here: a file of `kind: vessel`"))
         }
-        Kind::Named(kind) if kind != "vessel" => {
+        DocumentKind::Named(kind) if kind != "vessel" => {
             Err(about_file(path, format!("is of `kind: {kind}`; a ship is of `kind: vessel`")))
         }
-        Kind::None => Err(about_file(path, "is no ship's file: it does not begin with `kind: vessel`")),
+        DocumentKind::None => Err(about_file(path, "is no ship's file: it does not begin with `kind: vessel`")),
         _ => Ok(Arc::new(read_vessel(zoo, path, &text)?)),
     }
 }
@@ -80,12 +80,12 @@ fn model_file(zoo: &Zoo, path: &Path) -> Result<Model, Failure> {
     let text = text_of(path)?;
     let shown = path.display().to_string();
     match kind_of(&text) {
-        Kind::Named(kind) if kind == "vessel" => {
+        DocumentKind::Named(kind) if kind == "vessel" => {
             let vessel = read_vessel(zoo, path, &text)?;
             Ok(zoo.published(&vessel, None).map_err(|error| FileError { file: shown, ..error })?)
         }
-        Kind::Named(kind) if kind != "model" => Err(about_file(path, format!("is of `kind: {kind}`; {WANTED}"))),
-        Kind::None => Err(about_file(path, format!("is no model's file: {WANTED}"))),
+        DocumentKind::Named(kind) if kind != "model" => Err(about_file(path, format!("is of `kind: {kind}`; {WANTED}"))),
+        DocumentKind::None => Err(about_file(path, format!("is no model's file: {WANTED}"))),
         _ => Ok(Model::parse(&shown, &text, &|law| zoo.law(law).map(|law| (**law).clone()))?),
     }
 }
@@ -96,10 +96,10 @@ fn model_file(zoo: &Zoo, path: &Path) -> Result<Model, Failure> {
 /// The file says that it is something else, or nothing.
 pub fn must_be(path: &Path, text: &str, kind: &str, what: &str) -> Result<(), Failure> {
     match kind_of(text) {
-        Kind::Named(found) if found != kind => {
+        DocumentKind::Named(found) if found != kind => {
             Err(about_file(path, format!("is of `kind: {found}`; {what} is of `kind: {kind}`")))
         }
-        Kind::None => Err(about_file(path, format!("is no {}: it does not begin with `kind: {kind}`", bare(what)))),
+        DocumentKind::None => Err(about_file(path, format!("is no {}: it does not begin with `kind: {kind}`", bare(what)))),
         _ => Ok(()),
     }
 }
@@ -110,7 +110,7 @@ fn bare(what: &str) -> &str {
 }
 
 /// What a document says it is.
-enum Kind {
+enum DocumentKind {
     Named(String),
     /// It says nothing.
     None,
@@ -118,12 +118,13 @@ enum Kind {
     Broken,
 }
 
-fn kind_of(text: &str) -> Kind {
+fn kind_of(text: &str) -> DocumentKind {
     match sistership_model::yaml::read::<serde_yaml::Value>(text) {
-        Err(_) => Kind::Broken,
-        Ok(document) => {
-            document.get("kind").and_then(|kind| kind.as_str()).map_or(Kind::None, |kind| Kind::Named(kind.to_owned()))
-        }
+        Err(_) => DocumentKind::Broken,
+        Ok(document) => document
+            .get("kind")
+            .and_then(|kind| kind.as_str())
+            .map_or(DocumentKind::None, |kind| DocumentKind::Named(kind.to_owned())),
     }
 }
 

@@ -4,11 +4,11 @@ use std::fmt;
 
 /// A table: columns of numbers are set to the right, of words to the left.
 #[derive(Debug, Default)]
-pub struct Table {
+pub struct TextTable {
     rows: Vec<Vec<String>>,
 }
 
-impl Table {
+impl TextTable {
     /// A table with a header.
     pub fn new<const N: usize>(header: [&str; N]) -> Self {
         Self { rows: vec![header.map(str::to_owned).to_vec()] }
@@ -31,7 +31,7 @@ impl Table {
     }
 }
 
-impl fmt::Display for Table {
+impl fmt::Display for TextTable {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         let layout: Vec<(usize, bool)> = (0..columns).map(|column| (self.width(column), self.is_numeric(column))).collect();
@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn columns_are_aligned_by_what_they_hold() {
-        let mut table = Table::new(["ship", "correlation", "note"]);
+        let mut table = TextTable::new(["ship", "correlation", "note"]);
         table.row(["pcc".to_owned(), "-0.7".to_owned(), "a".to_owned()]);
         table.row(["mariner".to_owned(), "-".to_owned(), String::new()]);
         assert_eq!(table.to_string(), "  ship     correlation  note\n  pcc             -0.7  a\n  mariner            -\n");

@@ -1,7 +1,7 @@
 //! Numbers as people read them: significant digits, a true minus sign, powers of ten.
 
 /// A value with so many significant digits; very small and very large ones as a power of ten.
-pub(super) fn significant(value: f64, digits: usize) -> String {
+pub(crate) fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() || value.abs() >= 1e300 {
         return "–".into();
     }
@@ -17,7 +17,7 @@ pub(super) fn significant(value: f64, digits: usize) -> String {
 }
 
 /// A stated value: as many digits as it was given with, at most so many.
-pub(super) fn stated(value: f64, digits: usize) -> String {
+pub(crate) fn stated(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
     let (number, power) =
         text.split_once('×').map_or((text.as_str(), String::new()), |(number, power)| (number, format!("×{power}")));
@@ -37,7 +37,7 @@ fn power_of_ten(value: f64, digits: usize, exponent: i32) -> String {
 }
 
 /// A small integer as an exponent is written.
-pub(super) fn superscript(number: i32) -> String {
+pub(crate) fn superscript(number: i32) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',
         _ => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][c.to_digit(10).unwrap_or(0) as usize],
@@ -46,7 +46,7 @@ pub(super) fn superscript(number: i32) -> String {
 }
 
 /// A value with so many decimals.
-pub(super) fn fixed(value: f64, decimals: usize) -> String {
+pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() || value.abs() >= 1e300 {
         return "–".into();
     }
@@ -59,18 +59,18 @@ pub(super) fn fixed(value: f64, decimals: usize) -> String {
 }
 
 /// The same with a plus sign on what is not negative.
-pub(super) fn signed(value: f64, decimals: usize) -> String {
+pub(crate) fn signed(value: f64, decimals: usize) -> String {
     let text = fixed(value, decimals);
     if text.starts_with(['−', '–']) { text } else { format!("+{text}") }
 }
 
 /// A value that may be unknown.
-pub(super) fn known(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
+pub(crate) fn known(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
     value.map_or_else(|| "–".into(), format)
 }
 
 /// Words as a list: `a, b and c`.
-pub(super) fn list(words: &[String]) -> String {
+pub(crate) fn list(words: &[String]) -> String {
     match words {
         [] => String::new(),
         [one] => one.clone(),

@@ -1,10 +1,10 @@
 //! A headline figure: an error before and after, with bars.
 
-use super::numbers::{fixed, significant};
-use super::summary::ErrorRow;
+use crate::error_row::ErrorRow;
+use crate::numbers::{fixed, significant};
 
 /// A headline figure.
-pub(super) struct Tile {
+pub(crate) struct Tile {
     pub name: &'static str,
     pub change: String,
     pub class: &'static str,

@@ -5,7 +5,7 @@ use sistership_model::vessel::Status;
 
 /// A channel as it is shown: angles in degrees.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(super) struct Quantity {
+pub(crate) struct ShownChannel {
     /// Its name in the data.
     pub channel: &'static str,
     /// Its name in words.
@@ -21,12 +21,18 @@ pub(super) struct Quantity {
 
 const DEG: f64 = 180.0 / std::f64::consts::PI;
 
-const fn quantity(channel: &'static str, name: &'static str, symbol: &'static str, unit: &'static str, factor: f64) -> Quantity {
-    Quantity { channel, name, symbol, unit, factor }
+const fn quantity(
+    channel: &'static str,
+    name: &'static str,
+    symbol: &'static str,
+    unit: &'static str,
+    factor: f64,
+) -> ShownChannel {
+    ShownChannel { channel, name, symbol, unit, factor }
 }
 
 /// The channels in which errors are given, in their order; `position` is the distance in the plane.
-pub(super) const CHANNELS: [Quantity; 9] = [
+pub(crate) const CHANNELS: [ShownChannel; 9] = [
     quantity("u", "surge speed", "u", "m/s", 1.0),
     quantity("v", "sway speed", "v", "m/s", 1.0),
     quantity("r", "yaw rate", "r", "deg/s", DEG),
@@ -39,10 +45,10 @@ pub(super) const CHANNELS: [Quantity; 9] = [
 ];
 
 /// The rudder, which is given and not simulated.
-pub(super) const RUDDER: Quantity = quantity("delta", "rudder angle", "δ", "deg", DEG);
+pub(crate) const RUDDER: ShownChannel = quantity("delta", "rudder angle", "δ", "deg", DEG);
 
 /// A channel by its name in the data.
-pub(super) fn channel(name: &str) -> Option<Quantity> {
+pub(crate) fn channel(name: &str) -> Option<ShownChannel> {
     CHANNELS.into_iter().find(|quantity| quantity.channel == name)
 }
 
@@ -60,7 +66,7 @@ const UNITS: [(&str, &str); 9] = [
 ];
 
 /// A field such as `rudder_area_m2` in words and its unit.
-pub(super) fn field(name: &str) -> (String, &'static str) {
+pub(crate) fn field(name: &str) -> (String, &'static str) {
     let (stem, unit) =
         UNITS.into_iter().find_map(|(ending, unit)| Some((name.strip_suffix(ending)?, unit))).unwrap_or((name, "–"));
     let words = match stem {
@@ -74,7 +80,7 @@ pub(super) fn field(name: &str) -> (String, &'static str) {
 }
 
 /// A status as it is shown.
-pub(super) fn status(status: Status) -> &'static str {
+pub(crate) fn status(status: Status) -> &'static str {
     match status {
         Status::Published => "published",
         Status::Estimated => "estimated",
@@ -84,7 +90,7 @@ pub(super) fn status(status: Status) -> &'static str {
 }
 
 /// What a status means.
-pub(super) fn status_meaning(status: Status) -> &'static str {
+pub(crate) fn status_meaning(status: Status) -> &'static str {
     match status {
         Status::Published => "figures as published from captive tests, computations or trials",
         Status::Estimated => "figures estimated from particulars by regression formulas: a stopgap",
@@ -94,7 +100,7 @@ pub(super) fn status_meaning(status: Status) -> &'static str {
 }
 
 /// An estimator in words.
-pub(super) fn method(name: &str) -> &'static str {
+pub(crate) fn method(name: &str) -> &'static str {
     match name {
         "published" => "one-step differences, ridge regression drawn towards the source (Kanazawa 2023)",
         "weak" => "motions integrated over windows, ridge regression drawn towards the source",
@@ -105,12 +111,20 @@ pub(super) fn method(name: &str) -> &'static str {
 }
 
 /// An axis in words.
-pub(super) fn axis(axis: &str) -> &'static str {
+pub(crate) fn axis(axis: &str) -> &'static str {
     match axis {
         "X" => "surge force X",
         "Y" => "sway force Y",
         "K" => "roll moment K",
         "N" => "yaw moment N",
         _ => "other",
+    }
+}
+
+/// The unit in which an acceleration is shown, and the factor to it from SI.
+pub(crate) fn acceleration(channel: &str) -> (&'static str, f64) {
+    match channel {
+        "r" | "p" | "psi" | "phi" => ("deg/s²", 180.0 / std::f64::consts::PI),
+        _ => ("m/s²", 1.0),
     }
 }

@@ -9,7 +9,7 @@ use crate::record::record;
 use crate::search_index;
 use crate::statements::{pair, same, statements};
 use crate::store::Store;
-use crate::versions;
+use crate::version;
 
 statements! {
     // Moves within one model wait for each other, so that the history tells where an alias came from. SQLite's writers
@@ -67,7 +67,7 @@ record! {
 
 record! {
     /// A model whose row is locked.
-    pub struct Locked {
+    pub struct LockedModel {
         /// The model.
         pub name: String,
     }
@@ -111,6 +111,13 @@ pub struct AliasMove {
 #[derive(Debug, Clone, Copy)]
 pub struct Aliases<'a>(pub(crate) &'a Store);
 
+impl Store {
+    /// Names for versions that move, and how they have moved.
+    pub fn aliases(&self) -> Aliases<'_> {
+        Aliases(self)
+    }
+}
+
 impl Aliases<'_> {
     /// Moves an alias of a model to the version `to`, if it is where the move expects it.
     pub async fn move_to(&self, model: &str, to: i64, change: &AliasMove) -> Result<Alias> {
@@ -145,7 +152,7 @@ impl Aliases<'_> {
 pub(crate) async fn shift(store: &Store, tx: &mut Transaction, model: &str, to: i64, change: &AliasMove) -> Result<Alias> {
     checks::name("alias", &change.alias)?;
     lock(tx, model).await?;
-    versions::check_exists(tx, model, to).await?;
+    version::check_exists(tx, model, to).await?;
     let before: Option<Alias> = tx.optional(GET, args![model: model, alias: &change.alias]).await?;
     let current = before.as_ref().map(|alias| alias.revision);
     if !change.expect.holds(current) {
@@ -158,7 +165,7 @@ pub(crate) async fn shift(store: &Store, tx: &mut Transaction, model: &str, to: 
 }
 
 async fn lock(tx: &mut Transaction, model: &str) -> Result<()> {
-    let locked: Option<Locked> = tx.optional(LOCK, args![model: model]).await?;
+    let locked: Option<LockedModel> = tx.optional(LOCK, args![model: model]).await?;
     locked.map(drop).ok_or_else(|| StoreError::missing("model", model))
 }
 

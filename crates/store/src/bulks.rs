@@ -11,7 +11,8 @@ use crate::page::{List, Page};
 use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
-use crate::versions::{self, NewVersion, VersionHead};
+use crate::version::{NewVersion, VersionHead};
+use crate::versions;
 use crate::work;
 
 statements! {
@@ -92,7 +93,7 @@ record! {
         pub outcome: String,
         /// The number of the version that came of it, if one did.
         pub version: Option<i64>,
-        /// By how much her worst metric is worse than before; below zero where all are better.
+        /// By how much its worst metric is worse than before; below zero where all are better.
         pub worst_change: Option<f64>,
         /// Before and after, or why not, JSON.
         pub document: String,
@@ -110,7 +111,7 @@ pub struct NewOutcome {
     pub outcome: String,
     /// The version and the aliases that move to it.
     pub version: Option<(NewVersion, Vec<AliasMove>)>,
-    /// By how much her worst metric is worse than before.
+    /// By how much its worst metric is worse than before.
     pub worst_change: Option<f64>,
     /// Before and after, or why not, JSON.
     pub document: String,
@@ -119,6 +120,13 @@ pub struct NewOutcome {
 /// The bulk refinements of a store.
 #[derive(Debug, Clone, Copy)]
 pub struct Bulks<'a>(pub(crate) &'a Store);
+
+impl Store {
+    /// Refinements of whole families.
+    pub fn bulks(&self) -> Bulks<'_> {
+        Bulks(self)
+    }
+}
 
 impl Bulks<'_> {
     /// Queues a refinement with its chunks, all or nothing. `chunk` writes the request of a chunk from the id of the refinement

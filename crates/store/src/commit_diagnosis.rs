@@ -6,7 +6,8 @@ use crate::error::Result;
 use crate::job::Job;
 use crate::reports::{self, NewReport, ReportHead};
 use crate::store::Store;
-use crate::versions::{self, NewVersion, VersionHead};
+use crate::version::{NewVersion, VersionHead};
+use crate::versions;
 use crate::work;
 
 /// What a diagnosis brings.

@@ -8,17 +8,16 @@ use sqlx::postgres::{PgConnectOptions, PgPoolOptions};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
 use sqlx::{Connection as _, PgPool, SqlitePool};
 
-use crate::database::{Database, Pool, Writer};
+use crate::connections::{Pool, RESTED, Writer};
+use crate::database::Database;
 use crate::error::{Result, StoreError};
 use crate::folders;
-use crate::group::Group;
+use crate::group::WriterGroup;
 use crate::migrate;
 
 const BUSY: Duration = Duration::from_secs(10);
 const SQLITE_READERS: u32 = 4;
 const POSTGRES_CONNECTIONS: u32 = 16;
-/// After this long without use, a connection is asked whether it is still there.
-pub(crate) const RESTED: Duration = Duration::from_secs(5);
 
 /// Opens the database at `url` and brings its schema up to date.
 pub(crate) async fn connect(url: &str) -> Result<Database> {
@@ -43,7 +42,7 @@ async fn memory(url: &str) -> Result<Database> {
     let pool = SqlitePoolOptions::new().max_connections(1).min_connections(1).idle_timeout(None).max_lifetime(None);
     let pool = pool.connect_with(options).await?;
     migrate::sqlite(&pool).await?;
-    Ok(Database { read: Pool::Sqlite(pool.clone()), write: Writer::Sqlite(Group::new(pool)), unit: None })
+    Ok(Database { read: Pool::Sqlite(pool.clone()), write: Writer::Sqlite(WriterGroup::new(pool)), unit: None })
 }
 
 async fn file(url: &str) -> Result<Database> {
@@ -55,7 +54,7 @@ async fn file(url: &str) -> Result<Database> {
     // A file's connection does not go stale.
     let readers = SqlitePoolOptions::new().max_connections(SQLITE_READERS).test_before_acquire(false);
     let read = readers.connect_with(options.pragma("query_only", "ON")).await?;
-    Ok(Database { read: Pool::Sqlite(read), write: Writer::Sqlite(Group::new(write)), unit: None })
+    Ok(Database { read: Pool::Sqlite(read), write: Writer::Sqlite(WriterGroup::new(write)), unit: None })
 }
 
 /// The one connection that writes. Turning on the write-ahead log needs the file for itself and does not wait for it, so

@@ -3,24 +3,15 @@
 //! Nobody gets an answer that is older than the question: a statement begins after all have come who share it. Alone, one is
 //! asked for at once.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
-
 use tokio::sync::oneshot;
 
 use crate::arguments::{Arg, args};
 use crate::checks;
-use crate::connect::RESTED;
-use crate::database::Reader;
+use crate::connections::Reader;
 use crate::error::Result;
-use crate::record::record;
+use crate::questions::{AT_ONCE, CurrentVersion, Question};
 use crate::statements::{same, statements};
 use crate::store::Store;
-
-/// The most ships that one statement asks for: as many as it has places.
-const AT_ONCE: usize = 16;
-/// Statements under way at a time. With more of them each would have fewer to answer.
-const ROUNDS: usize = 2;
 
 /// One text for one ship and for many.
 macro_rules! current {
@@ -40,43 +31,8 @@ statements! {
     CURRENT_OF = current!("IN ($2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17)");
 }
 
-record! {
-    /// The version that an alias of a ship stands for; [`crate::Versions::by_id`] has the rest of it, which never changes.
-    pub struct CurrentVersion {
-        /// The model (the ship's name).
-        pub model: String,
-        /// 1, 2, 3, ... within the model.
-        pub number: i64,
-        /// Its id.
-        pub id: String,
-        /// The id of the newest report on it.
-        pub report: Option<String>,
-    }
-}
-
-/// The questions of one process.
-#[derive(Default)]
-pub(crate) struct Questions(Mutex<Open>);
-
-#[derive(Default)]
-struct Open {
-    waiting: Vec<Question>,
-    rounds: usize,
-    /// Connections of rounds that have ended, and when: the next goes on with one, which a pool would have asked twice whether it
-    /// is still there.
-    kept: Vec<(Reader, Instant)>,
-    /// Nothing is kept any more.
-    closed: bool,
-}
-
-struct Question {
-    ship: String,
-    alias: String,
-    answer: oneshot::Sender<Option<CurrentVersion>>,
-}
-
 /// Somebody who asks as long as questions wait.
-struct Round(Store);
+struct QuestionRound(Store);
 
 impl Store {
     /// The version that an alias of a ship stands for; none where ship or alias are not there.
@@ -88,7 +44,7 @@ impl Store {
         }
         let (answer, answered) = oneshot::channel();
         if self.questions().enter(Question { ship: ship.to_owned(), alias: alias.to_owned(), answer }) {
-            tokio::spawn(Round(self.clone()).run());
+            tokio::spawn(QuestionRound(self.clone()).run());
         }
         match answered.await {
             Ok(found) => Ok(found),
@@ -98,50 +54,7 @@ impl Store {
     }
 }
 
-impl Questions {
-    fn open(&self) -> MutexGuard<'_, Open> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Whether a further round is to begin.
-    fn enter(&self, question: Question) -> bool {
-        let mut open = self.open();
-        open.waiting.push(question);
-        let begins = open.rounds < ROUNDS;
-        open.rounds += usize::from(begins);
-        begins
-    }
-
-    /// A connection that was used a moment ago, if there is one; what has rested longer goes back to its pool.
-    fn kept(&self) -> Option<Reader> {
-        let kept = &mut self.open().kept;
-        kept.retain(|(_, since)| since.elapsed() < RESTED);
-        kept.pop().map(|(reader, _)| reader)
-    }
-
-    /// SQLite's goes back at once: it is given out again without a question, and may be the only one.
-    fn keep(&self, reader: Option<Reader>) {
-        let mut open = self.open();
-        let reader = reader.filter(|reader| matches!(reader, Reader::Postgres(_)) && !open.closed);
-        open.kept.extend(reader.map(|reader| (reader, Instant::now())));
-    }
-
-    /// Gives connections back to their pool, which ends only then, also those of rounds that still end.
-    pub(crate) fn close(&self) {
-        let mut open = self.open();
-        open.closed = true;
-        open.kept.clear();
-    }
-
-    /// The questions of one alias that wait the longest.
-    fn take(&self) -> Vec<Question> {
-        let waiting = &mut self.open().waiting;
-        let Some(alias) = waiting.first().map(|first| first.alias.clone()) else { return Vec::new() };
-        waiting.extract_if(.., |question| question.alias == alias).take(AT_ONCE).collect()
-    }
-}
-
-impl Round {
+impl QuestionRound {
     async fn run(self) {
         let mut reader = self.0.questions().kept();
         loop {
@@ -172,14 +85,10 @@ impl Round {
     }
 }
 
-impl Drop for Round {
+impl Drop for QuestionRound {
     /// However it ends, nobody waits for a round that is no more.
     fn drop(&mut self) {
-        let mut open = self.0.questions().open();
-        open.rounds -= 1;
-        if open.rounds == 0 {
-            open.waiting.clear();
-        }
+        self.0.questions().ended();
     }
 }
 

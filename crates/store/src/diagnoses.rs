@@ -8,7 +8,7 @@ use crate::page::{List, Page};
 use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
-use crate::versions;
+use crate::version;
 
 statements! {
     INSERT = same("INSERT INTO diagnoses (id, version_id, made_id, report_id, verdict, effects, trials, created_us) \
@@ -59,6 +59,13 @@ pub struct NewDiagnosed {
 #[derive(Debug, Clone, Copy)]
 pub struct Diagnoses<'a>(pub(crate) &'a Store);
 
+impl Store {
+    /// Diagnoses of versions.
+    pub fn diagnoses(&self) -> Diagnoses<'_> {
+        Diagnoses(self)
+    }
+}
+
 impl Diagnoses<'_> {
     /// Every diagnosis, in the order in which they were made.
     pub async fn all(&self, page: &Page) -> Result<List<Diagnosed>> {
@@ -85,7 +92,7 @@ pub(crate) async fn insert(
     checks::name("verdict", &new.verdict)?;
     checks::json("effects", &new.effects)?;
     checks::json("trials", &new.trials)?;
-    versions::check_id(tx, "version_id", &new.version_id).await?;
+    version::check_id(tx, "version_id", &new.version_id).await?;
     let id = store.new_id();
     let values = args![id: &id, version_id: &new.version_id, made_id: made_id, report_id: report_id, verdict: &new.verdict,
         effects: &new.effects, trials: &new.trials, created_us: store.now_us()];

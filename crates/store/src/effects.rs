@@ -30,6 +30,13 @@ record! {
 #[derive(Debug, Clone, Copy)]
 pub struct EffectLibraries<'a>(pub(crate) &'a Store);
 
+impl Store {
+    /// Libraries of effects, insert-only.
+    pub fn effects(&self) -> EffectLibraries<'_> {
+        EffectLibraries(self)
+    }
+}
+
 impl EffectLibraries<'_> {
     /// Puts a library in, beside those that are there, and answers its hash. One that is there is not written again, so that
     /// this costs a look where nothing is new.

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::io::{self, ErrorKind};
 
-use crate::objects::ObjectsError;
+use crate::objects_error::ObjectsError;
 
 /// What an operation of the store returns.
 pub type Result<T, E = StoreError> = std::result::Result<T, E>;

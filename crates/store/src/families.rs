@@ -9,7 +9,7 @@ use crate::page::{List, Page};
 use crate::record::{Counted, record};
 use crate::statements::{same, statements};
 use crate::store::Store;
-use crate::versions;
+use crate::version;
 
 statements! {
     INSERT = same("INSERT INTO families (name, title, foundation, created_us) VALUES ($1, $2, $3, $4) ON CONFLICT (name) DO NOTHING \
@@ -60,9 +60,9 @@ record! {
     pub struct FamilyMember {
         /// The ship.
         pub ship: String,
-        /// Since when she is a member.
+        /// Since when it is a member.
         pub added_us: i64,
-        /// The number of her champion, if she has one.
+        /// The number of its champion, if it has one.
         pub champion: Option<i64>,
         /// How that was made.
         pub method: Option<String>,
@@ -89,12 +89,19 @@ record! {
 #[derive(Debug, Clone, Copy)]
 pub struct Families<'a>(pub(crate) &'a Store);
 
+impl Store {
+    /// Families of ships.
+    pub fn families(&self) -> Families<'_> {
+        Families(self)
+    }
+}
+
 impl Families<'_> {
     /// Makes a family on a version, `foundation`.
     pub async fn create(&self, name: &str, title: &str, foundation: &str) -> Result<Family> {
         checks::name("name", name)?;
         let mut tx = self.0.begin().await?;
-        versions::check_id(&mut tx, "foundation", foundation).await?;
+        version::check_id(&mut tx, "foundation", foundation).await?;
         let values = args![name: name, title: title, foundation: foundation, created_us: self.0.now_us()];
         let family = tx.optional(INSERT, values).await?;
         let family = family.ok_or_else(|| StoreError::conflict("family", name, "there is one of this name already"))?;
@@ -117,7 +124,7 @@ impl Families<'_> {
     /// Puts a family on another foundation.
     pub async fn found(&self, name: &str, foundation: &str) -> Result<Family> {
         let mut tx = self.0.begin().await?;
-        versions::check_id(&mut tx, "foundation", foundation).await?;
+        version::check_id(&mut tx, "foundation", foundation).await?;
         let family = tx.optional(FOUND, args![name: name, foundation: foundation]).await?;
         let family = family.ok_or_else(|| StoreError::missing("family", name))?;
         tx.commit().await?;
@@ -140,7 +147,7 @@ impl Families<'_> {
         Ok(added)
     }
 
-    /// Takes a ship out of a family; returns whether she was in it.
+    /// Takes a ship out of a family; returns whether it was in it.
     pub async fn remove(&self, family: &str, ship: &str) -> Result<bool> {
         let mut tx = self.0.begin().await?;
         let removed = tx.execute(REMOVE, args![family: family, ship: ship]).await?;

@@ -16,11 +16,11 @@ use tokio::sync::{Mutex, OwnedMutexGuard};
 use crate::error::is_full;
 
 /// What became of a transaction that several shared: the reason where it failed.
-type Outcome = Arc<OnceLock<Result<(), Reason>>>;
+type CommitOutcome = Arc<OnceLock<Result<(), CommitFailure>>>;
 
 /// Why a transaction failed.
 #[derive(Debug, Clone)]
-struct Reason {
+struct CommitFailure {
     text: String,
     /// Whether there was no room for it.
     full: bool,
@@ -28,29 +28,29 @@ struct Reason {
 
 /// The writers of one SQLite database in this process.
 #[derive(Debug, Clone)]
-pub(crate) struct Group {
+pub(crate) struct WriterGroup {
     pool: SqlitePool,
-    shared: Arc<Mutex<Option<Shared>>>,
+    shared: Arc<Mutex<Option<SharedTransaction>>>,
 }
 
 /// The transaction under way.
 #[derive(Debug)]
-struct Shared {
+struct SharedTransaction {
     connection: PoolConnection<Sqlite>,
-    outcome: Outcome,
+    outcome: CommitOutcome,
     /// Whether somebody has written and waits for the commit.
     awaited: bool,
 }
 
-/// One writer's part of the transaction, in her turn; undone unless [committed](Self::commit). The turn leaves it as it ends.
-pub(crate) struct Part(Option<Turn>);
+/// One writer's part of the transaction, in its turn; undone unless [committed](Self::commit). The turn leaves it as it ends.
+pub(crate) struct TransactionPart(Option<WriterTurn>);
 
-struct Turn {
-    lock: OwnedMutexGuard<Option<Shared>>,
-    shared: Shared,
+struct WriterTurn {
+    lock: OwnedMutexGuard<Option<SharedTransaction>>,
+    shared: SharedTransaction,
 }
 
-impl Group {
+impl WriterGroup {
     /// The writers on a pool of one connection.
     pub(crate) fn new(pool: SqlitePool) -> Self {
         Self { pool, shared: Arc::default() }
@@ -62,16 +62,16 @@ impl Group {
     }
 
     /// Waits for the turn to write. Nobody else writes until the part ends, in this process and in others.
-    pub(crate) async fn begin(&self) -> sqlx::Result<Part> {
+    pub(crate) async fn begin(&self) -> sqlx::Result<TransactionPart> {
         let Self { pool, shared } = self.clone();
         uninterrupted(async move {
             let mut lock = shared.lock_owned().await;
             let mut shared = match lock.take() {
                 Some(shared) => shared,
-                None => Shared::begin(&pool).await?,
+                None => SharedTransaction::begin(&pool).await?,
             };
             match shared.run("SAVEPOINT part").await {
-                Ok(()) => Ok(Part(Some(Turn { lock, shared }))),
+                Ok(()) => Ok(TransactionPart(Some(WriterTurn { lock, shared }))),
                 Err(error) => Err(shared.give_up(error)),
             }
         })
@@ -79,7 +79,7 @@ impl Group {
     }
 }
 
-impl Part {
+impl TransactionPart {
     /// The connection to write by.
     pub(crate) fn connection(&mut self) -> sqlx::Result<&mut SqliteConnection> {
         let turn = self.0.as_mut().ok_or_else(|| not_kept("it has ended"))?;
@@ -93,7 +93,7 @@ impl Part {
     }
 }
 
-impl Drop for Part {
+impl Drop for TransactionPart {
     fn drop(&mut self) {
         if let (Some(turn), Ok(runtime)) = (self.0.take(), Handle::try_current()) {
             runtime.spawn(turn.undo());
@@ -101,7 +101,7 @@ impl Drop for Part {
     }
 }
 
-impl Turn {
+impl WriterTurn {
     async fn commit(mut self) -> sqlx::Result<()> {
         if let Err(error) = self.shared.run("RELEASE part").await {
             return Err(self.shared.give_up(error));
@@ -139,16 +139,16 @@ impl Turn {
     }
 
     /// Leaves the transaction to whoever comes next.
-    fn hand_over(self) -> Arc<Mutex<Option<Shared>>> {
+    fn hand_over(self) -> Arc<Mutex<Option<SharedTransaction>>> {
         let Self { mut lock, shared } = self;
         *lock = Some(shared);
         Arc::clone(OwnedMutexGuard::mutex(&lock))
     }
 }
 
-impl Shared {
+impl SharedTransaction {
     async fn begin(pool: &SqlitePool) -> sqlx::Result<Self> {
-        let mut begun = Self { connection: pool.acquire().await?, outcome: Outcome::default(), awaited: false };
+        let mut begun = Self { connection: pool.acquire().await?, outcome: CommitOutcome::default(), awaited: false };
         match begun.run("BEGIN IMMEDIATE").await {
             Ok(()) => Ok(begun),
             Err(error) => Err(begun.give_up(error)),
@@ -171,13 +171,13 @@ impl Shared {
         let text = error.to_string();
         // Where the disk is full, the database takes the whole transaction back by itself.
         let full = is_full(&error) || text.contains("no such savepoint");
-        let _ = self.outcome.set(Err(Reason { text, full }));
+        let _ = self.outcome.set(Err(CommitFailure { text, full }));
         drop(self.connection.detach());
         error
     }
 }
 
-impl Reason {
+impl CommitFailure {
     fn told(&self) -> sqlx::Error {
         let error = not_kept(&self.text);
         match self.full {
@@ -208,13 +208,13 @@ mod tests {
 
     use super::*;
 
-    async fn group() -> (Group, SqlitePool) {
+    async fn group() -> (WriterGroup, SqlitePool) {
         let pool = SqlitePoolOptions::new().max_connections(1).connect("sqlite::memory:").await.unwrap();
         sqlx::query("CREATE TABLE kept (n INTEGER PRIMARY KEY)").execute(&pool).await.unwrap();
-        (Group::new(pool.clone()), pool)
+        (WriterGroup::new(pool.clone()), pool)
     }
 
-    async fn put(part: &mut Part, n: i64) -> sqlx::Result<()> {
+    async fn put(part: &mut TransactionPart, n: i64) -> sqlx::Result<()> {
         sqlx::query("INSERT INTO kept VALUES ($1)").bind(n).execute(part.connection()?).await.map(drop)
     }
 
@@ -231,7 +231,7 @@ mod tests {
             tokio::spawn(async move {
                 let mut part = group.begin().await?;
                 put(&mut part, n).await?;
-                // The third changes her mind.
+                // The third changes its mind.
                 if n == 3 { Ok(()) } else { part.commit().await }
             })
         });

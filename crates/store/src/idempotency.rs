@@ -34,7 +34,7 @@ statements! {
 
 record! {
     /// A key as it is kept.
-    pub struct Entry {
+    pub struct KeyEntry {
         /// What was asked.
         pub request_sha256: String,
         /// The status that was answered.
@@ -75,6 +75,13 @@ pub enum Begun {
 /// The idempotency keys of a store.
 #[derive(Debug, Clone, Copy)]
 pub struct Idempotency<'a>(pub(crate) &'a Store);
+
+impl Store {
+    /// Requests that must not be carried out twice.
+    pub fn idempotency(&self) -> Idempotency<'_> {
+        Idempotency(self)
+    }
+}
 
 impl Idempotency<'_> {
     /// Begins a request. `scope` is its method and path.
@@ -136,12 +143,12 @@ fn taken_over(key: &str) -> StoreError {
 
 /// What to do with a key that is there already.
 async fn again(tx: &mut Transaction, scope: &str, key: &str, request_sha256: &str, now: i64) -> Result<Begun> {
-    let entry: Option<Entry> = tx.optional(GET, args![scope: scope, key: key]).await?;
+    let entry: Option<KeyEntry> = tx.optional(GET, args![scope: scope, key: key]).await?;
     Ok(match entry {
         // It was abandoned between two statements; the caller comes again.
         None => Begun::InProgress,
         Some(entry) if entry.request_sha256 != request_sha256 => Begun::Mismatch,
-        Some(Entry { status: Some(status), response, .. }) => Begun::Replay { status, body: response.unwrap_or_default() },
+        Some(KeyEntry { status: Some(status), response, .. }) => Begun::Replay { status, body: response.unwrap_or_default() },
         Some(_) => take_over(tx, scope, key, now).await?,
     })
 }

@@ -16,7 +16,7 @@ statements! {
     );
     REVISION_SHIP = same("SELECT 'ship ' || ship || ' revision ' || revision AS place, 'there is no such ship' AS message \
         FROM ship_revisions WHERE ship NOT IN (SELECT name FROM ships) ORDER BY ship, revision");
-    REVISION_LAST = same("SELECT 'ship ' || s.name AS place, 'is not what her history has at revision ' || s.revision AS message \
+    REVISION_LAST = same("SELECT 'ship ' || s.name AS place, 'is not what its history has at revision ' || s.revision AS message \
         FROM ships s WHERE NOT EXISTS (SELECT 1 FROM ship_revisions r WHERE r.ship = s.name AND r.revision = s.revision \
         AND r.title = s.title AND r.category = s.category AND r.document = s.document) ORDER BY s.name");
     REVISION_GAP = same("SELECT 'ship ' || ship AS place, \

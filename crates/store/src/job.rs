@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::error::{Result, StoreError};
-use crate::record::{Column, record};
+use crate::record::{StoredColumn, record};
 
 /// The columns of a job, for every text that reads one.
 macro_rules! job {
@@ -69,7 +69,7 @@ impl FromStr for JobState {
     }
 }
 
-impl Column for JobState {
+impl StoredColumn for JobState {
     type Stored = String;
 
     fn load(stored: String) -> sqlx::Result<Self> {

@@ -31,6 +31,13 @@ statements! {
 #[derive(Debug, Clone, Copy)]
 pub struct Jobs<'a>(pub(crate) &'a Store);
 
+impl Store {
+    /// Long work.
+    pub fn jobs(&self) -> Jobs<'_> {
+        Jobs(self)
+    }
+}
+
 impl Jobs<'_> {
     /// Puts a job in the queue.
     pub async fn enqueue(&self, new: &NewJob) -> Result<Job> {

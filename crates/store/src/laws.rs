@@ -33,6 +33,13 @@ record! {
 #[derive(Debug, Clone, Copy)]
 pub struct Laws<'a>(pub(crate) &'a Store);
 
+impl Store {
+    /// Laws of motion, insert-only.
+    pub fn laws(&self) -> Laws<'_> {
+        Laws(self)
+    }
+}
+
 impl Laws<'_> {
     /// Puts a law in. The same text again changes nothing; another text under the same name is a conflict.
     pub async fn insert(&self, name: &str, document: &str) -> Result<Law> {

@@ -6,9 +6,9 @@ use sqlx::{PgConnection, PgPool, SqlSafeStr as _, SqlitePool};
 use crate::error::Result;
 
 /// A migration: its number, its name, its text.
-type Source = (i64, &'static str, &'static str);
+type MigrationSource = (i64, &'static str, &'static str);
 
-const SQLITE: &[Source] = &[
+const SQLITE: &[MigrationSource] = &[
     (1, "initial", include_str!("../../../migrations/sqlite/0001_initial.sql")),
     (2, "diagnoses", include_str!("../../../migrations/sqlite/0002_diagnoses.sql")),
     (3, "search", include_str!("../../../migrations/sqlite/0003_search.sql")),
@@ -16,7 +16,7 @@ const SQLITE: &[Source] = &[
     (5, "effects", include_str!("../../../migrations/sqlite/0005_effects.sql")),
     (6, "leases", include_str!("../../../migrations/sqlite/0006_leases.sql")),
 ];
-const POSTGRES: &[Source] = &[
+const POSTGRES: &[MigrationSource] = &[
     (1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql")),
     (2, "diagnoses", include_str!("../../../migrations/postgres/0002_diagnoses.sql")),
     (3, "search", include_str!("../../../migrations/postgres/0003_search.sql")),
@@ -25,9 +25,10 @@ const POSTGRES: &[Source] = &[
     (6, "leases", include_str!("../../../migrations/postgres/0006_leases.sql")),
 ];
 
-fn migrator(sources: &'static [Source]) -> Migrator {
-    let migration =
-        |&(version, name, sql): &Source| Migration::new(version, name.into(), MigrationType::Simple, sql.into_sql_str(), false);
+fn migrator(sources: &'static [MigrationSource]) -> Migrator {
+    let migration = |&(version, name, sql): &MigrationSource| {
+        Migration::new(version, name.into(), MigrationType::Simple, sql.into_sql_str(), false)
+    };
     Migrator::with_migrations(sources.iter().map(migration).collect())
 }
 

@@ -7,7 +7,8 @@ use object_store::{ObjectMeta, ObjectStore as _};
 
 use crate::checks;
 use crate::error::{Result, StoreError};
-use crate::objects::{FOLDER, Objects, ObjectsError};
+use crate::objects::{FOLDER, Objects};
+use crate::objects_error::ObjectsError;
 
 /// How many objects are asked after at a time.
 pub(crate) const AT_ONCE: usize = 32;

@@ -10,7 +10,8 @@ use object_store::prefix::PrefixStore;
 use object_store::{BackoffConfig, ClientOptions, ObjectStore, RetryConfig};
 
 use crate::error::{Result, StoreError};
-use crate::objects::{Objects, ObjectsError};
+use crate::objects::Objects;
+use crate::objects_error::ObjectsError;
 
 /// The region where nobody says: servers of one's own have none.
 const REGION: &str = "us-east-1";

@@ -10,7 +10,7 @@ pub(crate) trait Record: for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, Pg
 impl<T> Record for T where T: for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow> + Send + Unpin {}
 
 /// How a field's type is stored.
-pub(crate) trait Column: Sized {
+pub(crate) trait StoredColumn: Sized {
     /// The type that both databases know.
     type Stored;
 
@@ -20,7 +20,7 @@ pub(crate) trait Column: Sized {
 
 macro_rules! stored_as_is {
     ($($type:ty),*) => {$(
-        impl Column for $type {
+        impl StoredColumn for $type {
             type Stored = Self;
 
             fn load(stored: Self) -> sqlx::Result<Self> {
@@ -31,7 +31,7 @@ macro_rules! stored_as_is {
 }
 stored_as_is!(String, i64, f64, Option<String>, Option<i64>, Option<f64>);
 
-impl Column for bool {
+impl StoredColumn for bool {
     type Stored = i64;
 
     fn load(stored: i64) -> sqlx::Result<Self> {
@@ -62,7 +62,7 @@ macro_rules! record {
                 use sqlx::Row as _;
                 Ok(Self {
                     $($head: <$head_type as sqlx::FromRow<'r, $row>>::from_row(row)?,)?
-                    $($field: <$type as $crate::record::Column>::load(row.try_get(stringify!($field))?)?,)*
+                    $($field: <$type as $crate::record::StoredColumn>::load(row.try_get(stringify!($field))?)?,)*
                 })
             }
         }

@@ -8,7 +8,7 @@ use crate::page::{List, Page};
 use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
-use crate::versions;
+use crate::version;
 
 statements! {
     INSERT = same("INSERT INTO reports (id, version_id, ship, kind, document, html, created_us) \
@@ -64,6 +64,13 @@ pub struct NewReport {
 #[derive(Debug, Clone, Copy)]
 pub struct Reports<'a>(pub(crate) &'a Store);
 
+impl Store {
+    /// Reports on versions and ships.
+    pub fn reports(&self) -> Reports<'_> {
+        Reports(self)
+    }
+}
+
 impl Reports<'_> {
     /// Puts a report in.
     pub async fn insert(&self, new: &NewReport) -> Result<ReportHead> {
@@ -93,7 +100,7 @@ pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewReport)
     checks::name("kind", &new.kind)?;
     checks::json("document", &new.document)?;
     if let Some(version) = &new.version_id {
-        versions::check_id(tx, "version_id", version).await?;
+        version::check_id(tx, "version_id", version).await?;
     }
     let id = store.new_id();
     let values = args![id: &id, version_id: &new.version_id, ship: &new.ship, kind: &new.kind, document: &new.document,

@@ -3,21 +3,11 @@
 
 use std::fs::{self, File};
 use std::io::{self, Write as _};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::connect;
-use crate::error::Result;
-use crate::objects::ObjectsError;
-use crate::statements::{same, statements};
-use crate::store::Store;
 
 const BYTES: usize = 1 << 20;
-
-statements! {
-    TRY = same("INSERT INTO idempotency_keys (scope, key, request_sha256, created_us) VALUES ('', 'room', '', 0) \
-        ON CONFLICT (scope, key) DO UPDATE SET request_sha256 = ''");
-    FORGET = same("DELETE FROM idempotency_keys WHERE scope = '' AND key = 'room'");
-}
 
 /// The reserve of the database at a URL; none where it is no file.
 pub(crate) fn of(url: &str) -> Option<PathBuf> {
@@ -32,31 +22,15 @@ pub(crate) fn release(url: &str) -> bool {
     of(url).is_some_and(|reserve| fs::remove_file(reserve).is_ok())
 }
 
-impl Store {
-    /// Keeps room for the next start on a full disk, if there is none kept yet.
-    ///
-    /// # Errors
-    /// There is no room, or the folder cannot be written.
-    pub fn reserve(&self) -> Result<()> {
-        let Some(reserve) = self.reserve_file() else { return Ok(()) };
-        if fs::metadata(reserve).is_ok_and(|about| about.len() == BYTES as u64) {
-            return Ok(());
-        }
-        Ok(write(reserve).inspect_err(|_| drop(fs::remove_file(reserve))).map_err(ObjectsError::from)?)
+/// Makes it, unless it is there as it should be.
+pub(crate) fn keep(reserve: &Path) -> io::Result<()> {
+    if fs::metadata(reserve).is_ok_and(|about| about.len() == BYTES as u64) {
+        return Ok(());
     }
-
-    /// Writes something that nobody needs, to find out whether there is room.
-    pub async fn try_write(&self) -> Result<()> {
-        for statement in [TRY, FORGET] {
-            let mut tx = self.begin().await?;
-            tx.execute(statement, &[]).await?;
-            tx.commit().await?;
-        }
-        Ok(())
-    }
+    write(reserve).inspect_err(|_| drop(fs::remove_file(reserve)))
 }
 
-fn write(reserve: &std::path::Path) -> io::Result<()> {
+fn write(reserve: &Path) -> io::Result<()> {
     let mut file = File::create(reserve)?;
     file.write_all(&vec![0; BYTES])?;
     file.sync_all()

@@ -99,10 +99,10 @@ record! {
 }
 
 record! {
-    /// A ship with what tells how similar she is to others.
+    /// A ship with what tells how similar it is to others.
     pub struct ShipVectors {
         flatten head: FoundShip,
-        /// What [`crate::SearchIndex`] was told of her, JSON.
+        /// What [`crate::SearchIndex`] was told of it, JSON.
         pub vectors: String,
     }
 }
@@ -110,11 +110,11 @@ record! {
 /// What is asked of a ship; everything must hold.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ShipSearch {
-    /// Her category.
+    /// Its category.
     pub category: Option<String>,
-    /// A tag that she has.
+    /// A tag that it has.
     pub tag: Option<String>,
-    /// Where her facts must lie, at most [`MAX_RANGES`]. The first one orders what is found.
+    /// Where its facts must lie, at most [`MAX_RANGES`]. The first one orders what is found.
     pub ranges: Vec<FactRange>,
 }
 
@@ -134,13 +134,13 @@ pub type ShipKey = (Option<f64>, String);
 
 /// A condition beside the range that orders.
 #[derive(Clone, Copy)]
-enum Beside<'a> {
+enum FurtherCondition<'a> {
     Tag(&'a str),
     Category(&'a str),
     Range(&'a FactRange),
 }
 
-impl Beside<'_> {
+impl FurtherCondition<'_> {
     /// The text that begins with the ships that meet it.
     fn statement(self) -> Statement {
         match self {
@@ -152,9 +152,14 @@ impl Beside<'_> {
 }
 
 impl ShipSearch {
-    fn beside(&self) -> impl Iterator<Item = Beside<'_>> {
-        let ranges = self.ranges.iter().skip(1).map(Beside::Range);
-        self.tag.as_deref().map(Beside::Tag).into_iter().chain(self.category.as_deref().map(Beside::Category)).chain(ranges)
+    fn beside(&self) -> impl Iterator<Item = FurtherCondition<'_>> {
+        let ranges = self.ranges.iter().skip(1).map(FurtherCondition::Range);
+        self.tag
+            .as_deref()
+            .map(FurtherCondition::Tag)
+            .into_iter()
+            .chain(self.category.as_deref().map(FurtherCondition::Category))
+            .chain(ranges)
     }
 
     /// The text whose index has the order: of the first range where there is one, else of the names.
@@ -203,10 +208,10 @@ impl Ships<'_> {
                 let few = self.few(search).await?;
                 let others = args![after: &name, limit: limit, from: from];
                 let mut values = search.values(others);
-                if let Some(Beside::Range(FactRange { fact, min, max })) = few {
+                if let Some(FurtherCondition::Range(FactRange { fact, min, max })) = few {
                     values.extend_from_slice(args![fact: fact, min: *min, max: *max]);
                 }
-                database.all(few.map_or(search.statement(), Beside::statement), &values).await?
+                database.all(few.map_or(search.statement(), FurtherCondition::statement), &values).await?
             }
             None => database.all(search.statement(), &search.values(args![after: &name, limit: limit])).await?,
         };
@@ -214,7 +219,7 @@ impl Ships<'_> {
     }
 
     /// A condition that few ships meet, if there is one.
-    async fn few<'a>(&self, search: &'a ShipSearch) -> Result<Option<Beside<'a>>> {
+    async fn few<'a>(&self, search: &'a ShipSearch) -> Result<Option<FurtherCondition<'a>>> {
         for condition in search.beside() {
             if self.more(condition).await?.is_none() {
                 return Ok(Some(condition));
@@ -224,12 +229,14 @@ impl Ships<'_> {
     }
 
     /// Something if more than few ships meet a condition.
-    async fn more(&self, condition: Beside<'_>) -> Result<Option<Counted>> {
+    async fn more(&self, condition: FurtherCondition<'_>) -> Result<Option<Counted>> {
         let database = self.0.database();
         match condition {
-            Beside::Tag(tag) => database.optional(MORE_OF_TAG, args![tag: tag, few: FEW]).await,
-            Beside::Category(category) => database.optional(MORE_OF_CATEGORY, args![category: category, few: FEW]).await,
-            Beside::Range(FactRange { fact, min, max }) => {
+            FurtherCondition::Tag(tag) => database.optional(MORE_OF_TAG, args![tag: tag, few: FEW]).await,
+            FurtherCondition::Category(category) => {
+                database.optional(MORE_OF_CATEGORY, args![category: category, few: FEW]).await
+            }
+            FurtherCondition::Range(FactRange { fact, min, max }) => {
                 database.optional(MORE_OF_RANGE, args![fact: fact, min: *min, max: *max, few: FEW]).await
             }
         }

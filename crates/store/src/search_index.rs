@@ -1,7 +1,7 @@
 //! What ships are found by, kept up with them.
 //!
-//! Whatever changes what is known of a ship puts her in a queue, in the same transaction. Somebody who can read documents
-//! takes her out of it again and writes down her facts.
+//! Whatever changes what is known of a ship puts it in a queue, in the same transaction. Somebody who can read documents
+//! takes it out again and writes down its facts.
 
 use crate::arguments::args;
 use crate::checks;
@@ -40,16 +40,16 @@ record! {
 pub struct ShipFacts {
     /// The change that it follows.
     pub waiting: Waiting,
-    /// Her category.
+    /// Its category.
     pub category: String,
     /// Facts by name, each name once.
     pub facts: Vec<(String, f64)>,
-    /// What tells how similar she is to others, JSON.
+    /// What tells how similar it is to others, JSON.
     pub vectors: String,
 }
 
 impl ShipFacts {
-    /// Of a ship of whom nothing is known, or who is deleted.
+    /// Of a ship of which nothing is known, or which is deleted.
     pub fn none(waiting: Waiting) -> Self {
         Self { waiting, category: String::new(), facts: Vec::new(), vectors: "{}".to_owned() }
     }
@@ -58,6 +58,13 @@ impl ShipFacts {
 /// What the ships of a store are found by.
 #[derive(Debug, Clone, Copy)]
 pub struct SearchIndex<'a>(pub(crate) &'a Store);
+
+impl Store {
+    /// What ships are found by.
+    pub fn search_index(&self) -> SearchIndex<'_> {
+        SearchIndex(self)
+    }
+}
 
 impl SearchIndex<'_> {
     /// Ships that have changed since their facts were written, by name, at most `limit` of those after `after`.
@@ -98,7 +105,7 @@ pub(crate) async fn mark(store: &Store, tx: &mut Transaction, ship: &str) -> Res
     tx.execute(MARK, args![ship: ship, mark: &mark]).await.map(drop)
 }
 
-/// Puts a ship in the queue where the alias that has moved tells facts of her.
+/// Puts a ship in the queue where the alias that has moved tells facts of it.
 pub(crate) async fn mark_moved(store: &Store, tx: &mut Transaction, model: &str, alias: &str) -> Result<()> {
     if alias == ALIAS { mark(store, tx, model).await } else { Ok(()) }
 }

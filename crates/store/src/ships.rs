@@ -98,6 +98,13 @@ impl NewShip {
 #[derive(Debug, Clone, Copy)]
 pub struct Ships<'a>(pub(crate) &'a Store);
 
+impl Store {
+    /// Ships and their history.
+    pub fn ships(&self) -> Ships<'_> {
+        Ships(self)
+    }
+}
+
 impl Ships<'_> {
     /// Creates a ship at revision 1; a name that was ever taken is a conflict.
     pub async fn create(&self, new: &NewShip) -> Result<Ship> {

@@ -9,7 +9,8 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use crate::clock::micros;
 use crate::error::Result;
-use crate::objects::{FOLDER, Objects, ObjectsError};
+use crate::objects::{FOLDER, Objects};
+use crate::objects_error::ObjectsError;
 
 /// Nobody writes on at what has not been written for this long.
 const SETTLED: Duration = Duration::from_secs(60);

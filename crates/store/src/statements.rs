@@ -37,12 +37,12 @@ pub(crate) use prepare::ALL;
 mod prepare {
     use sqlx::{Executor as _, SqlSafeStr as _};
 
-    use crate::database::Writer;
+    use crate::connections::Writer;
     use crate::error::{Result, StoreError};
     use crate::store::Store;
     use crate::{
-        aliases, bulks, current, diagnoses, effects, families, garbage, idempotency, integrity, jobs, laws, reports, reserve,
-        search, search_index, ships, statistics, store, tags, trials, versions, work,
+        aliases, bulks, current, diagnoses, effects, families, garbage, idempotency, integrity, jobs, laws, reports, room,
+        search, search_index, ships, statistics, store, tags, trials, version, versions, work,
     };
 
     pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[
@@ -58,7 +58,7 @@ mod prepare {
         ("effects", effects::STATEMENTS),
         ("laws", laws::STATEMENTS),
         ("reports", reports::STATEMENTS),
-        ("reserve", reserve::STATEMENTS),
+        ("room", room::STATEMENTS),
         ("search", search::STATEMENTS),
         ("search_index", search_index::STATEMENTS),
         ("ships", ships::STATEMENTS),
@@ -66,6 +66,7 @@ mod prepare {
         ("store", store::STATEMENTS),
         ("tags", tags::STATEMENTS),
         ("trials", trials::STATEMENTS),
+        ("version", version::STATEMENTS),
         ("versions", versions::STATEMENTS),
         ("work", work::STATEMENTS),
     ];

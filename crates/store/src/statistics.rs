@@ -17,7 +17,7 @@ statements! {
 
 record! {
     /// The statistics of a trial.
-    pub struct Statistics {
+    pub struct StatisticsRow {
         /// The hash of everything that shapes them.
         pub key: String,
         /// The statistics, JSON.
@@ -30,6 +30,13 @@ record! {
 /// The statistics that a store keeps.
 #[derive(Debug, Clone, Copy)]
 pub struct TrialStatistics<'a>(pub(crate) &'a Store);
+
+impl Store {
+    /// Sufficient statistics of trials.
+    pub fn statistics(&self) -> TrialStatistics<'_> {
+        TrialStatistics(self)
+    }
+}
 
 impl TrialStatistics<'_> {
     /// Keeps statistics by key and document, all or nothing; those that are there stay as they are.
@@ -47,7 +54,7 @@ impl TrialStatistics<'_> {
 
     /// The document under a key, if it is there. One that is not what was kept is refused.
     pub async fn get(&self, key: &str) -> Result<Option<String>> {
-        let Some(found) = self.0.database().optional::<Statistics>(GET, args![key: key]).await? else { return Ok(None) };
+        let Some(found) = self.0.database().optional::<StatisticsRow>(GET, args![key: key]).await? else { return Ok(None) };
         match sha256_hex(found.document.as_bytes()) == found.sha256 {
             true => Ok(Some(found.document)),
             false => Err(StoreError::conflict("statistics", key, "the document does not have its hash: the database is damaged")),

@@ -1,31 +1,18 @@
-//! The store: one database, a clock, a maker of ids, and a repository per table.
+//! The store: one database, a clock and a maker of ids. Each repository is reached from it by a method that stands in the
+//! repository's own file.
 
 use std::fmt;
 use std::sync::Arc;
 
-use crate::aliases::Aliases;
-use crate::bulks::Bulks;
 use crate::clock::{Clock, Ids, UuidIds};
 use crate::connect;
-use crate::current::Questions;
 use crate::database::{Database, Transaction};
-use crate::diagnoses::Diagnoses;
-use crate::effects::EffectLibraries;
 use crate::error::Result;
-use crate::families::Families;
-use crate::idempotency::Idempotency;
-use crate::jobs::Jobs;
-use crate::laws::Laws;
+use crate::questions::Questions;
 use crate::record::record;
-use crate::reports::Reports;
 use crate::reserve;
-use crate::search_index::SearchIndex;
-use crate::ships::Ships;
 use crate::statements::{same, statements};
-use crate::statistics::TrialStatistics;
-use crate::trials::Trials;
 use crate::unit::Unit;
-use crate::versions::Versions;
 
 statements! {
     PING = same("SELECT CAST(1 AS BIGINT) AS alive");
@@ -41,9 +28,9 @@ record! {
 
 /// The database of Sistership. A clone is another handle on the same connections.
 #[derive(Clone)]
-pub struct Store(Arc<Inner>);
+pub struct Store(Arc<StoreParts>);
 
-struct Inner {
+struct StoreParts {
     database: Database,
     clock: Arc<dyn Clock>,
     ids: Arc<dyn Ids>,
@@ -74,7 +61,7 @@ impl Store {
             Err(error) if error.is_out_of_space() && reserve::release(url) => connect::connect(url).await?,
             other => other?,
         };
-        Ok(Self::of(Inner {
+        Ok(Self::of(StoreParts {
             database,
             clock,
             ids,
@@ -85,14 +72,14 @@ impl Store {
         }))
     }
 
-    fn of(inner: Inner) -> Self {
-        Self(Arc::new(inner))
+    fn of(parts: StoreParts) -> Self {
+        Self(Arc::new(parts))
     }
 
     /// A handle whose reads and writes belong to a unit of work.
     pub(crate) fn within(&self, unit: Unit) -> Self {
-        let Inner { database, clock, ids, .. } = &*self.0;
-        Self::of(Inner {
+        let StoreParts { database, clock, ids, .. } = &*self.0;
+        Self::of(StoreParts {
             database: Database { unit: Some(unit), ..database.clone() },
             clock: Arc::clone(clock),
             ids: Arc::clone(ids),
@@ -135,76 +122,6 @@ impl Store {
     /// The clock that this store goes by, in microseconds since 1970.
     pub fn now_us(&self) -> i64 {
         self.0.clock.now_us()
-    }
-
-    /// Laws of motion, insert-only.
-    pub fn laws(&self) -> Laws<'_> {
-        Laws(self)
-    }
-
-    /// Libraries of effects, insert-only.
-    pub fn effects(&self) -> EffectLibraries<'_> {
-        EffectLibraries(self)
-    }
-
-    /// Ships and their history.
-    pub fn ships(&self) -> Ships<'_> {
-        Ships(self)
-    }
-
-    /// Trials of ships; their samples are [`crate::Objects`].
-    pub fn trials(&self) -> Trials<'_> {
-        Trials(self)
-    }
-
-    /// Versions of models, insert-only.
-    pub fn versions(&self) -> Versions<'_> {
-        Versions(self)
-    }
-
-    /// Names for versions that move, and how they have moved.
-    pub fn aliases(&self) -> Aliases<'_> {
-        Aliases(self)
-    }
-
-    /// Requests that must not be carried out twice.
-    pub fn idempotency(&self) -> Idempotency<'_> {
-        Idempotency(self)
-    }
-
-    /// Long work.
-    pub fn jobs(&self) -> Jobs<'_> {
-        Jobs(self)
-    }
-
-    /// Reports on versions and ships.
-    pub fn reports(&self) -> Reports<'_> {
-        Reports(self)
-    }
-
-    /// What ships are found by.
-    pub fn search_index(&self) -> SearchIndex<'_> {
-        SearchIndex(self)
-    }
-
-    /// Diagnoses of versions.
-    pub fn diagnoses(&self) -> Diagnoses<'_> {
-        Diagnoses(self)
-    }
-
-    /// Families of ships.
-    pub fn families(&self) -> Families<'_> {
-        Families(self)
-    }
-
-    /// Refinements of whole families.
-    pub fn bulks(&self) -> Bulks<'_> {
-        Bulks(self)
-    }
-
-    /// Sufficient statistics of trials.
-    pub fn statistics(&self) -> TrialStatistics<'_> {
-        TrialStatistics(self)
     }
 
     pub(crate) fn reserve_file(&self) -> Option<&std::path::Path> {

@@ -35,7 +35,7 @@ impl Ships<'_> {
         Ok(tags.into_iter().map(|tag| tag.tag).collect())
     }
 
-    /// Puts a tag on a ship, at most [`MAX_TAGS`]; one that she has already stays.
+    /// Puts a tag on a ship, at most [`MAX_TAGS`]; one that it has already stays.
     pub async fn tag(&self, name: &str, tag: &str) -> Result<()> {
         checks::name("tag", tag)?;
         let mut tx = self.0.begin().await?;

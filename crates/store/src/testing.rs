@@ -13,7 +13,7 @@ pub use s3::TestS3;
 
 use crate::backup::TABLES;
 use crate::clock::ManualClock;
-use crate::database::Pool;
+use crate::connections::Pool;
 use crate::store::Store;
 
 mod earlier;

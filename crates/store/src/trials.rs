@@ -117,6 +117,13 @@ pub struct Inserted<T> {
 #[derive(Debug, Clone, Copy)]
 pub struct Trials<'a>(pub(crate) &'a Store);
 
+impl Store {
+    /// Trials of ships; their samples are [`crate::Objects`].
+    pub fn trials(&self) -> Trials<'_> {
+        Trials(self)
+    }
+}
+
 impl Trials<'_> {
     /// Puts a trial in. The same samples of the same ship again give the trial that is there, brought back if it was deleted.
     pub async fn insert(&self, new: &NewTrial) -> Result<Inserted<Trial>> {

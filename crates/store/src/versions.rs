@@ -2,15 +2,15 @@
 
 use crate::aliases::{self, AliasMove};
 use crate::arguments::args;
-use crate::checks;
-use crate::current::CurrentVersion;
 use crate::database::Transaction;
 use crate::error::{Result, StoreError};
 use crate::objects::sha256_hex;
 use crate::page::{List, Page};
+use crate::questions::CurrentVersion;
 use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
+use crate::version::{NewVersion, Version, VersionHead, check_id, missing};
 
 statements! {
     // The row of the model stays locked until the commit, and an undone transaction gives its number back: no gaps.
@@ -20,9 +20,6 @@ statements! {
         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9) RETURNING id, model, number, parent, law, method, sha256, created_us");
     GET = same("SELECT id, model, number, parent, law, method, document, sha256, created_us FROM versions \
         WHERE model = $1 AND number = $2");
-    HEAD = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions \
-        WHERE model = $1 AND number = $2");
-    HEAD_BY_ID = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions WHERE id = $1");
     BY_ID = same("SELECT id, model, number, parent, law, method, document, sha256, created_us FROM versions WHERE id = $1");
     LATEST = same("SELECT id, model, number, parent, law, method, document, sha256, created_us FROM versions \
         WHERE model = $1 ORDER BY number DESC LIMIT 1");
@@ -35,71 +32,23 @@ statements! {
 }
 
 record! {
-    /// A version, but for its document.
-    pub struct VersionHead {
-        /// Its id.
-        pub id: String,
-        /// The model (the ship's name).
-        pub model: String,
-        /// 1, 2, 3, ... within the model.
-        pub number: i64,
-        /// The id of the version it was made from.
-        pub parent: Option<String>,
-        /// The law of motion.
-        pub law: String,
-        /// How it was made: `published-source`, `published`, `weak`, `trajectory`, ...
-        pub method: String,
-        /// The SHA-256 of the document.
-        pub sha256: String,
-        /// When it was made.
-        pub created_us: i64,
-    }
-}
-
-record! {
-    /// A version.
-    pub struct Version {
-        flatten head: VersionHead,
-        /// The whole record of the version as canonical JSON, byte for byte.
-        pub document: String,
-    }
-}
-
-record! {
     /// A number just taken.
-    pub struct Number {
+    pub struct NextNumber {
         /// The number.
         pub number: i64,
-    }
-}
-
-/// What a version is made of. The document holds neither the number nor the time: the same recipe gives the same bytes.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct NewVersion {
-    /// The model (the ship's name).
-    pub model: String,
-    /// The id of the version it is made from.
-    pub parent: Option<String>,
-    /// The law of motion.
-    pub law: String,
-    /// How it was made.
-    pub method: String,
-    /// The whole record of the version as canonical JSON.
-    pub document: String,
-}
-
-impl NewVersion {
-    fn check(&self) -> Result<()> {
-        checks::name("model", &self.model)?;
-        checks::name("law", &self.law)?;
-        checks::name("method", &self.method)?;
-        checks::json("document", &self.document)
     }
 }
 
 /// The versions of a store.
 #[derive(Debug, Clone, Copy)]
 pub struct Versions<'a>(pub(crate) &'a Store);
+
+impl Store {
+    /// Versions of models, insert-only.
+    pub fn versions(&self) -> Versions<'_> {
+        Versions(self)
+    }
+}
 
 impl Versions<'_> {
     /// Makes the next version of a model and moves aliases to it, all or nothing.
@@ -160,7 +109,7 @@ pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewVersion
     if let Some(parent) = &new.parent {
         check_id(tx, "parent", parent).await?;
     }
-    let Number { number } = tx.one(NUMBER, args![model: &new.model]).await?;
+    let NextNumber { number } = tx.one(NUMBER, args![model: &new.model]).await?;
     let (id, sha256) = (store.new_id(), sha256_hex(new.document.as_bytes()));
     let values = args![id: &id, model: &new.model, number: number, parent: &new.parent, law: &new.law, method: &new.method,
         document: &new.document, sha256: &sha256, created_us: store.now_us()];
@@ -169,20 +118,4 @@ pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewVersion
         aliases::shift(store, tx, &new.model, number, alias).await?;
     }
     Ok(version)
-}
-
-/// Whether the transaction sees this version.
-pub(crate) async fn check_exists(tx: &mut Transaction, model: &str, number: i64) -> Result<()> {
-    let version: Option<VersionHead> = tx.optional(HEAD, args![model: model, number: number]).await?;
-    version.map(drop).ok_or_else(|| missing(model, number))
-}
-
-/// Whether the transaction sees the version that `field` names.
-pub(crate) async fn check_id(tx: &mut Transaction, field: &'static str, id: &str) -> Result<()> {
-    let version: Option<VersionHead> = tx.optional(HEAD_BY_ID, args![id: id]).await?;
-    version.map(drop).ok_or_else(|| StoreError::invalid(field, format!("there is no version `{id}`")))
-}
-
-fn missing(model: &str, number: i64) -> StoreError {
-    StoreError::missing("version", format!("{model}/{number}"))
 }

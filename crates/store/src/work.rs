@@ -50,7 +50,7 @@ pub enum Claimed {
 }
 
 /// How a job ends.
-enum End<'a> {
+enum JobEnd<'a> {
     Succeeded { result: &'a str },
     Failed { error: &'a str },
     Cancelled,
@@ -96,17 +96,17 @@ impl Jobs<'_> {
 
     /// Ends a job with what came of it, JSON. Where a version comes of it, see [`crate::Store::commit_refinement`].
     pub async fn complete(&self, id: &str, fence: i64, result: &str) -> Result<Job> {
-        self.end(id, fence, End::Succeeded { result }).await
+        self.end(id, fence, JobEnd::Succeeded { result }).await
     }
 
     /// Ends a job that failed.
     pub async fn fail(&self, id: &str, fence: i64, error: &str) -> Result<Job> {
-        self.end(id, fence, End::Failed { error }).await
+        self.end(id, fence, JobEnd::Failed { error }).await
     }
 
     /// Ends a job that was stopped on request.
     pub async fn cancelled(&self, id: &str, fence: i64) -> Result<Job> {
-        self.end(id, fence, End::Cancelled).await
+        self.end(id, fence, JobEnd::Cancelled).await
     }
 
     /// Gives a job back to the queue, as a worker does that is told to leave; it does not count as an attempt.
@@ -122,7 +122,7 @@ impl Jobs<'_> {
         Ok(job)
     }
 
-    async fn end(&self, id: &str, fence: i64, how: End<'_>) -> Result<Job> {
+    async fn end(&self, id: &str, fence: i64, how: JobEnd<'_>) -> Result<Job> {
         let mut tx = self.0.begin().await?;
         let job = end(&mut tx, id, fence, how, self.0.now_us()).await?;
         tx.commit().await?;
@@ -132,14 +132,14 @@ impl Jobs<'_> {
 
 /// Ends a job with its result within a transaction.
 pub(crate) async fn complete(tx: &mut Transaction, id: &str, fence: i64, result: &str, now_us: i64) -> Result<Job> {
-    end(tx, id, fence, End::Succeeded { result }, now_us).await
+    end(tx, id, fence, JobEnd::Succeeded { result }, now_us).await
 }
 
-async fn end(tx: &mut Transaction, id: &str, fence: i64, how: End<'_>, now_us: i64) -> Result<Job> {
+async fn end(tx: &mut Transaction, id: &str, fence: i64, how: JobEnd<'_>, now_us: i64) -> Result<Job> {
     let (state, result, error) = match how {
-        End::Succeeded { result } => (JobState::Succeeded, Some(result), None),
-        End::Failed { error } => (JobState::Failed, None, Some(error)),
-        End::Cancelled => (JobState::Cancelled, None, None),
+        JobEnd::Succeeded { result } => (JobState::Succeeded, Some(result), None),
+        JobEnd::Failed { error } => (JobState::Failed, None, Some(error)),
+        JobEnd::Cancelled => (JobState::Cancelled, None, None),
     };
     result.map_or(Ok(()), |result| checks::json("result", result))?;
     let state = state.as_str();
@@ -157,8 +157,8 @@ async fn bury(tx: &mut Transaction, job: &Job, lost: i64, now_us: i64) -> Result
         job.id
     );
     let how = match job.state {
-        JobState::Running if job.cancel_requested => End::Cancelled,
-        JobState::Running if lost >= MAX_LOST_WORKERS => End::Failed { error: &message },
+        JobState::Running if job.cancel_requested => JobEnd::Cancelled,
+        JobState::Running if lost >= MAX_LOST_WORKERS => JobEnd::Failed { error: &message },
         _ => return Ok(false),
     };
     tx.execute(COUNT_LOST, args![id: &job.id, lost_workers: lost]).await?;

@@ -16,17 +16,17 @@ use sistership_model::{Law, Model, Zoo};
 
 use super::regressions::{Hull, derivatives};
 
-/// Scatter of a ship's own derivatives about the regressions, and of her interaction coefficients.
+/// Scatter of a ship's own derivatives about the regressions, and of its interaction coefficients.
 const SCATTER: f64 = 0.1;
 const INTERACTION: f64 = 0.05;
 /// Instruments, by channel: velocities in m/s, the rate in rad/s.
 const NOISE: [(Channel, f64); 3] = [(Channel::U, 0.02), (Channel::V, 0.02), (Channel::R, 2e-4)];
 
-/// A ship: what she truly is, and what is known of her.
+/// A ship: what it truly is, and what is known of it.
 pub struct Sistership {
     pub name: String,
     pub hull: Hull,
-    /// The foundation on her particulars.
+    /// The foundation on its particulars.
     pub frame: Model,
     pub truth: Model,
 }

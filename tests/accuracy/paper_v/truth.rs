@@ -20,9 +20,9 @@ const DURATION_S: f64 = 650.0;
 
 /// SR108 at certain revolutions.
 pub struct Truth {
-    /// The model of her that is the truth.
+    /// The model of it that is the truth.
     pub model: Model,
-    /// Her speed in steady running, m/s.
+    /// Its speed in steady running, m/s.
     pub speed_m_s: f64,
     ship: Ship,
     n_rps: f64,

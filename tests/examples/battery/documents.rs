@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use serde_json::{Value, json};
-use sistership::sea_trials::{Manoeuvre, record};
+use sistership::sea_trials::{TrialManoeuvre, record};
 use sistership_dynamics::Ship;
 use sistership_model::{Trial, Zoo};
 use sistership_trials::samples::to_csv;
@@ -74,7 +74,12 @@ pub fn trials() -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let zoo = Zoo::embedded()?;
     let model = zoo.model(PATTERN).map_err(|error| error.to_string())?;
     let ship = Ship::new(&model, zoo.law(&model.law).ok_or("no law")?).map_err(|error| error.to_string())?;
-    let programme = [Manoeuvre::Zigzag(10.0, 10.0), Manoeuvre::Zigzag(20.0, 20.0), Manoeuvre::Turn(12.0), Manoeuvre::Turn(-20.0)];
+    let programme = [
+        TrialManoeuvre::Zigzag(10.0, 10.0),
+        TrialManoeuvre::Zigzag(20.0, 20.0),
+        TrialManoeuvre::Turn(12.0),
+        TrialManoeuvre::Turn(-20.0),
+    ];
     let trials: Vec<Trial> = record(&ship, 10.47, &programme, 3).map_err(|stopped| stopped.to_string())?;
     let csv = |trial: &Trial| -> Result<_, Failure> {
         let mut bytes = Vec::new();

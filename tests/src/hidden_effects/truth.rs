@@ -1,4 +1,4 @@
-//! The true ship: SR108 by the law of Son and Nomoto, with something hidden that no model of her has been told.
+//! The true ship: SR108 by the law of Son and Nomoto, with something hidden that no model of it has been told.
 
 #[cfg(test)]
 mod checks;

@@ -28,7 +28,7 @@ all of it.";
 /// Copy a store, while it is written, into a folder.
 #[derive(Debug, Args)]
 #[command(after_help = BACKUP_EXAMPLES)]
-pub struct Backup {
+pub struct BackupArguments {
     /// The folder; it must be empty or not be there.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
@@ -42,7 +42,7 @@ pub struct Backup {
 /// Make a store of a backup, in an empty place.
 #[derive(Debug, Args)]
 #[command(after_help = RESTORE_EXAMPLES)]
-pub struct Restore {
+pub struct RestoreArguments {
     /// The backup's folder.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
@@ -57,7 +57,7 @@ pub struct Restore {
 ///
 /// # Errors
 /// The store is not there, the folder is not empty, something cannot be read or written, or samples are lost.
-pub fn backup(backup: &Backup) -> Result<(), Failure> {
+pub fn backup(backup: &BackupArguments) -> Result<(), Failure> {
     let manifest = with_archive(&backup.store, async |archive| upkeep::backup(archive, &backup.folder).await)?;
     output::print(backup.json, &manifest, || text("backed up", &manifest))?;
     if manifest.lost.is_empty() { Ok(()) } else { Err(Failure::Told) }
@@ -67,8 +67,8 @@ pub fn backup(backup: &Backup) -> Result<(), Failure> {
 ///
 /// # Errors
 /// The place is not empty, the backup is damaged or of another kind of database, or something cannot be written.
-pub fn restore(restore: &Restore) -> Result<(), Failure> {
-    let Restore { folder, store, json } = restore;
+pub fn restore(restore: &RestoreArguments) -> Result<(), Failure> {
+    let RestoreArguments { folder, store, json } = restore;
     let place = store.place(&store.file()?)?;
     let manifest = block_on(async {
         let restored = upkeep::restore(folder, &place.database_url, &place.objects).await;

@@ -21,7 +21,7 @@ Exit status 1 when any trial is refused; warnings refuse nothing.";
 /// Check trial files: units, signs, gaps, jumps, time.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Check {
+pub struct CheckArguments {
     /// Trial manifests, CSV or Parquet files.
     #[arg(required = true)]
     trials: Vec<PathBuf>,
@@ -31,7 +31,7 @@ pub struct Check {
 }
 
 #[derive(Serialize)]
-struct Checked {
+struct CheckedTrials {
     trials: Vec<CheckOutcome>,
 }
 
@@ -39,8 +39,8 @@ struct Checked {
 ///
 /// # Errors
 /// A path cannot be read, or a trial is refused.
-pub fn run(check: &Check) -> Result<(), Failure> {
-    let mut checked = Checked { trials: Vec::new() };
+pub fn run(check: &CheckArguments) -> Result<(), Failure> {
+    let mut checked = CheckedTrials { trials: Vec::new() };
     for path in &check.trials {
         checked.trials.extend(check_path(path)?);
     }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use super::log_format::LogFormat;
 use crate::failure::{Failure, about_file};
 use crate::zoo::text_of;
 
@@ -43,7 +44,7 @@ pub struct ConfigFile {
     /// `--log`
     pub log: Option<String>,
     /// `--log-format`
-    pub log_format: Option<super::log::LogFormat>,
+    pub log_format: Option<LogFormat>,
 }
 
 /// Reads a file, where one is named. Relative paths in it start at its folder.
@@ -69,14 +70,18 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    fn read_text(text: &str) -> Result<ConfigFile, String> {
+    fn read_text(text: &str) -> Result<ConfigFile, Failure> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("sistership.yaml");
         std::fs::write(&path, text).unwrap();
-        read(Some(&path)).map_err(|failure| failure.message().unwrap_or_default().to_owned()).map(|mut file| {
+        read(Some(&path)).map(|mut file| {
             file.data_dir = file.data_dir.map(|data| data.strip_prefix(folder.path()).unwrap_or(&data).to_path_buf());
             file
         })
+    }
+
+    fn refusal(text: &str) -> String {
+        read_text(text).unwrap_err().message().unwrap_or_default().to_owned()
     }
 
     #[test]
@@ -90,9 +95,9 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_named() {
-        assert!(read_text("lisen: 127.0.0.1:9000\n").unwrap_err().contains("lisen"));
-        assert!(read_text("workers: 1\nlisten: nowhere\n").unwrap_err().contains("line 2"));
-        assert!(read_text("workers: 1\nworkers: 2\n").unwrap_err().contains("workers"));
+        assert!(refusal("lisen: 127.0.0.1:9000\n").contains("lisen"));
+        assert!(refusal("workers: 1\nlisten: nowhere\n").contains("line 2"));
+        assert!(refusal("workers: 1\nworkers: 2\n").contains("workers"));
         assert!(read(Some(Path::new("/nowhere.yaml"))).is_err());
     }
 }

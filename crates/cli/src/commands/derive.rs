@@ -9,8 +9,8 @@ use sistership_model::law::LawFile;
 use sistership_model::{FileError, Zoo};
 
 use crate::failure::Failure;
-use crate::files::Promised;
-use crate::table::Table;
+use crate::files::PromisedFile;
+use crate::table::TextTable;
 use crate::zoo::text_of;
 use crate::{named, output};
 
@@ -22,10 +22,10 @@ Examples:
 
 A declaration is of `kind: hybrid`; models/hybrids/README.md has one with every field.";
 
-/// Derive the Abkowitz-MMG hybrid of a ship from her actuators, and count its unknowns rule by rule.
+/// Derive the Abkowitz-MMG hybrid of a ship from its actuators, and count its unknowns rule by rule.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Derive {
+pub struct DeriveArguments {
     /// The declaration: actuators, order, rules, submodels.
     declaration: PathBuf,
     /// Write the law to a file.
@@ -37,7 +37,7 @@ pub struct Derive {
 }
 
 #[derive(Serialize)]
-struct Document<'a> {
+struct DeriveDocument<'a> {
     name: &'a str,
     order: u32,
     #[serde(flatten)]
@@ -50,9 +50,9 @@ struct Document<'a> {
 ///
 /// # Errors
 /// The declaration is refused, or the law cannot be written.
-pub fn run(zoo: &Zoo, asked: &Derive) -> Result<(), Failure> {
+pub fn run(zoo: &Zoo, asked: &DeriveArguments) -> Result<(), Failure> {
     let path = &asked.declaration;
-    let promised = asked.out.as_deref().map(|out| Promised::new(out, std::slice::from_ref(path))).transpose()?;
+    let promised = asked.out.as_deref().map(|out| PromisedFile::new(out, std::slice::from_ref(path))).transpose()?;
     let text = text_of(path)?;
     named::must_be(path, &text, "hybrid", "a declaration")?;
     let derived = derive(&path.display().to_string(), &text)?;
@@ -61,8 +61,13 @@ pub fn run(zoo: &Zoo, asked: &Derive) -> Result<(), Failure> {
         promised.write(derived.text.as_bytes())?;
     }
     let submodels = derived.law.submodels.keys().map(String::as_str).collect();
-    let document =
-        Document { name: &derived.law.name, order: derived.file.order, unknowns: &unknowns, submodels, law: &derived.law_file };
+    let document = DeriveDocument {
+        name: &derived.law.name,
+        order: derived.file.order,
+        unknowns: &unknowns,
+        submodels,
+        law: &derived.law_file,
+    };
     output::print(asked.json, &document, || report(&derived, &unknowns, asked.out.as_deref()))
 }
 
@@ -71,7 +76,7 @@ fn blamed(path: &Path, field: String, message: String) -> FileError {
 }
 
 fn report(derived: &Derivation, unknowns: &Unknowns, out: Option<&Path>) -> String {
-    let mut table = Table::new(["terms after", "setting", "X", "Y", "N", "all"]);
+    let mut table = TextTable::new(["terms after", "setting", "X", "Y", "N", "all"]);
     for rule in &unknowns.rules {
         let counts = [rule.x, rule.y, rule.n, rule.total].map(|count| count.to_string());
         table.row([rule.rule.to_owned(), rule.setting.clone()].into_iter().chain(counts));
@@ -82,7 +87,7 @@ fn report(derived: &Derivation, unknowns: &Unknowns, out: Option<&Path>) -> Stri
 
 /// `60 coefficients in 3 sets (shared, stalled, astern): 180`, and what comes on top.
 fn sum(derived: &Derivation, unknowns: &Unknowns) -> String {
-    let mut table = Table::new(["unknowns", "of", "number"]);
+    let mut table = TextTable::new(["unknowns", "of", "number"]);
     let sets: Vec<&str> = std::iter::once("shared").chain(derived.law.submodels.keys().map(String::as_str)).collect();
     let mut row = |what: &str, of: String, count: usize| table.row([what.to_owned(), of, count.to_string()]);
     row("coefficients", format!("{} sets: {}", unknowns.coefficient_sets, sets.join(", ")), unknowns.coefficients);
@@ -102,10 +107,10 @@ mod tests {
     const DECLARATION: &str = "kind: hybrid\nname: ferry\ntitle: A ferry\norder: 2\nactuators: { n: { kind: propeller }, delta: \
                                { kind: vectwin } }\nsubmodels: ahead_astern\neffects: [{ effect: wind, form: measured }]\n";
 
-    fn asked(folder: &Path, text: &str) -> Derive {
+    fn asked(folder: &Path, text: &str) -> DeriveArguments {
         let declaration = folder.join("ferry.yaml");
         std::fs::write(&declaration, text).unwrap();
-        Derive { declaration, out: Some(folder.join("law.yaml")), json: false }
+        DeriveArguments { declaration, out: Some(folder.join("law.yaml")), json: false }
     }
 
     #[test]

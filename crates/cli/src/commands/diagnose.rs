@@ -1,6 +1,6 @@
 //! `sistership diagnose`: what a model lacks, by the trials that it has not seen.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
@@ -11,13 +11,13 @@ use sistership_model::{Effect, Law, Model, Zoo};
 use sistership_report::{DiagnosisInput, render_diagnosis};
 
 use super::diagnose_text;
-use super::refine::{Files, model_file};
-use crate::arguments::positive;
+use super::written::{WrittenFiles, guard, model_file, promised};
 use crate::failure::Failure;
-use crate::files::Promised;
+use crate::files::PromisedFile;
 use crate::named;
 use crate::output::{self, count, note};
 use crate::trials::{self, ReadTrial};
+use crate::values::positive;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -31,7 +31,7 @@ wind does look alike on one. The verdict is `complete`, `effects` or `unexplaine
 /// Find what a model lacks, by trials that it has not seen.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Diagnose {
+pub struct DiagnoseArguments {
     /// The model: a name in the zoo, a model file, or a vessel file with a model.
     #[arg(long)]
     model: String,
@@ -41,7 +41,7 @@ pub struct Diagnose {
     /// Start simulations that judge anew every so often; where absent, every ten ship lengths sailed.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     restart_s: Option<f64>,
-    /// Shortest interval between samples that are used; where absent, that of sailing a fiftieth of her length.
+    /// Shortest interval between samples that are used; where absent, that of sailing a fiftieth of its length.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     least_step_s: Option<f64>,
     /// How far a coefficient may be from the truth, as a share of its value, where the model does not say itself.
@@ -65,18 +65,18 @@ pub struct Diagnose {
 }
 
 #[derive(Serialize)]
-struct Document<'a> {
+struct DiagnoseDocument<'a> {
     #[serde(flatten)]
     diagnosis: Value,
     #[serde(flatten)]
-    files: Files<'a>,
+    files: WrittenFiles<'a>,
 }
 
 /// Runs the command.
 ///
 /// # Errors
 /// The model, a trial or a setting is refused, or a file cannot be written.
-pub fn run(zoo: &Zoo, arguments: &Diagnose) -> Result<(), Failure> {
+pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
     let settings = settings(arguments)?;
     let (model, law) = named::model(zoo, &arguments.model)?;
     let named: Vec<PathBuf> = arguments.trials.iter().cloned().chain([PathBuf::from(&arguments.model)]).collect();
@@ -85,19 +85,20 @@ pub fn run(zoo: &Zoo, arguments: &Diagnose) -> Result<(), Failure> {
     let read = trials::read(&arguments.trials)?;
     trials::remark_other_ship(&read, &model.ship);
     note(&format!("{}: {} read", model.name, count(read.len(), "trial")));
-    guard(arguments, &read)?;
+    let mut files = WrittenFiles { out: arguments.out.as_deref(), report: arguments.report.as_deref() };
+    guard(&files, &read)?;
     let diagnosis = diagnosed(zoo, &model, &law, &settings, &read)?;
     let kept = written(zoo, out, &diagnosis)?;
     if let Some(report) = report {
         report.write(&report_html(&model, &law, &diagnosis, &read)?)?;
     }
-    let files = Files { out: arguments.out.as_deref().filter(|_| kept), report: arguments.report.as_deref() };
-    let document = Document { diagnosis: printed(&diagnosis)?, files };
+    files.out = files.out.filter(|_| kept);
+    let document = DiagnoseDocument { diagnosis: printed(&diagnosis)?, files };
     output::print(arguments.json, &document, || diagnose_text::text(&diagnosis, &model, &files))
 }
 
 /// What can be seen in the call alone is a call that is wrong.
-fn settings(arguments: &Diagnose) -> Result<Settings, Failure> {
+fn settings(arguments: &DiagnoseArguments) -> Result<Settings, Failure> {
     let default = Settings::default();
     let settings = Settings {
         restart_s: arguments.restart_s,
@@ -109,17 +110,6 @@ fn settings(arguments: &Diagnose) -> Result<Settings, Failure> {
     let flag = |field: String| field.replace('_', "-");
     settings.check().map_err(|(field, message)| Failure::Call(format!("--{}: {message}", flag(field))))?;
     Ok(settings)
-}
-
-fn promised(path: Option<&Path>, inputs: &[PathBuf]) -> Result<Option<Promised>, Failure> {
-    path.map(|path| Promised::new(path, inputs)).transpose()
-}
-
-/// The files that a manifest lists are known only once it is read.
-fn guard(arguments: &Diagnose, read: &[ReadTrial]) -> Result<(), Failure> {
-    let inputs = trials::inputs(read, &[]);
-    let mut files = arguments.out.as_deref().into_iter().chain(arguments.report.as_deref());
-    files.try_for_each(|path| Promised::new(path, &inputs).map(|_| ()))
 }
 
 fn diagnosed(zoo: &Zoo, model: &Model, law: &Law, settings: &Settings, read: &[ReadTrial]) -> Result<Diagnosis, Failure> {
@@ -134,7 +124,7 @@ fn diagnosed(zoo: &Zoo, model: &Model, law: &Law, settings: &Settings, read: &[R
 }
 
 /// Writes the model with the effects; whether there was one to write.
-fn written(zoo: &Zoo, out: Option<Promised>, diagnosis: &Diagnosis) -> Result<bool, Failure> {
+fn written(zoo: &Zoo, out: Option<PromisedFile>, diagnosis: &Diagnosis) -> Result<bool, Failure> {
     match (out, &diagnosis.model) {
         (Some(out), Some(model)) => {
             out.write(model_file(zoo, model, "with the effects that a diagnosis found")?.as_bytes()).map(|()| true)

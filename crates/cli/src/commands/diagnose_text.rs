@@ -6,27 +6,16 @@ use sistership_diagnose::{Confounded, Diagnosis, Found, Hypothesis, NextTrial, U
 use sistership_model::Model;
 use sistership_report::distinct;
 
-use super::refine::Files;
+use super::channels::CHANNELS;
 use super::worth;
-use crate::table::{Table, number, optional};
+use super::written::WrittenFiles;
+use crate::table::{TextTable, number, optional};
 
 /// Most hypotheses that are listed.
 const MOST: usize = 8;
 
-/// Channels in the order of the table: name, unit, and the factor to it from SI.
-const CHANNELS: [(&str, &str, f64); 8] = [
-    ("u", "m/s", 1.0),
-    ("v", "m/s", 1.0),
-    ("r", "deg/s", 180.0 / std::f64::consts::PI),
-    ("psi", "deg", 180.0 / std::f64::consts::PI),
-    ("x", "m", 1.0),
-    ("y", "m", 1.0),
-    ("phi", "deg", 180.0 / std::f64::consts::PI),
-    ("p", "deg/s", 180.0 / std::f64::consts::PI),
-];
-
 /// Everything that came of a diagnosis.
-pub fn text(diagnosis: &Diagnosis, model: &Model, files: &Files<'_>) -> String {
+pub fn text(diagnosis: &Diagnosis, model: &Model, files: &WrittenFiles<'_>) -> String {
     let mut parts = vec![format!("{} ({})\n{}\n", diagnosis.diagnosed, worth(model.status), verdict(diagnosis))];
     parts.extend(diagnosis.effects.iter().map(effect));
     if !diagnosis.unexplained.is_empty() {
@@ -54,7 +43,7 @@ fn verdict(diagnosis: &Diagnosis) -> String {
 
 /// An effect with its parameters, whose names carry their units, and what it is confounded with.
 fn effect(found: &Found) -> String {
-    let mut table = Table::new(["parameter", "value", "standard error"]);
+    let mut table = TextTable::new(["parameter", "value", "standard error"]);
     for (name, value) in &found.parameters {
         table.row([name.clone(), number(value.value), number(value.se)]);
     }
@@ -65,8 +54,8 @@ fn effect(found: &Found) -> String {
     if others.is_empty() { head } else { format!("{head}  hard to tell by these trials from {}\n", others.join(", ")) }
 }
 
-fn unexplained(stretches: &[Unexplained]) -> Table {
-    let mut table = Table::new(["trial", "channel", "from s", "to s", "rms / noise"]);
+fn unexplained(stretches: &[Unexplained]) -> TextTable {
+    let mut table = TextTable::new(["trial", "channel", "from s", "to s", "rms / noise"]);
     for stretch in stretches {
         let figures = [stretch.from_s, stretch.to_s, stretch.rms_over_noise].map(number);
         table.row([stretch.trial.clone(), stretch.channel.clone()].into_iter().chain(figures));
@@ -84,8 +73,8 @@ fn next_trial(next: &NextTrial) -> String {
 }
 
 /// The errors on trials left out, before and after, and what they are by the noise.
-fn errors(diagnosis: &Diagnosis) -> Table {
-    let mut table = Table::new(["channel", "unit", "before", "after", "change", "noise", "before / noise", "after / noise"]);
+fn errors(diagnosis: &Diagnosis) -> TextTable {
+    let mut table = TextTable::new(["channel", "unit", "before", "after", "change", "noise", "before / noise", "after / noise"]);
     for (name, unit, factor) in CHANNELS {
         let of = |all: &BTreeMap<String, f64>| all.get(name).copied().filter(|value| *value != f64::MAX);
         let (before, after, noise) = (of(&diagnosis.before), of(&diagnosis.after), of(&diagnosis.noise).filter(|n| *n > 0.0));
@@ -102,8 +91,8 @@ fn errors(diagnosis: &Diagnosis) -> Table {
     table
 }
 
-fn hypotheses(hypotheses: &[Hypothesis]) -> Table {
-    let mut table = Table::new(["hypothesis", "evidence", "on trials left out", "taken"]);
+fn hypotheses(hypotheses: &[Hypothesis]) -> TextTable {
+    let mut table = TextTable::new(["hypothesis", "evidence", "on trials left out", "taken"]);
     for hypothesis in distinct(hypotheses).into_iter().take(MOST) {
         let name = if hypothesis.effects.is_empty() { "the model alone".to_owned() } else { hypothesis.effects.join(" + ") };
         let taken = if hypothesis.taken { "yes" } else { "" };
@@ -112,7 +101,7 @@ fn hypotheses(hypotheses: &[Hypothesis]) -> Table {
     table
 }
 
-fn end(diagnosis: &Diagnosis, files: &Files<'_>) -> String {
+fn end(diagnosis: &Diagnosis, files: &WrittenFiles<'_>) -> String {
     let mut lines: Vec<String> = diagnosis.remarks.iter().map(|remark| format!("remark: {remark}")).collect();
     lines.extend(match (files.out, &diagnosis.model) {
         (Some(path), _) => Some(format!("model with the effects written to {}", path.display())),

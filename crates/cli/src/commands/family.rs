@@ -3,12 +3,14 @@
 use clap::{Args, Subcommand, ValueEnum};
 use serde_json::{Value, json};
 use sistership_server::Archive;
+use sistership_server::derive::DeriveError;
 use sistership_server::fleet::{Asked, PriorChoice, Rule, Standing, Start, learn, order_refinement};
+use sistership_store::StoreError;
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
 use crate::output::{self, count, note};
-use crate::table::{Table, number};
+use crate::table::{TextTable, number};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -21,9 +23,9 @@ Examples:
 /// Families of ships: make one, learn from it, refine all of it.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Family {
+pub struct FamilyArguments {
     #[command(subcommand)]
-    what: What,
+    what: FamilyAction,
     #[command(flatten)]
     store: StoreArguments,
     /// Print one JSON document.
@@ -32,12 +34,12 @@ pub struct Family {
 }
 
 #[derive(Debug, Subcommand)]
-enum What {
+enum FamilyAction {
     /// Make a family on a foundation.
     Create {
         /// Its name.
         family: String,
-        /// The version that its models are founded on: `SHIP` (her champion) or `SHIP/NUMBER`.
+        /// The version that its models are founded on: `SHIP` (its champion) or `SHIP/NUMBER`.
         #[arg(long, value_name = "SHIP[/NUMBER]")]
         foundation: String,
         /// A member; repeatable.
@@ -57,16 +59,16 @@ enum What {
         /// The family.
         family: String,
     },
-    /// Queue the refinement of every member from the statistics of her trials.
+    /// Queue the refinement of every member from the statistics of its trials.
     Refine {
         /// The family.
         family: String,
         /// Where each member starts.
-        #[arg(long, value_enum, default_value_t = Origin::Champion)]
-        start: Origin,
+        #[arg(long, value_enum, default_value_t = StartArgument::Champion)]
+        start: StartArgument,
         /// What holds the coefficients.
-        #[arg(long, value_enum, default_value_t = Held::Family)]
-        prior: Held,
+        #[arg(long, value_enum, default_value_t = PriorArgument::Family)]
+        prior: PriorArgument,
         /// A refined model becomes champion where no axis' error grows by more than this share; without it, none does by itself.
         #[arg(long, value_name = "SHARE")]
         no_worse_than: Option<f64>,
@@ -89,13 +91,13 @@ enum What {
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-enum Origin {
+enum StartArgument {
     Champion,
     Foundation,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-enum Held {
+enum PriorArgument {
     Family,
     Foundation,
 }
@@ -104,80 +106,93 @@ enum Held {
 ///
 /// # Errors
 /// What is named is not there, or the store says no.
-pub fn run(family: &Family) -> Result<(), Failure> {
+pub fn run(family: &FamilyArguments) -> Result<(), Failure> {
     let (document, text) = with_archive(&family.store, async |archive| done(&family.what, archive).await)?;
     output::print(family.json, &document, || text)
 }
 
-type Done = Result<(Value, String), String>;
+/// Why what was asked of a family is not done.
+#[derive(Debug, thiserror::Error)]
+enum FamilyError {
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The prior cannot be learned.
+    #[error(transparent)]
+    Derive(#[from] DeriveError),
+    /// The refinement is not queued.
+    #[error("{0}")]
+    NotQueued(String),
+    #[error(transparent)]
+    Json(#[from] serde_json::Error),
+}
 
-async fn done(what: &What, archive: &Archive) -> Done {
+/// What was done, as a document and in words.
+type FamilyResult = Result<(Value, String), FamilyError>;
+
+async fn done(what: &FamilyAction, archive: &Archive) -> FamilyResult {
     let families = archive.store.families();
     match what {
-        What::Create { family, foundation, ship } => {
+        FamilyAction::Create { family, foundation, ship } => {
             let version = version(archive, foundation).await?;
-            let family = families.create(family, family, &version).await.map_err(said)?.name;
+            let family = families.create(family, family, &version).await?.name;
             added(archive, &family, ship).await
         }
-        What::Add { family, ships } => added(archive, family, ships).await,
-        What::Learn { family } => learned(archive, family).await,
-        What::Refine { family, start, prior, no_worse_than } => {
+        FamilyAction::Add { family, ships } => added(archive, family, ships).await,
+        FamilyAction::Learn { family } => learned(archive, family).await,
+        FamilyAction::Refine { family, start, prior, no_worse_than } => {
             let asked = Asked {
                 start: match start {
-                    Origin::Champion => Start::Champion,
-                    Origin::Foundation => Start::Foundation,
+                    StartArgument::Champion => Start::Champion,
+                    StartArgument::Foundation => Start::Foundation,
                 },
                 prior: match prior {
-                    Held::Family => PriorChoice::Family,
-                    Held::Foundation => PriorChoice::Foundation,
+                    PriorArgument::Family => PriorChoice::Family,
+                    PriorArgument::Foundation => PriorChoice::Foundation,
                 },
                 rule: Rule { no_worse_than: *no_worse_than },
                 ..Asked::default()
             };
-            status(archive, &order_refinement(&archive.store, family, &asked).await?.id).await
+            let queued = order_refinement(&archive.store, family, &asked).await;
+            status(archive, &queued.map_err(FamilyError::NotQueued)?.id).await
         }
-        What::Status { id } => status(archive, id).await,
-        What::Cancel { id } => {
-            archive.store.bulks().request_cancel(id).await.map_err(said)?;
+        FamilyAction::Status { id } => status(archive, id).await,
+        FamilyAction::Cancel { id } => {
+            archive.store.bulks().request_cancel(id).await?;
             status(archive, id).await
         }
-        What::Retry { id } => {
-            archive.store.bulks().retry(id).await.map_err(said)?;
+        FamilyAction::Retry { id } => {
+            archive.store.bulks().retry(id).await?;
             status(archive, id).await
         }
     }
 }
 
-fn said(error: impl std::fmt::Display) -> String {
-    error.to_string()
-}
-
 /// The id of the version that a name stands for.
-async fn version(archive: &Archive, name: &str) -> Result<String, String> {
+async fn version(archive: &Archive, name: &str) -> Result<String, FamilyError> {
     let (ship, rest) = name.split_once('/').unwrap_or((name, "champion"));
     let number = match rest.parse() {
         Ok(number) => number,
-        Err(_) => archive.store.aliases().get(ship, rest).await.map_err(said)?.version_number,
+        Err(_) => archive.store.aliases().get(ship, rest).await?.version_number,
     };
-    Ok(archive.store.versions().get(ship, number).await.map_err(said)?.head.id)
+    Ok(archive.store.versions().get(ship, number).await?.head.id)
 }
 
-async fn added(archive: &Archive, family: &str, ships: &[String]) -> Done {
-    let new = archive.store.families().add(family, ships).await.map_err(said)?;
-    let members = archive.store.families().count(family).await.map_err(said)?;
+async fn added(archive: &Archive, family: &str, ships: &[String]) -> FamilyResult {
+    let new = archive.store.families().add(family, ships).await?;
+    let members = archive.store.families().count(family).await?;
     let text = format!("{family}: {new} added, {}", count(usize::try_from(members).unwrap_or(0), "member"));
     Ok((json!({ "family": family, "added": new, "members": members }), text))
 }
 
-async fn learned(archive: &Archive, family: &str) -> Done {
+async fn learned(archive: &Archive, family: &str) -> FamilyResult {
     let told = |fraction: f64, what: &str| {
         note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true
     };
-    let prior = learn(archive, family, &told).await.map_err(said)?;
-    let document = serde_json::to_string(&prior).map_err(said)?;
-    let kept = archive.store.families().teach(family, &document).await.map_err(said)?;
-    let mut table = Table::new(["coefficient", "mean", "differs by", "told by trials"]);
+    let prior = learn(archive, family, &told).await?;
+    let document = serde_json::to_string(&prior)?;
+    let kept = archive.store.families().teach(family, &document).await?;
+    let mut table = TextTable::new(["coefficient", "mean", "differs by", "told by trials"]);
     for axis in &prior.axes {
         for (j, name) in axis.names.iter().enumerate() {
             table.row([name.clone(), number(axis.mean[j]), number(axis.deviation[j]), format!("{:.2}", axis.told_by_trials[j])]);
@@ -193,9 +208,9 @@ async fn learned(archive: &Archive, family: &str) -> Done {
     Ok((json!({ "family": family, "revision": kept.revision, "prior": prior }), format!("{head}{table}")))
 }
 
-async fn status(archive: &Archive, id: &str) -> Done {
-    let bulk = archive.store.bulks().get(id).await.map_err(said)?;
-    let standing = Standing::of(&archive.store, &bulk).await.map_err(said)?;
+async fn status(archive: &Archive, id: &str) -> FamilyResult {
+    let bulk = archive.store.bulks().get(id).await?;
+    let standing = Standing::of(&archive.store, &bulk).await?;
     let mut text = format!("{} of {}: {}, {} of {} ships done", bulk.id, bulk.family, standing.state, standing.done, bulk.ships);
     standing.outcomes.iter().for_each(|(outcome, ships)| text.push_str(&format!(", {ships} {outcome}")));
     if let Some(pace) = standing.ships_per_s {

@@ -18,7 +18,7 @@ reports, diagnoses and objects. Changes nothing; servers and workers may go on. 
 /// Check every hash and every reference of a store.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Fsck {
+pub struct FsckArguments {
     #[command(flatten)]
     store: StoreArguments,
     /// Print one JSON document.
@@ -30,7 +30,7 @@ pub struct Fsck {
 ///
 /// # Errors
 /// The store is not there, does not answer, or has faults.
-pub fn run(fsck: &Fsck) -> Result<(), Failure> {
+pub fn run(fsck: &FsckArguments) -> Result<(), Failure> {
     let findings = with_archive(&fsck.store, async |archive| upkeep::fsck(archive).await)?;
     output::print(fsck.json, &findings, || text(&findings))?;
     if findings.clean { Ok(()) } else { Err(Failure::Told) }

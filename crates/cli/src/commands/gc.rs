@@ -8,6 +8,7 @@ use sistership_server::upkeep::{self, Collected};
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
 use crate::output::{self, count};
+use crate::values::hours;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -20,7 +21,7 @@ Servers and workers may go on.";
 /// Remove objects that nothing refers to.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Gc {
+pub struct GcArguments {
     #[command(flatten)]
     store: StoreArguments,
     /// Hours for which an object is left alone after it was put.
@@ -34,19 +35,11 @@ pub struct Gc {
     json: bool,
 }
 
-fn hours(text: &str) -> Result<Duration, String> {
-    let hours: f64 = text.parse().map_err(|_| format!("`{text}` is not a number of hours"))?;
-    match (0.0..=1e6).contains(&hours) {
-        true => Ok(Duration::from_secs_f64(hours * 3600.0)),
-        false => Err(format!("must be from 0 to 1000000 h, not {hours}")),
-    }
-}
-
 /// Runs the command.
 ///
 /// # Errors
 /// The store is not there, or does not answer.
-pub fn run(gc: &Gc) -> Result<(), Failure> {
+pub fn run(gc: &GcArguments) -> Result<(), Failure> {
     let collected = with_archive(&gc.store, async |archive| upkeep::gc(archive, gc.grace_h, gc.dry_run).await)?;
     output::print(gc.json, &collected, || text(&collected))
 }
@@ -57,15 +50,4 @@ fn text(collected: &Collected) -> String {
     let done = if *dry_run { "would be removed" } else { "removed" };
     let puts = count(unfinished.len(), "put");
     format!("{lines}{} of {objects} and {puts} that never ended ({bytes} bytes) {done}\n", count(removed.len(), "object"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn hours_are_read_or_refused() {
-        assert_eq!(hours("0.5"), Ok(Duration::from_secs(1800)));
-        assert!(hours("-1").is_err() && hours("NaN").is_err() && hours("a day").is_err_and(|why| why.contains("a day")));
-    }
 }

@@ -2,23 +2,12 @@
 
 use std::io::IsTerminal as _;
 
-use clap::{Args, ValueEnum};
-use serde::Deserialize;
+use clap::Args;
 use tracing_subscriber::EnvFilter;
 
 use super::config_file::ConfigFile;
+use super::log_format::LogFormat;
 use crate::failure::Failure;
-
-/// How a line of the log is written.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum LogFormat {
-    /// For people.
-    #[default]
-    Text,
-    /// One JSON object a line, for machines.
-    Json,
-}
 
 /// What is logged, and how.
 #[derive(Debug, Args)]

@@ -1,22 +1,19 @@
 //! `sistership manoeuvre`: turning circles and zigzags, their figures and the IMO criteria.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use clap::Args;
-use serde::Serialize;
 use sistership_dynamics::Ship;
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres};
-use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+use sistership_dynamics::manoeuvre::ManoeuvreSettings;
 use sistership_estimate::bands::{Bands, Sampling, bands};
-use sistership_model::validity::Excursion;
 use sistership_model::{Law, Model, Zoo};
 
+use super::manoeuvre_document::ManoeuvreDocument;
 use super::sailed::sail;
 use super::{manoeuvre_text, ready, set_depth};
-use crate::arguments::{Integration, positive, rudder_deg, zigzag_deg};
 use crate::failure::Failure;
-use crate::files::Promised;
+use crate::files::PromisedFile;
+use crate::values::{Integration, positive, rudder_deg, zigzag_deg};
 use crate::{named, output, track};
 
 const EXAMPLES: &str = "\
@@ -31,7 +28,7 @@ Exit status 1 when a manoeuvre leaves the physical range.";
 /// Sail turning circles and zigzags with a model and judge them by the IMO criteria.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Manoeuvre {
+pub struct ManoeuvreArguments {
     /// The model: a name in the zoo, a model file, or a vessel file with a model.
     #[arg(long)]
     model: String,
@@ -76,48 +73,17 @@ pub struct Manoeuvre {
     json: bool,
 }
 
-/// What is printed.
-#[derive(Debug, Serialize)]
-pub struct Document {
-    /// The model.
-    pub model: String,
-    /// Its law.
-    pub law: String,
-    /// Whether its figures are published, estimated, transferred or refined.
-    pub status: sistership_model::vessel::Status,
-    /// The approach speed, m/s.
-    pub speed_m_s: f64,
-    /// Turning circles.
-    pub turns: Vec<TurningMetrics>,
-    /// Zigzags.
-    pub zigzags: Vec<ZigzagMetrics>,
-    /// Distance to 10 deg of heading with 10 deg of rudder, the worse side, m.
-    pub initial_turning_m: Option<f64>,
-    /// The IMO criteria.
-    pub imo: Vec<Criterion>,
-    /// Manoeuvres that left the physical range.
-    pub failures: Vec<String>,
-    /// Manoeuvres that left what the model's trials covered.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub outside: BTreeMap<String, Excursion>,
-    /// Confidence bands, where they were asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub bands: Option<Bands>,
-    /// What must be known to read the figures.
-    pub remarks: Vec<String>,
-}
-
 /// Runs the command.
 ///
 /// # Errors
 /// The model is refused or a manoeuvre leaves the physical range.
-pub fn run(zoo: &Zoo, manoeuvre: &Manoeuvre) -> Result<(), Failure> {
+pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     if manoeuvre.out.is_some() && manoeuvre.turn.len() + manoeuvre.zigzag.len() != 1 {
         return Err(Failure::Call("--out writes the track of a single manoeuvre: give one --turn or one --zigzag".into()));
     }
     let (mut model, law) = named::model(zoo, &manoeuvre.model)?;
     let inputs = [PathBuf::from(&manoeuvre.model)];
-    let file = manoeuvre.out.as_ref().map(|path| Promised::new(path, &inputs)).transpose()?;
+    let file = manoeuvre.out.as_ref().map(|path| PromisedFile::new(path, &inputs)).transpose()?;
     let remarks = remarks(manoeuvre, &mut model, &law);
     let ship = ship(manoeuvre, &model, &law)?;
     let (sailed, tracks) = sail(&ship, &manoeuvre.turn, &manoeuvre.zigzag, &settings(manoeuvre));
@@ -125,13 +91,13 @@ pub fn run(zoo: &Zoo, manoeuvre: &Manoeuvre) -> Result<(), Failure> {
         file.write(&track::csv(track, &law, ship.has_propeller())?)?;
     }
     let bands = drawn(manoeuvre, &model, &law)?;
-    let document = document(&model, &ship, sailed, bands, remarks);
+    let document = ManoeuvreDocument::of(&model, &ship, sailed, bands, remarks);
     output::print(manoeuvre.json, &document, || manoeuvre_text::text(&document, &model, &law, &ship))?;
     if document.failures.is_empty() { Ok(()) } else { Err(Failure::Told) }
 }
 
 /// Moves a law that is expanded about a speed to the speed asked for, and says so.
-fn remarks(manoeuvre: &Manoeuvre, model: &mut Model, law: &Law) -> Vec<String> {
+fn remarks(manoeuvre: &ManoeuvreArguments, model: &mut Model, law: &Law) -> Vec<String> {
     let mut remarks = Vec::new();
     if let (Some(speed), Some(own), Some(_)) = (manoeuvre.speed_m_s, model.speed_m_s, law.approach_speed_parameter())
         && speed != own
@@ -149,7 +115,7 @@ fn remarks(manoeuvre: &Manoeuvre, model: &mut Model, law: &Law) -> Vec<String> {
     remarks
 }
 
-fn ship(manoeuvre: &Manoeuvre, model: &Model, law: &Law) -> Result<Ship, Failure> {
+fn ship(manoeuvre: &ManoeuvreArguments, model: &Model, law: &Law) -> Result<Ship, Failure> {
     let mut ship = ready(model, law)?;
     let speed = manoeuvre.speed_m_s.unwrap_or(ship.approach_speed_m_s());
     ship.set_envelope_speed(speed);
@@ -163,7 +129,7 @@ fn ship(manoeuvre: &Manoeuvre, model: &Model, law: &Law) -> Result<Ship, Failure
     Ok(ship)
 }
 
-fn settings(manoeuvre: &Manoeuvre) -> ManoeuvreSettings {
+fn settings(manoeuvre: &ManoeuvreArguments) -> ManoeuvreSettings {
     ManoeuvreSettings {
         speed_m_s: manoeuvre.speed_m_s,
         n_rps: manoeuvre.n_rps,
@@ -175,7 +141,7 @@ fn settings(manoeuvre: &Manoeuvre) -> ManoeuvreSettings {
 }
 
 /// The bands that are asked for.
-fn drawn(manoeuvre: &Manoeuvre, model: &Model, law: &Law) -> Result<Option<Bands>, Failure> {
+fn drawn(manoeuvre: &ManoeuvreArguments, model: &Model, law: &Law) -> Result<Option<Bands>, Failure> {
     let Some(samples) = manoeuvre.bands else { return Ok(None) };
     let sampling = Sampling { samples, seed: manoeuvre.seed };
     sampling.check().map_err(|message| Failure::Call(format!("--bands: {message}")))?;
@@ -184,21 +150,4 @@ fn drawn(manoeuvre: &Manoeuvre, model: &Model, law: &Law) -> Result<Option<Bands
         Failure::Refused(format!("--bands: {} has no posterior to draw from; {why}", model.name))
     };
     bands(model, law, &settings(manoeuvre), manoeuvre.depth_m, sampling).ok_or_else(none).map(Some)
-}
-
-fn document(model: &Model, ship: &Ship, sailed: StandardManoeuvres, bands: Option<Bands>, remarks: Vec<String>) -> Document {
-    Document {
-        model: model.name.clone(),
-        law: model.law.clone(),
-        status: model.status,
-        speed_m_s: ship.approach_speed_m_s(),
-        turns: sailed.turns,
-        zigzags: sailed.zigzags,
-        initial_turning_m: sailed.initial_turning_m,
-        imo: sailed.imo,
-        failures: sailed.failures,
-        outside: sailed.outside,
-        bands,
-        remarks,
-    }
 }

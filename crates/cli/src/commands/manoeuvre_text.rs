@@ -5,12 +5,12 @@ use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
 use sistership_estimate::bands::Bands;
 use sistership_model::{Law, Model};
 
-use super::manoeuvre::Document;
+use super::manoeuvre_document::ManoeuvreDocument;
 use super::model_line;
-use crate::table::{Table, number, optional};
+use crate::table::{TextTable, number, optional};
 
 /// Everything that was sailed.
-pub fn text(document: &Document, model: &Model, law: &Law, ship: &Ship) -> String {
+pub fn text(document: &ManoeuvreDocument, model: &Model, law: &Law, ship: &Ship) -> String {
     let head = format!(
         "{}\nlength {} m, approach at {} m/s\n",
         model_line(model, law),
@@ -30,12 +30,12 @@ pub fn text(document: &Document, model: &Model, law: &Law, ship: &Ship) -> Strin
     format!("{head}{}{gap}{end}", parts.concat())
 }
 
-fn section(title: &str, is_empty: bool, table: impl FnOnce() -> Table) -> String {
+fn section(title: &str, is_empty: bool, table: impl FnOnce() -> TextTable) -> String {
     if is_empty { String::new() } else { format!("\n{title}\n{}", table()) }
 }
 
-fn turns(turns: &[TurningMetrics], lpp_m: f64) -> Table {
-    let mut table = Table::new([
+fn turns(turns: &[TurningMetrics], lpp_m: f64) -> TextTable {
+    let mut table = TextTable::new([
         "rudder deg",
         "advance m",
         "L",
@@ -60,9 +60,9 @@ fn turns(turns: &[TurningMetrics], lpp_m: f64) -> Table {
     table
 }
 
-fn zigzags(zigzags: &[ZigzagMetrics]) -> Table {
+fn zigzags(zigzags: &[ZigzagMetrics]) -> TextTable {
     let mut table =
-        Table::new(["rudder deg", "heading deg", "1st overshoot deg", "2nd overshoot deg", "initial turning s", "period s"]);
+        TextTable::new(["rudder deg", "heading deg", "1st overshoot deg", "2nd overshoot deg", "initial turning s", "period s"]);
     for zigzag in zigzags {
         let known = [zigzag.first_overshoot_deg, zigzag.second_overshoot_deg, zigzag.initial_turning_time_s, zigzag.period_s];
         table.row([number(zigzag.rudder_deg), number(zigzag.switch_deg)].into_iter().chain(known.map(optional)));
@@ -75,8 +75,8 @@ fn title(bands: &Bands) -> String {
     format!("Bands of 95 % by {} draws from the posterior{failed}", bands.sampling.samples)
 }
 
-fn banded(bands: &Bands) -> Table {
-    let mut table = Table::new(["figure", "unit", "from", "to", "reached", "met"]);
+fn banded(bands: &Bands) -> TextTable {
+    let mut table = TextTable::new(["figure", "unit", "from", "to", "reached", "met"]);
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     for band in &bands.figures {
         let met = band.pass.map_or_else(|| "-".to_owned(), percent);
@@ -85,8 +85,8 @@ fn banded(bands: &Bands) -> Table {
     table
 }
 
-fn criteria(criteria: &[Criterion]) -> Table {
-    let mut table = Table::new(["criterion", "value", "limit", "unit", "verdict"]);
+fn criteria(criteria: &[Criterion]) -> TextTable {
+    let mut table = TextTable::new(["criterion", "value", "limit", "unit", "verdict"]);
     for criterion in criteria {
         let verdict = criterion.pass.map_or("not reached", |pass| if pass { "pass" } else { "FAIL" });
         let value = criterion.value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"));

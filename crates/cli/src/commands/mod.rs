@@ -1,6 +1,7 @@
 //! One file for each command, and what they share.
 
 pub mod backup;
+mod channels;
 pub mod check;
 mod config_file;
 pub mod derive;
@@ -10,7 +11,9 @@ pub mod family;
 pub mod fsck;
 pub mod gc;
 mod log;
+mod log_format;
 pub mod manoeuvre;
+mod manoeuvre_document;
 mod manoeuvre_text;
 pub mod refine;
 mod refine_settings;
@@ -25,6 +28,7 @@ mod simulated;
 pub(crate) mod store;
 pub mod verify;
 pub mod work;
+mod written;
 
 use sistership_dynamics::Ship;
 use sistership_model::vessel::Status;
@@ -43,7 +47,7 @@ fn ready(model: &Model, law: &Law) -> Result<Ship, Failure> {
 /// Puts the ship into shallow water.
 ///
 /// # Errors
-/// Her law does not know water depth, or the water is too shallow for her.
+/// Its law does not know water depth, or the water is too shallow for it.
 fn set_depth(ship: &mut Ship, model: &Model, law: &Law, depth_m: f64) -> Result<(), Failure> {
     if !knows_depth(law) {
         return Err(Failure::Refused(format!("law `{}` does not know water depth: it sails in deep water only", law.name)));
@@ -56,11 +60,11 @@ fn set_depth(ship: &mut Ship, model: &Model, law: &Law, depth_m: f64) -> Result<
 /// The ship floats in water of a depth.
 ///
 /// # Errors
-/// The water is too shallow for her.
+/// The water is too shallow for it.
 fn check_floats(model: &Model, depth_m: f64) -> Result<(), Failure> {
     let draught_m = particulars::value(&model.particulars, "draught_m").unwrap_or(0.0);
     if depth_m <= draught_m {
-        return Err(Failure::Refused(format!("{depth_m} m of water do not float {}, who draws {draught_m} m", model.ship)));
+        return Err(Failure::Refused(format!("{depth_m} m of water do not float {}, which draws {draught_m} m", model.ship)));
     }
     Ok(())
 }
@@ -81,7 +85,7 @@ fn worth(status: Status) -> &'static str {
     match status {
         Status::Published => "as published",
         Status::Estimated => "ESTIMATED from particulars: a stopgap, not measured",
-        Status::Transferred => "TRANSFERRED from another ship, not fitted to her",
+        Status::Transferred => "TRANSFERRED from another ship, not fitted to it",
         Status::Refined => "refined against trials",
     }
 }

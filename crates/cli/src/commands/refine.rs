@@ -1,6 +1,6 @@
 //! `sistership refine`: a source model fitted to a ship's trials.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
@@ -10,17 +10,17 @@ use sistership_estimate::similarity::RankedSource;
 use sistership_estimate::source::{Similarity, best_source, similar};
 use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::{Law, Model, Vessel, Zoo};
-use sistership_report::{Input, render};
+use sistership_report::{RefinementInput, render_refinement};
 use sistership_server::derive::with_uncertainty;
 
 use super::refine_settings::{held_out, settings_file};
 use super::refine_text;
-use crate::arguments::positive;
+use super::written::{WrittenFiles, guard, model_file, promised};
 use crate::failure::Failure;
-use crate::files::Promised;
 use crate::named;
 use crate::output::{self, count, note};
 use crate::trials::{self, ReadTrial};
+use crate::values::{method, positive};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -35,7 +35,7 @@ whole manoeuvres left out is taken. Give several manoeuvres; a single one allows
 /// Refine a source model against a ship's trials.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Refine {
+pub struct RefineArguments {
     /// The ship: a name in the zoo or a vessel file.
     #[arg(long)]
     ship: String,
@@ -62,7 +62,7 @@ pub struct Refine {
     /// Start simulations of manoeuvres left out anew every so often; where absent, every ten ship lengths sailed.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     restart_s: Option<f64>,
-    /// Time over which accelerations are differenced; where absent, that of sailing a tenth of her length.
+    /// Time over which accelerations are differenced; where absent, that of sailing a tenth of its length.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     difference_s: Option<f64>,
     /// What the refined model must keep to; bounds of single coefficients go into the settings.
@@ -90,9 +90,9 @@ enum Constrain {
     PhysicalSigns,
     /// Surge terms brake.
     Dissipative,
-    /// She keeps a straight line with the rudder amidships.
+    /// It keeps a straight line with the rudder amidships.
     Stable,
-    /// She does not.
+    /// It does not.
     Unstable,
 }
 
@@ -107,48 +107,34 @@ impl Constrain {
     }
 }
 
-fn method(name: &str) -> Result<Method, String> {
-    let known = || Method::ALL.map(|method| format!("`{}`", method.name())).join(", ");
-    Method::by_name(name).ok_or_else(|| format!("there are {}", known()))
-}
-
 #[derive(Serialize)]
-struct Document<'a> {
+struct RefineDocument<'a> {
     #[serde(flatten)]
     refinement: &'a Refinement,
     #[serde(skip_serializing_if = "Option::is_none")]
     ranking: Option<&'a [RankedSource]>,
     #[serde(flatten)]
-    files: Files<'a>,
-}
-
-/// What was written.
-#[derive(Clone, Copy, Serialize)]
-pub struct Files<'a> {
-    /// The model.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub out: Option<&'a Path>,
-    /// The report.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub report: Option<&'a Path>,
+    files: WrittenFiles<'a>,
 }
 
 /// Runs the command.
 ///
 /// # Errors
 /// The ship, the source, a trial or the refinement is refused, or a file cannot be written.
-pub fn run(zoo: &Zoo, arguments: &Refine) -> Result<(), Failure> {
+pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     let target = named::ship(zoo, &arguments.ship)?;
     let mut settings = settings(arguments)?;
     let named = arguments.source.as_deref().filter(|source| *source != "auto");
     let given = named.map(|source| named::model(zoo, source)).transpose()?.map(|(model, _)| model);
     let law = arguments.law.as_deref().map(|name| law(zoo, name)).transpose()?;
-    let out = promised(arguments.out.as_deref(), arguments)?;
-    let report = promised(arguments.report.as_deref(), arguments)?;
+    let inputs = named_files(arguments);
+    let out = promised(arguments.out.as_deref(), &inputs)?;
+    let report = promised(arguments.report.as_deref(), &inputs)?;
     let read = trials::read(&arguments.trials)?;
     trials::remark_other_ship(&read, target.name());
     note(&format!("{}: {} read", target.name(), count(read.len(), "trial")));
-    guard(arguments, &read)?;
+    let files = WrittenFiles { out: arguments.out.as_deref(), report: arguments.report.as_deref() };
+    guard(&files, &read)?;
     settings.held_out = held_out(&settings.held_out, &read)?;
     let (source, similarity) = match (given, &law) {
         (Some(model), _) => (model, None),
@@ -167,13 +153,8 @@ pub fn run(zoo: &Zoo, arguments: &Refine) -> Result<(), Failure> {
         report.write(&report_html(zoo, &target, &refinement, similarity.as_ref(), &read)?)?;
     }
     let ranking = similarity.as_ref().map(|similarity| similarity.ranking.as_slice());
-    let files = Files { out: arguments.out.as_deref(), report: arguments.report.as_deref() };
-    let document = Document { refinement: &refinement, ranking, files };
+    let document = RefineDocument { refinement: &refinement, ranking, files };
     output::print(arguments.json, &document, || refine_text::text(&refinement, &source, ranking, &files))
-}
-
-fn promised(path: Option<&Path>, arguments: &Refine) -> Result<Option<Promised>, Failure> {
-    path.map(|path| Promised::new(path, &named_files(arguments))).transpose()
 }
 
 fn report_html(
@@ -185,13 +166,13 @@ fn report_html(
 ) -> Result<Vec<u8>, Failure> {
     let law = named::law_of(zoo, &refinement.model)?;
     let trials = trials::trials(read);
-    let input = Input { refinement, law: &law, vessel, trials: &trials, similarity, version: None };
-    let rendered = render(&input).map_err(|error| Failure::Refused(format!("the report: {error}")))?;
+    let input = RefinementInput { refinement, law: &law, vessel, trials: &trials, similarity, version: None };
+    let rendered = render_refinement(&input).map_err(|error| Failure::Refused(format!("the report: {error}")))?;
     Ok(rendered.html.into_bytes())
 }
 
 /// Settings from the file, if any, and the flags.
-fn settings(arguments: &Refine) -> Result<Settings, Failure> {
+fn settings(arguments: &RefineArguments) -> Result<Settings, Failure> {
     let mut settings = arguments.settings.as_deref().map(settings_file).transpose()?.unwrap_or_default();
     settings.method = arguments.method.unwrap_or(settings.method);
     settings.restart_s = arguments.restart_s.or(settings.restart_s);
@@ -202,16 +183,9 @@ fn settings(arguments: &Refine) -> Result<Settings, Failure> {
     Ok(settings)
 }
 
-fn named_files(arguments: &Refine) -> Vec<PathBuf> {
+fn named_files(arguments: &RefineArguments) -> Vec<PathBuf> {
     let files = arguments.trials.iter().chain(&arguments.settings).cloned();
     files.chain([PathBuf::from(&arguments.ship)]).collect()
-}
-
-/// The files that a manifest lists are known only once it is read.
-fn guard(arguments: &Refine, read: &[ReadTrial]) -> Result<(), Failure> {
-    let inputs = trials::inputs(read, &[]);
-    let mut files = arguments.out.as_deref().into_iter().chain(arguments.report.as_deref());
-    files.try_for_each(|path| Promised::new(path, &inputs).map(|_| ()))
 }
 
 fn law(zoo: &Zoo, name: &str) -> Result<Arc<Law>, Failure> {
@@ -256,15 +230,4 @@ fn refined(
     note("learning what these trials leave open");
     let effects: Vec<_> = zoo.effects().cloned().collect();
     Ok(with_uncertainty(refinement, law, &effects, &trials))
-}
-
-/// The model as a file, read back once to be sure that it is one; `how` says how it was made.
-///
-/// # Errors
-/// It does not read back.
-pub fn model_file(zoo: &Zoo, model: &Model, how: &str) -> Result<String, Failure> {
-    let text = serde_yaml::to_string(model).map_err(|error| Failure::Refused(format!("the model cannot be written: {error}")))?;
-    let text = format!("# {} by sistership {}, {how}\n{text}", model.name, env!("CARGO_PKG_VERSION"));
-    Model::parse("the model to be written", &text, &|law| zoo.law(law).map(|law| (**law).clone()))?;
-    Ok(text)
 }

@@ -6,24 +6,13 @@ use sistership_estimate::refine::{CoefficientChange, HeldOut, Manoeuvres, Refine
 use sistership_estimate::similarity::RankedSource;
 use sistership_model::Model;
 
-use super::refine::Files;
+use super::channels::CHANNELS;
+use super::written::WrittenFiles;
 use super::{similar, worth};
-use crate::table::{Table, number, optional};
-
-/// Channels in the order of the table: name, unit, and the factor to it from SI.
-const CHANNELS: [(&str, &str, f64); 8] = [
-    ("u", "m/s", 1.0),
-    ("v", "m/s", 1.0),
-    ("r", "deg/s", 180.0 / std::f64::consts::PI),
-    ("psi", "deg", 180.0 / std::f64::consts::PI),
-    ("x", "m", 1.0),
-    ("y", "m", 1.0),
-    ("phi", "deg", 180.0 / std::f64::consts::PI),
-    ("p", "deg/s", 180.0 / std::f64::consts::PI),
-];
+use crate::table::{TextTable, number, optional};
 
 /// Everything that came of a refinement.
-pub fn text(refinement: &Refinement, source: &Model, ranking: Option<&[RankedSource]>, files: &Files<'_>) -> String {
+pub fn text(refinement: &Refinement, source: &Model, ranking: Option<&[RankedSource]>, files: &WrittenFiles<'_>) -> String {
     let ranked = ranking.map_or(String::new(), |ranking| format!("Similar ships\n{}\n", similar::ranking(ranking)));
     let head =
         format!("{} refined from {} ({}) by `{}`\n\n", refinement.ship, source.name, worth(source.status), refinement.method);
@@ -44,8 +33,8 @@ fn has_roll(model: &Model) -> bool {
 }
 
 /// The errors on manoeuvres left out, before and after.
-pub fn errors(held_out: &HeldOut, has_roll: bool) -> Table {
-    let mut table = Table::new(["channel", "unit", "source", "refined", "change"]);
+pub fn errors(held_out: &HeldOut, has_roll: bool) -> TextTable {
+    let mut table = TextTable::new(["channel", "unit", "source", "refined", "change"]);
     for (name, unit, factor) in CHANNELS.into_iter().filter(|(name, ..)| has_roll || !matches!(*name, "phi" | "p")) {
         let of = |errors: &std::collections::BTreeMap<String, f64>| {
             errors.get(name).filter(|rmse| **rmse != f64::MAX).map(|rmse| rmse * factor)
@@ -63,8 +52,8 @@ fn percent(before: f64, after: f64) -> String {
     if before > 0.0 { format!("{:+.0} %", 100.0 * (after / before - 1.0)) } else { "-".to_owned() }
 }
 
-fn options(options: &[StepOption]) -> Table {
-    let mut table = Table::new(["step", "least lambda", "error", "taken", "why not"]);
+fn options(options: &[StepOption]) -> TextTable {
+    let mut table = TextTable::new(["step", "least lambda", "error", "taken", "why not"]);
     for option in options {
         let least = option.lambda_min.map_or_else(|| "-".to_owned(), |lambda| format!("{lambda:.0e}"));
         let taken = if option.chosen { "yes" } else { "" };
@@ -74,8 +63,8 @@ fn options(options: &[StepOption]) -> Table {
     table
 }
 
-fn coefficients(coefficients: &[CoefficientChange]) -> Table {
-    let mut table = Table::new(["name", "unit", "source", "refined", "std. error", "moved"]);
+fn coefficients(coefficients: &[CoefficientChange]) -> TextTable {
+    let mut table = TextTable::new(["name", "unit", "source", "refined", "std. error", "moved"]);
     for change in coefficients {
         let figures = [change.source, change.refined, change.standard_error].map(number);
         let moved = format!("{:.2}", change.moved_sd);
@@ -87,8 +76,8 @@ fn coefficients(coefficients: &[CoefficientChange]) -> Table {
 /// Figures of the standard manoeuvres that are shown.
 const SHOWN: [&str; 3] = ["advance", "tactical diameter", "first overshoot"];
 
-fn manoeuvres(manoeuvres: &Manoeuvres) -> Table {
-    let mut table = Table::new(["figure", "unit", "source", "refined", "from", "to (95 %)"]);
+fn manoeuvres(manoeuvres: &Manoeuvres) -> TextTable {
+    let mut table = TextTable::new(["figure", "unit", "source", "refined", "from", "to (95 %)"]);
     let (source, refined) = (manoeuvres.source.figures(), manoeuvres.refined.figures());
     let shown = |name: &str| !name.starts_with("IMO") && SHOWN.iter().any(|what| name.ends_with(what));
     let all = if refined.len() < source.len() { &source } else { &refined };
@@ -101,7 +90,7 @@ fn manoeuvres(manoeuvres: &Manoeuvres) -> Table {
     table
 }
 
-fn end(refinement: &Refinement, files: &Files<'_>) -> String {
+fn end(refinement: &Refinement, files: &WrittenFiles<'_>) -> String {
     let mut lines = vec![format!("condition number {}", number(refinement.condition_number))];
     lines.extend(
         refinement.collinear_groups.iter().map(|group| format!("cannot be told apart by these trials: {}", group.join(", "))),

@@ -113,7 +113,7 @@ fn watch(bound: Duration) -> Result<oneshot::Receiver<()>, Failure> {
     let (tell, told) = oneshot::channel();
     let none = |error| Failure::Refused(format!("no threads: {error}"));
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(none)?;
-    let mut signals = runtime.block_on(async { Signals::hear() })?;
+    let mut signals = runtime.block_on(async { StopSignals::hear() })?;
     let heard = move || {
         runtime.block_on(async {
             signals.next().await;
@@ -131,14 +131,14 @@ fn watch(bound: Duration) -> Result<oneshot::Receiver<()>, Failure> {
 }
 
 /// Ctrl-C, and SIGTERM where there is one.
-struct Signals {
+struct StopSignals {
     #[cfg(unix)]
     interrupt: tokio::signal::unix::Signal,
     #[cfg(unix)]
     terminate: tokio::signal::unix::Signal,
 }
 
-impl Signals {
+impl StopSignals {
     #[cfg(unix)]
     fn hear() -> Result<Self, Failure> {
         use tokio::signal::unix::{SignalKind, signal};

@@ -12,6 +12,7 @@ use super::running::{LeaseArguments, memory, run_until_stopped, workers};
 use super::store::StoreArguments;
 use crate::failure::{Failure, about_file};
 use crate::output;
+use crate::values::address;
 use crate::zoo::text_of;
 
 /// Holds the API key.
@@ -30,7 +31,7 @@ under way get --drain-s to end and then go back to the queue.";
 /// Run the REST server.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Serve {
+pub struct ServeArguments {
     /// Address and port; port 0 takes a free one [default: 127.0.0.1:8080].
     #[arg(long, value_name = "ADDRESS:PORT", env = "SISTERSHIP_LISTEN", value_parser = address)]
     listen: Option<SocketAddr>,
@@ -63,15 +64,11 @@ pub struct Serve {
     log: LogArguments,
 }
 
-fn address(text: &str) -> Result<SocketAddr, String> {
-    text.parse().map_err(|_| "write an address and a port, such as 127.0.0.1:8080 or [::1]:8080".to_owned())
-}
-
 /// Runs the command until it is told to stop.
 ///
 /// # Errors
 /// The configuration is refused, or the store or the address cannot be used.
-pub fn run(serve: &Serve, zoo: &[PathBuf]) -> Result<(), Failure> {
+pub fn run(serve: &ServeArguments, zoo: &[PathBuf]) -> Result<(), Failure> {
     if !zoo.is_empty() {
         return Err(Failure::Call(
             "a server keeps its ships and laws in its database: send them to /v1/ships and /v1/laws, not by --zoo; it diagnoses with the effects of the program".into(),
@@ -89,7 +86,7 @@ pub fn run(serve: &Serve, zoo: &[PathBuf]) -> Result<(), Failure> {
     run_until_stopped(config.stop_bound(), start, Running::stop)
 }
 
-fn config(serve: &Serve, file: &ConfigFile) -> Result<Config, Failure> {
+fn config(serve: &ServeArguments, file: &ConfigFile) -> Result<Config, Failure> {
     let place = serve.store.place(file)?;
     let mut config = Config::new(place.data_dir);
     config.objects = place.objects;
@@ -107,7 +104,7 @@ fn config(serve: &Serve, file: &ConfigFile) -> Result<Config, Failure> {
 }
 
 /// Bounds on connections.
-fn limits(serve: &Serve, file: &ConfigFile) -> Result<Limits, Failure> {
+fn limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, Failure> {
     let within = |name: &str, value: u32, least: u32, most: u32| match (least..=most).contains(&value) {
         true => Ok(value as usize),
         false => Err(Failure::Call(format!("{name} must be from {least} to {most}, not {value}"))),
@@ -124,7 +121,7 @@ fn limits(serve: &Serve, file: &ConfigFile) -> Result<Limits, Failure> {
 }
 
 /// The key from the flag's file, from the environment, or from the file that the configuration names.
-fn api_key(serve: &Serve, file: &ConfigFile) -> Result<Option<String>, Failure> {
+fn api_key(serve: &ServeArguments, file: &ConfigFile) -> Result<Option<String>, Failure> {
     if let Some(path) = &serve.api_key_file {
         return key_of(path).map(Some);
     }
@@ -157,7 +154,7 @@ mod tests {
     #[test]
     fn addresses_are_read() {
         assert_eq!(address("127.0.0.1:8080"), Ok(DEFAULT_LISTEN));
-        assert!(address("8080").is_err_and(|message| message.contains("127.0.0.1:8080")));
+        assert!(address("8080").is_err_and(|error| error.to_string().contains("127.0.0.1:8080")));
     }
 
     #[test]

@@ -6,11 +6,11 @@ use sistership_estimate::similarity::Definition;
 use sistership_server::Archive;
 use sistership_server::search::{self, FactRange, FoundShip, MAX_RANGES, Page, Search, ShipSearch};
 
-use super::similar::definition;
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
 use crate::output;
-use crate::table::{Table, number};
+use crate::table::{TextTable, number};
+use crate::values::definition;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -24,7 +24,7 @@ similar first. Values are SI; metrics are those of the champion's standard manoe
 /// Find ships of a store.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Ships {
+pub struct ShipsArguments {
     #[command(flatten)]
     store: StoreArguments,
     /// Of this category only.
@@ -39,7 +39,7 @@ pub struct Ships {
     /// A range of a metric of the champion, in the same way.
     #[arg(long, value_name = "NAME:MIN..MAX", value_parser = search::metric)]
     metric: Vec<FactRange>,
-    /// Ships like this one, of her category.
+    /// Ships like this one, of its category.
     #[arg(long, value_name = "SHIP")]
     similar_to: Option<String>,
     /// Definition of the characteristic vector; mei-2019 where the ship has every component of it.
@@ -57,7 +57,7 @@ pub struct Ships {
 ///
 /// # Errors
 /// The store is not there or does not answer, or there is no ship to be similar to.
-pub fn run(ships: &Ships) -> Result<(), Failure> {
+pub fn run(ships: &ShipsArguments) -> Result<(), Failure> {
     let ranges: Vec<FactRange> = ships.particular.iter().chain(&ships.metric).cloned().collect();
     if ranges.len() > MAX_RANGES {
         return Err(Failure::Call(format!("at most {MAX_RANGES} ranges can be asked for at once")));
@@ -81,7 +81,7 @@ fn document(ships: &[FoundShip], more: bool) -> Value {
 }
 
 fn text(ships: &[FoundShip], more: bool) -> String {
-    let mut table = Table::new(["ship", "category", "value", "title"]);
+    let mut table = TextTable::new(["ship", "category", "value", "title"]);
     for ship in ships {
         let value = ship.value.map_or_else(|| "-".to_owned(), number);
         table.row([ship.name.clone(), ship.category.clone(), value, ship.title.clone()]);

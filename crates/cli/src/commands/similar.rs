@@ -8,7 +8,8 @@ use sistership_estimate::source::{Similarity, similar};
 use sistership_model::{Vessel, Zoo};
 
 use crate::failure::Failure;
-use crate::table::{Table, number};
+use crate::table::{TextTable, number};
+use crate::values::definition;
 use crate::{named, output, trials};
 
 const EXAMPLES: &str = "\
@@ -20,7 +21,7 @@ Examples:
 /// Rank the ships of the zoo by similarity to a ship, and say which may be the source of a refinement.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Similar {
+pub struct SimilarArguments {
     /// The ship: a name in the zoo or a vessel file.
     ship: String,
     /// Definition of the characteristic vector; mei-2019 where the ship has every component of it.
@@ -34,16 +35,11 @@ pub struct Similar {
     json: bool,
 }
 
-pub(super) fn definition(name: &str) -> Result<Definition, String> {
-    let known: Vec<&str> = Definition::ALL.into_iter().map(Definition::name).collect();
-    Definition::by_name(name).ok_or_else(|| format!("there are {}", known.join(" and ")))
-}
-
 /// Runs the command.
 ///
 /// # Errors
 /// The ship or a trial is refused.
-pub fn run(zoo: &Zoo, similar_to: &Similar) -> Result<(), Failure> {
+pub fn run(zoo: &Zoo, similar_to: &SimilarArguments) -> Result<(), Failure> {
     let target = named::ship(zoo, &similar_to.ship)?;
     let read = trials::read(&similar_to.trials)?;
     trials::remark_other_ship(&read, target.name());
@@ -60,8 +56,8 @@ fn text(target: &Vessel, similarity: &Similarity) -> String {
 }
 
 /// The ranking as a table; each step of eligibility has a line of its own.
-pub fn ranking(ranking: &[RankedSource]) -> Table {
-    let mut table = Table::new(["ship", "model", "correlation", "eligible", "why"]);
+pub fn ranking(ranking: &[RankedSource]) -> TextTable {
+    let mut table = TextTable::new(["ship", "model", "correlation", "eligible", "why"]);
     for ranked in ranking {
         let correlation = ranked.correlation.map_or_else(|| "-".to_owned(), |value| format!("{value:.3}"));
         let model = ranked.model.as_deref().map_or("-", |model| model.split_once('/').map_or(model, |(_, name)| name));
@@ -87,11 +83,5 @@ mod tests {
         for figures in [["mariner", "-0.576"], ["esso-tanker", "0.851"], ["sr108", "-0.887"], ["pcc", "-0.723"]] {
             assert!(text.lines().any(|line| figures.iter().all(|part| line.contains(part))), "{figures:?} in\n{text}");
         }
-    }
-
-    #[test]
-    fn definitions_have_names() {
-        assert_eq!(definition("mei-2019"), Ok(Definition::Mei2019));
-        assert!(definition("mei").unwrap_err().contains("kanazawa-2023"));
     }
 }

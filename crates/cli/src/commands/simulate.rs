@@ -9,12 +9,12 @@ use sistership_dynamics::recorded::{Replay, ReplaySettings};
 use sistership_model::trial::Channel;
 use sistership_model::{Law, Model, Zoo};
 
-use crate::arguments::{Integration, positive};
-use crate::commands::simulated::{Simulated, Simulator, total};
+use crate::commands::simulated::{SimulatedTrial, TrialSimulator, total};
 use crate::failure::Failure;
 use crate::output::{self, count, note};
-use crate::table::{Table, number};
+use crate::table::{TextTable, number};
 use crate::trials::{self, ReadTrial};
+use crate::values::{Integration, positive};
 use crate::{commands::model_line, folder, named, track};
 
 const EXAMPLES: &str = "\
@@ -29,7 +29,7 @@ standard deviation of the channel over the trials given. Exit status 1 when a si
 /// Simulate recorded trials with a model and measure its errors.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Simulate {
+pub struct SimulateArguments {
     /// The model: a name in the zoo, a model file, or a vessel file with a model.
     #[arg(long)]
     model: String,
@@ -54,52 +54,57 @@ pub struct Simulate {
 }
 
 #[derive(Serialize)]
-struct Document<'a> {
+struct SimulateDocument<'a> {
     model: &'a str,
     law: &'a str,
-    trials: &'a [Simulated],
-    all: Option<Simulated>,
+    trials: &'a [SimulatedTrial],
+    all: Option<SimulatedTrial>,
 }
 
 /// Runs the command.
 ///
 /// # Errors
 /// The model or a trial is refused, a channel is missing, or a simulation leaves the physical range.
-pub fn run(zoo: &Zoo, simulate: &Simulate) -> Result<(), Failure> {
+pub fn run(zoo: &Zoo, simulate: &SimulateArguments) -> Result<(), Failure> {
     let (model, law) = named::model(zoo, &simulate.model)?;
     let read = trials::read(&simulate.trials)?;
     trials::remark_other_ship(&read, &model.ship);
     let files = promised(simulate, &read)?;
     let runs = simulate_all(simulate, &model, &law, &read)?;
     let simulated = written(runs, files, &law, &read)?;
-    let document = Document { model: &model.name, law: &model.law, trials: &simulated, all: total(&simulated) };
+    let document = SimulateDocument { model: &model.name, law: &model.law, trials: &simulated, all: total(&simulated) };
     output::print(simulate.json, &document, || text(simulate, &model, &law, &document))?;
     if simulated.iter().any(|trial| trial.diverged) { Err(Failure::Told) } else { Ok(()) }
 }
 
-fn promised(simulate: &Simulate, read: &[ReadTrial]) -> Result<Vec<folder::Promised>, Failure> {
+fn promised(simulate: &SimulateArguments, read: &[ReadTrial]) -> Result<Vec<folder::PromisedTrack>, Failure> {
     let Some(out) = &simulate.out else { return Ok(Vec::new()) };
     let names: Vec<&str> = read.iter().map(|read| read.trial.name.as_str()).collect();
     folder::promise(out, &names, &trials::inputs(read, &simulate.trials))
 }
 
-fn simulate_all(simulate: &Simulate, model: &Model, law: &Law, read: &[ReadTrial]) -> Result<Vec<(Simulated, Replay)>, Failure> {
+fn simulate_all(
+    simulate: &SimulateArguments,
+    model: &Model,
+    law: &Law,
+    read: &[ReadTrial],
+) -> Result<Vec<(SimulatedTrial, Replay)>, Failure> {
     let settings = ReplaySettings { restart_s: simulate.restart_s, method: simulate.method.into(), step_s: simulate.step_s };
     let deviations = standard_deviations(&trials::trials(read));
-    let simulator = Simulator { model, law, settings, deviations };
+    let simulator = TrialSimulator { model, law, settings, deviations };
     note(&format!("simulating {} with {}", count(read.len(), "trial"), model.name));
     read.iter().map(|read| simulator.run(read)).collect()
 }
 
 /// Writes the states of each trial where files are promised.
 fn written(
-    runs: Vec<(Simulated, Replay)>,
-    files: Vec<folder::Promised>,
+    runs: Vec<(SimulatedTrial, Replay)>,
+    files: Vec<folder::PromisedTrack>,
     law: &Law,
     read: &[ReadTrial],
-) -> Result<Vec<Simulated>, Failure> {
+) -> Result<Vec<SimulatedTrial>, Failure> {
     let mut files = files.into_iter();
-    let one = |((mut simulated, run), read): ((Simulated, Replay), &ReadTrial)| {
+    let one = |((mut simulated, run), read): ((SimulatedTrial, Replay), &ReadTrial)| {
         if let Some(promised) = files.next() {
             promised.file.write(&track::csv(&run.track, law, read.trial.channel(Channel::N).is_some())?)?;
             simulated.out = Some(promised.shown);
@@ -109,10 +114,10 @@ fn written(
     runs.into_iter().zip(read).map(one).collect()
 }
 
-fn text(simulate: &Simulate, model: &Model, law: &Law, document: &Document<'_>) -> String {
+fn text(simulate: &SimulateArguments, model: &Model, law: &Law, document: &SimulateDocument<'_>) -> String {
     let restart = simulate.restart_s.map_or("once from the first sample".to_owned(), |s| format!("anew every {} s", number(s)));
     let head = format!("{}\nstarted {restart}; root mean square errors\n\n", model_line(model, law));
-    let mut table = Table::new(["trial", "s", "u m/s", "v m/s", "r deg/s", "psi deg", "x m", "y m", "std. MSE"]);
+    let mut table = TextTable::new(["trial", "s", "u m/s", "v m/s", "r deg/s", "psi deg", "x m", "y m", "std. MSE"]);
     document
         .trials
         .iter()
@@ -120,7 +125,7 @@ fn text(simulate: &Simulate, model: &Model, law: &Law, document: &Document<'_>) 
         .for_each(|trial| table.row(trial.cells()));
     let diverged =
         document.trials.iter().filter_map(|trial| Some(format!("DIVERGED: {}: {}\n", trial.file, trial.reason.as_ref()?)));
-    let outside = |trial: &Simulated| Some(format!("OUTSIDE: {}: {}\n", trial.file, trial.outside.as_ref()?.words()));
+    let outside = |trial: &SimulatedTrial| Some(format!("OUTSIDE: {}: {}\n", trial.file, trial.outside.as_ref()?.words()));
     let outside: String = document.trials.iter().filter_map(outside).collect();
     let written = simulate.out.as_ref().map_or(String::new(), |out| format!("simulated states written to {}\n", out.display()));
     format!("{head}{table}{}{outside}{written}", diverged.collect::<String>())

@@ -21,7 +21,7 @@ const CHANNELS: [Channel; 6] = [Channel::U, Channel::V, Channel::R, Channel::Psi
 
 /// Errors of one trial as the `simulate` command prints them.
 #[derive(Debug, Clone, Serialize)]
-pub struct Simulated {
+pub struct SimulatedTrial {
     /// The file as it was given.
     pub file: String,
     /// From the first to the last sample, s.
@@ -46,7 +46,7 @@ pub struct Simulated {
 }
 
 /// What is the same for every trial.
-pub struct Simulator<'a> {
+pub struct TrialSimulator<'a> {
     /// The model.
     pub model: &'a Model,
     /// Its law.
@@ -57,12 +57,12 @@ pub struct Simulator<'a> {
     pub deviations: BTreeMap<Channel, f64>,
 }
 
-impl Simulator<'_> {
+impl TrialSimulator<'_> {
     /// Simulates a trial.
     ///
     /// # Errors
     /// The model cannot sail, or the trial lacks a channel.
-    pub fn run(&self, read: &ReadTrial) -> Result<(Simulated, Replay), Failure> {
+    pub fn run(&self, read: &ReadTrial) -> Result<(SimulatedTrial, Replay), Failure> {
         let ship = self.ship(&read.trial)?;
         let run = replay(&ship, &read.trial, &self.settings);
         let run = run.map_err(|error| Failure::Refused(format!("{error} of {} by law `{}`", self.model.name, self.law.name)))?;
@@ -85,12 +85,12 @@ impl Simulator<'_> {
         Ok(ship)
     }
 
-    fn errors(&self, file: &str, trial: &Trial, run: &Replay) -> Simulated {
+    fn errors(&self, file: &str, trial: &Trial, run: &Replay) -> SimulatedTrial {
         let error = SquaredError::of(trial, run);
         let reason = run.stopped.as_ref().map(ToString::to_string);
         let known = |value: Option<f64>| value.filter(|_| reason.is_none());
         let rmse = CHANNELS.map(|channel| (channel.name(), known(error.channel_rmse(channel))));
-        Simulated {
+        SimulatedTrial {
             file: file.to_owned(),
             duration_s: trial.duration_s(),
             rmse: rmse.into(),
@@ -104,7 +104,7 @@ impl Simulator<'_> {
     }
 }
 
-impl Simulated {
+impl SimulatedTrial {
     /// A row of the table.
     pub fn cells(&self) -> Vec<String> {
         let value = |channel: Channel| {
@@ -119,20 +119,20 @@ impl Simulated {
 }
 
 /// The errors over all samples of all trials; none where one diverged.
-pub fn total(trials: &[Simulated]) -> Option<Simulated> {
+pub fn total(trials: &[SimulatedTrial]) -> Option<SimulatedTrial> {
     if trials.iter().any(|trial| trial.diverged) {
         return None;
     }
-    let mean = |of: &dyn Fn(&Simulated) -> Option<f64>| {
+    let mean = |of: &dyn Fn(&SimulatedTrial) -> Option<f64>| {
         let pairs = trials.iter().filter_map(|trial| Some((of(trial)?, trial.samples as f64)));
         let (sum, samples) = pairs.fold((0.0, 0.0), |(sum, all), (value, samples)| (sum + value * samples, all + samples));
         (samples > 0.0).then(|| sum / samples)
     };
     let rmse = CHANNELS.map(|channel| {
-        let square = |trial: &Simulated| trial.rmse.get(channel.name()).copied().flatten().map(|rmse| rmse * rmse);
+        let square = |trial: &SimulatedTrial| trial.rmse.get(channel.name()).copied().flatten().map(|rmse| rmse * rmse);
         (channel.name(), mean(&square).map(f64::sqrt))
     });
-    Some(Simulated {
+    Some(SimulatedTrial {
         file: "all".to_owned(),
         duration_s: trials.iter().map(|trial| trial.duration_s).sum(),
         rmse: rmse.into(),

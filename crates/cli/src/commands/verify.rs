@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use clap::Args;
 use sistership_server::Archive;
+use sistership_server::derive::DeriveError;
 use sistership_server::verify::{Verification, verify_with};
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
 use crate::output::{self, note};
+use crate::values::version;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -20,7 +22,7 @@ Exit status 1 when the bytes differ or the version cannot be derived.";
 /// Derive a version again from its recipe and compare the bytes.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Verify {
+pub struct VerifyArguments {
     /// The version: ship and number.
     #[arg(value_name = "SHIP/NUMBER", value_parser = version)]
     version: (String, i64),
@@ -31,31 +33,33 @@ pub struct Verify {
     json: bool,
 }
 
-fn version(text: &str) -> Result<(String, i64), String> {
-    let parts = text.rsplit_once('/').and_then(|(ship, number)| Some((ship.to_owned(), number.parse().ok()?)));
-    parts
-        .filter(|(ship, number)| !ship.is_empty() && *number > 0)
-        .ok_or_else(|| "write ship and number, such as `sr108/2`".to_owned())
-}
-
 /// Runs the command.
 ///
 /// # Errors
 /// The store or the version is not there, or the version is not what its recipe gives.
-pub fn run(verify: &Verify) -> Result<(), Failure> {
+pub fn run(verify: &VerifyArguments) -> Result<(), Failure> {
     let verification = with_archive(&verify.store, async |archive| verification(verify, archive).await)?;
     output::print(verify.json, &verification, || text(&verification))?;
     if verification.identical { Ok(()) } else { Err(Failure::Told) }
 }
 
-async fn verification(verify: &Verify, archive: &Archive) -> Result<Verification, String> {
+/// Why a version could not be derived again.
+#[derive(Debug, thiserror::Error)]
+#[error("{ship}/{number}: {error}")]
+struct VerifyError {
+    ship: String,
+    number: i64,
+    error: DeriveError,
+}
+
+async fn verification(verify: &VerifyArguments, archive: &Archive) -> Result<Verification, VerifyError> {
     let (ship, number) = &verify.version;
     let told = |fraction: f64, what: &str| {
         note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true
     };
     let verification = verify_with(archive, ship, *number, Arc::new(told)).await;
-    verification.map_err(|error| format!("{ship}/{number}: {error}"))
+    verification.map_err(|error| VerifyError { ship: ship.clone(), number: *number, error })
 }
 
 fn text(verification: &Verification) -> String {
@@ -68,17 +72,4 @@ fn text(verification: &Verification) -> String {
         )
     };
     head + &remarks.iter().map(|remark| format!("remark: {remark}\n")).collect::<String>()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn versions_are_read() {
-        assert_eq!(version("sr108/2"), Ok(("sr108".to_owned(), 2)));
-        for wrong in ["sr108", "sr108/x", "/2", "sr108/0", "sr108/-1"] {
-            assert!(version(wrong).is_err(), "{wrong}");
-        }
-    }
 }

@@ -23,7 +23,7 @@ to end and then go back to the queue.";
 /// Work on the jobs that servers queue, without serving.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct Work {
+pub struct WorkArguments {
     #[command(flatten)]
     store: StoreArguments,
     /// Jobs worked on at a time, 1 to 64 [default: 1].
@@ -42,7 +42,7 @@ pub struct Work {
 ///
 /// # Errors
 /// The configuration is refused, or the store cannot be used.
-pub fn run(work: &Work) -> Result<(), Failure> {
+pub fn run(work: &WorkArguments) -> Result<(), Failure> {
     let file = work.store.file()?;
     let config = config(work, &file)?;
     work.log.begin(&file)?;
@@ -54,7 +54,7 @@ pub fn run(work: &Work) -> Result<(), Failure> {
     run_until_stopped(config.stop_bound(), start, Workers::stop)
 }
 
-fn config(work: &Work, file: &ConfigFile) -> Result<Config, Failure> {
+fn config(work: &WorkArguments, file: &ConfigFile) -> Result<Config, Failure> {
     let place = work.store.place(file)?;
     let mut config = Config::new(place.data_dir);
     config.objects = place.objects;

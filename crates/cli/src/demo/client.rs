@@ -7,12 +7,12 @@ use serde_json::Value;
 use crate::failure::Failure;
 
 /// Speaks to one server.
-pub struct Api {
+pub struct ApiClient {
     client: Client,
     url: String,
 }
 
-impl Api {
+impl ApiClient {
     /// Speaks to the server at a URL.
     pub fn new(url: String) -> Self {
         Self { client: Client::new(), url }
@@ -29,7 +29,7 @@ impl Api {
     /// The text under a path, in a form.
     ///
     /// # Errors
-    /// As [`Api::get`].
+    /// As [`ApiClient::get`].
     pub async fn text(&self, path: &str, accept: &str) -> Result<String, Failure> {
         let response = answered(self.client.get(self.at(path)).header("accept", accept)).await?;
         response.text().await.map_err(broken)
@@ -38,7 +38,7 @@ impl Api {
     /// Sends YAML.
     ///
     /// # Errors
-    /// As [`Api::get`].
+    /// As [`ApiClient::get`].
     pub async fn post_yaml(&self, path: &str, body: String) -> Result<Value, Failure> {
         json(self.client.post(self.at(path)).header("content-type", "application/yaml").body(body)).await
     }
@@ -46,7 +46,7 @@ impl Api {
     /// Sends JSON.
     ///
     /// # Errors
-    /// As [`Api::get`].
+    /// As [`ApiClient::get`].
     pub async fn post_json(&self, path: &str, body: &Value) -> Result<Value, Failure> {
         json(self.client.post(self.at(path)).json(body)).await
     }
@@ -54,7 +54,7 @@ impl Api {
     /// Uploads files with their manifest.
     ///
     /// # Errors
-    /// As [`Api::get`].
+    /// As [`ApiClient::get`].
     pub async fn upload(&self, manifest: String, files: Vec<(String, Vec<u8>)>) -> Result<Value, Failure> {
         let form = Form::new().text("manifest", manifest);
         let form = files.into_iter().fold(form, |form, (name, bytes)| form.part("file", Part::bytes(bytes).file_name(name)));
@@ -64,7 +64,7 @@ impl Api {
     /// Deletes what is under a path; it can be undone.
     ///
     /// # Errors
-    /// As [`Api::get`].
+    /// As [`ApiClient::get`].
     pub async fn delete(&self, path: &str) -> Result<(), Failure> {
         answered(self.client.delete(self.at(path))).await.map(drop)
     }

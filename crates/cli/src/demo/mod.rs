@@ -14,14 +14,14 @@ use sistership_model::{Trial, Zoo};
 use sistership_server::{Config, Running, Server};
 use sistership_trials::samples::to_csv;
 
-use self::client::Api;
-use self::sea_trials::{Manoeuvre, record};
+use self::client::ApiClient;
+use self::sea_trials::{TrialManoeuvre, record};
 use crate::commands::refine_text;
 use crate::commands::store::block_on;
 use crate::failure::{Failure, about_file};
 use crate::output;
 
-/// The ship of the demonstration: particulars only, nobody has a model of her.
+/// The ship of the demonstration: particulars only, nobody has a model of it.
 const SHIP: &str = include_str!("ship.yaml");
 const NAME: &str = "northern-star";
 /// Who sails the trials: a ship with roll, propeller and rudder of their own, by a law that no other ship of the zoo has.
@@ -29,27 +29,27 @@ const TRUTH: &str = "sr108";
 const SPEED_M_S: f64 = 10.47;
 const SEED: u64 = 1;
 /// What is sailed; the last two are kept out of fit and choice, to judge the model on.
-const PROGRAMME: [Manoeuvre; 8] = [
-    Manoeuvre::Zigzag(10.0, 10.0),
-    Manoeuvre::Zigzag(-10.0, 5.0),
-    Manoeuvre::Zigzag(20.0, 20.0),
-    Manoeuvre::Turn(12.0),
-    Manoeuvre::Turn(-15.0),
-    Manoeuvre::Turn(30.0),
-    Manoeuvre::Turn(-20.0),
-    Manoeuvre::Zigzag(15.0, 15.0),
+const PROGRAMME: [TrialManoeuvre; 8] = [
+    TrialManoeuvre::Zigzag(10.0, 10.0),
+    TrialManoeuvre::Zigzag(-10.0, 5.0),
+    TrialManoeuvre::Zigzag(20.0, 20.0),
+    TrialManoeuvre::Turn(12.0),
+    TrialManoeuvre::Turn(-15.0),
+    TrialManoeuvre::Turn(30.0),
+    TrialManoeuvre::Turn(-20.0),
+    TrialManoeuvre::Zigzag(15.0, 15.0),
 ];
 const JUDGED: usize = 2;
 
 const ABOUT: &str = "\
 Starts the server on a database in FOLDER, creates a ship, uploads trials, selects a source, refines, queries the champion,
 prints the errors before and after, and writes FOLDER/report.html. The trials are sailed by the four-degree-of-freedom ship
-SR108 with sensor noise; she is taken out of the zoo first, so that no model of her law can be chosen.";
+SR108 with sensor noise; it is taken out of the zoo first, so that no model of its law can be chosen.";
 
 /// Show the whole loop: ship, trials, source, refinement, champion, report.
 #[derive(Debug, Args)]
 #[command(after_help = ABOUT)]
-pub struct Demo {
+pub struct DemoArguments {
     /// Where the database, the samples and the report go; emptied first.
     #[arg(long, value_name = "FOLDER", default_value = "demo-out")]
     out: PathBuf,
@@ -59,7 +59,7 @@ pub struct Demo {
 ///
 /// # Errors
 /// What the server refuses, or a file that cannot be written.
-pub fn run(demo: &Demo, zoo: &Zoo) -> Result<(), Failure> {
+pub fn run(demo: &DemoArguments, zoo: &Zoo) -> Result<(), Failure> {
     let trials = sail(zoo)?;
     empty(&demo.out)?;
     block_on(async {
@@ -102,10 +102,10 @@ fn empty(folder: &Path) -> Result<(), Failure> {
 }
 
 async fn tell(running: &Running, trials: &[Trial], out: &Path) -> Result<(), Failure> {
-    let api = Api::new(running.url());
+    let api = ApiClient::new(running.url());
     output::note(&format!("2/8  server on {} with an embedded database in {}", running.url(), out.display()));
     api.delete(&format!("/v1/ships/{TRUTH}")).await?;
-    output::note("3/8  creating the ship northern-star; SR108 is taken out of the zoo, she made the trials");
+    output::note("3/8  creating the ship northern-star; SR108 is taken out of the zoo, as it made the trials");
     api.post_yaml("/v1/ships", SHIP.to_owned()).await?;
     upload(&api, trials).await?;
     let job = refine(&api, trials).await?;
@@ -121,7 +121,7 @@ async fn tell(running: &Running, trials: &[Trial], out: &Path) -> Result<(), Fai
     output::print(false, &job, || format!("Root mean square errors, {}\n{}", held_out.how, refine_text::errors(&held_out, false)))
 }
 
-async fn upload(api: &Api, trials: &[Trial]) -> Result<(), Failure> {
+async fn upload(api: &ApiClient, trials: &[Trial]) -> Result<(), Failure> {
     let mut files = Vec::new();
     let mut entries = Vec::new();
     for trial in trials {
@@ -139,7 +139,7 @@ async fn upload(api: &Api, trials: &[Trial]) -> Result<(), Failure> {
 }
 
 /// Asks for a refinement and follows its job.
-async fn refine(api: &Api, trials: &[Trial]) -> Result<Value, Failure> {
+async fn refine(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failure> {
     let held_out: Vec<&str> = trials[trials.len() - JUDGED..].iter().map(|trial| trial.name.as_str()).collect();
     let request = json!({ "ship": NAME, "source": "auto", "settings": { "held_out": held_out } });
     let queued = api.post_json("/v1/refinements", &request).await?;

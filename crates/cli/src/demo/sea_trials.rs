@@ -1,4 +1,4 @@
-//! Sea trials of a ship that only the sea knows: sailed by her own law, recorded with the noise of real instruments.
+//! Sea trials of a ship that only the sea knows: sailed by its own law, recorded with the noise of real instruments.
 
 use std::collections::BTreeMap;
 
@@ -13,14 +13,14 @@ use sistership_model::trial::Channel;
 
 /// A manoeuvre of the programme.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Manoeuvre {
+pub enum TrialManoeuvre {
     /// A turning circle with a rudder angle, deg.
     Turn(f64),
     /// A zigzag with a rudder angle and a change of heading, deg.
     Zigzag(f64, f64),
 }
 
-impl Manoeuvre {
+impl TrialManoeuvre {
     /// What people call it.
     pub fn name(self) -> String {
         match self {
@@ -63,7 +63,7 @@ const REVOLUTIONS_NOISE_RPS: f64 = 1e-3;
 ///
 /// # Errors
 /// Says when and why the ship left the physical range.
-pub fn record(ship: &Ship, speed_m_s: f64, programme: &[Manoeuvre], seed: u64) -> Result<Vec<Trial>, Stopped> {
+pub fn record(ship: &Ship, speed_m_s: f64, programme: &[TrialManoeuvre], seed: u64) -> Result<Vec<Trial>, Stopped> {
     let mut noise = ChaCha12Rng::seed_from_u64(seed);
     let settings = ManoeuvreSettings {
         speed_m_s: Some(speed_m_s),
@@ -71,14 +71,16 @@ pub fn record(ship: &Ship, speed_m_s: f64, programme: &[Manoeuvre], seed: u64) -
         run_in_s: EXECUTE_S,
         ..ManoeuvreSettings::default()
     };
-    let sail = |manoeuvre: &Manoeuvre| match *manoeuvre {
-        Manoeuvre::Turn(rudder_deg) => turn(ship, rudder_deg, &settings).map(|turn| turn.track),
-        Manoeuvre::Zigzag(rudder_deg, switch_deg) => zigzag(ship, rudder_deg, switch_deg, &settings).map(|zigzag| zigzag.track),
+    let sail = |manoeuvre: &TrialManoeuvre| match *manoeuvre {
+        TrialManoeuvre::Turn(rudder_deg) => turn(ship, rudder_deg, &settings).map(|turn| turn.track),
+        TrialManoeuvre::Zigzag(rudder_deg, switch_deg) => {
+            zigzag(ship, rudder_deg, switch_deg, &settings).map(|zigzag| zigzag.track)
+        }
     };
     programme.iter().map(|manoeuvre| Ok(recorded(*manoeuvre, &sail(manoeuvre)?, &mut noise))).collect()
 }
 
-fn recorded(manoeuvre: Manoeuvre, track: &Trajectory, noise: &mut ChaCha12Rng) -> Trial {
+fn recorded(manoeuvre: TrialManoeuvre, track: &Trajectory, noise: &mut ChaCha12Rng) -> Trial {
     let sampled = |values: Vec<f64>, deviation: f64, noise: &mut ChaCha12Rng| -> Vec<f64> {
         let values = values.into_iter().step_by(STRIDE);
         values.map(|value| value + Normal::new(0.0, deviation).map_or(0.0, |normal| normal.sample(noise))).collect()

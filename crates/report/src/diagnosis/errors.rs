@@ -1,26 +1,26 @@
-//! Errors before and after: by channel, by trial, and of the manoeuvres that were sailed.
+//! ChannelErrors before and after: by channel, by trial, and of the manoeuvres that were sailed.
 
 use std::collections::BTreeMap;
 
 use sistership_diagnose::{Diagnosis, SailedManoeuvre, TrialErrors};
 use sistership_dynamics::metrics::ManoeuvreMetrics;
 
+use crate::error_row::ErrorRow;
+use crate::metrics::{MetricValue, read};
 use crate::numbers::{fixed, known, signed, significant};
-use crate::sailed::{Figure, read};
-use crate::summary::ErrorRow;
 use crate::tables::{Cell, Column, Row, Table};
-use crate::words::{CHANNELS, Quantity};
+use crate::words::{CHANNELS, ShownChannel};
 
-type Errors = BTreeMap<String, f64>;
+type ChannelErrors = BTreeMap<String, f64>;
 
 /// Every channel of which an error is known.
-pub(super) fn rows(diagnosis: &Diagnosis) -> Vec<ErrorRow> {
+pub(crate) fn rows(diagnosis: &Diagnosis) -> Vec<ErrorRow> {
     let rows = CHANNELS.into_iter().map(|quantity| ErrorRow::of(quantity, &diagnosis.before, &diagnosis.after));
     rows.filter(|row| row.source.is_some() || row.refined.is_some()).collect()
 }
 
-/// Errors by channel, as they are and divided by the noise.
-pub(super) fn by_channel(diagnosis: &Diagnosis) -> Table {
+/// ChannelErrors by channel, as they are and divided by the noise.
+pub(crate) fn by_channel(diagnosis: &Diagnosis) -> Table {
     let columns = vec![
         Column::text("channel", ""),
         Column::text("unit", ""),
@@ -34,7 +34,7 @@ pub(super) fn by_channel(diagnosis: &Diagnosis) -> Table {
     Table { columns, rows: rows(diagnosis).iter().map(|row| channel(row, &diagnosis.noise)).collect() }
 }
 
-fn channel(row: &ErrorRow, noise: &Errors) -> Row {
+fn channel(row: &ErrorRow, noise: &ChannelErrors) -> Row {
     let noise = noise_of(noise, &row.quantity);
     let over = |value: Option<f64>| known(value.zip(noise).map(|(value, noise)| value / noise), |ratio| fixed(ratio, 1));
     let plain = |value: Option<f64>| known(value, |value| significant(value, 3));
@@ -56,22 +56,22 @@ fn channel(row: &ErrorRow, noise: &Errors) -> Row {
 }
 
 /// The noise in the unit shown; that of the position is put together from north and east.
-fn noise_of(noise: &Errors, quantity: &Quantity) -> Option<f64> {
+fn noise_of(noise: &ChannelErrors, quantity: &ShownChannel) -> Option<f64> {
     let of = |channel: &str| noise.get(channel).copied().filter(|noise| *noise > 0.0);
     let si = if quantity.channel == "position" { Some(of("x")?.hypot(of("y")?)) } else { of(quantity.channel) };
     si.map(|noise| noise * quantity.factor)
 }
 
-/// Errors trial by trial.
-pub(super) fn by_trial(trials: &[TrialErrors]) -> Table {
-    let has = |quantity: &Quantity| trials.iter().any(|trial| trial.before.contains_key(quantity.channel));
-    let channels: Vec<Quantity> = CHANNELS.into_iter().filter(has).collect();
+/// ChannelErrors trial by trial.
+pub(crate) fn by_trial(trials: &[TrialErrors]) -> Table {
+    let has = |quantity: &ShownChannel| trials.iter().any(|trial| trial.before.contains_key(quantity.channel));
+    let channels: Vec<ShownChannel> = CHANNELS.into_iter().filter(has).collect();
     let mut columns = vec![Column::text("trial", ""), Column::text("", "")];
     columns.extend(channels.iter().map(|quantity| Column::number(quantity.symbol, quantity.unit)));
-    let side = |name: &str, side: &str, errors: &Errors| {
+    let side = |name: &str, side: &str, errors: &ChannelErrors| {
         let value =
-            |quantity: &Quantity| errors.get(quantity.channel).copied().filter(|value| value.is_finite() && *value < 1e300);
-        let cell = |quantity: &Quantity| Cell::new(known(value(quantity), |value| significant(value * quantity.factor, 3)));
+            |quantity: &ShownChannel| errors.get(quantity.channel).copied().filter(|value| value.is_finite() && *value < 1e300);
+        let cell = |quantity: &ShownChannel| Cell::new(known(value(quantity), |value| significant(value * quantity.factor, 3)));
         Row::of([Cell::new(name), Cell::new(side)].into_iter().chain(channels.iter().map(cell)).collect())
     };
     let both = |trial: &TrialErrors| [side(&trial.trial, "before", &trial.before), side("", "after", &trial.after)];
@@ -79,7 +79,7 @@ pub(super) fn by_trial(trials: &[TrialErrors]) -> Table {
 }
 
 /// Figures of the manoeuvres that were sailed, under a heading for each trial.
-pub(super) fn manoeuvres(manoeuvres: &[SailedManoeuvre]) -> Table {
+pub(crate) fn manoeuvres(manoeuvres: &[SailedManoeuvre]) -> Table {
     let columns = vec![
         Column::text("figure", ""),
         Column::text("unit", ""),
@@ -96,16 +96,16 @@ fn manoeuvre(manoeuvre: &SailedManoeuvre) -> Vec<Row> {
     let of = |metrics: &Option<ManoeuvreMetrics>| metrics.as_ref().map(read).unwrap_or_default();
     let (measured, before, after) = (read(&manoeuvre.measured), of(&manoeuvre.before), of(&manoeuvre.after));
     // With the recorded rudder both models have the period of the record.
-    let known = |(_, figure): &(usize, &Figure)| figure.2.is_some() && figure.0 != "period";
-    let row = |(index, figure): (usize, &Figure)| {
-        let value = |all: &[Figure]| all.get(index).and_then(|figure| figure.2);
+    let known = |(_, figure): &(usize, &MetricValue)| figure.2.is_some() && figure.0 != "period";
+    let row = |(index, figure): (usize, &MetricValue)| {
+        let value = |all: &[MetricValue]| all.get(index).and_then(|figure| figure.2);
         figure_row(figure, value(&before), value(&after))
     };
     let rows = measured.iter().enumerate().filter(known).map(row);
     std::iter::once(Row::heading(&manoeuvre.trial)).chain(rows).collect()
 }
 
-fn figure_row(&(name, unit, measured): &Figure, before: Option<f64>, after: Option<f64>) -> Row {
+fn figure_row(&(name, unit, measured): &MetricValue, before: Option<f64>, after: Option<f64>) -> Row {
     let value = |value: Option<f64>| Cell::new(known(value, |value| significant(value, 4)));
     let off = |simulated: Option<f64>| {
         let both = simulated.zip(measured).filter(|(_, measured)| *measured != 0.0);

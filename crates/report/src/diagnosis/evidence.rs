@@ -6,19 +6,19 @@ use sistership_diagnose::{Confounded, Diagnosis, Found, Hypothesis, NextTrial, V
 use sistership_model::effect::ActsOn;
 
 use super::distinct::distinct;
-use super::parameter::Parameter;
+use super::parameter::ShownParameter;
 use crate::numbers::{fixed, known, list, signed, significant};
 use crate::tables::{Cell, Column, Row, Table};
 
 /// Hypotheses that are shown at once; the others are folded away.
-pub(super) const SHOWN: usize = 12;
+pub(crate) const SHOWN: usize = 12;
 /// A knot, m/s.
 const KNOT_M_S: f64 = 1852.0 / 3600.0;
 /// Most parameters of a cell.
 const CELL: usize = 4;
 
 /// Every hypothesis that was tried: the most probable, and the others.
-pub(super) fn hypotheses(diagnosis: &Diagnosis) -> (Table, Table) {
+pub(crate) fn hypotheses(diagnosis: &Diagnosis) -> (Table, Table) {
     let mut rows: Vec<(usize, &Hypothesis)> = distinct(&diagnosis.hypotheses).into_iter().enumerate().collect();
     // What was taken is shown wherever it ranks.
     rows.sort_by_key(|(rank, hypothesis)| (*rank >= SHOWN && !hypothesis.taken, *rank));
@@ -78,8 +78,8 @@ fn strength(evidence: f64) -> &'static str {
 }
 
 fn parameter_list(parameters: &BTreeMap<String, Value>) -> String {
-    let parameters = Parameter::all(parameters);
-    let one = |(_, parameter): &(&str, Parameter)| {
+    let parameters = ShownParameter::all(parameters);
+    let one = |(_, parameter): &(&str, ShownParameter)| {
         format!("{} {} ± {} {}", parameter.words, parameter.value_text(), parameter.se_text(), parameter.unit)
             .trim_end()
             .to_owned()
@@ -92,7 +92,7 @@ fn parameter_list(parameters: &BTreeMap<String, Value>) -> String {
 }
 
 /// The parameters of an effect that was found, and what they are in the new version where they were fitted there once more.
-pub(super) fn parameters(found: &Found) -> Table {
+pub(crate) fn parameters(found: &Found) -> Table {
     let mut columns = vec![
         Column::text("parameter", ""),
         Column::text("", ""),
@@ -104,11 +104,11 @@ pub(super) fn parameters(found: &Found) -> Table {
     if !found.in_model.is_empty() {
         columns.extend([Column::number("in the new version", ""), Column::number("standard error", "")]);
     }
-    let row = |named: &(&str, Parameter)| parameter(named, &found.in_model);
-    Table { columns, rows: Parameter::all(&found.parameters).iter().map(row).collect() }
+    let row = |named: &(&str, ShownParameter)| parameter(named, &found.in_model);
+    Table { columns, rows: ShownParameter::all(&found.parameters).iter().map(row).collect() }
 }
 
-fn parameter((name, parameter): &(&str, Parameter), in_model: &BTreeMap<String, Value>) -> Row {
+fn parameter((name, parameter): &(&str, ShownParameter), in_model: &BTreeMap<String, Value>) -> Row {
     let ratio = (parameter.se > 0.0).then(|| (parameter.value / parameter.se).abs());
     let mut cells = vec![
         Cell::new(&parameter.words),
@@ -119,15 +119,15 @@ fn parameter((name, parameter): &(&str, Parameter), in_model: &BTreeMap<String, 
         Cell::new(known(ratio, |ratio| significant(ratio, 2))),
     ];
     if !in_model.is_empty() {
-        let own = in_model.get(*name).map(|value| Parameter::of(name, value));
-        let text = |of: &dyn Fn(&Parameter) -> String| Cell::new(own.as_ref().map_or_else(|| "–".to_owned(), of));
-        cells.extend([text(&Parameter::value_text), text(&Parameter::se_text)]);
+        let own = in_model.get(*name).map(|value| ShownParameter::of(name, value));
+        let text = |of: &dyn Fn(&ShownParameter) -> String| Cell::new(own.as_ref().map_or_else(|| "–".to_owned(), of));
+        cells.extend([text(&ShownParameter::value_text), text(&ShownParameter::se_text)]);
     }
     Row::of(cells)
 }
 
 /// What it is confounded with.
-pub(super) fn confounded(found: &Found) -> Table {
+pub(crate) fn confounded(found: &Found) -> Table {
     let columns = vec![
         Column::text("effect", ""),
         Column::number("angle", "deg"),
@@ -143,7 +143,7 @@ pub(super) fn confounded(found: &Found) -> Table {
 }
 
 /// The next trial as an instruction.
-pub(super) fn next_trial(next: &NextTrial) -> String {
+pub(crate) fn next_trial(next: &NextTrial) -> String {
     let names: Vec<String> = next.separates.iter().map(|name| name.replace('-', " ")).collect();
     format!(
         "Sail a {} at {} m/s ({} kn) on a heading of {:.0} deg. It is expected to tell {} apart (by {} in the logarithm of the evidence).",
@@ -157,7 +157,7 @@ pub(super) fn next_trial(next: &NextTrial) -> String {
 }
 
 /// Where an effect acts, in words.
-pub(super) fn acts_on(acts_on: ActsOn) -> &'static str {
+pub(crate) fn acts_on(acts_on: ActsOn) -> &'static str {
     match acts_on {
         ActsOn::Force => "a force on the ship",
         ActsOn::Inflow => "what the hull, propeller or rudder sees",

@@ -5,30 +5,32 @@ use std::collections::BTreeMap;
 use askama::Template;
 use sistership_diagnose::{Found, ResidualSeries, Unexplained};
 
-use super::{DiagnosisInput, errors, evidence, provenance, remaining, sentence};
+use super::input::DiagnosisInput;
+use super::{errors, evidence, provenance, remaining, sentence};
 use crate::numbers::{fixed, list, significant, stated};
 use crate::plots::{self, Plot};
-use crate::replays::Replayed;
+use crate::rendered::ReportError;
+use crate::replayed::ReplayedTrial;
 use crate::tables::Table;
 use crate::tile::Tile;
-use crate::{ReportError, words};
+use crate::words;
 use sistership_model::version::code_revision;
 
 /// The page as its template sees it.
 #[derive(Template)]
 #[template(path = "report_diagnosis.html")]
-struct Page<'a> {
+struct DiagnosisPage<'a> {
     input: &'a DiagnosisInput<'a>,
     sentence: String,
     tiles: Vec<Tile>,
     hypotheses: Table,
     further: Table,
-    effects: Vec<Effect<'a>>,
+    effects: Vec<ShownEffect<'a>>,
     next_trial: Option<String>,
     errors: Table,
     by_trial: Table,
     manoeuvres: Table,
-    trials: Vec<TrialPlots<'a>>,
+    trials: Vec<DiagnosisTrialPlots<'a>>,
     scatters: Vec<Plot>,
     unexplained: Table,
     discrepancies: Table,
@@ -39,7 +41,7 @@ struct Page<'a> {
 }
 
 /// An effect that was found.
-struct Effect<'a> {
+struct ShownEffect<'a> {
     found: &'a Found,
     sentence: String,
     acts_on: &'static str,
@@ -49,8 +51,8 @@ struct Effect<'a> {
 }
 
 /// The plots of one trial.
-struct TrialPlots<'a> {
-    replayed: &'a Replayed<'a>,
+struct DiagnosisTrialPlots<'a> {
+    replayed: &'a ReplayedTrial<'a>,
     caption: String,
     trajectory: Plot,
     series: Plot,
@@ -58,21 +60,21 @@ struct TrialPlots<'a> {
 }
 
 /// Writes the page.
-pub(super) fn page(input: &DiagnosisInput<'_>, replayed: &[Replayed<'_>]) -> Result<String, ReportError> {
+pub(crate) fn page(input: &DiagnosisInput<'_>, replayed: &[ReplayedTrial<'_>]) -> Result<String, ReportError> {
     let diagnosis = input.diagnosis;
     let (hypotheses, further) = evidence::hypotheses(diagnosis);
-    let page = Page {
+    let page = DiagnosisPage {
         input,
         sentence: sentence::sentence(diagnosis),
         tiles: tiles(input),
         hypotheses,
         further,
-        effects: diagnosis.effects.iter().map(Effect::of).collect(),
+        effects: diagnosis.effects.iter().map(ShownEffect::of).collect(),
         next_trial: diagnosis.next_trial.as_ref().map(evidence::next_trial),
         errors: errors::by_channel(diagnosis),
         by_trial: errors::by_trial(&diagnosis.trials),
         manoeuvres: errors::manoeuvres(&diagnosis.manoeuvres),
-        trials: replayed.iter().map(|replayed| TrialPlots::of(input, replayed)).collect(),
+        trials: replayed.iter().map(|replayed| DiagnosisTrialPlots::of(input, replayed)).collect(),
         scatters: plots::scatters(&diagnosis.residuals),
         unexplained: remaining::unexplained(&diagnosis.unexplained),
         discrepancies: remaining::discrepancies(&diagnosis.discrepancies),
@@ -93,7 +95,7 @@ fn tiles(input: &DiagnosisInput<'_>) -> Vec<Tile> {
     rows.iter().filter(|row| ["u", "v", "r", "psi", "position"].contains(&row.quantity.channel)).map(Tile::of).collect()
 }
 
-impl Page<'_> {
+impl DiagnosisPage<'_> {
     fn found(&self) -> bool {
         !self.input.diagnosis.effects.is_empty()
     }
@@ -116,7 +118,7 @@ impl Page<'_> {
     }
 }
 
-impl<'a> Effect<'a> {
+impl<'a> ShownEffect<'a> {
     fn of(found: &'a Found) -> Self {
         Self {
             sentence: sentence::effect(found),
@@ -129,8 +131,8 @@ impl<'a> Effect<'a> {
     }
 }
 
-impl<'a> TrialPlots<'a> {
-    fn of(input: &DiagnosisInput<'_>, replayed: &'a Replayed<'a>) -> Self {
+impl<'a> DiagnosisTrialPlots<'a> {
+    fn of(input: &DiagnosisInput<'_>, replayed: &'a ReplayedTrial<'a>) -> Self {
         let name = &replayed.trial.name;
         let own: Vec<&ResidualSeries> = input.diagnosis.residuals.iter().filter(|series| series.trial == *name).collect();
         let stretches: Vec<&Unexplained> = input.diagnosis.unexplained.iter().filter(|stretch| stretch.trial == *name).collect();
@@ -145,13 +147,13 @@ impl<'a> TrialPlots<'a> {
 }
 
 /// What the plots of a trial show and how far the models are off there.
-fn caption(replayed: &Replayed<'_>) -> String {
+fn caption(replayed: &ReplayedTrial<'_>) -> String {
     let shown = &replayed.shown;
-    let error = |quantity: &words::Quantity| {
+    let error = |quantity: &words::ShownChannel| {
         let of = |errors: &BTreeMap<String, f64>| Some(significant(errors.get(quantity.channel)? * quantity.factor, 3));
         Some(format!("{} {} → {} {}", quantity.name, of(&shown.source)?, of(&shown.refined)?, quantity.unit))
     };
-    let wanted = |quantity: &&words::Quantity| ["u", "v", "r", "psi", "x", "y"].contains(&quantity.channel);
+    let wanted = |quantity: &&words::ShownChannel| ["u", "v", "r", "psi", "x", "y"].contains(&quantity.channel);
     let errors: Vec<String> = words::CHANNELS.iter().filter(wanted).filter_map(error).collect();
     let dots = stated(plots::mark_interval_s(shown.duration_s), 3);
     format!("Dots every {dots} s. RMS error over the whole run, before → after: {}.", list(&errors))

@@ -8,6 +8,7 @@ mod distinct;
 mod errors;
 mod evidence;
 mod html;
+mod input;
 mod parameter;
 mod provenance;
 mod remaining;
@@ -17,31 +18,11 @@ mod sentence;
 mod tests;
 
 pub use distinct::distinct;
-pub(super) use remaining::acceleration;
+pub use input::DiagnosisInput;
 
 use serde_json::{Value, json};
-use sistership_diagnose::Diagnosis;
-use sistership_model::trial::Trial;
-use sistership_model::{Law, Model};
 
-use super::{Rendered, ReportError, VersionLabel};
-
-/// What the report of a diagnosis is made of.
-#[derive(Debug, Clone)]
-pub struct DiagnosisInput<'a> {
-    /// The diagnosis.
-    pub diagnosis: &'a Diagnosis,
-    /// The model that was diagnosed.
-    pub model: &'a Model,
-    /// Its law, without effects.
-    pub law: &'a Law,
-    /// The trials.
-    pub trials: &'a [&'a Trial],
-    /// The version that was diagnosed, where it is one.
-    pub of: Option<VersionLabel>,
-    /// The version that came of it, where it is kept.
-    pub made: Option<VersionLabel>,
-}
+use crate::rendered::{Rendered, ReportError};
 
 /// Renders the report of a diagnosis; the same input gives the same bytes.
 ///

@@ -21,7 +21,7 @@ const UNITS: [(&str, &str, f64); 9] = [
 
 /// A parameter as it is shown.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Parameter {
+pub(crate) struct ShownParameter {
     /// Its name without the unit, in words.
     pub words: String,
     /// Empty where it has none.
@@ -30,7 +30,7 @@ pub(super) struct Parameter {
     pub se: f64,
 }
 
-impl Parameter {
+impl ShownParameter {
     pub fn of(name: &str, value: &Value) -> Self {
         let known = UNITS.into_iter().find_map(|(ending, unit, factor)| Some((name.strip_suffix(ending)?, unit, factor)));
         let (stem, unit, factor) = known.unwrap_or((name, "", 1.0));
@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn names_give_words_units_and_digits() {
         let shown = |name: &str, value: f64, se: f64| {
-            let parameter = Parameter::of(name, &Value { value, se });
+            let parameter = ShownParameter::of(name, &Value { value, se });
             (parameter.words.clone(), format!("{} {}", parameter.value_text(), parameter.unit))
         };
         assert_eq!(shown("speed_m_s", 0.6012, 0.021), ("speed".into(), "0.601 m/s".into()));
@@ -82,7 +82,7 @@ mod tests {
         assert_eq!(shown("N_phi", 1.2e-4, 2e-5), ("N_phi".into(), "0.000120 ".into()));
         assert_eq!(shown("yaw_lever", 0.5, 0.0).0, "yaw lever");
         let twice = ["offset_deg", "offset_rad", "rate_rad_s"].map(|name| (name.to_owned(), Value { value: 1.0, se: 0.1 }));
-        let names: Vec<String> = Parameter::all(&twice.into()).into_iter().map(|(name, _)| name.to_owned()).collect();
+        let names: Vec<String> = ShownParameter::all(&twice.into()).into_iter().map(|(name, _)| name.to_owned()).collect();
         assert_eq!(names, ["offset_deg", "rate_rad_s"]);
     }
 }

@@ -9,7 +9,7 @@ use crate::tables::{Cell, Column, Row, Table};
 use crate::words;
 
 /// What is known of the model, a line each: a word and what it is.
-pub(super) fn model(model: &Model) -> Vec<(&'static str, String)> {
+pub(crate) fn model(model: &Model) -> Vec<(&'static str, String)> {
     let mut lines = vec![("Status", format!("{}: {}", words::status(model.status), words::status_meaning(model.status)))];
     lines.extend(model.speed_m_s.map(|speed| ("Approach speed", format!("{} m/s", stated(speed, 3)))));
     let carried: Vec<String> = model.effects.iter().map(carried).collect();
@@ -29,7 +29,7 @@ fn carried(effect: &AppliedEffect) -> String {
 }
 
 /// The trials that were given.
-pub(super) fn trials(trials: &[&Trial]) -> Table {
+pub(crate) fn trials(trials: &[&Trial]) -> Table {
     let columns = vec![
         Column::text("trial", ""),
         Column::text("manoeuvre", ""),

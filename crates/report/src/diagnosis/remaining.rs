@@ -6,17 +6,10 @@ use sistership_model::Model;
 use super::sentence::motion;
 use crate::numbers::{fixed, known, signed, significant};
 use crate::tables::{Cell, Column, Row, Table, setting};
-
-/// The unit in which an acceleration is shown, and the factor to it from SI.
-pub(crate) fn acceleration(channel: &str) -> (&'static str, f64) {
-    match channel {
-        "r" | "p" | "psi" | "phi" => ("deg/s²", 180.0 / std::f64::consts::PI),
-        _ => ("m/s²", 1.0),
-    }
-}
+use crate::words::acceleration;
 
 /// Stretches that no effect explains.
-pub(super) fn unexplained(stretches: &[Unexplained]) -> Table {
+pub(crate) fn unexplained(stretches: &[Unexplained]) -> Table {
     let columns = vec![
         Column::text("trial", ""),
         Column::text("equation", ""),
@@ -34,7 +27,7 @@ pub(super) fn unexplained(stretches: &[Unexplained]) -> Table {
 }
 
 /// The level of what nothing explains.
-pub(super) fn discrepancies(levels: &[DiscrepancyLevel]) -> Table {
+pub(crate) fn discrepancies(levels: &[DiscrepancyLevel]) -> Table {
     let columns = vec![
         Column::text("equation", ""),
         Column::number("expected", "std. deviation"),
@@ -52,7 +45,7 @@ pub(super) fn discrepancies(levels: &[DiscrepancyLevel]) -> Table {
 }
 
 /// The coefficients that changed with the effects; none where all stay.
-pub(super) fn coefficients(before: &Model, after: &Model) -> Option<Table> {
+pub(crate) fn coefficients(before: &Model, after: &Model) -> Option<Table> {
     let columns = vec![
         Column::text("coefficient", ""),
         Column::number("before", ""),
@@ -80,7 +73,7 @@ const MEANINGS: [(&str, &str); 5] = [
 ];
 
 /// Every setting with what it means.
-pub(super) fn settings(settings: &Settings) -> Table {
+pub(crate) fn settings(settings: &Settings) -> Table {
     let columns = vec![Column::text("setting", ""), Column::prose("value"), Column::prose("meaning")];
     let written = serde_json::to_value(settings).unwrap_or_default();
     let meaning = |name: &str| MEANINGS.iter().find(|(known, _)| *known == name).map_or("", |(_, meaning)| meaning);

@@ -7,15 +7,15 @@ use sistership_dynamics::{PlantError, Ship};
 use sistership_model::Model;
 use sistership_model::trial::{Channel, Trial};
 
-use super::DiagnosisInput;
-use crate::replays::{Replayed, Shown};
+use super::input::DiagnosisInput;
+use crate::replayed::{ReplaySummary, ReplayedTrial};
 
 /// Most trials that are plotted.
 const MOST: usize = 4;
 
 /// Simulates the trials on which the model is most off; those that lack a channel are left out. What is called source and
 /// refined there is the model before and after here.
-pub(super) fn replay_chosen<'a>(input: &DiagnosisInput<'a>) -> Result<Vec<Replayed<'a>>, PlantError> {
+pub(crate) fn replay_chosen<'a>(input: &DiagnosisInput<'a>) -> Result<Vec<ReplayedTrial<'a>>, PlantError> {
     let after = input.diagnosis.model.as_ref().unwrap_or(input.model);
     let (before, after) = (ready(input.model, input)?, ready(after, input)?);
     let settings = ReplaySettings::default();
@@ -26,9 +26,9 @@ pub(super) fn replay_chosen<'a>(input: &DiagnosisInput<'a>) -> Result<Vec<Replay
     Ok(ranked(input).into_iter().filter_map(one).take(MOST).collect())
 }
 
-fn replayed<'a>(input: &DiagnosisInput<'a>, trial: &'a Trial, before: Replay, after: Replay) -> Replayed<'a> {
+fn replayed<'a>(input: &DiagnosisInput<'a>, trial: &'a Trial, before: Replay, after: Replay) -> ReplayedTrial<'a> {
     let stopped = |run: &Replay| run.stopped.as_ref().map(ToString::to_string);
-    let shown = Shown {
+    let shown = ReplaySummary {
         trial: &trial.name,
         manoeuvre: trial.manoeuvre.as_deref(),
         duration_s: trial.duration_s(),
@@ -38,7 +38,7 @@ fn replayed<'a>(input: &DiagnosisInput<'a>, trial: &'a Trial, before: Replay, af
         source_stopped: stopped(&before),
         refined_stopped: stopped(&after),
     };
-    Replayed { trial, source: before, refined: after, rolls: input.law.has_roll(), shown }
+    ReplayedTrial { trial, source: before, refined: after, rolls: input.law.has_roll(), shown }
 }
 
 /// A ship whose envelope covers the speeds of the trials.

@@ -2,14 +2,14 @@
 
 use sistership_diagnose::{Diagnosis, Found, Verdict};
 
-use super::parameter::Parameter;
+use super::parameter::ShownParameter;
 use crate::numbers::{list, significant};
 
 /// Most parameters that a sentence names.
 const MOST: usize = 3;
 
 /// What was found, for a stranger.
-pub(super) fn sentence(diagnosis: &Diagnosis) -> String {
+pub(crate) fn sentence(diagnosis: &Diagnosis) -> String {
     let lacks = list(&diagnosis.effects.iter().map(effect).collect::<Vec<_>>());
     match (diagnosis.verdict, diagnosis.effects.is_empty()) {
         (Verdict::Complete, _) => "Your model holds: what remains between it and these trials is what the noise predicts.".into(),
@@ -24,7 +24,7 @@ pub(super) fn sentence(diagnosis: &Diagnosis) -> String {
 }
 
 /// An effect with what is known of it: `current (0.60 m/s towards 45 deg)`.
-pub(super) fn effect(found: &Found) -> String {
+pub(crate) fn effect(found: &Found) -> String {
     let (name, figures) = (name(found), figures(found));
     if figures.is_empty() { name } else { format!("{name} ({figures})") }
 }
@@ -36,14 +36,14 @@ fn name(found: &Found) -> String {
 }
 
 fn figures(found: &Found) -> String {
-    let of = |name: &str| found.parameters.get(name).map(|value| Parameter::of(name, value));
+    let of = |name: &str| found.parameters.get(name).map(|value| ShownParameter::of(name, value));
     for (direction, word) in [("towards_deg", "towards"), ("from_deg", "from")] {
         if let (Some(speed), Some(angle)) = (of("speed_m_s"), of(direction)) {
             return format!("{} {word} {}", short(&speed), compass(&angle));
         }
     }
-    let all: Vec<Parameter> = Parameter::all(&found.parameters).into_iter().map(|(_, parameter)| parameter).collect();
-    let with_unit: Vec<&Parameter> = all.iter().filter(|parameter| !parameter.unit.is_empty()).collect();
+    let all: Vec<ShownParameter> = ShownParameter::all(&found.parameters).into_iter().map(|(_, parameter)| parameter).collect();
+    let with_unit: Vec<&ShownParameter> = all.iter().filter(|parameter| !parameter.unit.is_empty()).collect();
     let shown = if with_unit.is_empty() { all.iter().collect() } else { with_unit };
     match shown.as_slice() {
         [only] => short(only),
@@ -53,11 +53,11 @@ fn figures(found: &Found) -> String {
 }
 
 /// Three digits and the unit: the standard error stands in the table.
-fn short(parameter: &Parameter) -> String {
+fn short(parameter: &ShownParameter) -> String {
     format!("{} {}", significant(parameter.value, 2), parameter.unit).trim_end().to_owned()
 }
 
-fn compass(angle: &Parameter) -> String {
+fn compass(angle: &ShownParameter) -> String {
     format!("{:.0} deg", angle.value.rem_euclid(360.0))
 }
 
@@ -71,7 +71,7 @@ fn where_(diagnosis: &Diagnosis) -> String {
 }
 
 /// The motion whose equation a channel stands for.
-pub(super) fn motion(channel: &str) -> &str {
+pub(crate) fn motion(channel: &str) -> &str {
     match channel {
         "u" => "surge",
         "v" => "sway",

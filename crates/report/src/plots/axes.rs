@@ -5,7 +5,7 @@ use crate::numbers::fixed;
 
 /// A linear scale from values to places along an axis.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scale {
+pub(crate) struct Scale {
     pub low: f64,
     pub high: f64,
     pub length: f64,
@@ -30,19 +30,19 @@ impl Scale {
 }
 
 /// The next larger of 1, 2, 5 times a power of ten.
-pub(super) fn nice_step(least: f64) -> f64 {
+pub(crate) fn nice_step(least: f64) -> f64 {
     let power = 10_f64.powf(least.log10().floor());
     [1.0, 2.0, 5.0].into_iter().map(|of| of * power).find(|step| *step >= least * (1.0 - 1e-9)).unwrap_or(10.0 * power)
 }
 
 /// The range of values with a margin, never empty.
-pub(super) fn padded((low, high): (f64, f64), share: f64) -> (f64, f64) {
+pub(crate) fn padded((low, high): (f64, f64), share: f64) -> (f64, f64) {
     let margin = share * (high - low).max(1e-6 * low.abs().max(high.abs())).max(1e-9);
     (low - margin, high + margin)
 }
 
 /// Least and greatest of some values.
-pub(super) fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+pub(crate) fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     values.filter(|value| value.is_finite()).fold(None, |range, value| {
         let (low, high) = range.unwrap_or((value, value));
         Some((low.min(value), high.max(value)))
@@ -50,7 +50,7 @@ pub(super) fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 }
 
 /// The range shown: that of the measured values, widened for the others by at most its own size on each side.
-pub(super) fn shown(measured: Option<(f64, f64)>, others: Option<(f64, f64)>) -> (f64, f64) {
+pub(crate) fn shown(measured: Option<(f64, f64)>, others: Option<(f64, f64)>) -> (f64, f64) {
     match (measured, others) {
         (Some((low, high)), Some((from, to))) => {
             // What stays the same gets room too: its last digits mean nothing.
@@ -63,7 +63,7 @@ pub(super) fn shown(measured: Option<(f64, f64)>, others: Option<(f64, f64)>) ->
 }
 
 /// A panel's grid lines across with labels to its left.
-pub(super) fn rows(at: (f64, f64), width: f64, scale: &Scale, about: usize) -> Vec<Shape> {
+pub(crate) fn rows(at: (f64, f64), width: f64, scale: &Scale, about: usize) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for (value, label) in scale.ticks(about) {
         let y = at.1 + scale.at(value);
@@ -75,7 +75,7 @@ pub(super) fn rows(at: (f64, f64), width: f64, scale: &Scale, about: usize) -> V
 }
 
 /// A panel's grid lines upwards, with labels below it where asked.
-pub(super) fn columns(at: (f64, f64), height: f64, scale: &Scale, about: usize, labelled: bool) -> Vec<Shape> {
+pub(crate) fn columns(at: (f64, f64), height: f64, scale: &Scale, about: usize, labelled: bool) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for (value, label) in scale.ticks(about) {
         let x = at.0 + scale.at(value);

@@ -4,10 +4,10 @@ use sistership_dynamics::recorded::Replay;
 use sistership_dynamics::state::at;
 use sistership_model::trial::{Channel, Trial};
 
-use crate::replays::Replayed;
+use crate::replayed::ReplayedTrial;
 
 /// Samples of one line: place in the trial and value.
-pub(super) struct Line<T> {
+pub(crate) struct PlottedLine<T> {
     pub class: &'static str,
     pub samples: Vec<usize>,
     pub values: Vec<T>,
@@ -19,43 +19,43 @@ fn place(channel: Channel) -> Option<usize> {
 }
 
 /// A channel over the samples, measured first, then the source, then the refined model.
-pub(super) fn channel(replayed: &Replayed<'_>, channel: Channel, factor: f64) -> Vec<Line<f64>> {
+pub(crate) fn channel(replayed: &ReplayedTrial<'_>, channel: Channel, factor: f64) -> Vec<PlottedLine<f64>> {
     let mut lines = Vec::new();
     if let Some(values) = replayed.trial.channel(channel) {
         let values: Vec<f64> = values.iter().map(|value| value * factor).collect();
-        lines.push(Line { class: "measured", samples: (0..values.len()).collect(), values });
+        lines.push(PlottedLine { class: "measured", samples: (0..values.len()).collect(), values });
     }
     let Some(place) = place(channel) else { return lines };
     for (class, run) in [("source", &replayed.source), ("refined", &replayed.refined)] {
         let values = run.track.states.iter().map(|state| state[place] * factor).collect();
-        lines.push(Line { class, samples: run.samples.clone(), values });
+        lines.push(PlottedLine { class, samples: run.samples.clone(), values });
     }
     lines
 }
 
 /// Positions `(north, east)`, likewise.
-pub(super) fn positions(replayed: &Replayed<'_>) -> Vec<Line<(f64, f64)>> {
+pub(crate) fn positions(replayed: &ReplayedTrial<'_>) -> Vec<PlottedLine<(f64, f64)>> {
     let trial = replayed.trial;
     let mut lines = Vec::new();
     if let (Some(north), Some(east)) = (trial.channel(Channel::X), trial.channel(Channel::Y)) {
         let values: Vec<(f64, f64)> = north.iter().copied().zip(east.iter().copied()).collect();
-        lines.push(Line { class: "measured", samples: (0..values.len()).collect(), values });
+        lines.push(PlottedLine { class: "measured", samples: (0..values.len()).collect(), values });
     }
     lines.extend([("source", &replayed.source), ("refined", &replayed.refined)].map(|(class, run)| track(class, run)));
     lines
 }
 
-fn track(class: &'static str, run: &Replay) -> Line<(f64, f64)> {
+fn track(class: &'static str, run: &Replay) -> PlottedLine<(f64, f64)> {
     let values = run.track.states.iter().map(|state| (state[at::X], state[at::Y])).collect();
-    Line { class, samples: run.samples.clone(), values }
+    PlottedLine { class, samples: run.samples.clone(), values }
 }
 
 /// Whether a gap of the record lies between two of its samples.
-pub(super) fn has_gap(trial: &Trial, starts: &[usize], from: usize, to: usize) -> bool {
+pub(crate) fn has_gap(trial: &Trial, starts: &[usize], from: usize, to: usize) -> bool {
     starts.iter().any(|start| from < *start && *start <= to && *start < trial.len())
 }
 
 /// The samples at which gap-free parts start.
-pub(super) fn starts(trial: &Trial) -> Vec<usize> {
+pub(crate) fn starts(trial: &Trial) -> Vec<usize> {
     trial.segments().into_iter().map(|segment| segment.start).collect()
 }

@@ -1,7 +1,6 @@
 //! Plots as inline SVG: a few shapes, axes with nice ticks, and what is drawn on them.
 
-mod axes;
-mod bars;
+pub(crate) mod axes;
 mod decimate;
 mod lines;
 mod residual;
@@ -11,11 +10,10 @@ mod trajectory;
 
 use askama::Template;
 
-pub(super) use bars::moved;
-pub(super) use residual::residual;
-pub(super) use scatter::scatters;
-pub(super) use series::series;
-pub(super) use trajectory::{mark_interval_s, trajectory};
+pub(crate) use residual::residual;
+pub(crate) use scatter::scatters;
+pub(crate) use series::series;
+pub(crate) use trajectory::{mark_interval_s, trajectory};
 
 /// Width of every plot in its own units, near that of a phone's screen, so that text stays legible there.
 const WIDTH: f64 = 420.0;
@@ -23,7 +21,7 @@ const WIDTH: f64 = 420.0;
 /// A plot.
 #[derive(Debug, Template)]
 #[template(path = "report_plot.html")]
-pub(super) struct Plot {
+pub(crate) struct Plot {
     pub width: f64,
     pub height: f64,
     /// What it shows, for those who cannot see it.
@@ -33,7 +31,7 @@ pub(super) struct Plot {
 
 /// What plots are made of. `class` is a style of the page.
 #[derive(Debug)]
-pub(super) enum Shape {
+pub(crate) enum Shape {
     /// A straight line.
     Line { from: (f64, f64), to: (f64, f64), class: &'static str },
     /// A line through many points, as path data.

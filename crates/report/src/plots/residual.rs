@@ -5,7 +5,7 @@ use sistership_diagnose::{ResidualSeries, Unexplained};
 use super::axes::{Scale, columns, extent, padded, rows};
 use super::decimate::{kept, path};
 use super::{Plot, Shape, WIDTH};
-use crate::diagnosis::acceleration;
+use crate::words::acceleration;
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 12.0;

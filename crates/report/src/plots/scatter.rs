@@ -7,8 +7,7 @@ use sistership_diagnose::ResidualSeries;
 use super::axes::{Scale, columns, extent, padded, rows};
 use super::decimate::kept;
 use super::{Plot, Shape};
-use crate::diagnosis::acceleration;
-use crate::words;
+use crate::words::{self, acceleration};
 
 /// Narrower than other plots: three stand side by side.
 const WIDTH: f64 = 350.0;

@@ -4,10 +4,10 @@ use sistership_model::trial::Channel;
 
 use super::axes::{Scale, columns, extent, padded, rows, shown};
 use super::decimate::path;
-use super::lines::{self, Line};
+use super::lines::{self, PlottedLine};
 use super::{Plot, Shape, WIDTH};
-use crate::replays::Replayed;
-use crate::words::{self, Quantity, RUDDER};
+use crate::replayed::ReplayedTrial;
+use crate::words::{self, RUDDER, ShownChannel};
 
 const LEFT: f64 = 46.0;
 const RIGHT: f64 = 18.0;
@@ -16,7 +16,7 @@ const HEIGHT: f64 = 78.0;
 const BOTTOM: f64 = 34.0;
 
 /// The panels of one trial.
-pub(crate) fn series(replayed: &Replayed<'_>) -> Plot {
+pub(crate) fn series(replayed: &ReplayedTrial<'_>) -> Plot {
     let panels = panels(replayed.rolls);
     let (time, mut shapes) = (time_scale(replayed), Vec::new());
     for (index, (channel, quantity)) in panels.iter().enumerate() {
@@ -29,7 +29,7 @@ pub(crate) fn series(replayed: &Replayed<'_>) -> Plot {
 }
 
 /// What is shown: motions as they are called, then the rudder.
-fn panels(rolls: bool) -> Vec<(Channel, Quantity)> {
+fn panels(rolls: bool) -> Vec<(Channel, ShownChannel)> {
     let motions = [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::Phi];
     let motions = motions.into_iter().filter(|channel| rolls || *channel != Channel::Phi);
     let mut panels: Vec<_> = motions.filter_map(|channel| Some((channel, words::channel(channel.name())?))).collect();
@@ -37,13 +37,20 @@ fn panels(rolls: bool) -> Vec<(Channel, Quantity)> {
     panels
 }
 
-fn time_scale(replayed: &Replayed<'_>) -> Scale {
+fn time_scale(replayed: &ReplayedTrial<'_>) -> Scale {
     let times = &replayed.trial.t_s;
     let (low, high) = extent(times.iter().copied()).unwrap_or((0.0, 1.0));
     Scale { low, high: high.max(low + 1e-9), length: WIDTH - LEFT - RIGHT, reversed: false }
 }
 
-fn panel(replayed: &Replayed<'_>, channel: Channel, quantity: Quantity, time: &Scale, top: f64, last: bool) -> Vec<Shape> {
+fn panel(
+    replayed: &ReplayedTrial<'_>,
+    channel: Channel,
+    quantity: ShownChannel,
+    time: &Scale,
+    top: f64,
+    last: bool,
+) -> Vec<Shape> {
     let lines = lines::channel(replayed, channel, quantity.factor);
     let range = |measured: bool| {
         let own = lines.iter().filter(|line| (line.class == "measured") == measured);
@@ -62,7 +69,7 @@ fn panel(replayed: &Replayed<'_>, channel: Channel, quantity: Quantity, time: &S
     shapes
 }
 
-fn curve(replayed: &Replayed<'_>, line: &Line<f64>, time: &Scale, scale: &Scale) -> Shape {
+fn curve(replayed: &ReplayedTrial<'_>, line: &PlottedLine<f64>, time: &Scale, scale: &Scale) -> Shape {
     let starts = lines::starts(replayed.trial);
     let place = |(value, sample): (&f64, &usize)| (time.at(replayed.trial.t_s[*sample]), scale.at(*value));
     let points: Vec<(f64, f64)> = line.values.iter().zip(&line.samples).map(place).collect();

@@ -2,9 +2,9 @@
 
 use super::axes::{Scale, columns, extent, nice_step, rows, shown};
 use super::decimate::path;
-use super::lines::{self, Line};
+use super::lines::{self, PlottedLine};
 use super::{Plot, Shape, WIDTH};
-use crate::replays::Replayed;
+use crate::replayed::ReplayedTrial;
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 18.0;
@@ -14,15 +14,15 @@ const LEAST: f64 = 150.0;
 const MOST: f64 = 446.0;
 
 /// North upwards and east to the right, metre by metre the same.
-struct Chart {
+struct TrajectoryChart {
     east: Scale,
     north: Scale,
 }
 
 /// The trajectory of one trial.
-pub(crate) fn trajectory(replayed: &Replayed<'_>) -> Plot {
+pub(crate) fn trajectory(replayed: &ReplayedTrial<'_>) -> Plot {
     let lines = lines::positions(replayed);
-    let chart = Chart::of(&lines);
+    let chart = TrajectoryChart::of(&lines);
     let height = TOP + chart.north.length + BOTTOM;
     let mut shapes = chart.grid();
     let mut inside: Vec<Shape> = lines.iter().map(|line| chart.line(replayed, line)).collect();
@@ -38,8 +38,8 @@ pub(crate) fn mark_interval_s(duration_s: f64) -> f64 {
     nice_step((duration_s / 8.0).max(1e-3))
 }
 
-impl Chart {
-    fn of(lines: &[Line<(f64, f64)>]) -> Self {
+impl TrajectoryChart {
+    fn of(lines: &[PlottedLine<(f64, f64)>]) -> Self {
         let range = |of: fn(&(f64, f64)) -> f64| {
             let own = |measured: bool| {
                 let lines = lines.iter().filter(move |line| (line.class == "measured") == measured);
@@ -75,7 +75,7 @@ impl Chart {
         shapes
     }
 
-    fn line(&self, replayed: &Replayed<'_>, line: &Line<(f64, f64)>) -> Shape {
+    fn line(&self, replayed: &ReplayedTrial<'_>, line: &PlottedLine<(f64, f64)>) -> Shape {
         let starts = lines::starts(replayed.trial);
         let points: Vec<(f64, f64)> = line.values.iter().map(|point| self.at(*point)).collect();
         let jumps = |from: usize, to: usize| lines::has_gap(replayed.trial, &starts, line.samples[from], line.samples[to]);
@@ -83,7 +83,7 @@ impl Chart {
     }
 
     /// Dots at the same instants on every path.
-    fn marks(&self, replayed: &Replayed<'_>, line: &Line<(f64, f64)>) -> Vec<Shape> {
+    fn marks(&self, replayed: &ReplayedTrial<'_>, line: &PlottedLine<(f64, f64)>) -> Vec<Shape> {
         let times = &replayed.trial.t_s;
         let interval = mark_interval_s(replayed.trial.duration_s());
         let number = |index: usize| ((times[line.samples[index]] - times[0]) / interval + 1e-9).floor();
@@ -92,7 +92,7 @@ impl Chart {
         (1..line.values.len()).filter(crossed).map(dot).collect()
     }
 
-    fn start(&self, line: &Line<(f64, f64)>) -> Vec<Shape> {
+    fn start(&self, line: &PlottedLine<(f64, f64)>) -> Vec<Shape> {
         let Some(first) = line.values.first() else { return Vec::new() };
         let (x, y) = self.at(*first);
         let (x, y) = (LEFT + x, TOP + y);

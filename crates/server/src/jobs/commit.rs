@@ -94,7 +94,7 @@ impl Made {
 
 fn render(refined: &Refined, similarity: Option<&Similarity>, version: VersionLabel) -> Result<Rendered> {
     let trials: Vec<&Trial> = refined.ingredients.trials.iter().collect();
-    let input = report::Input {
+    let input = report::RefinementInput {
         refinement: &refined.refinement,
         law: &refined.ingredients.law,
         vessel: &refined.ingredients.target,
@@ -102,5 +102,5 @@ fn render(refined: &Refined, similarity: Option<&Similarity>, version: VersionLa
         similarity,
         version: Some(version),
     };
-    report::render(&input).map_err(failed)
+    report::render_refinement(&input).map_err(failed)
 }

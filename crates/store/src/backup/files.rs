@@ -6,18 +6,17 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest as _, Sha256};
 
-use super::manifest::FileHead;
-use super::not_a_backup;
+use super::content::FileHead;
 use crate::error::{Result, StoreError};
 use crate::folders;
 
 /// A failure of the file system, with the file.
-pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> StoreError {
+pub(crate) fn at(path: &Path) -> impl FnOnce(io::Error) -> StoreError {
     move |error| StoreError::File { path: path.to_path_buf(), error }
 }
 
 /// Makes the folder of a new backup.
-pub(super) fn claim(folder: &Path) -> Result<()> {
+pub(crate) fn claim(folder: &Path) -> Result<()> {
     folders::make(folder).map_err(at(folder))?;
     let first = fs::read_dir(folder).map_err(at(folder))?.next();
     match first {
@@ -27,9 +26,9 @@ pub(super) fn claim(folder: &Path) -> Result<()> {
 }
 
 /// Size and hash of a file, read where it holds nobody up.
-pub(super) async fn head(path: PathBuf) -> Result<FileHead> {
+pub(crate) async fn head(path: PathBuf) -> Result<FileHead> {
     let reading = tokio::task::spawn_blocking(move || hash(&path).map_err(at(&path)));
-    reading.await.map_err(crate::objects::ObjectsError::from)?
+    reading.await.map_err(crate::objects_error::ObjectsError::from)?
 }
 
 fn hash(path: &Path) -> io::Result<FileHead> {
@@ -49,8 +48,13 @@ fn hash(path: &Path) -> io::Result<FileHead> {
 }
 
 /// Writes a file so that it is there whole or not at all, also after the power has failed.
-pub(super) fn write_whole(path: &Path, write: impl FnOnce(&Path) -> io::Result<()>) -> Result<()> {
+pub(crate) fn write_whole(path: &Path, write: impl FnOnce(&Path) -> io::Result<()>) -> Result<()> {
     let partial = path.with_added_extension("partial");
     let done = write(&partial).and_then(|()| File::open(&partial)?.sync_all()).and_then(|()| fs::rename(&partial, path));
     done.and_then(|()| folders::sync(path.parent().unwrap_or(Path::new("")))).map_err(at(path))
+}
+
+/// The refusal of a folder that is no backup, or a damaged one.
+pub(crate) fn not_a_backup(folder: &Path, message: impl Into<String>) -> StoreError {
+    StoreError::conflict("backup", folder.display().to_string(), message)
 }

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::files::{self, at, write_whole};
-use super::objects::Copied;
-use super::{Taken, not_a_backup};
+use super::content::{DatabaseCopy, DatabaseKind, FileHead, TableHead};
+use super::files::{self, at, not_a_backup, write_whole};
+use super::objects::CopiedObjects;
 use crate::error::{Result, StoreError};
 use crate::migrate;
 
@@ -15,36 +15,6 @@ use crate::migrate;
 const FILE: &str = "backup.json";
 /// The format that this program writes and reads.
 const FORMAT: &str = "sistership-backup/1";
-
-/// The kinds of databases.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum DatabaseKind {
-    /// One file.
-    Sqlite,
-    /// One file for each table.
-    Postgres,
-}
-
-/// A file of a backup.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FileHead {
-    /// Its size.
-    pub bytes: u64,
-    /// The SHA-256 of its bytes.
-    pub sha256: String,
-}
-
-/// A table that is a file of its own.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TableHead {
-    /// Its name.
-    pub name: String,
-    /// Its columns in the order of the file.
-    pub columns: Vec<String>,
-}
 
 /// What a backup says of itself.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -71,7 +41,7 @@ pub struct BackupManifest {
 }
 
 impl BackupManifest {
-    pub(super) async fn new(folder: &Path, created_us: i64, taken: Taken, copied: Copied) -> Result<Self> {
+    pub(crate) async fn new(folder: &Path, created_us: i64, taken: DatabaseCopy, copied: CopiedObjects) -> Result<Self> {
         let mut files = BTreeMap::new();
         for file in taken.files {
             let head = files::head(folder.join(&file)).await?;
@@ -90,7 +60,7 @@ impl BackupManifest {
         })
     }
 
-    pub(super) fn write(&self, folder: &Path) -> Result<()> {
+    pub(crate) fn write(&self, folder: &Path) -> Result<()> {
         let text = serde_json::to_vec_pretty(self).map_err(|error| not_a_backup(folder, error.to_string()))?;
         write_whole(&folder.join(FILE), |path| std::fs::write(path, text))
     }
@@ -106,7 +76,7 @@ impl BackupManifest {
     }
 
     /// Whether this program can restore it there, and whether its files are what they were.
-    pub(super) async fn check(&self, folder: &Path, url: &str) -> Result<()> {
+    pub(crate) async fn check(&self, folder: &Path, url: &str) -> Result<()> {
         if self.format != FORMAT || self.schema > migrate::newest() {
             let message = format!("was made by a newer program ({}, schema {}); restore it with that", self.format, self.schema);
             return Err(not_a_backup(folder, message));
@@ -124,21 +94,5 @@ impl BackupManifest {
             }
         }
         Ok(())
-    }
-}
-
-impl DatabaseKind {
-    fn scheme(self) -> &'static str {
-        match self {
-            Self::Sqlite => "sqlite:",
-            Self::Postgres => "postgres:",
-        }
-    }
-
-    fn is_of(self, url: &str) -> bool {
-        match self {
-            Self::Sqlite => url.starts_with("sqlite:"),
-            Self::Postgres => url.starts_with("postgres:") || url.starts_with("postgresql:"),
-        }
     }
 }

@@ -3,6 +3,7 @@
 //! The database is copied as it was at one moment; then the objects that its rows refer to, which were durable before those
 //! rows were written. A folder is a backup once its manifest is there, which is written last.
 
+mod content;
 mod files;
 mod manifest;
 mod objects;
@@ -12,26 +13,16 @@ mod sqlite;
 use std::path::Path;
 use std::sync::Arc;
 
-pub use manifest::{BackupManifest, DatabaseKind, FileHead, TableHead};
+pub use content::{DatabaseKind, FileHead, TableHead};
+pub use manifest::BackupManifest;
 #[cfg(feature = "testing")]
 pub(crate) use postgres::TABLES;
 
 use crate::clock::SystemClock;
-use crate::database::Writer;
-use crate::error::{Result, StoreError};
+use crate::connections::Writer;
+use crate::error::Result;
 use crate::objects::Objects;
 use crate::store::Store;
-
-/// What has been taken of a database.
-struct Taken {
-    kind: DatabaseKind,
-    schema: i64,
-    /// Files below the backup's folder.
-    files: Vec<String>,
-    tables: Vec<TableHead>,
-    /// The objects that its rows refer to.
-    keys: Vec<String>,
-}
 
 impl Store {
     /// Copies this store, with those of the objects that it refers to, into `folder`, which must be empty or not be there.
@@ -59,7 +50,7 @@ impl Store {
             DatabaseKind::Postgres => postgres::must_be_empty(url).await?,
         }
         // Objects first: from the moment that a row is there, so is its object.
-        objects::put(folder, &manifest, objects).await?;
+        objects::put(folder, manifest.objects, objects).await?;
         match manifest.database {
             DatabaseKind::Sqlite => sqlite::put(folder, url).await?,
             DatabaseKind::Postgres => postgres::put(folder, &manifest, url).await?,
@@ -68,8 +59,4 @@ impl Store {
         Self::connect(url, Arc::new(SystemClock)).await?.close().await;
         Ok(manifest)
     }
-}
-
-fn not_a_backup(folder: &Path, message: impl Into<String>) -> StoreError {
-    StoreError::conflict("backup", folder.display().to_string(), message)
 }

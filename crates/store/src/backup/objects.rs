@@ -4,53 +4,59 @@ use std::path::Path;
 
 use futures::stream::{self, StreamExt as _, TryStreamExt as _};
 
-use super::manifest::BackupManifest;
-use super::not_a_backup;
+use super::files::not_a_backup;
 use crate::error::{Result, StoreError};
 use crate::object_list::{AT_ONCE, ObjectName};
-use crate::objects::{Objects, ObjectsError};
+use crate::objects::Objects;
+use crate::objects_error::ObjectsError;
 
 /// What has been copied.
 #[derive(Debug, Default)]
-pub(super) struct Copied {
+pub(crate) struct CopiedObjects {
     pub objects: usize,
     pub bytes: u64,
     pub lost: Vec<String>,
 }
 
+/// What has become of one object.
+enum ObjectCopy {
+    Whole { bytes: u64 },
+    Lost { key: String },
+}
+
 /// Copies objects, each verified by its hash; goes on where one is lost.
-pub(super) async fn copy(from: &Objects, keys: &[String], to: &Objects) -> Result<Copied> {
-    let mut copied = Copied::default();
+pub(crate) async fn copy(from: &Objects, keys: &[String], to: &Objects) -> Result<CopiedObjects> {
+    let mut copied = CopiedObjects::default();
     let copies: Vec<_> = keys.iter().map(|key| copy_one(from, key.clone(), to)).collect();
     let mut copies = stream::iter(copies).buffered(AT_ONCE);
     while let Some(copy) = copies.try_next().await? {
         match copy {
-            Ok(bytes) => {
+            ObjectCopy::Whole { bytes } => {
                 copied.objects += 1;
                 copied.bytes += bytes;
             }
-            Err(lost) => copied.lost.push(lost),
+            ObjectCopy::Lost { key } => copied.lost.push(key),
         }
     }
     Ok(copied)
 }
 
-/// Copies an object and tells its size; the key of one that is lost.
-async fn copy_one(from: &Objects, key: String, to: &Objects) -> Result<std::result::Result<u64, String>> {
+/// Copies an object, if it is there and whole.
+async fn copy_one(from: &Objects, key: String, to: &Objects) -> Result<ObjectCopy> {
     match from.get(&key).await {
         Ok(bytes) => {
             let size = bytes.len() as u64;
             to.put(bytes).await?;
-            Ok(Ok(size))
+            Ok(ObjectCopy::Whole { bytes: size })
         }
         Err(StoreError::NotFound { .. } | StoreError::Invalid { .. } | StoreError::Objects(ObjectsError::Damaged { .. })) => {
-            Ok(Err(key))
+            Ok(ObjectCopy::Lost { key })
         }
         Err(error) => Err(error),
     }
 }
 
-pub(super) async fn must_be_empty(objects: &Objects) -> Result<()> {
+pub(crate) async fn must_be_empty(objects: &Objects) -> Result<()> {
     match objects.list().try_next().await? {
         Some(_) => Err(StoreError::conflict("object store", "objects", "is not empty; a backup is restored into an empty place")),
         None => Ok(()),
@@ -58,8 +64,8 @@ pub(super) async fn must_be_empty(objects: &Objects) -> Result<()> {
 }
 
 /// Puts the objects of a backup where they belong. One that is missing or damaged is an error: a backup that was whole when
-/// it was made must be so now.
-pub(super) async fn put(folder: &Path, manifest: &BackupManifest, to: &Objects) -> Result<()> {
+/// it was made must be so now: `expected` of them.
+pub(crate) async fn put(folder: &Path, expected: usize, to: &Objects) -> Result<()> {
     let from = Objects::local(folder)?;
     let (mut count, mut all) = (0, from.list());
     while let Some(head) = all.try_next().await? {
@@ -67,8 +73,8 @@ pub(super) async fn put(folder: &Path, manifest: &BackupManifest, to: &Objects) 
         to.put(from.get(&key).await?).await?;
         count += 1;
     }
-    match count == manifest.objects {
+    match count == expected {
         true => Ok(()),
-        false => Err(not_a_backup(folder, format!("has {count} objects, not {} as when it was made", manifest.objects))),
+        false => Err(not_a_backup(folder, format!("has {count} objects, not {expected} as when it was made"))),
     }
 }

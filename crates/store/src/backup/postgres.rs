@@ -8,9 +8,9 @@ use sqlx::{Connection as _, PgConnection, PgPool};
 use tokio::fs::File;
 use tokio::io::AsyncWriteExt as _;
 
-use super::Taken;
-use super::files::at;
-use super::manifest::{BackupManifest, DatabaseKind, TableHead};
+use super::content::{DatabaseCopy, DatabaseKind, TableHead};
+use super::files::{at, not_a_backup};
+use super::manifest::BackupManifest;
 use crate::error::{Result, StoreError};
 use crate::folders;
 use crate::migrate;
@@ -46,7 +46,7 @@ const FOLDER: &str = "tables";
 const COLUMNS: &str = "SELECT CAST(column_name AS TEXT) FROM information_schema.columns \
     WHERE table_schema = current_schema() AND table_name = $1 ORDER BY ordinal_position";
 
-pub(super) async fn take(pool: &PgPool, folder: &Path) -> Result<Taken> {
+pub(crate) async fn take(pool: &PgPool, folder: &Path) -> Result<DatabaseCopy> {
     folders::make(&folder.join(FOLDER)).map_err(at(folder))?;
     let mut tx = pool.begin_with("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY").await?;
     let mut tables = Vec::with_capacity(TABLES.len());
@@ -59,7 +59,7 @@ pub(super) async fn take(pool: &PgPool, folder: &Path) -> Result<Taken> {
     let keys = sqlx::query_scalar("SELECT DISTINCT object_key FROM trials ORDER BY 1").fetch_all(&mut *tx).await?;
     let schema = sqlx::query_scalar("SELECT MAX(version) FROM _sqlx_migrations").fetch_one(&mut *tx).await?;
     tx.commit().await?;
-    Ok(Taken { kind: DatabaseKind::Postgres, schema, files: tables.iter().map(file_of).collect(), tables, keys })
+    Ok(DatabaseCopy { kind: DatabaseKind::Postgres, schema, files: tables.iter().map(file_of).collect(), tables, keys })
 }
 
 async fn take_table(connection: &mut PgConnection, table: &TableHead, path: &Path) -> Result<()> {
@@ -72,7 +72,7 @@ async fn take_table(connection: &mut PgConnection, table: &TableHead, path: &Pat
     file.sync_all().await.map_err(at(path))
 }
 
-pub(super) async fn must_be_empty(url: &str) -> Result<()> {
+pub(crate) async fn must_be_empty(url: &str) -> Result<()> {
     let mut connection = PgConnection::connect(url).await?;
     let tables = "SELECT COUNT(*) FROM information_schema.tables WHERE table_schema = current_schema()";
     let tables: i64 = sqlx::query_scalar(tables).fetch_one(&mut connection).await?;
@@ -84,13 +84,13 @@ pub(super) async fn must_be_empty(url: &str) -> Result<()> {
 }
 
 /// Schema and rows in one transaction: a restoration that breaks off leaves an empty database.
-pub(super) async fn put(folder: &Path, manifest: &BackupManifest, url: &str) -> Result<()> {
+pub(crate) async fn put(folder: &Path, manifest: &BackupManifest, url: &str) -> Result<()> {
     let mut connection = PgConnection::connect(url).await?;
     let mut tx = connection.begin().await?;
     migrate::postgres_up_to(manifest.schema, &mut tx).await?;
     for table in &manifest.tables {
         if !TABLES.contains(&table.name.as_str()) {
-            return Err(super::not_a_backup(folder, format!("has a table `{}` that no schema of ours has", table.name)));
+            return Err(not_a_backup(folder, format!("has a table `{}` that no schema of ours has", table.name)));
         }
         let path = folder.join(file_of(table));
         let file = File::open(&path).await.map_err(at(&path))?;

@@ -7,15 +7,14 @@ use std::str::FromStr as _;
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions as _, Connection as _, SqlitePool};
 
-use super::Taken;
+use super::content::{DatabaseCopy, DatabaseKind};
 use super::files::{at, write_whole};
-use super::manifest::DatabaseKind;
 use crate::error::{Result, StoreError};
 use crate::folders;
 
 const FILE: &str = "database.sqlite";
 
-pub(super) async fn take(pool: &SqlitePool, folder: &Path) -> Result<Taken> {
+pub(crate) async fn take(pool: &SqlitePool, folder: &Path) -> Result<DatabaseCopy> {
     let file: String = sqlx::query_scalar("SELECT file FROM pragma_database_list WHERE name = 'main'").fetch_one(pool).await?;
     if file.is_empty() {
         return Err(StoreError::invalid("database_url", "a database in memory cannot be backed up"));
@@ -31,20 +30,20 @@ pub(super) async fn take(pool: &SqlitePool, folder: &Path) -> Result<Taken> {
 }
 
 /// What the copy itself says, so that the objects are those of its moment.
-async fn look(path: &Path) -> Result<Taken> {
+async fn look(path: &Path) -> Result<DatabaseCopy> {
     let options = SqliteConnectOptions::new().filename(path).read_only(true).immutable(true);
     let mut connection = options.connect().await?;
     let keys = sqlx::query_scalar("SELECT DISTINCT object_key FROM trials ORDER BY 1").fetch_all(&mut connection).await?;
     let schema = sqlx::query_scalar("SELECT MAX(version) FROM _sqlx_migrations").fetch_one(&mut connection).await?;
     connection.close().await?;
-    Ok(Taken { kind: DatabaseKind::Sqlite, schema, files: vec![FILE.to_owned()], tables: Vec::new(), keys })
+    Ok(DatabaseCopy { kind: DatabaseKind::Sqlite, schema, files: vec![FILE.to_owned()], tables: Vec::new(), keys })
 }
 
 fn file_of(url: &str) -> Result<PathBuf> {
     Ok(SqliteConnectOptions::from_str(url)?.get_filename().to_path_buf())
 }
 
-pub(super) fn must_be_absent(url: &str) -> Result<()> {
+pub(crate) fn must_be_absent(url: &str) -> Result<()> {
     let file = file_of(url)?;
     match file.exists() {
         true => Err(StoreError::conflict(
@@ -56,9 +55,9 @@ pub(super) fn must_be_absent(url: &str) -> Result<()> {
     }
 }
 
-pub(super) async fn put(folder: &Path, url: &str) -> Result<()> {
+pub(crate) async fn put(folder: &Path, url: &str) -> Result<()> {
     let (from, to) = (folder.join(FILE), file_of(url)?);
     to.parent().map_or(Ok(()), folders::make).map_err(at(&to))?;
     let copying = tokio::task::spawn_blocking(move || write_whole(&to, |path| std::fs::copy(&from, path).map(drop)));
-    copying.await.map_err(crate::objects::ObjectsError::from)?
+    copying.await.map_err(crate::objects_error::ObjectsError::from)?
 }

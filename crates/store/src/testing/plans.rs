@@ -3,7 +3,7 @@
 use serde_json::Value;
 use sqlx::{AssertSqlSafe, Executor as _, PgConnection, PgPool, Row as _, SqlitePool};
 
-use crate::database::Writer;
+use crate::connections::Writer;
 use crate::error::{Result, StoreError};
 use crate::statements::{ALL, Statement};
 use crate::store::Store;

@@ -32,7 +32,7 @@ async fn families_have_members_and_teach(on: &TestStore) {
     family(on, &["a", "b", "c"]).await;
     let families = on.store.families();
     assert_invalid(families.add("sisters", &["c".into(), "nobody".into()]).await, "ships");
-    assert_eq!(families.add("sisters", &["c".into()]).await.unwrap(), 0, "she is a member already");
+    assert_eq!(families.add("sisters", &["c".into()]).await.unwrap(), 0, "it is a member already");
     on.store.ships().delete("b", None).await.unwrap();
     let members = families.members("sisters", &Page::first(2)).await.unwrap();
     assert_eq!(members.items.iter().map(|m| m.ship.as_str()).collect::<Vec<_>>(), ["a", "c"], "a deleted ship is none");

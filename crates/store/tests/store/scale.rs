@@ -87,7 +87,7 @@ async fn times(on: &TestStore, ships: usize) -> Vec<(&'static str, Duration)> {
     let page = |name: &str| Page { after: Some((None, name.to_owned())), limit: 100 };
     let find = async |search: &ShipSearch, page: Page<_>| store.ships().search(search, &page).await.unwrap();
     let failed = JobFilter { state: Some(JobState::Failed), ..JobFilter::default() };
-    let hers = JobFilter { ship: Some(middle.clone()), ..JobFilter::default() };
+    let of_one = JobFilter { ship: Some(middle.clone()), ..JobFilter::default() };
     let (both, long) = (by(vec![range("lpp_m", 0.0), range("diameter_m", 50_000.0)]), by(vec![range("lpp_m", 0.0)]));
     let few = by(vec![range("lpp_m", 0.0), range("diameter_m", 99_000.0)]);
     let tag = ShipSearch { tag: Some("own".into()), ..ShipSearch::default() };
@@ -119,7 +119,7 @@ async fn times(on: &TestStore, ships: usize) -> Vec<(&'static str, Duration)> {
         ("versions of a model", median(async || store.versions().list(&middle, &Page::first(100)).await.unwrap()).await),
         ("jobs", median(async || store.jobs().list(&JobFilter::default(), &Page::first(100)).await.unwrap()).await),
         ("jobs in a state", median(async || store.jobs().list(&failed, &Page::first(100)).await.unwrap()).await),
-        ("jobs of a ship", median(async || store.jobs().list(&hers, &Page::first(100)).await.unwrap()).await),
+        ("jobs of a ship", median(async || store.jobs().list(&of_one, &Page::first(100)).await.unwrap()).await),
         ("counts of jobs", median(async || store.jobs().counts().await.unwrap()).await),
     ]
 }

@@ -15,7 +15,7 @@ async fn fleet(on: &TestStore, count: usize) {
     index(on).await;
 }
 
-/// Does for every ship that waits what the server does: her length is ten times her number.
+/// Does for every ship that waits what the server does: its length is ten times its number.
 async fn index(on: &TestStore) -> usize {
     let waiting = on.store.search_index().waiting("", 1000).await.unwrap();
     let facts = |waiting: &sistership_store::Waiting| {
@@ -131,7 +131,7 @@ async fn what_changes_is_written_anew(on: &TestStore) {
     on.store.versions().create(&version("no-ship"), &[champion(Expect::Any)]).await.unwrap();
     let waiting = on.store.search_index().waiting("", 10).await.unwrap();
     assert_eq!(waiting.iter().map(|ship| ship.ship.as_str()).collect::<Vec<_>>(), ["s-00", "s-01"]);
-    // Changed again before the facts of the first change are written: they are not, and she waits on.
+    // Changed again before the facts of the first change are written: they are not, and it waits on.
     on.store.ships().update(&ship("s-00"), 2).await.unwrap();
     let [old, same] = &waiting[..] else { panic!() };
     let facts = |waiting: &sistership_store::Waiting, value| {

@@ -78,7 +78,7 @@ pub fn said(ship: &TrueShip, track: &Trajectory, wind: &[f64]) -> Vec<StateVecto
     (0..track.t_s.len()).step_by(STRIDE).map(&mut one).collect()
 }
 
-/// The state some time before step `k`; before the trial she ran steadily.
+/// The state some time before step `k`; before the trial it ran steadily.
 fn past(track: &Trajectory, k: usize, delay_s: f64) -> StateVector {
     let place = (k as f64 - delay_s / STEP_S).clamp(0.0, (track.states.len() - 1) as f64);
     let (before, w) = (place.floor() as usize, place.fract());

@@ -1,4 +1,4 @@
-//! How the true ship sails: her bridge, her rudder, and what is hidden in either.
+//! How the true ship sails: its bridge, its rudder, and what is hidden in either.
 
 use sistership_dynamics::gear::Gear;
 use sistership_dynamics::plant::{Inputs, Work};
@@ -75,7 +75,7 @@ impl TrueShip {
         let mut model = published();
         let law = ZOO.law(&model.law).unwrap();
         let of = |effect: &str, name: &str| parameter(&hidden.effects, effect, name);
-        // What is true beyond the first order is done by this ship herself.
+        // What is true beyond the first order is done by this ship itself.
         let own = |effect: &&AppliedEffect| ["current", "rudder-lag", "time-delay"].contains(&effect.name.as_str());
         model.effects = hidden.effects.iter().filter(|effect| !own(effect)).cloned().collect();
         let ship = Ship::new(&model, law).unwrap_or_else(|error| panic!("{error}"));
@@ -121,7 +121,7 @@ impl TrueShip {
         state
     }
 
-    /// The same motion with velocities over the ground. In moving water she sails as in still water and is carried along;
+    /// The same motion with velocities over the ground. In moving water it sails as in still water and is carried along;
     /// the library adds the current to a law in the ship's axes, which is the same but for the cosine of the roll.
     fn over_ground(&self, state: &StateVector) -> StateVector {
         let ((sin, cos), (north, east)) = (state[at::PSI].sin_cos(), self.current_m_s);

@@ -1,9 +1,9 @@
 //! How far each coefficient of an axis moved, in standard deviations of the prior.
 
-use super::axes::{Scale, columns};
-use super::{Plot, Shape};
-use crate::coefficients::{AxisChanges, Change, Coefficients};
+use super::coefficients::{AxisChanges, ChangedCoefficient, Coefficients};
 use crate::numbers::signed;
+use crate::plots::axes::{Scale, columns};
+use crate::plots::{Plot, Shape};
 use crate::words;
 
 /// Narrower than other plots: three stand side by side.
@@ -35,7 +35,7 @@ fn plot(axis: &AxisChanges<'_>, scale: &Scale) -> Plot {
     Plot { width: WIDTH, height: TOP + inner + BOTTOM, label, shapes }
 }
 
-fn row(change: &Change<'_>, y: f64, scale: &Scale) -> Vec<Shape> {
+fn row(change: &ChangedCoefficient<'_>, y: f64, scale: &Scale) -> Vec<Shape> {
     let name = match change.collinear_group {
         Some(group) => format!("{} ◇{group}", change.change.name),
         None => change.change.name.clone(),

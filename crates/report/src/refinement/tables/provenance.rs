@@ -1,23 +1,22 @@
 //! Where every figure comes from.
 
-use serde_json::Value;
 use sistership_estimate::refine::{Range, Settings};
 
-use super::{Cell, Column, Row, Table};
 use crate::numbers::{self, known};
-use crate::provenance::Stated;
+use crate::refinement::provenance::StatedQuantity;
+use crate::tables::{Cell, Column, Row, Table, setting};
 
 /// The ship's particulars.
-pub(crate) fn particulars(stated: &[Stated<'_>]) -> Table {
+pub(crate) fn particulars(stated: &[StatedQuantity<'_>]) -> Table {
     with_sources("particular", stated)
 }
 
 /// The parameters of the law.
-pub(crate) fn parameters(stated: &[Stated<'_>]) -> Table {
+pub(crate) fn parameters(stated: &[StatedQuantity<'_>]) -> Table {
     with_sources("parameter", stated)
 }
 
-fn with_sources(what: &str, stated: &[Stated<'_>]) -> Table {
+fn with_sources(what: &str, stated: &[StatedQuantity<'_>]) -> Table {
     let mut columns = vec![
         Column::text(what, ""),
         Column::prose("meaning"),
@@ -30,7 +29,7 @@ fn with_sources(what: &str, stated: &[Stated<'_>]) -> Table {
     Table { columns, rows: stated.iter().map(|stated| row(stated, remarked)).collect() }
 }
 
-fn row(stated: &Stated<'_>, remarked: bool) -> Row {
+fn row(stated: &StatedQuantity<'_>, remarked: bool) -> Row {
     let source = Cell::new(&stated.quantity.source);
     let source = match stated.kind {
         Some("estimated") => source.mark("estimated", "warn"),
@@ -67,19 +66,6 @@ pub(crate) fn settings(settings: &Settings) -> Table {
     }
     lines.sort_by_key(|(rank, _)| *rank);
     Table { columns, rows: lines.into_iter().map(|(_, row)| row).collect() }
-}
-
-/// A setting as people read it.
-pub(crate) fn setting(value: &Value) -> String {
-    match value {
-        Value::Null => "–".into(),
-        Value::Bool(yes) => if *yes { "yes" } else { "no" }.into(),
-        Value::Number(number) => known(number.as_f64(), |number| numbers::stated(number, 4)),
-        Value::String(text) => text.clone(),
-        Value::Array(values) if values.is_empty() => "none".into(),
-        Value::Array(values) => values.iter().map(setting).collect::<Vec<_>>().join(", "),
-        Value::Object(_) => value.to_string(),
-    }
 }
 
 /// `7, least λ from 1 to 10⁻⁶`.

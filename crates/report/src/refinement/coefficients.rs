@@ -3,11 +3,12 @@
 use serde::Serialize;
 use sistership_estimate::refine::CoefficientChange;
 
-use super::Input;
+use super::input::RefinementInput;
+use super::provenance;
 
 /// Every coefficient by axis, and those that the trials cannot tell apart.
 #[derive(Debug, Serialize)]
-pub(super) struct Coefficients<'a> {
+pub(crate) struct Coefficients<'a> {
     pub axes: Vec<AxisChanges<'a>>,
     pub collinear_groups: &'a [Vec<String>],
     pub condition_number: f64,
@@ -15,17 +16,17 @@ pub(super) struct Coefficients<'a> {
 
 /// The coefficients of one axis.
 #[derive(Debug, Serialize)]
-pub(super) struct AxisChanges<'a> {
+pub(crate) struct AxisChanges<'a> {
     pub axis: &'a str,
-    pub coefficients: Vec<Change<'a>>,
+    pub coefficients: Vec<ChangedCoefficient<'a>>,
 }
 
 /// One coefficient with what a reader wants to know of it.
 #[derive(Debug, Serialize)]
-pub(super) struct Change<'a> {
+pub(crate) struct ChangedCoefficient<'a> {
     #[serde(flatten)]
     pub change: &'a CoefficientChange,
-    /// Change over the size of the source's value, in per cent; none where the source has none.
+    /// ChangedCoefficient over the size of the source's value, in per cent; none where the source has none.
     pub moved_percent: Option<f64>,
     /// Number of its collinear group, from 1.
     pub collinear_group: Option<usize>,
@@ -34,12 +35,12 @@ pub(super) struct Change<'a> {
 }
 
 impl<'a> Coefficients<'a> {
-    pub fn of(input: &Input<'a>) -> Self {
+    pub fn of(input: &RefinementInput<'a>) -> Self {
         let refinement = input.refinement;
         let mut axes: Vec<AxisChanges<'a>> = Vec::new();
         for axis in ["X", "Y", "K", "N"] {
             let own = refinement.coefficients.iter().filter(|change| axis_of(&change.name) == axis);
-            let coefficients: Vec<Change<'a>> = own.map(|change| Change::of(input, change)).collect();
+            let coefficients: Vec<ChangedCoefficient<'a>> = own.map(|change| ChangedCoefficient::of(input, change)).collect();
             if !coefficients.is_empty() {
                 axes.push(AxisChanges { axis, coefficients });
             }
@@ -48,7 +49,7 @@ impl<'a> Coefficients<'a> {
     }
 
     /// Every coefficient.
-    pub fn all(&self) -> impl Iterator<Item = &Change<'a>> {
+    pub fn all(&self) -> impl Iterator<Item = &ChangedCoefficient<'a>> {
         self.axes.iter().flat_map(|axis| &axis.coefficients)
     }
 
@@ -62,8 +63,8 @@ impl<'a> Coefficients<'a> {
     }
 }
 
-impl<'a> Change<'a> {
-    fn of(input: &Input<'_>, change: &'a CoefficientChange) -> Self {
+impl<'a> ChangedCoefficient<'a> {
+    fn of(input: &RefinementInput<'_>, change: &'a CoefficientChange) -> Self {
         let groups = &input.refinement.collinear_groups;
         let in_group = |group: &Vec<String>| group.iter().any(|names| names.split('/').any(|name| name == change.name));
         let quantity = input.refinement.transferred.coefficients.get(&change.name);
@@ -71,7 +72,7 @@ impl<'a> Change<'a> {
             change,
             moved_percent: (change.source != 0.0).then(|| 100.0 * (change.refined - change.source) / change.source.abs()),
             collinear_group: groups.iter().position(in_group).map(|index| index + 1),
-            source_estimated: quantity.is_some_and(|quantity| super::provenance::is_estimated(&quantity.source)),
+            source_estimated: quantity.is_some_and(|quantity| provenance::is_estimated(&quantity.source)),
         }
     }
 }

@@ -6,9 +6,10 @@ use sistership_estimate::source::similar;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Vessel, Zoo};
 
-use super::{Input, Rendered, VersionLabel, render};
+use super::{RefinementInput, render_refinement};
+use crate::rendered::{Rendered, VersionLabel};
 
-/// A record of a ship that answers her rudder, by a formula and not by the law that is fitted.
+/// A record of a ship that answers its rudder, by a formula and not by the law that is fitted.
 fn trial(name: &str, period_s: f64, rudder: f64) -> Trial {
     let mut trial = Trial { name: name.into(), ..Trial::default() };
     let (mut r, mut psi, mut x, mut y) = (0.0, 0.0_f64, 0.0, 0.0);
@@ -56,7 +57,15 @@ impl Case {
         let version = VersionLabel { ship: "sr108".into(), number: 7, sha256: "ab".repeat(32) };
         let law = self.zoo.law(&self.refinement.model.law).unwrap();
         let (refinement, similarity) = (&self.refinement, Some(&similarity));
-        render(&Input { refinement, law, vessel: &self.vessel, trials: &trials, similarity, version: Some(version) }).unwrap()
+        render_refinement(&RefinementInput {
+            refinement,
+            law,
+            vessel: &self.vessel,
+            trials: &trials,
+            similarity,
+            version: Some(version),
+        })
+        .unwrap()
     }
 }
 

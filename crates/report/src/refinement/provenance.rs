@@ -10,14 +10,14 @@ use sistership_model::quantity::Quantity;
 use sistership_model::source::Source;
 use sistership_model::vessel::{Status, Steering};
 
-use super::Input;
-use super::words;
+use super::input::RefinementInput;
+use crate::words;
 
 /// What the refined model was made of.
 #[derive(Debug, Serialize)]
-pub(super) struct Provenance<'a> {
-    pub particulars: Vec<Stated<'a>>,
-    pub parameters: Vec<Stated<'a>>,
+pub(crate) struct Provenance<'a> {
+    pub particulars: Vec<StatedQuantity<'a>>,
+    pub parameters: Vec<StatedQuantity<'a>>,
     pub steering: &'a Steering,
     pub ship_sources: &'a BTreeMap<String, Source>,
     pub model_sources: &'a BTreeMap<String, Source>,
@@ -31,7 +31,7 @@ pub(super) struct Provenance<'a> {
 
 /// A figure with where it comes from.
 #[derive(Debug, Serialize)]
-pub(super) struct Stated<'a> {
+pub(crate) struct StatedQuantity<'a> {
     pub name: &'a str,
     pub meaning: String,
     pub unit: &'a str,
@@ -42,7 +42,7 @@ pub(super) struct Stated<'a> {
 }
 
 impl<'a> Provenance<'a> {
-    pub fn of(input: &Input<'a>) -> Self {
+    pub fn of(input: &RefinementInput<'a>) -> Self {
         let (refinement, model) = (input.refinement, &input.refinement.model);
         Self {
             particulars: model.particulars.iter().map(|(name, quantity)| particular(name, quantity)).collect(),
@@ -60,14 +60,14 @@ impl<'a> Provenance<'a> {
     }
 }
 
-fn particular<'a>(name: &'a str, quantity: &'a Quantity) -> Stated<'a> {
+fn particular<'a>(name: &'a str, quantity: &'a Quantity) -> StatedQuantity<'a> {
     let (meaning, unit) = words::field(name);
-    Stated { name, meaning, unit, quantity, kind: kind(&quantity.source) }
+    StatedQuantity { name, meaning, unit, quantity, kind: kind(&quantity.source) }
 }
 
-fn parameter<'a>(name: &'a str, quantity: &'a Quantity, of: Option<&'a Parameter>) -> Stated<'a> {
+fn parameter<'a>(name: &'a str, quantity: &'a Quantity, of: Option<&'a Parameter>) -> StatedQuantity<'a> {
     let (meaning, unit) = of.map_or(("", "–"), |parameter| (parameter.meaning.as_str(), parameter.unit.as_str()));
-    Stated { name, meaning: meaning.to_owned(), unit, quantity, kind: kind(&quantity.source) }
+    StatedQuantity { name, meaning: meaning.to_owned(), unit, quantity, kind: kind(&quantity.source) }
 }
 
 /// How a figure came about, by its source.
@@ -82,12 +82,12 @@ fn kind(source: &str) -> Option<&'static str> {
 }
 
 /// Whether a source says that its figure is an estimate.
-pub(super) fn is_estimated(source: &str) -> bool {
+pub(crate) fn is_estimated(source: &str) -> bool {
     source.to_lowercase().contains("estimat")
 }
 
-/// The status of the source model, where the documents at hand tell: a model of the ship herself, or one not carried over.
-pub(super) fn source_status(input: &Input<'_>) -> Option<Status> {
+/// The status of the source model, where the documents at hand tell: a model of the ship itself, or one not carried over.
+pub(crate) fn source_status(input: &RefinementInput<'_>) -> Option<Status> {
     let refinement = input.refinement;
     if refinement.transferred.status != Status::Transferred {
         return Some(refinement.transferred.status);

@@ -2,80 +2,51 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
 use sistership_dynamics::error::SquaredError;
 use sistership_dynamics::recorded::{Replay, ReplaySettings, replay};
 use sistership_dynamics::{PlantError, Ship};
 use sistership_model::Model;
 use sistership_model::trial::{Channel, Trial};
 
-use super::Input;
+use super::input::RefinementInput;
+use crate::replayed::{ReplaySummary, ReplayedTrial};
 
 /// Most trials that are plotted.
 const MOST: usize = 4;
 
-/// What the plots of one trial show.
-#[derive(Debug, Clone, Serialize)]
-pub(super) struct Shown<'a> {
-    pub trial: &'a str,
-    pub manoeuvre: Option<&'a str>,
-    pub duration_s: f64,
-    /// Whether the refined model was fitted with this trial.
-    pub fitted: bool,
-    /// Root mean square errors from start to end without a restart, SI.
-    pub source: BTreeMap<String, f64>,
-    /// The same of the refined model.
-    pub refined: BTreeMap<String, f64>,
-    pub source_stopped: Option<String>,
-    pub refined_stopped: Option<String>,
-}
-
-/// A trial with both simulations.
-#[derive(Debug)]
-pub(super) struct Replayed<'a> {
-    pub trial: &'a Trial,
-    pub source: Replay,
-    pub refined: Replay,
-    /// Whether roll is part of the simulation.
-    pub rolls: bool,
-    pub shown: Shown<'a>,
-}
-
 /// Simulates the chosen trials; those that lack a channel are left out.
-pub(super) fn replay_chosen<'a>(input: &Input<'a>) -> Result<Vec<Replayed<'a>>, PlantError> {
+pub(crate) fn replay_chosen<'a>(input: &RefinementInput<'a>) -> Result<Vec<ReplayedTrial<'a>>, PlantError> {
     let source = ready(&input.refinement.transferred, input)?;
     let refined = ready(&input.refinement.model, input)?;
     let settings = ReplaySettings::default();
     let one = |trial: &'a Trial| {
         let runs = (replay(&source, trial, &settings).ok()?, replay(&refined, trial, &settings).ok()?);
-        Some(Replayed::new(input, trial, runs))
+        Some(replayed(input, trial, runs))
     };
     Ok(ranked(input).into_iter().filter_map(one).take(MOST).collect())
 }
 
-impl<'a> Replayed<'a> {
-    fn new(input: &Input<'a>, trial: &'a Trial, (source, refined): (Replay, Replay)) -> Self {
-        let stopped = |run: &Replay| run.stopped.as_ref().map(ToString::to_string);
-        let shown = Shown {
-            trial: &trial.name,
-            manoeuvre: trial.manoeuvre.as_deref(),
-            duration_s: trial.duration_s(),
-            fitted: is_fitted(input, trial) && !input.is_source_kept(),
-            source: SquaredError::of(trial, &source).rmse(),
-            refined: SquaredError::of(trial, &refined).rmse(),
-            source_stopped: stopped(&source),
-            refined_stopped: stopped(&refined),
-        };
-        Self { trial, source, refined, rolls: input.law.has_roll(), shown }
-    }
+fn replayed<'a>(input: &RefinementInput<'a>, trial: &'a Trial, (source, refined): (Replay, Replay)) -> ReplayedTrial<'a> {
+    let stopped = |run: &Replay| run.stopped.as_ref().map(ToString::to_string);
+    let shown = ReplaySummary {
+        trial: &trial.name,
+        manoeuvre: trial.manoeuvre.as_deref(),
+        duration_s: trial.duration_s(),
+        fitted: is_fitted(input, trial) && !input.is_source_kept(),
+        source: SquaredError::of(trial, &source).rmse(),
+        refined: SquaredError::of(trial, &refined).rmse(),
+        source_stopped: stopped(&source),
+        refined_stopped: stopped(&refined),
+    };
+    ReplayedTrial { trial, source, refined, rolls: input.law.has_roll(), shown }
 }
 
-fn is_fitted(input: &Input<'_>, trial: &Trial) -> bool {
+fn is_fitted(input: &RefinementInput<'_>, trial: &Trial) -> bool {
     !input.refinement.settings.held_out.contains(&trial.name)
 }
 
 /// A ship whose envelope covers the speeds of the trials.
-fn ready(model: &Model, input: &Input<'_>) -> Result<Ship, PlantError> {
+fn ready(model: &Model, input: &RefinementInput<'_>) -> Result<Ship, PlantError> {
     let mut ship = Ship::new(model, input.law)?;
     let speeds = input.trials.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
     ship.set_envelope_speed(speeds.fold(0.0, |most: f64, speed| most.max(speed.abs())));
@@ -84,12 +55,12 @@ fn ready(model: &Model, input: &Input<'_>) -> Result<Ship, PlantError> {
 
 /// The trials in the order of interest: kinds of manoeuvre in turn, held out before fitted, and within a kind first one
 /// from each half of the list, where names that sort alike stand together.
-fn ranked<'a>(input: &Input<'a>) -> Vec<&'a Trial> {
-    let mut kinds: BTreeMap<(bool, Kind), Vec<&Trial>> = BTreeMap::new();
+fn ranked<'a>(input: &RefinementInput<'a>) -> Vec<&'a Trial> {
+    let mut kinds: BTreeMap<(bool, ManoeuvreKind), Vec<&Trial>> = BTreeMap::new();
     for trial in input.trials {
-        kinds.entry((is_fitted(input, trial), Kind::of(trial))).or_default().push(trial);
+        kinds.entry((is_fitted(input, trial), ManoeuvreKind::of(trial))).or_default().push(trial);
     }
-    let mut keyed: Vec<((bool, usize, Kind), &Trial)> = Vec::new();
+    let mut keyed: Vec<((bool, usize, ManoeuvreKind), &Trial)> = Vec::new();
     for ((fitted, kind), trials) in kinds {
         keyed.extend(spread(trials).into_iter().enumerate().map(|(turn, trial)| ((fitted, turn, kind), trial)));
     }
@@ -108,13 +79,13 @@ fn spread(mut trials: Vec<&Trial>) -> Vec<&Trial> {
 
 /// What was sailed, as far as its name tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
+enum ManoeuvreKind {
     Zigzag,
     Turn,
     Other,
 }
 
-impl Kind {
+impl ManoeuvreKind {
     fn of(trial: &Trial) -> Self {
         let text = format!("{} {}", trial.manoeuvre.as_deref().unwrap_or(""), trial.name).to_lowercase();
         if text.contains("zigzag") || text.contains("zig-zag") || text.contains("zz") {

@@ -1,28 +1,21 @@
 //! Tables: columns with units, rows of cells with marks, written by one template.
 
-mod moved;
-mod provenance;
-mod results;
-mod sailed;
-
 use askama::Template;
+use serde_json::Value;
 
-pub(super) use moved::coefficients;
-pub(super) use provenance::{parameters, particulars, setting, settings};
-pub(super) use results::{errors, imo, options, turns, zigzags};
-pub(super) use sailed::sailed;
+use crate::numbers::{known, stated};
 
 /// A table.
 #[derive(Debug, Template)]
 #[template(path = "report_table.html")]
-pub(super) struct Table {
+pub(crate) struct Table {
     pub columns: Vec<Column>,
     pub rows: Vec<Row>,
 }
 
 /// A column's heading.
 #[derive(Debug)]
-pub(super) struct Column {
+pub(crate) struct Column {
     pub title: String,
     pub unit: String,
     pub class: &'static str,
@@ -47,7 +40,7 @@ impl Column {
 
 /// A row: a heading over the rows that follow, or cells.
 #[derive(Debug, Default)]
-pub(super) struct Row {
+pub(crate) struct Row {
     pub heading: String,
     pub highlighted: bool,
     pub cells: Vec<Cell>,
@@ -72,7 +65,7 @@ impl Row {
 
 /// A cell: its text and a mark beside it.
 #[derive(Debug, Default)]
-pub(super) struct Cell {
+pub(crate) struct Cell {
     pub text: String,
     pub mark: String,
     pub kind: &'static str,
@@ -93,5 +86,18 @@ impl Cell {
     /// The same cell with a mark; `kind` is its style: `good`, `bad`, `open`, `chosen`, `note`.
     pub fn mark(self, mark: impl Into<String>, kind: &'static str) -> Self {
         Self { mark: mark.into(), kind, ..self }
+    }
+}
+
+/// A setting as people read it.
+pub(crate) fn setting(value: &Value) -> String {
+    match value {
+        Value::Null => "–".into(),
+        Value::Bool(yes) => if *yes { "yes" } else { "no" }.into(),
+        Value::Number(number) => known(number.as_f64(), |number| stated(number, 4)),
+        Value::String(text) => text.clone(),
+        Value::Array(values) if values.is_empty() => "none".into(),
+        Value::Array(values) => values.iter().map(setting).collect::<Vec<_>>().join(", "),
+        Value::Object(_) => value.to_string(),
     }
 }

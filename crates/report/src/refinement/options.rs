@@ -3,18 +3,18 @@
 use serde::Serialize;
 use sistership_estimate::refine::StepOption;
 
-use super::Input;
+use super::input::RefinementInput;
 
 /// Every option with the names of its columns.
 #[derive(Debug, Serialize)]
-pub(super) struct Options<'a> {
+pub(crate) struct StepOptions<'a> {
     /// What each lambda and alpha belongs to, in their order.
     pub accelerations: Vec<String>,
     pub steps: &'a [StepOption],
 }
 
-impl<'a> Options<'a> {
-    pub fn of(input: &Input<'a>) -> Self {
+impl<'a> StepOptions<'a> {
+    pub fn of(input: &RefinementInput<'a>) -> Self {
         let steps = input.refinement.options.as_slice();
         let width = steps.iter().map(|step| step.lambda.len()).max().unwrap_or(0);
         let axes: Vec<String> = input.law.axes.keys().map(|axis| format!("d{}/dt", axis.velocity())).collect();

@@ -5,23 +5,26 @@ use sistership_model::source::Source;
 use sistership_model::vessel::Status;
 
 use super::coefficients::Coefficients;
-use super::numbers::{list, significant, stated};
-use super::plots::{self, Plot};
-use super::replays::{Replayed, Shown};
+use super::content::RefinementContent;
 use super::summary::method_text;
-use super::tables::{self, Table};
-use super::tile::Tile;
-use super::{Content, ReportError, similarity, words};
+use super::{moved, similarity, tables};
+use crate::numbers::{list, significant, stated};
+use crate::plots::{self, Plot};
+use crate::rendered::ReportError;
+use crate::replayed::{ReplaySummary, ReplayedTrial};
+use crate::tables::Table;
+use crate::tile::Tile;
+use crate::words;
 
 /// The page as its template sees it.
 #[derive(Template)]
 #[template(path = "report.html")]
-struct Page<'a> {
-    content: &'a Content<'a>,
+struct RefinementPage<'a> {
+    content: &'a RefinementContent<'a>,
     method: String,
     tiles: Vec<Tile>,
     errors: Table,
-    trials: Vec<TrialPlots<'a>>,
+    trials: Vec<RefinementTrialPlots<'a>>,
     moved: Vec<(&'static str, Plot)>,
     coefficients: Table,
     groups: Vec<String>,
@@ -31,7 +34,7 @@ struct Page<'a> {
     zigzags: Table,
     imo: Table,
     sailed: Table,
-    why: Option<Why>,
+    why: Option<SourceChoice>,
     particulars: Table,
     parameters: Table,
     settings: Table,
@@ -40,15 +43,15 @@ struct Page<'a> {
 }
 
 /// The plots of one trial.
-struct TrialPlots<'a> {
-    shown: &'a Shown<'a>,
+struct RefinementTrialPlots<'a> {
+    shown: &'a ReplaySummary<'a>,
     caption: String,
     trajectory: Plot,
     series: Plot,
 }
 
-/// Why this source.
-struct Why {
+/// SourceChoice this source.
+struct SourceChoice {
     definition: &'static str,
     vector: String,
     remark: Option<String>,
@@ -62,15 +65,15 @@ struct Citation<'a> {
 }
 
 /// Writes the page.
-pub(super) fn page(content: &Content<'_>, replayed: &[Replayed<'_>]) -> Result<String, ReportError> {
+pub(crate) fn page(content: &RefinementContent<'_>, replayed: &[ReplayedTrial<'_>]) -> Result<String, ReportError> {
     let provenance = &content.provenance;
-    let page = Page {
+    let page = RefinementPage {
         content,
         method: method_text(&content.headline),
         tiles: content.errors.headline().map(Tile::of).collect(),
         errors: tables::errors(&content.errors),
-        trials: content.replays.iter().zip(replayed).map(|(shown, replayed)| TrialPlots::of(shown, replayed)).collect(),
-        moved: plots::moved(&content.coefficients),
+        trials: content.replays.iter().zip(replayed).map(|(shown, replayed)| RefinementTrialPlots::of(shown, replayed)).collect(),
+        moved: moved::moved(&content.coefficients),
         coefficients: tables::coefficients(&content.coefficients),
         groups: groups(&content.coefficients),
         condition: significant(provenance.condition_number, 2),
@@ -89,7 +92,7 @@ pub(super) fn page(content: &Content<'_>, replayed: &[Replayed<'_>]) -> Result<S
     Ok(page.render()?)
 }
 
-impl Page<'_> {
+impl RefinementPage<'_> {
     fn badge(&self, status: &Status) -> &'static str {
         words::status(*status)
     }
@@ -103,21 +106,21 @@ impl Page<'_> {
     }
 }
 
-impl<'a> TrialPlots<'a> {
-    fn of(shown: &'a Shown<'a>, replayed: &Replayed<'_>) -> Self {
+impl<'a> RefinementTrialPlots<'a> {
+    fn of(shown: &'a ReplaySummary<'a>, replayed: &ReplayedTrial<'_>) -> Self {
         Self { shown, caption: caption(shown), trajectory: plots::trajectory(replayed), series: plots::series(replayed) }
     }
 }
 
 /// What the plots of a trial show and how far the models are off there.
-fn caption(shown: &Shown<'_>) -> String {
-    let error = |quantity: &words::Quantity| {
+fn caption(shown: &ReplaySummary<'_>) -> String {
+    let error = |quantity: &words::ShownChannel| {
         let of = |errors: &std::collections::BTreeMap<String, f64>| {
             Some(significant(errors.get(quantity.channel)? * quantity.factor, 3))
         };
         Some(format!("{} {} → {} {}", quantity.name, of(&shown.source)?, of(&shown.refined)?, quantity.unit))
     };
-    let wanted = |quantity: &&words::Quantity| ["r", "psi", "x", "y"].contains(&quantity.channel);
+    let wanted = |quantity: &&words::ShownChannel| ["r", "psi", "x", "y"].contains(&quantity.channel);
     let errors: Vec<String> = words::CHANNELS.iter().filter(wanted).filter_map(error).collect();
     let dots = stated(plots::mark_interval_s(shown.duration_s), 3);
     let part = if shown.fitted { "was fitted with" } else { "has not seen" };
@@ -132,8 +135,8 @@ fn groups(coefficients: &Coefficients<'_>) -> Vec<String> {
     coefficients.collinear_groups.iter().map(|group| group.join(", ").replace('/', " and ")).collect()
 }
 
-fn why(content: &Content<'_>) -> Option<Why> {
-    content.similarity.map(|ranking| Why {
+fn why(content: &RefinementContent<'_>) -> Option<SourceChoice> {
+    content.similarity.map(|ranking| SourceChoice {
         definition: similarity::definition(ranking.definition),
         vector: similarity::vector(ranking),
         remark: similarity::remark(ranking, content.headline.source),
@@ -141,14 +144,14 @@ fn why(content: &Content<'_>) -> Option<Why> {
     })
 }
 
-fn steering(content: &Content<'_>) -> String {
+fn steering(content: &RefinementContent<'_>) -> String {
     let gear = content.provenance.steering;
     let source = gear.source.as_deref().unwrap_or("default of SOLAS II-1/29");
     let figures = [gear.limit_deg, gear.rate_deg_s, gear.time_constant_s].map(|value| stated(value, 3));
     format!("rudder to {} deg, at most {} deg/s, time constant {} s ({source})", figures[0], figures[1], figures[2])
 }
 
-fn sources<'a>(content: &'a Content<'a>) -> Vec<(&'static str, Vec<Citation<'a>>)> {
+fn sources<'a>(content: &'a RefinementContent<'a>) -> Vec<(&'static str, Vec<Citation<'a>>)> {
     let provenance = &content.provenance;
     let lists = [
         ("of the ship", provenance.ship_sources),

@@ -1,20 +1,18 @@
 //! The headline and the errors before and after.
 
-use std::collections::BTreeMap;
-
 use serde::Serialize;
 use sistership_model::vessel::Status;
 
-use super::numbers::list;
-use super::words::{self, CHANNELS, Quantity};
-use super::{Input, VersionLabel, provenance};
-
-/// Changes smaller than this share are no change.
-const SAME: f64 = 0.005;
+use super::input::RefinementInput;
+use super::provenance;
+use crate::error_row::{ErrorRow, times};
+use crate::numbers::list;
+use crate::rendered::VersionLabel;
+use crate::words::{self, CHANNELS, ShownChannel};
 
 /// What the report is of, and what came out.
 #[derive(Debug, Serialize)]
-pub(super) struct Headline<'a> {
+pub(crate) struct Headline<'a> {
     pub ship: &'a str,
     pub title: &'a str,
     pub source: &'a str,
@@ -29,7 +27,7 @@ pub(super) struct Headline<'a> {
 }
 
 impl<'a> Headline<'a> {
-    pub fn of(input: &Input<'a>, errors: &Errors<'_>) -> Self {
+    pub fn of(input: &RefinementInput<'a>, errors: &HeldOutErrors<'_>) -> Self {
         let refinement = input.refinement;
         Self {
             ship: &refinement.ship,
@@ -47,9 +45,9 @@ impl<'a> Headline<'a> {
     }
 }
 
-/// Errors on manoeuvres left out.
+/// HeldOutErrors on manoeuvres left out.
 #[derive(Debug, Serialize)]
-pub(super) struct Errors<'a> {
+pub(crate) struct HeldOutErrors<'a> {
     pub how: &'a str,
     /// Whether the errors are of the very trial that was fitted.
     pub on_fitted_trial: bool,
@@ -57,21 +55,10 @@ pub(super) struct Errors<'a> {
     pub rows: Vec<ErrorRow>,
 }
 
-/// Root mean square error of one channel, in its shown unit.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub(super) struct ErrorRow {
-    #[serde(flatten)]
-    pub quantity: Quantity,
-    pub source: Option<f64>,
-    pub refined: Option<f64>,
-    /// Source over refined: above one where the error fell.
-    pub factor: Option<f64>,
-}
-
-impl<'a> Errors<'a> {
-    pub fn of(input: &Input<'a>) -> Self {
+impl<'a> HeldOutErrors<'a> {
+    pub fn of(input: &RefinementInput<'a>) -> Self {
         let (held_out, settings) = (&input.refinement.held_out, &input.refinement.settings);
-        let rolls = |quantity: &Quantity| input.law.has_roll() || !matches!(quantity.channel, "phi" | "p");
+        let rolls = |quantity: &ShownChannel| input.law.has_roll() || !matches!(quantity.channel, "phi" | "p");
         let rows = CHANNELS.into_iter().filter(rolls).map(|q| ErrorRow::of(q, &held_out.source, &held_out.refined));
         Self {
             how: &held_out.how,
@@ -87,50 +74,7 @@ impl<'a> Errors<'a> {
     }
 }
 
-impl ErrorRow {
-    /// The error of a channel in both models.
-    pub fn of(quantity: Quantity, source: &BTreeMap<String, f64>, refined: &BTreeMap<String, f64>) -> Self {
-        let shown = |errors| error(errors, quantity.channel).map(|value| value * quantity.factor);
-        let (source, refined) = (shown(source), shown(refined));
-        let factor = source.zip(refined).filter(|(s, r)| *s > 0.0 && *r > 0.0).map(|(s, r)| s / r);
-        Self { quantity, source, refined, factor }
-    }
-
-    /// `fell`, `rose` or `unchanged`, and by what factor.
-    pub fn change(&self) -> (&'static str, f64) {
-        match self.factor {
-            None => ("unknown", 1.0),
-            Some(factor) if (factor - 1.0).abs() < SAME => ("unchanged", 1.0),
-            Some(factor) if factor > 1.0 => ("fell", factor),
-            Some(factor) => ("rose", 1.0 / factor),
-        }
-    }
-
-    /// The change in words: `4.2 times smaller`.
-    pub fn change_text(&self) -> String {
-        match self.change() {
-            ("fell", factor) => format!("{} times smaller", times(factor)),
-            ("rose", factor) => format!("{} times larger", times(factor)),
-            (word, _) => word.into(),
-        }
-    }
-}
-
-/// A factor with two digits that mean something, never rounded down to a bare one.
-fn times(factor: f64) -> String {
-    let decimals = if factor < 1.95 { 2 } else { usize::from(factor < 9.95) };
-    super::numbers::fixed(factor, decimals)
-}
-
-/// A recorded error; the distance in the plane is put together from north and east.
-fn error(errors: &BTreeMap<String, f64>, channel: &str) -> Option<f64> {
-    if channel == "position" {
-        return Some(error(errors, "x")?.hypot(error(errors, "y")?));
-    }
-    errors.get(channel).copied().filter(|value| value.is_finite() && *value < 1e300)
-}
-
-fn verdict(input: &Input<'_>, errors: &Errors<'_>) -> String {
+fn verdict(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
     if input.is_source_kept() {
         return "No refinement beat the source on manoeuvres left out: the source model is kept as it is.".into();
     }
@@ -147,7 +91,7 @@ fn verdict(input: &Input<'_>, errors: &Errors<'_>) -> String {
 }
 
 /// `fell by a factor of 4.2 in surge speed and 1.3 in heading`.
-fn phrase(errors: &Errors<'_>, word: &str) -> Option<String> {
+fn phrase(errors: &HeldOutErrors<'_>, word: &str) -> Option<String> {
     let rows: Vec<&ErrorRow> = errors.headline().filter(|row| row.change().0 == word).collect();
     let named = |row: &&ErrorRow| match row.change() {
         ("unchanged", _) => row.quantity.name.to_owned(),
@@ -162,7 +106,7 @@ fn phrase(errors: &Errors<'_>, word: &str) -> Option<String> {
 }
 
 /// The estimator in words.
-pub(super) fn method_text(headline: &Headline<'_>) -> String {
+pub(crate) fn method_text(headline: &Headline<'_>) -> String {
     match words::method(headline.method) {
         "" => headline.method.to_owned(),
         text => format!("{}: {text}", headline.method),

@@ -7,30 +7,31 @@ use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
 use sistership_estimate::bands::Bands;
 use sistership_model::validity::Excursion;
 
-use super::Input;
+use super::input::RefinementInput;
+use crate::metrics::{TURN, ZIGZAG};
 
 /// The two sides of every figure.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub(super) struct Pair {
+pub(crate) struct FigurePair {
     pub source: Option<f64>,
     pub refined: Option<f64>,
 }
 
 /// One figure of one manoeuvre.
 #[derive(Debug, Serialize)]
-pub(super) struct Figure {
+pub(crate) struct ManoeuvreFigure {
     pub manoeuvre: String,
     pub figure: &'static str,
     pub unit: &'static str,
     #[serde(flatten)]
-    pub pair: Pair,
+    pub pair: FigurePair,
     /// 95 % of models drawn from the refined one's posterior are between.
     pub band: Option<[f64; 2]>,
 }
 
 /// One IMO criterion.
 #[derive(Debug, Serialize)]
-pub(super) struct Verdict<'a> {
+pub(crate) struct CriterionComparison<'a> {
     pub criterion: &'a str,
     pub limit: f64,
     pub unit: &'a str,
@@ -46,20 +47,20 @@ pub(super) struct Verdict<'a> {
 
 /// The whole comparison.
 #[derive(Debug, Serialize)]
-pub(super) struct Comparison<'a> {
+pub(crate) struct ManoeuvreComparison<'a> {
     pub lpp_m: Option<f64>,
     pub speed_m_s: Option<f64>,
-    pub turns: Vec<Figure>,
-    pub zigzags: Vec<Figure>,
-    pub imo: Vec<Verdict<'a>>,
+    pub turns: Vec<ManoeuvreFigure>,
+    pub zigzags: Vec<ManoeuvreFigure>,
+    pub imo: Vec<CriterionComparison<'a>>,
     pub source_failures: &'a [String],
     pub refined_failures: &'a [String],
     /// Manoeuvres in which the refined model leaves what its trials covered.
     pub outside: &'a BTreeMap<String, Excursion>,
 }
 
-impl<'a> Comparison<'a> {
-    pub fn of(input: &Input<'a>) -> Self {
+impl<'a> ManoeuvreComparison<'a> {
+    pub fn of(input: &RefinementInput<'a>) -> Self {
         let both = &input.refinement.manoeuvres;
         let (source, refined, bands) = (&both.source, &both.refined, both.bands.as_ref());
         Self {
@@ -75,21 +76,6 @@ impl<'a> Comparison<'a> {
     }
 }
 
-pub(super) type Read<T> = fn(&T) -> Option<f64>;
-
-pub(super) const TURN: [(&str, Read<TurningMetrics>); 4] = [
-    ("advance", |turn| turn.advance_m),
-    ("transfer", |turn| turn.transfer_m),
-    ("tactical diameter", |turn| turn.tactical_diameter_m),
-    ("steady radius", |turn| turn.steady_radius_m),
-];
-
-pub(super) const ZIGZAG: [(&str, &str, Read<ZigzagMetrics>); 3] = [
-    ("first overshoot", "deg", |zigzag| zigzag.first_overshoot_deg),
-    ("second overshoot", "deg", |zigzag| zigzag.second_overshoot_deg),
-    ("period", "s", |zigzag| zigzag.period_s),
-];
-
 /// The values of one key from both sides, in the order of the first; what only one side sailed is kept.
 fn matched<'t, T>(source: &'t [T], refined: &'t [T], same: impl Fn(&T, &T) -> bool) -> Vec<(Option<&'t T>, Option<&'t T>)> {
     let mut pairs: Vec<_> = source.iter().map(|one| (Some(one), refined.iter().find(|other| same(one, other)))).collect();
@@ -103,41 +89,41 @@ fn band(bands: Option<&Bands>, name: &str) -> Option<[f64; 2]> {
     bands?.of(name).map(|band| [band.low, band.high])
 }
 
-fn turns(source: &[TurningMetrics], refined: &[TurningMetrics], bands: Option<&Bands>) -> Vec<Figure> {
+fn turns(source: &[TurningMetrics], refined: &[TurningMetrics], bands: Option<&Bands>) -> Vec<ManoeuvreFigure> {
     let mut figures = Vec::new();
     for (before, after) in matched(source, refined, |a, b| a.rudder_deg == b.rudder_deg) {
         let rudder = before.or(after).map_or(0.0, |turn| turn.rudder_deg);
         let manoeuvre = format!("turn, {} deg to {}", rudder.abs(), side(rudder));
         for (figure, read) in TURN {
-            let pair = Pair { source: before.and_then(read), refined: after.and_then(read) };
+            let pair = FigurePair { source: before.and_then(read), refined: after.and_then(read) };
             let band = band(bands, &format!("turn {rudder} deg: {figure}"));
-            figures.push(Figure { manoeuvre: manoeuvre.clone(), figure, unit: "m", pair, band });
+            figures.push(ManoeuvreFigure { manoeuvre: manoeuvre.clone(), figure, unit: "m", pair, band });
         }
     }
     figures
 }
 
-fn zigzags(source: &[ZigzagMetrics], refined: &[ZigzagMetrics], bands: Option<&Bands>) -> Vec<Figure> {
+fn zigzags(source: &[ZigzagMetrics], refined: &[ZigzagMetrics], bands: Option<&Bands>) -> Vec<ManoeuvreFigure> {
     let same = |a: &ZigzagMetrics, b: &ZigzagMetrics| a.rudder_deg == b.rudder_deg && a.switch_deg == b.switch_deg;
     let mut figures = Vec::new();
     for (before, after) in matched(source, refined, same) {
         let Some(one) = before.or(after) else { continue };
         let manoeuvre = format!("zigzag {}/{}, first to {}", one.rudder_deg.abs(), one.switch_deg, side(one.rudder_deg));
         for (figure, unit, read) in ZIGZAG {
-            let pair = Pair { source: before.and_then(read), refined: after.and_then(read) };
+            let pair = FigurePair { source: before.and_then(read), refined: after.and_then(read) };
             let band = band(bands, &format!("zigzag {}/{}: {figure}", one.rudder_deg, one.switch_deg));
-            figures.push(Figure { manoeuvre: manoeuvre.clone(), figure, unit, pair, band });
+            figures.push(ManoeuvreFigure { manoeuvre: manoeuvre.clone(), figure, unit, pair, band });
         }
     }
     figures
 }
 
-fn criteria<'a>(source: &'a [Criterion], refined: &'a [Criterion], bands: Option<&Bands>) -> Vec<Verdict<'a>> {
+fn criteria<'a>(source: &'a [Criterion], refined: &'a [Criterion], bands: Option<&Bands>) -> Vec<CriterionComparison<'a>> {
     let pairs = matched(source, refined, |a, b| a.criterion == b.criterion);
     let one = |(before, after): (Option<&'a Criterion>, Option<&'a Criterion>)| {
         let any = after.or(before)?;
         let drawn = bands.and_then(|bands| bands.of(&format!("IMO: {}", any.criterion)));
-        Some(Verdict {
+        Some(CriterionComparison {
             criterion: &any.criterion,
             limit: any.limit,
             unit: &any.unit,

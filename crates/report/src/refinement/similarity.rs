@@ -3,11 +3,11 @@
 use sistership_estimate::similarity::{Definition, RankedSource};
 use sistership_estimate::source::Similarity;
 
-use super::numbers::{fixed, known, significant};
-use super::tables::{Cell, Column, Row, Table};
+use crate::numbers::{fixed, known, significant};
+use crate::tables::{Cell, Column, Row, Table};
 
 /// Where the definition of the vector is published.
-pub(super) fn definition(definition: Definition) -> &'static str {
+pub(crate) fn definition(definition: Definition) -> &'static str {
     match definition {
         Definition::Mei2019 => "Mei et al. 2019, Eqs. 4 and 5",
         Definition::Kanazawa2023 => "Kanazawa 2023, Eq. 5.18",
@@ -15,13 +15,13 @@ pub(super) fn definition(definition: Definition) -> &'static str {
 }
 
 /// The target's vector: `C_b 0.56, L/B 6.89`.
-pub(super) fn vector(similarity: &Similarity) -> String {
+pub(crate) fn vector(similarity: &Similarity) -> String {
     let one = |(name, value): (&String, &f64)| format!("{name} {}", significant(*value, 3));
     similarity.vector.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
 /// What is to be said where the source is not the first eligible ship of the ranking.
-pub(super) fn remark(similarity: &Similarity, chosen: &str) -> Option<String> {
+pub(crate) fn remark(similarity: &Similarity, chosen: &str) -> Option<String> {
     let first = similarity.ranking.iter().find(|ranked| ranked.eligible).and_then(|ranked| ranked.model.as_deref());
     match first {
         Some(first) if first == chosen => None,
@@ -31,7 +31,7 @@ pub(super) fn remark(similarity: &Similarity, chosen: &str) -> Option<String> {
 }
 
 /// The ranking, the chosen source marked.
-pub(super) fn table(similarity: &Similarity, chosen: &str) -> Table {
+pub(crate) fn table(similarity: &Similarity, chosen: &str) -> Table {
     let columns = vec![
         Column::number("rank", ""),
         Column::text("ship", ""),

@@ -1,8 +1,8 @@
 //! Measured figures beside those of both models.
 
-use super::{Cell, Column, Row, Table};
 use crate::numbers::{known, signed, significant};
-use crate::sailed::Sailed;
+use crate::refinement::sailed::Sailed;
+use crate::tables::{Cell, Column, Row, Table};
 
 /// Rows under a heading for each trial.
 pub(crate) fn sailed(figures: &[Sailed]) -> Table {

@@ -2,14 +2,15 @@
 
 use sistership_estimate::refine::StepOption;
 
-use super::{Cell, Column, Row, Table};
-use crate::manoeuvres::{Comparison, Figure, Verdict};
+use crate::error_row::ErrorRow;
 use crate::numbers::{fixed, known, signed, significant};
-use crate::options::Options;
-use crate::summary::{ErrorRow, Errors};
+use crate::refinement::manoeuvres::{CriterionComparison, ManoeuvreComparison, ManoeuvreFigure};
+use crate::refinement::options::StepOptions;
+use crate::refinement::summary::HeldOutErrors;
+use crate::tables::{Cell, Column, Row, Table};
 
-/// Errors before and after.
-pub(crate) fn errors(errors: &Errors<'_>) -> Table {
+/// HeldOutErrors before and after.
+pub(crate) fn errors(errors: &HeldOutErrors<'_>) -> Table {
     let columns = vec![
         Column::text("channel", ""),
         Column::text("symbol", ""),
@@ -40,7 +41,7 @@ fn error_row(row: &ErrorRow) -> Row {
 }
 
 /// The steps of the widening ranges.
-pub(crate) fn options(options: &Options<'_>) -> Table {
+pub(crate) fn options(options: &StepOptions<'_>) -> Table {
     let each = |symbol: &str| {
         let title = |name: &String| Column::number(symbol, name);
         options.accelerations.iter().map(title).collect::<Vec<_>>()
@@ -68,7 +69,7 @@ fn option_row(step: &StepOption, width: usize) -> Row {
 }
 
 /// Turning circles, in metres and ship lengths.
-pub(crate) fn turns(comparison: &Comparison<'_>) -> Table {
+pub(crate) fn turns(comparison: &ManoeuvreComparison<'_>) -> Table {
     let columns = vec![
         Column::text("figure", ""),
         Column::number("source", "m"),
@@ -79,7 +80,7 @@ pub(crate) fn turns(comparison: &Comparison<'_>) -> Table {
         Column::number("95 % band", "m"),
     ];
     let lengths = |value: Option<f64>| known(value.zip(comparison.lpp_m).map(|(m, l)| m / l), |value| fixed(value, 2));
-    let row = |figure: &Figure| {
+    let row = |figure: &ManoeuvreFigure| {
         let mut cells = pair_cells(figure, |value| significant(value, 4));
         cells.extend([figure.pair.source, figure.pair.refined].map(|value| Cell::new(lengths(value))));
         cells.push(change_cell(figure));
@@ -90,7 +91,7 @@ pub(crate) fn turns(comparison: &Comparison<'_>) -> Table {
 }
 
 /// Zigzags.
-pub(crate) fn zigzags(comparison: &Comparison<'_>) -> Table {
+pub(crate) fn zigzags(comparison: &ManoeuvreComparison<'_>) -> Table {
     let columns = vec![
         Column::text("figure", ""),
         Column::text("unit", ""),
@@ -99,7 +100,7 @@ pub(crate) fn zigzags(comparison: &Comparison<'_>) -> Table {
         Column::number("change", "%"),
         Column::number("95 % band", ""),
     ];
-    let row = |figure: &Figure| {
+    let row = |figure: &ManoeuvreFigure| {
         let mut cells = pair_cells(figure, |value| fixed(value, 1));
         cells.insert(1, Cell::new(figure.unit));
         cells.push(change_cell(figure));
@@ -109,7 +110,7 @@ pub(crate) fn zigzags(comparison: &Comparison<'_>) -> Table {
     Table { columns, rows: grouped(&comparison.zigzags, row) }
 }
 
-fn pair_cells(figure: &Figure, format: impl Fn(f64) -> String) -> Vec<Cell> {
+fn pair_cells(figure: &ManoeuvreFigure, format: impl Fn(f64) -> String) -> Vec<Cell> {
     let value = |value: Option<f64>| Cell::new(known(value, &format));
     vec![Cell::new(figure.figure), value(figure.pair.source), value(figure.pair.refined)]
 }
@@ -119,13 +120,13 @@ fn band_cell(band: Option<[f64; 2]>, write: impl Fn(f64) -> String) -> Cell {
     Cell::new(band.map_or_else(|| known(None, &write), |[low, high]| format!("{} to {}", write(low), write(high))))
 }
 
-fn change_cell(figure: &Figure) -> Cell {
+fn change_cell(figure: &ManoeuvreFigure) -> Cell {
     let both = figure.pair.source.zip(figure.pair.refined).filter(|(source, _)| *source != 0.0);
     Cell::new(known(both.map(|(source, refined)| 100.0 * (refined - source) / source.abs()), |value| signed(value, 1)))
 }
 
 /// Rows under a heading for each manoeuvre.
-fn grouped(figures: &[Figure], row: impl Fn(&Figure) -> Row) -> Vec<Row> {
+fn grouped(figures: &[ManoeuvreFigure], row: impl Fn(&ManoeuvreFigure) -> Row) -> Vec<Row> {
     let mut rows = Vec::new();
     let mut last = "";
     for figure in figures {
@@ -139,7 +140,7 @@ fn grouped(figures: &[Figure], row: impl Fn(&Figure) -> Row) -> Vec<Row> {
 }
 
 /// The IMO criteria.
-pub(crate) fn imo(comparison: &Comparison<'_>) -> Table {
+pub(crate) fn imo(comparison: &ManoeuvreComparison<'_>) -> Table {
     let columns = vec![
         Column::text("criterion", ""),
         Column::text("unit", ""),
@@ -154,7 +155,7 @@ pub(crate) fn imo(comparison: &Comparison<'_>) -> Table {
     Table { columns, rows: comparison.imo.iter().map(imo_row).collect() }
 }
 
-fn imo_row(verdict: &Verdict<'_>) -> Row {
+fn imo_row(verdict: &CriterionComparison<'_>) -> Row {
     let value = |value: Option<f64>| Cell::new(known(value, |value| fixed(value, 2)));
     Row::of(vec![
         Cell::new(verdict.criterion),

@@ -1,8 +1,8 @@
 //! The full table of coefficients.
 
-use super::{Cell, Column, Row, Table};
-use crate::coefficients::{Change, Coefficients};
 use crate::numbers::{fixed, known, signed, significant, superscript};
+use crate::refinement::coefficients::{ChangedCoefficient, Coefficients};
+use crate::tables::{Cell, Column, Row, Table};
 use crate::words;
 
 /// Every coefficient by axis, values in one power of ten.
@@ -26,7 +26,7 @@ pub(crate) fn coefficients(coefficients: &Coefficients<'_>) -> Table {
     Table { columns, rows }
 }
 
-fn row(coefficient: &Change<'_>, exponent: i32) -> Row {
+fn row(coefficient: &ChangedCoefficient<'_>, exponent: i32) -> Row {
     let change = coefficient.change;
     let value = |value: f64| match exponent {
         0 => significant(value, 4),

@@ -1,0 +1,62 @@
+//! What `sistership manoeuvre` prints.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use sistership_dynamics::Ship;
+use sistership_dynamics::manoeuvre::StandardManoeuvres;
+use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+use sistership_estimate::bands::Bands;
+use sistership_model::Model;
+use sistership_model::validity::Excursion;
+
+/// What is printed.
+#[derive(Debug, Serialize)]
+pub struct ManoeuvreDocument {
+    /// The model.
+    pub model: String,
+    /// Its law.
+    pub law: String,
+    /// Whether its figures are published, estimated, transferred or refined.
+    pub status: sistership_model::vessel::Status,
+    /// The approach speed, m/s.
+    pub speed_m_s: f64,
+    /// Turning circles.
+    pub turns: Vec<TurningMetrics>,
+    /// Zigzags.
+    pub zigzags: Vec<ZigzagMetrics>,
+    /// Distance to 10 deg of heading with 10 deg of rudder, the worse side, m.
+    pub initial_turning_m: Option<f64>,
+    /// The IMO criteria.
+    pub imo: Vec<Criterion>,
+    /// Manoeuvres that left the physical range.
+    pub failures: Vec<String>,
+    /// Manoeuvres that left what the model's trials covered.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub outside: BTreeMap<String, Excursion>,
+    /// Confidence bands, where they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bands: Option<Bands>,
+    /// What must be known to read the figures.
+    pub remarks: Vec<String>,
+}
+
+impl ManoeuvreDocument {
+    /// Puts together what was sailed.
+    pub fn of(model: &Model, ship: &Ship, sailed: StandardManoeuvres, bands: Option<Bands>, remarks: Vec<String>) -> Self {
+        Self {
+            model: model.name.clone(),
+            law: model.law.clone(),
+            status: model.status,
+            speed_m_s: ship.approach_speed_m_s(),
+            turns: sailed.turns,
+            zigzags: sailed.zigzags,
+            initial_turning_m: sailed.initial_turning_m,
+            imo: sailed.imo,
+            failures: sailed.failures,
+            outside: sailed.outside,
+            bands,
+            remarks,
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! The files that a command writes beside what it prints.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use sistership_model::{Model, Zoo};
+
+use crate::failure::Failure;
+use crate::files::PromisedFile;
+use crate::trials::{self, ReadTrial};
+
+/// What was written.
+#[derive(Clone, Copy, Serialize)]
+pub struct WrittenFiles<'a> {
+    /// The model.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub out: Option<&'a Path>,
+    /// The report.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub report: Option<&'a Path>,
+}
+
+/// A file that is to be written, if one is asked for.
+///
+/// # Errors
+/// It cannot be written, or is one of `inputs`.
+pub fn promised(path: Option<&Path>, inputs: &[PathBuf]) -> Result<Option<PromisedFile>, Failure> {
+    path.map(|path| PromisedFile::new(path, inputs)).transpose()
+}
+
+/// Refuses to write what was read: the files that a manifest lists are known only once it is read.
+///
+/// # Errors
+/// Names the file.
+pub fn guard(files: &WrittenFiles<'_>, read: &[ReadTrial]) -> Result<(), Failure> {
+    let inputs = trials::inputs(read, &[]);
+    let mut files = files.out.into_iter().chain(files.report);
+    files.try_for_each(|path| PromisedFile::new(path, &inputs).map(|_| ()))
+}
+
+/// The model as a file, read back once to be sure that it is one; `how` says how it was made.
+///
+/// # Errors
+/// It does not read back.
+pub fn model_file(zoo: &Zoo, model: &Model, how: &str) -> Result<String, Failure> {
+    let text = serde_yaml::to_string(model).map_err(|error| Failure::Refused(format!("the model cannot be written: {error}")))?;
+    let text = format!("# {} by sistership {}, {how}\n{text}", model.name, env!("CARGO_PKG_VERSION"));
+    Model::parse("the model to be written", &text, &|law| zoo.law(law).map(|law| (**law).clone()))?;
+    Ok(text)
+}

@@ -1,0 +1,65 @@
+//! Root mean square errors of one channel before and after, and what is said of them.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::numbers::fixed;
+use crate::words::ShownChannel;
+
+/// Changes smaller than this share are no change.
+const SAME: f64 = 0.005;
+
+/// Root mean square error of one channel, in its shown unit.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct ErrorRow {
+    #[serde(flatten)]
+    pub quantity: ShownChannel,
+    pub source: Option<f64>,
+    pub refined: Option<f64>,
+    /// Source over refined: above one where the error fell.
+    pub factor: Option<f64>,
+}
+
+impl ErrorRow {
+    /// The error of a channel in both models.
+    pub fn of(quantity: ShownChannel, source: &BTreeMap<String, f64>, refined: &BTreeMap<String, f64>) -> Self {
+        let shown = |errors| error(errors, quantity.channel).map(|value| value * quantity.factor);
+        let (source, refined) = (shown(source), shown(refined));
+        let factor = source.zip(refined).filter(|(s, r)| *s > 0.0 && *r > 0.0).map(|(s, r)| s / r);
+        Self { quantity, source, refined, factor }
+    }
+
+    /// `fell`, `rose` or `unchanged`, and by what factor.
+    pub fn change(&self) -> (&'static str, f64) {
+        match self.factor {
+            None => ("unknown", 1.0),
+            Some(factor) if (factor - 1.0).abs() < SAME => ("unchanged", 1.0),
+            Some(factor) if factor > 1.0 => ("fell", factor),
+            Some(factor) => ("rose", 1.0 / factor),
+        }
+    }
+
+    /// The change in words: `4.2 times smaller`.
+    pub fn change_text(&self) -> String {
+        match self.change() {
+            ("fell", factor) => format!("{} times smaller", times(factor)),
+            ("rose", factor) => format!("{} times larger", times(factor)),
+            (word, _) => word.into(),
+        }
+    }
+}
+
+/// A factor with two digits that mean something, never rounded down to a bare one.
+pub(crate) fn times(factor: f64) -> String {
+    let decimals = if factor < 1.95 { 2 } else { usize::from(factor < 9.95) };
+    fixed(factor, decimals)
+}
+
+/// A recorded error; the distance in the plane is put together from north and east.
+fn error(errors: &BTreeMap<String, f64>, channel: &str) -> Option<f64> {
+    if channel == "position" {
+        return Some(error(errors, "x")?.hypot(error(errors, "y")?));
+    }
+    errors.get(channel).copied().filter(|value| value.is_finite() && *value < 1e300)
+}

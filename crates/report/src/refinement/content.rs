@@ -1,0 +1,46 @@
+//! Everything that the report of a refinement says, gathered once.
+
+use serde::Serialize;
+use sistership_estimate::source::Similarity;
+
+use super::coefficients::Coefficients;
+use super::input::RefinementInput;
+use super::manoeuvres::ManoeuvreComparison;
+use super::options::StepOptions;
+use super::provenance::Provenance;
+use super::sailed::{self, Sailed};
+use super::summary::{Headline, HeldOutErrors};
+use crate::replayed::{ReplaySummary, ReplayedTrial};
+
+/// Everything that a report says.
+#[derive(Debug, Serialize)]
+pub(crate) struct RefinementContent<'a> {
+    pub format: &'static str,
+    pub headline: Headline<'a>,
+    pub errors: HeldOutErrors<'a>,
+    pub replays: Vec<ReplaySummary<'a>>,
+    pub coefficients: Coefficients<'a>,
+    pub options: StepOptions<'a>,
+    pub manoeuvres: ManoeuvreComparison<'a>,
+    pub sailed: Vec<Sailed>,
+    pub similarity: Option<&'a Similarity>,
+    pub provenance: Provenance<'a>,
+}
+
+impl<'a> RefinementContent<'a> {
+    pub(crate) fn of(input: &RefinementInput<'a>, replayed: &[ReplayedTrial<'a>]) -> Self {
+        let errors = HeldOutErrors::of(input);
+        Self {
+            format: "sistership-report/1",
+            headline: Headline::of(input, &errors),
+            errors,
+            replays: replayed.iter().map(|replayed| replayed.shown.clone()).collect(),
+            coefficients: Coefficients::of(input),
+            options: StepOptions::of(input),
+            manoeuvres: ManoeuvreComparison::of(input),
+            sailed: sailed::figures(input),
+            similarity: input.similarity,
+            provenance: Provenance::of(input),
+        }
+    }
+}

@@ -1,0 +1,32 @@
+//! What the report of a refinement is made of.
+
+use sistership_estimate::refine::Refinement;
+use sistership_estimate::source::Similarity;
+use sistership_model::trial::Trial;
+use sistership_model::{Law, Vessel};
+
+use crate::rendered::VersionLabel;
+
+/// What the report of a refinement is made of.
+#[derive(Debug, Clone)]
+pub struct RefinementInput<'a> {
+    /// The refinement.
+    pub refinement: &'a Refinement,
+    /// The law of both models.
+    pub law: &'a Law,
+    /// The target ship.
+    pub vessel: &'a Vessel,
+    /// The trials that were given, fitted and held out.
+    pub trials: &'a [&'a Trial],
+    /// How the source was found, where it was not named.
+    pub similarity: Option<&'a Similarity>,
+    /// The version under which the model is kept, where it is kept.
+    pub version: Option<VersionLabel>,
+}
+
+impl RefinementInput<'_> {
+    /// Whether no option beat the source, so that nothing was fitted.
+    pub(crate) fn is_source_kept(&self) -> bool {
+        self.refinement.options.iter().any(|option| option.chosen && option.step == "source")
+    }
+}

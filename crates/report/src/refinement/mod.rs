@@ -1,0 +1,36 @@
+//! The report of a refinement: one HTML page that a stranger can read and print, and the same content as JSON.
+//!
+//! [`render_refinement`] gathers the content once (`summary`, `coefficients`, `options`, `manoeuvres`, `sailed`, `similarity`,
+//! `provenance`, `replays`); JSON is that content, the page shows it with tables and plots. Nothing depends on the clock.
+
+mod coefficients;
+mod content;
+mod html;
+mod input;
+mod manoeuvres;
+mod moved;
+mod options;
+mod provenance;
+mod replays;
+mod sailed;
+mod similarity;
+mod summary;
+mod tables;
+#[cfg(test)]
+mod tests;
+
+pub use input::RefinementInput;
+
+use crate::rendered::{Rendered, ReportError};
+use content::RefinementContent;
+
+/// Renders the report of a refinement; the same input gives the same bytes.
+///
+/// # Errors
+/// A model does not simulate under the law, or the page cannot be written.
+pub fn render_refinement(input: &RefinementInput<'_>) -> Result<Rendered, ReportError> {
+    let replayed = replays::replay_chosen(input)?;
+    let content = RefinementContent::of(input, &replayed);
+    let html = html::page(&content, &replayed)?;
+    Ok(Rendered { json: serde_json::to_value(&content)?, html })
+}

@@ -1,0 +1,62 @@
+//! What a backup consists of: a copy of the database, as files and perhaps tables.
+
+use serde::{Deserialize, Serialize};
+
+/// The kinds of databases.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DatabaseKind {
+    /// One file.
+    Sqlite,
+    /// One file for each table.
+    Postgres,
+}
+
+/// A file of a backup.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FileHead {
+    /// Its size.
+    pub bytes: u64,
+    /// The SHA-256 of its bytes.
+    pub sha256: String,
+}
+
+/// A table that is a file of its own.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TableHead {
+    /// Its name.
+    pub name: String,
+    /// Its columns in the order of the file.
+    pub columns: Vec<String>,
+}
+
+/// What has been taken of a database.
+pub(crate) struct DatabaseCopy {
+    pub kind: DatabaseKind,
+    pub schema: i64,
+    /// Files below the backup's folder.
+    pub files: Vec<String>,
+    pub tables: Vec<TableHead>,
+    /// The objects that its rows refer to.
+    pub keys: Vec<String>,
+}
+
+impl DatabaseKind {
+    /// What the URL of such a database begins with.
+    pub(crate) fn scheme(self) -> &'static str {
+        match self {
+            Self::Sqlite => "sqlite:",
+            Self::Postgres => "postgres:",
+        }
+    }
+
+    /// Whether a URL names such a database.
+    pub(crate) fn is_of(self, url: &str) -> bool {
+        match self {
+            Self::Sqlite => url.starts_with("sqlite:"),
+            Self::Postgres => url.starts_with("postgres:") || url.starts_with("postgresql:"),
+        }
+    }
+}
