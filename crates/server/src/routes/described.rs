@@ -2,9 +2,9 @@
 
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value};
-use sistership_fleet::bulk::BulkSettings;
 use sistership_diagnose as diagnose;
 use sistership_estimate::refine;
+use sistership_fleet::bulk::BulkSettings;
 use sistership_model::Model;
 use sistership_model::vessel::VesselFile;
 use utoipa::openapi::RefOr;
