@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::effect::AppliedEffect;
+use crate::effect::{AppliedEffect, Form, dress, qualified};
 use crate::error::{Blame, FileError};
 use crate::law::limits::most;
-use crate::law::{Law, MAX_COEFFICIENTS};
+use crate::law::{Law, MAX_COEFFICIENTS, MAX_EFFECTS};
 use crate::manifest::RudderSign;
 use crate::particulars::{self, Particulars};
 use crate::posterior::Posterior;
@@ -228,6 +228,37 @@ impl Model {
                 quantity.value = -quantity.value;
             }
         }
+    }
+}
+
+impl Law {
+    /// This law with the effects that a model carries.
+    ///
+    /// # Errors
+    /// The field of the model at fault, and why.
+    pub fn with_effects(&self, model: &Model) -> Result<Self, (String, String)> {
+        most("effects", model.effects.len(), MAX_EFFECTS)?;
+        let mut forms = Vec::new();
+        for effect in &model.effects {
+            let field = |(field, message): (String, String)| (format!("effects.{}.{field}", effect.name), message);
+            forms.push((effect, effect.checked().map_err(field)?));
+        }
+        let listed: Vec<(&str, &Form)> = forms.iter().map(|(effect, form)| (effect.name.as_str(), form)).collect();
+        let mut law = self.dressed(model, &listed);
+        if !listed.is_empty() {
+            law.check_depth().map_err(|message| ("effects".to_owned(), message))?;
+        }
+        for (effect, _) in &forms {
+            for (name, quantity) in &effect.parameters {
+                law.dressing.parameters.insert(qualified(&effect.name, &effect.form.name, name), quantity.value);
+            }
+        }
+        Ok(law)
+    }
+
+    /// This law with forms of effects at the absence of each; `model` gives the particulars.
+    pub fn dressed(&self, model: &Model, forms: &[(&str, &Form)]) -> Self {
+        dress(self, &model.particulars, model.speed_m_s, forms)
     }
 }
 

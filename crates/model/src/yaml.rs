@@ -6,14 +6,14 @@
 
 mod aliases;
 mod brackets;
+mod line_break;
+
+pub use brackets::MAX_DEPTH;
 
 use serde::de::DeserializeOwned;
 
 /// Bytes of one document.
 pub const MAX_BYTES: usize = 8 << 20;
-
-/// Brackets and braces within each other.
-pub const MAX_DEPTH: usize = 64;
 
 /// Commas, brackets, colons, dashes and question marks that may each begin an item of a document, whichever of them do.
 pub const MAX_ITEMS: usize = 400_000;
@@ -68,16 +68,6 @@ fn items(bytes: &[u8]) -> usize {
         _ => false,
     };
     (0..bytes.len()).filter(|&at| is_mark(at)).count()
-}
-
-/// Bytes of the line break that begins at a place, none where none does: also NEL, LS and PS, which libyaml takes for one.
-fn break_at(bytes: &[u8], at: usize) -> Option<usize> {
-    match bytes[at] {
-        b'\n' | b'\r' => Some(1),
-        0xC2 if bytes.get(at + 1) == Some(&0x85) => Some(2),
-        0xE2 if matches!(bytes.get(at + 1..at + 3), Some([0x80, 0xA8 | 0xA9])) => Some(3),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

@@ -8,10 +8,10 @@ use crate::cells::{Cells, Counter};
 use crate::findings::Findings;
 use crate::mapping::Mapping;
 use crate::metered::{Meter, Metered};
-use crate::number::number;
+use crate::number::{Fault, number};
 use crate::resolve::resolve;
 use crate::rows::Builder;
-use crate::table::{Fault, Table};
+use crate::table::Table;
 
 /// Bytes that are asked for at once while the header is looked for.
 const CHUNK: u64 = 4096;

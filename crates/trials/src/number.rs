@@ -1,9 +1,31 @@
 //! From the text of a cell to a number, or to what is wrong with the text.
 
-use crate::table::Fault;
+use std::fmt;
 
 /// Bytes of a cell that are shown.
 const SHOWN: usize = 40;
+
+/// Why a cell holds no number.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Fault {
+    Absent,
+    Short,
+    Empty,
+    NotANumber,
+    Text(String),
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Absent => out.write_str("the row ends before this column"),
+            Self::Short => out.write_str("the row has fewer cells than the header"),
+            Self::Empty => out.write_str("the cell is empty"),
+            Self::NotANumber => out.write_str("the cell is not a finite number"),
+            Self::Text(text) => write!(out, "`{text}` is not a number{}", remedy(text)),
+        }
+    }
+}
 
 /// The number in a cell: decimals with a point, perhaps an exponent, as `-1.5` or `1e-3`.
 pub(crate) fn number(cell: &[u8]) -> Result<f64, Fault> {
@@ -20,7 +42,7 @@ pub(crate) fn number(cell: &[u8]) -> Result<f64, Fault> {
 }
 
 /// What to write instead, where the text shows what was meant.
-pub(crate) fn remedy(text: &str) -> &'static str {
+fn remedy(text: &str) -> &'static str {
     let thousands = |c: char| matches!(c, ' ' | '\u{a0}' | '\u{2009}' | '\u{202f}' | '\'' | '\u{2019}' | '_');
     let digits = text.chars().any(|c| c.is_ascii_digit());
     if text.contains('\0') {

@@ -13,10 +13,11 @@ use parquet::schema::types::{ColumnDescriptor, SchemaDescriptor};
 use crate::findings::Findings;
 use crate::limits::Limits;
 use crate::mapping::Mapping;
+use crate::number::Fault;
 use crate::pages::{self, Held, held};
 use crate::resolve::resolve;
 use crate::rows::Builder;
-use crate::table::{Column, Fault, Table};
+use crate::table::{Column, Table};
 
 /// Reads the mapped columns; nothing after errors that leave nothing to check.
 ///

@@ -3,7 +3,8 @@
 use sistership_model::manifest::Missing;
 
 use crate::findings::Findings;
-use crate::table::{Column, Fault, Table};
+use crate::number::Fault;
+use crate::table::{Column, Table};
 
 /// A run of rows that are left out.
 struct Run {

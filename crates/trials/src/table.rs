@@ -1,10 +1,6 @@
 //! The mapped columns of a file as numbers in SI units and radians, still in the file's own signs.
 
-use std::fmt;
-
 use sistership_model::trial::Channel;
-
-use crate::number::remedy;
 
 /// What a column is read into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -46,26 +42,4 @@ pub(crate) struct Table {
     pub rows: Vec<u32>,
     /// Of these, the ones before which rows have been left out.
     pub resumed: Vec<u32>,
-}
-
-/// Why a cell holds no number.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Fault {
-    Absent,
-    Short,
-    Empty,
-    NotANumber,
-    Text(String),
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Absent => out.write_str("the row ends before this column"),
-            Self::Short => out.write_str("the row has fewer cells than the header"),
-            Self::Empty => out.write_str("the cell is empty"),
-            Self::NotANumber => out.write_str("the cell is not a finite number"),
-            Self::Text(text) => write!(out, "`{text}` is not a number{}", remedy(text)),
-        }
-    }
 }

@@ -11,7 +11,7 @@ use crate::plant::{Inputs, Work};
 use crate::ship::Ship;
 use crate::state::{StateVector, Trajectory, at};
 
-pub(super) struct Part<'a> {
+pub struct Part<'a> {
     /// Place of the trial among all.
     trial: usize,
     record: &'a Record<'a>,

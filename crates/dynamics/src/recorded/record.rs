@@ -19,7 +19,7 @@ pub struct MissingChannel {
 }
 
 /// The channels of a trial that a simulation reads.
-pub(super) struct Record<'a> {
+pub struct Record<'a> {
     pub trial: &'a Trial,
     pub delta: &'a [f64],
     pub n: Option<&'a [f64]>,

@@ -21,7 +21,7 @@ pub struct Replay {
 }
 
 impl Replay {
-    pub(super) fn nothing(has_roll: bool) -> Self {
+    pub(crate) fn nothing(has_roll: bool) -> Self {
         Self { track: Trajectory::default(), samples: Vec::new(), stopped: None, has_roll, outside: None }
     }
 }

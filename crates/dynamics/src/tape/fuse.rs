@@ -1,16 +1,9 @@
 //! Sums of products as single instructions: a polynomial's are most of what a law calculates, and one after the other they
 //! wait for each other's results.
 
-use super::{Listing, Op, Slot, Tape};
-
-/// What a tape does at one place.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Instruction {
-    /// One operation.
-    Op(Op),
-    /// A result, and added to it one after the other the products of the [terms](Tape) from a place to another.
-    Products { first: Slot, from: u32, to: u32 },
-}
+use super::instruction::{Instruction, Tape};
+use super::listing::Listing;
+use super::{Op, Slot};
 
 /// A sum so far.
 struct Sum {

@@ -1,6 +1,7 @@
 //! What depends on some inputs alone, taken out of a listing: a sine of a recorded rudder is the same for every model.
 
-use super::{Listing, Op, Slot};
+use super::listing::Listing;
+use super::{Op, Slot};
 
 impl Listing {
     /// Splits off what calls functions or divides and depends on no input before `from`: the first calculates that from all

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use sistership_model::formula::{Comparison, Expr, Function, builtin};
 
-use super::{Listing, Op, Slot, Tape};
+use super::listing::Listing;
+use super::{Op, Slot, Tape};
 
 /// What a name stands for while a formula is lowered.
 pub enum Binding {

@@ -5,13 +5,13 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use indexmap::IndexMap;
 
+use super::applied::AppliedEffect;
 use super::dress::qualified;
 use super::probe::{Probe, SEEDS};
-use super::{AppliedEffect, Dressing};
 use crate::Model;
 use crate::coefficient::Axis;
 use crate::formula::Expr;
-use crate::law::Law;
+use crate::law::{Dressing, Law};
 use crate::quantity::Quantity;
 
 /// A model and its law with the parameters of all its effects among the coefficients.

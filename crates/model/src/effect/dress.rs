@@ -1,37 +1,10 @@
 //! A law as effects change it: the same kind of thing, so that whatever takes a law takes a dressed one.
 
-use std::collections::BTreeMap;
-
-use super::{AppliedEffect, Form};
-use crate::Model;
+use super::form::Form;
 use crate::formula::Expr;
-use crate::law::limits::most;
-use crate::law::{Input, Law, MAX_EFFECTS, Parameter, STATES};
+use crate::law::{Input, Law, Parameter, STATES};
+use crate::particulars::{self, Particulars};
 use crate::trial::Channel;
-
-/// What effects add to a law, beside the formulas of its own that they change.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Dressing {
-    /// Values of the effects' parameters by qualified name.
-    pub parameters: BTreeMap<String, f64>,
-    /// Added to the accelerations.
-    pub accelerations: Vec<(crate::coefficient::Axis, Expr)>,
-    /// Factors on coefficients.
-    pub coefficients: Vec<(String, Expr)>,
-    /// Inputs behind a lag, with its time constant, s.
-    pub lags: Vec<(String, Expr)>,
-    /// What instruments say, by channel; several effects on one channel follow each other.
-    pub measures: Vec<(Channel, Expr)>,
-}
-
-impl Dressing {
-    /// Its formulas.
-    pub(crate) fn formulas(&self) -> impl Iterator<Item = &Expr> {
-        let named = self.coefficients.iter().chain(&self.lags).map(|(_, expr)| expr);
-        let of_axes = self.accelerations.iter().map(|(_, expr)| expr);
-        named.chain(of_axes).chain(self.measures.iter().map(|(_, expr)| expr))
-    }
-}
 
 /// The name of an effect's parameter (or value) in a dressed law.
 pub fn qualified(effect: &str, form: &str, name: &str) -> String {
@@ -52,66 +25,23 @@ pub fn input_channel(input: &str) -> Option<Channel> {
 /// for the thrust deduction.
 pub const TIME: &str = "recorded.t";
 
-impl Law {
-    /// This law with the effects that a model carries.
-    ///
-    /// # Errors
-    /// The field of the model at fault, and why.
-    pub fn with_effects(&self, model: &Model) -> Result<Self, (String, String)> {
-        most("effects", model.effects.len(), MAX_EFFECTS)?;
-        let mut forms = Vec::new();
-        for effect in &model.effects {
-            let field = |(field, message): (String, String)| (format!("effects.{}.{field}", effect.name), message);
-            forms.push((effect, effect.checked().map_err(field)?));
-        }
-        let listed: Vec<(&str, &Form)> = forms.iter().map(|(effect, form)| (effect.name.as_str(), form)).collect();
-        let mut law = self.dressed(model, &listed);
-        if !listed.is_empty() {
-            law.check_depth().map_err(|message| ("effects".to_owned(), message))?;
-        }
-        for (effect, _) in &forms {
-            for (name, quantity) in &effect.parameters {
-                law.dressing.parameters.insert(qualified(&effect.name, &effect.form.name, name), quantity.value);
-            }
-        }
-        Ok(law)
+/// Forms of effects on a law, each at its absence, for a ship of these particulars with the speed of her model's trials.
+pub fn dress(law: &Law, particulars: &Particulars, speed_m_s: Option<f64>, forms: &[(&str, &Form)]) -> Law {
+    let mut dressed = law.clone();
+    // What the law sees is changed before forces are added: an added force sees the ship as she moves over the ground.
+    let (inflow, others): (Vec<_>, Vec<_>) = forms.iter().partition(|(_, form)| !form.sees.is_empty());
+    for (effect, form) in inflow.into_iter().chain(others) {
+        Dresser { effect, form, particulars, speed_m_s, has_roll: law.has_roll() }.dress(&mut dressed);
     }
-
-    /// This law with forms of effects at the absence of each; `model` gives the particulars.
-    pub fn dressed(&self, model: &Model, forms: &[(&str, &Form)]) -> Self {
-        let mut law = self.clone();
-        // What the law sees is changed before forces are added: an added force sees the ship as she moves over the ground.
-        let (inflow, others): (Vec<_>, Vec<_>) = forms.iter().partition(|(_, form)| !form.sees.is_empty());
-        for (effect, form) in inflow.into_iter().chain(others) {
-            Dresser { effect, form, model, has_roll: self.has_roll() }.dress(&mut law);
-        }
-        law
-    }
-}
-
-impl AppliedEffect {
-    /// The form with its formulas, and a value for each parameter.
-    ///
-    /// # Errors
-    /// The field at fault and why.
-    pub fn checked(&self) -> Result<Form, (String, String)> {
-        let form = Form::read(self.acts_on, &self.form)?;
-        for name in form.parameters.keys() {
-            if !self.parameters.get(name).is_some_and(|quantity| quantity.value.is_finite()) {
-                return Err((format!("parameters.{name}"), "give it a finite value".into()));
-            }
-        }
-        match self.parameters.keys().find(|name| !form.parameters.contains_key(*name)) {
-            Some(name) => Err((format!("parameters.{name}"), "the effect has no such parameter".into())),
-            None => Ok(form),
-        }
-    }
+    dressed
 }
 
 struct Dresser<'a> {
     effect: &'a str,
     form: &'a Form,
-    model: &'a Model,
+    particulars: &'a Particulars,
+    /// Of the approach; that of service stands in for it.
+    speed_m_s: Option<f64>,
     has_roll: bool,
 }
 
@@ -182,28 +112,14 @@ impl Dresser<'_> {
 
     fn renamed(&self, name: &str) -> Option<Expr> {
         let form = self.form;
-        let stands_in = form.particulars.contains_key(name) && !self.model.particulars.contains_key(name);
+        let stands_in = form.particulars.contains_key(name) && !self.particulars.contains_key(name);
         if name == "approach_speed_m_s" {
-            let service = crate::particulars::value(&self.model.particulars, "service_speed_m_s");
-            return Some(Expr::Number(self.model.speed_m_s.or(service).unwrap_or(1.0)));
+            let service = particulars::value(self.particulars, "service_speed_m_s");
+            return Some(Expr::Number(self.speed_m_s.or(service).unwrap_or(1.0)));
         }
         let own = form.parameters.contains_key(name) || form.values.contains_key(name) || stands_in;
         let renamed = if own { self.name(name) } else { self.input(name) };
         (renamed != name).then_some(Expr::Name(renamed))
-    }
-}
-
-impl Form {
-    /// Every formula that acts.
-    pub(super) fn formulas(&self) -> impl Iterator<Item = &Expr> {
-        let named = self.values.values().chain(self.sees.values()).chain(self.coefficients.values()).chain(self.lags.values());
-        named.chain(self.accelerates.values()).chain(self.forces.values()).chain(self.measures.values())
-    }
-
-    /// A figure that follows from the parameters, in the unit of its name; `None` without a finite value.
-    pub fn report(&self, name: &str, lookup: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
-        let report = self.reports.get(name)?;
-        report.formula.value(lookup).map(|value| value * report.factor).filter(|value| value.is_finite())
     }
 }
 

@@ -5,9 +5,11 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 
+use super::file::{ActsOn, GrammarFile};
+use super::form::Form;
 use super::scope::{Refusal, Scope};
+use super::symmetry;
 use super::term::{Factor, Term};
-use super::{ActsOn, Form, GrammarFile, symmetry};
 use crate::coefficient::{Axis, STANDARD_FACTORS};
 use crate::formula::Expr;
 use crate::law::axis_dimension;
@@ -30,7 +32,7 @@ pub struct Grammar {
 
 impl Grammar {
     /// Reads and checks a grammar; errors name the field below it.
-    pub(super) fn read(file: &GrammarFile) -> Result<Self, Refusal> {
+    pub fn read(file: &GrammarFile) -> Result<Self, Refusal> {
         let scope = Scope::new(false);
         let dimension = |axis: &Axis| Ok(axis_dimension(*axis));
         let factors = scope.formulas("factors", &file.factors, &|_: &String| Ok(Dimension::NONE), false)?;

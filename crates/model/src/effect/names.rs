@@ -7,7 +7,7 @@ use crate::trial::Channel;
 use crate::units::Dimension;
 
 /// The speed at which the model's trials approach, which belongs to the model and not to the ship.
-pub(super) const APPROACH_SPEED: &str = "approach_speed_m_s";
+pub const APPROACH_SPEED: &str = "approach_speed_m_s";
 
 /// The time since the start of the trial, s; a dressed law may call it otherwise, as laws have parameters of that name.
 const TIME: &str = "t";
@@ -16,7 +16,7 @@ const TIME: &str = "t";
 const GIVEN: [&str; 7] = ["u", "v", "r", "psi", "delta", "x", "y"];
 
 /// The dimension of a name that every effect may use; `measuring` adds positions and rates of change.
-pub(super) fn dimension(name: &str, measuring: bool) -> Option<Dimension> {
+pub fn dimension(name: &str, measuring: bool) -> Option<Dimension> {
     let further = || if measuring { position_or_rate(name) } else { None };
     seen(name)
         .or_else(|| formula::builtin(name).map(|(_, dimension)| dimension))
@@ -27,12 +27,12 @@ pub(super) fn dimension(name: &str, measuring: bool) -> Option<Dimension> {
 }
 
 /// The dimension of a name that reports and stand-ins for particulars may use: what does not change during a trial.
-pub(super) fn constant(name: &str) -> Option<Dimension> {
+pub fn constant(name: &str) -> Option<Dimension> {
     formula::builtin(name).map(|(_, dimension)| dimension).or_else(|| particulars::dimension(name))
 }
 
 /// The dimension of a state or of a channel that a law may take.
-pub(super) fn seen(name: &str) -> Option<Dimension> {
+pub fn seen(name: &str) -> Option<Dimension> {
     state(name).or_else(|| input(name))
 }
 
@@ -41,7 +41,7 @@ fn state(name: &str) -> Option<Dimension> {
 }
 
 /// The dimension of a channel that reaches a law from outside.
-pub(super) fn input(name: &str) -> Option<Dimension> {
+pub fn input(name: &str) -> Option<Dimension> {
     let channel = Channel::by_name(name)?;
     let from_outside = state(name).is_none() && !matches!(channel, Channel::X | Channel::Y);
     from_outside.then(|| channel.dimension())
@@ -54,7 +54,7 @@ fn position_or_rate(name: &str) -> Option<Dimension> {
 }
 
 /// The channel that a trial must have recorded for the name to mean anything.
-pub(super) fn needed(name: &str) -> Option<Channel> {
+pub fn needed(name: &str) -> Option<Channel> {
     if GIVEN.contains(&name) { None } else { Channel::by_name(name) }
 }
 

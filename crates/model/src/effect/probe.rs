@@ -5,7 +5,8 @@ use std::collections::HashMap;
 
 use indexmap::IndexMap;
 
-use super::{EffectParameter, Mirror};
+use super::file::Mirror;
+use super::form::EffectParameter;
 use crate::formula::{self, Expr};
 
 /// What changes its sign in the mirror.
@@ -28,15 +29,15 @@ const ODD: [&str; 15] = [
 ];
 
 /// Points at which formulas are tried.
-pub(super) const SEEDS: [u32; 3] = [7, 31, 101];
+pub const SEEDS: [u32; 3] = [7, 31, 101];
 
 /// Whether the quantity changes its sign when the ship is mirrored port to starboard.
-pub(super) fn is_odd(name: &str) -> bool {
+pub fn is_odd(name: &str) -> bool {
     ODD.contains(&name)
 }
 
 /// One point, or its mirror image.
-pub(super) struct Probe<'a> {
+pub struct Probe<'a> {
     pub parameters: &'a IndexMap<String, EffectParameter>,
     pub values: &'a IndexMap<String, Expr>,
     pub seed: u32,

@@ -1,14 +1,45 @@
-//! From an effect's file to a checked effect.
+//! An effect, from its file.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::file::EffectFile;
-use super::{ActsOn, Effect, Form, FormFile, Grammar, GrammarFile};
-use crate::FileError;
-use crate::error::Blame;
+use super::file::{ActsOn, EffectFile, FormFile, GrammarFile};
+use super::form::Form;
+use super::grammar::Grammar;
+use crate::error::{Blame, FileError};
 use crate::name::check_slug;
+use crate::source::Source;
 
-pub(super) fn read(file: &str, text: &str) -> Result<Effect, FileError> {
+/// An effect, read and checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Effect {
+    /// Its name in the zoo.
+    pub name: String,
+    /// One line for people.
+    pub title: String,
+    /// Where it acts.
+    pub acts_on: ActsOn,
+    /// Where it was published.
+    pub sources: BTreeMap<String, Source>,
+    /// A remark.
+    pub note: Option<String>,
+    /// The forms in which it may appear; none where terms are searched for.
+    pub forms: Vec<Arc<Form>>,
+    /// Terms that are searched for.
+    pub grammar: Option<Grammar>,
+}
+
+impl Effect {
+    /// Reads and checks an effect; `file` is the name that errors give it.
+    ///
+    /// # Errors
+    /// Names file, line and field of the first thing that is wrong: syntax, an unknown name, a unit, a symmetry.
+    pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
+        read(file, text)
+    }
+}
+
+fn read(file: &str, text: &str) -> Result<Effect, FileError> {
     let blame = Blame::new(file, text);
     let raw: EffectFile = blame.read()?;
     check_slug(&raw.name).map_err(|e| blame.at("name", e))?;

@@ -12,10 +12,10 @@ use crate::trial::Channel;
 use crate::units::Dimension;
 
 /// A field at fault and why.
-pub(super) type Refusal = (String, String);
+pub type Refusal = (String, String);
 
 /// What formulas of a form may mention so far.
-pub(super) struct Scope {
+pub struct Scope {
     measuring: bool,
     parameters: BTreeMap<String, Dimension>,
     values: BTreeMap<String, Dimension>,

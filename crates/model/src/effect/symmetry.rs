@@ -4,8 +4,8 @@ use std::cell::RefCell;
 
 use indexmap::IndexMap;
 
+use super::form::{EffectParameter, Form};
 use super::probe::{Probe, SEEDS, is_odd};
-use super::{EffectParameter, Form};
 use crate::formula::Expr;
 
 /// A formula that acts: its field, whether it is odd in the mirror, and what it is while the effect is absent.
@@ -17,7 +17,7 @@ struct Action<'a> {
 }
 
 /// Mirrored motion with mirrored parameters must give mirrored results, and an absent effect must do nothing.
-pub(super) fn check(form: &Form) -> Result<(), (String, String)> {
+pub fn check(form: &Form) -> Result<(), (String, String)> {
     for action in actions(form) {
         let Action { field, formula, .. } = &action;
         check_finite(form, &action).map_err(|e| (field.clone(), e))?;
@@ -72,13 +72,13 @@ fn probe(form: &Form, seed: u32, absent: bool) -> Probe<'_> {
 }
 
 /// What is wrong with a formula that is not as odd (or even) as it should be.
-pub(super) fn broken(odd: bool) -> String {
+pub fn broken(odd: bool) -> String {
     let wanted = if odd { "change its sign" } else { "stay as it is" };
     format!("breaks the port/starboard symmetry: mirrored (v, r, p, phi, psi, delta and `mirror: opposite`) it should {wanted}")
 }
 
 /// Whether the formula changes its sign (`odd`) or stays as it is in the mirror.
-pub(super) fn has_parity(
+pub fn has_parity(
     parameters: &IndexMap<String, EffectParameter>,
     values: &IndexMap<String, Expr>,
     formula: &Expr,

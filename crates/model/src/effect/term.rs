@@ -4,14 +4,15 @@ use std::collections::BTreeMap;
 
 use indexmap::IndexMap;
 
-use super::{EffectParameterFile, FormFile, GrammarFile, Mirror, PriorFile, names};
+use super::file::{EffectParameterFile, FormFile, GrammarFile, Mirror, PriorFile};
+use super::names;
 use crate::coefficient::Axis;
 use crate::formula::{self, Expr};
 use crate::trial::Channel;
 
 /// What a factor of a coefficient's name stands for.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Factor {
+pub struct Factor {
     pub symbol: String,
     pub text: String,
     /// Whether it changes its sign in the mirror.
@@ -20,7 +21,7 @@ pub(super) struct Factor {
 }
 
 /// Factors of a term, the last perhaps as its absolute value.
-pub(super) struct Term<'a> {
+pub struct Term<'a> {
     pub factors: Vec<&'a Factor>,
     pub bars: bool,
 }

@@ -16,7 +16,7 @@ pub const MAX_NESTING: usize = 48;
 pub const MAX_DEPTH: usize = 512;
 
 /// Refuses a formula that is too long or too deep to be parsed.
-pub(super) fn check(text: &str) -> Result<(), String> {
+pub fn check(text: &str) -> Result<(), String> {
     if text.len() > MAX_LENGTH {
         return Err(format!("a formula of {} characters; {MAX_LENGTH} are the most: write parts of it as values", text.len()));
     }

@@ -57,7 +57,7 @@ pub struct ActuatorInput {
 }
 
 /// The inputs in their order, and the variables in the order of coefficients' names.
-pub(super) fn inputs_and_variables(file: &HybridFile) -> (Vec<ActuatorInput>, Vec<Variable>) {
+pub fn inputs_and_variables(file: &HybridFile) -> (Vec<ActuatorInput>, Vec<Variable>) {
     let mut inputs = Vec::new();
     let mut variables = motion();
     for (name, actuator) in &file.actuators {
@@ -73,7 +73,7 @@ pub(super) fn inputs_and_variables(file: &HybridFile) -> (Vec<ActuatorInput>, Ve
 }
 
 /// Suffixes of the sides on which an actuator has a twin.
-pub(super) fn sides(actuator: &ActuatorFile) -> &'static [&'static str] {
+pub fn sides(actuator: &ActuatorFile) -> &'static [&'static str] {
     if actuator.pair || actuator.kind == ActuatorKind::Vectwin { &["_s", "_p"] } else { &[""] }
 }
 

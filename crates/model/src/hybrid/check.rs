@@ -21,7 +21,7 @@ type Fault = (String, String);
 ///
 /// # Errors
 /// The field at fault and what would be right.
-pub(super) fn check(file: &HybridFile) -> Result<(), Fault> {
+pub fn check(file: &HybridFile) -> Result<(), Fault> {
     let fault = |field: &str, message: String| Err((field.to_owned(), message));
     check_slug(&file.name).map_err(|e| ("name".to_owned(), e))?;
     if !(1..=4).contains(&file.order) {

@@ -13,7 +13,7 @@ use crate::law::{AxisFile, InputFile, LawFile, LawKind, ParameterFile, SubmodelF
 use crate::source::Source;
 
 /// What a law is written from.
-pub(super) struct Writer<'a> {
+pub struct Writer<'a> {
     pub file: &'a HybridFile,
     pub inputs: &'a [ActuatorInput],
     pub variables: &'a [Variable],
@@ -22,7 +22,7 @@ pub(super) struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    pub(super) fn law(self) -> LawFile {
+    pub fn law(self) -> LawFile {
         let inertia = Inertia::of(self.file.scaling);
         let input = |input: &ActuatorInput| (input.name.clone(), InputFile { unit: input.unit.into(), default: None });
         let mirror = |input: &ActuatorInput| Some((input.name.clone(), input.mirror.clone()?));

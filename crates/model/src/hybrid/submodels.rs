@@ -12,7 +12,7 @@ use crate::law::SubmodelFile;
 ///
 /// # Errors
 /// Says what the scheme needs and the ship does not have.
-pub(super) fn submodels(file: &HybridFile) -> Result<IndexMap<String, SubmodelFile>, String> {
+pub fn submodels(file: &HybridFile) -> Result<IndexMap<String, SubmodelFile>, String> {
     let ahead = || "u >= 0".to_owned();
     let astern = || "u < 0".to_owned();
     let listed: Vec<(&str, &str, Vec<String>)> = match &file.submodels {
@@ -78,7 +78,7 @@ fn stall_angles(file: &HybridFile) -> Vec<(String, f64)> {
 
 impl StallFile {
     /// The angle of a side, deg.
-    pub(super) fn of(self, side: &str) -> f64 {
+    pub(crate) fn of(self, side: &str) -> f64 {
         match self {
             Self::Both(angle) => angle,
             Self::Sides { port, .. } if side == "_p" => port,

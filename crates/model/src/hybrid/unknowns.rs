@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
-use super::Derivation;
+use super::derivation::Derivation;
+use super::file::EffectUse;
+use super::rules::Step;
 use crate::Zoo;
 
 /// The unknowns of a derived law, rule by rule.
@@ -75,7 +77,7 @@ impl Derivation {
     }
 
     fn rules(&self) -> Vec<RuleCount> {
-        let count = |step: &super::Step| {
+        let count = |step: &Step| {
             let [x, y, n] = step.terms;
             RuleCount { rule: step.rule, setting: step.setting.clone(), x, y, n, total: x + y + n }
         };
@@ -83,7 +85,7 @@ impl Derivation {
     }
 
     fn effects(&self, zoo: &Zoo) -> Result<Vec<EffectUnknowns>, (String, String)> {
-        let one = |used: &super::EffectUse| {
+        let one = |used: &EffectUse| {
             let fault = |message| ("effects".to_owned(), message);
             let names = || zoo.effects().map(|effect| effect.name.clone()).collect::<Vec<_>>().join(", ");
             let effect = zoo.effect(&used.effect);

@@ -3,7 +3,8 @@
 use std::cell::RefCell;
 use std::collections::HashMap;
 
-use super::{Law, LawFile};
+use super::definition::Law;
+use super::file::LawFile;
 use crate::formula::{Expr, MAX_DEPTH};
 
 /// Terms of all axes; with the deviations of submodels, see [`MAX_COEFFICIENTS`]. The largest law of the zoo has 189, and none more than 189 coefficients.
@@ -27,7 +28,7 @@ const MAX_COMPARISONS: usize = 16;
 type Fault = (String, String);
 
 /// Refuses a law whose file lists too much, before any of it is read.
-pub(super) fn check_counts(raw: &LawFile) -> Result<(), Fault> {
+pub fn check_counts(raw: &LawFile) -> Result<(), Fault> {
     let names = [
         ("inputs", raw.inputs.len()),
         ("parameters", raw.parameters.len()),
@@ -53,7 +54,7 @@ pub(crate) fn most(field: &str, found: usize, most: usize) -> Result<(), Fault> 
 }
 
 /// Refuses a law whose formulas are too many, or too deep through the values that they mention.
-pub(super) fn check(law: &Law) -> Result<(), Fault> {
+pub fn check(law: &Law) -> Result<(), Fault> {
     let formulas = formulas(law);
     most("axes", formulas.iter().map(|(_, expr)| expr.size()).sum(), MAX_SIZE)
         .map_err(|(_, message)| (String::new(), format!("numbers, names and operators of all formulas: {message}")))?;

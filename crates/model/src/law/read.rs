@@ -4,9 +4,12 @@ use std::collections::BTreeMap;
 
 use indexmap::IndexMap;
 
+use super::definition::{AxisLaw, Input, Law, Parameter};
+use super::dimension::{STATES, acceleration_dimension, axis_dimension};
+use super::dressing::Dressing;
 use super::file::{AxisFile, LawFile, ParameterFile, ParameterRole, TermFile};
 use super::submodel::read_submodels;
-use super::{AxisLaw, Input, Law, Parameter, STATES, axis_dimension, limits, symmetry};
+use super::{limits, symmetry};
 use crate::coefficient::{Axis, CoefficientName};
 use crate::error::{Blame, FileError};
 use crate::formula::{self, Expr};
@@ -14,7 +17,17 @@ use crate::name::check_slug;
 use crate::particulars;
 use crate::units::{Dimension, Unit};
 
-pub(super) fn read(file: &str, text: &str) -> Result<Law, FileError> {
+impl Law {
+    /// Reads and checks a law; `file` is the name that errors give it.
+    ///
+    /// # Errors
+    /// Names file, line and field of the first thing that is wrong: syntax, an unknown name, a unit, a symmetry.
+    pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
+        read(file, text)
+    }
+}
+
+fn read(file: &str, text: &str) -> Result<Law, FileError> {
     let blame = Blame::new(file, text);
     let raw: LawFile = blame.read()?;
     check_slug(&raw.name).map_err(|e| blame.at("name", e))?;
@@ -33,7 +46,7 @@ pub(super) fn read(file: &str, text: &str) -> Result<Law, FileError> {
         mass: BTreeMap::new(),
         kinematics: BTreeMap::new(),
         mirrors: raw.mirrors,
-        dressing: crate::effect::Dressing::default(),
+        dressing: Dressing::default(),
     };
     let reader = Reader { blame: &blame };
     for (name, input) in &raw.inputs {
@@ -198,9 +211,4 @@ impl Reader<'_> {
         }
         Ok(())
     }
-}
-
-fn acceleration_dimension(axis: Axis) -> Dimension {
-    let velocity = if matches!(axis, Axis::X | Axis::Y) { Dimension::SPEED } else { Dimension::RATE };
-    velocity - Dimension::TIME
 }

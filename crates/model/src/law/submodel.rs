@@ -6,13 +6,14 @@
 
 use indexmap::IndexMap;
 
-use super::{Law, Submodel, SubmodelFile, indicator};
+use super::definition::{AxisLaw, Law, Submodel, indicator};
+use super::file::SubmodelFile;
 use crate::coefficient::split_submodel;
 use crate::formula::{self, Expr};
 use crate::name::check_slug;
 
 /// Reads submodels into `law`, whose inputs, parameters and values are there already.
-pub(super) fn read_submodels(law: &mut Law, raw: &IndexMap<String, SubmodelFile>) -> Result<(), (String, String)> {
+pub fn read_submodels(law: &mut Law, raw: &IndexMap<String, SubmodelFile>) -> Result<(), (String, String)> {
     for (name, file) in raw {
         let field = |e: String| (format!("submodels.{name}"), e);
         check_slug(name).map_err(field)?;
@@ -42,16 +43,6 @@ fn applies(law: &Law, file: &SubmodelFile) -> Result<Expr, String> {
 }
 
 impl Law {
-    /// A term while a submodel applies, nothing elsewhere.
-    pub(super) fn under(&self, submodel: &str, term: Expr) -> Result<Expr, String> {
-        if self.submodels.contains_key(submodel) {
-            return Ok(term.times(Expr::Name(indicator(submodel))));
-        }
-        let known: Vec<&str> = self.submodels.keys().map(String::as_str).collect();
-        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-        Err(format!("law `{}` has no submodel `{submodel}`; it has {known}", self.name))
-    }
-
     /// The submodel whose deviation a coefficient is; `None` for a shared one. An estimator pulls deviations to zero with a
     /// prior whose precision is [`Submodel::shrinkage`] times that of the shared coefficient.
     pub fn deviation(&self, coefficient: &str) -> Option<&Submodel> {
@@ -60,7 +51,7 @@ impl Law {
 
     /// Every coefficient that the law lists: by axis the shared ones, then the deviations of each submodel.
     pub fn coefficient_names(&self) -> Vec<String> {
-        let of_axis = |axis: &super::AxisLaw| -> Vec<String> {
+        let of_axis = |axis: &AxisLaw| -> Vec<String> {
             let shared = axis.terms.keys().cloned();
             let deviations =
                 self.submodels.keys().flat_map(|submodel| axis.terms.keys().map(move |name| format!("{name}@{submodel}")));

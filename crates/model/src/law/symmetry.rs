@@ -1,9 +1,9 @@
 //! Port/starboard symmetry: mirrored motion must give mirrored forces.
 
 use std::cell::RefCell;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use super::Law;
+use super::definition::{Law, indicator};
 use crate::coefficient::{Axis, CoefficientName};
 use crate::formula::Expr;
 
@@ -23,7 +23,7 @@ const POINTS: [[f64; 8]; 3] = [
 const AT: [&str; 8] = ["u", "v", "r", "p", "phi", "psi", "delta", "n"];
 
 /// Checks every term and rest; a term whose name says that it is a bias (`Y_0`, `N_u`) must be one.
-pub(super) fn check(law: &Law) -> Result<(), (String, String)> {
+pub fn check(law: &Law) -> Result<(), (String, String)> {
     for (first, second) in &law.mirrors {
         let second = second.trim_start_matches('-');
         let both = |known: &dyn Fn(&str) -> bool| known(first) && known(second);
@@ -35,7 +35,7 @@ pub(super) fn check(law: &Law) -> Result<(), (String, String)> {
     let factors: BTreeMap<&str, Option<bool>> =
         law.factors.iter().map(|(symbol, expr)| (symbol.as_str(), is_odd(&places, expr))).collect();
     for name in law.submodels.keys() {
-        check_parity(&places, &Expr::Name(super::indicator(name)), false, &format!("submodels.{name}"))?;
+        check_parity(&places, &Expr::Name(indicator(name)), false, &format!("submodels.{name}"))?;
     }
     for (axis, axis_law) in &law.axes {
         check_parity(&places, &axis_law.rest, axis.is_odd(), &format!("axes.{axis}.rest"))?;
@@ -85,8 +85,29 @@ fn is_odd(places: &Places<'_>, expr: &Expr) -> Option<bool> {
     }
 }
 
+impl Law {
+    /// Whether a coefficient's regressor changes sign with the rudder: by `delta`, or by a factor of the law that does, such
+    /// as a sine of it.
+    pub fn is_odd_in_rudder(&self, coefficient: &str) -> bool {
+        let odd: BTreeSet<&str> = self.odd_in_rudder().collect();
+        self.is_odd_in(coefficient, &odd)
+    }
+
+    /// The factors of the law that change sign with the rudder.
+    pub(crate) fn odd_in_rudder(&self) -> impl Iterator<Item = &str> {
+        let own = self.factors.iter().filter(|(_, expr)| is_odd_in_rudder(self, expr));
+        own.map(|(symbol, _)| symbol.as_str()).chain(["delta"])
+    }
+
+    /// Whether a coefficient's regressor changes sign with what is `odd`.
+    pub(crate) fn is_odd_in(&self, coefficient: &str, odd: &BTreeSet<&str>) -> bool {
+        let Ok(name) = CoefficientName::parse(coefficient, &self.extra_factors()) else { return false };
+        name.factors.iter().filter(|factor| !factor.absolute && odd.contains(factor.symbol.as_str())).count() % 2 == 1
+    }
+}
+
 /// Whether a formula changes sign with every rudder angle, `delta` or one of a pair, all else as it is.
-pub(super) fn is_odd_in_rudder(law: &Law, expr: &Expr) -> bool {
+fn is_odd_in_rudder(law: &Law, expr: &Expr) -> bool {
     let rudders = || law.inputs.keys().filter(|name| *name == "delta" || name.starts_with("delta_"));
     let value = |point: &[f64; 8], sign: f64| {
         let mut place = Place::new(law, point, false);

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 /// Refuses aliases of anchors, and directives of tags, at a byte.
-pub(super) fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
+pub fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
     let marks: Vec<(usize, &[u8])> = (0..bytes.len()).filter_map(|at| Some((at, name(bytes, at)?))).collect();
     let anchors: HashSet<&[u8]> = marks.iter().filter(|(at, _)| bytes[*at] == b'&').map(|(_, name)| *name).collect();
     let alias = marks.iter().find(|(at, name)| bytes[*at] == b'*' && anchors.contains(name));

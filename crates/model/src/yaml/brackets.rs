@@ -4,7 +4,10 @@
 //! taken for the outermost one, and what follows is read by the rules for what is inside. For the brackets that are, that is how
 //! the parser reads it; for those that stand in some text it is read in vain, and seldom deep.
 
-use super::{MAX_DEPTH, break_at};
+use super::line_break::break_at;
+
+/// Brackets and braces within each other.
+pub const MAX_DEPTH: usize = 64;
 
 /// How often a document may be read over: as often as its brackets nest, and once for each that is never closed.
 const MAX_PASSES: usize = 16;
@@ -13,7 +16,7 @@ const MAX_PASSES: usize = 16;
 const SHORT: usize = 256 << 10;
 
 /// Refuses brackets that nest deeper than [`MAX_DEPTH`], at a byte.
-pub(super) fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
+pub fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
     let mut budget = MAX_PASSES * bytes.len().max(SHORT);
     for at in (0..bytes.len()).filter(|&at| matches!(bytes[at], b'[' | b'{')) {
         let mut inside = Inside { bytes, at, depth: 0, most: 0 };

@@ -1,0 +1,43 @@
+//! An effect as a model carries it.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::file::{ActsOn, FormFile};
+use super::form::Form;
+use crate::quantity::Quantity;
+
+/// An effect that a model carries: its definition and the values of its parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AppliedEffect {
+    /// The effect's name.
+    pub name: String,
+    /// Where it acts.
+    pub acts_on: ActsOn,
+    /// Values of its parameters.
+    pub parameters: BTreeMap<String, Quantity>,
+    /// The form as its file defines it, so that the model means the same wherever it is read.
+    pub form: FormFile,
+}
+
+impl AppliedEffect {
+    /// The form with its formulas, and a value for each parameter.
+    ///
+    /// # Errors
+    /// The field at fault and why.
+    pub fn checked(&self) -> Result<Form, (String, String)> {
+        let form = Form::read(self.acts_on, &self.form)?;
+        for name in form.parameters.keys() {
+            if !self.parameters.get(name).is_some_and(|quantity| quantity.value.is_finite()) {
+                return Err((format!("parameters.{name}"), "give it a finite value".into()));
+            }
+        }
+        match self.parameters.keys().find(|name| !form.parameters.contains_key(*name)) {
+            Some(name) => Err((format!("parameters.{name}"), "the effect has no such parameter".into())),
+            None => Ok(form),
+        }
+    }
+}

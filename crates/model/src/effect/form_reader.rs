@@ -1,0 +1,187 @@
+//! From a form as its file, or a model that carries it, writes it to a checked form.
+
+use indexmap::IndexMap;
+
+use super::file::{ActsOn, EffectParameterFile, FormFile};
+use super::form::{EffectParameter, Form, Report};
+use super::scope::{Refusal, Scope};
+use super::{names, symmetry};
+use crate::coefficient::Axis;
+use crate::formula::Expr;
+use crate::law::limits::{Depths, most};
+use crate::law::{acceleration_dimension, axis_dimension};
+use crate::particulars;
+use crate::trial::Channel;
+use crate::units::{Dimension, Unit};
+
+/// Endings of reported names: dimension of the formula, and what converts its value from SI and radians.
+const REPORTED: [(&str, Dimension, f64); 8] = [
+    ("_deg_s", Dimension::RATE, 180.0 / std::f64::consts::PI),
+    ("_deg", Dimension::NONE, 180.0 / std::f64::consts::PI),
+    ("_percent", Dimension::NONE, 100.0),
+    ("_m_s", Dimension::SPEED, 1.0),
+    ("_n_m", Dimension::MOMENT, 1.0),
+    ("_n", Dimension::FORCE, 1.0),
+    ("_m", Dimension::LENGTH, 1.0),
+    ("_s", Dimension::TIME, 1.0),
+];
+
+impl Form {
+    /// Reads and checks a form.
+    ///
+    /// # Errors
+    /// The dotted field below the form that is wrong, and why: syntax, an unknown name, a unit, a channel that `needs` lacks,
+    /// a symmetry, or an effect that does not vanish at its absence.
+    pub fn read(acts_on: ActsOn, file: &FormFile) -> Result<Self, (String, String)> {
+        check_actions(acts_on, file)?;
+        check_counts(file)?;
+        let mut scope = Scope::new(acts_on == ActsOn::Measurement);
+        let parameters = parameters(&mut scope, file)?;
+        let values = scope.values(&file.values)?;
+        let form = Self {
+            particulars: scope.formulas("particulars", &file.particulars, &|name| stand_in(name), true)?,
+            reports: reports(&scope, file)?,
+            sees: scope.formulas("sees", &file.sees, &|name| seen(name), false)?,
+            accelerates: scope.formulas("accelerates", &file.accelerates, &|axis| Ok(acceleration_dimension(*axis)), false)?,
+            coefficients: scope.formulas("coefficients", &file.coefficients, &|name| factor(name), false)?,
+            lags: scope.formulas("lags", &file.lags, &|name| lagged(name), false)?,
+            forces: scope.formulas("forces", &file.forces, &|axis| Ok(axis_dimension(*axis)), false)?,
+            measures: scope.formulas("measures", &file.measures, &|channel| Ok(Channel::dimension(*channel)), false)?,
+            file: file.clone(),
+            parameters,
+            values,
+        };
+        scope.check_needs(&file.needs)?;
+        form.check_size()?;
+        symmetry::check(&form)?;
+        Ok(form)
+    }
+}
+
+/// Parameters, values, particulars, reports and each way of acting.
+const MAX_NAMES: usize = 100;
+
+/// Levels of operators from a formula of a form down through its values.
+const MAX_DEPTH: usize = 128;
+
+/// Numbers, names and operators of all formulas of a form.
+const MAX_SIZE: usize = 5000;
+
+fn check_counts(file: &FormFile) -> Result<(), Refusal> {
+    let sections =
+        [("parameters", file.parameters.len()), ("values", file.values.len()), ("particulars", file.particulars.len())];
+    let acting = [("sees", file.sees.len()), ("coefficients", file.coefficients.len()), ("lags", file.lags.len())];
+    let all = sections.into_iter().chain(acting).chain([("reports", file.reports.len())]);
+    all.into_iter().try_for_each(|(section, count)| most(section, count, MAX_NAMES))
+}
+
+impl Form {
+    /// Refuses formulas that are too many, or too deep through the values that they mention.
+    fn check_size(&self) -> Result<(), Refusal> {
+        let depths = Depths::of(&self.values);
+        let reports = self.reports.values().map(|report| &report.formula);
+        let all = || self.formulas().chain(self.particulars.values()).chain(reports.clone());
+        let size = all().map(Expr::size).sum();
+        most("", size, MAX_SIZE)
+            .map_err(|(_, e)| (String::new(), format!("numbers, names and operators of all formulas: {e}")))?;
+        all().try_for_each(|expr| depths.check("values", expr, MAX_DEPTH))
+    }
+}
+
+/// Each way of acting belongs to one place where effects act.
+fn check_actions(acts_on: ActsOn, file: &FormFile) -> Result<(), Refusal> {
+    let counts = [
+        ("sees", ActsOn::Inflow, file.sees.len()),
+        ("accelerates", ActsOn::Inflow, file.accelerates.len()),
+        ("coefficients", ActsOn::Inflow, file.coefficients.len()),
+        ("lags", ActsOn::Inflow, file.lags.len()),
+        ("forces", ActsOn::Force, file.forces.len()),
+        ("measures", ActsOn::Measurement, file.measures.len()),
+    ];
+    let stray = counts.iter().find(|(_, of, count)| *of != acts_on && *count > 0);
+    if let Some((section, of, _)) = stray {
+        return Err(((*section).into(), format!("belongs to effects that act on {}", word(*of))));
+    }
+    if counts.iter().all(|(.., count)| *count == 0) {
+        return Err((String::new(), format!("does nothing: an effect that acts on {} says how", word(acts_on))));
+    }
+    if file.parameters.is_empty() { Err(("parameters".into(), "give at least one".into())) } else { Ok(()) }
+}
+
+fn word(acts_on: ActsOn) -> &'static str {
+    match acts_on {
+        ActsOn::Force => "`force` (`forces`)",
+        ActsOn::Inflow => "`inflow` (`sees`, `accelerates`, `coefficients`, `lags`)",
+        ActsOn::Measurement => "`measurement` (`measures`)",
+    }
+}
+
+fn parameters(scope: &mut Scope, file: &FormFile) -> Result<IndexMap<String, EffectParameter>, Refusal> {
+    let mut parameters = IndexMap::new();
+    for (name, raw) in &file.parameters {
+        let field = format!("parameters.{name}");
+        let read = parameter(raw).map_err(|e| (field.clone(), e))?;
+        scope.add_parameter(&field, name, read.dimension)?;
+        parameters.insert(name.clone(), read);
+    }
+    Ok(parameters)
+}
+
+fn parameter(raw: &EffectParameterFile) -> Result<EffectParameter, String> {
+    let unit = Unit::parse(&raw.unit)?;
+    if unit.to_si != 1.0 {
+        return Err(format!("effects use SI and radians; `{}` is not of them", raw.unit));
+    }
+    let start = raw.start.unwrap_or(raw.absent);
+    let [low, high] = raw.bounds;
+    if !(low.is_finite() && high.is_finite() && low < high) {
+        return Err(format!("bounds [{low}, {high}] must be finite and in order"));
+    }
+    for (what, value) in [("absent", raw.absent), ("start", start), ("the mean of the prior", raw.prior.mean)] {
+        if !(low..=high).contains(&value) {
+            return Err(format!("{what}, {value}, is outside the bounds [{low}, {high}]"));
+        }
+    }
+    let prior_deviation = raw.prior.deviation;
+    if !(prior_deviation.is_finite() && prior_deviation > 0.0) {
+        return Err(format!("the deviation of the prior must be finite and above zero, not {prior_deviation}"));
+    }
+    Ok(EffectParameter {
+        dimension: unit.dimension,
+        prior_mean: raw.prior.mean,
+        prior_deviation,
+        bounds: raw.bounds,
+        absent: raw.absent,
+        start,
+        mirror: raw.mirror,
+    })
+}
+
+fn reports(scope: &Scope, file: &FormFile) -> Result<IndexMap<String, Report>, Refusal> {
+    let mut reports = IndexMap::new();
+    for (name, formula) in &file.reports {
+        let field = format!("reports.{name}");
+        let ending = REPORTED.iter().find(|(ending, ..)| name.ends_with(ending));
+        let formula = scope.constant(&field, formula, ending.map(|(_, dimension, _)| *dimension))?;
+        reports.insert(name.clone(), Report { formula, factor: ending.map_or(1.0, |(.., factor)| *factor) });
+    }
+    Ok(reports)
+}
+
+fn stand_in(name: &str) -> Result<Dimension, String> {
+    particulars::dimension(name).ok_or_else(|| "unknown particular".into())
+}
+
+fn seen(name: &str) -> Result<Dimension, String> {
+    names::seen(name).ok_or_else(|| "a law sees u, v, r, p, phi, psi and channels such as delta, n and depth".into())
+}
+
+fn lagged(name: &str) -> Result<Dimension, String> {
+    names::input(name).map(|_| Dimension::TIME).ok_or_else(|| "only an input such as delta or n can lag".into())
+}
+
+fn factor(name: &str) -> Result<Dimension, String> {
+    let axis = name.split_once('_').map(|(axis, _)| axis);
+    let known = Axis::ALL.iter().any(|known| axis == Some(known.to_string().as_str()));
+    if known { Ok(Dimension::NONE) } else { Err("a coefficient is written Axis_factors, such as Y_v or N_vvr".into()) }
+}

@@ -1,0 +1,11 @@
+//! Line breaks as libyaml knows them.
+
+/// Bytes of the line break that begins at a place, none where none does: also NEL, LS and PS, which libyaml takes for one.
+pub fn break_at(bytes: &[u8], at: usize) -> Option<usize> {
+    match bytes[at] {
+        b'\n' | b'\r' => Some(1),
+        0xC2 if bytes.get(at + 1) == Some(&0x85) => Some(2),
+        0xE2 if matches!(bytes.get(at + 1..at + 3), Some([0x80, 0xA8 | 0xA9])) => Some(3),
+        _ => None,
+    }
+}
