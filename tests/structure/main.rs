@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crate that it alone may name.
-const ALLOWED: [(&str, &[&str]); 11] = [
+const ALLOWED: [(&str, &[&str]); 12] = [
     ("model", &[]),
     ("dynamics", &["model"]),
     ("trials", &["model"]),
@@ -18,8 +18,9 @@ const ALLOWED: [(&str, &[&str]); 11] = [
     ("fleet", &["model", "dynamics", "regression", "estimate"]),
     ("store", &[]),
     ("report", &["model", "dynamics", "estimate", "diagnose"]),
-    ("server", &["model", "dynamics", "trials", "regression", "estimate", "diagnose", "fleet", "store", "report"]),
-    ("cli", &["model", "dynamics", "trials", "regression", "estimate", "diagnose", "fleet", "store", "report", "server"]),
+    ("pipeline", &["model", "dynamics", "trials", "estimate", "diagnose", "fleet", "store"]),
+    ("server", &["model", "dynamics", "trials", "regression", "estimate", "diagnose", "fleet", "store", "report", "pipeline"]),
+    ("cli", &["model", "dynamics", "trials", "regression", "estimate", "diagnose", "fleet", "store", "report", "pipeline", "server"]),
 ];
 const ALONE: [(&str, &str); 2] = [("sqlx", "store"), ("axum", "server")];
 

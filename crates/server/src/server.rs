@@ -2,12 +2,12 @@
 
 use std::net::SocketAddr;
 
-use crate::archive::Archive;
 use crate::config::Config;
 use crate::listen::{self, listen};
 use crate::process::Process;
 use crate::routes;
 use crate::start_error::StartError;
+use sistership_pipeline::archive::Archive;
 
 /// The server of Sistership.
 #[derive(Debug, Clone, Copy)]

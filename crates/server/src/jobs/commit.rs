@@ -11,8 +11,8 @@ use sistership_store::{Expect, Job, NewReport, NewVersion, Refinement, ReportHea
 use super::outcome::{JobError, Result, failed};
 use super::refinement::Prepared;
 use crate::app::App;
-use crate::derive::{Derived, Refined};
-use crate::publish::{CANDIDATE, CHAMPION, Standing, step};
+use sistership_pipeline::derive::{Derived, Refined};
+use sistership_pipeline::line::{CANDIDATE, CHAMPION, Standing, step};
 use sistership_report::{self as report, Rendered, VersionLabel};
 
 /// A version that is to be kept, with what its report is made of.

@@ -12,7 +12,6 @@ mod refinement;
 mod request;
 mod worker;
 
-pub(crate) use demand::{DERIVING, trial_bytes};
 pub(crate) use request::{DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob, SourceChoice};
 pub(crate) use worker::Worker;
 

@@ -13,12 +13,13 @@ use super::outcome::{JobError, Result, failed};
 use super::progress::Progress;
 use super::request::{RefinementJob, SourceChoice};
 use crate::app::App;
-use crate::archive::vessel;
-use crate::derive::{DeriveError, derive, sorted};
-use crate::library::{self, Library, library};
-use crate::publish::{alias, alias_of};
-use crate::version;
 use sistership_model::version::code_revision;
+use sistership_pipeline::archive::vessel;
+use sistership_pipeline::derive::{DeriveError, derive};
+use sistership_pipeline::library::{self, Library, library};
+use sistership_pipeline::line::{alias, alias_of};
+use sistership_pipeline::recipe;
+use sistership_pipeline::sorted::sorted;
 
 /// Does a refinement.
 pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {
@@ -27,7 +28,7 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
     let prepared = prepare(app, &asked, &progress).await?;
     let step = progress.clone();
     let scaled = move |fraction: f64, what: &str| step.tell(0.1 + 0.8 * fraction, what);
-    let derived = derive(app.archive(), &asked.ship, &version::Recipe::Plain(prepared.recipe.clone()), Arc::new(scaled))
+    let derived = derive(app.archive(), &asked.ship, &recipe::Recipe::Plain(prepared.recipe.clone()), Arc::new(scaled))
         .await?
         .spelled_out()?;
     tell(&progress, 0.92, "writing the report and keeping the version")?;

@@ -16,7 +16,7 @@ use crate::app::App;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::memory;
 use crate::problem::{Problem, Result};
-use crate::publish::{CHAMPION, alias};
+use sistership_pipeline::line::{CHAMPION, alias};
 
 /// How often samples are put again that were removed before their rows were written.
 const TRIES: usize = 3;
