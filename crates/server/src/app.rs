@@ -12,7 +12,7 @@ use crate::config::{Config, Leases, Limits};
 use crate::memory::{self, Budget, Held};
 use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
-use crate::stopping::Stopping;
+use sistership_listen::Stopping;
 use crate::upload::Spool;
 use crate::web::guard::ApiKey;
 use crate::web::throttle::Throttle;

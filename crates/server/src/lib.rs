@@ -6,11 +6,9 @@
 mod answers;
 mod app;
 mod config;
-mod descriptors;
 mod jobs;
 #[cfg(test)]
 mod journey;
-mod listen;
 mod memory;
 mod metrics;
 mod predict;
@@ -20,7 +18,6 @@ mod routes;
 mod search_index;
 mod server;
 mod start_error;
-mod stopping;
 mod tidy;
 mod upload;
 mod web;

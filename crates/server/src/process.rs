@@ -11,7 +11,7 @@ use crate::config::Config;
 use crate::jobs::Worker;
 use crate::search_index;
 use crate::start_error::StartError;
-use crate::stopping::Stopping;
+use sistership_listen::Stopping;
 use crate::tidy;
 use sistership_pipeline::archive::Archive;
 use sistership_pipeline::catalogue::Catalogue;

@@ -13,7 +13,7 @@ use super::progress::{Progress, Stop};
 use super::request::{DIAGNOSIS, REFINEMENT};
 use super::{chunk, demand, diagnosis, family_prior, refinement};
 use crate::app::App;
-use crate::stopping::Stopping;
+use sistership_listen::Stopping;
 use sistership_pipeline::fleet::{BULK, LEARN};
 
 /// How often progress is written while it changes.

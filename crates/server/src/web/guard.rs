@@ -10,7 +10,7 @@ use sha2::{Digest as _, Sha256};
 
 use super::host;
 use crate::app::App;
-use crate::listen::Peer;
+use sistership_listen::Peer;
 use crate::problem::Problem;
 
 /// Paths that tell nothing worth a key.
@@ -33,16 +33,8 @@ impl ApiKey {
     }
 }
 
-/// What answers even where there is no seat for a request.
-const HEALTH: [&str; 2] = ["/healthz", "/readyz"];
-
 /// How long who finds no seat should wait, seconds.
 const RETRY: u64 = 2;
-
-/// Whether a path tells of health.
-pub(crate) fn is_health(path: &str) -> bool {
-    HEALTH.contains(&path)
-}
 
 /// Lets a request through, or says what it lacks.
 pub(crate) async fn guard(State(app): State<App>, request: Request, next: Next) -> Response {

@@ -7,7 +7,7 @@ use std::time::Duration;
 use tokio::sync::Notify;
 use tokio::time::Instant;
 
-use crate::config::Limits;
+use crate::limits::Limits;
 
 /// The most time that bytes can earn in advance.
 const MOST_CREDIT: Duration = Duration::from_secs(60);

@@ -12,7 +12,7 @@ use http_body_util::BodyExt as _;
 use hyper::body::{Body as HttpBody, Frame, Incoming, SizeHint};
 use tokio::time::{Instant, Sleep, sleep_until};
 
-use super::pace::Pace;
+use crate::pace::Pace;
 
 /// Bytes, and time, for the rest of a body that is refused before its end. Whoever still sends it would find the connection
 /// reset, not the answer that waits behind: RFC 9112, section 9.6. Four times the largest document; beyond it, as after two

@@ -1,17 +1,20 @@
 //! The descriptors that a process may open: as many as its connections need, or fewer connections.
 
-use crate::config::Limits;
-use crate::listen;
+use crate::limits::Limits;
+use crate::seats::RESERVE;
+
+/// Descriptors for all but connections: database, samples, uploads, the log.
+const OTHER_DESCRIPTORS: usize = 128;
 
 /// The least that a server is of use with.
 const FEWEST: usize = 16;
 
 /// The limits that the system has descriptors for. The process' own bound is raised as far as it may be.
-pub(crate) fn suited(limits: Limits) -> Limits {
-    let Some(have) = raised(listen::descriptors(&limits)) else { return limits };
+pub fn suited(limits: Limits) -> Limits {
+    let Some(have) = raised(needed_by(&limits)) else { return limits };
     let fit = fitting(limits, have);
     if fit != limits {
-        let needed = listen::descriptors(&limits);
+        let needed = needed_by(&limits);
         tracing::warn!(
             have,
             needed,
@@ -22,8 +25,13 @@ pub(crate) fn suited(limits: Limits) -> Limits {
     fit
 }
 
+/// Descriptors that a server with these limits needs.
+fn needed_by(limits: &Limits) -> usize {
+    limits.connections + RESERVE + OTHER_DESCRIPTORS
+}
+
 fn fitting(mut limits: Limits, have: usize) -> Limits {
-    let lacking = listen::descriptors(&limits).saturating_sub(have);
+    let lacking = needed_by(&limits).saturating_sub(have);
     limits.connections = limits.connections.saturating_sub(lacking).max(FEWEST.min(limits.connections));
     limits.connections_per_address = limits.connections_per_address.min(limits.connections);
     limits
@@ -57,7 +65,7 @@ mod tests {
         let limits = Limits::default();
         assert_eq!(fitting(limits, 1 << 20), limits);
         let fit = fitting(limits, 600);
-        assert_eq!(listen::descriptors(&fit), 600);
+        assert_eq!(needed_by(&fit), 600);
         assert!(fit.connections_per_address <= fit.connections);
         assert_eq!(fitting(limits, 10).connections, FEWEST);
     }

@@ -16,29 +16,17 @@ use hyper_util::server::graceful::Watcher;
 use hyper_util::service::TowerToHyperService;
 use tokio::net::TcpStream;
 
-use super::Server;
-use super::body::{Received, Rest, Sent};
-use super::pace::Pace;
-use super::seats::{Seat, Seats};
-use super::stream::Stream;
-use crate::config::Limits;
-use crate::web::guard;
+use crate::body::{Received, Rest, Sent};
+use crate::pace::Pace;
+use crate::seats::{Seat, Seats};
+use crate::stream::Stream;
+use crate::limits::Limits;
+use crate::peer::{Peer, is_health};
 
 /// Headers of one request.
 const MAX_HEADERS: usize = 100;
 /// What a connection may buffer before the body.
 const HEAD_BYTES: usize = 32 << 10;
-
-/// What a request's connection says of it.
-#[derive(Clone)]
-pub(crate) struct Peer {
-    /// Whom it comes from.
-    pub party: IpAddr,
-    /// How its connection gets on.
-    pub pace: Arc<Pace>,
-    /// There is no seat for it: it is refused, unless it asks for health.
-    pub crowded: bool,
-}
 
 /// A connection that has a place.
 pub(super) struct Connection {
@@ -50,10 +38,10 @@ pub(super) struct Connection {
 }
 
 impl Connection {
-    pub(super) fn new(server: &Server, party: IpAddr) -> Option<Self> {
-        let pace = Arc::new(Pace::new(&server.limits));
-        let seat = Seats::admit(&server.seats, party, &pace)?;
-        Some(Self { router: server.router.clone(), limits: server.limits, party, pace, seat })
+    pub(super) fn new(router: &Router, limits: Limits, seats: &Arc<Seats>, party: IpAddr) -> Option<Self> {
+        let pace = Arc::new(Pace::new(&limits));
+        let seat = Seats::admit(seats, party, &pace)?;
+        Some(Self { router: router.clone(), limits, party, pace, seat })
     }
 
     pub(super) async fn serve(self, stream: TcpStream, watcher: Watcher) {
@@ -76,7 +64,7 @@ impl Connection {
     async fn answer(self: Arc<Self>, request: Request<Incoming>) -> hyper::Result<Response<Sent>> {
         self.pace.taken().await;
         self.pace.begin();
-        let crowded = !guard::is_health(request.uri().path()) && !self.seat.taken().await;
+        let crowded = !is_health(request.uri().path()) && !self.seat.taken().await;
         // Who waits to be told whether to send the body has not begun to.
         let waits = request.headers().contains_key(header::EXPECT);
         let (pace, rest) = (Arc::clone(&self.pace), Rest::default());

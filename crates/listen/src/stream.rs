@@ -9,7 +9,7 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 use tokio::time::{Instant, Sleep, sleep_until};
 
-use super::pace::Pace;
+use crate::pace::Pace;
 
 /// A socket that tells how its other end reads, and fails where it does not.
 pub(super) struct Stream {

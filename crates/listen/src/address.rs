@@ -6,7 +6,7 @@ use std::net::{IpAddr, Ipv6Addr};
 const NETWORK: u128 = !0 << 64;
 
 /// An IPv4 address; of IPv6 the network of 64 bits, within which whoever has one address has all of them.
-pub(crate) fn party(address: IpAddr) -> IpAddr {
+pub fn party(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(v6) if !v6.is_loopback() => Ipv6Addr::from_bits(v6.to_bits() & NETWORK).into(),
         other => other,

@@ -1,11 +1,4 @@
-//! Taking connections: bounded in number, in the time for heads, bodies and answers by their progress, and in the time to end.
-
-mod address;
-mod body;
-mod connection;
-mod pace;
-mod seats;
-mod stream;
+//! Connections as they come, until the word to stop.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -13,43 +6,19 @@ use std::time::Duration;
 
 use axum::Router;
 use hyper_util::server::graceful::GracefulShutdown;
-use tokio::net::{TcpListener, TcpSocket, TcpStream};
+use tokio::net::{TcpListener, TcpStream};
 
-use crate::config::Limits;
+use crate::address::party;
+use crate::connection::Connection;
+use crate::limits::Limits;
+use crate::seats::Seats;
 use crate::stopping::Stopping;
-use connection::Connection;
-use seats::Seats;
 
-pub(crate) use address::party;
-pub(crate) use connection::Peer;
-
-/// Connections that the system holds until they are taken.
-const BACKLOG: u32 = 1024;
-/// What the system keeps of an answer that is not read. It also is how finely reading is seen: the system tells of room only
-/// when a third of this has been read.
-const SEND_BUFFER: u32 = 128 << 10;
 /// A pause when the system has no more sockets.
 const BREATH: Duration = Duration::from_millis(100);
-/// Descriptors for all but connections: database, samples, uploads, the log.
-const OTHER_DESCRIPTORS: usize = 128;
-
-/// Takes an address.
-pub(crate) fn bind(listen: SocketAddr) -> std::io::Result<TcpListener> {
-    let socket = if listen.is_ipv4() { TcpSocket::new_v4() } else { TcpSocket::new_v6() }?;
-    #[cfg(unix)]
-    socket.set_reuseaddr(true)?;
-    socket.set_send_buffer_size(SEND_BUFFER)?;
-    socket.bind(listen)?;
-    socket.listen(BACKLOG)
-}
-
-/// Descriptors that a server with these limits needs.
-pub(crate) fn descriptors(limits: &Limits) -> usize {
-    limits.connections + seats::RESERVE + OTHER_DESCRIPTORS
-}
 
 /// Serves until it is told to stop, then lets what is under way end.
-pub(crate) async fn listen(listener: TcpListener, router: Router, limits: Limits, mut stopping: Stopping) {
+pub async fn listen(listener: TcpListener, router: Router, limits: Limits, mut stopping: Stopping) {
     let server = Server { router, limits, graceful: GracefulShutdown::new(), seats: Seats::new(&limits) };
     loop {
         tokio::select! {
@@ -79,7 +48,7 @@ impl Server {
         if let Err(error) = stream.set_nodelay(true) {
             tracing::debug!(%error, "no TCP_NODELAY");
         }
-        match Connection::new(self, party(from.ip())) {
+        match Connection::new(&self.router, self.limits, &self.seats, party(from.ip())) {
             Some(connection) => drop(tokio::spawn(connection.serve(stream, self.graceful.watcher()))),
             None => tracing::debug!("a connection was not taken: all others are at work"),
         }
