@@ -31,7 +31,7 @@ fn sides(expr: &Expr) -> Option<(&Expr, &Expr, Make)> {
 /// Builds a tape from formulas.
 pub struct TapeBuilder<'a> {
     pub(super) inputs: Vec<String>,
-    bind: &'a dyn Fn(&str) -> Option<Binding>,
+    bind: Box<dyn Fn(&str) -> Option<Binding> + 'a>,
     pub(super) ops: Vec<Op>,
     seen: HashMap<[u64; 6], Slot>,
     named: HashMap<String, Slot>,
@@ -42,11 +42,11 @@ pub struct TapeBuilder<'a> {
 
 impl<'a> TapeBuilder<'a> {
     /// A builder whose tape takes `inputs`; `bind` says what every other name stands for.
-    pub fn new(inputs: &[&str], bind: &'a dyn Fn(&str) -> Option<Binding>) -> Self {
+    pub fn new(inputs: &[&str], bind: impl Fn(&str) -> Option<Binding> + 'a) -> Self {
         let inputs = inputs.iter().map(|&name| name.to_owned()).collect();
         Self {
             inputs,
-            bind,
+            bind: Box::new(bind),
             ops: Vec::new(),
             seen: HashMap::new(),
             named: HashMap::new(),
