@@ -133,7 +133,7 @@ impl Builder<'_> {
             let gate = submodel.map(|submodel| self.lowering.output(&Expr::Name(indicator(submodel)))).transpose()?;
             Ok(Group { gate, terms })
         };
-        let groups = groups.into_iter().map(group).collect::<Result<_, _>>()?;
+        let groups = groups.into_iter().map(group).collect::<Result<_, PlantError>>()?;
         Ok(Sum { scale, rest, groups })
     }
 

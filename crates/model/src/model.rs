@@ -180,7 +180,7 @@ impl Model {
     pub fn check(&self, law: &Law) -> Result<(), (String, String)> {
         most("coefficients", self.coefficients.len(), MAX_COEFFICIENTS)?;
         for name in self.coefficients.keys() {
-            law.regressor(name).map_err(|e| (format!("coefficients.values.{name}"), e))?;
+            law.regressor(name).map_err(|e| (format!("coefficients.values.{name}"), e.to_string()))?;
         }
         let unknown = self.parameters.keys().find(|name| !law.parameters.contains_key(*name));
         if let Some(name) = unknown {

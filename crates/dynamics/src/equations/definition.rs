@@ -55,7 +55,7 @@ impl<'a> EquationsOfMotion<'a> {
         if model.effects.is_empty() {
             return Ok(Self::of_law(model, Cow::Borrowed(law)));
         }
-        let dressed = law.with_effects(model).map_err(|(field, message)| PlantError::Law(format!("{field}: {message}")))?;
+        let dressed = law.with_effects(model).map_err(|(field, message)| PlantError::Effect { field, message })?;
         Ok(Self::of_law(model, Cow::Owned(dressed)))
     }
 
@@ -116,7 +116,7 @@ impl<'a> EquationsOfMotion<'a> {
     /// # Errors
     /// Says why the law has no such coefficient.
     pub fn term(&self, name: &str) -> Result<Expr, PlantError> {
-        self.law.term(name).map(|(_, term)| term).map_err(PlantError::Law)
+        Ok(self.law.term(name)?.1)
     }
 
     /// The regressor of a coefficient with its axis' scale, N (N m) per unit.
@@ -124,7 +124,7 @@ impl<'a> EquationsOfMotion<'a> {
     /// # Errors
     /// Says why the law has no such coefficient.
     pub fn regressor(&self, name: &str) -> Result<Expr, PlantError> {
-        self.law.regressor(name).map(|(_, regressor)| regressor).map_err(PlantError::Law)
+        Ok(self.law.regressor(name)?.1)
     }
 
     /// The whole right-hand side of an axis, N (N m): coefficients times regressors, and the rest.
@@ -140,7 +140,7 @@ impl<'a> EquationsOfMotion<'a> {
                 Coefficients::Values => Expr::Number(quantity.value),
                 Coefficients::Names => Expr::Name(name.clone()),
             };
-            let (acts_on, term) = self.law.term(name).map_err(PlantError::Law)?;
+            let (acts_on, term) = self.law.term(name)?;
             if acts_on == axis {
                 sum = Expr::Add(Box::new(sum), Box::new(term.times(factor)));
             }
@@ -168,7 +168,7 @@ impl<'a> EquationsOfMotion<'a> {
         };
         match self.law.kinematics.get(name) {
             Some(expr) => Ok(expr.clone()),
-            None => parse(if attitude == Attitude::Upright { upright } else { heeled }).map_err(PlantError::Law),
+            None => Ok(parse(if attitude == Attitude::Upright { upright } else { heeled })?),
         }
     }
 

@@ -5,7 +5,7 @@ use sistership_model::formula::Expr;
 
 use super::definition::EquationsOfMotion;
 use super::refusal::PlantError;
-use crate::tape::{Tape, TapeBuilder};
+use crate::tape::{Tape, TapeBuilder, Unbound};
 
 /// A tape of a view of the equations of motion, while it is built. Outputs are numbered in the
 /// order in which they are added.
@@ -26,7 +26,7 @@ impl<'e> Lowering<'e> {
     /// # Errors
     /// Names what the model does not give.
     pub fn output(&mut self, expr: &Expr) -> Result<usize, PlantError> {
-        self.builder.output(expr).map_err(|name| missing(self.equations, name))
+        self.builder.output(expr).map_err(|unbound| missing(self.equations, unbound))
     }
 
     /// Adds a formula to an output that may be there already.
@@ -34,7 +34,7 @@ impl<'e> Lowering<'e> {
     /// # Errors
     /// Names what the model does not give.
     pub fn sum(&mut self, output: Option<usize>, expr: &Expr) -> Result<usize, PlantError> {
-        self.builder.sum(output, expr).map_err(|name| missing(self.equations, name))
+        self.builder.sum(output, expr).map_err(|unbound| missing(self.equations, unbound))
     }
 
     /// Adds the derivative of an output by a name; `None` where it is zero.
@@ -80,6 +80,6 @@ impl<'e> Lowering<'e> {
     }
 }
 
-fn missing(equations: &EquationsOfMotion<'_>, name: String) -> PlantError {
+fn missing(equations: &EquationsOfMotion<'_>, Unbound(name): Unbound) -> PlantError {
     PlantError::Missing { law: equations.law().name.clone(), name, model: equations.model().name.clone() }
 }

@@ -1,7 +1,10 @@
 //! Why the equations of motion cannot be used.
 
+use sistership_model::formula::FormulaError;
+use sistership_model::law::TermError;
+
 /// Why a model cannot be made ready.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlantError {
     /// A formula needs a particular or parameter that the model does not have.
     #[error("law `{law}` needs `{name}`, which the model `{model}` does not give")]
@@ -35,7 +38,18 @@ pub enum PlantError {
         /// Most inputs.
         most: usize,
     },
-    /// A coefficient or its formula does not fit the law.
-    #[error("{0}")]
-    Law(String),
+    /// The law has no such coefficient.
+    #[error(transparent)]
+    Term(#[from] TermError),
+    /// A formula cannot be read.
+    #[error(transparent)]
+    Formula(#[from] FormulaError),
+    /// An effect that the model carries cannot be used.
+    #[error("{field}: {message}")]
+    Effect {
+        /// The field of the model.
+        field: String,
+        /// What is wrong with it.
+        message: String,
+    },
 }
