@@ -196,13 +196,13 @@ impl Model {
             return Err((format!("parameters.values.{name}"), missing_parameter(name, parameter)));
         }
         if let Some(uncertainty) = &self.uncertainty {
-            uncertainty.check().map_err(|message| ("uncertainty".to_owned(), message))?;
+            uncertainty.check().map_err(|e| ("uncertainty".to_owned(), e.to_string()))?;
         }
         if let Some(posterior) = &self.posterior {
-            posterior.check().map_err(|message| ("posterior".to_owned(), message))?;
+            posterior.check().map_err(|e| ("posterior".to_owned(), e.to_string()))?;
         }
         if let Some(region) = &self.validity {
-            region.check().map_err(|message| ("validity".to_owned(), message))?;
+            region.check().map_err(|e| ("validity".to_owned(), e.to_string()))?;
         }
         law.with_effects(self).map(|_| ())
     }
