@@ -9,6 +9,7 @@ use sistership_model::effect::Form;
 use sistership_model::formula::Expr;
 use sistership_model::law::Law;
 use sistership_model::trial::Channel;
+use sistership_model::triangle::TriangleError;
 use sistership_model::uncertainty::Uncertainty;
 use sistership_model::{Effect, Model, Trial};
 
@@ -77,7 +78,7 @@ pub fn prior(model: &Model, columns: &[Nuisance], terms: &Terms, slack: f64) -> 
 ///
 /// # Errors
 /// As [`Uncertainty::root`].
-pub fn learned_prior(uncertainty: &Uncertainty) -> Result<Fixed, String> {
+pub fn learned_prior(uncertainty: &Uncertainty) -> Result<Fixed, TriangleError> {
     let rows = uncertainty.root()?;
     let size = rows.len();
     let entry = |i: usize, j: usize| if j >= i { rows[i][j - i] / uncertainty.scales[j] } else { 0.0 };

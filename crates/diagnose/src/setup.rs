@@ -66,7 +66,9 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<Search<'a>, RefineErro
     let terms: Terms = learned(request.model, request.law, request.effects, request.trials);
     let nuisance = columns(request.model, request.law);
     let (fixed, levels) = match &request.model.uncertainty {
-        Some(uncertainty) => (learned_prior(uncertainty).map_err(RefineError::Law)?, FACTORS.map(known).to_vec()),
+        Some(uncertainty) => {
+            (learned_prior(uncertainty).map_err(|e| RefineError::Law(e.to_string()))?, FACTORS.map(known).to_vec())
+        }
         None => (prior(request.model, &nuisance, &terms, request.settings.slack), UNKNOWN.map(unknown).to_vec()),
     };
     let shift =

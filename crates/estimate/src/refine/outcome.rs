@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use sistership_dynamics::PlantError;
 use sistership_dynamics::manoeuvre::StandardManoeuvres;
 use sistership_dynamics::metrics::ManoeuvreMetrics;
 use sistership_model::Model;
@@ -15,16 +16,9 @@ use crate::bands::Bands;
 /// Why a refinement is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RefineError {
-    /// The law needs something that the model does not give.
-    #[error("law `{law}` needs `{name}`, which the model `{model}` does not give")]
-    Missing {
-        /// The law.
-        law: String,
-        /// The name without a value.
-        name: String,
-        /// The model.
-        model: String,
-    },
+    /// The law's equations cannot be set up for the model.
+    #[error(transparent)]
+    Equations(#[from] PlantError),
     /// A trial lacks a channel.
     #[error("trial `{trial}` has no channel `{channel}`, which the law needs")]
     Channel {

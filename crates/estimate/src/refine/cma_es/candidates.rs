@@ -84,8 +84,7 @@ fn sequences(problem: &Problem<'_>) -> Cut {
 
 impl<'a> Searching<'a> {
     fn new(problem: &'a Problem<'a>, variant: &'a Variant, settings: &'a CmaEs) -> Result<Self, RefineError> {
-        let law = |error: sistership_dynamics::PlantError| RefineError::Law(error.to_string());
-        let system = CandidateSystem::new(&variant.model, problem.law).map_err(law)?;
+        let system = CandidateSystem::new(&variant.model, problem.law)?;
         let cutting = sequences(problem);
         let plan = plan(problem, &system, cutting)?;
         let segments = cut(&problem.training, problem.law, system.input_names(), cutting, &plan)?;

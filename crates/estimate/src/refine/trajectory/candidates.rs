@@ -75,7 +75,7 @@ pub(super) fn from_weak_form(
     step(progress, 0.6, "trajectories from the weak form")?;
     let cutting = cutting(problem);
     let model = variant.model_at(&weak_form(variant, &choices, &|_| true)?.1);
-    let system = SensitiveSystem::new(&model, problem.law).map_err(|e| RefineError::Law(e.to_string()))?;
+    let system = SensitiveSystem::new(&model, problem.law)?;
     let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;
     let compared = compared(system.states(), &standard_deviations(&problem.training));
     let plan = Plan { compared, stride, step_s: cutting.step_s };
@@ -147,7 +147,7 @@ impl Descent<'_> {
     /// Huber's thresholds from every [`SOME`]th segment.
     fn thresholds(&self, at: &DVector<f64>) -> Result<Vec<f64>, RefineError> {
         let model = self.variant.model_at(&self.values(at));
-        let system = SensitiveSystem::new(&model, self.problem.law).map_err(|e| RefineError::Law(e.to_string()))?;
+        let system = SensitiveSystem::new(&model, self.problem.law)?;
         Ok(self.passing.sizes(&system, SOME).into_iter().map(threshold).collect())
     }
 
@@ -165,7 +165,7 @@ impl Descent<'_> {
 
     fn pass(&self, at: &DVector<f64>) -> Result<Pass, RefineError> {
         let model = self.variant.model_at(&self.values(at));
-        let system = SensitiveSystem::new(&model, self.problem.law).map_err(|e| RefineError::Law(e.to_string()))?;
+        let system = SensitiveSystem::new(&model, self.problem.law)?;
         Ok(self.passing.pass(&system))
     }
 
