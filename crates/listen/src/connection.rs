@@ -17,11 +17,11 @@ use hyper_util::service::TowerToHyperService;
 use tokio::net::TcpStream;
 
 use crate::body::{Received, Rest, Sent};
+use crate::limits::Limits;
 use crate::pace::Pace;
+use crate::peer::{Peer, is_health};
 use crate::seats::{Seat, Seats};
 use crate::stream::Stream;
-use crate::limits::Limits;
-use crate::peer::{Peer, is_health};
 
 /// Headers of one request.
 const MAX_HEADERS: usize = 100;

@@ -11,8 +11,8 @@ use std::time::Duration;
 use tokio::sync::Notify;
 use tokio::time::Instant;
 
-use crate::pace::Pace;
 use crate::limits::Limits;
+use crate::pace::Pace;
 
 /// Connections beyond the seats: they get health and refusals.
 pub(super) const RESERVE: usize = 128;

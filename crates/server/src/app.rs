@@ -12,10 +12,10 @@ use crate::config::{Config, Leases, Limits};
 use crate::memory::{self, Budget, Held};
 use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
-use sistership_listen::Stopping;
 use crate::upload::Spool;
-use crate::web::guard::ApiKey;
+use crate::web::api_key::ApiKey;
 use crate::web::throttle::Throttle;
+use sistership_listen::Stopping;
 use sistership_pipeline::archive::Archive;
 use sistership_pipeline::catalogue::{Catalogue, KnownLaw};
 

@@ -149,8 +149,17 @@ impl fmt::Debug for Config {
 impl Limits {
     /// Those of connections.
     pub(crate) fn of_connections(&self) -> sistership_listen::Limits {
-        let Self { header_time, connections, connections_per_address, least_rate, body_grace, answer_grace, stop_time, .. } = *self;
-        sistership_listen::Limits { header_time, connections, connections_per_address, least_rate, body_grace, answer_grace, stop_time }
+        let Self { header_time, connections, connections_per_address, least_rate, body_grace, answer_grace, stop_time, .. } =
+            *self;
+        sistership_listen::Limits {
+            header_time,
+            connections,
+            connections_per_address,
+            least_rate,
+            body_grace,
+            answer_grace,
+            stop_time,
+        }
     }
 }
 

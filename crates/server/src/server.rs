@@ -3,10 +3,10 @@
 use std::net::SocketAddr;
 
 use crate::config::Config;
-use sistership_listen::{bind, listen};
 use crate::process::Process;
 use crate::routes;
 use crate::start_error::StartError;
+use sistership_listen::{bind, listen};
 use sistership_pipeline::archive::Archive;
 
 /// The server of Sistership.

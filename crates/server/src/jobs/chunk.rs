@@ -9,7 +9,7 @@ use sistership_store::{AliasMove, Expect, Job, NewOutcome, NewVersion, StoreErro
 
 use super::outcome::{Result, failed};
 use super::progress::Progress;
-use super::refinement::tell;
+use super::progress::tell;
 use crate::app::App;
 use sistership_pipeline::derive::DeriveError;
 use sistership_pipeline::fleet::{Chunk, Frames, Gathered, Loaded, Order, refined, statistics_of, trials_of};

@@ -9,7 +9,7 @@ use sistership_model::version::sha256;
 use sistership_store::{Expect, Job, NewReport, NewVersion, Refinement, ReportHead, StoreError, VersionHead};
 
 use super::outcome::{JobError, Result, failed};
-use super::refinement::Prepared;
+use super::prepared::Prepared;
 use crate::app::App;
 use sistership_pipeline::derive::{Derived, Refined};
 use sistership_pipeline::line::{CANDIDATE, CHAMPION, Standing, step};

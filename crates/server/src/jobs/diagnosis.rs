@@ -7,8 +7,9 @@ use sistership_store::{Job, Version};
 
 use super::commit_diagnosis::commit;
 use super::outcome::{Result, failed};
+use super::prepared::{library_of, trials};
 use super::progress::Progress;
-use super::refinement::{library_of, tell, trials};
+use super::progress::tell;
 use super::request::DiagnosisJob;
 use crate::app::App;
 use sistership_model::version::code_revision;

@@ -7,6 +7,7 @@ mod demand;
 mod diagnosis;
 mod family_prior;
 mod outcome;
+mod prepared;
 mod progress;
 mod refinement;
 mod request;

@@ -9,9 +9,9 @@ use sistership_trials::samples::{self, SamplesError};
 use sistership_trials::{Mapping, Refusal, Source, read_trial};
 use tempfile::NamedTempFile;
 
+use super::received::{Upload, lost};
 use super::room::room;
 use super::spool::{Spool, Spooled, temporary};
-use super::{Upload, lost};
 use crate::app::App;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::memory;

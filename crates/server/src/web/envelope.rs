@@ -11,9 +11,9 @@ use tracing::Instrument as _;
 use uuid::Uuid;
 
 use crate::app::App;
-use sistership_listen::Peer;
 use crate::problem::{MEDIA, Problem};
 use crate::web::large::counted;
+use sistership_listen::Peer;
 
 /// Gives the request an id, logs and counts it, and sees to it that an error is a problem with that id.
 pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Next) -> Response {

@@ -6,7 +6,8 @@ use axum::response::Response;
 use serde::Deserialize;
 use sistership_store::{FoundShip, JobFilter, Page, ShipSearch};
 
-use super::{JobRow, answer};
+use super::answer::answer;
+use super::rows::JobRow;
 use crate::app::App;
 use crate::problem::Result;
 use crate::web::field::Cursor;
