@@ -14,6 +14,10 @@ use crate::limits::Limits;
 use crate::seats::Seats;
 use crate::stopping::Stopping;
 
+/// What the system takes of an answer beyond what is on its way to a reader. Answers that nobody reads are made no further
+/// than that: 600 connections with 400 requests each would have had the work of ten times as many done for nothing.
+#[cfg(any(target_os = "linux", target_os = "android"))]
+const NOT_SENT: u32 = 16 << 10;
 /// A pause when the system has no more sockets.
 const BREATH: Duration = Duration::from_millis(100);
 
@@ -36,6 +40,13 @@ pub async fn listen(listener: TcpListener, router: Router, limits: Limits, mut s
     }
 }
 
+/// Sends what there is at once, and takes no more than can be sent soon.
+fn prepare(stream: &TcpStream) -> std::io::Result<()> {
+    #[cfg(any(target_os = "linux", target_os = "android"))]
+    socket2::SockRef::from(stream).set_tcp_notsent_lowat(NOT_SENT)?;
+    stream.set_nodelay(true)
+}
+
 struct Server {
     router: Router,
     limits: Limits,
@@ -45,8 +56,8 @@ struct Server {
 
 impl Server {
     fn serve(&self, stream: TcpStream, from: SocketAddr) {
-        if let Err(error) = stream.set_nodelay(true) {
-            tracing::debug!(%error, "no TCP_NODELAY");
+        if let Err(error) = prepare(&stream) {
+            tracing::debug!(%error, "no TCP_NODELAY or TCP_NOTSENT_LOWAT");
         }
         match Connection::new(&self.router, self.limits, &self.seats, party(from.ip())) {
             Some(connection) => drop(tokio::spawn(connection.serve(stream, self.graceful.watcher()))),
