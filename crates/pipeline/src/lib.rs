@@ -2,7 +2,9 @@
 //! alike come here.
 
 pub mod archive;
+pub mod budget;
 pub mod catalogue;
+pub mod condition;
 pub mod derive;
 pub mod error;
 pub mod fleet;

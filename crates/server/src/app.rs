@@ -9,7 +9,6 @@ use tokio::sync::{Notify, RwLock, Semaphore};
 
 use crate::answers::Answers;
 use crate::config::{Config, Leases, Limits};
-use crate::memory::{self, Budget, Held};
 use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
 use crate::upload::Spool;
@@ -17,6 +16,7 @@ use crate::web::api_key::ApiKey;
 use crate::web::throttle::Throttle;
 use sistership_listen::Stopping;
 use sistership_pipeline::archive::Archive;
+use sistership_pipeline::budget::{self, Budget, Held};
 use sistership_pipeline::catalogue::{Catalogue, KnownLaw};
 
 /// The shared state of a server. A clone is another handle on the same one.
@@ -174,7 +174,7 @@ impl App {
     /// Runs numerics away from the threads that serve; as many at a time as there are cores.
     pub(crate) async fn compute<T: Send + 'static>(&self, work: impl FnOnce() -> T + Send + 'static) -> Result<T> {
         let seat = Arc::clone(&self.0.seats).acquire_owned().await.map_err(Problem::internal)?;
-        let task = tokio::task::spawn_blocking(memory::carried(move || {
+        let task = tokio::task::spawn_blocking(budget::carried(move || {
             let _seat = seat;
             work()
         }));

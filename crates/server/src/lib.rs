@@ -9,7 +9,6 @@ mod config;
 mod jobs;
 #[cfg(test)]
 mod journey;
-mod memory;
 mod metrics;
 mod predict;
 mod problem;

@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 use sistership_dynamics::Trajectory;
 use sistership_dynamics::state::at;
 
-use crate::memory::take_now;
 use crate::problem::{Problem, Result};
+use sistership_pipeline::budget::take_now;
 
 /// A number above zero.
 pub(super) fn positive(field: &str, value: f64) -> Result<f64> {

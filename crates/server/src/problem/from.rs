@@ -10,6 +10,7 @@ use sistership_store::StoreError;
 use sistership_trials::Refusal;
 
 use super::{Fault, Problem};
+use sistership_pipeline::budget::Shortage;
 use sistership_pipeline::error::DeriveError;
 use sistership_pipeline::fleet::OrderError;
 
@@ -74,6 +75,17 @@ impl From<DeriveError> for Problem {
             DeriveError::Refine(error) => error.into(),
             DeriveError::Lost(message) => Self::new(StatusCode::CONFLICT, message),
             other => Self::internal(other),
+        }
+    }
+}
+
+impl From<Shortage> for Problem {
+    fn from(shortage: Shortage) -> Self {
+        match &shortage {
+            Shortage::Never { .. } => Self::new(StatusCode::PAYLOAD_TOO_LARGE, format!("{shortage}; send less at a time")),
+            Shortage::Busy { .. } => {
+                Self::new(StatusCode::TOO_MANY_REQUESTS, format!("{shortage}; try again in some seconds, or with less"))
+            }
         }
     }
 }
@@ -145,6 +157,13 @@ mod tests {
         assert_eq!(parameter("unknown field `limt`, expected one of `limit`, `after`"), "limt");
         assert_eq!(parameter("missing field `ship`"), "ship");
         assert_eq!(parameter("something else"), "query");
+    }
+
+    #[test]
+    fn what_fits_later_is_told_from_what_never_fits() {
+        let setting = "--request-memory-mb";
+        assert_eq!(Problem::from(Shortage::Never { needed: 2, bytes: 1, setting }).status, 413);
+        assert_eq!(Problem::from(Shortage::Busy { needed: 2, free: 1, bytes: 3, setting }).status, 429);
     }
 
     #[test]

@@ -8,11 +8,11 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::condition::Condition;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::field::MemberLimit;
 use crate::web::{Name, Params, Place, Word};
+use sistership_pipeline::condition::Condition;
 use sistership_pipeline::fleet::Drift;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -79,7 +79,7 @@ impl FamilyDrift {
         let others = others.into_iter().filter(|member| !known.contains(&member.ship));
         let mut ships = Vec::new();
         for member in drifted.into_iter().chain(others).take(usize::try_from(limit).unwrap_or(0)) {
-            let condition = Condition::of(app, &member.ship).await?;
+            let condition = Condition::of(app.store(), &member.ship).await?;
             let drift = Drift::of(app.archive(), &member.ship).await?;
             ships.push(MemberDrift { ship: member.ship, condition, drift });
         }
@@ -92,6 +92,6 @@ impl MemberDrift {
     /// Whether the diagnosis says that her model does not hold, and how much more it leaves of what is new.
     fn worse(&self) -> (bool, f64) {
         let worst = self.drift.as_ref().and_then(|drift| drift.worst);
-        (self.condition.model == super::condition::Standing::DoesNotHold, worst.unwrap_or(0.0))
+        (self.condition.model == sistership_pipeline::condition::Standing::DoesNotHold, worst.unwrap_or(0.0))
     }
 }

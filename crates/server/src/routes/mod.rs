@@ -5,7 +5,6 @@ mod aliases;
 mod binary;
 mod bulk_refinements;
 mod champion;
-mod condition;
 mod described;
 mod diagnoses;
 mod document;

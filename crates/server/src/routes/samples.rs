@@ -18,10 +18,10 @@ use utoipa_axum::routes;
 
 use super::binary::Binary;
 use crate::app::App;
-use crate::memory::{self, Share};
 use crate::problem::{Problem, Result};
 use crate::upload::{hex, spool};
 use crate::web::{Id, Place, accept};
+use sistership_pipeline::budget::{self, Share};
 
 const CSV: &str = "text/csv";
 const PARQUET: &str = "application/vnd.apache.parquet";
@@ -74,7 +74,7 @@ fn damaged(key: &str, actual: &str) -> std::result::Result<(), BoxError> {
 
 /// CSV as it is read, some rows at a time, from the samples on disk: nothing waits in memory for a caller who does not read.
 async fn csv(app: &App, key: &str, bytes: Bytestream) -> Result<Body> {
-    let share = memory::share(DECODING).await?;
+    let share = budget::share(DECODING).await?;
     let spooled = spool(app.spool(), bytes).await?;
     damaged(key, &spooled.sha256).map_err(Problem::internal)?;
     let open = move || CsvPieces::open(File::open(&spooled.path)?).map_err(BoxError::from);

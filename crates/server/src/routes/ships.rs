@@ -11,13 +11,13 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::condition::Condition;
 use super::ship_search::{self, Query};
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::conditions::tag;
 use crate::web::field::EntityTags;
 use crate::web::{Conditions, Listing, Name, Params, Place};
+use sistership_pipeline::condition::Condition;
 use sistership_pipeline::derive::DeriveError;
 use sistership_pipeline::search;
 
@@ -70,7 +70,7 @@ impl ShipHead {
 
 impl ShipDetail {
     pub(super) async fn of(app: &App, ship: Ship) -> Result<Self> {
-        let condition = Condition::of(app, &ship.name).await?;
+        let condition = Condition::of(app.store(), &ship.name).await?;
         let document = serde_json::from_str(&ship.document).map_err(Problem::internal)?;
         let Ship { name, title, category, revision, created_us, updated_us, .. } = ship;
         Ok(Self { name, title, category, revision, created_us, updated_us, condition, document })

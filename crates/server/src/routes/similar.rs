@@ -14,10 +14,10 @@ use utoipa_axum::routes;
 use super::ship_search::vectors;
 use super::trials::all_of_ship;
 use crate::app::App;
-use crate::memory;
 use crate::problem::{Problem, Result};
 use crate::web::{Name, Params, Place};
 use sistership_pipeline::archive::vessel;
+use sistership_pipeline::budget;
 use sistership_pipeline::memory::trial_bytes;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -52,7 +52,7 @@ async fn similar(State(app): State<App>, Place(name): Place<Name>, Params(query)
     let ship = app.store().ships().get(&name).await?;
     let target = vessel(&ship.name, &ship.document)?;
     let trials = if query.trials { all_of_ship(&app, &name).await? } else { Vec::new() };
-    memory::take(trials.iter().map(|trial| trial_bytes(trial.sample_rows)).sum()).await?;
+    budget::take(trials.iter().map(|trial| trial_bytes(trial.sample_rows)).sum()).await?;
     let named = trials.into_iter().map(|trial| RecipeTrial { name: trial.name, sha256: trial.object_key });
     let trials = app.archive().trials(&named.collect::<Vec<_>>()).await?;
     let zoo = app.zoo_around(&target).await?;

@@ -14,8 +14,8 @@ use super::room::room;
 use super::spool::{Spool, Spooled, temporary};
 use crate::app::App;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
-use crate::memory;
 use crate::problem::{Problem, Result};
+use sistership_pipeline::budget;
 use sistership_pipeline::line::{CHAMPION, alias};
 
 /// How often samples are put again that were removed before their rows were written.
@@ -136,7 +136,7 @@ async fn put_samples(objects: &Objects, accepted: &[Accepted]) -> Result<Vec<Str
     let mut keys = Vec::with_capacity(accepted.len());
     for trial in accepted {
         let size = trial.samples.as_file().metadata().map_err(Problem::internal)?.len();
-        let _share = memory::share(size).await?;
+        let _share = budget::share(size).await?;
         let bytes = tokio::fs::read(trial.samples.path()).await.map_err(Problem::internal)?;
         keys.push(objects.put(Bytes::from(bytes)).await?);
     }

@@ -9,9 +9,9 @@ use sistership_trials::read_manifest;
 use super::received::{Upload, canonical};
 use super::spool::{Spooled, spool};
 use crate::app::App;
-use crate::memory;
 use crate::problem::{Fault, Problem, Result};
 use crate::web::payload::read_yaml;
+use sistership_pipeline::budget;
 
 /// The parts of a form as they have arrived.
 #[derive(Default)]
@@ -125,7 +125,7 @@ fn set(place: &mut Option<String>, name: &str, text: String) -> Result<()> {
 async fn text(mut field: Field<'_>, app: &App) -> Result<String> {
     let mut bytes = Vec::new();
     while let Some(chunk) = field.chunk().await? {
-        memory::take(2 * chunk.len() as u64).await?;
+        budget::take(2 * chunk.len() as u64).await?;
         bytes.extend_from_slice(&chunk);
         if bytes.len() > app.limits().yaml_bytes {
             return Err(Problem::new(StatusCode::PAYLOAD_TOO_LARGE, "the manifest is too large"));

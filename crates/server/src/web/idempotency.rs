@@ -12,8 +12,8 @@ use tracing::Instrument as _;
 use super::field::RequestKey;
 use super::reply::Reply;
 use crate::app::App;
-use crate::memory::{Held, carried_on};
 use crate::problem::{Fault, Problem, Result};
+use sistership_pipeline::budget::{Held, carried_on};
 
 const HEADER: &str = "idempotency-key";
 

@@ -8,8 +8,8 @@ use axum::response::{IntoResponse as _, Response};
 use bytes::Bytes;
 use hyper::body::{Frame, SizeHint};
 
-use crate::memory::{self, Share};
 use crate::problem::Problem;
+use sistership_pipeline::budget::{self, Share};
 
 /// Answers up to this size are not counted, bytes; larger ones are handed out in pieces of it, so that what has been handed
 /// out and is not yet on its way is no more.
@@ -29,7 +29,7 @@ pub(crate) async fn counted(response: Response) -> Response {
     if size <= PIECE as u64 {
         return response;
     }
-    match memory::share(size).await {
+    match budget::share(size).await {
         Ok(share) => response.map(|body| Body::new(Large { body, rest: Bytes::new(), _share: share })),
         Err(shortage) => Problem::from(shortage).into_response(),
     }
@@ -73,7 +73,7 @@ mod tests {
     use futures::StreamExt as _;
 
     use super::*;
-    use crate::memory::{Budget, Held};
+    use sistership_pipeline::budget::{Budget, Held};
 
     #[tokio::test]
     async fn a_large_answer_has_its_share_until_it_is_handed_out() {

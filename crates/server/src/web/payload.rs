@@ -8,8 +8,8 @@ use futures::StreamExt as _;
 use serde::de::DeserializeOwned;
 
 use crate::app::App;
-use crate::memory;
 use crate::problem::{Fault, Problem, Result};
+use sistership_pipeline::budget;
 
 /// Memory that reading a document takes, by its bytes: the most that documents of one MiB made the server grow by, measured at
 /// its `VmHWM` with one document for each server. YAML: a list of one letter each 93, of empty lists 83, a list one a line 67, a map
@@ -36,7 +36,7 @@ impl FromRequest<App> for Payload {
             false => (app.limits().yaml_bytes, YAML_FACTOR),
         };
         payload.bytes = whole(request, most).await?;
-        memory::take(factor * payload.bytes.len() as u64).await?;
+        budget::take(factor * payload.bytes.len() as u64).await?;
         Ok(payload)
     }
 }
@@ -51,7 +51,7 @@ async fn whole(request: Request, most: usize) -> Result<Bytes> {
             return Err(too_large(&format!("the document is larger than the {} KiB that are read", most >> 10)));
         }
         // The buffer grows by doubling.
-        memory::take(2 * chunk.len() as u64).await?;
+        budget::take(2 * chunk.len() as u64).await?;
         bytes.extend_from_slice(&chunk);
     }
     Ok(bytes.freeze())
@@ -71,7 +71,7 @@ fn too_large(what: &str) -> Problem {
 
 /// Takes the memory that a YAML document which has arrived takes to be read.
 pub(crate) async fn read_yaml(bytes: usize) -> Result<()> {
-    Ok(memory::take(YAML_FACTOR * bytes as u64).await?)
+    Ok(budget::take(YAML_FACTOR * bytes as u64).await?)
 }
 
 /// The media type of a body, in lower case and without parameters; empty where there is none.

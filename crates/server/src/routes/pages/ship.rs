@@ -5,13 +5,13 @@ use axum::extract::State;
 use axum::response::Response;
 use sistership_store::{Alias, JobFilter, Page, VersionHead};
 
-use super::super::condition::Condition;
 use super::answer::answer;
 use super::rows::{JobRow, TrialRow, date};
 use crate::app::App;
 use crate::problem::Result;
 use crate::web::Place;
 use sistership_pipeline::archive::vessel;
+use sistership_pipeline::condition::Condition;
 
 /// Lines of each list.
 const LINES: i64 = 100;
@@ -50,7 +50,7 @@ pub(super) async fn page(State(app): State<App>, Place(name): Place<String>) -> 
     }
     let trials = app.store().trials().list(&name, &Page::first(LINES)).await?;
     let jobs = app.store().jobs().list(&JobFilter { ship: Some(name.clone()), state: None }, &Page::first(LINES)).await?;
-    let condition = Condition::of(&app, &name).await?;
+    let condition = Condition::of(app.store(), &name).await?;
     let particulars = vessel(&ship.name, &ship.document)?.particulars;
     answer(&ShipPage {
         name,

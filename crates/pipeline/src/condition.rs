@@ -1,16 +1,14 @@
 //! Whether the model of a ship still holds: what the newest diagnosis that concerns her present champion found.
 
 use serde::Serialize;
-use sistership_store::{Diagnosed, MAX_LIMIT, Page, VersionHead};
+use sistership_store::{Diagnosed, MAX_LIMIT, Page, Store, StoreError, VersionHead};
 use utoipa::ToSchema;
 
-use crate::app::App;
-use crate::problem::Result;
-use sistership_pipeline::line::{CHAMPION, alias};
+use crate::line::{CHAMPION, alias};
 
 /// Whether the champion of a ship still holds, by the newest diagnosis of it, or by the one that it came of.
 #[derive(Debug, Clone, Default, Serialize, ToSchema)]
-pub(super) struct Condition {
+pub struct Condition {
     /// `holds`, `does_not_hold`, or `unknown` where her champion was never diagnosed.
     pub model: Standing,
     /// The same in one sentence.
@@ -34,7 +32,7 @@ pub(super) struct Condition {
 /// Whether a model holds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Standing {
+pub enum Standing {
     /// Its residual is what the noise predicts.
     Holds,
     /// Something is missing.
@@ -46,7 +44,8 @@ pub(super) enum Standing {
 
 /// A diagnosis.
 #[derive(Debug, Clone, Serialize, ToSchema)]
-pub(super) struct FoundBy {
+pub struct FoundBy {
+    /// Its id.
     pub diagnosis: String,
     /// When it was made, microseconds since 1970.
     pub at_us: i64,
@@ -56,7 +55,8 @@ pub(super) struct FoundBy {
 
 /// A version that came of a diagnosis.
 #[derive(Debug, Clone, Serialize, ToSchema)]
-pub(super) struct MadeVersion {
+pub struct MadeVersion {
+    /// Its number.
     pub number: i64,
     /// Where it is.
     pub at: String,
@@ -64,18 +64,21 @@ pub(super) struct MadeVersion {
 
 impl Condition {
     /// The condition of a ship now.
-    pub async fn of(app: &App, ship: &str) -> Result<Self> {
-        let Some(champion) = alias(app.store(), ship, CHAMPION).await? else {
+    ///
+    /// # Errors
+    /// The store does not answer.
+    pub async fn of(store: &Store, ship: &str) -> Result<Self, StoreError> {
+        let Some(champion) = alias(store, ship, CHAMPION).await? else {
             return Ok(Self { sentence: "Unknown: she has no champion yet.".into(), ..Self::default() });
         };
-        let version = app.store().versions().get(ship, champion.version_number).await?.head;
-        let newest = app.store().diagnoses().by_version(&version.id, &Page::first(MAX_LIMIT)).await?.items;
+        let version = store.versions().get(ship, champion.version_number).await?.head;
+        let newest = store.diagnoses().by_version(&version.id, &Page::first(MAX_LIMIT)).await?.items;
         let mut condition = Self::found(&version, &newest);
         condition.sentence = condition.in_words();
         if let Some(made) =
             newest.first().filter(|newest| newest.version_id == version.id).and_then(|newest| newest.made_id.as_ref())
         {
-            condition.with_effects = Some(MadeVersion::of(app.store().versions().by_id(made).await?.head));
+            condition.with_effects = Some(MadeVersion::of(store.versions().by_id(made).await?.head));
         }
         Ok(condition)
     }

@@ -7,10 +7,7 @@ use std::future::Future;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use axum::http::StatusCode;
 use tokio::sync::{Notify, OwnedSemaphorePermit, Semaphore};
-
-use crate::problem::Problem;
 
 const KIB: u64 = 1 << 10;
 /// How often somebody waiting looks again, should a word of what is given back be missed.
@@ -18,7 +15,7 @@ const LOOK: Duration = Duration::from_millis(100);
 
 /// Memory that some kind of work may take. A clone is another handle on the same one.
 #[derive(Debug, Clone)]
-pub(crate) struct Budget(Arc<Inner>);
+pub struct Budget(Arc<Inner>);
 
 #[derive(Debug)]
 struct Inner {
@@ -31,14 +28,14 @@ struct Inner {
 
 /// A part of a budget, given back when it is dropped.
 #[derive(Debug)]
-pub(crate) struct Share {
+pub struct Share {
     permit: Option<OwnedSemaphorePermit>,
     given_back: Arc<Notify>,
 }
 
 /// Why there is no memory for something, in numbers.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub(crate) enum Shortage {
+pub enum Shortage {
     /// It is more than all of it.
     #[error("this takes about {} MiB of memory, more than the {} MiB that there are ({setting})", mib(*.needed), mib(*.bytes))]
     Never {
@@ -70,17 +67,6 @@ fn mib(bytes: u64) -> u64 {
     bytes.div_ceil(1 << 20)
 }
 
-impl From<Shortage> for Problem {
-    fn from(shortage: Shortage) -> Self {
-        match &shortage {
-            Shortage::Never { .. } => Self::new(StatusCode::PAYLOAD_TOO_LARGE, format!("{shortage}; send less at a time")),
-            Shortage::Busy { .. } => {
-                Self::new(StatusCode::TOO_MANY_REQUESTS, format!("{shortage}; try again in some seconds, or with less"))
-            }
-        }
-    }
-}
-
 impl Budget {
     /// Of so many bytes; `setting` is what its user knows it by.
     pub fn new(bytes: u64, setting: &'static str) -> Self {
@@ -90,6 +76,9 @@ impl Budget {
     }
 
     /// A share, if it is free now.
+    ///
+    /// # Errors
+    /// There is not so much, or not now.
     pub fn try_take(&self, bytes: u64) -> Result<Share, Shortage> {
         let Inner { permits, given_back, bytes: all, setting } = &*self.0;
         let never = || Shortage::Never { needed: bytes, bytes: *all, setting };
@@ -102,6 +91,9 @@ impl Budget {
     }
 
     /// A share, as soon as it is free. Nobody waits behind another: what is small goes on while something large waits.
+    ///
+    /// # Errors
+    /// There is not so much, or not soon.
     pub async fn take(&self, bytes: u64, patience: Duration) -> Result<Share, Shortage> {
         let end = tokio::time::Instant::now() + patience;
         loop {
@@ -116,7 +108,6 @@ impl Budget {
     }
 
     /// Bytes that nobody has.
-    #[cfg(test)]
     pub fn free(&self) -> u64 {
         self.0.permits.available_permits() as u64 * KIB
     }
@@ -131,7 +122,7 @@ impl Drop for Share {
 
 /// What a request has taken. A clone is another handle on the same: all is given back with the last.
 #[derive(Debug, Clone)]
-pub(crate) struct Held(Arc<Holding>);
+pub struct Held(Arc<Holding>);
 
 #[derive(Debug)]
 struct Holding {
@@ -145,6 +136,7 @@ tokio::task_local! {
 }
 
 impl Held {
+    /// Nothing yet, of a budget for whose memory it may wait so long.
     pub fn new(budget: Budget, patience: Duration) -> Self {
         Self(Arc::new(Holding { budget, patience, shares: Mutex::default() }))
     }
@@ -173,7 +165,7 @@ impl Held {
 ///
 /// # Errors
 /// There is not so much, or not soon.
-pub(crate) async fn take(bytes: u64) -> Result<(), Shortage> {
+pub async fn take(bytes: u64) -> Result<(), Shortage> {
     if let Some(held) = Held::current() {
         held.keep(held.0.budget.take(bytes, held.0.patience).await?);
     }
@@ -184,7 +176,7 @@ pub(crate) async fn take(bytes: u64) -> Result<(), Shortage> {
 ///
 /// # Errors
 /// There is not so much, or not soon.
-pub(crate) async fn share(bytes: u64) -> Result<Option<Share>, Shortage> {
+pub async fn share(bytes: u64) -> Result<Option<Share>, Shortage> {
     let Some(held) = Held::current() else { return Ok(None) };
     Ok(Some(held.0.budget.take(bytes, held.0.patience).await?))
 }
@@ -193,7 +185,7 @@ pub(crate) async fn share(bytes: u64) -> Result<Option<Share>, Shortage> {
 ///
 /// # Errors
 /// There is not so much, or not now.
-pub(crate) fn take_now(bytes: u64) -> Result<(), Shortage> {
+pub fn take_now(bytes: u64) -> Result<(), Shortage> {
     if let Some(held) = Held::current() {
         held.keep(held.0.budget.try_take(bytes)?);
     }
@@ -201,7 +193,7 @@ pub(crate) fn take_now(bytes: u64) -> Result<(), Shortage> {
 }
 
 /// Runs work on a thread that may block, with what the request has taken until the work has ended.
-pub(crate) fn carried<T>(work: impl FnOnce() -> T + Send + 'static) -> impl FnOnce() -> T + Send + 'static {
+pub fn carried<T>(work: impl FnOnce() -> T + Send + 'static) -> impl FnOnce() -> T + Send + 'static {
     let held = Held::current();
     move || match held {
         Some(held) => held.sync_scope(work),
@@ -210,7 +202,7 @@ pub(crate) fn carried<T>(work: impl FnOnce() -> T + Send + 'static) -> impl FnOn
 }
 
 /// A future that goes on if its request's caller hangs up, with what the request has taken.
-pub(crate) async fn carried_on<T>(held: Option<Held>, work: impl Future<Output = T>) -> T {
+pub async fn carried_on<T>(held: Option<Held>, work: impl Future<Output = T>) -> T {
     match held {
         Some(held) => held.scope(work).await,
         None => work.await,
@@ -229,11 +221,11 @@ mod tests {
         let budget = Budget::new(4 * MIB, "--memory-mb");
         let never = budget.take(5 * MIB, Duration::from_secs(60)).await.unwrap_err();
         assert_eq!(never.to_string(), "this takes about 5 MiB of memory, more than the 4 MiB that there are (--memory-mb)");
-        assert_eq!(Problem::from(never).status, 413);
+        assert!(matches!(never, Shortage::Never { .. }));
         let most = budget.try_take(3 * MIB).unwrap();
         let busy = budget.take(2 * MIB, Duration::from_millis(20)).await.unwrap_err();
         assert!(busy.to_string().contains("1 of 4 MiB are free"), "{busy}");
-        assert_eq!(Problem::from(busy).status, 429);
+        assert!(matches!(busy, Shortage::Busy { .. }));
         let small = budget.try_take(MIB).unwrap();
         let waiting = tokio::spawn({
             let budget = budget.clone();
