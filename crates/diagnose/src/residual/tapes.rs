@@ -20,7 +20,7 @@ const ROLL: [usize; 8] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI, at::X, a
 
 /// A model on tapes.
 #[derive(Debug, Clone)]
-pub struct System {
+pub struct ResidualSystem {
     /// What the columns stand for.
     pub columns: Columns,
     /// Places in the state vector of the filter's states.
@@ -54,7 +54,7 @@ pub(super) struct Motion {
     pub kinematics: Vec<usize>,
 }
 
-impl System {
+impl ResidualSystem {
     /// For trials whose velocities are of a frame. The law is in the dress of the effects that the model carries, and keeps
     /// the regressors of nuisance terms that the model lacks ([`lacked_name`]), in N (N m) per unit.
     ///
@@ -63,7 +63,7 @@ impl System {
     pub fn new(model: &Model, law: &Law, columns: Columns, frame: VelocityFrame) -> Result<Self, RefineError> {
         let forms: Vec<_> = columns.candidates.iter().map(|c| (c.effect.as_str(), &*c.form)).collect();
         let law = law.dressed(model, &forms);
-        let build = Builder { model, law: &law, columns: &columns };
+        let build = SystemBuilder { model, law: &law, columns: &columns };
         let axes = if law.has_roll() { vec![Axis::X, Axis::Y, Axis::N, Axis::K] } else { vec![Axis::X, Axis::Y, Axis::N] };
         let states: &'static [usize] = if law.has_roll() { &ROLL } else { &PLANE };
         let channels = RECORDED.iter().filter_map(|&(channel, place)| Some((channel, states.iter().position(|&s| s == place)?)));
@@ -95,13 +95,13 @@ impl System {
     }
 }
 
-struct Builder<'a> {
+struct SystemBuilder<'a> {
     model: &'a Model,
     law: &'a Law,
     columns: &'a Columns,
 }
 
-impl Builder<'_> {
+impl SystemBuilder<'_> {
     fn names(&self, parameters: bool) -> Vec<String> {
         let states = STATES.iter().map(|&(name, _)| name.to_owned());
         let names = states.chain(self.law.inputs.keys().cloned());
