@@ -13,7 +13,7 @@ use super::thresholds::THRESHOLDS;
 use super::values::model_with;
 use sistership_estimate::refine::{Alternative, Blocks, alternatives, fit, trial_moments};
 use sistership_estimate::transfer::approach_of;
-use sistership_regression::{Choice, Moments};
+use sistership_regression::{Moments, RidgeChoice};
 
 /// A model with effects, on all trials and without each of them.
 pub(super) struct Refit {
@@ -100,7 +100,7 @@ fn with_coefficients(model: &Model, law: &Law, trials: &[&Trial], lambda: f64) -
     for moments in &each[1..] {
         total.iter_mut().zip(moments).for_each(|(sum, more)| sum.merge(more));
     }
-    let choices = blocks.blocks.iter().map(|block| vec![Choice { lambda, alpha: 0.0 }; block.axes.len()]).collect();
+    let choices = blocks.blocks.iter().map(|block| vec![RidgeChoice { lambda, alpha: 0.0 }; block.axes.len()]).collect();
     let mut model = model.clone();
     for (name, fitted) in fit(&blocks, &total, &model, &choices).coefficients {
         let quantity = model.coefficients.get_mut(&name)?;

@@ -4,7 +4,7 @@ use serde::Serialize;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Vessel, Zoo};
 
-use crate::similarity::{Candidate, CharacteristicVector, Definition, Limits, RankedSource, Trend, rank};
+use crate::similarity::{CharacteristicVector, Definition, EligibilityLimits, RankedSource, SourceCandidate, Trend, rank};
 use crate::transfer::{approach_of, transfer, trend};
 
 /// How similar ships rank for a target.
@@ -32,15 +32,15 @@ pub fn similar(zoo: &Zoo, target: &Vessel, definition: Option<Definition>, trial
     let definition = definition.unwrap_or_else(|| definition_for(target));
     let models: Vec<(&Vessel, Option<Model>)> =
         zoo.vessels().map(|vessel| (&**vessel, zoo.published(vessel, None).ok())).collect();
-    let candidates: Vec<Candidate<'_>> =
-        models.iter().map(|(vessel, model)| Candidate { vessel, model: model.as_ref() }).collect();
+    let candidates: Vec<SourceCandidate<'_>> =
+        models.iter().map(|(vessel, model)| SourceCandidate { vessel, model: model.as_ref() }).collect();
     let measured = |model: &Model| trend_on(zoo, target, model, trials);
     let measured: Option<Trend<'_>> = if trials.is_empty() { None } else { Some(&measured) };
     Similarity {
         target: target.name().to_owned(),
         definition,
         vector: CharacteristicVector::of(target, definition).values,
-        ranking: rank(target, &candidates, definition, &Limits::default(), measured),
+        ranking: rank(target, &candidates, definition, &EligibilityLimits::default(), measured),
     }
 }
 

@@ -8,7 +8,7 @@ use sistership_model::posterior::Posterior;
 use super::blocks::Blocks;
 use super::candidate::{CandidateFit, Solution, best};
 use super::family::Family;
-use super::gathered::{Taken, refinement};
+use super::gathered::{ChosenCandidate, refinement};
 use super::manoeuvres::{measured_manoeuvres, standard_manoeuvres};
 use super::outcome::{Manoeuvres, RefineError, Refinement};
 use super::problem::Problem;
@@ -16,7 +16,7 @@ use super::progress::{Progress, step};
 use super::ridge::{Choices, Fit};
 use super::variant::Variant;
 use crate::bands::bands;
-use sistership_regression::Choice;
+use sistership_regression::RidgeChoice;
 
 /// What a candidate gives with its standard manoeuvres, or why it may not be taken.
 type Accepted = Result<(Option<Fit>, StandardManoeuvres), String>;
@@ -91,7 +91,7 @@ fn take(
     step(progress, 0.93, "confidence bands")?;
     let bands = bands(&model, problem.law, &ManoeuvreSettings::default(), None, problem.settings.bands);
     let manoeuvres = Manoeuvres { source: before, refined: after, bands, measured };
-    refinement(problem, Taken { candidates, best, model, fitted }, manoeuvres)
+    refinement(problem, ChosenCandidate { candidates, best, model, fitted }, manoeuvres)
 }
 
 /// How far the model's coefficients may be from the truth. Those of a source that is kept are as far as the trials say
@@ -112,5 +112,5 @@ fn posterior(
 
 /// Choices that keep the source.
 fn held(blocks: &Blocks) -> Choices {
-    blocks.blocks.iter().map(|block| vec![Choice { lambda: 1e9, alpha: 0.0 }; block.axes.len()]).collect()
+    blocks.blocks.iter().map(|block| vec![RidgeChoice { lambda: 1e9, alpha: 0.0 }; block.axes.len()]).collect()
 }

@@ -12,7 +12,7 @@ use super::settings::Settings;
 use super::simulated::simulate_all;
 
 /// The candidate that was taken among all, its model and its fit; none where the source was kept.
-pub(super) struct Taken {
+pub(super) struct ChosenCandidate {
     pub candidates: Vec<CandidateFit>,
     pub best: usize,
     pub model: Model,
@@ -23,8 +23,12 @@ pub(super) struct Taken {
 ///
 /// # Errors
 /// A trial lacks a channel.
-pub(super) fn refinement(problem: &Problem<'_>, taken: Taken, manoeuvres: Manoeuvres) -> Result<Refinement, RefineError> {
-    let Taken { candidates, best, model, fitted } = taken;
+pub(super) fn refinement(
+    problem: &Problem<'_>,
+    taken: ChosenCandidate,
+    manoeuvres: Manoeuvres,
+) -> Result<Refinement, RefineError> {
+    let ChosenCandidate { candidates, best, model, fitted } = taken;
     let held_out = held_out(problem, &candidates, best, &model)?;
     let lambdas = candidates[best].option.lambda.clone();
     let (condition_number, collinear_groups) =

@@ -8,7 +8,7 @@ use sistership_model::trial::Trial;
 use sistership_model::vessel::Status;
 use sistership_model::{Model, particulars};
 
-use super::measure::Measure;
+use super::measure::PriorMeasure;
 use super::progress::{Iterate, Watch};
 use super::ridge::Fitted;
 use super::settings::Settings;
@@ -29,7 +29,7 @@ pub(super) struct Problem<'a> {
     pub judged: Vec<&'a Trial>,
     pub transferred: Model,
     /// What the prior measures coefficients by.
-    pub measure: Measure,
+    pub measure: PriorMeasure,
     pub settings: Settings,
     pub watch: Option<Watch<'a>>,
 }
@@ -48,7 +48,7 @@ impl<'a> Problem<'a> {
             whole,
             judged,
             transferred,
-            measure: Measure::Trials,
+            measure: PriorMeasure::Trials,
             settings,
             watch: None,
         }

@@ -2,8 +2,8 @@
 
 use sistership_model::Model;
 
-use super::candidate::{CandidateFit, Solution, Source};
-use super::errors::Errors;
+use super::candidate::{CandidateFit, Solution, UnchangedSource};
+use super::errors::CoefficientErrors;
 use super::outcome::RefineError;
 use super::problem::Problem;
 use super::progress::{PartProgress, Progress, step};
@@ -12,12 +12,12 @@ use super::simulated::{Simulated, simulate_training};
 use super::variant::Variant;
 
 /// A ridge of a variant at its choices.
-struct Ridge {
+struct RidgeSolution {
     variant: usize,
     choices: Choices,
 }
 
-impl Solution for Ridge {
+impl Solution for RidgeSolution {
     fn fit(&self, variants: &[Variant]) -> Result<Option<Fit>, RefineError> {
         let variant = &variants[self.variant];
         let all = variant.together(|_| true)?;
@@ -29,7 +29,7 @@ impl Solution for Ridge {
         Ok(Some(fitted))
     }
 
-    fn errors(&self, problem: &Problem<'_>, variants: &[Variant]) -> Result<Option<Errors>, RefineError> {
+    fn errors(&self, problem: &Problem<'_>, variants: &[Variant]) -> Result<Option<CoefficientErrors>, RefineError> {
         variants[self.variant].errors(&problem.training, &self.choices)
     }
 
@@ -48,7 +48,7 @@ pub(super) fn source_candidate(problem: &Problem<'_>, variants: &[Variant]) -> R
         Some(Err(reason)) => Simulated::refused(reason),
         _ => simulate_training(problem, std::slice::from_ref(&problem.transferred), &|_| 0)?,
     };
-    Ok(CandidateFit::new(problem, ("source".into(), None), Source, 0, simulated))
+    Ok(CandidateFit::new(problem, ("source".into(), None), UnchangedSource, 0, simulated))
 }
 
 /// A ridge of a variant at its choices, each trial left out simulated by the model of its fold.
@@ -67,13 +67,13 @@ pub(super) fn ridge_candidate(
     let models: Vec<Model> = match folds.iter().map(model).collect::<Result<_, String>>() {
         Ok(models) => models,
         Err(reason) => {
-            let ridge = Ridge { variant: index, choices };
+            let ridge = RidgeSolution { variant: index, choices };
             return Ok(CandidateFit::new(problem, step, ridge, 0, Simulated::refused(reason)));
         }
     };
     let simulated = simulate_training(problem, &models, &|trial| problem.fold_of(trial))?;
     let size = models.first().map_or(0, |model| model.coefficients.len());
-    let candidate = CandidateFit::new(problem, step, Ridge { variant: index, choices }, size, simulated);
+    let candidate = CandidateFit::new(problem, step, RidgeSolution { variant: index, choices }, size, simulated);
     Ok(CandidateFit { left_out: models, ..candidate })
 }
 

@@ -5,10 +5,10 @@ use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel};
 
-use super::across::{self, Imitation};
+use super::across::{self, SourceRegression};
 use super::blocks::Blocks;
 use super::finish::finish;
-use super::measure::Measure;
+use super::measure::PriorMeasure;
 use super::outcome::{RefineError, Refinement};
 use super::parts::parts;
 use super::problem::{Problem, for_simulation};
@@ -70,19 +70,19 @@ pub fn refine_watched(request: &Request<'_>, progress: Progress<'_>, watch: Watc
 }
 
 /// What the prior is about: the source carried over, by its own law or as another law says what it says.
-fn starting(request: &Request<'_>, whole: &[&Trial], in_parts: bool) -> Result<(Model, Measure), RefineError> {
+fn starting(request: &Request<'_>, whole: &[&Trial], in_parts: bool) -> Result<(Model, PriorMeasure), RefineError> {
     let Request { target, source, source_law, law, .. } = *request;
     let approach = approach_of(whole);
     let Some(own) = source_law.filter(|own| own.name != law.name) else {
         let same = source.ship == target.name();
         let carried = if same { source.clone() } else { transfer(source, law, target, approach) };
-        let measure = Measure::own(&carried, law, whole, in_parts);
+        let measure = PriorMeasure::own(&carried, law, whole, in_parts);
         return Ok((carried, measure));
     };
     let (mut model, envelope) = across::begun((source, own), law, target, approach, whole)?;
     let blocks = Blocks::new(&model, law)?;
-    Imitation::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);
-    Ok((model, Measure::Source(envelope)))
+    SourceRegression::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);
+    Ok((model, PriorMeasure::Source(envelope)))
 }
 
 /// The trials that are kept out of fit and choice, and the others.

@@ -7,7 +7,7 @@ use super::{CharacteristicVector, Definition};
 
 /// A ship of the zoo with the model she would give.
 #[derive(Debug, Clone)]
-pub struct Candidate<'a> {
+pub struct SourceCandidate<'a> {
     /// The ship.
     pub vessel: &'a Vessel,
     /// Her model; none for a ship known by particulars only.
@@ -16,14 +16,14 @@ pub struct Candidate<'a> {
 
 /// What is asked of a source.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Limits {
+pub struct EligibilityLimits {
     /// Largest relative difference of a component of the vector of Eq. 5.18. The thesis' own pair differs by 6 % at most.
     pub vector_difference: f64,
     /// Least correlation of simulated and measured yaw rate over the target's trials.
     pub trend: f64,
 }
 
-impl Default for Limits {
+impl Default for EligibilityLimits {
     fn default() -> Self {
         Self { vector_difference: 0.35, trend: 0.6 }
     }
@@ -62,9 +62,9 @@ pub type Trend<'a> = &'a dyn Fn(&Model) -> Result<f64, String>;
 /// the target's trials; without trials the third step is left open and said to be.
 pub fn rank(
     target: &Vessel,
-    candidates: &[Candidate<'_>],
+    candidates: &[SourceCandidate<'_>],
     definition: Definition,
-    limits: &Limits,
+    limits: &EligibilityLimits,
     trend: Option<Trend<'_>>,
 ) -> Vec<RankedSource> {
     let here = CharacteristicVector::of(target, definition);
@@ -90,7 +90,7 @@ pub fn rank(
     ranking
 }
 
-fn judge(target: &Vessel, candidate: &Candidate<'_>, limits: &Limits, trend: Option<Trend<'_>>) -> Eligibility {
+fn judge(target: &Vessel, candidate: &SourceCandidate<'_>, limits: &EligibilityLimits, trend: Option<Trend<'_>>) -> Eligibility {
     let mut steps = vec![same_category(target, candidate.vessel), similar_vector(target, candidate.vessel, limits)];
     match candidate.model {
         None => steps.push(Err("no model: known by particulars only".into())),
@@ -105,14 +105,14 @@ fn judge(target: &Vessel, candidate: &Candidate<'_>, limits: &Limits, trend: Opt
     Eligibility { eligible, reasons: steps.into_iter().map(|step| step.unwrap_or_else(|reason| reason)).collect() }
 }
 
-type Step = Result<String, String>;
+type StepOutcome = Result<String, String>;
 
-fn same_category(target: &Vessel, source: &Vessel) -> Step {
+fn same_category(target: &Vessel, source: &Vessel) -> StepOutcome {
     let (here, there) = (&target.file.category, &source.file.category);
     if here == there { Ok(format!("same category: {here}")) } else { Err(format!("another category: {there}, not {here}")) }
 }
 
-fn similar_vector(target: &Vessel, source: &Vessel, limits: &Limits) -> Step {
+fn similar_vector(target: &Vessel, source: &Vessel, limits: &EligibilityLimits) -> StepOutcome {
     let definition = Definition::Kanazawa2023;
     let here = CharacteristicVector::of(target, definition);
     let there = CharacteristicVector::of(source, definition);
@@ -128,7 +128,7 @@ fn similar_vector(target: &Vessel, source: &Vessel, limits: &Limits) -> Step {
     }
 }
 
-fn captures_trend(measured: Result<f64, String>, limits: &Limits) -> Step {
+fn captures_trend(measured: Result<f64, String>, limits: &EligibilityLimits) -> StepOutcome {
     match measured {
         Err(reason) => Err(format!("does not capture the trials: {reason}")),
         Ok(r) if r >= limits.trend => Ok(format!("captures the trend of the trials: yaw rate correlates at {r:.2}")),

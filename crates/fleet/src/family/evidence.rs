@@ -11,7 +11,7 @@ const TELLING: f64 = 1e-8;
 
 /// What trials say: a likelihood proportional to `exp(-z' precision z/2 + information' z)`.
 #[derive(Debug, Clone)]
-pub(super) struct Evidence {
+pub(super) struct MemberEvidence {
     pub precision: DMatrix<f64>,
     pub information: DVector<f64>,
     /// How much more the trials of the member scatter than their samples would if each spoke for itself; none of one trial.
@@ -20,13 +20,13 @@ pub(super) struct Evidence {
 
 /// An axis of a family: where its coefficients stand among the statistics, and their units.
 #[derive(Debug, Clone)]
-pub(super) struct Place {
+pub(super) struct AxisPlace {
     pub regression: usize,
     pub axis: usize,
     pub units: Vec<f64>,
 }
 
-impl Place {
+impl AxisPlace {
     /// Regressors in units of the coefficients, and the axis' own target.
     fn moments(&self, trials: &[TrialStatistics]) -> Option<Vec<Moments>> {
         let regression = &trials.first()?.regressions[self.regression];
@@ -39,7 +39,7 @@ impl Place {
     }
 
     /// What a member's trials say; none where they have no sample.
-    pub fn evidence(&self, trials: &[TrialStatistics]) -> Option<Evidence> {
+    pub fn evidence(&self, trials: &[TrialStatistics]) -> Option<MemberEvidence> {
         let parts = self.moments(trials)?;
         let all = Moments::sum(&parts).filter(|all| all.count > 0.0)?;
         let whitened = Whitened::new(&all);
@@ -49,7 +49,7 @@ impl Place {
         let share = all.count / variance;
         let least = whitened.basis() * whitened.solution(0, lambda);
         let design_effect = (parts.len() > 1).then(|| scatter(&parts, &all, &whitened, &least) / variance);
-        Some(Evidence { precision: covariance * share, information: cross.column(0) * share, design_effect })
+        Some(MemberEvidence { precision: covariance * share, information: cross.column(0) * share, design_effect })
     }
 }
 

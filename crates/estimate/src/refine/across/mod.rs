@@ -2,9 +2,9 @@
 //!
 //! What a source says of a ship is not its coefficients but her accelerations. Where they are to hold another law, they are
 //! regressed on its terms over the envelope in which the model will be used ([`OperatingEnvelope`]): mean and covariance of that
-//! regression are the prior ([`Imitation`]). docs/decisions/0015 has the reasons.
+//! regression are the prior ([`SourceRegression`]). docs/decisions/0015 has the reasons.
 
-mod imitation;
+mod source_regression;
 
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
@@ -13,7 +13,7 @@ use sistership_model::{Model, Vessel};
 use super::envelope::OperatingEnvelope;
 use super::outcome::RefineError;
 use crate::transfer::{Approach, blank_of, transfer};
-pub(super) use imitation::Imitation;
+pub(super) use source_regression::SourceRegression;
 
 /// A source carried over to the target by its own law, and a model of the law to be fitted that knows nothing yet.
 pub(super) fn begun(

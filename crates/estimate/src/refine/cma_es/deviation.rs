@@ -19,7 +19,7 @@ const PERCENTILE: f64 = 0.997;
 
 /// The combinations, with what their accelerations may be.
 #[derive(Debug)]
-pub(super) struct Deviation {
+pub(super) struct DeviationPenalty {
     blocks: Vec<(Vec<StateVector>, Vec<Lanes<LANES>>)>,
     limits: [f64; 3],
     steps: usize,
@@ -27,7 +27,7 @@ pub(super) struct Deviation {
     count: f64,
 }
 
-impl Deviation {
+impl DeviationPenalty {
     /// From the extremes of trials; accelerations are means over `window_s`, for as long as which each combination is simulated.
     pub fn new(system: &CandidateSystem, law: &Law, trials: &[&Trial], step_s: f64, window_s: f64) -> Self {
         let starts = combinations(&RECORDED[..3].iter().map(|&(c, _)| three(trials, c, MARGIN)).collect::<Vec<_>>());

@@ -8,7 +8,7 @@ use sistership_model::law::Law;
 
 use super::conflict::conflict;
 use super::limit::{Affine, Limit};
-use super::programme::{Nearest, Steps};
+use super::programme::{NearestPointProblem, Overstepping};
 use super::straight::{affine, fastest, surge, sway_and_yaw};
 use super::{Constraints, StraightLine};
 
@@ -24,7 +24,7 @@ const SHIFT: f64 = 0.05;
 const REFERENCES: usize = 3;
 
 /// Limits of the coefficients of a model.
-pub(in super::super) struct Limits {
+pub(in super::super) struct CoefficientLimits {
     names: Vec<String>,
     source: Vec<f64>,
     /// Those that do not depend on a solution.
@@ -33,7 +33,7 @@ pub(in super::super) struct Limits {
     straight: Option<(StraightLine, [Affine; 4])>,
 }
 
-impl Limits {
+impl CoefficientLimits {
     /// For the coefficients that a model has; `speeds` are the least and the greatest that the trials covered, m/s.
     ///
     /// # Errors
@@ -80,7 +80,7 @@ impl Limits {
         let places = places.ok_or("constraints: a coefficient was not fitted")?;
         let curvature = curvature.select_rows(&places).select_columns(&places);
         let centre: Vec<f64> = self.names.iter().map(|name| solution.get(name).copied().unwrap_or(0.0)).collect();
-        let nearest = Nearest { centre: &centre, curvature: &curvature };
+        let nearest = NearestPointProblem { centre: &centre, curvature: &curvature };
         let mut common = self.fixed.clone();
         common.extend(self.trust(prior));
         let mut at = centre.clone();
@@ -142,8 +142,8 @@ impl Limits {
 }
 
 /// The point within limits that is nearest.
-fn within(nearest: &Nearest<'_>, limits: &[&Limit]) -> Result<Vec<f64>, String> {
-    match nearest.within(limits, Steps::Held) {
+fn within(nearest: &NearestPointProblem<'_>, limits: &[&Limit]) -> Result<Vec<f64>, String> {
+    match nearest.within(limits, Overstepping::Held) {
         Ok(point) => Ok(point.coefficients),
         Err(status) => Err(match conflict(nearest, limits) {
             Some(names) => format!("these constraints cannot be kept together: {}", names.join("; ")),

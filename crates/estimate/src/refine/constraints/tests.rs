@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, Matrix2};
 use sistership_dynamics::Ship;
 use sistership_model::{Law, Model, Zoo};
 
-use super::limits::Limits;
+use super::limits::CoefficientLimits;
 use super::straight::{fastest, sway_and_yaw};
 use super::*;
 
@@ -16,7 +16,7 @@ fn zoo(name: &str) -> (Model, std::sync::Arc<Law>) {
 
 /// The coefficients within limits that are nearest to a solution, a change by its own size counting alike for each.
 fn nearest(settings: &Constraints, source: &Model, law: &Law, solution: &Model) -> Result<Model, String> {
-    let limits = Limits::new(settings, source, law, [2.0, 8.0])?;
+    let limits = CoefficientLimits::new(settings, source, law, [2.0, 8.0])?;
     let names: Vec<String> = source.coefficients.keys().cloned().collect();
     let size = |name: &String| source.coefficient(name).abs().max(1e-6);
     let curvature = DMatrix::from_fn(names.len(), names.len(), |i, j| if i == j { size(&names[i]).powi(-2) } else { 0.0 });
@@ -132,7 +132,7 @@ fn the_ships_of_the_zoo_keep_signs_and_dissipation() {
     for name in ["mariner", "sr108", "kvlcc2", "kvlcc2-7m", "kcs", "esso-tanker"] {
         let model = zoo.model(name).unwrap();
         let speed = model.speed_m_s.unwrap_or(7.0);
-        let limits = Limits::new(&settings, &model, zoo.law(&model.law).unwrap(), [0.4 * speed, speed]).unwrap();
+        let limits = CoefficientLimits::new(&settings, &model, zoo.law(&model.law).unwrap(), [0.4 * speed, speed]).unwrap();
         assert_eq!(limits.check(&model), Ok(()), "{name}");
     }
 }

@@ -2,14 +2,14 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::rows::{Rows, Sequence};
-use sistership_regression::{Choice, Metric, Moments};
+use super::rows::{RowSequence, SequencedRows};
+use sistership_regression::{Metric, Moments, RidgeChoice};
 
 /// One target of one regression.
-pub(super) struct Equation<'a> {
+pub(super) struct RidgeEquation<'a> {
     pub block: usize,
     pub target: usize,
-    pub choice: Choice,
+    pub choice: RidgeChoice,
     /// What standardises its coefficients.
     pub metric: &'a Metric,
     /// `C`, standardised.
@@ -26,13 +26,13 @@ pub(super) struct Equation<'a> {
     pub free: (DMatrix<f64>, DVector<f64>),
 }
 
-impl<'a> Equation<'a> {
+impl<'a> RidgeEquation<'a> {
     pub fn new(
         (block, target): (usize, usize),
         moments: &Moments,
         (metric, products): &'a (Metric, DMatrix<f64>),
         source: &[f64],
-        choice: Choice,
+        choice: RidgeChoice,
     ) -> Option<Self> {
         let inverse = |lambda: f64| {
             let mut sum = products.clone();
@@ -50,9 +50,9 @@ impl<'a> Equation<'a> {
     }
 
     /// What the law leaves of its target, by sequence, where no source holds it: else the source's error would seem noise.
-    pub fn residuals(&self, rows: &Rows) -> Vec<DVector<f64>> {
+    pub fn residuals(&self, rows: &SequencedRows) -> Vec<DVector<f64>> {
         let coefficients = self.metric.back() * &self.free.1;
-        let of = |sequence: &Sequence| sequence.target(self.target) - &sequence.regressors * &coefficients;
+        let of = |sequence: &RowSequence| sequence.target(self.target) - &sequence.regressors * &coefficients;
         rows.blocks[self.block].iter().map(of).collect()
     }
 
@@ -62,7 +62,7 @@ impl<'a> Equation<'a> {
     }
 }
 
-impl Equation<'_> {
+impl RidgeEquation<'_> {
     /// By how much the residuals' variance is more than it seems, for the coefficients have taken up a part of it: with the
     /// hat matrix `A` and correlations `R`, the sum of squares is expected to be `tr (I - A) R (I - A)` of the variance.
     pub fn taken_up(&self, scatter: &DMatrix<f64>, variance: f64, count: f64) -> f64 {

@@ -16,10 +16,10 @@ use super::super::ridge::{Choices, Fold};
 use super::super::simulated::simulate_training;
 use super::super::variant::Variant;
 use super::fit::TrajectoryFit;
-use super::normal::{Normal, Pass, Passing};
-use super::prior::Prior;
-use super::segments::{Cut, Plan, compared, cut};
-use super::solve::Held;
+use super::normal::{NormalEquations, SegmentPass, SegmentSums};
+use super::prior::WeakFormPrior;
+use super::segments::{ComparisonPlan, SegmentLengths, compared, cut};
+use super::solve::PenalisedEquations;
 use crate::transfer::ready;
 use sistership_regression::Moments;
 
@@ -40,20 +40,20 @@ const STEPS: usize = 12;
 const ENOUGH: f64 = 2e-3;
 
 /// What the trajectory form makes of one variant.
-struct Descent<'a> {
+struct TrajectoryDescent<'a> {
     problem: &'a Problem<'a>,
     variant: &'a Variant,
     /// Its place among all.
     index: usize,
     choices: &'a Choices,
-    passing: Passing<'a>,
+    passing: SegmentPass<'a>,
     names: Vec<String>,
 }
 
 /// Coefficients with the pass at them.
 struct Linearisation {
     at: DVector<f64>,
-    pass: Pass,
+    pass: SegmentSums,
 }
 
 /// Adds candidates of the trajectory form, started from the best of the weak form; where every one stops while manoeuvres
@@ -78,7 +78,7 @@ pub(super) fn from_weak_form(
     let system = SensitiveSystem::new(&model, problem.law).map_err(|e| RefineError::Law(e.to_string()))?;
     let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;
     let compared = compared(system.states(), &standard_deviations(&problem.training));
-    let plan = Plan { compared, stride, step_s: cutting.step_s };
+    let plan = ComparisonPlan { compared, stride, step_s: cutting.step_s };
     let segments = cut(&problem.training, problem.law, system.input_names(), cutting, &plan)?;
     if segments.is_empty() {
         return Ok(());
@@ -86,17 +86,17 @@ pub(super) fn from_weak_form(
     let ship = ready(&model, problem.law, &problem.training).map_err(RefineError::Law)?;
     let thresholds = vec![f64::INFINITY; plan.compared.len()];
     let trials = problem.training.len();
-    let passing = Passing { segments: &segments, plan: &plan, envelope: *ship.envelope(), thresholds, trials };
+    let passing = SegmentPass { segments: &segments, plan: &plan, envelope: *ship.envelope(), thresholds, trials };
     let names = system.names().to_vec();
-    Descent { problem, variant, index, choices: &choices, passing, names }.candidates(error, candidates, progress)
+    TrajectoryDescent { problem, variant, index, choices: &choices, passing, names }.candidates(error, candidates, progress)
 }
 
-fn cutting(problem: &Problem<'_>) -> Cut {
+fn cutting(problem: &Problem<'_>) -> SegmentLengths {
     let given = &problem.settings;
     let interval = problem.interval_s();
     let step_s = interval * (given.step_s.unwrap_or(interval) / interval).round().max(1.0);
     let segment_s = given.segment_s.unwrap_or(120.0 * step_s);
-    Cut { segment_s, residual_s: given.residual_s.unwrap_or(4.0 * step_s).max(step_s), step_s }
+    SegmentLengths { segment_s, residual_s: given.residual_s.unwrap_or(4.0 * step_s).max(step_s), step_s }
 }
 
 /// The statistics of some trials, and the weak form's coefficients on them.
@@ -110,7 +110,7 @@ fn weak_form(
     Ok((moments, solved.into_iter().map(|(name, fitted)| (name, fitted.value)).collect()))
 }
 
-impl Descent<'_> {
+impl TrajectoryDescent<'_> {
     /// Candidates after the weak form's, which has an error.
     fn candidates(
         mut self,
@@ -120,7 +120,7 @@ impl Descent<'_> {
     ) -> Result<(), RefineError> {
         let prior = self.prior(&|_| true)?;
         self.passing.thresholds = self.thresholds(&prior.weak)?;
-        let priors: Vec<Prior> = (0..self.problem.fold_count())
+        let priors: Vec<WeakFormPrior> = (0..self.problem.fold_count())
             .map(|fold| self.prior(&|t| self.problem.is_fitted(t, fold)))
             .collect::<Result<_, _>>()?;
         let mut reached = self.reached(prior.weak.clone())?;
@@ -152,18 +152,18 @@ impl Descent<'_> {
     }
 
     /// What the weak form says on some trials.
-    fn prior(&self, keep: &dyn Fn(usize) -> bool) -> Result<Prior, RefineError> {
+    fn prior(&self, keep: &dyn Fn(usize) -> bool) -> Result<WeakFormPrior, RefineError> {
         let (moments, values) = weak_form(self.variant, self.choices, keep)?;
         let values = |name: &str| (values.get(name).copied().unwrap_or_default(), self.variant.model.coefficient(name));
         let lambda = self.choices.iter().flatten().map(|choice| choice.lambda).fold(0.0, f64::max).min(SOURCE);
-        Ok(Prior::new(&self.names, &self.variant.blocks, &moments, &values, lambda))
+        Ok(WeakFormPrior::new(&self.names, &self.variant.blocks, &moments, &values, lambda))
     }
 
     fn values(&self, at: &DVector<f64>) -> BTreeMap<String, f64> {
         self.names.iter().cloned().zip(at.iter().copied()).collect()
     }
 
-    fn pass(&self, at: &DVector<f64>) -> Result<Pass, RefineError> {
+    fn pass(&self, at: &DVector<f64>) -> Result<SegmentSums, RefineError> {
         let model = self.variant.model_at(&self.values(at));
         let system = SensitiveSystem::new(&model, self.problem.law).map_err(|e| RefineError::Law(e.to_string()))?;
         Ok(self.passing.pass(&system))
@@ -174,15 +174,15 @@ impl Descent<'_> {
     }
 
     /// From coefficients to the least cost nearby.
-    fn descend(&self, prior: &Prior, pull: f64, mut here: Linearisation) -> Result<Linearisation, RefineError> {
+    fn descend(&self, prior: &WeakFormPrior, pull: f64, mut here: Linearisation) -> Result<Linearisation, RefineError> {
         let mut damping = 1e-3;
-        let mut held = Held::new(&total(&here.pass, |_| true), prior, pull, &here.at);
+        let mut held = PenalisedEquations::new(&total(&here.pass, |_| true), prior, pull, &here.at);
         for _ in 0..STEPS {
             let model = || self.variant.model_at(&self.values(&here.at));
             self.problem.show(&Iterate { evaluations: 0, objective: held.cost, model: &model });
             let Some(step) = held.step(damping).filter(|step| held.foretold(step) > ENOUGH) else { break };
             let there = self.reached(&here.at + step)?;
-            let next = Held::new(&total(&there.pass, |_| true), prior, pull, &there.at);
+            let next = PenalisedEquations::new(&total(&there.pass, |_| true), prior, pull, &there.at);
             if next.cost.is_finite() && next.cost < held.cost {
                 let gained = 1.0 - next.cost / held.cost;
                 (here, held) = (there, next);
@@ -201,22 +201,22 @@ impl Descent<'_> {
     }
 
     /// The model of a fold: one step from where all trials are fitted, on the trials inside it and their weak form.
-    fn left_out(&self, fold: usize, prior: &Prior, pull: f64, reached: &Linearisation) -> Model {
+    fn left_out(&self, fold: usize, prior: &WeakFormPrior, pull: f64, reached: &Linearisation) -> Model {
         let normal = total(&reached.pass, |trial| self.problem.is_fitted(trial, fold));
-        let held = Held::new(&normal, prior, pull, &reached.at);
+        let held = PenalisedEquations::new(&normal, prior, pull, &reached.at);
         let at = held.step(1e-6).map_or_else(|| reached.at.clone(), |step| &reached.at + step);
         self.variant.model_at(&self.values(&at))
     }
 
     /// The fit at coefficients.
-    fn fit(&self, prior: &Prior, pull: f64, Linearisation { at, pass }: &Linearisation) -> TrajectoryFit {
+    fn fit(&self, prior: &WeakFormPrior, pull: f64, Linearisation { at, pass }: &Linearisation) -> TrajectoryFit {
         let normal = total(pass, |_| true);
         TrajectoryFit {
             variant: self.index,
             choices: self.choices.clone(),
             names: self.names.clone(),
             at: at.clone(),
-            held: Held::new(&normal, prior, pull, at),
+            held: PenalisedEquations::new(&normal, prior, pull, at),
             gradients: pass.gradients.clone(),
             cost: normal.cost,
             count: normal.count,
@@ -237,8 +237,8 @@ fn is_past_best(errors: &[f64]) -> bool {
 }
 
 /// Sums over some trials.
-fn total(pass: &Pass, keep: impl Fn(usize) -> bool) -> Normal {
-    let mut all = Normal::zeros(pass.trials.first().map_or(0, |normal| normal.gradient.len()));
+fn total(pass: &SegmentSums, keep: impl Fn(usize) -> bool) -> NormalEquations {
+    let mut all = NormalEquations::zeros(pass.trials.first().map_or(0, |normal| normal.gradient.len()));
     pass.trials.iter().enumerate().filter(|(trial, _)| keep(*trial)).for_each(|(_, normal)| all.add(normal));
     all
 }

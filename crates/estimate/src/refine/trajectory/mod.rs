@@ -17,5 +17,5 @@ mod segments;
 mod solve;
 
 pub(super) use estimator::TrajectoryForm;
-pub(super) use prior::Prior;
-pub(super) use segments::{Cut, Plan, Segment, compared, cut};
+pub(super) use prior::WeakFormPrior;
+pub(super) use segments::{ComparisonPlan, Segment, SegmentLengths, compared, cut};

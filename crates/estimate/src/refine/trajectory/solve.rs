@@ -2,19 +2,19 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::normal::Normal;
-use super::prior::Prior;
+use super::normal::NormalEquations;
+use super::prior::WeakFormPrior;
 
 /// Normal equations with what holds the coefficients, by the number of residuals.
-pub(super) struct Held {
+pub(super) struct PenalisedEquations {
     pub hessian: DMatrix<f64>,
     pub gradient: DVector<f64>,
     pub cost: f64,
 }
 
-impl Held {
+impl PenalisedEquations {
     /// At coefficients.
-    pub fn new(normal: &Normal, prior: &Prior, pull: f64, at: &DVector<f64>) -> Self {
+    pub fn new(normal: &NormalEquations, prior: &WeakFormPrior, pull: f64, at: &DVector<f64>) -> Self {
         let count = normal.count.max(1.0);
         let (mut hessian, mut gradient) = (&normal.hessian / count, &normal.gradient / count);
         prior.add(at, pull, &mut hessian, &mut gradient);

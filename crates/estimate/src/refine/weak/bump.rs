@@ -29,7 +29,7 @@ impl Windows {
     }
 
     /// The bumps of a trial, none of which reaches over a gap.
-    pub(super) fn over(&self, trial: &Trial) -> Vec<Bump> {
+    pub(super) fn over(&self, trial: &Trial) -> Vec<BumpFunction> {
         let interval_s = trial.interval_s();
         let (length, hop) = (self.length(interval_s), self.hop_s.max(interval_s));
         trial.segments().into_iter().flat_map(|segment| within(&trial.t_s, segment, length, hop)).collect()
@@ -37,7 +37,7 @@ impl Windows {
 }
 
 /// The bumps of a part without gaps.
-fn within(t_s: &[f64], segment: Range<usize>, length: f64, hop: f64) -> Vec<Bump> {
+fn within(t_s: &[f64], segment: Range<usize>, length: f64, hop: f64) -> Vec<BumpFunction> {
     let (start, end) = (t_s[segment.start], t_s[segment.end - 1]);
     let count = ((end - start - length) / hop + 1e-9).floor();
     let count = if count < 0.0 { 0 } else { count as usize + 1 };
@@ -46,14 +46,14 @@ fn within(t_s: &[f64], segment: Range<usize>, length: f64, hop: f64) -> Vec<Bump
         let from = start + k as f64 * hop;
         first += t_s[first..segment.end].partition_point(|t| *t < from - 1e-9);
         let samples = t_s[first..segment.end].partition_point(|t| *t <= from + length + 1e-9);
-        Bump::new(t_s, first..first + samples, from + 0.5 * length, 0.5 * length)
+        BumpFunction::new(t_s, first..first + samples, from + 0.5 * length, 0.5 * length)
     };
     (0..count).map(&mut one).collect()
 }
 
 /// A bump over the samples of a window: what integrates a column with it, and what integrates a rate of change by parts.
 #[derive(Debug, Clone)]
-pub(super) struct Bump {
+pub(super) struct BumpFunction {
     samples: Range<usize>,
     /// Trapezoidal weights times the bump; they add up to 1.
     weights: Vec<f64>,
@@ -61,7 +61,7 @@ pub(super) struct Bump {
     bump: Vec<f64>,
 }
 
-impl Bump {
+impl BumpFunction {
     fn new(t_s: &[f64], samples: Range<usize>, centre: f64, half: f64) -> Self {
         let t = &t_s[samples.clone()];
         let shape = |t: &f64| (1.0 - ((t - centre) / half).powi(2)).max(0.0).powi(3);

@@ -16,8 +16,8 @@ pub(super) use estimator::{WeakForm, equations, resolve};
 use super::blocks::{Block, Blocks};
 use super::outcome::RefineError;
 use super::rows::Table;
-use bump::Bump;
-use samples::{Columns, columns};
+use bump::BumpFunction;
+use samples::{SampledRegression, columns};
 use sistership_regression::Moments;
 
 /// The statistics of one trial in weak form about zero, one set for each regression; no window reaches over a gap.
@@ -47,7 +47,7 @@ pub fn weak_tables(blocks: &Blocks, trial: &Trial, windows: Windows) -> Result<V
 }
 
 /// One window's row.
-fn append(columns: &Columns<'_>, bump: &Bump, table: &mut Table) {
+fn append(columns: &SampledRegression<'_>, bump: &BumpFunction, table: &mut Table) {
     let (regressors, targets) = table.split_at_mut(columns.regressors.len());
     for (out, column) in regressors.iter_mut().zip(&columns.regressors) {
         out.push(bump.mean(column));

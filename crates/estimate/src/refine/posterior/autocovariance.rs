@@ -3,12 +3,12 @@
 use nalgebra::DVector;
 
 /// Autocovariances up to a lag from which they count no more.
-pub(super) struct Memory {
+pub(super) struct ResidualAutocovariance {
     /// By pair of equations, the later one's row of the lower triangle, then by lag.
     pairs: Vec<Vec<f64>>,
 }
 
-impl Memory {
+impl ResidualAutocovariance {
     /// Of residuals by equation and sequence.
     pub fn of(residuals: &[Vec<DVector<f64>>]) -> Self {
         let longest = residuals.iter().flatten().map(DVector::len).max().unwrap_or(0);

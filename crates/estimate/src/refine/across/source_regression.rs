@@ -10,7 +10,7 @@ use super::super::envelope::OperatingEnvelope;
 use super::super::merged::merged;
 use super::super::outcome::RefineError;
 use super::super::ridge::{Choices, Fold, fit};
-use sistership_regression::{Choice, Moments};
+use sistership_regression::{Moments, RidgeChoice};
 
 /// Groups that are left out together at most so many times.
 const FOLDS: usize = 8;
@@ -21,7 +21,7 @@ const IGNORANCE: f64 = 0.1;
 const RIDGES: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
 
 /// The statistics of what a source says, as a law's regressions see it.
-pub(in super::super) struct Imitation<'a> {
+pub(in super::super) struct SourceRegression<'a> {
     envelope: &'a OperatingEnvelope,
     /// By group and regression.
     moments: Vec<Vec<Moments>>,
@@ -30,7 +30,7 @@ pub(in super::super) struct Imitation<'a> {
     zero: Model,
 }
 
-impl<'a> Imitation<'a> {
+impl<'a> SourceRegression<'a> {
     /// Of a law's regressions for the coefficients that a model has; its own values are not read.
     ///
     /// # Errors
@@ -99,7 +99,7 @@ impl<'a> Imitation<'a> {
     }
 
     fn choices(&self, blocks: &Blocks) -> Choices {
-        blocks.blocks.iter().map(|block| vec![Choice { lambda: self.ridge, alpha: 0.0 }; block.axes.len()]).collect()
+        blocks.blocks.iter().map(|block| vec![RidgeChoice { lambda: self.ridge, alpha: 0.0 }; block.axes.len()]).collect()
     }
 }
 
