@@ -15,6 +15,7 @@ use sistership_model::{Effect, Model, Trial};
 use super::coefficient_prior::CoefficientPrior;
 use super::thresholds::THRESHOLDS;
 use crate::residual::{Columns, Nuisance, NuisanceKind};
+use sistership_estimate::refine::RefineError;
 
 /// Terms that a grammar spells and a model lacks, by name.
 pub type Terms = BTreeMap<String, Arc<Form>>;
@@ -79,8 +80,8 @@ pub fn prior(model: &Model, columns: &[Nuisance], terms: &Terms, slack: f64) -> 
 ///
 /// # Errors
 /// As [`Uncertainty::root`].
-pub fn learned_prior(uncertainty: &Uncertainty) -> Result<CoefficientPrior, String> {
-    let rows = uncertainty.root()?;
+pub fn learned_prior(uncertainty: &Uncertainty) -> Result<CoefficientPrior, RefineError> {
+    let rows = uncertainty.root().map_err(|error| RefineError::Law(error.to_string()))?;
     let size = rows.len();
     let entry = |i: usize, j: usize| if j >= i { rows[i][j - i] / uncertainty.scales[j] } else { 0.0 };
     let root = DMatrix::from_fn(size, size, entry);

@@ -60,9 +60,7 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, 
     let terms: Terms = learned(request.model, request.law, request.effects, request.trials);
     let nuisance = columns(request.model, request.law);
     let (fixed, levels) = match &request.model.uncertainty {
-        Some(uncertainty) => {
-            (learned_prior(uncertainty).map_err(RefineError::Law)?, THRESHOLDS.discrepancy.known_factors.map(known).to_vec())
-        }
+        Some(uncertainty) => (learned_prior(uncertainty)?, THRESHOLDS.discrepancy.known_factors.map(known).to_vec()),
         None => (
             prior(request.model, &nuisance, &terms, request.settings.slack),
             THRESHOLDS.discrepancy.unknown_factors.map(unknown).to_vec(),

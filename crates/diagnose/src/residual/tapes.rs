@@ -141,7 +141,7 @@ impl SystemBuilder<'_> {
     }
 
     fn force(&self, axis: Axis) -> Result<Expr, RefineError> {
-        sistership_dynamics::plant::force(self.model, self.law, axis).map_err(|e| RefineError::Law(e.to_string()))
+        Ok(sistership_dynamics::plant::force(self.model, self.law, axis)?)
     }
 
     fn addition(&self, axis: Axis) -> Option<Expr> {

@@ -9,6 +9,7 @@ use super::outcome::{RefineError, StepOption};
 use super::problem::Problem;
 use super::ridge::{Choices, Fit};
 use super::simulated::Simulated;
+use super::thresholds::SELECTION;
 use super::variant::Variant;
 use sistership_regression::RidgeChoice;
 
@@ -88,7 +89,7 @@ impl CandidateFit {
 pub(super) fn best(options: &[CandidateFit]) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
     for (index, error) in options.iter().enumerate().filter_map(|(index, o)| Some((index, o.option.error?))) {
-        let better = |(at, least): (usize, f64)| error < 0.99 * least && clearly(&options[index], &options[at]);
+        let better = |(at, least): (usize, f64)| error < SELECTION.better * least && clearly(&options[index], &options[at]);
         if error.is_finite() && best.is_none_or(better) {
             best = Some((index, error));
         }
@@ -105,5 +106,5 @@ fn clearly(new: &CandidateFit, old: &CandidateFit) -> bool {
     let count = gains.len() as f64;
     let mean = gains.iter().sum::<f64>() / count;
     let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    mean > 2.0 * (variance / count).sqrt()
+    mean > SELECTION.standard_errors * (variance / count).sqrt()
 }

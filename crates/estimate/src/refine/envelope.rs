@@ -15,15 +15,9 @@ use sistership_model::trial::{Channel, Trial};
 use super::blocks::{Block, Blocks};
 use super::outcome::RefineError;
 use super::rows::{Table, known_tables};
+use super::thresholds::SOURCE;
 use crate::transfer::ready;
 use sistership_regression::Moments;
-
-/// Most samples of a trial or manoeuvre: neighbours say the same.
-const SAMPLES: usize = 400;
-/// A law that is expanded about an approach speed says nothing of much slower motion.
-const LEAST_OF_APPROACH: f64 = 0.3;
-/// What is smaller than this by the largest regressor is rounding.
-const ROUNDING: f64 = 1e-13;
 
 /// What a source says where a model will be used.
 #[derive(Debug)]
@@ -71,7 +65,7 @@ impl OperatingEnvelope {
     /// # Errors
     /// The source cannot sail, or the trials are nowhere that it knows.
     pub fn new(source: &Model, law: &Law, trials: &[&Trial]) -> Result<Self, RefineError> {
-        let ship = ready(source, law, trials).map_err(RefineError::Law)?;
+        let ship = ready(source, law, trials)?;
         let asked = SourceResponse::new(&ship, source, law);
         let recorded = trials.iter().filter_map(|trial| asked.group(trial.depth_m, asked.recorded(trial)));
         let sailed = sail_together(&ship, &STANDARD.map(|manoeuvre| (manoeuvre, &[][..])), &ManoeuvreSettings::default());
@@ -93,10 +87,10 @@ impl OperatingEnvelope {
     }
 }
 
-/// Groups that together count as much as [`SAMPLES`] samples.
+/// Groups that together count as much as [`SOURCE`]'s samples.
 fn evened(mut groups: Vec<SampleGroup>) -> Vec<SampleGroup> {
     let all: usize = groups.iter().map(|group| group.samples.len()).sum();
-    groups.iter_mut().for_each(|group| group.weight = SAMPLES as f64 / all as f64);
+    groups.iter_mut().for_each(|group| group.weight = SOURCE.samples as f64 / all as f64);
     groups
 }
 
@@ -116,7 +110,7 @@ struct SourceResponse<'a> {
 impl<'a> SourceResponse<'a> {
     fn new(ship: &'a Ship, source: &Model, law: &Law) -> Self {
         let expanded = law.approach_speed_parameter().is_some();
-        let least_m_s = if expanded { LEAST_OF_APPROACH * ship.approach_speed_m_s() } else { 0.0 };
+        let least_m_s = if expanded { SOURCE.least_speed * ship.approach_speed_m_s() } else { 0.0 };
         Self { ship, propeller: ship.has_propeller(), n_rps: source.revolutions_rps.unwrap_or(0.0), least_m_s }
     }
 
@@ -196,14 +190,14 @@ fn calm(state: &StateVector) -> (f64, f64) {
     (u.hypot(v), (-v).atan2(-u))
 }
 
-/// At most [`SAMPLES`] places, evenly spread.
+/// At most as many places as samples are asked of a group, evenly spread.
 fn spread(count: usize) -> impl Iterator<Item = usize> {
-    (0..count).step_by(count.div_ceil(SAMPLES).max(1))
+    (0..count).step_by(count.div_ceil(SOURCE.samples).max(1))
 }
 
 /// Regressors that are nothing but rounding become zero: the source says nothing of them.
 fn silence(regressors: &mut [Vec<f64>]) {
     let size = |column: &Vec<f64>| column.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let least = ROUNDING * regressors.iter().map(size).fold(0.0, f64::max);
+    let least = SOURCE.rounding * regressors.iter().map(size).fold(0.0, f64::max);
     regressors.iter_mut().filter(|column| size(column) < least).for_each(|column| column.fill(0.0));
 }

@@ -3,14 +3,17 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use sistership_dynamics::PlantError;
 use sistership_dynamics::manoeuvre::StandardManoeuvres;
 use sistership_dynamics::metrics::ManoeuvreMetrics;
 use sistership_model::Model;
 use sistership_model::trial::Channel;
 
 use super::cma_es::SearchReport;
+use super::constraints::LimitError;
 use super::settings::Settings;
 use crate::bands::Bands;
+use crate::transfer::UnknownParameter;
 
 /// Why a refinement is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -52,10 +55,22 @@ pub enum RefineError {
     Diverged(String),
     /// The constraints cannot be kept.
     #[error("{0}")]
-    Constraints(String),
+    Constraints(#[from] LimitError),
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<PlantError> for RefineError {
+    fn from(error: PlantError) -> Self {
+        Self::Law(error.to_string())
+    }
+}
+
+impl From<UnknownParameter> for RefineError {
+    fn from(error: UnknownParameter) -> Self {
+        Self::Law(error.to_string())
+    }
 }
 
 /// How one coefficient moved.

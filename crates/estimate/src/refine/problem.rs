@@ -13,6 +13,7 @@ use super::progress::{Iterate, Watch};
 use super::ridge::Fitted;
 use super::settings::Settings;
 use super::thinned::thinned;
+use super::thresholds::SELECTION;
 use crate::transfer::approach_of;
 
 /// What does not change while candidates are compared.
@@ -96,6 +97,6 @@ impl<'a> Problem<'a> {
 
 /// Trials with samples as far apart as a thirtieth of the time in which the ship sails its length.
 pub(super) fn for_simulation(lpp_m: Option<f64>, training: &[&Trial]) -> Vec<Trial> {
-    let step_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s / 30.0);
+    let step_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s / SELECTION.samples_a_length);
     training.iter().map(|trial| thinned(trial, step_s)).collect()
 }

@@ -9,6 +9,7 @@ use sistership_model::coefficient::Axis;
 use super::blocks::{Block, Blocks};
 use super::errors::CoefficientErrors;
 use super::settings::Range;
+use super::thresholds::SELECTION;
 use sistership_regression::{Moments, RidgeChoice, RidgePath, Validation};
 
 /// A coefficient as fitted.
@@ -208,7 +209,7 @@ pub fn fit(blocks: &Blocks, moments: &[Moments], model: &Model, choices: &Choice
         let prepared = PreparedRegression::new(block, moments, model);
         unmix(&prepared, choices, &mut result.coefficients);
         result.condition_number = result.condition_number.max(prepared.path.condition_number());
-        for group in prepared.path.collinear_groups(1e-6) {
+        for group in prepared.path.collinear_groups(SELECTION.collinear) {
             result.collinear_groups.push(group.iter().map(|&i| joined(block, i)).collect());
         }
     }

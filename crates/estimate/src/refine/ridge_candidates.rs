@@ -3,6 +3,7 @@
 use sistership_model::Model;
 
 use super::candidate::{CandidateFit, Solution, UnchangedSource};
+use super::constraints::LimitError;
 use super::errors::CoefficientErrors;
 use super::outcome::RefineError;
 use super::problem::Problem;
@@ -24,7 +25,7 @@ impl Solution for RidgeSolution {
         let mut fitted = fit(&variant.blocks, &all, &variant.model, &self.choices);
         if variant.limits.is_some() {
             let fold = Fold::new(&variant.blocks, &variant.model, &all, &[]);
-            fitted.coefficients = variant.solve(&fold, &self.choices).map_err(RefineError::Constraints)?;
+            fitted.coefficients = variant.solve(&fold, &self.choices)?;
         }
         Ok(Some(fitted))
     }
@@ -45,7 +46,7 @@ impl Solution for RidgeSolution {
 pub(super) fn source_candidate(problem: &Problem<'_>, variants: &[Variant]) -> Result<CandidateFit, RefineError> {
     let limits = variants.iter().find_map(|variant| variant.limits.as_ref());
     let simulated = match limits.map(|limits| limits.check(&problem.transferred)) {
-        Some(Err(reason)) => Simulated::refused(reason),
+        Some(Err(reason)) => Simulated::refused(reason.to_string()),
         _ => simulate_training(problem, std::slice::from_ref(&problem.transferred), &|_| 0)?,
     };
     Ok(CandidateFit::new(problem, ("source".into(), None), UnchangedSource, 0, simulated))
@@ -64,11 +65,11 @@ pub(super) fn ridge_candidate(
 ) -> Result<CandidateFit, RefineError> {
     let step = (name, Some(lambda_min));
     let model = |fold: &Fold<'_>| Ok(problem.model_with(&variant.solve(fold, &choices)?));
-    let models: Vec<Model> = match folds.iter().map(model).collect::<Result<_, String>>() {
+    let models: Vec<Model> = match folds.iter().map(model).collect::<Result<_, LimitError>>() {
         Ok(models) => models,
         Err(reason) => {
             let ridge = RidgeSolution { variant: index, choices };
-            return Ok(CandidateFit::new(problem, step, ridge, 0, Simulated::refused(reason)));
+            return Ok(CandidateFit::new(problem, step, ridge, 0, Simulated::refused(reason.to_string())));
         }
     };
     let simulated = simulate_training(problem, &models, &|trial| problem.fold_of(trial))?;

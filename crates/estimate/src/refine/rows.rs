@@ -71,13 +71,6 @@ fn tables(
     tables
 }
 
-impl Block {
-    /// Columns of its table: regressors, then targets.
-    fn width(&self) -> usize {
-        self.regressors() + self.axes.len()
-    }
-}
-
 /// Samples and the later samples to which they are differenced.
 fn pairs(trial: &Trial, difference_s: Option<f64>) -> Vec<(usize, usize)> {
     let stride = difference_s.map_or(1, |s| (s / trial.interval_s()).round().max(1.0) as usize);

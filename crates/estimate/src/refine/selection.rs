@@ -7,6 +7,7 @@ use sistership_model::{Model, Vessel};
 
 use super::across::{self, SourceRegression};
 use super::blocks::Blocks;
+use super::estimators::estimator;
 use super::finish::finish;
 use super::measure::PriorMeasure;
 use super::outcome::{RefineError, Refinement};
@@ -15,6 +16,7 @@ use super::problem::{Problem, for_simulation};
 use super::progress::{MonotoneProgress, Progress, Watch, step};
 use super::ridge_candidates::source_candidate;
 use super::settings::Settings;
+use super::thresholds::SELECTION;
 use super::variant::variants;
 use crate::transfer::{approach_of, transfer};
 
@@ -53,7 +55,7 @@ pub fn refine_watched(request: &Request<'_>, progress: Progress<'_>, watch: Watc
     let progress = MonotoneProgress::new(progress);
     let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
     let settings = resolved(request.settings, request.target.particular("lpp_m"), &whole);
-    let estimator = settings.method.estimator();
+    let estimator = estimator(settings.method);
     let equations = estimator.equations(&settings);
     let parts = parts(&whole, request.law, equations, &settings);
     let (transferred, measure) = starting(request, &whole, !parts.is_empty())?;
@@ -103,7 +105,7 @@ fn divided<'a>(request: &'a Request<'a>) -> Result<(Vec<&'a Trial>, Vec<&'a Tria
 pub(super) fn resolved(settings: &Settings, lpp_m: Option<f64>, training: &[&Trial]) -> Settings {
     let length_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s);
     let mut settings = settings.clone();
-    settings.method.estimator().resolve(&mut settings, length_s);
-    settings.restart_s = settings.restart_s.or(length_s.map(|s| 10.0 * s));
+    estimator(settings.method).resolve(&mut settings, length_s);
+    settings.restart_s = settings.restart_s.or(length_s.map(|s| SELECTION.restart * s));
     settings
 }

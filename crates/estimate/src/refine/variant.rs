@@ -9,7 +9,7 @@ use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 
 use super::blocks::Blocks;
-use super::constraints::CoefficientLimits;
+use super::constraints::{CoefficientLimits, LimitError};
 use super::equations::Equations;
 use super::errors::CoefficientErrors;
 use super::family::Family;
@@ -21,6 +21,7 @@ use super::problem::Problem;
 use super::ridge::{Choices, Fitted, Fold, most_likely};
 use super::rows::Table;
 use super::settings::Range;
+use super::thresholds::SELECTION;
 use sistership_regression::{Moments, RidgeChoice};
 
 /// One family of terms.
@@ -58,7 +59,7 @@ impl Variant {
     ///
     /// # Errors
     /// Names the limits that cannot be kept together.
-    pub fn solve(&self, fold: &Fold<'_>, choices: &Choices) -> Result<BTreeMap<String, Fitted>, String> {
+    pub fn solve(&self, fold: &Fold<'_>, choices: &Choices) -> Result<BTreeMap<String, Fitted>, LimitError> {
         let mut fitted = fold.solve(choices);
         let Some(limits) = &self.limits else { return Ok(fitted) };
         let (names, curvature) = fold.curvature(choices);
@@ -123,9 +124,10 @@ impl Variant {
     /// every fold keeps something that excites roll.
     pub fn common_choices(&self, lambda: f64) -> Result<Choices, RefineError> {
         let blocks = &self.blocks.blocks;
-        let free = Range { lambda_min: 1e-9, lambda_max: 1.0, alpha_max: 0.0 };
+        let [lambda_min, lambda_max] = SELECTION.roll_strengths;
+        let free = Range { lambda_min, lambda_max, alpha_max: 0.0 };
         let tuned = if blocks.iter().any(|block| block.axes.contains(&Axis::K)) {
-            most_likely(&self.blocks, &self.together(|_| true)?, &self.model, &free, 50)
+            most_likely(&self.blocks, &self.together(|_| true)?, &self.model, &free, SELECTION.roll_strength_count)
         } else {
             Choices::new()
         };
@@ -167,7 +169,7 @@ fn limits(problem: &Problem<'_>, model: &Model) -> Result<Option<CoefficientLimi
     let speeds = problem.whole.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
     let speeds = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], u| [low.min(*u), high.max(*u)]);
     let limits = CoefficientLimits::new(asked, model, problem.law, speeds);
-    limits.map(Some).map_err(|message| RefineError::Setting { field: "constraints".into(), message })
+    limits.map(Some).map_err(|error| RefineError::Setting { field: "constraints".into(), message: error.to_string() })
 }
 
 /// Statistics by trial and regression.

@@ -9,7 +9,7 @@ mod learn;
 mod prior;
 
 pub use learn::{FamilyError, Member, learn};
-pub use prior::{FORMAT, FamilyAxis, FamilyPrior};
+pub use prior::{FORMAT, FamilyAxis, FamilyPrior, FamilyPriorError};
 
 #[cfg(test)]
 mod tests;

@@ -20,6 +20,7 @@ use super::super::trajectory::{ComparisonPlan, Segment, SegmentLengths, WeakForm
 use super::super::variant::Variant;
 use super::deviation::DeviationPenalty;
 use super::objective::{Objective, Sequences};
+use super::thresholds::SEARCH;
 use super::{CmaEs, SearchReport};
 use crate::transfer::ready;
 use sistership_regression::cma_es::{Budget, CmaEsSearch, SearchCancelled, SearchOutcome, SearchState};
@@ -79,24 +80,29 @@ fn sequences(problem: &Problem<'_>) -> SegmentLengths {
     let wanted = settings.step_s.unwrap_or(interval);
     let step_s = if wanted >= interval { interval * (wanted / interval).round() } else { interval / (interval / wanted).ceil() };
     let residual_s = settings.residual_s.unwrap_or(interval).max(step_s);
-    SegmentLengths { segment_s: settings.segment_s.unwrap_or(1000.0 * step_s), residual_s, step_s }
+    SegmentLengths { segment_s: settings.segment_s.unwrap_or(SEARCH.fallback_steps * step_s), residual_s, step_s }
 }
 
 impl<'a> VariantSearch<'a> {
     fn new(problem: &'a Problem<'a>, variant: &'a Variant, settings: &'a CmaEs) -> Result<Self, RefineError> {
-        let law = |error: sistership_dynamics::PlantError| RefineError::Law(error.to_string());
-        let system = CandidateSystem::new(&variant.model, problem.law).map_err(law)?;
+        let system = CandidateSystem::new(&variant.model, problem.law)?;
         let cutting = sequences(problem);
         let plan = plan(problem, &system, cutting)?;
         let segments = cut(&problem.training, problem.law, system.input_names(), cutting, &plan)?;
         if segments.is_empty() {
             return Err(RefineError::Data("no trial is as long as a third of a subsequence".into()));
         }
-        let ship = ready(&variant.model, problem.law, &problem.training).map_err(RefineError::Law)?;
+        let ship = ready(&variant.model, problem.law, &problem.training)?;
         let sizes = natural_sizes(variant, system.names())?;
         let moved = (0..sizes.len()).filter(|k| sizes[*k] > 0.0).collect();
         let objective = Objective {
-            deviation: DeviationPenalty::new(&system, problem.law, &problem.training, cutting.step_s, 10.0 * cutting.step_s),
+            deviation: DeviationPenalty::new(
+                &system,
+                problem.law,
+                &problem.training,
+                cutting.step_s,
+                SEARCH.mean_steps * cutting.step_s,
+            ),
             source: system.names().iter().map(|name| variant.model.coefficient(name)).collect(),
             system,
             plan,
@@ -157,7 +163,7 @@ impl<'a> VariantSearch<'a> {
         let sequences = Sequences::new(&self.objective, self.segments.iter().filter(inside));
         let cost = |parameters: &[f64]| self.objective.cost(&sequences, &self.spread(parameters));
         let search = self.searching(budget, self.settings.seed.wrapping_add(1000 * (fold as u64 + 1)));
-        let first = optimum.strategy.renewed(&optimum.best, 0.1 * self.settings.spread, search.seed);
+        let first = optimum.strategy.renewed(&optimum.best, SEARCH.fold_spread * self.settings.spread, search.seed);
         let mut tell = |_: &SearchState<'_>| told(0.7, "the search without the trials of each fold").is_ok();
         search.from(first, &cost, &mut tell).map_err(|SearchCancelled| RefineError::Cancelled)
     }

@@ -7,11 +7,10 @@ use sistership_dynamics::{Envelope, Method};
 
 use super::super::trajectory::{ComparisonPlan, Segment};
 use super::deviation::DeviationPenalty;
+use super::thresholds::SEARCH;
 
 /// Subsequences in lockstep.
 const LANES: usize = 16;
-/// What a standardised difference counts that a simulation never came to.
-const LOST: f64 = 30.0;
 
 /// Subsequences in lockstep: where each starts, what is put in and what should come out, by lane.
 #[derive(Debug)]
@@ -136,7 +135,7 @@ impl Objective {
                 }
             }
         }
-        sums.iter().zip(&left).map(|(sum, left)| sum + 3.0 * LOST * LOST * left).sum()
+        sums.iter().zip(&left).map(|(sum, left)| sum + 3.0 * SEARCH.lost * SEARCH.lost * left).sum()
     }
 
     /// Adds a comparison to the lanes that have not left the physical range before; `left` are those that remain.

@@ -2,9 +2,7 @@
 
 use super::limit::Limit;
 use super::programme::{NearestPointProblem, Overstepping};
-
-/// Overstepping that is no more than the solver's own error, by the scale of a limit.
-const ERROR: f64 = 1e-6;
+use super::thresholds::CONSTRAINTS;
 
 /// A set of limits that cannot be kept together, none of which can be left out of it (the deletion filter of Chinneck and
 /// Dravnieks 1991, ORSA Journal on Computing 3, 157-168), by name; none where all can be kept.
@@ -27,5 +25,7 @@ fn possible(nearest: &NearestPointProblem<'_>, limits: &[&Limit]) -> bool {
     if limits.is_empty() {
         return true;
     }
-    nearest.within(limits, Overstepping::Elastic).is_ok_and(|point| point.overstepped.iter().all(|by| *by < ERROR))
+    nearest
+        .within(limits, Overstepping::Elastic)
+        .is_ok_and(|point| point.overstepped.iter().all(|by| *by < CONSTRAINTS.solver_error))
 }

@@ -7,6 +7,7 @@ use clarabel::solver::{
 use nalgebra::{DMatrix, DVector};
 
 use super::limit::Limit;
+use super::thresholds::CONSTRAINTS;
 
 /// What is nearest: coefficients, and the curvature by which distance is measured.
 pub(super) struct NearestPointProblem<'a> {
@@ -38,7 +39,7 @@ impl NearestPointProblem<'_> {
     pub fn within(&self, limits: &[&Limit], steps: Overstepping) -> Result<NearestPoint, SolverStatus> {
         let (size, extra) = (self.centre.len(), if steps == Overstepping::Elastic { limits.len() } else { 0 });
         let scales = self.scales();
-        let weight = if steps == Overstepping::Elastic { 1e-7 } else { 1.0 };
+        let weight = if steps == Overstepping::Elastic { CONSTRAINTS.elastic_weight } else { 1.0 };
         let entry = |i: usize, j: usize| match i.max(j) < size {
             true => weight * self.curvature[(i, j)] * scales[i] * scales[j],
             false => 0.0,

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::rows::{RowSequence, SequencedRows};
+use super::thresholds::POSTERIOR;
 use sistership_regression::{Metric, Moments, RidgeChoice};
 
 /// One target of one regression.
@@ -41,7 +42,7 @@ impl<'a> RidgeEquation<'a> {
         };
         let data = metric.products_with_target(moments, target);
         let source = metric.root() * DVector::from_column_slice(source);
-        let lambda = choice.lambda.min(FREE);
+        let lambda = choice.lambda.min(POSTERIOR.residual_strength);
         let free = inverse(lambda)?;
         let solution = &free * (&data + &source * lambda);
         let square = moments.target_variance(target);
@@ -69,11 +70,6 @@ impl RidgeEquation<'_> {
         let unit = scatter * (count / variance.max(f64::MIN_POSITIVE));
         let moved = &self.free.0 * unit;
         let left = 1.0 - (2.0 * moved.trace() - (&moved * &self.free.0 * self.products).trace()) / count;
-        1.0 / left.clamp(LEAST_LEFT, 1.0)
+        1.0 / left.clamp(POSTERIOR.least_left, 1.0)
     }
 }
-
-/// Strength at which residuals are taken.
-const FREE: f64 = 1e-5;
-/// Where coefficients take up more than this leaves, residuals say nothing of their own size.
-const LEAST_LEFT: f64 = 0.1;

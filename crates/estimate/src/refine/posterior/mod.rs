@@ -13,6 +13,7 @@ mod autocovariance;
 mod equation;
 mod rows;
 mod spread;
+mod thresholds;
 
 use nalgebra::{DMatrix, DVector};
 use sistership_model::Model;

@@ -20,24 +20,9 @@ use super::normal::{NormalEquations, SegmentPass, SegmentSums};
 use super::prior::WeakFormPrior;
 use super::segments::{ComparisonPlan, SegmentLengths, compared, cut};
 use super::solve::PenalisedEquations;
+use super::thresholds::TRAJECTORY;
 use crate::transfer::ready;
 use sistership_regression::Moments;
-
-/// Pulls towards the weak form that are tried, strongest first, each from where the one before has ended, until [the best is
-/// past](is_past_best). A stronger one would give the weak form.
-const PULLS: [f64; 6] = [10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4];
-/// How strongly the source holds trajectories, at most, however much of it the weak form needs.
-const SOURCE: f64 = 0.01;
-/// So many times the error of another is clearly worse.
-const CLEARLY: f64 = 1.02;
-/// Huber's threshold in robust standard deviations of a state's residuals.
-const HUBER: f64 = 3.0;
-/// A median needs no more than so many times fewer segments, where there are many.
-const SOME: usize = 4;
-/// Most steps.
-const STEPS: usize = 12;
-/// Steps end when one gains, or would gain, less than this share.
-const ENOUGH: f64 = 2e-3;
 
 /// What the trajectory form makes of one variant.
 struct TrajectoryDescent<'a> {
@@ -75,7 +60,7 @@ pub(super) fn from_weak_form(
     step(progress, 0.6, "trajectories from the weak form")?;
     let cutting = cutting(problem);
     let model = variant.model_at(&weak_form(variant, &choices, &|_| true)?.1);
-    let system = SensitiveSystem::new(&model, problem.law).map_err(|e| RefineError::Law(e.to_string()))?;
+    let system = SensitiveSystem::new(&model, problem.law)?;
     let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;
     let compared = compared(system.states(), &standard_deviations(&problem.training));
     let plan = ComparisonPlan { compared, stride, step_s: cutting.step_s };
@@ -83,7 +68,7 @@ pub(super) fn from_weak_form(
     if segments.is_empty() {
         return Ok(());
     }
-    let ship = ready(&model, problem.law, &problem.training).map_err(RefineError::Law)?;
+    let ship = ready(&model, problem.law, &problem.training)?;
     let thresholds = vec![f64::INFINITY; plan.compared.len()];
     let trials = problem.training.len();
     let passing = SegmentPass { segments: &segments, plan: &plan, envelope: *ship.envelope(), thresholds, trials };
@@ -95,8 +80,8 @@ fn cutting(problem: &Problem<'_>) -> SegmentLengths {
     let given = &problem.settings;
     let interval = problem.interval_s();
     let step_s = interval * (given.step_s.unwrap_or(interval) / interval).round().max(1.0);
-    let segment_s = given.segment_s.unwrap_or(120.0 * step_s);
-    SegmentLengths { segment_s, residual_s: given.residual_s.unwrap_or(4.0 * step_s).max(step_s), step_s }
+    let segment_s = given.segment_s.unwrap_or(TRAJECTORY.fallback_steps * step_s);
+    SegmentLengths { segment_s, residual_s: given.residual_s.unwrap_or(TRAJECTORY.fallback_stride * step_s).max(step_s), step_s }
 }
 
 /// The statistics of some trials, and the weak form's coefficients on them.
@@ -125,7 +110,7 @@ impl TrajectoryDescent<'_> {
             .collect::<Result<_, _>>()?;
         let mut reached = self.reached(prior.weak.clone())?;
         let mut errors = vec![weak.unwrap_or(f64::INFINITY)];
-        for pull in PULLS {
+        for pull in TRAJECTORY.pulls {
             let label = format!("trajectory, {}, pull {pull:.0e}", self.variant.family.name());
             step(progress, 0.7, &label)?;
             reached = self.descend(&prior, pull, reached)?;
@@ -144,18 +129,18 @@ impl TrajectoryDescent<'_> {
         Ok(())
     }
 
-    /// Huber's thresholds from every [`SOME`]th segment.
+    /// Huber's thresholds from some of the segments.
     fn thresholds(&self, at: &DVector<f64>) -> Result<Vec<f64>, RefineError> {
         let model = self.variant.model_at(&self.values(at));
-        let system = SensitiveSystem::new(&model, self.problem.law).map_err(|e| RefineError::Law(e.to_string()))?;
-        Ok(self.passing.sizes(&system, SOME).into_iter().map(threshold).collect())
+        let system = SensitiveSystem::new(&model, self.problem.law)?;
+        Ok(self.passing.sizes(&system, TRAJECTORY.median_stride).into_iter().map(threshold).collect())
     }
 
     /// What the weak form says on some trials.
     fn prior(&self, keep: &dyn Fn(usize) -> bool) -> Result<WeakFormPrior, RefineError> {
         let (moments, values) = weak_form(self.variant, self.choices, keep)?;
         let values = |name: &str| (values.get(name).copied().unwrap_or_default(), self.variant.model.coefficient(name));
-        let lambda = self.choices.iter().flatten().map(|choice| choice.lambda).fold(0.0, f64::max).min(SOURCE);
+        let lambda = self.choices.iter().flatten().map(|choice| choice.lambda).fold(0.0, f64::max).min(TRAJECTORY.source_share);
         Ok(WeakFormPrior::new(&self.names, &self.variant.blocks, &moments, &values, lambda))
     }
 
@@ -165,7 +150,7 @@ impl TrajectoryDescent<'_> {
 
     fn pass(&self, at: &DVector<f64>) -> Result<SegmentSums, RefineError> {
         let model = self.variant.model_at(&self.values(at));
-        let system = SensitiveSystem::new(&model, self.problem.law).map_err(|e| RefineError::Law(e.to_string()))?;
+        let system = SensitiveSystem::new(&model, self.problem.law)?;
         Ok(self.passing.pass(&system))
     }
 
@@ -175,24 +160,24 @@ impl TrajectoryDescent<'_> {
 
     /// From coefficients to the least cost nearby.
     fn descend(&self, prior: &WeakFormPrior, pull: f64, mut here: Linearisation) -> Result<Linearisation, RefineError> {
-        let mut damping = 1e-3;
+        let mut damping = TRAJECTORY.damping;
         let mut held = PenalisedEquations::new(&total(&here.pass, |_| true), prior, pull, &here.at);
-        for _ in 0..STEPS {
+        for _ in 0..TRAJECTORY.steps {
             let model = || self.variant.model_at(&self.values(&here.at));
             self.problem.show(&Iterate { evaluations: 0, objective: held.cost, model: &model });
-            let Some(step) = held.step(damping).filter(|step| held.foretold(step) > ENOUGH) else { break };
+            let Some(step) = held.step(damping).filter(|step| held.foretold(step) > TRAJECTORY.least_gain) else { break };
             let there = self.reached(&here.at + step)?;
             let next = PenalisedEquations::new(&total(&there.pass, |_| true), prior, pull, &there.at);
             if next.cost.is_finite() && next.cost < held.cost {
                 let gained = 1.0 - next.cost / held.cost;
                 (here, held) = (there, next);
-                damping *= 0.1;
-                if gained < ENOUGH {
+                damping *= TRAJECTORY.damping_falls;
+                if gained < TRAJECTORY.least_gain {
                     break;
                 }
             } else {
-                damping = (damping * 30.0).max(1e-2);
-                if damping > 1e6 {
+                damping = (damping * TRAJECTORY.damping_grows).max(TRAJECTORY.damping_least);
+                if damping > TRAJECTORY.damping_most {
                     break;
                 }
             }
@@ -204,7 +189,7 @@ impl TrajectoryDescent<'_> {
     fn left_out(&self, fold: usize, prior: &WeakFormPrior, pull: f64, reached: &Linearisation) -> Model {
         let normal = total(&reached.pass, |trial| self.problem.is_fitted(trial, fold));
         let held = PenalisedEquations::new(&normal, prior, pull, &reached.at);
-        let at = held.step(1e-6).map_or_else(|| reached.at.clone(), |step| &reached.at + step);
+        let at = held.step(TRAJECTORY.fold_damping).map_or_else(|| reached.at.clone(), |step| &reached.at + step);
         self.variant.model_at(&self.values(&at))
     }
 
@@ -233,7 +218,7 @@ fn is_past_best(errors: &[f64]) -> bool {
     let [weak, .., before, last] = *errors else { return false };
     let (best, best_before) = (best(errors), best(&errors[..errors.len() - 2]));
     let none_better = best_before.is_finite() && before.min(last) >= best_before;
-    none_better || (best < weak && last > CLEARLY * best)
+    none_better || (best < weak && last > TRAJECTORY.clearly_worse * best)
 }
 
 /// Sums over some trials.
@@ -247,7 +232,7 @@ fn total(pass: &SegmentSums, keep: impl Fn(usize) -> bool) -> NormalEquations {
 fn threshold(mut sizes: Vec<f64>) -> f64 {
     sizes.sort_by(f64::total_cmp);
     let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-    if median > 0.0 { HUBER * 1.4826 * median } else { f64::INFINITY }
+    if median > 0.0 { TRAJECTORY.huber * 1.4826 * median } else { f64::INFINITY }
 }
 
 #[cfg(test)]

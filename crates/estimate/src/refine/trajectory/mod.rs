@@ -15,6 +15,7 @@ mod normal;
 mod prior;
 mod segments;
 mod solve;
+mod thresholds;
 
 pub(super) use estimator::TrajectoryForm;
 pub(super) use prior::WeakFormPrior;

@@ -6,6 +6,7 @@ use sistership_dynamics::sensitivity::{SensitiveRun, SensitiveSystem};
 use sistership_dynamics::{Envelope, Method};
 
 use super::segments::{ComparisonPlan, Segment, difference};
+use super::thresholds::TRAJECTORY;
 
 /// Segments in lockstep.
 const LANES: usize = 8;
@@ -16,8 +17,6 @@ const COLUMNS: usize = 48;
 /// Blocks of lanes that are simulated before their sums are added: a lane holds a Hessian until then. More threads than
 /// this have nothing to do; it is not their number, so that the memory of a fit does not depend on the machine.
 const BLOCKS: usize = 16;
-/// What a residual counts that a simulation never came to, in standard deviations.
-const LOST: f64 = 10.0;
 
 /// Sums over the residuals of some segments.
 #[derive(Debug, Clone)]
@@ -124,7 +123,7 @@ impl SegmentPass<'_> {
                 continue;
             }
             if own.lost {
-                own.normal.cost += LOST * LOST;
+                own.normal.cost += TRAJECTORY.lost * TRAJECTORY.lost;
                 continue;
             }
             let value = difference(place, state[place], *measured) / deviation;

@@ -10,6 +10,7 @@ use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 
 use super::super::outcome::RefineError;
+use super::thresholds::TRAJECTORY;
 
 /// How a motion is cut and weighed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,7 +65,7 @@ pub(in super::super) fn cut(
         let record = SegmentRecord::new(trial, law, input_names, plan)?;
         for part in trial.segments() {
             let (mut from, end) = (trial.t_s[part.start], trial.t_s[part.end - 1]);
-            while end - from >= cut.segment_s / 3.0 {
+            while end - from >= cut.segment_s / TRAJECTORY.least_part {
                 let steps = (cut.segment_s.min(end - from) / plan.step_s + 1e-9).floor() as usize / plan.stride * plan.stride;
                 if steps > 0 {
                     segments.push(record.segment(index, part.clone(), from, steps));

@@ -4,10 +4,7 @@ use std::ops::Range;
 
 use sistership_model::trial::Trial;
 
-/// Least intervals in a window: fewer cannot tell the bump from a spike.
-const LEAST_INTERVALS: f64 = 8.0;
-/// A bump weighs its window as if it were this share of it: `(int b)^2 / int b^2` for `(1 - s^2)^3`.
-const EQUIVALENT: f64 = 0.612_9;
+use super::thresholds::WEAK;
 
 /// Length and spacing of the windows of a trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,12 +17,12 @@ pub struct Windows {
 
 impl Windows {
     fn length(&self, interval_s: f64) -> f64 {
-        self.length_s.max(LEAST_INTERVALS * interval_s)
+        self.length_s.max(WEAK.least_intervals * interval_s)
     }
 
     /// How much of a window is its own: neighbours that overlap repeat each other.
     pub(super) fn share(&self, interval_s: f64) -> f64 {
-        (self.hop_s.max(interval_s) / (EQUIVALENT * self.length(interval_s))).min(1.0)
+        (self.hop_s.max(interval_s) / (WEAK.equivalent * self.length(interval_s))).min(1.0)
     }
 
     /// The bumps of a trial, none of which reaches over a gap.

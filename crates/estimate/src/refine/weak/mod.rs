@@ -7,6 +7,7 @@
 mod bump;
 mod estimator;
 mod samples;
+mod thresholds;
 
 use sistership_model::trial::Trial;
 
@@ -39,7 +40,7 @@ pub fn weak_moments(blocks: &Blocks, trial: &Trial, windows: Windows) -> Result<
 /// As [`weak_moments`].
 pub fn weak_tables(blocks: &Blocks, trial: &Trial, windows: Windows) -> Result<Vec<Table>, RefineError> {
     let sampled = columns(blocks, trial)?;
-    let mut tables: Vec<Table> = blocks.blocks.iter().map(|b| vec![Vec::new(); b.regressors() + b.axes.len()]).collect();
+    let mut tables: Vec<Table> = blocks.blocks.iter().map(|b| vec![Vec::new(); b.width()]).collect();
     for bump in windows.over(trial) {
         sampled.iter().zip(&mut tables).for_each(|(columns, table)| append(columns, &bump, table));
     }
