@@ -4,7 +4,8 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::residual::{Nuisance, NuisanceKind};
 
-/// What is known of the coefficients before these trials: `information`, and `information * mean`, by column.
+/// What is known of the coefficients before these trials: `information`, and `information * mean`,
+/// by column.
 #[derive(Debug, Clone)]
 pub struct CoefficientPrior {
     /// Information matrix, coefficients by coefficients.
@@ -19,7 +20,8 @@ impl CoefficientPrior {
         Some(Cholesky::new(self.information.clone())?.solve(&self.weighted_mean))
     }
 
-    /// The expected change of what a law can take over: of everything but masses, as if these were right.
+    /// The expected change of what a law can take over: of everything but masses, as if these were
+    /// right.
     pub fn expected_shift(&self, nuisance: &[Nuisance]) -> Option<Vec<f64>> {
         let free: Vec<usize> =
             (0..nuisance.len()).filter(|&place| !matches!(nuisance[place].kind, NuisanceKind::Mass(..))).collect();

@@ -8,6 +8,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::coefficient_prior::CoefficientPrior;
 use crate::residual::Gram;
+use sistership_estimate::refine::RefineError;
 
 /// The columns of effects with the coefficients integrated out.
 #[derive(Debug, Clone)]
@@ -139,4 +140,9 @@ impl MarginalInformation {
         let log_determinant: f64 = 2.0 * factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
         Some(HypothesisEstimate { gain: 0.5 * (right.dot(&mean) - prior - log_determinant), mean, covariance: factor.inverse() })
     }
+}
+
+/// The refusal where information has no root.
+pub(super) fn not_positive() -> RefineError {
+    RefineError::Data("the trials' information is not positive".into())
 }

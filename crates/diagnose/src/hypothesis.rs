@@ -31,7 +31,8 @@ impl JudgedHypothesis {
         pairs.flat_map(|(here, there)| here.at.iter().zip(&there.at).map(|(a, b)| a - b)).collect()
     }
 
-    /// Logarithm of the probability of some of the trials under this hypothesis, and its estimate there.
+    /// Logarithm of the probability of some of the trials under this hypothesis, and its estimate
+    /// there.
     pub fn of_trials(&self, fixed: &CoefficientPrior, keep: &dyn Fn(usize) -> bool) -> Option<(f64, Vec<EffectCandidate>)> {
         let width = self.grams.first()?.products.nrows();
         let kept = self.grams.iter().enumerate().filter(|(trial, _)| keep(*trial)).map(|(_, gram)| gram);

@@ -19,8 +19,8 @@ pub(super) struct ScreenedEffect {
     pub candidate: EffectCandidate,
 }
 
-/// The evidence of each other effect together with those taken, from one linearisation at the absence of all others,
-/// most probable first.
+/// The evidence of each other effect together with those taken, from one linearisation at the
+/// absence of all others, most probable first.
 pub(super) fn screen(search: &HypothesisSearch<'_>, base: &FilteredBase<'_>) -> Vec<ScreenedEffect> {
     let others = search.others(&base.taken);
     let showing = |candidate: &&EffectCandidate| base.workspace.columns().showing(candidate);

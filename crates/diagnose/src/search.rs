@@ -8,7 +8,7 @@ use super::Request;
 use super::calibrated_model::CalibratedModel;
 use super::coefficient_prior::CoefficientPrior;
 use super::discount::discount;
-use super::evidence::{DiscrepancyFactor, MarginalInformation, NormalPrior};
+use super::evidence::{DiscrepancyFactor, MarginalInformation, NormalPrior, not_positive};
 use super::filtered_base::FilteredBase;
 use super::hypothesis::{JudgedHypothesis, halfway, placed, priors};
 use super::linearised_trials::LinearisedTrials;
@@ -237,8 +237,4 @@ impl<'a> HypothesisSearch<'a> {
             grams,
         })
     }
-}
-
-fn not_positive() -> RefineError {
-    RefineError::Data("the trials' information is not positive".into())
 }

@@ -42,8 +42,9 @@ pub enum TrendError {
     Constant,
 }
 
-/// How well a model captures the trend of trials: Pearson's correlation of simulated and measured yaw rate over all of
-/// them, simulated with the recorded rudder and started anew every `restart_s`.
+/// How well a model captures the trend of trials: Pearson's correlation of simulated and measured
+/// yaw rate over all of them, simulated with the recorded rudder and started anew every
+/// `restart_s`.
 ///
 /// # Errors
 /// Says which channel is missing, or that the simulation left the physical range.

@@ -18,6 +18,7 @@ use trial_information::TrialInformation;
 
 use super::calibrated_model::CalibratedModel;
 use super::coefficient_prior::CoefficientPrior;
+use super::evidence::not_positive;
 use super::linearised_trials::LinearisedTrials;
 use super::nuisance::{Terms, lacked, learned, prior, regressor};
 use super::remainder::largest;
@@ -89,7 +90,7 @@ fn first_shift(
     workspace.noise.clone_from(&scatter.noise);
     let grams = workspace.each(&scatter.discrepancies);
     let shift = TrialInformation { fixed: prior, grams: &grams, scatter: 1.0 }.by(&|_| true).expected_shift(nuisance);
-    Ok((shift.ok_or_else(|| RefineError::Data("the trials' information is not positive".into()))?, scatter))
+    Ok((shift.ok_or_else(not_positive)?, scatter))
 }
 
 /// Instruments by what their scatter alone says.
@@ -131,7 +132,7 @@ fn uncertainty(
     let scales: Vec<f64> = (0..size).map(|i| known.fixed.information[(i, i)].sqrt().recip()).collect();
     let scaled = DMatrix::from_fn(size, size, |i, j| all.information[(i, j)] * scales[i] * scales[j]);
     let right = DVector::from_fn(size, |i, _| all.weighted_mean[i] * scales[i]);
-    let factor = Cholesky::new(scaled).ok_or_else(|| RefineError::Data("the trials' information is not positive".into()))?;
+    let factor = Cholesky::new(scaled).ok_or_else(not_positive)?;
     let lower = factor.l();
     let offset = lower.solve_lower_triangular(&right).unwrap_or(right);
     let axes = workspace.axes();

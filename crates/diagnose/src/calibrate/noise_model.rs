@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use sistership_model::trial::Channel;
 
 use super::super::coefficient_prior::CoefficientPrior;
+use super::super::evidence::not_positive;
 use super::super::linearised_trials::LinearisedTrials;
 use super::super::thresholds::THRESHOLDS;
 use super::trial_information::TrialInformation;
@@ -70,9 +71,9 @@ pub(super) fn most_probable(
     start: Option<NoiseModel>,
 ) -> Result<NoiseModel, RefineError> {
     let first = if start.is_some() { THRESHOLDS.calibration.factors.len() - 1 } else { 0 };
-    let mut best = start.or_else(|| coarse(workspace)).ok_or_else(unlikely)?;
+    let mut best = start.or_else(|| coarse(workspace)).ok_or_else(not_positive)?;
     for factors in &THRESHOLDS.calibration.factors[first..] {
-        let coefficients = coefficients(workspace, fixed, &best).ok_or_else(unlikely)?;
+        let coefficients = coefficients(workspace, fixed, &best).ok_or_else(not_positive)?;
         best = refined(workspace, best, &coefficients, factors);
     }
     Ok(best)
@@ -85,10 +86,6 @@ fn coarse(workspace: &LinearisedTrials<'_>) -> Option<NoiseModel> {
     let at = |level: &f64| NoiseModel { discrepancies: scales.discrepancies(*level), noise: workspace.noise.clone() };
     let scored = THRESHOLDS.calibration.first_levels.iter().map(at).map(|tried| (deviance(&parts, &tried), tried));
     Some(scored.min_by(|a, b| a.0.total_cmp(&b.0))?.1)
-}
-
-fn unlikely() -> RefineError {
-    RefineError::Data("the trials' information is not positive".into())
 }
 
 /// For each trial the coefficients by the others; of a single trial, by itself.

@@ -3,23 +3,27 @@
 /// How far effects and their laws are trusted.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EffectThresholds {
-    /// `s_a`: how far the size of what an effect's own law gives is from the truth, dimensionless. Source: decision 5 ("an
-    /// effect's own law is trusted within 3 %"), put in after the benchmark had named shadows of strong effects without it.
+    /// `s_a`: how far the size of what an effect's own law gives is from the truth, dimensionless.
+    /// Source: decision 5 ("an effect's own law is trusted within 3 %"), put in after the benchmark
+    /// had named shadows of strong effects without it.
     pub size: f64,
-    /// `s_f`: how far its shape is, dimensionless. Source: as [`Self::size`], "0.3 % in shape" (`docs/evidence/diagnosis.md`).
+    /// `s_f`: how far its shape is, dimensionless. Source: as [`Self::size`], "0.3 % in shape"
+    /// (`docs/evidence/diagnosis.md`).
     pub shape: f64,
-    /// `D_0`: what the information on an effect is divided by where a model brings no uncertainty, dimensionless. Source: chosen;
-    /// published coefficients have no clean trials on which a false-alarm level could be measured.
+    /// `D_0`: what the information on an effect is divided by where a model brings no uncertainty,
+    /// dimensionless. Source: chosen; published coefficients have no clean trials on which a
+    /// false-alarm level could be measured.
     pub unknown_discount: f64,
-    /// `s_m`: how far virtual masses, by strip theory or regression, are from the truth, by the root of the product of the
-    /// diagonal entries, dimensionless. Source: chosen, a judgement of strip theory and regressions; it widens standard
-    /// errors of forces and decides nothing.
+    /// `s_m`: how far virtual masses, by strip theory or regression, are from the truth, by the
+    /// root of the product of the diagonal entries, dimensionless. Source: chosen, a judgement of
+    /// strip theory and regressions; it widens standard errors of forces and decides nothing.
     pub mass_deviation: f64,
-    /// `x_j`: shares of a trial by which a record from outside is shifted to make its placebo, dimensionless. Source: chosen:
-    /// quarters are as far from the record and from each other as three shifts can be.
+    /// `x_j`: shares of a trial by which a record from outside is shifted to make its placebo,
+    /// dimensionless. Source: chosen: quarters are as far from the record and from each other as
+    /// three shifts can be.
     pub placebo_shifts: [f64; 3],
-    /// `h`: step of numerical derivatives of what is reported, by the parameter's standard error, dimensionless. Source:
-    /// derived: central differences err by its square.
+    /// `h`: step of numerical derivatives of what is reported, by the parameter's standard error,
+    /// dimensionless. Source: derived: central differences err by its square.
     pub report_step: f64,
 }
 
@@ -36,13 +40,15 @@ pub(super) const EFFECT: EffectThresholds = EffectThresholds {
 /// Whether an effect is the same at all times.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ConstancyThresholds {
-    /// `n_p`: pieces into which each trial is cut, a count. Source: `docs/evidence/diagnosis.md`, "the same size in both halves of
-    /// every trial".
+    /// `n_p`: pieces into which each trial is cut, a count. Source: `docs/evidence/diagnosis.md`,
+    /// "the same size in both halves of every trial".
     pub pieces: usize,
-    /// `v_p`: what the pieces may ask for beyond the common size and beyond chance, by the response to that size: a squared
-    /// share, dimensionless. Source: chosen, sizes in the halves that differ by about a third.
+    /// `v_p`: what the pieces may ask for beyond the common size and beyond chance, by the response
+    /// to that size: a squared share, dimensionless. Source: chosen, sizes in the halves that
+    /// differ by about a third.
     pub limit: f64,
-    /// `r_0`: least response by which that is divided, in squared deviations. Source: derived: keeps a division by zero away.
+    /// `r_0`: least response by which that is divided, in squared deviations. Source: derived:
+    /// keeps a division by zero away.
     pub least_response: f64,
 }
 
@@ -52,11 +58,12 @@ pub(super) const CONSTANCY: ConstancyThresholds = ConstancyThresholds { pieces: 
 /// When two effects count as different.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ConfoundingThresholds {
-    /// `theta_a`: angle between two responses from which on effects count as different, deg. Source: chosen; at 40 deg the other
-    /// effect follows `cos^2 = 59 %` of the response.
+    /// `theta_a`: angle between two responses from which on effects count as different, deg.
+    /// Source: chosen; at 40 deg the other effect follows `cos^2 = 59 %` of the response.
     pub apart_deg: f64,
-    /// `e_r`: ridge on another effect's information by its largest diagonal entry, dimensionless. Source: derived: parameters
-    /// that say the same on these trials make it singular, and this is far below what matters.
+    /// `e_r`: ridge on another effect's information by its largest diagonal entry, dimensionless.
+    /// Source: derived: parameters that say the same on these trials make it singular, and this is
+    /// far below what matters.
     pub ridge: f64,
 }
 

@@ -1,9 +1,10 @@
 //! Every constant by which a diagnosis decides, with its symbol, meaning, unit and source.
 //!
-//! `L/U` is the time in which the ship sails its length at the approach speed of its trials. A source that begins with "chosen" has no
-//! measurement of how results move at half and at double the value: the reason that can be given is the one of the
-//! mathematics. "The benchmark" is that of `docs/evidence/diagnosis.md`
-//! (`cargo run --release -p sistership-tests --example hidden_effects`).
+//! `L/U` is the time in which the ship sails its length at the approach speed of its trials. A
+//! source that begins with "chosen" has no measurement of how results move at half and at double
+//! the value: the reason that can be given is the one of the mathematics. "The benchmark" is that
+//! of `docs/evidence/diagnosis.md` (`cargo run --release -p sistership-tests --example
+//! hidden_effects`).
 
 mod calibration;
 mod effects;

@@ -22,7 +22,7 @@ use sistership_regression::RidgeChoice;
 
 /// Why a candidate may not be taken.
 #[derive(Debug, thiserror::Error)]
-enum Refusal {
+enum CandidateRefusal {
     #[error(transparent)]
     Constraints(LimitError),
     #[error("fails a standard manoeuvre that the source sails: {0}")]
@@ -30,7 +30,7 @@ enum Refusal {
 }
 
 /// What a candidate gives with its standard manoeuvres, or why it may not be taken.
-type Accepted = Result<(Option<Fit>, StandardManoeuvres), Refusal>;
+type Accepted = Result<(Option<Fit>, StandardManoeuvres), CandidateRefusal>;
 
 /// Takes the best candidate whose model, fitted on all trials, also sails the standard manoeuvres that the source sails.
 ///
@@ -67,13 +67,13 @@ fn accepted(
     before: &StandardManoeuvres,
 ) -> Result<Accepted, RefineError> {
     let fitted = match solution.fit(variants) {
-        Err(RefineError::Constraints(reason)) => return Ok(Err(Refusal::Constraints(reason))),
+        Err(RefineError::Constraints(reason)) => return Ok(Err(CandidateRefusal::Constraints(reason))),
         fitted => fitted?,
     };
     let after = standard_manoeuvres(&model_of(problem, fitted.as_ref()), problem.law);
     let worse = after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
     Ok(match worse {
-        Some(failure) => Err(Refusal::Manoeuvre(failure.clone())),
+        Some(failure) => Err(CandidateRefusal::Manoeuvre(failure.clone())),
         None => Ok((fitted, after)),
     })
 }

@@ -1,4 +1,5 @@
-//! Ranking by correlation, and the three steps by which a source is eligible: Kanazawa 2023, section 5.1.2.
+//! Ranking by correlation, and the three steps by which a source is eligible: Kanazawa 2023,
+//! section 5.1.2.
 
 use serde::Serialize;
 use sistership_model::{Model, Vessel};
@@ -18,9 +19,12 @@ pub struct SourceCandidate<'a> {
 /// What is asked of a source.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EligibilityLimits {
-    /// Largest relative difference of a component of the vector of Eq. 5.18. The thesis' own pair differs by 6 % at most.
+    /// `d_v`: largest relative difference of a component of the vector of Eq. 5.18, dimensionless.
+    /// Source: chosen; the thesis' own pair differs by 6 % at most, and ships of one category in
+    /// the zoo by more.
     pub vector_difference: f64,
-    /// Least correlation of simulated and measured yaw rate over the target's trials.
+    /// `r_0`: least correlation of simulated and measured yaw rate over the target's trials,
+    /// dimensionless. Source: chosen; the source then explains a third of the yaw rate's variance.
     pub trend: f64,
 }
 
@@ -56,11 +60,13 @@ pub struct RankedSource {
     pub reasons: Vec<String>,
 }
 
-/// How well a source's model captures the trend of the target's trials (a correlation), or why that cannot be told.
+/// How well a source's model captures the trend of the target's trials (a correlation), or why that
+/// cannot be told.
 pub type Trend<'a> = &'a dyn Fn(&Model) -> Result<f64, TrendError>;
 
-/// Ranks the candidates by correlation with the target. `trend` measures how well a source's model captures the trend of
-/// the target's trials; without trials the third step is left open and said to be.
+/// Ranks the candidates by correlation with the target. `trend` measures how well a source's model
+/// captures the trend of the target's trials; without trials the third step is left open and said
+/// to be.
 pub fn rank(
     target: &Vessel,
     candidates: &[SourceCandidate<'_>],

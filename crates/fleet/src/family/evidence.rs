@@ -3,11 +3,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::thresholds::FAMILY;
 use crate::statistics::TrialStatistics;
 use sistership_regression::{Moments, Whitened};
-
-/// Directions in which the trials say less than this of what they say in the best are left to the family.
-const TELLING: f64 = 1e-8;
 
 /// What trials say: a likelihood proportional to `exp(-z' precision z/2 + information' z)`.
 #[derive(Debug, Clone)]
@@ -58,7 +56,7 @@ impl AxisPlace {
 fn scatter(parts: &[Moments], all: &Moments, whitened: &Whitened, least: &DVector<f64>) -> f64 {
     let variances = whitened.variances(0.0);
     let best = variances.min();
-    let told: Vec<usize> = (0..variances.len()).filter(|&k| best / variances[k] > TELLING).collect();
+    let told: Vec<usize> = (0..variances.len()).filter(|&k| best / variances[k] > FAMILY.telling).collect();
     let of_trial = |part: &Moments| -> f64 {
         let score = whitened.basis().transpose() * part.score(all, least);
         told.iter().map(|&k| score[k].powi(2) * variances[k]).sum()

@@ -5,23 +5,15 @@ use rayon::prelude::*;
 
 use super::evidence::{AxisPlace, MemberEvidence};
 use super::prior::{FORMAT, FamilyAxis, FamilyPrior};
+use super::thresholds::FAMILY;
 use crate::statistics::TrialStatistics;
 use sistership_regression::Moments;
-
-/// Fewer members say nothing of how members differ.
-const LEAST_MEMBERS: usize = 3;
-/// Most steps, and the change of the deviations at which they end.
-const STEPS: usize = 200;
-const SETTLED: f64 = 2e-3;
-/// Deviation at the start, and the least one, in units in which a coefficient of 1 would explain its axis alone.
-const START: f64 = 0.5;
-const LEAST: f64 = 1e-4;
 
 /// Why nothing can be learned of a family.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FamilyError {
     /// Too few.
-    #[error("{0} members have trials; a family's prior needs at least {LEAST_MEMBERS}")]
+    #[error("{0} members have trials; a family's prior needs at least {least}", least = FAMILY.least_members)]
     Few(usize),
     /// One that does not belong.
     #[error("`{member}` has other coefficients than `{first}`, so that they share no prior")]
@@ -51,7 +43,7 @@ pub struct Member<'a> {
 /// As [`FamilyError`] says.
 pub fn learn(members: &[Member<'_>]) -> Result<FamilyPrior, FamilyError> {
     let members: Vec<&Member<'_>> = members.iter().filter(|member| !member.trials.is_empty()).collect();
-    if members.len() < LEAST_MEMBERS {
+    if members.len() < FAMILY.least_members {
         return Err(FamilyError::Few(members.len()));
     }
     alike(&members)?;
@@ -147,17 +139,18 @@ impl FamilyEstimate {
         let p = evidence.first().map_or(0, |one| one.information.len());
         let mut learned = Self {
             mean: DVector::zeros(p),
-            covariance: DMatrix::identity(p, p) * START.powi(2),
+            covariance: DMatrix::identity(p, p) * FAMILY.start.powi(2),
             told: DVector::zeros(p),
             members: evidence.len() as f64,
             steps: 0,
         };
-        for step in 1..=STEPS {
+        for step in 1..=FAMILY.steps {
             let before = learned.covariance.diagonal();
             learned.step(&evidence)?;
             learned.steps = step;
-            let changed = before.zip_map(&learned.covariance.diagonal(), |a, b| (a.sqrt() / b.sqrt().max(LEAST) - 1.0).abs());
-            if changed.max() < SETTLED {
+            let changed =
+                before.zip_map(&learned.covariance.diagonal(), |a, b| (a.sqrt() / b.sqrt().max(FAMILY.least) - 1.0).abs());
+            if changed.max() < FAMILY.settled {
                 break;
             }
         }
@@ -184,7 +177,7 @@ impl FamilyEstimate {
             covariance.ger(1.0 / self.members, &apart, &apart, 1.0);
             open += left.diagonal() / self.members;
         }
-        (0..mean.len()).for_each(|j| covariance[(j, j)] = covariance[(j, j)].max(LEAST.powi(2)));
+        (0..mean.len()).for_each(|j| covariance[(j, j)] = covariance[(j, j)].max(FAMILY.least.powi(2)));
         self.told = open.zip_map(&self.covariance.diagonal(), |open, all| (1.0 - open / all).clamp(0.0, 1.0));
         self.covariance = covariance;
         self.mean = mean;

@@ -7,6 +7,7 @@
 mod evidence;
 mod learn;
 mod prior;
+mod thresholds;
 
 pub use learn::{FamilyError, Member, learn};
 pub use prior::{FORMAT, FamilyAxis, FamilyPrior, FamilyPriorError};

@@ -20,7 +20,7 @@ use super::super::trajectory::{ComparisonPlan, Segment, SegmentLengths, WeakForm
 use super::super::variant::Variant;
 use super::deviation::DeviationPenalty;
 use super::objective::{Objective, Sequences};
-use super::thresholds::SEARCH;
+use super::thresholds::OBJECTIVE;
 use super::{CmaEs, SearchReport};
 use crate::transfer::ready;
 use sistership_regression::cma_es::{Budget, CmaEsSearch, SearchCancelled, SearchOutcome, SearchState};
@@ -80,7 +80,7 @@ fn sequences(problem: &Problem<'_>) -> SegmentLengths {
     let wanted = settings.step_s.unwrap_or(interval);
     let step_s = if wanted >= interval { interval * (wanted / interval).round() } else { interval / (interval / wanted).ceil() };
     let residual_s = settings.residual_s.unwrap_or(interval).max(step_s);
-    SegmentLengths { segment_s: settings.segment_s.unwrap_or(SEARCH.fallback_steps * step_s), residual_s, step_s }
+    SegmentLengths { segment_s: settings.segment_s.unwrap_or(OBJECTIVE.fallback_steps * step_s), residual_s, step_s }
 }
 
 impl<'a> VariantSearch<'a> {
@@ -101,7 +101,7 @@ impl<'a> VariantSearch<'a> {
                 problem.law,
                 &problem.training,
                 cutting.step_s,
-                SEARCH.mean_steps * cutting.step_s,
+                OBJECTIVE.mean_steps * cutting.step_s,
             ),
             source: system.names().iter().map(|name| variant.model.coefficient(name)).collect(),
             system,
@@ -163,7 +163,7 @@ impl<'a> VariantSearch<'a> {
         let sequences = Sequences::new(&self.objective, self.segments.iter().filter(inside));
         let cost = |parameters: &[f64]| self.objective.cost(&sequences, &self.spread(parameters));
         let search = self.searching(budget, self.settings.seed.wrapping_add(1000 * (fold as u64 + 1)));
-        let first = optimum.strategy.renewed(&optimum.best, SEARCH.fold_spread * self.settings.spread, search.seed);
+        let first = optimum.strategy.renewed(&optimum.best, OBJECTIVE.fold_spread * self.settings.spread, search.seed);
         let mut tell = |_: &SearchState<'_>| told(0.7, "the search without the trials of each fold").is_ok();
         search.from(first, &cost, &mut tell).map_err(|SearchCancelled| RefineError::Cancelled)
     }

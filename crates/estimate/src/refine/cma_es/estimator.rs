@@ -11,7 +11,7 @@ use super::super::settings::Settings;
 use super::super::variant::Variant;
 use super::super::weak;
 use super::candidates::search;
-use super::thresholds::SEARCH;
+use super::thresholds::OBJECTIVE;
 
 /// The search by covariance matrix adaptation; it alone is weighed against the source.
 pub(in super::super) struct CovarianceMatrixAdaptation;
@@ -21,8 +21,8 @@ impl Estimator for CovarianceMatrixAdaptation {
         // It is too dear to be repeated for families that nobody asked for.
         weak::resolve(settings, length_s, &[Family::Own]);
         settings.cma_es.get_or_insert_default();
-        settings.step_s = settings.step_s.or(length_s.map(|s| s / SEARCH.steps_a_length));
-        settings.segment_s = settings.segment_s.or(length_s.map(|s| (SEARCH.segment * s).max(SEARCH.least_segment_s)));
+        settings.step_s = settings.step_s.or(length_s.map(|s| s / OBJECTIVE.steps_a_length));
+        settings.segment_s = settings.segment_s.or(length_s.map(|s| (OBJECTIVE.segment * s).max(OBJECTIVE.least_segment_s)));
     }
 
     fn equations(&self, settings: &Settings) -> Equations {

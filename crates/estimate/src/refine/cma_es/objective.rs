@@ -7,7 +7,7 @@ use sistership_dynamics::{Envelope, Method};
 
 use super::super::trajectory::{ComparisonPlan, Segment};
 use super::deviation::DeviationPenalty;
-use super::thresholds::SEARCH;
+use super::thresholds::OBJECTIVE;
 
 /// Subsequences in lockstep.
 const LANES: usize = 16;
@@ -135,7 +135,7 @@ impl Objective {
                 }
             }
         }
-        sums.iter().zip(&left).map(|(sum, left)| sum + 3.0 * SEARCH.lost * SEARCH.lost * left).sum()
+        sums.iter().zip(&left).map(|(sum, left)| sum + 3.0 * OBJECTIVE.lost * OBJECTIVE.lost * left).sum()
     }
 
     /// Adds a comparison to the lanes that have not left the physical range before; `left` are those that remain.

@@ -9,7 +9,7 @@ use sistership_model::law::Law;
 
 use super::conflict::conflict;
 use super::error::LimitError;
-use super::limit::{Affine, Limit};
+use super::limit::{AffineFunction, Limit};
 use super::programme::{NearestPointProblem, Overstepping};
 use super::settings::{Constraints, StraightLine};
 use super::straight::{affine, fastest, holds, limit, surge, sway_and_yaw};
@@ -26,7 +26,7 @@ pub(in super::super) struct CoefficientLimits {
     /// Those that do not depend on a solution.
     fixed: Vec<Limit>,
     trust_sd: Option<f64>,
-    straight: Option<(StraightLine, [Affine; 4])>,
+    straight: Option<(StraightLine, [AffineFunction; 4])>,
 }
 
 impl CoefficientLimits {
@@ -49,7 +49,10 @@ impl CoefficientLimits {
             let place = names.iter().position(|own| own == name).ok_or_else(unknown)?;
             for (sign, bound, word) in [(1.0, bound.min, "least"), (-1.0, bound.max, "greatest")] {
                 let limit = |bound| {
-                    Limit::least(format!("bound of {name}: {word} {bound}"), Affine::of_one(names.len(), place, sign, bound))
+                    Limit::least(
+                        format!("bound of {name}: {word} {bound}"),
+                        AffineFunction::of_one(names.len(), place, sign, bound),
+                    )
                 };
                 fixed.extend(bound.map(limit));
             }
@@ -116,7 +119,7 @@ impl CoefficientLimits {
                 let edge = self.source[place] - sign * reach;
                 let word = if sign > 0.0 { "below" } else { "above" };
                 let label = format!("trust region of {name}: at most {sd} standard deviations {word} the source");
-                Limit::least(label, Affine::of_one(self.names.len(), place, sign, edge))
+                Limit::least(label, AffineFunction::of_one(self.names.len(), place, sign, edge))
             })
         };
         self.names.iter().enumerate().flat_map(one).collect()
@@ -145,7 +148,7 @@ fn within(nearest: &NearestPointProblem<'_>, limits: &[&Limit]) -> Result<Vec<f6
     }
 }
 
-fn matrix(functions: &[Affine; 4], at: &[f64]) -> Matrix2<f64> {
+fn matrix(functions: &[AffineFunction; 4], at: &[f64]) -> Matrix2<f64> {
     let [vv, vr, rv, rr] = [0, 1, 2, 3].map(|k: usize| functions[k].at(at));
     Matrix2::new(vv, vr, rv, rr)
 }
@@ -155,7 +158,7 @@ fn signs(names: &[String], signs: &[(&str, f64)], what: &str) -> Vec<Limit> {
     let one = |&(name, sign): &(&str, f64)| {
         let place = names.iter().position(|own| own == name)?;
         let word = if sign > 0.0 { "at least" } else { "at most" };
-        Some(Limit::least(format!("{what}: {name} {word} 0"), Affine::of_one(names.len(), place, sign, 0.0)))
+        Some(Limit::least(format!("{what}: {name} {word} 0"), AffineFunction::of_one(names.len(), place, sign, 0.0)))
     };
     signs.iter().filter_map(one).collect()
 }

@@ -7,7 +7,7 @@ use sistership_dynamics::{PlantError, Ship, StateVector};
 use sistership_model::Model;
 use sistership_model::law::Law;
 
-use super::limit::{Affine, Limit};
+use super::limit::{AffineFunction, Limit};
 use super::settings::StraightLine;
 use super::thresholds::CONSTRAINTS;
 
@@ -41,7 +41,7 @@ pub(super) fn affine<const N: usize>(
     law: &Law,
     names: &[String],
     of: &dyn Fn(&Ship) -> [f64; N],
-) -> Result<[Affine; N], PlantError> {
+) -> Result<[AffineFunction; N], PlantError> {
     let at = |model: &Model| Ship::new(model, law).map(|ship| of(&ship));
     let here = at(model)?;
     let mut normals: [Vec<f64>; N] = std::array::from_fn(|_| Vec::with_capacity(names.len()));
@@ -55,8 +55,8 @@ pub(super) fn affine<const N: usize>(
     }
     let values: Vec<f64> = names.iter().map(|name| model.coefficient(name)).collect();
     Ok(std::array::from_fn(|k| {
-        let linear = Affine { normal: normals[k].clone(), constant: 0.0 };
-        Affine { constant: here[k] - linear.at(&values), ..linear }
+        let linear = AffineFunction { normal: normals[k].clone(), constant: 0.0 };
+        AffineFunction { constant: here[k] - linear.at(&values), ..linear }
     }))
 }
 
@@ -76,11 +76,12 @@ fn sign(line: StraightLine) -> f64 {
 /// What is declared as a limit: `P A + A' P` is definite for the `P` with which it is so at a reference. By Lyapunov's theorems, negative
 /// definite with the `P` of a stable reference makes `A` stable, and positive definite with the `P` of an unstable one
 /// makes it unstable (Khalil 2002, Nonlinear systems, Theorems 4.3 and 4.6). None where the reference has no such `P`.
-pub(super) fn limit(line: StraightLine, functions: &[Affine; 4], reference: &Matrix2<f64>) -> Option<Limit> {
+pub(super) fn limit(line: StraightLine, functions: &[AffineFunction; 4], reference: &Matrix2<f64>) -> Option<Limit> {
     let p = lyapunov(reference, sign(line))?;
     let [vv, vr, rv, rr] = functions;
-    let twice = |a: &Affine, pa: f64, b: &Affine, pb: f64| a.with(2.0 * pa * sign(line), b, 2.0 * pb * sign(line));
-    let margin = |mut function: Affine| {
+    let twice =
+        |a: &AffineFunction, pa: f64, b: &AffineFunction, pb: f64| a.with(2.0 * pa * sign(line), b, 2.0 * pb * sign(line));
+    let margin = |mut function: AffineFunction| {
         function.constant -= CONSTRAINTS.margin;
         function
     };

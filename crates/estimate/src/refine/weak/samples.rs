@@ -19,12 +19,12 @@ pub(super) struct SampledRegression<'a> {
 }
 
 /// A mass, 1 where absent, with the velocity it multiplies.
-pub(super) type Inertia<'a> = (Option<Vec<f64>>, Cow<'a, [f64]>);
+pub(super) type InertialTerm<'a> = (Option<Vec<f64>>, Cow<'a, [f64]>);
 
 /// What a target is made of.
 pub(super) struct RegressionTarget<'a> {
     /// Masses, 1 where absent, and velocities whose rate of change they multiply.
-    pub inertia: Vec<Inertia<'a>>,
+    pub inertia: Vec<InertialTerm<'a>>,
     /// What is known of the right-hand side.
     pub rest: Vec<f64>,
 }
