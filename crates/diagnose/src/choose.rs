@@ -83,11 +83,11 @@ fn companions(
 /// The most probable, those that are believed most after their false-alarm levels, and whatever follows a record from outside: its
 /// sensor is there to be asked.
 fn likely(screened: Vec<ScreenedEffect>, count: usize) -> Vec<ScreenedEffect> {
-    let mut by_belief = screened.clone();
-    by_belief.sort_by(|a, b| b.believed.total_cmp(&a.believed));
+    let mut by_discounted = screened.clone();
+    by_discounted.sort_by(|a, b| b.discounted.total_cmp(&a.discounted));
     let recorded: Vec<ScreenedEffect> = screened.iter().filter(|likely| is_from_outside(&likely.candidate)).cloned().collect();
     let mut likely: Vec<ScreenedEffect> = screened.into_iter().take(count.div_ceil(2)).collect();
-    for candidate in by_belief {
+    for candidate in by_discounted {
         let is_new = likely.iter().all(|known| known.candidate.key() != candidate.candidate.key());
         if is_new && likely.len() < count {
             likely.push(candidate);

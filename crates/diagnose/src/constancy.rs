@@ -25,7 +25,8 @@ pub(super) fn inconstant(
     judged: &JudgedHypothesis,
     margin: f64,
 ) -> Result<Vec<usize>, RefineError> {
-    let pieces = base.linearised(&search.learned, &judged.linearised_at)?.pieces(judged.level, THRESHOLDS.constancy.pieces);
+    let pieces =
+        base.linearised(&search.calibrated_model, &judged.linearised_at)?.pieces(judged.level, THRESHOLDS.constancy.pieces);
     let known = known_after(&search.fixed, judged);
     let reduced: Vec<MarginalInformation> = pieces.iter().filter_map(|piece| MarginalInformation::new(piece, &known)).collect();
     let one = |place: usize| varies(judged, place, &reduced, search.discount(&judged.candidates[place]));

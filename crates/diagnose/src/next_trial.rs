@@ -134,7 +134,7 @@ fn filtered(search: &HypothesisSearch<'_>, base: &FilteredBase<'_>, judged: &Jud
     let columns = base.workspace.columns().clone();
     let trials = [trial];
     let workspace =
-        super::linearised_trials::LinearisedTrials::new(&search.learned, columns, &trials, search.least_step_s).ok()?;
+        super::linearised_trials::LinearisedTrials::new(&search.calibrated_model, columns, &trials, search.least_step_s).ok()?;
     let discrepancies = base.levels[judged.level.min(base.levels.len() - 1)].discrepancies();
     let width = 1 + workspace.columns().len();
     let parts = workspace.linear().iter().flatten();

@@ -13,7 +13,7 @@ use crate::residual::EffectCandidate;
 pub(super) struct ScreenedEffect {
     pub evidence: f64,
     /// Discounted by the effect's false-alarm level.
-    pub believed: f64,
+    pub discounted: f64,
     /// The level of the discrepancy at which it is most probable, among those of the base.
     pub level: usize,
     pub candidate: EffectCandidate,
@@ -48,9 +48,15 @@ fn screened(
             Some((base.levels[*level].level.log_prior - 0.5 * reduced.deviance + gain, *level))
         };
         let (evidence, level) = reduced.iter().filter_map(gain).max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let believed = believed(search, reduced, &kept, &places[kept.len()..], base, candidate);
+        let own = (&places[kept.len()..], *candidate);
+        let discounted = discounted(reduced, (&kept, &base.taken), own, search.discount(candidate))?;
         let prior = search.log_prior(candidate);
-        Some(ScreenedEffect { evidence: evidence + prior, believed: believed? + prior, level, candidate: (*candidate).clone() })
+        Some(ScreenedEffect {
+            evidence: evidence + prior,
+            discounted: discounted + prior,
+            level,
+            candidate: (*candidate).clone(),
+        })
     };
     let mut screened: Vec<ScreenedEffect> = others.iter().filter_map(&mut one).collect();
     screened.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
@@ -58,19 +64,17 @@ fn screened(
 }
 
 /// The discounted evidence of an effect beside those of a base, at the level at which it says most.
-fn believed(
-    search: &HypothesisSearch<'_>,
+fn discounted(
     reduced: &[(usize, MarginalInformation)],
-    kept: &[usize],
-    own: &[usize],
-    base: &FilteredBase<'_>,
-    candidate: &EffectCandidate,
+    (kept, taken): (&[usize], &[EffectCandidate]),
+    (own, candidate): (&[usize], &EffectCandidate),
+    discount: f64,
 ) -> Option<f64> {
-    let (others, fixing): (Vec<NormalPrior>, Vec<NormalPrior>) =
-        (base.taken.iter().flat_map(priors).collect(), priors(candidate));
+    let others: Vec<NormalPrior> = taken.iter().flat_map(priors).collect();
+    let fixing = priors(candidate);
     let columns: Vec<usize> = (0..own.len()).collect();
     let gain = |(_, reduced): &(usize, MarginalInformation)| {
-        let given = reduced.given(kept, &others, own)?.discounted(search.discount(candidate));
+        let given = reduced.given(kept, &others, own)?.discounted(discount);
         Some(given.estimate(&columns, &fixing)?.gain)
     };
     // The least: what is said at one level only is not said.

@@ -24,7 +24,7 @@ pub(super) struct HypothesisSearch<'a> {
     /// Its law, without effects.
     pub law: &'a Law,
     /// The model as its own trials have calibrated it.
-    pub learned: CalibratedModel,
+    pub calibrated_model: CalibratedModel,
     /// By how much, by column; and by how much before any hypothesis shifted it further.
     pub calibrated: Vec<f64>,
     pub calibrated_at_first: Vec<f64>,
@@ -60,7 +60,7 @@ impl<'a> HypothesisSearch<'a> {
     /// Names what the model or a trial lacks.
     pub fn workspace(&self, candidates: Vec<EffectCandidate>) -> Result<LinearisedTrials<'a>, RefineError> {
         let columns = Columns { nuisance: self.nuisance.clone(), candidates };
-        LinearisedTrials::new(&self.learned, columns, self.trials, self.least_step_s)
+        LinearisedTrials::new(&self.calibrated_model, columns, self.trials, self.least_step_s)
     }
 
     /// Effects that are taken with all others beside them, at some of the levels.
@@ -139,7 +139,7 @@ impl<'a> HypothesisSearch<'a> {
         let places: Vec<usize> = (0..base.taken.iter().map(|kept| kept.at.len()).sum()).collect();
         let grams = |level: usize| match base.taken.len() {
             0 => Ok::<_, RefineError>(base.alone(level)),
-            _ => Ok(base.linearised(&self.learned, &base.taken)?.grams(level)),
+            _ => Ok(base.linearised(&self.calibrated_model, &base.taken)?.grams(level)),
         };
         let at = |level: usize| Some((level, self.judged(base, &base.taken, level, grams(level).ok()?, &places)?));
         let best = (0..base.levels.len()).filter_map(at).max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
@@ -192,7 +192,7 @@ impl<'a> HypothesisSearch<'a> {
         let shift = known.expected_shift(&self.nuisance).ok_or_else(not_positive)?;
         let calibrated: Vec<f64> = self.calibrated.iter().zip(&shift).map(|(before, more)| before + more).collect();
         Ok(Self {
-            learned: CalibratedModel::new(request.model, request.law, &self.terms, &self.nuisance, &calibrated)?,
+            calibrated_model: CalibratedModel::new(request.model, request.law, &self.terms, &self.nuisance, &calibrated)?,
             fixed: self.fixed.clone().from(&shift),
             calibrated,
             ..self.clone()
@@ -206,7 +206,7 @@ impl<'a> HypothesisSearch<'a> {
         candidates: &[EffectCandidate],
         level: usize,
     ) -> Result<(usize, JudgedHypothesis), RefineError> {
-        let stand = base.linearised(&self.learned, candidates)?;
+        let stand = base.linearised(&self.calibrated_model, candidates)?;
         let places: Vec<usize> = (0..candidates.iter().map(|candidate| candidate.at.len()).sum()).collect();
         let at = |level: usize| Some((level, self.judged(base, candidates, level, stand.grams(level), &places)?));
         let levels = level.saturating_sub(1)..=level;

@@ -20,9 +20,9 @@ pub(super) fn residuals(
     settled: &HypothesisSearch<'_>,
     best: &JudgedHypothesis,
 ) -> Result<Vec<ResidualSeries>, RefineError> {
-    let before = LinearisedTrials::new(&search.learned, Columns::default(), search.trials, search.least_step_s)?;
+    let before = LinearisedTrials::new(&search.calibrated_model, Columns::default(), search.trials, search.least_step_s)?;
     let columns = Columns { nuisance: Vec::new(), candidates: best.candidates.clone() };
-    let after = LinearisedTrials::new(&settled.learned, columns, search.trials, search.least_step_s)?;
+    let after = LinearisedTrials::new(&settled.calibrated_model, columns, search.trials, search.least_step_s)?;
     let level = search.levels[search.levels.len() - 1];
     let of = |workspace: &LinearisedTrials<'_>, trial: usize| -> Vec<Smoothed> {
         let parts = workspace.linear()[trial].iter();

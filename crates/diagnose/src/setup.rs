@@ -71,7 +71,7 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, 
     let mut search = HypothesisSearch {
         model: request.model,
         law: request.law,
-        learned: CalibratedModel::new(request.model, request.law, &terms, &nuisance, &shift)?,
+        calibrated_model: CalibratedModel::new(request.model, request.law, &terms, &nuisance, &shift)?,
         trials: request.trials,
         nuisance,
         terms,
@@ -100,7 +100,7 @@ fn unknown(factor: f64) -> DiscrepancyFactor {
 /// The discrepancy that the model brings with it, or the least that is weighed.
 fn expected(request: &Request<'_>, search: &HypothesisSearch<'_>) -> Result<Discrepancies, RefineError> {
     let columns = Columns::default();
-    let workspace = LinearisedTrials::new(&search.learned, columns, search.trials, Some(f64::MAX))?;
+    let workspace = LinearisedTrials::new(&search.calibrated_model, columns, search.trials, Some(f64::MAX))?;
     let mut expected = workspace.scales().discrepancies(THRESHOLDS.discrepancy.least_level);
     if let Some(uncertainty) = &request.model.uncertainty {
         for (axis, discrepancy) in workspace.axes().iter().zip(&mut expected) {
