@@ -1,6 +1,6 @@
 //! The coefficients once more, with the effects in place: what they had taken over from what was missing they give back.
 
-use sistership_dynamics::plant::dressed;
+use sistership_dynamics::equations::EquationsOfMotion;
 use sistership_model::effect::{AppliedEffect, AsTerms};
 use sistership_model::law::Law;
 use sistership_model::{Model, Trial, particulars};
@@ -90,8 +90,8 @@ fn jointly(request: &Request<'_>, found: &Refit, restart_s: f64) -> Vec<Refit> {
 }
 
 fn with_coefficients(model: &Model, law: &Law, trials: &[&Trial], lambda: f64) -> Option<Model> {
-    let law = dressed(model, law).ok()?;
-    let blocks = Blocks::new(model, &law).ok()?;
+    let equations = EquationsOfMotion::new(model, law).ok()?;
+    let blocks = Blocks::new(model, equations.law()).ok()?;
     let speed_m_s = approach_of(trials).map(|approach| approach.speed_m_s).or(model.speed_m_s)?;
     let difference_s = THRESHOLDS.refit.difference * particulars::value(&model.particulars, "lpp_m")? / speed_m_s;
     let of = |trial: &&Trial| trial_moments(&blocks, trial, Some(difference_s)).ok();

@@ -12,11 +12,11 @@ use sistership_model::coefficient::{Axis, split_submodel};
 use sistership_model::formula::Expr;
 use sistership_model::law::{Law, STATES, indicator};
 
+use crate::equations::{Attitude, EquationsOfMotion, Lowering, PlantError, constant_mobility, mobility};
 use crate::integrate::Method;
-use crate::plant::{MAX_INPUTS, PlantError, binding, dressed};
-use crate::sensitivity::mobility;
+use crate::plant::check_inputs;
 use crate::state::{StateVector, at};
-use crate::tape::{Lanes, Slots, Tape, TapeBuilder};
+use crate::tape::{Lanes, Slots, Tape};
 use crate::wide::{Wide, widest};
 
 const PLANE: [usize; 4] = [at::U, at::V, at::R, at::PSI];
@@ -66,15 +66,10 @@ impl CandidateSystem {
     /// # Errors
     /// Names what the model does not give; refuses effects on instruments and lags.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
-        let law = &*dressed(model, law)?;
-        if law.inputs.len() > MAX_INPUTS || !law.dressing.lags.is_empty() || !law.dressing.measures.is_empty() {
-            return Err(PlantError::Law(format!("`{}` carries a lag or an effect on instruments: no candidates", model.name)));
-        }
-        let bind = |name: &str| binding(model, law, name);
-        let names: Vec<&str> = STATES.iter().map(|&(name, _)| name).chain(law.inputs.keys().map(String::as_str)).collect();
-        let builder = TapeBuilder::new(&names, &bind);
-        let axes = if law.has_roll() { vec![Axis::X, Axis::Y, Axis::N, Axis::K] } else { vec![Axis::X, Axis::Y, Axis::N] };
-        Builder { model, law, builder, axes, names: Vec::new() }.build()
+        let equations = EquationsOfMotion::new(model, law)?;
+        check_inputs(equations.law())?;
+        equations.without_lags_or_instruments("candidates")?;
+        Builder { equations: &equations, lowering: Lowering::new(&equations, &equations.names()), names: Vec::new() }.build()
     }
 
     /// The coefficients, in the order in which their values are given.
@@ -100,85 +95,53 @@ impl CandidateSystem {
     }
 }
 
-struct Builder<'a, 'b> {
-    model: &'a Model,
-    law: &'a Law,
-    builder: TapeBuilder<'b>,
-    axes: Vec<Axis>,
+struct Builder<'e> {
+    equations: &'e EquationsOfMotion<'e>,
+    lowering: Lowering<'e>,
     names: Vec<String>,
 }
 
-impl Builder<'_, '_> {
+impl Builder<'_> {
     fn build(mut self) -> Result<CandidateSystem, PlantError> {
-        let order = self.axes.clone();
+        let (equations, order) = (self.equations, self.equations.axes());
         let axes = order.iter().map(|&axis| self.sum(axis)).collect::<Result<_, _>>()?;
-        let mass = self.mass()?;
-        let additions = order.iter().map(|&axis| self.addition(axis)).collect::<Result<_, _>>()?;
-        let states: &'static [usize] = if self.law.has_roll() { &ROLL } else { &PLANE };
+        let mass = self.lowering.mass_matrix(order)?;
+        let additions = self.lowering.additions(order)?;
+        let states: &'static [usize] = if equations.law().has_roll() { &ROLL } else { &PLANE };
         let kinematics = self.kinematics(states)?;
-        let (front, tape) = self.builder.finish_hoisted(STATES.len());
-        let n = order.len();
-        let entries: Option<Vec<f64>> = mass.iter().map(|o| o.map_or(Some(0.0), |o| tape.constant_output(o))).collect();
-        let constant = entries.map(|entries| {
-            let solved = mobility(n, |i, j| entries[i * n + j]);
-            (0..n * n).map(|k| solved[(k / n, k % n)]).collect::<Vec<f64>>()
-        });
-        if constant.as_ref().is_some_and(|constant| constant.iter().any(|value| !value.is_finite())) {
-            return Err(PlantError::Mass(self.model.name.clone()));
-        }
-        let input_names = self.law.inputs.keys().cloned().collect();
+        let (front, tape) = self.lowering.finish_hoisted(STATES.len());
+        let constant = constant_mobility(equations, &tape, &mass)?;
+        let input_names = equations.law().inputs.keys().cloned().collect();
         let names = self.names;
         Ok(CandidateSystem { front, tape, states, axes, mass, constant, additions, kinematics, names, input_names })
     }
 
-    fn output(&mut self, expr: &Expr) -> Result<usize, PlantError> {
-        let (law, model) = (&self.law.name, &self.model.name);
-        self.builder.output(expr).map_err(|name| PlantError::Missing { law: law.clone(), name, model: model.clone() })
-    }
-
     fn sum(&mut self, axis: Axis) -> Result<Sum, PlantError> {
-        let law = self.law;
-        let of_law = &law.axes[&axis];
-        let (scale, rest) = (self.output(&of_law.scale)?, self.output(&of_law.rest)?);
+        let equations = self.equations;
+        let of_law = &equations.law().axes[&axis];
+        let (scale, rest) = (self.lowering.output(&of_law.scale)?, self.lowering.output(&of_law.rest)?);
         let mut groups: BTreeMap<Option<&str>, Vec<(usize, usize)>> = BTreeMap::new();
-        let prefix = format!("{axis}_");
-        let model = self.model;
-        for name in model.coefficients.keys().filter(|name| name.starts_with(&prefix)) {
+        for name in equations.coefficients(axis) {
             let (shared, submodel) = split_submodel(name);
             // The deviation must exist; its condition is multiplied once for all terms under it.
-            law.term(name).map_err(PlantError::Law)?;
-            let (_, term) = law.term(shared).map_err(PlantError::Law)?;
-            let entry = (self.names.len(), self.output(&term)?);
+            equations.term(name)?;
+            let entry = (self.names.len(), self.lowering.output(&equations.term(shared)?)?);
             self.names.push(name.clone());
             groups.entry(submodel).or_default().push(entry);
         }
         let group = |(submodel, terms): (Option<&str>, Vec<(usize, usize)>)| {
-            let gate = submodel.map(|submodel| self.output(&Expr::Name(indicator(submodel)))).transpose()?;
+            let gate = submodel.map(|submodel| self.lowering.output(&Expr::Name(indicator(submodel)))).transpose()?;
             Ok(Group { gate, terms })
         };
-        let groups = groups.into_iter().map(group).collect::<Result<_, _>>()?;
+        let groups = groups.into_iter().map(group).collect::<Result<_, PlantError>>()?;
         Ok(Sum { scale, rest, groups })
-    }
-
-    fn mass(&mut self) -> Result<Vec<Option<usize>>, PlantError> {
-        let axes = self.axes.clone();
-        let pairs: Vec<(Axis, Axis)> = axes.iter().flat_map(|&row| axes.iter().map(move |&column| (row, column))).collect();
-        let law = self.law;
-        pairs.into_iter().map(|pair| law.mass.get(&pair).map(|expr| self.output(expr)).transpose()).collect()
-    }
-
-    fn addition(&mut self, axis: Axis) -> Result<Option<usize>, PlantError> {
-        let added = self.law.dressing.accelerations.iter().filter(|(of, _)| *of == axis).map(|(_, expr)| expr.clone());
-        let sum = added.reduce(|a, b| Expr::Add(Box::new(a), Box::new(b)));
-        sum.map(|sum| self.output(&sum)).transpose()
     }
 
     fn kinematics(&mut self, states: &[usize]) -> Result<Vec<(usize, usize)>, PlantError> {
         let mut all = Vec::new();
-        for (name, plain, place) in [("psi", "r", at::PSI), ("phi", "p", at::PHI)] {
+        for place in [at::PSI, at::PHI] {
             let Some(row) = states.iter().position(|&state| state == place) else { continue };
-            let expr = self.law.kinematics.get(name).cloned().unwrap_or_else(|| Expr::Name(plain.to_owned()));
-            all.push((row, self.output(&expr)?));
+            all.push((row, self.lowering.output(&self.equations.kinematic(place, Attitude::Upright)?)?));
         }
         Ok(all)
     }

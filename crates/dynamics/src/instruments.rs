@@ -1,13 +1,12 @@
 //! What the instruments say of a state, where effects make them say something else than the truth.
 
-use sistership_model::Model;
 use sistership_model::law::Law;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
 
-use crate::plant::{PlantError, binding};
+use crate::equations::{EquationsOfMotion, Lowering, PlantError};
 use crate::state::{RECORDED, StateVector, at};
-use crate::tape::{Lanes, Slots, Tape, TapeBuilder};
+use crate::tape::{Lanes, Slots, Tape};
 
 /// The names that the formula of an instrument may use, with their places: states, then their rates.
 const STATES: [(&str, usize); 8] =
@@ -33,18 +32,15 @@ impl Instruments {
     ///
     /// # Errors
     /// Names what the model does not give.
-    pub fn new(model: &Model, law: &Law, frame: VelocityFrame) -> Result<Option<Self>, PlantError> {
-        let missing = |name: String| PlantError::Missing { law: law.name.clone(), name, model: model.name.clone() };
-        let names = input_names(law);
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let bind = |name: &str| binding(model, law, name);
-        let mut builder = TapeBuilder::new(&names, &bind);
+    pub fn new(equations: &EquationsOfMotion<'_>, frame: VelocityFrame) -> Result<Option<Self>, PlantError> {
+        let law = equations.law();
+        let mut lowering = Lowering::new(equations, &input_names(law));
         let mut says = Vec::new();
         for (channel, expr) in readings(law, frame) {
             let Some(&(_, place)) = RECORDED.iter().find(|(known, _)| *known == channel) else { continue };
-            says.push((place, builder.output(&expr).map_err(missing)?));
+            says.push((place, lowering.output(&expr)?));
         }
-        Ok((!says.is_empty()).then(|| Self { tape: builder.finish(), says }))
+        Ok((!says.is_empty()).then(|| Self { tape: lowering.finish(), says }))
     }
 
     /// What they say of a state with its rate of change.

@@ -2,6 +2,7 @@
 
 pub mod candidates;
 pub mod envelope;
+pub mod equations;
 pub mod error;
 pub mod gear;
 pub mod instruments;
@@ -21,7 +22,8 @@ pub mod validity;
 mod wide;
 
 pub use envelope::{Envelope, Stopped};
+pub use equations::PlantError;
 pub use integrate::Method;
-pub use plant::{Plant, PlantError};
+pub use plant::Plant;
 pub use ship::{Order, Run, Ship};
 pub use state::{StateVector, Trajectory};

@@ -6,10 +6,11 @@ use sistership_model::validity::{Excursion, Region};
 use sistership_model::{Model, particulars};
 
 use crate::envelope::Envelope;
+use crate::equations::{Coefficients, EquationsOfMotion, PlantError};
 use crate::gear::Gear;
 use crate::instruments::{Instruments, truth};
 use crate::integrate::Method;
-use crate::plant::{Inputs, MAX_INPUTS, Plant, PlantError, Work, dressed};
+use crate::plant::{Inputs, MAX_INPUTS, Plant, Work};
 use crate::state::{StateVector, States, Trajectory, at};
 use crate::tape::Lanes;
 use crate::validity::leaves;
@@ -54,7 +55,7 @@ impl Ship {
     /// # Errors
     /// As [`Plant::new`]; also where the model has no length or no approach speed.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
-        Self::with_plant(model, law, Plant::new(model, law)?)
+        Self::of(&EquationsOfMotion::new(model, law)?, Coefficients::Values)
     }
 
     /// As [`Ship::new`], for sisters whose coefficients are given with each passage: those of the model are not read.
@@ -62,12 +63,13 @@ impl Ship {
     /// # Errors
     /// As [`Ship::new`].
     pub fn sisters(model: &Model, law: &Law) -> Result<Self, PlantError> {
-        Self::with_plant(model, law, Plant::open(model, law)?)
+        Self::of(&EquationsOfMotion::new(model, law)?, Coefficients::Names)
     }
 
-    fn with_plant(model: &Model, law: &Law, plant: Plant) -> Result<Self, PlantError> {
-        let dressed = dressed(model, law)?;
-        let instruments = |frame| Instruments::new(model, &dressed, frame);
+    fn of(equations: &EquationsOfMotion<'_>, coefficients: Coefficients) -> Result<Self, PlantError> {
+        let plant = Plant::of(equations, coefficients)?;
+        let (model, law) = (equations.model(), equations.law());
+        let instruments = |frame| Instruments::new(equations, frame);
         let instruments = [instruments(VelocityFrame::Ground)?, instruments(VelocityFrame::Water)?];
         let need = |name: &str, value: Option<f64>| {
             value.ok_or_else(|| PlantError::Missing { law: law.name.clone(), name: name.into(), model: model.name.clone() })

@@ -72,6 +72,60 @@ pub struct CoefficientName {
     pub submodel: Option<String>,
 }
 
+/// Why a name is not one of a coefficient.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NameError {
+    /// It is too long.
+    #[error("`{head}...`: a name of {length} characters; {most} are the most", most = MAX_NAME)]
+    Long {
+        /// How it begins.
+        head: String,
+        /// Its bytes.
+        length: usize,
+    },
+    /// It has no underscore.
+    #[error("`{0}`: {help}", help = HELP)]
+    Form(String),
+    /// Its axis is none.
+    #[error("`{0}`: the axis must be X, Y, K or N; {help}", help = HELP)]
+    Axis(String),
+    /// It is not made of factors.
+    #[error("`{name}`: {fault}; {help}", help = HELP)]
+    Factors {
+        /// The name.
+        name: String,
+        /// What is wrong with them.
+        fault: FactorsError,
+    },
+    /// Its factors stand in another order.
+    #[error("`{name}` is spelled `{canonical}` here")]
+    Spelling {
+        /// The name.
+        name: String,
+        /// How it is spelled.
+        canonical: CoefficientName,
+    },
+}
+
+const HELP: &str = "a coefficient is written Axis_factors, such as X_uu, Y_vvr, N_v|v| or Y_0";
+
+/// Why the end of a name is not a product of factors.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum FactorsError {
+    /// None of them begins there.
+    #[error("no factor starts at `{0}`")]
+    Unknown(String),
+    /// A bar is not closed.
+    #[error("`|{0}` lacks its closing bar")]
+    OpenBar(String),
+    /// There are too many.
+    #[error("it has more than {most} factors", most = MAX_FACTORS)]
+    Many,
+    /// There are none.
+    #[error("it has no factors")]
+    None,
+}
+
 /// Most bytes of a name.
 pub const MAX_NAME: usize = 512;
 
@@ -88,22 +142,23 @@ impl CoefficientName {
     ///
     /// # Errors
     /// Says what is wrong and, where it can tell, how the name is spelled here.
-    pub fn parse(name: &str, extra: &[&str]) -> Result<Self, String> {
-        let help = "a coefficient is written Axis_factors, such as X_uu, Y_vvr, N_v|v| or Y_0";
+    pub fn parse(name: &str, extra: &[&str]) -> Result<Self, NameError> {
         if name.len() > MAX_NAME {
-            let head = crate::formula::head(name);
-            return Err(format!("`{head}...`: a name of {} characters; {MAX_NAME} are the most", name.len()));
+            return Err(NameError::Long { head: crate::formula::head(name), length: name.len() });
         }
         let (shared, submodel) = split_submodel(name);
-        let (axis, rest) = shared.split_once('_').ok_or_else(|| format!("`{name}`: {help}"))?;
+        let (axis, rest) = shared.split_once('_').ok_or_else(|| NameError::Form(name.to_owned()))?;
         let axis = Axis::ALL.into_iter().find(|a| a.to_string() == axis);
-        let axis = axis.ok_or_else(|| format!("`{name}`: the axis must be X, Y, K or N; {help}"))?;
-        let mut factors =
-            if rest == "0" { Vec::new() } else { split(rest, extra).map_err(|e| format!("`{name}`: {e}; {help}"))? };
+        let axis = axis.ok_or_else(|| NameError::Axis(name.to_owned()))?;
+        let wrong = |fault| NameError::Factors { name: name.to_owned(), fault };
+        let mut factors = if rest == "0" { Vec::new() } else { split(rest, extra).map_err(wrong)? };
         let as_written = factors.clone();
         factors.sort();
         let canonical = Self { axis, factors, submodel: submodel.map(str::to_owned) };
-        if canonical.factors == as_written { Ok(canonical) } else { Err(format!("`{name}` is spelled `{canonical}` here")) }
+        if canonical.factors != as_written {
+            return Err(NameError::Spelling { name: name.to_owned(), canonical });
+        }
+        Ok(canonical)
     }
 
     /// Whether the term changes sign with that symbol.
@@ -125,22 +180,22 @@ impl fmt::Display for CoefficientName {
     }
 }
 
-fn split(mut rest: &str, extra: &[&str]) -> Result<Vec<Factor>, String> {
+fn split(mut rest: &str, extra: &[&str]) -> Result<Vec<Factor>, FactorsError> {
     let mut factors = Vec::new();
     while !rest.is_empty() {
         let absolute = rest.starts_with('|');
         let inner = rest.strip_prefix('|').unwrap_or(rest);
-        let (rank, symbol) = longest_symbol(inner, extra).ok_or_else(|| format!("no factor starts at `{rest}`"))?;
+        let (rank, symbol) = longest_symbol(inner, extra).ok_or_else(|| FactorsError::Unknown(rest.to_owned()))?;
         rest = &inner[symbol.len()..];
         if absolute {
-            rest = rest.strip_prefix('|').ok_or_else(|| format!("`|{symbol}` lacks its closing bar"))?;
+            rest = rest.strip_prefix('|').ok_or_else(|| FactorsError::OpenBar(symbol.to_owned()))?;
         }
         factors.push(Factor { rank, absolute, symbol: symbol.to_owned() });
         if factors.len() > MAX_FACTORS {
-            return Err(format!("it has more than {MAX_FACTORS} factors"));
+            return Err(FactorsError::Many);
         }
     }
-    if factors.is_empty() { Err("it has no factors".into()) } else { Ok(factors) }
+    if factors.is_empty() { Err(FactorsError::None) } else { Ok(factors) }
 }
 
 /// The longest known symbol that `text` starts with, so that `phi` is not read as `p`.
@@ -158,7 +213,7 @@ mod tests {
     use super::*;
 
     fn canonical(name: &str) -> Result<String, String> {
-        CoefficientName::parse(name, &["T", "beta", "c", "zeta"]).map(|n| n.to_string())
+        CoefficientName::parse(name, &["T", "beta", "c", "zeta"]).map(|n| n.to_string()).map_err(|e| e.to_string())
     }
 
     #[test]

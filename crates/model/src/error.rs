@@ -49,8 +49,8 @@ impl<'a> Blame<'a> {
     }
 
     /// An error at a dotted field; the line is that of the path's keys, each looked for below the one before.
-    pub(crate) fn at(&self, field: &str, message: impl Into<String>) -> FileError {
-        FileError { file: self.file.to_owned(), line: self.line_of(field), field: field.to_owned(), message: message.into() }
+    pub(crate) fn at(&self, field: &str, message: impl ToString) -> FileError {
+        FileError { file: self.file.to_owned(), line: self.line_of(field), field: field.to_owned(), message: message.to_string() }
     }
 
     fn line_of(&self, field: &str) -> Option<usize> {

@@ -16,6 +16,7 @@ pub mod posterior;
 pub mod quantity;
 pub mod source;
 pub mod trial;
+pub mod triangle;
 pub mod uncertainty;
 pub mod units;
 pub mod validity;

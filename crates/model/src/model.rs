@@ -180,7 +180,7 @@ impl Model {
     pub fn check(&self, law: &Law) -> Result<(), (String, String)> {
         most("coefficients", self.coefficients.len(), MAX_COEFFICIENTS)?;
         for name in self.coefficients.keys() {
-            law.regressor(name).map_err(|e| (format!("coefficients.values.{name}"), e))?;
+            law.regressor(name).map_err(|e| (format!("coefficients.values.{name}"), e.to_string()))?;
         }
         let unknown = self.parameters.keys().find(|name| !law.parameters.contains_key(*name));
         if let Some(name) = unknown {
@@ -196,13 +196,13 @@ impl Model {
             return Err((format!("parameters.values.{name}"), missing_parameter(name, parameter)));
         }
         if let Some(uncertainty) = &self.uncertainty {
-            uncertainty.check().map_err(|message| ("uncertainty".to_owned(), message))?;
+            uncertainty.check().map_err(|e| ("uncertainty".to_owned(), e.to_string()))?;
         }
         if let Some(posterior) = &self.posterior {
-            posterior.check().map_err(|message| ("posterior".to_owned(), message))?;
+            posterior.check().map_err(|e| ("posterior".to_owned(), e.to_string()))?;
         }
         if let Some(region) = &self.validity {
-            region.check().map_err(|message| ("validity".to_owned(), message))?;
+            region.check().map_err(|e| ("validity".to_owned(), e.to_string()))?;
         }
         law.with_effects(self).map(|_| ())
     }

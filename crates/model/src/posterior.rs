@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::triangle::{self, TriangleError};
+
 /// The errors of estimated coefficients as a normal distribution about the estimate: variances of the estimator through
 /// the scatter of the trials, and of what the prior adds where it holds. docs/decisions/0012 says what an interval means.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -21,6 +23,20 @@ pub struct Posterior {
     pub root_correlation: Vec<String>,
 }
 
+/// Why it cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum PosteriorError {
+    /// Lists differ in length.
+    #[error("names, values and deviations should be equally many")]
+    Lists,
+    /// A deviation is negative.
+    #[error("deviations should be at least 0")]
+    Deviations,
+    /// The root of the correlation is no triangle.
+    #[error(transparent)]
+    Root(#[from] TriangleError),
+}
+
 impl Posterior {
     /// Writes a lower triangle row by row; `entry(i, j)` for `j <= i`.
     pub fn rows(size: usize, entry: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
@@ -32,17 +48,10 @@ impl Posterior {
     ///
     /// # Errors
     /// Names the row that is not as long as it should be, or not of numbers.
-    pub fn root(&self) -> Result<Vec<Vec<f64>>, String> {
-        if self.root_correlation.len() != self.names.len() {
-            return Err(format!("root_correlation: {} rows for {} names", self.root_correlation.len(), self.names.len()));
-        }
-        let row = |(i, (text, deviation)): (usize, (&String, &f64))| {
-            let numbers: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
-            let numbers = numbers.ok().filter(|row| row.len() == i + 1 && row.iter().all(|x: &f64| x.is_finite()));
-            let numbers = numbers.ok_or_else(|| format!("root_correlation: row {} should be {0} finite numbers", i + 1))?;
-            Ok(numbers.into_iter().map(|x| x * deviation).collect())
-        };
-        self.root_correlation.iter().zip(&self.deviations).enumerate().map(row).collect()
+    pub fn root(&self) -> Result<Vec<Vec<f64>>, TriangleError> {
+        let rows = triangle::read("root_correlation", &self.root_correlation, self.names.len(), |place| place + 1)?;
+        let scaled = |(row, deviation): (Vec<f64>, &f64)| row.into_iter().map(|x| x * deviation).collect();
+        Ok(rows.into_iter().zip(&self.deviations).map(scaled).collect())
     }
 
     /// Whether it is about these coefficients.
@@ -59,15 +68,16 @@ impl Posterior {
     ///
     /// # Errors
     /// Says which do not.
-    pub fn check(&self) -> Result<(), String> {
+    pub fn check(&self) -> Result<(), PosteriorError> {
         let size = self.names.len();
         if self.values.len() != size || self.deviations.len() != size {
-            return Err("names, values and deviations should be equally many".into());
+            return Err(PosteriorError::Lists);
         }
         if !self.deviations.iter().all(|d| *d >= 0.0 && d.is_finite()) {
-            return Err("deviations should be at least 0".into());
+            return Err(PosteriorError::Deviations);
         }
-        self.root().map(|_| ())
+        self.root()?;
+        Ok(())
     }
 }
 
@@ -95,7 +105,7 @@ mod tests {
     fn lists_that_do_not_go_together_are_named() {
         assert_eq!(posterior().check(), Ok(()));
         let short = Posterior { root_correlation: vec!["1".into(), "0.6".into()], ..posterior() };
-        assert!(short.check().unwrap_err().contains("row 2"));
+        assert!(short.check().unwrap_err().to_string().contains("row 2"));
         assert!(Posterior { deviations: vec![0.1], ..posterior() }.check().is_err());
         assert!(Posterior { deviations: vec![0.1, f64::NAN], ..posterior() }.check().is_err());
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::formula;
+use crate::formula::{self, FormulaError};
 
 /// A value, its source, and what is known of its uncertainty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -82,14 +82,27 @@ impl Section {
     /// Names the value that is not a finite number, has no source, or cites one that the file does not list.
     pub fn resolve(&self, sources: &[&str]) -> Result<BTreeMap<String, Quantity>, (String, String)> {
         let one = |(name, written): (&String, &Written)| {
-            let quantity = resolve(written, self.source.as_deref(), sources).map_err(|e| (name.clone(), e))?;
+            let quantity = resolve(written, self.source.as_deref(), sources).map_err(|e| (name.clone(), e.to_string()))?;
             Ok((name.clone(), quantity))
         };
         self.values.iter().map(one).collect()
     }
 }
 
-fn resolve(written: &Written, default_source: Option<&str>, sources: &[&str]) -> Result<Quantity, String> {
+/// Why a number of a file is refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+enum QuantityError {
+    #[error(transparent)]
+    Formula(#[from] FormulaError),
+    #[error("{0} is not a finite number")]
+    NotFinite(f64),
+    #[error("has no source: give the section or the value one")]
+    NoSource,
+    #[error("cites `{0}`, which is not listed under `sources`")]
+    Unlisted(String),
+}
+
+fn resolve(written: &Written, default_source: Option<&str>, sources: &[&str]) -> Result<Quantity, QuantityError> {
     let (value, source, note, standard_error) = match written {
         Written::Number(number) => (*number, None, None, None),
         Written::Expression(text) => (formula::constant(text)?, None, None, None),
@@ -102,11 +115,11 @@ fn resolve(written: &Written, default_source: Option<&str>, sources: &[&str]) ->
         }
     };
     if !value.is_finite() {
-        return Err(format!("{value} is not a finite number"));
+        return Err(QuantityError::NotFinite(value));
     }
-    let source = source.or(default_source).ok_or("has no source: give the section or the value one")?;
+    let source = source.or(default_source).ok_or(QuantityError::NoSource)?;
     if !sources.contains(&source) {
-        return Err(format!("cites `{source}`, which is not listed under `sources`"));
+        return Err(QuantityError::Unlisted(source.to_owned()));
     }
     Ok(Quantity { value, source: source.to_owned(), standard_error, note })
 }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::coefficient::Axis;
 use crate::effect::AppliedEffect;
+use crate::triangle::{self, TriangleError};
 
 /// What a fit leaves open. With `d` the change of the listed coefficients, each divided by its scale, the trials that
 /// were fitted say `|R d - z|^2` (minus twice the logarithm of their likelihood, less a constant).
@@ -74,6 +75,23 @@ pub struct Discrepancy {
     pub white: f64,
 }
 
+/// Why what a fit leaves open cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum UncertaintyError {
+    /// Lists differ in length.
+    #[error("names, scales and offset should be equally many")]
+    Lists,
+    /// A scale divides by nothing.
+    #[error("scales should be above 0")]
+    Scales,
+    /// A discrepancy is no process.
+    #[error("discrepancy: deviation and white should be at least 0 and time_s above 0")]
+    Discrepancy,
+    /// The root information is no triangle.
+    #[error(transparent)]
+    Root(#[from] TriangleError),
+}
+
 impl Uncertainty {
     /// Writes R row by row; `entry(i, j)` for `j >= i`.
     pub fn rows(size: usize, entry: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
@@ -85,37 +103,30 @@ impl Uncertainty {
     ///
     /// # Errors
     /// Names the row that is not as long as it should be, or not of numbers.
-    pub fn root(&self) -> Result<Vec<Vec<f64>>, String> {
+    pub fn root(&self) -> Result<Vec<Vec<f64>>, TriangleError> {
         let size = self.names.len();
-        let row = |(i, text): (usize, &String)| {
-            let numbers: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
-            let numbers = numbers.ok().filter(|row| row.len() == size - i && row.iter().all(|x: &f64| x.is_finite()));
-            numbers.ok_or_else(|| format!("root_information: row {} should be {} finite numbers", i + 1, size - i))
-        };
-        if self.root_information.len() != size {
-            return Err(format!("root_information: {} rows for {size} names", self.root_information.len()));
-        }
-        self.root_information.iter().enumerate().map(row).collect()
+        triangle::read("root_information", &self.root_information, size, |place| size - place)
     }
 
     /// Checks that the lists go together.
     ///
     /// # Errors
     /// Says which do not.
-    pub fn check(&self) -> Result<(), String> {
+    pub fn check(&self) -> Result<(), UncertaintyError> {
         let size = self.names.len();
         if self.scales.len() != size || self.offset.len() != size {
-            return Err("names, scales and offset should be equally many".into());
+            return Err(UncertaintyError::Lists);
         }
         let positive = |x: f64| x > 0.0 && x.is_finite();
         if !self.scales.iter().all(|&scale| positive(scale)) {
-            return Err("scales should be above 0".into());
+            return Err(UncertaintyError::Scales);
         }
         if self.discrepancy.values().any(|d| {
             !(d.white >= 0.0 && d.white.is_finite() && d.deviation >= 0.0 && d.deviation.is_finite() && positive(d.time_s))
         }) {
-            return Err("discrepancy: deviation and white should be at least 0 and time_s above 0".into());
+            return Err(UncertaintyError::Discrepancy);
         }
-        self.root().map(|_| ())
+        self.root()?;
+        Ok(())
     }
 }

@@ -112,17 +112,24 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("N m", Dimension::MOMENT, 1.0),
 ];
 
+/// A unit that no file may use.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("unknown unit `{0}`; known units: {known}", known = known_units())]
+pub struct UnknownUnit(pub String);
+
+fn known_units() -> String {
+    UNITS.iter().map(|(known, _, _)| *known).collect::<Vec<_>>().join(", ")
+}
+
 impl Unit {
     /// Looks a unit up by the name a file gives it.
     ///
     /// # Errors
     /// Names the unknown unit and lists those that are known.
-    pub fn parse(name: &str) -> Result<Self, String> {
+    pub fn parse(name: &str) -> Result<Self, UnknownUnit> {
         let found = UNITS.iter().find(|(known, _, _)| *known == name.trim());
-        found.map(|&(_, dimension, to_si)| Self { dimension, to_si }).ok_or_else(|| {
-            let known: Vec<&str> = UNITS.iter().map(|(known, _, _)| *known).collect();
-            format!("unknown unit `{name}`; known units: {}", known.join(", "))
-        })
+        let unit = found.map(|&(_, dimension, to_si)| Self { dimension, to_si });
+        unit.ok_or_else(|| UnknownUnit(name.to_owned()))
     }
 }
 
@@ -135,7 +142,7 @@ mod tests {
     fn knots_and_degrees_convert_to_si() {
         assert!((Unit::parse("kn").unwrap().to_si - 0.514_444_444).abs() < 1e-9);
         assert!((Unit::parse("deg/s").unwrap().to_si * 180.0 - std::f64::consts::PI).abs() < 1e-12);
-        assert!(Unit::parse("furlong").unwrap_err().contains("kn"));
+        assert!(Unit::parse("furlong").unwrap_err().to_string().contains("kn"));
     }
 
     #[test]

@@ -95,13 +95,25 @@ impl Region {
     ///
     /// # Errors
     /// Names the channel.
-    pub fn check(&self) -> Result<(), String> {
+    pub fn check(&self) -> Result<(), RangeError> {
         let wrong = |(_, [low, high]): &(&String, &[f64; 2])| !(low.is_finite() && high.is_finite() && low <= high);
         match self.ranges.iter().chain(&self.pairs).find(wrong) {
-            Some((name, [low, high])) => Err(format!("{name}: from {low} to {high} is no range")),
+            Some((name, &[low, high])) => Err(RangeError { name: name.clone(), low, high }),
             None => Ok(()),
         }
     }
+}
+
+/// Bounds that are not in order.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{name}: from {low} to {high} is no range")]
+pub struct RangeError {
+    /// Of the channel, or of the pair.
+    pub name: String,
+    /// The lower bound.
+    pub low: f64,
+    /// The upper one.
+    pub high: f64,
 }
 
 impl Excursion {

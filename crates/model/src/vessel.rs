@@ -227,8 +227,8 @@ fn check_model<'a>(
     mut earlier: impl Iterator<Item = &'a PublishedModelFile>,
 ) -> Result<(), FieldError> {
     let blame = |field: &str, message: &str| Err((field.to_owned(), message.to_owned()));
-    if let Err(message) = check_slug(&model.name) {
-        return Err(("name".into(), message));
+    if let Err(invalid) = check_slug(&model.name) {
+        return Err(("name".into(), invalid.to_string()));
     }
     if earlier.any(|other| other.name == model.name) {
         return Err((model.name.clone(), "two models of one ship must have different names".into()));

@@ -8,16 +8,16 @@ use sistership_store::{Objects, Store};
 use tokio::sync::{Notify, RwLock, Semaphore};
 
 use crate::answers::Answers;
-use crate::archive::Archive;
-use crate::catalogue::{Catalogue, KnownLaw};
 use crate::config::{Config, Leases, Limits};
 use crate::memory::{self, Budget, Held};
 use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
-use crate::stopping::Stopping;
 use crate::upload::Spool;
-use crate::web::guard::ApiKey;
+use crate::web::api_key::ApiKey;
 use crate::web::throttle::Throttle;
+use sistership_listen::Stopping;
+use sistership_pipeline::archive::Archive;
+use sistership_pipeline::catalogue::{Catalogue, KnownLaw};
 
 /// The shared state of a server. A clone is another handle on the same one.
 #[derive(Clone)]

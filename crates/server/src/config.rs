@@ -146,23 +146,41 @@ impl fmt::Debug for Config {
     }
 }
 
+impl Limits {
+    /// Those of connections.
+    pub(crate) fn of_connections(&self) -> sistership_listen::Limits {
+        let Self { header_time, connections, connections_per_address, least_rate, body_grace, answer_grace, stop_time, .. } =
+            *self;
+        sistership_listen::Limits {
+            header_time,
+            connections,
+            connections_per_address,
+            least_rate,
+            body_grace,
+            answer_grace,
+            stop_time,
+        }
+    }
+}
+
 impl Default for Limits {
     fn default() -> Self {
+        let connections = sistership_listen::Limits::default();
         Self {
             document_bytes: 4 << 20,
             upload_bytes: 256 << 20,
             upload_files: 1000,
-            header_time: Duration::from_secs(10),
+            header_time: connections.header_time,
             request_time: Duration::from_secs(60),
             long_request_time: Duration::from_secs(600),
-            connections: 1024,
-            connections_per_address: 512,
-            least_rate: 256,
-            body_grace: Duration::from_secs(10),
-            answer_grace: Duration::from_secs(60),
+            connections: connections.connections,
+            connections_per_address: connections.connections_per_address,
+            least_rate: connections.least_rate,
+            body_grace: connections.body_grace,
+            answer_grace: connections.answer_grace,
             prediction_samples: 200_000,
             refinement_trials: 1000,
-            stop_time: Duration::from_secs(10),
+            stop_time: connections.stop_time,
             yaml_bytes: 1 << 20,
             request_memory: 256 << 20,
             job_memory: 1 << 30,

@@ -7,15 +7,15 @@ use tokio::sync::watch;
 use tokio::task::JoinSet;
 
 use crate::app::App;
-use crate::archive::Archive;
-use crate::catalogue::Catalogue;
 use crate::config::Config;
 use crate::jobs::Worker;
-use crate::search;
-use crate::seed;
+use crate::search_index;
 use crate::start_error::StartError;
-use crate::stopping::Stopping;
 use crate::tidy;
+use sistership_listen::Stopping;
+use sistership_pipeline::archive::Archive;
+use sistership_pipeline::catalogue::Catalogue;
+use sistership_pipeline::seed;
 
 /// A process that runs until it is [stopped](Self::stop) or dropped.
 #[derive(Debug)]
@@ -38,7 +38,7 @@ impl Process {
         let mut tasks = JoinSet::new();
         tasks.spawn(tidy::keep(app.clone()));
         if indexes {
-            tasks.spawn(search::keep(app.clone()));
+            tasks.spawn(search_index::keep(app.clone()));
         }
         for _ in 0..config.workers {
             tasks.spawn(Worker::new(app.clone()).run());

@@ -2,12 +2,12 @@
 
 use std::net::SocketAddr;
 
-use crate::archive::Archive;
 use crate::config::Config;
-use crate::listen::{self, listen};
 use crate::process::Process;
 use crate::routes;
 use crate::start_error::StartError;
+use sistership_listen::{bind, listen};
+use sistership_pipeline::archive::Archive;
 
 /// The server of Sistership.
 #[derive(Debug, Clone, Copy)]
@@ -29,8 +29,8 @@ impl Server {
         config.check()?;
         sistership_store::provide_cryptography();
         // The address first: a process that cannot have it takes no job from others.
-        let limits = crate::descriptors::suited(config.limits);
-        let listener = listen::bind(config.listen).map_err(|error| StartError::Listen { listen: config.listen, error })?;
+        let limits = sistership_listen::suited(config.limits.of_connections());
+        let listener = bind(config.listen).map_err(|error| StartError::Listen { listen: config.listen, error })?;
         let addr = listener.local_addr().map_err(|error| StartError::Listen { listen: config.listen, error })?;
         let (mut process, app) = Process::start(&config, true).await?;
         let stopping = app.stopping();

@@ -3,6 +3,8 @@
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
+use sistership_pipeline::seed::SeedError;
+
 /// Why a server does not start.
 #[derive(Debug, thiserror::Error)]
 pub enum StartError {
@@ -40,4 +42,13 @@ pub enum StartError {
     /// The zoo that the program carries does not read.
     #[error("the zoo is damaged: {0}")]
     Zoo(#[from] sistership_model::FileError),
+}
+
+impl From<SeedError> for StartError {
+    fn from(error: SeedError) -> Self {
+        match error {
+            SeedError::Store(error) => Self::Store(error),
+            SeedError::Zoo(error) => Self::Zoo(error),
+        }
+    }
 }

@@ -1,9 +1,9 @@
 //! Workers without a server: any number of such processes share the jobs of one database.
 
-use crate::archive::Archive;
 use crate::config::Config;
 use crate::process::Process;
 use crate::start_error::StartError;
+use sistership_pipeline::archive::Archive;
 
 /// Workers that run, until they are [stopped](Self::stop) or dropped.
 #[derive(Debug)]

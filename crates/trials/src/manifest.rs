@@ -80,7 +80,7 @@ fn stays_inside(path: &str) -> bool {
 fn conventions(manifest: &Manifest) -> Option<Problem> {
     let smoothing = manifest.conventions.smoothing?;
     let message = smoothing::check(smoothing.window, smoothing.degree).err()?;
-    Some(Problem { field: "conventions.smoothing".into(), near: "smoothing:".into(), message })
+    Some(Problem { field: "conventions.smoothing".into(), near: "smoothing:".into(), message: message.to_string() })
 }
 
 /// The first line in which the text stands as a word of its own.

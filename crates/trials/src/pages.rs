@@ -181,14 +181,15 @@ impl<R: Read> Thrift<R> {
         }
     }
 
-    /// Each entry takes a byte or more, so that what is not there ends it.
+    /// Each entry takes a byte or more, so that what is not there ends it. Lists of truths are in neither a footer nor a page
+    /// header, and the library passes over one without reading a byte of it, however long it says to be.
     fn list(&mut self, path: &mut Vec<i16>, depth: usize, take: Take<'_>) -> io::Result<()> {
         let deeper = depth.checked_sub(1).ok_or_else(|| invalid("it is nested too deeply"))?;
         let head = self.byte()?;
         let count = if head >> 4 == 15 { self.varint()? } else { u64::from(head >> 4) };
         for _ in 0..count {
             match head & 15 {
-                1 | 2 => self.byte().map(drop)?,
+                1 | 2 => return Err(invalid("it holds what no Parquet file holds")),
                 kind => self.value(kind, path, deeper, take)?,
             }
         }

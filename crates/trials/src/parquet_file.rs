@@ -24,7 +24,8 @@ use crate::table::{Column, Table};
 /// Rows are counted as in a CSV file: the first row of data is row 2.
 pub(crate) fn read<R: ChunkReader + 'static>(input: R, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
     let columns = mapped(&input, mapping, findings)?.columns;
-    let reader = guarded(|| SerializedFileReader::new(input)).map_err(|error| findings.error(None, None, unread(&error)));
+    let opened = guarded(|| SerializedFileReader::new(input));
+    let reader = opened.map_err(|error| findings.error(None, None, FileRefusal::unreadable(error).to_string()));
     let reader = reader.ok()?;
     let rows = reader.metadata().row_groups().iter().map(|group| group.num_rows()).sum::<i64>();
     let builder = Builder::new(columns.clone(), mapping.conventions.missing, findings);
@@ -53,7 +54,7 @@ struct Mapped {
 
 /// Finds the columns to read, and holds their pages against the limits before any is decompressed.
 fn mapped<R: ChunkReader + 'static>(input: &R, mapping: &Mapping, findings: &mut Findings) -> Option<Mapped> {
-    let opened = metadata(input, mapping.limits).map_err(|message| findings.error(None, None, message));
+    let opened = metadata(input, mapping.limits).map_err(|refused| findings.error(None, None, refused.to_string()));
     let (meta, rows) = opened.ok()?;
     let schema = meta.file_metadata().schema_descr();
     let columns = resolve(&names(schema), mapping, findings)?;
@@ -76,41 +77,56 @@ pub(crate) fn guarded<T>(work: impl FnOnce() -> ParquetResult<T>) -> ParquetResu
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(contradiction)
 }
 
-/// Opens the file and holds it against the limits before any sample is decoded.
-pub(crate) fn open<R: ChunkReader + 'static>(input: R, limits: Limits) -> Result<SerializedFileReader<R>, String> {
-    metadata(&input, limits)?;
-    guarded(|| SerializedFileReader::new(input)).map_err(|error| unread(&error))
+/// Why a file is not read at all.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum FileRefusal {
+    #[error("not a Parquet file that can be read: {0}")]
+    Unreadable(String),
+    #[error("{found} bytes about the file at its end are more than the {most} that are read")]
+    Footer { found: u64, most: usize },
+    #[error("{found} rows are more than the {most} that are read; split the file")]
+    Rows { found: usize, most: usize },
+    #[error("{found} columns are more than the {most} that are read")]
+    Columns { found: usize, most: usize },
 }
 
-fn unread(error: &ParquetError) -> String {
-    format!("not a Parquet file that can be read: {error}")
+impl FileRefusal {
+    fn unreadable(error: impl ToString) -> Self {
+        Self::Unreadable(error.to_string())
+    }
+}
+
+/// Opens the file and holds it against the limits before any sample is decoded.
+pub(crate) fn open<R: ChunkReader + 'static>(input: R, limits: Limits) -> Result<SerializedFileReader<R>, FileRefusal> {
+    metadata(&input, limits)?;
+    guarded(|| SerializedFileReader::new(input)).map_err(FileRefusal::unreadable)
 }
 
 /// What the file says of itself, as far as that is within the limits, and its rows.
-fn metadata<R: ChunkReader + 'static>(input: &R, limits: Limits) -> Result<(ParquetMetaData, usize), String> {
-    let footer = footer_bytes(input).map_err(|error| unread(&error))?;
+fn metadata<R: ChunkReader + 'static>(input: &R, limits: Limits) -> Result<(ParquetMetaData, usize), FileRefusal> {
+    let footer = footer_bytes(input).map_err(FileRefusal::unreadable)?;
     if footer > limits.footer_bytes as u64 {
-        return Err(format!("{footer} bytes about the file at its end are more than the {} that are read", limits.footer_bytes));
+        return Err(FileRefusal::Footer { found: footer, most: limits.footer_bytes });
     }
-    pages::footer(input, footer).map_err(|error| format!("not a Parquet file that can be read: {error}"))?;
-    let meta = guarded(|| ParquetMetaDataReader::new().parse_and_finish(input)).map_err(|error| unread(&error))?;
+    pages::footer(input, footer).map_err(FileRefusal::unreadable)?;
+    let meta = guarded(|| ParquetMetaDataReader::new().parse_and_finish(input)).map_err(FileRefusal::unreadable)?;
     let columns = meta.file_metadata().schema_descr().num_columns();
     let mut chunks = meta.row_groups().iter().flat_map(|group| group.columns());
     if chunks.any(|chunk| {
         chunk.compressed_size() < 0 || chunk.data_page_offset() < 0 || chunk.dictionary_page_offset().is_some_and(|at| at < 0)
     }) {
-        return Err("not a Parquet file that can be read: a column lies outside the file".into());
+        return Err(FileRefusal::unreadable("a column lies outside the file"));
     }
     // The groups are what is read, so they are counted, not the file's own total.
     let groups = meta.row_groups().iter().map(|group| group.num_rows());
     let counted: Option<Vec<usize>> = groups.clone().map(|rows| usize::try_from(rows).ok()).collect();
-    let counted = counted.ok_or("not a Parquet file that can be read: a row group has a negative number of rows")?;
+    let counted = counted.ok_or_else(|| FileRefusal::unreadable("a row group has a negative number of rows"))?;
     let rows = counted.into_iter().fold(0, usize::saturating_add);
     if rows > limits.rows {
-        return Err(format!("{rows} rows are more than the {} that are read; split the file", limits.rows));
+        return Err(FileRefusal::Rows { found: rows, most: limits.rows });
     }
     if columns > limits.columns {
-        return Err(format!("{columns} columns are more than the {} that are read", limits.columns));
+        return Err(FileRefusal::Columns { found: columns, most: limits.columns });
     }
     Ok((meta, rows))
 }

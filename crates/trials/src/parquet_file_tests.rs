@@ -53,7 +53,7 @@ fn text_is_no_channel_and_sizes_are_bounded() {
         (Limits { rows: 2, ..Limits::default() }, "3 rows are more than the 2"),
         (Limits { columns: 2, ..Limits::default() }, "3 columns are more than the 2"),
     ] {
-        assert!(open(foreign(), limits).err().unwrap().contains(said));
+        assert!(open(foreign(), limits).err().unwrap().to_string().contains(said));
     }
 }
 

@@ -93,7 +93,7 @@ pub fn write_parquet(out: impl Write + Send, trial: &Trial) -> Result<(), Sample
 /// # Errors
 /// The file is damaged, too large, or not written by [`to_parquet`].
 pub fn from_parquet(bytes: Bytes) -> Result<Trial, SamplesError> {
-    let reader = parquet_file::open(bytes, Limits::default()).map_err(SamplesError::Content)?;
+    let reader = parquet_file::open(bytes, Limits::default()).map_err(|refused| SamplesError::Content(refused.to_string()))?;
     let About { name, manoeuvre, depth_m, velocity, warnings } = about(&reader)?;
     let mut trial = Trial { name, manoeuvre, depth_m, velocity, warnings, ..Trial::default() };
     let mut columns = parquet_file::guarded(|| read_columns(&reader))?;
@@ -219,7 +219,7 @@ impl CsvPieces {
     /// # Errors
     /// It is damaged, or too large.
     pub fn open(file: File) -> Result<Self, SamplesError> {
-        let reader = parquet_file::open(file, Limits::default()).map_err(SamplesError::Content)?;
+        let reader = parquet_file::open(file, Limits::default()).map_err(|refused| SamplesError::Content(refused.to_string()))?;
         let names = parquet_file::headers(&reader);
         Ok(Self { reader, names, group: 0, cells: Vec::new(), left: 0, has_begun: false })
     }

@@ -21,6 +21,33 @@ const UNEVEN: f64 = 0.1;
 const SMOOTHED: [Channel; 8] =
     [Channel::X, Channel::Y, Channel::Psi, Channel::U, Channel::V, Channel::R, Channel::Phi, Channel::P];
 
+/// Why values cannot be smoothed so.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SmoothingError {
+    /// The window has no middle, or is too long.
+    #[error("the smoothing window must be odd and at most {most}, not {0}", most = MAX_WINDOW)]
+    Window(usize),
+    /// The window does not determine the polynomial.
+    #[error("the smoothing degree {degree} must be less than the window of {window} samples")]
+    Degree {
+        /// Of the polynomial.
+        degree: usize,
+        /// Samples of the window.
+        window: usize,
+    },
+    /// The degree is too high.
+    #[error("the smoothing degree must be at most {most}, not {0}", most = MAX_DEGREE)]
+    High(usize),
+    /// There are fewer values than the window has.
+    #[error("a smoothing window of {window} samples does not fit into {samples}")]
+    Short {
+        /// Samples of the window.
+        window: usize,
+        /// Values.
+        samples: usize,
+    },
+}
+
 /// Smooths equally spaced values.
 ///
 /// `window` is an odd number of samples, at most 9999 and at most as many as there are; `degree` is less than the
@@ -28,10 +55,10 @@ const SMOOTHED: [Channel; 8] =
 ///
 /// # Errors
 /// Says which of these does not hold.
-pub fn savitzky_golay(values: &[f64], window: usize, degree: usize) -> Result<Vec<f64>, String> {
+pub fn savitzky_golay(values: &[f64], window: usize, degree: usize) -> Result<Vec<f64>, SmoothingError> {
     check(window, degree)?;
     if values.len() < window {
-        return Err(format!("a smoothing window of {window} samples does not fit into {}", values.len()));
+        return Err(SmoothingError::Short { window, samples: values.len() });
     }
     let basis = basis(window, degree);
     let (half, last) = (window / 2, values.len() - window);
@@ -46,13 +73,11 @@ pub fn savitzky_golay(values: &[f64], window: usize, degree: usize) -> Result<Ve
 }
 
 /// Whether window and degree are ones that [`savitzky_golay`] takes.
-pub(crate) fn check(window: usize, degree: usize) -> Result<(), String> {
+pub(crate) fn check(window: usize, degree: usize) -> Result<(), SmoothingError> {
     match () {
-        () if window.is_multiple_of(2) || window > MAX_WINDOW => {
-            Err(format!("the smoothing window must be odd and at most {MAX_WINDOW}, not {window}"))
-        }
-        () if degree >= window => Err(format!("the smoothing degree {degree} must be less than the window of {window} samples")),
-        () if degree > MAX_DEGREE => Err(format!("the smoothing degree must be at most {MAX_DEGREE}, not {degree}")),
+        () if window.is_multiple_of(2) || window > MAX_WINDOW => Err(SmoothingError::Window(window)),
+        () if degree >= window => Err(SmoothingError::Degree { degree, window }),
+        () if degree > MAX_DEGREE => Err(SmoothingError::High(degree)),
         () => Ok(()),
     }
 }
@@ -71,8 +96,8 @@ fn weights(basis: &DMatrix<f64>, place: usize) -> Vec<f64> {
 
 /// Smooths the measured motions, each stretch without a gap by itself.
 pub(crate) fn smooth(recording: &mut Recording, smoothing: Smoothing, findings: &mut Findings) {
-    if let Err(message) = check(smoothing.window, smoothing.degree) {
-        return findings.error(None, None, message);
+    if let Err(refused) = check(smoothing.window, smoothing.degree) {
+        return findings.error(None, None, refused.to_string());
     }
     if let Some(k) = uneven(recording) {
         let message = format!(
@@ -130,9 +155,9 @@ mod tests {
 
     #[test]
     fn impossible_settings_are_refused() {
-        assert!(savitzky_golay(&[0.0; 9], 4, 2).unwrap_err().contains("odd"));
-        assert!(savitzky_golay(&[0.0; 9], 5, 5).unwrap_err().contains("less than"));
-        assert!(savitzky_golay(&[0.0; 3], 5, 2).unwrap_err().contains("does not fit"));
+        assert!(savitzky_golay(&[0.0; 9], 4, 2).unwrap_err().to_string().contains("odd"));
+        assert!(savitzky_golay(&[0.0; 9], 5, 5).unwrap_err().to_string().contains("less than"));
+        assert!(savitzky_golay(&[0.0; 3], 5, 2).unwrap_err().to_string().contains("does not fit"));
     }
 
     #[test]

@@ -8,8 +8,9 @@ mod search;
 
 use std::time::{Duration, Instant};
 
-use sistership_server::fleet::{Asked, PriorChoice, Rule, Standing, learn, order_refinement};
-use sistership_server::{Archive, Config, Workers};
+use sistership_pipeline::Archive;
+use sistership_pipeline::fleet::{Asked, PriorChoice, Rule, Standing, learn, order_refinement};
+use sistership_server::{Config, Workers};
 use sistership_store::{Bulk, MAX_LIMIT, Page, Store};
 use sistership_tests::fleet::{FOUNDATION, Yard, name};
 

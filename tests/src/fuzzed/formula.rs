@@ -1,7 +1,7 @@
 //! Formulas.
 
 use sistership_dynamics::tape::{Binding, TapeBuilder};
-use sistership_model::formula::{Expr, parse};
+use sistership_model::formula::{Expr, Function, parse};
 
 const INPUTS: [&str; 3] = ["u", "v", "r"];
 const VALUES: [f64; 3] = [1.25, -0.5, 0.01];
@@ -13,14 +13,22 @@ pub fn run(data: &[u8]) {
         return;
     }
     let lookup = |name: &str| INPUTS.iter().position(|known| *known == name).map(|k| VALUES[k]);
-    // Where some part of it is infinite, zero times it is anything: the tape leaves such products out.
-    if finite(&expr, &lookup) {
+    // Where some part of it is infinite, zero times it is anything: the tape leaves such products out, and with them the sign of
+    // zero, by which alone an angle may turn about.
+    if is_determined(&expr, &lookup) {
         lowered(&expr, expr.value(&lookup).expect("every name is known"));
     }
 }
 
-fn finite(expr: &Expr, lookup: &dyn Fn(&str) -> Option<f64>) -> bool {
-    expr.value(lookup).is_some_and(f64::is_finite) && expr.children().into_iter().all(|child| finite(child, lookup))
+fn is_determined(expr: &Expr, lookup: &dyn Fn(&str) -> Option<f64>) -> bool {
+    let is_finite = expr.value(lookup).is_some_and(f64::is_finite);
+    is_finite && !is_angle_by_sign_of_zero(expr, lookup) && expr.children().into_iter().all(|child| is_determined(child, lookup))
+}
+
+fn is_angle_by_sign_of_zero(expr: &Expr, lookup: &dyn Fn(&str) -> Option<f64>) -> bool {
+    let Expr::Call(Function::Atan2, arguments) = expr else { return false };
+    let values: Vec<f64> = arguments.iter().filter_map(|argument| argument.value(lookup)).collect();
+    values[0] == 0.0 && values[1] <= 0.0
 }
 
 fn lowered(expr: &Expr, value: f64) {

@@ -1,6 +1,6 @@
 //! Version documents.
 
-use sistership_server::version::VersionDocument;
+use sistership_pipeline::version::VersionDocument;
 
 /// What a document is written to, is read to the same document and written to the same bytes.
 pub fn run(data: &[u8]) {

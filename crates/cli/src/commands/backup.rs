@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use sistership_server::upkeep::{self, BackupManifest};
+use sistership_pipeline::upkeep::{self, BackupManifest};
 
 use super::store::{StoreArguments, block_on, with_archive};
 use crate::failure::Failure;

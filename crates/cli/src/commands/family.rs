@@ -2,9 +2,9 @@
 
 use clap::{Args, Subcommand, ValueEnum};
 use serde_json::{Value, json};
-use sistership_server::Archive;
-use sistership_server::derive::DeriveError;
-use sistership_server::fleet::{Asked, PriorChoice, Rule, Standing, Start, learn, order_refinement};
+use sistership_pipeline::Archive;
+use sistership_pipeline::derive::DeriveError;
+use sistership_pipeline::fleet::{Asked, OrderError, PriorChoice, Rule, Standing, Start, learn, order_refinement};
 use sistership_store::StoreError;
 
 use super::store::{StoreArguments, with_archive};
@@ -121,7 +121,7 @@ enum FamilyError {
     Derive(#[from] DeriveError),
     /// The refinement is not queued.
     #[error("{0}")]
-    NotQueued(String),
+    NotQueued(OrderError),
     #[error(transparent)]
     Json(#[from] serde_json::Error),
 }

@@ -1,7 +1,7 @@
 //! `sistership fsck`: whether a store is whole.
 
 use clap::Args;
-use sistership_server::upkeep::{self, Checked, Fault, Findings};
+use sistership_pipeline::upkeep::{self, Checked, Fault, Findings};
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use clap::Args;
-use sistership_server::upkeep::{self, Collected};
+use sistership_pipeline::upkeep::{self, Collected};
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;

@@ -10,8 +10,8 @@ use sistership_estimate::similarity::RankedSource;
 use sistership_estimate::source::{Similarity, best_source, similar};
 use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::{Law, Model, Vessel, Zoo};
+use sistership_pipeline::derive::with_uncertainty;
 use sistership_report::{RefinementInput, render_refinement};
-use sistership_server::derive::with_uncertainty;
 
 use super::refine_settings::{held_out, settings_file};
 use super::refine_text;

@@ -3,8 +3,8 @@
 use clap::Args;
 use serde_json::{Value, json};
 use sistership_estimate::similarity::Definition;
-use sistership_server::Archive;
-use sistership_server::search::{self, FactRange, FoundShip, MAX_RANGES, Page, Search, ShipSearch};
+use sistership_pipeline::Archive;
+use sistership_pipeline::search::{self, FactRange, FoundShip, MAX_RANGES, Page, Search, ShipSearch};
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use sistership_server::{Archive, ObjectsPlace};
+use sistership_pipeline::Archive;
+use sistership_store::ObjectsPlace;
 
 use super::config_file::{self, ConfigFile};
 use crate::failure::Failure;

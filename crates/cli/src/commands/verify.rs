@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use clap::Args;
-use sistership_server::Archive;
-use sistership_server::derive::DeriveError;
-use sistership_server::verify::{Verification, verify_with};
+use sistership_pipeline::Archive;
+use sistership_pipeline::derive::DeriveError;
+use sistership_pipeline::verify::{Verification, verify_with};
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;

@@ -1,22 +1,20 @@
 //! A model, the effects that may be missing and the coefficients that may move, on tapes.
 
+use std::borrow::Cow;
+
+use sistership_dynamics::equations::{Attitude, Coefficients, EquationsOfMotion, Lowering};
 use sistership_dynamics::instruments::{input_names, readings};
-use sistership_dynamics::plant::binding;
-use sistership_dynamics::state::{RECORDED, at};
-use sistership_dynamics::tape::{Tape, TapeBuilder};
+use sistership_dynamics::state::RECORDED;
+use sistership_dynamics::tape::Tape;
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
 use sistership_model::formula::Expr;
-use sistership_model::law::{Law, STATES};
+use sistership_model::law::Law;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
 
 use super::{Columns, NuisanceKind, lacked_name};
 use sistership_estimate::refine::RefineError;
-
-/// Places of the states in a filter: `u, v, r`, then roll where the law has it, then `psi, x, y`.
-const PLANE: [usize; 6] = [at::U, at::V, at::R, at::PSI, at::X, at::Y];
-const ROLL: [usize; 8] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI, at::X, at::Y];
 
 /// A model on tapes.
 #[derive(Debug, Clone)]
@@ -62,21 +60,20 @@ impl ResidualSystem {
     /// Names what the model does not give.
     pub fn new(model: &Model, law: &Law, columns: Columns, frame: VelocityFrame) -> Result<Self, RefineError> {
         let forms: Vec<_> = columns.candidates.iter().map(|c| (c.effect.as_str(), &*c.form)).collect();
-        let law = law.dressed(model, &forms);
-        let build = SystemBuilder { model, law: &law, columns: &columns };
-        let axes = if law.has_roll() { vec![Axis::X, Axis::Y, Axis::N, Axis::K] } else { vec![Axis::X, Axis::Y, Axis::N] };
-        let states: &'static [usize] = if law.has_roll() { &ROLL } else { &PLANE };
+        let equations = EquationsOfMotion::of_law(model, Cow::Owned(law.dressed(model, &forms)));
+        let build = SystemBuilder { equations: &equations, columns: &columns };
+        let (axes, states) = (equations.axes(), equations.states());
         let channels = RECORDED.iter().filter_map(|&(channel, place)| Some((channel, states.iter().position(|&s| s == place)?)));
         let channels: Vec<(Channel, usize)> = channels.collect();
         let (instruments, says) = build.instruments(&channels, frame)?;
         Ok(Self {
-            motion: build.motion(&axes, states)?,
+            motion: build.motion()?,
             regressors: build.regressors()?,
             lagged: build.lagged(),
-            inputs: law.inputs.iter().map(|(name, input)| (name.clone(), input.default)).collect(),
+            inputs: equations.inputs(),
             columns,
             states,
-            axes,
+            axes: axes.to_vec(),
             channels,
             frame,
             instruments,
@@ -96,102 +93,64 @@ impl ResidualSystem {
 }
 
 struct SystemBuilder<'a> {
-    model: &'a Model,
-    law: &'a Law,
+    equations: &'a EquationsOfMotion<'a>,
     columns: &'a Columns,
 }
 
 impl SystemBuilder<'_> {
-    fn names(&self, parameters: bool) -> Vec<String> {
-        let states = STATES.iter().map(|&(name, _)| name.to_owned());
-        let names = states.chain(self.law.inputs.keys().cloned());
-        let extra = self.columns.candidates.iter().flat_map(|candidate| candidate.qualified().collect::<Vec<_>>());
-        names.chain(extra.filter(|_| parameters)).collect()
+    /// Names of the candidates' parameters in the law's dress.
+    fn parameters(&self) -> Vec<String> {
+        self.columns.candidates.iter().flat_map(|candidate| candidate.qualified()).collect()
     }
 
-    fn missing(&self, name: String) -> RefineError {
-        RefineError::Missing { law: self.law.name.clone(), name, model: self.model.name.clone() }
+    /// A tape that takes states, inputs and the candidates' parameters.
+    fn lowering(&self) -> Lowering<'_> {
+        Lowering::new(self.equations, &[self.equations.names(), self.parameters()].concat())
     }
 
-    fn build<T>(
-        &self,
-        names: &[String],
-        fill: impl FnOnce(&mut dyn FnMut(&Expr) -> Result<usize, RefineError>) -> Result<T, RefineError>,
-    ) -> Result<(Tape, T), RefineError> {
-        let bind = |name: &str| binding(self.model, self.law, name);
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let mut builder = TapeBuilder::new(&names, &bind);
-        let filled = fill(&mut |expr| builder.output(expr).map_err(|name| self.missing(name)))?;
-        Ok((builder.finish(), filled))
-    }
-
-    fn motion(&self, axes: &[Axis], states: &[usize]) -> Result<Motion, RefineError> {
-        let (tape, mut motion) = self.build(&self.names(true), |output| {
-            let forces = axes.iter().map(|&axis| output(&self.force(axis)?)).collect::<Result<_, _>>()?;
-            let pairs = axes.iter().flat_map(|&row| axes.iter().map(move |&column| (row, column)));
-            let mass = pairs.map(|pair| self.law.mass.get(&pair).map(&mut *output).transpose()).collect::<Result<_, _>>()?;
-            let additions =
-                axes.iter().map(|&axis| self.addition(axis).map(|e| output(&e)).transpose()).collect::<Result<_, _>>()?;
-            let kinematics =
-                states[axes.len()..].iter().map(|&state| output(&self.kinematic(state)?)).collect::<Result<_, _>>()?;
-            Ok(Motion { tape: Tape::default(), forces, mass, additions, kinematics })
-        })?;
-        motion.tape = tape;
-        Ok(motion)
-    }
-
-    fn force(&self, axis: Axis) -> Result<Expr, RefineError> {
-        Ok(sistership_dynamics::plant::force(self.model, self.law, axis)?)
-    }
-
-    fn addition(&self, axis: Axis) -> Option<Expr> {
-        let of_axis = self.law.dressing.accelerations.iter().filter(|(a, _)| *a == axis).map(|(_, expr)| expr.clone());
-        of_axis.reduce(|sum, expr| Expr::Add(Box::new(sum), Box::new(expr)))
-    }
-
-    fn kinematic(&self, state: usize) -> Result<Expr, RefineError> {
-        // A law without roll moves in the plane, her instruments heel with her: their axes are turned by the recorded roll.
-        let (name, plain) = match state {
-            at::PHI => ("phi", "p"),
-            at::PSI => ("psi", "r*cos(phi)"),
-            at::X => ("x", "u*cos(psi) - v*sin(psi)*cos(phi)"),
-            _ => ("y", "u*sin(psi) + v*cos(psi)*cos(phi)"),
-        };
-        match self.law.kinematics.get(name) {
-            Some(expr) => Ok(expr.clone()),
-            None => sistership_model::formula::parse(plain).map_err(RefineError::Law),
+    fn motion(&self) -> Result<Motion, RefineError> {
+        let (equations, mut lowering) = (self.equations, self.lowering());
+        let (axes, states) = (equations.axes(), equations.states());
+        let mut forces = Vec::new();
+        for &axis in axes {
+            forces.push(lowering.output(&equations.force(axis, Coefficients::Values)?)?);
         }
+        let mass = lowering.mass_matrix(axes)?;
+        let additions = lowering.additions(axes)?;
+        let mut kinematics = Vec::new();
+        for &state in &states[axes.len()..] {
+            // A law without roll moves in the plane, its instruments heel with the ship: their
+            // axes are turned by the recorded roll.
+            kinematics.push(lowering.output(&equations.kinematic(state, Attitude::Heeled)?)?);
+        }
+        Ok(Motion { tape: lowering.finish(), forces, mass, additions, kinematics })
     }
 
     fn regressors(&self) -> Result<Tape, RefineError> {
-        let (tape, ()) = self.build(&self.names(true), |output| {
-            for nuisance in &self.columns.nuisance {
-                let name = &nuisance.name;
-                output(&match nuisance.kind {
-                    NuisanceKind::Own(_) => self.law.regressor(name).map_err(RefineError::Law)?.1,
-                    NuisanceKind::Lacked(_) => Expr::Name(lacked_name(name)),
-                    // Its column follows from the motion's own tape.
-                    NuisanceKind::Mass(..) => Expr::Number(0.0),
-                })?;
-            }
-            Ok(())
-        })?;
-        Ok(tape)
+        let mut lowering = self.lowering();
+        for nuisance in &self.columns.nuisance {
+            let name = &nuisance.name;
+            lowering.output(&match nuisance.kind {
+                NuisanceKind::Own(_) => self.equations.regressor(name)?,
+                NuisanceKind::Lacked(_) => Expr::Name(lacked_name(name)),
+                // Its column follows from the motion's own tape.
+                NuisanceKind::Mass(..) => Expr::Number(0.0),
+            })?;
+        }
+        Ok(lowering.finish())
     }
 
     fn instruments(&self, channels: &[(Channel, usize)], frame: VelocityFrame) -> Result<(Tape, Vec<usize>), RefineError> {
-        let extra = self.columns.candidates.iter().flat_map(|candidate| candidate.qualified().collect::<Vec<_>>());
-        let names: Vec<String> = input_names(self.law).into_iter().chain(extra).collect();
-        self.build(&names, |output| {
-            let mut says = Vec::new();
-            for (channel, expr) in readings(self.law, frame) {
-                if let Some(place) = channels.iter().position(|(known, _)| *known == channel) {
-                    output(&expr)?;
-                    says.push(place);
-                }
+        let law = self.equations.law();
+        let mut lowering = Lowering::new(self.equations, &[input_names(law), self.parameters()].concat());
+        let mut says = Vec::new();
+        for (channel, expr) in readings(law, frame) {
+            if let Some(place) = channels.iter().position(|(known, _)| *known == channel) {
+                lowering.output(&expr)?;
+                says.push(place);
             }
-            Ok(says)
-        })
+        }
+        Ok((lowering.finish(), says))
     }
 
     /// A parameter acts through a lag where its form delays an input by a time constant that is that parameter.
@@ -200,7 +159,7 @@ impl SystemBuilder<'_> {
         for candidate in &self.columns.candidates {
             for name in candidate.form.parameters.keys() {
                 let input = candidate.form.lags.iter().find(|(_, expr)| expr.names().contains(name.as_str()));
-                lagged.push(input.and_then(|(input, _)| self.law.inputs.get_index_of(input)));
+                lagged.push(input.and_then(|(input, _)| self.equations.law().inputs.get_index_of(input)));
             }
         }
         lagged

@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::plant::{Plant, Work};
+use crate::plant::{MAX_INPUTS, Plant, Work};
 use crate::state::straight;
 use sistership_model::Zoo;
 use sistership_model::quantity::Quantity;

@@ -13,7 +13,6 @@ mod system;
 
 pub use run::SensitiveRun;
 pub use system::SensitiveSystem;
-pub(crate) use system::mobility;
 
 #[cfg(test)]
 mod tests;

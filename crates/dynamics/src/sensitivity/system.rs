@@ -2,19 +2,16 @@
 
 use std::ops::Range;
 
-use nalgebra::Matrix4;
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
-use sistership_model::formula::{Expr, parse};
-use sistership_model::law::{Law, STATES};
+use sistership_model::formula::Expr;
+use sistership_model::law::Law;
 
-use crate::plant::{MAX_INPUTS, PlantError, binding, dressed, force};
-use crate::state::at;
-use crate::tape::{Lanes, Tape, TapeBuilder};
+use crate::equations::{Attitude, Coefficients, EquationsOfMotion, Lowering, PlantError, constant_mobility, mobility};
+use crate::plant::check_inputs;
+use crate::tape::{Lanes, Tape};
 
-/// Places in the state vector of the states that move: velocities first, as the axes accelerate them.
-const PLANE: [usize; 6] = [at::U, at::V, at::R, at::PSI, at::X, at::Y];
-const ROLL: [usize; 8] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI, at::X, at::Y];
+/// The states that move by their places in the state vector.
 const NAMES: [&str; 8] = ["u", "v", "r", "p", "phi", "psi", "x", "y"];
 
 /// A value on the tape and its slopes by the states, in their order; absent slopes are zero.
@@ -51,16 +48,10 @@ impl SensitiveSystem {
     /// # Errors
     /// Names what the model does not give; refuses masses that change with the motion, and effects on instruments or lags.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
-        let law = &*dressed(model, law)?;
-        if law.inputs.len() > MAX_INPUTS || !law.dressing.lags.is_empty() || !law.dressing.measures.is_empty() {
-            return Err(PlantError::Law(format!("`{}` carries a lag or an effect on instruments: no sensitivities", model.name)));
-        }
-        let bind = |name: &str| binding(model, law, name);
-        let names: Vec<&str> = STATES.iter().map(|&(name, _)| name).chain(law.inputs.keys().map(String::as_str)).collect();
-        let states: &'static [usize] = if law.has_roll() { &ROLL } else { &PLANE };
-        let axes = if law.has_roll() { vec![Axis::X, Axis::Y, Axis::N, Axis::K] } else { vec![Axis::X, Axis::Y, Axis::N] };
-        let builder = TapeBuilder::new(&names, &bind);
-        Builder { model, law, builder, states, axes }.build()
+        let equations = EquationsOfMotion::new(model, law)?;
+        check_inputs(equations.law())?;
+        equations.without_lags_or_instruments("sensitivities")?;
+        Builder { equations: &equations, lowering: Lowering::new(&equations, &equations.names()) }.build()
     }
 
     /// The coefficients, in the order of the sensitivities' columns.
@@ -93,40 +84,31 @@ impl SensitiveSystem {
     }
 }
 
-/// Accelerations that unit forces cause; not a number where the matrix cannot be solved.
-pub(crate) fn mobility(n: usize, mass: impl Fn(usize, usize) -> f64) -> Matrix4<f64> {
-    let padded = Matrix4::from_fn(|i, j| if i < n && j < n { mass(i, j) } else { f64::from(u8::from(i == j)) });
-    padded.lu().solve(&Matrix4::identity()).unwrap_or_else(|| Matrix4::repeat(f64::NAN))
+struct Builder<'e> {
+    equations: &'e EquationsOfMotion<'e>,
+    lowering: Lowering<'e>,
 }
 
-struct Builder<'a, 'b> {
-    model: &'a Model,
-    law: &'a Law,
-    builder: TapeBuilder<'b>,
-    states: &'static [usize],
-    axes: Vec<Axis>,
+/// Coefficients and their regressors on the tape.
+struct Regressors {
+    names: Vec<String>,
+    /// Those of each axis among all.
+    of_axis: Vec<Range<usize>>,
+    outputs: Vec<usize>,
 }
 
-impl Builder<'_, '_> {
+impl Builder<'_> {
     fn build(mut self) -> Result<SensitiveSystem, PlantError> {
-        let axes = self.axes.clone();
+        let (equations, axes, states) = (self.equations, self.equations.axes(), self.equations.states());
         let forces = axes.iter().map(|&axis| self.force(axis)).collect::<Result<_, _>>()?;
         let additions = axes.iter().map(|&axis| self.addition(axis)).collect::<Result<_, _>>()?;
-        let kinematics = self.states[axes.len()..].iter().map(|&state| self.kinematic(state)).collect::<Result<_, _>>()?;
+        let kinematics = states[axes.len()..].iter().map(|&state| self.kinematic(state)).collect::<Result<_, _>>()?;
         let mass = self.mass()?;
-        let (names, of_axis, regressors) = self.regressors()?;
-        let tape = self.builder.finish();
-        let entries: Option<Vec<f64>> = mass.iter().map(|o| o.map_or(Some(0.0), |o| tape.constant_output(o))).collect();
-        let n = axes.len();
-        let constant = entries.map(|entries| {
-            let solved = mobility(n, |i, j| entries[i * n + j]);
-            (0..n * n).map(|k| solved[(k / n, k % n)]).collect::<Vec<f64>>()
-        });
-        if constant.as_ref().is_some_and(|constant| constant.iter().any(|value| !value.is_finite())) {
-            return Err(PlantError::Mass(self.model.name.clone()));
-        }
-        let input_names = self.law.inputs.keys().cloned().collect();
-        let (states, axes) = (self.states, self.axes);
+        let Regressors { names, of_axis, outputs: regressors } = self.regressors()?;
+        let tape = self.lowering.finish();
+        let constant = constant_mobility(equations, &tape, &mass)?;
+        let input_names = equations.law().inputs.keys().cloned().collect();
+        let axes = axes.to_vec();
         Ok(SensitiveSystem {
             tape,
             states,
@@ -143,76 +125,51 @@ impl Builder<'_, '_> {
         })
     }
 
-    fn output(&mut self, expr: &Expr) -> Result<usize, PlantError> {
-        let (law, model) = (&self.law.name, &self.model.name);
-        self.builder.output(expr).map_err(|name| PlantError::Missing { law: law.clone(), name, model: model.clone() })
-    }
-
     fn sloped(&mut self, expr: &Expr) -> Result<Sloped, PlantError> {
-        let value = self.output(expr)?;
-        let by = |(row, &place): (usize, &usize)| Some((row, self.builder.derivative(value, NAMES[place])?));
-        let slopes = self.states.iter().enumerate().filter_map(by).collect();
+        let value = self.lowering.output(expr)?;
+        let by = |(row, &place): (usize, &usize)| Some((row, self.lowering.derivative(value, NAMES[place])?));
+        let slopes = self.equations.states().iter().enumerate().filter_map(by).collect();
         Ok(Sloped { value, slopes })
     }
 
     fn force(&mut self, axis: Axis) -> Result<Sloped, PlantError> {
-        let expr = force(self.model, self.law, axis)?;
+        let expr = self.equations.force(axis, Coefficients::Values)?;
         self.sloped(&expr)
     }
 
     fn addition(&mut self, axis: Axis) -> Result<Option<Sloped>, PlantError> {
-        let added = self.law.dressing.accelerations.iter().filter(|(of, _)| *of == axis).map(|(_, expr)| expr.clone());
-        let sum = added.reduce(|a, b| Expr::Add(Box::new(a), Box::new(b)));
-        sum.map(|sum| self.sloped(&sum)).transpose()
+        self.equations.addition(axis).map(|sum| self.sloped(&sum)).transpose()
     }
 
     fn kinematic(&mut self, state: usize) -> Result<Sloped, PlantError> {
-        let (name, plain) = match state {
-            at::PHI => ("phi", "p"),
-            at::PSI => ("psi", "r"),
-            at::X => ("x", "u*cos(psi) - v*sin(psi)"),
-            _ => ("y", "u*sin(psi) + v*cos(psi)"),
-        };
-        let plain = || parse(plain).map_err(PlantError::Law);
-        let expr = self.law.kinematics.get(name).cloned().map_or_else(plain, Ok)?;
+        let expr = self.equations.kinematic(state, Attitude::Upright)?;
         self.sloped(&expr)
     }
 
+    /// The mass matrix row by row, which must not change with the motion.
     fn mass(&mut self) -> Result<Vec<Option<usize>>, PlantError> {
-        let pairs: Vec<(Axis, Axis)> =
-            self.axes.iter().flat_map(|&row| self.axes.iter().map(move |&column| (row, column))).collect();
+        let (axes, states) = (self.equations.axes(), self.equations.states());
         let mut all = Vec::new();
-        for pair in pairs {
-            let output = match self.law.mass.get(&pair) {
-                Some(expr) => Some(self.output(&expr.clone())?),
-                None => None,
-            };
-            let moves = output.is_some_and(|o| self.states.iter().any(|&s| self.builder.derivative(o, NAMES[s]).is_some()));
-            if moves {
-                return Err(PlantError::Law(format!(
-                    "masses of law `{}` change with the motion: no sensitivities",
-                    self.law.name
-                )));
+        for (&row, &column) in axes.iter().flat_map(|row| axes.iter().map(move |column| (row, column))) {
+            let output = self.lowering.mass(row, column)?;
+            if output.is_some_and(|o| states.iter().any(|&s| self.lowering.derivative(o, NAMES[s]).is_some())) {
+                return Err(PlantError::MovingMass(self.equations.law().name.clone()));
             }
             all.push(output);
         }
         Ok(all)
     }
 
-    #[allow(clippy::type_complexity)]
-    fn regressors(&mut self) -> Result<(Vec<String>, Vec<Range<usize>>, Vec<usize>), PlantError> {
-        let (mut names, mut of_axis, mut outputs) = (Vec::new(), Vec::new(), Vec::new());
-        for axis in self.axes.clone() {
-            let start = names.len();
-            let prefix = format!("{axis}_");
-            let own: Vec<String> = self.model.coefficients.keys().filter(|name| name.starts_with(&prefix)).cloned().collect();
-            for name in own {
-                let (_, expr) = self.law.regressor(&name).map_err(PlantError::Law)?;
-                outputs.push(self.output(&expr)?);
-                names.push(name);
+    fn regressors(&mut self) -> Result<Regressors, PlantError> {
+        let mut all = Regressors { names: Vec::new(), of_axis: Vec::new(), outputs: Vec::new() };
+        for &axis in self.equations.axes() {
+            let start = all.names.len();
+            for name in self.equations.coefficients(axis) {
+                all.outputs.push(self.lowering.output(&self.equations.regressor(name)?)?);
+                all.names.push(name.clone());
             }
-            of_axis.push(start..names.len());
+            all.of_axis.push(start..all.names.len());
         }
-        Ok((names, of_axis, outputs))
+        Ok(all)
     }
 }

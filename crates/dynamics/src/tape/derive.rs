@@ -189,7 +189,7 @@ mod tests {
     use sistership_model::formula::parse;
 
     fn with_slopes(text: &str) -> (Tape, [Option<usize>; 2]) {
-        let mut builder = TapeBuilder::new(&["u", "v"], &|_| None);
+        let mut builder = TapeBuilder::new(&["u", "v"], |_| None);
         builder.output(&parse(text).unwrap()).unwrap();
         let slopes = ["u", "v"].map(|input| builder.derivative(0, input));
         (builder.finish(), slopes)
@@ -225,7 +225,7 @@ mod tests {
         let tried = small.spawn(|| {
             let term = |k: usize| parse(&format!("{k}.5*u*v")).unwrap();
             let sum = (1..20_000).map(term).fold(Expr::Number(0.0), |sum, term| Expr::Add(Box::new(sum), Box::new(term)));
-            let mut builder = TapeBuilder::new(&["u", "v"], &|_| None);
+            let mut builder = TapeBuilder::new(&["u", "v"], |_| None);
             builder.output(&sum).unwrap();
             let slope = builder.derivative(0, "u").unwrap();
             let tape = builder.finish();
@@ -233,7 +233,7 @@ mod tests {
             assert!((values[slope] * 2.0 - values[0]).abs() < 1e-6 * values[0].abs());
             // Each power is a factor of the next: as deep as formulas may be through values.
             let deep = parse(&format!("{}u{}", "sqrt(1+".repeat(24), ")".repeat(24))).unwrap();
-            let mut builder = TapeBuilder::new(&["u", "v"], &|_| None);
+            let mut builder = TapeBuilder::new(&["u", "v"], |_| None);
             builder.output(&deep).unwrap();
             assert!(builder.derivative(0, "u").is_some());
         });

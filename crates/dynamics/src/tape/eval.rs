@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn a_condition_switches_by_lane_and_has_no_derivative() {
-        let mut builder = TapeBuilder::new(&["u", "v"], &|_| None);
+        let mut builder = TapeBuilder::new(&["u", "v"], |_| None);
         builder.output(&sistership_model::formula::parse_condition("u*v < 1").unwrap().times(parse("u^2").unwrap())).unwrap();
         let tape = builder.finish();
         let mut work = Slots::default();

@@ -85,7 +85,7 @@ mod tests {
 
     /// As a tape, and with every operation by itself.
     fn both(texts: &[&str]) -> [Tape; 2] {
-        let mut builder = TapeBuilder::new(&["u", "v", "r"], &|_| None);
+        let mut builder = TapeBuilder::new(&["u", "v", "r"], |_| None);
         texts.iter().for_each(|text| assert!(builder.output(&parse(text).unwrap()).is_ok()));
         let (inputs, ops, outputs) = (builder.inputs.clone(), builder.ops.clone(), builder.outputs.clone());
         let listing = Listing { inputs, ops, outputs }.needed();

@@ -42,7 +42,7 @@ mod tests {
     fn what_is_done_ahead_changes_nothing() {
         let texts = ["u*sin(delta)/(2 + cos(u)) + n/delta", "sin(delta)*n", "u*cos(sin(delta)) + abs(n)"];
         let builder = || {
-            let mut builder = TapeBuilder::new(&["u", "delta", "n"], &|_| None);
+            let mut builder = TapeBuilder::new(&["u", "delta", "n"], |_| None);
             texts.iter().for_each(|text| assert!(builder.output(&parse(text).unwrap()).is_ok()));
             builder
         };

@@ -15,6 +15,11 @@ pub enum Binding {
     Formula(Expr),
 }
 
+/// A name that nothing stands for.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("nothing stands for `{0}`")]
+pub struct Unbound(pub String);
+
 type Make = fn(Slot, Slot) -> Op;
 
 /// The two sides of a sum, difference, product or quotient, and its operation.
@@ -31,7 +36,7 @@ fn sides(expr: &Expr) -> Option<(&Expr, &Expr, Make)> {
 /// Builds a tape from formulas.
 pub struct TapeBuilder<'a> {
     pub(super) inputs: Vec<String>,
-    bind: &'a dyn Fn(&str) -> Option<Binding>,
+    bind: Box<dyn Fn(&str) -> Option<Binding> + 'a>,
     pub(super) ops: Vec<Op>,
     seen: HashMap<[u64; 6], Slot>,
     named: HashMap<String, Slot>,
@@ -42,11 +47,11 @@ pub struct TapeBuilder<'a> {
 
 impl<'a> TapeBuilder<'a> {
     /// A builder whose tape takes `inputs`; `bind` says what every other name stands for.
-    pub fn new(inputs: &[&str], bind: &'a dyn Fn(&str) -> Option<Binding>) -> Self {
+    pub fn new(inputs: &[&str], bind: impl Fn(&str) -> Option<Binding> + 'a) -> Self {
         let inputs = inputs.iter().map(|&name| name.to_owned()).collect();
         Self {
             inputs,
-            bind,
+            bind: Box::new(bind),
             ops: Vec::new(),
             seen: HashMap::new(),
             named: HashMap::new(),
@@ -59,7 +64,7 @@ impl<'a> TapeBuilder<'a> {
     ///
     /// # Errors
     /// Names what nothing stands for.
-    pub fn output(&mut self, expr: &Expr) -> Result<usize, String> {
+    pub fn output(&mut self, expr: &Expr) -> Result<usize, Unbound> {
         let slot = self.lower(expr)?;
         self.outputs.push(slot);
         Ok(self.outputs.len() - 1)
@@ -69,7 +74,7 @@ impl<'a> TapeBuilder<'a> {
     ///
     /// # Errors
     /// Names what nothing stands for.
-    pub fn sum(&mut self, output: Option<usize>, expr: &Expr) -> Result<usize, String> {
+    pub fn sum(&mut self, output: Option<usize>, expr: &Expr) -> Result<usize, Unbound> {
         let Some(output) = output else { return self.output(expr) };
         let slot = self.lower(expr)?;
         self.outputs[output] = self.push(Op::Add(self.outputs[output], slot));
@@ -93,7 +98,7 @@ impl<'a> TapeBuilder<'a> {
     }
 
     /// Sums lean to the left, that of an axis by thousands of terms: they are followed in a loop, all else by recursion.
-    fn lower(&mut self, expr: &Expr) -> Result<Slot, String> {
+    fn lower(&mut self, expr: &Expr) -> Result<Slot, Unbound> {
         let (mut first, mut after) = (expr, Vec::new());
         while let Some((a, b, make)) = sides(first) {
             after.push((b, make));
@@ -107,7 +112,7 @@ impl<'a> TapeBuilder<'a> {
         Ok(slot)
     }
 
-    fn operand(&mut self, expr: &Expr) -> Result<Slot, String> {
+    fn operand(&mut self, expr: &Expr) -> Result<Slot, Unbound> {
         Ok(match expr {
             Expr::Number(number) => self.push(Op::Constant(*number)),
             Expr::Name(name) => self.name(name)?,
@@ -120,7 +125,7 @@ impl<'a> TapeBuilder<'a> {
         })
     }
 
-    fn name(&mut self, name: &str) -> Result<Slot, String> {
+    fn name(&mut self, name: &str) -> Result<Slot, Unbound> {
         if let Some(&slot) = self.named.get(name) {
             return Ok(slot);
         }
@@ -130,31 +135,31 @@ impl<'a> TapeBuilder<'a> {
             match (self.bind)(name).or_else(|| Some(Binding::Constant(builtin(name)?.0))) {
                 Some(Binding::Constant(value)) => self.push(Op::Constant(value)),
                 Some(Binding::Formula(expr)) => self.lower(&expr)?,
-                None => return Err(name.to_owned()),
+                None => return Err(Unbound(name.to_owned())),
             }
         };
         self.named.insert(name.to_owned(), slot);
         Ok(slot)
     }
 
-    fn unary(&mut self, a: &Expr, make: impl Fn(Slot) -> Op) -> Result<Slot, String> {
+    fn unary(&mut self, a: &Expr, make: impl Fn(Slot) -> Op) -> Result<Slot, Unbound> {
         let a = self.lower(a)?;
         Ok(self.push(make(a)))
     }
 
-    fn binary(&mut self, a: &Expr, b: &Expr, make: impl Fn(Slot, Slot) -> Op) -> Result<Slot, String> {
+    fn binary(&mut self, a: &Expr, b: &Expr, make: impl Fn(Slot, Slot) -> Op) -> Result<Slot, Unbound> {
         let (a, b) = (self.lower(a)?, self.lower(b)?);
         Ok(self.push(make(a, b)))
     }
 
-    fn select(&mut self, comparison: Comparison, parts: &[Expr; 4]) -> Result<Slot, String> {
+    fn select(&mut self, comparison: Comparison, parts: &[Expr; 4]) -> Result<Slot, Unbound> {
         let [a, b, c, d] = parts;
         let slots = [self.lower(a)?, self.lower(b)?, self.lower(c)?, self.lower(d)?];
         Ok(self.push(Op::Select(comparison, slots[0], slots[1], slots[2], slots[3])))
     }
 
     /// Whole powers become products: faster than `powf`, and defined for negative bases.
-    fn power(&mut self, base: &Expr, exponent: &Expr) -> Result<Slot, String> {
+    fn power(&mut self, base: &Expr, exponent: &Expr) -> Result<Slot, Unbound> {
         let (base, exponent) = (self.lower(base)?, self.lower(exponent)?);
         let Op::Constant(number) = self.ops[exponent as usize] else { return Ok(self.push(Op::Power(base, exponent))) };
         if number == 0.5 {

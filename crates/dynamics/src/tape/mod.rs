@@ -18,7 +18,7 @@ mod testing;
 
 pub(crate) use instruction::Instruction;
 pub use instruction::Tape;
-pub use lower::{Binding, TapeBuilder};
+pub use lower::{Binding, TapeBuilder, Unbound};
 pub(crate) use op::Op;
 pub use op::Slot;
 pub use slots::{Lanes, Slots};

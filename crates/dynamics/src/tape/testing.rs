@@ -7,7 +7,7 @@ use super::{Tape, TapeBuilder};
 
 /// Of one formula of `u` and `v`.
 pub(super) fn tape(text: &str) -> Tape {
-    let mut builder = TapeBuilder::new(&["u", "v"], &|_| None);
+    let mut builder = TapeBuilder::new(&["u", "v"], |_| None);
     builder.output(&parse(text).unwrap()).unwrap();
     builder.finish()
 }

@@ -5,12 +5,14 @@
 //! serves all of them and the coefficients are unmixed afterwards (Kanazawa 2023, Eqs. 5.9-5.10). Where their terms
 //! differ, the force on each axis is regressed instead.
 
+use std::borrow::Cow;
+
 use nalgebra::DMatrix;
-use sistership_dynamics::plant::binding;
-use sistership_dynamics::tape::{Tape, TapeBuilder};
+use sistership_dynamics::equations::{EquationsOfMotion, Lowering};
+use sistership_dynamics::tape::Tape;
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
-use sistership_model::law::{Law, STATES};
+use sistership_model::law::Law;
 
 use super::outcome::RefineError;
 use sistership_regression::{Metric, Moments};
@@ -56,32 +58,30 @@ impl Blocks {
     /// # Errors
     /// Names what the model does not give, or the coefficient the law does not have.
     pub fn new(model: &Model, law: &Law) -> Result<Self, RefineError> {
-        match Self::build(model, law, true)? {
-            Some(blocks) => Ok(blocks),
-            // Mass or scales change during a run: there is no constant mixture to undo, so forces are regressed.
-            None => {
-                Self::build(model, law, false)?.ok_or_else(|| RefineError::Law(format!("law `{}` cannot be regressed", law.name)))
-            }
+        let equations = EquationsOfMotion::of_law(model, Cow::Borrowed(law));
+        if let Some(blocks) = Self::build(&equations, true)? {
+            return Ok(blocks);
         }
+        // Mass or scales change during a run: there is no constant mixture to undo, so forces are regressed.
+        let forces = Self::build(&equations, false)?;
+        forces.ok_or_else(|| RefineError::Law(format!("law `{}` cannot be regressed", law.name)))
     }
 
-    fn build(model: &Model, law: &Law, allow_common: bool) -> Result<Option<Self>, RefineError> {
-        let bind = |name: &str| binding(model, law, name);
-        let names: Vec<&str> = STATES.iter().map(|&(name, _)| name).chain(law.inputs.keys().map(String::as_str)).collect();
-        let mut builder = TapeBuilder::new(&names, &bind);
+    fn build(equations: &EquationsOfMotion<'_>, allow_common: bool) -> Result<Option<Self>, RefineError> {
+        let names = equations.names();
+        let mut lowering = Lowering::new(equations, &names);
         let mut blocks = Vec::new();
-        for group in coupled(law) {
-            for axes in split(model, law, &group, allow_common) {
-                blocks.extend(block(model, law, &mut builder, axes, &group)?);
+        for group in coupled(equations.law()) {
+            for axes in split(equations, &group, allow_common) {
+                blocks.extend(block(equations, &mut lowering, axes, &group)?);
             }
         }
-        let tape = builder.finish();
+        let tape = lowering.finish();
         for block in &mut blocks {
             let Some(mixing) = mixing(block, &tape, names.len()) else { return Ok(None) };
             block.mixing = mixing;
         }
-        let inputs = law.inputs.iter().map(|(name, input)| (name.clone(), input.default)).collect();
-        Ok(Some(Self { blocks, tape, inputs }))
+        Ok(Some(Self { blocks, tape, inputs: equations.inputs() }))
     }
 }
 
@@ -105,45 +105,36 @@ fn suffix(name: &str) -> &str {
     name.split_once('_').map_or(name, |(_, suffix)| suffix)
 }
 
-fn coefficients_of(model: &Model, axis: Axis) -> Vec<String> {
-    let prefix = format!("{axis}_");
-    model.coefficients.keys().filter(|name| name.starts_with(&prefix)).cloned().collect()
-}
-
 /// A group whose axes have the same terms is solved together, else axis by axis.
-fn split(model: &Model, law: &Law, group: &[Axis], allow_common: bool) -> Vec<Vec<Axis>> {
-    let terms = |axis: Axis| -> Vec<(String, Option<sistership_model::formula::Expr>)> {
-        let term = |name: String| (suffix(&name).to_owned(), law.term(&name).ok().map(|(_, term)| term));
-        coefficients_of(model, axis).into_iter().map(term).collect()
+fn split(equations: &EquationsOfMotion<'_>, group: &[Axis], allow_common: bool) -> Vec<Vec<Axis>> {
+    let terms = |axis: Axis| -> Vec<_> {
+        let term = |name: &String| (suffix(name).to_owned(), equations.term(name).ok());
+        equations.coefficients(axis).map(term).collect()
     };
     let same = allow_common && group.windows(2).all(|pair| terms(pair[0]) == terms(pair[1]));
     if same { vec![group.to_vec()] } else { group.iter().map(|&axis| vec![axis]).collect() }
 }
 
 fn block(
-    model: &Model,
-    law: &Law,
-    builder: &mut TapeBuilder<'_>,
+    equations: &EquationsOfMotion<'_>,
+    lowering: &mut Lowering<'_>,
     axes: Vec<Axis>,
     group: &[Axis],
 ) -> Result<Option<Block>, RefineError> {
-    let names: Vec<Vec<String>> = axes.iter().map(|&axis| coefficients_of(model, axis)).collect();
+    let law = equations.law();
+    let names: Vec<Vec<String>> = axes.iter().map(|&axis| equations.coefficients(axis).cloned().collect()).collect();
     if names[0].is_empty() {
         return Ok(None);
     }
-    let missing = |name: String| RefineError::Missing { law: law.name.clone(), name, model: model.name.clone() };
     let mut terms = Vec::new();
     for name in &names[0] {
-        let (_, term) = law.term(name).map_err(RefineError::Law)?;
-        terms.push(builder.output(&term).map_err(missing)?);
+        terms.push(lowering.output(&equations.term(name)?)?);
     }
-    let mut output = |expr: &sistership_model::formula::Expr| builder.output(expr).map_err(missing);
-    let scales = axes.iter().map(|axis| output(&law.axes[axis].scale)).collect::<Result<_, _>>()?;
-    let rests = axes.iter().map(|axis| output(&law.axes[axis].rest)).collect::<Result<_, _>>()?;
+    let scales = axes.iter().map(|axis| lowering.output(&law.axes[axis].scale)).collect::<Result<_, _>>()?;
+    let rests = axes.iter().map(|axis| lowering.output(&law.axes[axis].rest)).collect::<Result<_, _>>()?;
     let mut mass = Vec::new();
-    for axis in &axes {
-        let entry = |other: &Axis| law.mass.get(&(*axis, *other)).map(&mut output).transpose();
-        mass.push(group.iter().map(entry).collect::<Result<Vec<_>, _>>()?);
+    for &axis in &axes {
+        mass.push(group.iter().map(|&other| lowering.mass(axis, other)).collect::<Result<Vec<_>, _>>()?);
     }
     let mixing = DMatrix::identity(axes.len(), axes.len());
     let shrinkage = names[0].iter().map(|name| law.deviation(name).map_or(1.0, |submodel| submodel.shrinkage)).collect();

@@ -18,16 +18,9 @@ use crate::transfer::UnknownParameter;
 /// Why a refinement is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RefineError {
-    /// The law needs something that the model does not give.
-    #[error("law `{law}` needs `{name}`, which the model `{model}` does not give")]
-    Missing {
-        /// The law.
-        law: String,
-        /// The name without a value.
-        name: String,
-        /// The model.
-        model: String,
-    },
+    /// The law's equations cannot be set up for the model.
+    #[error(transparent)]
+    Equations(#[from] PlantError),
     /// A trial lacks a channel.
     #[error("trial `{trial}` has no channel `{channel}`, which the law needs")]
     Channel {
@@ -54,17 +47,11 @@ pub enum RefineError {
     #[error("no option can be taken: {0}")]
     Diverged(String),
     /// The constraints cannot be kept.
-    #[error("{0}")]
+    #[error(transparent)]
     Constraints(#[from] LimitError),
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
-}
-
-impl From<PlantError> for RefineError {
-    fn from(error: PlantError) -> Self {
-        Self::Law(error.to_string())
-    }
 }
 
 impl From<UnknownParameter> for RefineError {

@@ -25,7 +25,8 @@ pub fn input_channel(input: &str) -> Option<Channel> {
 /// for the thrust deduction.
 pub const TIME: &str = "recorded.t";
 
-/// Forms of effects on a law, each at its absence, for a ship of these particulars with the speed of her model's trials.
+/// A law with forms of effects, each at its absence, for a ship of these particulars; the speed is
+/// that at which the model's trials approach.
 pub fn dress(law: &Law, particulars: &Particulars, speed_m_s: Option<f64>, forms: &[(&str, &Form)]) -> Law {
     let mut dressed = law.clone();
     // What the law sees is changed before forces are added: an added force sees the ship as she moves over the ground.

@@ -128,7 +128,7 @@ fn parameters(scope: &mut Scope, file: &FormFile) -> Result<IndexMap<String, Eff
 }
 
 fn parameter(raw: &EffectParameterFile) -> Result<EffectParameter, String> {
-    let unit = Unit::parse(&raw.unit)?;
+    let unit = Unit::parse(&raw.unit).map_err(|e| e.to_string())?;
     if unit.to_si != 1.0 {
         return Err(format!("effects use SI and radians; `{}` is not of them", raw.unit));
     }

@@ -61,7 +61,7 @@ fn read(file: &str, text: &str) -> Result<Effect, FileError> {
 fn forms(acts_on: ActsOn, raw: &[FormFile]) -> Result<Vec<Arc<Form>>, (String, String)> {
     let one = |(index, form): (usize, &FormFile)| {
         let path = format!("forms.{}", form.name);
-        check_slug(&form.name).map_err(|e| (path.clone(), e))?;
+        check_slug(&form.name).map_err(|e| (path.clone(), e.to_string()))?;
         if raw[..index].iter().any(|earlier| earlier.name == form.name) {
             return Err((path, "is the name of two forms".into()));
         }

@@ -114,7 +114,7 @@ impl Scope {
     }
 
     fn read(&self, field: &str, text: &str, known: &dyn Fn(&str) -> Option<Dimension>) -> Result<(Expr, Dimension), Refusal> {
-        let expr = formula::parse(text).map_err(|e| (field.to_owned(), e))?;
+        let expr = formula::parse(text).map_err(|e| (field.to_owned(), e.to_string()))?;
         let dimension = formula::dimension_of(&expr, known).map_err(|e| (field.to_owned(), format!("`{text}` {e}")))?;
         let names: BTreeSet<&str> = expr.names();
         for channel in names.into_iter().filter(|name| !self.parameters.contains_key(*name)).filter_map(names::needed) {

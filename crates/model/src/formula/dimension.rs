@@ -1,5 +1,6 @@
 //! The dimension of a formula, or what is wrong with it.
 
+use super::error::FormulaError;
 use super::syntax::{Expr, Function};
 use crate::units::Dimension;
 
@@ -7,11 +8,11 @@ use crate::units::Dimension;
 ///
 /// # Errors
 /// Names the unknown name, or the two sides that do not go together.
-pub fn dimension_of(expr: &Expr, lookup: &dyn Fn(&str) -> Option<Dimension>) -> Result<Dimension, String> {
+pub fn dimension_of(expr: &Expr, lookup: &dyn Fn(&str) -> Option<Dimension>) -> Result<Dimension, FormulaError> {
     let of = |e: &Expr| dimension_of(e, lookup);
     match expr {
         Expr::Number(_) => Ok(Dimension::NONE),
-        Expr::Name(name) => lookup(name).ok_or_else(|| format!("unknown name `{name}`")),
+        Expr::Name(name) => lookup(name).ok_or_else(|| FormulaError::Name(name.clone())),
         Expr::Negate(a) => of(a),
         Expr::Add(a, b) | Expr::Subtract(a, b) => same(a, of(a)?, b, of(b)?),
         Expr::Multiply(a, b) => Ok(of(a)? + of(b)?),
@@ -25,18 +26,18 @@ pub fn dimension_of(expr: &Expr, lookup: &dyn Fn(&str) -> Option<Dimension>) -> 
     }
 }
 
-fn power(base: Dimension, exponent: &Expr, of_exponent: Dimension) -> Result<Dimension, String> {
+fn power(base: Dimension, exponent: &Expr, of_exponent: Dimension) -> Result<Dimension, FormulaError> {
     if of_exponent != Dimension::NONE {
-        return Err(format!("an exponent must be a pure number, not {of_exponent}"));
+        return Err(FormulaError::Exponent(of_exponent));
     }
     match exponent.value(&|_| None) {
         Some(number) => Ok(base.pow(number)),
         None if base == Dimension::NONE => Ok(base),
-        None => Err(format!("{base} can only be raised to a number, not to a formula")),
+        None => Err(FormulaError::Power(base)),
     }
 }
 
-fn call(function: Function, arguments: &[Expr], lookup: &dyn Fn(&str) -> Option<Dimension>) -> Result<Dimension, String> {
+fn call(function: Function, arguments: &[Expr], lookup: &dyn Fn(&str) -> Option<Dimension>) -> Result<Dimension, FormulaError> {
     let first = dimension_of(&arguments[0], lookup)?;
     match function {
         Function::Abs => Ok(first),
@@ -47,19 +48,19 @@ fn call(function: Function, arguments: &[Expr], lookup: &dyn Fn(&str) -> Option<
             Ok(if function == Function::Atan2 { Dimension::NONE } else { common })
         }
         _ if first == Dimension::NONE => Ok(first),
-        _ => Err(format!("{function:?} needs a pure number or an angle, not {first}")),
+        _ => Err(FormulaError::Argument { function, found: first }),
     }
 }
 
 /// Both sides of a sum or comparison must agree; a literal zero goes with anything.
-fn same(a: &Expr, of_a: Dimension, b: &Expr, of_b: Dimension) -> Result<Dimension, String> {
+fn same(a: &Expr, of_a: Dimension, b: &Expr, of_b: Dimension) -> Result<Dimension, FormulaError> {
     let zero = |e: &Expr| matches!(e, Expr::Number(number) if *number == 0.0);
     if of_a == of_b || zero(b) {
         Ok(of_a)
     } else if zero(a) {
         Ok(of_b)
     } else {
-        Err(format!("adds or compares {of_a} with {of_b}"))
+        Err(FormulaError::Sides(of_a, of_b))
     }
 }
 
@@ -69,7 +70,7 @@ mod tests {
     use super::super::parse;
     use super::*;
 
-    fn check(text: &str) -> Result<Dimension, String> {
+    fn check(text: &str) -> Result<Dimension, FormulaError> {
         let lookup = |name: &str| match name {
             "u" => Some(Dimension::SPEED),
             "r" => Some(Dimension::RATE),
@@ -87,8 +88,8 @@ mod tests {
 
     #[test]
     fn wrong_units_are_refused() {
-        assert!(check("u + r").unwrap_err().contains("m s^-1"));
-        assert!(check("sin(u)").unwrap_err().contains("Sin"));
-        assert!(check("u + w").unwrap_err().contains("`w`"));
+        assert!(check("u + r").unwrap_err().to_string().contains("m s^-1"));
+        assert!(check("sin(u)").unwrap_err().to_string().contains("Sin"));
+        assert!(check("u + w").unwrap_err().to_string().contains("`w`"));
     }
 }

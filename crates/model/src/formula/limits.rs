@@ -3,6 +3,8 @@
 //! Parsing recurses where a formula nests, so that the text is measured before it is parsed; every walk over the tree that
 //! comes out recurses at most as deep as there are operators. The largest formula of the zoo has 22 operators, and none nests more than 5 deep.
 
+use super::error::FormulaError;
+
 /// Bytes of one formula.
 pub const MAX_LENGTH: usize = 8192;
 
@@ -16,18 +18,16 @@ pub const MAX_NESTING: usize = 48;
 pub const MAX_DEPTH: usize = 512;
 
 /// Refuses a formula that is too long or too deep to be parsed.
-pub fn check(text: &str) -> Result<(), String> {
+pub fn check(text: &str) -> Result<(), FormulaError> {
     if text.len() > MAX_LENGTH {
-        return Err(format!("a formula of {} characters; {MAX_LENGTH} are the most: write parts of it as values", text.len()));
+        return Err(FormulaError::Long { length: text.len(), most: MAX_LENGTH });
     }
-    let found = Measure::of(text.as_bytes());
-    if found.nesting > MAX_NESTING {
-        let nests = format!("formula `{}...` nests {} parentheses, signs and powers", head(text), found.nesting);
-        return Err(format!("{nests}; {MAX_NESTING} are the most: write parts of it as values"));
+    let Measure { nesting, operators } = Measure::of(text.as_bytes());
+    if nesting > MAX_NESTING {
+        return Err(FormulaError::Nested { head: head(text), found: nesting, most: MAX_NESTING });
     }
-    if found.operators > MAX_OPERATORS {
-        let has = format!("formula `{}...` has {} operators", head(text), found.operators);
-        return Err(format!("{has}; {MAX_OPERATORS} are the most: write parts of it as values"));
+    if operators > MAX_OPERATORS {
+        return Err(FormulaError::Operators { head: head(text), found: operators, most: MAX_OPERATORS });
     }
     Ok(())
 }
@@ -136,7 +136,7 @@ mod tests {
                     let _ = (expr.value(&|_| Some(1.0)), expr.names().len(), expr.renamed(&|_| None));
                 }
                 for n in [most + 2, 10 * most, 1_000_000 / 8] {
-                    let refused = parse(&make(n)).unwrap_err();
+                    let refused = parse(&make(n)).unwrap_err().to_string();
                     assert!(refused.contains("are the most") && refused.len() < 200, "{n} of {what}: {refused}");
                 }
             }

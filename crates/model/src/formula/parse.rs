@@ -8,6 +8,7 @@ use winnow::error::{ContextError, ErrMode, StrContext, StrContextValue};
 use winnow::prelude::*;
 use winnow::token::{any, one_of, take_while};
 
+use super::error::FormulaError;
 use super::syntax::{Comparison, Expr, Function};
 
 type Result<T> = winnow::Result<T, ErrMode<ContextError>>;
@@ -17,7 +18,7 @@ type Result<T> = winnow::Result<T, ErrMode<ContextError>>;
 /// # Errors
 /// Says at which character the formula stops making sense, and what was expected there; or that it is longer or deeper than
 /// [`super::MAX_LENGTH`], [`super::MAX_NESTING`] and [`super::MAX_OPERATORS`] allow.
-pub fn parse(text: &str) -> std::result::Result<Expr, String> {
+pub fn parse(text: &str) -> std::result::Result<Expr, FormulaError> {
     super::limits::check(text)?;
     let parsed = delimited(multispace0, sum, multispace0).parse(text);
     parsed.map_err(|error| {
@@ -25,7 +26,7 @@ pub fn parse(text: &str) -> std::result::Result<Expr, String> {
         let place = if rest.is_empty() { "its end".into() } else { format!("`{rest}`") };
         let expected = error.inner().to_string().replace('\n', ", ");
         let expected = if expected.is_empty() { String::new() } else { format!(": {expected}") };
-        format!("formula `{text}` cannot be read from {place}{expected}")
+        FormulaError::Syntax { formula: text.to_owned(), place, expected }
     })
 }
 
@@ -33,13 +34,13 @@ pub fn parse(text: &str) -> std::result::Result<Expr, String> {
 ///
 /// # Errors
 /// As [`parse`]; also where there is no comparison.
-pub fn parse_condition(text: &str) -> std::result::Result<Expr, String> {
+pub fn parse_condition(text: &str) -> std::result::Result<Expr, FormulaError> {
     match text.find(['<', '>']) {
         Some(_) => {
             super::limits::check(text)?;
-            parse(&format!("if({text}, 1, 0)")).map_err(|_| format!("condition `{text}` cannot be read: write `u < 0`"))
+            parse(&format!("if({text}, 1, 0)")).map_err(|_| FormulaError::Condition(text.to_owned()))
         }
-        None => Err(format!("condition `{text}` lacks a comparison: write `u < 0`")),
+        None => Err(FormulaError::Comparison(text.to_owned())),
     }
 }
 
@@ -152,17 +153,17 @@ mod tests {
     fn conditions_are_one_or_zero() {
         let holds = |text: &str| parse_condition(text).unwrap().value(&|_| Some(3.0)).unwrap();
         assert_eq!((holds("u >= 3"), holds("max(u, 1) - 5 > 0")), (1.0, 0.0));
-        assert!(parse_condition("u + 1").unwrap_err().contains("comparison"));
-        assert!(parse_condition("u <").unwrap_err().contains("`u <`"));
+        assert!(parse_condition("u + 1").unwrap_err().to_string().contains("comparison"));
+        assert!(parse_condition("u <").unwrap_err().to_string().contains("`u <`"));
         assert!(parse_condition("u < 0, 1").is_err());
     }
 
     #[test]
     fn errors_name_the_place() {
-        assert!(parse("u + ").unwrap_err().contains("its end"));
-        assert!(parse("u + (v").unwrap_err().contains("closing parenthesis"));
-        assert!(parse("foo(u)").unwrap_err().contains("known function"));
-        assert!(parse("atan2(u)").unwrap_err().contains("arguments"));
+        assert!(parse("u + ").unwrap_err().to_string().contains("its end"));
+        assert!(parse("u + (v").unwrap_err().to_string().contains("closing parenthesis"));
+        assert!(parse("foo(u)").unwrap_err().to_string().contains("known function"));
+        assert!(parse("atan2(u)").unwrap_err().to_string().contains("arguments"));
         assert!(parse("u v").is_err());
     }
 }

@@ -23,7 +23,7 @@ type Fault = (String, String);
 /// The field at fault and what would be right.
 pub fn check(file: &HybridFile) -> Result<(), Fault> {
     let fault = |field: &str, message: String| Err((field.to_owned(), message));
-    check_slug(&file.name).map_err(|e| ("name".to_owned(), e))?;
+    check_slug(&file.name).map_err(|e| ("name".to_owned(), e.to_string()))?;
     if !(1..=4).contains(&file.order) {
         return fault("order", format!("must be from 1 to 4, not {}", file.order));
     }

@@ -6,6 +6,7 @@ use indexmap::IndexMap;
 
 use super::dimension::{STATES, axis_dimension};
 use super::dressing::Dressing;
+use super::error::TermError;
 use crate::coefficient::{Axis, CoefficientName, split_submodel};
 use crate::formula::Expr;
 use crate::particulars;
@@ -127,7 +128,7 @@ impl Law {
     ///
     /// # Errors
     /// Says why the law has no such coefficient.
-    pub fn regressor(&self, name: &str) -> Result<(Axis, Expr), String> {
+    pub fn regressor(&self, name: &str) -> Result<(Axis, Expr), TermError> {
         let (axis, term) = self.term(name)?;
         Ok((axis, self.axes[&axis].scale.clone().times(term)))
     }
@@ -136,16 +137,17 @@ impl Law {
     ///
     /// # Errors
     /// Says why the law has no such coefficient.
-    pub fn term(&self, name: &str) -> Result<(Axis, Expr), String> {
+    pub fn term(&self, name: &str) -> Result<(Axis, Expr), TermError> {
         let parsed = CoefficientName::parse(name, &self.extra_factors())?;
-        let axis = self.axes.get(&parsed.axis).ok_or_else(|| format!("law `{}` has no {} axis", self.name, parsed.axis))?;
+        let axis = self.axes.get(&parsed.axis).ok_or_else(|| TermError::Axis { law: self.name.clone(), axis: parsed.axis })?;
         let (shared, submodel) = split_submodel(name);
         let term = match axis.terms.get(shared) {
             Some(term) => term.clone(),
             None if axis.open => self.product(&parsed)?,
             None => {
                 let known: Vec<&str> = axis.terms.keys().map(String::as_str).collect();
-                return Err(format!("law `{}` has no coefficient `{name}`; it has {}", self.name, known.join(", ")));
+                let (law, known) = (self.name.clone(), known.join(", "));
+                return Err(TermError::Unlisted { law, name: name.to_owned(), known });
             }
         };
         let term = submodel.map_or(Ok(term.clone()), |submodel| self.under(submodel, term))?;
@@ -154,10 +156,10 @@ impl Law {
     }
 
     /// The regressor that a name spells: the product of what its factors stand for.
-    pub(crate) fn product(&self, name: &CoefficientName) -> Result<Expr, String> {
+    pub(crate) fn product(&self, name: &CoefficientName) -> Result<Expr, TermError> {
         name.factors.iter().try_fold(Expr::Number(1.0), |product, factor| {
             let of = self.factors.get(&factor.symbol);
-            let of = of.ok_or_else(|| format!("law `{}` does not say what factor `{}` stands for", self.name, factor.symbol))?;
+            let of = of.ok_or_else(|| TermError::Factor { law: self.name.clone(), symbol: factor.symbol.clone() })?;
             let of = of.clone();
             let of = if factor.absolute { Expr::Call(crate::formula::Function::Abs, vec![of]) } else { of };
             Ok(if product == Expr::Number(1.0) { of } else { product.times(of) })
@@ -165,20 +167,20 @@ impl Law {
     }
 
     /// A term while a submodel applies, nothing elsewhere.
-    fn under(&self, submodel: &str, term: Expr) -> Result<Expr, String> {
+    fn under(&self, submodel: &str, term: Expr) -> Result<Expr, TermError> {
         if self.submodels.contains_key(submodel) {
             return Ok(term.times(Expr::Name(indicator(submodel))));
         }
         let known: Vec<&str> = self.submodels.keys().map(String::as_str).collect();
         let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-        Err(format!("law `{}` has no submodel `{submodel}`; it has {known}", self.name))
+        Err(TermError::Submodel { law: self.name.clone(), submodel: submodel.to_owned(), known })
     }
 
     /// The unit of a coefficient, which follows from its regressor; `1` in a prime system.
     ///
     /// # Errors
     /// As [`Law::regressor`].
-    pub fn coefficient_dimension(&self, name: &str) -> Result<Dimension, String> {
+    pub fn coefficient_dimension(&self, name: &str) -> Result<Dimension, TermError> {
         let (axis, regressor) = self.regressor(name)?;
         Ok(axis_dimension(axis) - crate::formula::dimension_of(&regressor, &|n| self.dimension(n))?)
     }

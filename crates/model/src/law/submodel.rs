@@ -16,7 +16,7 @@ use crate::name::check_slug;
 pub fn read_submodels(law: &mut Law, raw: &IndexMap<String, SubmodelFile>) -> Result<(), (String, String)> {
     for (name, file) in raw {
         let field = |e: String| (format!("submodels.{name}"), e);
-        check_slug(name).map_err(field)?;
+        check_slug(name).map_err(|e| field(e.to_string()))?;
         if !(file.shrinkage > 0.0 && file.shrinkage.is_finite()) {
             return Err(field(format!("shrinkage must be above 0, not {}", file.shrinkage)));
         }
@@ -31,7 +31,7 @@ pub fn read_submodels(law: &mut Law, raw: &IndexMap<String, SubmodelFile>) -> Re
 fn applies(law: &Law, file: &SubmodelFile) -> Result<Expr, String> {
     let mut product: Option<Expr> = None;
     for text in &file.when {
-        let condition = formula::parse_condition(text)?;
+        let condition = formula::parse_condition(text).map_err(|e| e.to_string())?;
         formula::dimension_of(&condition, &|n| law.dimension(n)).map_err(|e| format!("`{text}` {e}"))?;
         product = Some(product.map_or(condition.clone(), |product| product.times(condition)));
     }
@@ -124,6 +124,6 @@ mass: { X: { X: mass_kg }, Y: { Y: mass_kg }, N: { N: mass_kg*lpp_m^2 } }
         assert!(refused("[u < 0]", "[]").contains("at least one"));
         assert!(refused("[u < 0]", "[v < 0]").contains("symmetry"));
         assert!(refused("shrinkage: 4.0", "shrinkage: 0").contains("above 0"));
-        assert!(Law::parse("two.yaml", LAW).unwrap().term("X_u@backing").unwrap_err().contains("stalled, astern"));
+        assert!(Law::parse("two.yaml", LAW).unwrap().term("X_u@backing").unwrap_err().to_string().contains("stalled, astern"));
     }
 }

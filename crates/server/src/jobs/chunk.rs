@@ -9,12 +9,13 @@ use sistership_store::{AliasMove, Expect, Job, NewOutcome, NewVersion, StoreErro
 
 use super::outcome::{Result, failed};
 use super::progress::Progress;
-use super::refinement::tell;
+use super::progress::tell;
 use crate::app::App;
-use crate::derive::{DeriveError, Inputs};
-use crate::fleet::{Chunk, FamilyRecipe, Frames, Gathered, Loaded, Order, refined, statistics_of, trials_of};
-use crate::publish::{CANDIDATE, CHAMPION, Standing, step};
-use crate::version::VersionDocument;
+use sistership_pipeline::derive::DeriveError;
+use sistership_pipeline::fleet::{Chunk, Frames, Gathered, Loaded, Order, refined, statistics_of, trials_of};
+use sistership_pipeline::inputs::Inputs;
+use sistership_pipeline::line::{CANDIDATE, CHAMPION, Standing, step};
+use sistership_pipeline::version::VersionDocument;
 
 /// How the versions are made.
 const METHOD: &str = "statistics";
@@ -43,7 +44,7 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
         let members = members(app, &loaded, &chunk, &progress).await?;
         tell(&progress, 0.5, "refining")?;
         let work = std::sync::Arc::clone(&loaded);
-        let done = app.compute(move || members.into_par_iter().map(|member| work.refine(member)).collect::<Vec<_>>()).await?;
+        let done = app.compute(move || members.into_par_iter().map(|member| refine(&work, member)).collect::<Vec<_>>()).await?;
         tell(&progress, 0.9, "keeping the versions")?;
         let outcomes = done.into_iter().map(|(member, outcome)| kept(&loaded, &bulk.id, member, outcome));
         let outcomes: Vec<NewOutcome> = outcomes.collect::<Result<_>>()?;
@@ -93,16 +94,14 @@ async fn gathered(app: &App, loaded: &Loaded, member: &mut Member) -> std::resul
     }
     let frame = Frame::new(&framed.model, &loaded.law, &order.law_sha256, order.settings.difference_s)?;
     let statistics = statistics_of(archive, &frame, &trials).await?;
-    let recipe = FamilyRecipe::new(order, framed.from, framed.ship_sha256, trials);
+    let recipe = order.recipe(framed.from, framed.ship_sha256, trials);
     Ok(Gathered { model: framed.model, statistics, recipe })
 }
 
-impl Loaded {
-    fn refine(&self, mut member: Member) -> (Member, Outcome) {
-        let gathered = std::mem::replace(&mut member.gathered, Err(String::new()));
-        let outcome = gathered.and_then(|gathered| refined(self, &member.ship, gathered).map_err(|error| error.to_string()));
-        (member, outcome)
-    }
+fn refine(loaded: &Loaded, mut member: Member) -> (Member, Outcome) {
+    let gathered = std::mem::replace(&mut member.gathered, Err(String::new()));
+    let outcome = gathered.and_then(|gathered| refined(loaded, &member.ship, gathered).map_err(|error| error.to_string()));
+    (member, outcome)
 }
 
 /// What becomes of a ship: champion where the rule lets her model be one, else candidate.

@@ -9,10 +9,10 @@ use sistership_model::version::sha256;
 use sistership_store::{Expect, Job, NewReport, NewVersion, Refinement, ReportHead, StoreError, VersionHead};
 
 use super::outcome::{JobError, Result, failed};
-use super::refinement::Prepared;
+use super::prepared::Prepared;
 use crate::app::App;
-use crate::derive::{Derived, Refined};
-use crate::publish::{CANDIDATE, CHAMPION, Standing, step};
+use sistership_pipeline::derive::{Derived, Refined};
+use sistership_pipeline::line::{CANDIDATE, CHAMPION, Standing, step};
 use sistership_report::{self as report, Rendered, VersionLabel};
 
 /// A version that is to be kept, with what its report is made of.

@@ -12,8 +12,8 @@ use sistership_store::{
 
 use super::outcome::{JobError, Result, failed};
 use crate::app::App;
-use crate::derive::Diagnosed;
-use crate::publish::{CANDIDATE, Standing, step};
+use sistership_pipeline::derive::Diagnosed;
+use sistership_pipeline::line::{CANDIDATE, Standing, step};
 use sistership_report::{DiagnosisInput, Rendered, VersionLabel, render_diagnosis};
 
 /// The kind of the reports, and the method of the versions.

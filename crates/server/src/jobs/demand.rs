@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use sistership_model::Law;
+use sistership_pipeline::memory::job_bytes;
 use sistership_store::{Job, StoreError};
 
 use super::outcome::{JobError, Result, failed};
@@ -11,23 +11,8 @@ use super::request::{DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob};
 use crate::app::App;
 use crate::memory::{Share, Shortage};
 
-/// Bytes of a refinement or diagnosis for each sample of its trials: the linearised model, its columns and their products, most of
-/// it while learning what the trials leave open. Measured with the zoo's largest law: 944 MB above the program's own for the 135,120
-/// samples of 34 trials of the Esso Osaka (`--law low-speed --method trajectory`, decision 17).
-pub(crate) const DERIVING: u64 = 7 << 10;
-/// Terms of that law; what is held grows with their number.
-const TERMS: u64 = 189;
-/// Bytes of any job beside that: simulations, bands, the report.
-const EVERY: u64 = 24 << 20;
-/// Bytes of a sample: time and as many as eleven channels.
-const SAMPLE: u64 = 96;
 /// How often a job that waits for memory looks whether it shall stop.
 const LOOK: Duration = Duration::from_millis(500);
-
-/// Bytes of a trial with so many samples.
-pub(crate) fn trial_bytes(samples: i64) -> u64 {
-    SAMPLE * u64::try_from(samples).unwrap_or(0)
-}
 
 /// Takes what a job needs, as soon as others have given it back: it waits in its worker, and smaller jobs of other workers pass.
 pub(super) async fn taken(app: &App, job: &Job, progress: &Progress) -> Result<Share> {
@@ -72,14 +57,9 @@ async fn demand(app: &App, job: &Job) -> Result<u64> {
             Err(error) => return Err(error.into()),
         };
     }
-    let terms = match law {
-        Some(name) => app.law(&name).await.map_or(0, |law| terms(&law)),
-        None => 0,
+    let law = match law {
+        Some(name) => app.law(&name).await.ok(),
+        None => None,
     };
-    Ok(EVERY + DERIVING * samples * terms.max(TERMS) / TERMS)
-}
-
-fn terms(law: &Law) -> u64 {
-    let terms: usize = law.axes.values().map(|axis| axis.terms.len()).sum();
-    (terms * (1 + law.submodels.len())) as u64
+    Ok(job_bytes(samples, law.as_deref()))
 }

@@ -7,13 +7,15 @@ use sistership_store::{Job, Version};
 
 use super::commit_diagnosis::commit;
 use super::outcome::{Result, failed};
+use super::prepared::{library_of, trials};
 use super::progress::Progress;
-use super::refinement::{library_of, tell, trials};
+use super::progress::tell;
 use super::request::DiagnosisJob;
 use crate::app::App;
-use crate::derive::{diagnosed, sorted};
-use crate::version::{DiagnosisKind, DiagnosisRecipe};
 use sistership_model::version::code_revision;
+use sistership_pipeline::derive::diagnosed;
+use sistership_pipeline::recipe::{DiagnosisKind, DiagnosisRecipe};
+use sistership_pipeline::sorted::sorted;
 
 /// Does a diagnosis.
 pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {

@@ -6,7 +6,7 @@ use sistership_store::Job;
 use super::outcome::{Result, failed};
 use super::progress::Progress;
 use crate::app::App;
-use crate::fleet::{LearnJob, learn};
+use sistership_pipeline::fleet::{LearnJob, learn};
 
 /// Learns, and keeps what was learned as the family's next prior.
 pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {

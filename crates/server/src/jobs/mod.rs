@@ -7,12 +7,12 @@ mod demand;
 mod diagnosis;
 mod family_prior;
 mod outcome;
+mod prepared;
 mod progress;
 mod refinement;
 mod request;
 mod worker;
 
-pub(crate) use demand::{DERIVING, trial_bytes};
 pub(crate) use request::{DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob, SourceChoice};
 pub(crate) use worker::Worker;
 

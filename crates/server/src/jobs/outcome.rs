@@ -3,8 +3,8 @@
 use sistership_estimate::refine::RefineError;
 use sistership_store::StoreError;
 
-use crate::derive::DeriveError;
 use crate::problem::Problem;
+use sistership_pipeline::derive::DeriveError;
 
 /// How a job ends that does not succeed.
 #[derive(Debug)]

@@ -4,6 +4,8 @@ use std::sync::{Arc, OnceLock};
 
 use tokio::sync::watch;
 
+use super::outcome::{JobError, Result};
+
 /// Why work is stopped before its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Stop {
@@ -28,9 +30,13 @@ impl Progress {
         (Self { stop: Arc::default(), told: Arc::new(told) }, seen)
     }
 
-    /// Tells how far it is; false when it shall stop.
+    /// Tells how far it is; false when it shall stop. It never runs backwards: work that begins anew, as others came in between, is
+    /// as far as it was.
     pub(super) fn tell(&self, fraction: f64, what: &str) -> bool {
-        self.told.send_replace((fraction, what.to_owned()));
+        self.told.send_modify(|(so_far, doing)| {
+            *so_far = so_far.max(fraction);
+            what.clone_into(doing);
+        });
         self.stop.get().is_none()
     }
 
@@ -41,5 +47,26 @@ impl Progress {
 
     pub(super) fn stopped(&self) -> Option<Stop> {
         self.stop.get().copied()
+    }
+}
+
+/// Says how far a job is, or that it shall stop.
+pub(super) fn tell(progress: &Progress, fraction: f64, what: &str) -> Result<()> {
+    if progress.tell(fraction, what) { Ok(()) } else { Err(JobError::Stopped) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn progress_never_runs_backwards() {
+        let (progress, seen) = Progress::new();
+        for (fraction, shown) in [(0.5, 0.5), (0.2, 0.5), (f64::NAN, 0.5), (0.9, 0.9)] {
+            assert!(progress.tell(fraction, "work"));
+            assert_eq!(seen.borrow().0, shown);
+        }
+        progress.stop(Stop::Cancelled);
+        assert!(!progress.tell(1.0, "work"));
     }
 }

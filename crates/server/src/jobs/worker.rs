@@ -13,8 +13,8 @@ use super::progress::{Progress, Stop};
 use super::request::{DIAGNOSIS, REFINEMENT};
 use super::{chunk, demand, diagnosis, family_prior, refinement};
 use crate::app::App;
-use crate::fleet::{BULK, LEARN};
-use crate::stopping::Stopping;
+use sistership_listen::Stopping;
+use sistership_pipeline::fleet::{BULK, LEARN};
 
 /// How often progress is written while it changes.
 const TELL: Duration = Duration::from_millis(250);

@@ -69,7 +69,7 @@ async fn verified(harness: &Harness) {
         let (_, verified) = harness.post(&format!("/v1/models/{version}/verify"), &json!({})).await;
         assert_eq!(verified["identical"], true, "{verified}");
     }
-    let checked = crate::verify::verify(harness.server.archive(), "demo-ship", 2).await.unwrap();
+    let checked = sistership_pipeline::verify::verify(harness.server.archive(), "demo-ship", 2).await.unwrap();
     assert!(checked.identical && checked.made_by.is_some());
 }
 

@@ -10,7 +10,7 @@ use prometheus_client::registry::Registry;
 use sistership_store::{JobCount, JobState, Result};
 use tokio::sync::Mutex;
 
-use crate::archive::Archive;
+use sistership_pipeline::archive::Archive;
 
 /// How long a size is good for: to know it, every object is asked for.
 const FRESH: Duration = Duration::from_secs(60);

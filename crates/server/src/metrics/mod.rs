@@ -15,7 +15,7 @@ use prometheus_client::registry::Registry;
 use sistership_store::Result;
 
 use self::measured::Measured;
-use crate::archive::Archive;
+use sistership_pipeline::archive::Archive;
 
 /// The media type of what is scraped.
 pub(crate) const MEDIA: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";

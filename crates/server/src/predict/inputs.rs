@@ -7,7 +7,7 @@ use sistership_dynamics::recorded::{ReplaySettings, replay};
 use sistership_model::trial::{Channel, Trial};
 use utoipa::ToSchema;
 
-use super::{bounded, columns};
+use super::track::{bounded, columns};
 use crate::problem::{Problem, Result};
 
 /// Recorded inputs.

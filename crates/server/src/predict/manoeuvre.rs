@@ -8,7 +8,7 @@ use sistership_estimate::bands::{Bands, Sampling, bands};
 use sistership_model::{Law, Model};
 use utoipa::ToSchema;
 
-use super::{bounded, columns, positive};
+use super::track::{bounded, columns, positive};
 use crate::problem::{Problem, Result};
 use crate::web::field::{Angle, Positive, SampleCount};
 

@@ -2,18 +2,17 @@
 
 mod inputs;
 mod manoeuvre;
+mod track;
 
 use serde::Deserialize;
-use serde_json::{Value, json};
-use sistership_dynamics::state::at;
-use sistership_dynamics::{Ship, Trajectory};
+use serde_json::Value;
+use sistership_dynamics::Ship;
 use sistership_model::{Law, Model};
 use utoipa::ToSchema;
 
 pub(crate) use inputs::InputsRequest;
 pub(crate) use manoeuvre::ManoeuvreRequest;
 
-use crate::memory::take_now;
 use crate::problem::{Problem, Result};
 use crate::web::ModelName;
 use crate::web::field::Positive;
@@ -50,54 +49,11 @@ pub(crate) fn predict(request: &PredictionRequest, model: &Model, law: &Law, mos
     }
 }
 
-fn positive(field: &str, value: f64) -> Result<f64> {
-    match value > 0.0 && value.is_finite() {
-        true => Ok(value),
-        false => Err(Problem::invalid(field, format!("must be above 0, is {value}"))),
-    }
-}
-
-/// Memory that a sample of a track takes until it is answered: 15 numbers simulated, 11 as JSON values of 32 bytes, and their
-/// text of some 20 bytes each.
-const SAMPLE_BYTES: u64 = 15 * 8 + 11 * (32 + 20);
-
-/// Takes the memory of a simulation; refuses a simulation of more steps than are allowed.
-fn bounded(field: &str, steps: f64, most: usize) -> Result<()> {
-    match steps <= most as f64 {
-        true => Ok(take_now(SAMPLE_BYTES * steps.max(0.0).ceil() as u64)?),
-        false => Err(Problem::invalid(
-            field,
-            format!("would take {steps:.0} steps, at most {most} are made: give a higher speed or a shorter time"),
-        )),
-    }
-}
-
-/// Places in the state vector by canonical column.
-const COLUMNS: [(&str, usize); 9] = [
-    ("x_m", at::X),
-    ("y_m", at::Y),
-    ("psi_rad", at::PSI),
-    ("u_m_s", at::U),
-    ("v_m_s", at::V),
-    ("r_rad_s", at::R),
-    ("phi_rad", at::PHI),
-    ("p_rad_s", at::P),
-    ("delta_rad", at::DELTA),
-];
-
-/// A track by column.
-fn columns(track: &Trajectory) -> Value {
-    let mut columns = json!({ "t_s": track.t_s, "n_rps": track.n_rps });
-    for (name, index) in COLUMNS {
-        columns[name] = json!(track.column(index));
-    }
-    columns
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use serde_json::json;
     use sistership_model::Zoo;
     use sistership_model::posterior::Posterior;
     use sistership_model::validity::Region;

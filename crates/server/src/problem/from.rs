@@ -10,7 +10,8 @@ use sistership_store::StoreError;
 use sistership_trials::Refusal;
 
 use super::{Fault, Problem};
-use crate::derive::DeriveError;
+use sistership_pipeline::error::DeriveError;
+use sistership_pipeline::fleet::OrderError;
 
 impl From<StoreError> for Problem {
     fn from(error: StoreError) -> Self {
@@ -73,6 +74,16 @@ impl From<DeriveError> for Problem {
             DeriveError::Refine(error) => error.into(),
             DeriveError::Lost(message) => Self::new(StatusCode::CONFLICT, message),
             other => Self::internal(other),
+        }
+    }
+}
+
+impl From<OrderError> for Problem {
+    fn from(error: OrderError) -> Self {
+        match error {
+            OrderError::Setting { field, message } => Self::invalid(&field, message),
+            OrderError::Store(error) => error.into(),
+            OrderError::Json(_) => Self::internal(error),
         }
     }
 }

@@ -13,10 +13,10 @@ use utoipa_axum::routes;
 use super::versions::exists;
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::publish::{alias, is_reserved};
 use crate::web::conditions::tag;
 use crate::web::field::{EntityTags, Remark, VersionNumber};
 use crate::web::{Conditions, Listing, Name, Paged, Params, Payload, Place};
+use sistership_pipeline::line::{alias, is_reserved};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get, put)).routes(routes!(history))

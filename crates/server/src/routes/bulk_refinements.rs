@@ -12,11 +12,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use crate::app::App;
-use crate::fleet::{Asked, Standing, queue};
 use crate::problem::Result;
-use crate::publish::CHAMPION;
 use crate::web::field::{Cursor, Limit, Remark, RequestKey};
 use crate::web::{Id, Key, Listing, Name, Params, Payload, Place, Reply, Word, page};
+use sistership_pipeline::fleet::{Asked, Standing, order_refinement};
+use sistership_pipeline::line::CHAMPION;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
@@ -157,7 +157,7 @@ impl OutcomeView {
 async fn refine(State(app): State<App>, Place(family): Place<Word>, key: Key, payload: Payload) -> Result<Response> {
     let asked: Asked = payload.json()?;
     let work = |app: App| async move {
-        let bulk = queue(app.store(), &family, &asked).await?;
+        let bulk = order_refinement(app.store(), &family, &asked).await?;
         let location = format!("/v1/bulk-refinements/{}", bulk.id);
         Ok(Reply::new(StatusCode::ACCEPTED, &BulkView::of(&app, bulk).await?)?.at(location).with_jobs())
     };

@@ -15,12 +15,12 @@ use utoipa_axum::routes;
 use super::versions::VersionHead;
 use crate::answers::Answer;
 use crate::app::App;
-use crate::archive::document;
 use crate::problem::{Problem, Result};
-use crate::publish::CHAMPION;
 use crate::web::conditions::tag;
 use crate::web::field::EntityTags;
 use crate::web::{Conditions, Name, Params, Place, accept};
+use sistership_pipeline::archive::document;
+use sistership_pipeline::line::CHAMPION;
 
 const JSON: &str = "application/json";
 const YAML: &str = "application/yaml";

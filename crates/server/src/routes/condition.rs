@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 
 use crate::app::App;
 use crate::problem::Result;
-use crate::publish::{CHAMPION, alias};
+use sistership_pipeline::line::{CHAMPION, alias};
 
 /// Whether the champion of a ship still holds, by the newest diagnosis of it, or by the one that it came of.
 #[derive(Debug, Clone, Default, Serialize, ToSchema)]

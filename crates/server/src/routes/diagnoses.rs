@@ -15,11 +15,12 @@ use super::named_trials::{named, no_trials};
 use super::queue::{accepted, enqueue};
 use super::trials::all_of_ship;
 use crate::app::App;
-use crate::archive::document;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::problem::{Problem, Result};
-use crate::web::field::{RequestKey, described};
+use crate::web::field::RequestKey;
 use crate::web::{Id, Key, ModelName, Payload, Reply};
+use sistership_pipeline::archive::document;
+use sistership_pipeline::schema::described;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(diagnose))

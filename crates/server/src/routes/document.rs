@@ -3,63 +3,17 @@
 use axum::http::{StatusCode, header};
 use axum::response::IntoResponse;
 use serde_json::Value;
-use utoipa::OpenApi as _;
 use utoipa::openapi::path::{Operation, ParameterIn};
-use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme};
-use utoipa::openapi::{Components, Content, OpenApi, PathItem, Ref, RefOr, Response, ResponseBuilder};
+use utoipa::openapi::{Components, Content, PathItem, Ref, RefOr, Response, ResponseBuilder};
 
-use super::{described, tidy};
-
+use super::{described, endpoints, tidy};
 use crate::config::Limits;
-use crate::problem::{Fault, MEDIA, Problem};
+use crate::problem::{MEDIA, Problem};
 use crate::web::query::parameters;
-
-#[derive(utoipa::OpenApi)]
-#[openapi(
-    info(
-        title = "Sistership",
-        description = "A model zoo and refinement server for ship manoeuvring models. Every error is a problem (RFC 9457); \
-                       times are microseconds since 1970; other figures carry their unit in their name.",
-        license(name = "MIT OR Apache-2.0"),
-        version = "1"
-    ),
-    components(schemas(Problem, Fault)),
-    tags(
-        (name = "ships", description = "Ships, and the model that each is asked for."),
-        (name = "trials", description = "Free-running trials of ships."),
-        (name = "refinements", description = "Refining a model against trials, as a job."),
-        (name = "diagnoses", description = "Finding what a model lacks, as a job."),
-        (name = "jobs", description = "Long work."),
-        (name = "models", description = "Versions of models, insert-only, and the aliases that move between them."),
-        (name = "predictions", description = "Simulations with a version."),
-        (name = "reports", description = "What a refinement or a diagnosis reported."),
-        (name = "laws", description = "Laws of motion."),
-        (name = "effects", description = "Libraries of effects, as recipes name them."),
-        (name = "health", description = "Whether the server lives and can work.")
-    )
-)]
-struct About;
-
-/// A file as it is.
-#[derive(utoipa::ToSchema)]
-#[schema(value_type = String, format = Binary)]
-#[allow(dead_code, reason = "it only describes a body")]
-pub(super) struct Binary(Vec<u8>);
-
-/// What does not depend on the endpoints.
-pub(super) fn about() -> OpenApi {
-    let mut about = About::openapi();
-    about.info.version = env!("CARGO_PKG_VERSION").to_owned();
-    let key =
-        HttpBuilder::new().scheme(HttpAuthScheme::Bearer).description(Some("The server's API key, where it has one")).build();
-    about.components.get_or_insert_with(Components::new).add_security_scheme("api_key", SecurityScheme::Http(key));
-    about.security = Some(vec![SecurityRequirement::default(), SecurityRequirement::new("api_key", Vec::<String>::new())]);
-    about
-}
 
 /// The contract of the server, as `/openapi.json` serves it.
 pub fn openapi() -> Value {
-    let mut document = super::api(&Limits::default()).into_openapi();
+    let mut document = endpoints::api(&Limits::default()).into_openapi();
     for (path, item) in &mut document.paths.paths {
         for (method, operation) in operations(item) {
             operation.operation_id = Some(id(method, path));

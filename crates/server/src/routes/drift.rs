@@ -10,10 +10,10 @@ use utoipa_axum::routes;
 
 use super::condition::Condition;
 use crate::app::App;
-use crate::fleet::Drift;
 use crate::problem::{Problem, Result};
 use crate::web::field::MemberLimit;
 use crate::web::{Name, Params, Place, Word};
+use sistership_pipeline::fleet::Drift;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(of_ship)).routes(routes!(of_family))

@@ -15,10 +15,10 @@ use super::jobs::JobView;
 use super::model_ref::resolve;
 use super::queue::accepted;
 use crate::app::App;
-use crate::fleet::{LEARN, LearnJob};
 use crate::problem::{Problem, Result};
 use crate::web::field::{Remark, RequestKey};
 use crate::web::{Key, Listing, ModelName, Name, Number, Paged, Params, Payload, Place, Reply, Word};
+use sistership_pipeline::fleet::{LEARN, LearnJob};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()

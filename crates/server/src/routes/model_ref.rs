@@ -3,7 +3,7 @@
 use sistership_store::{Store, StoreError, Version};
 
 use crate::problem::{Problem, Result};
-use crate::publish::{CHAMPION, alias};
+use sistership_pipeline::line::{CHAMPION, alias};
 
 /// The version that a name in a request stands for; `field` is where it stands.
 pub(super) async fn resolve(store: &Store, field: &str, name: &str) -> Result<Version> {

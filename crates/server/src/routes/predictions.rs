@@ -9,10 +9,10 @@ use utoipa_axum::routes;
 
 use super::model_ref::resolve;
 use crate::app::App;
-use crate::archive::document;
 use crate::predict::{PredictionRequest, predict};
 use crate::problem::Result;
 use crate::web::Payload;
+use sistership_pipeline::archive::document;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(create))

@@ -17,8 +17,9 @@ use super::trials::all_of_ship;
 use crate::app::App;
 use crate::jobs::{REFINEMENT, RefinementJob, SourceChoice};
 use crate::problem::{Problem, Result};
-use crate::web::field::{RequestKey, described};
+use crate::web::field::RequestKey;
 use crate::web::{Id, Key, ModelName, Name, Payload, Reply};
+use sistership_pipeline::schema::described;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(refine))

@@ -15,10 +15,12 @@ use utoipa_axum::routes;
 use super::versions::VersionHead;
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::publish::{LATEST, step};
-use crate::version::{Recipe, RegisteredRecipe, VersionDocument};
-use crate::web::field::{Remark, RequestKey, VersionNumber, described};
+use crate::web::field::{Remark, RequestKey, VersionNumber};
 use crate::web::{Key, Name, Payload, Place, Reply};
+use sistership_pipeline::line::{LATEST, step};
+use sistership_pipeline::recipe::{Recipe, RegisteredRecipe};
+use sistership_pipeline::schema::described;
+use sistership_pipeline::version::VersionDocument;
 
 const METHOD: &str = "registered";
 

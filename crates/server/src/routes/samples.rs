@@ -16,7 +16,7 @@ use sistership_trials::samples::CsvPieces;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::document::Binary;
+use super::binary::Binary;
 use crate::app::App;
 use crate::memory::{self, Share};
 use crate::problem::{Problem, Result};

@@ -13,10 +13,10 @@ use super::described::Vessel as VesselBody;
 use super::ships::ShipDetail;
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::publish::publish;
-use crate::seed::new_ship;
 use crate::web::field::{EntityTags, RequestKey};
 use crate::web::{Conditions, Key, Name, Payload, Place, Reply};
+use sistership_pipeline::publish::publish;
+use sistership_pipeline::seed::new_ship;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(create)).routes(routes!(replace, delete)).routes(routes!(undelete))

@@ -10,9 +10,9 @@ use utoipa::openapi::RefOr;
 use utoipa::openapi::schema::{ArrayBuilder, ObjectBuilder, Schema, Type};
 
 use crate::problem::{Fault, Problem, Result};
-use crate::search::{self, Search, metric, particular};
 use crate::web::field::{Cursor, Limit, one_of};
 use crate::web::{Name, Word, page};
+use sistership_pipeline::search::{self, Search, metric, particular};
 
 /// What the query may hold. Everything that is given must be true of a ship.
 #[derive(Debug, Deserialize, IntoParams)]

@@ -14,12 +14,12 @@ use utoipa_axum::routes;
 use super::condition::Condition;
 use super::ship_search::{self, Query};
 use crate::app::App;
-use crate::derive::DeriveError;
 use crate::problem::{Problem, Result};
-use crate::search;
 use crate::web::conditions::tag;
 use crate::web::field::EntityTags;
 use crate::web::{Conditions, Listing, Name, Params, Place};
+use sistership_pipeline::derive::DeriveError;
+use sistership_pipeline::search;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get))

@@ -14,11 +14,11 @@ use utoipa_axum::routes;
 use super::ship_search::vectors;
 use super::trials::all_of_ship;
 use crate::app::App;
-use crate::archive::vessel;
-use crate::jobs::trial_bytes;
 use crate::memory;
 use crate::problem::{Problem, Result};
 use crate::web::{Name, Params, Place};
+use sistership_pipeline::archive::vessel;
+use sistership_pipeline::memory::trial_bytes;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(similar))

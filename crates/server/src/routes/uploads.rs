@@ -10,7 +10,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::document::Binary;
+use super::binary::Binary;
 use super::trials::TrialView;
 use crate::app::App;
 use crate::problem::Result;

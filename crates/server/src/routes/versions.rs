@@ -13,9 +13,9 @@ use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::verify::{self, Verification};
 use crate::web::field::EntityTags;
 use crate::web::{Conditions, Listing, Name, Number, Paged, Params, Place};
+use sistership_pipeline::verify::{self, Verification};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get)).routes(routes!(bytes))

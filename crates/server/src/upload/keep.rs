@@ -9,14 +9,14 @@ use sistership_trials::samples::{self, SamplesError};
 use sistership_trials::{Mapping, Refusal, Source, read_trial};
 use tempfile::NamedTempFile;
 
+use super::received::{Upload, lost};
 use super::room::room;
 use super::spool::{Spool, Spooled, temporary};
-use super::{Upload, lost};
 use crate::app::App;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::memory;
 use crate::problem::{Problem, Result};
-use crate::publish::{CHAMPION, alias};
+use sistership_pipeline::line::{CHAMPION, alias};
 
 /// How often samples are put again that were removed before their rows were written.
 const TRIES: usize = 3;

@@ -6,8 +6,8 @@ use axum::http::StatusCode;
 use sistership_model::manifest::{Manifest, ManifestTrial};
 use sistership_trials::read_manifest;
 
+use super::received::{Upload, canonical};
 use super::spool::{Spooled, spool};
-use super::{Upload, canonical};
 use crate::app::App;
 use crate::memory;
 use crate::problem::{Fault, Problem, Result};

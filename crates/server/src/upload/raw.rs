@@ -8,8 +8,8 @@ use serde::Deserialize;
 use sistership_model::manifest::ManifestTrial;
 use utoipa::IntoParams;
 
+use super::received::{Upload, canonical};
 use super::spool::spool;
-use super::{Upload, canonical};
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::Name;

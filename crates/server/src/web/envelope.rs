@@ -11,9 +11,9 @@ use tracing::Instrument as _;
 use uuid::Uuid;
 
 use crate::app::App;
-use crate::listen::Peer;
 use crate::problem::{MEDIA, Problem};
 use crate::web::large::counted;
+use sistership_listen::Peer;
 
 /// Gives the request an id, logs and counts it, and sees to it that an error is a problem with that id.
 pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Next) -> Response {
@@ -24,7 +24,7 @@ pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Nex
     async move {
         let start = Instant::now();
         let response = app.held().scope(async { counted(next.run(request).await).await }).await;
-        let slow = peer.is_some_and(|peer| peer.pace.is_too_slow());
+        let slow = peer.is_some_and(|peer| peer.is_too_slow());
         let response = finish(if slow { too_slow() } else { response }, id);
         let elapsed = start.elapsed();
         if response.status() == StatusCode::INSUFFICIENT_STORAGE {

@@ -8,8 +8,8 @@ use std::sync::LazyLock;
 
 use regex::Regex;
 use sistership_store::MAX_LIMIT;
+use utoipa::openapi::RefOr;
 use utoipa::openapi::schema::{AdditionalProperties, KnownFormat, ObjectBuilder, Schema, SchemaFormat, Type};
-use utoipa::openapi::{Ref, RefOr};
 
 /// The greatest whole number that every reader of JSON holds exactly.
 pub(crate) const MAX_WHOLE: i64 = (1 << 53) - 1;
@@ -317,11 +317,6 @@ pub(crate) fn any_object() -> RefOr<Schema> {
         .additional_properties(Some(AdditionalProperties::FreeForm(true)))
         .build()
         .into()
-}
-
-/// A reference to the description of a type of another crate, which `routes::document` collects.
-pub(crate) fn described<T: schemars::JsonSchema>() -> RefOr<Schema> {
-    Ref::from_schema_name(T::schema_name()).into()
 }
 
 #[cfg(test)]

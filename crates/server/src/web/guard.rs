@@ -6,43 +6,18 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Response};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use sha2::{Digest as _, Sha256};
 
+use super::api_key::ApiKey;
 use super::host;
 use crate::app::App;
-use crate::listen::Peer;
 use crate::problem::Problem;
+use sistership_listen::Peer;
 
 /// Paths that tell nothing worth a key.
 const OPEN: [&str; 3] = ["/healthz", "/readyz", "/openapi.json"];
 
-/// An API key, as its hash.
-#[derive(Clone, Copy)]
-pub(crate) struct ApiKey([u8; 32]);
-
-impl ApiKey {
-    pub(crate) fn new(key: &str) -> Self {
-        Self(Sha256::digest(key.as_bytes()).into())
-    }
-
-    /// Whether this is the key, in a time that does not tell how much of it is right.
-    fn is(&self, presented: &str) -> bool {
-        let presented: [u8; 32] = Sha256::digest(presented.as_bytes()).into();
-        let difference = self.0.iter().zip(presented).fold(0, |all, (a, b)| all | (a ^ b));
-        std::hint::black_box(difference) == 0
-    }
-}
-
-/// What answers even where there is no seat for a request.
-const HEALTH: [&str; 2] = ["/healthz", "/readyz"];
-
 /// How long who finds no seat should wait, seconds.
 const RETRY: u64 = 2;
-
-/// Whether a path tells of health.
-pub(crate) fn is_health(path: &str) -> bool {
-    HEALTH.contains(&path)
-}
 
 /// Lets a request through, or says what it lacks.
 pub(crate) async fn guard(State(app): State<App>, request: Request, next: Next) -> Response {

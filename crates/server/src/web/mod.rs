@@ -1,6 +1,7 @@
 //! What every endpoint needs of HTTP: bodies, parameters, conditions, negotiation, answers, and what wraps them.
 
 pub(crate) mod accept;
+pub(crate) mod api_key;
 pub(crate) mod conditions;
 pub(crate) mod envelope;
 pub(crate) mod field;

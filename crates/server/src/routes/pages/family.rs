@@ -5,7 +5,8 @@ use axum::extract::State;
 use axum::response::Response;
 
 use super::super::drift::{FamilyDrift, MemberDrift};
-use super::{answer, date};
+use super::answer::answer;
+use super::rows::date;
 use crate::app::App;
 use crate::problem::Result;
 use crate::web::Place;

@@ -6,12 +6,13 @@ use axum::response::Response;
 use serde::Deserialize;
 use sistership_store::{FoundShip, JobFilter, Page, ShipSearch};
 
-use super::{JobRow, answer};
+use super::answer::answer;
+use super::rows::JobRow;
 use crate::app::App;
 use crate::problem::Result;
-use crate::publish::{CHAMPION, alias};
 use crate::web::field::Cursor;
 use crate::web::{Params, page};
+use sistership_pipeline::line::{CHAMPION, alias};
 
 /// Ships on one page.
 const SHIPS: i64 = 100;

@@ -6,11 +6,12 @@ use axum::response::Response;
 use sistership_store::{Alias, JobFilter, Page, VersionHead};
 
 use super::super::condition::Condition;
-use super::{JobRow, TrialRow, answer, date};
+use super::answer::answer;
+use super::rows::{JobRow, TrialRow, date};
 use crate::app::App;
-use crate::archive::vessel;
 use crate::problem::Result;
 use crate::web::Place;
+use sistership_pipeline::archive::vessel;
 
 /// Lines of each list.
 const LINES: i64 = 100;

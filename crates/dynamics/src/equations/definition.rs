@@ -1,0 +1,185 @@
+//! The equations of motion: `M (nu' - a) = F`, where `nu` are the velocities, `F` the forces of the
+//! law and `a` what effects add to accelerations, and the kinematics.
+
+use std::borrow::Cow;
+
+use sistership_model::Model;
+use sistership_model::coefficient::Axis;
+use sistership_model::formula::{Expr, parse};
+use sistership_model::law::{Law, STATES};
+use sistership_model::particulars;
+
+use super::refusal::PlantError;
+use crate::state::at;
+use crate::tape::Binding;
+
+/// Places in the state vector of the states that move: velocities first, as the axes accelerate
+/// them.
+const PLANE: [usize; 6] = [at::U, at::V, at::R, at::PSI, at::X, at::Y];
+const ROLL: [usize; 8] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI, at::X, at::Y];
+
+/// The axes, in the order of the velocities among those states.
+const AXES: [Axis; 4] = [Axis::X, Axis::Y, Axis::N, Axis::K];
+
+/// What stands for the coefficients in a force.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coefficients {
+    /// Those values of the model that are not zero.
+    Values,
+    /// The name of each coefficient that the model has: an input of the tape.
+    Names,
+}
+
+/// How the ship's axes lie in kinematics that the law leaves open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Attitude {
+    /// Velocities are horizontal.
+    Upright,
+    /// Velocities are measured along axes that heel with the ship.
+    Heeled,
+}
+
+/// A law with the coefficients, parameters, particulars and effects of a model.
+#[derive(Debug, Clone)]
+pub struct EquationsOfMotion<'a> {
+    model: &'a Model,
+    law: Cow<'a, Law>,
+}
+
+impl<'a> EquationsOfMotion<'a> {
+    /// Of a law with the effects that a model carries.
+    ///
+    /// # Errors
+    /// Says which effect cannot be used, and why.
+    pub fn new(model: &'a Model, law: &'a Law) -> Result<Self, PlantError> {
+        if model.effects.is_empty() {
+            return Ok(Self::of_law(model, Cow::Borrowed(law)));
+        }
+        let dressed = law.with_effects(model).map_err(|(field, message)| PlantError::Effect { field, message })?;
+        Ok(Self::of_law(model, Cow::Owned(dressed)))
+    }
+
+    /// Of a law as it is: effects are in it already, or are left out.
+    pub fn of_law(model: &'a Model, law: Cow<'a, Law>) -> Self {
+        Self { model, law }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &'a Model {
+        self.model
+    }
+
+    /// The law with the effects.
+    pub fn law(&self) -> &Law {
+        &self.law
+    }
+
+    /// What tapes of forces take: the states that formulas know, then the inputs of the law.
+    pub fn names(&self) -> Vec<String> {
+        STATES.iter().map(|&(name, _)| name.to_owned()).chain(self.law.inputs.keys().cloned()).collect()
+    }
+
+    /// The inputs of the law with their defaults.
+    pub fn inputs(&self) -> Vec<(String, Option<f64>)> {
+        self.law.inputs.iter().map(|(name, input)| (name.clone(), input.default)).collect()
+    }
+
+    /// The axes in the order of the velocities: X, Y, N, and K where the law has roll.
+    pub fn axes(&self) -> &'static [Axis] {
+        if self.law.has_roll() { &AXES } else { &AXES[..3] }
+    }
+
+    /// Places in the state vector of the states that move: velocities in the order of the axes, then
+    /// attitude and position.
+    pub fn states(&self) -> &'static [usize] {
+        if self.law.has_roll() { &ROLL } else { &PLANE }
+    }
+
+    /// What a name of the law stands for.
+    pub fn binding(&self, name: &str) -> Option<Binding> {
+        if let Some(expr) = self.law.values.get(name) {
+            return Some(Binding::Formula(expr.clone()));
+        }
+        let of_effect = self.law.dressing.parameters.get(name).copied();
+        let parameter = of_effect.or_else(|| self.model.parameters.get(name).map(|quantity| quantity.value));
+        parameter.or_else(|| particulars::value(&self.model.particulars, name)).map(Binding::Constant)
+    }
+
+    /// The names of the coefficients that the model has on an axis.
+    pub fn coefficients(&self, axis: Axis) -> impl Iterator<Item = &'a String> + use<'a> {
+        let prefix = format!("{axis}_");
+        self.model.coefficients.keys().filter(move |name| name.starts_with(&prefix))
+    }
+
+    /// The regressor of a coefficient without its axis' scale.
+    ///
+    /// # Errors
+    /// Says why the law has no such coefficient.
+    pub fn term(&self, name: &str) -> Result<Expr, PlantError> {
+        Ok(self.law.term(name)?.1)
+    }
+
+    /// The regressor of a coefficient with its axis' scale, N (N m) per unit.
+    ///
+    /// # Errors
+    /// Says why the law has no such coefficient.
+    pub fn regressor(&self, name: &str) -> Result<Expr, PlantError> {
+        Ok(self.law.regressor(name)?.1)
+    }
+
+    /// The whole right-hand side of an axis, N (N m): coefficients times regressors, and the rest.
+    ///
+    /// # Errors
+    /// Names the coefficient that the law does not have.
+    pub fn force(&self, axis: Axis, coefficients: Coefficients) -> Result<Expr, PlantError> {
+        let axis_law = &self.law.axes[&axis];
+        let mut sum = Expr::Number(0.0);
+        for (name, quantity) in &self.model.coefficients {
+            let factor = match coefficients {
+                Coefficients::Values if quantity.value == 0.0 => continue,
+                Coefficients::Values => Expr::Number(quantity.value),
+                Coefficients::Names => Expr::Name(name.clone()),
+            };
+            let (acts_on, term) = self.law.term(name)?;
+            if acts_on == axis {
+                sum = Expr::Add(Box::new(sum), Box::new(term.times(factor)));
+            }
+        }
+        Ok(Expr::Add(Box::new(axis_law.scale.clone().times(sum)), Box::new(axis_law.rest.clone())))
+    }
+
+    /// What effects add to the acceleration of an axis, m/s2 (rad/s2).
+    pub fn addition(&self, axis: Axis) -> Option<Expr> {
+        let added = self.law.dressing.accelerations.iter().filter(|(of, _)| *of == axis).map(|(_, expr)| expr.clone());
+        added.reduce(|sum, expr| Expr::Add(Box::new(sum), Box::new(expr)))
+    }
+
+    /// The rate of a state after the velocities: as the law says, else that of motion in the
+    /// horizontal plane, in m/s or rad/s.
+    ///
+    /// # Errors
+    /// None that a law could cause.
+    pub fn kinematic(&self, state: usize, attitude: Attitude) -> Result<Expr, PlantError> {
+        let (name, upright, heeled) = match state {
+            at::PHI => ("phi", "p", "p"),
+            at::PSI => ("psi", "r", "r*cos(phi)"),
+            at::X => ("x", "u*cos(psi) - v*sin(psi)", "u*cos(psi) - v*sin(psi)*cos(phi)"),
+            _ => ("y", "u*sin(psi) + v*cos(psi)", "u*sin(psi) + v*cos(psi)*cos(phi)"),
+        };
+        match self.law.kinematics.get(name) {
+            Some(expr) => Ok(expr.clone()),
+            None => Ok(parse(if attitude == Attitude::Upright { upright } else { heeled })?),
+        }
+    }
+
+    /// Refuses what acts through a lag or on instruments, which some view does not know.
+    ///
+    /// # Errors
+    /// Names the model and the view.
+    pub fn without_lags_or_instruments(&self, view: &'static str) -> Result<(), PlantError> {
+        if self.law.dressing.lags.is_empty() && self.law.dressing.measures.is_empty() {
+            return Ok(());
+        }
+        Err(PlantError::Unsupported { model: self.model.name.clone(), view })
+    }
+}

@@ -1,0 +1,23 @@
+//! The equations of motion of a law for a model, and how they are put on tapes.
+//!
+//! [`EquationsOfMotion`] is set up once from the law, the coefficients and the effects of a model,
+//! and has the formulas of forces, masses, added accelerations and kinematics. [`Lowering`] puts
+//! formulas of them on a tape; [`PlantError`] is the one refusal. Each use is a view that takes
+//! what it needs: simulation ([`Plant`](crate::Plant)), what instruments say
+//! ([`Instruments`](crate::instruments::Instruments)), candidates whose coefficients are data
+//! ([`CandidateSystem`](crate::candidates::CandidateSystem)), sensitivities
+//! ([`SensitiveSystem`](crate::sensitivity::SensitiveSystem)), the residuals of a filter and the
+//! rows of a regression.
+
+mod definition;
+mod lowering;
+mod mobility;
+mod refusal;
+
+pub use definition::{Attitude, Coefficients, EquationsOfMotion};
+pub use lowering::Lowering;
+pub(crate) use mobility::{constant_mobility, mobility};
+pub use refusal::PlantError;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,134 @@
+//! Bodies of requests with a deadline by progress, and bodies of answers that tell when they end.
+
+use std::pin::Pin;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::task::{Context, Poll, ready};
+use std::time::Duration;
+
+use axum::BoxError;
+use axum::body::Body;
+use bytes::Bytes;
+use http_body_util::BodyExt as _;
+use hyper::body::{Body as HttpBody, Frame, Incoming, SizeHint};
+use tokio::time::{Instant, Sleep, sleep_until};
+
+use crate::pace::Pace;
+
+/// Bytes, and time, for the rest of a body that is refused before its end. Whoever still sends it would find the connection
+/// reset, not the answer that waits behind: RFC 9112, section 9.6. Four times the largest document; beyond it, as after two
+/// seconds, the connection is closed all the same.
+const REST_BYTES: usize = 16 << 20;
+const REST_TIME: Duration = Duration::from_secs(2);
+
+/// The body of a request.
+pub(super) struct Received {
+    body: Option<Incoming>,
+    pace: Arc<Pace>,
+    deadline: Pin<Box<Sleep>>,
+    rest: Rest,
+}
+
+/// What nobody has read of a request's body when it was let go.
+#[derive(Clone, Default)]
+pub(super) struct Rest(Arc<Mutex<Option<Incoming>>>);
+
+impl Rest {
+    fn slot(&self) -> std::sync::MutexGuard<'_, Option<Incoming>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Throws it away as it comes, as far as that may go.
+    pub(super) async fn discard(&self) {
+        let Some(mut body) = self.slot().take() else { return };
+        let mut left = REST_BYTES;
+        let discarded = async {
+            while let Some(Ok(frame)) = body.frame().await {
+                let bytes = frame.data_ref().map_or(0, Bytes::len);
+                left = match left.checked_sub(bytes) {
+                    Some(left) => left,
+                    None => break,
+                };
+            }
+        };
+        let _ = tokio::time::timeout(REST_TIME, discarded).await;
+    }
+}
+
+/// The body of an answer.
+pub(super) struct Sent {
+    body: Body,
+    pace: Arc<Pace>,
+}
+
+impl Received {
+    pub(super) fn new(body: Incoming, pace: Arc<Pace>, rest: Rest) -> Self {
+        Self { body: Some(body), pace, deadline: Box::pin(sleep_until(Instant::now())), rest }
+    }
+}
+
+impl HttpBody for Received {
+    type Data = Bytes;
+    type Error = BoxError;
+
+    fn poll_frame(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Result<Frame<Bytes>, BoxError>>> {
+        let Some(body) = &mut self.body else { return Poll::Ready(None) };
+        if let Poll::Ready(frame) = Pin::new(body).poll_frame(context) {
+            let bytes = frame.iter().flatten().filter_map(Frame::data_ref).map(Bytes::len).sum();
+            self.pace.received(bytes);
+            return Poll::Ready(frame.map(|frame| frame.map_err(BoxError::from)));
+        }
+        let until = self.pace.awaits_body();
+        if self.deadline.deadline() != until {
+            self.deadline.as_mut().reset(until);
+        }
+        ready!(self.deadline.as_mut().poll(context));
+        self.pace.too_slow();
+        self.pace.received(0);
+        Poll::Ready(Some(Err("the body came too slowly".into())))
+    }
+
+    fn is_end_stream(&self) -> bool {
+        self.body.as_ref().is_none_or(HttpBody::is_end_stream)
+    }
+
+    fn size_hint(&self) -> SizeHint {
+        self.body.as_ref().map_or_else(SizeHint::new, HttpBody::size_hint)
+    }
+}
+
+impl Drop for Received {
+    /// Who lets a body go waits for it no longer.
+    fn drop(&mut self) {
+        self.pace.received(0);
+        *self.rest.slot() = self.body.take().filter(|body| !body.is_end_stream());
+    }
+}
+
+impl Sent {
+    pub(super) fn new(body: Body, pace: Arc<Pace>) -> Self {
+        Self { body, pace }
+    }
+}
+
+impl HttpBody for Sent {
+    type Data = Bytes;
+    type Error = axum::Error;
+
+    fn poll_frame(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
+        Pin::new(&mut self.body).poll_frame(context)
+    }
+
+    fn is_end_stream(&self) -> bool {
+        self.body.is_end_stream()
+    }
+
+    fn size_hint(&self) -> SizeHint {
+        self.body.size_hint()
+    }
+}
+
+impl Drop for Sent {
+    fn drop(&mut self) {
+        self.pace.end();
+    }
+}

@@ -1,0 +1,82 @@
+//! One connection: HTTP/1 over a stream that is watched.
+
+use std::net::IpAddr;
+use std::sync::Arc;
+
+use axum::Router;
+use axum::body::Body;
+use axum::extract::Request;
+use axum::http::header;
+use axum::response::Response;
+use hyper::body::Incoming;
+use hyper::server::conn::http1;
+use hyper::service::{Service as _, service_fn};
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::server::graceful::Watcher;
+use hyper_util::service::TowerToHyperService;
+use tokio::net::TcpStream;
+
+use crate::body::{Received, Rest, Sent};
+use crate::limits::Limits;
+use crate::pace::Pace;
+use crate::peer::{Peer, is_health};
+use crate::seats::{Seat, Seats};
+use crate::stream::Stream;
+
+/// Headers of one request.
+const MAX_HEADERS: usize = 100;
+/// What a connection may buffer before the body.
+const HEAD_BYTES: usize = 32 << 10;
+
+/// A connection that has a place.
+pub(super) struct Connection {
+    router: Router,
+    limits: Limits,
+    party: IpAddr,
+    pace: Arc<Pace>,
+    seat: Seat,
+}
+
+impl Connection {
+    pub(super) fn new(router: &Router, limits: Limits, seats: &Arc<Seats>, party: IpAddr) -> Option<Self> {
+        let pace = Arc::new(Pace::new(&limits));
+        let seat = Seats::admit(seats, party, &pace)?;
+        Some(Self { router: router.clone(), limits, party, pace, seat })
+    }
+
+    pub(super) async fn serve(self, stream: TcpStream, watcher: Watcher) {
+        let stream = Stream::new(stream, Arc::clone(&self.pace));
+        let mut builder = http1::Builder::new();
+        builder.timer(TokioTimer::new()).header_read_timeout(self.limits.header_time);
+        builder.max_headers(MAX_HEADERS).max_buf_size(HEAD_BYTES);
+        let connection = Arc::new(self);
+        let serving = Arc::clone(&connection);
+        let service = service_fn(move |request| Arc::clone(&serving).answer(request));
+        let served = builder.serve_connection(TokioIo::new(stream), service);
+        tokio::select! {
+            served = watcher.watch(served) => if let Err(error) = served {
+                tracing::debug!(%error, "a connection broke off");
+            },
+            () = connection.pace.until_cut() => tracing::debug!("a connection gave way to others"),
+        }
+    }
+
+    async fn answer(self: Arc<Self>, request: Request<Incoming>) -> hyper::Result<Response<Sent>> {
+        self.pace.taken().await;
+        self.pace.begin();
+        let crowded = !is_health(request.uri().path()) && !self.seat.taken().await;
+        // Who waits to be told whether to send the body has not begun to.
+        let waits = request.headers().contains_key(header::EXPECT);
+        let (pace, rest) = (Arc::clone(&self.pace), Rest::default());
+        let mut request = request.map(|body| Body::new(Received::new(body, Arc::clone(&pace), rest.clone())));
+        request.extensions_mut().insert(Peer { party: self.party, pace: Arc::clone(&pace), crowded });
+        let answered = TowerToHyperService::new(self.router.clone()).call(request).await;
+        let response = answered.unwrap_or_else(|never| match never {});
+        if !(crowded || waits || pace.is_too_slow()) {
+            pace.awaits_body();
+            rest.discard().await;
+            pace.received(0);
+        }
+        Ok(response.map(|body| Sent::new(body, pace)))
+    }
+}

@@ -1,0 +1,72 @@
+//! The descriptors that a process may open: as many as its connections need, or fewer connections.
+
+use crate::limits::Limits;
+use crate::seats::RESERVE;
+
+/// Descriptors for all but connections: database, samples, uploads, the log.
+const OTHER_DESCRIPTORS: usize = 128;
+
+/// The least that a server is of use with.
+const FEWEST: usize = 16;
+
+/// The limits that the system has descriptors for. The process' own bound is raised as far as it may be.
+pub fn suited(limits: Limits) -> Limits {
+    let Some(have) = raised(needed_by(&limits)) else { return limits };
+    let fit = fitting(limits, have);
+    if fit != limits {
+        let needed = needed_by(&limits);
+        tracing::warn!(
+            have,
+            needed,
+            connections = fit.connections,
+            "too few file descriptors for the connections that are set; raise `ulimit -n`"
+        );
+    }
+    fit
+}
+
+/// Descriptors that a server with these limits needs.
+fn needed_by(limits: &Limits) -> usize {
+    limits.connections + RESERVE + OTHER_DESCRIPTORS
+}
+
+fn fitting(mut limits: Limits, have: usize) -> Limits {
+    let lacking = needed_by(&limits).saturating_sub(have);
+    limits.connections = limits.connections.saturating_sub(lacking).max(FEWEST.min(limits.connections));
+    limits.connections_per_address = limits.connections_per_address.min(limits.connections);
+    limits
+}
+
+/// What the process may open; none for no bound. Raised to what it needs where the system lets it.
+#[cfg(unix)]
+fn raised(needed: usize) -> Option<usize> {
+    use rustix::process::{Resource, getrlimit, setrlimit};
+    let (mut limit, needed) = (getrlimit(Resource::Nofile), needed as u64);
+    if limit.current.is_some_and(|current| current < needed) {
+        limit.current = Some(limit.maximum.map_or(needed, |most| most.min(needed)));
+        if let Err(error) = setrlimit(Resource::Nofile, limit) {
+            tracing::warn!(%error, "the bound on file descriptors cannot be raised");
+        }
+    }
+    getrlimit(Resource::Nofile).current.and_then(|current| usize::try_from(current).ok())
+}
+
+#[cfg(not(unix))]
+fn raised(_: usize) -> Option<usize> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn connections_fit_the_descriptors() {
+        let limits = Limits::default();
+        assert_eq!(fitting(limits, 1 << 20), limits);
+        let fit = fitting(limits, 600);
+        assert_eq!(needed_by(&fit), 600);
+        assert!(fit.connections_per_address <= fit.connections);
+        assert_eq!(fitting(limits, 10).connections, FEWEST);
+    }
+}

@@ -1,0 +1,23 @@
+//! Taking connections: bounded in number, in the time for heads, bodies and answers by their progress, and in the time to end. It
+//! knows HTTP, and no ship.
+
+mod address;
+mod bind;
+mod body;
+mod connection;
+mod descriptors;
+mod limits;
+mod pace;
+mod peer;
+mod seats;
+mod serve;
+mod stopping;
+mod stream;
+
+pub use address::party;
+pub use bind::bind;
+pub use descriptors::suited;
+pub use limits::Limits;
+pub use peer::{Peer, is_health};
+pub use serve::listen;
+pub use stopping::Stopping;

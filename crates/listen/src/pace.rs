@@ -1,0 +1,210 @@
+//! How a connection gets on: what it waits for, and for how long its other end has done too little.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use tokio::sync::Notify;
+use tokio::time::Instant;
+
+use crate::limits::Limits;
+
+/// The most time that bytes can earn in advance.
+const MOST_CREDIT: Duration = Duration::from_secs(60);
+
+/// Time that the other end may still let pass: it begins with a grace, and each byte earns some.
+#[derive(Debug, Clone, Copy)]
+struct Credit {
+    grace: Duration,
+    left: Duration,
+    most: Duration,
+    since: Option<Instant>,
+}
+
+impl Credit {
+    fn new(grace: Duration) -> Self {
+        Self { grace, left: grace, most: grace.max(MOST_CREDIT), since: None }
+    }
+
+    /// Begins to wait, unless it does; gives when the credit will have run out.
+    fn wait(&mut self, now: Instant) -> Instant {
+        *self.since.get_or_insert(now) + self.left
+    }
+
+    fn earn(&mut self, bytes: usize, rate: usize, now: Instant) {
+        self.settle(now);
+        let earned = Duration::from_secs_f64(bytes as f64 / rate.max(1) as f64);
+        self.left = (self.left + earned).min(self.most);
+    }
+
+    /// Ends waiting and takes what it took.
+    fn settle(&mut self, now: Instant) {
+        if let Some(since) = self.since.take() {
+            self.left = self.left.saturating_sub(now.saturating_duration_since(since));
+        }
+    }
+
+    /// How long it waits, or has waited before for no more than a few bytes; none while it does not.
+    fn waited(&self, now: Instant) -> Option<Duration> {
+        let waited = now.saturating_duration_since(self.since?);
+        Some(waited.max((self.grace + waited).saturating_sub(self.left)))
+    }
+}
+
+#[derive(Debug)]
+struct State {
+    /// Since when a request's head is awaited; none while a request is under way.
+    head: Option<Instant>,
+    body: Credit,
+    answer: Credit,
+    cut: bool,
+}
+
+/// How one connection gets on; its stream, its bodies and the table of seats share it.
+#[derive(Debug)]
+pub(crate) struct Pace {
+    rate: usize,
+    grace: Duration,
+    state: Mutex<State>,
+    slow: AtomicBool,
+    cut: Notify,
+    written: Notify,
+}
+
+impl Pace {
+    pub(super) fn new(limits: &Limits) -> Self {
+        let body = Credit::new(limits.body_grace);
+        let state = State { head: Some(Instant::now()), body, answer: Credit::new(limits.answer_grace), cut: false };
+        Self {
+            rate: limits.least_rate,
+            grace: limits.body_grace,
+            state: Mutex::new(state),
+            slow: AtomicBool::new(false),
+            cut: Notify::new(),
+            written: Notify::new(),
+        }
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A request's head has been read.
+    pub(super) fn begin(&self) {
+        let mut state = self.state();
+        state.head = None;
+        state.body = Credit::new(self.grace);
+    }
+
+    /// An answer has been made, if not yet sent.
+    pub(super) fn end(&self) {
+        let mut state = self.state();
+        state.head = Some(Instant::now());
+        state.body.since = None;
+    }
+
+    /// A body is awaited, until the moment that this gives.
+    pub(super) fn awaits_body(&self) -> Instant {
+        self.state().body.wait(Instant::now())
+    }
+
+    /// Some of the body has come, or the end of it.
+    pub(super) fn received(&self, bytes: usize) {
+        self.state().body.earn(bytes, self.rate, Instant::now());
+    }
+
+    /// The other end takes nothing of the answer; it may do so until the moment that this gives.
+    pub(super) fn awaits_reader(&self) -> Instant {
+        self.state().answer.wait(Instant::now())
+    }
+
+    /// Some of the answer has been taken.
+    pub(super) fn sent(&self, bytes: usize) {
+        self.state().answer.earn(bytes, self.rate, Instant::now());
+        self.written.notify_waiters();
+    }
+
+    /// Waits until the other end has taken what was sent to it, so that answers do not pile up.
+    pub(super) async fn taken(&self) {
+        loop {
+            let written = self.written.notified();
+            if self.state().answer.since.is_none() {
+                return;
+            }
+            written.await;
+        }
+    }
+
+    /// How long the connection has waited for its other end; none while the server has something to do for it.
+    pub(super) fn stuck(&self, now: Instant) -> Option<Duration> {
+        let state = self.state();
+        let head = || state.head.map(|since| now.saturating_duration_since(since));
+        state.answer.waited(now).or_else(|| state.body.waited(now)).or_else(head)
+    }
+
+    /// Cuts the connection if it still waits for its other end; says whether it does.
+    pub(super) fn cut_if_stuck(&self) -> bool {
+        let mut state = self.state();
+        let stuck = state.answer.since.is_some() || state.body.since.is_some() || state.head.is_some();
+        state.cut |= stuck;
+        if stuck {
+            self.cut.notify_one();
+        }
+        stuck
+    }
+
+    /// Cuts the connection, whatever it does.
+    pub(super) fn cut(&self) {
+        self.state().cut = true;
+        self.cut.notify_one();
+    }
+
+    pub(super) fn is_cut(&self) -> bool {
+        self.state().cut
+    }
+
+    /// Waits until the connection is cut.
+    pub(super) async fn until_cut(&self) {
+        self.cut.notified().await;
+    }
+
+    pub(super) fn too_slow(&self) {
+        self.slow.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the body of its request came too slowly to be read.
+    pub(crate) fn is_too_slow(&self) -> bool {
+        self.slow.load(Ordering::Relaxed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_earn_time_and_waiting_takes_it() {
+        let (start, s) = (Instant::now(), Duration::from_secs);
+        let mut credit = Credit::new(s(10));
+        assert_eq!((credit.waited(start), credit.wait(start)), (None, start + s(10)));
+        assert_eq!(credit.wait(start + s(3)), start + s(10), "waiting goes on");
+        assert_eq!(credit.waited(start + s(4)), Some(s(4)));
+        credit.earn(200, 100, start + s(4));
+        assert_eq!(credit.wait(start + s(4)), start + s(12), "10 s - 4 s + 200 bytes of 100 bytes/s");
+        assert_eq!(credit.waited(start + s(5)), Some(s(3)), "3 s more than was earned");
+        credit.earn(1 << 20, 100, start + s(5));
+        assert_eq!(credit.wait(start + s(5)), start + s(5) + MOST_CREDIT);
+        assert_eq!(credit.waited(start + s(6)), Some(s(1)));
+    }
+
+    #[tokio::test]
+    async fn who_waits_for_the_server_is_not_cut() {
+        let pace = Pace::new(&Limits::default());
+        pace.begin();
+        assert_eq!(pace.stuck(Instant::now()), None);
+        assert!(!pace.cut_if_stuck() && !pace.is_cut());
+        pace.end();
+        assert!(pace.cut_if_stuck() && pace.is_cut());
+        pace.until_cut().await;
+    }
+}

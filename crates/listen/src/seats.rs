@@ -1,0 +1,239 @@
+//! Who has a connection: bounded in all and for each address, with a reserve in which whoever finds no seat is told so.
+//!
+//! Nobody who waits for the server is sent away. Where seats run out, the connection whose other end has let the server
+//! wait longest gives way: a body that does not come, an answer that is not read, a request that is not made.
+
+use std::collections::HashMap;
+use std::net::IpAddr;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use tokio::sync::Notify;
+use tokio::time::Instant;
+
+use crate::limits::Limits;
+use crate::pace::Pace;
+
+/// Connections beyond the seats: they get health and refusals.
+pub(super) const RESERVE: usize = 128;
+/// How long an other end may take its time before it gives way to others: some round trips around the world.
+const PATIENCE: Duration = Duration::from_millis(500);
+/// How long a request waits for a seat before it is refused.
+const WAIT: Duration = Duration::from_secs(1);
+/// How often a request that waits looks whether others have become slow.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// The seats of a listener.
+pub(super) struct Seats {
+    connections: usize,
+    share: usize,
+    table: Mutex<Table>,
+    freed: Notify,
+}
+
+#[derive(Default)]
+struct Table {
+    next: u64,
+    entries: HashMap<u64, Entry>,
+    /// Seats by address.
+    shares: HashMap<IpAddr, usize>,
+    seated: usize,
+}
+
+struct Entry {
+    party: IpAddr,
+    seated: bool,
+    pace: Arc<Pace>,
+}
+
+/// A place in the table, until it is dropped.
+pub(super) struct Seat {
+    id: u64,
+    seats: Arc<Seats>,
+}
+
+impl Seats {
+    pub(super) fn new(limits: &Limits) -> Arc<Self> {
+        let (connections, share) = (limits.connections, limits.connections_per_address);
+        Arc::new(Self { connections, share, table: Mutex::default(), freed: Notify::new() })
+    }
+
+    fn table(&self) -> MutexGuard<'_, Table> {
+        self.table.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A place for a new connection: a seat, else one in the reserve; none where all of that waits for the server.
+    pub(super) fn admit(self: &Arc<Self>, party: IpAddr, pace: &Arc<Pace>) -> Option<Seat> {
+        let mut table = self.table();
+        let seated = self.room(&mut table, party);
+        let crowded = || table.entries.len() - table.seated >= RESERVE;
+        if !seated && crowded() && !table.evict(Duration::ZERO, |entry| !entry.seated) {
+            return None;
+        }
+        let id = table.insert(party, seated, pace);
+        Some(Seat { id, seats: Arc::clone(self) })
+    }
+
+    /// Makes room for one more seat of an address, if it can be had.
+    fn room(&self, table: &mut Table, party: IpAddr) -> bool {
+        if table.shares.get(&party).copied().unwrap_or(0) >= self.share {
+            return table.evict(PATIENCE, |entry| entry.seated && entry.party == party);
+        }
+        if table.seated < self.connections {
+            return true;
+        }
+        let most = table.shares.iter().max_by_key(|(_, seats)| **seats).map(|(party, _)| *party);
+        table.evict(PATIENCE, |entry| entry.seated && Some(entry.party) == most) || table.evict(PATIENCE, |entry| entry.seated)
+    }
+
+    /// Cuts who has waited longest, when the system has no more sockets.
+    pub(super) fn spare(&self) -> bool {
+        self.table().evict(Duration::ZERO, |_| true)
+    }
+
+    /// Cuts all that are left.
+    pub(super) fn clear(&self) {
+        self.table().entries.values().for_each(|entry| entry.pace.cut());
+    }
+}
+
+impl Table {
+    fn insert(&mut self, party: IpAddr, seated: bool, pace: &Arc<Pace>) -> u64 {
+        self.next += 1;
+        self.entries.insert(self.next, Entry { party, seated, pace: Arc::clone(pace) });
+        if seated {
+            self.sit(party);
+        }
+        self.next
+    }
+
+    fn sit(&mut self, party: IpAddr) {
+        self.seated += 1;
+        *self.shares.entry(party).or_default() += 1;
+    }
+
+    fn remove(&mut self, id: u64) {
+        let Some(entry) = self.entries.remove(&id).filter(|entry| entry.seated) else { return };
+        self.seated -= 1;
+        if let Some(seats) = self.shares.get_mut(&entry.party) {
+            *seats -= 1;
+            if *seats == 0 {
+                self.shares.remove(&entry.party);
+            }
+        }
+    }
+
+    /// Cuts, of some connections, the one whose other end has been awaited longest; says whether there was one.
+    fn evict(&mut self, patience: Duration, of: impl Fn(&Entry) -> bool) -> bool {
+        let now = Instant::now();
+        let waited = self.entries.iter().filter(|(_, entry)| of(entry));
+        let waited = waited.filter_map(|(id, entry)| Some((entry.pace.stuck(now)?, *id)));
+        let Some((_, id)) = waited.filter(|(waited, _)| *waited >= patience).max() else { return false };
+        let cut = self.entries.get(&id).is_some_and(|entry| entry.pace.cut_if_stuck());
+        if cut {
+            self.remove(id);
+        }
+        cut
+    }
+}
+
+impl Seat {
+    /// Whether a request may be carried out here. One in the reserve waits a while for a seat.
+    pub(super) async fn taken(&self) -> bool {
+        let until = Instant::now() + WAIT;
+        loop {
+            match self.sit() {
+                Some(true) => return true,
+                Some(false) if Instant::now() < until => {}
+                _ => return false,
+            }
+            drop(tokio::time::timeout(LOOK, self.seats.freed.notified()).await);
+        }
+    }
+
+    /// Whether it has a seat now; none where there is no use in waiting for one.
+    fn sit(&self) -> Option<bool> {
+        let mut table = self.seats.table();
+        let entry = table.entries.get(&self.id)?;
+        let (party, seated) = (entry.party, entry.seated);
+        if seated {
+            return Some(true);
+        }
+        if !self.seats.room(&mut table, party) {
+            return (table.entries.len() - table.seated <= RESERVE / 2).then_some(false);
+        }
+        table.entries.get_mut(&self.id)?.seated = true;
+        table.sit(party);
+        Some(true)
+    }
+}
+
+impl Drop for Seat {
+    fn drop(&mut self) {
+        self.seats.table().remove(self.id);
+        self.seats.freed.notify_one();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn seats(connections: usize, share: usize) -> (Limits, Arc<Seats>) {
+        let limits = Limits { connections, connections_per_address: share, ..Limits::default() };
+        (limits, Seats::new(&limits))
+    }
+
+    fn from(last: u8) -> IpAddr {
+        [10, 0, 0, last].into()
+    }
+
+    #[tokio::test]
+    async fn who_lets_the_server_wait_longest_gives_way_and_who_waits_for_it_never() {
+        let (limits, seats) = seats(2, 2);
+        let paces: Vec<_> = (0..3).map(|_| Arc::new(Pace::new(&limits))).collect();
+        let busy = seats.admit(from(1), &paces[0]).unwrap();
+        paces[0].begin();
+        let idle = seats.admit(from(1), &paces[1]).unwrap();
+        assert!(busy.taken().await && idle.taken().await);
+        tokio::time::sleep(PATIENCE).await;
+        let new = seats.admit(from(2), &paces[2]).unwrap();
+        paces[2].begin();
+        assert!(new.taken().await && paces[1].is_cut() && !paces[0].is_cut());
+        let refused = seats.admit(from(3), &Arc::new(Pace::new(&limits))).unwrap();
+        assert!(!refused.taken().await, "both seats are at work");
+        drop(busy);
+        assert!(refused.taken().await);
+    }
+
+    #[tokio::test]
+    async fn an_address_has_its_share_and_no_more() {
+        let (limits, seats) = seats(4, 2);
+        let pace = |begun: bool| {
+            let pace = Arc::new(Pace::new(&limits));
+            if begun {
+                pace.begin();
+            }
+            pace
+        };
+        let held: Vec<_> = (0..3).map(|_| seats.admit(from(1), &pace(true)).unwrap()).collect();
+        assert!(!held[2].taken().await, "the third of two");
+        let other = seats.admit(from(2), &pace(true)).unwrap();
+        assert!(other.taken().await, "others have their seats");
+    }
+
+    #[tokio::test]
+    async fn the_reserve_is_bounded() {
+        let (limits, seats) = seats(1, 1);
+        let busy = || {
+            let pace = Arc::new(Pace::new(&limits));
+            pace.begin();
+            pace
+        };
+        let held: Vec<_> = (0..=RESERVE).map(|_| seats.admit(from(1), &busy()).unwrap()).collect();
+        assert!(seats.admit(from(1), &busy()).is_none());
+        let start = Instant::now();
+        assert!(!held[RESERVE].taken().await && start.elapsed() < WAIT / 2, "where many wait, nobody waits longer");
+    }
+}

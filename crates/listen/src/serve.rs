@@ -1,0 +1,76 @@
+//! Connections as they come, until the word to stop.
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::Router;
+use hyper_util::server::graceful::GracefulShutdown;
+use tokio::net::{TcpListener, TcpStream};
+
+use crate::address::party;
+use crate::connection::Connection;
+use crate::limits::Limits;
+use crate::seats::Seats;
+use crate::stopping::Stopping;
+
+/// What the system takes of an answer beyond what is on its way to a reader. Answers that nobody reads are made no further
+/// than that: 600 connections with 400 requests each would have had the work of ten times as many done for nothing.
+#[cfg(any(target_os = "linux", target_os = "android"))]
+const NOT_SENT: u32 = 16 << 10;
+/// A pause when the system has no more sockets.
+const BREATH: Duration = Duration::from_millis(100);
+
+/// Serves until it is told to stop, then lets what is under way end.
+pub async fn listen(listener: TcpListener, router: Router, limits: Limits, mut stopping: Stopping) {
+    let server = Server { router, limits, graceful: GracefulShutdown::new(), seats: Seats::new(&limits) };
+    loop {
+        tokio::select! {
+            () = stopping.wait() => break,
+            taken = listener.accept() => match taken {
+                Ok((stream, from)) => server.serve(stream, from),
+                Err(error) => server.lacks(&error).await,
+            },
+        }
+    }
+    drop(listener);
+    if tokio::time::timeout(limits.stop_time, server.graceful.shutdown()).await.is_err() {
+        tracing::warn!("connections were cut: they did not end in time");
+        server.seats.clear();
+    }
+}
+
+/// Sends what there is at once, and takes no more than can be sent soon.
+fn prepare(stream: &TcpStream) -> std::io::Result<()> {
+    #[cfg(any(target_os = "linux", target_os = "android"))]
+    socket2::SockRef::from(stream).set_tcp_notsent_lowat(NOT_SENT)?;
+    stream.set_nodelay(true)
+}
+
+struct Server {
+    router: Router,
+    limits: Limits,
+    graceful: GracefulShutdown,
+    seats: Arc<Seats>,
+}
+
+impl Server {
+    fn serve(&self, stream: TcpStream, from: SocketAddr) {
+        if let Err(error) = prepare(&stream) {
+            tracing::debug!(%error, "no TCP_NODELAY or TCP_NOTSENT_LOWAT");
+        }
+        match Connection::new(&self.router, self.limits, &self.seats, party(from.ip())) {
+            Some(connection) => drop(tokio::spawn(connection.serve(stream, self.graceful.watcher()))),
+            None => tracing::debug!("a connection was not taken: all others are at work"),
+        }
+    }
+
+    /// A connection could not be taken: one that waits makes room for it, or some time passes.
+    async fn lacks(&self, error: &std::io::Error) {
+        tracing::warn!(%error, "a connection could not be taken");
+        if !self.seats.spare() {
+            tokio::time::sleep(BREATH).await;
+        }
+        tokio::task::yield_now().await;
+    }
+}

@@ -1,0 +1,86 @@
+//! A connection's socket, with a deadline by progress for what its other end does not read.
+
+use std::io;
+use std::pin::Pin;
+use std::sync::Arc;
+use std::task::{Context, Poll, ready};
+
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::net::TcpStream;
+use tokio::time::{Instant, Sleep, sleep_until};
+
+use crate::pace::Pace;
+
+/// A socket that tells how its other end reads, and fails where it does not.
+pub(super) struct Stream {
+    socket: TcpStream,
+    pace: Arc<Pace>,
+    deadline: Pin<Box<Sleep>>,
+}
+
+impl Stream {
+    pub(super) fn new(socket: TcpStream, pace: Arc<Pace>) -> Self {
+        Self { socket, pace, deadline: Box::pin(sleep_until(Instant::now())) }
+    }
+
+    /// The outcome of a write, or that nobody has read for too long.
+    fn written(&mut self, context: &mut Context<'_>, written: Poll<io::Result<usize>>) -> Poll<io::Result<usize>> {
+        match written {
+            Poll::Ready(Ok(bytes)) => self.pace.sent(bytes),
+            Poll::Ready(Err(_)) => {}
+            Poll::Pending => {
+                let until = self.pace.awaits_reader();
+                if self.deadline.deadline() != until {
+                    self.deadline.as_mut().reset(until);
+                }
+                ready!(self.deadline.as_mut().poll(context));
+                self.pace.cut();
+                return Poll::Ready(Err(io::Error::new(io::ErrorKind::TimedOut, "the answer was not read")));
+            }
+        }
+        written
+    }
+}
+
+impl AsyncRead for Stream {
+    fn poll_read(mut self: Pin<&mut Self>, context: &mut Context<'_>, into: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.socket).poll_read(context, into)
+    }
+}
+
+impl AsyncWrite for Stream {
+    fn poll_write(mut self: Pin<&mut Self>, context: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
+        let written = Pin::new(&mut self.socket).poll_write(context, bytes);
+        self.written(context, written)
+    }
+
+    fn poll_write_vectored(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        slices: &[io::IoSlice<'_>],
+    ) -> Poll<io::Result<usize>> {
+        let written = Pin::new(&mut self.socket).poll_write_vectored(context, slices);
+        self.written(context, written)
+    }
+
+    fn is_write_vectored(&self) -> bool {
+        self.socket.is_write_vectored()
+    }
+
+    fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.socket).poll_flush(context)
+    }
+
+    fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.socket).poll_shutdown(context)
+    }
+}
+
+impl Drop for Stream {
+    /// What the other end has not read is thrown away: the system would keep it for minutes.
+    fn drop(&mut self) {
+        if self.pace.is_cut() {
+            drop(self.socket.set_zero_linger());
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Why a law has no term for a coefficient.
+
+use crate::coefficient::{Axis, NameError};
+use crate::formula::FormulaError;
+
+/// Why a law has no term for a coefficient.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TermError {
+    /// The name is not one of a coefficient.
+    #[error(transparent)]
+    Name(#[from] NameError),
+    /// The law has no such axis.
+    #[error("law `{law}` has no {axis} axis")]
+    Axis {
+        /// The law.
+        law: String,
+        /// The axis.
+        axis: Axis,
+    },
+    /// The law lists the terms of the axis, and this is none of them.
+    #[error("law `{law}` has no coefficient `{name}`; it has {known}")]
+    Unlisted {
+        /// The law.
+        law: String,
+        /// The coefficient.
+        name: String,
+        /// Those that the axis has.
+        known: String,
+    },
+    /// The law does not define a factor.
+    #[error("law `{law}` does not say what factor `{symbol}` stands for")]
+    Factor {
+        /// The law.
+        law: String,
+        /// The factor.
+        symbol: String,
+    },
+    /// The law has no such submodel.
+    #[error("law `{law}` has no submodel `{submodel}`; it has {known}")]
+    Submodel {
+        /// The law.
+        law: String,
+        /// The submodel.
+        submodel: String,
+        /// Those that the law has.
+        known: String,
+    },
+    /// The regressor has no dimension.
+    #[error(transparent)]
+    Dimension(#[from] FormulaError),
+}

@@ -1,0 +1,223 @@
+//! The laws and ships of the database in memory, read and checked once.
+//!
+//! Other processes may change the database, so that whoever needs the zoo asks for it anew; only what has changed is
+//! read again. A zoo holds a bounded number of ships, however many the database has.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, PoisonError, RwLock};
+
+use sistership_model::{Vessel, Zoo};
+use sistership_store::{Law, MAX_LIMIT, Page, Result, Ship, Store, StoreError};
+
+use crate::archive::Archive;
+use crate::search::nearest;
+
+/// The most ships that a ship is compared with.
+const MOST: i64 = 250;
+
+/// The zoo as it was last seen.
+#[derive(Debug, Default)]
+pub struct Catalogue {
+    laws: RwLock<Laws>,
+    ships: RwLock<Ships>,
+}
+
+/// Laws without ships, and the hashes of their texts.
+#[derive(Debug, Clone, Default)]
+struct Laws {
+    hashes: Arc<BTreeMap<String, String>>,
+    zoo: Arc<Zoo>,
+}
+
+/// A law as it was read.
+#[derive(Debug, Clone)]
+pub struct KnownLaw {
+    /// The law.
+    pub law: Arc<sistership_model::Law>,
+    /// The hash of its text.
+    pub sha256: String,
+}
+
+/// Ships, by their revisions, with the laws that they were read with.
+#[derive(Debug, Clone, Default)]
+struct Ships {
+    revisions: BTreeMap<String, i64>,
+    laws: Arc<Zoo>,
+    zoo: Arc<Zoo>,
+}
+
+impl Catalogue {
+    /// The laws of the database, and no ships.
+    pub async fn laws(&self, store: &Store) -> Result<Arc<Zoo>> {
+        let (laws, seen) = (all_laws(store).await?, seen(&self.laws));
+        if laws.iter().all(|law| seen.hashes.contains_key(&law.name)) {
+            return Ok(seen.zoo);
+        }
+        let fresh = read(move || seen.grown(&laws)).await?;
+        Ok(remember(&self.laws, fresh).zoo)
+    }
+
+    /// The laws of the database, with the ships that a ship is compared with.
+    pub async fn around(&self, archive: &Archive, target: &Vessel) -> Result<Arc<Zoo>> {
+        let laws = self.laws(&archive.store).await?;
+        let few = archive.store.ships().list(None, &Page::first(MOST)).await?;
+        let ships = if few.next.is_none() { few.items } else { similar(archive, target).await? };
+        let seen = seen(&self.ships);
+        if seen.is(&laws, &ships) {
+            return Ok(seen.zoo);
+        }
+        let fresh = read(move || seen.grown(laws, &ships)).await?;
+        Ok(remember(&self.ships, fresh).zoo)
+    }
+
+    /// A law. It never changes, so that the one in memory is the right one.
+    pub async fn law(&self, store: &Store, name: &str) -> Result<Option<KnownLaw>> {
+        if let Some(known) = seen(&self.laws).known(name) {
+            return Ok(Some(known));
+        }
+        self.laws(store).await?;
+        Ok(seen(&self.laws).known(name))
+    }
+}
+
+fn seen<T: Clone>(kept: &RwLock<T>) -> T {
+    kept.read().unwrap_or_else(PoisonError::into_inner).clone()
+}
+
+fn remember<T: Clone>(kept: &RwLock<T>, fresh: T) -> T {
+    kept.write().unwrap_or_else(PoisonError::into_inner).clone_from(&fresh);
+    fresh
+}
+
+/// Reads documents where it holds nobody up.
+async fn read<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Result<T> {
+    Ok(tokio::task::spawn_blocking(work).await.map_err(sistership_store::ObjectsError::from)?)
+}
+
+impl Laws {
+    fn known(&self, name: &str) -> Option<KnownLaw> {
+        Some(KnownLaw { law: Arc::clone(self.zoo.law(name)?), sha256: self.hashes.get(name)?.clone() })
+    }
+
+    /// These laws with what is new.
+    fn grown(self, laws: &[Law]) -> Self {
+        let mut zoo = Zoo::clone(&self.zoo);
+        for law in laws.iter().filter(|law| !self.hashes.contains_key(&law.name)) {
+            report("law", &law.name, zoo.add_law(&law.name, &law.document).err());
+        }
+        let hashes = laws.iter().map(|law| (law.name.clone(), law.sha256.clone())).collect();
+        Self { hashes: Arc::new(hashes), zoo: Arc::new(zoo) }
+    }
+}
+
+impl Ships {
+    fn is(&self, laws: &Arc<Zoo>, ships: &[Ship]) -> bool {
+        Arc::ptr_eq(&self.laws, laws) && self.revisions.len() == ships.len() && ships.iter().all(|ship| self.has(ship))
+    }
+
+    fn has(&self, ship: &Ship) -> bool {
+        self.revisions.get(&ship.name) == Some(&ship.revision)
+    }
+
+    /// These ships with what is new; from nothing where a ship has gone or there are other laws.
+    fn grown(self, laws: Arc<Zoo>, ships: &[Ship]) -> Self {
+        let names: BTreeSet<&str> = ships.iter().map(|ship| ship.name.as_str()).collect();
+        let gone = self.revisions.keys().any(|name| !names.contains(name.as_str()));
+        let kept = if gone || !Arc::ptr_eq(&self.laws, &laws) { Self::default() } else { self };
+        let mut zoo = Zoo::clone(if kept.revisions.is_empty() { &laws } else { &kept.zoo });
+        for ship in ships.iter().filter(|ship| !kept.has(ship)) {
+            report("ship", &ship.name, zoo.add_vessel(&ship.name, &ship.document).err());
+        }
+        let revisions = ships.iter().map(|ship| (ship.name.clone(), ship.revision)).collect();
+        Self { revisions, laws, zoo: Arc::new(zoo) }
+    }
+}
+
+/// One row that does not read must not keep the others from being served.
+fn report(kind: &str, name: &str, error: Option<sistership_model::FileError>) {
+    if let Some(error) = error {
+        tracing::error!(%error, "the {kind} `{name}` of the database does not read and is left out");
+    }
+}
+
+/// Every law of the database.
+async fn all_laws(store: &Store) -> Result<Vec<Law>> {
+    let (mut all, mut page) = (Vec::new(), Page::first(MAX_LIMIT));
+    loop {
+        let list = store.laws().list(&page).await?;
+        all.extend(list.items);
+        let Some(next) = list.next else { return Ok(all) };
+        page = Page::after(next, MAX_LIMIT);
+    }
+}
+
+/// The ships of a ship's category that are most similar to her.
+async fn similar(archive: &Archive, target: &Vessel) -> Result<Vec<Ship>> {
+    let mut ships = Vec::new();
+    for name in nearest(archive, target, usize::try_from(MOST).unwrap_or(0)).await? {
+        match archive.store.ships().get(&name).await {
+            // Deleted in between.
+            Err(StoreError::NotFound { .. }) => {}
+            ship => ships.push(ship?),
+        }
+    }
+    Ok(ships)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use sistership_store::{NewShip, Objects};
+
+    #[tokio::test]
+    async fn the_zoo_follows_the_database() {
+        let store = Store::connect("sqlite::memory:", Arc::new(sistership_store::SystemClock)).await.unwrap();
+        let archive = Archive { store: store.clone(), objects: Objects::memory() };
+        let catalogue = Catalogue::default();
+        let embedded = Zoo::embedded().unwrap();
+        let target = embedded.vessel("mariner").unwrap();
+        assert_eq!(catalogue.around(&archive, target).await.unwrap().vessels().count(), 0);
+        let mariner = crate::seed::new_ship(target).unwrap();
+        for law in embedded.laws() {
+            store.laws().insert(&law.name, embedded.law_text(&law.name).unwrap()).await.unwrap();
+        }
+        store.ships().create(&mariner).await.unwrap();
+        let zoo = catalogue.around(&archive, target).await.unwrap();
+        assert_eq!(zoo.model("mariner").unwrap(), embedded.model("mariner").unwrap());
+        assert_eq!(catalogue.laws(&store).await.unwrap().vessels().count(), 0);
+        assert!(Arc::ptr_eq(&zoo, &catalogue.around(&archive, target).await.unwrap()));
+        store.ships().update(&NewShip { document: mariner.document.replace("Mariner", "Marinara"), ..mariner }, 1).await.unwrap();
+        let zoo = catalogue.around(&archive, target).await.unwrap();
+        assert!(zoo.vessel("mariner").unwrap().file.title.contains("Marinara"));
+        store.ships().delete("mariner", None).await.unwrap();
+        assert!(catalogue.around(&archive, target).await.unwrap().vessel("mariner").is_none());
+    }
+
+    /// Beyond [`MOST`] ships, those of the target's category that resemble her; others of hers stay out.
+    #[tokio::test]
+    async fn of_many_ships_the_most_similar_are_taken() {
+        let store = Store::connect("sqlite::memory:", Arc::new(sistership_store::SystemClock)).await.unwrap();
+        let archive = Archive { store: store.clone(), objects: Objects::memory() };
+        let embedded = Zoo::embedded().unwrap();
+        let target = embedded.vessel("kvlcc2").unwrap();
+        let kvlcc2 = crate::seed::new_ship(target).unwrap();
+        for number in 0..=MOST {
+            let other = NewShip { name: format!("other-{number:03}"), category: "ferry".into(), ..kvlcc2.clone() };
+            store.ships().create(&other).await.unwrap();
+        }
+        for law in embedded.laws() {
+            store.laws().insert(&law.name, embedded.law_text(&law.name).unwrap()).await.unwrap();
+        }
+        for vessel in embedded.vessels() {
+            store.ships().create(&crate::seed::new_ship(vessel).unwrap()).await.unwrap();
+        }
+        crate::search::catch_up(&archive).await.unwrap();
+        let zoo = Catalogue::default().around(&archive, target).await.unwrap();
+        let taken: Vec<&str> = zoo.vessels().map(|vessel| vessel.name()).collect();
+        let same = |vessel: &&Arc<Vessel>| vessel.file.category == target.file.category && vessel.name() != target.name();
+        let expected: Vec<&str> = embedded.vessels().filter(same).map(|vessel| vessel.name()).collect();
+        assert!(!expected.is_empty());
+        assert_eq!(taken, expected);
+    }
+}

@@ -1,0 +1,53 @@
+//! From a recipe to the version that it describes. Jobs and [`verify`](mod@crate::verify) both go this way, so that they
+//! cannot differ.
+
+mod calibrated;
+mod derived;
+mod diagnosed;
+mod published;
+mod refined;
+#[cfg(test)]
+mod tests;
+
+use sistership_model::version;
+
+pub use crate::error::DeriveError;
+pub use calibrated::with_uncertainty;
+pub use derived::{Derived, Ingredients, Progress, Refined};
+pub use diagnosed::{Diagnosed, diagnosed};
+pub use published::published_document;
+pub use refined::refined_document;
+
+use crate::archive::Archive;
+use crate::fleet;
+use crate::inputs::Inputs;
+use crate::recipe::Recipe;
+
+/// Derives the version of a ship that a recipe describes.
+///
+/// # Errors
+/// Says what is missing or has changed, or why the refinement is refused.
+pub async fn derive(archive: &Archive, ship: &str, recipe: &Recipe, progress: Progress) -> Result<Derived, DeriveError> {
+    let inputs = &Inputs::new(archive);
+    let derived = match recipe {
+        Recipe::Plain(version::Recipe::Published { model, ship_sha256, law_sha256 }) => {
+            published::published(inputs, ship, model, ship_sha256, law_sha256).await
+        }
+        Recipe::Plain(recipe @ version::Recipe::Refinement { .. }) => {
+            let ingredients = refined::gather(inputs, ship, recipe).await?;
+            let recipe = recipe.clone();
+            tokio::task::spawn_blocking(move || refined::refined(ingredients, &recipe, &progress)).await?
+        }
+        Recipe::Family(recipe) => Ok(Derived { document: fleet::derived(inputs, ship, recipe).await?, refined: None }),
+        Recipe::Registered(_) => {
+            Err(DeriveError::Lost("the model was made elsewhere: its own bytes are all there is of it".into()))
+        }
+        Recipe::Diagnosis(recipe) => {
+            let document = diagnosed::diagnosed_from(inputs, recipe.clone(), progress).await?.document()?;
+            let nothing = || DeriveError::Lost("the diagnosis finds no effect now, so that no version comes of it".into());
+            Ok(Derived { document: document.ok_or_else(nothing)?, refined: None })
+        }
+    }?;
+    inputs.check(recipe)?;
+    Ok(derived)
+}

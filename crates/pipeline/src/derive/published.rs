@@ -1,0 +1,48 @@
+//! The version of a model that a ship's own document publishes.
+
+use serde_json::Value;
+use sistership_model::version::{self, FORMAT};
+use sistership_model::{FileError, Law, Model, Vessel};
+
+use super::derived::Derived;
+use crate::error::DeriveError;
+use crate::inputs::Inputs;
+use crate::recipe::Recipe;
+use crate::version::VersionDocument;
+
+/// From the ship's document as its recipe names it.
+pub(super) async fn published(
+    inputs: &Inputs<'_>,
+    ship: &str,
+    model: &str,
+    ship_sha256: &str,
+    law_sha256: &str,
+) -> Result<Derived, DeriveError> {
+    let vessel = inputs.ship(ship, ship_sha256).await?;
+    let lost = || DeriveError::Lost(format!("the ship `{ship}` has no model `{model}`"));
+    let file = vessel.file.models.iter().find(|file| file.name == model).ok_or_else(lost)?;
+    let law = inputs.law(&file.law, law_sha256).await?;
+    let document = published_document(&vessel, model, &law, ship_sha256, law_sha256)?;
+    Ok(Derived { document, refined: None })
+}
+
+/// The version of a model that a ship's own document publishes.
+pub fn published_document(
+    vessel: &Vessel,
+    model: &str,
+    law: &Law,
+    ship_sha256: &str,
+    law_sha256: &str,
+) -> Result<VersionDocument, FileError> {
+    Ok(VersionDocument {
+        format: FORMAT.to_owned(),
+        ship: vessel.name().to_owned(),
+        recipe: Recipe::Plain(version::Recipe::Published {
+            model: model.to_owned(),
+            ship_sha256: ship_sha256.to_owned(),
+            law_sha256: law_sha256.to_owned(),
+        }),
+        model: Model::published(vessel, Some(model), law)?,
+        report: Value::Null,
+    })
+}

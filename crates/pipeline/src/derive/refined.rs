@@ -1,0 +1,76 @@
+//! Deriving a refined version: a function of its ingredients, each found by its hash.
+
+use serde_json::Value;
+use sistership_estimate::refine::{RefineError, Refinement, Request, Settings, refine};
+use sistership_model::trial::Trial;
+use sistership_model::version::{FORMAT, Recipe};
+
+use super::calibrated::with_uncertainty;
+use super::derived::{Derived, Ingredients, Progress, Refined};
+use crate::error::DeriveError;
+use crate::inputs::Inputs;
+use crate::library::FIRST_SHA256;
+use crate::recipe;
+use crate::sorted::sorted;
+use crate::version::VersionDocument;
+
+/// Loads what a recipe names, each by its hash.
+pub(super) async fn gather(inputs: &Inputs<'_>, ship: &str, recipe: &Recipe) -> Result<Ingredients, DeriveError> {
+    let Recipe::Refinement { source, ship_sha256, law_sha256, across, effects_sha256, trials, settings: recorded, .. } = recipe
+    else {
+        return Err(DeriveError::Lost("the recipe is not that of a refinement".into()));
+    };
+    let model = inputs.source(source).await?;
+    let law = inputs.law(across.as_ref().map_or(&model.law, |across| &across.law), law_sha256).await?;
+    let source_law = match across {
+        Some(across) => Some(inputs.law(&model.law, &across.source_law_sha256).await?),
+        None => None,
+    };
+    let target = inputs.ship(ship, ship_sha256).await?;
+    let library = inputs.effects(effects_sha256.as_deref().unwrap_or(FIRST_SHA256)).await?;
+    let trials = inputs.trials(trials).await?;
+    let settings: Settings = serde_json::from_value(recorded.clone())?;
+    let source = source.clone();
+    Ok(Ingredients { target, source, model, source_law, law, library, trials, settings })
+}
+
+pub(super) fn refined(ingredients: Ingredients, recipe: &Recipe, progress: &Progress) -> Result<Derived, DeriveError> {
+    let (document, refinement) = refined_document(&ingredients, recipe, &**progress)?;
+    Ok(Derived { document, refined: Some(Refined { refinement, ingredients }) })
+}
+
+/// The version that a refinement gives: a function of its ingredients and nothing else.
+///
+/// # Errors
+/// Why the refinement is refused, or that it was stopped.
+pub fn refined_document(
+    ingredients: &Ingredients,
+    recipe: &Recipe,
+    progress: &(dyn Fn(f64, &str) -> bool + Sync),
+) -> Result<(VersionDocument, Refinement), DeriveError> {
+    let Ingredients { target, model, source_law, law, settings, .. } = ingredients;
+    let trials: Vec<&Trial> = ingredients.trials.iter().collect();
+    let refinement =
+        refine(&Request { target, source: model, source_law: source_law.as_ref(), law, trials: &trials, settings }, progress)?;
+    if !progress(0.97, "learning what the trials leave open") {
+        return Err(RefineError::Cancelled.into());
+    }
+    let refinement = with_uncertainty(refinement, law, &ingredients.library.effects, &trials);
+    let document = VersionDocument {
+        format: FORMAT.to_owned(),
+        ship: target.name().to_owned(),
+        recipe: recipe::Recipe::Plain(recipe.clone()),
+        model: refinement.model.clone(),
+        report: report(&refinement)?,
+    };
+    Ok((document, refinement))
+}
+
+/// What a refinement reported, without the model that the version holds anyway.
+fn report(refinement: &Refinement) -> Result<Value, serde_json::Error> {
+    let mut report = serde_json::to_value(refinement)?;
+    if let Some(fields) = report.as_object_mut() {
+        fields.remove("model");
+    }
+    Ok(sorted(report))
+}

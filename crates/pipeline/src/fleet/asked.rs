@@ -1,0 +1,116 @@
+//! Asking for the refinement of a family.
+
+use serde::Deserialize;
+use sistership_fleet::bulk::BulkSettings;
+use sistership_model::version::SourceVersion;
+use sistership_store::{Bulk, Store, StoreError};
+use utoipa::ToSchema;
+
+use super::choices::{PriorChoice, Rule, Start};
+use super::members::members;
+use super::order::{BULK, Chunk, Order};
+use crate::recipe::PriorName;
+use crate::schema::described;
+
+/// Most ships in a chunk, and how many there are where nobody says: few enough that a worker which dies loses little.
+const MOST: usize = 500;
+const CHUNK: usize = 50;
+
+/// Why the refinement of a family is not queued.
+#[derive(Debug, thiserror::Error)]
+pub enum OrderError {
+    /// A setting is out of range, or what it names is not there.
+    #[error("{field}: {message}")]
+    Setting {
+        /// The setting.
+        field: String,
+        /// What would be right.
+        message: String,
+    },
+    /// The store does not have it, or does not answer.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The order cannot be written.
+    #[error("a document cannot be written: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+type Result<T> = std::result::Result<T, OrderError>;
+
+fn setting(field: &str, message: impl Into<String>) -> OrderError {
+    OrderError::Setting { field: field.to_owned(), message: message.into() }
+}
+
+/// A refinement of all members of a family.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Asked {
+    /// Where each member starts.
+    pub start: Start,
+    /// What holds the coefficients.
+    pub prior: PriorChoice,
+    /// What makes a champion.
+    pub rule: Rule,
+    /// Ships that a worker takes at a time, 1 to 500; 50 where absent.
+    #[schema(minimum = 1, maximum = 500)]
+    pub chunk_ships: Option<usize>,
+    /// Settings; each has a default, and all are kept with the versions.
+    #[schema(schema_with = described::<BulkSettings>)]
+    pub settings: BulkSettings,
+}
+
+/// Queues the refinement of a family in chunks.
+///
+/// # Errors
+/// Names what is not there, or the setting that is out of range.
+pub async fn order_refinement(store: &Store, family: &str, asked: &Asked) -> Result<Bulk> {
+    asked.settings.check().map_err(|error| setting("settings", error.to_string()))?;
+    if asked.rule.no_worse_than.is_some_and(|share| !share.is_finite()) {
+        return Err(setting("rule.no_worse_than", "must be a finite number"));
+    }
+    let size = asked.chunk_ships.unwrap_or(CHUNK);
+    if !(1..=MOST).contains(&size) {
+        return Err(setting("chunk_ships", format!("must be from 1 to {MOST}")));
+    }
+    let order = order(store, family, asked).await?;
+    let ships = members(store, family).await?;
+    if ships.is_empty() {
+        return Err(setting("family", format!("`{family}` has no members; add some with POST /v1/families/{family}/members")));
+    }
+    let chunks: Vec<Vec<String>> = ships.chunks(size).map(<[String]>::to_vec).collect();
+    let request = serde_json::to_string(&order)?;
+    let chunk = |bulk: &str, ships: &[String]| {
+        serde_json::to_string(&Chunk { bulk: bulk.to_owned(), ships: ships.to_vec() }).unwrap_or_default()
+    };
+    Ok(store.bulks().create(family, &request, BULK, &chunks, chunk).await?)
+}
+
+async fn order(store: &Store, name: &str, asked: &Asked) -> Result<Order> {
+    let family = store.families().get(name).await?;
+    let foundation = store.versions().by_id(&family.foundation).await?.head;
+    let law = store.laws().get(&foundation.law).await?;
+    let prior = match asked.prior {
+        PriorChoice::Foundation => None,
+        PriorChoice::Family => Some(last_prior(store, name).await?),
+    };
+    Ok(Order {
+        family: family.name,
+        foundation: SourceVersion { ship: foundation.model, number: foundation.number, sha256: foundation.sha256 },
+        law_sha256: law.sha256,
+        start: asked.start,
+        prior,
+        settings: asked.settings,
+        rule: asked.rule,
+    })
+}
+
+async fn last_prior(store: &Store, family: &str) -> Result<PriorName> {
+    match store.families().prior(family, None).await {
+        Ok(prior) => Ok(PriorName { family: prior.family, revision: prior.revision, sha256: prior.sha256 }),
+        Err(StoreError::NotFound { .. }) => {
+            let how = format!("POST /v1/families/{family}/prior learns it; `foundation` needs none");
+            Err(setting("prior", format!("the family `{family}` has taught nothing yet; {how}")))
+        }
+        Err(error) => Err(error.into()),
+    }
+}

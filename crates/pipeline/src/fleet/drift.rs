@@ -1,0 +1,144 @@
+//! Drift: what a ship's champion leaves of each of her trials, in the order in which they came.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use sistership_fleet::statistics::{Frame, TrialStatistics};
+use sistership_model::coefficient::Axis;
+use sistership_model::version::RecipeTrial;
+use sistership_store::{MAX_LIMIT, Page, StoreError};
+use utoipa::ToSchema;
+
+use super::kept::statistics_of;
+use crate::archive::{Archive, document};
+use crate::error::DeriveError;
+use crate::line::CHAMPION;
+
+/// What a champion leaves of her ship's trials over time.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+pub struct Drift {
+    /// The ship.
+    pub ship: String,
+    /// The number of her champion.
+    pub version: i64,
+    /// What is left of new trials by what is left of those that the champion was fitted on, by axis: 1 where it holds as well as
+    /// on those. Empty where there are none of either.
+    pub ratio: BTreeMap<String, f64>,
+    /// The largest of them.
+    pub worst: Option<f64>,
+    /// Every trial, the oldest first.
+    pub trials: Vec<TrialResidual>,
+    /// Why nothing can be said, if so.
+    pub reason: Option<String>,
+}
+
+/// What a champion leaves of a trial.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+pub struct TrialResidual {
+    /// The trial's id.
+    pub trial: String,
+    /// What people call it.
+    pub name: String,
+    /// When it was uploaded, microseconds since 1970.
+    pub at_us: i64,
+    /// Whether the champion was fitted on it.
+    pub fitted: bool,
+    /// Root mean square of what is left of the force, by that of the force itself, by axis.
+    pub residual: BTreeMap<String, f64>,
+}
+
+impl Drift {
+    /// Of a ship's champion now; none where she has none.
+    ///
+    /// # Errors
+    /// The store, or a document that is damaged.
+    pub async fn of(archive: &Archive, ship: &str) -> Result<Option<Self>, DeriveError> {
+        let store = &archive.store;
+        let number = match store.aliases().get(ship, CHAMPION).await {
+            Ok(alias) => alias.version_number,
+            Err(StoreError::NotFound { .. }) => return Ok(None),
+            Err(error) => return Err(error.into()),
+        };
+        let version = document(&store.versions().get(ship, number).await?)?;
+        let law = archive.law(&version.model.law, version.recipe.law_sha256()).await?;
+        let mut drift = Self {
+            ship: ship.to_owned(),
+            version: number,
+            ratio: BTreeMap::new(),
+            worst: None,
+            trials: Vec::new(),
+            reason: None,
+        };
+        let frame = match Frame::new(&version.model, &law, version.recipe.law_sha256(), None) {
+            Ok(frame) => frame,
+            Err(error) => return Ok(Some(Self { reason: Some(error.to_string()), ..drift })),
+        };
+        let coefficients = version.model.coefficients.iter().map(|(name, quantity)| (name.clone(), quantity.value)).collect();
+        for trial in store.trials().list(ship, &Page::first(MAX_LIMIT)).await?.items {
+            let named = RecipeTrial { name: trial.name.clone(), sha256: trial.sha256.clone() };
+            let residual = match statistics_of(archive, &frame, &[named]).await {
+                Ok(statistics) => residual(&statistics[0], &coefficients)?,
+                // A trial that lacks a channel says nothing of this model.
+                Err(DeriveError::Refine(_)) => continue,
+                Err(error) => return Err(error),
+            };
+            let fitted = version.recipe.trials().iter().any(|known| known.sha256 == trial.sha256);
+            drift.trials.push(TrialResidual { trial: trial.id, name: trial.name, at_us: trial.created_us, fitted, residual });
+        }
+        drift.compare();
+        Ok(Some(drift))
+    }
+
+    fn compare(&mut self) {
+        for axis in Axis::ALL.map(|axis| axis.to_string()) {
+            let mean_square = |fitted: bool| {
+                let of =
+                    |trial: &TrialResidual| (trial.fitted == fitted).then(|| trial.residual.get(&axis).map(|r| r * r)).flatten();
+                let all: Vec<f64> = self.trials.iter().filter_map(of).collect();
+                (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+            };
+            if let (Some(new), Some(old)) = (mean_square(false), mean_square(true).filter(|old| *old > 0.0)) {
+                self.ratio.insert(axis, (new / old).sqrt());
+            }
+        }
+        self.worst = self.ratio.values().copied().reduce(f64::max);
+    }
+}
+
+fn residual(statistics: &TrialStatistics, coefficients: &BTreeMap<String, f64>) -> Result<BTreeMap<String, f64>, DeriveError> {
+    let left = statistics.left_by(coefficients)?;
+    let share = |left: &sistership_fleet::statistics::AxisResidual| {
+        (left.target > 0.0).then(|| (left.axis.to_string(), (left.residual / left.target).sqrt()))
+    };
+    Ok(left.iter().filter_map(share).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn new_trials_are_measured_by_the_fitted_ones() {
+        let trial = |fitted: bool, n: f64| TrialResidual {
+            trial: String::new(),
+            name: String::new(),
+            at_us: 0,
+            fitted,
+            residual: BTreeMap::from([("N".to_owned(), n)]),
+        };
+        let mut drift = Drift {
+            ship: "kcs".into(),
+            version: 1,
+            ratio: BTreeMap::new(),
+            worst: None,
+            trials: vec![trial(true, 0.1), trial(true, 0.1), trial(false, 0.3)],
+            reason: None,
+        };
+        drift.compare();
+        assert!(drift.worst.is_some_and(|worst| (worst - 3.0).abs() < 1e-12), "{drift:?}");
+        drift.trials.retain(|trial| trial.fitted);
+        (drift.ratio, drift.worst) = (BTreeMap::new(), None);
+        drift.compare();
+        assert_eq!(drift.worst, None, "nothing is new");
+    }
+}

@@ -1,0 +1,22 @@
+//! Families of ships: what their members are refined from, what they teach, and the refinement of all of them.
+
+mod asked;
+mod choices;
+mod drift;
+mod frame;
+mod kept;
+mod learned;
+mod members;
+mod order;
+mod refined;
+mod standing;
+
+pub use asked::{Asked, OrderError, order_refinement};
+pub use choices::{PriorChoice, Rule, Start};
+pub use drift::{Drift, TrialResidual};
+pub use frame::{Framed, Frames};
+pub use kept::statistics_of;
+pub use learned::{LEARN, LearnJob, learn, trials_of};
+pub use order::{BULK, Chunk, Loaded, Order};
+pub use refined::{Gathered, derived, refined};
+pub use standing::Standing;

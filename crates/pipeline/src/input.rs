@@ -1,0 +1,53 @@
+//! A document that a derivation reads, by its kind and its hash.
+
+use std::fmt;
+
+/// A document that a derivation reads, by its kind and the SHA-256 of its bytes.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Input {
+    /// What it is.
+    pub kind: InputKind,
+    /// The hash.
+    pub sha256: String,
+}
+
+/// The kinds of documents that a derivation reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum InputKind {
+    /// A ship's own document.
+    Ship,
+    /// A law's file.
+    Law,
+    /// A version that another starts from.
+    Version,
+    /// The samples of a trial.
+    Samples,
+    /// A library of effects.
+    Effects,
+    /// What a family has taught.
+    Prior,
+}
+
+impl InputKind {
+    /// The input of this kind with this hash.
+    pub fn of(self, sha256: &str) -> Input {
+        Input { kind: self, sha256: sha256.to_owned() }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Ship => "ship's document",
+            Self::Law => "law",
+            Self::Version => "version",
+            Self::Samples => "samples",
+            Self::Effects => "library of effects",
+            Self::Prior => "family's prior",
+        }
+    }
+}
+
+impl fmt::Display for Input {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the {} {}", self.kind.name(), self.sha256)
+    }
+}

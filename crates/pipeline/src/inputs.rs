@@ -1,0 +1,91 @@
+//! What a derivation may read: documents by their hashes, and nothing else. What was read is noted, so that a recipe which
+//! does not name all of it is refused as it is made.
+
+use std::collections::BTreeSet;
+use std::sync::{Mutex, PoisonError};
+
+use bytes::Bytes;
+use sistership_fleet::family::FamilyPrior;
+use sistership_model::trial::Trial;
+use sistership_model::version::{RecipeTrial, SourceVersion};
+use sistership_model::{Law, Model, Vessel};
+
+use crate::archive::Archive;
+use crate::error::DeriveError;
+use crate::input::{Input, InputKind};
+use crate::library::Library;
+use crate::recipe::{PriorName, Recipe};
+
+type Result<T> = std::result::Result<T, DeriveError>;
+
+/// The one way from a derivation to the archive.
+#[derive(Debug)]
+pub struct Inputs<'a> {
+    archive: &'a Archive,
+    read: Mutex<BTreeSet<Input>>,
+}
+
+impl<'a> Inputs<'a> {
+    /// Nothing read yet.
+    pub fn new(archive: &'a Archive) -> Self {
+        Self { archive, read: Mutex::default() }
+    }
+
+    fn note(&self, kind: InputKind, sha256: &str) {
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(kind.of(sha256));
+    }
+
+    /// The ship as it was when its document had this hash.
+    pub async fn ship(&self, name: &str, sha256: &str) -> Result<Vessel> {
+        self.note(InputKind::Ship, sha256);
+        self.archive.ship(name, sha256).await
+    }
+
+    /// The law of this name, whose text has this hash.
+    pub async fn law(&self, name: &str, sha256: &str) -> Result<Law> {
+        self.note(InputKind::Law, sha256);
+        self.archive.law(name, sha256).await
+    }
+
+    /// The model of a version.
+    pub async fn source(&self, source: &SourceVersion) -> Result<Model> {
+        self.note(InputKind::Version, &source.sha256);
+        self.archive.source(source).await
+    }
+
+    /// Trials with their samples, in their order.
+    pub async fn trials(&self, trials: &[RecipeTrial]) -> Result<Vec<Trial>> {
+        trials.iter().for_each(|trial| self.note(InputKind::Samples, &trial.sha256));
+        self.archive.trials(trials).await
+    }
+
+    /// The samples of one trial as they are stored.
+    pub async fn samples(&self, trial: &RecipeTrial) -> Result<Bytes> {
+        self.note(InputKind::Samples, &trial.sha256);
+        Ok(self.archive.objects.get(&trial.sha256).await?)
+    }
+
+    /// The library of effects of this hash.
+    pub async fn effects(&self, sha256: &str) -> Result<Library> {
+        self.note(InputKind::Effects, sha256);
+        self.archive.effects(sha256).await
+    }
+
+    /// What a family has taught.
+    pub async fn prior(&self, name: &PriorName) -> Result<FamilyPrior> {
+        self.note(InputKind::Prior, &name.sha256);
+        self.archive.prior(name).await
+    }
+
+    /// Whether the recipe names what was read, and all that it names was read.
+    ///
+    /// # Errors
+    /// Names each input of which that is not so: a defect of the program, which must not make a version.
+    pub fn check(&self, recipe: &Recipe) -> Result<()> {
+        let (read, named) = (self.read.lock().unwrap_or_else(PoisonError::into_inner), recipe.inputs());
+        let unnamed = read.difference(&named).map(|input| format!("{input} was read, but the recipe does not name it"));
+        let unread = named.difference(&read).map(|input| format!("the recipe names {input}, which was not read"));
+        let faults: Vec<String> = unnamed.chain(unread).collect();
+        if faults.is_empty() { Ok(()) } else { Err(DeriveError::Lost(faults.join("; "))) }
+    }
+}

@@ -1,0 +1,24 @@
+//! What a job does, by recipe: derive, verify, calibrate; find ships; look after an archive. Servers, workers and the command line
+//! alike come here.
+
+pub mod archive;
+pub mod catalogue;
+pub mod derive;
+pub mod error;
+pub mod fleet;
+pub mod input;
+pub mod inputs;
+pub mod library;
+pub mod line;
+pub mod memory;
+pub mod publish;
+pub mod recipe;
+pub mod schema;
+pub mod search;
+pub mod seed;
+pub mod sorted;
+pub mod upkeep;
+pub mod verify;
+pub mod version;
+
+pub use archive::Archive;

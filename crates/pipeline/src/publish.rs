@@ -1,0 +1,70 @@
+//! The models that a ship's own document publishes, as versions of her line.
+
+use sistership_model::version::sha256;
+use sistership_model::{Vessel, Zoo};
+use sistership_store::{Alias, AliasMove, Expect, NewVersion, Store, StoreError};
+
+use crate::archive::document;
+use crate::derive::published_document;
+use crate::error::DeriveError;
+use crate::line::{CHAMPION, Standing, alias, alias_of, expected, step};
+use crate::version::VersionDocument;
+
+type Result<T> = std::result::Result<T, DeriveError>;
+
+/// How a published version is made.
+const METHOD: &str = "published-source";
+const REASON: &str = "published with the ship's document";
+/// How often another process may get in between.
+const TRIES: usize = 5;
+
+/// Makes a version of each published model that is new or has changed; the first becomes champion where there is none.
+pub async fn publish(store: &Store, zoo: &Zoo, vessel: &Vessel, ship_document: &str) -> Result<()> {
+    for file in &vessel.file.models {
+        let no_law = || DeriveError::Unexpected(format!("there is no law `{}`", file.law));
+        let law = zoo.law(&file.law).ok_or_else(no_law)?;
+        let text = zoo.law_text(&file.law).unwrap_or_default();
+        let published = published_document(vessel, &file.name, law, &sha256(ship_document.as_bytes()), &sha256(text.as_bytes()))?;
+        let new = NewVersion {
+            model: vessel.name().to_owned(),
+            parent: None,
+            law: file.law.clone(),
+            method: METHOD.to_owned(),
+            document: published.canonical()?,
+        };
+        put(store, &new, &file.name, &published).await?;
+    }
+    Ok(())
+}
+
+async fn put(store: &Store, new: &NewVersion, name: &str, published: &VersionDocument) -> Result<()> {
+    for _ in 0..TRIES {
+        let current = alias(store, &new.model, &alias_of(name)).await?;
+        if let Some(current) = &current
+            && same(store, current, published).await?
+        {
+            return Ok(());
+        }
+        match store.versions().create(new, &moves(store, &new.model, name, current).await?).await {
+            // Another process was first; see what it has done.
+            Err(StoreError::PreconditionFailed { .. }) => {}
+            other => return Ok(other.map(drop)?),
+        }
+    }
+    Err(DeriveError::Unexpected(format!("the published models of `{}` kept changing", new.model)))
+}
+
+async fn moves(store: &Store, model: &str, name: &str, current: Option<Alias>) -> Result<Vec<AliasMove>> {
+    let standing = Standing::of(store, model).await?;
+    let mut moves = vec![step(&alias_of(name), expected(current.as_ref()), REASON), standing.follow(REASON)];
+    if !standing.champion {
+        moves.push(step(CHAMPION, Expect::Absent, REASON));
+    }
+    Ok(moves)
+}
+
+/// Whether the version that stands for a published model has the same model by the same law.
+async fn same(store: &Store, current: &Alias, published: &VersionDocument) -> Result<bool> {
+    let there = document(&store.versions().get(&current.model, current.version_number).await?)?;
+    Ok(there.model == published.model && there.recipe.law_sha256() == published.recipe.law_sha256())
+}

@@ -1,0 +1,28 @@
+//! Finding ships: by category, tag, particulars, metrics of the champion, and similarity to a ship.
+
+mod facts;
+mod index;
+mod metrics;
+mod query;
+mod similar;
+
+pub use index::{catch_up, write_facts};
+pub use query::{RangeFault, Search, metric, metrics, particular, particulars, pattern};
+pub use similar::nearest;
+pub use sistership_store::{FactRange, FoundShip, MAX_RANGES, Page, ShipSearch};
+
+use sistership_store::{List, ShipKey};
+
+use crate::archive::Archive;
+use crate::error::DeriveError;
+
+/// The ships that a search finds. With `similar_to` their `value` is the correlation of the vectors.
+///
+/// # Errors
+/// There is no such ship to be similar to, or the store does not answer.
+pub async fn ships(archive: &Archive, search: &Search, page: &Page<ShipKey>) -> Result<List<FoundShip, ShipKey>, DeriveError> {
+    match &search.similar_to {
+        None => Ok(archive.store.ships().search(&search.ships, page).await?),
+        Some(ship) => similar::ships(archive, search, ship, page).await,
+    }
+}

@@ -1,0 +1,90 @@
+//! Ships by their similarity to a ship: the correlation of characteristic vectors, within a category.
+
+use std::cmp::Ordering;
+
+use sistership_estimate::similarity::{CharacteristicVector, Definition};
+use sistership_estimate::source::definition_for;
+use sistership_model::Vessel;
+use sistership_store::{FoundShip, List, Page, ShipKey, ShipSearch, ShipVectors, StoreError};
+
+use super::facts;
+use super::query::Search;
+use crate::archive::{Archive, vessel};
+use crate::error::DeriveError;
+
+/// Ships that a search finds, the most similar first, without the ship herself.
+pub(super) async fn ships(
+    archive: &Archive,
+    search: &Search,
+    ship: &str,
+    page: &Page<ShipKey>,
+) -> Result<List<FoundShip, ShipKey>, DeriveError> {
+    page.check()?;
+    let ship = archive.store.ships().get(ship).await?;
+    let target = vessel(&ship.name, &ship.document)?;
+    let definition = search.vector.unwrap_or_else(|| definition_for(&target));
+    let mut found = ranked(archive, &search.ships, &target, definition).await?;
+    if let Some(after) = &page.after {
+        let after = (after.0, after.1.as_str());
+        found.retain(|ship| order(place(ship), after) == Ordering::Greater);
+    }
+    Ok(page.of(found, key))
+}
+
+/// The names of the ships of a ship's category that are most similar to her, the most similar first.
+pub async fn nearest(archive: &Archive, target: &Vessel, count: usize) -> Result<Vec<String>, StoreError> {
+    let found = ranked(archive, &ShipSearch::default(), target, definition_for(target)).await?;
+    Ok(found.into_iter().take(count).map(|ship| ship.name).collect())
+}
+
+async fn ranked(
+    archive: &Archive,
+    search: &ShipSearch,
+    target: &Vessel,
+    definition: Definition,
+) -> Result<Vec<FoundShip>, StoreError> {
+    let category = search.category.clone().or_else(|| Some(target.file.category.clone()));
+    let all = archive.store.ships().vectors(&ShipSearch { category, ..search.clone() }).await?;
+    let target = (target.name().to_owned(), CharacteristicVector::of(target, definition));
+    let ranking = tokio::task::spawn_blocking(move || rank(all, &target.0, &target.1));
+    Ok(ranking.await.map_err(sistership_store::ObjectsError::from)?)
+}
+
+/// Those that share enough components with the target to be compared.
+fn rank(all: Vec<ShipVectors>, name: &str, target: &CharacteristicVector) -> Vec<FoundShip> {
+    let correlated = |ship: ShipVectors| {
+        let values = facts::vector(&ship.vectors, target.definition.name())?;
+        let correlation = target.correlation(&CharacteristicVector { definition: target.definition, values })?;
+        Some(FoundShip { value: Some(correlation), ..ship.head })
+    };
+    let mut found: Vec<FoundShip> = all.into_iter().filter(|ship| ship.head.name != name).filter_map(correlated).collect();
+    found.sort_unstable_by(|a, b| order(place(a), place(b)));
+    found
+}
+
+fn key(ship: &FoundShip) -> ShipKey {
+    (ship.value, ship.name.clone())
+}
+
+/// The key, borrowed: there are as many comparisons as ships, times a dozen.
+fn place(ship: &FoundShip) -> (Option<f64>, &str) {
+    (ship.value, &ship.name)
+}
+
+/// Falling by value, then rising by name.
+fn order(a: (Option<f64>, &str), b: (Option<f64>, &str)) -> Ordering {
+    let value = |value: Option<f64>| value.unwrap_or(f64::NEG_INFINITY);
+    value(b.0).total_cmp(&value(a.0)).then_with(|| a.1.cmp(b.1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_most_similar_comes_first() {
+        let mut keys = [(Some(0.5), "b"), (Some(0.9), "z"), (Some(0.5), "a")];
+        keys.sort_by(|a, b| order(*a, *b));
+        assert_eq!(keys.map(|key| key.1).concat(), "zab");
+    }
+}

@@ -1,0 +1,63 @@
+//! Objects: the bytes of each, and the trials that refer to them.
+
+use std::collections::HashMap;
+
+use futures::TryStreamExt as _;
+use sistership_store::{ObjectHead, ObjectName, Page, Result};
+
+use super::findings::{Findings, Unreferred};
+use super::reading::{ROWS, store_fault, there};
+use crate::archive::Archive;
+
+/// Reads every object, then looks for the object of every trial. Objects come before rows, so that a trial which is put in
+/// meanwhile has its object, though perhaps not among those read.
+pub(super) async fn check(archive: &Archive, findings: &mut Findings) -> Result<()> {
+    let mut objects = HashMap::new();
+    let mut all = archive.objects.list();
+    while let Some(head) = all.try_next().await? {
+        findings.checked.objects += 1;
+        if let Some(key) = object(archive, &head, findings).await? {
+            objects.insert(key, head.bytes);
+        }
+    }
+    trials(archive, &mut objects, findings).await?;
+    findings.unreferred = Unreferred { objects: objects.len(), bytes: objects.values().sum() };
+    let staged = archive.objects.staged().await?;
+    findings.unfinished = Unreferred { objects: staged.len(), bytes: staged.iter().map(|staged| staged.bytes).sum() };
+    Ok(())
+}
+
+/// The key of an object, after a look at its bytes; none where it has none.
+async fn object(archive: &Archive, head: &ObjectHead, findings: &mut Findings) -> Result<Option<String>> {
+    match &head.name {
+        ObjectName::Stranger(path) => {
+            findings.add("object-name", format!("object {path}"), "is not named by a hash: the store has not put it there");
+            Ok(None)
+        }
+        ObjectName::Key(key) => {
+            // One that is gone by now was removed as garbage; where a trial needs it, that is told with the trial.
+            match archive.objects.get(key).await {
+                Ok(_) | Err(sistership_store::StoreError::NotFound { .. }) => {}
+                Err(error) => findings.add("object-hash", format!("object {key}"), store_fault(error)?),
+            }
+            Ok(Some(key.clone()))
+        }
+    }
+}
+
+/// Takes the objects that trials refer to out of `objects`.
+async fn trials(archive: &Archive, objects: &mut HashMap<String, u64>, findings: &mut Findings) -> Result<()> {
+    let mut page = Page::first(ROWS);
+    loop {
+        let trials = archive.store.trials().all(&page).await?;
+        for trial in trials.items {
+            findings.checked.trials += 1;
+            if objects.remove(&trial.object_key).is_none() && !there(&archive.objects, &trial.object_key).await? {
+                let place = format!("trial {} of {}", trial.id, trial.ship);
+                findings.add("trial-object", place, format!("its samples {} are missing", trial.object_key));
+            }
+        }
+        let Some(next) = trials.next else { return Ok(()) };
+        page = Page::after(next, ROWS);
+    }
+}

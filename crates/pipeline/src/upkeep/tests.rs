@@ -1,0 +1,315 @@
+#![allow(clippy::unwrap_used)]
+
+use std::sync::Arc;
+use std::time::{Duration, SystemTime};
+
+use bytes::Bytes;
+use serde_json::json;
+use sistership_store::testing::{TestDatabase, TestS3};
+use sistership_store::{Expect, NewTrial, Objects, Store, SystemClock, sha256_hex};
+
+use super::{Findings, fsck, gc};
+use crate::archive::Archive;
+use crate::catalogue::Catalogue;
+use crate::line::step;
+use crate::seed;
+
+/// An archive with the zoo, one trial of the Mariner, and all that a job may leave.
+async fn archive(database: &TestDatabase) -> Archive {
+    filled(Archive::open(&database.url, database.folder.path()).await.unwrap()).await
+}
+
+async fn filled(archive: Archive) -> Archive {
+    seed::seed(&archive.store, &Catalogue::default()).await.unwrap();
+    let key = archive.objects.put(Bytes::from_static(b"samples")).await.unwrap();
+    archive.store.trials().insert(&trial(&key)).await.unwrap();
+    archive
+}
+
+fn trial(key: &str) -> NewTrial {
+    let text = |text: &str| text.to_owned();
+    NewTrial {
+        ship: text("mariner"),
+        sha256: text(key),
+        name: text("turn.csv"),
+        manifest: text("{}"),
+        conventions: text("{}"),
+        manoeuvre: None,
+        sample_rows: 1,
+        duration_s: 1.0,
+        warnings: text("[]"),
+        object_key: text(key),
+    }
+}
+
+async fn found(archive: &Archive) -> Findings {
+    fsck(archive).await.unwrap()
+}
+
+async fn databases() -> Vec<TestDatabase> {
+    [Some(TestDatabase::sqlite()), TestDatabase::postgres().await].into_iter().flatten().collect()
+}
+
+/// An archive, and what must live as long as it does.
+struct Place {
+    archive: Archive,
+    _database: TestDatabase,
+    _s3: Option<TestS3>,
+}
+
+/// Each database with samples in a folder, and with samples in a bucket.
+async fn places() -> Vec<Place> {
+    let mut places = Vec::new();
+    for database in databases().await {
+        places.push(Place { archive: archive(&database).await, _database: database, _s3: None });
+    }
+    for database in databases().await {
+        let s3 = TestS3::start().await;
+        let (store, objects) = (Store::connect(&database.url, Arc::new(SystemClock)).await.unwrap(), s3.objects("fleet"));
+        places.push(Place { archive: filled(Archive { store, objects }).await, _database: database, _s3: Some(s3) });
+    }
+    places
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_healthy_archive_is_clean() {
+    for Place { archive, .. } in &places().await {
+        let findings = found(archive).await;
+        assert!(findings.clean && findings.faults.is_empty(), "{findings:#?}");
+        assert_eq!((findings.checked.trials, findings.checked.objects, findings.unreferred.objects), (1, 1, 0));
+        assert!(
+            findings.checked.laws > 3 && findings.checked.effects > 0 && findings.checked.versions > 5,
+            "{:?}",
+            findings.checked
+        );
+    }
+}
+
+/// Each kind of damage to rows: what is done, and the check and the place that must tell of it.
+const DAMAGES: &[(&str, &str, &str)] = &[
+    ("DELETE FROM ships WHERE name = 'mariner'", "trial-ship", "trial "),
+    ("DELETE FROM ships WHERE name = 'mariner'", "revision-ship", "ship mariner revision 1"),
+    ("UPDATE ships SET title = 'Another' WHERE name = 'mariner'", "revision-last", "ship mariner"),
+    ("UPDATE ships SET revision = 2 WHERE name = 'mariner'", "revision-last", "ship mariner"),
+    ("UPDATE ship_revisions SET revision = 2 WHERE ship = 'mariner'", "revision-gap", "ship mariner"),
+    ("UPDATE ship_revisions SET document = '{}' WHERE ship = 'mariner'", "version-ship", "version mariner/1"),
+    ("UPDATE trials SET sha256 = 'x'", "trial-key", "trial "),
+    ("UPDATE trials SET object_key = '00'", "trial-key", "trial "),
+    ("UPDATE laws SET document = document || ' ' WHERE name = 'abkowitz'", "law-hash", "law abkowitz"),
+    ("UPDATE laws SET sha256 = 'x' WHERE name = 'abkowitz'", "law-hash", "law abkowitz"),
+    ("UPDATE effect_libraries SET document = document || ' '", "effects-hash", "library of effects 4ffa"),
+    ("DELETE FROM laws WHERE name = 'abkowitz'", "version-law", "version "),
+    ("UPDATE versions SET document = document || ' ' WHERE model = 'mariner'", "version-hash", "version mariner/1"),
+    ("UPDATE versions SET document = '{}' WHERE model = 'mariner'", "version-document", "version mariner/1"),
+    ("UPDATE versions SET parent = 'none' WHERE model = 'mariner'", "version-parent", "version mariner/1"),
+    ("DELETE FROM models WHERE name = 'mariner'", "version-model", "version mariner/1"),
+    ("UPDATE models SET next_number = 9 WHERE name = 'mariner'", "version-gap", "model mariner"),
+    ("DELETE FROM versions WHERE model = 'mariner'", "version-gap", "model mariner"),
+    ("DELETE FROM versions WHERE model = 'mariner'", "alias-version", "alias mariner/champion"),
+    ("DELETE FROM versions WHERE model = 'mariner'", "move-version", "alias mariner/champion revision 1"),
+    ("UPDATE aliases SET revision = 7 WHERE model = 'mariner'", "alias-last", "alias mariner/champion"),
+    ("UPDATE alias_moves SET from_number = 4 WHERE model = 'mariner'", "move-chain", "alias mariner/champion revision 1"),
+    ("DELETE FROM aliases WHERE model = 'mariner'", "move-alias", "alias mariner/champion"),
+    (REPORT, "report-ship", "report r"),
+    (REPORT, "report-version", "report r"),
+    (DIAGNOSIS, "diagnosis-version", "diagnosis d"),
+    (DIAGNOSIS, "diagnosis-made", "diagnosis d"),
+    (DIAGNOSIS, "diagnosis-report", "diagnosis d"),
+    (DIAGNOSIS, "diagnosis-trials", "diagnosis d"),
+    (FAMILY, "family-foundation", "family f"),
+    (MEMBER, "member-ship", "family f"),
+    (PRIOR, "prior-gap", "family f"),
+    (BULK, "outcome-count", "bulk refinement b"),
+    (CHUNK, "chunk-job", "bulk refinement b"),
+    (OUTCOME, "outcome-version", "bulk refinement b"),
+    (TAG, "tag-ship", "tag nobody/own"),
+    ("DELETE FROM ship_vectors; DELETE FROM search_queue", "search-ship", "ship mariner"),
+    (FACT, "search-fact", "ship nobody"),
+    (JOB, "job-ship", "job j"),
+    (JOB, "job-state", "job j"),
+    (JOB, "job-result", "job j"),
+];
+const REPORT: &str = "INSERT INTO reports VALUES ('r', 'none', 'nobody', 'refinement', '{}', '', 0)";
+const DIAGNOSIS: &str = "INSERT INTO diagnoses VALUES ('d', 'none', 'none', 'none', 'effects', '[]', '[\"none\"]', 0)";
+const FAMILY: &str = "INSERT INTO families VALUES ('f', 'F', 'none', 0)";
+const MEMBER: &str = "INSERT INTO family_members VALUES ('f', 'nobody', 0)";
+const PRIOR: &str = "INSERT INTO family_priors VALUES ('f', 2, '{}', 'x', 0)";
+const BULK: &str = "INSERT INTO bulk_refinements VALUES ('b', 'f', '{}', 1, 0)";
+const CHUNK: &str = "INSERT INTO bulk_chunks VALUES ('b', 1, 'none')";
+const OUTCOME: &str = "INSERT INTO bulk_outcomes VALUES ('b', 'mariner', 'champion', NULL, NULL, '{}', 0)";
+const TAG: &str = "INSERT INTO ship_tags VALUES ('nobody', 'own')";
+const FACT: &str = "INSERT INTO ship_facts VALUES ('nobody', 'particular lpp_m', 1)";
+const JOB: &str = "INSERT INTO jobs VALUES ('j', 'refinement', 'nobody', '{}', 'succeeded', 1, '', \
+    '{\"model\": \"mariner\", \"version\": 1, \"sha256\": \"x\", \"report\": \"none\"}', NULL, 1, 1, 5, NULL, 0, 0, NULL, 0, 0)";
+
+#[tokio::test(flavor = "multi_thread")]
+async fn each_damage_to_rows_is_named_on_sqlite() {
+    damaged(TestDatabase::sqlite()).await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn each_damage_to_rows_is_named_on_postgres() {
+    if let Some(database) = TestDatabase::postgres().await {
+        damaged(database).await;
+    }
+}
+
+/// One healthy archive, restored row by row after each damage by a copy of every table.
+async fn damaged(database: TestDatabase) {
+    let archive = archive(&database).await;
+    for table in TABLES {
+        database.damage(&format!("CREATE TABLE healthy_{table} AS SELECT * FROM {table}")).await;
+    }
+    for (sql, check, place) in DAMAGES {
+        database.damage(sql).await;
+        let findings = found(&archive).await;
+        let hit = findings.faults.iter().any(|fault| fault.check == *check && fault.place.starts_with(place));
+        assert!(hit && !findings.clean, "`{sql}` must be told by `{check}` at `{place}`: {findings:#?}");
+        for table in TABLES {
+            database.damage(&format!("DELETE FROM {table}")).await;
+            database.damage(&format!("INSERT INTO {table} SELECT * FROM healthy_{table}")).await;
+        }
+    }
+    assert!(found(&archive).await.clean, "healed again");
+}
+
+const TABLES: [&str; 22] = [
+    "laws",
+    "effect_libraries",
+    "ships",
+    "ship_revisions",
+    "trials",
+    "models",
+    "versions",
+    "aliases",
+    "alias_moves",
+    "jobs",
+    "reports",
+    "diagnoses",
+    "families",
+    "family_members",
+    "family_priors",
+    "bulk_refinements",
+    "bulk_chunks",
+    "bulk_outcomes",
+    "ship_facts",
+    "ship_vectors",
+    "ship_tags",
+    "search_queue",
+];
+
+#[tokio::test(flavor = "multi_thread")]
+async fn each_damage_to_objects_is_named() {
+    let database = TestDatabase::sqlite();
+    let archive = archive(&database).await;
+    let key = sha256_hex(b"samples");
+    let file = database.folder.path().join("objects").join(&key[..2]).join(&key[2..]);
+    std::fs::write(&file, b"sample5").unwrap();
+    let findings = found(&archive).await;
+    assert_eq!((findings.faults[0].check, &findings.faults[0].place), ("object-hash", &format!("object {key}")));
+    std::fs::remove_file(&file).unwrap();
+    let findings = found(&archive).await;
+    assert!(findings.faults.len() == 1 && findings.faults[0].check == "trial-object", "{findings:#?}");
+    std::fs::write(database.folder.path().join("objects/notes.txt"), b"?").unwrap();
+    assert!(found(&archive).await.faults.iter().any(|fault| fault.check == "object-name"));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_source_that_has_changed_is_named() {
+    let database = TestDatabase::sqlite();
+    let archive = archive(&database).await;
+    let mariner = archive.store.versions().get("mariner", 1).await.unwrap();
+    let mut document: serde_json::Value = serde_json::from_str(&mariner.document).unwrap();
+    let recipe = &document["recipe"];
+    document["recipe"] = json!({ "kind": "refinement", "source": { "ship": "mariner", "number": 1, "sha256": "00" },
+        "ship_sha256": recipe["ship_sha256"], "law_sha256": recipe["law_sha256"],
+        "trials": [{ "name": "gone.csv", "sha256": sha256_hex(b"gone") }], "settings": {}, "code_revision": "1" });
+    let new = sistership_store::NewVersion {
+        model: "mariner".into(),
+        parent: None,
+        law: mariner.head.law,
+        method: "published".into(),
+        document: document.to_string(),
+    };
+    archive.store.versions().create(&new, &[step("candidate", Expect::Any, "a test")]).await.unwrap();
+    let checks: Vec<_> = found(&archive).await.faults.into_iter().map(|fault| (fault.check, fault.place)).collect();
+    assert_eq!(checks, [("version-source", "version mariner/2".into()), ("version-trial", "version mariner/2".into())]);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn garbage_goes_when_it_is_old_and_nobodys() {
+    for Place { archive, .. } in &places().await {
+        let orphan = archive.objects.put(Bytes::from_static(b"orphan")).await.unwrap();
+        assert_eq!(found(archive).await.unreferred, super::Unreferred { objects: 1, bytes: 6 });
+        let young = gc(archive, Duration::from_secs(3600), false).await.unwrap();
+        assert_eq!((young.removed.len(), young.objects), (0, 2), "what was put just now may still get its row");
+        tokio::time::sleep(Duration::from_millis(20)).await;
+        let asked = gc(archive, Duration::ZERO, true).await.unwrap();
+        assert_eq!((asked.removed.as_slice(), asked.bytes), ([orphan.clone()].as_slice(), 6));
+        assert!(archive.objects.exists(&orphan).await.unwrap(), "a dry run removes nothing");
+        assert_eq!(gc(archive, Duration::ZERO, false).await.unwrap().removed, std::slice::from_ref(&orphan));
+        assert!(!archive.objects.exists(&orphan).await.unwrap());
+        assert!(found(archive).await.clean);
+    }
+}
+
+/// As a process leaves them that is killed in the middle of an upload.
+#[tokio::test(flavor = "multi_thread")]
+async fn puts_that_never_ended_are_seen_and_go_when_they_are_old() {
+    let database = TestDatabase::sqlite();
+    let archive = archive(&database).await;
+    let place = database.folder.path().join("objects/00/11#1");
+    std::fs::create_dir_all(place.parent().unwrap()).unwrap();
+    let file = std::fs::File::create(&place).unwrap();
+    std::io::Write::write_all(&mut &file, b"half").unwrap();
+    let findings = found(&archive).await;
+    assert!(findings.clean && findings.unfinished == super::Unreferred { objects: 1, bytes: 4 }, "{findings:#?}");
+    assert!(gc(&archive, Duration::ZERO, false).await.unwrap().unfinished.is_empty(), "it may be under way");
+    file.set_modified(SystemTime::now() - Duration::from_secs(7200)).unwrap();
+    assert_eq!(gc(&archive, Duration::ZERO, true).await.unwrap().unfinished, ["objects/00/11#1"]);
+    assert_eq!(gc(&archive, Duration::ZERO, false).await.unwrap().bytes, 4);
+    assert!(!place.exists() && found(&archive).await.unfinished.objects == 0);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn samples_of_deleted_trials_and_of_versions_stay() {
+    let database = TestDatabase::sqlite();
+    let archive = archive(&database).await;
+    let trial = archive.store.trials().find("mariner", &sha256_hex(b"samples")).await.unwrap();
+    archive.store.trials().delete(&trial.id).await.unwrap();
+    tokio::time::sleep(Duration::from_millis(20)).await;
+    assert!(gc(&archive, Duration::ZERO, false).await.unwrap().removed.is_empty());
+    assert!(found(&archive).await.clean);
+}
+
+/// Uploads of the same bytes against a collector that takes everything that nobody refers to: no trial loses its samples.
+#[tokio::test(flavor = "multi_thread")]
+async fn an_upload_and_the_collector_do_not_miss_each_other() {
+    for Place { archive, .. } in &places().await {
+        let collector = archive.clone();
+        let collecting = tokio::spawn(async move {
+            loop {
+                gc(&collector, Duration::ZERO, false).await.unwrap();
+            }
+        });
+        for number in 0..60 {
+            upload(archive, &archive.objects, number).await;
+        }
+        collecting.abort();
+        let findings = found(archive).await;
+        assert!(findings.clean, "{findings:#?}");
+        assert_eq!(findings.checked.trials, 61);
+    }
+}
+
+async fn upload(archive: &Archive, objects: &Objects, number: i32) {
+    for _ in 0..1000 {
+        let key = objects.put(Bytes::from(format!("samples {number}"))).await.unwrap();
+        tokio::task::yield_now().await;
+        match archive.store.trials().insert_all_and_enqueue(&[trial(&key)], objects, |_| None).await {
+            Err(sistership_store::StoreError::NotFound { kind: "object", .. }) => {}
+            other => return drop(other.unwrap()),
+        }
+    }
+    panic!("the collector was always first");
+}

@@ -1,0 +1,191 @@
+//! Whether a version is what its recipe gives, byte for byte.
+
+use std::sync::Arc;
+
+use serde::Serialize;
+use serde_json::Value;
+use sistership_model::version::{code_revision, sha256};
+use utoipa::ToSchema;
+
+use crate::archive::{Archive, document};
+use crate::derive::{DeriveError, Progress, derive};
+use crate::memory::{DERIVING, trial_bytes};
+use crate::recipe::Recipe;
+use crate::version::VersionDocument;
+
+/// Numbers that differ by a smaller share of themselves have been rounded differently.
+const ROUNDING: f64 = 1e-6;
+
+/// What came of deriving a version again.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Verification {
+    /// The line of versions, which is the ship's name.
+    pub model: String,
+    /// The version's number.
+    pub number: i64,
+    /// The hash that the store has.
+    pub sha256: String,
+    /// The hash of the stored bytes.
+    pub stored_sha256: String,
+    /// The hash of the bytes derived now.
+    pub derived_sha256: String,
+    /// Whether all three are the same.
+    pub identical: bool,
+    /// The program that made the version, as its recipe records it; none for a published model.
+    pub made_by: Option<String>,
+    /// This program.
+    pub checked_by: String,
+    /// Where the two first differ (a JSON pointer), and other remarks.
+    pub remarks: Vec<String>,
+}
+
+/// Derives a version again from its recipe and compares the bytes.
+///
+/// # Errors
+/// Says what the recipe needs and the store does not have, or why the refinement is refused now.
+pub async fn verify(archive: &Archive, ship: &str, number: i64) -> Result<Verification, DeriveError> {
+    verify_with(archive, ship, number, Arc::new(|_, _| true)).await
+}
+
+/// The memory that [`verify`] is estimated to take, bytes.
+pub async fn demand(archive: &Archive, ship: &str, number: i64) -> Result<u64, DeriveError> {
+    let trials = match document(&archive.store.versions().get(ship, number).await?)?.recipe {
+        Recipe::Plain(sistership_model::version::Recipe::Refinement { trials, .. }) => trials,
+        Recipe::Diagnosis(recipe) => recipe.trials,
+        _ => return Ok(0),
+    };
+    let mut bytes = 0;
+    for trial in &trials {
+        // Samples are compressed to about a third.
+        bytes += 3 * archive.objects.size(&trial.sha256).await? / trial_bytes(1) * DERIVING;
+    }
+    Ok(bytes)
+}
+
+/// The same with progress, and a way to stop it.
+///
+/// # Errors
+/// As [`verify`].
+pub async fn verify_with(archive: &Archive, ship: &str, number: i64, progress: Progress) -> Result<Verification, DeriveError> {
+    let version = archive.store.versions().get(ship, number).await?;
+    let stored = document(&version)?;
+    let derived = match &stored.recipe {
+        Recipe::Registered(recipe) => checked(archive, &stored, &recipe.law_sha256).await?,
+        recipe => derive(archive, ship, recipe, progress).await?.document.canonical()?,
+    };
+    let (stored_sha256, derived_sha256) = (sha256(version.document.as_bytes()), sha256(derived.as_bytes()));
+    let made_by = stored.recipe.code_revision().map(str::to_owned);
+    let identical = version.head.sha256 == stored_sha256 && version.document == derived;
+    let remarks = remarks(made_by.as_deref(), (&version.document, &derived), version.head.sha256 == stored_sha256);
+    Ok(Verification {
+        model: ship.to_owned(),
+        number,
+        sha256: version.head.sha256,
+        stored_sha256,
+        derived_sha256,
+        identical,
+        made_by,
+        checked_by: code_revision().to_owned(),
+        remarks,
+    })
+}
+
+/// A model that was made elsewhere comes of nothing but itself: it is written again, and checked against its law.
+async fn checked(archive: &Archive, stored: &VersionDocument, law_sha256: &str) -> Result<String, DeriveError> {
+    let law = archive.law(&stored.model.law, law_sha256).await?;
+    let wrong = |(field, message): (String, String)| DeriveError::Lost(format!("{field}: {message}"));
+    stored.model.check(&law).map_err(wrong)?;
+    Ok(stored.canonical()?)
+}
+
+fn remarks(made_by: Option<&str>, (stored, derived): (&str, &str), undamaged: bool) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if !undamaged {
+        remarks.push("the stored bytes do not have the recorded hash: the database is damaged or was changed".to_owned());
+    }
+    if let Some(other) = made_by.filter(|revision| *revision != code_revision()) {
+        remarks.push(format!(
+            "made by revision {other}, checked by {}: the recorded revision was put back before comparing",
+            code_revision()
+        ));
+    }
+    let read = |text| serde_json::from_str::<Value>(text).unwrap_or_default();
+    if stored != derived {
+        let (stored, derived) = (read(stored), read(derived));
+        let place = difference(&stored, &derived, String::new());
+        remarks.push(place.unwrap_or_else(|| "the same values, written differently".to_owned()));
+        remarks.extend(rounding(&stored, &derived).map(|largest| {
+            format!(
+                "nothing but numbers differs, by at most {largest:.0e} of themselves: another processor (without fused \
+                 multiplication) or another C library rounds like that; no input differs"
+            )
+        }));
+    }
+    remarks
+}
+
+/// The largest relative difference of two documents that differ in the last digits of numbers only.
+fn rounding(stored: &Value, derived: &Value) -> Option<f64> {
+    let largest =
+        |mut all: &mut dyn Iterator<Item = Option<f64>>| (&mut all).try_fold(0.0, |most: f64, one| Some(most.max(one?)));
+    match (stored, derived) {
+        (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
+            largest(&mut a.values().zip(b.values()).map(|(a, b)| rounding(a, b)))
+        }
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => largest(&mut a.iter().zip(b).map(|(a, b)| rounding(a, b))),
+        (Value::Number(a), Value::Number(b)) => {
+            let (a, b) = (a.as_f64()?, b.as_f64()?);
+            let share = if a == b { 0.0 } else { (a - b).abs() / a.abs().max(b.abs()) };
+            (share < ROUNDING).then_some(share)
+        }
+        _ => (stored == derived).then_some(0.0),
+    }
+}
+
+/// The first place at which two documents differ.
+fn difference(stored: &Value, derived: &Value, path: String) -> Option<String> {
+    match (stored, derived) {
+        (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
+            a.iter().zip(b.values()).find_map(|((key, a), b)| difference(a, b, format!("{path}/{key}")))
+        }
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
+            a.iter().zip(b).enumerate().find_map(|(index, (a, b))| difference(a, b, format!("{path}/{index}")))
+        }
+        _ if stored == derived => None,
+        _ => Some(format!("first difference at {path}: stored {}, derived {}", short(stored), short(derived))),
+    }
+}
+
+fn short(value: &Value) -> String {
+    value.to_string().chars().take(80).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn the_first_difference_is_placed() {
+        let (a, b) = (json!({"model": {"X_uu": [1, 2.5]}}), json!({"model": {"X_uu": [1, 2.25]}}));
+        let place = difference(&a, &b, String::new()).unwrap_or_default();
+        assert_eq!(place, "first difference at /model/X_uu/1: stored 2.5, derived 2.25");
+        assert_eq!(difference(&a, &a, String::new()), None);
+    }
+
+    #[test]
+    fn rounding_is_told_from_another_input() {
+        let said = |derived: &str| remarks(None, (r#"{"a":[1.0,2],"b":"x"}"#, derived), true);
+        assert!(said(r#"{"a":[1.0000000001,2],"b":"x"}"#)[1].contains("by at most 1e-10"));
+        for other in [r#"{"a":[1.1,2],"b":"x"}"#, r#"{"a":[1.0,2],"b":"y"}"#, r#"{"a":[1.0],"b":"x"}"#] {
+            assert_eq!(said(other).len(), 1, "{other}");
+        }
+    }
+
+    #[test]
+    fn another_revision_is_said() {
+        assert!(remarks(Some("0.0.0-other"), ("{}", "{}"), true)[0].contains("made by revision 0.0.0-other"));
+        assert!(remarks(Some(code_revision()), ("{}", "{}"), true).is_empty());
+        assert!(remarks(None, ("{}", "{}"), false)[0].contains("damaged"));
+    }
+}

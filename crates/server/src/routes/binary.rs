@@ -1,0 +1,7 @@
+//! Files in the OpenAPI document.
+
+/// A file as it is.
+#[derive(utoipa::ToSchema)]
+#[schema(value_type = String, format = Binary)]
+#[allow(dead_code, reason = "it only describes a body")]
+pub(super) struct Binary(Vec<u8>);

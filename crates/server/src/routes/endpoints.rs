@@ -1,0 +1,57 @@
+//! Every endpoint that the OpenAPI document describes, with the limits that it is served by.
+
+use axum::extract::DefaultBodyLimit;
+use axum::http::StatusCode;
+use tower_http::timeout::TimeoutLayer;
+use utoipa_axum::router::OpenApiRouter;
+
+use super::{
+    about, aliases, bulk_refinements, champion, diagnoses, drift, effects, events, families, health, jobs, laws, metrics,
+    predictions, refinements, register, reports, samples, ship_changes, ships, similar, tags, trials, uploads, versions,
+};
+use crate::app::App;
+use crate::config::Limits;
+
+/// The endpoints that the OpenAPI document describes.
+pub(super) fn api(limits: &Limits) -> OpenApiRouter<App> {
+    OpenApiRouter::with_openapi(about::about()).merge(quick(limits)).merge(long(limits))
+}
+
+/// What is answered at once.
+fn quick(limits: &Limits) -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .merge(health::routes())
+        .merge(metrics::routes())
+        .merge(families::routes())
+        .merge(drift::routes())
+        .merge(bulk_refinements::routes())
+        .merge(effects::routes())
+        .merge(laws::routes())
+        .merge(ships::routes())
+        .merge(ship_changes::routes())
+        .merge(tags::routes())
+        .merge(similar::routes())
+        .merge(champion::routes())
+        .merge(trials::routes())
+        .merge(samples::routes())
+        .merge(refinements::routes())
+        .merge(diagnoses::routes())
+        .merge(jobs::routes())
+        .merge(events::routes())
+        .merge(versions::routes())
+        .merge(register::routes())
+        .merge(aliases::routes())
+        .merge(predictions::routes())
+        .merge(reports::routes())
+        .layer(DefaultBodyLimit::max(limits.document_bytes))
+        .layer(TimeoutLayer::with_status_code(StatusCode::GATEWAY_TIMEOUT, limits.request_time))
+}
+
+/// What takes long: uploads, and deriving a version again.
+fn long(limits: &Limits) -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .merge(uploads::routes())
+        .merge(versions::verification())
+        .layer(DefaultBodyLimit::max(limits.upload_bytes))
+        .layer(TimeoutLayer::with_status_code(StatusCode::GATEWAY_TIMEOUT, limits.long_request_time))
+}
