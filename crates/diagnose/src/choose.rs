@@ -5,54 +5,50 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use super::Request;
-use super::base::Base;
-use super::discount::{SIZE, is_from_outside};
-use super::evidence::Level;
-use super::search::{Judged, Likely, Search};
+use super::discount::is_from_outside;
+use super::evidence::DiscrepancyFactor;
+use super::filtered_base::FilteredBase;
+use super::hypothesis::JudgedHypothesis;
+use super::placebo::is_placebo;
+use super::screening::{ScreenedEffect, screen};
+use super::search::HypothesisSearch;
 use super::settings::Settings;
-use crate::residual::Candidate;
+use super::thresholds::THRESHOLDS;
+use crate::residual::EffectCandidate;
 use sistership_estimate::refine::RefineError;
 
-/// How many of the most probable by one linearisation are judged where they stand.
-const JUDGED: usize = 6;
-/// How many companions of a taken effect are.
-const COMPANIONS: usize = 3;
-
-/// Rounds in which coefficients and effects are then fitted together, everything linearised anew.
-const SETTLED: usize = 2;
-
 /// Every hypothesis that was judged.
-pub(super) struct Choice {
+pub(super) struct EffectChoice {
     /// The model alone.
-    pub alone: Judged,
-    pub tried: Vec<Judged>,
+    pub alone: JudgedHypothesis,
+    pub tried: Vec<JudgedHypothesis>,
     /// Place of the one taken; none where the model alone stands.
     pub taken: Option<usize>,
     /// Levels of the discrepancy that are still weighed.
-    levels: Vec<Level>,
+    levels: Vec<DiscrepancyFactor>,
 }
 
 /// Effects and coefficients where both stay, and the search about the model so calibrated.
-pub(super) struct Settled<'a> {
-    pub search: Search<'a>,
-    pub base: Base<'a>,
-    pub best: Judged,
+pub(super) struct ConvergedChoice<'a> {
+    pub search: HypothesisSearch<'a>,
+    pub base: FilteredBase<'a>,
+    pub best: JudgedHypothesis,
 }
 
 /// Judges single effects, then what stands together with the best, exchanging each of a set for every other.
 ///
 /// # Errors
 /// Names what a trial lacks.
-pub(super) fn choose(search: &Search<'_>, settings: &Settings) -> Result<Choice, RefineError> {
+pub(super) fn choose(search: &HypothesisSearch<'_>, settings: &Settings) -> Result<EffectChoice, RefineError> {
     let base = search.base(&[], &search.levels)?;
     let (_, alone) = search.alone(&base)?;
-    let mut choice = Choice { alone, tried: Vec::new(), taken: None, levels: search.levels.clone() };
-    choice.add(search, settings, &base, JUDGED)?;
+    let mut choice = EffectChoice { alone, tried: Vec::new(), taken: None, levels: search.levels.clone() };
+    choice.add(search, settings, &base, THRESHOLDS.search.judged)?;
     while choice.taken.is_some() && choice.kept().len() < settings.most_effects {
         let kept = choice.kept();
         let base = search.base(&kept, &choice.levels)?;
         choice.seen_from(search, &base)?;
-        if !choice.add(search, settings, &base, COMPANIONS)? {
+        if !choice.add(search, settings, &base, THRESHOLDS.search.companions)? {
             break;
         }
         choice.exchange(search, settings)?;
@@ -60,30 +56,38 @@ pub(super) fn choose(search: &Search<'_>, settings: &Settings) -> Result<Choice,
     Ok(choice)
 }
 
-fn most_believed(search: &Search<'_>, found: &[Judged], accepted: impl Fn(&Judged) -> bool) -> Option<usize> {
+fn most_believed(
+    search: &HypothesisSearch<'_>,
+    found: &[JudgedHypothesis],
+    accepted: impl Fn(&JudgedHypothesis) -> bool,
+) -> Option<usize> {
     let places = (0..found.len()).filter(|&place| accepted(&found[place]));
     places.max_by(|&a, &b| last_evidence(search, &found[a]).total_cmp(&last_evidence(search, &found[b])))
 }
 
 /// The evidence for the effect that came last.
-fn last_evidence(search: &Search<'_>, judged: &Judged) -> f64 {
+fn last_evidence(search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> f64 {
     search.evidence(judged, judged.candidates.len() - 1).unwrap_or(f64::NEG_INFINITY)
 }
 
 /// The most probable sets of those of a base and one more, judged where they stand.
-fn companions(search: &Search<'_>, base: &Base<'_>, count: usize) -> Result<Vec<Judged>, RefineError> {
-    let likely = likely(search.screen(base), count);
+fn companions(
+    search: &HypothesisSearch<'_>,
+    base: &FilteredBase<'_>,
+    count: usize,
+) -> Result<Vec<JudgedHypothesis>, RefineError> {
+    let likely = likely(screen(search, base), count);
     likely.par_iter().map(|likely| search.judge(base, &likely.candidate, likely.level)).collect()
 }
 
 /// The most probable, those that are believed most after their false-alarm levels, and whatever follows a record from outside: its
 /// sensor is there to be asked.
-fn likely(screened: Vec<Likely>, count: usize) -> Vec<Likely> {
-    let mut by_belief = screened.clone();
-    by_belief.sort_by(|a, b| b.believed.total_cmp(&a.believed));
-    let recorded: Vec<Likely> = screened.iter().filter(|likely| is_from_outside(&likely.candidate)).cloned().collect();
-    let mut likely: Vec<Likely> = screened.into_iter().take(count.div_ceil(2)).collect();
-    for candidate in by_belief {
+fn likely(screened: Vec<ScreenedEffect>, count: usize) -> Vec<ScreenedEffect> {
+    let mut by_discounted = screened.clone();
+    by_discounted.sort_by(|a, b| b.discounted.total_cmp(&a.discounted));
+    let recorded: Vec<ScreenedEffect> = screened.iter().filter(|likely| is_from_outside(&likely.candidate)).cloned().collect();
+    let mut likely: Vec<ScreenedEffect> = screened.into_iter().take(count.div_ceil(2)).collect();
+    for candidate in by_discounted {
         let is_new = likely.iter().all(|known| known.candidate.key() != candidate.candidate.key());
         if is_new && likely.len() < count {
             likely.push(candidate);
@@ -94,18 +98,18 @@ fn likely(screened: Vec<Likely>, count: usize) -> Vec<Likely> {
     likely
 }
 
-impl Choice {
-    fn kept(&self) -> Vec<Candidate> {
+impl EffectChoice {
+    fn kept(&self) -> Vec<EffectCandidate> {
         self.taken.map(|taken| self.tried[taken].candidates.clone()).unwrap_or_default()
     }
 
-    fn take(&mut self, found: Vec<Judged>, best: Option<usize>) {
+    fn take(&mut self, found: Vec<JudgedHypothesis>, best: Option<usize>) {
         self.taken = best.map(|best| self.tried.len() + best).or(self.taken);
         self.tried.extend(found);
     }
 
     /// What is taken judged anew by the filter of a base that stands where it does: what is tried beside it passes the same.
-    fn seen_from(&mut self, search: &Search<'_>, base: &Base<'_>) -> Result<(), RefineError> {
+    fn seen_from(&mut self, search: &HypothesisSearch<'_>, base: &FilteredBase<'_>) -> Result<(), RefineError> {
         if let Some(taken) = self.taken {
             self.tried[taken] = search.alone(base)?.1;
         }
@@ -113,7 +117,13 @@ impl Choice {
     }
 
     /// One effect more, if any is believed.
-    fn add(&mut self, search: &Search<'_>, settings: &Settings, base: &Base<'_>, count: usize) -> Result<bool, RefineError> {
+    fn add(
+        &mut self,
+        search: &HypothesisSearch<'_>,
+        settings: &Settings,
+        base: &FilteredBase<'_>,
+        count: usize,
+    ) -> Result<bool, RefineError> {
         let found = companions(search, base, count)?;
         let mut accepted: Vec<usize> = (0..found.len()).filter(|&at| self.accepts(search, &found[at], settings)).collect();
         // What is believed decides, not what fits: an instrument that always erred would stand before what is new.
@@ -121,7 +131,7 @@ impl Choice {
         accepted.sort_by(|a, b| belief(b).total_cmp(&belief(a)));
         let mut better = None;
         for place in accepted {
-            if !search.is_placebo(&found[place], base)? {
+            if !is_placebo(search, &found[place], base)? {
                 better = Some(place);
                 break;
             }
@@ -132,15 +142,15 @@ impl Choice {
 
     /// Undoes a wrong step: each of those taken together but the last is exchanged for whatever is more probable in its
     /// place. What goes with the others than the last has been tried just before.
-    fn exchange(&mut self, search: &Search<'_>, settings: &Settings) -> Result<(), RefineError> {
+    fn exchange(&mut self, search: &HypothesisSearch<'_>, settings: &Settings) -> Result<(), RefineError> {
         let kept = self.kept();
         for place in 0..kept.len() - 1 {
             let mut others = kept.clone();
             others.remove(place);
             let base = search.base(&others, &self.levels)?;
-            let found = companions(search, &base, COMPANIONS)?;
-            let best = search.evidence(self.best(), place).unwrap_or(f64::NEG_INFINITY) + 1.0;
-            let is_better = |judged: &Judged| last_evidence(search, judged) > best && stands(search, judged, settings);
+            let found = companions(search, &base, THRESHOLDS.search.companions)?;
+            let best = search.evidence(self.best(), place).unwrap_or(f64::NEG_INFINITY) + THRESHOLDS.search.exchange;
+            let is_better = |judged: &JudgedHypothesis| last_evidence(search, judged) > best && stands(search, judged, settings);
             let better = most_believed(search, &found, is_better);
             self.take(found, better);
             if better.is_some() {
@@ -154,9 +164,13 @@ impl Choice {
     ///
     /// # Errors
     /// Names what a trial lacks.
-    pub(super) fn settled<'a>(&self, search: &Search<'a>, request: &Request<'_>) -> Result<Settled<'a>, RefineError> {
+    pub(super) fn settled<'a>(
+        &self,
+        search: &HypothesisSearch<'a>,
+        request: &Request<'_>,
+    ) -> Result<ConvergedChoice<'a>, RefineError> {
         let (mut search, mut best) = (search.clone(), self.best().clone());
-        let mut rounds = SETTLED;
+        let mut rounds = THRESHOLDS.search.joint_rounds;
         loop {
             search = search.calibrated_by(request, &best)?;
             let base = search.bare(&best.candidates, &self.levels)?;
@@ -165,7 +179,9 @@ impl Choice {
             if rounds > 0 {
                 continue;
             }
-            let Some(place) = needless(&search, &best, request.settings) else { return Ok(Settled { search, base, best }) };
+            let Some(place) = needless(&search, &best, request.settings) else {
+                return Ok(ConvergedChoice { search, base, best });
+            };
             best = self.without(&search, &best, place)?;
             rounds = 1;
         }
@@ -173,7 +189,7 @@ impl Choice {
 
     /// This choice, with what an earlier one has tried besides.
     pub(super) fn after(mut self, earlier: Self) -> Self {
-        let keys = |judged: &Judged| judged.candidates.iter().map(Candidate::key).collect::<Vec<_>>();
+        let keys = |judged: &JudgedHypothesis| judged.candidates.iter().map(EffectCandidate::key).collect::<Vec<_>>();
         let again: BTreeSet<Vec<String>> = self.tried.iter().map(keys).collect();
         self.tried.extend(earlier.tried.into_iter().filter(|judged| !again.contains(&keys(judged))));
         self
@@ -183,36 +199,41 @@ impl Choice {
     ///
     /// # Errors
     /// Names what a trial lacks.
-    fn without(&self, search: &Search<'_>, judged: &Judged, place: usize) -> Result<Judged, RefineError> {
+    fn without(
+        &self,
+        search: &HypothesisSearch<'_>,
+        judged: &JudgedHypothesis,
+        place: usize,
+    ) -> Result<JudgedHypothesis, RefineError> {
         let mut kept = judged.candidates.clone();
         kept.remove(place);
         Ok(search.alone(&search.bare(&kept, &self.levels)?)?.1)
     }
 
-    pub(super) fn best(&self) -> &Judged {
+    pub(super) fn best(&self) -> &JudgedHypothesis {
         self.taken.map_or(&self.alone, |taken| &self.tried[taken])
     }
 
     /// A hypothesis is taken where it is more probable by enough, also on trials that its fit has not seen.
-    fn accepts(&self, search: &Search<'_>, found: &Judged, settings: &Settings) -> bool {
-        let held_out = |judged: &Judged| judged.held_out(&search.fixed).unwrap_or(f64::NEG_INFINITY);
+    fn accepts(&self, search: &HypothesisSearch<'_>, found: &JudgedHypothesis, settings: &Settings) -> bool {
+        let held_out = |judged: &JudgedHypothesis| judged.held_out(&search.fixed).unwrap_or(f64::NEG_INFINITY);
         stands(search, found, settings) && held_out(found) > held_out(self.best())
     }
 }
 
 /// Whether the evidence for the effect that came last is enough, and more than a shadow of the others'.
-fn stands(search: &Search<'_>, found: &Judged, settings: &Settings) -> bool {
+fn stands(search: &HypothesisSearch<'_>, found: &JudgedHypothesis, settings: &Settings) -> bool {
     let last = found.candidates.len() - 1;
     let evidence = |place: usize| search.evidence(found, place).unwrap_or(f64::NEG_INFINITY);
     let strongest = (0..last).map(evidence).fold(0.0, f64::max);
-    evidence(last) > settings.least_evidence.max(SIZE.powi(2) * strongest)
+    evidence(last) > settings.least_evidence.max(THRESHOLDS.effect.size.powi(2) * strongest)
 }
 
 /// The weakest of effects that are judged together, where the evidence for it is not enough.
-fn needless(search: &Search<'_>, best: &Judged, settings: &Settings) -> Option<usize> {
+fn needless(search: &HypothesisSearch<'_>, best: &JudgedHypothesis, settings: &Settings) -> Option<usize> {
     let evidence = |place: usize| search.evidence(best, place).unwrap_or(f64::NEG_INFINITY);
     let evidence: Vec<f64> = (0..best.candidates.len()).map(evidence).collect();
     let strongest = evidence.iter().copied().fold(0.0, f64::max);
     let weakest = (0..evidence.len()).min_by(|&a, &b| evidence[a].total_cmp(&evidence[b]));
-    weakest.filter(|&place| evidence[place] <= settings.least_evidence.max(SIZE.powi(2) * strongest))
+    weakest.filter(|&place| evidence[place] <= settings.least_evidence.max(THRESHOLDS.effect.size.powi(2) * strongest))
 }

@@ -4,19 +4,18 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::base::Base;
-use super::evidence::Reduced;
+use super::evidence::MarginalInformation;
+use super::filtered_base::FilteredBase;
+use super::hypothesis::JudgedHypothesis;
 use super::outcome::Confounded;
-use super::search::{Judged, Search};
-use crate::residual::{Candidate, Gram};
-
-/// The angle from which on effects count as different, deg.
-const APART_DEG: f64 = 40.0;
+use super::search::HypothesisSearch;
+use super::thresholds::THRESHOLDS;
+use crate::residual::{EffectCandidate, Gram};
 
 /// Responses of the effects found and of all others, with the coefficients integrated out.
 pub(super) struct Responses<'a> {
-    found: Vec<&'a Candidate>,
-    others: Vec<&'a Candidate>,
+    found: Vec<&'a EffectCandidate>,
+    others: Vec<&'a EffectCandidate>,
     /// Places of each in the information, the found first.
     places: Vec<Vec<usize>>,
     information: DMatrix<f64>,
@@ -24,10 +23,15 @@ pub(super) struct Responses<'a> {
 
 impl<'a> Responses<'a> {
     /// From products of all columns of a base with everything beside what was found.
-    pub fn new(search: &'a Search<'_>, base: &Base<'_>, judged: &'a Judged, total: &Gram) -> Option<Self> {
-        let found: Vec<&Candidate> = judged.candidates.iter().collect();
+    pub fn new(
+        search: &'a HypothesisSearch<'_>,
+        base: &FilteredBase<'_>,
+        judged: &'a JudgedHypothesis,
+        total: &Gram,
+    ) -> Option<Self> {
+        let found: Vec<&EffectCandidate> = judged.candidates.iter().collect();
         let others = search.others(&judged.candidates);
-        let all: Vec<&Candidate> = found.iter().chain(&others).copied().collect();
+        let all: Vec<&EffectCandidate> = found.iter().chain(&others).copied().collect();
         let columns: Vec<Vec<usize>> = all.iter().map(|candidate| base.workspace.columns().showing(candidate)).collect();
         let select: Vec<usize> = (0..search.nuisance.len()).chain(columns.iter().flatten().copied()).collect();
         let mut first = 0;
@@ -36,7 +40,7 @@ impl<'a> Responses<'a> {
             (first - columns.len()..first).collect()
         };
         let places = columns.iter().map(place).collect();
-        let information = Reduced::new(&total.select(&select), &search.fixed)?.information;
+        let information = MarginalInformation::new(&total.select(&select), &search.fixed)?.information;
         Some(Self { found, others, places, information })
     }
 
@@ -47,7 +51,7 @@ impl<'a> Responses<'a> {
             let Some((angle_deg, behind)) = self.angle(found, other) else { continue };
             let name = self.others[other].effect.as_str();
             let is_nearer = nearest.get(name).is_none_or(|known| angle_deg < known.angle_deg);
-            if angle_deg < APART_DEG && is_nearer {
+            if angle_deg < THRESHOLDS.confounding.apart_deg && is_nearer {
                 nearest.insert(name, Confounded { name: name.to_owned(), angle_deg, behind });
             }
         }
@@ -74,7 +78,7 @@ impl<'a> Responses<'a> {
         let seen = part(other, own) * &change;
         let mut information = part(other, other);
         // A ridge far below what matters: some parameters of an effect may say the same on these trials.
-        let ridge = 1e-9 * information.diagonal().max();
+        let ridge = THRESHOLDS.confounding.ridge * information.diagonal().max();
         (0..other.len()).for_each(|i| information[(i, i)] += ridge);
         let followed = seen.dot(&Cholesky::new(information)?.solve(&seen));
         let share = (followed / response).clamp(0.0, 1.0);

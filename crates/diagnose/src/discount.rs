@@ -3,18 +3,12 @@
 use sistership_model::trial::Channel;
 use sistership_model::uncertainty::{FalseAlarmLevel, Uncertainty};
 
-use crate::residual::Candidate;
-
-/// The law of an effect is a model too: how far the size of what it does is from the truth, and how far the shape.
-pub(super) const SIZE: f64 = 0.03;
-pub(super) const SHAPE: f64 = 0.003;
-
-/// Where a model brings no uncertainty: its coefficients are published ones, and what they cannot follow nobody has measured.
-const UNKNOWN: f64 = 10.0;
+use super::thresholds::THRESHOLDS;
+use crate::residual::EffectCandidate;
 
 /// The factor by which the information on an effect is divided.
-pub(super) fn discount(uncertainty: Option<&Uncertainty>, candidate: &Candidate, trials: usize) -> f64 {
-    let Some(known) = uncertainty else { return UNKNOWN };
+pub(super) fn discount(uncertainty: Option<&Uncertainty>, candidate: &EffectCandidate, trials: usize) -> f64 {
+    let Some(known) = uncertainty else { return THRESHOLDS.effect.unknown_discount };
     let of = |level: &FalseAlarmLevel| {
         // What one size of the effect would suit grows with the number of trials.
         let together = 1.0 + (level.together - 1.0) * trials as f64 / known.trials.len().max(1) as f64;
@@ -35,6 +29,6 @@ pub(super) const OUTSIDE: [Channel; 4] =
     [Channel::WindSpeed, Channel::WindFrom, Channel::ApparentWindSpeed, Channel::ApparentWindFrom];
 
 /// Whether an effect follows a record of what does not come of the ship's motion.
-pub(super) fn is_from_outside(candidate: &Candidate) -> bool {
+pub(super) fn is_from_outside(candidate: &EffectCandidate) -> bool {
     candidate.form.file.needs.iter().any(|channel| OUTSIDE.contains(channel))
 }

@@ -6,20 +6,13 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
+use super::coefficient_prior::CoefficientPrior;
 use crate::residual::Gram;
-
-/// What is known of the coefficients before these trials: `information`, and `information * mean`, by column.
-#[derive(Debug, Clone)]
-pub struct Fixed {
-    /// Information matrix, coefficients by coefficients.
-    pub information: DMatrix<f64>,
-    /// Information times the expected change.
-    pub weighted_mean: DVector<f64>,
-}
+use sistership_estimate::refine::RefineError;
 
 /// The columns of effects with the coefficients integrated out.
 #[derive(Debug, Clone)]
-pub struct Reduced {
+pub struct MarginalInformation {
     /// Minus twice the logarithm of the likelihood of the model without any effect, less a constant.
     pub deviance: f64,
     /// Information of the effects' columns.
@@ -34,7 +27,7 @@ pub struct Reduced {
 
 /// A normal prior of one column, as a distance from where the column is a tangent.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fixing {
+pub struct NormalPrior {
     /// Mean.
     pub mean: f64,
     /// Standard deviation.
@@ -43,7 +36,7 @@ pub struct Fixing {
 
 /// What a hypothesis gives.
 #[derive(Debug, Clone)]
-pub struct Estimate {
+pub struct HypothesisEstimate {
     /// Logarithm of how much more probable the readings are than under the model alone.
     pub gain: f64,
     /// The parameters, as distances from where the columns are tangents.
@@ -54,16 +47,16 @@ pub struct Estimate {
 
 /// The level of the discrepancy, as a factor on what is expected of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Level {
+pub struct DiscrepancyFactor {
     /// The factor.
     pub factor: f64,
     /// Logarithm of its prior probability.
     pub log_prior: f64,
 }
 
-impl Reduced {
+impl MarginalInformation {
     /// Integrates the first `coefficients` columns out; `None` where the information is not positive.
-    pub fn new(gram: &Gram, fixed: &Fixed) -> Option<Self> {
+    pub fn new(gram: &Gram, fixed: &CoefficientPrior) -> Option<Self> {
         let c = fixed.weighted_mean.len();
         let e = gram.products.nrows() - 1 - c;
         let products = &gram.products;
@@ -81,7 +74,7 @@ impl Reduced {
     }
 
     /// Some of the effects' columns, with others integrated out under their priors.
-    pub fn given(&self, others: &[usize], priors: &[Fixing], columns: &[usize]) -> Option<Self> {
+    pub fn given(&self, others: &[usize], priors: &[NormalPrior], columns: &[usize]) -> Option<Self> {
         let (own, right) = self.posterior(others, priors);
         let cross = DMatrix::from_fn(others.len(), columns.len(), |i, j| self.information[(others[i], columns[j])]);
         let factor = Cholesky::new(own)?;
@@ -116,8 +109,8 @@ impl Reduced {
 
     /// What some columns explain (in squared deviations), and what chance lets them explain: of a right model without an
     /// effect, the first is a chi-square whose mean is the second.
-    pub fn explained(&self, columns: &[usize], priors: &[Fixing]) -> Option<(f64, f64)> {
-        let free: Vec<Fixing> = priors.iter().map(|prior| Fixing { mean: 0.0, ..*prior }).collect();
+    pub fn explained(&self, columns: &[usize], priors: &[NormalPrior]) -> Option<(f64, f64)> {
+        let free: Vec<NormalPrior> = priors.iter().map(|prior| NormalPrior { mean: 0.0, ..*prior }).collect();
         let (posterior, right) = self.posterior(columns, &free);
         let factor = Cholesky::new(posterior)?;
         let left: f64 = (0..columns.len()).map(|i| factor.inverse()[(i, i)] * priors[i].deviation.powi(-2)).sum();
@@ -125,7 +118,7 @@ impl Reduced {
     }
 
     /// Information and right side of some columns with their priors.
-    fn posterior(&self, columns: &[usize], priors: &[Fixing]) -> (DMatrix<f64>, DVector<f64>) {
+    fn posterior(&self, columns: &[usize], priors: &[NormalPrior]) -> (DMatrix<f64>, DVector<f64>) {
         let size = columns.len();
         let precision = |i: usize| priors[i].deviation.powi(-2);
         let mut information = DMatrix::from_fn(size, size, |i, j| self.information[(columns[i], columns[j])]);
@@ -138,13 +131,18 @@ impl Reduced {
     }
 
     /// The estimate of a hypothesis that has some of the effects' columns, with their priors.
-    pub fn estimate(&self, columns: &[usize], priors: &[Fixing]) -> Option<Estimate> {
+    pub fn estimate(&self, columns: &[usize], priors: &[NormalPrior]) -> Option<HypothesisEstimate> {
         let (information, right) = self.posterior(columns, priors);
-        let of = |fixing: &Fixing| (fixing.mean / fixing.deviation).powi(2) + 2.0 * fixing.deviation.ln();
+        let of = |fixing: &NormalPrior| (fixing.mean / fixing.deviation).powi(2) + 2.0 * fixing.deviation.ln();
         let prior: f64 = priors.iter().map(of).sum();
         let factor = Cholesky::new(information)?;
         let mean = factor.solve(&right);
         let log_determinant: f64 = 2.0 * factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
-        Some(Estimate { gain: 0.5 * (right.dot(&mean) - prior - log_determinant), mean, covariance: factor.inverse() })
+        Some(HypothesisEstimate { gain: 0.5 * (right.dot(&mean) - prior - log_determinant), mean, covariance: factor.inverse() })
     }
+}
+
+/// The refusal where information has no root.
+pub(super) fn not_positive() -> RefineError {
+    RefineError::Data("the trials' information is not positive".into())
 }

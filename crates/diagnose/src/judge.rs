@@ -14,7 +14,7 @@ use super::refit::Refit;
 use sistership_estimate::transfer::ready;
 
 /// Errors and manoeuvres of all trials.
-pub(super) struct Errors {
+pub(super) struct SimulatedErrors {
     pub before: BTreeMap<String, f64>,
     pub after: BTreeMap<String, f64>,
     pub trials: Vec<TrialErrors>,
@@ -30,7 +30,7 @@ type Each = Vec<Option<SquaredError>>;
 
 /// Simulates each trial by the model as it is, and by a model fitted on the others in the way that does best on the others.
 /// A fit by trajectories leaves a trial out by one step from where all of them were fitted.
-pub(super) fn errors(request: &Request<'_>, refits: &[Refit], restart_s: f64) -> Errors {
+pub(super) fn errors(request: &Request<'_>, refits: &[Refit], restart_s: f64) -> SimulatedErrors {
     let count = request.trials.len();
     let before = simulated(request, &vec![request.model; count], restart_s);
     let each: Vec<Each> =
@@ -42,7 +42,7 @@ pub(super) fn errors(request: &Request<'_>, refits: &[Refit], restart_s: f64) ->
     let ways: Vec<usize> = (0..count).map(|trial| best(&|other| other != trial || count == 1)).collect();
     let after: Each = ways.iter().enumerate().map(|(trial, &way)| each[way][trial].clone()).collect();
     let model = |trial: usize| &refits[ways[trial]].without[trial];
-    Errors {
+    SimulatedErrors {
         before: total(&before, &|_| true),
         after: total(&after, &|_| true),
         trials: (0..count).map(|trial| of_trial(request.trials[trial], &before[trial], &after[trial])).collect(),

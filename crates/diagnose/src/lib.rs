@@ -1,16 +1,19 @@
 //! What the residual says: which effect a model lacks, if any.
 
-mod base;
 mod calibrate;
+mod calibrated_model;
 mod choose;
+mod coefficient_prior;
 mod confounded;
 mod constancy;
 mod corrected;
 mod covariance;
 mod discount;
 mod evidence;
+mod filtered_base;
+mod hypothesis;
 mod judge;
-mod learned;
+mod linearised_trials;
 mod next_trial;
 mod nuisance;
 mod outcome;
@@ -20,12 +23,13 @@ mod remainder;
 pub mod residual;
 mod run;
 mod said;
+mod screening;
 mod search;
 mod series;
 mod settings;
 mod setup;
+mod thresholds;
 mod values;
-mod workspace;
 
 use std::sync::Arc;
 

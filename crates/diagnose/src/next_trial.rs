@@ -8,46 +8,40 @@ use sistership_dynamics::{Ship, Trajectory};
 use sistership_model::Trial;
 use sistership_model::trial::Channel;
 
-use super::base::Base;
 use super::confounded::Responses;
+use super::filtered_base::FilteredBase;
+use super::hypothesis::JudgedHypothesis;
 use super::outcome::{Found, NextTrial};
-use super::search::{Judged, Search};
+use super::search::HypothesisSearch;
+use super::thresholds::{PlannedHelm, THRESHOLDS};
+use super::values::model_with;
 use crate::residual::{Gram, filter};
-
-/// What can be sailed: name, rudder, switch (none for a turn), deg.
-const MANOEUVRES: [(&str, f64, Option<f64>); 4] = [
-    ("zigzag 10/10", 10.0, Some(10.0)),
-    ("zigzag 20/20", 20.0, Some(20.0)),
-    ("turning circle 15", 15.0, None),
-    ("turning circle 35", 35.0, None),
-];
-/// Approach speeds by that of the trials.
-const SPEEDS: [f64; 2] = [1.0, 0.6];
-/// Headings, deg.
-const HEADINGS_DEG: [f64; 3] = [0.0, 90.0, 180.0];
-/// Duration in the times in which the ship sails her length at the speed of the trials.
-const DURATION: f64 = 25.0;
 
 /// One that could be sailed.
 #[derive(Clone, Copy)]
-struct Planned {
-    manoeuvre: (&'static str, f64, Option<f64>),
+struct PlannedManoeuvre {
+    helm: PlannedHelm,
     speed_m_s: f64,
     heading_deg: f64,
 }
 
 /// The trial that separates an effect found from those beside it best; none where nothing is to be separated.
-pub(super) fn next_trial(search: &Search<'_>, base: &Base<'_>, judged: &Judged, found: &[Found]) -> Option<NextTrial> {
+pub(super) fn next_trial(
+    search: &HypothesisSearch<'_>,
+    base: &FilteredBase<'_>,
+    judged: &JudgedHypothesis,
+    found: &[Found],
+) -> Option<NextTrial> {
     let doubtful = found.iter().filter(|found| !found.confounded_with.is_empty());
     let doubtful = doubtful.min_by(|a, b| a.confounded_with[0].angle_deg.total_cmp(&b.confounded_with[0].angle_deg))?;
     let place = judged.candidates.iter().position(|candidate| candidate.effect == doubtful.name)?;
     let ship = ship(search, judged)?;
-    let gain = |planned: &Planned| Some((separated(search, base, judged, place, doubtful, &ship, planned)?, *planned));
-    let gains: Vec<(f64, Planned)> = plans(base).par_iter().filter_map(gain).collect();
+    let gain = |planned: &PlannedManoeuvre| Some((separated(search, base, judged, place, doubtful, &ship, planned)?, *planned));
+    let gains: Vec<(f64, PlannedManoeuvre)> = plans(base).par_iter().filter_map(gain).collect();
     let (expected, best) = gains.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
     let others = doubtful.confounded_with.iter().map(|other| other.name.clone());
     Some(NextTrial {
-        manoeuvre: best.manoeuvre.0.to_owned(),
+        manoeuvre: best.helm.name.to_owned(),
         speed_m_s: (10.0 * best.speed_m_s).round() / 10.0,
         heading_deg: best.heading_deg,
         separates: std::iter::once(doubtful.name.clone()).chain(others).collect(),
@@ -55,26 +49,28 @@ pub(super) fn next_trial(search: &Search<'_>, base: &Base<'_>, judged: &Judged, 
     })
 }
 
-fn plans(base: &Base<'_>) -> Vec<Planned> {
+fn plans(base: &FilteredBase<'_>) -> Vec<PlannedManoeuvre> {
     let approach = base.workspace.speed_m_s;
-    let of =
-        |manoeuvre, share: f64| HEADINGS_DEG.map(|heading_deg| Planned { manoeuvre, speed_m_s: share * approach, heading_deg });
-    MANOEUVRES.iter().flat_map(|&m| SPEEDS.into_iter().flat_map(move |share| of(m, share))).collect()
+    let given = THRESHOLDS.next_trial;
+    let of = |helm: PlannedHelm, share: f64| {
+        given.headings_deg.map(|heading_deg| PlannedManoeuvre { helm, speed_m_s: share * approach, heading_deg })
+    };
+    given.manoeuvres.into_iter().flat_map(|helm| given.speeds.into_iter().flat_map(move |share| of(helm, share))).collect()
 }
 
-fn ship(search: &Search<'_>, judged: &Judged) -> Option<Ship> {
-    Ship::new(&search.model_with(&judged.candidates, None), search.law).ok()
+fn ship(search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> Option<Ship> {
+    Ship::new(&model_with(search.model, &judged.candidates, None), search.law).ok()
 }
 
 /// The evidence by which the nearest of the others would be behind after a planned trial.
 fn separated(
-    search: &Search<'_>,
-    base: &Base<'_>,
-    judged: &Judged,
+    search: &HypothesisSearch<'_>,
+    base: &FilteredBase<'_>,
+    judged: &JudgedHypothesis,
     place: usize,
     doubtful: &Found,
     ship: &Ship,
-    planned: &Planned,
+    planned: &PlannedManoeuvre,
 ) -> Option<f64> {
     let trial = sailed(base, ship, planned)?;
     let gram = filtered(search, base, judged, &trial)?;
@@ -86,16 +82,16 @@ fn separated(
 }
 
 /// A trial as it would be recorded, without noise.
-fn sailed(base: &Base<'_>, ship: &Ship, planned: &Planned) -> Option<Trial> {
+fn sailed(base: &FilteredBase<'_>, ship: &Ship, planned: &PlannedManoeuvre) -> Option<Trial> {
     let workspace = &base.workspace;
     let settings = ManoeuvreSettings {
         speed_m_s: Some(planned.speed_m_s),
-        duration_s: Some(DURATION * workspace.lpp_m / workspace.speed_m_s),
-        run_in_s: 2.0 * workspace.lpp_m / workspace.speed_m_s,
+        duration_s: Some(THRESHOLDS.next_trial.duration * workspace.lpp_m / workspace.speed_m_s),
+        run_in_s: THRESHOLDS.next_trial.run_in * workspace.lpp_m / workspace.speed_m_s,
         ..ManoeuvreSettings::default()
     };
-    let (_, rudder, switch) = planned.manoeuvre;
-    let track = match switch {
+    let PlannedHelm { rudder_deg: rudder, switch_deg, .. } = planned.helm;
+    let track = match switch_deg {
         Some(switch) => zigzag(ship, rudder, switch, &settings).ok()?.track,
         None => turn(ship, rudder, &settings).ok()?.track,
     };
@@ -134,10 +130,11 @@ fn recorded(track: &Trajectory, like: &Trial, heading_rad: f64) -> Trial {
 }
 
 /// The products of all columns of a base over a planned trial.
-fn filtered(search: &Search<'_>, base: &Base<'_>, judged: &Judged, trial: &Trial) -> Option<Gram> {
+fn filtered(search: &HypothesisSearch<'_>, base: &FilteredBase<'_>, judged: &JudgedHypothesis, trial: &Trial) -> Option<Gram> {
     let columns = base.workspace.columns().clone();
     let trials = [trial];
-    let workspace = super::workspace::Workspace::new(&search.learned, columns, &trials, search.least_step_s).ok()?;
+    let workspace =
+        super::linearised_trials::LinearisedTrials::new(&search.calibrated_model, columns, &trials, search.least_step_s).ok()?;
     let discrepancies = base.levels[judged.level.min(base.levels.len() - 1)].discrepancies();
     let width = 1 + workspace.columns().len();
     let parts = workspace.linear().iter().flatten();

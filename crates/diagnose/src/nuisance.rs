@@ -9,16 +9,13 @@ use sistership_model::effect::Form;
 use sistership_model::formula::Expr;
 use sistership_model::law::Law;
 use sistership_model::trial::Channel;
-use sistership_model::triangle::TriangleError;
 use sistership_model::uncertainty::Uncertainty;
 use sistership_model::{Effect, Model, Trial};
 
-use super::evidence::Fixed;
+use super::coefficient_prior::CoefficientPrior;
+use super::thresholds::THRESHOLDS;
 use crate::residual::{Columns, Nuisance, NuisanceKind};
-
-/// Virtual masses are held: trials would seem to tell them, but what they tell is how far the law is from the truth. What is
-/// not known of them goes into standard errors (`covariance`).
-const HELD: f64 = 1e-6;
+use sistership_estimate::refine::RefineError;
 
 /// Terms that a grammar spells and a model lacks, by name.
 pub type Terms = BTreeMap<String, Arc<Form>>;
@@ -59,32 +56,37 @@ pub fn regressor(model: &Model, form: &Form) -> Option<(Axis, Expr)> {
 }
 
 /// What is known of the coefficients before any trial: the model's own within a share of each, or of the deviation that the
-/// grammar gives a term of its axis; terms that it lacks within the grammar's deviation.
-pub fn prior(model: &Model, columns: &[Nuisance], terms: &Terms, slack: f64) -> Fixed {
+/// grammar gives a term of its axis; terms that it lacks within the grammar's deviation. Virtual masses
+/// are held: trials would seem to tell them, but what they tell is how far the law is from the truth. What is not known of them goes
+/// into standard errors (`covariance`).
+pub fn prior(model: &Model, columns: &[Nuisance], terms: &Terms, slack: f64) -> CoefficientPrior {
     let of_axis = |axis: Axis| {
         let of = terms.values().find(|form| form.forces.contains_key(&axis));
-        of.and_then(|form| form.parameters.values().next()).map_or(1e-2, |parameter| parameter.prior_deviation)
+        of.and_then(|form| form.parameters.values().next())
+            .map_or(THRESHOLDS.calibration.fallback_deviation, |parameter| parameter.prior_deviation)
     };
     let deviation = |nuisance: &Nuisance| match nuisance.kind {
-        NuisanceKind::Own(axis) => slack * model.coefficient(&nuisance.name).abs().max(0.1 * of_axis(axis)),
+        NuisanceKind::Own(axis) => {
+            slack * model.coefficient(&nuisance.name).abs().max(THRESHOLDS.calibration.least_prior_share * of_axis(axis))
+        }
         NuisanceKind::Lacked(axis) => slack * of_axis(axis),
-        NuisanceKind::Mass(..) => HELD,
+        NuisanceKind::Mass(..) => THRESHOLDS.calibration.mass_prior,
     };
     let precisions = DVector::from_iterator(columns.len(), columns.iter().map(|nuisance| deviation(nuisance).powi(-2)));
-    Fixed { information: DMatrix::from_diagonal(&precisions), weighted_mean: DVector::zeros(columns.len()) }
+    CoefficientPrior { information: DMatrix::from_diagonal(&precisions), weighted_mean: DVector::zeros(columns.len()) }
 }
 
 /// What the model's own trials say of the coefficients, for the columns that it names.
 ///
 /// # Errors
 /// As [`Uncertainty::root`].
-pub fn learned_prior(uncertainty: &Uncertainty) -> Result<Fixed, TriangleError> {
-    let rows = uncertainty.root()?;
+pub fn learned_prior(uncertainty: &Uncertainty) -> Result<CoefficientPrior, RefineError> {
+    let rows = uncertainty.root().map_err(|error| RefineError::Law(error.to_string()))?;
     let size = rows.len();
     let entry = |i: usize, j: usize| if j >= i { rows[i][j - i] / uncertainty.scales[j] } else { 0.0 };
     let root = DMatrix::from_fn(size, size, entry);
     let offset = DVector::from_column_slice(&uncertainty.offset);
-    Ok(Fixed { information: root.transpose() * &root, weighted_mean: root.transpose() * offset })
+    Ok(CoefficientPrior { information: root.transpose() * &root, weighted_mean: root.transpose() * offset })
 }
 
 /// The columns of a model that knows its uncertainty: those it names; otherwise its own coefficients.

@@ -7,13 +7,13 @@ use sistership_model::{Model, Trial, particulars};
 
 use super::Request;
 use super::corrected::{CorrectedRecords, joined, split};
-use super::search::{Judged, Search};
+use super::hypothesis::JudgedHypothesis;
+use super::search::HypothesisSearch;
+use super::thresholds::THRESHOLDS;
+use super::values::model_with;
 use sistership_estimate::refine::{Alternative, Blocks, alternatives, fit, trial_moments};
 use sistership_estimate::transfer::approach_of;
-use sistership_regression::{Choice, Moments};
-
-/// Strengths of the prior that are weighed where the effects stay as they were found.
-const STRENGTHS: [f64; 4] = [1000.0, 100.0, 10.0, 1.0];
+use sistership_regression::{Moments, RidgeChoice};
 
 /// A model with effects, on all trials and without each of them.
 pub(super) struct Refit {
@@ -25,15 +25,20 @@ pub(super) struct Refit {
 
 /// What is weighed: the coefficients as they are; fitted with the effects as they were found; and, where the effects on the ship
 /// are linear, fitted together with them. Regressions read the trials as instruments would have shown them that do not err.
-pub(super) fn refits(request: &Request<'_>, search: &Search<'_>, judged: &Judged, restart_s: f64) -> Vec<Refit> {
-    let all = search.model_with(&judged.candidates, Some(&judged.covariance));
+pub(super) fn refits(
+    request: &Request<'_>,
+    search: &HypothesisSearch<'_>,
+    judged: &JudgedHypothesis,
+    restart_s: f64,
+) -> Vec<Refit> {
+    let all = model_with(search.model, &judged.candidates, Some(&judged.covariance));
     let without = (0..request.trials.len()).map(|trial| without(request, search, judged, trial)).collect();
     let found = Refit { how: None, all, without };
     let corrected = (!judged.candidates.is_empty()).then(|| CorrectedRecords::new(request, &found.all)).flatten();
     let mut fitted = Vec::new();
     if let Some(corrected) = corrected {
         let request = &Request { trials: &corrected.trials(), ..*request };
-        fitted.extend(STRENGTHS.iter().filter_map(|&lambda| ridge(request, &found, lambda)));
+        fitted.extend(THRESHOLDS.refit.strengths.iter().filter_map(|&lambda| ridge(request, &found, lambda)));
         fitted.extend(jointly(request, &found, restart_s));
     }
     std::iter::once(found).chain(fitted).collect()
@@ -46,10 +51,10 @@ fn others<'a>(request: &Request<'a>, but: usize) -> Vec<&'a Trial> {
 }
 
 /// The model with effects as the other trials ask for them.
-fn without(request: &Request<'_>, search: &Search<'_>, judged: &Judged, trial: usize) -> Model {
+fn without(request: &Request<'_>, search: &HypothesisSearch<'_>, judged: &JudgedHypothesis, trial: usize) -> Model {
     let keep = |other: usize| other != trial || request.trials.len() == 1;
     let fitted = judged.of_trials(&search.fixed, &keep).filter(|(_, candidates)| !candidates.is_empty());
-    fitted.map_or_else(|| request.model.clone(), |(_, candidates)| search.model_with(&candidates, None))
+    fitted.map_or_else(|| request.model.clone(), |(_, candidates)| model_with(search.model, &candidates, None))
 }
 
 fn ridge(request: &Request<'_>, found: &Refit, lambda: f64) -> Option<Refit> {
@@ -88,14 +93,14 @@ fn with_coefficients(model: &Model, law: &Law, trials: &[&Trial], lambda: f64) -
     let equations = EquationsOfMotion::new(model, law).ok()?;
     let blocks = Blocks::new(model, equations.law()).ok()?;
     let speed_m_s = approach_of(trials).map(|approach| approach.speed_m_s).or(model.speed_m_s)?;
-    let difference_s = 0.1 * particulars::value(&model.particulars, "lpp_m")? / speed_m_s;
+    let difference_s = THRESHOLDS.refit.difference * particulars::value(&model.particulars, "lpp_m")? / speed_m_s;
     let of = |trial: &&Trial| trial_moments(&blocks, trial, Some(difference_s)).ok();
     let each: Vec<Vec<Moments>> = trials.iter().map(of).collect::<Option<_>>()?;
     let mut total = each.first()?.clone();
     for moments in &each[1..] {
         total.iter_mut().zip(moments).for_each(|(sum, more)| sum.merge(more));
     }
-    let choices = blocks.blocks.iter().map(|block| vec![Choice { lambda, alpha: 0.0 }; block.axes.len()]).collect();
+    let choices = blocks.blocks.iter().map(|block| vec![RidgeChoice { lambda, alpha: 0.0 }; block.axes.len()]).collect();
     let mut model = model.clone();
     for (name, fitted) in fit(&blocks, &total, &model, &choices).coefficients {
         let quantity = model.coefficients.get_mut(&name)?;

@@ -4,25 +4,14 @@ use std::collections::BTreeMap;
 
 use sistership_model::trial::Channel;
 
-use super::discount::SHAPE;
+use super::linearised_trials::LinearisedTrials;
 use super::outcome::Unexplained;
-use super::workspace::Workspace;
+use super::thresholds::THRESHOLDS;
 use crate::residual::{Discrepancies, Linearised, errors, responses};
-
-/// Prediction errors are added up over so long, in the times in which the ship sails her length: what lasts stands out.
-const BLOCK: f64 = 0.6;
-/// Blocks that are judged together.
-const BLOCKS: usize = 6;
-/// Root mean square of the sums, in deviations, above which a stretch is not noise, where clean trials say nothing else.
-const LIMIT: f64 = 3.0;
-/// How much larger than on any clean trial a stretch must be.
-const MARGIN: f64 = 1.25;
-/// The channels whose equations are judged.
-const JUDGED: [Channel; 5] = [Channel::U, Channel::V, Channel::R, Channel::P, Channel::Psi];
 
 /// Stretches that the columns at `parameters` leave unexplained, under the discrepancy that is expected; the largest first.
 pub(super) fn unexplained(
-    workspace: &Workspace<'_>,
+    workspace: &LinearisedTrials<'_>,
     discrepancies: &Discrepancies,
     parameters: &[f64],
     effects: &[f64],
@@ -30,7 +19,7 @@ pub(super) fn unexplained(
 ) -> Vec<Unexplained> {
     let limit = |channel: Channel| {
         let seen = clean.and_then(|clean| clean.get(channel.name())).copied().unwrap_or_default();
-        LIMIT.max(MARGIN * seen)
+        THRESHOLDS.remainder.limit.max(THRESHOLDS.remainder.margin * seen)
     };
     let mut found = Vec::new();
     for (place, trial) in workspace.trials.iter().enumerate() {
@@ -44,17 +33,17 @@ pub(super) fn unexplained(
 
 /// The largest that any stretch of a trial leaves, by channel.
 pub(super) fn largest(
-    workspace: &Workspace<'_>,
+    workspace: &LinearisedTrials<'_>,
     trial: usize,
     discrepancies: &Discrepancies,
     parameters: &[f64],
 ) -> Vec<(Channel, f64)> {
-    let of = |(channel, sums): (Channel, Sums<'_>)| (channel, sums.largest());
+    let of = |(channel, sums): (Channel, BlockSums<'_>)| (channel, sums.largest());
     sums(workspace, trial, discrepancies, [parameters, &vec![0.0; parameters.len()]]).into_iter().map(of).collect()
 }
 
 /// Sums of the prediction errors of a channel over blocks of a part of a trial, in deviations.
-struct Sums<'a> {
+struct BlockSums<'a> {
     part: &'a Linearised,
     /// Samples in a block.
     size: usize,
@@ -64,21 +53,23 @@ struct Sums<'a> {
 }
 
 fn sums<'a>(
-    workspace: &'a Workspace<'_>,
+    workspace: &'a LinearisedTrials<'_>,
     trial: usize,
     discrepancies: &Discrepancies,
     [parameters, effects]: [&[f64]; 2],
-) -> Vec<(Channel, Sums<'a>)> {
-    let block_s = BLOCK * workspace.lpp_m / workspace.speed_m_s;
+) -> Vec<(Channel, BlockSums<'a>)> {
+    let block_s = THRESHOLDS.remainder.block * workspace.lpp_m / workspace.speed_m_s;
     let mut all = Vec::new();
     for part in &workspace.linear()[trial] {
         let interval = (part.t_s[part.t_s.len() - 1] - part.t_s[0]) / (part.t_s.len() - 1) as f64;
         let size = (block_s / (interval * part.every as f64)).round().max(1.0) as usize;
         let (left, _) = errors(&part.along(parameters), &workspace.noise, discrepancies);
         let moved = responses(&part.along(effects), &workspace.noise, discrepancies);
-        for (place, &(channel, _)) in part.channels.iter().enumerate().filter(|(_, (channel, _))| JUDGED.contains(channel)) {
+        for (place, &(channel, _)) in
+            part.channels.iter().enumerate().filter(|(_, (channel, _))| THRESHOLDS.remainder.channels.contains(channel))
+        {
             let of = |all: &[f64]| block_sums(all.iter().skip(place).step_by(part.channels.len()).copied(), size);
-            all.push((channel, Sums { part, size, sums: of(&left), moved: of(&moved) }));
+            all.push((channel, BlockSums { part, size, sums: of(&left), moved: of(&moved) }));
         }
     }
     all
@@ -93,26 +84,26 @@ fn rms(sums: &[f64]) -> f64 {
     (sums.iter().map(|s| s * s).sum::<f64>() / sums.len() as f64).sqrt()
 }
 
-impl Sums<'_> {
+impl BlockSums<'_> {
     fn starts(&self) -> std::ops::Range<usize> {
-        0..self.sums.len().saturating_sub(BLOCKS - 1)
+        0..self.sums.len().saturating_sub(THRESHOLDS.remainder.blocks - 1)
     }
 
     fn largest(&self) -> f64 {
-        self.starts().map(|from| rms(&self.sums[from..from + BLOCKS])).fold(0.0, f64::max)
+        self.starts().map(|from| rms(&self.sums[from..from + THRESHOLDS.remainder.blocks])).fold(0.0, f64::max)
     }
 
     /// Runs of blocks above the limit, each as one stretch.
     fn stretches(&self, trial: &str, channel: Channel, limit: f64) -> Vec<Unexplained> {
         let mut found: Vec<(usize, usize)> = Vec::new();
         let is_large = |&from: &usize| {
-            let blocks = from..from + BLOCKS;
-            rms(&self.sums[blocks.clone()]) > limit.hypot(SHAPE * rms(&self.moved[blocks]))
+            let blocks = from..from + THRESHOLDS.remainder.blocks;
+            rms(&self.sums[blocks.clone()]) > limit.hypot(THRESHOLDS.effect.shape * rms(&self.moved[blocks]))
         };
         for from in self.starts().filter(is_large) {
             match found.last_mut().filter(|(_, end)| from <= *end) {
-                Some((_, end)) => *end = from + BLOCKS,
-                None => found.push((from, from + BLOCKS)),
+                Some((_, end)) => *end = from + THRESHOLDS.remainder.blocks,
+                None => found.push((from, from + THRESHOLDS.remainder.blocks)),
             }
         }
         let time = |block: usize| self.part.t_s[(block * self.size * self.part.every).min(self.part.t_s.len() - 1)];
@@ -129,10 +120,10 @@ impl Sums<'_> {
     /// A run without the blocks at its ends that came in only beside large ones.
     fn trimmed(&self, (mut from, mut to): (usize, usize), limit: f64) -> (usize, usize) {
         let is_small = |block: usize| self.sums[block].abs() < limit;
-        while to - from > BLOCKS && is_small(from) {
+        while to - from > THRESHOLDS.remainder.blocks && is_small(from) {
             from += 1;
         }
-        while to - from > BLOCKS && is_small(to - 1) {
+        while to - from > THRESHOLDS.remainder.blocks && is_small(to - 1) {
             to -= 1;
         }
         (from, to)

@@ -3,15 +3,19 @@
 use std::collections::BTreeMap;
 
 use super::Request;
-use super::choose::{Choice, Settled, choose};
+use super::choose::{ConvergedChoice, EffectChoice, choose};
+use super::constancy::inconstant;
+use super::hypothesis::JudgedHypothesis;
 use super::judge::errors;
+use super::linearised_trials::LinearisedTrials;
 use super::outcome::{Diagnosis, Unexplained, Verdict};
 use super::refit::refits;
 use super::remainder::unexplained;
 use super::said::{apart, how, hypotheses, in_model, remarks};
-use super::search::{Judged, Search};
+use super::search::HypothesisSearch;
 use super::series::{levels, residuals};
 use super::setup::search;
+use super::thresholds::THRESHOLDS;
 use sistership_estimate::refine::{Progress, RefineError};
 
 /// Diagnoses a model on trials.
@@ -35,13 +39,18 @@ fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineE
     if progress(fraction, what) { Ok(()) } else { Err(RefineError::Cancelled) }
 }
 
-fn answer(request: &Request<'_>, first: &Search<'_>, choice: Choice, progress: Progress<'_>) -> Result<Diagnosis, RefineError> {
-    let Believed { choice, settled, remaining, refused } = believed(request, first, choice, progress)?;
-    let Settled { search, base, best } = &settled;
+fn answer(
+    request: &Request<'_>,
+    first: &HypothesisSearch<'_>,
+    choice: EffectChoice,
+    progress: Progress<'_>,
+) -> Result<Diagnosis, RefineError> {
+    let SelectedEffects { choice, settled, remaining, refused } = believed(request, first, choice, progress)?;
+    let ConvergedChoice { search, base, best } = &settled;
     let workspace = &base.workspace;
     let length_s = workspace.lpp_m / workspace.speed_m_s;
     step(progress, 0.85, "simulating each trial by a fit on the others")?;
-    let restart_s = request.settings.restart_s.unwrap_or(10.0 * length_s);
+    let restart_s = request.settings.restart_s.unwrap_or(THRESHOLDS.trials.restart * length_s);
     let mut refits = refits(request, search, best, restart_s);
     let errors = errors(request, &refits, restart_s);
     let taken = refits.swap_remove(errors.taken);
@@ -78,9 +87,9 @@ fn answer(request: &Request<'_>, first: &Search<'_>, choice: Choice, progress: P
 }
 
 /// What is taken in the end.
-struct Believed<'a> {
-    choice: Choice,
-    settled: Settled<'a>,
+struct SelectedEffects<'a> {
+    choice: EffectChoice,
+    settled: ConvergedChoice<'a>,
     remaining: Vec<Unexplained>,
     /// Names of effects that are not the same at all times.
     refused: Vec<String>,
@@ -90,23 +99,23 @@ struct Believed<'a> {
 /// choice is made again without it: it may have stood before another.
 fn believed<'a>(
     request: &Request<'_>,
-    search: &Search<'a>,
-    choice: Choice,
+    search: &HypothesisSearch<'a>,
+    choice: EffectChoice,
     progress: Progress<'_>,
-) -> Result<Believed<'a>, RefineError> {
+) -> Result<SelectedEffects<'a>, RefineError> {
     let (mut search, mut choice, mut refused) = (search.clone(), choice, Vec::new());
     loop {
         let settled = choice.settled(&search, request)?;
         let remaining = remaining(&settled.search, &settled.best, &settled.base.workspace)?;
         let margin = request.settings.least_evidence;
-        let inconstant = match remaining.is_empty() {
+        let varying = match remaining.is_empty() {
             true => Vec::new(),
-            false => settled.search.inconstant(&settled.base, &settled.best, margin)?,
+            false => inconstant(&settled.search, &settled.base, &settled.best, margin)?,
         };
-        if inconstant.is_empty() {
-            return Ok(Believed { choice, settled, remaining, refused });
+        if varying.is_empty() {
+            return Ok(SelectedEffects { choice, settled, remaining, refused });
         }
-        let names = inconstant.into_iter().map(|place| settled.best.candidates[place].effect.clone());
+        let names = varying.into_iter().map(|place| settled.best.candidates[place].effect.clone());
         refused.extend(names.inspect(|name| search.forget(name)));
         step(progress, 0.8, "effects without those that only resemble what is missing")?;
         choice = choose(&search, request.settings)?.after(choice);
@@ -114,16 +123,15 @@ fn believed<'a>(
 }
 
 fn remaining(
-    search: &Search<'_>,
-    best: &Judged,
-    workspace: &super::workspace::Workspace<'_>,
+    search: &HypothesisSearch<'_>,
+    best: &JudgedHypothesis,
+    workspace: &LinearisedTrials<'_>,
 ) -> Result<Vec<Unexplained>, RefineError> {
     let expected = match search.model.uncertainty {
         Some(_) => &search.expected,
-        None => &workspace.scales().discrepancies(REMAINDER),
+        None => &workspace.scales().discrepancies(THRESHOLDS.discrepancy.remainder_level),
     };
-    let moved = best.candidates.iter().zip(&best.stood).flat_map(|(c, s)| c.at.iter().zip(&s.at).map(|(a, b)| a - b));
-    let parameters: Vec<f64> = best.shift.iter().copied().chain(moved).collect();
+    let parameters: Vec<f64> = best.shift.iter().copied().chain(best.moved()).collect();
     let clean = search.model.uncertainty.as_ref().map(|uncertainty| &uncertainty.remainder);
     let changes: Vec<f64> = best.candidates.iter().flat_map(|candidate| candidate.change()).collect();
     let effects: Vec<f64> = vec![0.0; best.shift.len()].into_iter().chain(changes).collect();
@@ -139,6 +147,3 @@ fn remaining(
     let dated: Vec<Unexplained> = dated.into_iter().filter(|a| found.iter().any(|b| same(a, b))).collect();
     Ok(if dated.is_empty() { found } else { dated })
 }
-
-/// The discrepancy that is forgiven a model that brings none, by the typical acceleration.
-const REMAINDER: f64 = 3e-4;

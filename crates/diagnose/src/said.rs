@@ -6,19 +6,21 @@ use sistership_model::Model;
 use sistership_model::quantity::Quantity;
 
 use super::Request;
-use super::choose::Choice;
+use super::choose::EffectChoice;
 use super::confounded::Responses;
+use super::covariance::covariance;
+use super::hypothesis::JudgedHypothesis;
 use super::next_trial::next_trial;
 use super::outcome::{Found, Hypothesis, NextTrial, Value};
-use super::search::{Judged, Search};
+use super::search::HypothesisSearch;
 use super::values::{acts_on, own_covariance, values};
 use sistership_estimate::refine::RefineError;
 
 /// The effects found with those they are confounded with, the strongest first, and the trial that would separate them.
 pub(super) fn apart(
     request: &Request<'_>,
-    search: &Search<'_>,
-    best: &Judged,
+    search: &HypothesisSearch<'_>,
+    best: &JudgedHypothesis,
     of_all: f64,
 ) -> Result<(Vec<Found>, Option<NextTrial>), RefineError> {
     let mut all: Vec<Found> = (0..best.candidates.len()).map(|place| found(request, search, best, place, of_all)).collect();
@@ -37,9 +39,10 @@ pub(super) fn apart(
 }
 
 /// `of_all` is the evidence of all effects together where the model alone may have any discrepancy: none has more.
-fn found(request: &Request<'_>, search: &Search<'_>, best: &Judged, place: usize, of_all: f64) -> Found {
+fn found(request: &Request<'_>, search: &HypothesisSearch<'_>, best: &JudgedHypothesis, place: usize, of_all: f64) -> Found {
     let candidate = &best.candidates[place];
-    let covariance = search.covariance(best, place);
+    let discount = search.discount(candidate);
+    let covariance = covariance(best, place, (&search.nuisance, &search.fixed), discount);
     Found {
         name: candidate.effect.clone(),
         form: candidate.form.file.name.clone(),
@@ -63,10 +66,10 @@ pub(super) fn in_model(found: &Found, model: &Model) -> BTreeMap<String, Value> 
 }
 
 /// Everything that was judged where it stands, the most probable first.
-pub(super) fn hypotheses(request: &Request<'_>, search: &Search<'_>, choice: &Choice) -> Vec<Hypothesis> {
+pub(super) fn hypotheses(request: &Request<'_>, search: &HypothesisSearch<'_>, choice: &EffectChoice) -> Vec<Hypothesis> {
     let alone = choice.alone.held_out(&search.fixed);
-    let one = |(place, judged): (usize, &Judged)| Hypothesis {
-        effects: judged.candidates.iter().map(crate::residual::Candidate::key).collect(),
+    let one = |(place, judged): (usize, &JudgedHypothesis)| Hypothesis {
+        effects: judged.candidates.iter().map(crate::residual::EffectCandidate::key).collect(),
         evidence: judged.log_evidence - choice.alone.log_evidence,
         held_out: judged.held_out(&search.fixed).zip(alone).map(|(with, without)| with - without),
         parameters: parameters(request, judged),
@@ -77,7 +80,7 @@ pub(super) fn hypotheses(request: &Request<'_>, search: &Search<'_>, choice: &Ch
     all
 }
 
-fn parameters(request: &Request<'_>, judged: &Judged) -> BTreeMap<String, Value> {
+fn parameters(request: &Request<'_>, judged: &JudgedHypothesis) -> BTreeMap<String, Value> {
     let of = |place: usize| {
         let covariance = own_covariance(&judged.candidates, place, &judged.covariance);
         values(&judged.candidates[place], &covariance, request.model)

@@ -3,30 +3,28 @@
 use sistership_model::Trial;
 use sistership_model::trial::Channel;
 
+use super::hypothesis::JudgedHypothesis;
+use super::linearised_trials::LinearisedTrials;
 use super::outcome::{DiscrepancyLevel, ResidualSeries};
-use super::search::{Judged, Search};
-use super::workspace::Workspace;
+use super::search::HypothesisSearch;
+use super::thresholds::THRESHOLDS;
 use crate::residual::{Columns, Smoothed, smoothed};
 use sistership_estimate::refine::RefineError;
-
-/// Points of a series at most.
-const POINTS: usize = 240;
-/// Classes of a variable when it is asked how much it explains.
-const CLASSES: usize = 12;
-/// The variables that are asked.
-const VARIABLES: [Channel; 8] =
-    [Channel::Psi, Channel::Delta, Channel::U, Channel::V, Channel::R, Channel::N, Channel::WindSpeed, Channel::WindFrom];
 
 /// The residuals of every trial: of the model as it is, and with the effects found.
 ///
 /// # Errors
 /// Names what a trial lacks.
-pub(super) fn residuals(search: &Search<'_>, settled: &Search<'_>, best: &Judged) -> Result<Vec<ResidualSeries>, RefineError> {
-    let before = Workspace::new(&search.learned, Columns::default(), search.trials, search.least_step_s)?;
+pub(super) fn residuals(
+    search: &HypothesisSearch<'_>,
+    settled: &HypothesisSearch<'_>,
+    best: &JudgedHypothesis,
+) -> Result<Vec<ResidualSeries>, RefineError> {
+    let before = LinearisedTrials::new(&search.calibrated_model, Columns::default(), search.trials, search.least_step_s)?;
     let columns = Columns { nuisance: Vec::new(), candidates: best.candidates.clone() };
-    let after = Workspace::new(&settled.learned, columns, search.trials, search.least_step_s)?;
+    let after = LinearisedTrials::new(&settled.calibrated_model, columns, search.trials, search.least_step_s)?;
     let level = search.levels[search.levels.len() - 1];
-    let of = |workspace: &Workspace<'_>, trial: usize| -> Vec<Smoothed> {
+    let of = |workspace: &LinearisedTrials<'_>, trial: usize| -> Vec<Smoothed> {
         let parts = workspace.linear()[trial].iter();
         parts.map(|part| smoothed(part, &workspace.noise, &search.discrepancies(level))).collect()
     };
@@ -43,10 +41,10 @@ pub(super) fn residuals(search: &Search<'_>, settled: &Search<'_>, best: &Judged
 }
 
 fn series(trial: &Trial, channel: &str, samples: &[usize], axis: usize, [before, after]: [&[Smoothed]; 2]) -> ResidualSeries {
-    let stride = samples.len().div_ceil(POINTS).max(1);
+    let stride = samples.len().div_ceil(THRESHOLDS.series.points).max(1);
     let thin = |values: Vec<f64>| values.into_iter().step_by(stride).collect::<Vec<f64>>();
     let joined = |parts: &[Smoothed]| thin(parts.iter().flat_map(|part| part.values[axis].clone()).collect());
-    let band = before.iter().flat_map(|part| part.deviations[axis].iter().map(|sd| 2.0 * sd)).collect();
+    let band = before.iter().flat_map(|part| part.deviations[axis].iter().map(|sd| THRESHOLDS.series.band * sd)).collect();
     ResidualSeries {
         trial: trial.name.clone(),
         channel: channel.to_owned(),
@@ -71,7 +69,7 @@ fn explain(trials: &[&Trial], all: &mut [ResidualSeries]) {
             let pairs: Option<Vec<Vec<(f64, f64)>>> = of.iter().map(|series| pairs(trials, series, *variable)).collect();
             explained(pairs?.into_iter().flatten().collect())
         };
-        let shares = VARIABLES.iter().filter_map(|variable| Some((share(variable)?, *variable)));
+        let shares = THRESHOLDS.series.variables.iter().filter_map(|variable| Some((share(variable)?, *variable)));
         let Some((_, best)) = shares.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
         for series in all.iter_mut().filter(|series| series.channel == channel) {
             let pairs = pairs(trials, series, best).unwrap_or_default();
@@ -100,14 +98,19 @@ fn explained(mut pairs: Vec<(f64, f64)>) -> Option<f64> {
     let mean = |part: &[(f64, f64)]| part.iter().map(|pair| pair.1).sum::<f64>() / part.len() as f64;
     let all = mean(&pairs);
     let total: f64 = pairs.iter().map(|pair| (pair.1 - all).powi(2)).sum();
-    let classes = pairs.chunks(pairs.len().div_ceil(CLASSES));
+    let classes = pairs.chunks(pairs.len().div_ceil(THRESHOLDS.series.classes));
     let between: f64 = classes.map(|class| class.len() as f64 * (mean(class) - all).powi(2)).sum();
     (total > 0.0).then(|| between / total)
 }
 
 /// How much of each acceleration nothing explains, before and after.
-pub(super) fn levels(search: &Search<'_>, workspace: &Workspace<'_>, before: &Judged, after: &Judged) -> Vec<DiscrepancyLevel> {
-    let at = |judged: &Judged| search.discrepancies(search.levels[judged.level.min(search.levels.len() - 1)]);
+pub(super) fn levels(
+    search: &HypothesisSearch<'_>,
+    workspace: &LinearisedTrials<'_>,
+    before: &JudgedHypothesis,
+    after: &JudgedHypothesis,
+) -> Vec<DiscrepancyLevel> {
+    let at = |judged: &JudgedHypothesis| search.discrepancies(search.levels[judged.level.min(search.levels.len() - 1)]);
     let (before, after) = (at(before), at(after));
     let is_known = search.model.uncertainty.is_some();
     let one = |(place, axis): (usize, &sistership_model::coefficient::Axis)| DiscrepancyLevel {

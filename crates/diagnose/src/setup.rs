@@ -8,39 +8,33 @@ use sistership_model::law::Law;
 use sistership_model::{Effect, Model, Trial};
 
 use super::Request;
-use super::evidence::Level;
-use super::learned::Learned;
+use super::calibrated_model::CalibratedModel;
+use super::evidence::DiscrepancyFactor;
+use super::linearised_trials::LinearisedTrials;
 use super::nuisance::{Terms, columns, lacked, learned, learned_prior, prior};
-use super::search::Search;
-use super::workspace::Workspace;
-use crate::residual::{Candidate, Columns, Discrepancies};
+use super::search::HypothesisSearch;
+use super::thresholds::THRESHOLDS;
+use crate::residual::{Columns, Discrepancies, EffectCandidate};
 use sistership_estimate::refine::RefineError;
-
-/// Levels of the discrepancy where the model brings one, as factors on it, and the spread of their prior's logarithm.
-const FACTORS: [f64; 3] = [1.0, 3.0, 10.0];
-const SPREAD: f64 = 1.0;
-/// Levels where it brings none, as factors on a hundred-thousandth of the typical acceleration; all equally probable.
-const UNKNOWN: [f64; 7] = [1.0, 4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0];
-const LEAST: f64 = 1e-5;
 
 /// The forms that can be tried on trials: those whose channels every trial has, of effects that the model does not carry,
 /// but for what its instruments are known to do.
-pub(super) fn listed(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Vec<Candidate> {
+pub(super) fn listed(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Vec<EffectCandidate> {
     let carried = |effect: &&Arc<Effect>| !model.effects.iter().any(|applied| applied.name == effect.name);
     let systematic_errors = model.uncertainty.as_ref().map(|known| known.systematic_errors.as_slice()).unwrap_or_default();
-    let of = |effect: &Arc<Effect>| -> Vec<Candidate> {
+    let of = |effect: &Arc<Effect>| -> Vec<EffectCandidate> {
         let is_systematic =
             |form: &Form| systematic_errors.iter().any(|error| error.name == effect.name && error.form.name == form.file.name);
         let forms = effect.forms.iter().filter(|form| fits(form, law, trials) && !is_systematic(form));
-        forms.map(|form| Candidate::absent(&effect.name, form)).collect()
+        forms.map(|form| EffectCandidate::absent(&effect.name, form)).collect()
     };
     effects.iter().filter(carried).flat_map(of).collect()
 }
 
 /// The terms that the library's grammars spell.
-fn freed(request: &Request<'_>) -> Vec<Candidate> {
+fn freed(request: &Request<'_>) -> Vec<EffectCandidate> {
     let terms = lacked(request.model, request.law, request.effects, request.trials);
-    terms.iter().map(|(effect, form)| Candidate::absent(effect, form)).collect()
+    terms.iter().map(|(effect, form)| EffectCandidate::absent(effect, form)).collect()
 }
 
 fn fits(form: &Form, law: &Law, trials: &[&Trial]) -> bool {
@@ -51,7 +45,7 @@ fn fits(form: &Form, law: &Law, trials: &[&Trial]) -> bool {
 }
 
 /// Every effect is as probable as another, and so is every form of it.
-fn log_priors<'a>(candidates: impl Iterator<Item = &'a Candidate> + Clone) -> BTreeMap<String, f64> {
+fn log_priors<'a>(candidates: impl Iterator<Item = &'a EffectCandidate> + Clone) -> BTreeMap<String, f64> {
     let mut forms: BTreeMap<&str, f64> = BTreeMap::new();
     candidates.clone().for_each(|candidate| *forms.entry(&candidate.effect).or_default() += 1.0);
     let effects = forms.len() as f64;
@@ -60,23 +54,24 @@ fn log_priors<'a>(candidates: impl Iterator<Item = &'a Candidate> + Clone) -> BT
 
 /// # Errors
 /// Names what the model or a trial lacks.
-pub(super) fn search<'a>(request: &Request<'a>) -> Result<Search<'a>, RefineError> {
+pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, RefineError> {
     let listed = listed(request.model, request.law, request.effects, request.trials);
     let freed = freed(request);
     let terms: Terms = learned(request.model, request.law, request.effects, request.trials);
     let nuisance = columns(request.model, request.law);
     let (fixed, levels) = match &request.model.uncertainty {
-        Some(uncertainty) => {
-            (learned_prior(uncertainty).map_err(|e| RefineError::Law(e.to_string()))?, FACTORS.map(known).to_vec())
-        }
-        None => (prior(request.model, &nuisance, &terms, request.settings.slack), UNKNOWN.map(unknown).to_vec()),
+        Some(uncertainty) => (learned_prior(uncertainty)?, THRESHOLDS.discrepancy.known_factors.map(known).to_vec()),
+        None => (
+            prior(request.model, &nuisance, &terms, request.settings.slack),
+            THRESHOLDS.discrepancy.unknown_factors.map(unknown).to_vec(),
+        ),
     };
     let shift =
         fixed.expected_shift(&nuisance).ok_or_else(|| RefineError::Law("what it knows of itself is not positive".into()))?;
-    let mut search = Search {
+    let mut search = HypothesisSearch {
         model: request.model,
         law: request.law,
-        learned: Learned::new(request.model, request.law, &terms, &nuisance, &shift)?,
+        calibrated_model: CalibratedModel::new(request.model, request.law, &terms, &nuisance, &shift)?,
         trials: request.trials,
         nuisance,
         terms,
@@ -94,19 +89,19 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<Search<'a>, RefineErro
     Ok(search)
 }
 
-fn known(factor: f64) -> Level {
-    Level { factor, log_prior: -0.5 * (factor.ln() / SPREAD).powi(2) }
+fn known(factor: f64) -> DiscrepancyFactor {
+    DiscrepancyFactor { factor, log_prior: -0.5 * (factor.ln() / THRESHOLDS.discrepancy.known_spread).powi(2) }
 }
 
-fn unknown(factor: f64) -> Level {
-    Level { factor, log_prior: 0.0 }
+fn unknown(factor: f64) -> DiscrepancyFactor {
+    DiscrepancyFactor { factor, log_prior: 0.0 }
 }
 
 /// The discrepancy that the model brings with it, or the least that is weighed.
-fn expected(request: &Request<'_>, search: &Search<'_>) -> Result<Discrepancies, RefineError> {
+fn expected(request: &Request<'_>, search: &HypothesisSearch<'_>) -> Result<Discrepancies, RefineError> {
     let columns = Columns::default();
-    let workspace = Workspace::new(&search.learned, columns, search.trials, Some(f64::MAX))?;
-    let mut expected = workspace.scales().discrepancies(LEAST);
+    let workspace = LinearisedTrials::new(&search.calibrated_model, columns, search.trials, Some(f64::MAX))?;
+    let mut expected = workspace.scales().discrepancies(THRESHOLDS.discrepancy.least_level);
     if let Some(uncertainty) = &request.model.uncertainty {
         for (axis, discrepancy) in workspace.axes().iter().zip(&mut expected) {
             if let Some(known) = uncertainty.discrepancy.get(axis) {

@@ -8,11 +8,11 @@ use sistership_model::quantity::Quantity;
 use sistership_model::{Model, particulars};
 
 use super::outcome::Value;
-use super::search::Search;
-use crate::residual::Candidate;
+use super::thresholds::THRESHOLDS;
+use crate::residual::EffectCandidate;
 
 /// The parameters of a candidate and what follows from them, by the delta method; `covariance` is of its parameters.
-pub(super) fn values(candidate: &Candidate, covariance: &DMatrix<f64>, model: &Model) -> BTreeMap<String, Value> {
+pub(super) fn values(candidate: &EffectCandidate, covariance: &DMatrix<f64>, model: &Model) -> BTreeMap<String, Value> {
     let names: Vec<&String> = candidate.form.parameters.keys().collect();
     let error = |i: usize| covariance[(i, i)].max(0.0).sqrt();
     let own = names.iter().enumerate().map(|(i, name)| ((*name).clone(), Value { value: candidate.at[i], se: error(i) }));
@@ -24,7 +24,7 @@ pub(super) fn values(candidate: &Candidate, covariance: &DMatrix<f64>, model: &M
         };
         let Some(value) = at(&candidate.at) else { continue };
         let slope = |i: usize| {
-            let step = 1e-3 * error(i).max(1e-12);
+            let step = THRESHOLDS.effect.report_step * error(i).max(1e-12);
             let (mut above, mut below) = (candidate.at.clone(), candidate.at.clone());
             (above[i], below[i]) = (above[i] + step, below[i] - step);
             Some((at(&above)? - at(&below)?) / (2.0 * step))
@@ -37,26 +37,24 @@ pub(super) fn values(candidate: &Candidate, covariance: &DMatrix<f64>, model: &M
 }
 
 /// The part of a joint covariance that belongs to a candidate.
-pub(super) fn own_covariance(candidates: &[Candidate], place: usize, covariance: &DMatrix<f64>) -> DMatrix<f64> {
+pub(super) fn own_covariance(candidates: &[EffectCandidate], place: usize, covariance: &DMatrix<f64>) -> DMatrix<f64> {
     let start: usize = candidates[..place].iter().map(|candidate| candidate.at.len()).sum();
     let size = candidates[place].at.len();
     covariance.view((start, start), (size, size)).into_owned()
 }
 
-impl Search<'_> {
-    /// The model with effects. Its coefficients stay: what the new trials move them by is fitted together with terms that
-    /// the model does not have, and would be wrong without these.
-    pub fn model_with(&self, candidates: &[Candidate], errors: Option<&DMatrix<f64>>) -> Model {
-        let mut model = self.model.clone();
-        for (place, candidate) in candidates.iter().enumerate() {
-            let covariance = errors.map(|errors| own_covariance(candidates, place, errors));
-            model.effects.push(applied(candidate, covariance.as_ref()));
-        }
-        model
+/// A model with effects. Its coefficients stay: what the new trials move them by is fitted together with terms that
+/// the model does not have, and would be wrong without these.
+pub(super) fn model_with(model: &Model, candidates: &[EffectCandidate], errors: Option<&DMatrix<f64>>) -> Model {
+    let mut model = model.clone();
+    for (place, candidate) in candidates.iter().enumerate() {
+        let covariance = errors.map(|errors| own_covariance(candidates, place, errors));
+        model.effects.push(applied(candidate, covariance.as_ref()));
     }
+    model
 }
 
-fn applied(candidate: &Candidate, covariance: Option<&DMatrix<f64>>) -> AppliedEffect {
+fn applied(candidate: &EffectCandidate, covariance: Option<&DMatrix<f64>>) -> AppliedEffect {
     let quantity = |(i, (name, value)): (usize, (&String, &f64))| {
         let standard_error = covariance.map(|covariance| covariance[(i, i)].max(0.0).sqrt());
         (name.clone(), Quantity { standard_error, ..Quantity::new(*value, "diagnosed") })
@@ -70,7 +68,7 @@ fn applied(candidate: &Candidate, covariance: Option<&DMatrix<f64>>) -> AppliedE
 }
 
 /// Where a form acts, by what it does.
-pub(super) fn acts_on(candidate: &Candidate) -> ActsOn {
+pub(super) fn acts_on(candidate: &EffectCandidate) -> ActsOn {
     let form = &candidate.form;
     match (form.forces.is_empty(), form.measures.is_empty()) {
         (false, _) => ActsOn::Force,

@@ -14,6 +14,8 @@ use sistership_model::law::Law;
 
 /// Draws that sail in lockstep.
 const TOGETHER: usize = 10;
+/// Most models that are drawn.
+const MOST_SAMPLES: usize = 10_000;
 
 /// How a posterior is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -37,11 +39,15 @@ impl Sampling {
     ///
     /// # Errors
     /// Says what it may be.
-    pub fn check(&self) -> Result<(), String> {
-        let most = 10_000;
-        if self.samples > most { Err(format!("samples must be at most {most}")) } else { Ok(()) }
+    pub fn check(&self) -> Result<(), TooManySamples> {
+        if self.samples > MOST_SAMPLES { Err(TooManySamples) } else { Ok(()) }
     }
 }
+
+/// More samples than are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("samples must be at most {MOST_SAMPLES}")]
+pub struct TooManySamples;
 
 /// The bands of a model's standard manoeuvres.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 use sistership_model::trial::{Channel, Trial};
-use sistership_model::{Model, Vessel, Zoo};
+use sistership_model::{FileError, Model, Vessel, Zoo};
 
-use crate::similarity::{Candidate, CharacteristicVector, Definition, Limits, RankedSource, Trend, rank};
-use crate::transfer::{approach_of, transfer, trend};
+use crate::similarity::{CharacteristicVector, Definition, EligibilityLimits, RankedSource, SourceCandidate, Trend, rank};
+use crate::transfer::{approach_of, transfer};
+use crate::trend::{TrendError, trend};
 
 /// How similar ships rank for a target.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -20,6 +21,22 @@ pub struct Similarity {
     pub ranking: Vec<RankedSource>,
 }
 
+/// Why there is no source.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SourceError {
+    /// No ship of the ranking passes every step.
+    #[error("no ship of the zoo is an eligible source for `{target}`; {reasons}")]
+    NotEligible {
+        /// The target.
+        target: String,
+        /// Each ship with the step that it failed.
+        reasons: String,
+    },
+    /// The zoo's own file of the best one is at fault.
+    #[error(transparent)]
+    Zoo(#[from] FileError),
+}
+
 /// The definition by which ships are compared with a target: Mei's where she has every component of it, else Kanazawa's.
 pub fn definition_for(target: &Vessel) -> Definition {
     let complete = CharacteristicVector::of(target, Definition::Mei2019).missing().is_empty();
@@ -32,24 +49,24 @@ pub fn similar(zoo: &Zoo, target: &Vessel, definition: Option<Definition>, trial
     let definition = definition.unwrap_or_else(|| definition_for(target));
     let models: Vec<(&Vessel, Option<Model>)> =
         zoo.vessels().map(|vessel| (&**vessel, zoo.published(vessel, None).ok())).collect();
-    let candidates: Vec<Candidate<'_>> =
-        models.iter().map(|(vessel, model)| Candidate { vessel, model: model.as_ref() }).collect();
+    let candidates: Vec<SourceCandidate<'_>> =
+        models.iter().map(|(vessel, model)| SourceCandidate { vessel, model: model.as_ref() }).collect();
     let measured = |model: &Model| trend_on(zoo, target, model, trials);
     let measured: Option<Trend<'_>> = if trials.is_empty() { None } else { Some(&measured) };
     Similarity {
         target: target.name().to_owned(),
         definition,
         vector: CharacteristicVector::of(target, definition).values,
-        ranking: rank(target, &candidates, definition, &Limits::default(), measured),
+        ranking: rank(target, &candidates, definition, &EligibilityLimits::default(), measured),
     }
 }
 
 /// The trend of a source on the target's trials, started anew each time she has sailed 20 of her lengths.
-fn trend_on(zoo: &Zoo, target: &Vessel, source: &Model, trials: &[&Trial]) -> Result<f64, String> {
-    let law = zoo.law(&source.law).ok_or_else(|| format!("there is no law `{}`", source.law))?;
+fn trend_on(zoo: &Zoo, target: &Vessel, source: &Model, trials: &[&Trial]) -> Result<f64, TrendError> {
+    let law = zoo.law(&source.law).ok_or_else(|| TrendError::NoLaw(source.law.clone()))?;
     let silent = [Channel::Phi, Channel::P].into_iter().find_map(|channel| {
         let without = trials.iter().find(|trial| law.has_roll() && trial.channel(channel).is_none())?;
-        Some(format!("its law has roll, and trial `{}` has no channel `{channel}`", without.name))
+        Some(TrendError::Roll { trial: without.name.clone(), channel })
     });
     if let Some(reason) = silent {
         return Err(reason);
@@ -64,7 +81,7 @@ fn trend_on(zoo: &Zoo, target: &Vessel, source: &Model, trials: &[&Trial]) -> Re
 ///
 /// # Errors
 /// Lists each ship of the ranking with the step it failed.
-pub fn best_source(zoo: &Zoo, similarity: &Similarity) -> Result<Model, String> {
+pub fn best_source(zoo: &Zoo, similarity: &Similarity) -> Result<Model, SourceError> {
     best_source_except(zoo, similarity, &[])
 }
 
@@ -72,12 +89,12 @@ pub fn best_source(zoo: &Zoo, similarity: &Similarity) -> Result<Model, String> 
 ///
 /// # Errors
 /// As [`best_source`].
-pub fn best_source_except(zoo: &Zoo, similarity: &Similarity, exclude: &[String]) -> Result<Model, String> {
+pub fn best_source_except(zoo: &Zoo, similarity: &Similarity, exclude: &[String]) -> Result<Model, SourceError> {
     let eligible = similarity.ranking.iter().find(|ranked| ranked.eligible && !exclude.contains(&ranked.ship));
     if let Some(model) = eligible.and_then(|ranked| ranked.model.as_deref()) {
-        return zoo.model(model).map_err(|error| error.to_string());
+        return Ok(zoo.model(model)?);
     }
     let why = |ranked: &RankedSource| format!("{}: {}", ranked.ship, ranked.reasons.last().map_or("", String::as_str));
     let reasons: Vec<String> = similarity.ranking.iter().map(why).collect();
-    Err(format!("no ship of the zoo is an eligible source for `{}`; {}", similarity.target, reasons.join("; ")))
+    Err(SourceError::NotEligible { target: similarity.target.clone(), reasons: reasons.join("; ") })
 }

@@ -1,9 +1,7 @@
-//! Carrying a source model over to another ship, and measuring whether it captures the trend of her trials.
+//! Carrying a source model over to another ship.
 
 use std::collections::BTreeSet;
 
-use sistership_dynamics::recorded::{ReplaySettings, replay};
-use sistership_dynamics::state::at;
 use sistership_dynamics::{PlantError, Ship};
 use sistership_model::formula::Expr;
 use sistership_model::law::Law;
@@ -64,8 +62,25 @@ fn ratio(source: &Model, target: &Vessel) -> f64 {
     target.particular("lpp_m").zip(there).map_or(1.0, |(here, there)| here / there)
 }
 
+/// A parameter of a law that nothing gives.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{name}` of law `{law}` does not follow from the particulars of {ship}")]
+pub struct UnknownParameter {
+    /// The parameter.
+    pub name: String,
+    /// The law.
+    pub law: String,
+    /// The ship.
+    pub ship: String,
+}
+
 /// As [`blank`], with what the target does not state scaled from a source.
-pub(crate) fn blank_of(law: &Law, target: &Vessel, source: &Model, approach: Option<Approach>) -> Result<Model, String> {
+pub(crate) fn blank_of(
+    law: &Law,
+    target: &Vessel,
+    source: &Model,
+    approach: Option<Approach>,
+) -> Result<Model, UnknownParameter> {
     let mut target = target.clone();
     target.particulars = complete(source, law, &target, ratio(source, &target));
     blank(law, &target, approach)
@@ -76,14 +91,13 @@ pub(crate) fn blank_of(law: &Law, target: &Vessel, source: &Model, approach: Opt
 ///
 /// # Errors
 /// Names a parameter of the law that does not follow from her particulars.
-pub fn blank(law: &Law, target: &Vessel, approach: Option<Approach>) -> Result<Model, String> {
+pub fn blank(law: &Law, target: &Vessel, approach: Option<Approach>) -> Result<Model, UnknownParameter> {
     let zero = |name: &String| (name.clone(), Quantity::new(0.0, "nothing known"));
     let parameter = |name: &String| {
         let own = if law.approach_speed_parameter() == Some(name) { approach.map(|a| a.speed_m_s) } else { None };
         let value = own.or_else(|| law.derived_parameter(name, &target.particulars));
-        let value = value
-            .ok_or_else(|| format!("`{name}` of law `{}` does not follow from the particulars of {}", law.name, target.name()))?;
-        Ok((name.clone(), Quantity::new(value, DERIVED)))
+        let unknown = || UnknownParameter { name: name.clone(), law: law.name.clone(), ship: target.name().to_owned() };
+        Ok((name.clone(), Quantity::new(value.ok_or_else(unknown)?, DERIVED)))
     };
     Ok(Model {
         kind: ModelKind::Model,
@@ -97,7 +111,7 @@ pub fn blank(law: &Law, target: &Vessel, approach: Option<Approach>) -> Result<M
         revolutions_rps: approach.and_then(|a| a.n_rps),
         steering: Default::default(),
         particulars: target.particulars.clone(),
-        parameters: law.parameters.keys().map(parameter).collect::<Result<_, String>>()?,
+        parameters: law.parameters.keys().map(parameter).collect::<Result<_, UnknownParameter>>()?,
         coefficients: law.axes.values().flat_map(|axis| axis.terms.keys().map(zero)).collect(),
         effects: Vec::new(),
         uncertainty: None,
@@ -129,52 +143,21 @@ fn needed_particulars(law: &Law) -> BTreeSet<String> {
     names.filter(|name| particulars::dimension(name).is_some()).collect()
 }
 
-/// How well a model captures the trend of trials: Pearson's correlation of simulated and measured yaw rate over all of
-/// them, simulated with the recorded rudder and started anew every `restart_s`.
-///
-/// # Errors
-/// Says which channel is missing, or that the simulation left the physical range.
-pub fn trend(model: &Model, law: &Law, trials: &[&Trial], restart_s: f64) -> Result<f64, String> {
-    let ship = ready(model, law, trials)?;
-    let settings = ReplaySettings { restart_s: Some(restart_s), ..ReplaySettings::default() };
-    let mut pairs = Vec::new();
-    for trial in trials {
-        let run = replay(&ship, trial, &settings).map_err(|e| e.to_string())?;
-        if let Some(stopped) = run.stopped {
-            return Err(format!("{} {stopped}", trial.name));
-        }
-        let measured = trial.channel(Channel::R).unwrap_or_default();
-        pairs.extend(run.track.states.iter().zip(&run.samples).map(|(state, &k)| (state[at::R], measured[k])));
-    }
-    pearson(&pairs).ok_or_else(|| "the yaw rate is constant".to_owned())
-}
-
 /// A ship whose envelope covers the speeds of the trials.
-pub fn ready(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, String> {
+pub fn ready(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, PlantError> {
     widened(Ship::new(model, law), trials)
 }
 
 /// As [`ready`], for all models that have the same names of coefficients.
-pub(crate) fn ready_for_sisters(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, String> {
+pub(crate) fn ready_for_sisters(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, PlantError> {
     let mut ship = widened(Ship::sisters(model, law), trials)?;
     ship.forget_validity();
     Ok(ship)
 }
 
-fn widened(ship: Result<Ship, PlantError>, trials: &[&Trial]) -> Result<Ship, String> {
-    let mut ship = ship.map_err(|e| e.to_string())?;
+fn widened(ship: Result<Ship, PlantError>, trials: &[&Trial]) -> Result<Ship, PlantError> {
+    let mut ship = ship?;
     let fastest = trials.iter().flat_map(|t| t.channel(Channel::U).into_iter().flatten()).fold(0.0_f64, |a, b| a.max(b.abs()));
     ship.set_envelope_speed(fastest);
     Ok(ship)
-}
-
-fn pearson(pairs: &[(f64, f64)]) -> Option<f64> {
-    let n = pairs.len() as f64;
-    let mean = pairs.iter().fold((0.0, 0.0), |m, p| (m.0 + p.0 / n, m.1 + p.1 / n));
-    let sums = pairs.iter().fold((0.0, 0.0, 0.0), |s, p| {
-        let (a, b) = (p.0 - mean.0, p.1 - mean.1);
-        (s.0 + a * a, s.1 + b * b, s.2 + a * b)
-    });
-    let spread = (sums.0 * sums.1).sqrt();
-    (spread > 0.0).then(|| sums.2 / spread)
 }

@@ -3,7 +3,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use rand::{RngExt, SeedableRng};
-use sistership_regression::{Choice, Moments, RidgePath, Validation};
+use sistership_regression::{Moments, RidgeChoice, RidgePath, Validation};
 
 const REGRESSORS: usize = 22;
 const SAMPLES: usize = 5000;
@@ -31,8 +31,8 @@ fn refine(columns: &[Vec<f64>], source: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..source.len()).map(|target| whole.solve(target, best(&folds, target, &source[target]), &source[target])).collect()
 }
 
-fn best(folds: &[(RidgePath, Validation)], target: usize, source: &[f64]) -> Choice {
-    let mut best = (f64::INFINITY, Choice { lambda: 1.0, alpha: 0.0 });
+fn best(folds: &[(RidgePath, Validation)], target: usize, source: &[f64]) -> RidgeChoice {
+    let mut best = (f64::INFINITY, RidgeChoice { lambda: 1.0, alpha: 0.0 });
     for k in 0..LAMBDAS {
         let lambda = 10_f64.powf(-6.0 + 16.0 * k as f64 / (LAMBDAS - 1) as f64);
         let of_fold =
@@ -40,7 +40,7 @@ fn best(folds: &[(RidgePath, Validation)], target: usize, source: &[f64]) -> Cho
         let each: Vec<(f64, f64)> = folds.iter().map(of_fold).collect();
         let error: f64 = each.iter().map(|(_, error)| error).sum();
         if error < best.0 {
-            best = (error, Choice { lambda, alpha: each.iter().map(|(alpha, _)| alpha / FOLDS as f64).sum() });
+            best = (error, RidgeChoice { lambda, alpha: each.iter().map(|(alpha, _)| alpha / FOLDS as f64).sum() });
         }
     }
     best.1

@@ -8,5 +8,5 @@ mod whitened;
 
 pub use metric::Metric;
 pub use moments::Moments;
-pub use path::{Choice, RidgePath, Validation};
+pub use path::{RidgeChoice, RidgePath, Validation};
 pub use whitened::Whitened;

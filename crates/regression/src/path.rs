@@ -23,7 +23,7 @@ pub struct RidgePath {
 
 /// A point of the path: how strongly the source holds, and how much of it is replaced by zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Choice {
+pub struct RidgeChoice {
     /// Strength of the prior.
     pub lambda: f64,
     /// Share of the zero vector in the prior.
@@ -56,7 +56,7 @@ impl RidgePath {
     }
 
     /// The coefficients of a target in the units of the regressors.
-    pub fn solve(&self, target: usize, choice: Choice, source: &[f64]) -> Vec<f64> {
+    pub fn solve(&self, target: usize, choice: RidgeChoice, source: &[f64]) -> Vec<f64> {
         let (from_data, from_source) = self.parts(target, choice.lambda);
         self.unscaled(&(from_data + from_source * (1.0 - choice.alpha)), source)
     }
@@ -96,7 +96,7 @@ impl RidgePath {
     }
 
     /// Residual variance of a target at a solution, from the statistics alone; degrees of freedom as the ridge uses them.
-    pub fn residual_variance(&self, target: usize, choice: Choice) -> f64 {
+    pub fn residual_variance(&self, target: usize, choice: RidgeChoice) -> f64 {
         let solution = |i: usize| {
             let pull = choice.lambda * (1.0 - choice.alpha) * self.source[target][i];
             (self.data[target][i] + pull) / (self.eigenvalues[i] + choice.lambda).max(1e-300)
@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn known_coefficients_are_recovered_and_the_source_holds_when_told_to() {
         let path = RidgePath::new(&Moments::of_columns(&samples(), 2), &[vec![1.0, 1.0]]);
-        let at = |lambda: f64, alpha: f64| path.solve(0, Choice { lambda, alpha }, &[1.0, 1.0]);
+        let at = |lambda: f64, alpha: f64| path.solve(0, RidgeChoice { lambda, alpha }, &[1.0, 1.0]);
         let free = at(1e-12, 0.0);
         assert!((free[0] - 2.0).abs() < 1e-9 && (free[1] + 0.5).abs() < 1e-9);
         let held = at(1e9, 0.0);
@@ -243,7 +243,7 @@ mod tests {
     fn the_closed_form_solves_the_normal_equations() {
         let moments = Moments::of_columns(&samples(), 2);
         let (lambda, alpha, source) = (0.3, 0.2, [1.5, -1.0]);
-        let beta = RidgePath::new(&moments, &[source.to_vec()]).solve(0, Choice { lambda, alpha }, &source);
+        let beta = RidgePath::new(&moments, &[source.to_vec()]).solve(0, RidgeChoice { lambda, alpha }, &source);
         for i in 0..2 {
             let sigma = moments.variance(i).sqrt();
             let left: f64 = (0..2).map(|j| moments.covariance(i, j) * beta[j]).sum::<f64>() / sigma + lambda * beta[i] * sigma;
@@ -257,7 +257,7 @@ mod tests {
         let moments = Moments::of_columns(&samples(), 2);
         let (lambda, source, shrinkage) = (0.3, [1.5, -1.0], [1.0, 9.0]);
         let path = RidgePath::shrunken(&moments, &[source.to_vec()], &shrinkage);
-        let beta = path.solve(0, Choice { lambda, alpha: 0.0 }, &source);
+        let beta = path.solve(0, RidgeChoice { lambda, alpha: 0.0 }, &source);
         for i in 0..2 {
             let precision = lambda * shrinkage[i] * moments.variance(i);
             let left: f64 = (0..2).map(|j| moments.covariance(i, j) * beta[j]).sum::<f64>() + precision * beta[i];
@@ -301,7 +301,7 @@ mod tests {
         let validation = Validation::new(&moments);
         let (alpha, error) = path.best_alpha(0, 1.0, &source, &validation, (0.0, 1.0));
         for other in [alpha - 0.05, alpha + 0.05] {
-            let beta = path.solve(0, Choice { lambda: 1.0, alpha: other }, &source);
+            let beta = path.solve(0, RidgeChoice { lambda: 1.0, alpha: other }, &source);
             let columns = samples();
             let mse = (0..400).map(|k| (columns[2][k] - beta[0] * columns[0][k] - beta[1] * columns[1][k]).powi(2)).sum::<f64>()
                 / 400.0;

@@ -84,7 +84,7 @@ impl Whitened {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Choice, RidgePath, Validation};
+    use super::super::{RidgeChoice, RidgePath, Validation};
     use super::*;
 
     fn columns(phase: f64) -> Vec<Vec<f64>> {
@@ -110,7 +110,7 @@ mod tests {
         let lambdas = [1e-4, 0.1, 10.0];
         let errors = &whitened.errors(&lambdas, &left_out.mapped(&map, 2))[0];
         for (lambda, error) in lambdas.into_iter().zip(errors) {
-            let choice = Choice { lambda, alpha: 0.0 };
+            let choice = RidgeChoice { lambda, alpha: 0.0 };
             let direct = path.solve(0, choice, &source);
             let solved = whitened.basis() * whitened.solution(0, lambda);
             (0..2).for_each(|j| assert!((source[j] + solved[j] / deviation(j) - direct[j]).abs() < 1e-10));

@@ -198,7 +198,7 @@ fn law(zoo: &Zoo, name: &str) -> Result<Arc<Law>, Failure> {
 fn of_law(law: &Law, target: &Vessel, settings: &Settings, read: &[ReadTrial]) -> Result<Model, Failure> {
     let fitted = trials::trials(read).into_iter().filter(|trial| !settings.held_out.contains(&trial.name));
     let approach = approach_of(&fitted.collect::<Vec<_>>());
-    blank(law, target, approach).map_err(Failure::Refused)
+    blank(law, target, approach).map_err(|error| Failure::Refused(error.to_string()))
 }
 
 /// The best eligible source; trials kept out have no say in it.

@@ -1,32 +1,31 @@
 //! What the trials that a model was fitted on leave open.
 
 mod false_alarm;
-mod known;
-mod scatter;
+mod noise_model;
 mod systematic_errors;
+mod trial_information;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use known::Known;
 use nalgebra::{Cholesky, DMatrix, DVector};
-use scatter::Scatter;
+use noise_model::NoiseModel;
 use sistership_model::law::Law;
 use sistership_model::trial::Channel;
 use sistership_model::uncertainty::{Discrepancy, InstrumentFit, Uncertainty};
 use sistership_model::{Effect, Model, Trial};
+use trial_information::TrialInformation;
 
-use super::evidence::Fixed;
-use super::learned::Learned;
+use super::calibrated_model::CalibratedModel;
+use super::coefficient_prior::CoefficientPrior;
+use super::evidence::not_positive;
+use super::linearised_trials::LinearisedTrials;
 use super::nuisance::{Terms, lacked, learned, prior, regressor};
 use super::remainder::largest;
 use super::setup::listed;
-use super::workspace::Workspace;
-use crate::residual::{Candidate, Columns, Discrepancies, Instrument, Noise, Nuisance};
+use super::thresholds::THRESHOLDS;
+use crate::residual::{Columns, Discrepancies, EffectCandidate, Instrument, Noise, Nuisance};
 use sistership_estimate::refine::RefineError;
-
-/// How far coefficients may be from the model's before its own trials are asked.
-const WIDE: f64 = 1.0;
 
 /// What the trials that a model was fitted on leave open, to be kept with it. Terms of the library's grammar that the model
 /// lacks are learned too, as far as those trials show them; and what effects would explain of these trials, which do not
@@ -50,21 +49,22 @@ fn by_instruments(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&
     let terms = learned(model, law, effects, trials);
     let extra: Vec<_> = terms.iter().filter_map(|(name, form)| Some((name.clone(), regressor(model, form)?.0))).collect();
     let nuisance = Columns::nuisance(model, law, &extra);
-    let prior = prior(model, &nuisance, &terms, WIDE);
+    let prior = prior(model, &nuisance, &terms, THRESHOLDS.calibration.prior_share);
     let (shift, rough) = first_shift(model, law, &terms, &nuisance, &prior, trials)?;
     let candidates = listed(model, law, effects, trials);
     let columns = Columns { nuisance: nuisance.clone(), candidates: candidates.clone() };
-    let mut workspace = Workspace::new(&Learned::new(model, law, &terms, &nuisance, &shift)?, columns, trials, None)?;
+    let mut workspace =
+        LinearisedTrials::new(&CalibratedModel::new(model, law, &terms, &nuisance, &shift)?, columns, trials, None)?;
     let fixed = prior.from(&shift);
     let scatter = workspace.noise.clone();
-    let Scatter { discrepancies, noise } = scatter::most_probable(&workspace, &fixed, Some(rough))?;
+    let NoiseModel { discrepancies, noise } = noise_model::most_probable(&workspace, &fixed, Some(rough))?;
     workspace.noise = noise;
     let grams = workspace.each(&discrepancies);
     let freed = lacked(model, law, effects, trials);
-    let freed = freed.iter().map(|(effect, form)| Candidate::absent(effect, form));
+    let freed = freed.iter().map(|(effect, form)| EffectCandidate::absent(effect, form));
     let all: Vec<_> = candidates.into_iter().chain(freed).collect();
-    let known = Known { fixed: &fixed, grams: &grams, scatter: 1.0 };
-    let known = Known { scatter: known.scatter(), ..known };
+    let known = TrialInformation { fixed: &fixed, grams: &grams, scatter: 1.0 };
+    let known = TrialInformation { scatter: known.scatter(), ..known };
     Ok(Uncertainty {
         instruments: instruments(&workspace.noise, &scatter),
         systematic_errors: model.uncertainty.as_ref().map(|known| known.systematic_errors.clone()).unwrap_or_default(),
@@ -80,17 +80,17 @@ fn first_shift(
     law: &Law,
     terms: &Terms,
     nuisance: &[Nuisance],
-    prior: &Fixed,
+    prior: &CoefficientPrior,
     trials: &[&Trial],
-) -> Result<(Vec<f64>, Scatter), RefineError> {
+) -> Result<(Vec<f64>, NoiseModel), RefineError> {
     let columns = Columns { nuisance: nuisance.to_vec(), candidates: Vec::new() };
-    let as_it_is = Learned::new(model, law, terms, nuisance, &vec![0.0; nuisance.len()])?;
-    let mut workspace = Workspace::new(&as_it_is, columns, trials, None)?;
-    let scatter = scatter::most_probable(&workspace, prior, None)?;
+    let as_it_is = CalibratedModel::new(model, law, terms, nuisance, &vec![0.0; nuisance.len()])?;
+    let mut workspace = LinearisedTrials::new(&as_it_is, columns, trials, None)?;
+    let scatter = noise_model::most_probable(&workspace, prior, None)?;
     workspace.noise.clone_from(&scatter.noise);
     let grams = workspace.each(&scatter.discrepancies);
-    let shift = Known { fixed: prior, grams: &grams, scatter: 1.0 }.by(&|_| true).expected_shift(nuisance);
-    Ok((shift.ok_or_else(|| RefineError::Data("the trials' information is not positive".into()))?, scatter))
+    let shift = TrialInformation { fixed: prior, grams: &grams, scatter: 1.0 }.by(&|_| true).expected_shift(nuisance);
+    Ok((shift.ok_or_else(not_positive)?, scatter))
 }
 
 /// Instruments by what their scatter alone says.
@@ -103,21 +103,25 @@ fn instruments(fitted: &Noise, scatter: &Noise) -> BTreeMap<String, InstrumentFi
 }
 
 /// The largest remainder by channel, each trial under coefficients fitted on the others.
-fn remainder(workspace: &Workspace<'_>, known: &Known<'_>, discrepancies: &Discrepancies) -> BTreeMap<String, f64> {
+fn remainder(
+    workspace: &LinearisedTrials<'_>,
+    known: &TrialInformation<'_>,
+    discrepancies: &Discrepancies,
+) -> BTreeMap<String, f64> {
     let mut limits: BTreeMap<String, f64> = BTreeMap::new();
     for trial in 0..workspace.trials.len() {
         let Some(shift) = known.shift(trial, workspace.columns().len()) else { continue };
         for (channel, size) in largest(workspace, trial, discrepancies, &shift) {
             let limit = limits.entry(channel.name().to_owned()).or_default();
-            *limit = limit.max((1e3 * size).round() / 1e3);
+            *limit = limit.max((THRESHOLDS.calibration.rounding * size).round() / THRESHOLDS.calibration.rounding);
         }
     }
     limits
 }
 
 fn uncertainty(
-    workspace: &Workspace<'_>,
-    known: &Known<'_>,
+    workspace: &LinearisedTrials<'_>,
+    known: &TrialInformation<'_>,
     shift: &[f64],
     discrepancies: &Discrepancies,
 ) -> Result<Uncertainty, RefineError> {
@@ -128,7 +132,7 @@ fn uncertainty(
     let scales: Vec<f64> = (0..size).map(|i| known.fixed.information[(i, i)].sqrt().recip()).collect();
     let scaled = DMatrix::from_fn(size, size, |i, j| all.information[(i, j)] * scales[i] * scales[j]);
     let right = DVector::from_fn(size, |i, _| all.weighted_mean[i] * scales[i]);
-    let factor = Cholesky::new(scaled).ok_or_else(|| RefineError::Data("the trials' information is not positive".into()))?;
+    let factor = Cholesky::new(scaled).ok_or_else(not_positive)?;
     let lower = factor.l();
     let offset = lower.solve_lower_triangular(&right).unwrap_or(right);
     let axes = workspace.axes();

@@ -10,13 +10,10 @@ use sistership_model::{Effect, Model, Trial};
 
 use super::super::choose::choose;
 use super::super::setup::search;
-use super::super::values::acts_on;
+use super::super::thresholds::THRESHOLDS;
+use super::super::values::{acts_on, model_with};
 use super::super::{Request, Settings};
 use sistership_estimate::refine::RefineError;
-
-/// Least evidence for an error of an instrument: the trials have calibrated the coefficients already, so that it must stand far
-/// above what a law that is not quite right would leave.
-const LEAST: f64 = 300.0;
 
 /// Errors of instruments that have one size on all trials; none where the instruments agree.
 pub(super) fn of(
@@ -29,11 +26,11 @@ pub(super) fn of(
     // False-alarm levels are not yet to be asked: an effect may be there.
     let known = Uncertainty { false_alarm_levels: Default::default(), ..known.clone() };
     let model = Model { uncertainty: Some(known), ..model.clone() };
-    let settings = Settings { least_evidence: LEAST, ..Settings::default() };
+    let settings = Settings { least_evidence: THRESHOLDS.calibration.systematic_error_evidence, ..Settings::default() };
     let request = Request { model: &model, law, effects, trials, settings: &settings };
     let mut search = search(&request)?;
     search.freed.clear();
     search.listed.retain(|candidate| acts_on(candidate) == ActsOn::Measurement);
     let choice = choose(&search, &settings)?;
-    Ok(search.model_with(&choice.best().candidates, None).effects.split_off(model.effects.len()))
+    Ok(model_with(search.model, &choice.best().candidates, None).effects.split_off(model.effects.len()))
 }

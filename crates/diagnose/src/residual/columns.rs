@@ -40,7 +40,7 @@ impl NuisanceKind {
 
 /// One form of an effect, with values of its parameters at which the columns are tangents.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Candidate {
+pub struct EffectCandidate {
     /// The effect's name.
     pub effect: String,
     /// The form.
@@ -49,7 +49,7 @@ pub struct Candidate {
     pub at: Vec<f64>,
 }
 
-impl Candidate {
+impl EffectCandidate {
     /// A form at the absence of its effect.
     pub fn absent(effect: &str, form: &Arc<Form>) -> Self {
         let at = form.parameters.values().map(|parameter| parameter.absent).collect();
@@ -78,7 +78,7 @@ pub struct Columns {
     /// Coefficients.
     pub nuisance: Vec<Nuisance>,
     /// Candidates.
-    pub candidates: Vec<Candidate>,
+    pub candidates: Vec<EffectCandidate>,
 }
 
 impl Columns {
@@ -100,7 +100,7 @@ impl Columns {
     }
 
     /// The places of the columns in which a candidate shows: its own, or that of the coefficient which it frees.
-    pub fn showing(&self, candidate: &Candidate) -> Vec<usize> {
+    pub fn showing(&self, candidate: &EffectCandidate) -> Vec<usize> {
         let own = self.candidates.iter().position(|known| known.key() == candidate.key());
         let freed = || self.nuisance.iter().position(|nuisance| nuisance.name == candidate.form.file.name);
         own.map_or_else(|| freed().into_iter().collect(), |own| self.places(own).collect())

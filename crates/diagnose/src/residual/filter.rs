@@ -9,12 +9,11 @@ use sistership_model::uncertainty::Discrepancy;
 use super::gram::Gram;
 use super::linearised::Linearised;
 use super::noise::Noise;
+use super::thresholds::RESIDUAL;
 
 /// The discrepancy of each acceleration, in the order of the filter's axes.
 pub type Discrepancies = Vec<Discrepancy>;
 
-/// How far the first sample may be from the smooth path, in deviations of the noise: practically anywhere.
-const START: f64 = 1e3;
 /// Whitened residual and columns of a part of a trial, added up.
 pub fn filter(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) -> Gram {
     let (rows, log_variance) = whitened(linear, noise, discrepancies);
@@ -39,7 +38,7 @@ pub fn whitened(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancie
     let width = 1 + linear.sizes.columns;
     let mut rows = Vec::with_capacity(linear.reading.len() * width);
     let mut log_variance = 0.0;
-    let mut state = State::start(linear, noise, discrepancies, width);
+    let mut state = FilterState::start(linear, noise, discrepancies, width);
     for k in 0..linear.samples.len() {
         if k > 0 {
             state.predict(linear, k - 1, discrepancies);
@@ -59,7 +58,7 @@ pub fn whitened(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancie
 }
 
 /// Deviation from the path with all its columns, and its covariance.
-pub(super) struct State {
+pub(super) struct FilterState {
     /// Number of states with discrepancies.
     pub order: usize,
     width: usize,
@@ -74,7 +73,7 @@ pub(super) struct State {
     gain: Vec<f64>,
 }
 
-impl State {
+impl FilterState {
     pub fn start(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies, width: usize) -> Self {
         let states = linear.sizes.states;
         let order = states + linear.sizes.axes;
@@ -82,9 +81,10 @@ impl State {
         let mut covariance = vec![0.0; order * order];
         for state in 0..states {
             let channel = linear.channels.iter().find(|(_, place)| *place == state).and_then(|(channel, _)| noise.get(channel));
-            drift[state] = channel.map_or(1e-9, |instrument| instrument.drift).powi(2);
+            drift[state] = channel.map_or(RESIDUAL.unread_drift, |instrument| instrument.drift).powi(2);
             // What nobody reads starts on the path.
-            covariance[state * order + state] = channel.map_or(1e-12, |instrument| (START * instrument.deviation).powi(2));
+            covariance[state * order + state] =
+                channel.map_or(RESIDUAL.unread_variance, |instrument| (RESIDUAL.start * instrument.deviation).powi(2));
         }
         for (axis, discrepancy) in discrepancies.iter().enumerate() {
             covariance[(states + axis) * (order + 1)] = discrepancy.deviation.powi(2);

@@ -2,7 +2,7 @@
 
 use sistership_dynamics::tape::{Lanes, Slots};
 
-use super::System;
+use super::ResidualSystem;
 use super::linearised::Detail;
 use super::path::of_instruments;
 
@@ -17,7 +17,7 @@ pub(super) struct InstrumentJacobian {
 }
 
 impl InstrumentJacobian {
-    pub fn new(system: &System, primal: &[Lanes<1>], inputs: usize, measured: &[usize], detail: Detail) -> Self {
+    pub fn new(system: &ResidualSystem, primal: &[Lanes<1>], inputs: usize, measured: &[usize], detail: Detail) -> Self {
         let of_state = |&state: &usize| of_instruments(state);
         let first = inputs - system.lagged.len();
         let of_column = |column: &usize| first + column - system.columns.nuisance.len();
@@ -36,14 +36,14 @@ impl InstrumentJacobian {
         Self { outputs, states: states.len(), columns: measured.len() }
     }
 
-    pub fn by_state(&self, system: &System, channel: usize) -> Vec<f64> {
+    pub fn by_state(&self, system: &ResidualSystem, channel: usize) -> Vec<f64> {
         match system.says.iter().position(|&place| place == channel) {
             Some(output) => self.outputs[output][..self.states].to_vec(),
             None => (0..self.states).map(|state| f64::from(u8::from(state == system.channels[channel].1))).collect(),
         }
     }
 
-    pub fn by_column(&self, system: &System, channel: usize) -> Vec<f64> {
+    pub fn by_column(&self, system: &ResidualSystem, channel: usize) -> Vec<f64> {
         match system.says.iter().position(|&place| place == channel) {
             Some(output) => self.outputs[output][self.states..].to_vec(),
             None => vec![0.0; self.columns],

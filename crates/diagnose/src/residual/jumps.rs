@@ -6,12 +6,7 @@ use std::ops::Range;
 use sistership_model::Trial;
 use sistership_model::trial::Channel;
 
-/// By how many deviations of its own scatter a step must disagree with the velocities.
-const JUMP: f64 = 15.0;
-/// The share of what the fastest sample moves in a step below which no disagreement is a jump.
-const LEAST: f64 = 0.5;
-/// The share of a trial that may be lost; what jumps more often does not jump, but is recorded so.
-const MOST: f64 = 0.3;
+use super::thresholds::RESIDUAL;
 
 /// Ranges of samples without a gap and further than `settles_s` from any jump.
 pub fn undisturbed(trial: &Trial, settles_s: f64) -> Vec<Range<usize>> {
@@ -23,7 +18,7 @@ pub fn undisturbed(trial: &Trial, settles_s: f64) -> Vec<Range<usize>> {
     };
     let kept: Vec<Range<usize>> = trial.segments().into_iter().flat_map(|range| runs(range, &|k| !is_near(k))).collect();
     let left: usize = kept.iter().map(Range::len).sum();
-    if (left as f64) < (1.0 - MOST) * trial.len() as f64 { trial.segments() } else { kept }
+    if (left as f64) < (1.0 - RESIDUAL.most_lost) * trial.len() as f64 { trial.segments() } else { kept }
 }
 
 /// Stretches of a range over which all samples are kept.
@@ -64,7 +59,7 @@ fn of_channel(trial: &Trial, channel: Channel, rate: Option<&[f64]>) -> Vec<f64>
     let apart: Vec<f64> =
         steps.iter().map(|&k| (values[k] - values[k - 1] - 0.5 * step(k) * (rate[k] + rate[k - 1])).abs()).collect();
     let fastest = steps.iter().map(|&k| (step(k) * rate[k]).abs()).fold(0.0, f64::max);
-    let limit = (JUMP * scatter(&apart)).max(LEAST * fastest);
+    let limit = (RESIDUAL.jump * scatter(&apart)).max(RESIDUAL.least_jump * fastest);
     let jumping = steps.iter().zip(&apart).filter(|(_, apart)| **apart > limit);
     jumping.map(|(&k, _)| 0.5 * (trial.t_s[k] + trial.t_s[k - 1])).collect()
 }

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use sistership_model::trial::Channel;
 
-use super::Record;
+use super::TrialReadings;
+use super::thresholds::RESIDUAL;
 
 /// What an instrument scatters.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,7 +20,7 @@ pub struct Instrument {
 impl Instrument {
     /// One of which nothing is known but its scatter: the drift keeps a filter from trusting arithmetic.
     pub fn of_scatter(deviation: f64) -> Self {
-        Self { deviation, drift: 1e-3 * deviation }
+        Self { deviation, drift: RESIDUAL.drift * deviation }
     }
 }
 
@@ -32,7 +33,7 @@ const GAIN: f64 = 924.0;
 
 /// What sixth differences leave of a ship's motion is far below the noise of any instrument; their median is not moved
 /// by the few samples at which something jumps.
-pub fn scatter(records: &[Record<'_>], channel: Channel, every: usize) -> Option<f64> {
+pub fn scatter(records: &[TrialReadings<'_>], channel: Channel, every: usize) -> Option<f64> {
     let mut magnitudes: Vec<f64> = records.iter().flat_map(|record| differences(record, channel, every)).collect();
     if magnitudes.is_empty() {
         return None;
@@ -43,22 +44,17 @@ pub fn scatter(records: &[Record<'_>], channel: Channel, every: usize) -> Option
     Some(*median / 0.6745 / GAIN.sqrt())
 }
 
-/// Samples of which one is read where readings were smoothed.
-const SPARSE: usize = 5;
-/// How much more sparse readings scatter where they were.
-const GROWS: f64 = 4.0;
-
 /// Of samples, how many go with one reading: noise must be new in each. Where readings were smoothed, or waves move the
 /// ship, velocities wander from sample to sample, and what is smooth would be taken for an acceleration.
-pub fn sparseness(records: &[Record<'_>]) -> usize {
+pub fn sparseness(records: &[TrialReadings<'_>]) -> usize {
     let grows = |channel: Channel| {
-        let pair = scatter(records, channel, 1).zip(scatter(records, channel, SPARSE));
-        pair.is_some_and(|(close, apart)| close > 0.0 && apart > GROWS * close)
+        let pair = scatter(records, channel, 1).zip(scatter(records, channel, RESIDUAL.sparse));
+        pair.is_some_and(|(close, apart)| close > 0.0 && apart > RESIDUAL.grows * close)
     };
-    if grows(Channel::U) && grows(Channel::V) { SPARSE } else { 1 }
+    if grows(Channel::U) && grows(Channel::V) { RESIDUAL.sparse } else { 1 }
 }
 
-fn differences(record: &Record<'_>, channel: Channel, every: usize) -> Vec<f64> {
+fn differences(record: &TrialReadings<'_>, channel: Channel, every: usize) -> Vec<f64> {
     let Some(values) = record.trial.channel(channel) else { return Vec::new() };
     let difference = |window: &[usize]| SIXTH.iter().zip(window).map(|(c, &k)| c * values[k]).sum::<f64>().abs();
     let of = |part: &Vec<usize>| {
@@ -73,9 +69,9 @@ fn differences(record: &Record<'_>, channel: Channel, every: usize) -> Vec<f64> 
 pub fn floor(channel: Channel, lpp_m: f64, speed_m_s: f64) -> f64 {
     let rate = speed_m_s / lpp_m;
     match channel {
-        Channel::X | Channel::Y => 1e-5 * lpp_m,
-        Channel::U | Channel::V => 1e-5 * speed_m_s,
-        Channel::R | Channel::P => 1e-5 * rate,
-        _ => 1e-5,
+        Channel::X | Channel::Y => RESIDUAL.floor * lpp_m,
+        Channel::U | Channel::V => RESIDUAL.floor * speed_m_s,
+        Channel::R | Channel::P => RESIDUAL.floor * rate,
+        _ => RESIDUAL.floor,
     }
 }

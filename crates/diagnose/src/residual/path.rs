@@ -6,12 +6,13 @@ use sistership_dynamics::tape::{Lanes, Slots};
 use sistership_model::trial::Channel;
 
 use super::record::smoothed;
-use super::{Record, System};
+use super::thresholds::RESIDUAL;
+use super::{ResidualSystem, TrialReadings};
 use sistership_estimate::refine::RefineError;
 
 /// The recorded motion and inputs over the samples of a trial.
-pub(super) struct Path<'a> {
-    pub record: &'a Record<'a>,
+pub(super) struct RecordedPath<'a> {
+    pub record: &'a TrialReadings<'a>,
     /// By state of the filter.
     pub states: Vec<Vec<f64>>,
     /// What the instruments said, by channel of the system; absent where nothing was recorded.
@@ -21,8 +22,8 @@ pub(super) struct Path<'a> {
     pub delayed: Vec<Option<(Vec<f64>, f64)>>,
 }
 
-impl<'a> Path<'a> {
-    pub fn new(system: &System, record: &'a Record<'a>) -> Result<Self, RefineError> {
+impl<'a> RecordedPath<'a> {
+    pub fn new(system: &ResidualSystem, record: &'a TrialReadings<'a>) -> Result<Self, RefineError> {
         for channel in [Channel::U, Channel::V, Channel::R] {
             record.need(channel)?;
         }
@@ -48,7 +49,7 @@ impl<'a> Path<'a> {
     }
 
     /// Takes from the path what instruments say beside it: the model is linearised along where the ship was.
-    fn correct(&mut self, system: &System) {
+    fn correct(&mut self, system: &ResidualSystem) {
         if system.says.is_empty() {
             return;
         }
@@ -66,7 +67,7 @@ impl<'a> Path<'a> {
         }
     }
 
-    pub fn instrument_inputs(&self, system: &System, k: usize, rate: &dyn Fn(usize) -> f64) -> Vec<Lanes<1>> {
+    pub fn instrument_inputs(&self, system: &ResidualSystem, k: usize, rate: &dyn Fn(usize) -> f64) -> Vec<Lanes<1>> {
         let by_place = |values: &dyn Fn(usize) -> f64| {
             let of = |place: usize| system.states.iter().position(|&s| s == place).map_or(0.0, values);
             INSTRUMENTS.map(of).map(|value| [value])
@@ -92,7 +93,7 @@ fn slope(t_s: &[f64], values: &[f64], k: usize) -> f64 {
     (values[after] - values[before]) / (t_s[after] - t_s[before]).max(1e-9)
 }
 
-impl Path<'_> {
+impl RecordedPath<'_> {
     /// Roll of a law without it is what was recorded, if anything was.
     pub fn roll(&self, name: &str, k: usize) -> f64 {
         let channel = Channel::by_name(name).and_then(|channel| self.record.trial.channel(channel));
@@ -101,7 +102,7 @@ impl Path<'_> {
 }
 
 /// Puts lags into effect and prepares their derivatives.
-fn delayed(system: &System, record: &Record<'_>, inputs: &mut [Vec<f64>]) -> Vec<Option<(Vec<f64>, f64)>> {
+fn delayed(system: &ResidualSystem, record: &TrialReadings<'_>, inputs: &mut [Vec<f64>]) -> Vec<Option<(Vec<f64>, f64)>> {
     let t_s = &record.trial.t_s;
     let parameters = system.columns.candidates.iter().flat_map(|c| c.at.iter().copied().zip(c.form.parameters.values()));
     let mut derivatives = Vec::new();
@@ -110,7 +111,8 @@ fn delayed(system: &System, record: &Record<'_>, inputs: &mut [Vec<f64>]) -> Vec
             derivatives.push(None);
             continue;
         };
-        let more = if value > 0.0 { 0.05 * value + 0.01 } else { parameter.start.max(0.01) };
+        let more =
+            if value > 0.0 { RESIDUAL.lag_share * value + RESIDUAL.lag_step_s } else { parameter.start.max(RESIDUAL.lag_step_s) };
         let longer = lagged(t_s, &inputs[input], value + more);
         if value > 0.0 {
             inputs[input] = lagged(t_s, &inputs[input], value);

@@ -8,7 +8,7 @@ use sistership_estimate::refine::RefineError;
 
 /// A trial as a filter reads it: times, readings, a smooth path through them, and inputs.
 #[derive(Debug, Clone)]
-pub struct Record<'a> {
+pub struct TrialReadings<'a> {
     /// The trial.
     pub trial: &'a Trial,
     /// The samples that are used, in gap-free parts.
@@ -17,7 +17,7 @@ pub struct Record<'a> {
     pub every: usize,
 }
 
-impl<'a> Record<'a> {
+impl<'a> TrialReadings<'a> {
     /// Of every so many samples one is used, such that no interval is shorter than `least_step_s`; none within `settles_s` of
     /// a jump.
     pub fn new(trial: &'a Trial, least_step_s: f64, settles_s: f64) -> Self {

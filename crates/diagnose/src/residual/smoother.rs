@@ -3,7 +3,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::filter::{Discrepancies, State};
+use super::filter::{Discrepancies, FilterState};
 use super::linearised::Linearised;
 use super::noise::Noise;
 
@@ -17,15 +17,15 @@ pub struct Smoothed {
 }
 
 /// State and covariance at a sample.
-struct Belief {
+struct GaussianState {
     mean: DVector<f64>,
     covariance: DMatrix<f64>,
 }
 
 /// What the filter knew at a sample, and what it expected there before its readings.
-struct Step {
-    known: Belief,
-    expected: Belief,
+struct FilterStep {
+    known: GaussianState,
+    expected: GaussianState,
     transition: DMatrix<f64>,
 }
 
@@ -34,11 +34,11 @@ pub fn smoothed(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancie
     let steps = forward(linear, noise, discrepancies);
     let (states, axes) = (linear.sizes.states, linear.sizes.axes);
     let mut smoothed = Smoothed { values: vec![vec![0.0; steps.len()]; axes], deviations: vec![vec![0.0; steps.len()]; axes] };
-    let mut later: Option<Belief> = None;
+    let mut later: Option<GaussianState> = None;
     for k in (0..steps.len()).rev() {
         let belief = match &later {
             Some(later) => backward(&steps[k].known, &steps[k + 1], later),
-            None => Belief { mean: steps[k].known.mean.clone(), covariance: steps[k].known.covariance.clone() },
+            None => GaussianState { mean: steps[k].known.mean.clone(), covariance: steps[k].known.covariance.clone() },
         };
         for axis in 0..axes {
             smoothed.values[axis][k] = belief.mean[states + axis];
@@ -49,10 +49,10 @@ pub fn smoothed(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancie
     smoothed
 }
 
-fn forward(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) -> Vec<Step> {
-    let mut state = State::start(linear, noise, discrepancies, 1);
+fn forward(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) -> Vec<FilterStep> {
+    let mut state = FilterState::start(linear, noise, discrepancies, 1);
     let order = state.order;
-    let belief = |state: &State| Belief {
+    let belief = |state: &FilterState| GaussianState {
         mean: DVector::from_column_slice(&state.deviations),
         covariance: DMatrix::from_row_slice(order, order, &state.covariance),
     };
@@ -66,19 +66,19 @@ fn forward(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) ->
             state.update(linear, k, noise, |_, _| {});
         }
         let transition = DMatrix::from_row_slice(order, order, &state.transition);
-        steps.push(Step { known: belief(&state), expected, transition });
+        steps.push(FilterStep { known: belief(&state), expected, transition });
     }
     steps
 }
 
 /// What was known at a sample after what came later.
-fn backward(known: &Belief, next: &Step, later: &Belief) -> Belief {
+fn backward(known: &GaussianState, next: &FilterStep, later: &GaussianState) -> GaussianState {
     let Some(expected) = Cholesky::new(next.expected.covariance.clone()) else {
-        return Belief { mean: known.mean.clone(), covariance: known.covariance.clone() };
+        return GaussianState { mean: known.mean.clone(), covariance: known.covariance.clone() };
     };
     // The gain is P F' Q^-1; all are symmetric but F.
     let gain = expected.solve(&(&next.transition * &known.covariance)).transpose();
     let mean = &known.mean + &gain * (&later.mean - &next.expected.mean);
     let covariance = &known.covariance + &gain * (&later.covariance - &next.expected.covariance) * gain.transpose();
-    Belief { mean, covariance }
+    GaussianState { mean, covariance }
 }

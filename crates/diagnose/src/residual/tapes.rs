@@ -18,7 +18,7 @@ use sistership_estimate::refine::RefineError;
 
 /// A model on tapes.
 #[derive(Debug, Clone)]
-pub struct System {
+pub struct ResidualSystem {
     /// What the columns stand for.
     pub columns: Columns,
     /// Places in the state vector of the filter's states.
@@ -52,7 +52,7 @@ pub(super) struct Motion {
     pub kinematics: Vec<usize>,
 }
 
-impl System {
+impl ResidualSystem {
     /// For trials whose velocities are of a frame. The law is in the dress of the effects that the model carries, and keeps
     /// the regressors of nuisance terms that the model lacks ([`lacked_name`]), in N (N m) per unit.
     ///
@@ -61,7 +61,7 @@ impl System {
     pub fn new(model: &Model, law: &Law, columns: Columns, frame: VelocityFrame) -> Result<Self, RefineError> {
         let forms: Vec<_> = columns.candidates.iter().map(|c| (c.effect.as_str(), &*c.form)).collect();
         let equations = EquationsOfMotion::of_law(model, Cow::Owned(law.dressed(model, &forms)));
-        let build = Builder { equations: &equations, columns: &columns };
+        let build = SystemBuilder { equations: &equations, columns: &columns };
         let (axes, states) = (equations.axes(), equations.states());
         let channels = RECORDED.iter().filter_map(|&(channel, place)| Some((channel, states.iter().position(|&s| s == place)?)));
         let channels: Vec<(Channel, usize)> = channels.collect();
@@ -92,12 +92,12 @@ impl System {
     }
 }
 
-struct Builder<'a> {
+struct SystemBuilder<'a> {
     equations: &'a EquationsOfMotion<'a>,
     columns: &'a Columns,
 }
 
-impl Builder<'_> {
+impl SystemBuilder<'_> {
     /// Names of the candidates' parameters in the law's dress.
     fn parameters(&self) -> Vec<String> {
         self.columns.candidates.iter().flat_map(|candidate| candidate.qualified()).collect()

@@ -5,17 +5,16 @@ use sistership_model::trial::Trial;
 use sistership_model::{Model, particulars};
 
 use super::candidate::CandidateFit;
+use super::estimators::estimator;
 use super::family::Family;
 use super::outcome::RefineError;
 use super::problem::Problem;
 use super::ridge_candidates::source_candidate;
 use super::selection::resolved;
 use super::settings::{Method, Settings};
+use super::thresholds::SELECTION;
 use super::variant::variants;
 use crate::bands::Sampling;
-
-/// Strengths of the weak form from which trajectories start, and which are weighed themselves.
-const STRENGTHS: [f64; 6] = [10.0, 1.0, 0.3, 0.1, 0.03, 0.01];
 
 /// A fit by the weak form or by trajectories.
 pub struct Alternative {
@@ -35,7 +34,7 @@ pub fn alternatives(model: &Model, law: &Law, trials: &[&Trial], restart_s: f64)
     let settings = Settings {
         method: Method::Trajectory,
         families: vec![Family::Own],
-        strengths: STRENGTHS.to_vec(),
+        strengths: SELECTION.alternatives.to_vec(),
         folds: trials.len(),
         restart_s: Some(restart_s),
         bands: Sampling { samples: 0, ..Sampling::default() },
@@ -43,7 +42,7 @@ pub fn alternatives(model: &Model, law: &Law, trials: &[&Trial], restart_s: f64)
     };
     let settings = resolved(&settings, particulars::value(&model.particulars, "lpp_m"), trials);
     let problem = Problem::of_model(model, law, trials, settings);
-    let estimator = problem.settings.method.estimator();
+    let estimator = estimator(problem.settings.method);
     let variants = variants(&problem, estimator.equations(&problem.settings))?;
     let mut candidates = vec![source_candidate(&problem, &variants)?];
     estimator.candidates(&problem, &variants, &mut candidates, &|_, _| true)?;

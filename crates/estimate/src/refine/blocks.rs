@@ -147,6 +147,11 @@ impl Block {
         self.terms.len()
     }
 
+    /// Columns of its table: regressors, then targets.
+    pub(crate) fn width(&self) -> usize {
+        self.regressors() + self.axes.len()
+    }
+
     /// How its prior measures coefficients.
     pub(crate) fn metric(&self, moments: &Moments) -> Metric {
         let earned = self.precision.as_ref().and_then(Metric::of_precision);

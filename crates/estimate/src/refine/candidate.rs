@@ -4,13 +4,14 @@ use sistership_dynamics::error::{SquaredError, standard_deviations, standardised
 use sistership_model::Model;
 
 use super::cma_es::SearchReport;
-use super::errors::Errors;
+use super::errors::CoefficientErrors;
 use super::outcome::{RefineError, StepOption};
 use super::problem::Problem;
 use super::ridge::{Choices, Fit};
 use super::simulated::Simulated;
+use super::thresholds::SELECTION;
 use super::variant::Variant;
-use sistership_regression::Choice;
+use sistership_regression::RidgeChoice;
 
 /// What a candidate gives where it is taken: its fit on all trials.
 pub(super) trait Solution {
@@ -24,7 +25,7 @@ pub(super) trait Solution {
     ///
     /// # Errors
     /// A trial lacks a channel.
-    fn errors(&self, problem: &Problem<'_>, variants: &[Variant]) -> Result<Option<Errors>, RefineError>;
+    fn errors(&self, problem: &Problem<'_>, variants: &[Variant]) -> Result<Option<CoefficientErrors>, RefineError>;
 
     /// The ridge that it is: the place of its variant, and its choices.
     fn ridge(&self) -> Option<(usize, &Choices)> {
@@ -33,14 +34,14 @@ pub(super) trait Solution {
 }
 
 /// The source as it is.
-pub(super) struct Source;
+pub(super) struct UnchangedSource;
 
-impl Solution for Source {
+impl Solution for UnchangedSource {
     fn fit(&self, _: &[Variant]) -> Result<Option<Fit>, RefineError> {
         Ok(None)
     }
 
-    fn errors(&self, _: &Problem<'_>, _: &[Variant]) -> Result<Option<Errors>, RefineError> {
+    fn errors(&self, _: &Problem<'_>, _: &[Variant]) -> Result<Option<CoefficientErrors>, RefineError> {
         Ok(None)
     }
 }
@@ -73,7 +74,7 @@ impl CandidateFit {
         let Simulated { total: errors, each, reason } = simulated;
         let error = reason.is_none().then(|| standardised_mse(&errors, &deviations));
         let each = each.iter().map(|error| standardised_mse(error, &deviations)).collect();
-        let flat = |of: &dyn Fn(&Choice) -> f64| {
+        let flat = |of: &dyn Fn(&RidgeChoice) -> f64| {
             solution.ridge().into_iter().flat_map(|(_, choices)| choices.iter().flatten()).map(of).collect()
         };
         let (lambda, alpha) = (flat(&|c| c.lambda), flat(&|c| c.alpha));
@@ -88,7 +89,7 @@ impl CandidateFit {
 pub(super) fn best(options: &[CandidateFit]) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
     for (index, error) in options.iter().enumerate().filter_map(|(index, o)| Some((index, o.option.error?))) {
-        let better = |(at, least): (usize, f64)| error < 0.99 * least && clearly(&options[index], &options[at]);
+        let better = |(at, least): (usize, f64)| error < SELECTION.better * least && clearly(&options[index], &options[at]);
         if error.is_finite() && best.is_none_or(better) {
             best = Some((index, error));
         }
@@ -105,5 +106,5 @@ fn clearly(new: &CandidateFit, old: &CandidateFit) -> bool {
     let count = gains.len() as f64;
     let mean = gains.iter().sum::<f64>() / count;
     let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    mean > 2.0 * (variance / count).sqrt()
+    mean > SELECTION.standard_errors * (variance / count).sqrt()
 }

@@ -15,15 +15,9 @@ use sistership_model::trial::{Channel, Trial};
 use super::blocks::{Block, Blocks};
 use super::outcome::RefineError;
 use super::rows::{Table, known_tables};
+use super::thresholds::SOURCE;
 use crate::transfer::ready;
 use sistership_regression::Moments;
-
-/// Most samples of a trial or manoeuvre: neighbours say the same.
-const SAMPLES: usize = 400;
-/// A law that is expanded about an approach speed says nothing of much slower motion.
-const LEAST_OF_APPROACH: f64 = 0.3;
-/// What is smaller than this by the largest regressor is rounding.
-const ROUNDING: f64 = 1e-13;
 
 /// What a source says where a model will be used.
 #[derive(Debug)]
@@ -35,12 +29,12 @@ pub(super) struct OperatingEnvelope {
     /// Whether it knows of roll.
     pub roll: bool,
     /// Samples that go together.
-    pub groups: Vec<Group>,
+    pub groups: Vec<SampleGroup>,
 }
 
 /// The samples of a trial or of a manoeuvre, with the source's accelerations at each.
 #[derive(Debug)]
-pub(super) struct Group {
+pub(super) struct SampleGroup {
     /// States and inputs; time only counts them.
     pub samples: Trial,
     /// By axis, in the order of [`Axis`].
@@ -49,7 +43,7 @@ pub(super) struct Group {
     pub weight: f64,
 }
 
-impl Group {
+impl SampleGroup {
     /// The source's acceleration of an axis at each sample.
     fn rate(&self, axis: Axis) -> &[f64] {
         &self.rates[axis as usize]
@@ -71,12 +65,12 @@ impl OperatingEnvelope {
     /// # Errors
     /// The source cannot sail, or the trials are nowhere that it knows.
     pub fn new(source: &Model, law: &Law, trials: &[&Trial]) -> Result<Self, RefineError> {
-        let ship = ready(source, law, trials).map_err(RefineError::Law)?;
-        let asked = Asked::new(&ship, source, law);
+        let ship = ready(source, law, trials)?;
+        let asked = SourceResponse::new(&ship, source, law);
         let recorded = trials.iter().filter_map(|trial| asked.group(trial.depth_m, asked.recorded(trial)));
         let sailed = sail_together(&ship, &STANDARD.map(|manoeuvre| (manoeuvre, &[][..])), &ManoeuvreSettings::default());
         let sailed = sailed.into_iter().flatten().filter_map(|sailed| asked.group(None, asked.sailed(&sailed.track)));
-        let (recorded, sailed): (Vec<Group>, Vec<Group>) = (recorded.collect(), sailed.collect());
+        let (recorded, sailed): (Vec<SampleGroup>, Vec<SampleGroup>) = (recorded.collect(), sailed.collect());
         if recorded.is_empty() && sailed.is_empty() {
             return Err(RefineError::Data(format!("`{}` can neither sail the standard manoeuvres nor the trials", source.name)));
         }
@@ -93,18 +87,18 @@ impl OperatingEnvelope {
     }
 }
 
-/// Groups that together count as much as [`SAMPLES`] samples.
-fn evened(mut groups: Vec<Group>) -> Vec<Group> {
+/// Groups that together count as much as [`SOURCE`]'s samples.
+fn evened(mut groups: Vec<SampleGroup>) -> Vec<SampleGroup> {
     let all: usize = groups.iter().map(|group| group.samples.len()).sum();
-    groups.iter_mut().for_each(|group| group.weight = SAMPLES as f64 / all as f64);
+    groups.iter_mut().for_each(|group| group.weight = SOURCE.samples as f64 / all as f64);
     groups
 }
 
 /// A state with its revolutions.
-type Point = (StateVector, f64);
+type OperatingPoint = (StateVector, f64);
 
 /// A source that is asked.
-struct Asked<'a> {
+struct SourceResponse<'a> {
     ship: &'a Ship,
     /// Whether its law knows what revolutions do; else it holds for those of the approach.
     propeller: bool,
@@ -113,15 +107,15 @@ struct Asked<'a> {
     least_m_s: f64,
 }
 
-impl<'a> Asked<'a> {
+impl<'a> SourceResponse<'a> {
     fn new(ship: &'a Ship, source: &Model, law: &Law) -> Self {
         let expanded = law.approach_speed_parameter().is_some();
-        let least_m_s = if expanded { LEAST_OF_APPROACH * ship.approach_speed_m_s() } else { 0.0 };
+        let least_m_s = if expanded { SOURCE.least_speed * ship.approach_speed_m_s() } else { 0.0 };
         Self { ship, propeller: ship.has_propeller(), n_rps: source.revolutions_rps.unwrap_or(0.0), least_m_s }
     }
 
     /// The states that a trial recorded; nothing where it lacks velocities or the rudder.
-    fn recorded(&self, trial: &Trial) -> Vec<Point> {
+    fn recorded(&self, trial: &Trial) -> Vec<OperatingPoint> {
         let need = [Channel::U, Channel::V, Channel::R, Channel::Delta];
         if need.iter().any(|channel| trial.channel(*channel).is_none()) {
             return Vec::new();
@@ -139,28 +133,28 @@ impl<'a> Asked<'a> {
         spread(trial.len()).map(one).collect()
     }
 
-    fn sailed(&self, track: &Trajectory) -> Vec<Point> {
+    fn sailed(&self, track: &Trajectory) -> Vec<OperatingPoint> {
         spread(track.t_s.len()).map(|k| (track.states[k], track.n_rps[k])).collect()
     }
 
-    fn knows(&self, (state, n_rps): &Point) -> bool {
+    fn knows(&self, (state, n_rps): &OperatingPoint) -> bool {
         state[at::U] > self.least_m_s && (!self.propeller || *n_rps > 0.0)
     }
 
     /// What the source says at the points that it knows, heading north; none where there is none.
-    fn group(&self, depth_m: Option<f64>, mut points: Vec<Point>) -> Option<Group> {
+    fn group(&self, depth_m: Option<f64>, mut points: Vec<OperatingPoint>) -> Option<SampleGroup> {
         points.retain(|point| self.knows(point));
         points.iter_mut().for_each(|(state, _)| state[at::PSI] = 0.0);
         let mut work = Work::default();
-        let rate = |point: &Point| self.ship.rate_with(&point.0, &self.inputs(point, depth_m), &mut work);
+        let rate = |point: &OperatingPoint| self.ship.rate_with(&point.0, &self.inputs(point, depth_m), &mut work);
         let rates: Vec<StateVector> = points.iter().map(rate).collect();
         let of = |place: usize| rates.iter().map(|rate| rate[place]).collect::<Vec<f64>>();
         let rates = [at::U, at::V, at::P, at::R].map(of);
         let finite = rates.iter().flatten().all(|rate| rate.is_finite());
-        (finite && !points.is_empty()).then(|| Group { samples: self.samples(&points, depth_m), rates, weight: 1.0 })
+        (finite && !points.is_empty()).then(|| SampleGroup { samples: self.samples(&points, depth_m), rates, weight: 1.0 })
     }
 
-    fn inputs(&self, (state, n_rps): &Point, depth_m: Option<f64>) -> Inputs {
+    fn inputs(&self, (state, n_rps): &OperatingPoint, depth_m: Option<f64>) -> Inputs {
         let (wind_m_s, wind_from) = calm(state);
         let mut inputs = [0.0; MAX_INPUTS];
         for (value, (name, default)) in inputs.iter_mut().zip(self.ship.law_inputs()) {
@@ -176,7 +170,7 @@ impl<'a> Asked<'a> {
         inputs
     }
 
-    fn samples(&self, points: &[Point], depth_m: Option<f64>) -> Trial {
+    fn samples(&self, points: &[OperatingPoint], depth_m: Option<f64>) -> Trial {
         let states =
             [(Channel::U, at::U), (Channel::V, at::V), (Channel::R, at::R), (Channel::P, at::P), (Channel::Phi, at::PHI)];
         let column = |place: usize| points.iter().map(|(state, _)| state[place]).collect::<Vec<f64>>();
@@ -196,14 +190,14 @@ fn calm(state: &StateVector) -> (f64, f64) {
     (u.hypot(v), (-v).atan2(-u))
 }
 
-/// At most [`SAMPLES`] places, evenly spread.
+/// At most as many places as samples are asked of a group, evenly spread.
 fn spread(count: usize) -> impl Iterator<Item = usize> {
-    (0..count).step_by(count.div_ceil(SAMPLES).max(1))
+    (0..count).step_by(count.div_ceil(SOURCE.samples).max(1))
 }
 
 /// Regressors that are nothing but rounding become zero: the source says nothing of them.
 fn silence(regressors: &mut [Vec<f64>]) {
     let size = |column: &Vec<f64>| column.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let least = ROUNDING * regressors.iter().map(size).fold(0.0, f64::max);
+    let least = SOURCE.rounding * regressors.iter().map(size).fold(0.0, f64::max);
     regressors.iter_mut().filter(|column| size(column) < least).for_each(|column| column.fill(0.0));
 }

@@ -5,6 +5,7 @@ use sistership_model::trial::Trial;
 use super::blocks::Blocks;
 use super::outcome::RefineError;
 use super::rows::{Table, trial_moments, trial_tables};
+use super::thresholds::SELECTION;
 use super::weak::{Windows, weak_moments, weak_tables};
 use sistership_regression::Moments;
 
@@ -49,6 +50,6 @@ impl Equations {
 
     /// The fewest samples for so many coefficients an axis. Windows are far less dependent than differences a sample.
     pub fn least_samples(self, widest: f64) -> f64 {
-        if self.are_differences() { 4.0 * widest } else { widest }
+        if self.are_differences() { SELECTION.samples_a_coefficient * widest } else { widest }
     }
 }

@@ -6,7 +6,7 @@ use sistership_model::posterior::Posterior;
 
 /// Joint errors of coefficients, in their units.
 #[derive(Debug, Clone)]
-pub(super) struct Errors {
+pub(super) struct CoefficientErrors {
     /// The coefficients in the order of the matrices.
     pub names: Vec<String>,
     /// Covariance of the estimates.
@@ -17,7 +17,7 @@ pub(super) struct Errors {
     pub cross: DMatrix<f64>,
 }
 
-impl Errors {
+impl CoefficientErrors {
     /// The same for coefficients in another order; none where one is missing.
     pub fn ordered(&self, names: &[String]) -> Option<Self> {
         let place = |name: &String| self.names.iter().position(|own| own == name);

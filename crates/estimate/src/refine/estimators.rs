@@ -7,14 +7,12 @@ use super::settings::Method;
 use super::trajectory::TrajectoryForm;
 use super::weak::WeakForm;
 
-impl Method {
-    /// The estimator of that name.
-    pub(super) fn estimator(self) -> &'static dyn Estimator {
-        match self {
-            Self::Published => &Published,
-            Self::Weak => &WeakForm,
-            Self::Trajectory => &TrajectoryForm,
-            Self::CmaEs => &CovarianceMatrixAdaptation,
-        }
+/// The estimator of a method. Another one is a folder, its name in [`Method`] and a line here.
+pub(super) fn estimator(method: Method) -> &'static dyn Estimator {
+    match method {
+        Method::Published => &Published,
+        Method::Weak => &WeakForm,
+        Method::Trajectory => &TrajectoryForm,
+        Method::CmaEs => &CovarianceMatrixAdaptation,
     }
 }

@@ -7,19 +7,30 @@ use sistership_model::posterior::Posterior;
 
 use super::blocks::Blocks;
 use super::candidate::{CandidateFit, Solution, best};
+use super::constraints::LimitError;
 use super::family::Family;
-use super::gathered::{Taken, refinement};
+use super::gathered::{ChosenCandidate, refinement};
 use super::manoeuvres::{measured_manoeuvres, standard_manoeuvres};
 use super::outcome::{Manoeuvres, RefineError, Refinement};
 use super::problem::Problem;
 use super::progress::{Progress, step};
 use super::ridge::{Choices, Fit};
+use super::thresholds::SELECTION;
 use super::variant::Variant;
 use crate::bands::bands;
-use sistership_regression::Choice;
+use sistership_regression::RidgeChoice;
+
+/// Why a candidate may not be taken.
+#[derive(Debug, thiserror::Error)]
+enum CandidateRefusal {
+    #[error(transparent)]
+    Constraints(LimitError),
+    #[error("fails a standard manoeuvre that the source sails: {0}")]
+    Manoeuvre(String),
+}
 
 /// What a candidate gives with its standard manoeuvres, or why it may not be taken.
-type Accepted = Result<(Option<Fit>, StandardManoeuvres), String>;
+type Accepted = Result<(Option<Fit>, StandardManoeuvres), CandidateRefusal>;
 
 /// Takes the best candidate whose model, fitted on all trials, also sails the standard manoeuvres that the source sails.
 ///
@@ -43,7 +54,7 @@ pub(super) fn finish(
             Ok((fitted, after)) => {
                 return take(problem, (candidates, best), (fitted, variants), (before, after), progress);
             }
-            Err(reason) => (candidates[best].option.reason, candidates[best].option.error) = (Some(reason), None),
+            Err(refusal) => (candidates[best].option.reason, candidates[best].option.error) = (Some(refusal.to_string()), None),
         }
     }
 }
@@ -56,13 +67,13 @@ fn accepted(
     before: &StandardManoeuvres,
 ) -> Result<Accepted, RefineError> {
     let fitted = match solution.fit(variants) {
-        Err(RefineError::Constraints(reason)) => return Ok(Err(reason)),
+        Err(RefineError::Constraints(reason)) => return Ok(Err(CandidateRefusal::Constraints(reason))),
         fitted => fitted?,
     };
     let after = standard_manoeuvres(&model_of(problem, fitted.as_ref()), problem.law);
     let worse = after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
     Ok(match worse {
-        Some(failure) => Err(format!("fails a standard manoeuvre that the source sails: {failure}")),
+        Some(failure) => Err(CandidateRefusal::Manoeuvre(failure.clone())),
         None => Ok((fitted, after)),
     })
 }
@@ -91,7 +102,7 @@ fn take(
     step(progress, 0.93, "confidence bands")?;
     let bands = bands(&model, problem.law, &ManoeuvreSettings::default(), None, problem.settings.bands);
     let manoeuvres = Manoeuvres { source: before, refined: after, bands, measured };
-    refinement(problem, Taken { candidates, best, model, fitted }, manoeuvres)
+    refinement(problem, ChosenCandidate { candidates, best, model, fitted }, manoeuvres)
 }
 
 /// How far the model's coefficients may be from the truth. Those of a source that is kept are as far as the trials say
@@ -112,5 +123,5 @@ fn posterior(
 
 /// Choices that keep the source.
 fn held(blocks: &Blocks) -> Choices {
-    blocks.blocks.iter().map(|block| vec![Choice { lambda: 1e9, alpha: 0.0 }; block.axes.len()]).collect()
+    blocks.blocks.iter().map(|block| vec![RidgeChoice { lambda: SELECTION.held, alpha: 0.0 }; block.axes.len()]).collect()
 }

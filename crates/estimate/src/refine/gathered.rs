@@ -10,9 +10,10 @@ use super::problem::Problem;
 use super::ridge::Fit;
 use super::settings::Settings;
 use super::simulated::simulate_all;
+use super::thresholds::SELECTION;
 
 /// The candidate that was taken among all, its model and its fit; none where the source was kept.
-pub(super) struct Taken {
+pub(super) struct ChosenCandidate {
     pub candidates: Vec<CandidateFit>,
     pub best: usize,
     pub model: Model,
@@ -23,8 +24,12 @@ pub(super) struct Taken {
 ///
 /// # Errors
 /// A trial lacks a channel.
-pub(super) fn refinement(problem: &Problem<'_>, taken: Taken, manoeuvres: Manoeuvres) -> Result<Refinement, RefineError> {
-    let Taken { candidates, best, model, fitted } = taken;
+pub(super) fn refinement(
+    problem: &Problem<'_>,
+    taken: ChosenCandidate,
+    manoeuvres: Manoeuvres,
+) -> Result<Refinement, RefineError> {
+    let ChosenCandidate { candidates, best, model, fitted } = taken;
     let held_out = held_out(problem, &candidates, best, &model)?;
     let lambdas = candidates[best].option.lambda.clone();
     let (condition_number, collinear_groups) =
@@ -105,7 +110,7 @@ fn changes(problem: &Problem<'_>, model: &Model, fitted: Option<&Fit>) -> Vec<Co
 fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
     let mut remarks = Vec::new();
     let strongest = problem.settings.ranges.iter().map(|range| range.lambda_max).fold(0.0, f64::max);
-    if lambdas.iter().any(|lambda| *lambda > 0.999 * strongest) {
+    if lambdas.iter().any(|lambda| *lambda > SELECTION.strongest_share * strongest) {
         let what =
             "an acceleration took the strongest prior allowed: its coefficients are the source's, scaled as a whole by 1 - alpha";
         remarks.push(format!("{what}, and their standard errors say nothing"));

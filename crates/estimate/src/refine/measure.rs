@@ -5,7 +5,7 @@ use sistership_model::Model;
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 
-use super::across::Imitation;
+use super::across::SourceRegression;
 use super::blocks::{Block, Blocks};
 use super::envelope::OperatingEnvelope;
 use super::merged::merged;
@@ -13,7 +13,7 @@ use super::outcome::RefineError;
 use sistership_regression::Moments;
 
 /// Where the sizes of the regressors come from.
-pub(super) enum Measure {
+pub(super) enum PriorMeasure {
     /// The trials (Kanazawa 2023, Eq. 5.11).
     Trials,
     /// The trials and the source's standard manoeuvres, where trials are left out part by part. Such parts resemble what is
@@ -24,7 +24,7 @@ pub(super) enum Measure {
     Source(OperatingEnvelope),
 }
 
-impl Measure {
+impl PriorMeasure {
     /// Of a source by the law that is fitted. One that cannot sail has no envelope.
     pub fn own(source: &Model, law: &Law, trials: &[&Trial], in_parts: bool) -> Self {
         let envelope = in_parts.then(|| OperatingEnvelope::new(source, law, trials).ok()).flatten();
@@ -45,7 +45,7 @@ impl Measure {
             Self::Trials => {}
             Self::Envelope(envelope) => sized(blocks, &envelope.moments(blocks)?, trials),
             Self::Source(envelope) => {
-                let imitation = Imitation::new(envelope, blocks, model)?;
+                let imitation = SourceRegression::new(envelope, blocks, model)?;
                 imitation.fill(blocks, model);
                 imitation.hold(blocks, trials);
             }
@@ -64,7 +64,7 @@ impl Measure {
             ),
             Self::Source(envelope) => {
                 let blocks = Blocks::new(model, law).ok()?;
-                Some(Imitation::new(envelope, &blocks, model).ok()?.words(&blocks, &law.name))
+                Some(SourceRegression::new(envelope, &blocks, model).ok()?.words(&blocks, &law.name))
             }
         }
     }

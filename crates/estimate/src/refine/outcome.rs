@@ -10,8 +10,10 @@ use sistership_model::Model;
 use sistership_model::trial::Channel;
 
 use super::cma_es::SearchReport;
+use super::constraints::LimitError;
 use super::settings::Settings;
 use crate::bands::Bands;
+use crate::transfer::UnknownParameter;
 
 /// Why a refinement is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -45,11 +47,17 @@ pub enum RefineError {
     #[error("no option can be taken: {0}")]
     Diverged(String),
     /// The constraints cannot be kept.
-    #[error("{0}")]
-    Constraints(String),
+    #[error(transparent)]
+    Constraints(#[from] LimitError),
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<UnknownParameter> for RefineError {
+    fn from(error: UnknownParameter) -> Self {
+        Self::Law(error.to_string())
+    }
 }
 
 /// How one coefficient moved.

@@ -8,11 +8,12 @@ use sistership_model::trial::Trial;
 use sistership_model::vessel::Status;
 use sistership_model::{Model, particulars};
 
-use super::measure::Measure;
+use super::measure::PriorMeasure;
 use super::progress::{Iterate, Watch};
 use super::ridge::Fitted;
 use super::settings::Settings;
 use super::thinned::thinned;
+use super::thresholds::SELECTION;
 use crate::transfer::approach_of;
 
 /// What does not change while candidates are compared.
@@ -29,7 +30,7 @@ pub(super) struct Problem<'a> {
     pub judged: Vec<&'a Trial>,
     pub transferred: Model,
     /// What the prior measures coefficients by.
-    pub measure: Measure,
+    pub measure: PriorMeasure,
     pub settings: Settings,
     pub watch: Option<Watch<'a>>,
 }
@@ -48,7 +49,7 @@ impl<'a> Problem<'a> {
             whole,
             judged,
             transferred,
-            measure: Measure::Trials,
+            measure: PriorMeasure::Trials,
             settings,
             watch: None,
         }
@@ -96,6 +97,6 @@ impl<'a> Problem<'a> {
 
 /// Trials with samples as far apart as a thirtieth of the time in which the ship sails its length.
 pub(super) fn for_simulation(lpp_m: Option<f64>, training: &[&Trial]) -> Vec<Trial> {
-    let step_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s / 30.0);
+    let step_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s / SELECTION.samples_a_length);
     training.iter().map(|trial| thinned(trial, step_s)).collect()
 }

@@ -7,9 +7,10 @@ use sistership_model::Model;
 use sistership_model::coefficient::Axis;
 
 use super::blocks::{Block, Blocks};
-use super::errors::Errors;
+use super::errors::CoefficientErrors;
 use super::settings::Range;
-use sistership_regression::{Choice, Moments, RidgePath, Validation};
+use super::thresholds::SELECTION;
+use sistership_regression::{Moments, RidgeChoice, RidgePath, Validation};
 
 /// A coefficient as fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,41 +34,42 @@ pub struct Fit {
     /// Coefficients that the samples cannot tell apart.
     pub collinear_groups: Vec<Vec<String>>,
     /// Joint errors of the coefficients, where they were asked for.
-    pub(super) errors: Option<Errors>,
+    pub(super) errors: Option<CoefficientErrors>,
 }
 
 /// The choices of a whole law: by regression, by target.
-pub type Choices = Vec<Vec<Choice>>;
+pub type Choices = Vec<Vec<RidgeChoice>>;
 
 /// One regression with its decomposition.
-struct Prepared<'a> {
+struct PreparedRegression<'a> {
     block: &'a Block,
     source: Vec<Vec<f64>>,
     path: RidgePath,
 }
 
-impl<'a> Prepared<'a> {
+impl<'a> PreparedRegression<'a> {
     fn new(block: &'a Block, moments: &Moments, model: &Model) -> Self {
         let source = mixed_source(block, model);
         Self { block, path: RidgePath::measured(moments, &source, block.metric(moments)), source }
     }
 
-    fn solve(&self, choices: &[Choice]) -> Vec<Vec<f64>> {
-        let one = |(target, choice): (usize, &Choice)| self.path.solve(target, *choice, &self.source[target]);
+    fn solve(&self, choices: &[RidgeChoice]) -> Vec<Vec<f64>> {
+        let one = |(target, choice): (usize, &RidgeChoice)| self.path.solve(target, *choice, &self.source[target]);
         choices.iter().enumerate().map(one).collect()
     }
 }
 
 /// A training set's regressions with the left-out samples that judge them.
 pub struct Fold<'a> {
-    prepared: Vec<Prepared<'a>>,
+    prepared: Vec<PreparedRegression<'a>>,
     validations: Vec<Validation>,
 }
 
 impl<'a> Fold<'a> {
     /// Decomposes the training statistics (one set per regression) and prepares the left-out ones.
     pub fn new(blocks: &'a Blocks, model: &Model, training: &[Moments], left_out: &[Moments]) -> Self {
-        let prepared = blocks.blocks.iter().zip(training).map(|(block, moments)| Prepared::new(block, moments, model)).collect();
+        let prepared =
+            blocks.blocks.iter().zip(training).map(|(block, moments)| PreparedRegression::new(block, moments, model)).collect();
         Self { prepared, validations: left_out.iter().map(Validation::new).collect() }
     }
 
@@ -97,7 +99,7 @@ impl Fold<'_> {
 impl Fold<'_> {
     /// The share of the mean square of each acceleration that a strength about the source leaves on the left-out samples.
     pub(super) fn shares(&self, lambda: f64) -> Vec<(Axis, f64)> {
-        let of_block = |(prepared, validation): (&Prepared<'_>, &Validation)| {
+        let of_block = |(prepared, validation): (&PreparedRegression<'_>, &Validation)| {
             let one = |(target, axis): (usize, &Axis)| {
                 let (_, error) = prepared.path.best_alpha(target, lambda, &prepared.source[target], validation, (0.0, 0.0));
                 (*axis, error / prepared.path.target_variance(target).max(f64::MIN_POSITIVE))
@@ -108,8 +110,8 @@ impl Fold<'_> {
     }
 }
 
-impl Prepared<'_> {
-    fn add_curvature(&self, choices: &[Choice], start: usize, all: &mut DMatrix<f64>) {
+impl PreparedRegression<'_> {
+    fn add_curvature(&self, choices: &[RidgeChoice], start: usize, all: &mut DMatrix<f64>) {
         let (q, p) = (self.block.axes.len(), self.block.regressors());
         for (target, choice) in choices.iter().enumerate() {
             let variance = self.path.residual_variance(target, *choice).max(f64::MIN_POSITIVE);
@@ -127,7 +129,7 @@ impl Prepared<'_> {
 pub fn tune(folds: &[Fold<'_>], range: &Range, count: usize) -> Choices {
     let Some(first) = folds.first() else { return Choices::new() };
     let of_block = |b: usize| {
-        let pairs: Vec<(&Prepared<'_>, &Validation)> =
+        let pairs: Vec<(&PreparedRegression<'_>, &Validation)> =
             folds.iter().map(|fold| (&fold.prepared[b], &fold.validations[b])).collect();
         (0..first.prepared[b].source.len()).map(|target| tune_target(target, &pairs, range, count)).collect()
     };
@@ -135,8 +137,8 @@ pub fn tune(folds: &[Fold<'_>], range: &Range, count: usize) -> Choices {
 }
 
 /// The lambda and alpha with the least error, summed over the folds.
-fn tune_target(target: usize, folds: &[(&Prepared<'_>, &Validation)], range: &Range, count: usize) -> Choice {
-    let mut best = (f64::INFINITY, Choice { lambda: range.lambda_max, alpha: 0.0 });
+fn tune_target(target: usize, folds: &[(&PreparedRegression<'_>, &Validation)], range: &Range, count: usize) -> RidgeChoice {
+    let mut best = (f64::INFINITY, RidgeChoice { lambda: range.lambda_max, alpha: 0.0 });
     for lambda in log_spaced(range.lambda_min, range.lambda_max, count) {
         let mut error = 0.0;
         let mut alpha = 0.0;
@@ -147,7 +149,7 @@ fn tune_target(target: usize, folds: &[(&Prepared<'_>, &Validation)], range: &Ra
             alpha += a / folds.len() as f64;
         }
         if error < best.0 {
-            best = (error, Choice { lambda, alpha });
+            best = (error, RidgeChoice { lambda, alpha });
         }
     }
     best.1
@@ -156,12 +158,12 @@ fn tune_target(target: usize, folds: &[(&Prepared<'_>, &Validation)], range: &Ra
 /// The strengths with the greatest marginal likelihood, for each target of each regression, on the given statistics.
 pub(super) fn most_likely(blocks: &Blocks, moments: &[Moments], model: &Model, range: &Range, count: usize) -> Choices {
     let of_block = |(block, moments): (&Block, &Moments)| {
-        let prepared = Prepared::new(block, moments, model);
+        let prepared = PreparedRegression::new(block, moments, model);
         let of_target = |target: usize| {
             let misfit = |lambda: f64| (prepared.path.misfit(target, lambda), lambda);
             let all = log_spaced(range.lambda_min, range.lambda_max, count).map(misfit);
             let best = all.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(range.lambda_max, |(_, lambda)| lambda);
-            Choice { lambda: best, alpha: 0.0 }
+            RidgeChoice { lambda: best, alpha: 0.0 }
         };
         (0..prepared.source.len()).map(of_target).collect()
     };
@@ -188,7 +190,7 @@ pub(super) fn mixed_source(block: &Block, model: &Model) -> Vec<Vec<f64>> {
 
 impl Fit {
     /// With joint errors, from which each coefficient's own is taken.
-    pub(super) fn with_errors(mut self, errors: Option<Errors>) -> Self {
+    pub(super) fn with_errors(mut self, errors: Option<CoefficientErrors>) -> Self {
         if let Some(errors) = &errors {
             for (k, name) in errors.names.iter().enumerate() {
                 let fitted = self.coefficients.get_mut(name).into_iter();
@@ -204,10 +206,10 @@ impl Fit {
 pub fn fit(blocks: &Blocks, moments: &[Moments], model: &Model, choices: &Choices) -> Fit {
     let mut result = Fit { coefficients: BTreeMap::new(), condition_number: 1.0, collinear_groups: Vec::new(), errors: None };
     for ((block, moments), choices) in blocks.blocks.iter().zip(moments).zip(choices) {
-        let prepared = Prepared::new(block, moments, model);
+        let prepared = PreparedRegression::new(block, moments, model);
         unmix(&prepared, choices, &mut result.coefficients);
         result.condition_number = result.condition_number.max(prepared.path.condition_number());
-        for group in prepared.path.collinear_groups(1e-6) {
+        for group in prepared.path.collinear_groups(SELECTION.collinear) {
             result.collinear_groups.push(group.iter().map(|&i| joined(block, i)).collect());
         }
     }
@@ -220,7 +222,7 @@ fn joined(block: &Block, i: usize) -> String {
 }
 
 /// From what the regression solved for back to the coefficients of each axis.
-fn unmix(prepared: &Prepared<'_>, choices: &[Choice], into: &mut BTreeMap<String, Fitted>) {
+fn unmix(prepared: &PreparedRegression<'_>, choices: &[RidgeChoice], into: &mut BTreeMap<String, Fitted>) {
     let block = prepared.block;
     let q = block.axes.len();
     let solutions = prepared.solve(choices);

@@ -2,8 +2,9 @@
 
 use sistership_model::Model;
 
-use super::candidate::{CandidateFit, Solution, Source};
-use super::errors::Errors;
+use super::candidate::{CandidateFit, Solution, UnchangedSource};
+use super::constraints::LimitError;
+use super::errors::CoefficientErrors;
 use super::outcome::RefineError;
 use super::problem::Problem;
 use super::progress::{PartProgress, Progress, step};
@@ -12,24 +13,24 @@ use super::simulated::{Simulated, simulate_training};
 use super::variant::Variant;
 
 /// A ridge of a variant at its choices.
-struct Ridge {
+struct RidgeSolution {
     variant: usize,
     choices: Choices,
 }
 
-impl Solution for Ridge {
+impl Solution for RidgeSolution {
     fn fit(&self, variants: &[Variant]) -> Result<Option<Fit>, RefineError> {
         let variant = &variants[self.variant];
         let all = variant.together(|_| true)?;
         let mut fitted = fit(&variant.blocks, &all, &variant.model, &self.choices);
         if variant.limits.is_some() {
             let fold = Fold::new(&variant.blocks, &variant.model, &all, &[]);
-            fitted.coefficients = variant.solve(&fold, &self.choices).map_err(RefineError::Constraints)?;
+            fitted.coefficients = variant.solve(&fold, &self.choices)?;
         }
         Ok(Some(fitted))
     }
 
-    fn errors(&self, problem: &Problem<'_>, variants: &[Variant]) -> Result<Option<Errors>, RefineError> {
+    fn errors(&self, problem: &Problem<'_>, variants: &[Variant]) -> Result<Option<CoefficientErrors>, RefineError> {
         variants[self.variant].errors(&problem.training, &self.choices)
     }
 
@@ -45,10 +46,10 @@ impl Solution for Ridge {
 pub(super) fn source_candidate(problem: &Problem<'_>, variants: &[Variant]) -> Result<CandidateFit, RefineError> {
     let limits = variants.iter().find_map(|variant| variant.limits.as_ref());
     let simulated = match limits.map(|limits| limits.check(&problem.transferred)) {
-        Some(Err(reason)) => Simulated::refused(reason),
+        Some(Err(reason)) => Simulated::refused(reason.to_string()),
         _ => simulate_training(problem, std::slice::from_ref(&problem.transferred), &|_| 0)?,
     };
-    Ok(CandidateFit::new(problem, ("source".into(), None), Source, 0, simulated))
+    Ok(CandidateFit::new(problem, ("source".into(), None), UnchangedSource, 0, simulated))
 }
 
 /// A ridge of a variant at its choices, each trial left out simulated by the model of its fold.
@@ -64,16 +65,16 @@ pub(super) fn ridge_candidate(
 ) -> Result<CandidateFit, RefineError> {
     let step = (name, Some(lambda_min));
     let model = |fold: &Fold<'_>| Ok(problem.model_with(&variant.solve(fold, &choices)?));
-    let models: Vec<Model> = match folds.iter().map(model).collect::<Result<_, String>>() {
+    let models: Vec<Model> = match folds.iter().map(model).collect::<Result<_, LimitError>>() {
         Ok(models) => models,
         Err(reason) => {
-            let ridge = Ridge { variant: index, choices };
-            return Ok(CandidateFit::new(problem, step, ridge, 0, Simulated::refused(reason)));
+            let ridge = RidgeSolution { variant: index, choices };
+            return Ok(CandidateFit::new(problem, step, ridge, 0, Simulated::refused(reason.to_string())));
         }
     };
     let simulated = simulate_training(problem, &models, &|trial| problem.fold_of(trial))?;
     let size = models.first().map_or(0, |model| model.coefficients.len());
-    let candidate = CandidateFit::new(problem, step, Ridge { variant: index, choices }, size, simulated);
+    let candidate = CandidateFit::new(problem, step, RidgeSolution { variant: index, choices }, size, simulated);
     Ok(CandidateFit { left_out: models, ..candidate })
 }
 

@@ -30,7 +30,7 @@ pub type Table = Vec<Vec<f64>>;
 /// # Errors
 /// As [`trial_moments`].
 pub fn trial_tables(blocks: &Blocks, trial: &Trial, difference_s: Option<f64>) -> Result<Vec<Table>, RefineError> {
-    let record = Record::new(blocks, trial)?;
+    let record = RegressionRecord::new(blocks, trial)?;
     let difference = |axis: Axis, pair: (usize, usize)| record.acceleration(axis, pair);
     Ok(tables(blocks, &record, &pairs(trial, difference_s), &difference))
 }
@@ -44,7 +44,7 @@ pub(super) fn known_tables<'k>(
     trial: &Trial,
     known: &dyn Fn(Axis) -> &'k [f64],
 ) -> Result<Vec<Table>, RefineError> {
-    let record = Record::new(blocks, trial)?;
+    let record = RegressionRecord::new(blocks, trial)?;
     let samples: Vec<(usize, usize)> = (0..trial.len()).map(|k| (k, k)).collect();
     Ok(tables(blocks, &record, &samples, &|axis, (k, _)| known(axis)[k]))
 }
@@ -52,7 +52,12 @@ pub(super) fn known_tables<'k>(
 /// The acceleration of an axis at a pair of samples.
 type Acceleration<'a> = &'a dyn Fn(Axis, (usize, usize)) -> f64;
 
-fn tables(blocks: &Blocks, record: &Record<'_>, pairs: &[(usize, usize)], acceleration: Acceleration<'_>) -> Vec<Table> {
+fn tables(
+    blocks: &Blocks,
+    record: &RegressionRecord<'_>,
+    pairs: &[(usize, usize)],
+    acceleration: Acceleration<'_>,
+) -> Vec<Table> {
     let mut tables: Vec<Table> = blocks.blocks.iter().map(|b| vec![Vec::with_capacity(pairs.len()); b.width()]).collect();
     let mut work = Slots::default();
     let mut lanes = vec![[0.0; LANES]; record.columns.len()];
@@ -66,13 +71,6 @@ fn tables(blocks: &Blocks, record: &Record<'_>, pairs: &[(usize, usize)], accele
     tables
 }
 
-impl Block {
-    /// Columns of its table: regressors, then targets.
-    fn width(&self) -> usize {
-        self.regressors() + self.axes.len()
-    }
-}
-
 /// Samples and the later samples to which they are differenced.
 fn pairs(trial: &Trial, difference_s: Option<f64>) -> Vec<(usize, usize)> {
     let stride = difference_s.map_or(1, |s| (s / trial.interval_s()).round().max(1.0) as usize);
@@ -82,7 +80,7 @@ fn pairs(trial: &Trial, difference_s: Option<f64>) -> Vec<(usize, usize)> {
 }
 
 /// The channels of a trial that regressions read.
-pub(super) struct Record<'a> {
+pub(super) struct RegressionRecord<'a> {
     t_s: &'a [f64],
     /// What the tape takes: a recorded column or a constant.
     pub(super) columns: Vec<Result<&'a [f64], f64>>,
@@ -90,7 +88,7 @@ pub(super) struct Record<'a> {
     velocities: [Option<&'a [f64]>; 4],
 }
 
-impl<'a> Record<'a> {
+impl<'a> RegressionRecord<'a> {
     pub(super) fn new(blocks: &Blocks, trial: &'a Trial) -> Result<Self, RefineError> {
         let missing = |channel: Channel| RefineError::Channel { trial: trial.name.clone(), channel };
         let need = |channel: Channel| trial.channel(channel).ok_or_else(|| missing(channel));

@@ -5,16 +5,18 @@ use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel};
 
-use super::across::{self, Imitation};
+use super::across::{self, SourceRegression};
 use super::blocks::Blocks;
+use super::estimators::estimator;
 use super::finish::finish;
-use super::measure::Measure;
+use super::measure::PriorMeasure;
 use super::outcome::{RefineError, Refinement};
 use super::parts::parts;
 use super::problem::{Problem, for_simulation};
 use super::progress::{MonotoneProgress, Progress, Watch, step};
 use super::ridge_candidates::source_candidate;
 use super::settings::Settings;
+use super::thresholds::SELECTION;
 use super::variant::variants;
 use crate::transfer::{approach_of, transfer};
 
@@ -53,7 +55,7 @@ pub fn refine_watched(request: &Request<'_>, progress: Progress<'_>, watch: Watc
     let progress = MonotoneProgress::new(progress);
     let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
     let settings = resolved(request.settings, request.target.particular("lpp_m"), &whole);
-    let estimator = settings.method.estimator();
+    let estimator = estimator(settings.method);
     let equations = estimator.equations(&settings);
     let parts = parts(&whole, request.law, equations, &settings);
     let (transferred, measure) = starting(request, &whole, !parts.is_empty())?;
@@ -70,19 +72,19 @@ pub fn refine_watched(request: &Request<'_>, progress: Progress<'_>, watch: Watc
 }
 
 /// What the prior is about: the source carried over, by its own law or as another law says what it says.
-fn starting(request: &Request<'_>, whole: &[&Trial], in_parts: bool) -> Result<(Model, Measure), RefineError> {
+fn starting(request: &Request<'_>, whole: &[&Trial], in_parts: bool) -> Result<(Model, PriorMeasure), RefineError> {
     let Request { target, source, source_law, law, .. } = *request;
     let approach = approach_of(whole);
     let Some(own) = source_law.filter(|own| own.name != law.name) else {
         let same = source.ship == target.name();
         let carried = if same { source.clone() } else { transfer(source, law, target, approach) };
-        let measure = Measure::own(&carried, law, whole, in_parts);
+        let measure = PriorMeasure::own(&carried, law, whole, in_parts);
         return Ok((carried, measure));
     };
     let (mut model, envelope) = across::begun((source, own), law, target, approach, whole)?;
     let blocks = Blocks::new(&model, law)?;
-    Imitation::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);
-    Ok((model, Measure::Source(envelope)))
+    SourceRegression::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);
+    Ok((model, PriorMeasure::Source(envelope)))
 }
 
 /// The trials that are kept out of fit and choice, and the others.
@@ -103,7 +105,7 @@ fn divided<'a>(request: &'a Request<'a>) -> Result<(Vec<&'a Trial>, Vec<&'a Tria
 pub(super) fn resolved(settings: &Settings, lpp_m: Option<f64>, training: &[&Trial]) -> Settings {
     let length_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s);
     let mut settings = settings.clone();
-    settings.method.estimator().resolve(&mut settings, length_s);
-    settings.restart_s = settings.restart_s.or(length_s.map(|s| 10.0 * s));
+    estimator(settings.method).resolve(&mut settings, length_s);
+    settings.restart_s = settings.restart_s.or(length_s.map(|s| SELECTION.restart * s));
     settings
 }

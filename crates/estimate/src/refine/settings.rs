@@ -43,6 +43,11 @@ impl Method {
             Self::CmaEs => "cma-es",
         }
     }
+
+    /// Whether it keeps constraints: of linear regressions the nearest point within them is at hand.
+    fn keeps_constraints(self) -> bool {
+        matches!(self, Self::Published | Self::Weak)
+    }
 }
 
 /// A range in which (lambda, alpha) are tuned.
@@ -190,12 +195,12 @@ impl Settings {
         if !(2..=100).contains(&self.folds) {
             return refuse("folds", "must be from 2 to 100");
         }
-        if matches!(self.method, Method::Trajectory | Method::CmaEs) && !self.constraints.is_empty() {
+        if !self.method.keeps_constraints() && !self.constraints.is_empty() {
             return refuse("constraints", "are kept by the methods `published` and `weak` only");
         }
-        self.cma_es.as_ref().map_or(Ok(()), CmaEs::check).map_err(|message| ("cma_es".to_owned(), message))?;
-        self.constraints.check().map_err(|message| ("constraints".to_owned(), message))?;
-        self.bands.check().map_err(|message| ("bands".to_owned(), message))?;
+        self.cma_es.as_ref().map_or(Ok(()), CmaEs::check).map_err(|error| ("cma_es".to_owned(), error.to_string()))?;
+        self.constraints.check().map_err(|error| ("constraints".to_owned(), error.to_string()))?;
+        self.bands.check().map_err(|error| ("bands".to_owned(), error.to_string()))?;
         if self.strengths.len() > 100 || self.strengths.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
             return refuse("strengths", "give at most 100, each above 0");
         }

@@ -62,7 +62,7 @@ pub(super) fn simulate_all(
     let Some(first) = models.first().filter(|_| !trials.is_empty()) else { return Ok(Simulated::of(&[], &[])) };
     let ship = match ready_for_sisters(first, problem.law, trials) {
         Ok(ship) => ship,
-        Err(reason) => return Ok(Simulated::refused(reason)),
+        Err(error) => return Ok(Simulated::refused(error.to_string())),
     };
     let coefficients = sisters(&ship, models)?;
     let numbered = trials.iter().enumerate();

@@ -9,19 +9,20 @@ use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 
 use super::blocks::Blocks;
-use super::constraints::Limits;
+use super::constraints::{CoefficientLimits, LimitError};
 use super::equations::Equations;
-use super::errors::Errors;
+use super::errors::CoefficientErrors;
 use super::family::Family;
 use super::merged::merged;
 use super::outcome::RefineError;
 use super::parts::slice;
-use super::posterior::{Rows, errors, rows};
+use super::posterior::{SequencedRows, errors, rows};
 use super::problem::Problem;
 use super::ridge::{Choices, Fitted, Fold, most_likely};
 use super::rows::Table;
 use super::settings::Range;
-use sistership_regression::{Choice, Moments};
+use super::thresholds::SELECTION;
+use sistership_regression::{Moments, RidgeChoice};
 
 /// One family of terms.
 pub(super) struct Variant {
@@ -36,7 +37,7 @@ pub(super) struct Variant {
     /// Its statistics, by trial and regression.
     pub moments: Vec<Vec<Moments>>,
     /// What its coefficients must keep to, if anything.
-    pub limits: Option<Limits>,
+    pub limits: Option<CoefficientLimits>,
 }
 
 impl Variant {
@@ -58,7 +59,7 @@ impl Variant {
     ///
     /// # Errors
     /// Names the limits that cannot be kept together.
-    pub fn solve(&self, fold: &Fold<'_>, choices: &Choices) -> Result<BTreeMap<String, Fitted>, String> {
+    pub fn solve(&self, fold: &Fold<'_>, choices: &Choices) -> Result<BTreeMap<String, Fitted>, LimitError> {
         let mut fitted = fold.solve(choices);
         let Some(limits) = &self.limits else { return Ok(fitted) };
         let (names, curvature) = fold.curvature(choices);
@@ -88,14 +89,14 @@ impl Variant {
     }
 
     /// How far a ridge's coefficients on all trials may be from the truth.
-    pub fn errors(&self, training: &[&Trial], choices: &Choices) -> Result<Option<Errors>, RefineError> {
+    pub fn errors(&self, training: &[&Trial], choices: &Choices) -> Result<Option<CoefficientErrors>, RefineError> {
         let Some(all) = merged(&self.moments, |_| true) else { return Ok(None) };
         Ok(errors(&self.blocks, &all, &self.rows(training)?, &self.model, choices))
     }
 
     /// The rows behind the statistics. Differences of neighbouring samples share most of what they say: they are merged
     /// over the time of a difference.
-    fn rows(&self, training: &[&Trial]) -> Result<Rows, RefineError> {
+    fn rows(&self, training: &[&Trial]) -> Result<SequencedRows, RefineError> {
         let parts = |trial: &&Trial| trial.segments().into_iter().map(|part| slice(trial, part)).collect::<Vec<_>>();
         let parts: Vec<Trial> = training.iter().flat_map(parts).filter(|part| part.len() > 1).collect();
         let one = |part: &Trial| self.equations.tables(&self.blocks, part);
@@ -123,15 +124,16 @@ impl Variant {
     /// every fold keeps something that excites roll.
     pub fn common_choices(&self, lambda: f64) -> Result<Choices, RefineError> {
         let blocks = &self.blocks.blocks;
-        let free = Range { lambda_min: 1e-9, lambda_max: 1.0, alpha_max: 0.0 };
+        let [lambda_min, lambda_max] = SELECTION.roll_strengths;
+        let free = Range { lambda_min, lambda_max, alpha_max: 0.0 };
         let tuned = if blocks.iter().any(|block| block.axes.contains(&Axis::K)) {
-            most_likely(&self.blocks, &self.together(|_| true)?, &self.model, &free, 50)
+            most_likely(&self.blocks, &self.together(|_| true)?, &self.model, &free, SELECTION.roll_strength_count)
         } else {
             Choices::new()
         };
         let of_axis = |b: usize, (target, axis): (usize, &Axis)| match axis {
             Axis::K => tuned[b][target],
-            _ => Choice { lambda, alpha: 0.0 },
+            _ => RidgeChoice { lambda, alpha: 0.0 },
         };
         let of_block = |b: usize| blocks[b].axes.iter().enumerate().map(|axis| of_axis(b, axis)).collect();
         Ok((0..blocks.len()).map(of_block).collect())
@@ -159,15 +161,15 @@ pub(super) fn variants(problem: &Problem<'_>, equations: Equations) -> Result<Ve
 }
 
 /// What the settings ask of a model's coefficients.
-fn limits(problem: &Problem<'_>, model: &Model) -> Result<Option<Limits>, RefineError> {
+fn limits(problem: &Problem<'_>, model: &Model) -> Result<Option<CoefficientLimits>, RefineError> {
     let asked = &problem.settings.constraints;
     if asked.is_empty() {
         return Ok(None);
     }
     let speeds = problem.whole.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
     let speeds = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], u| [low.min(*u), high.max(*u)]);
-    let limits = Limits::new(asked, model, problem.law, speeds);
-    limits.map(Some).map_err(|message| RefineError::Setting { field: "constraints".into(), message })
+    let limits = CoefficientLimits::new(asked, model, problem.law, speeds);
+    limits.map(Some).map_err(|error| RefineError::Setting { field: "constraints".into(), message: error.to_string() })
 }
 
 /// Statistics by trial and regression.

@@ -1,13 +1,15 @@
-//! Ranking by correlation, and the three steps by which a source is eligible: Kanazawa 2023, section 5.1.2.
+//! Ranking by correlation, and the three steps by which a source is eligible: Kanazawa 2023,
+//! section 5.1.2.
 
 use serde::Serialize;
 use sistership_model::{Model, Vessel};
 
 use super::{CharacteristicVector, Definition};
+use crate::trend::TrendError;
 
 /// A ship of the zoo with the model she would give.
 #[derive(Debug, Clone)]
-pub struct Candidate<'a> {
+pub struct SourceCandidate<'a> {
     /// The ship.
     pub vessel: &'a Vessel,
     /// Her model; none for a ship known by particulars only.
@@ -16,14 +18,17 @@ pub struct Candidate<'a> {
 
 /// What is asked of a source.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Limits {
-    /// Largest relative difference of a component of the vector of Eq. 5.18. The thesis' own pair differs by 6 % at most.
+pub struct EligibilityLimits {
+    /// `d_v`: largest relative difference of a component of the vector of Eq. 5.18, dimensionless.
+    /// Source: chosen; the thesis' own pair differs by 6 % at most, and ships of one category in
+    /// the zoo by more.
     pub vector_difference: f64,
-    /// Least correlation of simulated and measured yaw rate over the target's trials.
+    /// `r_0`: least correlation of simulated and measured yaw rate over the target's trials,
+    /// dimensionless. Source: chosen; the source then explains a third of the yaw rate's variance.
     pub trend: f64,
 }
 
-impl Default for Limits {
+impl Default for EligibilityLimits {
     fn default() -> Self {
         Self { vector_difference: 0.35, trend: 0.6 }
     }
@@ -55,16 +60,18 @@ pub struct RankedSource {
     pub reasons: Vec<String>,
 }
 
-/// How well a source's model captures the trend of the target's trials (a correlation), or why that cannot be told.
-pub type Trend<'a> = &'a dyn Fn(&Model) -> Result<f64, String>;
+/// How well a source's model captures the trend of the target's trials (a correlation), or why that
+/// cannot be told.
+pub type Trend<'a> = &'a dyn Fn(&Model) -> Result<f64, TrendError>;
 
-/// Ranks the candidates by correlation with the target. `trend` measures how well a source's model captures the trend of
-/// the target's trials; without trials the third step is left open and said to be.
+/// Ranks the candidates by correlation with the target. `trend` measures how well a source's model
+/// captures the trend of the target's trials; without trials the third step is left open and said
+/// to be.
 pub fn rank(
     target: &Vessel,
-    candidates: &[Candidate<'_>],
+    candidates: &[SourceCandidate<'_>],
     definition: Definition,
-    limits: &Limits,
+    limits: &EligibilityLimits,
     trend: Option<Trend<'_>>,
 ) -> Vec<RankedSource> {
     let here = CharacteristicVector::of(target, definition);
@@ -90,48 +97,71 @@ pub fn rank(
     ranking
 }
 
-fn judge(target: &Vessel, candidate: &Candidate<'_>, limits: &Limits, trend: Option<Trend<'_>>) -> Eligibility {
+fn judge(target: &Vessel, candidate: &SourceCandidate<'_>, limits: &EligibilityLimits, trend: Option<Trend<'_>>) -> Eligibility {
     let mut steps = vec![same_category(target, candidate.vessel), similar_vector(target, candidate.vessel, limits)];
     match candidate.model {
-        None => steps.push(Err("no model: known by particulars only".into())),
+        None => steps.push(StepOutcome::failed("no model: known by particulars only".into())),
         // A simulation costs more than a comparison of numbers: it is run for those that passed them.
-        Some(model) if steps.iter().all(Result::is_ok) => match trend {
+        Some(model) if steps.iter().all(|step| step.passed) => match trend {
             Some(trend) => steps.push(captures_trend(trend(model), limits)),
-            None => steps.push(Ok("trend of the trials: not checked, no trials given".into())),
+            None => steps.push(StepOutcome::passed("trend of the trials: not checked, no trials given".into())),
         },
         Some(_) => {}
     }
-    let eligible = steps.iter().all(Result::is_ok);
-    Eligibility { eligible, reasons: steps.into_iter().map(|step| step.unwrap_or_else(|reason| reason)).collect() }
+    let eligible = steps.iter().all(|step| step.passed);
+    Eligibility { eligible, reasons: steps.into_iter().map(|step| step.reason).collect() }
 }
 
-type Step = Result<String, String>;
+/// Whether a step is passed, and why.
+struct StepOutcome {
+    passed: bool,
+    reason: String,
+}
 
-fn same_category(target: &Vessel, source: &Vessel) -> Step {
+impl StepOutcome {
+    fn passed(reason: String) -> Self {
+        Self { passed: true, reason }
+    }
+
+    fn failed(reason: String) -> Self {
+        Self { passed: false, reason }
+    }
+}
+
+fn same_category(target: &Vessel, source: &Vessel) -> StepOutcome {
     let (here, there) = (&target.file.category, &source.file.category);
-    if here == there { Ok(format!("same category: {here}")) } else { Err(format!("another category: {there}, not {here}")) }
+    if here == there {
+        StepOutcome::passed(format!("same category: {here}"))
+    } else {
+        StepOutcome::failed(format!("another category: {there}, not {here}"))
+    }
 }
 
-fn similar_vector(target: &Vessel, source: &Vessel, limits: &Limits) -> Step {
+fn similar_vector(target: &Vessel, source: &Vessel, limits: &EligibilityLimits) -> StepOutcome {
     let definition = Definition::Kanazawa2023;
     let here = CharacteristicVector::of(target, definition);
     let there = CharacteristicVector::of(source, definition);
     let shared = here.values.keys().filter(|name| there.values.contains_key(*name)).count();
     let Some((name, difference)) = here.largest_difference(&there).filter(|_| shared >= 4) else {
-        return Err(format!("characteristic vector unknown: only {shared} components in common"));
+        return StepOutcome::failed(format!("characteristic vector unknown: only {shared} components in common"));
     };
     let (percent, limit) = (100.0 * difference, 100.0 * limits.vector_difference);
     if difference <= limits.vector_difference {
-        Ok(format!("similar vector: largest difference {percent:.0} % in {name}"))
+        StepOutcome::passed(format!("similar vector: largest difference {percent:.0} % in {name}"))
     } else {
-        Err(format!("vector too different: {percent:.0} % in {name}, at most {limit:.0} %"))
+        StepOutcome::failed(format!("vector too different: {percent:.0} % in {name}, at most {limit:.0} %"))
     }
 }
 
-fn captures_trend(measured: Result<f64, String>, limits: &Limits) -> Step {
+fn captures_trend(measured: Result<f64, TrendError>, limits: &EligibilityLimits) -> StepOutcome {
     match measured {
-        Err(reason) => Err(format!("does not capture the trials: {reason}")),
-        Ok(r) if r >= limits.trend => Ok(format!("captures the trend of the trials: yaw rate correlates at {r:.2}")),
-        Ok(r) => Err(format!("misses the trend of the trials: yaw rate correlates at {r:.2}, at least {:.2}", limits.trend)),
+        Err(reason) => StepOutcome::failed(format!("does not capture the trials: {reason}")),
+        Ok(r) if r >= limits.trend => {
+            StepOutcome::passed(format!("captures the trend of the trials: yaw rate correlates at {r:.2}"))
+        }
+        Ok(r) => StepOutcome::failed(format!(
+            "misses the trend of the trials: yaw rate correlates at {r:.2}, at least {:.2}",
+            limits.trend
+        )),
     }
 }

@@ -4,4 +4,4 @@ mod characteristic;
 mod eligibility;
 
 pub use characteristic::{CharacteristicVector, Definition};
-pub use eligibility::{Candidate, Eligibility, Limits, RankedSource, Trend, rank};
+pub use eligibility::{Eligibility, EligibilityLimits, RankedSource, SourceCandidate, Trend, rank};

@@ -5,11 +5,11 @@ use sistership_model::coefficient::Axis;
 
 use super::prior::Prior;
 use crate::statistics::{Regression, TrialStatistics};
-use sistership_estimate::refine::RefineError;
+use sistership_estimate::refine::{Fitted, RefineError};
 use sistership_regression::{Moments, Whitened};
 
 /// The coefficients of some axes in coordinates where their prior is white, about its mean.
-pub(super) struct Group {
+pub(super) struct AxisGroup {
     pub axes: Vec<Axis>,
     /// Names by axis.
     pub names: Vec<Vec<String>>,
@@ -25,8 +25,47 @@ pub(super) struct Group {
     pub without: Vec<Moments>,
 }
 
+impl AxisGroup {
+    /// The lambda at which the prior is taken at its word: of a family's, where it is the residual variance by the number of
+    /// samples; a source has no word but its lambda.
+    pub fn unit(&self, prior: Prior<'_>) -> f64 {
+        let all = &self.whole;
+        match prior {
+            Prior::Source(_) => 1.0,
+            Prior::Family { design_effect, .. } => design_effect * all.residual_variance(0, all.least_lambda()) / all.count(),
+        }
+    }
+
+    /// Errors on each trial by the solutions of the others, by fold, axis, strength; a single trial is judged on itself.
+    pub fn errors(&self, lambdas: &[f64]) -> Vec<Vec<Vec<f64>>> {
+        if self.parts.len() == 1 {
+            return vec![self.whole.errors(lambdas, &self.parts[0])];
+        }
+        let others = self.without.iter().map(Whitened::new);
+        others.zip(&self.parts).map(|(others, part)| others.errors(lambdas, part)).collect()
+    }
+
+    /// The coefficients of an axis at a lambda; the prior's where there is none.
+    pub fn fitted(&self, axis: usize, directions: &DMatrix<f64>, lambda: Option<f64>, strongest: f64) -> Vec<Fitted> {
+        let at = lambda.unwrap_or(strongest);
+        let scatter = self.whole.residual_variance(axis, at);
+        let step = lambda.map(|lambda| directions * self.whole.solution(axis, lambda));
+        let variances = self.whole.variances(at);
+        let held = (scatter / (self.whole.count() * at)).sqrt();
+        let one = |(j, mean): (usize, &f64)| {
+            let posterior: f64 = directions.row(j).iter().zip(variances.iter()).map(|(v, w)| v * v * w).sum();
+            Fitted {
+                value: mean + step.as_ref().map_or(0.0, |step| step[j]),
+                standard_error: (scatter * posterior).sqrt(),
+                prior_deviation: held * self.root.row(j).norm(),
+            }
+        };
+        self.means[axis].iter().enumerate().map(one).collect()
+    }
+}
+
 /// The groups of a ship: those of her regressions where one root serves all axes, else one for each axis.
-pub(super) fn groups(trials: &[TrialStatistics], prior: Prior<'_>) -> Result<Vec<Group>, RefineError> {
+pub(super) fn groups(trials: &[TrialStatistics], prior: Prior<'_>) -> Result<Vec<AxisGroup>, RefineError> {
     let first = trials.first().ok_or_else(|| RefineError::Data("there is no trial to fit on".into()))?;
     if let Some(other) = trials.iter().find(|trial| !first.goes_with(trial)) {
         let count = other.regressions.len();
@@ -52,7 +91,7 @@ fn group(
     axes: std::ops::Range<usize>,
     parts: &[&Moments],
     prior: Prior<'_>,
-) -> Result<Group, RefineError> {
+) -> Result<AxisGroup, RefineError> {
     let names = regression.names[axes.clone()].to_vec();
     let unknown = || RefineError::Data(format!("the prior does not have the coefficients {}", names.concat().join(", ")));
     let means: Vec<Vec<f64>> = names.iter().map(|names| prior.means(names)).collect::<Option<_>>().ok_or_else(unknown)?;
@@ -67,7 +106,7 @@ fn group(
         parts.iter_mut().for_each(|part| *part = part.about_origin());
     }
     let (without, all) = Moments::leave_one_out(&parts).ok_or_else(unknown)?;
-    Ok(Group { axes: regression.axes[axes].to_vec(), names, means, root, parts, whole: Whitened::new(&all), without })
+    Ok(AxisGroup { axes: regression.axes[axes].to_vec(), names, means, root, parts, whole: Whitened::new(&all), without })
 }
 
 /// What makes regressors and targets of what was kept: regressors times the root; targets of each axis less what the mean gives.

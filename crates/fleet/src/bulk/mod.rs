@@ -7,16 +7,18 @@ mod outcome;
 mod prior;
 mod refine;
 mod report;
+mod request;
 mod sails;
 mod settings;
 mod solved;
 
 pub use outcome::{AxisOutcome, BulkRefinement, Coefficient};
 pub use prior::{AxisPrior, Prior};
-pub use refine::{BulkRequest, refine, refined_model};
-pub use sails::{Sailed, sail};
+pub use refine::{refine, refined_model};
+pub use request::BulkRequest;
+pub use sails::{SailedFigures, sail};
 pub use settings::BulkSettings;
-pub use solved::{Solved, solve};
+pub use solved::{SolvedPath, solve};
 
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use sistership_model::coefficient::Axis;
 
-use super::sails::Sailed;
+use super::sails::SailedFigures;
 
 /// A refinement from statistics, with what speaks for and against it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -15,9 +15,9 @@ pub struct BulkRefinement {
     /// How many decades stronger than chosen the prior had to be for the model to sail what the one before sails.
     pub pulled: usize,
     /// Manoeuvres of the model before.
-    pub before: Sailed,
+    pub before: SailedFigures,
     /// Manoeuvres of the refined model.
-    pub after: Sailed,
+    pub after: SailedFigures,
     /// How many trials it is made of.
     pub trials: usize,
 }

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
+use super::settings::BulkSettings;
+
 /// A prior of every axis.
 #[derive(Debug, Clone, Copy)]
 pub enum Prior<'a> {
@@ -43,6 +45,17 @@ impl Prior<'_> {
         match self {
             Self::Source(_) => None,
             Self::Family { axes, .. } => axes.iter().find(|axis| axis.names == names),
+        }
+    }
+
+    /// A learned covariance is an upper limit: trials that resemble each other would always take a weaker prior, since leaving
+    /// one out asks nothing that the others do not tell.
+    pub(super) fn allows(&self, settings: &BulkSettings) -> BulkSettings {
+        match self {
+            Self::Source(_) => *settings,
+            Self::Family { .. } => {
+                BulkSettings { lambda_min: settings.lambda_min.max(1.0).min(0.1 * settings.lambda_max), ..*settings }
+            }
         }
     }
 }

@@ -2,32 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use sistership_model::Model;
 use sistership_model::quantity::Quantity;
 use sistership_model::vessel::Status;
-use sistership_model::{Law, Model};
 
 use super::outcome::BulkRefinement;
-use super::prior::Prior;
+use super::report::outcome;
+use super::request::BulkRequest;
 use super::sails::sail;
-use super::settings::BulkSettings;
 use super::solved::solve;
-use crate::statistics::TrialStatistics;
 use sistership_estimate::refine::{Fitted, RefineError};
-
-/// A ship to be refined from statistics.
-#[derive(Debug, Clone, Copy)]
-pub struct BulkRequest<'a> {
-    /// Her model; it gives everything but the coefficients.
-    pub model: &'a Model,
-    /// Its law.
-    pub law: &'a Law,
-    /// The statistics of her trials, in the model's frame.
-    pub trials: &'a [TrialStatistics],
-    /// What holds the coefficients.
-    pub prior: Prior<'a>,
-    /// Settings.
-    pub settings: &'a BulkSettings,
-}
 
 /// Refines, and pulls the model towards the prior, a decade at a time, until it sails what the model before sails.
 ///
@@ -47,7 +31,7 @@ pub fn refine(request: &BulkRequest<'_>) -> Result<BulkRefinement, RefineError> 
         let before = before.get_or_insert_with(|| sailed.next().unwrap_or_default());
         if after.as_well_as(before) {
             let before = before.clone();
-            return solved.outcome(request, pulled, &coefficients, (before, after));
+            return outcome(&solved, request, pulled, &coefficients, (before, after));
         }
         if !moved {
             let failure = after.failures.first().cloned().unwrap_or_else(|| "a turn or zigzag does not answer".to_owned());

@@ -11,7 +11,7 @@ const STEPS_A_LENGTH: f64 = 30.0;
 
 /// What a model makes of a turn at 35 deg and a 20/20 zigzag, both to starboard.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Sailed {
+pub struct SailedFigures {
     /// Tactical diameter, in lengths.
     pub tactical_diameter_l: Option<f64>,
     /// Advance, in lengths.
@@ -25,7 +25,7 @@ pub struct Sailed {
     pub failures: Vec<String>,
 }
 
-impl Sailed {
+impl SailedFigures {
     /// Whether it does everything that `before` does: nothing more leaves the physical range, and a turn that came round, or a
     /// zigzag that answered, still does.
     pub fn as_well_as(&self, before: &Self) -> bool {
@@ -43,27 +43,29 @@ impl Sailed {
 const SAILED: [Manoeuvre; 2] = [Manoeuvre::Turn { rudder: 35.0 }, Manoeuvre::Zigzag { rudder: 20.0, switch: 20.0 }];
 
 /// Sails both manoeuvres with each model of a ship; those that differ in the values of their coefficients alone sail in lockstep.
-pub fn sail(models: &[&Model], law: &Law) -> Vec<Sailed> {
+pub fn sail(models: &[&Model], law: &Law) -> Vec<SailedFigures> {
     let alone = || models.iter().map(|model| together(Ship::new(model, law), &[Vec::new()]).remove(0)).collect();
     let Some(Ok(ship)) = models.first().map(|model| Ship::sisters(model, law)) else { return alone() };
     let sisters: Option<Vec<Vec<f64>>> = models.iter().map(|model| ship.sister(model)).collect();
     sisters.map_or_else(alone, |sisters| together(Ok(ship), &sisters))
 }
 
-fn together(ship: Result<Ship, PlantError>, sisters: &[Vec<f64>]) -> Vec<Sailed> {
+fn together(ship: Result<Ship, PlantError>, sisters: &[Vec<f64>]) -> Vec<SailedFigures> {
     let ship = match ship {
         Ok(ship) => ship,
-        Err(error) => return vec![Sailed { failures: vec![error.to_string()], ..Sailed::default() }; sisters.len()],
+        Err(error) => {
+            return vec![SailedFigures { failures: vec![error.to_string()], ..SailedFigures::default() }; sisters.len()];
+        }
     };
     let step_s = ship.lpp_m() / (STEPS_A_LENGTH * ship.approach_speed_m_s());
     let settings = ManoeuvreSettings { step_s: Some(step_s), ..ManoeuvreSettings::default() };
     let manoeuvres: Vec<(Manoeuvre, &[f64])> =
         sisters.iter().flat_map(|sister| SAILED.map(|manoeuvre| (manoeuvre, sister.as_slice()))).collect();
     let mut sailed = sail_together(&ship, &manoeuvres, &settings).into_iter();
-    sisters.iter().map(|_| Sailed::of(&ship, sailed.by_ref().take(SAILED.len()))).collect()
+    sisters.iter().map(|_| SailedFigures::of(&ship, sailed.by_ref().take(SAILED.len()))).collect()
 }
 
-impl Sailed {
+impl SailedFigures {
     fn of(ship: &Ship, sailed: impl Iterator<Item = Result<Track, Stopped>>) -> Self {
         let mut own = Self::default();
         for (manoeuvre, sailed) in SAILED.into_iter().zip(sailed) {

@@ -2,19 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::DMatrix;
-
 use super::chosen::strongest_within_one_error;
-use super::group::{Group, groups};
+use super::group::{AxisGroup, groups};
 use super::prior::Prior;
 use super::settings::BulkSettings;
 use crate::statistics::TrialStatistics;
 use sistership_estimate::refine::{Fitted, RefineError};
-use sistership_regression::Whitened;
 
 /// The whole path of a ship, and where on it each axis stands.
-pub struct Solved {
-    pub(super) groups: Vec<Group>,
+pub struct SolvedPath {
+    pub(super) groups: Vec<AxisGroup>,
     settings: BulkSettings,
     /// Strengths by group and axis; lambda by group and axis and strength.
     lambdas: Vec<Vec<f64>>,
@@ -27,7 +24,7 @@ pub struct Solved {
 ///
 /// # Errors
 /// The settings, or statistics that do not go together or have no sample.
-pub fn solve(trials: &[TrialStatistics], prior: Prior<'_>, settings: &BulkSettings) -> Result<Solved, RefineError> {
+pub fn solve(trials: &[TrialStatistics], prior: Prior<'_>, settings: &BulkSettings) -> Result<SolvedPath, RefineError> {
     settings.check()?;
     let groups = groups(trials, prior)?;
     let (mut lambdas, mut errors, mut chosen) = (Vec::new(), Vec::new(), Vec::new());
@@ -42,7 +39,7 @@ pub fn solve(trials: &[TrialStatistics], prior: Prior<'_>, settings: &BulkSettin
         errors.push((0..group.axes.len()).map(|axis| mean(&of_axis(axis))).collect());
         lambdas.push(path);
     }
-    Ok(Solved { groups, settings: *settings, lambdas, errors, chosen })
+    Ok(SolvedPath { groups, settings: *settings, lambdas, errors, chosen })
 }
 
 /// The mean over folds, by strength.
@@ -51,41 +48,7 @@ fn mean(folds: &[&[f64]]) -> Vec<f64> {
     (0..strengths).map(|k| folds.iter().map(|fold| fold[k]).sum::<f64>() / folds.len() as f64).collect()
 }
 
-impl Prior<'_> {
-    /// A learned covariance is an upper limit: trials that resemble each other would always take a weaker prior, since leaving
-    /// one out asks nothing that the others do not tell.
-    fn allows(&self, settings: &BulkSettings) -> BulkSettings {
-        match self {
-            Self::Source(_) => *settings,
-            Self::Family { .. } => {
-                BulkSettings { lambda_min: settings.lambda_min.max(1.0).min(0.1 * settings.lambda_max), ..*settings }
-            }
-        }
-    }
-}
-
-impl Group {
-    /// The lambda at which the prior is taken at its word: of a family's, where it is the residual variance by the number of
-    /// samples; a source has no word but its lambda.
-    fn unit(&self, prior: Prior<'_>) -> f64 {
-        let all = &self.whole;
-        match prior {
-            Prior::Source(_) => 1.0,
-            Prior::Family { design_effect, .. } => design_effect * all.residual_variance(0, all.least_lambda()) / all.count(),
-        }
-    }
-
-    /// Errors on each trial by the solutions of the others, by fold, axis, strength; a single trial is judged on itself.
-    fn errors(&self, lambdas: &[f64]) -> Vec<Vec<Vec<f64>>> {
-        if self.parts.len() == 1 {
-            return vec![self.whole.errors(lambdas, &self.parts[0])];
-        }
-        let others = self.without.iter().map(Whitened::new);
-        others.zip(&self.parts).map(|(others, part)| others.errors(lambdas, part)).collect()
-    }
-}
-
-impl Solved {
+impl SolvedPath {
     /// Where an axis stands when the prior is so many decades stronger than chosen; none where nothing but the prior is left.
     fn at(&self, group: usize, axis: usize, pulled: usize) -> Option<usize> {
         let index = self.chosen[group][axis] + (pulled as f64 * self.settings.decade()).round() as usize;
@@ -119,25 +82,5 @@ impl Solved {
     pub(super) fn error(&self, group: usize, axis: usize, pulled: usize) -> f64 {
         let errors = &self.errors[group][axis];
         self.at(group, axis, pulled).and_then(|at| errors.get(at)).or(errors.last()).copied().unwrap_or(f64::NAN)
-    }
-}
-
-impl Group {
-    /// The coefficients of an axis at a lambda; the prior's where there is none.
-    fn fitted(&self, axis: usize, directions: &DMatrix<f64>, lambda: Option<f64>, strongest: f64) -> Vec<Fitted> {
-        let at = lambda.unwrap_or(strongest);
-        let scatter = self.whole.residual_variance(axis, at);
-        let step = lambda.map(|lambda| directions * self.whole.solution(axis, lambda));
-        let variances = self.whole.variances(at);
-        let held = (scatter / (self.whole.count() * at)).sqrt();
-        let one = |(j, mean): (usize, &f64)| {
-            let posterior: f64 = directions.row(j).iter().zip(variances.iter()).map(|(v, w)| v * v * w).sum();
-            Fitted {
-                value: mean + step.as_ref().map_or(0.0, |step| step[j]),
-                standard_error: (scatter * posterior).sqrt(),
-                prior_deviation: held * self.root.row(j).norm(),
-            }
-        };
-        self.means[axis].iter().enumerate().map(one).collect()
     }
 }

@@ -6,7 +6,7 @@ use crate::statistics::{Frame, TrialStatistics};
 use sistership_estimate::refine::{Choices, Fit, fit};
 use sistership_estimate::testing::{mariner, trials, with};
 use sistership_model::{Law, Model};
-use sistership_regression::{Choice, Moments};
+use sistership_regression::{Moments, RidgeChoice};
 
 fn statistics(frame_of: &Model, law: &Law, truth: &Model, noise: f64) -> Vec<TrialStatistics> {
     let frame = Frame::new(frame_of, law, "law", None).unwrap();
@@ -22,7 +22,7 @@ fn published(model: &Model, law: &Law, trials: &[TrialStatistics], lambda: f64) 
     let blocks = sistership_estimate::refine::Blocks::new(model, law).unwrap();
     let of = |block: usize| Moments::sum(trials.iter().map(|trial| &trial.regressions[block].moments)).unwrap();
     let moments: Vec<Moments> = (0..blocks.blocks.len()).map(of).collect();
-    let choices: Choices = blocks.blocks.iter().map(|b| vec![Choice { lambda, alpha: 0.0 }; b.axes.len()]).collect();
+    let choices: Choices = blocks.blocks.iter().map(|b| vec![RidgeChoice { lambda, alpha: 0.0 }; b.axes.len()]).collect();
     fit(&blocks, &moments, model, &choices)
 }
 

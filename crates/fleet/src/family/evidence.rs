@@ -3,15 +3,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::thresholds::FAMILY;
 use crate::statistics::TrialStatistics;
 use sistership_regression::{Moments, Whitened};
 
-/// Directions in which the trials say less than this of what they say in the best are left to the family.
-const TELLING: f64 = 1e-8;
-
 /// What trials say: a likelihood proportional to `exp(-z' precision z/2 + information' z)`.
 #[derive(Debug, Clone)]
-pub(super) struct Evidence {
+pub(super) struct MemberEvidence {
     pub precision: DMatrix<f64>,
     pub information: DVector<f64>,
     /// How much more the trials of the member scatter than their samples would if each spoke for itself; none of one trial.
@@ -20,13 +18,13 @@ pub(super) struct Evidence {
 
 /// An axis of a family: where its coefficients stand among the statistics, and their units.
 #[derive(Debug, Clone)]
-pub(super) struct Place {
+pub(super) struct AxisPlace {
     pub regression: usize,
     pub axis: usize,
     pub units: Vec<f64>,
 }
 
-impl Place {
+impl AxisPlace {
     /// Regressors in units of the coefficients, and the axis' own target.
     fn moments(&self, trials: &[TrialStatistics]) -> Option<Vec<Moments>> {
         let regression = &trials.first()?.regressions[self.regression];
@@ -39,7 +37,7 @@ impl Place {
     }
 
     /// What a member's trials say; none where they have no sample.
-    pub fn evidence(&self, trials: &[TrialStatistics]) -> Option<Evidence> {
+    pub fn evidence(&self, trials: &[TrialStatistics]) -> Option<MemberEvidence> {
         let parts = self.moments(trials)?;
         let all = Moments::sum(&parts).filter(|all| all.count > 0.0)?;
         let whitened = Whitened::new(&all);
@@ -49,7 +47,7 @@ impl Place {
         let share = all.count / variance;
         let least = whitened.basis() * whitened.solution(0, lambda);
         let design_effect = (parts.len() > 1).then(|| scatter(&parts, &all, &whitened, &least) / variance);
-        Some(Evidence { precision: covariance * share, information: cross.column(0) * share, design_effect })
+        Some(MemberEvidence { precision: covariance * share, information: cross.column(0) * share, design_effect })
     }
 }
 
@@ -58,7 +56,7 @@ impl Place {
 fn scatter(parts: &[Moments], all: &Moments, whitened: &Whitened, least: &DVector<f64>) -> f64 {
     let variances = whitened.variances(0.0);
     let best = variances.min();
-    let told: Vec<usize> = (0..variances.len()).filter(|&k| best / variances[k] > TELLING).collect();
+    let told: Vec<usize> = (0..variances.len()).filter(|&k| best / variances[k] > FAMILY.telling).collect();
     let of_trial = |part: &Moments| -> f64 {
         let score = whitened.basis().transpose() * part.score(all, least);
         told.iter().map(|&k| score[k].powi(2) * variances[k]).sum()

@@ -3,25 +3,17 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 
-use super::evidence::{Evidence, Place};
+use super::evidence::{AxisPlace, MemberEvidence};
 use super::prior::{FORMAT, FamilyAxis, FamilyPrior};
+use super::thresholds::FAMILY;
 use crate::statistics::TrialStatistics;
 use sistership_regression::Moments;
-
-/// Fewer members say nothing of how members differ.
-const LEAST_MEMBERS: usize = 3;
-/// Most steps, and the change of the deviations at which they end.
-const STEPS: usize = 200;
-const SETTLED: f64 = 2e-3;
-/// Deviation at the start, and the least one, in units in which a coefficient of 1 would explain its axis alone.
-const START: f64 = 0.5;
-const LEAST: f64 = 1e-4;
 
 /// Why nothing can be learned of a family.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FamilyError {
     /// Too few.
-    #[error("{0} members have trials; a family's prior needs at least {LEAST_MEMBERS}")]
+    #[error("{0} members have trials; a family's prior needs at least {least}", least = FAMILY.least_members)]
     Few(usize),
     /// One that does not belong.
     #[error("`{member}` has other coefficients than `{first}`, so that they share no prior")]
@@ -51,12 +43,12 @@ pub struct Member<'a> {
 /// As [`FamilyError`] says.
 pub fn learn(members: &[Member<'_>]) -> Result<FamilyPrior, FamilyError> {
     let members: Vec<&Member<'_>> = members.iter().filter(|member| !member.trials.is_empty()).collect();
-    if members.len() < LEAST_MEMBERS {
+    if members.len() < FAMILY.least_members {
         return Err(FamilyError::Few(members.len()));
     }
     alike(&members)?;
     let places = places(&members);
-    let evidence: Vec<Vec<Evidence>> = places.iter().map(|place| said(place, &members)).collect();
+    let evidence: Vec<Vec<MemberEvidence>> = places.iter().map(|place| said(place, &members)).collect();
     let design_effect = design_effect(&evidence);
     let kept = |p: usize| members.len() as f64 / (members.len() + p + 1) as f64;
     let first = &members[0].trials[0];
@@ -70,7 +62,7 @@ pub fn learn(members: &[Member<'_>]) -> Result<FamilyPrior, FamilyError> {
     };
     for (place, evidence) in places.iter().zip(evidence) {
         let regression = &first.regressions[place.regression];
-        let learned = Learned::from(discounted(evidence, design_effect))?;
+        let learned = FamilyEstimate::from(discounted(evidence, design_effect))?;
         prior.steps = prior.steps.max(learned.steps);
         let names = regression.names[place.axis].clone();
         prior.axes.push(learned.axis(regression.axes[place.axis], names, &place.units, prior.correlations_kept));
@@ -90,10 +82,10 @@ fn alike(members: &[&Member<'_>]) -> Result<(), FamilyError> {
 }
 
 /// The axes with units in which a coefficient of 1 explains all of its target, over all members.
-fn places(members: &[&Member<'_>]) -> Vec<Place> {
+fn places(members: &[&Member<'_>]) -> Vec<AxisPlace> {
     let regressions = &members[0].trials[0].regressions;
     let axes = regressions.iter().enumerate().flat_map(|(r, regression)| (0..regression.axes.len()).map(move |axis| (r, axis)));
-    axes.map(|(regression, axis)| Place { regression, axis, units: units(members, regression, axis) }).collect()
+    axes.map(|(regression, axis)| AxisPlace { regression, axis, units: units(members, regression, axis) }).collect()
 }
 
 /// Medians over the members of target deviation by regressor deviation, which a few odd ships do not move.
@@ -116,16 +108,16 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     values.get(values.len() / 2).copied()
 }
 
-fn said(place: &Place, members: &[&Member<'_>]) -> Vec<Evidence> {
+fn said(place: &AxisPlace, members: &[&Member<'_>]) -> Vec<MemberEvidence> {
     members.par_iter().map(|member| place.evidence(member.trials)).collect::<Vec<_>>().into_iter().flatten().collect()
 }
 
 /// The median over members and axes; samples never say more than they would alone.
-fn design_effect(evidence: &[Vec<Evidence>]) -> f64 {
+fn design_effect(evidence: &[Vec<MemberEvidence>]) -> f64 {
     median(evidence.iter().flatten().filter_map(|evidence| evidence.design_effect)).unwrap_or(1.0).max(1.0)
 }
 
-fn discounted(mut evidence: Vec<Evidence>, design_effect: f64) -> Vec<Evidence> {
+fn discounted(mut evidence: Vec<MemberEvidence>, design_effect: f64) -> Vec<MemberEvidence> {
     for one in &mut evidence {
         one.precision /= design_effect;
         one.information /= design_effect;
@@ -134,7 +126,7 @@ fn discounted(mut evidence: Vec<Evidence>, design_effect: f64) -> Vec<Evidence> 
 }
 
 /// What a family has learned of an axis, in units of the coefficients.
-struct Learned {
+struct FamilyEstimate {
     mean: DVector<f64>,
     covariance: DMatrix<f64>,
     told: DVector<f64>,
@@ -142,22 +134,23 @@ struct Learned {
     steps: usize,
 }
 
-impl Learned {
-    fn from(evidence: Vec<Evidence>) -> Result<Self, FamilyError> {
+impl FamilyEstimate {
+    fn from(evidence: Vec<MemberEvidence>) -> Result<Self, FamilyError> {
         let p = evidence.first().map_or(0, |one| one.information.len());
         let mut learned = Self {
             mean: DVector::zeros(p),
-            covariance: DMatrix::identity(p, p) * START.powi(2),
+            covariance: DMatrix::identity(p, p) * FAMILY.start.powi(2),
             told: DVector::zeros(p),
             members: evidence.len() as f64,
             steps: 0,
         };
-        for step in 1..=STEPS {
+        for step in 1..=FAMILY.steps {
             let before = learned.covariance.diagonal();
             learned.step(&evidence)?;
             learned.steps = step;
-            let changed = before.zip_map(&learned.covariance.diagonal(), |a, b| (a.sqrt() / b.sqrt().max(LEAST) - 1.0).abs());
-            if changed.max() < SETTLED {
+            let changed =
+                before.zip_map(&learned.covariance.diagonal(), |a, b| (a.sqrt() / b.sqrt().max(FAMILY.least) - 1.0).abs());
+            if changed.max() < FAMILY.settled {
                 break;
             }
         }
@@ -165,10 +158,10 @@ impl Learned {
     }
 
     /// Members given the family, then the family given the members.
-    fn step(&mut self, evidence: &[Evidence]) -> Result<(), FamilyError> {
+    fn step(&mut self, evidence: &[MemberEvidence]) -> Result<(), FamilyError> {
         let precision = inverse(&self.covariance)?;
         let pull = &precision * &self.mean;
-        let member = |one: &Evidence| -> Result<(DVector<f64>, DMatrix<f64>), FamilyError> {
+        let member = |one: &MemberEvidence| -> Result<(DVector<f64>, DMatrix<f64>), FamilyError> {
             let covariance = inverse(&(&precision + &one.precision))?;
             Ok((&covariance * (&pull + &one.information), covariance))
         };
@@ -184,7 +177,7 @@ impl Learned {
             covariance.ger(1.0 / self.members, &apart, &apart, 1.0);
             open += left.diagonal() / self.members;
         }
-        (0..mean.len()).for_each(|j| covariance[(j, j)] = covariance[(j, j)].max(LEAST.powi(2)));
+        (0..mean.len()).for_each(|j| covariance[(j, j)] = covariance[(j, j)].max(FAMILY.least.powi(2)));
         self.told = open.zip_map(&self.covariance.diagonal(), |open, all| (1.0 - open / all).clamp(0.0, 1.0));
         self.covariance = covariance;
         self.mean = mean;

@@ -7,9 +7,10 @@
 mod evidence;
 mod learn;
 mod prior;
+mod thresholds;
 
 pub use learn::{FamilyError, Member, learn};
-pub use prior::{FORMAT, FamilyAxis, FamilyPrior};
+pub use prior::{FORMAT, FamilyAxis, FamilyPrior, FamilyPriorError};
 
 #[cfg(test)]
 mod tests;

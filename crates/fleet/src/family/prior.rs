@@ -46,27 +46,38 @@ pub struct FamilyAxis {
     pub told_by_trials: Vec<f64>,
 }
 
+/// Why a document is no prior.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum FamilyPriorError {
+    /// The lists of an axis do not go together.
+    #[error("axis {0}: names, means, deviations and correlations are not equally many")]
+    Lengths(Axis),
+    /// What an axis has for correlations is no correlation matrix.
+    #[error("axis {0}: the correlations are none")]
+    Correlations(Axis),
+}
+
 impl FamilyPrior {
     /// The priors of the axes, for [`crate::bulk::Prior::Family`].
     ///
     /// # Errors
     /// Names the axis whose correlations are none.
-    pub fn axes(&self) -> Result<Vec<AxisPrior>, String> {
+    pub fn axes(&self) -> Result<Vec<AxisPrior>, FamilyPriorError> {
         self.axes.iter().map(FamilyAxis::prior).collect()
     }
 }
 
 impl FamilyAxis {
-    fn prior(&self) -> Result<AxisPrior, String> {
+    fn prior(&self) -> Result<AxisPrior, FamilyPriorError> {
         let p = self.names.len();
         let long = |length: usize| length == p;
         let whole = long(self.mean.len()) && long(self.deviation.len()) && long(self.correlation.len());
         if !whole || !self.correlation.iter().all(|row| long(row.len())) {
-            return Err(format!("axis {}: names, means, deviations and correlations are not equally many", self.axis));
+            return Err(FamilyPriorError::Lengths(self.axis));
         }
         // In units of the deviations, which differ by orders of magnitude.
         let correlation = DMatrix::from_fn(p, p, |i, j| self.correlation[i][j]);
-        let root = correlation.cholesky().ok_or_else(|| format!("axis {}: the correlations are none", self.axis))?.unpack();
+        let root = correlation.cholesky().ok_or(FamilyPriorError::Correlations(self.axis))?.unpack();
         let root = DMatrix::from_fn(p, p, |i, j| self.deviation[i] * root[(i, j)]);
         Ok(AxisPrior { names: self.names.clone(), mean: self.mean.clone(), root })
     }

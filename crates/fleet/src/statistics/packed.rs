@@ -10,7 +10,7 @@ use sistership_regression::Moments;
 /// As it is written.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Packed {
+struct PackedMoments {
     /// Number of regressors.
     regressors: usize,
     /// Number of targets.
@@ -21,11 +21,12 @@ struct Packed {
 
 pub(super) fn serialize<S: Serializer>(moments: &Moments, serializer: S) -> Result<S::Ok, S::Error> {
     let bytes: Vec<u8> = moments.numbers().iter().flat_map(|number| number.to_le_bytes()).collect();
-    Packed { regressors: moments.regressors(), targets: moments.targets(), numbers: STANDARD.encode(bytes) }.serialize(serializer)
+    PackedMoments { regressors: moments.regressors(), targets: moments.targets(), numbers: STANDARD.encode(bytes) }
+        .serialize(serializer)
 }
 
 pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Moments, D::Error> {
-    let Packed { regressors, targets, numbers } = Packed::deserialize(deserializer)?;
+    let PackedMoments { regressors, targets, numbers } = PackedMoments::deserialize(deserializer)?;
     let bytes = STANDARD.decode(numbers).map_err(D::Error::custom)?;
     let (doubles, rest) = bytes.as_chunks::<8>();
     let numbers: Vec<f64> = doubles.iter().map(|double| f64::from_le_bytes(*double)).collect();

@@ -107,7 +107,7 @@ impl Drift {
 
 fn residual(statistics: &TrialStatistics, coefficients: &BTreeMap<String, f64>) -> Result<BTreeMap<String, f64>, DeriveError> {
     let left = statistics.left_by(coefficients)?;
-    let share = |left: &sistership_fleet::statistics::Left| {
+    let share = |left: &sistership_fleet::statistics::AxisResidual| {
         (left.target > 0.0).then(|| (left.axis.to_string(), (left.residual / left.target).sqrt()))
     };
     Ok(left.iter().filter_map(share).collect())

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use sistership_fleet::bulk::{AxisPrior, BulkSettings, Prior};
+use sistership_fleet::family::FamilyPriorError;
 use sistership_model::version::{RecipeTrial, SourceVersion, code_revision};
 use sistership_model::{Law, Model};
 use std::collections::BTreeMap;
@@ -115,7 +116,7 @@ impl Loaded {
 
 async fn family(inputs: &Inputs<'_>, name: &PriorName) -> Result<Held, DeriveError> {
     let prior = inputs.prior(name).await?;
-    let lost = |what: String| {
+    let lost = |what: FamilyPriorError| {
         DeriveError::Lost(format!("the prior of the family `{}` at revision {} {what}", name.family, name.revision))
     };
     Ok(Held::Family { axes: prior.axes().map_err(lost)?, design_effect: prior.design_effect })

@@ -16,7 +16,7 @@ mod strategy;
 mod weights;
 
 pub use budget::{Budget, Spent};
-pub use restarts::{Outcome, Search, Standing, Stopped};
+pub use restarts::{CmaEsSearch, SearchCancelled, SearchOutcome, SearchState};
 pub use strategy::Strategy;
 
 #[cfg(test)]

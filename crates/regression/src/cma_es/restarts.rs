@@ -13,7 +13,7 @@ use super::strategy::Strategy;
 
 /// What is searched, and how: from zero in a box about it.
 #[derive(Debug, Clone)]
-pub struct Search {
+pub struct CmaEsSearch {
     /// Half widths of the box.
     pub widths: Vec<f64>,
     /// Standard deviation of the first candidates, of a restart's too.
@@ -30,7 +30,7 @@ pub struct Search {
 
 /// How a search stands after a generation.
 #[derive(Debug)]
-pub struct Standing<'a> {
+pub struct SearchState<'a> {
     /// What was spent.
     pub spent: &'a Spent,
     /// The best point so far, with its cost.
@@ -45,11 +45,11 @@ pub struct Standing<'a> {
 
 /// The caller asked to stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Stopped;
+pub struct SearchCancelled;
 
 /// What a search found.
 #[derive(Debug, Clone)]
-pub struct Outcome {
+pub struct SearchOutcome {
     /// The best point.
     pub best: Vec<f64>,
     /// Its cost.
@@ -62,7 +62,7 @@ pub struct Outcome {
     pub populations: Vec<usize>,
 }
 
-impl Search {
+impl CmaEsSearch {
     /// Searches for the least cost; `cost` must be a function of the point alone, `told` answers `false` to stop.
     ///
     /// # Errors
@@ -70,13 +70,13 @@ impl Search {
     pub fn least(
         &self,
         cost: &(dyn Fn(&[f64]) -> f64 + Sync),
-        told: &mut dyn FnMut(&Standing<'_>) -> bool,
-    ) -> Result<Outcome, Stopped> {
+        told: &mut dyn FnMut(&SearchState<'_>) -> bool,
+    ) -> Result<SearchOutcome, SearchCancelled> {
         let start = vec![0.0; self.widths.len()];
         self.from(Strategy::new(&start, self.sigma, self.population, self.seed), cost, told)
     }
 
-    /// As [`Search::least`], where the first run begins with a given distribution.
+    /// As [`CmaEsSearch::least`], where the first run begins with a given distribution.
     ///
     /// # Errors
     /// The caller asked to stop.
@@ -84,12 +84,12 @@ impl Search {
         &self,
         first: Strategy,
         cost: &(dyn Fn(&[f64]) -> f64 + Sync),
-        told: &mut dyn FnMut(&Standing<'_>) -> bool,
-    ) -> Result<Outcome, Stopped> {
+        told: &mut dyn FnMut(&SearchState<'_>) -> bool,
+    ) -> Result<SearchOutcome, SearchCancelled> {
         let start: Vec<f64> = Bounds::new(&self.widths).inside(first.mean().as_slice());
         let (mut spent, worth) = (Spent::nothing(), cost(&start));
         spent.evaluations += 1;
-        let mut outcome = Outcome { best: start, cost: worth, strategy: first.clone(), spent, populations: Vec::new() };
+        let mut outcome = SearchOutcome { best: start, cost: worth, strategy: first.clone(), spent, populations: Vec::new() };
         let mut strategy = first;
         loop {
             outcome.populations.push(strategy.population());
@@ -117,9 +117,9 @@ impl Search {
         &self,
         strategy: &mut Strategy,
         cost: &(dyn Fn(&[f64]) -> f64 + Sync),
-        outcome: &mut Outcome,
-        told: &mut dyn FnMut(&Standing<'_>) -> bool,
-    ) -> Result<bool, Stopped> {
+        outcome: &mut SearchOutcome,
+        told: &mut dyn FnMut(&SearchState<'_>) -> bool,
+    ) -> Result<bool, SearchCancelled> {
         let mut bounds = Bounds::new(&self.widths);
         let (mut recent, mut found) = (VecDeque::new(), false);
         let patience = 10 + (30 * self.widths.len()).div_ceil(strategy.population());
@@ -142,7 +142,7 @@ impl Search {
             strategy.tell(&penalised);
             bounds.adapt(strategy, &costs);
             let mean = bounds.inside(strategy.mean().as_slice());
-            let standing = Standing {
+            let standing = SearchState {
                 spent: &outcome.spent,
                 best: (&outcome.best, outcome.cost),
                 mean: &mean,
@@ -150,7 +150,7 @@ impl Search {
                 restarts: outcome.populations.len() - 1,
             };
             if !told(&standing) {
-                return Err(Stopped);
+                return Err(SearchCancelled);
             }
             if converged(&recent, patience) || strategy.exhausted() {
                 break;

@@ -1,11 +1,11 @@
 use super::*;
 
-fn search(dimension: usize, width: f64, evaluations: usize) -> Search {
+fn search(dimension: usize, width: f64, evaluations: usize) -> CmaEsSearch {
     let budget = Budget { evaluations, wall_s: None, cpu_s: None };
-    Search { widths: vec![width; dimension], sigma: 0.5, population: 16, largest_population: 64, seed: 7, budget }
+    CmaEsSearch { widths: vec![width; dimension], sigma: 0.5, population: 16, largest_population: 64, seed: 7, budget }
 }
 
-fn least(search: &Search, cost: &(dyn Fn(&[f64]) -> f64 + Sync)) -> Outcome {
+fn least(search: &CmaEsSearch, cost: &(dyn Fn(&[f64]) -> f64 + Sync)) -> SearchOutcome {
     search.least(cost, &mut |_| true).unwrap_or_else(|_| panic!("nobody asked to stop"))
 }
 
@@ -84,7 +84,7 @@ fn many_hills_are_left_behind_by_restarts() {
 
 #[test]
 fn a_seed_and_a_budget_give_the_same_point_to_the_last_bit() {
-    let run = |seed| least(&Search { seed, ..search(6, 5.0, 2_000) }, &rosenbrock).best;
+    let run = |seed| least(&CmaEsSearch { seed, ..search(6, 5.0, 2_000) }, &rosenbrock).best;
     assert_eq!(run(3), run(3));
     assert_ne!(run(3), run(4));
 }
@@ -96,14 +96,14 @@ fn a_search_that_is_told_to_stop_stops() {
         generations += 1;
         generations < 5
     });
-    assert_eq!((outcome.err(), generations), (Some(Stopped), 5));
+    assert_eq!((outcome.err(), generations), (Some(SearchCancelled), 5));
 }
 
 #[test]
 fn time_ends_a_search_too() {
     let budget = Budget { evaluations: usize::MAX, wall_s: Some(0.05), cpu_s: None };
-    let by_wall = least(&Search { budget, ..search(5, 5.0, 0) }, &rosenbrock);
+    let by_wall = least(&CmaEsSearch { budget, ..search(5, 5.0, 0) }, &rosenbrock);
     let budget = Budget { evaluations: usize::MAX, wall_s: Some(30.0), cpu_s: Some(0.05) };
-    let by_cpu = least(&Search { budget, ..search(5, 5.0, 0) }, &rosenbrock);
+    let by_cpu = least(&CmaEsSearch { budget, ..search(5, 5.0, 0) }, &rosenbrock);
     assert!(by_wall.spent.wall_s() < 10.0 && by_cpu.spent.wall_s() < 10.0);
 }

@@ -9,23 +9,24 @@ use sistership_model::Model;
 use sistership_model::trial::Channel;
 
 use super::super::candidate::{CandidateFit, Solution};
-use super::super::errors::Errors;
+use super::super::errors::CoefficientErrors;
 use super::super::outcome::RefineError;
 use super::super::problem::Problem;
 use super::super::progress::{Iterate, PartProgress, Progress, step};
 use super::super::ridge::{Fit, Fitted};
 use super::super::ridge_candidates::share;
 use super::super::simulated::simulate_training;
-use super::super::trajectory::{Cut, Plan, Prior, Segment, compared, cut};
+use super::super::trajectory::{ComparisonPlan, Segment, SegmentLengths, WeakFormPrior, compared, cut};
 use super::super::variant::Variant;
-use super::deviation::Deviation;
+use super::deviation::DeviationPenalty;
 use super::objective::{Objective, Sequences};
+use super::thresholds::OBJECTIVE;
 use super::{CmaEs, SearchReport};
 use crate::transfer::ready;
-use sistership_regression::cma_es::{Budget, Outcome, Search, Standing, Stopped};
+use sistership_regression::cma_es::{Budget, CmaEsSearch, SearchCancelled, SearchOutcome, SearchState};
 
 /// The search among one variant's coefficients.
-struct Searching<'a> {
+struct VariantSearch<'a> {
     problem: &'a Problem<'a>,
     variant: &'a Variant,
     settings: &'a CmaEs,
@@ -36,7 +37,7 @@ struct Searching<'a> {
 }
 
 /// What the fit on all trials and those with trials left out found: coefficients each.
-struct Found {
+struct SearchSolution {
     all: Vec<f64>,
     left_out: Vec<Vec<f64>>,
     report: SearchReport,
@@ -48,7 +49,7 @@ impl Solution for Fit {
     }
 
     /// A search without slopes knows none.
-    fn errors(&self, _: &Problem<'_>, _: &[Variant]) -> Result<Option<Errors>, RefineError> {
+    fn errors(&self, _: &Problem<'_>, _: &[Variant]) -> Result<Option<CoefficientErrors>, RefineError> {
         Ok(None)
     }
 }
@@ -66,7 +67,7 @@ pub(super) fn search(
     let settings = problem.settings.cma_es.clone().unwrap_or_default();
     for (index, variant) in variants.iter().enumerate() {
         let told = |done: f64, what: &str| step(progress, share(index, done, variants.len()), what);
-        let searching = Searching::new(problem, variant, &settings)?;
+        let searching = VariantSearch::new(problem, variant, &settings)?;
         let found = searching.search(&told)?;
         candidates.push(searching.candidate(found)?);
     }
@@ -74,15 +75,15 @@ pub(super) fn search(
 }
 
 /// How trials are cut into subsequences, and the comparisons that fall on samples.
-fn sequences(problem: &Problem<'_>) -> Cut {
+fn sequences(problem: &Problem<'_>) -> SegmentLengths {
     let (interval, settings) = (problem.interval_s(), &problem.settings);
     let wanted = settings.step_s.unwrap_or(interval);
     let step_s = if wanted >= interval { interval * (wanted / interval).round() } else { interval / (interval / wanted).ceil() };
     let residual_s = settings.residual_s.unwrap_or(interval).max(step_s);
-    Cut { segment_s: settings.segment_s.unwrap_or(1000.0 * step_s), residual_s, step_s }
+    SegmentLengths { segment_s: settings.segment_s.unwrap_or(OBJECTIVE.fallback_steps * step_s), residual_s, step_s }
 }
 
-impl<'a> Searching<'a> {
+impl<'a> VariantSearch<'a> {
     fn new(problem: &'a Problem<'a>, variant: &'a Variant, settings: &'a CmaEs) -> Result<Self, RefineError> {
         let system = CandidateSystem::new(&variant.model, problem.law)?;
         let cutting = sequences(problem);
@@ -91,11 +92,17 @@ impl<'a> Searching<'a> {
         if segments.is_empty() {
             return Err(RefineError::Data("no trial is as long as a third of a subsequence".into()));
         }
-        let ship = ready(&variant.model, problem.law, &problem.training).map_err(RefineError::Law)?;
+        let ship = ready(&variant.model, problem.law, &problem.training)?;
         let sizes = natural_sizes(variant, system.names())?;
         let moved = (0..sizes.len()).filter(|k| sizes[*k] > 0.0).collect();
         let objective = Objective {
-            deviation: Deviation::new(&system, problem.law, &problem.training, cutting.step_s, 10.0 * cutting.step_s),
+            deviation: DeviationPenalty::new(
+                &system,
+                problem.law,
+                &problem.training,
+                cutting.step_s,
+                OBJECTIVE.mean_steps * cutting.step_s,
+            ),
             source: system.names().iter().map(|name| variant.model.coefficient(name)).collect(),
             system,
             plan,
@@ -109,14 +116,14 @@ impl<'a> Searching<'a> {
     }
 
     /// On all trials, then without those of each fold.
-    fn search(&self, told: PartProgress<'_>) -> Result<Found, RefineError> {
+    fn search(&self, told: PartProgress<'_>) -> Result<SearchSolution, RefineError> {
         let given = self.settings;
         let budget = Budget { evaluations: given.evaluations, wall_s: given.wall_s, cpu_s: given.cpu_s };
         let sequences = Sequences::new(&self.objective, self.segments.iter());
         let search = self.searching(budget, given.seed);
         let cost = |parameters: &[f64]| self.objective.cost(&sequences, &self.spread(parameters));
-        let mut tell = |standing: &Standing<'_>| self.tell(standing, &budget, told);
-        let outcome = search.least(&cost, &mut tell).map_err(|Stopped| RefineError::Cancelled)?;
+        let mut tell = |standing: &SearchState<'_>| self.tell(standing, &budget, told);
+        let outcome = search.least(&cost, &mut tell).map_err(|SearchCancelled| RefineError::Cancelled)?;
         let budget = Budget {
             evaluations: (given.fold_share * outcome.spent.evaluations as f64).ceil() as usize,
             wall_s: None,
@@ -141,23 +148,29 @@ impl<'a> Searching<'a> {
             error: self.objective.error(&sequences, &all),
             deviation: self.objective.deviated(&all),
         };
-        Ok(Found { all, left_out, report })
+        Ok(SearchSolution { all, left_out, report })
     }
 
     /// Goes on from the optimum for all trials with those of a fold left out.
-    fn without(&self, fold: usize, optimum: &Outcome, budget: Budget, told: PartProgress<'_>) -> Result<Outcome, RefineError> {
+    fn without(
+        &self,
+        fold: usize,
+        optimum: &SearchOutcome,
+        budget: Budget,
+        told: PartProgress<'_>,
+    ) -> Result<SearchOutcome, RefineError> {
         let inside = |segment: &&Segment| self.problem.is_fitted(segment.trial, fold);
         let sequences = Sequences::new(&self.objective, self.segments.iter().filter(inside));
         let cost = |parameters: &[f64]| self.objective.cost(&sequences, &self.spread(parameters));
         let search = self.searching(budget, self.settings.seed.wrapping_add(1000 * (fold as u64 + 1)));
-        let first = optimum.strategy.renewed(&optimum.best, 0.1 * self.settings.spread, search.seed);
-        let mut tell = |_: &Standing<'_>| told(0.7, "the search without the trials of each fold").is_ok();
-        search.from(first, &cost, &mut tell).map_err(|Stopped| RefineError::Cancelled)
+        let first = optimum.strategy.renewed(&optimum.best, OBJECTIVE.fold_spread * self.settings.spread, search.seed);
+        let mut tell = |_: &SearchState<'_>| told(0.7, "the search without the trials of each fold").is_ok();
+        search.from(first, &cost, &mut tell).map_err(|SearchCancelled| RefineError::Cancelled)
     }
 
-    fn searching(&self, budget: Budget, seed: u64) -> Search {
+    fn searching(&self, budget: Budget, seed: u64) -> CmaEsSearch {
         let CmaEs { population, largest_population, spread, box_width, .. } = *self.settings;
-        Search { widths: vec![box_width; self.moved.len()], sigma: spread, population, largest_population, seed, budget }
+        CmaEsSearch { widths: vec![box_width; self.moved.len()], sigma: spread, population, largest_population, seed, budget }
     }
 
     /// Parameters of all coefficients from those that are searched.
@@ -167,7 +180,7 @@ impl<'a> Searching<'a> {
         all
     }
 
-    fn tell(&self, standing: &Standing<'_>, budget: &Budget, told: PartProgress<'_>) -> bool {
+    fn tell(&self, standing: &SearchState<'_>, budget: &Budget, told: PartProgress<'_>) -> bool {
         let (best, cost) = standing.best;
         let model = || self.model(&self.objective.coefficients(&self.spread(best)));
         self.problem.show(&Iterate { evaluations: standing.spent.evaluations, objective: cost, model: &model });
@@ -181,7 +194,7 @@ impl<'a> Searching<'a> {
         self.variant.model_at(&values)
     }
 
-    fn candidate(&self, found: Found) -> Result<CandidateFit, RefineError> {
+    fn candidate(&self, found: SearchSolution) -> Result<CandidateFit, RefineError> {
         let models: Vec<Model> = found.left_out.iter().map(|coefficients| self.model(coefficients)).collect();
         let simulated = simulate_training(self.problem, &models, &|trial| self.problem.fold_of(trial))?;
         let one = |(k, name): (usize, &String)| {
@@ -197,7 +210,7 @@ impl<'a> Searching<'a> {
 }
 
 /// What is compared: u, v and r.
-fn plan(problem: &Problem<'_>, system: &CandidateSystem, cutting: Cut) -> Result<Plan, RefineError> {
+fn plan(problem: &Problem<'_>, system: &CandidateSystem, cutting: SegmentLengths) -> Result<ComparisonPlan, RefineError> {
     let deviations = standard_deviations(&problem.training);
     let all = compared(system.states(), &deviations);
     let velocities: Vec<_> = all.into_iter().filter(|&(_, place, _)| [at::U, at::V, at::R].contains(&place)).collect();
@@ -207,13 +220,13 @@ fn plan(problem: &Problem<'_>, system: &CandidateSystem, cutting: Cut) -> Result
         return Err(RefineError::Data(message));
     }
     let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;
-    Ok(Plan { compared: velocities, stride, step_s: cutting.step_s })
+    Ok(ComparisonPlan { compared: velocities, stride, step_s: cutting.step_s })
 }
 
 /// The change of each coefficient that changes an acceleration by the acceleration's own size; zero where the trials say nothing of it.
 fn natural_sizes(variant: &Variant, names: &[String]) -> Result<Vec<f64>, RefineError> {
     let all = variant.together(|_| true)?;
-    let prior = Prior::new(names, &variant.blocks, &all, &|_| (0.0, 0.0), 0.0);
+    let prior = WeakFormPrior::new(names, &variant.blocks, &all, &|_| (0.0, 0.0), 0.0);
     let size = |square: &f64| if *square > 0.0 && square.is_finite() { 1.0 / square.sqrt() } else { 0.0 };
     Ok(prior.hessian.diagonal().iter().map(size).collect())
 }

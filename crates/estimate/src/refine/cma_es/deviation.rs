@@ -8,18 +8,13 @@ use sistership_model::effect::input_channel;
 use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 
+use super::thresholds::OBJECTIVE;
+
 /// States and controls in lockstep.
 const LANES: usize = 16;
-/// By how much of the range that the trials covered the extremes of the states are beyond it.
-const MARGIN: f64 = 0.2;
-/// Most controls whose extremes are combined.
-const CONTROLS: usize = 4;
-/// The share of measured accelerations that may be.
-const PERCENTILE: f64 = 0.997;
-
 /// The combinations, with what their accelerations may be.
 #[derive(Debug)]
-pub(super) struct Deviation {
+pub(super) struct DeviationPenalty {
     blocks: Vec<(Vec<StateVector>, Vec<Lanes<LANES>>)>,
     limits: [f64; 3],
     steps: usize,
@@ -27,10 +22,10 @@ pub(super) struct Deviation {
     count: f64,
 }
 
-impl Deviation {
+impl DeviationPenalty {
     /// From the extremes of trials; accelerations are means over `window_s`, for as long as which each combination is simulated.
     pub fn new(system: &CandidateSystem, law: &Law, trials: &[&Trial], step_s: f64, window_s: f64) -> Self {
-        let starts = combinations(&RECORDED[..3].iter().map(|&(c, _)| three(trials, c, MARGIN)).collect::<Vec<_>>());
+        let starts = combinations(&RECORDED[..3].iter().map(|&(c, _)| three(trials, c, OBJECTIVE.beyond)).collect::<Vec<_>>());
         let controls: Vec<Vec<f64>> = system.input_names().iter().map(|name| settings(name, law, trials)).collect();
         let controls: Vec<Vec<f64>> = combinations(&controls).iter().map(|inputs| system.prepared(inputs)).collect();
         let pairs: Vec<(StateVector, &Vec<f64>)> =
@@ -99,7 +94,7 @@ fn combinations(choices: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut several = 0;
     for choice in choices {
         several += usize::from(choice.len() > 1);
-        let taken = if several > CONTROLS { &choice[choice.len() / 2..=choice.len() / 2] } else { &choice[..] };
+        let taken = if several > OBJECTIVE.controls { &choice[choice.len() / 2..=choice.len() / 2] } else { &choice[..] };
         let longer = |before: &Vec<f64>| {
             taken.iter().map(|value| before.iter().copied().chain([*value]).collect::<Vec<f64>>()).collect::<Vec<_>>()
         };
@@ -128,6 +123,6 @@ fn limit(trials: &[&Trial], channel: Channel, window_s: f64) -> f64 {
         }
     }
     sizes.sort_by(f64::total_cmp);
-    let at = (PERCENTILE * sizes.len() as f64) as usize;
+    let at = (OBJECTIVE.percentile * sizes.len() as f64) as usize;
     sizes.get(at.min(sizes.len().saturating_sub(1))).copied().unwrap_or(f64::INFINITY)
 }

@@ -11,13 +11,7 @@ use super::super::settings::Settings;
 use super::super::variant::Variant;
 use super::super::weak;
 use super::candidates::search;
-
-/// Integration step and length of a subsequence by the time in which the ship sails its length: the paper's 0.1 s and 100 s, for a
-/// ship of 3 m at 0.4 m/s.
-const STEP: f64 = 75.0;
-const SEGMENT: f64 = 10.0;
-/// No subsequence is shorter, s (Miyauchi 2024, section 4).
-const LEAST_SEGMENT_S: f64 = 100.0;
+use super::thresholds::OBJECTIVE;
 
 /// The search by covariance matrix adaptation; it alone is weighed against the source.
 pub(in super::super) struct CovarianceMatrixAdaptation;
@@ -27,8 +21,8 @@ impl Estimator for CovarianceMatrixAdaptation {
         // It is too dear to be repeated for families that nobody asked for.
         weak::resolve(settings, length_s, &[Family::Own]);
         settings.cma_es.get_or_insert_default();
-        settings.step_s = settings.step_s.or(length_s.map(|s| s / STEP));
-        settings.segment_s = settings.segment_s.or(length_s.map(|s| (SEGMENT * s).max(LEAST_SEGMENT_S)));
+        settings.step_s = settings.step_s.or(length_s.map(|s| s / OBJECTIVE.steps_a_length));
+        settings.segment_s = settings.segment_s.or(length_s.map(|s| (OBJECTIVE.segment * s).max(OBJECTIVE.least_segment_s)));
     }
 
     fn equations(&self, settings: &Settings) -> Equations {

@@ -16,6 +16,7 @@ mod deviation;
 mod estimator;
 mod objective;
 mod settings;
+mod thresholds;
 
 pub(super) use estimator::CovarianceMatrixAdaptation;
 pub use settings::{CmaEs, SearchReport};

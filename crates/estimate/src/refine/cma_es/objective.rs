@@ -5,17 +5,16 @@ use sistership_dynamics::state::StateVector;
 use sistership_dynamics::tape::Lanes;
 use sistership_dynamics::{Envelope, Method};
 
-use super::super::trajectory::{Plan, Segment};
-use super::deviation::Deviation;
+use super::super::trajectory::{ComparisonPlan, Segment};
+use super::deviation::DeviationPenalty;
+use super::thresholds::OBJECTIVE;
 
 /// Subsequences in lockstep.
 const LANES: usize = 16;
-/// What a standardised difference counts that a simulation never came to.
-const LOST: f64 = 30.0;
 
 /// Subsequences in lockstep: where each starts, what is put in and what should come out, by lane.
 #[derive(Debug)]
-struct Block {
+struct SequenceBlock {
     starts: Vec<StateVector>,
     /// At every whole or half step, as the method needs, one after the other.
     inputs: Vec<Lanes<LANES>>,
@@ -29,7 +28,7 @@ struct Block {
 /// The sequences of some trials.
 #[derive(Debug)]
 pub(super) struct Sequences {
-    blocks: Vec<Block>,
+    blocks: Vec<SequenceBlock>,
     /// Comparisons of all.
     count: f64,
 }
@@ -38,10 +37,10 @@ pub(super) struct Sequences {
 #[derive(Debug)]
 pub(super) struct Objective {
     pub system: CandidateSystem,
-    pub plan: Plan,
+    pub plan: ComparisonPlan,
     pub method: Method,
     pub envelope: Envelope,
-    pub deviation: Deviation,
+    pub deviation: DeviationPenalty,
     /// Weights of the deviation and of the sizes.
     pub weights: (f64, f64),
     /// The source's coefficients, and the natural size of each.
@@ -55,13 +54,13 @@ impl Sequences {
     /// Of segments, those of a length together.
     pub fn new<'s>(objective: &Objective, segments: impl Iterator<Item = &'s Segment>) -> Self {
         let all: Vec<&Segment> = segments.collect();
-        let blocks: Vec<Block> = all.chunks(LANES).map(|chunk| Block::new(objective, chunk)).collect();
+        let blocks: Vec<SequenceBlock> = all.chunks(LANES).map(|chunk| SequenceBlock::new(objective, chunk)).collect();
         let count = blocks.iter().flat_map(|block| block.compared).sum();
         Self { blocks, count }
     }
 }
 
-impl Block {
+impl SequenceBlock {
     fn new(objective: &Objective, segments: &[&Segment]) -> Self {
         let Objective { system, plan, method, .. } = objective;
         let (steps, width) = (segments[0].steps, system.input_names().len());
@@ -118,7 +117,7 @@ impl Objective {
         sum / sequences.count.max(1.0)
     }
 
-    fn of_block(&self, block: &Block, run: &mut CandidateRun<'_, LANES>, coefficients: &[f64]) -> f64 {
+    fn of_block(&self, block: &SequenceBlock, run: &mut CandidateRun<'_, LANES>, coefficients: &[f64]) -> f64 {
         block.starts.iter().enumerate().for_each(|(lane, start)| run.start(lane, start));
         let width = block.inputs.len() / if self.method == Method::Euler { block.steps + 1 } else { 2 * block.steps + 1 };
         let at = |k: usize| &block.inputs[k * width..(k + 1) * width];
@@ -136,7 +135,7 @@ impl Objective {
                 }
             }
         }
-        sums.iter().zip(&left).map(|(sum, left)| sum + 3.0 * LOST * LOST * left).sum()
+        sums.iter().zip(&left).map(|(sum, left)| sum + 3.0 * OBJECTIVE.lost * OBJECTIVE.lost * left).sum()
     }
 
     /// Adds a comparison to the lanes that have not left the physical range before; `left` are those that remain.

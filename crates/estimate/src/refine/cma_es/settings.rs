@@ -67,29 +67,43 @@ impl Default for CmaEs {
     }
 }
 
+/// Why settings of the search are refused.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub(in super::super) enum CmaEsError {
+    #[error("population must be from 4 to 100000, largest_population not less")]
+    Population,
+    #[error("evaluations, wall_s and cpu_s must be above 0")]
+    Budget,
+    #[error("box_width and spread must be above 0")]
+    Box,
+    #[error("fold_share must be from 0 to 1")]
+    FoldShare,
+    #[error("deviation and absolute must not be below 0")]
+    Weights,
+}
+
 impl CmaEs {
     /// Checks the numbers.
     ///
     /// # Errors
     /// Says which and what it may be.
-    pub(in super::super) fn check(&self) -> Result<(), String> {
-        let refuse = |message: &str| Err(message.to_owned());
+    pub(in super::super) fn check(&self) -> Result<(), CmaEsError> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         let limit = |value: Option<f64>| value.is_none_or(positive);
         if !(4..=100_000).contains(&self.population) || !(self.population..=100_000).contains(&self.largest_population) {
-            return refuse("population must be from 4 to 100000, largest_population not less");
+            return Err(CmaEsError::Population);
         }
         if self.evaluations == 0 || !limit(self.wall_s) || !limit(self.cpu_s) {
-            return refuse("evaluations, wall_s and cpu_s must be above 0");
+            return Err(CmaEsError::Budget);
         }
         if !(positive(self.box_width) && positive(self.spread)) {
-            return refuse("box_width and spread must be above 0");
+            return Err(CmaEsError::Box);
         }
         if !(0.0..=1.0).contains(&self.fold_share) {
-            return refuse("fold_share must be from 0 to 1");
+            return Err(CmaEsError::FoldShare);
         }
         if [self.deviation, self.absolute].iter().any(|weight| !(*weight >= 0.0 && weight.is_finite())) {
-            return refuse("deviation and absolute must not be below 0");
+            return Err(CmaEsError::Weights);
         }
         Ok(())
     }

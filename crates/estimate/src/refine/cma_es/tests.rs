@@ -52,9 +52,9 @@ fn a_search_recovers_what_is_known_and_is_the_same_again() {
 #[test]
 fn a_search_that_time_ends_records_what_gives_it_again() {
     let mut settings = CmaEs { wall_s: Some(0.0), ..CmaEs::default() };
-    assert!(settings.check().unwrap_err().contains("above 0"));
+    assert!(settings.check().unwrap_err().to_string().contains("above 0"));
     settings = CmaEs { population: 2, ..CmaEs::default() };
-    assert!(settings.check().unwrap_err().contains("population"));
+    assert!(settings.check().unwrap_err().to_string().contains("population"));
     assert_eq!(CmaEs::default().check(), Ok(()));
     let refinement = refined(300);
     let recorded = refinement.settings.cma_es.unwrap();

@@ -1,14 +1,12 @@
 //! Which limits cannot be kept together.
 
 use super::limit::Limit;
-use super::programme::{Nearest, Steps};
-
-/// Overstepping that is no more than the solver's own error, by the scale of a limit.
-const ERROR: f64 = 1e-6;
+use super::programme::{NearestPointProblem, Overstepping};
+use super::thresholds::CONSTRAINTS;
 
 /// A set of limits that cannot be kept together, none of which can be left out of it (the deletion filter of Chinneck and
 /// Dravnieks 1991, ORSA Journal on Computing 3, 157-168), by name; none where all can be kept.
-pub(super) fn conflict(nearest: &Nearest<'_>, limits: &[&Limit]) -> Option<Vec<String>> {
+pub(super) fn conflict(nearest: &NearestPointProblem<'_>, limits: &[&Limit]) -> Option<Vec<String>> {
     if possible(nearest, limits) {
         return None;
     }
@@ -23,9 +21,11 @@ pub(super) fn conflict(nearest: &Nearest<'_>, limits: &[&Limit]) -> Option<Vec<S
 }
 
 /// Whether limits can be kept together: whether the least overstepping is none.
-fn possible(nearest: &Nearest<'_>, limits: &[&Limit]) -> bool {
+fn possible(nearest: &NearestPointProblem<'_>, limits: &[&Limit]) -> bool {
     if limits.is_empty() {
         return true;
     }
-    nearest.within(limits, Steps::Elastic).is_ok_and(|point| point.overstepped.iter().all(|by| *by < ERROR))
+    nearest
+        .within(limits, Overstepping::Elastic)
+        .is_ok_and(|point| point.overstepped.iter().all(|by| *by < CONSTRAINTS.solver_error))
 }

@@ -2,12 +2,12 @@
 
 /// An affine function of the coefficients: normal and constant.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Affine {
+pub(super) struct AffineFunction {
     pub normal: Vec<f64>,
     pub constant: f64,
 }
 
-impl Affine {
+impl AffineFunction {
     pub fn at(&self, coefficients: &[f64]) -> f64 {
         self.constant + self.normal.iter().zip(coefficients).map(|(n, c)| n * c).sum::<f64>()
     }
@@ -31,17 +31,17 @@ impl Affine {
 pub(super) struct Limit {
     pub name: String,
     /// One function that is at least 0; or several, the first of which is at least the length of the others.
-    pub cone: Vec<Affine>,
+    pub cone: Vec<AffineFunction>,
 }
 
 impl Limit {
-    pub fn least(name: String, function: Affine) -> Self {
+    pub fn least(name: String, function: AffineFunction) -> Self {
         Self { name, cone: vec![function] }
     }
 
     /// A symmetric matrix of two rows without negative eigenvalues: `a + c >= |(a - c, 2 b)|` (Alizadeh and Goldfarb 2003,
     /// Mathematical Programming 95, 3-51, section 2.3: such a matrix is a cone of second order in three dimensions).
-    pub fn matrix(name: String, [a, b, c]: [&Affine; 3]) -> Self {
+    pub fn matrix(name: String, [a, b, c]: [&AffineFunction; 3]) -> Self {
         Self { name, cone: vec![a.with(1.0, c, 1.0), a.with(1.0, c, -1.0), b.with(2.0, b, 0.0)] }
     }
 }

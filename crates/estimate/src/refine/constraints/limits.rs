@@ -3,42 +3,38 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, Matrix2};
+use sistership_dynamics::PlantError;
 use sistership_model::Model;
 use sistership_model::law::Law;
 
 use super::conflict::conflict;
-use super::limit::{Affine, Limit};
-use super::programme::{Nearest, Steps};
-use super::straight::{affine, fastest, surge, sway_and_yaw};
-use super::{Constraints, StraightLine};
+use super::error::LimitError;
+use super::limit::{AffineFunction, Limit};
+use super::programme::{NearestPointProblem, Overstepping};
+use super::settings::{Constraints, StraightLine};
+use super::straight::{affine, fastest, holds, limit, surge, sway_and_yaw};
+use super::thresholds::CONSTRAINTS;
 
 /// Signs that physics fixes: 1 for what is at least 0, -1 for what is at most 0.
 const SIGNS: [(&str, f64); 4] = [("Y_v", -1.0), ("N_r", -1.0), ("Y_delta", -1.0), ("N_delta", 1.0)];
 /// Surge terms that brake in every published set.
 const BRAKES: [&str; 1] = ["X_deltadelta"];
-/// Speeds at which surge damping is asked for.
-const SPEEDS: usize = 5;
-/// Growth or decay of a reference that is made by shifting a solution, by the time in which the ship sails her length.
-const SHIFT: f64 = 0.05;
-/// References tried one after the other, each the solution within the limits of the one before.
-const REFERENCES: usize = 3;
-
 /// Limits of the coefficients of a model.
-pub(in super::super) struct Limits {
+pub(in super::super) struct CoefficientLimits {
     names: Vec<String>,
     source: Vec<f64>,
     /// Those that do not depend on a solution.
     fixed: Vec<Limit>,
     trust_sd: Option<f64>,
-    straight: Option<(StraightLine, [Affine; 4])>,
+    straight: Option<(StraightLine, [AffineFunction; 4])>,
 }
 
-impl Limits {
+impl CoefficientLimits {
     /// For the coefficients that a model has; `speeds` are the least and the greatest that the trials covered, m/s.
     ///
     /// # Errors
     /// Names the setting that asks for what the model does not have.
-    pub fn new(settings: &Constraints, model: &Model, law: &Law, speeds: [f64; 2]) -> Result<Self, String> {
+    pub fn new(settings: &Constraints, model: &Model, law: &Law, speeds: [f64; 2]) -> Result<Self, LimitError> {
         let names: Vec<String> = model.coefficients.keys().cloned().collect();
         let mut fixed = Vec::new();
         if settings.physical_signs {
@@ -49,16 +45,19 @@ impl Limits {
             fixed.extend(damping(model, law, &names, speeds)?);
         }
         for (name, bound) in &settings.bounds {
-            let unknown = || format!("bounds.{name}: the model has no such coefficient");
+            let unknown = || LimitError::Unknown(name.clone());
             let place = names.iter().position(|own| own == name).ok_or_else(unknown)?;
             for (sign, bound, word) in [(1.0, bound.min, "least"), (-1.0, bound.max, "greatest")] {
                 let limit = |bound| {
-                    Limit::least(format!("bound of {name}: {word} {bound}"), Affine::of_one(names.len(), place, sign, bound))
+                    Limit::least(
+                        format!("bound of {name}: {word} {bound}"),
+                        AffineFunction::of_one(names.len(), place, sign, bound),
+                    )
                 };
                 fixed.extend(bound.map(limit));
             }
         }
-        let straight = settings.straight_line.map(|line| Ok::<_, String>((line, affine(model, law, &names, &sway_and_yaw)?)));
+        let straight = settings.straight_line.map(|line| Ok::<_, PlantError>((line, affine(model, law, &names, &sway_and_yaw)?)));
         let source = model.coefficients.values().map(|quantity| quantity.value).collect();
         Ok(Self { names, source, fixed, trust_sd: settings.trust_sd, straight: straight.transpose()? })
     }
@@ -74,17 +73,17 @@ impl Limits {
         names: &[String],
         curvature: &DMatrix<f64>,
         prior: &dyn Fn(&str) -> f64,
-    ) -> Result<BTreeMap<String, f64>, String> {
+    ) -> Result<BTreeMap<String, f64>, LimitError> {
         let place = |name: &String| names.iter().position(|own| own == name);
         let places: Option<Vec<usize>> = self.names.iter().map(place).collect();
-        let places = places.ok_or("constraints: a coefficient was not fitted")?;
+        let places = places.ok_or(LimitError::NotFitted)?;
         let curvature = curvature.select_rows(&places).select_columns(&places);
         let centre: Vec<f64> = self.names.iter().map(|name| solution.get(name).copied().unwrap_or(0.0)).collect();
-        let nearest = Nearest { centre: &centre, curvature: &curvature };
+        let nearest = NearestPointProblem { centre: &centre, curvature: &curvature };
         let mut common = self.fixed.clone();
         common.extend(self.trust(prior));
         let mut at = centre.clone();
-        for _ in 0..if self.straight.is_some() { REFERENCES } else { 1 } {
+        for _ in 0..if self.straight.is_some() { CONSTRAINTS.references } else { 1 } {
             let own = self.straight_line(&at);
             let limits: Vec<&Limit> = common.iter().chain(&own).collect();
             if limits.is_empty() {
@@ -99,17 +98,14 @@ impl Limits {
     ///
     /// # Errors
     /// Names the first limit that they do not keep.
-    pub fn check(&self, model: &Model) -> Result<(), String> {
+    pub fn check(&self, model: &Model) -> Result<(), LimitError> {
         let at: Vec<f64> = self.names.iter().map(|name| model.coefficient(name)).collect();
         let broken = self.fixed.iter().find(|limit| limit.cone[0].at(&at) < 0.0);
         if let Some(limit) = broken {
-            return Err(format!("it breaks the constraint `{}`", limit.name));
+            return Err(LimitError::Broken(limit.name.clone()));
         }
         match &self.straight {
-            Some((line, functions)) if !line.holds(&matrix(functions, &at)) => Err(format!(
-                "it is not {} on a straight course",
-                if *line == StraightLine::Stable { "stable" } else { "unstable" }
-            )),
+            Some((line, functions)) if !holds(*line, &matrix(functions, &at)) => Err(LimitError::StraightLine(*line)),
             _ => Ok(()),
         }
     }
@@ -123,7 +119,7 @@ impl Limits {
                 let edge = self.source[place] - sign * reach;
                 let word = if sign > 0.0 { "below" } else { "above" };
                 let label = format!("trust region of {name}: at most {sd} standard deviations {word} the source");
-                Limit::least(label, Affine::of_one(self.names.len(), place, sign, edge))
+                Limit::least(label, AffineFunction::of_one(self.names.len(), place, sign, edge))
             })
         };
         self.names.iter().enumerate().flat_map(one).collect()
@@ -134,25 +130,25 @@ impl Limits {
     fn straight_line(&self, at: &[f64]) -> Option<Limit> {
         let (line, functions) = self.straight.as_ref()?;
         let (own, source) = (matrix(functions, at), matrix(functions, &self.source));
-        let towards = if *line == StraightLine::Stable { -SHIFT } else { SHIFT };
+        let towards = if *line == StraightLine::Stable { -CONSTRAINTS.shift } else { CONSTRAINTS.shift };
         let shifted = own + Matrix2::identity() * (towards - fastest(&own));
-        let candidates = [own, source, shifted].into_iter().filter(|matrix| line.holds(matrix));
-        candidates.filter_map(|reference| line.limit(functions, &reference)).next()
+        let candidates = [own, source, shifted].into_iter().filter(|matrix| holds(*line, matrix));
+        candidates.filter_map(|reference| limit(*line, functions, &reference)).next()
     }
 }
 
 /// The point within limits that is nearest.
-fn within(nearest: &Nearest<'_>, limits: &[&Limit]) -> Result<Vec<f64>, String> {
-    match nearest.within(limits, Steps::Held) {
+fn within(nearest: &NearestPointProblem<'_>, limits: &[&Limit]) -> Result<Vec<f64>, LimitError> {
+    match nearest.within(limits, Overstepping::Held) {
         Ok(point) => Ok(point.coefficients),
         Err(status) => Err(match conflict(nearest, limits) {
-            Some(names) => format!("these constraints cannot be kept together: {}", names.join("; ")),
-            None => format!("constraints: the solver ended with {status:?}"),
+            Some(names) => LimitError::Conflict(names),
+            None => LimitError::Solver(status),
         }),
     }
 }
 
-fn matrix(functions: &[Affine; 4], at: &[f64]) -> Matrix2<f64> {
+fn matrix(functions: &[AffineFunction; 4], at: &[f64]) -> Matrix2<f64> {
     let [vv, vr, rv, rr] = [0, 1, 2, 3].map(|k: usize| functions[k].at(at));
     Matrix2::new(vv, vr, rv, rr)
 }
@@ -162,16 +158,18 @@ fn signs(names: &[String], signs: &[(&str, f64)], what: &str) -> Vec<Limit> {
     let one = |&(name, sign): &(&str, f64)| {
         let place = names.iter().position(|own| own == name)?;
         let word = if sign > 0.0 { "at least" } else { "at most" };
-        Some(Limit::least(format!("{what}: {name} {word} 0"), Affine::of_one(names.len(), place, sign, 0.0)))
+        Some(Limit::least(format!("{what}: {name} {word} 0"), AffineFunction::of_one(names.len(), place, sign, 0.0)))
     };
     signs.iter().filter_map(one).collect()
 }
 
 /// Surge acceleration that falls with speed, over the speeds ahead that the trials covered.
-fn damping(model: &Model, law: &Law, names: &[String], [low, high]: [f64; 2]) -> Result<Vec<Limit>, String> {
-    let ahead = low.max(0.2 * high);
-    let speeds: Vec<f64> =
-        (0..SPEEDS).map(|k| ahead + (high - ahead) * k as f64 / (SPEEDS - 1) as f64).filter(|u| *u > 0.0).collect();
+fn damping(model: &Model, law: &Law, names: &[String], [low, high]: [f64; 2]) -> Result<Vec<Limit>, PlantError> {
+    let ahead = low.max(CONSTRAINTS.least_speed * high);
+    let speeds: Vec<f64> = (0..CONSTRAINTS.speeds)
+        .map(|k| ahead + (high - ahead) * k as f64 / (CONSTRAINTS.speeds - 1) as f64)
+        .filter(|u| *u > 0.0)
+        .collect();
     let one = |speed: f64| {
         let [slope] = affine(model, law, names, &|ship| [surge(ship, speed)])?;
         Ok(Limit::least(format!("dissipation: surge damping at {speed:.2} m/s"), slope.with(-1.0, &slope, 0.0)))

@@ -4,87 +4,17 @@
 //! nearest to the solution by the quadratic's own curvature: a cone programme, which Clarabel solves.
 
 mod conflict;
+mod error;
 mod limit;
 mod limits;
 mod programme;
+mod settings;
 mod straight;
+mod thresholds;
 
-use std::collections::BTreeMap;
-
-use serde::{Deserialize, Serialize};
-
-pub(super) use limits::Limits;
-
-/// Limits that a refinement keeps to; none by default.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Constraints {
-    /// Signs that physics fixes, of those that the model has: drift and yaw are damped (`Y_v`, `N_r` at most 0), the rudder
-    /// turns the ship to its side and pushes the stern the other way (`N_delta` at least, `Y_delta` at most 0).
-    pub physical_signs: bool,
-    /// Surge terms take energy from the motion: ahead, surge acceleration falls with speed over the speeds that the trials
-    /// covered, and the rudder brakes (`X_deltadelta` at most 0).
-    pub dissipative: bool,
-    /// No coefficient is further from the source than so many standard deviations of its prior (`moved_sd`).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub trust_sd: Option<f64>,
-    /// Bounds by coefficient, in the law's units.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub bounds: BTreeMap<String, Bound>,
-    /// Whether she keeps a straight line with the rudder amidships at her approach speed.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub straight_line: Option<StraightLine>,
-}
-
-/// Bounds of a coefficient.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Bound {
-    /// Least value.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub min: Option<f64>,
-    /// Greatest value.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub max: Option<f64>,
-}
-
-/// What a ship does after a small disturbance with the rudder amidships.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum StraightLine {
-    /// She settles on a new straight line.
-    Stable,
-    /// She starts to turn.
-    Unstable,
-}
-
-impl Constraints {
-    /// Whether nothing is asked for.
-    pub fn is_empty(&self) -> bool {
-        *self == Self::default()
-    }
-
-    /// Checks the numbers.
-    ///
-    /// # Errors
-    /// Names what is wrong.
-    pub fn check(&self) -> Result<(), String> {
-        if self.trust_sd.is_some_and(|sd| !(sd > 0.0 && sd.is_finite())) {
-            return Err("trust_sd must be above 0".into());
-        }
-        for (name, Bound { min, max }) in &self.bounds {
-            let finite = |value: &Option<f64>| value.is_none_or(f64::is_finite);
-            if !finite(min) || !finite(max) || (min.is_none() && max.is_none()) {
-                return Err(format!("bounds.{name}: give `min`, `max` or both, as finite numbers"));
-            }
-            if min.zip(*max).is_some_and(|(min, max)| min > max) {
-                return Err(format!("bounds.{name}: min is above max"));
-            }
-        }
-        Ok(())
-    }
-}
+pub use error::LimitError;
+pub(super) use limits::CoefficientLimits;
+pub use settings::{Bound, ConstraintError, Constraints, StraightLine};
 
 #[cfg(test)]
 mod tests;

@@ -7,16 +7,17 @@ use clarabel::solver::{
 use nalgebra::{DMatrix, DVector};
 
 use super::limit::Limit;
+use super::thresholds::CONSTRAINTS;
 
 /// What is nearest: coefficients, and the curvature by which distance is measured.
-pub(super) struct Nearest<'a> {
+pub(super) struct NearestPointProblem<'a> {
     pub centre: &'a [f64],
     pub curvature: &'a DMatrix<f64>,
 }
 
 /// How far each limit may be overstepped at a price, or not at all.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Steps {
+pub(super) enum Overstepping {
     /// Limits hold; the point is nearest.
     Held,
     /// Each limit may be overstepped; the sum of that is least, and hardly anything else counts.
@@ -24,21 +25,21 @@ pub(super) enum Steps {
 }
 
 /// What came out, in coefficients.
-pub(super) struct Point {
+pub(super) struct NearestPoint {
     pub coefficients: Vec<f64>,
     /// By how much each limit is overstepped, by its own scale; empty where limits hold.
     pub overstepped: Vec<f64>,
 }
 
-impl Nearest<'_> {
+impl NearestPointProblem<'_> {
     /// The nearest point within limits.
     ///
     /// # Errors
     /// What the solver says, where it does not say `Solved`.
-    pub fn within(&self, limits: &[&Limit], steps: Steps) -> Result<Point, SolverStatus> {
-        let (size, extra) = (self.centre.len(), if steps == Steps::Elastic { limits.len() } else { 0 });
+    pub fn within(&self, limits: &[&Limit], steps: Overstepping) -> Result<NearestPoint, SolverStatus> {
+        let (size, extra) = (self.centre.len(), if steps == Overstepping::Elastic { limits.len() } else { 0 });
         let scales = self.scales();
-        let weight = if steps == Steps::Elastic { 1e-7 } else { 1.0 };
+        let weight = if steps == Overstepping::Elastic { CONSTRAINTS.elastic_weight } else { 1.0 };
         let entry = |i: usize, j: usize| match i.max(j) < size {
             true => weight * self.curvature[(i, j)] * scales[i] * scales[j],
             false => 0.0,
@@ -56,7 +57,7 @@ impl Nearest<'_> {
         }
         let x = &solver.solution.x;
         let coefficients = (0..size).map(|k| self.centre[k] + scales[k] * x[k]).collect();
-        Ok(Point { coefficients, overstepped: x[size..].to_vec() })
+        Ok(NearestPoint { coefficients, overstepped: x[size..].to_vec() })
     }
 
     /// What changes each coefficient by one unit of curvature.

@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, Matrix2};
 use sistership_dynamics::Ship;
 use sistership_model::{Law, Model, Zoo};
 
-use super::limits::Limits;
+use super::limits::CoefficientLimits;
 use super::straight::{fastest, sway_and_yaw};
 use super::*;
 
@@ -15,8 +15,8 @@ fn zoo(name: &str) -> (Model, std::sync::Arc<Law>) {
 }
 
 /// The coefficients within limits that are nearest to a solution, a change by its own size counting alike for each.
-fn nearest(settings: &Constraints, source: &Model, law: &Law, solution: &Model) -> Result<Model, String> {
-    let limits = Limits::new(settings, source, law, [2.0, 8.0])?;
+fn nearest(settings: &Constraints, source: &Model, law: &Law, solution: &Model) -> Result<Model, LimitError> {
+    let limits = CoefficientLimits::new(settings, source, law, [2.0, 8.0])?;
     let names: Vec<String> = source.coefficients.keys().cloned().collect();
     let size = |name: &String| source.coefficient(name).abs().max(1e-6);
     let curvature = DMatrix::from_fn(names.len(), names.len(), |i, j| if i == j { size(&names[i]).powi(-2) } else { 0.0 });
@@ -110,7 +110,7 @@ fn limits_that_cannot_be_kept_together_are_named_and_no_others() {
     let bound = Bound { min: Some(1e-4), max: None };
     let bounds = [("N_r".to_owned(), bound), ("X_u".to_owned(), Bound { min: None, max: Some(0.0) })].into();
     let settings = Constraints { physical_signs: true, bounds, trust_sd: Some(1000.0), ..Constraints::default() };
-    let refused = nearest(&settings, &source, &law, &source).unwrap_err();
+    let refused = nearest(&settings, &source, &law, &source).unwrap_err().to_string();
     assert_eq!(refused, "these constraints cannot be kept together: physical sign: N_r at most 0; bound of N_r: least 0.0001");
 }
 
@@ -119,10 +119,10 @@ fn a_bound_of_what_the_model_lacks_is_refused() {
     let (source, law) = zoo("mariner");
     let bounds = [("Y_rrr".to_owned(), Bound { min: Some(0.0), max: None })].into();
     let settings = Constraints { bounds, ..Constraints::default() };
-    assert!(nearest(&settings, &source, &law, &source).unwrap_err().contains("bounds.Y_rrr"));
+    assert!(nearest(&settings, &source, &law, &source).unwrap_err().to_string().contains("bounds.Y_rrr"));
     assert!(Constraints { trust_sd: Some(-1.0), ..Constraints::default() }.check().is_err());
     let crossed = [("Y_v".to_owned(), Bound { min: Some(1.0), max: Some(0.0) })].into();
-    assert!(Constraints { bounds: crossed, ..Constraints::default() }.check().unwrap_err().contains("bounds.Y_v"));
+    assert!(Constraints { bounds: crossed, ..Constraints::default() }.check().unwrap_err().to_string().contains("bounds.Y_v"));
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn the_ships_of_the_zoo_keep_signs_and_dissipation() {
     for name in ["mariner", "sr108", "kvlcc2", "kvlcc2-7m", "kcs", "esso-tanker"] {
         let model = zoo.model(name).unwrap();
         let speed = model.speed_m_s.unwrap_or(7.0);
-        let limits = Limits::new(&settings, &model, zoo.law(&model.law).unwrap(), [0.4 * speed, speed]).unwrap();
+        let limits = CoefficientLimits::new(&settings, &model, zoo.law(&model.law).unwrap(), [0.4 * speed, speed]).unwrap();
         assert_eq!(limits.check(&model), Ok(()), "{name}");
     }
 }

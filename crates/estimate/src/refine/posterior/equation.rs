@@ -2,14 +2,15 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::rows::{Rows, Sequence};
-use sistership_regression::{Choice, Metric, Moments};
+use super::rows::{RowSequence, SequencedRows};
+use super::thresholds::POSTERIOR;
+use sistership_regression::{Metric, Moments, RidgeChoice};
 
 /// One target of one regression.
-pub(super) struct Equation<'a> {
+pub(super) struct RidgeEquation<'a> {
     pub block: usize,
     pub target: usize,
-    pub choice: Choice,
+    pub choice: RidgeChoice,
     /// What standardises its coefficients.
     pub metric: &'a Metric,
     /// `C`, standardised.
@@ -26,13 +27,13 @@ pub(super) struct Equation<'a> {
     pub free: (DMatrix<f64>, DVector<f64>),
 }
 
-impl<'a> Equation<'a> {
+impl<'a> RidgeEquation<'a> {
     pub fn new(
         (block, target): (usize, usize),
         moments: &Moments,
         (metric, products): &'a (Metric, DMatrix<f64>),
         source: &[f64],
-        choice: Choice,
+        choice: RidgeChoice,
     ) -> Option<Self> {
         let inverse = |lambda: f64| {
             let mut sum = products.clone();
@@ -41,7 +42,7 @@ impl<'a> Equation<'a> {
         };
         let data = metric.products_with_target(moments, target);
         let source = metric.root() * DVector::from_column_slice(source);
-        let lambda = choice.lambda.min(FREE);
+        let lambda = choice.lambda.min(POSTERIOR.residual_strength);
         let free = inverse(lambda)?;
         let solution = &free * (&data + &source * lambda);
         let square = moments.target_variance(target);
@@ -50,9 +51,9 @@ impl<'a> Equation<'a> {
     }
 
     /// What the law leaves of its target, by sequence, where no source holds it: else the source's error would seem noise.
-    pub fn residuals(&self, rows: &Rows) -> Vec<DVector<f64>> {
+    pub fn residuals(&self, rows: &SequencedRows) -> Vec<DVector<f64>> {
         let coefficients = self.metric.back() * &self.free.1;
-        let of = |sequence: &Sequence| sequence.target(self.target) - &sequence.regressors * &coefficients;
+        let of = |sequence: &RowSequence| sequence.target(self.target) - &sequence.regressors * &coefficients;
         rows.blocks[self.block].iter().map(of).collect()
     }
 
@@ -62,18 +63,13 @@ impl<'a> Equation<'a> {
     }
 }
 
-impl Equation<'_> {
+impl RidgeEquation<'_> {
     /// By how much the residuals' variance is more than it seems, for the coefficients have taken up a part of it: with the
     /// hat matrix `A` and correlations `R`, the sum of squares is expected to be `tr (I - A) R (I - A)` of the variance.
     pub fn taken_up(&self, scatter: &DMatrix<f64>, variance: f64, count: f64) -> f64 {
         let unit = scatter * (count / variance.max(f64::MIN_POSITIVE));
         let moved = &self.free.0 * unit;
         let left = 1.0 - (2.0 * moved.trace() - (&moved * &self.free.0 * self.products).trace()) / count;
-        1.0 / left.clamp(LEAST_LEFT, 1.0)
+        1.0 / left.clamp(POSTERIOR.least_left, 1.0)
     }
 }
-
-/// Strength at which residuals are taken.
-const FREE: f64 = 1e-5;
-/// Where coefficients take up more than this leaves, residuals say nothing of their own size.
-const LEAST_LEFT: f64 = 0.1;

@@ -5,40 +5,47 @@
 //! from the truth. Its covariance is `S^-1 (M + lambda^2 D) S^-1` whatever strength was chosen, and by whatever rule.
 //!
 //! `M` is the covariance of `F'e/n` for residuals that depend on each other (White 1980, Econometrica 48, 817-838; Newey
-//! and West 1987, Econometrica 55, 703-708): [`Memory`] has their autocovariance, within and between the axes. `D` is not
+//! and West 1987, Econometrica 55, 703-708): [`ResidualAutocovariance`] has their autocovariance, within and between the axes. `D` is not
 //! what `lambda` would make of it, for that was chosen by simulation: [`spread`] learns from the trials how far the source
 //! is off.
 
+mod autocovariance;
 mod equation;
-mod memory;
 mod rows;
 mod spread;
+mod thresholds;
 
 use nalgebra::{DMatrix, DVector};
 use sistership_model::Model;
 
 use super::blocks::{Block, Blocks};
-use super::errors::Errors;
+use super::errors::CoefficientErrors;
 use super::ridge::{Choices, mixed_source};
-use equation::Equation;
-use memory::Memory;
-pub(super) use rows::{Rows, rows};
-use sistership_regression::{Choice, Metric, Moments};
+use autocovariance::ResidualAutocovariance;
+use equation::RidgeEquation;
+pub(super) use rows::{SequencedRows, rows};
+use sistership_regression::{Metric, Moments, RidgeChoice};
 use spread::spread;
 
 /// The errors of the ridge at its choices; `rows` are those behind `moments`, `model` is the source. None where the
 /// equations cannot be solved.
-pub(super) fn errors(blocks: &Blocks, moments: &[Moments], rows: &Rows, model: &Model, choices: &Choices) -> Option<Errors> {
+pub(super) fn errors(
+    blocks: &Blocks,
+    moments: &[Moments],
+    rows: &SequencedRows,
+    model: &Model,
+    choices: &Choices,
+) -> Option<CoefficientErrors> {
     let standard: Vec<(Metric, DMatrix<f64>)> = blocks.blocks.iter().zip(moments).map(standardised).collect();
     let mut equations = Vec::new();
     for (b, block) in blocks.blocks.iter().enumerate() {
         let sources = mixed_source(block, model);
         for (target, source) in sources.iter().enumerate() {
-            equations.push(Equation::new((b, target), &moments[b], &standard[b], source, choices[b][target])?);
+            equations.push(RidgeEquation::new((b, target), &moments[b], &standard[b], source, choices[b][target])?);
         }
     }
     let residuals: Vec<Vec<DVector<f64>>> = equations.iter().map(|equation| equation.residuals(rows)).collect();
-    let memory = Memory::of(&residuals);
+    let memory = ResidualAutocovariance::of(&residuals);
     let scatter = scatter(&equations, rows, &memory);
     let spreads: Vec<DVector<f64>> = equations.iter().zip(&scatter.own).map(|(e, own)| spread(e, own)).collect();
     Some(gathered(blocks, &equations, &scatter.all, &spreads))
@@ -52,14 +59,14 @@ fn standardised((block, moments): (&Block, &Moments)) -> (Metric, DMatrix<f64>) 
 }
 
 /// Covariances of `F'e/n`.
-struct Scatter {
+struct ScoreCovariance {
     /// Over all equations one after the other.
     all: DMatrix<f64>,
     /// Of each alone.
     own: Vec<DMatrix<f64>>,
 }
 
-fn scatter(equations: &[Equation<'_>], rows: &Rows, memory: &Memory) -> Scatter {
+fn scatter(equations: &[RidgeEquation<'_>], rows: &SequencedRows, memory: &ResidualAutocovariance) -> ScoreCovariance {
     let starts = starts(equations);
     let total = starts.last().map_or(0, |start| start + equations[equations.len() - 1].size());
     let mut all = DMatrix::zeros(total, total);
@@ -80,11 +87,11 @@ fn scatter(equations: &[Equation<'_>], rows: &Rows, memory: &Memory) -> Scatter 
         all.columns_mut(starts[i], one.size()).scale_mut(factors[i]);
     }
     let own = equations.iter().zip(&starts).map(|(e, &at)| all.view((at, at), (e.size(), e.size())).into_owned()).collect();
-    Scatter { all, own }
+    ScoreCovariance { all, own }
 }
 
-fn starts(equations: &[Equation<'_>]) -> Vec<usize> {
-    let next = |at: &mut usize, equation: &Equation<'_>| {
+fn starts(equations: &[RidgeEquation<'_>]) -> Vec<usize> {
+    let next = |at: &mut usize, equation: &RidgeEquation<'_>| {
         let start = *at;
         *at += equation.size();
         Some(start)
@@ -93,7 +100,12 @@ fn starts(equations: &[Equation<'_>]) -> Vec<usize> {
 }
 
 /// From errors of standardised equations to those of the coefficients of each axis.
-fn gathered(blocks: &Blocks, equations: &[Equation<'_>], scatter: &DMatrix<f64>, spreads: &[DVector<f64>]) -> Errors {
+fn gathered(
+    blocks: &Blocks,
+    equations: &[RidgeEquation<'_>],
+    scatter: &DMatrix<f64>,
+    spreads: &[DVector<f64>],
+) -> CoefficientErrors {
     let starts = starts(equations);
     let total = scatter.nrows();
     let (mut inverse, mut map) = (DMatrix::zeros(total, total), DMatrix::zeros(total, total));
@@ -101,7 +113,7 @@ fn gathered(blocks: &Blocks, equations: &[Equation<'_>], scatter: &DMatrix<f64>,
     let mut strengths = DVector::zeros(total);
     let mut names = Vec::new();
     for ((equation, &at), spread) in equations.iter().zip(&starts).zip(spreads) {
-        let (size, Choice { lambda, alpha }) = (equation.size(), equation.choice);
+        let (size, RidgeChoice { lambda, alpha }) = (equation.size(), equation.choice);
         inverse.view_mut((at, at), (size, size)).copy_from(&equation.inverse);
         pulled.rows_mut(at, size).copy_from(&(&equation.source * (lambda * alpha)));
         (0..size).filter(|j| !equation.metric.is_still(*j)).for_each(|j| {
@@ -118,11 +130,16 @@ fn gathered(blocks: &Blocks, equations: &[Equation<'_>], scatter: &DMatrix<f64>,
     let covariance = &inverse * (scatter + held + &pulled * pulled.transpose()) * &inverse;
     let cross = &inverse * DMatrix::from_diagonal(&source.component_mul(&strengths));
     let mapped = |matrix: DMatrix<f64>| &map * matrix * map.transpose();
-    Errors { names, covariance: mapped(covariance), source: mapped(DMatrix::from_diagonal(&source)), cross: mapped(cross) }
+    CoefficientErrors {
+        names,
+        covariance: mapped(covariance),
+        source: mapped(DMatrix::from_diagonal(&source)),
+        cross: mapped(cross),
+    }
 }
 
 /// Coefficients of a block's axes from its targets' standardised ones.
-fn place(block: &Block, equations: &[Equation<'_>], starts: &[usize], first: usize, map: &mut DMatrix<f64>) {
+fn place(block: &Block, equations: &[RidgeEquation<'_>], starts: &[usize], first: usize, map: &mut DMatrix<f64>) {
     let q = block.axes.len();
     let unmixing = block.mixing.clone().lu().solve(&DMatrix::identity(q, q)).unwrap_or_else(|| DMatrix::identity(q, q));
     for axis in 0..q {

@@ -6,13 +6,13 @@ use super::super::blocks::Blocks;
 use super::super::rows::Table;
 
 /// Rows that follow each other, of one regression.
-pub(in super::super) struct Sequence {
+pub(in super::super) struct RowSequence {
     /// Regressors by column.
     pub regressors: DMatrix<f64>,
     targets: DMatrix<f64>,
 }
 
-impl Sequence {
+impl RowSequence {
     /// A target over the rows.
     pub fn target(&self, target: usize) -> DVector<f64> {
         self.targets.column(target).into_owned()
@@ -20,19 +20,19 @@ impl Sequence {
 }
 
 /// Rows by regression and sequence.
-pub(in super::super) struct Rows {
-    pub blocks: Vec<Vec<Sequence>>,
+pub(in super::super) struct SequencedRows {
+    pub blocks: Vec<Vec<RowSequence>>,
 }
 
 /// Gathers tables, by sequence and regression. So many rows are merged into their mean where they follow each other closely;
 /// `centred` takes the mean of all rows off each column.
-pub(in super::super) fn rows(blocks: &Blocks, tables: &[Vec<Table>], merged: usize, centred: bool) -> Rows {
+pub(in super::super) fn rows(blocks: &Blocks, tables: &[Vec<Table>], merged: usize, centred: bool) -> SequencedRows {
     let of_block = |b: usize| {
         let p = blocks.blocks[b].regressors();
         let offsets = if centred { means(tables, b) } else { vec![0.0; tables.first().map_or(0, |t| t[b].len())] };
         tables.iter().map(|tables| sequence(&tables[b], p, merged.max(1), &offsets)).collect()
     };
-    Rows { blocks: (0..blocks.blocks.len()).map(of_block).collect() }
+    SequencedRows { blocks: (0..blocks.blocks.len()).map(of_block).collect() }
 }
 
 /// Means of a regression's columns over all sequences.
@@ -45,19 +45,19 @@ fn means(tables: &[Vec<Table>], block: usize) -> Vec<f64> {
     (0..columns).map(mean).collect()
 }
 
-fn sequence(table: &Table, regressors: usize, merged: usize, offsets: &[f64]) -> Sequence {
+fn sequence(table: &Table, regressors: usize, merged: usize, offsets: &[f64]) -> RowSequence {
     let count = table.first().map_or(0, |column| column.len() / merged);
     let entry = |row: usize, column: usize| {
         let values = &table[column][row * merged..(row + 1) * merged];
         values.iter().sum::<f64>() / merged as f64 - offsets[column]
     };
-    Sequence {
+    RowSequence {
         regressors: DMatrix::from_fn(count, regressors, entry),
         targets: DMatrix::from_fn(count, table.len() - regressors, |row, target| entry(row, regressors + target)),
     }
 }
 
-impl Rows {
+impl SequencedRows {
     /// Number of rows.
     pub fn count(&self) -> f64 {
         self.blocks.first().map_or(0.0, |sequences| sequences.iter().map(|s| s.regressors.nrows() as f64).sum())
@@ -66,7 +66,7 @@ impl Rows {
     /// `sum_kl F_k G_l' kernel(|k - l|) / n^2` of the regressors of two regressions over rows of the same sequence.
     pub fn weighed(&self, one: usize, other: usize, kernel: &[f64]) -> DMatrix<f64> {
         let (first, second) = (&self.blocks[one], &self.blocks[other]);
-        let columns = |sequences: &[Sequence]| sequences.first().map_or(0, |s| s.regressors.ncols());
+        let columns = |sequences: &[RowSequence]| sequences.first().map_or(0, |s| s.regressors.ncols());
         let mut sum = DMatrix::zeros(columns(first), columns(second));
         for (left, right) in first.iter().zip(second) {
             sum.gemm_tr(1.0, &left.regressors, &smoothed(&right.regressors, kernel), 1.0);

@@ -2,40 +2,20 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::equation::Equation;
-
-/// Deviations tried of the source's coefficients by their own size.
-const RELATIVE: Tried = Tried { least: 1e-3, most: 3.0, count: 13 };
-/// Deviations tried of all coefficients alike, by the root mean square of the target.
-const COMMON: Tried = Tried { least: 1e-4, most: 10.0, count: 13 };
-/// Directions of regressors that vary less than this, by the one that varies most, say nothing.
-const SILENT: f64 = 1e-9;
-
-/// Values evenly spaced in their logarithm.
-struct Tried {
-    least: f64,
-    most: f64,
-    count: usize,
-}
-
-impl Tried {
-    fn values(&self) -> impl Iterator<Item = f64> {
-        let (low, step) = (self.least.ln(), (self.most / self.least).ln() / (self.count - 1) as f64);
-        (0..self.count).map(move |k| (low + k as f64 * step).exp())
-    }
-}
+use super::equation::RidgeEquation;
+use super::thresholds::POSTERIOR;
 
 /// The variances of the source's standardised coefficients about the true ones: a share of their squares, and a common part,
 /// without which a term that the source does not have would be known to be none. `F'y/n` less what the source makes of it is
 /// `C d + F'e/n`, normal with `C D C + M`; these are the squares of the mean deviations over both parts' distribution given
 /// the trials, with `1/(1 + x^2)` before them for deviations by their unit (Gelman 2006, Bayesian Analysis 1, 515-533). Means
 /// of the variances themselves are ruled by the far end of what cannot be excluded.
-pub(super) fn spread(equation: &Equation<'_>, scatter: &DMatrix<f64>) -> DVector<f64> {
+pub(super) fn spread(equation: &RidgeEquation<'_>, scatter: &DMatrix<f64>) -> DVector<f64> {
     let (own, unit) = (equation.source.component_mul(&equation.source), equation.square);
     let variances = |relative: f64, common: f64| (&own * relative.powi(2)).add_scalar(common.powi(2) * unit);
-    let Some(seen) = Seen::new(equation, scatter, &variances(1.0, 1.0)) else { return variances(1.0, 1.0) };
+    let Some(seen) = SpreadLikelihood::new(equation, scatter, &variances(1.0, 1.0)) else { return variances(1.0, 1.0) };
     let before = |x: f64| (x / (1.0 + x * x)).ln();
-    let pairs = RELATIVE.values().flat_map(|relative| COMMON.values().map(move |common| (relative, common)));
+    let pairs = POSTERIOR.relative.values().flat_map(|relative| POSTERIOR.common.values().map(move |common| (relative, common)));
     let weighed: Vec<(DVector<f64>, f64)> = pairs
         .filter_map(|(relative, common)| {
             let variances = variances(relative, common);
@@ -53,17 +33,17 @@ pub(super) fn spread(equation: &Equation<'_>, scatter: &DMatrix<f64>) -> DVector
 }
 
 /// What the trials say in the eigenbasis of the regressors, each direction by its size.
-struct Seen {
+struct SpreadLikelihood {
     surprise: DVector<f64>,
     /// From coefficients to directions.
     response: DMatrix<f64>,
     scatter: DMatrix<f64>,
 }
 
-impl Seen {
-    fn new(equation: &Equation<'_>, scatter: &DMatrix<f64>, variances: &DVector<f64>) -> Option<Self> {
+impl SpreadLikelihood {
+    fn new(equation: &RidgeEquation<'_>, scatter: &DMatrix<f64>, variances: &DVector<f64>) -> Option<Self> {
         let basis = equation.products.clone().symmetric_eigen();
-        let least = SILENT * basis.eigenvalues.max();
+        let least = POSTERIOR.silent * basis.eigenvalues.max();
         let kept: Vec<usize> = (0..basis.eigenvalues.len()).filter(|&k| basis.eigenvalues[k] > least).collect();
         if kept.is_empty() {
             return None;
@@ -86,7 +66,7 @@ impl Seen {
 
     fn log_likelihood(&self, variances: &DVector<f64>) -> Option<f64> {
         let mut covariance = &self.scatter + weighed(&self.response, variances);
-        covariance.iter_mut().step_by(self.surprise.len() + 1).for_each(|diagonal| *diagonal += 1e-9);
+        covariance.iter_mut().step_by(self.surprise.len() + 1).for_each(|diagonal| *diagonal += POSTERIOR.ridge);
         let factor = covariance.cholesky()?;
         let width: f64 = factor.l_dirty().diagonal().iter().map(|d| d.ln()).sum();
         Some(-0.5 * self.surprise.dot(&factor.solve(&self.surprise)) - width)

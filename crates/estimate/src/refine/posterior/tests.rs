@@ -39,7 +39,7 @@ fn fitted(seed: u32, memory: f64) -> [(f64, f64); 2] {
     let y = (0..600).map(|k| 2.0 * a[k] - 0.5 * b[k] + 0.5 * disturbed[k]).collect();
     let tables: Vec<Vec<Table>> = vec![vec![vec![a, b, y]]];
     let moments = vec![Moments::about_zero(&tables[0][0], 2, 1.0)];
-    let choices = vec![vec![Choice { lambda: 1e-9, alpha: 0.0 }]];
+    let choices = vec![vec![RidgeChoice { lambda: 1e-9, alpha: 0.0 }]];
     let errors = errors(&blocks, &moments, &rows(&blocks, &tables, 1, false), &model, &choices).unwrap();
     let fit = super::super::ridge::fit(&blocks, &moments, &model, &choices).with_errors(Some(errors));
     ["X_u", "X_vv"].map(|name| (fit.coefficients[name].value, fit.coefficients[name].standard_error))
@@ -73,7 +73,7 @@ fn a_strong_prior_does_not_make_a_wrong_source_sure() {
     let mut error = |source: f64| {
         model.coefficients.get_mut("X_u").unwrap().value = source;
         model.coefficients.get_mut("X_vv").unwrap().value = -0.5;
-        let choices = vec![vec![Choice { lambda: 1e6, alpha: 0.0 }]];
+        let choices = vec![vec![RidgeChoice { lambda: 1e6, alpha: 0.0 }]];
         let errors = errors(&blocks, &moments, &rows(&blocks, &tables, 1, false), &model, &choices).unwrap();
         errors.covariance[(0, 0)].sqrt()
     };
@@ -87,7 +87,7 @@ fn a_posterior_keeps_the_covariance() {
     let covariance = DMatrix::from_row_slice(2, 2, &[0.04, -0.006, -0.006, 0.01]);
     let names = vec!["X_u".to_owned(), "X_vv".to_owned()];
     let none = DMatrix::zeros(2, 2);
-    let errors = Errors { names, covariance: covariance.clone(), source: none.clone(), cross: none };
+    let errors = CoefficientErrors { names, covariance: covariance.clone(), source: none.clone(), cross: none };
     let (_, model) = blocks();
     let root = errors.posterior(&model).unwrap().root().unwrap();
     let root = DMatrix::from_fn(2, 2, |i, j| root[i].get(j).copied().unwrap_or(0.0));

@@ -1,5 +1,6 @@
-//! The published estimator: one-step differences and the ridge with the source as its prior (Kanazawa 2023, Eqs. 5.4-5.17), with
-//! tuning ranges that widen step by step from the source outwards.
+//! The published estimator: one-step differences and the ridge with the source as its prior
+//! (Kanazawa 2023, Eqs. 5.4-5.17), with tuning ranges that widen step by step from the source
+//! outwards.
 
 use super::candidate::CandidateFit;
 use super::equations::Equations;
@@ -12,7 +13,9 @@ use super::ridge_candidates::{each_variant, ridge_candidate};
 use super::settings::Settings;
 use super::variant::Variant;
 
-/// The time over which accelerations are differenced, by that in which the ship sails its length; decision 2.
+/// `T_d`: time over which accelerations are differenced, by that in which the ship sails its
+/// length, dimensionless. Source: decision 2, with the table of how errors move from one sample to
+/// twice the value.
 const DIFFERENCE: f64 = 0.1;
 
 /// The published estimator.

@@ -16,44 +16,29 @@ use super::super::ridge::{Choices, Fold};
 use super::super::simulated::simulate_training;
 use super::super::variant::Variant;
 use super::fit::TrajectoryFit;
-use super::normal::{Normal, Pass, Passing};
-use super::prior::Prior;
-use super::segments::{Cut, Plan, compared, cut};
-use super::solve::Held;
+use super::normal::{NormalEquations, SegmentPass, SegmentSums};
+use super::prior::WeakFormPrior;
+use super::segments::{ComparisonPlan, SegmentLengths, compared, cut};
+use super::solve::PenalisedEquations;
+use super::thresholds::TRAJECTORY;
 use crate::transfer::ready;
 use sistership_regression::Moments;
 
-/// Pulls towards the weak form that are tried, strongest first, each from where the one before has ended, until [the best is
-/// past](is_past_best). A stronger one would give the weak form.
-const PULLS: [f64; 6] = [10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4];
-/// How strongly the source holds trajectories, at most, however much of it the weak form needs.
-const SOURCE: f64 = 0.01;
-/// So many times the error of another is clearly worse.
-const CLEARLY: f64 = 1.02;
-/// Huber's threshold in robust standard deviations of a state's residuals.
-const HUBER: f64 = 3.0;
-/// A median needs no more than so many times fewer segments, where there are many.
-const SOME: usize = 4;
-/// Most steps.
-const STEPS: usize = 12;
-/// Steps end when one gains, or would gain, less than this share.
-const ENOUGH: f64 = 2e-3;
-
 /// What the trajectory form makes of one variant.
-struct Descent<'a> {
+struct TrajectoryDescent<'a> {
     problem: &'a Problem<'a>,
     variant: &'a Variant,
     /// Its place among all.
     index: usize,
     choices: &'a Choices,
-    passing: Passing<'a>,
+    passing: SegmentPass<'a>,
     names: Vec<String>,
 }
 
 /// Coefficients with the pass at them.
 struct Linearisation {
     at: DVector<f64>,
-    pass: Pass,
+    pass: SegmentSums,
 }
 
 /// Adds candidates of the trajectory form, started from the best of the weak form; where every one stops while manoeuvres
@@ -78,25 +63,25 @@ pub(super) fn from_weak_form(
     let system = SensitiveSystem::new(&model, problem.law)?;
     let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;
     let compared = compared(system.states(), &standard_deviations(&problem.training));
-    let plan = Plan { compared, stride, step_s: cutting.step_s };
+    let plan = ComparisonPlan { compared, stride, step_s: cutting.step_s };
     let segments = cut(&problem.training, problem.law, system.input_names(), cutting, &plan)?;
     if segments.is_empty() {
         return Ok(());
     }
-    let ship = ready(&model, problem.law, &problem.training).map_err(RefineError::Law)?;
+    let ship = ready(&model, problem.law, &problem.training)?;
     let thresholds = vec![f64::INFINITY; plan.compared.len()];
     let trials = problem.training.len();
-    let passing = Passing { segments: &segments, plan: &plan, envelope: *ship.envelope(), thresholds, trials };
+    let passing = SegmentPass { segments: &segments, plan: &plan, envelope: *ship.envelope(), thresholds, trials };
     let names = system.names().to_vec();
-    Descent { problem, variant, index, choices: &choices, passing, names }.candidates(error, candidates, progress)
+    TrajectoryDescent { problem, variant, index, choices: &choices, passing, names }.candidates(error, candidates, progress)
 }
 
-fn cutting(problem: &Problem<'_>) -> Cut {
+fn cutting(problem: &Problem<'_>) -> SegmentLengths {
     let given = &problem.settings;
     let interval = problem.interval_s();
     let step_s = interval * (given.step_s.unwrap_or(interval) / interval).round().max(1.0);
-    let segment_s = given.segment_s.unwrap_or(120.0 * step_s);
-    Cut { segment_s, residual_s: given.residual_s.unwrap_or(4.0 * step_s).max(step_s), step_s }
+    let segment_s = given.segment_s.unwrap_or(TRAJECTORY.fallback_steps * step_s);
+    SegmentLengths { segment_s, residual_s: given.residual_s.unwrap_or(TRAJECTORY.fallback_stride * step_s).max(step_s), step_s }
 }
 
 /// The statistics of some trials, and the weak form's coefficients on them.
@@ -110,7 +95,7 @@ fn weak_form(
     Ok((moments, solved.into_iter().map(|(name, fitted)| (name, fitted.value)).collect()))
 }
 
-impl Descent<'_> {
+impl TrajectoryDescent<'_> {
     /// Candidates after the weak form's, which has an error.
     fn candidates(
         mut self,
@@ -120,12 +105,12 @@ impl Descent<'_> {
     ) -> Result<(), RefineError> {
         let prior = self.prior(&|_| true)?;
         self.passing.thresholds = self.thresholds(&prior.weak)?;
-        let priors: Vec<Prior> = (0..self.problem.fold_count())
+        let priors: Vec<WeakFormPrior> = (0..self.problem.fold_count())
             .map(|fold| self.prior(&|t| self.problem.is_fitted(t, fold)))
             .collect::<Result<_, _>>()?;
         let mut reached = self.reached(prior.weak.clone())?;
         let mut errors = vec![weak.unwrap_or(f64::INFINITY)];
-        for pull in PULLS {
+        for pull in TRAJECTORY.pulls {
             let label = format!("trajectory, {}, pull {pull:.0e}", self.variant.family.name());
             step(progress, 0.7, &label)?;
             reached = self.descend(&prior, pull, reached)?;
@@ -144,26 +129,26 @@ impl Descent<'_> {
         Ok(())
     }
 
-    /// Huber's thresholds from every [`SOME`]th segment.
+    /// Huber's thresholds from some of the segments.
     fn thresholds(&self, at: &DVector<f64>) -> Result<Vec<f64>, RefineError> {
         let model = self.variant.model_at(&self.values(at));
         let system = SensitiveSystem::new(&model, self.problem.law)?;
-        Ok(self.passing.sizes(&system, SOME).into_iter().map(threshold).collect())
+        Ok(self.passing.sizes(&system, TRAJECTORY.median_stride).into_iter().map(threshold).collect())
     }
 
     /// What the weak form says on some trials.
-    fn prior(&self, keep: &dyn Fn(usize) -> bool) -> Result<Prior, RefineError> {
+    fn prior(&self, keep: &dyn Fn(usize) -> bool) -> Result<WeakFormPrior, RefineError> {
         let (moments, values) = weak_form(self.variant, self.choices, keep)?;
         let values = |name: &str| (values.get(name).copied().unwrap_or_default(), self.variant.model.coefficient(name));
-        let lambda = self.choices.iter().flatten().map(|choice| choice.lambda).fold(0.0, f64::max).min(SOURCE);
-        Ok(Prior::new(&self.names, &self.variant.blocks, &moments, &values, lambda))
+        let lambda = self.choices.iter().flatten().map(|choice| choice.lambda).fold(0.0, f64::max).min(TRAJECTORY.source_share);
+        Ok(WeakFormPrior::new(&self.names, &self.variant.blocks, &moments, &values, lambda))
     }
 
     fn values(&self, at: &DVector<f64>) -> BTreeMap<String, f64> {
         self.names.iter().cloned().zip(at.iter().copied()).collect()
     }
 
-    fn pass(&self, at: &DVector<f64>) -> Result<Pass, RefineError> {
+    fn pass(&self, at: &DVector<f64>) -> Result<SegmentSums, RefineError> {
         let model = self.variant.model_at(&self.values(at));
         let system = SensitiveSystem::new(&model, self.problem.law)?;
         Ok(self.passing.pass(&system))
@@ -174,25 +159,25 @@ impl Descent<'_> {
     }
 
     /// From coefficients to the least cost nearby.
-    fn descend(&self, prior: &Prior, pull: f64, mut here: Linearisation) -> Result<Linearisation, RefineError> {
-        let mut damping = 1e-3;
-        let mut held = Held::new(&total(&here.pass, |_| true), prior, pull, &here.at);
-        for _ in 0..STEPS {
+    fn descend(&self, prior: &WeakFormPrior, pull: f64, mut here: Linearisation) -> Result<Linearisation, RefineError> {
+        let mut damping = TRAJECTORY.damping;
+        let mut held = PenalisedEquations::new(&total(&here.pass, |_| true), prior, pull, &here.at);
+        for _ in 0..TRAJECTORY.steps {
             let model = || self.variant.model_at(&self.values(&here.at));
             self.problem.show(&Iterate { evaluations: 0, objective: held.cost, model: &model });
-            let Some(step) = held.step(damping).filter(|step| held.foretold(step) > ENOUGH) else { break };
+            let Some(step) = held.step(damping).filter(|step| held.foretold(step) > TRAJECTORY.least_gain) else { break };
             let there = self.reached(&here.at + step)?;
-            let next = Held::new(&total(&there.pass, |_| true), prior, pull, &there.at);
+            let next = PenalisedEquations::new(&total(&there.pass, |_| true), prior, pull, &there.at);
             if next.cost.is_finite() && next.cost < held.cost {
                 let gained = 1.0 - next.cost / held.cost;
                 (here, held) = (there, next);
-                damping *= 0.1;
-                if gained < ENOUGH {
+                damping *= TRAJECTORY.damping_falls;
+                if gained < TRAJECTORY.least_gain {
                     break;
                 }
             } else {
-                damping = (damping * 30.0).max(1e-2);
-                if damping > 1e6 {
+                damping = (damping * TRAJECTORY.damping_grows).max(TRAJECTORY.damping_least);
+                if damping > TRAJECTORY.damping_most {
                     break;
                 }
             }
@@ -201,22 +186,22 @@ impl Descent<'_> {
     }
 
     /// The model of a fold: one step from where all trials are fitted, on the trials inside it and their weak form.
-    fn left_out(&self, fold: usize, prior: &Prior, pull: f64, reached: &Linearisation) -> Model {
+    fn left_out(&self, fold: usize, prior: &WeakFormPrior, pull: f64, reached: &Linearisation) -> Model {
         let normal = total(&reached.pass, |trial| self.problem.is_fitted(trial, fold));
-        let held = Held::new(&normal, prior, pull, &reached.at);
-        let at = held.step(1e-6).map_or_else(|| reached.at.clone(), |step| &reached.at + step);
+        let held = PenalisedEquations::new(&normal, prior, pull, &reached.at);
+        let at = held.step(TRAJECTORY.fold_damping).map_or_else(|| reached.at.clone(), |step| &reached.at + step);
         self.variant.model_at(&self.values(&at))
     }
 
     /// The fit at coefficients.
-    fn fit(&self, prior: &Prior, pull: f64, Linearisation { at, pass }: &Linearisation) -> TrajectoryFit {
+    fn fit(&self, prior: &WeakFormPrior, pull: f64, Linearisation { at, pass }: &Linearisation) -> TrajectoryFit {
         let normal = total(pass, |_| true);
         TrajectoryFit {
             variant: self.index,
             choices: self.choices.clone(),
             names: self.names.clone(),
             at: at.clone(),
-            held: Held::new(&normal, prior, pull, at),
+            held: PenalisedEquations::new(&normal, prior, pull, at),
             gradients: pass.gradients.clone(),
             cost: normal.cost,
             count: normal.count,
@@ -233,12 +218,12 @@ fn is_past_best(errors: &[f64]) -> bool {
     let [weak, .., before, last] = *errors else { return false };
     let (best, best_before) = (best(errors), best(&errors[..errors.len() - 2]));
     let none_better = best_before.is_finite() && before.min(last) >= best_before;
-    none_better || (best < weak && last > CLEARLY * best)
+    none_better || (best < weak && last > TRAJECTORY.clearly_worse * best)
 }
 
 /// Sums over some trials.
-fn total(pass: &Pass, keep: impl Fn(usize) -> bool) -> Normal {
-    let mut all = Normal::zeros(pass.trials.first().map_or(0, |normal| normal.gradient.len()));
+fn total(pass: &SegmentSums, keep: impl Fn(usize) -> bool) -> NormalEquations {
+    let mut all = NormalEquations::zeros(pass.trials.first().map_or(0, |normal| normal.gradient.len()));
     pass.trials.iter().enumerate().filter(|(trial, _)| keep(*trial)).for_each(|(_, normal)| all.add(normal));
     all
 }
@@ -247,7 +232,7 @@ fn total(pass: &Pass, keep: impl Fn(usize) -> bool) -> Normal {
 fn threshold(mut sizes: Vec<f64>) -> f64 {
     sizes.sort_by(f64::total_cmp);
     let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-    if median > 0.0 { HUBER * 1.4826 * median } else { f64::INFINITY }
+    if median > 0.0 { TRAJECTORY.huber * 1.4826 * median } else { f64::INFINITY }
 }
 
 #[cfg(test)]

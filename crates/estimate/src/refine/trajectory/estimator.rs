@@ -11,11 +11,7 @@ use super::super::settings::Settings;
 use super::super::variant::Variant;
 use super::super::weak::{self, WeakForm};
 use super::candidates::from_weak_form;
-
-/// Integration step, from one residual to the next, and length of a segment, by the time in which the ship sails its length.
-const STEP: f64 = 30.0;
-const RESIDUAL: f64 = 7.5;
-const SEGMENT: f64 = 5.0;
+use super::thresholds::TRAJECTORY;
 
 /// The trajectory form, after the weak form.
 pub(in super::super) struct TrajectoryForm;
@@ -23,9 +19,9 @@ pub(in super::super) struct TrajectoryForm;
 impl Estimator for TrajectoryForm {
     fn resolve(&self, settings: &mut Settings, length_s: Option<f64>) {
         weak::resolve(settings, length_s, &Family::ALL);
-        settings.step_s = settings.step_s.or(length_s.map(|s| s / STEP));
-        settings.segment_s = settings.segment_s.or(length_s.map(|s| SEGMENT * s));
-        settings.residual_s = settings.residual_s.or(length_s.map(|s| s / RESIDUAL));
+        settings.step_s = settings.step_s.or(length_s.map(|s| s / TRAJECTORY.steps_a_length));
+        settings.segment_s = settings.segment_s.or(length_s.map(|s| TRAJECTORY.segment * s));
+        settings.residual_s = settings.residual_s.or(length_s.map(|s| s / TRAJECTORY.residuals_a_length));
     }
 
     fn equations(&self, settings: &Settings) -> Equations {

@@ -7,13 +7,13 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::super::candidate::Solution;
-use super::super::errors::Errors;
+use super::super::errors::CoefficientErrors;
 use super::super::outcome::RefineError;
 use super::super::problem::Problem;
 use super::super::ridge::{Choices, Fit, Fitted};
 use super::super::variant::Variant;
-use super::prior::{Prior, by_source};
-use super::solve::Held;
+use super::prior::{WeakFormPrior, by_source};
+use super::solve::PenalisedEquations;
 
 /// A fit, and what its errors follow from.
 pub(super) struct TrajectoryFit {
@@ -23,13 +23,13 @@ pub(super) struct TrajectoryFit {
     /// The coefficients in the order of the normal equations.
     pub(super) names: Vec<String>,
     pub(super) at: DVector<f64>,
-    pub(super) held: Held,
+    pub(super) held: PenalisedEquations,
     /// By segment.
     pub(super) gradients: Vec<DVector<f64>>,
     /// Of the residuals, summed.
     pub(super) cost: f64,
     pub(super) count: f64,
-    pub(super) prior: Prior,
+    pub(super) prior: WeakFormPrior,
     pub(super) pull: f64,
 }
 
@@ -38,7 +38,7 @@ impl Solution for TrajectoryFit {
         Ok(Some(self.coefficients()))
     }
 
-    fn errors(&self, problem: &Problem<'_>, variants: &[Variant]) -> Result<Option<Errors>, RefineError> {
+    fn errors(&self, problem: &Problem<'_>, variants: &[Variant]) -> Result<Option<CoefficientErrors>, RefineError> {
         let weak = variants[self.variant].errors(&problem.training, &self.choices)?;
         Ok(weak.and_then(|weak| self.joint_errors(&weak)))
     }
@@ -57,7 +57,7 @@ impl TrajectoryFit {
     }
 
     /// Joint errors of the coefficients; `weak` are those of the weak form, in any order.
-    fn joint_errors(&self, weak: &Errors) -> Option<Errors> {
+    fn joint_errors(&self, weak: &CoefficientErrors) -> Option<CoefficientErrors> {
         let Self { names, prior, pull, .. } = self;
         let inverse = self.held.inverse()?;
         let weak = weak.ordered(names)?;
@@ -70,7 +70,7 @@ impl TrajectoryFit {
             + &both
             + both.transpose();
         let cross = &inverse * (&to_weak * &weak.cross + to_source * &weak.source);
-        Some(Errors { names: names.clone(), covariance: &inverse * middle * &inverse, source: weak.source, cross })
+        Some(CoefficientErrors { names: names.clone(), covariance: &inverse * middle * &inverse, source: weak.source, cross })
     }
 }
 

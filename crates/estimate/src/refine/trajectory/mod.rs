@@ -15,7 +15,8 @@ mod normal;
 mod prior;
 mod segments;
 mod solve;
+mod thresholds;
 
 pub(super) use estimator::TrajectoryForm;
-pub(super) use prior::Prior;
-pub(super) use segments::{Cut, Plan, Segment, compared, cut};
+pub(super) use prior::WeakFormPrior;
+pub(super) use segments::{ComparisonPlan, Segment, SegmentLengths, compared, cut};

@@ -5,7 +5,8 @@ use rayon::prelude::*;
 use sistership_dynamics::sensitivity::{SensitiveRun, SensitiveSystem};
 use sistership_dynamics::{Envelope, Method};
 
-use super::segments::{Plan, Segment, difference};
+use super::segments::{ComparisonPlan, Segment, difference};
+use super::thresholds::TRAJECTORY;
 
 /// Segments in lockstep.
 const LANES: usize = 8;
@@ -16,12 +17,10 @@ const COLUMNS: usize = 48;
 /// Blocks of lanes that are simulated before their sums are added: a lane holds a Hessian until then. More threads than
 /// this have nothing to do; it is not their number, so that the memory of a fit does not depend on the machine.
 const BLOCKS: usize = 16;
-/// What a residual counts that a simulation never came to, in standard deviations.
-const LOST: f64 = 10.0;
 
 /// Sums over the residuals of some segments.
 #[derive(Debug, Clone)]
-pub(super) struct Normal {
+pub(super) struct NormalEquations {
     /// Of squared sensitivities by Huber's weights.
     pub hessian: DMatrix<f64>,
     /// Of sensitivities times residuals.
@@ -33,12 +32,12 @@ pub(super) struct Normal {
 }
 
 /// A pass: sums by trial, and gradients by segment for the standard errors.
-pub(super) struct Pass {
-    pub trials: Vec<Normal>,
+pub(super) struct SegmentSums {
+    pub trials: Vec<NormalEquations>,
     pub gradients: Vec<DVector<f64>>,
 }
 
-impl Normal {
+impl NormalEquations {
     pub fn zeros(size: usize) -> Self {
         Self { hessian: DMatrix::zeros(size, size), gradient: DVector::zeros(size), cost: 0.0, count: 0.0 }
     }
@@ -52,22 +51,22 @@ impl Normal {
 }
 
 /// What a pass needs besides the system.
-pub(super) struct Passing<'a> {
+pub(super) struct SegmentPass<'a> {
     pub segments: &'a [Segment],
-    pub plan: &'a Plan,
+    pub plan: &'a ComparisonPlan,
     pub envelope: Envelope,
     /// Huber's thresholds by compared state, in standard deviations.
     pub thresholds: Vec<f64>,
     pub trials: usize,
 }
 
-impl Passing<'_> {
+impl SegmentPass<'_> {
     /// Simulates every segment. Sums are added in the segments' order, so that batches change nothing but the memory taken.
-    pub fn pass(&self, system: &SensitiveSystem) -> Pass {
+    pub fn pass(&self, system: &SensitiveSystem) -> SegmentSums {
         let size = system.names().len();
-        let mut pass = Pass { trials: vec![Normal::zeros(size); self.trials], gradients: Vec::new() };
+        let mut pass = SegmentSums { trials: vec![NormalEquations::zeros(size); self.trials], gradients: Vec::new() };
         for batch in self.segments.chunks(LANES * BLOCKS) {
-            let blocks: Vec<Vec<Lane>> = batch.par_chunks(LANES).map(|block| self.block(system, block)).collect();
+            let blocks: Vec<Vec<LaneSums>> = batch.par_chunks(LANES).map(|block| self.block(system, block)).collect();
             for (segment, lane) in batch.iter().zip(blocks.into_iter().flatten()) {
                 pass.trials[segment.trial].add(&lane.normal);
                 pass.gradients.push(lane.normal.gradient);
@@ -89,10 +88,10 @@ impl Passing<'_> {
         sizes
     }
 
-    fn block(&self, system: &SensitiveSystem, block: &[Segment]) -> Vec<Lane> {
+    fn block(&self, system: &SensitiveSystem, block: &[Segment]) -> Vec<LaneSums> {
         let size = system.names().len();
         let mut run = SensitiveRun::<LANES>::new(system);
-        let mut lanes: Vec<Lane> = block.iter().map(|_| Lane::new(size, self.plan.compared.len())).collect();
+        let mut lanes: Vec<LaneSums> = block.iter().map(|_| LaneSums::new(size, self.plan.compared.len())).collect();
         block.iter().enumerate().for_each(|(lane, segment)| run.start(lane, &segment.start));
         // Lanes without a segment repeat the first.
         (block.len()..LANES).for_each(|lane| run.start(lane, &block[0].start));
@@ -108,12 +107,12 @@ impl Passing<'_> {
                 due.for_each(|(lane, (own, segment))| self.compare(&run, lane, own, segment, (k + 1) / self.plan.stride - 1));
             }
         }
-        lanes.iter_mut().for_each(Lane::flush);
+        lanes.iter_mut().for_each(LaneSums::flush);
         lanes
     }
 
     /// Adds a lane's residuals at a time.
-    fn compare(&self, run: &SensitiveRun<'_, LANES>, lane: usize, own: &mut Lane, segment: &Segment, residual: usize) {
+    fn compare(&self, run: &SensitiveRun<'_, LANES>, lane: usize, own: &mut LaneSums, segment: &Segment, residual: usize) {
         let state = run.state(lane);
         own.normal.count += 1.0;
         own.lost = own.lost || self.envelope.check(0.0, &state).is_err();
@@ -124,7 +123,7 @@ impl Passing<'_> {
                 continue;
             }
             if own.lost {
-                own.normal.cost += LOST * LOST;
+                own.normal.cost += TRAJECTORY.lost * TRAJECTORY.lost;
                 continue;
             }
             let value = difference(place, state[place], *measured) / deviation;
@@ -144,18 +143,18 @@ fn load(block: &[Segment], half_step: usize, width: usize, into: &mut [[f64; LAN
 }
 
 /// Sums of one lane, with rows that wait to be multiplied.
-struct Lane {
-    normal: Normal,
+struct LaneSums {
+    normal: NormalEquations,
     rows: DMatrix<f64>,
     waiting: usize,
     lost: bool,
     sizes: Vec<Vec<f64>>,
 }
 
-impl Lane {
+impl LaneSums {
     fn new(size: usize, compared: usize) -> Self {
         let sizes = vec![Vec::new(); compared];
-        Self { normal: Normal::zeros(size), rows: DMatrix::zeros(size, ROWS), waiting: 0, lost: false, sizes }
+        Self { normal: NormalEquations::zeros(size), rows: DMatrix::zeros(size, ROWS), waiting: 0, lost: false, sizes }
     }
 
     fn add(&mut self, sensitivity: &[f64], value: f64, deviation: f64, threshold: f64) {

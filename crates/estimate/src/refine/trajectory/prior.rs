@@ -9,7 +9,7 @@ use sistership_regression::Moments;
 
 /// What holds the coefficients: the weak form, by where its cost is least and how it rises from there, and the source.
 #[derive(Debug, Clone)]
-pub(in super::super) struct Prior {
+pub(in super::super) struct WeakFormPrior {
     /// Half the second derivative of the weak form's cost, each acceleration by its mean square; the source's share is in it.
     pub hessian: DMatrix<f64>,
     pub weak: DVector<f64>,
@@ -18,7 +18,7 @@ pub(in super::super) struct Prior {
     source: DVector<f64>,
 }
 
-impl Prior {
+impl WeakFormPrior {
     /// For coefficients in an order, of the weak form on statistics, held by the source with a strength; `values` has the weak
     /// form's coefficient and the source's.
     pub fn new(names: &[String], blocks: &Blocks, moments: &[Moments], values: &dyn Fn(&str) -> (f64, f64), lambda: f64) -> Self {

@@ -10,10 +10,11 @@ use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 
 use super::super::outcome::RefineError;
+use super::thresholds::TRAJECTORY;
 
 /// How a motion is cut and weighed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in super::super) struct Cut {
+pub(in super::super) struct SegmentLengths {
     /// Length of a segment, s.
     pub segment_s: f64,
     /// From one residual to the next, s.
@@ -39,7 +40,7 @@ pub(in super::super) struct Segment {
 
 /// What is the same for every segment.
 #[derive(Debug)]
-pub(in super::super) struct Plan {
+pub(in super::super) struct ComparisonPlan {
     /// Compared states: row among the sensitivities, place in the state vector, standard deviation.
     pub compared: Vec<(usize, usize, f64)>,
     /// Steps from one residual to the next.
@@ -56,15 +57,15 @@ pub(in super::super) fn cut(
     trials: &[&Trial],
     law: &Law,
     input_names: &[String],
-    cut: Cut,
-    plan: &Plan,
+    cut: SegmentLengths,
+    plan: &ComparisonPlan,
 ) -> Result<Vec<Segment>, RefineError> {
     let mut segments = Vec::new();
     for (index, trial) in trials.iter().enumerate() {
-        let record = Record::new(trial, law, input_names, plan)?;
+        let record = SegmentRecord::new(trial, law, input_names, plan)?;
         for part in trial.segments() {
             let (mut from, end) = (trial.t_s[part.start], trial.t_s[part.end - 1]);
-            while end - from >= cut.segment_s / 3.0 {
+            while end - from >= cut.segment_s / TRAJECTORY.least_part {
                 let steps = (cut.segment_s.min(end - from) / plan.step_s + 1e-9).floor() as usize / plan.stride * plan.stride;
                 if steps > 0 {
                     segments.push(record.segment(index, part.clone(), from, steps));
@@ -79,30 +80,30 @@ pub(in super::super) fn cut(
 }
 
 /// The channels of a trial that segments read.
-struct Record<'a> {
+struct SegmentRecord<'a> {
     trial: &'a Trial,
-    plan: &'a Plan,
-    inputs: Vec<Input<'a>>,
+    plan: &'a ComparisonPlan,
+    inputs: Vec<SegmentInput<'a>>,
     states: Vec<(usize, &'a [f64])>,
 }
 
-enum Input<'a> {
+enum SegmentInput<'a> {
     Constant(f64),
     Recorded { column: &'a [f64], cubic: MonotoneCubic<'a>, angle: bool },
 }
 
-impl<'a> Record<'a> {
-    fn new(trial: &'a Trial, law: &Law, input_names: &[String], plan: &'a Plan) -> Result<Self, RefineError> {
+impl<'a> SegmentRecord<'a> {
+    fn new(trial: &'a Trial, law: &Law, input_names: &[String], plan: &'a ComparisonPlan) -> Result<Self, RefineError> {
         let input = |name: &String| {
             let channel = input_channel(name);
             if let Some((channel, column)) = channel.and_then(|channel| Some((channel, trial.channel(channel)?))) {
                 let cubic = MonotoneCubic::new(&trial.t_s, column);
-                return Ok(Input::Recorded { column, cubic, angle: channel == Channel::WindFrom });
+                return Ok(SegmentInput::Recorded { column, cubic, angle: channel == Channel::WindFrom });
             }
             let default = law.inputs.get(name.as_str()).and_then(|input| input.default);
             let constant = if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
             let missing = || RefineError::Channel { trial: trial.name.clone(), channel: channel.unwrap_or(Channel::Delta) };
-            constant.map(Input::Constant).ok_or_else(missing)
+            constant.map(SegmentInput::Constant).ok_or_else(missing)
         };
         let inputs = input_names.iter().map(input).collect::<Result<_, _>>()?;
         let states: Vec<(usize, &[f64])> = RECORDED.iter().filter_map(|&(c, place)| Some((place, trial.channel(c)?))).collect();
@@ -146,9 +147,9 @@ impl<'a> Record<'a> {
 
     /// An input at a time: the mean over a quarter step to both sides where there are as many as three samples in it, else
     /// as in a simulation.
-    fn input(&self, input: &Input<'_>, part: &Range<usize>, t: f64, around: f64) -> f64 {
-        let Input::Recorded { column, cubic, angle } = input else {
-            let Input::Constant(value) = input else { return 0.0 };
+    fn input(&self, input: &SegmentInput<'_>, part: &Range<usize>, t: f64, around: f64) -> f64 {
+        let SegmentInput::Recorded { column, cubic, angle } = input else {
+            let SegmentInput::Constant(value) = input else { return 0.0 };
             return *value;
         };
         let (k, w) = self.place(part, t);

@@ -2,19 +2,20 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::normal::Normal;
-use super::prior::Prior;
+use super::normal::NormalEquations;
+use super::prior::WeakFormPrior;
+use super::thresholds::TRAJECTORY;
 
 /// Normal equations with what holds the coefficients, by the number of residuals.
-pub(super) struct Held {
+pub(super) struct PenalisedEquations {
     pub hessian: DMatrix<f64>,
     pub gradient: DVector<f64>,
     pub cost: f64,
 }
 
-impl Held {
+impl PenalisedEquations {
     /// At coefficients.
-    pub fn new(normal: &Normal, prior: &Prior, pull: f64, at: &DVector<f64>) -> Self {
+    pub fn new(normal: &NormalEquations, prior: &WeakFormPrior, pull: f64, at: &DVector<f64>) -> Self {
         let count = normal.count.max(1.0);
         let (mut hessian, mut gradient) = (&normal.hessian / count, &normal.gradient / count);
         prior.add(at, pull, &mut hessian, &mut gradient);
@@ -24,7 +25,7 @@ impl Held {
     /// The step with every curvature enlarged by a share; none where the equations cannot be solved.
     pub fn step(&self, damping: f64) -> Option<DVector<f64>> {
         let (mut scaled, scales) = self.scaled();
-        scaled.iter_mut().step_by(scales.len() + 1).for_each(|diagonal| *diagonal += damping + 1e-12);
+        scaled.iter_mut().step_by(scales.len() + 1).for_each(|diagonal| *diagonal += damping + TRAJECTORY.ridge);
         let right = self.gradient.component_mul(&scales);
         let step = scaled.cholesky()?.solve(&right);
         Some(-step.component_mul(&scales))
@@ -52,7 +53,7 @@ impl Held {
     /// The inverse of the Hessian; none where it cannot be inverted.
     pub fn inverse(&self) -> Option<DMatrix<f64>> {
         let (mut scaled, scales) = self.scaled();
-        scaled.iter_mut().step_by(scales.len() + 1).for_each(|diagonal| *diagonal += 1e-12);
+        scaled.iter_mut().step_by(scales.len() + 1).for_each(|diagonal| *diagonal += TRAJECTORY.ridge);
         let inverse = scaled.cholesky()?.inverse();
         Some(DMatrix::from_fn(scales.len(), scales.len(), |i, j| inverse[(i, j)] * scales[i] * scales[j]))
     }

@@ -4,10 +4,7 @@ use std::ops::Range;
 
 use sistership_model::trial::Trial;
 
-/// Least intervals in a window: fewer cannot tell the bump from a spike.
-const LEAST_INTERVALS: f64 = 8.0;
-/// A bump weighs its window as if it were this share of it: `(int b)^2 / int b^2` for `(1 - s^2)^3`.
-const EQUIVALENT: f64 = 0.612_9;
+use super::thresholds::WEAK;
 
 /// Length and spacing of the windows of a trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,16 +17,16 @@ pub struct Windows {
 
 impl Windows {
     fn length(&self, interval_s: f64) -> f64 {
-        self.length_s.max(LEAST_INTERVALS * interval_s)
+        self.length_s.max(WEAK.least_intervals * interval_s)
     }
 
     /// How much of a window is its own: neighbours that overlap repeat each other.
     pub(super) fn share(&self, interval_s: f64) -> f64 {
-        (self.hop_s.max(interval_s) / (EQUIVALENT * self.length(interval_s))).min(1.0)
+        (self.hop_s.max(interval_s) / (WEAK.equivalent * self.length(interval_s))).min(1.0)
     }
 
     /// The bumps of a trial, none of which reaches over a gap.
-    pub(super) fn over(&self, trial: &Trial) -> Vec<Bump> {
+    pub(super) fn over(&self, trial: &Trial) -> Vec<BumpFunction> {
         let interval_s = trial.interval_s();
         let (length, hop) = (self.length(interval_s), self.hop_s.max(interval_s));
         trial.segments().into_iter().flat_map(|segment| within(&trial.t_s, segment, length, hop)).collect()
@@ -37,7 +34,7 @@ impl Windows {
 }
 
 /// The bumps of a part without gaps.
-fn within(t_s: &[f64], segment: Range<usize>, length: f64, hop: f64) -> Vec<Bump> {
+fn within(t_s: &[f64], segment: Range<usize>, length: f64, hop: f64) -> Vec<BumpFunction> {
     let (start, end) = (t_s[segment.start], t_s[segment.end - 1]);
     let count = ((end - start - length) / hop + 1e-9).floor();
     let count = if count < 0.0 { 0 } else { count as usize + 1 };
@@ -46,14 +43,14 @@ fn within(t_s: &[f64], segment: Range<usize>, length: f64, hop: f64) -> Vec<Bump
         let from = start + k as f64 * hop;
         first += t_s[first..segment.end].partition_point(|t| *t < from - 1e-9);
         let samples = t_s[first..segment.end].partition_point(|t| *t <= from + length + 1e-9);
-        Bump::new(t_s, first..first + samples, from + 0.5 * length, 0.5 * length)
+        BumpFunction::new(t_s, first..first + samples, from + 0.5 * length, 0.5 * length)
     };
     (0..count).map(&mut one).collect()
 }
 
 /// A bump over the samples of a window: what integrates a column with it, and what integrates a rate of change by parts.
 #[derive(Debug, Clone)]
-pub(super) struct Bump {
+pub(super) struct BumpFunction {
     samples: Range<usize>,
     /// Trapezoidal weights times the bump; they add up to 1.
     weights: Vec<f64>,
@@ -61,7 +58,7 @@ pub(super) struct Bump {
     bump: Vec<f64>,
 }
 
-impl Bump {
+impl BumpFunction {
     fn new(t_s: &[f64], samples: Range<usize>, centre: f64, half: f64) -> Self {
         let t = &t_s[samples.clone()];
         let shape = |t: &f64| (1.0 - ((t - centre) / half).powi(2)).max(0.0).powi(3);

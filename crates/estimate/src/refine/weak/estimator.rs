@@ -12,11 +12,7 @@ use super::super::ridge_candidates::{each_variant, ridge_candidate};
 use super::super::settings::Settings;
 use super::super::variant::Variant;
 use super::Windows;
-
-/// From one window to the next, by a window.
-const HOP: f64 = 0.1;
-/// A single trial allows so many strengths: it cannot be left out.
-const OF_ONE_TRIAL: usize = 3;
+use super::thresholds::WEAK;
 
 /// The weak form.
 pub(in super::super) struct WeakForm;
@@ -47,14 +43,14 @@ impl Estimator for WeakForm {
 /// so too.
 pub(in super::super) fn resolve(settings: &mut Settings, length_s: Option<f64>, families: &[Family]) {
     settings.window_s = settings.window_s.or(length_s);
-    settings.hop_s = settings.hop_s.or(settings.window_s.map(|s| HOP * s));
+    settings.hop_s = settings.hop_s.or(settings.window_s.map(|s| WEAK.hop * s));
     settings.fill_selection(families);
 }
 
 /// Rows by windows.
 pub(in super::super) fn equations(settings: &Settings) -> Equations {
     let length_s = settings.window_s.unwrap_or(0.0);
-    Equations::Windows(Windows { length_s, hop_s: settings.hop_s.unwrap_or(HOP * length_s) })
+    Equations::Windows(Windows { length_s, hop_s: settings.hop_s.unwrap_or(WEAK.hop * length_s) })
 }
 
 /// One candidate for each strength of the prior, from the source outwards.
@@ -66,7 +62,7 @@ fn by_strength(
     candidates: &mut Vec<CandidateFit>,
 ) -> Result<(), RefineError> {
     let strengths = &problem.settings.strengths;
-    let allowed = if problem.training.len() == 1 { strengths.len().min(OF_ONE_TRIAL) } else { strengths.len() };
+    let allowed = if problem.training.len() == 1 { strengths.len().min(WEAK.strengths_of_one_trial) } else { strengths.len() };
     for (k, &lambda) in strengths.iter().take(allowed).enumerate() {
         let name = format!("{}, lambda {lambda:.0e}", at.1.family.name());
         told(k as f64 / allowed as f64, &format!("{name}: simulating manoeuvres left out"))?;

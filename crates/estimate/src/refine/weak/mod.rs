@@ -7,6 +7,7 @@
 mod bump;
 mod estimator;
 mod samples;
+mod thresholds;
 
 use sistership_model::trial::Trial;
 
@@ -16,8 +17,8 @@ pub(super) use estimator::{WeakForm, equations, resolve};
 use super::blocks::{Block, Blocks};
 use super::outcome::RefineError;
 use super::rows::Table;
-use bump::Bump;
-use samples::{Columns, columns};
+use bump::BumpFunction;
+use samples::{SampledRegression, columns};
 use sistership_regression::Moments;
 
 /// The statistics of one trial in weak form about zero, one set for each regression; no window reaches over a gap.
@@ -39,7 +40,7 @@ pub fn weak_moments(blocks: &Blocks, trial: &Trial, windows: Windows) -> Result<
 /// As [`weak_moments`].
 pub fn weak_tables(blocks: &Blocks, trial: &Trial, windows: Windows) -> Result<Vec<Table>, RefineError> {
     let sampled = columns(blocks, trial)?;
-    let mut tables: Vec<Table> = blocks.blocks.iter().map(|b| vec![Vec::new(); b.regressors() + b.axes.len()]).collect();
+    let mut tables: Vec<Table> = blocks.blocks.iter().map(|b| vec![Vec::new(); b.width()]).collect();
     for bump in windows.over(trial) {
         sampled.iter().zip(&mut tables).for_each(|(columns, table)| append(columns, &bump, table));
     }
@@ -47,7 +48,7 @@ pub fn weak_tables(blocks: &Blocks, trial: &Trial, windows: Windows) -> Result<V
 }
 
 /// One window's row.
-fn append(columns: &Columns<'_>, bump: &Bump, table: &mut Table) {
+fn append(columns: &SampledRegression<'_>, bump: &BumpFunction, table: &mut Table) {
     let (regressors, targets) = table.split_at_mut(columns.regressors.len());
     for (out, column) in regressors.iter_mut().zip(&columns.regressors) {
         out.push(bump.mean(column));

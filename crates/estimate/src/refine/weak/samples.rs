@@ -8,31 +8,32 @@ use sistership_model::trial::Trial;
 
 use super::super::blocks::{Block, Blocks};
 use super::super::outcome::RefineError;
-use super::super::rows::{LANES, Record};
+use super::super::rows::{LANES, RegressionRecord};
 
 /// One regression's columns over the samples of a trial.
-pub(super) struct Columns<'a> {
+pub(super) struct SampledRegression<'a> {
     /// Regressors with scale.
     pub regressors: Vec<Vec<f64>>,
     /// Targets.
-    pub targets: Vec<Target<'a>>,
+    pub targets: Vec<RegressionTarget<'a>>,
 }
 
 /// A mass, 1 where absent, with the velocity it multiplies.
-pub(super) type Inertia<'a> = (Option<Vec<f64>>, Cow<'a, [f64]>);
+pub(super) type InertialTerm<'a> = (Option<Vec<f64>>, Cow<'a, [f64]>);
 
 /// What a target is made of.
-pub(super) struct Target<'a> {
+pub(super) struct RegressionTarget<'a> {
     /// Masses, 1 where absent, and velocities whose rate of change they multiply.
-    pub inertia: Vec<Inertia<'a>>,
+    pub inertia: Vec<InertialTerm<'a>>,
     /// What is known of the right-hand side.
     pub rest: Vec<f64>,
 }
 
 /// The columns of every regression of a law over a trial.
-pub(super) fn columns<'a>(blocks: &Blocks, trial: &'a Trial) -> Result<Vec<Columns<'a>>, RefineError> {
-    let record = Record::new(blocks, trial)?;
-    let mut all: Vec<Columns<'a>> = blocks.blocks.iter().map(|block| Columns::new(block, &record, trial.len())).collect();
+pub(super) fn columns<'a>(blocks: &Blocks, trial: &'a Trial) -> Result<Vec<SampledRegression<'a>>, RefineError> {
+    let record = RegressionRecord::new(blocks, trial)?;
+    let mut all: Vec<SampledRegression<'a>> =
+        blocks.blocks.iter().map(|block| SampledRegression::new(block, &record, trial.len())).collect();
     let mut lanes = vec![[0.0; LANES]; record.columns.len()];
     let mut work = Slots::default();
     let samples: Vec<(usize, usize)> = (0..trial.len()).map(|k| (k, k)).collect();
@@ -47,11 +48,11 @@ pub(super) fn columns<'a>(blocks: &Blocks, trial: &'a Trial) -> Result<Vec<Colum
     Ok(all)
 }
 
-impl<'a> Columns<'a> {
-    fn new(block: &Block, record: &Record<'a>, samples: usize) -> Self {
+impl<'a> SampledRegression<'a> {
+    fn new(block: &Block, record: &RegressionRecord<'a>, samples: usize) -> Self {
         let velocity = |axis| Cow::Borrowed(record.velocity(axis));
         let room = || Vec::with_capacity(samples + LANES);
-        let target = |own| Target {
+        let target = |own| RegressionTarget {
             inertia: match block.axes.len() {
                 1 => {
                     let with_mass = block.mass[0].iter().zip(&block.columns).filter(|(mass, _)| mass.is_some());

@@ -1,21 +1,21 @@
 //! What trials say of the coefficients, some of them left out.
 
-use nalgebra::{Cholesky, DVector};
+use nalgebra::Cholesky;
 
-use super::super::evidence::Fixed;
+use super::super::coefficient_prior::CoefficientPrior;
 use crate::residual::Gram;
 
 /// What is known of the coefficients, trial by trial.
-pub(super) struct Known<'a> {
-    pub fixed: &'a Fixed,
+pub(super) struct TrialInformation<'a> {
+    pub fixed: &'a CoefficientPrior,
     pub grams: &'a [Gram],
     /// How much more coefficients differ from trial to trial than each trial by itself would say.
     pub scatter: f64,
 }
 
-impl Known<'_> {
+impl TrialInformation<'_> {
     /// By the prior and some of the trials.
-    pub fn by(&self, keep: &dyn Fn(usize) -> bool) -> Fixed {
+    pub fn by(&self, keep: &dyn Fn(usize) -> bool) -> CoefficientPrior {
         let mut known = self.fixed.clone();
         let size = known.weighted_mean.len();
         for (_, gram) in self.grams.iter().enumerate().filter(|(trial, _)| keep(*trial)) {
@@ -47,12 +47,5 @@ impl Known<'_> {
         let mut shift = known.mean()?.as_slice().to_vec();
         shift.resize(width, 0.0);
         Some(shift)
-    }
-}
-
-impl Fixed {
-    /// The expected change of the coefficients; `None` where the information is not positive.
-    pub(in super::super) fn mean(&self) -> Option<DVector<f64>> {
-        Some(Cholesky::new(self.information.clone())?.solve(&self.weighted_mean))
     }
 }

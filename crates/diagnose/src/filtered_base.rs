@@ -8,46 +8,50 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use sistership_model::manifest::VelocityFrame;
 
-use super::evidence::Level;
-use super::learned::Learned;
-use super::workspace::Workspace;
-use crate::residual::{Candidate, Columns, Detail, Discrepancies, Gram, Linearised, System, linearise, whitened};
+use super::calibrated_model::CalibratedModel;
+use super::evidence::DiscrepancyFactor;
+use super::linearised_trials::LinearisedTrials;
+use crate::residual::{Columns, Detail, Discrepancies, EffectCandidate, Gram, Linearised, ResidualSystem, linearise, whitened};
 use sistership_estimate::refine::RefineError;
 
 /// Effects that are taken, and all that is there when others are judged beside them.
-pub(super) struct Base<'a> {
-    pub taken: Vec<Candidate>,
-    pub workspace: Workspace<'a>,
-    pub levels: Vec<AtLevel>,
+pub(super) struct FilteredBase<'a> {
+    pub taken: Vec<EffectCandidate>,
+    pub workspace: LinearisedTrials<'a>,
+    pub levels: Vec<FilteredLevel>,
     coefficients: usize,
 }
 
 /// The filter at one level.
-pub(super) struct AtLevel {
-    pub level: Level,
+pub(super) struct FilteredLevel {
+    pub level: DiscrepancyFactor,
     discrepancies: Discrepancies,
     /// Products of all columns, by trial.
     grams: Vec<Gram>,
     /// Made when a hypothesis is first judged at this level: they are many times as large as the trials.
-    coefficients: Mutex<Option<Coefficients>>,
+    coefficients: Mutex<Option<WhitenedCoefficients>>,
 }
 
 /// Whitened columns of the coefficients, by trial and part: columns by readings.
-type Coefficients = Arc<Vec<Vec<DMatrix<f64>>>>;
+type WhitenedCoefficients = Arc<Vec<Vec<DMatrix<f64>>>>;
 
-impl AtLevel {
+impl FilteredLevel {
     pub fn discrepancies(&self) -> &Discrepancies {
         &self.discrepancies
     }
 }
 
-impl<'a> Base<'a> {
-    pub fn new(taken: &[Candidate], workspace: Workspace<'a>, levels: Vec<(Level, Discrepancies)>) -> Self {
+impl<'a> FilteredBase<'a> {
+    pub fn new(
+        taken: &[EffectCandidate],
+        workspace: LinearisedTrials<'a>,
+        levels: Vec<(DiscrepancyFactor, Discrepancies)>,
+    ) -> Self {
         let coefficients = workspace.columns().nuisance.len();
-        let at = |(level, discrepancies): (Level, Discrepancies)| {
+        let at = |(level, discrepancies): (DiscrepancyFactor, Discrepancies)| {
             let one = |parts: &Vec<Linearised>| gram(&workspace, parts, &discrepancies);
             let grams = workspace.linear().par_iter().map(one).collect();
-            AtLevel { level, discrepancies, grams, coefficients: Mutex::default() }
+            FilteredLevel { level, discrepancies, grams, coefficients: Mutex::default() }
         };
         Self { taken: taken.to_vec(), levels: levels.into_iter().map(at).collect(), coefficients, workspace }
     }
@@ -65,7 +69,7 @@ impl<'a> Base<'a> {
 
     /// The whitened columns of the coefficients at a level. Those of levels that are not its neighbours are let go: hypotheses are
     /// judged at a level and the one below.
-    fn coefficients(&self, level: usize) -> Coefficients {
+    fn coefficients(&self, level: usize) -> WhitenedCoefficients {
         for (_, far) in self.levels.iter().enumerate().filter(|(other, _)| other.abs_diff(level) > 1) {
             *far.coefficients.lock().unwrap_or_else(PoisonError::into_inner) = None;
         }
@@ -79,7 +83,7 @@ impl<'a> Base<'a> {
             rows.rows(1, self.coefficients).into_owned()
         };
         let one = |parts: &Vec<Linearised>| parts.iter().map(of_part).collect();
-        let fresh: Coefficients = Arc::new(self.workspace.linear().par_iter().map(one).collect());
+        let fresh: WhitenedCoefficients = Arc::new(self.workspace.linear().par_iter().map(one).collect());
         *kept = Some(Arc::clone(&fresh));
         fresh
     }
@@ -88,22 +92,26 @@ impl<'a> Base<'a> {
     ///
     /// # Errors
     /// Names what the model or a trial lacks.
-    pub fn stand(&self, learned: &Learned, candidates: &[Candidate]) -> Result<Stand<'_, 'a>, RefineError> {
+    pub fn linearised(
+        &self,
+        learned: &CalibratedModel,
+        candidates: &[EffectCandidate],
+    ) -> Result<LinearisedHypothesis<'_, 'a>, RefineError> {
         let frame: VelocityFrame = self.workspace.frame();
         let columns = Columns { nuisance: Vec::new(), candidates: candidates.to_vec() };
-        let system = System::new(&learned.model, &learned.law, columns, frame)?;
+        let system = ResidualSystem::new(&learned.model, &learned.law, columns, frame)?;
         let records = self.workspace.records();
         let linear: Vec<Vec<Linearised>> =
             records.par_iter().map(|record| linearise(&system, record, Detail::Columns)).collect::<Result<_, _>>()?;
         let of = |(own, base): (Vec<Linearised>, &Vec<Linearised>)| {
             own.into_iter().zip(base).map(|(own, base)| own.by_filter_of(base)).collect()
         };
-        Ok(Stand { base: self, linear: linear.into_iter().zip(self.workspace.linear()).map(of).collect() })
+        Ok(LinearisedHypothesis { base: self, linear: linear.into_iter().zip(self.workspace.linear()).map(of).collect() })
     }
 }
 
 /// Products of all columns over a trial.
-fn gram(workspace: &Workspace<'_>, parts: &[Linearised], discrepancies: &Discrepancies) -> Gram {
+fn gram(workspace: &LinearisedTrials<'_>, parts: &[Linearised], discrepancies: &Discrepancies) -> Gram {
     let mut gram = Gram::empty(1 + workspace.columns().len());
     for part in parts {
         let (rows, log_variance) = rows(workspace, part, discrepancies);
@@ -113,19 +121,19 @@ fn gram(workspace: &Workspace<'_>, parts: &[Linearised], discrepancies: &Discrep
 }
 
 /// A part through the filter: residual and columns by readings.
-fn rows(workspace: &Workspace<'_>, part: &Linearised, discrepancies: &Discrepancies) -> (DMatrix<f64>, f64) {
+fn rows(workspace: &LinearisedTrials<'_>, part: &Linearised, discrepancies: &Discrepancies) -> (DMatrix<f64>, f64) {
     let (rows, log_variance) = whitened(part, &workspace.noise, discrepancies);
     let width = 1 + part.sizes.columns;
     (DMatrix::from_vec(width, rows.len() / width, rows), log_variance)
 }
 
 /// A hypothesis where it stands.
-pub(super) struct Stand<'b, 'a> {
-    base: &'b Base<'a>,
+pub(super) struct LinearisedHypothesis<'b, 'a> {
+    base: &'b FilteredBase<'a>,
     linear: Vec<Vec<Linearised>>,
 }
 
-impl Stand<'_, '_> {
+impl LinearisedHypothesis<'_, '_> {
     /// The products of each trial: residual, coefficients, parameters of the hypothesis.
     pub fn grams(&self, level: usize) -> Vec<Gram> {
         let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level));

@@ -10,18 +10,11 @@ use super::super::envelope::OperatingEnvelope;
 use super::super::merged::merged;
 use super::super::outcome::RefineError;
 use super::super::ridge::{Choices, Fold, fit};
-use sistership_regression::{Choice, Moments};
-
-/// Groups that are left out together at most so many times.
-const FOLDS: usize = 8;
-/// How strongly a coefficient is held of which the source says nothing, by one of which it says all; chosen by the trials of the
-/// Esso Osaka model, few fitted and the others simulated: with 0.3 or 0.03 more of them leave the physical range.
-const IGNORANCE: f64 = 0.1;
-/// Strengths of the ridge about zero that are tried.
-const RIDGES: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
+use super::super::thresholds::SOURCE;
+use sistership_regression::{Moments, RidgeChoice};
 
 /// The statistics of what a source says, as a law's regressions see it.
-pub(in super::super) struct Imitation<'a> {
+pub(in super::super) struct SourceRegression<'a> {
     envelope: &'a OperatingEnvelope,
     /// By group and regression.
     moments: Vec<Vec<Moments>>,
@@ -30,7 +23,7 @@ pub(in super::super) struct Imitation<'a> {
     zero: Model,
 }
 
-impl<'a> Imitation<'a> {
+impl<'a> SourceRegression<'a> {
     /// Of a law's regressions for the coefficients that a model has; its own values are not read.
     ///
     /// # Errors
@@ -39,14 +32,14 @@ impl<'a> Imitation<'a> {
         let moments = envelope.moments(blocks)?;
         let mut zero = model.clone();
         zero.coefficients.values_mut().for_each(|quantity| quantity.value = 0.0);
-        let mut imitation = Self { envelope, moments, ridge: RIDGES[0], zero };
+        let mut imitation = Self { envelope, moments, ridge: SOURCE.ridges[0], zero };
         imitation.ridge = imitation.best_ridge(blocks);
         Ok(imitation)
     }
 
     /// The ridge by which groups left out are foretold best.
     fn best_ridge(&self, blocks: &Blocks) -> f64 {
-        let count = self.moments.len().min(FOLDS);
+        let count = self.moments.len().min(SOURCE.folds);
         let folds: Vec<Fold<'_>> = (0..count)
             .filter_map(|fold| {
                 let training = merged(&self.moments, |group| group % count != fold)?;
@@ -56,7 +49,7 @@ impl<'a> Imitation<'a> {
             .collect();
         let error =
             |ridge: f64| folds.iter().map(|fold| fold.shares(ridge).iter().map(|(_, share)| share).sum::<f64>()).sum::<f64>();
-        RIDGES.into_iter().min_by(|a, b| error(*a).total_cmp(&error(*b))).unwrap_or(RIDGES[0])
+        SOURCE.ridges.into_iter().min_by(|a, b| error(*a).total_cmp(&error(*b))).unwrap_or(SOURCE.ridges[0])
     }
 
     /// Sets a model's coefficients, with standard errors, to what the source says; none of an axis that it does not know.
@@ -99,16 +92,16 @@ impl<'a> Imitation<'a> {
     }
 
     fn choices(&self, blocks: &Blocks) -> Choices {
-        blocks.blocks.iter().map(|block| vec![Choice { lambda: self.ridge, alpha: 0.0 }; block.axes.len()]).collect()
+        blocks.blocks.iter().map(|block| vec![RidgeChoice { lambda: self.ridge, alpha: 0.0 }; block.axes.len()]).collect()
     }
 }
 
-/// What the source says at every state, and [`IGNORANCE`] of what would be needed to say as much of each coefficient alone.
+/// What the source says at every state, and a share (`ignorance`) of what would be needed to say as much of each coefficient alone.
 fn earned(block: &Block, source: &Moments, trials: &Moments) -> DMatrix<f64> {
     let p = block.regressors();
     let mut precision = source.raw_products().view((0, 0), (p, p)).into_owned();
     for j in 0..p {
-        precision[(j, j)] += IGNORANCE * block.shrinkage[j] * source.variance(j).max(trials.variance(j));
+        precision[(j, j)] += SOURCE.ignorance * block.shrinkage[j] * source.variance(j).max(trials.variance(j));
     }
     precision
 }

@@ -8,30 +8,30 @@ use sistership_model::law::STATES;
 
 use super::instruments::{InstrumentJacobian, LANES};
 use super::linearised::{Detail, Sizes};
-use super::path::Path;
-use super::{Linearised, NuisanceKind, System};
+use super::path::RecordedPath;
+use super::{Linearised, NuisanceKind, ResidualSystem};
 
 /// Where the tapes stand at a sample.
-pub(super) struct Walker<'a> {
-    system: &'a System,
-    path: &'a Path<'a>,
+pub(super) struct PathLineariser<'a> {
+    system: &'a ResidualSystem,
+    path: &'a RecordedPath<'a>,
     detail: Detail,
     sizes: Sizes,
     point: Vec<f64>,
     primal: Slots<1>,
-    sweeps: Vec<Sweep>,
+    sweeps: Vec<TangentSweep>,
 }
 
 /// What a direction of differentiation moves, and where its derivative goes.
 #[derive(Debug, Clone, Copy)]
-enum Seed {
+enum TangentSeed {
     /// Input of the tape; state of the filter.
     State(usize, usize),
     /// Input of the tape; column.
     Parameter(usize, usize),
 }
 
-impl Seed {
+impl TangentSeed {
     fn input(self) -> usize {
         let (Self::State(input, _) | Self::Parameter(input, _)) = self;
         input
@@ -39,15 +39,15 @@ impl Seed {
 }
 
 /// Directions that are differentiated together, with the part of the tape that they reach.
-struct Sweep {
-    seeds: Vec<Seed>,
+struct TangentSweep {
+    seeds: Vec<TangentSeed>,
     lanes: Vec<Lanes<LANES>>,
     reached: Vec<Slot>,
     tangents: Slots<LANES>,
 }
 
-impl Sweep {
-    fn new(system: &System, seeds: &[Seed]) -> Self {
+impl TangentSweep {
+    fn new(system: &ResidualSystem, seeds: &[TangentSeed]) -> Self {
         let tape = &system.motion.tape;
         let mut lanes = vec![[0.0; LANES]; tape.inputs().len()];
         seeds.iter().enumerate().for_each(|(lane, seed)| lanes[seed.input()][lane] = 1.0);
@@ -57,24 +57,24 @@ impl Sweep {
 }
 
 /// The model at a sample.
-struct Instant {
+struct SampleLinearisation {
     rate: Vec<f64>,
     jacobian: Vec<f64>,
     accelerations: Vec<f64>,
 }
 
-impl<'a> Walker<'a> {
-    pub fn new(system: &'a System, path: &'a Path<'a>, detail: Detail) -> Self {
+impl<'a> PathLineariser<'a> {
+    pub fn new(system: &'a ResidualSystem, path: &'a RecordedPath<'a>, detail: Detail) -> Self {
         let sizes = Sizes { states: system.order(), axes: system.axes.len(), columns: system.columns.len() };
         let states = STATES.iter().enumerate().filter_map(|(input, (name, _))| {
             let place = place_of(name);
-            Some(Seed::State(input, system.states.iter().position(|&state| state == place)?))
+            Some(TangentSeed::State(input, system.states.iter().position(|&state| state == place)?))
         });
-        let states: Vec<Seed> = states.filter(|_| detail == Detail::Whole).collect();
+        let states: Vec<TangentSeed> = states.filter(|_| detail == Detail::Whole).collect();
         let first = STATES.len() + system.inputs.len();
-        let parameters = (0..system.lagged.len()).map(|j| Seed::Parameter(first + j, system.columns.nuisance.len() + j));
-        let parameters: Vec<Seed> = parameters.collect();
-        let sweeps = states.chunks(LANES).chain(parameters.chunks(LANES)).map(|seeds| Sweep::new(system, seeds)).collect();
+        let parameters = (0..system.lagged.len()).map(|j| TangentSeed::Parameter(first + j, system.columns.nuisance.len() + j));
+        let parameters: Vec<TangentSeed> = parameters.collect();
+        let sweeps = states.chunks(LANES).chain(parameters.chunks(LANES)).map(|seeds| TangentSweep::new(system, seeds)).collect();
         Self { system, path, detail, sizes, point: Vec::new(), primal: Slots::default(), sweeps }
     }
 
@@ -98,7 +98,7 @@ impl<'a> Walker<'a> {
             channels,
             every: self.path.record.every,
         };
-        let mut before: Option<Instant> = None;
+        let mut before: Option<SampleLinearisation> = None;
         for (i, &k) in part.iter().enumerate() {
             let instant = self.instant(k);
             if let Some(before) = before {
@@ -160,21 +160,22 @@ impl<'a> Walker<'a> {
         mass.try_inverse().unwrap_or_else(|| DMatrix::from_element(axes, axes, f64::NAN))
     }
 
-    fn instant(&mut self, k: usize) -> Instant {
+    fn instant(&mut self, k: usize) -> SampleLinearisation {
         self.load(k);
         self.run();
         let inverse = self.inverse_mass();
         let mut rate = self.solve(&inverse);
         rate.extend(self.system.motion.kinematics.iter().map(|&output| self.read(output)));
         let Sizes { states, axes, columns } = self.sizes;
-        let mut instant = Instant { rate, jacobian: vec![0.0; states * states], accelerations: vec![0.0; axes * columns] };
+        let mut instant =
+            SampleLinearisation { rate, jacobian: vec![0.0; states * states], accelerations: vec![0.0; axes * columns] };
         self.differentiate(&inverse, &mut instant);
         self.regressors(&inverse, &mut instant);
         self.secants(k, &inverse, &mut instant);
         instant
     }
 
-    fn differentiate(&mut self, inverse: &DMatrix<f64>, instant: &mut Instant) {
+    fn differentiate(&mut self, inverse: &DMatrix<f64>, instant: &mut SampleLinearisation) {
         let motion = &self.system.motion;
         let Sizes { states, axes, columns } = self.sizes;
         for sweep in &mut self.sweeps {
@@ -186,11 +187,11 @@ impl<'a> Walker<'a> {
                     let of_forces: f64 = (0..axes).map(|c| inverse[(row, c)] * forces[c][lane]).sum();
                     let value = of_forces + motion.additions[row].map_or(0.0, |output| read(output)[lane]);
                     match *seed {
-                        Seed::State(_, state) => instant.jacobian[row * states + state] = value,
-                        Seed::Parameter(_, column) => instant.accelerations[row * columns + column] = value,
+                        TangentSeed::State(_, state) => instant.jacobian[row * states + state] = value,
+                        TangentSeed::Parameter(_, column) => instant.accelerations[row * columns + column] = value,
                     }
                 }
-                if let Seed::State(_, state) = *seed {
+                if let TangentSeed::State(_, state) = *seed {
                     for (place, &output) in motion.kinematics.iter().enumerate() {
                         instant.jacobian[(axes + place) * states + state] = read(output)[lane];
                     }
@@ -199,7 +200,7 @@ impl<'a> Walker<'a> {
         }
     }
 
-    fn regressors(&mut self, inverse: &DMatrix<f64>, instant: &mut Instant) {
+    fn regressors(&mut self, inverse: &DMatrix<f64>, instant: &mut SampleLinearisation) {
         if self.system.columns.nuisance.is_empty() {
             return;
         }
@@ -230,7 +231,7 @@ impl<'a> Walker<'a> {
     }
 
     /// Parameters whose derivative at their absence says nothing, and lags: what they change at a distance, by it.
-    fn secants(&mut self, k: usize, inverse: &DMatrix<f64>, instant: &mut Instant) {
+    fn secants(&mut self, k: usize, inverse: &DMatrix<f64>, instant: &mut SampleLinearisation) {
         let first = STATES.len() + self.system.inputs.len();
         let parameters = self.system.columns.candidates.iter().flat_map(|c| c.at.iter().zip(c.form.parameters.values()));
         for (j, (&value, parameter)) in parameters.enumerate() {
@@ -253,7 +254,13 @@ impl<'a> Walker<'a> {
     }
 
     /// From a sample to the next, by the mean of both ends.
-    fn interval(&self, before: &Instant, after: &Instant, (k, next): (usize, usize), out: &mut Linearised) {
+    fn interval(
+        &self,
+        before: &SampleLinearisation,
+        after: &SampleLinearisation,
+        (k, next): (usize, usize),
+        out: &mut Linearised,
+    ) {
         let dt = self.path.record.trial.t_s[next] - self.path.record.trial.t_s[k];
         let mean = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| 0.5 * (x + y)).collect::<Vec<f64>>();
         out.jacobian.extend(mean(&before.jacobian, &after.jacobian));

@@ -2,19 +2,21 @@
 
 use nalgebra::DVector;
 
+use super::thresholds::POSTERIOR;
+
 /// Autocovariances up to a lag from which they count no more.
-pub(super) struct Memory {
+pub(super) struct ResidualAutocovariance {
     /// By pair of equations, the later one's row of the lower triangle, then by lag.
     pairs: Vec<Vec<f64>>,
 }
 
-impl Memory {
+impl ResidualAutocovariance {
     /// Of residuals by equation and sequence.
     pub fn of(residuals: &[Vec<DVector<f64>>]) -> Self {
         let longest = residuals.iter().flatten().map(DVector::len).max().unwrap_or(0);
         let own = |own: &Vec<DVector<f64>>| lasts(longest, &|lag| covariance(own, own, lag));
         let last = residuals.iter().map(own).max().unwrap_or(0);
-        let lags = (BANDWIDTH * (last + 1)).min(longest.max(1));
+        let lags = (POSTERIOR.bandwidth * (last + 1)).min(longest.max(1));
         let pair = |i: usize, j: usize| {
             // Bartlett's weights keep every variance made of them above zero (Newey and West 1987, Theorem 1).
             let weight = |lag: usize| 1.0 - lag as f64 / lags as f64;
@@ -34,9 +36,6 @@ impl Memory {
         self.kernel(one, one).first().copied().unwrap_or(0.0)
     }
 }
-
-/// Lags that count, by the lag at which residuals have forgotten.
-const BANDWIDTH: usize = 2;
 
 /// The lag until which sums of two neighbouring autocovariances stay above zero (Geyer 1992, Statistical Science 7,
 /// 473-483, section 3.3).

@@ -4,63 +4,73 @@ use rayon::prelude::*;
 use sistership_model::coefficient::Axis;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
-use sistership_model::uncertainty::{InstrumentFit, Uncertainty};
+use sistership_model::uncertainty::{Discrepancy, InstrumentFit, Uncertainty};
 use sistership_model::{Trial, particulars};
 
-use super::learned::Learned;
+use super::calibrated_model::CalibratedModel;
+use super::thresholds::THRESHOLDS;
 use crate::residual::{
-    Columns, Detail, Discrepancies, Gram, Instrument, Linearised, Noise, Record, System, filter, floor, linearise, scatter,
-    sparseness,
+    Columns, Detail, Discrepancies, Gram, Instrument, Linearised, Noise, ResidualSystem, TrialReadings, filter, floor, linearise,
+    scatter, sparseness,
 };
 use sistership_estimate::refine::RefineError;
 use sistership_estimate::transfer::approach_of;
 
-/// How long before and after a jump readings are not used, by the time in which the ship sails her length: what was smoothed
-/// carries it on.
-const SETTLES: f64 = 0.2;
-
 /// Everything that does not change with the discrepancy.
-pub struct Workspace<'a> {
+pub struct LinearisedTrials<'a> {
     pub trials: &'a [&'a Trial],
     pub noise: Noise,
     pub lpp_m: f64,
     pub speed_m_s: f64,
-    system: System,
-    records: Vec<Record<'a>>,
+    system: ResidualSystem,
+    records: Vec<TrialReadings<'a>>,
     linear: Vec<Vec<Linearised>>,
 }
 
 /// What is typical of a ship.
 #[derive(Debug, Clone)]
-pub struct Scales {
+pub struct MotionScales {
     /// Accelerations by axis: U^2/L, or (U/L)^2.
     pub accelerations: Vec<f64>,
     /// Time over which the discrepancy is correlated, s: the ship sails her length.
     pub time_s: f64,
 }
 
-impl<'a> Workspace<'a> {
+impl MotionScales {
+    /// Discrepancies of a level: a share of the typical acceleration of each axis.
+    pub fn discrepancies(&self, level: f64) -> Discrepancies {
+        let time_s = self.time_s;
+        let of = |typical: &f64| {
+            let deviation = level * typical;
+            Discrepancy { deviation, time_s, white: THRESHOLDS.discrepancy.white_share * deviation * time_s.sqrt() }
+        };
+        self.accelerations.iter().map(of).collect()
+    }
+}
+
+impl<'a> LinearisedTrials<'a> {
     /// # Errors
     /// Names what the model or a trial lacks.
     pub fn new(
-        learned: &Learned,
+        learned: &CalibratedModel,
         columns: Columns,
         trials: &'a [&'a Trial],
         least_step_s: Option<f64>,
     ) -> Result<Self, RefineError> {
-        let Learned { model, law } = learned;
+        let CalibratedModel { model, law } = learned;
         let lpp_m = particulars::value(&model.particulars, "lpp_m");
         let lpp_m = lpp_m.ok_or_else(|| RefineError::Law(format!("the model `{}` does not give `lpp_m`", model.name)))?;
         let approach = approach_of(trials).map(|approach| approach.speed_m_s);
         let speed_m_s = approach.or(model.speed_m_s).ok_or_else(|| RefineError::Data("the trials have no speed".into()))?;
-        let least_step_s = least_step_s.unwrap_or(0.02 * lpp_m / speed_m_s);
-        let settles_s = SETTLES * lpp_m / speed_m_s;
-        let mut records: Vec<Record<'a>> = trials.iter().map(|trial| Record::new(trial, least_step_s, settles_s)).collect();
+        let least_step_s = least_step_s.unwrap_or(THRESHOLDS.trials.least_step * lpp_m / speed_m_s);
+        let settles_s = THRESHOLDS.trials.settles * lpp_m / speed_m_s;
+        let mut records: Vec<TrialReadings<'a>> =
+            trials.iter().map(|trial| TrialReadings::new(trial, least_step_s, settles_s)).collect();
         let every = sparseness(&records);
         records.iter_mut().for_each(|record| record.every = every);
         let noise = noise(&records, lpp_m, speed_m_s, model.uncertainty.as_ref());
         let frame = trials.first().map(|trial| trial.velocity).unwrap_or_default();
-        let system = System::new(model, law, columns, frame)?;
+        let system = ResidualSystem::new(model, law, columns, frame)?;
         let linear = records.par_iter().map(|record| linearise(&system, record, Detail::Whole)).collect::<Result<_, _>>()?;
         Ok(Self { trials, noise, lpp_m, speed_m_s, system, records, linear })
     }
@@ -77,7 +87,7 @@ impl<'a> Workspace<'a> {
         self.system.frame
     }
 
-    pub fn records(&self) -> &[Record<'a>] {
+    pub fn records(&self) -> &[TrialReadings<'a>] {
         &self.records
     }
 
@@ -85,10 +95,10 @@ impl<'a> Workspace<'a> {
         &self.linear
     }
 
-    pub fn scales(&self) -> Scales {
+    pub fn scales(&self) -> MotionScales {
         let rate = self.speed_m_s / self.lpp_m;
         let of = |axis: &Axis| if matches!(axis, Axis::X | Axis::Y) { self.speed_m_s * rate } else { rate * rate };
-        Scales { accelerations: self.axes().iter().map(of).collect(), time_s: rate.recip() }
+        MotionScales { accelerations: self.axes().iter().map(of).collect(), time_s: rate.recip() }
     }
 
     /// The products of each trial.
@@ -108,7 +118,7 @@ impl<'a> Workspace<'a> {
 }
 
 /// Each instrument over all trials: its scatter, and what is known of it beside.
-fn noise(records: &[Record<'_>], lpp_m: f64, speed_m_s: f64, known: Option<&Uncertainty>) -> Noise {
+fn noise(records: &[TrialReadings<'_>], lpp_m: f64, speed_m_s: f64, known: Option<&Uncertainty>) -> Noise {
     let read = [Channel::U, Channel::V, Channel::R, Channel::P, Channel::Phi, Channel::Psi, Channel::X, Channel::Y];
     let one = |channel: Channel| {
         let scatter =

@@ -3,24 +3,22 @@
 //! Residuals are linearised about this one. The columns of coefficients alone would not do: how a lacked term answers to
 //! a sensor that errs would be left out.
 
-use nalgebra::{DMatrix, DVector};
 use sistership_model::Model;
 use sistership_model::formula::Expr;
 use sistership_model::law::Law;
 
-use super::evidence::Fixed;
 use super::nuisance::{Terms, regressor};
 use crate::residual::{Nuisance, NuisanceKind, lacked_name};
 use sistership_estimate::refine::RefineError;
 
 /// A model that has learned, with its law in the dress of the effects that the model carries.
 #[derive(Debug, Clone)]
-pub struct Learned {
+pub struct CalibratedModel {
     pub model: Model,
     pub law: Law,
 }
 
-impl Learned {
+impl CalibratedModel {
     /// A model with coefficients moved by `shift`, by column, read by instruments that err as they did on its own trials.
     ///
     /// # Errors
@@ -50,25 +48,5 @@ impl Learned {
         }
         let law = law.with_effects(&model).map_err(|(field, message)| RefineError::Law(format!("{field}: {message}")))?;
         Ok(Self { model, law })
-    }
-}
-
-impl Fixed {
-    /// The expected change of what a law can take over: of everything but masses, as if these were right.
-    pub(super) fn expected_shift(&self, nuisance: &[Nuisance]) -> Option<Vec<f64>> {
-        let free: Vec<usize> =
-            (0..nuisance.len()).filter(|&place| !matches!(nuisance[place].kind, NuisanceKind::Mass(..))).collect();
-        let information = DMatrix::from_fn(free.len(), free.len(), |i, j| self.information[(free[i], free[j])]);
-        let weighted_mean = DVector::from_fn(free.len(), |i, _| self.weighted_mean[free[i]]);
-        let mean = Self { information, weighted_mean }.mean()?;
-        let mut shift = vec![0.0; nuisance.len()];
-        free.iter().zip(mean.iter()).for_each(|(&place, value)| shift[place] = *value);
-        Some(shift)
-    }
-
-    /// What is known of the changes from a model that has been moved by `shift` already.
-    pub(super) fn from(mut self, shift: &[f64]) -> Self {
-        self.weighted_mean -= &self.information * DVector::from_column_slice(shift);
-        self
     }
 }

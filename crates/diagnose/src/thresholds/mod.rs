@@ -1,0 +1,63 @@
+//! Every constant by which a diagnosis decides, with its symbol, meaning, unit and source.
+//!
+//! `L/U` is the time in which the ship sails its length at the approach speed of its trials. A
+//! source that begins with "chosen" has no measurement of how results move at half and at double
+//! the value: the reason that can be given is the one of the mathematics. "The benchmark" is that
+//! of `docs/evidence/diagnosis.md` (`cargo run --release -p sistership-tests --example
+//! hidden_effects`).
+
+mod calibration;
+mod effects;
+mod remainder;
+mod search;
+mod trials;
+
+use calibration::{CALIBRATION, CalibrationThresholds, DISCREPANCY, DiscrepancyThresholds};
+use effects::{CONFOUNDING, CONSTANCY, ConfoundingThresholds, ConstancyThresholds, EFFECT, EffectThresholds};
+use remainder::{REMAINDER, RemainderThresholds};
+use search::{REFIT, RefitThresholds, SEARCH, SearchThresholds};
+use trials::{NEXT_TRIAL, NextTrialThresholds, SERIES, SeriesThresholds, TRIALS, TrialThresholds};
+
+pub(crate) use trials::PlannedHelm;
+
+/// All of them, by what they decide.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Thresholds {
+    /// Calibration on a model's own trials.
+    pub calibration: CalibrationThresholds,
+    /// The random accelerations that no coefficient explains.
+    pub discrepancy: DiscrepancyThresholds,
+    /// How hypotheses are searched.
+    pub search: SearchThresholds,
+    /// How far effects and their laws are trusted.
+    pub effect: EffectThresholds,
+    /// Whether an effect is the same at all times.
+    pub constancy: ConstancyThresholds,
+    /// When two effects count as different.
+    pub confounding: ConfoundingThresholds,
+    /// When something remains unexplained.
+    pub remainder: RemainderThresholds,
+    /// The fit of the model that is given.
+    pub refit: RefitThresholds,
+    /// How trials are read and replayed.
+    pub trials: TrialThresholds,
+    /// The trial that is proposed.
+    pub next_trial: NextTrialThresholds,
+    /// Series for plots.
+    pub series: SeriesThresholds,
+}
+
+/// The values.
+pub(crate) const THRESHOLDS: Thresholds = Thresholds {
+    calibration: CALIBRATION,
+    discrepancy: DISCREPANCY,
+    search: SEARCH,
+    effect: EFFECT,
+    constancy: CONSTANCY,
+    confounding: CONFOUNDING,
+    remainder: REMAINDER,
+    refit: REFIT,
+    trials: TRIALS,
+    next_trial: NEXT_TRIAL,
+    series: SERIES,
+};

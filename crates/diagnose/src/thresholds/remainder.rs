@@ -1,0 +1,34 @@
+//! Thresholds of what a hypothesis leaves.
+
+use sistership_model::trial::Channel;
+
+/// When something remains unexplained.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RemainderThresholds {
+    /// `T_b`: time over which prediction errors are added up, by `L/U`, dimensionless: what lasts
+    /// stands out. Source: chosen, shorter than any manoeuvre lasts.
+    pub block: f64,
+    /// `n_b`: blocks that are judged together, a count. Source: chosen; with [`Self::block`] a
+    /// stretch of 3.6 lengths.
+    pub blocks: usize,
+    /// `z_r`: root mean square of the sums, in deviations, above which a stretch is not noise where
+    /// clean trials say nothing else, dimensionless. Source: derived: with six blocks of white
+    /// errors, `P(chi^2_6 > 54) = 7e-10`, so that it is not chance in any number of trials.
+    pub limit: f64,
+    /// `k_r`: how many times larger than on any clean trial a stretch must be, dimensionless.
+    /// Source: chosen; the benchmark has 27 of 27 unlisted effects unexplained with it, and nothing
+    /// named on 20 of 20 clean sets.
+    pub margin: f64,
+    /// The channels whose equations are judged. Source: derived: those with a velocity of their
+    /// own, and the heading.
+    pub channels: [Channel; 5],
+}
+
+/// The remainder's values.
+pub(super) const REMAINDER: RemainderThresholds = RemainderThresholds {
+    block: 0.6,
+    blocks: 6,
+    limit: 3.0,
+    margin: 1.25,
+    channels: [Channel::U, Channel::V, Channel::R, Channel::P, Channel::Psi],
+};
