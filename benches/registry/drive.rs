@@ -47,10 +47,16 @@ pub async fn drive(registry: &Registry, sizes: &Sizes) -> Result<Figures, Failur
     let mut figures = load(registry, sizes).await?;
     registry.settle(&Client::new(), sizes.models).await?;
     let fast = read(registry, sizes, None).await?;
-    figures.push((format!("champion, {READERS} connections without pause: requests/s"), rate(sizes.reads, fast.elapsed)));
+    figures.push((
+        format!("champion, {READERS} connections without pause: requests/s"),
+        rate(sizes.reads, fast.elapsed),
+    ));
     figures.push(("the same: p50, p99, ms".to_owned(), fast.quantiles()));
     let paced = read(registry, sizes, Some(PACE)).await?;
-    figures.push((format!("champion, {READERS} connections, {PACE} requests/s: p50, p99, ms"), paced.quantiles()));
+    figures.push((
+        format!("champion, {READERS} connections, {PACE} requests/s: p50, p99, ms"),
+        paced.quantiles(),
+    ));
     figures.extend(crowd(registry, sizes).await?);
     figures.extend(race(registry, sizes).await?);
     Ok(figures)
@@ -131,7 +137,10 @@ async fn load(registry: &Registry, sizes: &Sizes) -> Result<Figures, Failure> {
     })
     .await?;
     Ok(vec![
-        (format!("{count} versions of {models} models, {WRITERS} clients: created/s"), rate(count, made.elapsed)),
+        (
+            format!("{count} versions of {models} models, {WRITERS} clients: created/s"),
+            rate(count, made.elapsed),
+        ),
         ("the same: p50, p99, ms".to_owned(), made.quantiles()),
     ])
 }
@@ -153,8 +162,14 @@ async fn read(registry: &Registry, sizes: &Sizes, pace: Option<usize>) -> Result
 }
 
 /// Each connection asks at its own even beat; a late answer delays the next question, and that delay counts as its time.
-async fn paced(registry: &Registry, models: usize, count: usize, pace: usize) -> Result<Times, Failure> {
-    let (start, beat, mut tasks) = (Instant::now(), Duration::from_secs_f64(READERS as f64 / pace as f64), JoinSet::new());
+async fn paced(
+    registry: &Registry,
+    models: usize,
+    count: usize,
+    pace: usize,
+) -> Result<Times, Failure> {
+    let (start, beat, mut tasks) =
+        (Instant::now(), Duration::from_secs_f64(READERS as f64 / pace as f64), JoinSet::new());
     for reader in 0..READERS {
         let (at, client) = (registry.clone(), Client::new());
         tasks.spawn(async move {
@@ -164,7 +179,8 @@ async fn paced(registry: &Registry, models: usize, count: usize, pace: usize) ->
                 let due = first + beat.mul_f64(turn as f64);
                 tokio::time::sleep_until(due.into()).await;
                 // The timer has a millisecond's grain, which is not the registry's.
-                let begun = if due.elapsed() < Duration::from_millis(2) { Instant::now() } else { due };
+                let begun =
+                    if due.elapsed() < Duration::from_millis(2) { Instant::now() } else { due };
                 at.champion(&client, &name((reader + turn * READERS) % models)).await?;
                 times.push(begun.elapsed());
             }
@@ -181,11 +197,13 @@ async fn paced(registry: &Registry, models: usize, count: usize, pace: usize) ->
 
 /// Everybody makes a version of one model at once.
 async fn crowd(registry: &Registry, sizes: &Sizes) -> Result<Figures, Failure> {
-    let (client, seats, model) = (Client::new(), Arc::new(Semaphore::new(CROWD)), name(sizes.models));
+    let (client, seats, model) =
+        (Client::new(), Arc::new(Semaphore::new(CROWD)), name(sizes.models));
     registry.model(&client, &model).await?;
     let (start, mut tasks) = (Instant::now(), JoinSet::new());
     for _ in 0..sizes.creations {
-        let (at, client, seats, model) = (registry.clone(), client.clone(), Arc::clone(&seats), model.clone());
+        let (at, client, seats, model) =
+            (registry.clone(), client.clone(), Arc::clone(&seats), model.clone());
         tasks.spawn(async move {
             let _seat = seats.acquire().await?;
             at.create(&client, &model).await
@@ -203,17 +221,23 @@ async fn crowd(registry: &Registry, sizes: &Sizes) -> Result<Figures, Failure> {
     let whole = numbers.iter().copied().eq(1..=numbers.len() as u64);
     let judged = format!("{}, {failed} failed", if whole { "no gap" } else { "GAPS or repeats" });
     let label = format!("{} concurrent versions of one model", sizes.creations);
-    Ok(vec![(format!("{label}: numbers"), judged), (format!("{label}: created/s"), rate(numbers.len(), elapsed))])
+    Ok(vec![
+        (format!("{label}: numbers"), judged),
+        (format!("{label}: created/s"), rate(numbers.len(), elapsed)),
+    ])
 }
 
 /// Everybody moves the same alias from where it stands, at once.
 async fn race(registry: &Registry, sizes: &Sizes) -> Result<Figures, Failure> {
     let (client, seats, model) = (Client::new(), Arc::new(Semaphore::new(CROWD)), name(0));
     let label = format!("{} concurrent moves of one alias with If-Match: winners", sizes.moves);
-    let Some(tag) = registry.tag(&client, &model).await? else { return Ok(vec![(label, "not offered".to_owned())]) };
+    let Some(tag) = registry.tag(&client, &model).await? else {
+        return Ok(vec![(label, "not offered".to_owned())]);
+    };
     let (start, mut tasks) = (Instant::now(), JoinSet::new());
     for _ in 0..sizes.moves {
-        let (at, client, seats, model, tag) = (registry.clone(), client.clone(), Arc::clone(&seats), model.clone(), tag.clone());
+        let (at, client, seats, model, tag) =
+            (registry.clone(), client.clone(), Arc::clone(&seats), model.clone(), tag.clone());
         tasks.spawn(async move {
             let _seat = seats.acquire().await?;
             at.swap(&client, &model, 1, &tag).await

@@ -54,7 +54,12 @@ fn arguments() -> Result<(Vec<Registry>, Sizes), Failure> {
             "--reads" => sizes.reads = value.parse()?,
             "--creations" => sizes.creations = value.parse()?,
             "--moves" => sizes.moves = value.parse()?,
-            _ => return Err(format!("there is no flag {flag}; the head of benches/registry/main.rs has all of them").into()),
+            _ => {
+                return Err(format!(
+                    "there is no flag {flag}; the head of benches/registry/main.rs has all of them"
+                )
+                .into());
+            }
         }
     }
     match registries.is_empty() {
@@ -69,8 +74,10 @@ fn print(columns: &[(String, Figures)]) {
     println!("| | {} |\n| --- |{}", names.join(" | "), " --- |".repeat(names.len()));
     let Some((_, first)) = columns.first() else { return };
     for (row, (label, _)) in first.iter().enumerate() {
-        let cells: Vec<&str> =
-            columns.iter().map(|(_, figures)| figures.get(row).map_or("", |(_, cell)| cell.as_str())).collect();
+        let cells: Vec<&str> = columns
+            .iter()
+            .map(|(_, figures)| figures.get(row).map_or("", |(_, cell)| cell.as_str()))
+            .collect();
         println!("| {label} | {} |", cells.join(" | "));
     }
 }

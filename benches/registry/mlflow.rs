@@ -10,7 +10,11 @@ async fn done(request: RequestBuilder) -> Result<Value, Failure> {
     let response = request.send().await?;
     let status = response.status();
     let text = response.text().await?;
-    if status.is_success() { Ok(serde_json::from_str(&text)?) } else { Err(format!("{status}: {text}").into()) }
+    if status.is_success() {
+        Ok(serde_json::from_str(&text)?)
+    } else {
+        Err(format!("{status}: {text}").into())
+    }
 }
 
 fn place(url: &str, path: &str) -> String {
@@ -18,7 +22,9 @@ fn place(url: &str, path: &str) -> String {
 }
 
 pub async fn model(client: &Client, url: &str, model: &str) -> Result<(), Failure> {
-    done(client.post(place(url, "registered-models/create")).json(&json!({ "name": model }))).await.map(drop)
+    done(client.post(place(url, "registered-models/create")).json(&json!({ "name": model })))
+        .await
+        .map(drop)
 }
 
 pub async fn create(client: &Client, url: &str, model: &str) -> Result<u64, Failure> {
@@ -34,7 +40,12 @@ pub async fn crown(client: &Client, url: &str, model: &str, version: u64) -> Res
 }
 
 pub async fn champion(client: &Client, url: &str, model: &str) -> Result<(), Failure> {
-    let request = client.get(place(url, &format!("registered-models/alias?name={model}&alias=champion")));
+    let request =
+        client.get(place(url, &format!("registered-models/alias?name={model}&alias=champion")));
     let found = done(request).await?;
-    if found["model_version"].is_object() { Ok(()) } else { Err(format!("no champion in {found}").into()) }
+    if found["model_version"].is_object() {
+        Ok(())
+    } else {
+        Err(format!("no champion in {found}").into())
+    }
 }

@@ -80,7 +80,13 @@ impl Registry {
     }
 
     /// Moves the champion if it is still what `tag` says.
-    pub async fn swap(&self, client: &Client, model: &str, version: u64, tag: &str) -> Result<Moved, Failure> {
+    pub async fn swap(
+        &self,
+        client: &Client,
+        model: &str,
+        version: u64,
+        tag: &str,
+    ) -> Result<Moved, Failure> {
         match self {
             Self::Sistership(url) => sistership::swap(client, url, model, version, tag).await,
             Self::Mlflow(_) => Err("MLflow has no conditional moves".into()),

@@ -34,7 +34,11 @@ async fn done(request: RequestBuilder) -> Result<Response, Failure> {
 
 pub async fn model(client: &Client, url: &str, model: &str) -> Result<(), Failure> {
     if TEMPLATE.get().is_none() {
-        let mariner: Value = done(ask(client, Method::GET, format!("{url}/v1/ships/mariner/model"))).await?.json().await?;
+        let mariner: Value =
+            done(ask(client, Method::GET, format!("{url}/v1/ships/mariner/model")))
+                .await?
+                .json()
+                .await?;
         let _ = TEMPLATE.set(mariner["model"].clone());
     }
     let ship = json!({
@@ -53,14 +57,18 @@ pub async fn create(client: &Client, url: &str, model: &str) -> Result<u64, Fail
     document["note"] = json!(format!("variation {}", COUNT.fetch_add(1, Ordering::Relaxed)));
     let body = json!({ "model": document, "origin": "benches/registry" });
     let made: Value =
-        done(ask(client, Method::POST, format!("{url}/v1/models/{model}/versions")).json(&body)).await?.json().await?;
+        done(ask(client, Method::POST, format!("{url}/v1/models/{model}/versions")).json(&body))
+            .await?
+            .json()
+            .await?;
     made["number"].as_u64().ok_or_else(|| format!("no number in {made}").into())
 }
 
 /// Waits until the ships are found by the metrics of their champions: the server sails manoeuvres for that in the background,
 /// which would otherwise be measured with whatever comes next.
 pub async fn settle(client: &Client, url: &str, models: usize) -> Result<(), Failure> {
-    let place = format!("{url}/v1/ships?category=bench&metric=turn_35.tactical_diameter_m:..&limit=1000");
+    let place =
+        format!("{url}/v1/ships?category=bench&metric=turn_35.tactical_diameter_m:..&limit=1000");
     let start = Instant::now();
     while start.elapsed() < PATIENCE {
         let page: Value = done(ask(client, Method::GET, place.clone())).await?.json().await?;
@@ -82,20 +90,35 @@ pub async fn crown(client: &Client, url: &str, model: &str, version: u64) -> Res
 }
 
 pub async fn champion(client: &Client, url: &str, model: &str) -> Result<(), Failure> {
-    let body = done(ask(client, Method::GET, format!("{url}/v1/ships/{model}/model"))).await?.bytes().await?;
+    let body = done(ask(client, Method::GET, format!("{url}/v1/ships/{model}/model")))
+        .await?
+        .bytes()
+        .await?;
     if body.is_empty() { Err("an empty champion".into()) } else { Ok(()) }
 }
 
 pub async fn tag(client: &Client, url: &str, model: &str) -> Result<String, Failure> {
-    let response = done(ask(client, Method::GET, format!("{url}/v1/models/{model}/aliases/champion"))).await?;
+    let response =
+        done(ask(client, Method::GET, format!("{url}/v1/models/{model}/aliases/champion"))).await?;
     Ok(response.headers().get("etag").ok_or("no ETag")?.to_str()?.to_owned())
 }
 
-pub async fn swap(client: &Client, url: &str, model: &str, version: u64, tag: &str) -> Result<Moved, Failure> {
+pub async fn swap(
+    client: &Client,
+    url: &str,
+    model: &str,
+    version: u64,
+    tag: &str,
+) -> Result<Moved, Failure> {
     let response = alias(client, url, model, version).header("if-match", tag).send().await?;
     match response.status().as_u16() {
         200 => Ok(Moved::Won),
         412 => Ok(Moved::Lost),
-        _ => Err(format!("a move was answered with {}: {}", response.status(), response.text().await?).into()),
+        _ => Err(format!(
+            "a move was answered with {}: {}",
+            response.status(),
+            response.text().await?
+        )
+        .into()),
     }
 }

@@ -17,14 +17,19 @@ use ships::{Sailed, Sistership, draw, foundation, sail, statistics};
 
 const SHIPS: usize = 20;
 /// What a member has sailed, and what a new ship has, with their durations in ship's lengths.
-const MEMBERS: [(Sailed, f64); 4] =
-    [(Sailed::Turn(35.0), 20.0), (Sailed::Zigzag(20.0), 30.0), (Sailed::Zigzag(-10.0), 30.0), (Sailed::Turn(-20.0), 20.0)];
+const MEMBERS: [(Sailed, f64); 4] = [
+    (Sailed::Turn(35.0), 20.0),
+    (Sailed::Zigzag(20.0), 30.0),
+    (Sailed::Zigzag(-10.0), 30.0),
+    (Sailed::Turn(-20.0), 20.0),
+];
 const NEW: [(Sailed, f64); 2] = [(Sailed::Zigzag(10.0), 20.0), (Sailed::Zigzag(-10.0), 20.0)];
 /// The weakest prior: of the whole path, and of its most conservative range, which may suit the nearest ship better.
 const PATH: f64 = 1e-6;
 const HELD: f64 = 1.0;
 /// What it is judged by, none of which it has sailed.
-const JUDGED: [(Sailed, f64); 3] = [(Sailed::Turn(35.0), 15.0), (Sailed::Turn(-35.0), 15.0), (Sailed::Zigzag(20.0), 25.0)];
+const JUDGED: [(Sailed, f64); 3] =
+    [(Sailed::Turn(35.0), 15.0), (Sailed::Turn(-35.0), 15.0), (Sailed::Zigzag(20.0), 25.0)];
 
 type Values = BTreeMap<String, f64>;
 
@@ -62,9 +67,15 @@ fn refined(frame: &Model, trials: &[TrialStatistics], prior: Prior<'_>, lambda_m
 fn nearest<'a>(of: &Known, others: &[&'a Known]) -> &'a Known {
     let ratios = |known: &Known| {
         let hull = known.ship.hull;
-        [hull.lpp_m / hull.beam_m / 6.0, hull.beam_m / hull.draught_m / 2.8, hull.block_coefficient / 0.73]
+        [
+            hull.lpp_m / hull.beam_m / 6.0,
+            hull.beam_m / hull.draught_m / 2.8,
+            hull.block_coefficient / 0.73,
+        ]
     };
-    let far = |other: &Known| ratios(of).iter().zip(ratios(other)).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+    let far = |other: &Known| {
+        ratios(of).iter().zip(ratios(other)).map(|(a, b)| (a - b).powi(2)).sum::<f64>()
+    };
     others.iter().min_by(|a, b| far(a).total_cmp(&far(b))).expect("another ship")
 }
 
@@ -72,7 +83,8 @@ fn nearest<'a>(of: &Known, others: &[&'a Known]) -> &'a Known {
 fn error(model: &Model, truth: &Model, law: &Law) -> Option<f64> {
     let (mut wrong, mut whole) = (0.0_f64, 0.0);
     for (what, lengths) in JUDGED {
-        let (modelled, sailed) = (sail(model, law, what, lengths)?, sail(truth, law, what, lengths)?);
+        let (modelled, sailed) =
+            (sail(model, law, what, lengths)?, sail(truth, law, what, lengths)?);
         for (a, b) in modelled.states.iter().zip(&sailed.states) {
             wrong += (a[at::R] - b[at::R]).powi(2);
             whole += b[at::R].powi(2);
@@ -92,25 +104,45 @@ fn a_family_tells_more_of_a_new_ship_than_her_nearest_sister() {
     let (foundation, law) = foundation();
     let known = known(&mut ChaCha12Rng::seed_from_u64(12), &foundation, &law);
     let source = values(&foundation);
-    let own: Vec<Model> = known.iter().map(|one| refined(&one.ship.frame, &one.all, Prior::Source(&source), PATH)).collect();
-    println!("error in yaw rate, %: the model of the nearest ship, refined on two zigzags, and held more tightly; the family's");
-    println!("mean, and refined with the family's prior on the same zigzags; refined on all of its own trials");
+    let own: Vec<Model> = known
+        .iter()
+        .map(|one| refined(&one.ship.frame, &one.all, Prior::Source(&source), PATH))
+        .collect();
+    println!(
+        "error in yaw rate, %: the model of the nearest ship, refined on two zigzags, and held more tightly; the family's"
+    );
+    println!(
+        "mean, and refined with the family's prior on the same zigzags; refined on all of its own trials"
+    );
     let mut table: [Vec<f64>; 6] = Default::default();
     for (index, out) in known.iter().enumerate() {
-        let others: Vec<&Known> = known.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, one)| one).collect();
+        let others: Vec<&Known> = known
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != index)
+            .map(|(_, one)| one)
+            .collect();
         let sister = nearest(out, &others);
-        let place = known.iter().position(|one| one.ship.name == sister.ship.name).expect("a sister");
+        let place =
+            known.iter().position(|one| one.ship.name == sister.ship.name).expect("a sister");
         let own_values = values(&own[place]);
-        let members: Vec<Member<'_>> = others.iter().map(|one| Member { name: &one.ship.name, trials: &one.all }).collect();
+        let members: Vec<Member<'_>> =
+            others.iter().map(|one| Member { name: &one.ship.name, trials: &one.all }).collect();
         let family = learn(&members).expect("a family");
         let axes = family.axes().expect("its axes");
         let prior = Prior::Family { axes: &axes, design_effect: family.design_effect };
         let with = |values: &Values| {
             let mut model = out.ship.frame.clone();
-            model.coefficients.iter_mut().for_each(|(name, quantity)| quantity.value = values[name]);
+            model
+                .coefficients
+                .iter_mut()
+                .for_each(|(name, quantity)| quantity.value = values[name]);
             model
         };
-        let mean: Values = axes.iter().flat_map(|axis| axis.names.iter().cloned().zip(axis.mean.iter().copied())).collect();
+        let mean: Values = axes
+            .iter()
+            .flat_map(|axis| axis.names.iter().cloned().zip(axis.mean.iter().copied()))
+            .collect();
         let models = [
             with(&own_values),
             refined(&out.ship.frame, &out.few, Prior::Source(&own_values), PATH),
@@ -120,15 +152,23 @@ fn a_family_tells_more_of_a_new_ship_than_her_nearest_sister() {
             own[index].clone(),
         ];
         // A model that diverges is as wrong as one that does not turn.
-        let errors = models.each_ref().map(|model| error(model, &out.ship.truth, &law).unwrap_or(1.0));
-        let row: Vec<String> = errors.iter().map(|error| format!("{:8.1}", 100.0 * error)).collect();
+        let errors =
+            models.each_ref().map(|model| error(model, &out.ship.truth, &law).unwrap_or(1.0));
+        let row: Vec<String> =
+            errors.iter().map(|error| format!("{:8.1}", 100.0 * error)).collect();
         println!("{:10} {}", out.ship.name, row.join(" "));
         table.iter_mut().zip(errors).for_each(|(column, error)| column.push(error));
     }
     let medians = table.each_ref().map(|column| median(column));
     println!("{:10} {}", "median", medians.map(|m| format!("{:8.1}", 100.0 * m)).join(" "));
-    let wins = |column: usize| table[column].iter().zip(&table[4]).filter(|(nearest, family)| family < nearest).count();
-    println!("the family's prior is the better one for {} of {SHIPS} ships, held more tightly {}", wins(1), wins(2));
+    let wins = |column: usize| {
+        table[column].iter().zip(&table[4]).filter(|(nearest, family)| family < nearest).count()
+    };
+    println!(
+        "the family's prior is the better one for {} of {SHIPS} ships, held more tightly {}",
+        wins(1),
+        wins(2)
+    );
     let nearest = medians[..3].iter().copied().fold(f64::INFINITY, f64::min);
     assert!(medians[4] < 0.8 * nearest, "{medians:?}");
     assert!(wins(1) > SHIPS * 3 / 4 && wins(2) > SHIPS / 2, "{} {}", wins(1), wins(2));

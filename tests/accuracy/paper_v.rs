@@ -67,7 +67,9 @@ fn the_weak_form_beats_the_published_refinement_on_paper_v() {
     let plane = by_weak(&zoo, "abkowitz", &weak::single());
     let roll = by_weak(&zoo, "abkowitz-roll", &weak::single());
     let pooled = by_weak(&zoo, "abkowitz-roll", &weak::pooled());
-    println!("                    MR paper   weak   weak, roll   weak, roll, pooled  (errors in %; seed {SEED})");
+    println!(
+        "                    MR paper   weak   weak, roll   weak, roll, pooled  (errors in %; seed {SEED})"
+    );
     for (k, block) in TABLE_5.iter().enumerate() {
         for (i, name) in NAMES.iter().enumerate() {
             let [plane, roll, pooled] = [&plane, &roll, &pooled].map(|errors| errors[k].0[i]);
@@ -126,14 +128,18 @@ fn by_weak_on(
     let truth = Truth::new(zoo, n_rpm);
     let source = source(zoo, plane, &truth);
     let source = if law.has_roll() { weak::with_roll(&source, law, &truth) } else { source };
-    let models: Vec<Model> = sets.iter().map(|set| weak::refined(zoo, law, &source, &truth, set, rng)).collect();
+    let models: Vec<Model> =
+        sets.iter().map(|set| weak::refined(zoo, law, &source, &truth, set, rng)).collect();
     rudders_deg.iter().map(|&rudder_deg| judged(&models, law, &truth.turn(rudder_deg))).collect()
 }
 
 /// Mean errors of models on a turn; they are of continuous time, and so is the method that simulates them.
 fn judged(models: &[Model], law: &Law, track: &Trajectory) -> Metrics {
     let actual = Metrics::of(&track.states[PREDICTED]);
-    let errors: Vec<Metrics> = models.iter().map(|model| actual.errors(&predicted(model, law, track, Method::Rk4))).collect();
+    let errors: Vec<Metrics> = models
+        .iter()
+        .map(|model| actual.errors(&predicted(model, law, track, Method::Rk4)))
+        .collect();
     Metrics::mean(&errors)
 }
 
@@ -154,8 +160,10 @@ fn case(zoo: &Zoo, blocks: &'static [Block], rng: &mut ChaCha8Rng) -> Vec<Row> {
         let track = truth.turn(paper.rudder_deg);
         let actual = Metrics::of(&track.states[PREDICTED]);
         let by_source = predicted(&source, law, &track, Method::Euler);
-        let errors: Vec<Metrics> =
-            refinements.iter().map(|model| actual.errors(&predicted(model, law, &track, Method::Euler))).collect();
+        let errors: Vec<Metrics> = refinements
+            .iter()
+            .map(|model| actual.errors(&predicted(model, law, &track, Method::Euler)))
+            .collect();
         Row {
             paper,
             truth: actual,
@@ -171,7 +179,8 @@ fn case(zoo: &Zoo, blocks: &'static [Block], rng: &mut ChaCha8Rng) -> Vec<Row> {
 fn source(zoo: &Zoo, law: &Law, truth: &Truth) -> Model {
     let mariner = zoo.model("mariner").unwrap_or_else(|error| panic!("{error}"));
     let sr108 = zoo.vessel("sr108").expect("a ship of the zoo");
-    let mut model = transfer(&mariner, law, sr108, Some(Approach { speed_m_s: truth.speed_m_s, n_rps: None }));
+    let mut model =
+        transfer(&mariner, law, sr108, Some(Approach { speed_m_s: truth.speed_m_s, n_rps: None }));
     let own = |name: &str| truth.model.parameters[name].value;
     // Son and Nomoto's matrix has m_y alpha_y off its diagonal, where the Abkowitz law has m x_G less the derivative.
     let coupling = -own("m_y") * own("alpha_y");
@@ -185,7 +194,11 @@ fn source(zoo: &Zoo, law: &Law, truth: &Truth) -> Model {
         ("N_vdot", coupling),
         ("N_rdot", -own("J_z")),
     ];
-    model.parameters.extend(masses.map(|(name, value)| (name.to_owned(), Quantity::new(value, truth.model.name.as_str()))));
+    model.parameters.extend(
+        masses.map(|(name, value)| {
+            (name.to_owned(), Quantity::new(value, truth.model.name.as_str()))
+        }),
+    );
     model
 }
 
@@ -193,7 +206,8 @@ fn source(zoo: &Zoo, law: &Law, truth: &Truth) -> Model {
 fn predicted(model: &Model, law: &Law, track: &Trajectory, method: Method) -> Metrics {
     let ship = Ship::new(model, law).expect("a ready ship");
     let settings = ReplaySettings { restart_s: None, method, step_s: STEP_S };
-    let run = replay(&ship, &recorded(track, PREDICTED), &settings).expect("every channel that the law needs");
+    let run = replay(&ship, &recorded(track, PREDICTED), &settings)
+        .expect("every channel that the law needs");
     assert_eq!(run.stopped, None);
     Metrics::of(&run.track.states)
 }
@@ -203,7 +217,9 @@ fn mean_of_cells(rows: &[Row]) -> f64 {
 }
 
 fn print(rows: &[Row]) {
-    println!("                   true             SP %          MR %     (m and m/s; ours, paper; seed {SEED})");
+    println!(
+        "                   true             SP %          MR %     (m and m/s; ours, paper; seed {SEED})"
+    );
     for row in rows {
         for (i, name) in NAMES.iter().enumerate() {
             println!(
@@ -230,7 +246,11 @@ fn check_truth(row: &Row) {
     for (i, name) in NAMES.iter().enumerate().filter(|(i, _)| *i != RADIUS) {
         // Speed losses are printed to 0.1 m/s.
         let within = if i == SPEED_LOSS { 0.05 } else { 0.1 };
-        assert!(off(&row.truth, &row.paper.truth, i) <= within, "true {name} at {} rpm", row.paper.n_rpm);
+        assert!(
+            off(&row.truth, &row.paper.truth, i) <= within,
+            "true {name} at {} rpm",
+            row.paper.n_rpm
+        );
     }
 }
 
@@ -244,7 +264,11 @@ fn check_true_radius(sides: &[Row]) {
 fn check_source(row: &Row) {
     for (i, name) in NAMES.iter().enumerate() {
         let within = if i == RADIUS { 0.7 } else { 0.1 };
-        assert!(off(&row.source, &row.paper.source, i) <= within, "{name} by SP at {} rpm", row.paper.n_rpm);
+        assert!(
+            off(&row.source, &row.paper.source, i) <= within,
+            "{name} by SP at {} rpm",
+            row.paper.n_rpm
+        );
     }
     let off = row.source_radius_by_paper - row.paper.source.0[RADIUS];
     assert!(off.abs() <= 0.1, "radius by SP against the printed truth at {} rpm", row.paper.n_rpm);
@@ -253,6 +277,10 @@ fn check_source(row: &Row) {
 /// The mean of all cells would hide differences that cancel.
 fn check_refined(row: &Row) {
     for (i, name) in NAMES.iter().enumerate() {
-        assert!(off(&row.refined, &row.paper.refined, i) <= 1.5, "{name} by MR at {} rpm", row.paper.n_rpm);
+        assert!(
+            off(&row.refined, &row.paper.refined, i) <= 1.5,
+            "{name} by MR at {} rpm",
+            row.paper.n_rpm
+        );
     }
 }

@@ -13,9 +13,19 @@ struct Largest {
 }
 
 /// Sails the recorded orders with RK4 at 0.1 s and compares at every stored sample.
-fn follow(ship: &Ship, file: &std::path::Path, speed: f64, until_s: f64, order: impl Fn(f64, &[f64; 9]) -> f64) -> Largest {
+fn follow(
+    ship: &Ship,
+    file: &std::path::Path,
+    speed: f64,
+    until_s: f64,
+    order: impl Fn(f64, &[f64; 9]) -> f64,
+) -> Largest {
     let reference = shared::columns(file);
-    let n_rps = reference.get("n_rps").map(|n| n[0]).or_else(|| reference.get("n_rpm").map(|n| n[0] / 60.0)).unwrap_or(0.0);
+    let n_rps = reference
+        .get("n_rps")
+        .map(|n| n[0])
+        .or_else(|| reference.get("n_rpm").map(|n| n[0] / 60.0))
+        .unwrap_or(0.0);
     let t = &reference["t_s"];
     let duration_s = t.iter().copied().fold(0.0, f64::max).min(until_s);
     let mut track = Trajectory::default();
@@ -33,7 +43,12 @@ fn follow(ship: &Ship, file: &std::path::Path, speed: f64, until_s: f64, order: 
         largest.position_m = largest.position_m.max(away);
         largest.heading_deg = largest.heading_deg.max(turned);
     }
-    println!("{}: {:.2e} m, {:.2e} deg", file.file_name().unwrap_or_default().display(), largest.position_m, largest.heading_deg);
+    println!(
+        "{}: {:.2e} m, {:.2e} deg",
+        file.file_name().unwrap_or_default().display(),
+        largest.position_m,
+        largest.heading_deg
+    );
     largest
 }
 
@@ -68,10 +83,20 @@ fn sr108_follows_the_reference() {
     let Some(folder) = shared::data("sr108/reference") else { return };
     let (model, law) = ship("sr108");
     let sr108 = Ship::new(&model, &law).expect("a ready ship");
-    for (knots, speed) in [("16.3", 8.385_444_444_444_445), ("20.4", 10.494_666_666_666_67), ("24.7", 12.706_777_777_777_78)] {
+    for (knots, speed) in [
+        ("16.3", 8.385_444_444_444_445),
+        ("20.4", 10.494_666_666_666_67),
+        ("24.7", 12.706_777_777_777_78),
+    ] {
         for rudder in ["-7.5", "7.5"] {
             let file = folder.join(format!("turn_{knots}kn_{rudder}deg.csv"));
-            let largest = follow(&sr108, &file, speed, f64::INFINITY, turn_at(70.0, rudder.parse().expect("a number")));
+            let largest = follow(
+                &sr108,
+                &file,
+                speed,
+                f64::INFINITY,
+                turn_at(70.0, rudder.parse().expect("a number")),
+            );
             assert!(largest.position_m < 0.05 && largest.heading_deg < 0.01, "{}", file.display());
         }
     }
@@ -117,10 +142,14 @@ fn kvlcc2_turns_as_published() {
         let (model, law) = ship(name);
         let kvlcc2 = Ship::new(&model, &law).expect("a ready ship");
         for rudder in [35.0, -35.0] {
-            let metrics = turn(&kvlcc2, rudder, &ManoeuvreSettings::default()).expect("a turn").metrics;
+            let metrics =
+                turn(&kvlcc2, rudder, &ManoeuvreSettings::default()).expect("a turn").metrics;
             let lengths = |m: Option<f64>| m.expect("a full turn") / kvlcc2.lpp_m();
-            let (advance, diameter) = (lengths(metrics.advance_m), lengths(metrics.tactical_diameter_m));
-            println!("{name} {rudder:+} deg: advance {advance:.3} L, tactical diameter {diameter:.3} L");
+            let (advance, diameter) =
+                (lengths(metrics.advance_m), lengths(metrics.tactical_diameter_m));
+            println!(
+                "{name} {rudder:+} deg: advance {advance:.3} L, tactical diameter {diameter:.3} L"
+            );
             assert!((advance / 3.31 - 1.0).abs() < 0.02 && (diameter / 3.36 - 1.0).abs() < 0.02);
         }
     }

@@ -14,7 +14,8 @@ const TABLE_5: [(&str, [f64; 5]); 5] = [
 ];
 const COMPONENTS: [&str; 5] = ["C_b", "L/B", "B/T", "L/V0", "Ar/(LT)"];
 /// Table 6 as printed: the correlations with KVLCC2.
-const TABLE_6: [(&str, f64); 4] = [("mariner", -0.576), ("esso-tanker", 0.851), ("sr108", -0.887), ("pcc", -0.723)];
+const TABLE_6: [(&str, f64); 4] =
+    [("mariner", -0.576), ("esso-tanker", 0.851), ("sr108", -0.887), ("pcc", -0.723)];
 
 fn zoo() -> Zoo {
     Zoo::embedded().unwrap_or_else(|error| panic!("{error}"))
@@ -24,15 +25,26 @@ fn zoo() -> Zoo {
 fn tables_5_and_6_of_mei_2019() {
     let zoo = zoo();
     for (ship, printed) in TABLE_5 {
-        let normalised = CharacteristicVector::of(zoo.vessel(ship).expect("in the zoo"), Definition::Mei2019).normalised();
+        let normalised =
+            CharacteristicVector::of(zoo.vessel(ship).expect("in the zoo"), Definition::Mei2019)
+                .normalised();
         for (name, printed) in COMPONENTS.iter().zip(printed) {
-            assert!((normalised[*name] - printed).abs() < 0.0011, "{ship} {name}: {} against {printed}", normalised[*name]);
+            assert!(
+                (normalised[*name] - printed).abs() < 0.0011,
+                "{ship} {name}: {} against {printed}",
+                normalised[*name]
+            );
         }
     }
-    let ranking = similar(&zoo, zoo.vessel("kvlcc2").expect("in the zoo"), Some(Definition::Mei2019), &[]).ranking;
+    let ranking =
+        similar(&zoo, zoo.vessel("kvlcc2").expect("in the zoo"), Some(Definition::Mei2019), &[])
+            .ranking;
     for (ship, printed) in TABLE_6 {
-        let found =
-            ranking.iter().find(|ranked| ranked.ship == ship).and_then(|ranked| ranked.correlation).expect("a correlation");
+        let found = ranking
+            .iter()
+            .find(|ranked| ranked.ship == ship)
+            .and_then(|ranked| ranked.correlation)
+            .expect("a correlation");
         println!("KVLCC2 against {ship}: {found:.4}, printed {printed}");
         assert!((found - printed).abs() < 0.0006, "{ship}");
     }
@@ -43,7 +55,13 @@ fn mariner_is_an_eligible_source_for_sr108() {
     let zoo = zoo();
     let ranking = similar(&zoo, zoo.vessel("sr108").expect("in the zoo"), None, &[]).ranking;
     for ranked in &ranking {
-        println!("{:<20} {:?} {} {}", ranked.ship, ranked.correlation, ranked.eligible, ranked.reasons.join("; "));
+        println!(
+            "{:<20} {:?} {} {}",
+            ranked.ship,
+            ranked.correlation,
+            ranked.eligible,
+            ranked.reasons.join("; ")
+        );
     }
     let mariner = ranking.iter().find(|ranked| ranked.ship == "mariner").expect("ranked");
     assert!(mariner.eligible, "{:?}", mariner.reasons);
@@ -55,13 +73,24 @@ fn mariner_is_an_eligible_source_for_sr108() {
 #[test]
 fn vectors_of_kanazawa_2023() {
     let zoo = zoo();
-    let printed = [("mariner", [0.59, 6.94, 2.82, 6.08, 0.023, 0.81]), ("sr108", [0.56, 6.89, 2.99, 6.32, 0.022, 0.77])];
+    let printed = [
+        ("mariner", [0.59, 6.94, 2.82, 6.08, 0.023, 0.81]),
+        ("sr108", [0.56, 6.89, 2.99, 6.32, 0.022, 0.77]),
+    ];
     for (ship, printed) in printed {
-        let values = CharacteristicVector::of(zoo.vessel(ship).expect("in the zoo"), Definition::Kanazawa2023).values;
+        let values = CharacteristicVector::of(
+            zoo.vessel(ship).expect("in the zoo"),
+            Definition::Kanazawa2023,
+        )
+        .values;
         let names = ["C_b", "L/B", "B/T", "L/volume^(1/3)", "Ar/(LT)", "Dp/T"];
         for (name, printed) in names.iter().zip(printed) {
             let half_digit = if printed < 0.1 { 0.0005 } else { 0.0051 };
-            assert!((values[*name] - printed).abs() <= half_digit, "{ship} {name}: {} against {printed}", values[*name]);
+            assert!(
+                (values[*name] - printed).abs() <= half_digit,
+                "{ship} {name}: {} against {printed}",
+                values[*name]
+            );
         }
     }
 }

@@ -15,8 +15,10 @@ pub fn diameter(model: &Model, law: &Law) -> Option<f64> {
 /// Between which 95 % of the draws from a model's posterior are, m.
 pub fn band(model: &Model, law: &Law) -> Option<(f64, f64)> {
     let ship = Ship::sisters(model, law).ok()?;
-    let sisters: Vec<Vec<f64>> =
-        draws(model, Sampling::default())?.iter().map(|draw| ship.sister(draw)).collect::<Option<_>>()?;
+    let sisters: Vec<Vec<f64>> = draws(model, Sampling::default())?
+        .iter()
+        .map(|draw| ship.sister(draw))
+        .collect::<Option<_>>()?;
     let mut all: Vec<f64> = diameters(&ship, &sisters).into_iter().flatten().collect();
     all.sort_by(f64::total_cmp);
     let out = all.len() / 40;
@@ -27,8 +29,12 @@ pub fn band(model: &Model, law: &Law) -> Option<(f64, f64)> {
 fn diameters(ship: &Ship, sisters: &[Vec<f64>]) -> Vec<Option<f64>> {
     let step_s = Some(0.02 * ship.lpp_m() / ship.approach_speed_m_s());
     let settings = ManoeuvreSettings { step_s, ..ManoeuvreSettings::default() };
-    let turns: Vec<(Manoeuvre, &[f64])> =
-        sisters.iter().map(|sister| (Manoeuvre::Turn { rudder: TURN_DEG }, sister.as_slice())).collect();
+    let turns: Vec<(Manoeuvre, &[f64])> = sisters
+        .iter()
+        .map(|sister| (Manoeuvre::Turn { rudder: TURN_DEG }, sister.as_slice()))
+        .collect();
     let sailed = sail_together(ship, &turns, &settings).into_iter();
-    sailed.map(|sailed| Turn::of(sailed.ok()?, TURN_DEG).ok()?.metrics.tactical_diameter_m).collect()
+    sailed
+        .map(|sailed| Turn::of(sailed.ok()?, TURN_DEG).ok()?.metrics.tactical_diameter_m)
+        .collect()
 }

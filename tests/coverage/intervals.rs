@@ -39,8 +39,9 @@ impl Case<'_> {
         let mut rng = replica(self.seed, index);
         let truth = relative(&self.source, self.law, 0.15, &mut rng);
         let ship = Ship::new(&truth, self.law).unwrap_or_else(|e| panic!("{e}"));
-        let sail =
-            |(k, orders): (usize, &Orders)| trial(&ship, &format!("trial {k}"), *orders, 30.0, &Trouble::default(), &mut rng);
+        let sail = |(k, orders): (usize, &Orders)| {
+            trial(&ship, &format!("trial {k}"), *orders, 30.0, &Trouble::default(), &mut rng)
+        };
         let trials: Vec<Trial> = ORDERS.iter().enumerate().map(sail).collect();
         let trials: Vec<&Trial> = trials.iter().collect();
         let request = Request {
@@ -51,7 +52,8 @@ impl Case<'_> {
             trials: &trials,
             settings: &self.settings,
         };
-        let refined = refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("replica {index}: {error}"));
+        let refined = refine(&request, &|_, _| true)
+            .unwrap_or_else(|error| panic!("replica {index}: {error}"));
         held(&self.source, &truth, &refined.model, self.law)
     }
 }
@@ -60,12 +62,18 @@ fn held(source: &Model, truth: &Model, refined: &Model, law: &Law) -> Held {
     let posterior = refined.posterior().expect("a refined model has a posterior");
     let one = |(name, deviation): (&str, f64)| {
         let off = refined.coefficient(name) - truth.coefficient(name);
-        (name.to_owned(), (off.abs() <= 1.96 * deviation, 1.96 * deviation / source.coefficient(name).abs()))
+        (
+            name.to_owned(),
+            (off.abs() <= 1.96 * deviation, 1.96 * deviation / source.coefficient(name).abs()),
+        )
     };
     let mut held: Held = posterior.deviations().into_iter().map(one).collect();
     let true_diameter = diameter(truth, law).expect("the truth turns");
     let (low, high) = band(refined, law).expect("draws that turn");
-    held.insert(DIAMETER.to_owned(), ((low..=high).contains(&true_diameter), 0.5 * (high - low) / true_diameter));
+    held.insert(
+        DIAMETER.to_owned(),
+        ((low..=high).contains(&true_diameter), 0.5 * (high - low) / true_diameter),
+    );
     held
 }
 
@@ -88,9 +96,11 @@ fn coverage(ship: &str, method: Method, replicas: usize) -> (f64, f64) {
     let law = zoo.law(&source.law).expect("the law").clone();
     let strengths = vec![1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5];
     let bands = Sampling { samples: 0, ..Sampling::default() };
-    let settings = Settings { method, families: vec![Family::Own], strengths, bands, ..Settings::default() };
+    let settings =
+        Settings { method, families: vec![Family::Own], strengths, bands, ..Settings::default() };
     let seed = setting("COVERAGE_SEED", "20").parse().expect("a number");
-    let case = Case { vessel: zoo.vessel(ship).expect("the ship"), source, law: &law, settings, seed };
+    let case =
+        Case { vessel: zoo.vessel(ship).expect("the ship"), source, law: &law, settings, seed };
     let held: Vec<Held> = (0..replicas).into_par_iter().map(|index| case.replica(index)).collect();
     let mut table = table(&held);
     println!(

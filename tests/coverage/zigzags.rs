@@ -27,7 +27,11 @@ impl Turned {
     /// How much worse the refined model is than the source, and the width of the band on the side of the truth.
     fn worse(&self) -> (f64, f64) {
         let worse = (self.refined - self.truth).abs() - (self.source - self.truth).abs();
-        let side = if self.truth < self.refined { self.refined - self.band.0 } else { self.band.1 - self.refined };
+        let side = if self.truth < self.refined {
+            self.refined - self.band.0
+        } else {
+            self.band.1 - self.refined
+        };
         (worse, side)
     }
 }
@@ -50,14 +54,30 @@ fn turned(zoo: &Zoo, (seed, index): (u64, usize), method: Method) -> Turned {
     let bands = Sampling { samples: 0, ..Sampling::default() };
     let settings = Settings { method, strengths, bands, ..Settings::default() };
     let target = zoo.vessel(ship).expect("the ship");
-    let request = Request { target, source: &source, source_law: None, law, trials: &trials, settings: &settings };
-    let refined = refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{ship} {index}: {error}")).model;
+    let request = Request {
+        target,
+        source: &source,
+        source_law: None,
+        law,
+        trials: &trials,
+        settings: &settings,
+    };
+    let refined = refine(&request, &|_, _| true)
+        .unwrap_or_else(|error| panic!("{ship} {index}: {error}"))
+        .model;
     of(ship, law, [&truth, &source, &refined], index)
 }
 
-fn of(ship: &'static str, law: &Law, [truth, source, refined]: [&Model; 3], index: usize) -> Turned {
+fn of(
+    ship: &'static str,
+    law: &Law,
+    [truth, source, refined]: [&Model; 3],
+    index: usize,
+) -> Turned {
     let length = Ship::new(truth, law).map_or(1.0, |ship| ship.lpp_m());
-    let lengths = |model: &Model| diameter(model, law).unwrap_or_else(|| panic!("{ship} {index} does not turn")) / length;
+    let lengths = |model: &Model| {
+        diameter(model, law).unwrap_or_else(|| panic!("{ship} {index} does not turn")) / length
+    };
     let (low, high) = band(refined, law).unwrap_or_else(|| panic!("{ship} {index} has no band"));
     Turned {
         ship,
@@ -76,12 +96,18 @@ fn zigzags_never_spoil_the_turn_by_more_than_the_band() {
     let method = Method::by_name(&setting("ZIGZAG_METHOD", "weak")).expect("an estimator");
     let seed: u64 = setting("ZIGZAG_SEED", "3").parse().expect("a number");
     let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-    let all: Vec<Turned> = (0..count).into_par_iter().map(|index| turned(&zoo, (seed, index), method)).collect();
-    println!("{:4} {:12} {:>7} {:>7} {:>7} {:>15} {:>7}", "", "ship", "truth", "source", "refined", "band", "worse");
+    let all: Vec<Turned> =
+        (0..count).into_par_iter().map(|index| turned(&zoo, (seed, index), method)).collect();
+    println!(
+        "{:4} {:12} {:>7} {:>7} {:>7} {:>15} {:>7}",
+        "", "ship", "truth", "source", "refined", "band", "worse"
+    );
     for (index, turned) in all.iter().enumerate() {
         let Turned { ship, truth, source, refined, band: (low, high) } = turned;
         let worse = turned.worse().0;
-        println!("{index:4} {ship:12} {truth:7.3} {source:7.3} {refined:7.3} {low:7.3} {high:7.3} {worse:7.3}");
+        println!(
+            "{index:4} {ship:12} {truth:7.3} {source:7.3} {refined:7.3} {low:7.3} {high:7.3} {worse:7.3}"
+        );
     }
     let mean = |of: &dyn Fn(&Turned) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
     let off = [mean(&|t| (t.source - t.truth).abs()), mean(&|t| (t.refined - t.truth).abs())];

@@ -23,7 +23,9 @@ const RESTART_S: f64 = 100.0;
 fn halves() -> Option<(Vec<Trial>, Vec<Trial>)> {
     let folder = shared::data("esso-osaka")?;
     let mut calm = esso_osaka::trials(&folder, &["turning/turn_1", "zigzag/"]);
-    let pressure = |trial: &Trial| trial.channels[&Channel::WindSpeed].iter().map(|w| w * w).sum::<f64>() / trial.len() as f64;
+    let pressure = |trial: &Trial| {
+        trial.channels[&Channel::WindSpeed].iter().map(|w| w * w).sum::<f64>() / trial.len() as f64
+    };
     calm.sort_by(|a, b| pressure(a).total_cmp(&pressure(b)));
     let windy = calm.split_off(calm.len() / 2);
     Some((calm, windy))
@@ -31,17 +33,20 @@ fn halves() -> Option<(Vec<Trial>, Vec<Trial>)> {
 
 /// The law for all speeds with all that is of wind taken out of its file.
 fn windless() -> Arc<Law> {
-    const OF_WIND: [&str; 7] = ["  wind_", "  u_A:", "  v_A:", "  U_A:", "  ahead", "  beam", "X_A"];
+    const OF_WIND: [&str; 7] =
+        ["  wind_", "  u_A:", "  v_A:", "  U_A:", "  ahead", "  beam", "X_A"];
     let kept = |line: &&str| !OF_WIND.iter().any(|start| line.starts_with(start));
     let terms = |line: &str| match line.split_once("terms: [") {
         Some((before, list)) => {
             let names = list.trim_end_matches(']').split(", ");
-            let left: Vec<&str> = names.filter(|name| !name.contains("_ahead") && !name.contains("_beam")).collect();
+            let left: Vec<&str> =
+                names.filter(|name| !name.contains("_ahead") && !name.contains("_beam")).collect();
             format!("{before}terms: [{}]\n", left.join(", "))
         }
         None => format!("{line}\n"),
     };
-    let text: String = include_str!("../../models/laws/low-speed.yaml").lines().filter(kept).map(terms).collect();
+    let text: String =
+        include_str!("../../models/laws/low-speed.yaml").lines().filter(kept).map(terms).collect();
     Arc::new(Law::parse("windless.yaml", &text).unwrap_or_else(|error| panic!("{error}")))
 }
 
@@ -58,7 +63,8 @@ fn by_trajectories() -> refine::Settings {
 /// Refined by trajectories, without a source and without any effect.
 fn baseline(trials: &[Trial]) -> Baseline {
     let (trials, law): (Vec<&Trial>, _) = (trials.iter().collect(), windless());
-    let source = blank(&law, ZOO.vessel(SHIP).unwrap(), approach_of(&trials)).unwrap_or_else(|error| panic!("{error}"));
+    let source = blank(&law, ZOO.vessel(SHIP).unwrap(), approach_of(&trials))
+        .unwrap_or_else(|error| panic!("{error}"));
     baseline::by(&source, &law, SHIP, &trials, &by_trajectories())
 }
 
@@ -68,22 +74,45 @@ fn refined_without_wind(baseline: &Baseline, trials: &[Trial]) -> BTreeMap<Strin
     let trials: Vec<&Trial> = trials.iter().collect();
     let settings = refine::Settings { folds: trials.len(), ..by_trajectories() };
     let (target, source) = (ZOO.vessel(SHIP).unwrap(), &baseline.model);
-    let request = refine::Request { target, source, source_law: None, law: &baseline.law, trials: &trials, settings: &settings };
-    refine::refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}")).held_out.refined
+    let request = refine::Request {
+        target,
+        source,
+        source_law: None,
+        law: &baseline.law,
+        trials: &trials,
+        settings: &settings,
+    };
+    refine::refine(&request, &|_, _| true)
+        .unwrap_or_else(|error| panic!("{error}"))
+        .held_out
+        .refined
 }
 
 fn diagnosed(baseline: &Baseline, trials: &[Trial]) -> Diagnosis {
     let trials: Vec<&Trial> = trials.iter().collect();
-    let (settings, effects) = (Settings { restart_s: Some(RESTART_S), ..Settings::default() }, library());
-    let request = Request { model: &baseline.model, law: &baseline.law, effects: &effects, trials: &trials, settings: &settings };
+    let (settings, effects) =
+        (Settings { restart_s: Some(RESTART_S), ..Settings::default() }, library());
+    let request = Request {
+        model: &baseline.model,
+        law: &baseline.law,
+        effects: &effects,
+        trials: &trials,
+        settings: &settings,
+    };
     let diagnosis = diagnose(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"));
     println!("{:?}; {}", diagnosis.verdict, diagnosis.how);
     for hypothesis in diagnosis.hypotheses.iter().take(8) {
-        println!("  {:?} evidence {:.1} held out {:?}", hypothesis.effects, hypothesis.evidence, hypothesis.held_out);
+        println!(
+            "  {:?} evidence {:.1} held out {:?}",
+            hypothesis.effects, hypothesis.evidence, hypothesis.held_out
+        );
     }
     println!("  {:?}", diagnosis.remarks);
     for found in &diagnosis.effects {
-        println!("  {}/{} evidence {:.1}: {:?}", found.name, found.form, found.evidence, found.parameters);
+        println!(
+            "  {}/{} evidence {:.1}: {:?}",
+            found.name, found.form, found.evidence, found.parameters
+        );
     }
     for channel in ["u", "v", "r", "psi", "x", "y"] {
         let (before, after) = (diagnosis.before[channel], diagnosis.after[channel]);
@@ -122,7 +151,10 @@ fn the_wind_is_named_and_the_placebo_is_not() {
     assert!(!names_wind(&placebo), "the placebo is taken for wind");
     for channel in ["v", "r"] {
         assert!(with_wind.after[channel] < with_wind.before[channel], "{channel} did not improve");
-        assert!(with_wind.after[channel] < without[channel], "{channel} improves as much without wind");
+        assert!(
+            with_wind.after[channel] < without[channel],
+            "{channel} improves as much without wind"
+        );
     }
 }
 
@@ -139,11 +171,15 @@ fn with_other_last_digits(trial: &Trial) -> Trial {
 #[test]
 fn last_digits_change_neither_that_the_wind_is_named_nor_what_it_is_worth() {
     let Some(halves) = halves() else { return };
-    let [calm, windy]: [Vec<Trial>; 2] = [halves.0, halves.1].map(|half| half.iter().map(with_other_last_digits).collect());
+    let [calm, windy]: [Vec<Trial>; 2] =
+        [halves.0, halves.1].map(|half| half.iter().map(with_other_last_digits).collect());
     let with_wind = diagnosed(&baseline(&calm), &windy);
     assert!(names_wind(&with_wind), "wind is not named");
     for channel in ["v", "r"] {
-        assert!(with_wind.after[channel] < 0.8 * with_wind.before[channel], "{channel} improves by less than a fifth");
+        assert!(
+            with_wind.after[channel] < 0.8 * with_wind.before[channel],
+            "{channel} improves by less than a fifth"
+        );
     }
 }
 
@@ -155,6 +191,7 @@ fn the_wind_is_named_by_a_model_fitted_in_it() {
     let mut all = [calm, windy].concat();
     all.sort_by(|a, b| a.name.cmp(&b.name));
     let (even, odd): (Vec<_>, Vec<_>) = all.into_iter().enumerate().partition(|(k, _)| k % 2 == 0);
-    let [fit, judged] = [even, odd].map(|half| half.into_iter().map(|(_, trial)| trial).collect::<Vec<_>>());
+    let [fit, judged] =
+        [even, odd].map(|half| half.into_iter().map(|(_, trial)| trial).collect::<Vec<_>>());
     assert!(names_wind(&diagnosed(&baseline(&fit), &judged)), "wind is not named");
 }

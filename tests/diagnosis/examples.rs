@@ -12,8 +12,11 @@ use sistership_tests::hidden_effects::baseline::{Baseline, fitted, library};
 use sistership_tests::hidden_effects::truth::{ZOO, published};
 
 fn trials(folder: &Path, kind: &str) -> Vec<Trial> {
-    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path()).collect();
-    files.retain(|file| file.file_name().is_some_and(|name| name.to_string_lossy().starts_with(kind)));
+    let mut files: Vec<_> =
+        std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path()).collect();
+    files.retain(|file| {
+        file.file_name().is_some_and(|name| name.to_string_lossy().starts_with(kind))
+    });
     files.sort();
     assert_eq!(files.len(), 6, "{kind}");
     let read = |file: &std::path::PathBuf| {
@@ -29,12 +32,19 @@ fn diagnosed(model: &Model, law: &Law, kind: &str) -> Option<Diagnosis> {
     let trials: Vec<&Trial> = trials.iter().collect();
     let (settings, effects) = (Settings::default(), library());
     let request = Request { model, law, effects: &effects, trials: &trials, settings: &settings };
-    let diagnosis = diagnose(&request, &|_, _| true).unwrap_or_else(|error| panic!("{kind}: {error}"));
+    let diagnosis =
+        diagnose(&request, &|_, _| true).unwrap_or_else(|error| panic!("{kind}: {error}"));
     println!("{kind} by {}: {:?}", model.name, diagnosis.verdict);
     for found in &diagnosis.effects {
-        println!("  {}/{} evidence {:.1}: {:?}", found.name, found.form, found.evidence, found.parameters);
+        println!(
+            "  {}/{} evidence {:.1}: {:?}",
+            found.name, found.form, found.evidence, found.parameters
+        );
     }
-    println!("  unexplained {:?}\n  before {:?}\n  after {:?}", diagnosis.unexplained, diagnosis.before, diagnosis.after);
+    println!(
+        "  unexplained {:?}\n  before {:?}\n  after {:?}",
+        diagnosis.unexplained, diagnosis.before, diagnosis.after
+    );
     Some(diagnosis)
 }
 
@@ -47,8 +57,14 @@ fn parameter(diagnosis: &Diagnosis, effect: &str, name: &str) -> f64 {
 
 fn judge_current(model: &Model, law: &Law) {
     let Some(diagnosis) = diagnosed(model, law, "b_current06") else { return };
-    let (speed, towards) = (parameter(&diagnosis, "current", "speed_m_s"), parameter(&diagnosis, "current", "towards_deg"));
-    assert!((speed - 0.6).abs() < 0.02 && (towards - 45.0).abs() < 2.0, "{speed} m/s towards {towards} deg");
+    let (speed, towards) = (
+        parameter(&diagnosis, "current", "speed_m_s"),
+        parameter(&diagnosis, "current", "towards_deg"),
+    );
+    assert!(
+        (speed - 0.6).abs() < 0.02 && (towards - 45.0).abs() < 2.0,
+        "{speed} m/s towards {towards} deg"
+    );
 }
 
 fn judge_rudder_offset(model: &Model, law: &Law) {

@@ -13,14 +13,23 @@ const BIAS_RAD_S: f64 = 1e-3;
 
 fn biased(more: &[AppliedEffect]) -> Hidden {
     let biased = effect("yaw-rate-bias", "constant", &[("bias_rad_s", BIAS_RAD_S)]);
-    Hidden { effects: std::iter::once(biased).chain(more.iter().cloned()).collect(), ..Hidden::default() }
+    Hidden {
+        effects: std::iter::once(biased).chain(more.iter().cloned()).collect(),
+        ..Hidden::default()
+    }
 }
 
 fn diagnosed(baseline: &Baseline, hidden: &Hidden) -> Diagnosis {
     let trials: Vec<Trial> = trials(hidden, &cases::programme(), 77);
     let trials: Vec<&Trial> = trials.iter().collect();
     let (settings, effects) = (Settings::default(), library());
-    let request = Request { model: &baseline.model, law: &baseline.law, effects: &effects, trials: &trials, settings: &settings };
+    let request = Request {
+        model: &baseline.model,
+        law: &baseline.law,
+        effects: &effects,
+        trials: &trials,
+        settings: &settings,
+    };
     diagnose(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -30,12 +39,21 @@ fn what_instruments_always_did_is_not_named() {
     let baseline = fitted("mariner", "sr108", &clean.iter().collect::<Vec<_>>());
     let systematic_errors = &baseline.model.uncertainty.as_ref().unwrap().systematic_errors;
     println!("{:?}", systematic_errors[0].parameters);
-    assert_eq!(systematic_errors.iter().map(|error| error.name.as_str()).collect::<Vec<_>>(), ["yaw-rate-bias"]);
+    assert_eq!(
+        systematic_errors.iter().map(|error| error.name.as_str()).collect::<Vec<_>>(),
+        ["yaw-rate-bias"]
+    );
     // Coefficients have taken a part of it.
-    assert!((0.5..1.1).contains(&(systematic_errors[0].parameters["bias_rad_s"].value / BIAS_RAD_S)));
+    assert!(
+        (0.5..1.1).contains(&(systematic_errors[0].parameters["bias_rad_s"].value / BIAS_RAD_S))
+    );
     assert_eq!(diagnosed(&baseline, &biased(&[])).effects, []);
     let current = effect("current", "constant", &[("north_m_s", 0.3), ("east_m_s", 0.3)]);
-    let named: Vec<String> = diagnosed(&baseline, &biased(&[current])).effects.into_iter().map(|found| found.name).collect();
+    let named: Vec<String> = diagnosed(&baseline, &biased(&[current]))
+        .effects
+        .into_iter()
+        .map(|found| found.name)
+        .collect();
     assert_eq!(named.first().map(String::as_str), Some("current"));
     assert!(!named.contains(&"yaw-rate-bias".to_owned()), "{named:?}");
 }

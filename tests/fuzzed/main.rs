@@ -10,12 +10,15 @@ use sistership_tests::fuzzed;
 /// Mutations of each file of a corpus.
 const MUTATIONS: usize = 150;
 /// Pieces that readers of text and numbers stumble over.
-const PIECES: [&str; 16] =
-    ["((", "))", "[", "{a: ", "- ", "\n", "\0", "nan", "1e400", "-", "^2", ",", ";", "\u{feff}", "&x", "@"];
+const PIECES: [&str; 16] = [
+    "((", "))", "[", "{a: ", "- ", "\n", "\0", "nan", "1e400", "-", "^2", ",", ";", "\u{feff}",
+    "&x", "@",
+];
 
 fn corpus(target: &str) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(target);
-    let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let entries =
+        std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut files: Vec<_> = entries.map(|entry| entry.expect("a listed file").path()).collect();
     files.sort();
     files.iter().map(|file| std::fs::read(file).expect("a file of the corpus")).collect()
@@ -35,7 +38,8 @@ fn mutated(input: &[u8], random: &mut ChaCha12Rng) -> Vec<u8> {
                 bytes.splice(at..at, doubled);
             }
             _ => {
-                let piece = PIECES[random.random_range(0..PIECES.len())].repeat(random.random_range(1..60));
+                let piece =
+                    PIECES[random.random_range(0..PIECES.len())].repeat(random.random_range(1..60));
                 bytes.splice(at..at, piece.into_bytes());
             }
         }

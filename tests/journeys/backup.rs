@@ -27,7 +27,10 @@ async fn write(server: &TestServer, ledger: &Ledger, stop: &AtomicUsize) {
         let number = ledger.begun.fetch_add(1, Ordering::SeqCst);
         let rows: String = (0..4).map(|row| format!("{row},{row}.{number:06}\n")).collect();
         let path = format!("/v1/trials?ship={NAME}&name={}&diagnose=false", trial(number));
-        let request = server.request(Method::POST, &path).header("content-type", "text/csv").body(format!("t_s,u_m_s\n{rows}"));
+        let request = server
+            .request(Method::POST, &path)
+            .header("content-type", "text/csv")
+            .body(format!("t_s,u_m_s\n{rows}"));
         let (status, written) = answer(request.send().await.expect("an answer")).await;
         assert_eq!((status, written["new"].as_u64()), (201, Some(1)), "{written}");
         ledger.acknowledged.fetch_add(1, Ordering::SeqCst);
@@ -47,12 +50,20 @@ async fn until(ledger: &Ledger, acknowledged: usize) {
 /// Runs a command beside the writer.
 async fn run(arguments: Vec<String>, bucket: Option<&Bucket>) -> Value {
     let environment = bucket.map_or_else(Vec::new, |bucket| bucket.environment.clone());
-    let run = move || binary::json_with(&arguments.iter().map(String::as_str).collect::<Vec<_>>(), &environment, 0);
+    let run = move || {
+        binary::json_with(
+            &arguments.iter().map(String::as_str).collect::<Vec<_>>(),
+            &environment,
+            0,
+        )
+    };
     tokio::task::spawn_blocking(run).await.expect("a command")
 }
 
 fn command(name: &str, folder: &Path, store: &[String; 4], bucket: Option<&Bucket>) -> Vec<String> {
-    let words = [name.to_owned(), folder.display().to_string(), "--json".to_owned()].into_iter().chain(store.clone());
+    let words = [name.to_owned(), folder.display().to_string(), "--json".to_owned()]
+        .into_iter()
+        .chain(store.clone());
     words.chain(bucket.into_iter().flat_map(|bucket| bucket.arguments.clone())).collect()
 }
 
@@ -81,11 +92,21 @@ async fn backed_up(server: TestServer, empty: TestDatabase, buckets: Buckets) {
     let original = contents(&server).await;
     let restored = restored(&folder, empty, to).await;
     let kept = restored.get(&format!("/v1/trials?ship={NAME}&limit=1000")).await;
-    let names: Vec<&str> = kept["items"].as_array().expect("trials").iter().filter_map(|trial| trial["name"].as_str()).collect();
-    let written: Vec<&str> = names.iter().copied().filter(|name| name.starts_with("written-")).collect();
+    let names: Vec<&str> = kept["items"]
+        .as_array()
+        .expect("trials")
+        .iter()
+        .filter_map(|trial| trial["name"].as_str())
+        .collect();
+    let written: Vec<&str> =
+        names.iter().copied().filter(|name| name.starts_with("written-")).collect();
     let expected: Vec<String> = (0..written.len()).map(trial).collect();
     assert_eq!(written, expected, "a beginning of the ledger, without gaps");
-    assert!((before..=after).contains(&written.len()), "{} of the ledger, not {before} to {after}", written.len());
+    assert!(
+        (before..=after).contains(&written.len()),
+        "{} of the ledger, not {before} to {after}",
+        written.len()
+    );
     same(&original, &contents(&restored).await, names.len());
 }
 
@@ -107,21 +128,36 @@ async fn contents(server: &TestServer) -> Vec<Value> {
 
 /// The restored store is the original one, but for the trials that came after the backup.
 fn same(original: &[Value], restored: &[Value], trials: usize) {
-    assert_eq!(original[0]["items"].as_array().expect("trials")[..trials], restored[0]["items"].as_array().expect("trials")[..]);
+    assert_eq!(
+        original[0]["items"].as_array().expect("trials")[..trials],
+        restored[0]["items"].as_array().expect("trials")[..]
+    );
     assert_eq!(original[1..], restored[1..]);
 }
 
 /// A server on what a backup gives; its store is clean, and a second restoration into it is refused.
 async fn restored(folder: &Path, empty: TestDatabase, bucket: Option<&Bucket>) -> TestServer {
     let data = empty.folder.path().join("data");
-    let store = ["--database-url".into(), empty.url.clone(), "--data-dir".into(), data.display().to_string()];
+    let store = [
+        "--database-url".into(),
+        empty.url.clone(),
+        "--data-dir".into(),
+        data.display().to_string(),
+    ];
     run(command("restore", folder, &store, bucket), bucket).await;
-    let fsck = command("fsck", folder, &store, bucket).into_iter().filter(|word| *word != folder.display().to_string());
+    let fsck = command("fsck", folder, &store, bucket)
+        .into_iter()
+        .filter(|word| *word != folder.display().to_string());
     let findings = run(fsck.collect(), bucket).await;
-    assert_eq!((&findings["clean"], &findings["unreferred"]["objects"]), (&json!(true), &json!(0)), "{findings}");
+    assert_eq!(
+        (&findings["clean"], &findings["unreferred"]["objects"]),
+        (&json!(true), &json!(0)),
+        "{findings}"
+    );
     let again = command("restore", folder, &store, bucket);
     let environment = bucket.map_or_else(Vec::new, |bucket| bucket.environment.clone());
-    let refused = binary::run_with(&again.iter().map(String::as_str).collect::<Vec<_>>(), &environment);
+    let refused =
+        binary::run_with(&again.iter().map(String::as_str).collect::<Vec<_>>(), &environment);
     assert_eq!(refused.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&refused.stderr).contains("empty"), "{refused:?}");
     match bucket {
@@ -137,7 +173,9 @@ async fn backed_up_on_sqlite() {
 
 #[tokio::test]
 async fn backed_up_on_postgres() {
-    if let (Some(server), Some(empty)) = (TestServer::postgres().await, TestDatabase::postgres().await) {
+    if let (Some(server), Some(empty)) =
+        (TestServer::postgres().await, TestDatabase::postgres().await)
+    {
         backed_up(server, empty, None).await;
     }
 }

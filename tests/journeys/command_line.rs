@@ -23,23 +23,40 @@ fn refine_simulate_manoeuvre_on_files() {
     let (ship, trials, model) = (path("ship.yaml"), path("trials.yaml"), path("model.yaml"));
     let checked = binary::json(&["check", &trials, "--json"], 0);
     assert_eq!(checked["trials"].as_array().map(Vec::len), Some(4));
-    let refined =
-        binary::json(&["refine", "--ship", &ship, "--source", "mariner", "--trials", &trials, "--out", &model, "--json"], 0);
-    assert_eq!((refined["ship"].as_str(), refined["method"].as_str()), (Some(NAME), Some("published")));
+    let refined = binary::json(
+        &[
+            "refine", "--ship", &ship, "--source", "mariner", "--trials", &trials, "--out", &model,
+            "--json",
+        ],
+        0,
+    );
+    assert_eq!(
+        (refined["ship"].as_str(), refined["method"].as_str()),
+        (Some(NAME), Some("published"))
+    );
     for key in ["settings", "condition_number", "held_out", "coefficients", "source", "model"] {
         assert!(!refined[key].is_null(), "{key} is missing");
     }
     for key in ["name", "source", "refined", "standard_error", "moved_sd"] {
         assert!(!refined["coefficients"][0][key].is_null(), "coefficients[].{key} is missing");
     }
-    let simulated = binary::json(&["simulate", "--model", &model, "--trials", &trials, "--restart-s", "100", "--json"], 0);
+    let simulated = binary::json(
+        &["simulate", "--model", &model, "--trials", &trials, "--restart-s", "100", "--json"],
+        0,
+    );
     for trial in simulated["trials"].as_array().expect("trials") {
         assert_eq!(trial["diverged"], false);
-        assert!(["u", "v", "r", "psi", "x", "y"].iter().all(|channel| trial["rmse"][channel].is_f64()), "{trial}");
+        assert!(
+            ["u", "v", "r", "psi", "x", "y"].iter().all(|channel| trial["rmse"][channel].is_f64()),
+            "{trial}"
+        );
         assert!(trial["standardised_mse"].is_f64() && trial["duration_s"].is_f64());
     }
     let sailed = binary::json(&["manoeuvre", "--model", &model, "--all", "--json"], 0);
-    assert!(sailed["turns"][0]["tactical_diameter_m"].is_f64() && sailed["zigzags"][0]["first_overshoot_deg"].is_f64());
+    assert!(
+        sailed["turns"][0]["tactical_diameter_m"].is_f64()
+            && sailed["zigzags"][0]["first_overshoot_deg"].is_f64()
+    );
     assert!(sailed["imo"][0]["pass"].is_boolean());
 }
 
@@ -47,21 +64,36 @@ fn refine_simulate_manoeuvre_on_files() {
 fn similar_ranks_as_published() {
     let ranking = binary::json(&["similar", "kvlcc2", "--json"], 0);
     let of = |ship: &str| {
-        ranking["ranking"].as_array().expect("a ranking").iter().find(|r| r["ship"] == ship).expect("ranked")["correlation"]
+        ranking["ranking"]
+            .as_array()
+            .expect("a ranking")
+            .iter()
+            .find(|r| r["ship"] == ship)
+            .expect("ranked")["correlation"]
             .clone()
     };
-    for (ship, printed) in [("mariner", -0.576), ("esso-tanker", 0.851), ("sr108", -0.887), ("pcc", -0.723)] {
+    for (ship, printed) in
+        [("mariner", -0.576), ("esso-tanker", 0.851), ("sr108", -0.887), ("pcc", -0.723)]
+    {
         assert!((of(ship).as_f64().expect("a number") - printed).abs() < 6e-4, "{ship}");
     }
 }
 
 #[test]
 fn exit_status_tells_a_wrong_call_from_a_refusal() {
-    assert_eq!(binary::run(&["refine", "--ship", "mariner"]).status.code(), Some(2), "a missing argument");
-    let unknown = binary::run(&["refine", "--ship", "mariner", "--law", "low-sped", "--trials", "none.csv"]);
+    assert_eq!(
+        binary::run(&["refine", "--ship", "mariner"]).status.code(),
+        Some(2),
+        "a missing argument"
+    );
+    let unknown =
+        binary::run(&["refine", "--ship", "mariner", "--law", "low-sped", "--trials", "none.csv"]);
     let message = String::from_utf8_lossy(&unknown.stderr).into_owned();
     assert_eq!(unknown.status.code(), Some(1));
-    assert!(message.contains("low-sped") && message.contains("low-speed"), "the laws are listed: {message}");
+    assert!(
+        message.contains("low-sped") && message.contains("low-speed"),
+        "the laws are listed: {message}"
+    );
     let unknown = binary::run(&["similar", "marriner"]);
     let message = String::from_utf8_lossy(&unknown.stderr).into_owned();
     assert_eq!(unknown.status.code(), Some(1));
@@ -74,7 +106,11 @@ fn a_law_is_derived_from_a_list_of_actuators() {
     let declaration = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/hybrids/hybrid-vectwin.yaml");
     let law = folder.path().join("law.yaml").display().to_string();
     let derived = binary::json(&["derive", declaration, "--out", &law, "--json"], 0);
-    assert_eq!((derived["unknowns"].as_u64(), derived["coefficient_sets"].as_u64()), (Some(193), Some(3)), "{derived}");
+    assert_eq!(
+        (derived["unknowns"].as_u64(), derived["coefficient_sets"].as_u64()),
+        (Some(193), Some(3)),
+        "{derived}"
+    );
     assert_eq!(derived["rules"][3]["rule"], "A: symmetry");
     assert_eq!(derived["law"]["axes"]["X"]["terms"][4], "X_u|u|");
     let text = std::fs::read_to_string(&law).expect("written");
@@ -92,6 +128,9 @@ fn a_law_and_a_vessel_are_added_by_files() {
         .replace("name: mariner", "name: marina");
     std::fs::write(folder.path().join("vessels/marina.yaml"), copy).expect("written");
     let zoo = folder.path().display().to_string();
-    let sailed = binary::json(&["manoeuvre", "--zoo", &zoo, "--model", "marina", "--turn", "20", "--json"], 0);
+    let sailed = binary::json(
+        &["manoeuvre", "--zoo", &zoo, "--model", "marina", "--turn", "20", "--json"],
+        0,
+    );
     assert!(sailed["turns"][0]["advance_m"].as_f64() > Some(100.0), "{sailed}");
 }

@@ -21,9 +21,14 @@ async fn killed(mut server: TestServer) {
     server.kill();
     server.restart().await;
     let trials = server.get(&format!("/v1/trials?ship={NAME}")).await;
-    let ids =
-        |list: &serde_json::Value| list.as_array().expect("a list").iter().map(|trial| trial["id"].clone()).collect::<Vec<_>>();
-    assert_eq!(ids(&trials["items"]), ids(&uploaded["trials"]), "every acknowledged trial is there");
+    let ids = |list: &serde_json::Value| {
+        list.as_array().expect("a list").iter().map(|trial| trial["id"].clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        ids(&trials["items"]),
+        ids(&uploaded["trials"]),
+        "every acknowledged trial is there"
+    );
     assert_eq!(server.get(&format!("/v1/models/{NAME}/versions/1")).await["version"]["number"], 1);
     let done = server.finished(&job).await;
     assert_eq!(done["state"], "succeeded", "the job was taken up again: {done}");
@@ -77,7 +82,14 @@ async fn set_aside(database: TestDatabase) {
     assert!(error.contains("ended its process twice") && error.contains("set aside"), "{error}");
     let done = server.finished(&healthy).await;
     assert_eq!(done["state"], "succeeded", "{done}");
-    let again = server.send(reqwest::Method::POST, &format!("/v1/jobs/{poison}/retry"), &serde_json::Value::Null, &[]).await;
+    let again = server
+        .send(
+            reqwest::Method::POST,
+            &format!("/v1/jobs/{poison}/retry"),
+            &serde_json::Value::Null,
+            &[],
+        )
+        .await;
     assert_eq!(again.0, 200, "{}", again.1);
     let done = server.finished(&poison).await;
     assert_eq!(done["state"], "succeeded", "{done}");

@@ -43,7 +43,9 @@ fn stalling(key: Option<&str>) -> [String; 2] {
 /// The time of one request over a connection of its own.
 async fn timed(address: &str, key: Option<&str>) -> Duration {
     let authorised = key.map_or(String::new(), |key| format!("Authorization: Bearer {key}\r\n"));
-    let request = format!("GET /v1/ships HTTP/1.1\r\nHost: localhost\r\n{authorised}Connection: close\r\n\r\n");
+    let request = format!(
+        "GET /v1/ships HTTP/1.1\r\nHost: localhost\r\n{authorised}Connection: close\r\n\r\n"
+    );
     let start = Instant::now();
     let mut stream = TcpStream::connect(address).await.expect("a connection");
     stream.write_all(request.as_bytes()).await.expect("it takes a request");
@@ -61,7 +63,8 @@ fn percentiles(mut times: Vec<Duration>) -> [Duration; 2] {
 
 async fn crowded(key: Option<&str>, authorised: bool) {
     raise_descriptors();
-    let (database, mut arguments) = (TestDatabase::sqlite(), vec!["--workers".to_owned(), "0".to_owned()]);
+    let (database, mut arguments) =
+        (TestDatabase::sqlite(), vec!["--workers".to_owned(), "0".to_owned()]);
     if let Some(key) = key {
         let file = database.folder.path().join("key");
         std::fs::write(&file, key).expect("a key");
@@ -86,14 +89,20 @@ async fn crowded(key: Option<&str>, authorised: bool) {
     for _ in 0..TIMED / AT_A_TIME {
         let tasks: Vec<_> = (0..AT_A_TIME)
             .map(|_| (address.clone(), key.map(str::to_owned)))
-            .map(|(address, key)| tokio::spawn(async move { timed(&address, key.as_deref()).await }))
+            .map(|(address, key)| {
+                tokio::spawn(async move { timed(&address, key.as_deref()).await })
+            })
             .collect();
         for task in tasks {
             together.push(task.await.expect("a time"));
         }
     }
     for path in ["/healthz", "/readyz"] {
-        assert_eq!(server.request(Method::GET, path).send().await.expect("an answer").status(), 200, "{path}");
+        assert_eq!(
+            server.request(Method::GET, path).send().await.expect("an answer").status(),
+            200,
+            "{path}"
+        );
     }
     let ([p50, p99], [p50_together, p99_together]) = (percentiles(alone), percentiles(together));
     println!(

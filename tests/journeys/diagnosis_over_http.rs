@@ -14,14 +14,19 @@ use super::sea_trials::csv;
 
 /// Creates the ship, whose document publishes a model: its first champion.
 async fn create(server: &TestServer) {
-    let request = server.request(Method::POST, "/v1/ships").header("content-type", "application/yaml").body(ship());
+    let request = server
+        .request(Method::POST, "/v1/ships")
+        .header("content-type", "application/yaml")
+        .body(ship());
     let (status, created) = answer(request.send().await.expect("an answer")).await;
     assert_eq!((status, &created["condition"]["model"]), (201, &json!("unknown")), "{created}");
 }
 
 async fn upload(server: &TestServer, trials: &[Trial], query: &str) -> Value {
     let form = Form::new().text("manifest", manifest(trials));
-    let form = trials.iter().fold(form, |form, trial| form.part("file", Part::bytes(csv(trial)).file_name(trial.name.clone())));
+    let form = trials.iter().fold(form, |form, trial| {
+        form.part("file", Part::bytes(csv(trial)).file_name(trial.name.clone()))
+    });
     let request = server.request(Method::POST, &format!("/v1/trials{query}")).multipart(form);
     let (status, uploaded) = answer(request.send().await.expect("an answer")).await;
     assert_eq!(status, 201, "{uploaded}");
@@ -57,7 +62,11 @@ async fn journey(server: TestServer) {
     versions(&server).await;
     shapes(&[("diagnosis", &done), ("condition", &condition(&server).await)]);
     let again = upload(&server, &trials(), "").await;
-    assert_eq!((again["new"].as_i64(), &again["diagnosis"]), (Some(0), &Value::Null), "nothing new, nothing to diagnose");
+    assert_eq!(
+        (again["new"].as_i64(), &again["diagnosis"]),
+        (Some(0), &Value::Null),
+        "nothing new, nothing to diagnose"
+    );
     promoted(&server).await;
     asked_for(&server).await;
     refused(&server).await;
@@ -65,23 +74,47 @@ async fn journey(server: TestServer) {
 
 /// The automatic diagnosis named what is missing and made a version with it.
 fn found(done: &Value) {
-    assert_eq!((&done["kind"], &done["state"]), (&json!("diagnosis"), &json!("succeeded")), "{done}");
+    assert_eq!(
+        (&done["kind"], &done["state"]),
+        (&json!("diagnosis"), &json!("succeeded")),
+        "{done}"
+    );
     let result = &done["result"];
-    assert_eq!((&result["verdict"], &result["effects"]), (&json!("effects"), &json!([EFFECT])), "{result}");
-    assert_eq!((&result["diagnosed"], &result["version"]), (&json!(format!("{NAME}/1")), &json!(2)), "{result}");
+    assert_eq!(
+        (&result["verdict"], &result["effects"]),
+        (&json!("effects"), &json!([EFFECT])),
+        "{result}"
+    );
+    assert_eq!(
+        (&result["diagnosed"], &result["version"]),
+        (&json!(format!("{NAME}/1")), &json!(2)),
+        "{result}"
+    );
     let error = |which: &str| result[which]["psi"].as_f64().expect("an error");
     assert!(error("after") < 0.5 * error("before"), "{result}");
 }
 
 async fn does_not_hold(server: &TestServer) {
     let condition = condition(server).await;
-    assert_eq!((&condition["model"], &condition["effects"]), (&json!("does_not_hold"), &json!([EFFECT])), "{condition}");
-    assert_eq!((&condition["version"], &condition["with_effects"]["number"]), (&json!(1), &json!(2)), "{condition}");
+    assert_eq!(
+        (&condition["model"], &condition["effects"]),
+        (&json!("does_not_hold"), &json!([EFFECT])),
+        "{condition}"
+    );
+    assert_eq!(
+        (&condition["version"], &condition["with_effects"]["number"]),
+        (&json!(1), &json!(2)),
+        "{condition}"
+    );
     assert_eq!(condition["since"], condition["found_by"], "one diagnosis so far");
     let report = server.get(condition["found_by"]["report"].as_str().expect("a link")).await;
     assert_eq!(report["format"], "sistership-diagnosis/1", "{report}");
     let made = server.get(condition["with_effects"]["at"].as_str().expect("a link")).await;
-    assert_eq!((&made["version"]["number"], &made["version"]["method"]), (&json!(2), &json!("diagnosis")), "{made}");
+    assert_eq!(
+        (&made["version"]["number"], &made["version"]["method"]),
+        (&json!(2), &json!("diagnosis")),
+        "{made}"
+    );
     assert_eq!(made["document"]["recipe"]["kind"], "diagnosis", "{made}");
     let page = page(server, &format!("/ships/{NAME}")).await;
     assert!(page.contains("Her model does not hold") && page.contains(EFFECT), "the page says so");
@@ -90,8 +123,14 @@ async fn does_not_hold(server: &TestServer) {
 /// The report says it in one sentence, as data and as a page that stands alone.
 async fn reported(server: &TestServer, id: &str) {
     let report = server.get(&format!("/v1/reports/{id}")).await;
-    assert!(report["sentence"].as_str().is_some_and(|sentence| sentence.starts_with("Your model lacks")), "{report}");
-    let value = report["effects"][0]["parameters"]["offset_deg"]["value"].as_f64().expect("a value");
+    assert!(
+        report["sentence"]
+            .as_str()
+            .is_some_and(|sentence| sentence.starts_with("Your model lacks")),
+        "{report}"
+    );
+    let value =
+        report["effects"][0]["parameters"]["offset_deg"]["value"].as_f64().expect("a value");
     assert!((value - OFFSET_DEG).abs() < 0.3, "{value}");
     let page = page(server, &format!("/v1/reports/{id}?format=html")).await;
     assert!(page.contains(report["sentence"].as_str().expect("text")) && page.contains("<svg"));
@@ -101,12 +140,24 @@ async fn reported(server: &TestServer, id: &str) {
 /// The new version has its parent, is the candidate, and derives again byte for byte; the champion stays.
 async fn versions(server: &TestServer) {
     let versions = server.get(&format!("/v1/models/{NAME}/versions")).await;
-    let of = |number: i64| versions["items"].as_array().and_then(|all| all.iter().find(|v| v["number"] == number)).cloned();
-    let (first, second) = (of(1).expect("the published one"), of(2).expect("the one with the effect"));
-    assert_eq!((&second["parent"], &second["method"]), (&first["id"], &json!("diagnosis")), "{versions}");
+    let of = |number: i64| {
+        versions["items"]
+            .as_array()
+            .and_then(|all| all.iter().find(|v| v["number"] == number))
+            .cloned()
+    };
+    let (first, second) =
+        (of(1).expect("the published one"), of(2).expect("the one with the effect"));
+    assert_eq!(
+        (&second["parent"], &second["method"]),
+        (&first["id"], &json!("diagnosis")),
+        "{versions}"
+    );
     assert_eq!((alias(server, "champion").await.0, alias(server, "candidate").await.0), (1, 2));
     verified_on_the_command_line(server).await;
-    let (status, verified) = server.send(Method::POST, &format!("/v1/models/{NAME}/versions/2/verify"), &json!({}), &[]).await;
+    let (status, verified) = server
+        .send(Method::POST, &format!("/v1/models/{NAME}/versions/2/verify"), &json!({}), &[])
+        .await;
     assert_eq!((status, &verified["identical"]), (200, &json!(true)), "{verified}");
 }
 
@@ -130,7 +181,11 @@ async fn promoted(server: &TestServer) {
     let (_, etag) = alias(server, "champion").await;
     assert_eq!(server.send(Method::PUT, &path, &body, &[("if-match", &etag)]).await.0, 200);
     let condition = condition(server).await;
-    assert_eq!((&condition["model"], &condition["version"]), (&json!("holds"), &json!(2)), "{condition}");
+    assert_eq!(
+        (&condition["model"], &condition["version"]),
+        (&json!("holds"), &json!(2)),
+        "{condition}"
+    );
     assert_ne!(before, ship_tag(server).await, "who has the old condition gets the new one");
     let sailed = json!({ "model": NAME, "manoeuvre": { "turn_deg": 20 } });
     let (status, predicted) = server.send(Method::POST, "/v1/predictions", &sailed, &[]).await;
@@ -138,31 +193,46 @@ async fn promoted(server: &TestServer) {
 }
 
 async fn ship_tag(server: &TestServer) -> String {
-    let response = server.request(Method::GET, &format!("/v1/ships/{NAME}")).send().await.expect("an answer");
+    let response =
+        server.request(Method::GET, &format!("/v1/ships/{NAME}")).send().await.expect("an answer");
     response.headers()["etag"].to_str().expect("text").to_owned()
 }
 
 /// A diagnosis that is asked for: of the champion on trials it has not seen, under a key, with settings.
 async fn asked_for(server: &TestServer) {
     let uploaded = upload(server, &further(), "?diagnose=false").await;
-    assert_eq!((uploaded["new"].as_i64(), &uploaded["diagnosis"]), (Some(2), &Value::Null), "{uploaded}");
+    assert_eq!(
+        (uploaded["new"].as_i64(), &uploaded["diagnosis"]),
+        (Some(2), &Value::Null),
+        "{uploaded}"
+    );
     let body = json!({ "model": NAME, "settings": { "least_step_s": 1.0, "most_effects": 1 } });
-    let ask = async || server.send(Method::POST, "/v1/diagnoses", &body, &[("Idempotency-Key", "one")]).await;
+    let ask = async || {
+        server.send(Method::POST, "/v1/diagnoses", &body, &[("Idempotency-Key", "one")]).await
+    };
     let (status, job) = ask().await;
     assert_eq!(status, 202, "{job}");
     let done = server.finished(job["id"].as_str().expect("an id")).await;
     assert_eq!(done["state"], "succeeded", "{done}");
     assert_eq!(ask().await.1["id"], job["id"], "the same key is the same job");
-    let new: Vec<&Value> = uploaded["trials"].as_array().expect("trials").iter().map(|trial| &trial["id"]).collect();
+    let new: Vec<&Value> =
+        uploaded["trials"].as_array().expect("trials").iter().map(|trial| &trial["id"]).collect();
     assert_eq!(
         done["request"]["trials"].as_array().map(|all| all.iter().collect()),
         Some(new),
         "only what version 2 has not seen"
     );
-    assert_eq!((&done["result"]["verdict"], &done["result"]["version"]), (&json!("complete"), &Value::Null), "{done}");
+    assert_eq!(
+        (&done["result"]["verdict"], &done["result"]["version"]),
+        (&json!("complete"), &Value::Null),
+        "{done}"
+    );
     let condition = condition(server).await;
     assert_eq!(condition["model"], "holds", "{condition}");
-    assert_ne!(condition["since"], condition["found_by"], "it has held since the diagnosis that it came of");
+    assert_ne!(
+        condition["since"], condition["found_by"],
+        "it has held since the diagnosis that it came of"
+    );
     assert!(page(server, &format!("/ships/{NAME}")).await.contains("Her model holds"));
     let versions = server.get(&format!("/v1/models/{NAME}/versions")).await;
     assert_eq!(versions["items"].as_array().map(Vec::len), Some(2), "nothing found, no version");
@@ -187,10 +257,16 @@ async fn refused(server: &TestServer) {
         assert!(status == 422 && detail.contains(says), "{body}: {status} {problem}");
     }
     let other = json!({ "model": NAME });
-    assert_eq!(server.send(Method::POST, "/v1/diagnoses", &other, &[("Idempotency-Key", "one")]).await.0, 422);
-    let wish = server.request(Method::POST, &format!("/v1/trials?ship={NAME}&name=a.csv&diagnose=maybe"));
-    let (status, problem) =
-        answer(wish.header("content-type", "text/csv").body("t_s\n0\n").send().await.expect("an answer")).await;
+    assert_eq!(
+        server.send(Method::POST, "/v1/diagnoses", &other, &[("Idempotency-Key", "one")]).await.0,
+        422
+    );
+    let wish =
+        server.request(Method::POST, &format!("/v1/trials?ship={NAME}&name=a.csv&diagnose=maybe"));
+    let (status, problem) = answer(
+        wish.header("content-type", "text/csv").body("t_s\n0\n").send().await.expect("an answer"),
+    )
+    .await;
     assert_eq!(status, 400, "{problem}");
 }
 
@@ -199,7 +275,11 @@ async fn sound_trials(server: TestServer) {
     create(&server).await;
     let uploaded = upload(&server, &sound(), "").await;
     let done = server.finished(uploaded["diagnosis"].as_str().expect("a job follows")).await;
-    assert_eq!((&done["result"]["verdict"], &done["result"]["version"]), (&json!("complete"), &Value::Null), "{done}");
+    assert_eq!(
+        (&done["result"]["verdict"], &done["result"]["version"]),
+        (&json!("complete"), &Value::Null),
+        "{done}"
+    );
     assert_eq!(condition(&server).await["model"], "holds");
     let candidate = server.get(&format!("/v1/models/{NAME}/aliases/candidate")).await;
     assert_eq!(candidate["status"], 404, "no version, no candidate");

@@ -22,7 +22,8 @@ const PATIENCE: Duration = Duration::from_secs(300);
 /// A server without workers, with a family of `ships` that have sailed `trials` each, and the store as an onlooker sees it.
 async fn family(database: TestDatabase, ships: usize, trials: usize) -> (TestServer, Store) {
     let server = TestServer::on(database, &["--no-worker"]).await;
-    let store = Store::connect(&server.database().url, Arc::new(SystemClock)).await.expect("a store");
+    let store =
+        Store::connect(&server.database().url, Arc::new(SystemClock)).await.expect("a store");
     let objects = Objects::local(server.store_arguments()[3].as_ref()).expect("the samples");
     Yard::new().launch(&store, &objects, 0..ships, trials).await;
     let members: Vec<String> = (0..ships).map(name).collect();
@@ -37,7 +38,8 @@ fn hire(server: &TestServer) -> TestWorker {
 }
 
 async fn learned(server: &TestServer) -> Value {
-    let (status, job) = server.send(Method::POST, &format!("{FAMILY}/prior"), &json!({}), &[]).await;
+    let (status, job) =
+        server.send(Method::POST, &format!("{FAMILY}/prior"), &json!({}), &[]).await;
     assert_eq!(status, 202, "{job}");
     let job = server.finished(job["id"].as_str().expect("an id")).await;
     assert_eq!(job["state"], "succeeded", "{job}");
@@ -45,9 +47,13 @@ async fn learned(server: &TestServer) -> Value {
 }
 
 async fn asked(server: &TestServer, body: Value) -> String {
-    let (status, bulk) = server.send(Method::POST, &format!("{FAMILY}/refinements"), &body, &[("idempotency-key", "once")]).await;
+    let (status, bulk) = server
+        .send(Method::POST, &format!("{FAMILY}/refinements"), &body, &[("idempotency-key", "once")])
+        .await;
     assert_eq!(status, 202, "{bulk}");
-    let (_, again) = server.send(Method::POST, &format!("{FAMILY}/refinements"), &body, &[("idempotency-key", "once")]).await;
+    let (_, again) = server
+        .send(Method::POST, &format!("{FAMILY}/refinements"), &body, &[("idempotency-key", "once")])
+        .await;
     assert_eq!(bulk["id"], again["id"], "a repeated request is the same refinement");
     bulk["id"].as_str().expect("an id").to_owned()
 }
@@ -70,11 +76,17 @@ async fn until_done(server: &TestServer, id: &str) -> Value {
 
 /// One outcome for each ship, one version for each that moved, and none besides.
 async fn exactly_once(store: &Store, id: &str, ships: usize) {
-    let outcomes = store.bulks().outcomes(id, None, &Page::first(1000)).await.expect("the outcomes").items;
+    let outcomes =
+        store.bulks().outcomes(id, None, &Page::first(1000)).await.expect("the outcomes").items;
     let named: BTreeSet<&str> = outcomes.iter().map(|outcome| outcome.ship.as_str()).collect();
     assert_eq!((outcomes.len(), named.len()), (ships, ships));
     for outcome in &outcomes {
-        let versions = store.versions().list(&outcome.ship, &Page::first(1000)).await.expect("the versions").items;
+        let versions = store
+            .versions()
+            .list(&outcome.ship, &Page::first(1000))
+            .await
+            .expect("the versions")
+            .items;
         let numbers: Vec<i64> = versions.iter().map(|version| version.number).collect();
         assert_eq!((numbers, outcome.version), (vec![1], Some(1)), "{outcome:?}");
     }
@@ -98,37 +110,75 @@ async fn a_family_is_learned_from_and_refined(database: TestDatabase) {
     let (server, store) = family(database, SHIPS, 3).await;
     let early = server.send(Method::POST, &format!("{FAMILY}/refinements"), &json!({}), &[]).await;
     assert_eq!(early.0, 422, "{}", early.1);
-    assert!(early.1["detail"].as_str().is_some_and(|detail| detail.contains("has taught nothing yet")), "{}", early.1);
+    assert!(
+        early.1["detail"].as_str().is_some_and(|detail| detail.contains("has taught nothing yet")),
+        "{}",
+        early.1
+    );
     let _workers = [hire(&server), hire(&server)];
     let prior = learned(&server).await;
-    let axis = prior["document"]["axes"].as_array().expect("axes").iter().find(|axis| axis["axis"] == "N").expect("N").clone();
-    let place = axis["names"].as_array().expect("names").iter().position(|name| name == "N_r").expect("N_r");
-    let (mean, deviation) = (axis["mean"][place].as_f64().expect("a mean"), axis["deviation"][place].as_f64().expect("one"));
+    let axis = prior["document"]["axes"]
+        .as_array()
+        .expect("axes")
+        .iter()
+        .find(|axis| axis["axis"] == "N")
+        .expect("N")
+        .clone();
+    let place = axis["names"]
+        .as_array()
+        .expect("names")
+        .iter()
+        .position(|name| name == "N_r")
+        .expect("N_r");
+    let (mean, deviation) = (
+        axis["mean"][place].as_f64().expect("a mean"),
+        axis["deviation"][place].as_f64().expect("one"),
+    );
     // Differences over a tenth of a length put the mean off by a fifth; by how much ships differ, a twentieth, comes out.
-    assert!((mean / -166e-5 - 1.0).abs() < 0.3 && (0.02..0.1).contains(&(deviation / mean.abs())), "{mean} {deviation}");
+    assert!(
+        (mean / -166e-5 - 1.0).abs() < 0.3 && (0.02..0.1).contains(&(deviation / mean.abs())),
+        "{mean} {deviation}"
+    );
 
     let id = asked(&server, json!({ "rule": { "no_worse_than": 0.0 }, "chunk_ships": 5 })).await;
     let done = until_done(&server, &id).await;
-    assert_eq!((done["state"].as_str(), done["done"].as_u64()), (Some("succeeded"), Some(SHIPS as u64)), "{done}");
+    assert_eq!(
+        (done["state"].as_str(), done["done"].as_u64()),
+        (Some("succeeded"), Some(SHIPS as u64)),
+        "{done}"
+    );
     exactly_once(&store, &id, SHIPS).await;
     let champions = done["outcomes"]["champion"].as_u64().unwrap_or(0);
     assert!(champions > SHIPS as u64 / 2, "{done}");
     let candidates = done["outcomes"]["candidate"].as_u64().unwrap_or(0);
-    let ships = server.get(&format!("/v1/bulk-refinements/{id}/ships?outcome=champion&limit=3")).await;
+    let ships =
+        server.get(&format!("/v1/bulk-refinements/{id}/ships?outcome=champion&limit=3")).await;
     for ship in ships["items"].as_array().expect("ships") {
         assert!(ship["worst_change"].as_f64().is_some_and(|change| change <= 0.0), "{ship}");
         assert!(ship["comparison"]["after"]["tactical_diameter_l"].is_number(), "{ship}");
     }
     let word = json!({ "actor": "ann", "reason": "looked at them all" });
-    let (_, promoted) = server.send(Method::POST, &format!("/v1/bulk-refinements/{id}/champions"), &word, &[]).await;
+    let (_, promoted) = server
+        .send(Method::POST, &format!("/v1/bulk-refinements/{id}/champions"), &word, &[])
+        .await;
     assert_eq!(promoted["champions"].as_u64(), Some(candidates), "{promoted}");
-    assert!(server.get(&format!("/v1/ships/{}/model", name(3))).await["model"]["coefficients"].is_object());
+    assert!(
+        server.get(&format!("/v1/ships/{}/model", name(3))).await["model"]["coefficients"]
+            .is_object()
+    );
     verified(&server, &format!("{}/1", name(0)));
 
     drift_is_seen(&server, &store).await;
 
     // New trials for none: the champions stand where they are, and the next refinement starts at them.
-    let (_, again) = server.send(Method::POST, &format!("{FAMILY}/refinements"), &json!({ "prior": "foundation" }), &[]).await;
+    let (_, again) = server
+        .send(
+            Method::POST,
+            &format!("{FAMILY}/refinements"),
+            &json!({ "prior": "foundation" }),
+            &[],
+        )
+        .await;
     let again = until_done(&server, again["id"].as_str().expect("an id")).await;
     assert_eq!(again["state"], "succeeded", "{again}");
     let second = store.versions().get(&name(0), 2).await.expect("a second version").head;
@@ -140,7 +190,8 @@ async fn a_family_is_learned_from_and_refined(database: TestDatabase) {
 
 /// A new trial of another ship's, under one's own name: its model no longer holds on it, and it is listed first.
 async fn drift_is_seen(server: &TestServer, store: &Store) {
-    let strange = store.trials().list(&name(7), &Page::first(1)).await.expect("trials").items.remove(0);
+    let strange =
+        store.trials().list(&name(7), &Page::first(1)).await.expect("trials").items.remove(0);
     let new = sistership_store::NewTrial {
         ship: name(5),
         sha256: strange.sha256,
@@ -159,9 +210,21 @@ async fn drift_is_seen(server: &TestServer, store: &Store) {
     assert_eq!(trials.iter().filter(|trial| trial["fitted"] == false).count(), 1, "{drift}");
     assert!(drift["worst"].as_f64().is_some_and(|worst| worst > 1.2), "{drift}");
     let family = server.get(&format!("{FAMILY}/drift")).await;
-    assert_eq!(family["ships"][0]["ship"].as_str(), Some(name(5).as_str()), "{}", family["ships"][0]);
+    assert_eq!(
+        family["ships"][0]["ship"].as_str(),
+        Some(name(5).as_str()),
+        "{}",
+        family["ships"][0]
+    );
     assert!(family["ships"][1]["drift"]["worst"].is_null(), "no other ship has anything new");
-    let page = server.request(Method::GET, "/families/sisters").send().await.expect("a page").text().await.expect("its text");
+    let page = server
+        .request(Method::GET, "/families/sisters")
+        .send()
+        .await
+        .expect("a page")
+        .text()
+        .await
+        .expect("its text");
     assert!(page.contains("Whose model no longer holds") && page.contains(&name(5)), "{page}");
 }
 
@@ -176,8 +239,14 @@ async fn every_ship_is_refined_once(database: TestDatabase) {
     while killed < KILLED {
         assert!(begun.elapsed() < PATIENCE, "no chunk is running that could lose its worker");
         let running = store.bulks().jobs(&id, Some(JobState::Running)).await.expect("the chunks");
-        let holders: Vec<String> = running.into_iter().filter(|job| job.attempt == 1).filter_map(|job| job.worker).collect();
-        let holds = |worker: &TestWorker| holders.iter().any(|name| name.starts_with(&format!("{}-", worker.id())));
+        let holders: Vec<String> = running
+            .into_iter()
+            .filter(|job| job.attempt == 1)
+            .filter_map(|job| job.worker)
+            .collect();
+        let holds = |worker: &TestWorker| {
+            holders.iter().any(|name| name.starts_with(&format!("{}-", worker.id())))
+        };
         let Some(place) = workers.iter().position(holds) else {
             tokio::time::sleep(Duration::from_millis(2)).await;
             continue;
@@ -187,8 +256,19 @@ async fn every_ship_is_refined_once(database: TestDatabase) {
         workers.push(hire(&server));
     }
     let done = until_done(&server, &id).await;
-    assert_eq!((done["state"].as_str(), done["done"].as_u64()), (Some("succeeded"), Some(SHIPS as u64)), "{done}");
-    let lost = store.bulks().jobs(&id, None).await.expect("the chunks").iter().filter(|job| job.fence > 1).count();
+    assert_eq!(
+        (done["state"].as_str(), done["done"].as_u64()),
+        (Some("succeeded"), Some(SHIPS as u64)),
+        "{done}"
+    );
+    let lost = store
+        .bulks()
+        .jobs(&id, None)
+        .await
+        .expect("the chunks")
+        .iter()
+        .filter(|job| job.fence > 1)
+        .count();
     assert!(lost >= 1, "{KILLED} workers were killed, but no chunk has changed hands");
     println!("{lost} chunks changed hands");
     exactly_once(&store, &id, SHIPS).await;
@@ -202,7 +282,11 @@ async fn a_refinement_is_cancelled_and_goes_on(database: TestDatabase) {
     let id = asked(&server, json!({ "prior": "foundation", "chunk_ships": 2 })).await;
     let path = format!("/v1/bulk-refinements/{id}");
     let (_, cancelled) = server.send(Method::DELETE, &path, &json!({}), &[]).await;
-    assert_eq!((cancelled["state"].as_str(), cancelled["done"].as_u64()), (Some("cancelled"), Some(0)), "{cancelled}");
+    assert_eq!(
+        (cancelled["state"].as_str(), cancelled["done"].as_u64()),
+        (Some("cancelled"), Some(0)),
+        "{cancelled}"
+    );
     let (_, going) = server.send(Method::POST, &format!("{path}/retry"), &json!({}), &[]).await;
     assert_eq!(going["state"], "queued", "{going}");
     let _worker = hire(&server);

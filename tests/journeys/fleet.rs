@@ -32,12 +32,18 @@ struct Fleet {
 impl Fleet {
     async fn on(database: TestDatabase) -> Self {
         let server = TestServer::on(database, &["--no-worker"]).await;
-        let store = Store::connect(&server.database().url, Arc::new(SystemClock)).await.expect("a store");
+        let store =
+            Store::connect(&server.database().url, Arc::new(SystemClock)).await.expect("a store");
         Self { server, workers: Vec::new(), store, begun: Instant::now() }
     }
 
     async fn jobs(&self) -> Vec<Job> {
-        self.store.jobs().list(&JobFilter::default(), &Page::first(1000)).await.expect("the jobs").items
+        self.store
+            .jobs()
+            .list(&JobFilter::default(), &Page::first(1000))
+            .await
+            .expect("the jobs")
+            .items
     }
 
     fn hire(&mut self) {
@@ -47,10 +53,19 @@ impl Fleet {
     /// Kills a worker that holds a job which has not lost one yet (two losses would be the job's own fault).
     async fn kill_one(&mut self) {
         loop {
-            assert!(self.begun.elapsed() < PATIENCE, "no job is running that could lose its worker");
-            let running = self.jobs().await.into_iter().filter(|job| job.state == JobState::Running && job.attempt == 1);
+            assert!(
+                self.begun.elapsed() < PATIENCE,
+                "no job is running that could lose its worker"
+            );
+            let running = self
+                .jobs()
+                .await
+                .into_iter()
+                .filter(|job| job.state == JobState::Running && job.attempt == 1);
             let holders: Vec<String> = running.filter_map(|job| job.worker).collect();
-            let holds = |worker: &TestWorker| holders.iter().any(|name| name.starts_with(&format!("{}-", worker.id())));
+            let holds = |worker: &TestWorker| {
+                holders.iter().any(|name| name.starts_with(&format!("{}-", worker.id())))
+            };
             if let Some(place) = self.workers.iter().position(holds) {
                 self.workers.swap_remove(place).kill();
                 return self.hire();
@@ -78,38 +93,66 @@ async fn every_job_is_done_once(database: TestDatabase) {
     for number in 0..JOBS {
         refine(&fleet.server, &format!("job-{number}")).await;
     }
-    assert!(fleet.jobs().await.iter().all(|job| job.state == JobState::Queued), "a server without workers takes no job");
+    assert!(
+        fleet.jobs().await.iter().all(|job| job.state == JobState::Queued),
+        "a server without workers takes no job"
+    );
     (0..WORKERS).for_each(|_| fleet.hire());
     for _ in 0..KILLED {
         fleet.kill_one().await;
         tokio::time::sleep(BETWEEN).await;
     }
     let jobs = fleet.until_done().await;
-    assert_eq!(jobs.iter().filter(|job| job.state == JobState::Succeeded).count(), JOBS, "{jobs:#?}");
+    assert_eq!(
+        jobs.iter().filter(|job| job.state == JobState::Succeeded).count(),
+        JOBS,
+        "{jobs:#?}"
+    );
     let lost = jobs.iter().filter(|job| job.fence > 1).count();
-    assert!(lost >= KILLED, "{KILLED} workers were killed, but only {lost} jobs have changed hands");
+    assert!(
+        lost >= KILLED,
+        "{KILLED} workers were killed, but only {lost} jobs have changed hands"
+    );
     kept_once(&fleet, &jobs).await;
     verified(&fleet.server, JOBS as i64).await;
     let store = fleet.server.store_arguments();
-    assert_eq!(binary::run(&["fsck", &store[0], &store[1], &store[2], &store[3]]).status.code(), Some(0));
+    assert_eq!(
+        binary::run(&["fsck", &store[0], &store[1], &store[2], &store[3]]).status.code(),
+        Some(0)
+    );
 }
 
 /// One version, one report and one move of an alias for each job, and none besides.
 async fn kept_once(fleet: &Fleet, jobs: &[Job]) {
-    let results = jobs.iter().filter_map(|job| serde_json::from_str::<Value>(job.result.as_deref()?).ok());
+    let results =
+        jobs.iter().filter_map(|job| serde_json::from_str::<Value>(job.result.as_deref()?).ok());
     let made: BTreeSet<i64> = results.filter_map(|result| result["version"].as_i64()).collect();
-    let versions = fleet.store.versions().list(NAME, &Page::first(1000)).await.expect("the versions").items;
-    assert_eq!(made, (1..=JOBS as i64).collect(), "each job names a version of its own, without gaps");
+    let versions =
+        fleet.store.versions().list(NAME, &Page::first(1000)).await.expect("the versions").items;
+    assert_eq!(
+        made,
+        (1..=JOBS as i64).collect(),
+        "each job names a version of its own, without gaps"
+    );
     assert_eq!(versions.len(), JOBS, "no version that no job names");
     for version in &versions {
-        let reports = fleet.store.reports().by_version(&version.id, &Page::first(10)).await.expect("the reports").items;
+        let reports = fleet
+            .store
+            .reports()
+            .by_version(&version.id, &Page::first(10))
+            .await
+            .expect("the reports")
+            .items;
         assert_eq!(reports.len(), 1, "one report on version {}", version.number);
     }
     let moves = |alias: &'static str| async move {
         let moves = fleet.store.aliases().history(NAME, alias, &Page::first(1000)).await;
         moves.expect("the history").items.len()
     };
-    assert_eq!((moves("champion").await, moves("candidate").await, moves("latest").await), (1, JOBS - 1, JOBS));
+    assert_eq!(
+        (moves("champion").await, moves("candidate").await, moves("latest").await),
+        (1, JOBS - 1, JOBS)
+    );
 }
 
 #[tokio::test]

@@ -21,17 +21,23 @@ struct Disk(PathBuf);
 impl Disk {
     /// None, said plainly, where this process may not mount one.
     fn on(folder: &Path) -> Option<Self> {
-        let mounted = Command::new("mount").args(["-t", "tmpfs", "-o", "size=32m", "tmpfs"]).arg(folder).status();
+        let mounted = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", "size=32m", "tmpfs"])
+            .arg(folder)
+            .status();
         if mounted.is_ok_and(|status| status.success()) {
             return Some(Self(folder.to_path_buf()));
         }
-        eprintln!("skipped: no small disk can be mounted here (it takes root on Linux); unit tests try the answers alone");
+        eprintln!(
+            "skipped: no small disk can be mounted here (it takes root on Linux); unit tests try the answers alone"
+        );
         None
     }
 
     /// Leaves no room.
     fn fill(&self) {
-        let mut file = File::options().create(true).append(true).open(self.filler()).expect("a file");
+        let mut file =
+            File::options().create(true).append(true).open(self.filler()).expect("a file");
         for size in [1 << 20, 4096, 1] {
             while file.write_all(&vec![0; size]).is_ok() {}
         }
@@ -55,8 +61,13 @@ impl Drop for Disk {
 async fn upload(server: &TestServer) -> (u16, Value) {
     let trials = trials();
     let form = Form::new().text("manifest", manifest(&trials));
-    let form = trials.iter().fold(form, |form, trial| form.part("file", Part::bytes(csv(trial)).file_name(trial.name.clone())));
-    answer(server.request(Method::POST, "/v1/trials").multipart(form).send().await.expect("an answer")).await
+    let form = trials.iter().fold(form, |form, trial| {
+        form.part("file", Part::bytes(csv(trial)).file_name(trial.name.clone()))
+    });
+    answer(
+        server.request(Method::POST, "/v1/trials").multipart(form).send().await.expect("an answer"),
+    )
+    .await
 }
 
 /// Reads as ever; says that it cannot write.
@@ -64,7 +75,11 @@ async fn only_reads(server: &TestServer) {
     assert_eq!(server.get(&format!("/v1/ships/{NAME}")).await["name"], NAME);
     assert_eq!(server.get("/readyz").await["writes"], "no space");
     let (status, refused) = upload(server).await;
-    assert_eq!((status, &refused["type"]), (507, &"urn:sistership:problem:no-room".into()), "{refused}");
+    assert_eq!(
+        (status, &refused["type"]),
+        (507, &"urn:sistership:problem:no-room".into()),
+        "{refused}"
+    );
     // Many of them: whatever pages are still free are used up, and nothing else than 507 may come of it.
     let mut refused = 0;
     for number in 0..200 {

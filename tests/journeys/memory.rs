@@ -31,9 +31,16 @@ fn constants(rows: usize, channels: &[Channel]) -> Bytes {
 }
 
 /// The statuses of the same request sent so many times at once, and the last answer.
-async fn at_once(server: &TestServer, count: usize, path: &str, media: &str, body: &Bytes) -> (Vec<u16>, Value) {
+async fn at_once(
+    server: &TestServer,
+    count: usize,
+    path: &str,
+    media: &str,
+    body: &Bytes,
+) -> (Vec<u16>, Value) {
     let one = |_| {
-        let request = server.request(Method::POST, path).header("content-type", media).body(body.clone());
+        let request =
+            server.request(Method::POST, path).header("content-type", media).body(body.clone());
         tokio::spawn(async move {
             let answer = request.send().await.expect("an answer");
             let (status, retry) = (answer.status(), answer.headers().contains_key("retry-after"));
@@ -53,13 +60,28 @@ async fn at_once(server: &TestServer, count: usize, path: &str, media: &str, bod
 #[tokio::test(flavor = "multi_thread")]
 async fn eight_uploads_of_millions_of_constants() {
     let server = server().await;
-    let all = [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::X, Channel::Y, Channel::Delta];
-    let (statuses, said) = at_once(&server, 8, "/v1/trials/check?ship=x", PARQUET, &constants(4_900_000, &all)).await;
+    let all =
+        [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::X, Channel::Y, Channel::Delta];
+    let (statuses, said) =
+        at_once(&server, 8, "/v1/trials/check?ship=x", PARQUET, &constants(4_900_000, &all)).await;
     assert!(statuses.iter().all(|status| *status == 413), "{statuses:?}");
     let detail = said["detail"].as_str().unwrap_or_default();
-    assert!(detail.contains("4900000 rows of 8 columns") && detail.contains("more than the 256 MiB"), "{detail}");
-    let (statuses, said) = at_once(&server, 8, "/v1/trials/check?ship=x", PARQUET, &constants(4_900_000, &[Channel::U])).await;
-    assert!(statuses.iter().all(|status| [200, 429].contains(status)) && statuses.contains(&200), "{statuses:?} {said}");
+    assert!(
+        detail.contains("4900000 rows of 8 columns") && detail.contains("more than the 256 MiB"),
+        "{detail}"
+    );
+    let (statuses, said) = at_once(
+        &server,
+        8,
+        "/v1/trials/check?ship=x",
+        PARQUET,
+        &constants(4_900_000, &[Channel::U]),
+    )
+    .await;
+    assert!(
+        statuses.iter().all(|status| [200, 429].contains(status)) && statuses.contains(&200),
+        "{statuses:?} {said}"
+    );
     let (peak, _) = server.memory_mb();
     println!("eight uploads: {statuses:?}, peak {peak} MB");
     assert!(peak < REQUESTS + PROGRAM, "{peak} MB");
@@ -72,10 +94,17 @@ async fn sixteen_large_documents() {
     let (statuses, said) = at_once(&server, 16, "/v1/laws", "application/yaml", &of(4 << 20)).await;
     assert!(statuses.iter().all(|status| *status == 413), "{statuses:?} {said}");
     let (statuses, said) = at_once(&server, 16, "/v1/laws", "application/yaml", &of(1 << 20)).await;
-    assert!(statuses.iter().all(|status| [422, 429].contains(status)) && statuses.contains(&422), "{statuses:?} {said}");
-    let json = Bytes::from(format!("{{\"name\":\"a\",\"members\":[{}\"\"]}}", "\"\",".repeat(1 << 20)));
+    assert!(
+        statuses.iter().all(|status| [422, 429].contains(status)) && statuses.contains(&422),
+        "{statuses:?} {said}"
+    );
+    let json =
+        Bytes::from(format!("{{\"name\":\"a\",\"members\":[{}\"\"]}}", "\"\",".repeat(1 << 20)));
     let (statuses, _) = at_once(&server, 16, "/v1/families", "application/json", &json).await;
-    assert!(statuses.iter().all(|status| [422, 429].contains(status)) && statuses.contains(&422), "{statuses:?}");
+    assert!(
+        statuses.iter().all(|status| [422, 429].contains(status)) && statuses.contains(&422),
+        "{statuses:?}"
+    );
     let (peak, _) = server.memory_mb();
     println!("sixteen documents: peak {peak} MB");
     assert!(peak < REQUESTS + PROGRAM, "{peak} MB");
@@ -85,8 +114,14 @@ async fn sixteen_large_documents() {
 async fn downloads_that_nobody_reads() {
     let server = server().await;
     let samples = constants(3_750_000, &[Channel::U]);
-    let upload = server.request(Method::POST, "/v1/trials?ship=esso-osaka-3m&name=a&diagnose=false");
-    let kept = upload.header("content-type", PARQUET).body(samples.clone()).send().await.expect("an answer");
+    let upload =
+        server.request(Method::POST, "/v1/trials?ship=esso-osaka-3m&name=a&diagnose=false");
+    let kept = upload
+        .header("content-type", PARQUET)
+        .body(samples.clone())
+        .send()
+        .await
+        .expect("an answer");
     assert_eq!(kept.status(), StatusCode::CREATED);
     let kept: Value = kept.json().await.expect("JSON");
     let path = format!("/v1/trials/{}/samples", kept["trials"][0]["id"].as_str().expect("an id"));
@@ -98,17 +133,24 @@ async fn downloads_that_nobody_reads() {
     let address = server.url().trim_start_matches("http://").to_owned();
     let unread = |media: &&str| {
         let mut stream = TcpStream::connect(&address).expect("a connection");
-        write!(stream, "GET {path} HTTP/1.1\r\nHost: {address}\r\nAccept: {media}\r\n\r\n").expect("a request");
+        write!(stream, "GET {path} HTTP/1.1\r\nHost: {address}\r\nAccept: {media}\r\n\r\n")
+            .expect("a request");
         stream
     };
     let held: Vec<TcpStream> = ["text/csv", PARQUET].repeat(6).iter().map(unread).collect();
     tokio::time::sleep(Duration::from_secs(5)).await;
     let (peak, now) = server.memory_mb();
     println!("twelve unread downloads: {before} MB before, {now} MB now, peak {peak} MB");
-    assert!(now < before + 32 && peak < REQUESTS + PROGRAM, "{before} MB before, {now} MB now, peak {peak} MB");
+    assert!(
+        now < before + 32 && peak < REQUESTS + PROGRAM,
+        "{before} MB before, {now} MB now, peak {peak} MB"
+    );
     drop(held);
     let text = get("text/csv").send().await.expect("an answer").bytes().await.expect("a body");
-    assert!(text.starts_with(b"t_s,u_m_s\n0.0,0.25\n1.0,0.25\n") && text.ends_with(b"\n3749999.0,0.25\n"));
+    assert!(
+        text.starts_with(b"t_s,u_m_s\n0.0,0.25\n1.0,0.25\n")
+            && text.ends_with(b"\n3749999.0,0.25\n")
+    );
 }
 
 /// The most that the command below may have resident, MB.
@@ -120,13 +162,26 @@ const REFINEMENT: u64 = 1024;
 fn refinement_of_many_trials() {
     let Some(data) = shared::data("esso-osaka") else { return };
     let folder = tempfile::tempdir().expect("a folder");
-    std::fs::write(folder.path().join("esso-osaka.yaml"), esso_osaka::MANIFEST).expect("a manifest");
+    std::fs::write(folder.path().join("esso-osaka.yaml"), esso_osaka::MANIFEST)
+        .expect("a manifest");
     for kind in ["turning", "zigzag", "random", "berthing"] {
-        let copied = std::process::Command::new("cp").arg("-r").arg(data.join(kind)).arg(folder.path()).status();
+        let copied = std::process::Command::new("cp")
+            .arg("-r")
+            .arg(data.join(kind))
+            .arg(folder.path())
+            .status();
         assert!(copied.is_ok_and(|status| status.success()), "{kind} is copied");
     }
     let mut process = std::process::Command::new(binary::path())
-        .args(["refine", "--ship", "esso-osaka-3m", "--trials", "esso-osaka.yaml", "--law", "low-speed"])
+        .args([
+            "refine",
+            "--ship",
+            "esso-osaka-3m",
+            "--trials",
+            "esso-osaka.yaml",
+            "--law",
+            "low-speed",
+        ])
         .args(["--method", "trajectory"])
         .current_dir(folder.path())
         .stdout(std::process::Stdio::null())

@@ -24,7 +24,8 @@ async fn stopped(drain_s: &str) -> (JobState, i64) {
         tokio::time::sleep(Duration::from_millis(2)).await;
     }
     assert_eq!(server.terminate().code(), Some(0));
-    let store = Store::connect(&server.database().url, Arc::new(SystemClock)).await.expect("a store");
+    let store =
+        Store::connect(&server.database().url, Arc::new(SystemClock)).await.expect("a store");
     let job = store.jobs().get(&job).await.expect("the job");
     (job.state, job.attempt)
 }
@@ -45,7 +46,8 @@ async fn begun_at_once(database: TestDatabase) {
     let store = ["--database-url".to_owned(), database.url.clone(), "--data-dir".to_owned(), data];
     let mut workers: Vec<TestWorker> = (0..5).map(|_| TestWorker::begin(&store, "5")).collect();
     workers.iter_mut().for_each(TestWorker::until_it_works);
-    let arguments: Vec<&str> = ["fsck", "--json"].into_iter().chain(store.iter().map(String::as_str)).collect();
+    let arguments: Vec<&str> =
+        ["fsck", "--json"].into_iter().chain(store.iter().map(String::as_str)).collect();
     assert!(binary::json(&arguments, 0)["checked"]["versions"].as_u64() > Some(5));
 }
 
@@ -64,7 +66,11 @@ async fn many_processes_begin_on_an_empty_postgres_database() {
 /// What `fsck` says of a store that is not there, which names the folder that it has settled on.
 fn settled(config: &Path, environment: Option<&str>, flag: Option<&str>) -> String {
     let mut command = Command::new(binary::path());
-    command.arg("fsck").arg("--config").arg(config).args(flag.map(|flag| ["--data-dir", flag]).into_iter().flatten());
+    command
+        .arg("fsck")
+        .arg("--config")
+        .arg(config)
+        .args(flag.map(|flag| ["--data-dir", flag]).into_iter().flatten());
     if let Some(folder) = environment {
         command.env("SISTERSHIP_DATA_DIR", folder);
     }
@@ -78,9 +84,17 @@ fn flags_win_over_the_environment_and_that_over_the_file() {
     let config = folder.path().join("sistership.yaml");
     std::fs::write(&config, "data_dir: from-the-file\n").expect("a file");
     let beside = folder.path().join("from-the-file").display().to_string();
-    assert!(settled(&config, None, None).contains(&beside), "a path in the file starts at its folder");
-    assert!(settled(&config, Some("/from-the-environment"), None).contains("/from-the-environment/"));
-    assert!(settled(&config, Some("/from-the-environment"), Some("/from-the-flag")).contains("/from-the-flag/"));
+    assert!(
+        settled(&config, None, None).contains(&beside),
+        "a path in the file starts at its folder"
+    );
+    assert!(
+        settled(&config, Some("/from-the-environment"), None).contains("/from-the-environment/")
+    );
+    assert!(
+        settled(&config, Some("/from-the-environment"), Some("/from-the-flag"))
+            .contains("/from-the-flag/")
+    );
     std::fs::write(&config, "data_dirs: x\n").expect("a file");
     let refused = settled(&config, None, None);
     assert!(refused.contains("sistership.yaml") && refused.contains("data_dirs"), "{refused}");
@@ -91,19 +105,37 @@ async fn a_server_runs_by_its_file_and_logs_in_json() {
     let database = TestDatabase::sqlite();
     let config = database.folder.path().join("sistership.yaml");
     std::fs::write(&config, "workers: 0\nlog: info\nlog_format: json\n").expect("a file");
-    let (server, log) = TestServer::logged(database, &["--config", &config.display().to_string()]).await;
+    let (server, log) =
+        TestServer::logged(database, &["--config", &config.display().to_string()]).await;
     create(&server).await;
     upload(&server).await;
     refine(&server, "waits").await;
     tokio::time::sleep(Duration::from_millis(1500)).await;
-    let store = Store::connect(&server.database().url, Arc::new(SystemClock)).await.expect("a store");
+    let store =
+        Store::connect(&server.database().url, Arc::new(SystemClock)).await.expect("a store");
     let jobs = store.jobs().list(&JobFilter::default(), &Page::first(9)).await.expect("jobs").items;
-    assert!(jobs.iter().all(|job| job.state == JobState::Queued), "the file says that there are no workers");
-    let answer = server.request(reqwest::Method::GET, &format!("/v1/ships/{NAME}")).send().await.expect("an answer");
+    assert!(
+        jobs.iter().all(|job| job.state == JobState::Queued),
+        "the file says that there are no workers"
+    );
+    let answer = server
+        .request(reqwest::Method::GET, &format!("/v1/ships/{NAME}"))
+        .send()
+        .await
+        .expect("an answer");
     let id = answer.headers()["x-request-id"].to_str().expect("text").to_owned();
     let lines = std::fs::read_to_string(log).expect("a log");
-    let lines: Vec<serde_json::Value> =
-        lines.lines().map(|line| serde_json::from_str(line).expect("one JSON object a line")).collect();
-    let line = lines.iter().find(|line| line["span"]["id"] == id.as_str()).expect("a line under the id of the request");
-    assert_eq!((line["span"]["path"].as_str(), line["status"].as_u64()), (Some("/v1/ships/journey"), Some(200)), "{line}");
+    let lines: Vec<serde_json::Value> = lines
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("one JSON object a line"))
+        .collect();
+    let line = lines
+        .iter()
+        .find(|line| line["span"]["id"] == id.as_str())
+        .expect("a line under the id of the request");
+    assert_eq!(
+        (line["span"]["path"].as_str(), line["status"].as_u64()),
+        (Some("/v1/ships/journey"), Some(200)),
+        "{line}"
+    );
 }

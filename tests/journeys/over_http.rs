@@ -11,7 +11,10 @@ use super::sea_trials::{NAME, csv, manifest, ship, trials};
 
 /// Creates the ship.
 pub async fn create(server: &TestServer) {
-    let request = server.request(Method::POST, "/v1/ships").header("content-type", "application/yaml").body(ship());
+    let request = server
+        .request(Method::POST, "/v1/ships")
+        .header("content-type", "application/yaml")
+        .body(ship());
     let (status, created) = answer(request.send().await.expect("an answer")).await;
     assert_eq!((status, created["name"].as_str()), (201, Some(NAME)), "{created}");
 }
@@ -20,9 +23,13 @@ pub async fn create(server: &TestServer) {
 pub async fn upload(server: &TestServer) -> Value {
     let trials = trials();
     let form = Form::new().text("manifest", manifest(&trials));
-    let form = trials.iter().fold(form, |form, trial| form.part("file", Part::bytes(csv(trial)).file_name(trial.name.clone())));
-    let (status, uploaded) =
-        answer(server.request(Method::POST, "/v1/trials").multipart(form).send().await.expect("an answer")).await;
+    let form = trials.iter().fold(form, |form, trial| {
+        form.part("file", Part::bytes(csv(trial)).file_name(trial.name.clone()))
+    });
+    let (status, uploaded) = answer(
+        server.request(Method::POST, "/v1/trials").multipart(form).send().await.expect("an answer"),
+    )
+    .await;
     assert_eq!((status, uploaded["new"].as_u64()), (201, Some(4)), "{uploaded}");
     uploaded
 }
@@ -30,7 +37,8 @@ pub async fn upload(server: &TestServer) -> Value {
 /// Asks for a refinement under a key; gives the job's id.
 pub async fn refine(server: &TestServer, key: &str) -> String {
     let body = json!({ "ship": NAME, "source": "auto" });
-    let (status, job) = server.send(Method::POST, "/v1/refinements", &body, &[("Idempotency-Key", key)]).await;
+    let (status, job) =
+        server.send(Method::POST, "/v1/refinements", &body, &[("Idempotency-Key", key)]).await;
     assert_eq!(status, 202, "{job}");
     job["id"].as_str().expect("an id").to_owned()
 }
@@ -45,7 +53,11 @@ async fn journey(server: TestServer) {
     assert_eq!(refine(&server, "first").await, job, "the same key is the same job");
     let done = server.finished(&job).await;
     assert_eq!(done["state"], "succeeded", "{done}");
-    assert_eq!((done["result"]["version"].as_i64(), done["result"]["alias"].as_str()), (Some(1), Some("champion")), "{done}");
+    assert_eq!(
+        (done["result"]["version"].as_i64(), done["result"]["alias"].as_str()),
+        (Some(1), Some("champion")),
+        "{done}"
+    );
     let champion = server.get(&format!("/v1/ships/{NAME}/model")).await;
     assert_eq!(champion["version"]["number"], 1, "{champion}");
     improved(&done["result"]["held_out"]);
@@ -54,9 +66,17 @@ async fn journey(server: TestServer) {
     verified(&server, 1).await;
     across_laws(&server).await;
     let report = done["result"]["report"].as_str().expect("a report");
-    let page = server.request(Method::GET, &format!("/v1/reports/{report}?format=html")).send().await.expect("an answer");
+    let page = server
+        .request(Method::GET, &format!("/v1/reports/{report}?format=html"))
+        .send()
+        .await
+        .expect("an answer");
     assert!(page.text().await.expect("a page").contains("<svg"), "the report has plots");
-    shapes(&[("job", &done), ("champion", &champion), ("report", &server.get(&format!("/v1/reports/{report}")).await)]);
+    shapes(&[
+        ("job", &done),
+        ("champion", &champion),
+        ("report", &server.get(&format!("/v1/reports/{report}")).await),
+    ]);
 }
 
 /// What scripts depend on: the paths and types of the answers, held by snapshots (`INSTA_UPDATE=always` rewrites them).
@@ -85,7 +105,13 @@ async fn aliases(server: &TestServer) {
     let path = format!("/v1/models/{NAME}/aliases/harbour");
     let body = json!({ "version": 1, "reason": "the journey" });
     assert_eq!(server.send(Method::PUT, &path, &body, &[]).await.0, 428);
-    let created = server.request(Method::PUT, &path).header("if-none-match", "*").json(&body).send().await.expect("an answer");
+    let created = server
+        .request(Method::PUT, &path)
+        .header("if-none-match", "*")
+        .json(&body)
+        .send()
+        .await
+        .expect("an answer");
     let etag = created.headers()["etag"].to_str().expect("text").to_owned();
     assert!(created.status().is_success());
     assert_eq!(server.send(Method::PUT, &path, &body, &[("if-match", &etag)]).await.0, 200);
@@ -99,10 +125,20 @@ async fn aliases(server: &TestServer) {
 async fn repeated(server: &TestServer) {
     let job = refine(server, "second").await;
     let done = server.finished(&job).await;
-    assert_eq!((done["result"]["version"].as_i64(), done["result"]["alias"].as_str()), (Some(2), Some("candidate")), "{done}");
+    assert_eq!(
+        (done["result"]["version"].as_i64(), done["result"]["alias"].as_str()),
+        (Some(2), Some("candidate")),
+        "{done}"
+    );
     assert_eq!(refine(server, "second").await, job);
     let body = json!({ "ship": NAME, "source": "mariner" });
-    assert_eq!(server.send(Method::POST, "/v1/refinements", &body, &[("Idempotency-Key", "second")]).await.0, 422);
+    assert_eq!(
+        server
+            .send(Method::POST, "/v1/refinements", &body, &[("Idempotency-Key", "second")])
+            .await
+            .0,
+        422
+    );
     let versions = server.get(&format!("/v1/models/{NAME}/versions")).await;
     assert_eq!(versions["items"].as_array().map(Vec::len), Some(2), "{versions}");
 }
@@ -116,19 +152,28 @@ async fn across_laws(server: &TestServer) {
     let (status, job) = server.send(Method::POST, "/v1/refinements", &body, &[]).await;
     assert_eq!(status, 202, "{job}");
     let done = server.finished(job["id"].as_str().expect("an id")).await;
-    assert_eq!((done["state"].as_str(), done["result"]["version"].as_i64()), (Some("succeeded"), Some(3)), "{done}");
+    assert_eq!(
+        (done["state"].as_str(), done["result"]["version"].as_i64()),
+        (Some("succeeded"), Some(3)),
+        "{done}"
+    );
     let version = server.get(&format!("/v1/models/{NAME}/versions/3")).await;
-    assert_eq!(version["document"]["recipe"]["across"]["law"], "low-speed", "{}", version["document"]["recipe"]);
+    assert_eq!(
+        version["document"]["recipe"]["across"]["law"], "low-speed",
+        "{}",
+        version["document"]["recipe"]
+    );
     assert_eq!(version["document"]["model"]["law"], "low-speed");
     verified(server, 3).await;
 }
 
 /// `sistership verify` derives the version again from its recipe, byte for byte.
 pub async fn verified(server: &TestServer, number: i64) {
-    let arguments: Vec<String> = ["verify".to_owned(), format!("{NAME}/{number}"), "--json".to_owned()]
-        .into_iter()
-        .chain(server.store_arguments())
-        .collect();
+    let arguments: Vec<String> =
+        ["verify".to_owned(), format!("{NAME}/{number}"), "--json".to_owned()]
+            .into_iter()
+            .chain(server.store_arguments())
+            .collect();
     // Beside the client, which must notice that the server closes connections which rest.
     let verify = move || binary::json(&arguments.iter().map(String::as_str).collect::<Vec<_>>(), 0);
     let verification = tokio::task::spawn_blocking(verify).await.expect("a verification");

@@ -20,7 +20,8 @@ pub fn ship() -> String {
 pub fn trials() -> Vec<Trial> {
     let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
     let model = zoo.model("sr108").unwrap_or_else(|error| panic!("{error}"));
-    let ship = Ship::new(&model, zoo.law(&model.law).expect("the law of a zoo model")).expect("a ready ship");
+    let ship = Ship::new(&model, zoo.law(&model.law).expect("the law of a zoo model"))
+        .expect("a ready ship");
     let programme = [
         TrialManoeuvre::Zigzag(10.0, 10.0),
         TrialManoeuvre::Zigzag(20.0, 20.0),
@@ -39,6 +40,9 @@ pub fn csv(trial: &Trial) -> Vec<u8> {
 
 /// The manifest of some trials. JSON is YAML.
 pub fn manifest(trials: &[Trial]) -> String {
-    let entries: Vec<_> = trials.iter().map(|trial| json!({ "file": trial.name, "manoeuvre": trial.manoeuvre })).collect();
+    let entries: Vec<_> = trials
+        .iter()
+        .map(|trial| json!({ "file": trial.name, "manoeuvre": trial.manoeuvre }))
+        .collect();
     json!({ "kind": "trials", "ship": NAME, "trials": entries }).to_string()
 }

@@ -20,7 +20,11 @@ async fn a_server_with_everything_under_way_ends_in_time() {
     create(&server).await;
     upload(&server).await;
     let job = refine(&server, "stopped").await;
-    let mut events = server.request(Method::GET, &format!("/v1/jobs/{job}/events")).send().await.expect("events");
+    let mut events = server
+        .request(Method::GET, &format!("/v1/jobs/{job}/events"))
+        .send()
+        .await
+        .expect("events");
     events.chunk().await.expect("an event");
     let mut stalled = Vec::new();
     for _ in 0..50 {
@@ -32,7 +36,13 @@ async fn a_server_with_everything_under_way_ends_in_time() {
     // Deep YAML, which a parser may take minutes for.
     let deep = "{a: ".repeat(200_000);
     let laws: Vec<_> = (0..4)
-        .map(|_| server.request(Method::POST, "/v1/laws").header("content-type", "application/yaml").body(deep.clone()).send())
+        .map(|_| {
+            server
+                .request(Method::POST, "/v1/laws")
+                .header("content-type", "application/yaml")
+                .body(deep.clone())
+                .send()
+        })
         .map(tokio::spawn)
         .collect();
     tokio::time::sleep(Duration::from_secs(1)).await;

@@ -8,7 +8,12 @@ use super::over_http::{create, upload};
 /// The exit status and the output of a command on the server's store.
 fn on(server: &TestServer, arguments: &[&str], status: i32) -> serde_json::Value {
     let store = server.store_arguments();
-    let all: Vec<&str> = arguments.iter().copied().chain(["--json"]).chain(store.iter().map(String::as_str)).collect();
+    let all: Vec<&str> = arguments
+        .iter()
+        .copied()
+        .chain(["--json"])
+        .chain(store.iter().map(String::as_str))
+        .collect();
     binary::json(&all, status)
 }
 
@@ -16,7 +21,11 @@ async fn kept_up(server: TestServer) {
     create(&server).await;
     let uploaded = upload(&server).await;
     let findings = on(&server, &["fsck"], 0);
-    assert_eq!((findings["clean"].as_bool(), findings["checked"]["trials"].as_u64()), (Some(true), Some(4)), "{findings}");
+    assert_eq!(
+        (findings["clean"].as_bool(), findings["checked"]["trials"].as_u64()),
+        (Some(true), Some(4)),
+        "{findings}"
+    );
     let objects = server.database().folder.path().join("data/objects");
     let orphan = "ab".repeat(32);
     std::fs::create_dir_all(objects.join("ab")).expect("a folder");
@@ -24,7 +33,10 @@ async fn kept_up(server: TestServer) {
     let findings = on(&server, &["fsck"], 1);
     assert_eq!(findings["faults"][0]["check"], "object-hash", "{findings}");
     assert_eq!(on(&server, &["gc"], 0)["removed"].as_array().map(Vec::len), Some(0), "it is young");
-    assert_eq!(on(&server, &["gc", "--grace-h", "0", "--dry-run"], 0)["removed"][0], orphan.as_str());
+    assert_eq!(
+        on(&server, &["gc", "--grace-h", "0", "--dry-run"], 0)["removed"][0],
+        orphan.as_str()
+    );
     assert_eq!(on(&server, &["gc", "--grace-h", "0"], 0)["removed"][0], orphan.as_str());
     assert_eq!(on(&server, &["fsck"], 0)["unreferred"]["objects"], 0);
     let key = uploaded["trials"][0]["sha256"].as_str().expect("a hash");

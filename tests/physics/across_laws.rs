@@ -21,13 +21,23 @@ fn sister(source: &Model) -> Model {
 /// Zigzags by the truth at two samples a second.
 fn zigzags(truth: &Model, law: &Law) -> Vec<Trial> {
     let ship = ready(truth, law);
-    let settings = ManoeuvreSettings { step_s: Some(0.5), duration_s: Some(900.0), ..ManoeuvreSettings::default() };
+    let settings = ManoeuvreSettings {
+        step_s: Some(0.5),
+        duration_s: Some(900.0),
+        ..ManoeuvreSettings::default()
+    };
     let one = |(rudder, switch): (f64, f64)| {
         let track = zigzag(&ship, rudder, switch, &settings).expect("a zigzag").track;
         let columns = RECORDED[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
-        let mut channels: std::collections::BTreeMap<_, _> = columns.map(|&(c, place)| (c, track.column(place))).collect();
+        let mut channels: std::collections::BTreeMap<_, _> =
+            columns.map(|&(c, place)| (c, track.column(place))).collect();
         channels.insert(Channel::N, track.n_rps.clone());
-        Trial { name: format!("zigzag {rudder}/{switch}"), t_s: track.t_s, channels, ..Trial::default() }
+        Trial {
+            name: format!("zigzag {rudder}/{switch}"),
+            t_s: track.t_s,
+            channels,
+            ..Trial::default()
+        }
     };
     [(10.0, 10.0), (-10.0, 10.0), (20.0, 20.0), (-20.0, 20.0)].map(one).to_vec()
 }
@@ -37,8 +47,20 @@ fn refined(source: &Model, own: &Law, law: &Law, trials: &[Trial]) -> Refinement
     let target = zoo.vessel("kvlcc2").expect("in the zoo");
     let trials: Vec<&Trial> = trials.iter().collect();
     let strengths = vec![1.0, 0.1, 1e-2, 1e-3];
-    let settings = Settings { method: Method::Weak, families: vec![Family::Own], strengths, ..Settings::default() };
-    let request = Request { target, source, source_law: Some(own), law, trials: &trials, settings: &settings };
+    let settings = Settings {
+        method: Method::Weak,
+        families: vec![Family::Own],
+        strengths,
+        ..Settings::default()
+    };
+    let request = Request {
+        target,
+        source,
+        source_law: Some(own),
+        law,
+        trials: &trials,
+        settings: &settings,
+    };
     refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -58,14 +80,30 @@ fn an_mmg_source_keeps_the_turn_of_a_polynomial_that_saw_only_zigzags() {
     let (zoo, law) = (Zoo::embedded().unwrap_or_else(|error| panic!("{error}")), "low-speed");
     let law = zoo.law(law).expect("in the zoo");
     let across = refined(&source, &own, law, &trials);
-    let nothing = blank(law, zoo.vessel("kvlcc2").expect("in the zoo"), approach_of(&trials.iter().collect::<Vec<_>>()));
+    let nothing = blank(
+        law,
+        zoo.vessel("kvlcc2").expect("in the zoo"),
+        approach_of(&trials.iter().collect::<Vec<_>>()),
+    );
     let alone = refined(&nothing.unwrap_or_else(|error| panic!("{error}")), law, law, &trials);
     let wanted = diameter(&truth, &own).expect("the truth turns");
-    let off = |refinement: &Refinement| diameter(&refinement.model, law).map_or(f64::INFINITY, |d| (d - wanted).abs());
-    println!("truth {wanted:.3}, with the source off by {:.3}, without by {:.3} lengths", off(&across), off(&alone));
+    let off = |refinement: &Refinement| {
+        diameter(&refinement.model, law).map_or(f64::INFINITY, |d| (d - wanted).abs())
+    };
+    println!(
+        "truth {wanted:.3}, with the source off by {:.3}, without by {:.3} lengths",
+        off(&across),
+        off(&alone)
+    );
     assert!(off(&across) < 0.1 * wanted && off(&across) < 0.5 * off(&alone));
-    assert!(across.held_out.refined["psi"] < across.held_out.source["psi"], "the trials have improved it");
-    let said = across.remarks.iter().find(|remark| remark.contains("the source `kvlcc2/mmg` is of law `mmg`"));
+    assert!(
+        across.held_out.refined["psi"] < across.held_out.source["psi"],
+        "the trials have improved it"
+    );
+    let said = across
+        .remarks
+        .iter()
+        .find(|remark| remark.contains("the source `kvlcc2/mmg` is of law `mmg`"));
     assert!(said.is_some_and(|said| said.contains("low-speed")), "{:?}", across.remarks);
 }
 

@@ -21,12 +21,21 @@ fn trial(name: &str, track: &Trajectory) -> Trial {
 /// Noise-free trials by explicit Euler, for which one-step differences are exact.
 fn trials(model: &Model, law: &sistership_model::Law) -> Vec<Trial> {
     let ship = ready(model, law);
-    let settings =
-        ManoeuvreSettings { step_s: Some(0.25), method: Method::Euler, duration_s: Some(400.0), ..ManoeuvreSettings::default() };
+    let settings = ManoeuvreSettings {
+        step_s: Some(0.25),
+        method: Method::Euler,
+        duration_s: Some(400.0),
+        ..ManoeuvreSettings::default()
+    };
     let zigzags = [(10.0, 10.0), (-20.0, 20.0), (30.0, 10.0)]
         .map(|(rudder, switch)| zigzag(&ship, rudder, switch, &settings).expect("a zigzag").track);
     let turns = [15.0, -30.0].map(|rudder| turn(&ship, rudder, &settings).expect("a turn").track);
-    zigzags.iter().chain(&turns).enumerate().map(|(k, track)| trial(&format!("trial {k}"), track)).collect()
+    zigzags
+        .iter()
+        .chain(&turns)
+        .enumerate()
+        .map(|(k, track)| trial(&format!("trial {k}"), track))
+        .collect()
 }
 
 #[test]
@@ -38,7 +47,10 @@ fn coefficients_are_recovered_from_noise_free_trials() {
         let trials: Vec<&Trial> = trials.iter().collect();
         let mut rng = rand_chacha::ChaCha12Rng::seed_from_u64(7);
         let mut source = truth.clone();
-        source.coefficients.values_mut().for_each(|quantity| quantity.value *= rng.random_range(0.8..1.2));
+        source
+            .coefficients
+            .values_mut()
+            .for_each(|quantity| quantity.value *= rng.random_range(0.8..1.2));
         let settings = Settings {
             ranges: vec![Range { lambda_min: 1e-14, lambda_max: 1e-14, alpha_max: 0.0 }],
             difference_s: Some(0.25),
@@ -46,11 +58,23 @@ fn coefficients_are_recovered_from_noise_free_trials() {
             ..Settings::default()
         };
         let target = zoo.vessel(name).expect("in the zoo");
-        let request = Request { target, source: &source, source_law: None, law: &law, trials: &trials, settings: &settings };
-        let refined = refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let request = Request {
+            target,
+            source: &source,
+            source_law: None,
+            law: &law,
+            trials: &trials,
+            settings: &settings,
+        };
+        let refined =
+            refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{name}: {error}"));
         for linear in ["Y_v", "Y_r", "N_v", "N_r"] {
-            let (found, true_value) = (refined.model.coefficient(linear), truth.coefficient(linear));
-            assert!((found / true_value - 1.0).abs() < 1e-3, "{name} {linear}: {found} against {true_value}");
+            let (found, true_value) =
+                (refined.model.coefficient(linear), truth.coefficient(linear));
+            assert!(
+                (found / true_value - 1.0).abs() < 1e-3,
+                "{name} {linear}: {found} against {true_value}"
+            );
         }
         let (before, after) = (refined.held_out.source["psi"], refined.held_out.refined["psi"]);
         // What remains is the replay's Runge-Kutta against the truth's Euler, not the coefficients.

@@ -32,6 +32,10 @@ proptest! {
 fn a_sign_error_is_reported_with_time_and_reason() {
     let (mut model, law) = model("mariner");
     model.coefficients.get_mut("N_r").expect("a coefficient").value *= -5.0;
-    let stopped = turn(&ready(&model, &law), 35.0, &ManoeuvreSettings::default()).expect_err("it cannot sail so");
-    assert!(stopped.to_string().contains("yaw rate") || stopped.to_string().contains("speed"), "{stopped}");
+    let stopped = turn(&ready(&model, &law), 35.0, &ManoeuvreSettings::default())
+        .expect_err("it cannot sail so");
+    assert!(
+        stopped.to_string().contains("yaw rate") || stopped.to_string().contains("speed"),
+        "{stopped}"
+    );
 }

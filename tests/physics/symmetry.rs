@@ -14,13 +14,17 @@ fn symmetric(mut model: Model, law: &Law) -> Model {
     let odd = |name: &CoefficientName| {
         name.factors
             .iter()
-            .filter(|f| !f.absolute && matches!(f.symbol.as_str(), "v" | "r" | "phi" | "p" | "delta" | "beta"))
+            .filter(|f| {
+                !f.absolute
+                    && matches!(f.symbol.as_str(), "v" | "r" | "phi" | "p" | "delta" | "beta")
+            })
             .count()
             % 2
             == 1
     };
     model.coefficients.retain(|name, _| {
-        CoefficientName::parse(name, &law.extra_factors()).is_ok_and(|parsed| (parsed.axis != Axis::X) == odd(&parsed))
+        CoefficientName::parse(name, &law.extra_factors())
+            .is_ok_and(|parsed| (parsed.axis != Axis::X) == odd(&parsed))
     });
     for (name, twin) in law.mirrors.iter().filter(|(name, twin)| name != twin) {
         let value = model.parameters.get(twin).map_or(0.0, |quantity| quantity.value);

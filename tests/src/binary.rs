@@ -18,21 +18,37 @@ pub fn path() -> &'static PathBuf {
 fn build() -> PathBuf {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
-    command.args(["test", "--no-run", "--workspace", "--test", "program", "--message-format", "json"]);
+    command.args([
+        "test",
+        "--no-run",
+        "--workspace",
+        "--test",
+        "program",
+        "--message-format",
+        "json",
+    ]);
     if !cfg!(debug_assertions) {
         command.arg("--release");
     }
     // Build scripts watch what cargo tells a test about its own package, and would run again because of it.
-    let of_this_test = |name: &str| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_");
+    let of_this_test =
+        |name: &str| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_");
     for (name, _) in std::env::vars().filter(|(name, _)| of_this_test(name)) {
         command.env_remove(name);
     }
-    let built = command.current_dir(env!("CARGO_MANIFEST_DIR")).stderr(Stdio::inherit()).output().expect("cargo runs");
+    let built = command
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .stderr(Stdio::inherit())
+        .output()
+        .expect("cargo runs");
     assert!(built.status.success(), "the program does not build");
     let messages = String::from_utf8_lossy(&built.stdout);
-    let executables = messages.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
+    let executables =
+        messages.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
     let programs = executables.filter(|message| message["target"]["kind"][0] == "bin");
-    let path = programs.filter_map(|message| message["executable"].as_str().map(PathBuf::from)).next_back();
+    let path = programs
+        .filter_map(|message| message["executable"].as_str().map(PathBuf::from))
+        .next_back();
     path.expect("cargo names the program it built")
 }
 
@@ -66,9 +82,14 @@ pub fn json(arguments: &[&str], status: i32) -> serde_json::Value {
 ///
 /// # Panics
 /// As [`json`].
-pub fn json_with(arguments: &[&str], environment: &[(&str, &str)], status: i32) -> serde_json::Value {
+pub fn json_with(
+    arguments: &[&str],
+    environment: &[(&str, &str)],
+    status: i32,
+) -> serde_json::Value {
     let output = run_with(arguments, environment);
-    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    let (out, err) =
+        (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert_eq!(output.status.code(), Some(status), "{arguments:?}: {err}");
     serde_json::from_str(&out).unwrap_or_else(|error| panic!("{arguments:?}: {error}: {out}"))
 }

@@ -13,13 +13,18 @@ pub const MANIFEST: &str = include_str!("../data/esso-osaka.yaml");
 /// # Panics
 /// Where a file cannot be read: the measured data must pass the door.
 pub fn trials(folder: &Path, kinds: &[&str]) -> Vec<Trial> {
-    let manifest = read_manifest("esso-osaka.yaml", MANIFEST).unwrap_or_else(|error| panic!("{error}"));
-    let wanted = manifest.trials.iter().filter(|trial| kinds.iter().any(|kind| trial.file.starts_with(kind)));
+    let manifest =
+        read_manifest("esso-osaka.yaml", MANIFEST).unwrap_or_else(|error| panic!("{error}"));
+    let wanted = manifest
+        .trials
+        .iter()
+        .filter(|trial| kinds.iter().any(|kind| trial.file.starts_with(kind)));
     wanted
         .map(|entry| {
-            let source =
-                Source::open(&entry.file, &folder.join(&entry.file)).unwrap_or_else(|error| panic!("{}: {error}", entry.file));
-            read_trial(source, &Mapping::of(&manifest, entry)).unwrap_or_else(|refusal| panic!("{refusal}"))
+            let source = Source::open(&entry.file, &folder.join(&entry.file))
+                .unwrap_or_else(|error| panic!("{}: {error}", entry.file));
+            read_trial(source, &Mapping::of(&manifest, entry))
+                .unwrap_or_else(|refusal| panic!("{refusal}"))
         })
         .collect()
 }

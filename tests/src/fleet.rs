@@ -76,7 +76,9 @@ impl Yard {
 
     /// The Mariner's particulars at another scale, without its models.
     fn vessel(&self, name: &str, scale: f64) -> Vessel {
-        let of = |particular: &str| self.vessel.particular(particular).expect("a particular of the Mariner");
+        let of = |particular: &str| {
+            self.vessel.particular(particular).expect("a particular of the Mariner")
+        };
         let text = format!(
             "kind: vessel\nname: {name}\ntitle: {name}, made up\ncategory: {}\ntype: cargo ship\n\
              sources:\n  made-up: {{ citation: \"The Mariner at scale {scale:.4}\" }}\n\
@@ -93,8 +95,18 @@ impl Yard {
         Vessel::parse(name, &text).unwrap_or_else(|error| panic!("{error}"))
     }
 
-    fn trial(&self, name: &str, ship: &Ship, index: usize, rng: &mut ChaCha12Rng) -> (NewTrial, Bytes) {
-        let settings = ManoeuvreSettings { step_s: Some(1.0), duration_s: Some(DURATION_S), ..ManoeuvreSettings::default() };
+    fn trial(
+        &self,
+        name: &str,
+        ship: &Ship,
+        index: usize,
+        rng: &mut ChaCha12Rng,
+    ) -> (NewTrial, Bytes) {
+        let settings = ManoeuvreSettings {
+            step_s: Some(1.0),
+            duration_s: Some(DURATION_S),
+            ..ManoeuvreSettings::default()
+        };
         let (what, track) = match index % 4 {
             0 => ("zigzag 20/20", zigzag(ship, 20.0, 20.0, &settings).map(|zigzag| zigzag.track)),
             1 => ("turn 35", turn(ship, 35.0, &settings).map(|turn| turn.track)),
@@ -102,7 +114,9 @@ impl Yard {
             _ => ("turn -20", turn(ship, -20.0, &settings).map(|turn| turn.track)),
         };
         let track = track.unwrap_or_else(|stopped| panic!("{name} {stopped}"));
-        let samples = Bytes::from(to_parquet(&recorded(&track, &format!("{what} {index}"), rng)).expect("samples"));
+        let samples = Bytes::from(
+            to_parquet(&recorded(&track, &format!("{what} {index}"), rng)).expect("samples"),
+        );
         let key = sistership_store::sha256_hex(&samples);
         let new = NewTrial {
             ship: name.to_owned(),
@@ -123,11 +137,19 @@ impl Yard {
     ///
     /// # Panics
     /// Where the store does not take them.
-    pub async fn launch(&self, store: &Store, objects: &Objects, numbers: std::ops::Range<usize>, trials: usize) {
+    pub async fn launch(
+        &self,
+        store: &Store,
+        objects: &Objects,
+        numbers: std::ops::Range<usize>,
+        trials: usize,
+    ) {
         let numbers: Vec<usize> = numbers.collect();
         for some in numbers.chunks(64) {
-            let made: Vec<Made> = some.par_iter().map(|&number| self.build(number, trials)).collect();
-            let mut kept: JoinSet<()> = made.into_iter().map(|made| keep(store.clone(), objects.clone(), made)).collect();
+            let made: Vec<Made> =
+                some.par_iter().map(|&number| self.build(number, trials)).collect();
+            let mut kept: JoinSet<()> =
+                made.into_iter().map(|made| keep(store.clone(), objects.clone(), made)).collect();
             while let Some(kept) = kept.join_next().await {
                 kept.expect("a kept ship");
             }
@@ -157,13 +179,18 @@ pub fn name(number: usize) -> String {
 
 fn recorded(track: &Trajectory, name: &str, rng: &mut ChaCha12Rng) -> Trial {
     let every = |column: Vec<f64>| column.into_iter().step_by(INTERVAL_S).collect::<Vec<f64>>();
-    let mut channels: std::collections::BTreeMap<Channel, Vec<f64>> =
-        RECORDED[..6].iter().map(|&(channel, index)| (channel, every(track.column(index)))).collect();
+    let mut channels: std::collections::BTreeMap<Channel, Vec<f64>> = RECORDED[..6]
+        .iter()
+        .map(|&(channel, index)| (channel, every(track.column(index))))
+        .collect();
     channels.insert(Channel::Delta, every(track.column(at::DELTA)));
     for (channel, deviation) in NOISE {
         let shaken = channels.get_mut(&channel).expect("a recorded channel");
         let normals = StandardNormal.sample_iter(&mut *rng);
-        shaken.iter_mut().zip(normals).for_each(|(value, normal): (_, f64)| *value += deviation * normal);
+        shaken
+            .iter_mut()
+            .zip(normals)
+            .for_each(|(value, normal): (_, f64)| *value += deviation * normal);
     }
     Trial { name: name.to_owned(), t_s: every(track.t_s.clone()), channels, ..Trial::default() }
 }

@@ -35,7 +35,11 @@ pub struct Bucket {
 impl Bucket {
     /// What is below a prefix.
     pub fn of(s3: &TestS3, prefix: &str) -> Self {
-        let arguments = s3.settings(prefix).into_iter().flat_map(|(flag, value)| [flag.to_owned(), value]).collect();
+        let arguments = s3
+            .settings(prefix)
+            .into_iter()
+            .flat_map(|(flag, value)| [flag.to_owned(), value])
+            .collect();
         Self { arguments, environment: s3.credentials().to_vec() }
     }
 }
@@ -55,7 +59,8 @@ impl TestServer {
     pub async fn on(database: TestDatabase, extra: &[&str]) -> Self {
         let data = database.folder.path().join("data");
         let extra: Vec<String> = extra.iter().map(|&argument| argument.to_owned()).collect();
-        let (process, url) = start(&database.url, &data, &extra, None, Stdio::inherit(), Some("warn"));
+        let (process, url) =
+            start(&database.url, &data, &extra, None, Stdio::inherit(), Some("warn"));
         let server = Self { process, url, client: client(), database, data, extra, bucket: None };
         server.until_ready().await;
         server
@@ -64,7 +69,8 @@ impl TestServer {
     /// On a database, with its samples in a bucket.
     pub async fn with_bucket(database: TestDatabase, bucket: &Bucket) -> Self {
         let data = database.folder.path().join("data");
-        let (process, url) = start(&database.url, &data, &[], Some(bucket), Stdio::inherit(), Some("warn"));
+        let (process, url) =
+            start(&database.url, &data, &[], Some(bucket), Stdio::inherit(), Some("warn"));
         let (extra, bucket) = (Vec::new(), Some(bucket.clone()));
         let server = Self { process, url, client: client(), database, data, extra, bucket };
         server.until_ready().await;
@@ -108,7 +114,14 @@ impl TestServer {
     /// Starts it again on the same database and folder.
     pub async fn restart(&mut self) {
         let bucket = self.bucket.as_ref();
-        (self.process, self.url) = start(&self.database.url, &self.data, &self.extra, bucket, Stdio::inherit(), Some("warn"));
+        (self.process, self.url) = start(
+            &self.database.url,
+            &self.data,
+            &self.extra,
+            bucket,
+            Stdio::inherit(),
+            Some("warn"),
+        );
         self.until_ready().await;
     }
 
@@ -134,12 +147,23 @@ impl TestServer {
 
     /// Arguments that open its store from the command line.
     pub fn store_arguments(&self) -> [String; 4] {
-        ["--database-url".into(), self.database.url.clone(), "--data-dir".into(), self.data.display().to_string()]
+        [
+            "--database-url".into(),
+            self.database.url.clone(),
+            "--data-dir".into(),
+            self.data.display().to_string(),
+        ]
     }
 
     async fn until_ready(&self) {
         for _ in 0..100 {
-            if self.client.get(format!("{}/readyz", self.url)).send().await.is_ok_and(|response| response.status().is_success()) {
+            if self
+                .client
+                .get(format!("{}/readyz", self.url))
+                .send()
+                .await
+                .is_ok_and(|response| response.status().is_success())
+            {
                 return;
             }
             tokio::time::sleep(Duration::from_millis(100)).await;
@@ -164,9 +188,16 @@ impl TestServer {
     ///
     /// # Panics
     /// Where there is none.
-    pub async fn send(&self, method: Method, path: &str, body: &Value, headers: &[(&str, &str)]) -> (u16, Value) {
+    pub async fn send(
+        &self,
+        method: Method,
+        path: &str,
+        body: &Value,
+        headers: &[(&str, &str)],
+    ) -> (u16, Value) {
         let request = self.request(method, path).json(body);
-        let request = headers.iter().fold(request, |request, (name, value)| request.header(*name, *value));
+        let request =
+            headers.iter().fold(request, |request, (name, value)| request.header(*name, *value));
         json(request.send().await.expect("an answer")).await
     }
 
@@ -198,7 +229,8 @@ pub fn memory_mb(process: u32) -> (u64, u64) {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     let of = |name: &str| {
         let line = status.lines().find_map(|line| line.strip_prefix(name)).unwrap_or_default();
-        line.split_whitespace().next().and_then(|kib| kib.parse::<u64>().ok()).unwrap_or_default() / 1024
+        line.split_whitespace().next().and_then(|kib| kib.parse::<u64>().ok()).unwrap_or_default()
+            / 1024
     };
     (of("VmHWM:"), of("VmRSS:"))
 }

@@ -13,8 +13,12 @@ pub fn of(document: &Value) -> String {
 
 fn walk(value: &Value, path: &str, lines: &mut BTreeSet<String>) {
     match value {
-        Value::Object(fields) => fields.iter().for_each(|(key, value)| walk(value, &format!("{path}.{key}"), lines)),
-        Value::Array(items) => items.iter().for_each(|item| walk(item, &format!("{path}[]"), lines)),
+        Value::Object(fields) => {
+            fields.iter().for_each(|(key, value)| walk(value, &format!("{path}.{key}"), lines))
+        }
+        Value::Array(items) => {
+            items.iter().for_each(|item| walk(item, &format!("{path}[]"), lines))
+        }
         Value::Null => drop(lines.insert(format!("{path}: null"))),
         Value::Bool(_) => drop(lines.insert(format!("{path}: boolean"))),
         Value::Number(_) => drop(lines.insert(format!("{path}: number"))),

@@ -22,14 +22,16 @@ pub fn data(relative: &str) -> Option<PathBuf> {
 /// # Panics
 /// Where the file cannot be read: these are reference files.
 pub fn columns(path: &std::path::Path) -> std::collections::BTreeMap<String, Vec<f64>> {
-    let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let text =
+        std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let mut lines = text.lines();
     let names: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
     let mut columns: std::collections::BTreeMap<String, Vec<f64>> =
         names.iter().map(|name| ((*name).to_owned(), Vec::new())).collect();
     for line in lines.filter(|line| !line.is_empty()) {
         for (name, cell) in names.iter().zip(line.split(',')) {
-            let value = cell.parse().unwrap_or_else(|error| panic!("{}: {cell}: {error}", path.display()));
+            let value =
+                cell.parse().unwrap_or_else(|error| panic!("{}: {cell}: {error}", path.display()));
             if let Some(column) = columns.get_mut(*name) {
                 column.push(value);
             }

@@ -42,7 +42,14 @@ impl Default for Trouble {
 ///
 /// # Panics
 /// The ship leaves the physical range.
-pub fn trial(ship: &Ship, name: &str, orders: Orders, lengths: f64, trouble: &Trouble, rng: &mut ChaCha12Rng) -> Trial {
+pub fn trial(
+    ship: &Ship,
+    name: &str,
+    orders: Orders,
+    lengths: f64,
+    trouble: &Trouble,
+    rng: &mut ChaCha12Rng,
+) -> Trial {
     let time_s = ship.lpp_m() / ship.approach_speed_m_s();
     let step_s = time_s / 100.0;
     let mut pilot = Pilot { orders, reversals: 0 };
@@ -55,11 +62,16 @@ pub fn trial(ship: &Ship, name: &str, orders: Orders, lengths: f64, trouble: &Tr
         if k.is_multiple_of(5) {
             track.push(k as f64 * step_s, state, n_rps);
         }
-        ship.envelope().check(k as f64 * step_s, &state).unwrap_or_else(|stopped| panic!("{name}: {stopped}"));
+        ship.envelope()
+            .check(k as f64 * step_s, &state)
+            .unwrap_or_else(|stopped| panic!("{name}: {stopped}"));
         let order = Order { delta_rad: pilot.order_deg(&state).to_radians(), n_rps };
         let pushed = push(ship, &gusts, trouble);
-        state = Method::Rk4.step(&state, step_s, |_, s| ship.rate_under(s, order, step_s, &mut work) + pushed);
-        gusts = gusts.map(|gust| kept * gust + (1.0 - kept * kept).sqrt() * rng.sample::<f64, _>(StandardNormal));
+        state = Method::Rk4
+            .step(&state, step_s, |_, s| ship.rate_under(s, order, step_s, &mut work) + pushed);
+        gusts = gusts.map(|gust| {
+            kept * gust + (1.0 - kept * kept).sqrt() * rng.sample::<f64, _>(StandardNormal)
+        });
     }
     measured(ship, name, &track, trouble, rng)
 }
@@ -69,14 +81,22 @@ fn push(ship: &Ship, gusts: &[f64; 3], trouble: &Trouble) -> StateVector {
     let (length, speed) = (ship.lpp_m(), ship.approach_speed_m_s());
     let unit = trouble.gusts * speed * speed / length;
     let mut rate = StateVector::zeros();
-    for (place, (gust, unit)) in [at::U, at::V, at::R].into_iter().zip(gusts.iter().zip([unit, unit, unit / length])) {
+    for (place, (gust, unit)) in
+        [at::U, at::V, at::R].into_iter().zip(gusts.iter().zip([unit, unit, unit / length]))
+    {
         rate[place] = gust * unit;
     }
     rate
 }
 
 /// What instruments make of a track.
-fn measured(ship: &Ship, name: &str, track: &Trajectory, trouble: &Trouble, rng: &mut ChaCha12Rng) -> Trial {
+fn measured(
+    ship: &Ship,
+    name: &str,
+    track: &Trajectory,
+    trouble: &Trouble,
+    rng: &mut ChaCha12Rng,
+) -> Trial {
     let (length, speed) = (ship.lpp_m(), ship.approach_speed_m_s());
     let deviation = |channel: Channel| match channel {
         Channel::U | Channel::V => trouble.scatter * speed,
@@ -105,7 +125,9 @@ impl Pilot {
             let Orders::Turn(rudder_deg) = self.orders else { return 0.0 };
             return rudder_deg;
         };
-        let side = |reversals: usize| rudder_deg.signum() * if reversals.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let side = |reversals: usize| {
+            rudder_deg.signum() * if reversals.is_multiple_of(2) { 1.0 } else { -1.0 }
+        };
         if side(self.reversals) * state[at::PSI].to_degrees() >= switch_deg {
             self.reversals += 1;
         }
@@ -118,11 +140,15 @@ impl Pilot {
 pub fn relative(model: &Model, law: &Law, deviation: f64, rng: &mut ChaCha12Rng) -> Model {
     loop {
         let mut other = model.clone();
-        other.coefficients.values_mut().for_each(|q| q.value *= 1.0 + deviation * rng.sample::<f64, _>(StandardNormal));
+        other
+            .coefficients
+            .values_mut()
+            .for_each(|q| q.value *= 1.0 + deviation * rng.sample::<f64, _>(StandardNormal));
         let settings = ManoeuvreSettings::default();
         let Ok(ship) = Ship::new(&other, law) else { continue };
         let sailed = standard(&ship, &settings);
-        let turned = sailed.turns.len() == 2 && sailed.turns.iter().all(|turn| turn.tactical_diameter_m.is_some());
+        let turned = sailed.turns.len() == 2
+            && sailed.turns.iter().all(|turn| turn.tactical_diameter_m.is_some());
         if sailed.failures.is_empty() && turned {
             return other;
         }

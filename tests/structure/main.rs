@@ -20,8 +20,20 @@ const ALLOWED: [(&str, &[&str]); 13] = [
     ("report", &["model", "dynamics", "estimate", "diagnose"]),
     ("pipeline", &["model", "dynamics", "trials", "estimate", "diagnose", "fleet", "store"]),
     ("listen", &[]),
-    ("server", &["model", "dynamics", "trials", "estimate", "diagnose", "fleet", "store", "report", "pipeline", "listen"]),
-    ("cli", &["model", "dynamics", "trials", "estimate", "diagnose", "store", "report", "pipeline", "server"]),
+    (
+        "server",
+        &[
+            "model", "dynamics", "trials", "estimate", "diagnose", "fleet", "store", "report",
+            "pipeline", "listen",
+        ],
+    ),
+    (
+        "cli",
+        &[
+            "model", "dynamics", "trials", "estimate", "diagnose", "store", "report", "pipeline",
+            "server",
+        ],
+    ),
 ];
 const ALONE: [(&str, &[&str]); 2] = [("sqlx", &["store"]), ("axum", &["server", "listen"])];
 
@@ -34,9 +46,19 @@ fn folder(name: &str) -> PathBuf {
 fn dependencies() -> BTreeMap<&'static str, Vec<String>> {
     let of = |name: &str| {
         let path = folder(name).join("Cargo.toml");
-        let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        let section = text.split("\n[").find(|part| part.starts_with("dependencies]")).unwrap_or_default().to_owned();
-        section.lines().skip(1).filter_map(|line| line.split(['.', ' ', '=']).next()).map(str::to_owned).collect::<Vec<_>>()
+        let text = std::fs::read_to_string(&path)
+            .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let section = text
+            .split("\n[")
+            .find(|part| part.starts_with("dependencies]"))
+            .unwrap_or_default()
+            .to_owned();
+        section
+            .lines()
+            .skip(1)
+            .filter_map(|line| line.split(['.', ' ', '=']).next())
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
     };
     ALLOWED.iter().map(|(name, _)| (*name, of(name))).collect()
 }
@@ -45,7 +67,9 @@ fn dependencies() -> BTreeMap<&'static str, Vec<String>> {
 fn dependencies_run_one_way() {
     let found = dependencies();
     for (name, allowed) in ALLOWED {
-        for other in found[name].iter().filter_map(|dependency| dependency.strip_prefix("sistership-")) {
+        for other in
+            found[name].iter().filter_map(|dependency| dependency.strip_prefix("sistership-"))
+        {
             assert!(allowed.contains(&other), "crates/{name} may not use crates/{other}");
         }
     }
@@ -55,7 +79,10 @@ fn dependencies_run_one_way() {
 fn the_database_and_the_web_are_named_where_they_are_at_home() {
     for (name, dependencies) in dependencies() {
         for (outside, only) in ALONE {
-            assert!(only.contains(&name) || !dependencies.iter().any(|d| d == outside), "crates/{name} names {outside}");
+            assert!(
+                only.contains(&name) || !dependencies.iter().any(|d| d == outside),
+                "crates/{name} names {outside}"
+            );
         }
     }
 }
@@ -69,7 +96,11 @@ fn no_modules_of_a_crate_refer_to_each_other_in_a_circle() {
             let mut edges = Vec::new();
             for module in &circle {
                 let inside = references[module].iter().filter(|target| circle.contains(target));
-                edges.extend(inside.map(|target| format!("    {} -> {}", module.join("::"), target.join("::"))));
+                edges.extend(
+                    inside.map(|target| {
+                        format!("    {} -> {}", module.join("::"), target.join("::"))
+                    }),
+                );
             }
             found.push(format!("crates/{name}:\n{}", edges.join("\n")));
         }
@@ -93,10 +124,16 @@ fn the_fields_own_words_are_used() {
     let numerics = ["model", "dynamics", "regression", "estimate", "diagnose"];
     let mut found = Vec::new();
     for (path, text) in numerics.iter().flat_map(|name| modules::texts(&folder(name).join("src"))) {
-        for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.contains("serde(rename")) {
+        for (number, line) in
+            text.lines().enumerate().filter(|(_, line)| !line.contains("serde(rename"))
+        {
             let words = line.split(|c: char| !c.is_ascii_alphabetic()).map(str::to_ascii_lowercase);
-            let wrong = words.filter_map(|word| FORBIDDEN.iter().find(|(forbidden, _)| word.trim_end_matches('s') == *forbidden));
-            found.extend(wrong.map(|(word, better)| format!("{}:{}: `{word}`: say {better}", path.display(), number + 1)));
+            let wrong = words.filter_map(|word| {
+                FORBIDDEN.iter().find(|(forbidden, _)| word.trim_end_matches('s') == *forbidden)
+            });
+            found.extend(wrong.map(|(word, better)| {
+                format!("{}:{}: `{word}`: say {better}", path.display(), number + 1)
+            }));
         }
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
@@ -108,7 +145,10 @@ const LINES_OF_A_CRATE: usize = 9000;
 #[test]
 fn no_crate_is_too_large() {
     for (name, _) in ALLOWED {
-        let lines: usize = modules::texts(&folder(name).join("src")).iter().map(|(_, text)| text.lines().count()).sum();
+        let lines: usize = modules::texts(&folder(name).join("src"))
+            .iter()
+            .map(|(_, text)| text.lines().count())
+            .sum();
         assert!(lines <= LINES_OF_A_CRATE, "crates/{name} has {lines} lines without its tests");
     }
 }

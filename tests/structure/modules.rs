@@ -27,17 +27,27 @@ struct Source {
 /// The references between the modules of a crate, tests left out.
 pub fn references(root: &Path) -> References {
     let sources = read(root);
-    let known = |module: &Module| sources.get(module).map(|source| of_file(&sources, module, source));
+    let known =
+        |module: &Module| sources.get(module).map(|source| of_file(&sources, module, source));
     sources.keys().filter_map(|module| Some((module.clone(), known(module)?))).collect()
 }
 
-fn of_file(sources: &BTreeMap<Module, Source>, module: &Module, source: &Source) -> BTreeSet<Module> {
+fn of_file(
+    sources: &BTreeMap<Module, Source>,
+    module: &Module,
+    source: &Source,
+) -> BTreeSet<Module> {
     let all = source.paths.iter().filter_map(|path| definition(sources, module, path, 0));
     all.filter(|target| target != module).collect()
 }
 
 /// The module that defines what a path, as written in `module`, leads to.
-fn definition(sources: &BTreeMap<Module, Source>, module: &Module, path: &[String], depth: usize) -> Option<Module> {
+fn definition(
+    sources: &BTreeMap<Module, Source>,
+    module: &Module,
+    path: &[String],
+    depth: usize,
+) -> Option<Module> {
     const HANDED_ON_AT_MOST: usize = 8;
     let (mut at, mut rest) = begin(sources, module, path)?;
     while let Some((name, after)) = rest.split_first() {
@@ -48,14 +58,20 @@ fn definition(sources: &BTreeMap<Module, Source>, module: &Module, path: &[Strin
         }
         let source = sources.get(&at)?;
         let from = source.handed_on.iter().find(|(handed, _)| handed == name).map(|(_, from)| from);
-        let further = from.filter(|_| depth < HANDED_ON_AT_MOST).and_then(|from| definition(sources, &at, from, depth + 1));
+        let further = from
+            .filter(|_| depth < HANDED_ON_AT_MOST)
+            .and_then(|from| definition(sources, &at, from, depth + 1));
         return Some(further.unwrap_or(at));
     }
     Some(at)
 }
 
 /// Where a path begins: `crate`, `super`, `self` or a module declared here; nothing for other crates and local names.
-fn begin<'a>(sources: &BTreeMap<Module, Source>, module: &Module, path: &'a [String]) -> Option<(Module, &'a [String])> {
+fn begin<'a>(
+    sources: &BTreeMap<Module, Source>,
+    module: &Module,
+    path: &'a [String],
+) -> Option<(Module, &'a [String])> {
     let ups = path.iter().take_while(|name| *name == "super").count();
     match path.first()?.as_str() {
         "crate" => Some((Module::new(), &path[1..])),
@@ -84,7 +100,9 @@ fn files(root: &Path) -> Vec<(Module, PathBuf)> {
     let mut files = Vec::new();
     let mut open = vec![root.to_owned()];
     while let Some(folder) = open.pop() {
-        for entry in std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
+        for entry in std::fs::read_dir(&folder)
+            .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
+        {
             let path = entry.expect("a listed file").path();
             if path.is_dir() {
                 open.push(path);
@@ -102,7 +120,8 @@ fn text(path: &Path) -> String {
 
 fn module_of(root: &Path, path: &Path) -> Option<Module> {
     let inside = path.strip_prefix(root).ok()?.with_extension("");
-    let mut module: Module = inside.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+    let mut module: Module =
+        inside.iter().map(|part| part.to_string_lossy().into_owned()).collect();
     if path.extension()? != "rs" {
         return None;
     }
@@ -114,11 +133,14 @@ fn module_of(root: &Path, path: &Path) -> Option<Module> {
 
 /// Tests may look at anything.
 fn is_test(module: &Module) -> bool {
-    module.iter().any(|part| ["tests", "testing", "journey"].contains(&part.as_str()) || part.ends_with("_tests"))
+    module.iter().any(|part| {
+        ["tests", "testing", "journey"].contains(&part.as_str()) || part.ends_with("_tests")
+    })
 }
 
 fn source(path: &Path) -> Source {
-    let file = syn::parse_file(&text(path)).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let file =
+        syn::parse_file(&text(path)).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let mut source = Source::default();
     source.visit_file(&file);
     source
@@ -126,7 +148,9 @@ fn source(path: &Path) -> Source {
 
 fn only_for_tests(attributes: &[syn::Attribute]) -> bool {
     let says_test = |attribute: &syn::Attribute| match &attribute.meta {
-        syn::Meta::List(list) => list.path.is_ident("cfg") && list.tokens.to_string().contains("test"),
+        syn::Meta::List(list) => {
+            list.path.is_ident("cfg") && list.tokens.to_string().contains("test")
+        }
         _ => false,
     };
     attributes.iter().any(says_test)
@@ -214,7 +238,8 @@ impl Source {
 
 /// The paths of a `use`, with the name that each is known by.
 fn leaves(tree: &syn::UseTree, before: &mut Vec<String>) -> Vec<(Vec<String>, String)> {
-    let with = |name: &syn::Ident| before.iter().cloned().chain([name.to_string()]).collect::<Vec<_>>();
+    let with =
+        |name: &syn::Ident| before.iter().cloned().chain([name.to_string()]).collect::<Vec<_>>();
     match tree {
         syn::UseTree::Name(leaf) if leaf.ident == "self" => {
             vec![(before.clone(), before.last().cloned().unwrap_or_default())]
@@ -222,7 +247,9 @@ fn leaves(tree: &syn::UseTree, before: &mut Vec<String>) -> Vec<(Vec<String>, St
         syn::UseTree::Name(leaf) => vec![(with(&leaf.ident), leaf.ident.to_string())],
         syn::UseTree::Rename(leaf) => vec![(with(&leaf.ident), leaf.rename.to_string())],
         syn::UseTree::Glob(_) => vec![(before.clone(), "*".to_owned())],
-        syn::UseTree::Group(group) => group.items.iter().flat_map(|item| leaves(item, before)).collect(),
+        syn::UseTree::Group(group) => {
+            group.items.iter().flat_map(|item| leaves(item, before)).collect()
+        }
         syn::UseTree::Path(path) => {
             before.push(path.ident.to_string());
             let found = leaves(&path.tree, before);

@@ -104,9 +104,15 @@ fn the_general_polynomial_sails() {
     let mut zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
     zoo.add_vessel("polynomial-ship.yaml", POLYNOMIAL).unwrap_or_else(|error| panic!("{error}"));
     let model = zoo.model("polynomial-ship").unwrap_or_else(|error| panic!("{error}"));
-    let ship = Ship::new(&model, zoo.law(&model.law).expect("in the zoo")).unwrap_or_else(|error| panic!("{error}"));
-    let sailed = turn(&ship, 20.0, &ManoeuvreSettings::default()).unwrap_or_else(|stopped| panic!("{stopped}"));
-    assert!(sailed.metrics.tactical_diameter_m.is_some_and(|m| m > 120.0 && m < 2000.0), "{:?}", sailed.metrics);
+    let ship = Ship::new(&model, zoo.law(&model.law).expect("in the zoo"))
+        .unwrap_or_else(|error| panic!("{error}"));
+    let sailed = turn(&ship, 20.0, &ManoeuvreSettings::default())
+        .unwrap_or_else(|stopped| panic!("{stopped}"));
+    assert!(
+        sailed.metrics.tactical_diameter_m.is_some_and(|m| m > 120.0 && m < 2000.0),
+        "{:?}",
+        sailed.metrics
+    );
     assert!(sailed.metrics.speed_loss_m_s > 0.0);
 }
 
@@ -118,14 +124,19 @@ fn a_new_law_vessel_and_coefficient_set_are_files() {
     zoo.add_vessel("little-sister.yaml", SISTER).unwrap_or_else(|error| panic!("{error}"));
     let rate = |name: &str| {
         let model = zoo.model(name).unwrap_or_else(|error| panic!("{error}"));
-        let ship = Ship::new(&model, zoo.law(&model.law).expect("added")).unwrap_or_else(|error| panic!("{error}"));
-        let sailed = turn(&ship, 20.0, &ManoeuvreSettings::default()).unwrap_or_else(|stopped| panic!("{name}: {stopped}"));
+        let ship = Ship::new(&model, zoo.law(&model.law).expect("added"))
+            .unwrap_or_else(|error| panic!("{error}"));
+        let sailed = turn(&ship, 20.0, &ManoeuvreSettings::default())
+            .unwrap_or_else(|stopped| panic!("{name}: {stopped}"));
         sailed.track.last().expect("a state")[sistership_dynamics::state::at::R]
     };
     // Nomoto: the steady yaw rate is K delta, here 0.6/20 and 1.2/20 of 20 deg.
     assert!((rate("barge/slow") - 0.03 * 20_f64.to_radians()).abs() < 1e-4);
     assert!((rate("barge/quick") - 0.06 * 20_f64.to_radians()).abs() < 1e-4);
-    assert!(rate("little-sister") > 0.0, "positive rudder turns to starboard whatever the source counts");
+    assert!(
+        rate("little-sister") > 0.0,
+        "positive rudder turns to starboard whatever the source counts"
+    );
 }
 
 /// The last file that the README of the effects shows.
@@ -140,12 +151,19 @@ fn the_effect_that_the_readme_shows_reads() {
     let mut zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
     assert!(zoo.effect("compass-offset").is_none(), "the example is not in the library");
     let text = effect_of_the_readme();
-    let added = zoo.add_effect("compass-offset.yaml", text).unwrap_or_else(|error| panic!("{error}"));
+    let added =
+        zoo.add_effect("compass-offset.yaml", text).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(zoo.effect("compass-offset"), Some(&added));
     assert!(added.forms[0].measures.contains_key(&Channel::Psi));
     let wrong = text.replace("psi + offset_rad", "psi + offset_rad*u");
-    let refused = zoo.add_effect("compass-offset.yaml", &wrong).expect_err("a heading has no speed").to_string();
-    assert!(refused.starts_with("compass-offset.yaml:19: forms.constant.measures.psi"), "{refused}");
+    let refused = zoo
+        .add_effect("compass-offset.yaml", &wrong)
+        .expect_err("a heading has no speed")
+        .to_string();
+    assert!(
+        refused.starts_with("compass-offset.yaml:19: forms.constant.measures.psi"),
+        "{refused}"
+    );
 }
 
 #[test]

@@ -15,13 +15,19 @@ fn every_model_sails_the_standard_manoeuvres() {
     let zoo = zoo();
     for vessel in zoo.vessels() {
         for file in &vessel.file.models {
-            let model = zoo.published(vessel, Some(&file.name)).unwrap_or_else(|error| panic!("{error}"));
-            let ship = Ship::new(&model, zoo.law(&model.law).expect("checked")).unwrap_or_else(|error| panic!("{error}"));
+            let model =
+                zoo.published(vessel, Some(&file.name)).unwrap_or_else(|error| panic!("{error}"));
+            let ship = Ship::new(&model, zoo.law(&model.law).expect("checked"))
+                .unwrap_or_else(|error| panic!("{error}"));
             let sailed = standard(&ship, &ManoeuvreSettings::default());
             assert!(sailed.failures.is_empty(), "{}: {:?}", model.name, sailed.failures);
             let passed = sailed.imo.iter().filter(|criterion| criterion.pass == Some(true)).count();
             println!("{:<28} {passed} of {} IMO criteria", model.name, sailed.imo.len());
-            assert!(sailed.turns.iter().all(|turn| turn.tactical_diameter_m.is_some()), "{} does not turn", model.name);
+            assert!(
+                sailed.turns.iter().all(|turn| turn.tactical_diameter_m.is_some()),
+                "{} does not turn",
+                model.name
+            );
         }
     }
 }
@@ -29,11 +35,21 @@ fn every_model_sails_the_standard_manoeuvres() {
 #[test]
 fn every_number_has_a_source_and_estimates_are_labelled() {
     for vessel in zoo().vessels() {
-        assert!(vessel.particulars.values().all(|quantity| !quantity.source.is_empty()), "{}", vessel.name());
+        assert!(
+            vessel.particulars.values().all(|quantity| !quantity.source.is_empty()),
+            "{}",
+            vessel.name()
+        );
         for model in &vessel.file.models {
             let estimated = model.status == Status::Estimated;
-            let says_so = model.note.as_ref().is_some_and(|note| note.to_lowercase().contains("estimate"));
-            assert!(!estimated || says_so, "{}/{} is estimated and its note does not say how", vessel.name(), model.name);
+            let says_so =
+                model.note.as_ref().is_some_and(|note| note.to_lowercase().contains("estimate"));
+            assert!(
+                !estimated || says_so,
+                "{}/{} is estimated and its note does not say how",
+                vessel.name(),
+                model.name
+            );
         }
     }
 }
@@ -45,7 +61,8 @@ fn coefficients_of_prime_laws_have_no_dimension() {
         let law = zoo.law(name).unwrap_or_else(|| panic!("{name} is missing"));
         for (axis, axis_law) in &law.axes {
             for term in axis_law.terms.keys() {
-                let dimension = law.coefficient_dimension(term).unwrap_or_else(|error| panic!("{error}"));
+                let dimension =
+                    law.coefficient_dimension(term).unwrap_or_else(|error| panic!("{error}"));
                 assert_eq!(dimension.to_string(), "1", "{name} {axis} {term}");
             }
         }
@@ -59,7 +76,11 @@ fn every_effect_reads_and_has_a_source() {
     assert_eq!(names.len(), 15, "{names:?}");
     for effect in zoo.effects() {
         assert!(!effect.sources.is_empty(), "{} has no source", effect.name);
-        assert!(effect.sources.values().all(|source| !source.citation.is_empty()), "{}", effect.name);
+        assert!(
+            effect.sources.values().all(|source| !source.citation.is_empty()),
+            "{}",
+            effect.name
+        );
         assert!(zoo.effect_text(&effect.name).is_some_and(|text| text.contains("kind: effect")));
     }
 }
@@ -68,7 +89,8 @@ fn every_effect_reads_and_has_a_source() {
 fn a_form_means_the_same_wherever_it_is_read() {
     for effect in zoo().effects() {
         for form in &effect.forms {
-            let again = Form::read(effect.acts_on, &form.file).unwrap_or_else(|(field, message)| panic!("{field}: {message}"));
+            let again = Form::read(effect.acts_on, &form.file)
+                .unwrap_or_else(|(field, message)| panic!("{field}: {message}"));
             assert_eq!(&again, form.as_ref(), "{}", effect.name);
         }
     }
@@ -88,7 +110,8 @@ fn coefficients_that_shallow_water_scales_are_spelled_right() {
         form.coefficients[name].value(&nested).expect("every name is known")
     };
     for name in form.coefficients.keys() {
-        let factors: Vec<f64> = [0.0, 0.2, 0.4, 0.6, 0.8].into_iter().map(|depth| of(name, depth)).collect();
+        let factors: Vec<f64> =
+            [0.0, 0.2, 0.4, 0.6, 0.8].into_iter().map(|depth| of(name, depth)).collect();
         // The effective aspect ratio as published dips a little before it grows.
         assert!(factors.iter().all(|factor| (0.85..8.0).contains(factor)), "{name}: {factors:?}");
         assert!(factors[4] > 1.0 && (factors[0] - 1.0).abs() < 1e-9, "{name}: {factors:?}");

@@ -17,13 +17,15 @@ fn models() -> PathBuf {
 
 fn derived(name: &str) -> Derivation {
     let path = models().join("hybrids").join(format!("{name}.yaml"));
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let text = std::fs::read_to_string(&path)
+        .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     derive(&path.display().to_string(), &text).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn declarations() -> Vec<String> {
     let entries = std::fs::read_dir(models().join("hybrids")).expect("models/hybrids");
-    let names = entries.map(|entry| entry.expect("an entry").file_name().into_string().expect("a name"));
+    let names =
+        entries.map(|entry| entry.expect("an entry").file_name().into_string().expect("a name"));
     names.filter_map(|name| name.strip_suffix(".yaml").map(str::to_owned)).collect()
 }
 
@@ -35,17 +37,23 @@ fn hybrids_of_the_zoo_are_what_their_declarations_give() {
         let derived = derived(&name);
         let path = models().join("laws").join(format!("{name}.yaml"));
         if std::env::var_os("UPDATE_LAWS").is_some() {
-            std::fs::write(&path, &derived.text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+            std::fs::write(&path, &derived.text)
+                .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         }
         let stored = std::fs::read_to_string(&path).unwrap_or_default();
-        assert!(stored == derived.text, "{} is not current: run this test with UPDATE_LAWS=1", path.display());
+        assert!(
+            stored == derived.text,
+            "{} is not current: run this test with UPDATE_LAWS=1",
+            path.display()
+        );
     }
 }
 
 #[test]
 fn unknowns_of_the_hybrids_of_the_zoo() {
     let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-    let count = |name: &str| derived(name).unknowns(&zoo).expect("its effects are in the zoo").unknowns;
+    let count =
+        |name: &str| derived(name).unknowns(&zoo).expect("its effects are in the zoo").unknowns;
     assert_eq!(count("hybrid-vectwin"), 193, "Miyauchi 2024, Table 4: second order, Submodel-3");
     // 13 terms of X, 14 of Y and of N in four quadrants, three of inertia, ten of wind.
     assert_eq!(count("hybrid-single-screw"), 4 * 41 + 3 + 10);
@@ -54,7 +62,8 @@ fn unknowns_of_the_hybrids_of_the_zoo() {
 /// The Esso Osaka 3 m model on the derived law; `values` are its coefficients.
 fn esso_osaka(values: &str) -> Ship {
     let (zoo, model) = esso_osaka_model(values);
-    Ship::new(&model, zoo.law(&model.law).expect("derived")).unwrap_or_else(|error| panic!("{error}"))
+    Ship::new(&model, zoo.law(&model.law).expect("derived"))
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn esso_osaka_model(values: &str) -> (Zoo, Model) {
@@ -66,7 +75,8 @@ fn esso_osaka_model(values: &str) -> (Zoo, Model) {
          revolutions_rps: 10.0\n    parameters: {{ source: wakita-2022, values: {{ m_x: 0.05, m_y: 0.9, I_zz_plus_J_zz: 0.11 }} }}\n    \
          coefficients: {{ source: wakita-2022, values: {{ {values} }} }}\n"
     );
-    let vessel = zoo.vessel_text("esso-osaka-3m").expect("in the zoo").replace("models: []", &models);
+    let vessel =
+        zoo.vessel_text("esso-osaka-3m").expect("in the zoo").replace("models: []", &models);
     zoo.add_vessel("esso.yaml", &vessel).unwrap_or_else(|error| panic!("{error}"));
     let model = zoo.model("esso-osaka-3m").unwrap_or_else(|error| panic!("{error}"));
     (zoo, model)
@@ -82,12 +92,17 @@ fn without_coefficients_the_esso_osaka_model_keeps_her_way() {
     let order = ship::Order { delta_rad: 0.3, n_rps: 10.0 };
     ship.sail(run, &mut track, |_, _| Some(order)).unwrap_or_else(|stopped| panic!("{stopped}"));
     let last = track.states.last().expect("sailed");
-    assert!((last[at::X] - 50.0).abs() < 1e-9 && last[at::Y].abs() < 1e-12 && last[at::R].abs() < 1e-12, "{last:?}");
+    assert!(
+        (last[at::X] - 50.0).abs() < 1e-9 && last[at::Y].abs() < 1e-12 && last[at::R].abs() < 1e-12,
+        "{last:?}"
+    );
 }
 
 #[test]
 fn a_deviation_acts_in_its_quadrant_alone() {
-    let ship = esso_osaka("\"X_u|u|\": -0.02, \"X_u|u|@backing\": -0.03, \"X_n|n|@crash-astern\": 1.0e-4, X_n: 0.001");
+    let ship = esso_osaka(
+        "\"X_u|u|\": -0.02, \"X_u|u|@backing\": -0.03, \"X_n|n|@crash-astern\": 1.0e-4, X_n: 0.001",
+    );
     let rate = |u: f64, n: f64| {
         let mut state = StateVector::zeros();
         state[at::U] = u;
@@ -99,11 +114,18 @@ fn a_deviation_acts_in_its_quadrant_alone() {
         let (u, n) = (u / f64::sqrt(g * lpp), n * f64::sqrt(lpp / g));
         (x_uu * u * u.abs() + 0.001 * n + x_nn * n * n.abs()) * g / 1.05
     };
-    for (u, n, x_uu, x_nn) in
-        [(0.5, 8.0, -0.02, 0.0), (0.5, -8.0, -0.02, 1e-4), (-0.5, -8.0, -0.05, 0.0), (-0.5, 8.0, -0.02, 0.0)]
-    {
+    for (u, n, x_uu, x_nn) in [
+        (0.5, 8.0, -0.02, 0.0),
+        (0.5, -8.0, -0.02, 1e-4),
+        (-0.5, -8.0, -0.05, 0.0),
+        (-0.5, 8.0, -0.02, 0.0),
+    ] {
         let wanted = force(u, n, x_uu, x_nn);
-        assert!((rate(u, n) - wanted).abs() < 1e-12 * (1.0 + wanted.abs()), "{u} {n}: {} {wanted}", rate(u, n));
+        assert!(
+            (rate(u, n) - wanted).abs() < 1e-12 * (1.0 + wanted.abs()),
+            "{u} {n}: {} {wanted}",
+            rate(u, n)
+        );
     }
 }
 
@@ -112,14 +134,16 @@ fn a_current_moves_the_conditions_with_the_water() {
     let (zoo, mut model) = esso_osaka_model("\"X_u|u|@backing\": -0.03");
     let effect = zoo.effect("current").expect("in the zoo");
     let form = effect.forms[0].as_ref();
-    let parameters = [("north_m_s", 0.4), ("east_m_s", 0.0)].map(|(name, value)| (name.to_owned(), Quantity::new(value, "test")));
+    let parameters = [("north_m_s", 0.4), ("east_m_s", 0.0)]
+        .map(|(name, value)| (name.to_owned(), Quantity::new(value, "test")));
     model.effects.push(AppliedEffect {
         name: effect.name.clone(),
         acts_on: effect.acts_on,
         form: form.file.clone(),
         parameters: parameters.into(),
     });
-    let ship = Ship::new(&model, zoo.law(&model.law).expect("derived")).unwrap_or_else(|error| panic!("{error}"));
+    let ship = Ship::new(&model, zoo.law(&model.law).expect("derived"))
+        .unwrap_or_else(|error| panic!("{error}"));
     let mut state = StateVector::zeros();
     state[at::U] = 0.2;
     // Ahead over the ground, but astern through water that follows it at 0.4 m/s.

@@ -11,13 +11,21 @@ use sistership_model::manifest::Manifest;
 use sistership_model::vessel::VesselFile;
 
 fn check<T: JsonSchema>(name: &str) {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../models/schema").join(format!("{name}.json"));
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("../models/schema")
+        .join(format!("{name}.json"));
     let current = serde_json::to_string_pretty(&schema_for!(T)).expect("a schema is JSON") + "\n";
     if std::env::var_os("UPDATE_SCHEMAS").is_some() {
-        std::fs::write(&path, &current).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        std::fs::write(&path, &current)
+            .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     }
-    let stored = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    assert!(stored == current, "{} is not current: run this test with UPDATE_SCHEMAS=1", path.display());
+    let stored = std::fs::read_to_string(&path)
+        .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    assert!(
+        stored == current,
+        "{} is not current: run this test with UPDATE_SCHEMAS=1",
+        path.display()
+    );
 }
 
 #[test]

@@ -86,12 +86,20 @@ mod tests {
 
     #[test]
     fn other_methods_and_mixed_manoeuvres_are_calls_that_are_wrong() {
-        let refused = |line: &str| Arguments::try_parse_from(line.split(' ')).err().map(|e| e.to_string()).unwrap_or_default();
+        let refused = |line: &str| {
+            Arguments::try_parse_from(line.split(' '))
+                .err()
+                .map(|e| e.to_string())
+                .unwrap_or_default()
+        };
         assert!(
             refused("sistership refine --ship a --trials t --method lasso")
                 .contains("there are `published`, `weak`, `trajectory`, `cma-es`")
         );
-        assert!(refused("sistership manoeuvre --model a --turn 35 --zigzag 10/10").contains("cannot be used with"));
+        assert!(
+            refused("sistership manoeuvre --model a --turn 35 --zigzag 10/10")
+                .contains("cannot be used with")
+        );
         assert!(refused("sistership diagnose --model a").contains("--trials"));
         assert!(refused("sistership diagnose --model a --trials t --slack -1").contains("above 0"));
         assert_eq!(refused("sistership manoeuvre --model a --turn -35 --turn 35"), "");

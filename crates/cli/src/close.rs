@@ -31,6 +31,9 @@ mod tests {
 
     #[test]
     fn distances() {
-        assert_eq!((distance("kitten", "sitting"), distance("", "ab"), distance("ab", "ab")), (3, 2, 0));
+        assert_eq!(
+            (distance("kitten", "sitting"), distance("", "ab"), distance("ab", "ab")),
+            (3, 2, 0)
+        );
     }
 }

@@ -22,7 +22,10 @@ impl PromisedFile {
     pub fn new(path: &Path, inputs: &[PathBuf]) -> Result<Self, Failure> {
         let place = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
         if inputs.iter().filter_map(|input| input.canonicalize().ok()).any(|input| input == place) {
-            return Err(about_file(path, "is read by this command and will not be overwritten; choose another place"));
+            return Err(about_file(
+                path,
+                "is read by this command and will not be overwritten; choose another place",
+            ));
         }
         if place.exists() && !place.is_file() {
             return Err(about_file(path, "is not a file that can be replaced"));
@@ -37,21 +40,25 @@ impl PromisedFile {
     /// Says why it could not be written; what was there before is kept.
     pub fn write(mut self, bytes: &[u8]) -> Result<(), Failure> {
         let written = self.file.write_all(bytes).and_then(|()| self.file.as_file().sync_all());
-        let kept = written.and_then(|()| self.file.persist(&self.path).map(|_| ()).map_err(|error| error.error));
+        let kept = written
+            .and_then(|()| self.file.persist(&self.path).map(|_| ()).map_err(|error| error.error));
         kept.map_err(|error| about_file(&self.path, format!("cannot be written: {error}")))
     }
 }
 
 fn unwritable(place: &Path, error: &std::io::Error) -> String {
     match place.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() && !folder.exists() => format!("there is no folder {}", folder.display()),
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.exists() => {
+            format!("there is no folder {}", folder.display())
+        }
         _ => format!("cannot be written: {}", error.kind()),
     }
 }
 
 /// A temporary file in the folder of another, with the permissions that a new file gets.
 fn beside(path: &Path) -> std::io::Result<NamedTempFile> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder =
+        path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".sistership-");
     #[cfg(unix)]
@@ -81,8 +88,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.csv");
         std::fs::write(&path, "data").unwrap();
-        let refused =
-            |place: &Path| PromisedFile::new(place, std::slice::from_ref(&path)).unwrap_err().message().unwrap().to_owned();
+        let refused = |place: &Path| {
+            PromisedFile::new(place, std::slice::from_ref(&path))
+                .unwrap_err()
+                .message()
+                .unwrap()
+                .to_owned()
+        };
         assert!(refused(&path).contains("will not be overwritten"));
         assert!(refused(folder.path()).contains("is not a file"));
         assert!(refused(&folder.path().join("lost/b.csv")).contains("there is no folder"));

@@ -18,18 +18,27 @@ pub struct PromisedTrack {
 ///
 /// # Errors
 /// The folder cannot be written, or a file of it is among the inputs.
-pub fn promise(folder: &Path, trials: &[&str], inputs: &[PathBuf]) -> Result<Vec<PromisedTrack>, Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| about_file(folder, format!("cannot be made a folder: {error}")))?;
+pub fn promise(
+    folder: &Path,
+    trials: &[&str],
+    inputs: &[PathBuf],
+) -> Result<Vec<PromisedTrack>, Failure> {
+    std::fs::create_dir_all(folder)
+        .map_err(|error| about_file(folder, format!("cannot be made a folder: {error}")))?;
     let one = |name: String| {
         let path = folder.join(name);
-        Ok(PromisedTrack { file: files::PromisedFile::new(&path, inputs)?, shown: path.display().to_string() })
+        Ok(PromisedTrack {
+            file: files::PromisedFile::new(&path, inputs)?,
+            shown: path.display().to_string(),
+        })
     };
     file_names(trials).into_iter().map(one).collect()
 }
 
 /// The trial's own file name; with its folder where two have the same.
 fn file_names(trials: &[&str]) -> Vec<String> {
-    let stem = |name: &str| Path::new(name).with_extension("").to_string_lossy().replace(['/', '\\'], "-");
+    let stem =
+        |name: &str| Path::new(name).with_extension("").to_string_lossy().replace(['/', '\\'], "-");
     let last = |name: &str| stem(name.rsplit(['/', '\\']).next().unwrap_or(name));
     let lasts: Vec<String> = trials.iter().map(|name| last(name)).collect();
     let mut names: Vec<String> = Vec::new();

@@ -22,7 +22,9 @@ pub fn ship(zoo: &Zoo, name: &str) -> Result<Arc<Vessel>, Failure> {
         return vessel_file(zoo, path);
     }
     if let Some((ship, _)) = name.split_once('/').filter(|(ship, _)| zoo.vessel(ship).is_some()) {
-        return Err(Failure::Refused(format!("`{name}` is a model; a ship is asked for here: `{ship}`")));
+        return Err(Failure::Refused(format!(
+            "`{name}` is a model; a ship is asked for here: `{ship}`"
+        )));
     }
     Err(unknown(name, zoo.vessels().map(|vessel| vessel.name().to_owned()).collect()))
 }
@@ -36,7 +38,9 @@ fn vessel_file(zoo: &Zoo, path: &Path) -> Result<Arc<Vessel>, Failure> {
         DocumentKind::Named(kind) if kind != "vessel" => {
             Err(about_file(path, format!("is of `kind: {kind}`; a ship is of `kind: vessel`")))
         }
-        DocumentKind::None => Err(about_file(path, "is no ship's file: it does not begin with `kind: vessel`")),
+        DocumentKind::None => {
+            Err(about_file(path, "is no ship's file: it does not begin with `kind: vessel`"))
+        }
         _ => Ok(Arc::new(read_vessel(zoo, path, &text)?)),
     }
 }
@@ -84,7 +88,9 @@ fn model_file(zoo: &Zoo, path: &Path) -> Result<Model, Failure> {
             let vessel = read_vessel(zoo, path, &text)?;
             Ok(zoo.published(&vessel, None).map_err(|error| FileError { file: shown, ..error })?)
         }
-        DocumentKind::Named(kind) if kind != "model" => Err(about_file(path, format!("is of `kind: {kind}`; {WANTED}"))),
+        DocumentKind::Named(kind) if kind != "model" => {
+            Err(about_file(path, format!("is of `kind: {kind}`; {WANTED}")))
+        }
         DocumentKind::None => Err(about_file(path, format!("is no model's file: {WANTED}"))),
         _ => Ok(Model::parse(&shown, &text, &|law| zoo.law(law).map(|law| (**law).clone()))?),
     }
@@ -99,7 +105,10 @@ pub fn must_be(path: &Path, text: &str, kind: &str, what: &str) -> Result<(), Fa
         DocumentKind::Named(found) if found != kind => {
             Err(about_file(path, format!("is of `kind: {found}`; {what} is of `kind: {kind}`")))
         }
-        DocumentKind::None => Err(about_file(path, format!("is no {}: it does not begin with `kind: {kind}`", bare(what)))),
+        DocumentKind::None => Err(about_file(
+            path,
+            format!("is no {}: it does not begin with `kind: {kind}`", bare(what)),
+        )),
         _ => Ok(()),
     }
 }
@@ -133,13 +142,18 @@ fn model_names(zoo: &Zoo, full: bool) -> Vec<String> {
     let of_ship = |vessel: &Arc<Vessel>| -> Vec<String> {
         let ship = vessel.name();
         let models = &vessel.file.models;
-        if full { models.iter().map(|model| format!("{ship}/{}", model.name)).collect() } else { vec![ship.to_owned()] }
+        if full {
+            models.iter().map(|model| format!("{ship}/{}", model.name)).collect()
+        } else {
+            vec![ship.to_owned()]
+        }
     };
     zoo.vessels().filter(|vessel| !vessel.file.models.is_empty()).flat_map(of_ship).collect()
 }
 
 fn unknown(name: &str, known: Vec<String>) -> Failure {
-    let close: Vec<String> = close_names(name, &known).into_iter().map(|known| format!("`{known}`")).collect();
+    let close: Vec<String> =
+        close_names(name, &known).into_iter().map(|known| format!("`{known}`")).collect();
     let hint = if close.is_empty() {
         format!("the zoo has {}", known.join(", "))
     } else {
@@ -178,12 +192,14 @@ mod tests {
         let file = path.to_str().unwrap();
         std::fs::write(&path, zoo.vessel_text("mariner").unwrap()).unwrap();
         assert_eq!(model(&zoo, file).unwrap().0, zoo.model("mariner").unwrap());
-        std::fs::write(&path, serde_yaml::to_string(&zoo.model("mariner").unwrap()).unwrap()).unwrap();
+        std::fs::write(&path, serde_yaml::to_string(&zoo.model("mariner").unwrap()).unwrap())
+            .unwrap();
         assert_eq!(model(&zoo, file).unwrap().0, zoo.model("mariner").unwrap());
         assert!(message(ship(&zoo, file)).contains("is a model"));
         std::fs::write(&path, "t_s,u_m_s\n0,1\n").unwrap();
         assert!(
-            message(ship(&zoo, file)).contains("is no ship's file") && message(model(&zoo, file)).contains("is no model's file")
+            message(ship(&zoo, file)).contains("is no ship's file")
+                && message(model(&zoo, file)).contains("is no model's file")
         );
         std::fs::write(&path, "kind: vessel\nname: [\n").unwrap();
         assert!(message(ship(&zoo, file)).contains("m.yaml:"));

@@ -10,7 +10,11 @@ use crate::failure::Failure;
 ///
 /// # Errors
 /// Standard output cannot be written. A reader that stopped reading (`| head`) is no error.
-pub fn print(json: bool, document: &impl Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
+pub fn print(
+    json: bool,
+    document: &impl Serialize,
+    text: impl FnOnce() -> String,
+) -> Result<(), Failure> {
     let mut result = if json {
         serde_json::to_string_pretty(document)
             .map_err(|error| Failure::Refused(format!("the result cannot be written: {error}")))?
@@ -21,7 +25,9 @@ pub fn print(json: bool, document: &impl Serialize, text: impl FnOnce() -> Strin
     result.push('\n');
     let mut out = std::io::stdout().lock();
     match out.write_all(result.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::Refused(format!("standard output: {error}"))),
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::Refused(format!("standard output: {error}")))
+        }
         _ => Ok(()),
     }
 }
@@ -58,6 +64,9 @@ mod tests {
 
     #[test]
     fn numbers_agree() {
-        assert_eq!((count(1, "trial"), count(0, "trial")), ("1 trial".to_owned(), "0 trials".to_owned()));
+        assert_eq!(
+            (count(1, "trial"), count(0, "trial")),
+            ("1 trial".to_owned(), "0 trials".to_owned())
+        );
     }
 }

@@ -20,13 +20,20 @@ impl TextTable {
     }
 
     fn width(&self, column: usize) -> usize {
-        self.rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+        self.rows
+            .iter()
+            .filter_map(|row| row.get(column))
+            .map(|cell| cell.chars().count())
+            .max()
+            .unwrap_or(0)
     }
 
     /// Whether every cell below the header is a number or says that there is none.
     fn is_numeric(&self, column: usize) -> bool {
-        let numeric =
-            |cell: &String| cell.trim_end_matches([' ', '%']).parse::<f64>().is_ok() || matches!(cell.as_str(), "-" | "");
+        let numeric = |cell: &String| {
+            cell.trim_end_matches([' ', '%']).parse::<f64>().is_ok()
+                || matches!(cell.as_str(), "-" | "")
+        };
         self.rows.iter().skip(1).filter_map(|row| row.get(column)).all(numeric)
     }
 }
@@ -34,7 +41,8 @@ impl TextTable {
 impl fmt::Display for TextTable {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
-        let layout: Vec<(usize, bool)> = (0..columns).map(|column| (self.width(column), self.is_numeric(column))).collect();
+        let layout: Vec<(usize, bool)> =
+            (0..columns).map(|column| (self.width(column), self.is_numeric(column))).collect();
         for row in &self.rows {
             let cell = |(cell, (width, numeric)): (&String, &(usize, bool))| {
                 if *numeric { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
@@ -76,12 +84,16 @@ mod tests {
         let mut table = TextTable::new(["ship", "correlation", "note"]);
         table.row(["pcc".to_owned(), "-0.7".to_owned(), "a".to_owned()]);
         table.row(["mariner".to_owned(), "-".to_owned(), String::new()]);
-        assert_eq!(table.to_string(), "  ship     correlation  note\n  pcc             -0.7  a\n  mariner            -\n");
+        assert_eq!(
+            table.to_string(),
+            "  ship     correlation  note\n  pcc             -0.7  a\n  mariner            -\n"
+        );
     }
 
     #[test]
     fn numbers_keep_four_digits() {
-        let written = [0.0, 12.3456, 0.0012346, 1234.56, 5e-7, f64::MAX, f64::NAN, -0.5763].map(number);
+        let written =
+            [0.0, 12.3456, 0.0012346, 1234.56, 5e-7, f64::MAX, f64::NAN, -0.5763].map(number);
         assert_eq!(written, ["0", "12.35", "0.001235", "1235", "5.000e-7", "-", "-", "-0.5763"]);
     }
 }

@@ -27,7 +27,8 @@ const CHANNELS: [(Channel, usize); 9] = [
 /// The samples cannot be written.
 pub fn csv(track: &Trajectory, law: &Law, with_n: bool) -> Result<Vec<u8>, Failure> {
     let mut trial = Trial { t_s: track.t_s.clone(), ..Trial::default() };
-    let is_told = |channel: Channel| law.has_roll() || !matches!(channel, Channel::Phi | Channel::P);
+    let is_told =
+        |channel: Channel| law.has_roll() || !matches!(channel, Channel::Phi | Channel::P);
     for (channel, index) in CHANNELS.into_iter().filter(|(channel, _)| is_told(*channel)) {
         trial.channels.insert(channel, track.column(index));
     }

@@ -52,7 +52,11 @@ pub fn read(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
 fn files_of(path: &Path, loaded: &Loaded) -> Vec<(String, PathBuf)> {
     let folder = path.parent().unwrap_or(Path::new(""));
     match &loaded.manifest {
-        Some(manifest) => manifest.trials.iter().map(|trial| (trial.file.clone(), folder.join(&trial.file))).collect(),
+        Some(manifest) => manifest
+            .trials
+            .iter()
+            .map(|trial| (trial.file.clone(), folder.join(&trial.file)))
+            .collect(),
         None => vec![(path.display().to_string(), path.to_path_buf())],
     }
 }
@@ -68,7 +72,8 @@ fn tell_warnings(read: &[ReadTrial]) {
     for read in read {
         let warnings = &read.trial.warnings;
         let more = warnings.len().saturating_sub(TOLD);
-        let further = (more > 0).then(|| format!("{}; `sistership check` lists them", count(more, "further warning")));
+        let further = (more > 0)
+            .then(|| format!("{}; `sistership check` lists them", count(more, "further warning")));
         for message in warnings.iter().take(TOLD).map(place).chain(further) {
             match told.iter_mut().find(|(known, ..)| *known == message) {
                 Some((.., others)) => *others += 1,
@@ -77,7 +82,8 @@ fn tell_warnings(read: &[ReadTrial]) {
         }
     }
     for (message, file, others) in told {
-        let others = if others > 0 { format!(" and {}", count(others, "other")) } else { String::new() };
+        let others =
+            if others > 0 { format!(" and {}", count(others, "other")) } else { String::new() };
         note(&format!("warning: {file}{others}: {message}"));
     }
 }
@@ -85,7 +91,8 @@ fn tell_warnings(read: &[ReadTrial]) {
 /// A finding with its row and column.
 pub fn place(finding: &Finding) -> String {
     let row = finding.row.map_or(String::new(), |row| format!("row {row}: "));
-    let column = finding.column.as_ref().map_or(String::new(), |column| format!("column `{column}`: "));
+    let column =
+        finding.column.as_ref().map_or(String::new(), |column| format!("column `{column}`: "));
     format!("{row}{column}{}", finding.message)
 }
 
@@ -96,13 +103,19 @@ fn name_apart(read: &mut [ReadTrial]) -> Result<(), Failure> {
         let this = &mut rest[0];
         let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
         if earlier.iter().any(|other| real(&other.path) == real(&this.path)) {
-            return Err(Failure::Refused(format!("{}: is given twice; the same data would count twice", this.file)));
+            return Err(Failure::Refused(format!(
+                "{}: is given twice; the same data would count twice",
+                this.file
+            )));
         }
         if earlier.iter().any(|other| other.trial.name == this.trial.name) {
             this.trial.name = with_folder(&this.path, &this.trial.name);
         }
         if earlier.iter().any(|other| other.trial.name == this.trial.name) {
-            let message = format!("{}: another trial is called `{}` too; list both in one manifest", this.file, this.trial.name);
+            let message = format!(
+                "{}: another trial is called `{}` too; list both in one manifest",
+                this.file, this.trial.name
+            );
             return Err(Failure::Refused(message));
         }
     }
@@ -110,7 +123,8 @@ fn name_apart(read: &mut [ReadTrial]) -> Result<(), Failure> {
 }
 
 fn with_folder(path: &Path, name: &str) -> String {
-    let folder = path.parent().and_then(Path::file_name).map(|folder| folder.to_string_lossy().into_owned());
+    let folder =
+        path.parent().and_then(Path::file_name).map(|folder| folder.to_string_lossy().into_owned());
     folder.map_or_else(|| name.to_owned(), |folder| format!("{folder}/{name}"))
 }
 
@@ -126,9 +140,15 @@ pub fn inputs(read: &[ReadTrial], paths: &[PathBuf]) -> Vec<PathBuf> {
 
 /// Remarks where a manifest names another ship than the command does.
 pub fn remark_other_ship(read: &[ReadTrial], ship: &str) {
-    let mut others: Vec<&str> = read.iter().filter_map(|read| read.ship.as_deref()).filter(|other| *other != ship).collect();
+    let mut others: Vec<&str> = read
+        .iter()
+        .filter_map(|read| read.ship.as_deref())
+        .filter(|other| *other != ship)
+        .collect();
     others.dedup();
-    others.iter().for_each(|other| note(&format!("warning: the manifest says the trials are of `{other}`, not of `{ship}`")));
+    others.iter().for_each(|other| {
+        note(&format!("warning: the manifest says the trials are of `{other}`, not of `{ship}`"))
+    });
 }
 
 #[cfg(test)]
@@ -145,7 +165,10 @@ mod tests {
             std::fs::write(path, "t_s,u_m_s\n0,1\n1,2\n2,3\n").unwrap();
         }
         let read = read(&paths).unwrap();
-        assert_eq!(trials(&read).iter().map(|trial| trial.name.as_str()).collect::<Vec<_>>(), ["t.csv", "b/t.csv"]);
+        assert_eq!(
+            trials(&read).iter().map(|trial| trial.name.as_str()).collect::<Vec<_>>(),
+            ["t.csv", "b/t.csv"]
+        );
         let twice = [paths[0].clone(), paths[0].clone()];
         assert!(super::read(&twice).unwrap_err().message().unwrap().contains("given twice"));
     }
@@ -157,6 +180,9 @@ mod tests {
         paths.iter().for_each(|path| std::fs::write(path, "t_s,u_m_s\n0,1\n0,2\n").unwrap());
         let failure = read(&paths).unwrap_err();
         let message = failure.message().unwrap();
-        assert!(message.contains("a.csv is refused") && message.contains("b.csv is refused"), "{message}");
+        assert!(
+            message.contains("a.csv is refused") && message.contains("b.csv is refused"),
+            "{message}"
+        );
     }
 }

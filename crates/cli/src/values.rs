@@ -21,7 +21,9 @@ pub enum ValueError {
     #[error("must be above 0, not {0}")]
     NotPositive(f64),
     /// No rudder angle, deg.
-    #[error("must be a rudder angle from -90 to 90 deg other than 0 (positive turns to starboard), not {0}")]
+    #[error(
+        "must be a rudder angle from -90 to 90 deg other than 0 (positive turns to starboard), not {0}"
+    )]
     NoRudderAngle(f64),
     /// One figure where a zigzag has two.
     #[error("write rudder angle and change of heading as `20/20`")]
@@ -93,7 +95,8 @@ pub fn rudder_deg(text: &str) -> Result<f64, ValueError> {
 /// `DEG/DEG`: rudder angle and change of heading.
 pub fn zigzag_deg(text: &str) -> Result<(f64, f64), ValueError> {
     let (rudder, switch) = text.split_once('/').ok_or(ValueError::NoZigzag)?;
-    let switch = change_of_heading(switch).map_err(|error| ValueError::ChangeOfHeading(error.into()))?;
+    let switch =
+        change_of_heading(switch).map_err(|error| ValueError::ChangeOfHeading(error.into()))?;
     Ok((rudder_deg(rudder).map_err(|error| ValueError::Rudder(error.into()))?, switch))
 }
 
@@ -123,7 +126,9 @@ pub fn definition(name: &str) -> Result<Definition, ValueError> {
 
 /// `SHIP/NUMBER`: a version of a ship's model.
 pub fn version(text: &str) -> Result<(String, i64), ValueError> {
-    let parts = text.rsplit_once('/').and_then(|(ship, number)| Some((ship.to_owned(), number.parse().ok()?)));
+    let parts = text
+        .rsplit_once('/')
+        .and_then(|(ship, number)| Some((ship.to_owned(), number.parse().ok()?)));
     parts.filter(|(ship, number)| !ship.is_empty() && *number > 0).ok_or(ValueError::NoVersion)
 }
 
@@ -149,7 +154,13 @@ mod tests {
     fn zigzags_are_read_or_refused_with_the_reason() {
         assert_eq!(zigzag_deg("10/5"), Ok((10.0, 5.0)));
         assert_eq!(zigzag_deg("-20/20"), Ok((-20.0, 20.0)));
-        for (text, part) in [("20", "20/20"), ("0/10", "other than 0"), ("10/0", "above 0"), ("10/x", "`x`"), ("10/200", "180")] {
+        for (text, part) in [
+            ("20", "20/20"),
+            ("0/10", "other than 0"),
+            ("10/0", "above 0"),
+            ("10/x", "`x`"),
+            ("10/200", "180"),
+        ] {
             assert!(zigzag_deg(text).is_err_and(|e| e.to_string().contains(part)), "{text}");
         }
     }
@@ -157,7 +168,12 @@ mod tests {
     #[test]
     fn numbers_are_finite() {
         assert_eq!(positive("1.5"), Ok(1.5));
-        assert!(positive("inf").is_err() && positive("-1").is_err() && positive("NaN").is_err() && rudder_deg("91").is_err());
+        assert!(
+            positive("inf").is_err()
+                && positive("-1").is_err()
+                && positive("NaN").is_err()
+                && rudder_deg("91").is_err()
+        );
     }
 
     #[test]

@@ -27,7 +27,10 @@ fn extend(zoo: &mut Zoo, folder: &Path) -> Result<(), Failure> {
     let of = |kind: &str| yaml_files(&folder.join(kind));
     let (laws, effects, vessels) = (of("laws")?, of("effects")?, of("vessels")?);
     if laws.is_empty() && effects.is_empty() && vessels.is_empty() {
-        return Err(about_file(folder, "is no zoo: it holds neither laws/*.yaml nor effects/*.yaml nor vessels/*.yaml"));
+        return Err(about_file(
+            folder,
+            "is no zoo: it holds neither laws/*.yaml nor effects/*.yaml nor vessels/*.yaml",
+        ));
     }
     for path in laws {
         zoo.add_law(&path.display().to_string(), &text_of(&path)?)?;
@@ -47,8 +50,10 @@ fn yaml_files(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
         return Ok(Vec::new());
     }
     let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-    let entries = entries.map_err(|error| about_file(folder, format!("cannot be read: {error}")))?;
-    let mut files: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).filter(|path| is_yaml(path)).collect();
+    let entries =
+        entries.map_err(|error| about_file(folder, format!("cannot be read: {error}")))?;
+    let mut files: Vec<PathBuf> =
+        entries.into_iter().map(|entry| entry.path()).filter(|path| is_yaml(path)).collect();
     files.sort();
     Ok(files)
 }
@@ -62,7 +67,8 @@ fn is_yaml(path: &Path) -> bool {
 /// # Errors
 /// It cannot be read or is no text.
 pub fn text_of(path: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(path).map_err(|error| about_file(path, format!("cannot be read: {error}")))
+    std::fs::read_to_string(path)
+        .map_err(|error| about_file(path, format!("cannot be read: {error}")))
 }
 
 #[cfg(test)]
@@ -74,9 +80,12 @@ mod tests {
     fn a_folder_extends_the_zoo_and_faults_name_its_file() {
         let folder = tempfile::tempdir().unwrap();
         let mut zoo = Zoo::embedded().unwrap();
-        assert!(extend(&mut zoo, folder.path()).unwrap_err().message().unwrap().contains("is no zoo"));
+        assert!(
+            extend(&mut zoo, folder.path()).unwrap_err().message().unwrap().contains("is no zoo")
+        );
         std::fs::create_dir(folder.path().join("vessels")).unwrap();
-        let vessel = zoo.vessel_text("mariner").unwrap().replace("name: mariner", "name: mariner-two");
+        let vessel =
+            zoo.vessel_text("mariner").unwrap().replace("name: mariner", "name: mariner-two");
         std::fs::write(folder.path().join("vessels/two.yaml"), &vessel).unwrap();
         extend(&mut zoo, folder.path()).unwrap();
         assert!(zoo.vessel("mariner-two").is_some());
@@ -86,6 +95,12 @@ mod tests {
         extend(&mut zoo, folder.path()).unwrap();
         assert!(zoo.effect("tide").is_some());
         std::fs::write(folder.path().join("vessels/three.yaml"), "kind: vessel\n").unwrap();
-        assert!(extend(&mut zoo, folder.path()).unwrap_err().message().unwrap().contains("vessels/three.yaml"));
+        assert!(
+            extend(&mut zoo, folder.path())
+                .unwrap_err()
+                .message()
+                .unwrap()
+                .contains("vessels/three.yaml")
+        );
     }
 }

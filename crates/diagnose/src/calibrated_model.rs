@@ -23,9 +23,19 @@ impl CalibratedModel {
     ///
     /// # Errors
     /// Names the field of an effect that the model carries.
-    pub fn new(model: &Model, law: &Law, terms: &Terms, nuisance: &[Nuisance], shift: &[f64]) -> Result<Self, RefineError> {
+    pub fn new(
+        model: &Model,
+        law: &Law,
+        terms: &Terms,
+        nuisance: &[Nuisance],
+        shift: &[f64],
+    ) -> Result<Self, RefineError> {
         let (mut model, mut law) = (model.clone(), law.clone());
-        let systematic_errors = model.uncertainty.iter().flat_map(|known| known.systematic_errors.clone()).collect::<Vec<_>>();
+        let systematic_errors = model
+            .uncertainty
+            .iter()
+            .flat_map(|known| known.systematic_errors.clone())
+            .collect::<Vec<_>>();
         model.effects.extend(systematic_errors);
         for (nuisance, shift) in nuisance.iter().zip(shift) {
             match nuisance.kind {
@@ -35,7 +45,11 @@ impl CalibratedModel {
                     }
                 }
                 NuisanceKind::Lacked(axis) => {
-                    let Some((_, expr)) = terms.get(&nuisance.name).and_then(|form| regressor(&model, form)) else { continue };
+                    let Some((_, expr)) =
+                        terms.get(&nuisance.name).and_then(|form| regressor(&model, form))
+                    else {
+                        continue;
+                    };
                     let name = lacked_name(&nuisance.name);
                     if let Some(axis) = law.axes.get_mut(&axis).filter(|_| *shift != 0.0) {
                         let term = Expr::Name(name.clone()).times(Expr::Number(*shift));
@@ -46,7 +60,9 @@ impl CalibratedModel {
                 NuisanceKind::Mass(..) => {}
             }
         }
-        let law = law.with_effects(&model).map_err(|(field, message)| RefineError::Law(format!("{field}: {message}")))?;
+        let law = law
+            .with_effects(&model)
+            .map_err(|(field, message)| RefineError::Law(format!("{field}: {message}")))?;
         Ok(Self { model, law })
     }
 }

@@ -39,10 +39,14 @@ pub(super) struct ConvergedChoice<'a> {
 ///
 /// # Errors
 /// Names what a trial lacks.
-pub(super) fn choose(search: &HypothesisSearch<'_>, settings: &Settings) -> Result<EffectChoice, RefineError> {
+pub(super) fn choose(
+    search: &HypothesisSearch<'_>,
+    settings: &Settings,
+) -> Result<EffectChoice, RefineError> {
     let base = search.base(&[], &search.levels)?;
     let (_, alone) = search.alone(&base)?;
-    let mut choice = EffectChoice { alone, tried: Vec::new(), taken: None, levels: search.levels.clone() };
+    let mut choice =
+        EffectChoice { alone, tried: Vec::new(), taken: None, levels: search.levels.clone() };
     choice.add(search, settings, &base, THRESHOLDS.search.judged)?;
     while choice.taken.is_some() && choice.kept().len() < settings.most_effects {
         let kept = choice.kept();
@@ -62,7 +66,9 @@ fn most_believed(
     accepted: impl Fn(&JudgedHypothesis) -> bool,
 ) -> Option<usize> {
     let places = (0..found.len()).filter(|&place| accepted(&found[place]));
-    places.max_by(|&a, &b| last_evidence(search, &found[a]).total_cmp(&last_evidence(search, &found[b])))
+    places.max_by(|&a, &b| {
+        last_evidence(search, &found[a]).total_cmp(&last_evidence(search, &found[b]))
+    })
 }
 
 /// The evidence for the effect that came last.
@@ -85,7 +91,8 @@ fn companions(
 fn likely(screened: Vec<ScreenedEffect>, count: usize) -> Vec<ScreenedEffect> {
     let mut by_discounted = screened.clone();
     by_discounted.sort_by(|a, b| b.discounted.total_cmp(&a.discounted));
-    let recorded: Vec<ScreenedEffect> = screened.iter().filter(|likely| is_from_outside(&likely.candidate)).cloned().collect();
+    let recorded: Vec<ScreenedEffect> =
+        screened.iter().filter(|likely| is_from_outside(&likely.candidate)).cloned().collect();
     let mut likely: Vec<ScreenedEffect> = screened.into_iter().take(count.div_ceil(2)).collect();
     for candidate in by_discounted {
         let is_new = likely.iter().all(|known| known.candidate.key() != candidate.candidate.key());
@@ -94,7 +101,8 @@ fn likely(screened: Vec<ScreenedEffect>, count: usize) -> Vec<ScreenedEffect> {
         }
     }
     let keys: Vec<String> = likely.iter().map(|likely| likely.candidate.key()).collect();
-    likely.extend(recorded.into_iter().filter(|recorded| !keys.contains(&recorded.candidate.key())));
+    likely
+        .extend(recorded.into_iter().filter(|recorded| !keys.contains(&recorded.candidate.key())));
     likely
 }
 
@@ -109,7 +117,11 @@ impl EffectChoice {
     }
 
     /// What is taken judged anew by the filter of a base that stands where it does: what is tried beside it passes the same.
-    fn seen_from(&mut self, search: &HypothesisSearch<'_>, base: &FilteredBase<'_>) -> Result<(), RefineError> {
+    fn seen_from(
+        &mut self,
+        search: &HypothesisSearch<'_>,
+        base: &FilteredBase<'_>,
+    ) -> Result<(), RefineError> {
         if let Some(taken) = self.taken {
             self.tried[taken] = search.alone(base)?.1;
         }
@@ -125,7 +137,8 @@ impl EffectChoice {
         count: usize,
     ) -> Result<bool, RefineError> {
         let found = companions(search, base, count)?;
-        let mut accepted: Vec<usize> = (0..found.len()).filter(|&at| self.accepts(search, &found[at], settings)).collect();
+        let mut accepted: Vec<usize> =
+            (0..found.len()).filter(|&at| self.accepts(search, &found[at], settings)).collect();
         // What is believed decides, not what fits: an instrument that always erred would stand before what is new.
         let belief = |place: &usize| last_evidence(search, &found[*place]);
         accepted.sort_by(|a, b| belief(b).total_cmp(&belief(a)));
@@ -142,15 +155,22 @@ impl EffectChoice {
 
     /// Undoes a wrong step: each of those taken together but the last is exchanged for whatever is more probable in its
     /// place. What goes with the others than the last has been tried just before.
-    fn exchange(&mut self, search: &HypothesisSearch<'_>, settings: &Settings) -> Result<(), RefineError> {
+    fn exchange(
+        &mut self,
+        search: &HypothesisSearch<'_>,
+        settings: &Settings,
+    ) -> Result<(), RefineError> {
         let kept = self.kept();
         for place in 0..kept.len() - 1 {
             let mut others = kept.clone();
             others.remove(place);
             let base = search.base(&others, &self.levels)?;
             let found = companions(search, &base, THRESHOLDS.search.companions)?;
-            let best = search.evidence(self.best(), place).unwrap_or(f64::NEG_INFINITY) + THRESHOLDS.search.exchange;
-            let is_better = |judged: &JudgedHypothesis| last_evidence(search, judged) > best && stands(search, judged, settings);
+            let best = search.evidence(self.best(), place).unwrap_or(f64::NEG_INFINITY)
+                + THRESHOLDS.search.exchange;
+            let is_better = |judged: &JudgedHypothesis| {
+                last_evidence(search, judged) > best && stands(search, judged, settings)
+            };
             let better = most_believed(search, &found, is_better);
             self.take(found, better);
             if better.is_some() {
@@ -189,9 +209,12 @@ impl EffectChoice {
 
     /// This choice, with what an earlier one has tried besides.
     pub(super) fn after(mut self, earlier: Self) -> Self {
-        let keys = |judged: &JudgedHypothesis| judged.candidates.iter().map(EffectCandidate::key).collect::<Vec<_>>();
+        let keys = |judged: &JudgedHypothesis| {
+            judged.candidates.iter().map(EffectCandidate::key).collect::<Vec<_>>()
+        };
         let again: BTreeSet<Vec<String>> = self.tried.iter().map(keys).collect();
-        self.tried.extend(earlier.tried.into_iter().filter(|judged| !again.contains(&keys(judged))));
+        self.tried
+            .extend(earlier.tried.into_iter().filter(|judged| !again.contains(&keys(judged))));
         self
     }
 
@@ -215,8 +238,14 @@ impl EffectChoice {
     }
 
     /// A hypothesis is taken where it is more probable by enough, also on trials that its fit has not seen.
-    fn accepts(&self, search: &HypothesisSearch<'_>, found: &JudgedHypothesis, settings: &Settings) -> bool {
-        let held_out = |judged: &JudgedHypothesis| judged.held_out(&search.fixed).unwrap_or(f64::NEG_INFINITY);
+    fn accepts(
+        &self,
+        search: &HypothesisSearch<'_>,
+        found: &JudgedHypothesis,
+        settings: &Settings,
+    ) -> bool {
+        let held_out =
+            |judged: &JudgedHypothesis| judged.held_out(&search.fixed).unwrap_or(f64::NEG_INFINITY);
         stands(search, found, settings) && held_out(found) > held_out(self.best())
     }
 }
@@ -230,10 +259,16 @@ fn stands(search: &HypothesisSearch<'_>, found: &JudgedHypothesis, settings: &Se
 }
 
 /// The weakest of effects that are judged together, where the evidence for it is not enough.
-fn needless(search: &HypothesisSearch<'_>, best: &JudgedHypothesis, settings: &Settings) -> Option<usize> {
+fn needless(
+    search: &HypothesisSearch<'_>,
+    best: &JudgedHypothesis,
+    settings: &Settings,
+) -> Option<usize> {
     let evidence = |place: usize| search.evidence(best, place).unwrap_or(f64::NEG_INFINITY);
     let evidence: Vec<f64> = (0..best.candidates.len()).map(evidence).collect();
     let strongest = evidence.iter().copied().fold(0.0, f64::max);
     let weakest = (0..evidence.len()).min_by(|&a, &b| evidence[a].total_cmp(&evidence[b]));
-    weakest.filter(|&place| evidence[place] <= settings.least_evidence.max(THRESHOLDS.effect.size.powi(2) * strongest))
+    weakest.filter(|&place| {
+        evidence[place] <= settings.least_evidence.max(THRESHOLDS.effect.size.powi(2) * strongest)
+    })
 }

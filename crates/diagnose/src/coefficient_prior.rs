@@ -23,9 +23,11 @@ impl CoefficientPrior {
     /// The expected change of what a law can take over: of everything but masses, as if these were
     /// right.
     pub fn expected_shift(&self, nuisance: &[Nuisance]) -> Option<Vec<f64>> {
-        let free: Vec<usize> =
-            (0..nuisance.len()).filter(|&place| !matches!(nuisance[place].kind, NuisanceKind::Mass(..))).collect();
-        let information = DMatrix::from_fn(free.len(), free.len(), |i, j| self.information[(free[i], free[j])]);
+        let free: Vec<usize> = (0..nuisance.len())
+            .filter(|&place| !matches!(nuisance[place].kind, NuisanceKind::Mass(..)))
+            .collect();
+        let information =
+            DMatrix::from_fn(free.len(), free.len(), |i, j| self.information[(free[i], free[j])]);
         let weighted_mean = DVector::from_fn(free.len(), |i, _| self.weighted_mean[free[i]]);
         let mean = Self { information, weighted_mean }.mean()?;
         let mut shift = vec![0.0; nuisance.len()];

@@ -32,15 +32,18 @@ impl<'a> Responses<'a> {
         let found: Vec<&EffectCandidate> = judged.candidates.iter().collect();
         let others = search.others(&judged.candidates);
         let all: Vec<&EffectCandidate> = found.iter().chain(&others).copied().collect();
-        let columns: Vec<Vec<usize>> = all.iter().map(|candidate| base.workspace.columns().showing(candidate)).collect();
-        let select: Vec<usize> = (0..search.nuisance.len()).chain(columns.iter().flatten().copied()).collect();
+        let columns: Vec<Vec<usize>> =
+            all.iter().map(|candidate| base.workspace.columns().showing(candidate)).collect();
+        let select: Vec<usize> =
+            (0..search.nuisance.len()).chain(columns.iter().flatten().copied()).collect();
         let mut first = 0;
         let place = |columns: &Vec<usize>| {
             first += columns.len();
             (first - columns.len()..first).collect()
         };
         let places = columns.iter().map(place).collect();
-        let information = MarginalInformation::new(&total.select(&select), &search.fixed)?.information;
+        let information =
+            MarginalInformation::new(&total.select(&select), &search.fixed)?.information;
         Some(Self { found, others, places, information })
     }
 
@@ -62,7 +65,8 @@ impl<'a> Responses<'a> {
 
     /// The least evidence by which any of some others would be behind.
     pub fn behind(&self, found: usize, names: &[&str]) -> Option<f64> {
-        let named = (0..self.others.len()).filter(|&other| names.contains(&self.others[other].effect.as_str()));
+        let named = (0..self.others.len())
+            .filter(|&other| names.contains(&self.others[other].effect.as_str()));
         named.filter_map(|other| Some(self.angle(found, other)?.1)).min_by(f64::total_cmp)
     }
 
@@ -72,7 +76,9 @@ impl<'a> Responses<'a> {
         let change = DVector::from_vec(self.found[found].change());
         let (own, other) = (&self.places[found], &self.places[self.found.len() + other]);
         let part = |rows: &[usize], columns: &[usize]| {
-            DMatrix::from_fn(rows.len(), columns.len(), |i, j| self.information[(rows[i], columns[j])])
+            DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
+                self.information[(rows[i], columns[j])]
+            })
         };
         let response = change.dot(&(part(own, own) * &change));
         let seen = part(other, own) * &change;

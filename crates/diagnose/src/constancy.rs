@@ -25,13 +25,17 @@ pub(super) fn inconstant(
     judged: &JudgedHypothesis,
     margin: f64,
 ) -> Result<Vec<usize>, RefineError> {
-    let pieces =
-        base.linearised(&search.calibrated_model, &judged.linearised_at)?.pieces(judged.level, THRESHOLDS.constancy.pieces);
+    let pieces = base
+        .linearised(&search.calibrated_model, &judged.linearised_at)?
+        .pieces(judged.level, THRESHOLDS.constancy.pieces);
     let known = known_after(&search.fixed, judged);
-    let reduced: Vec<MarginalInformation> = pieces.iter().filter_map(|piece| MarginalInformation::new(piece, &known)).collect();
-    let one = |place: usize| varies(judged, place, &reduced, search.discount(&judged.candidates[place]));
+    let reduced: Vec<MarginalInformation> =
+        pieces.iter().filter_map(|piece| MarginalInformation::new(piece, &known)).collect();
+    let one =
+        |place: usize| varies(judged, place, &reduced, search.discount(&judged.candidates[place]));
     let varies: Vec<f64> = (0..judged.linearised_at.len()).map(one).collect();
-    let mut places: Vec<usize> = (0..varies.len()).filter(|&place| varies[place] > THRESHOLDS.constancy.limit).collect();
+    let mut places: Vec<usize> =
+        (0..varies.len()).filter(|&place| varies[place] > THRESHOLDS.constancy.limit).collect();
     let is_outside = |place: &usize| is_from_outside(&judged.candidates[*place]);
     if places.iter().any(is_outside) && follow_records(search, judged, margin)? {
         places.retain(|place| !is_outside(place));
@@ -42,23 +46,35 @@ pub(super) fn inconstant(
 /// What is known of the coefficients after all trials, whose change has been fitted.
 fn known_after(fixed: &CoefficientPrior, judged: &JudgedHypothesis) -> CoefficientPrior {
     let size = fixed.weighted_mean.len();
-    let total = Gram::sum(&judged.grams, judged.grams.first().map_or(0, |gram| gram.products.nrows()));
+    let total =
+        Gram::sum(&judged.grams, judged.grams.first().map_or(0, |gram| gram.products.nrows()));
     let information = total.products.view((1, 1), (size, size)) + &fixed.information;
     CoefficientPrior { weighted_mean: &information * &judged.shift, information }
 }
 
 /// What pieces ask for beyond the common size and beyond chance, by the response to that size.
-fn varies(judged: &JudgedHypothesis, place: usize, pieces: &[MarginalInformation], discount: f64) -> f64 {
-    let first: usize = judged.linearised_at[..place].iter().map(|candidate| candidate.at.len()).sum();
+fn varies(
+    judged: &JudgedHypothesis,
+    place: usize,
+    pieces: &[MarginalInformation],
+    discount: f64,
+) -> f64 {
+    let first: usize =
+        judged.linearised_at[..place].iter().map(|candidate| candidate.at.len()).sum();
     let own = first..first + judged.linearised_at[place].at.len();
     let moved = DVector::from_vec(judged.moved());
     let fixing: Vec<NormalPrior> = priors(&judged.linearised_at[place]);
     let change = DVector::from_vec(judged.candidates[place].change());
     let (mut asked, mut chance, mut response) = (0.0, 0.0, 0.0);
     for piece in pieces {
-        let left = (&piece.right - &piece.information * &moved).rows(own.start, own.len()).into_owned();
-        let information = piece.information.view((own.start, own.start), (own.len(), own.len())).into_owned();
-        let prior = DMatrix::from_diagonal(&DVector::from_iterator(own.len(), fixing.iter().map(|f| f.deviation.powi(-2))));
+        let left =
+            (&piece.right - &piece.information * &moved).rows(own.start, own.len()).into_owned();
+        let information =
+            piece.information.view((own.start, own.start), (own.len(), own.len())).into_owned();
+        let prior = DMatrix::from_diagonal(&DVector::from_iterator(
+            own.len(),
+            fixing.iter().map(|f| f.deviation.powi(-2)),
+        ));
         let Some(factor) = Cholesky::new(&information + prior) else { continue };
         asked += left.dot(&factor.solve(&left));
         chance += factor.solve(&information).trace();

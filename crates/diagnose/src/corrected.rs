@@ -23,8 +23,12 @@ impl<'a> CorrectedRecords<'a> {
         if instruments.is_empty() {
             return Some(Self(request.trials.iter().map(|trial| Cow::Borrowed(*trial)).collect()));
         }
-        let erring = ready(&Model { effects: instruments, ..model.clone() }, request.law, request.trials).ok()?;
-        let right = |trial: &&Trial| as_true_instruments_say(&erring, trial).ok().filter(is_finite).map(Cow::Owned);
+        let erring =
+            ready(&Model { effects: instruments, ..model.clone() }, request.law, request.trials)
+                .ok()?;
+        let right = |trial: &&Trial| {
+            as_true_instruments_say(&erring, trial).ok().filter(is_finite).map(Cow::Owned)
+        };
         request.trials.iter().map(right).collect::<Option<_>>().map(Self)
     }
 
@@ -39,7 +43,8 @@ fn is_finite(trial: &Trial) -> bool {
 
 /// A model with its effects on the ship, and those on instruments.
 pub(super) fn split(model: &Model) -> (Model, Vec<AppliedEffect>) {
-    let (instruments, effects) = model.effects.iter().cloned().partition(|effect| effect.acts_on == ActsOn::Measurement);
+    let (instruments, effects) =
+        model.effects.iter().cloned().partition(|effect| effect.acts_on == ActsOn::Measurement);
     (Model { effects, ..model.clone() }, instruments)
 }
 

@@ -20,7 +20,8 @@ pub(super) fn covariance(
     let candidate = &judged.candidates[place];
     let own = own_covariance(&judged.candidates, place, &judged.covariance);
     let change = DVector::from_vec(candidate.change());
-    let response = Cholesky::new(own.clone()).map_or(0.0, |factor| change.dot(&factor.solve(&change)));
+    let response =
+        Cholesky::new(own.clone()).map_or(0.0, |factor| change.dot(&factor.solve(&change)));
     // What an instrument says of a motion is exact by definition; what a force does is not.
     let size = if acts_on(candidate) == ActsOn::Measurement { 0.0 } else { THRESHOLDS.effect.size };
     let mut covariance = own * (discount + THRESHOLDS.effect.shape.powi(2) * response);
@@ -39,21 +40,31 @@ fn answers_to_masses(
     nuisance: &[Nuisance],
     fixed: &CoefficientPrior,
 ) -> Option<DMatrix<f64>> {
-    let is_mass = |column: &usize| matches!(nuisance.get(*column).map(|n| n.kind), Some(NuisanceKind::Mass(..)));
+    let is_mass = |column: &usize| {
+        matches!(nuisance.get(*column).map(|n| n.kind), Some(NuisanceKind::Mass(..)))
+    };
     let size = judged.grams.first()?.products.nrows();
     let total = Gram::sum(&judged.grams, size);
     let (masses, others): (Vec<usize>, Vec<usize>) = (0..size - 1).partition(is_mass);
-    let fixing: Vec<f64> = judged.linearised_at.iter().flat_map(priors).map(|prior| prior.deviation.powi(-2)).collect();
+    let fixing: Vec<f64> = judged
+        .linearised_at
+        .iter()
+        .flat_map(priors)
+        .map(|prior| prior.deviation.powi(-2))
+        .collect();
     let known = nuisance.len();
     let information = |i: usize, j: usize| {
         let before = if i < known && j < known { fixed.information[(i, j)] } else { 0.0 };
         let prior = if i == j && i >= known { fixing[i - known] } else { 0.0 };
         total.products[(1 + i, 1 + j)] + before + prior
     };
-    let own = DMatrix::from_fn(others.len(), others.len(), |i, j| information(others[i], others[j]));
-    let cross = DMatrix::from_fn(others.len(), masses.len(), |i, j| information(others[i], masses[j]));
+    let own =
+        DMatrix::from_fn(others.len(), others.len(), |i, j| information(others[i], others[j]));
+    let cross =
+        DMatrix::from_fn(others.len(), masses.len(), |i, j| information(others[i], masses[j]));
     let answers = Cholesky::new(own)?.solve(&cross);
-    let first: usize = judged.linearised_at[..place].iter().map(|candidate| candidate.at.len()).sum();
+    let first: usize =
+        judged.linearised_at[..place].iter().map(|candidate| candidate.at.len()).sum();
     let start = others.len() - fixing.len() + first;
     Some(answers.rows(start, judged.linearised_at[place].at.len()).into_owned())
 }

@@ -7,16 +7,25 @@ use super::thresholds::THRESHOLDS;
 use crate::residual::EffectCandidate;
 
 /// The factor by which the information on an effect is divided.
-pub(super) fn discount(uncertainty: Option<&Uncertainty>, candidate: &EffectCandidate, trials: usize) -> f64 {
+pub(super) fn discount(
+    uncertainty: Option<&Uncertainty>,
+    candidate: &EffectCandidate,
+    trials: usize,
+) -> f64 {
     let Some(known) = uncertainty else { return THRESHOLDS.effect.unknown_discount };
     let of = |level: &FalseAlarmLevel| {
         // What one size of the effect would suit grows with the number of trials.
-        let together = 1.0 + (level.together - 1.0) * trials as f64 / known.trials.len().max(1) as f64;
+        let together =
+            1.0 + (level.together - 1.0) * trials as f64 / known.trials.len().max(1) as f64;
         level.each.max(together).max(1.0)
     };
     // What comes from outside was there on clean trials too where it is recorded at all: it is judged by records of other
     // times instead.
-    let own = known.false_alarm_levels.get(&candidate.key()).filter(|_| !is_from_outside(candidate)).map(of);
+    let own = known
+        .false_alarm_levels
+        .get(&candidate.key())
+        .filter(|_| !is_from_outside(candidate))
+        .map(of);
     own.unwrap_or_else(|| {
         let mut all: Vec<f64> = known.false_alarm_levels.values().map(of).collect();
         all.sort_by(f64::total_cmp);

@@ -68,17 +68,27 @@ impl MarginalInformation {
         let shift = coefficients.solve(&right);
         let information = products.view((1 + c, 1 + c), (e, e)) - cross.transpose() * &answers;
         let remaining = products.view((1 + c, 0), (e, 1)).column(0) - cross.transpose() * &shift;
-        let log_determinant: f64 = 2.0 * coefficients.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
+        let log_determinant: f64 =
+            2.0 * coefficients.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
         let deviance = products[(0, 0)] + gram.log_variance - right.dot(&shift) + log_determinant;
         Some(Self { deviance, information, right: remaining, answers, shift })
     }
 
     /// Some of the effects' columns, with others integrated out under their priors.
-    pub fn given(&self, others: &[usize], priors: &[NormalPrior], columns: &[usize]) -> Option<Self> {
+    pub fn given(
+        &self,
+        others: &[usize],
+        priors: &[NormalPrior],
+        columns: &[usize],
+    ) -> Option<Self> {
         let (own, right) = self.posterior(others, priors);
-        let cross = DMatrix::from_fn(others.len(), columns.len(), |i, j| self.information[(others[i], columns[j])]);
+        let cross = DMatrix::from_fn(others.len(), columns.len(), |i, j| {
+            self.information[(others[i], columns[j])]
+        });
         let factor = Cholesky::new(own)?;
-        let part = DMatrix::from_fn(columns.len(), columns.len(), |i, j| self.information[(columns[i], columns[j])]);
+        let part = DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
+            self.information[(columns[i], columns[j])]
+        });
         let remaining = DVector::from_fn(columns.len(), |i, _| self.right[columns[i]]);
         Some(Self {
             information: part - cross.transpose() * factor.solve(&cross),
@@ -110,10 +120,13 @@ impl MarginalInformation {
     /// What some columns explain (in squared deviations), and what chance lets them explain: of a right model without an
     /// effect, the first is a chi-square whose mean is the second.
     pub fn explained(&self, columns: &[usize], priors: &[NormalPrior]) -> Option<(f64, f64)> {
-        let free: Vec<NormalPrior> = priors.iter().map(|prior| NormalPrior { mean: 0.0, ..*prior }).collect();
+        let free: Vec<NormalPrior> =
+            priors.iter().map(|prior| NormalPrior { mean: 0.0, ..*prior }).collect();
         let (posterior, right) = self.posterior(columns, &free);
         let factor = Cholesky::new(posterior)?;
-        let left: f64 = (0..columns.len()).map(|i| factor.inverse()[(i, i)] * priors[i].deviation.powi(-2)).sum();
+        let left: f64 = (0..columns.len())
+            .map(|i| factor.inverse()[(i, i)] * priors[i].deviation.powi(-2))
+            .sum();
         Some((right.dot(&factor.solve(&right)), columns.len() as f64 - left))
     }
 
@@ -121,7 +134,8 @@ impl MarginalInformation {
     fn posterior(&self, columns: &[usize], priors: &[NormalPrior]) -> (DMatrix<f64>, DVector<f64>) {
         let size = columns.len();
         let precision = |i: usize| priors[i].deviation.powi(-2);
-        let mut information = DMatrix::from_fn(size, size, |i, j| self.information[(columns[i], columns[j])]);
+        let mut information =
+            DMatrix::from_fn(size, size, |i, j| self.information[(columns[i], columns[j])]);
         let mut right = DVector::from_fn(size, |i, _| self.right[columns[i]]);
         for i in 0..size {
             information[(i, i)] += precision(i);
@@ -131,14 +145,25 @@ impl MarginalInformation {
     }
 
     /// The estimate of a hypothesis that has some of the effects' columns, with their priors.
-    pub fn estimate(&self, columns: &[usize], priors: &[NormalPrior]) -> Option<HypothesisEstimate> {
+    pub fn estimate(
+        &self,
+        columns: &[usize],
+        priors: &[NormalPrior],
+    ) -> Option<HypothesisEstimate> {
         let (information, right) = self.posterior(columns, priors);
-        let of = |fixing: &NormalPrior| (fixing.mean / fixing.deviation).powi(2) + 2.0 * fixing.deviation.ln();
+        let of = |fixing: &NormalPrior| {
+            (fixing.mean / fixing.deviation).powi(2) + 2.0 * fixing.deviation.ln()
+        };
         let prior: f64 = priors.iter().map(of).sum();
         let factor = Cholesky::new(information)?;
         let mean = factor.solve(&right);
-        let log_determinant: f64 = 2.0 * factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
-        Some(HypothesisEstimate { gain: 0.5 * (right.dot(&mean) - prior - log_determinant), mean, covariance: factor.inverse() })
+        let log_determinant: f64 =
+            2.0 * factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
+        Some(HypothesisEstimate {
+            gain: 0.5 * (right.dot(&mean) - prior - log_determinant),
+            mean,
+            covariance: factor.inverse(),
+        })
     }
 }
 

@@ -11,7 +11,10 @@ use sistership_model::manifest::VelocityFrame;
 use super::calibrated_model::CalibratedModel;
 use super::evidence::DiscrepancyFactor;
 use super::linearised_trials::LinearisedTrials;
-use crate::residual::{Columns, Detail, Discrepancies, EffectCandidate, Gram, Linearised, ResidualSystem, linearise, whitened};
+use crate::residual::{
+    Columns, Detail, Discrepancies, EffectCandidate, Gram, Linearised, ResidualSystem, linearise,
+    whitened,
+};
 use sistership_estimate::refine::RefineError;
 
 /// Effects that are taken, and all that is there when others are judged beside them.
@@ -53,7 +56,12 @@ impl<'a> FilteredBase<'a> {
             let grams = workspace.linear().par_iter().map(one).collect();
             FilteredLevel { level, discrepancies, grams, coefficients: Mutex::default() }
         };
-        Self { taken: taken.to_vec(), levels: levels.into_iter().map(at).collect(), coefficients, workspace }
+        Self {
+            taken: taken.to_vec(),
+            levels: levels.into_iter().map(at).collect(),
+            coefficients,
+            workspace,
+        }
     }
 
     /// Products of all columns over all trials, at one of the levels.
@@ -70,7 +78,9 @@ impl<'a> FilteredBase<'a> {
     /// The whitened columns of the coefficients at a level. Those of levels that are not its neighbours are let go: hypotheses are
     /// judged at a level and the one below.
     fn coefficients(&self, level: usize) -> WhitenedCoefficients {
-        for (_, far) in self.levels.iter().enumerate().filter(|(other, _)| other.abs_diff(level) > 1) {
+        for (_, far) in
+            self.levels.iter().enumerate().filter(|(other, _)| other.abs_diff(level) > 1)
+        {
             *far.coefficients.lock().unwrap_or_else(PoisonError::into_inner) = None;
         }
         let at = &self.levels[level];
@@ -83,7 +93,8 @@ impl<'a> FilteredBase<'a> {
             rows.rows(1, self.coefficients).into_owned()
         };
         let one = |parts: &Vec<Linearised>| parts.iter().map(of_part).collect();
-        let fresh: WhitenedCoefficients = Arc::new(self.workspace.linear().par_iter().map(one).collect());
+        let fresh: WhitenedCoefficients =
+            Arc::new(self.workspace.linear().par_iter().map(one).collect());
         *kept = Some(Arc::clone(&fresh));
         fresh
     }
@@ -101,17 +112,26 @@ impl<'a> FilteredBase<'a> {
         let columns = Columns { nuisance: Vec::new(), candidates: candidates.to_vec() };
         let system = ResidualSystem::new(&learned.model, &learned.law, columns, frame)?;
         let records = self.workspace.records();
-        let linear: Vec<Vec<Linearised>> =
-            records.par_iter().map(|record| linearise(&system, record, Detail::Columns)).collect::<Result<_, _>>()?;
+        let linear: Vec<Vec<Linearised>> = records
+            .par_iter()
+            .map(|record| linearise(&system, record, Detail::Columns))
+            .collect::<Result<_, _>>()?;
         let of = |(own, base): (Vec<Linearised>, &Vec<Linearised>)| {
             own.into_iter().zip(base).map(|(own, base)| own.by_filter_of(base)).collect()
         };
-        Ok(LinearisedHypothesis { base: self, linear: linear.into_iter().zip(self.workspace.linear()).map(of).collect() })
+        Ok(LinearisedHypothesis {
+            base: self,
+            linear: linear.into_iter().zip(self.workspace.linear()).map(of).collect(),
+        })
     }
 }
 
 /// Products of all columns over a trial.
-fn gram(workspace: &LinearisedTrials<'_>, parts: &[Linearised], discrepancies: &Discrepancies) -> Gram {
+fn gram(
+    workspace: &LinearisedTrials<'_>,
+    parts: &[Linearised],
+    discrepancies: &Discrepancies,
+) -> Gram {
     let mut gram = Gram::empty(1 + workspace.columns().len());
     for part in parts {
         let (rows, log_variance) = rows(workspace, part, discrepancies);
@@ -121,7 +141,11 @@ fn gram(workspace: &LinearisedTrials<'_>, parts: &[Linearised], discrepancies: &
 }
 
 /// A part through the filter: residual and columns by readings.
-fn rows(workspace: &LinearisedTrials<'_>, part: &Linearised, discrepancies: &Discrepancies) -> (DMatrix<f64>, f64) {
+fn rows(
+    workspace: &LinearisedTrials<'_>,
+    part: &Linearised,
+    discrepancies: &Discrepancies,
+) -> (DMatrix<f64>, f64) {
     let (rows, log_variance) = whitened(part, &workspace.noise, discrepancies);
     let width = 1 + part.sizes.columns;
     (DMatrix::from_vec(width, rows.len() / width, rows), log_variance)
@@ -138,18 +162,29 @@ impl LinearisedHypothesis<'_, '_> {
     pub fn grams(&self, level: usize) -> Vec<Gram> {
         let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level));
         let trials: Vec<_> = self.linear.iter().zip(coefficients.iter().zip(&at.grams)).collect();
-        trials.into_par_iter().map(|(parts, known)| self.gram(parts, known, &at.discrepancies)).collect()
+        trials
+            .into_par_iter()
+            .map(|(parts, known)| self.gram(parts, known, &at.discrepancies))
+            .collect()
     }
 
     /// The products of each trial in pieces of equal duration.
     pub fn pieces(&self, level: usize, count: usize) -> Vec<Gram> {
         let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level));
         let trials: Vec<_> = self.linear.iter().zip(coefficients.iter()).collect();
-        let of = |(parts, known): (&Vec<Linearised>, &Vec<DMatrix<f64>>)| self.in_pieces(parts, known, &at.discrepancies, count);
+        let of = |(parts, known): (&Vec<Linearised>, &Vec<DMatrix<f64>>)| {
+            self.in_pieces(parts, known, &at.discrepancies, count)
+        };
         trials.into_par_iter().flat_map_iter(of).collect()
     }
 
-    fn in_pieces(&self, parts: &[Linearised], known: &[DMatrix<f64>], discrepancies: &Discrepancies, count: usize) -> Vec<Gram> {
+    fn in_pieces(
+        &self,
+        parts: &[Linearised],
+        known: &[DMatrix<f64>],
+        discrepancies: &Discrepancies,
+        count: usize,
+    ) -> Vec<Gram> {
         let width = self.base.coefficients + self.width();
         let mut pieces = vec![Gram::empty(width); count];
         for (part, coefficients) in parts.iter().zip(known) {
@@ -157,7 +192,8 @@ impl LinearisedHypothesis<'_, '_> {
             let readings = own.nrows();
             for (piece, gram) in pieces.iter_mut().enumerate() {
                 let (from, to) = (piece * readings / count, (piece + 1) * readings / count);
-                let (known, own) = (coefficients.columns(from, to - from), own.rows(from, to - from));
+                let (known, own) =
+                    (coefficients.columns(from, to - from), own.rows(from, to - from));
                 let square = Gram::of_columns(&known.into_owned(), 0.0).products;
                 gram.products.view_mut((1, 1), square.shape()).add_assign(&square);
                 add(gram, &(known * own), &own.tr_mul(&own));
@@ -166,7 +202,12 @@ impl LinearisedHypothesis<'_, '_> {
         pieces
     }
 
-    fn gram(&self, parts: &[Linearised], (known, all): (&Vec<DMatrix<f64>>, &Gram), discrepancies: &Discrepancies) -> Gram {
+    fn gram(
+        &self,
+        parts: &[Linearised],
+        (known, all): (&Vec<DMatrix<f64>>, &Gram),
+        discrepancies: &Discrepancies,
+    ) -> Gram {
         let c = self.base.coefficients;
         let mut gram = Gram::empty(c + self.width());
         gram.products.view_mut((1, 1), (c, c)).copy_from(&all.products.view((1, 1), (c, c)));

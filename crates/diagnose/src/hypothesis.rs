@@ -33,14 +33,22 @@ impl JudgedHypothesis {
 
     /// Logarithm of the probability of some of the trials under this hypothesis, and its estimate
     /// there.
-    pub fn of_trials(&self, fixed: &CoefficientPrior, keep: &dyn Fn(usize) -> bool) -> Option<(f64, Vec<EffectCandidate>)> {
+    pub fn of_trials(
+        &self,
+        fixed: &CoefficientPrior,
+        keep: &dyn Fn(usize) -> bool,
+    ) -> Option<(f64, Vec<EffectCandidate>)> {
         let width = self.grams.first()?.products.nrows();
-        let kept = self.grams.iter().enumerate().filter(|(trial, _)| keep(*trial)).map(|(_, gram)| gram);
+        let kept =
+            self.grams.iter().enumerate().filter(|(trial, _)| keep(*trial)).map(|(_, gram)| gram);
         let reduced = MarginalInformation::new(&Gram::sum(kept, width), fixed)?;
         let columns: Vec<usize> = (0..width - 1 - fixed.weighted_mean.len()).collect();
         let priors: Vec<NormalPrior> = self.linearised_at.iter().flat_map(priors).collect();
         let estimate = reduced.estimate(&columns, &priors)?;
-        Some((estimate.gain - 0.5 * reduced.deviance, placed(self.linearised_at.clone(), &estimate)))
+        Some((
+            estimate.gain - 0.5 * reduced.deviance,
+            placed(self.linearised_at.clone(), &estimate),
+        ))
     }
 
     /// How probable each trial is by a fit on the others: the sum of the logarithms.
@@ -70,7 +78,10 @@ pub(super) fn priors(candidate: &EffectCandidate) -> Vec<NormalPrior> {
 }
 
 /// Candidates at an estimate, within the bounds of their parameters.
-pub(super) fn placed(mut candidates: Vec<EffectCandidate>, estimate: &HypothesisEstimate) -> Vec<EffectCandidate> {
+pub(super) fn placed(
+    mut candidates: Vec<EffectCandidate>,
+    estimate: &HypothesisEstimate,
+) -> Vec<EffectCandidate> {
     let mut means = estimate.mean.iter();
     for candidate in &mut candidates {
         let parameters = candidate.form.parameters.values();

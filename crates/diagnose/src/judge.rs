@@ -33,20 +33,28 @@ type Each = Vec<Option<SquaredError>>;
 pub(super) fn errors(request: &Request<'_>, refits: &[Refit], restart_s: f64) -> SimulatedErrors {
     let count = request.trials.len();
     let before = simulated(request, &vec![request.model; count], restart_s);
-    let each: Vec<Each> =
-        refits.iter().map(|refit| simulated(request, &refit.without.iter().collect::<Vec<_>>(), restart_s)).collect();
+    let each: Vec<Each> = refits
+        .iter()
+        .map(|refit| simulated(request, &refit.without.iter().collect::<Vec<_>>(), restart_s))
+        .collect();
     let best = |keep: &dyn Fn(usize) -> bool| {
         let changes = each.iter().map(|after| change(&before, after, keep)).enumerate();
         changes.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(place, _)| place)
     };
-    let ways: Vec<usize> = (0..count).map(|trial| best(&|other| other != trial || count == 1)).collect();
-    let after: Each = ways.iter().enumerate().map(|(trial, &way)| each[way][trial].clone()).collect();
+    let ways: Vec<usize> =
+        (0..count).map(|trial| best(&|other| other != trial || count == 1)).collect();
+    let after: Each =
+        ways.iter().enumerate().map(|(trial, &way)| each[way][trial].clone()).collect();
     let model = |trial: usize| &refits[ways[trial]].without[trial];
     SimulatedErrors {
         before: total(&before, &|_| true),
         after: total(&after, &|_| true),
-        trials: (0..count).map(|trial| of_trial(request.trials[trial], &before[trial], &after[trial])).collect(),
-        manoeuvres: (0..count).filter_map(|trial| manoeuvre(request, model(trial), request.trials[trial])).collect(),
+        trials: (0..count)
+            .map(|trial| of_trial(request.trials[trial], &before[trial], &after[trial]))
+            .collect(),
+        manoeuvres: (0..count)
+            .filter_map(|trial| manoeuvre(request, model(trial), request.trials[trial]))
+            .collect(),
         taken: best(&|_| true),
         change: change(&before, &after, &|_| true),
     }
@@ -64,7 +72,11 @@ fn simulated(request: &Request<'_>, models: &[&Model], restart_s: f64) -> Each {
 
 fn total(each: &Each, keep: &dyn Fn(usize) -> bool) -> BTreeMap<String, f64> {
     let mut sum = SquaredError::default();
-    let kept = each.iter().enumerate().filter(|(trial, _)| keep(*trial)).filter_map(|(_, error)| error.as_ref());
+    let kept = each
+        .iter()
+        .enumerate()
+        .filter(|(trial, _)| keep(*trial))
+        .filter_map(|(_, error)| error.as_ref());
     kept.for_each(|error| sum.add(error));
     sum.rmse()
 }
@@ -76,13 +88,19 @@ fn change(before: &Each, after: &Each, keep: &dyn Fn(usize) -> bool) -> f64 {
         return f64::INFINITY;
     }
     let (before, after) = (total(before, keep), total(after, keep));
-    let logs = before.iter().filter_map(|(channel, before)| Some((after.get(channel)? / before).ln()));
+    let logs =
+        before.iter().filter_map(|(channel, before)| Some((after.get(channel)? / before).ln()));
     let logs: Vec<f64> = logs.filter(|log| log.is_finite()).collect();
     if logs.is_empty() { 0.0 } else { logs.iter().sum::<f64>() / logs.len() as f64 }
 }
 
-fn of_trial(trial: &Trial, before: &Option<SquaredError>, after: &Option<SquaredError>) -> TrialErrors {
-    let rmse = |error: &Option<SquaredError>| error.as_ref().map(SquaredError::rmse).unwrap_or_default();
+fn of_trial(
+    trial: &Trial,
+    before: &Option<SquaredError>,
+    after: &Option<SquaredError>,
+) -> TrialErrors {
+    let rmse =
+        |error: &Option<SquaredError>| error.as_ref().map(SquaredError::rmse).unwrap_or_default();
     TrialErrors { trial: trial.name.clone(), before: rmse(before), after: rmse(after) }
 }
 
@@ -90,10 +108,17 @@ fn manoeuvre(request: &Request<'_>, after: &Model, trial: &Trial) -> Option<Sail
     let recognised = Recognised::of(trial)?;
     let simulated = |model: &Model| -> Option<ManoeuvreMetrics> {
         let ship = ready(model, request.law, &[trial]).ok()?;
-        let run = replay(&ship, trial, &ReplaySettings::default()).ok().filter(|run| run.stopped.is_none())?;
+        let run = replay(&ship, trial, &ReplaySettings::default())
+            .ok()
+            .filter(|run| run.stopped.is_none())?;
         recognised.metrics(&run.track, &run.samples)
     };
     let samples: Vec<usize> = (0..trial.len()).collect();
     let measured = recognised.metrics(&recorded_track(trial)?, &samples)?;
-    Some(SailedManoeuvre { trial: trial.name.clone(), measured, before: simulated(request.model), after: simulated(after) })
+    Some(SailedManoeuvre {
+        trial: trial.name.clone(),
+        measured,
+        before: simulated(request.model),
+        after: simulated(after),
+    })
 }

@@ -35,8 +35,8 @@ use std::sync::Arc;
 
 pub use calibrate::calibrate;
 pub use outcome::{
-    Confounded, Diagnosis, DiscrepancyLevel, Found, Hypothesis, NextTrial, ResidualSeries, SailedManoeuvre, TrialErrors,
-    Unexplained, Value, Verdict,
+    Confounded, Diagnosis, DiscrepancyLevel, Found, Hypothesis, NextTrial, ResidualSeries,
+    SailedManoeuvre, TrialErrors, Unexplained, Value, Verdict,
 };
 pub use run::diagnose;
 pub use settings::Settings;

@@ -10,8 +10,8 @@ use sistership_model::{Trial, particulars};
 use super::calibrated_model::CalibratedModel;
 use super::thresholds::THRESHOLDS;
 use crate::residual::{
-    Columns, Detail, Discrepancies, Gram, Instrument, Linearised, Noise, ResidualSystem, TrialReadings, filter, floor, linearise,
-    scatter, sparseness,
+    Columns, Detail, Discrepancies, Gram, Instrument, Linearised, Noise, ResidualSystem,
+    TrialReadings, filter, floor, linearise, scatter, sparseness,
 };
 use sistership_estimate::refine::RefineError;
 use sistership_estimate::transfer::approach_of;
@@ -42,7 +42,11 @@ impl MotionScales {
         let time_s = self.time_s;
         let of = |typical: &f64| {
             let deviation = level * typical;
-            Discrepancy { deviation, time_s, white: THRESHOLDS.discrepancy.white_share * deviation * time_s.sqrt() }
+            Discrepancy {
+                deviation,
+                time_s,
+                white: THRESHOLDS.discrepancy.white_share * deviation * time_s.sqrt(),
+            }
         };
         self.accelerations.iter().map(of).collect()
     }
@@ -59,9 +63,13 @@ impl<'a> LinearisedTrials<'a> {
     ) -> Result<Self, RefineError> {
         let CalibratedModel { model, law } = learned;
         let lpp_m = particulars::value(&model.particulars, "lpp_m");
-        let lpp_m = lpp_m.ok_or_else(|| RefineError::Law(format!("the model `{}` does not give `lpp_m`", model.name)))?;
+        let lpp_m = lpp_m.ok_or_else(|| {
+            RefineError::Law(format!("the model `{}` does not give `lpp_m`", model.name))
+        })?;
         let approach = approach_of(trials).map(|approach| approach.speed_m_s);
-        let speed_m_s = approach.or(model.speed_m_s).ok_or_else(|| RefineError::Data("the trials have no speed".into()))?;
+        let speed_m_s = approach
+            .or(model.speed_m_s)
+            .ok_or_else(|| RefineError::Data("the trials have no speed".into()))?;
         let least_step_s = least_step_s.unwrap_or(THRESHOLDS.trials.least_step * lpp_m / speed_m_s);
         let settles_s = THRESHOLDS.trials.settles * lpp_m / speed_m_s;
         let mut records: Vec<TrialReadings<'a>> =
@@ -71,7 +79,10 @@ impl<'a> LinearisedTrials<'a> {
         let noise = noise(&records, lpp_m, speed_m_s, model.uncertainty.as_ref());
         let frame = trials.first().map(|trial| trial.velocity).unwrap_or_default();
         let system = ResidualSystem::new(model, law, columns, frame)?;
-        let linear = records.par_iter().map(|record| linearise(&system, record, Detail::Whole)).collect::<Result<_, _>>()?;
+        let linear = records
+            .par_iter()
+            .map(|record| linearise(&system, record, Detail::Whole))
+            .collect::<Result<_, _>>()?;
         Ok(Self { trials, noise, lpp_m, speed_m_s, system, records, linear })
     }
 
@@ -97,7 +108,9 @@ impl<'a> LinearisedTrials<'a> {
 
     pub fn scales(&self) -> MotionScales {
         let rate = self.speed_m_s / self.lpp_m;
-        let of = |axis: &Axis| if matches!(axis, Axis::X | Axis::Y) { self.speed_m_s * rate } else { rate * rate };
+        let of = |axis: &Axis| {
+            if matches!(axis, Axis::X | Axis::Y) { self.speed_m_s * rate } else { rate * rate }
+        };
         MotionScales { accelerations: self.axes().iter().map(of).collect(), time_s: rate.recip() }
     }
 
@@ -110,7 +123,8 @@ impl<'a> LinearisedTrials<'a> {
     pub fn each_under(&self, noise: &Noise, discrepancies: &Discrepancies) -> Vec<Gram> {
         let width = 1 + self.columns().len();
         let of_trial = |parts: &Vec<Linearised>| {
-            let grams: Vec<Gram> = parts.iter().map(|part| filter(part, noise, discrepancies)).collect();
+            let grams: Vec<Gram> =
+                parts.iter().map(|part| filter(part, noise, discrepancies)).collect();
             Gram::sum(&grams, width)
         };
         self.linear.par_iter().map(of_trial).collect()
@@ -118,11 +132,27 @@ impl<'a> LinearisedTrials<'a> {
 }
 
 /// Each instrument over all trials: its scatter, and what is known of it beside.
-fn noise(records: &[TrialReadings<'_>], lpp_m: f64, speed_m_s: f64, known: Option<&Uncertainty>) -> Noise {
-    let read = [Channel::U, Channel::V, Channel::R, Channel::P, Channel::Phi, Channel::Psi, Channel::X, Channel::Y];
+fn noise(
+    records: &[TrialReadings<'_>],
+    lpp_m: f64,
+    speed_m_s: f64,
+    known: Option<&Uncertainty>,
+) -> Noise {
+    let read = [
+        Channel::U,
+        Channel::V,
+        Channel::R,
+        Channel::P,
+        Channel::Phi,
+        Channel::Psi,
+        Channel::X,
+        Channel::Y,
+    ];
     let one = |channel: Channel| {
-        let scatter =
-            Instrument::of_scatter(scatter(records, channel, records.first()?.every)?.max(floor(channel, lpp_m, speed_m_s)));
+        let scatter = Instrument::of_scatter(
+            scatter(records, channel, records.first()?.every)?
+                .max(floor(channel, lpp_m, speed_m_s)),
+        );
         let known = known.and_then(|known| known.instruments.get(channel.name()));
         let of = |known: &InstrumentFit| Instrument {
             deviation: scatter.deviation * known.deviation_by_scatter,

@@ -33,10 +33,13 @@ pub(super) fn next_trial(
     found: &[Found],
 ) -> Option<NextTrial> {
     let doubtful = found.iter().filter(|found| !found.confounded_with.is_empty());
-    let doubtful = doubtful.min_by(|a, b| a.confounded_with[0].angle_deg.total_cmp(&b.confounded_with[0].angle_deg))?;
+    let doubtful = doubtful
+        .min_by(|a, b| a.confounded_with[0].angle_deg.total_cmp(&b.confounded_with[0].angle_deg))?;
     let place = judged.candidates.iter().position(|candidate| candidate.effect == doubtful.name)?;
     let ship = ship(search, judged)?;
-    let gain = |planned: &PlannedManoeuvre| Some((separated(search, base, judged, place, doubtful, &ship, planned)?, *planned));
+    let gain = |planned: &PlannedManoeuvre| {
+        Some((separated(search, base, judged, place, doubtful, &ship, planned)?, *planned))
+    };
     let gains: Vec<(f64, PlannedManoeuvre)> = plans(base).par_iter().filter_map(gain).collect();
     let (expected, best) = gains.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
     let others = doubtful.confounded_with.iter().map(|other| other.name.clone());
@@ -53,9 +56,17 @@ fn plans(base: &FilteredBase<'_>) -> Vec<PlannedManoeuvre> {
     let approach = base.workspace.speed_m_s;
     let given = THRESHOLDS.next_trial;
     let of = |helm: PlannedHelm, share: f64| {
-        given.headings_deg.map(|heading_deg| PlannedManoeuvre { helm, speed_m_s: share * approach, heading_deg })
+        given.headings_deg.map(|heading_deg| PlannedManoeuvre {
+            helm,
+            speed_m_s: share * approach,
+            heading_deg,
+        })
     };
-    given.manoeuvres.into_iter().flat_map(|helm| given.speeds.into_iter().flat_map(move |share| of(helm, share))).collect()
+    given
+        .manoeuvres
+        .into_iter()
+        .flat_map(|helm| given.speeds.into_iter().flat_map(move |share| of(helm, share)))
+        .collect()
 }
 
 fn ship(search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> Option<Ship> {
@@ -77,7 +88,8 @@ fn separated(
     let mut total = base.total(judged.level.min(base.levels.len() - 1));
     total.add(&gram);
     let responses = Responses::new(search, base, judged, &total)?;
-    let names: Vec<&str> = doubtful.confounded_with.iter().map(|other| other.name.as_str()).collect();
+    let names: Vec<&str> =
+        doubtful.confounded_with.iter().map(|other| other.name.as_str()).collect();
     responses.behind(place, &names)
 }
 
@@ -112,14 +124,20 @@ fn recorded(track: &Trajectory, like: &Trial, heading_rad: f64) -> Trial {
         Channel::Psi => track.column(index).into_iter().map(|psi| psi + heading_rad).collect(),
         _ => track.column(index),
     };
-    let mut trial = Trial { name: "planned".into(), velocity: like.velocity, depth_m: like.depth_m, ..Trial::default() };
+    let mut trial = Trial {
+        name: "planned".into(),
+        velocity: like.velocity,
+        depth_m: like.depth_m,
+        ..Trial::default()
+    };
     trial.t_s = every(track.t_s.clone());
     let count = trial.t_s.len();
     for (&channel, values) in &like.channels {
         let constant = values.get(values.len() / 2).copied().unwrap_or_default();
         trial.channels.insert(channel, vec![constant; count]);
     }
-    for &(channel, index) in RECORDED.iter().filter(|(channel, _)| like.channel(*channel).is_some()) {
+    for &(channel, index) in RECORDED.iter().filter(|(channel, _)| like.channel(*channel).is_some())
+    {
         trial.channels.insert(channel, every(turned(channel, index)));
     }
     trial.channels.insert(Channel::Delta, every(track.column(at::DELTA)));
@@ -130,14 +148,25 @@ fn recorded(track: &Trajectory, like: &Trial, heading_rad: f64) -> Trial {
 }
 
 /// The products of all columns of a base over a planned trial.
-fn filtered(search: &HypothesisSearch<'_>, base: &FilteredBase<'_>, judged: &JudgedHypothesis, trial: &Trial) -> Option<Gram> {
+fn filtered(
+    search: &HypothesisSearch<'_>,
+    base: &FilteredBase<'_>,
+    judged: &JudgedHypothesis,
+    trial: &Trial,
+) -> Option<Gram> {
     let columns = base.workspace.columns().clone();
     let trials = [trial];
-    let workspace =
-        super::linearised_trials::LinearisedTrials::new(&search.calibrated_model, columns, &trials, search.least_step_s).ok()?;
+    let workspace = super::linearised_trials::LinearisedTrials::new(
+        &search.calibrated_model,
+        columns,
+        &trials,
+        search.least_step_s,
+    )
+    .ok()?;
     let discrepancies = base.levels[judged.level.min(base.levels.len() - 1)].discrepancies();
     let width = 1 + workspace.columns().len();
     let parts = workspace.linear().iter().flatten();
-    let grams: Vec<Gram> = parts.map(|part| filter(part, &base.workspace.noise, discrepancies)).collect();
+    let grams: Vec<Gram> =
+        parts.map(|part| filter(part, &base.workspace.noise, discrepancies)).collect();
     Some(Gram::sum(&grams, width))
 }

@@ -21,12 +21,21 @@ use sistership_estimate::refine::RefineError;
 pub type Terms = BTreeMap<String, Arc<Form>>;
 
 /// The terms of the library's grammars on trials: all that the model lacks.
-pub fn lacked(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Vec<(String, Arc<Form>)> {
+pub fn lacked(
+    model: &Model,
+    law: &Law,
+    effects: &[Arc<Effect>],
+    trials: &[&Trial],
+) -> Vec<(String, Arc<Form>)> {
     let has = |channel: Channel| trials.iter().all(|trial| trial.channel(channel).is_some());
     let axes: Vec<Axis> = law.axes.keys().copied().collect();
     let known = |name: &str| model.coefficients.contains_key(name);
     let of = |effect: &Arc<Effect>| -> Vec<(String, Arc<Form>)> {
-        let forms = effect.grammar.as_ref().map(|grammar| grammar.forms(&axes, &known, &has)).unwrap_or_default();
+        let forms = effect
+            .grammar
+            .as_ref()
+            .map(|grammar| grammar.forms(&axes, &known, &has))
+            .unwrap_or_default();
         forms.into_iter().map(|form| (effect.name.clone(), form)).collect()
     };
     effects.iter().flat_map(of).collect()
@@ -37,7 +46,10 @@ pub fn lacked(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Tria
 pub fn learned(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Terms {
     let axes: Vec<Axis> = law.axes.keys().copied().collect();
     let known = |name: &str| model.coefficients.contains_key(name);
-    let constants = effects.iter().filter_map(|effect| effect.grammar.as_ref()).flat_map(|g| g.constants(&axes, &known));
+    let constants = effects
+        .iter()
+        .filter_map(|effect| effect.grammar.as_ref())
+        .flat_map(|g| g.constants(&axes, &known));
     let terms = lacked(model, law, effects, trials).into_iter().map(|(_, form)| form);
     terms.chain(constants).map(|form| (form.file.name.clone(), form)).collect()
 }
@@ -45,7 +57,9 @@ pub fn learned(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Tri
 /// The regressor of a term, in N (N m) per unit of its coefficient, in the names of a law.
 pub fn regressor(model: &Model, form: &Form) -> Option<(Axis, Expr)> {
     let (axis, force) = form.forces.iter().next()?;
-    let speed = model.speed_m_s.or_else(|| sistership_model::particulars::value(&model.particulars, "service_speed_m_s"));
+    let speed = model
+        .speed_m_s
+        .or_else(|| sistership_model::particulars::value(&model.particulars, "service_speed_m_s"));
     let parameter = form.parameters.keys().next()?;
     let plain = |name: &str| match name {
         "approach_speed_m_s" => Some(Expr::Number(speed.unwrap_or(1.0))),
@@ -63,17 +77,29 @@ pub fn prior(model: &Model, columns: &[Nuisance], terms: &Terms, slack: f64) -> 
     let of_axis = |axis: Axis| {
         let of = terms.values().find(|form| form.forces.contains_key(&axis));
         of.and_then(|form| form.parameters.values().next())
-            .map_or(THRESHOLDS.calibration.fallback_deviation, |parameter| parameter.prior_deviation)
+            .map_or(THRESHOLDS.calibration.fallback_deviation, |parameter| {
+                parameter.prior_deviation
+            })
     };
     let deviation = |nuisance: &Nuisance| match nuisance.kind {
         NuisanceKind::Own(axis) => {
-            slack * model.coefficient(&nuisance.name).abs().max(THRESHOLDS.calibration.least_prior_share * of_axis(axis))
+            slack
+                * model
+                    .coefficient(&nuisance.name)
+                    .abs()
+                    .max(THRESHOLDS.calibration.least_prior_share * of_axis(axis))
         }
         NuisanceKind::Lacked(axis) => slack * of_axis(axis),
         NuisanceKind::Mass(..) => THRESHOLDS.calibration.mass_prior,
     };
-    let precisions = DVector::from_iterator(columns.len(), columns.iter().map(|nuisance| deviation(nuisance).powi(-2)));
-    CoefficientPrior { information: DMatrix::from_diagonal(&precisions), weighted_mean: DVector::zeros(columns.len()) }
+    let precisions = DVector::from_iterator(
+        columns.len(),
+        columns.iter().map(|nuisance| deviation(nuisance).powi(-2)),
+    );
+    CoefficientPrior {
+        information: DMatrix::from_diagonal(&precisions),
+        weighted_mean: DVector::zeros(columns.len()),
+    }
 }
 
 /// What the model's own trials say of the coefficients, for the columns that it names.
@@ -83,10 +109,14 @@ pub fn prior(model: &Model, columns: &[Nuisance], terms: &Terms, slack: f64) -> 
 pub fn learned_prior(uncertainty: &Uncertainty) -> Result<CoefficientPrior, RefineError> {
     let rows = uncertainty.root().map_err(|error| RefineError::Law(error.to_string()))?;
     let size = rows.len();
-    let entry = |i: usize, j: usize| if j >= i { rows[i][j - i] / uncertainty.scales[j] } else { 0.0 };
+    let entry =
+        |i: usize, j: usize| if j >= i { rows[i][j - i] / uncertainty.scales[j] } else { 0.0 };
     let root = DMatrix::from_fn(size, size, entry);
     let offset = DVector::from_column_slice(&uncertainty.offset);
-    Ok(CoefficientPrior { information: root.transpose() * &root, weighted_mean: root.transpose() * offset })
+    Ok(CoefficientPrior {
+        information: root.transpose() * &root,
+        weighted_mean: root.transpose() * offset,
+    })
 }
 
 /// The columns of a model that knows its uncertainty: those it names; otherwise its own coefficients.

@@ -19,7 +19,9 @@ pub(super) fn is_placebo(
     judged: &JudgedHypothesis,
     base: &FilteredBase<'_>,
 ) -> Result<bool, RefineError> {
-    let Some(last) = judged.candidates.last().filter(|candidate| is_from_outside(candidate)) else { return Ok(false) };
+    let Some(last) = judged.candidates.last().filter(|candidate| is_from_outside(candidate)) else {
+        return Ok(false);
+    };
     let again = |search: &HypothesisSearch<'_>| {
         let there = search.bare(&base.taken, &search.levels)?;
         Ok(search.judge(&there, last, judged.level)?.log_evidence)
@@ -31,7 +33,11 @@ pub(super) fn is_placebo(
 ///
 /// # Errors
 /// Names what a trial lacks.
-pub(super) fn follow_records(search: &HypothesisSearch<'_>, judged: &JudgedHypothesis, margin: f64) -> Result<bool, RefineError> {
+pub(super) fn follow_records(
+    search: &HypothesisSearch<'_>,
+    judged: &JudgedHypothesis,
+    margin: f64,
+) -> Result<bool, RefineError> {
     let again = |search: &HypothesisSearch<'_>| {
         let there = search.bare(&judged.candidates, &search.levels)?;
         Ok(search.alone(&there)?.1.log_evidence)

@@ -32,13 +32,18 @@ pub(super) fn refits(
     restart_s: f64,
 ) -> Vec<Refit> {
     let all = model_with(search.model, &judged.candidates, Some(&judged.covariance));
-    let without = (0..request.trials.len()).map(|trial| without(request, search, judged, trial)).collect();
+    let without =
+        (0..request.trials.len()).map(|trial| without(request, search, judged, trial)).collect();
     let found = Refit { how: None, all, without };
-    let corrected = (!judged.candidates.is_empty()).then(|| CorrectedRecords::new(request, &found.all)).flatten();
+    let corrected = (!judged.candidates.is_empty())
+        .then(|| CorrectedRecords::new(request, &found.all))
+        .flatten();
     let mut fitted = Vec::new();
     if let Some(corrected) = corrected {
         let request = &Request { trials: &corrected.trials(), ..*request };
-        fitted.extend(THRESHOLDS.refit.strengths.iter().filter_map(|&lambda| ridge(request, &found, lambda)));
+        fitted.extend(
+            THRESHOLDS.refit.strengths.iter().filter_map(|&lambda| ridge(request, &found, lambda)),
+        );
         fitted.extend(jointly(request, &found, restart_s));
     }
     std::iter::once(found).chain(fitted).collect()
@@ -47,14 +52,26 @@ pub(super) fn refits(
 /// The trials but one; of a single one, itself.
 fn others<'a>(request: &Request<'a>, but: usize) -> Vec<&'a Trial> {
     let count = request.trials.len();
-    (0..count).filter(|&other| other != but || count == 1).map(|other| request.trials[other]).collect()
+    (0..count)
+        .filter(|&other| other != but || count == 1)
+        .map(|other| request.trials[other])
+        .collect()
 }
 
 /// The model with effects as the other trials ask for them.
-fn without(request: &Request<'_>, search: &HypothesisSearch<'_>, judged: &JudgedHypothesis, trial: usize) -> Model {
+fn without(
+    request: &Request<'_>,
+    search: &HypothesisSearch<'_>,
+    judged: &JudgedHypothesis,
+    trial: usize,
+) -> Model {
     let keep = |other: usize| other != trial || request.trials.len() == 1;
-    let fitted = judged.of_trials(&search.fixed, &keep).filter(|(_, candidates)| !candidates.is_empty());
-    fitted.map_or_else(|| request.model.clone(), |(_, candidates)| model_with(search.model, &candidates, None))
+    let fitted =
+        judged.of_trials(&search.fixed, &keep).filter(|(_, candidates)| !candidates.is_empty());
+    fitted.map_or_else(
+        || request.model.clone(),
+        |(_, candidates)| model_with(search.model, &candidates, None),
+    )
 }
 
 fn ridge(request: &Request<'_>, found: &Refit, lambda: f64) -> Option<Refit> {
@@ -78,13 +95,18 @@ fn jointly(request: &Request<'_>, found: &Refit, restart_s: f64) -> Vec<Refit> {
     let Ok(Some(terms)) = AsTerms::new(&ship, request.law) else { return Vec::new() };
     let all = alternatives(&terms.model, &terms.law, request.trials, restart_s).unwrap_or_default();
     let back = |model: Model, instruments: Vec<AppliedEffect>| {
-        let fitted = Model { uncertainty: None, posterior: None, ..terms.fitted(&model.coefficients) };
+        let fitted =
+            Model { uncertainty: None, posterior: None, ..terms.fitted(&model.coefficients) };
         joined(fitted, instruments)
     };
     let one = |Alternative { label, all, without }: Alternative| Refit {
         how: Some(format!("together with the effects: {label}")),
         all: back(all, instruments.clone()),
-        without: without.into_iter().zip(&found.without).map(|(model, found)| back(model, split(found).1)).collect(),
+        without: without
+            .into_iter()
+            .zip(&found.without)
+            .map(|(model, found)| back(model, split(found).1))
+            .collect(),
     };
     all.into_iter().map(one).collect()
 }
@@ -93,14 +115,19 @@ fn with_coefficients(model: &Model, law: &Law, trials: &[&Trial], lambda: f64) -
     let equations = EquationsOfMotion::new(model, law).ok()?;
     let blocks = Blocks::new(model, equations.law()).ok()?;
     let speed_m_s = approach_of(trials).map(|approach| approach.speed_m_s).or(model.speed_m_s)?;
-    let difference_s = THRESHOLDS.refit.difference * particulars::value(&model.particulars, "lpp_m")? / speed_m_s;
+    let difference_s =
+        THRESHOLDS.refit.difference * particulars::value(&model.particulars, "lpp_m")? / speed_m_s;
     let of = |trial: &&Trial| trial_moments(&blocks, trial, Some(difference_s)).ok();
     let each: Vec<Vec<Moments>> = trials.iter().map(of).collect::<Option<_>>()?;
     let mut total = each.first()?.clone();
     for moments in &each[1..] {
         total.iter_mut().zip(moments).for_each(|(sum, more)| sum.merge(more));
     }
-    let choices = blocks.blocks.iter().map(|block| vec![RidgeChoice { lambda, alpha: 0.0 }; block.axes.len()]).collect();
+    let choices = blocks
+        .blocks
+        .iter()
+        .map(|block| vec![RidgeChoice { lambda, alpha: 0.0 }; block.axes.len()])
+        .collect();
     let mut model = model.clone();
     for (name, fitted) in fit(&blocks, &total, &model, &choices).coefficients {
         let quantity = model.coefficients.get_mut(&name)?;

@@ -39,7 +39,10 @@ pub(super) fn largest(
     parameters: &[f64],
 ) -> Vec<(Channel, f64)> {
     let of = |(channel, sums): (Channel, BlockSums<'_>)| (channel, sums.largest());
-    sums(workspace, trial, discrepancies, [parameters, &vec![0.0; parameters.len()]]).into_iter().map(of).collect()
+    sums(workspace, trial, discrepancies, [parameters, &vec![0.0; parameters.len()]])
+        .into_iter()
+        .map(of)
+        .collect()
 }
 
 /// Sums of the prediction errors of a channel over blocks of a part of a trial, in deviations.
@@ -65,10 +68,15 @@ fn sums<'a>(
         let size = (block_s / (interval * part.every as f64)).round().max(1.0) as usize;
         let (left, _) = errors(&part.along(parameters), &workspace.noise, discrepancies);
         let moved = responses(&part.along(effects), &workspace.noise, discrepancies);
-        for (place, &(channel, _)) in
-            part.channels.iter().enumerate().filter(|(_, (channel, _))| THRESHOLDS.remainder.channels.contains(channel))
+        for (place, &(channel, _)) in part
+            .channels
+            .iter()
+            .enumerate()
+            .filter(|(_, (channel, _))| THRESHOLDS.remainder.channels.contains(channel))
         {
-            let of = |all: &[f64]| block_sums(all.iter().skip(place).step_by(part.channels.len()).copied(), size);
+            let of = |all: &[f64]| {
+                block_sums(all.iter().skip(place).step_by(part.channels.len()).copied(), size)
+            };
             all.push((channel, BlockSums { part, size, sums: of(&left), moved: of(&moved) }));
         }
     }
@@ -77,7 +85,10 @@ fn sums<'a>(
 
 fn block_sums(values: impl Iterator<Item = f64>, size: usize) -> Vec<f64> {
     let values: Vec<f64> = values.collect();
-    values.chunks(size).map(|block| block.iter().sum::<f64>() / (block.len() as f64).sqrt()).collect()
+    values
+        .chunks(size)
+        .map(|block| block.iter().sum::<f64>() / (block.len() as f64).sqrt())
+        .collect()
 }
 
 fn rms(sums: &[f64]) -> f64 {
@@ -90,7 +101,9 @@ impl BlockSums<'_> {
     }
 
     fn largest(&self) -> f64 {
-        self.starts().map(|from| rms(&self.sums[from..from + THRESHOLDS.remainder.blocks])).fold(0.0, f64::max)
+        self.starts()
+            .map(|from| rms(&self.sums[from..from + THRESHOLDS.remainder.blocks]))
+            .fold(0.0, f64::max)
     }
 
     /// Runs of blocks above the limit, each as one stretch.
@@ -98,7 +111,8 @@ impl BlockSums<'_> {
         let mut found: Vec<(usize, usize)> = Vec::new();
         let is_large = |&from: &usize| {
             let blocks = from..from + THRESHOLDS.remainder.blocks;
-            rms(&self.sums[blocks.clone()]) > limit.hypot(THRESHOLDS.effect.shape * rms(&self.moved[blocks]))
+            rms(&self.sums[blocks.clone()])
+                > limit.hypot(THRESHOLDS.effect.shape * rms(&self.moved[blocks]))
         };
         for from in self.starts().filter(is_large) {
             match found.last_mut().filter(|(_, end)| from <= *end) {
@@ -106,7 +120,9 @@ impl BlockSums<'_> {
                 None => found.push((from, from + THRESHOLDS.remainder.blocks)),
             }
         }
-        let time = |block: usize| self.part.t_s[(block * self.size * self.part.every).min(self.part.t_s.len() - 1)];
+        let time = |block: usize| {
+            self.part.t_s[(block * self.size * self.part.every).min(self.part.t_s.len() - 1)]
+        };
         let stretch = |(from, to): (usize, usize)| Unexplained {
             channel: channel.name().to_owned(),
             rms_over_noise: rms(&self.sums[from..to]),

@@ -45,7 +45,8 @@ fn answer(
     choice: EffectChoice,
     progress: Progress<'_>,
 ) -> Result<Diagnosis, RefineError> {
-    let SelectedEffects { choice, settled, remaining, refused } = believed(request, first, choice, progress)?;
+    let SelectedEffects { choice, settled, remaining, refused } =
+        believed(request, first, choice, progress)?;
     let ConvergedChoice { search, base, best } = &settled;
     let workspace = &base.workspace;
     let length_s = workspace.lpp_m / workspace.speed_m_s;
@@ -55,14 +56,17 @@ fn answer(
     let errors = errors(request, &refits, restart_s);
     let taken = refits.swap_remove(errors.taken);
     step(progress, 0.95, "what these trials cannot tell apart")?;
-    let (mut found, next_trial) = apart(request, search, best, choice.best().log_evidence - choice.alone.log_evidence)?;
+    let (mut found, next_trial) =
+        apart(request, search, best, choice.best().log_evidence - choice.alone.log_evidence)?;
     let verdict = match (remaining.is_empty(), found.is_empty()) {
         (false, _) => Verdict::Unexplained,
         (true, true) => Verdict::Complete,
         (true, false) => Verdict::Effects,
     };
     let model = (!found.is_empty() && errors.change < 0.0).then_some(taken.all);
-    found.iter_mut().for_each(|found| found.in_model = model.as_ref().map_or_else(BTreeMap::new, |model| in_model(found, model)));
+    found.iter_mut().for_each(|found| {
+        found.in_model = model.as_ref().map_or_else(BTreeMap::new, |model| in_model(found, model))
+    });
     let is_better = found.is_empty() || model.is_some();
     let remarks = remarks(&refused, is_better, &found);
     Ok(Diagnosis {
@@ -72,7 +76,11 @@ fn answer(
         next_trial,
         before: errors.before,
         after: errors.after,
-        noise: workspace.noise.iter().map(|(channel, instrument)| (channel.name().to_owned(), instrument.deviation)).collect(),
+        noise: workspace
+            .noise
+            .iter()
+            .map(|(channel, instrument)| (channel.name().to_owned(), instrument.deviation))
+            .collect(),
         how: how(request, taken.how.as_deref()),
         diagnosed: request.model.name.clone(),
         hypotheses: hypotheses(request, search, &choice),
@@ -133,7 +141,8 @@ fn remaining(
     };
     let parameters: Vec<f64> = best.shift.iter().copied().chain(best.moved()).collect();
     let clean = search.model.uncertainty.as_ref().map(|uncertainty| &uncertainty.remainder);
-    let changes: Vec<f64> = best.candidates.iter().flat_map(|candidate| candidate.change()).collect();
+    let changes: Vec<f64> =
+        best.candidates.iter().flat_map(|candidate| candidate.change()).collect();
     let effects: Vec<f64> = vec![0.0; best.shift.len()].into_iter().chain(changes).collect();
     let found = unexplained(workspace, expected, &parameters, &effects, clean);
     if clean.is_none() || found.is_empty() {
@@ -141,9 +150,11 @@ fn remaining(
     }
     // Coefficients that gave way to what is missing have spread it over the trial: it is dated by those of clean trials.
     let given_way = search.given_way().into_iter().map(|change| -change);
-    let as_calibrated: Vec<f64> = given_way.chain(parameters.iter().copied().skip(best.shift.len())).collect();
+    let as_calibrated: Vec<f64> =
+        given_way.chain(parameters.iter().copied().skip(best.shift.len())).collect();
     let dated = unexplained(workspace, expected, &as_calibrated, &effects, clean);
     let same = |a: &Unexplained, b: &Unexplained| a.trial == b.trial && a.channel == b.channel;
-    let dated: Vec<Unexplained> = dated.into_iter().filter(|a| found.iter().any(|b| same(a, b))).collect();
+    let dated: Vec<Unexplained> =
+        dated.into_iter().filter(|a| found.iter().any(|b| same(a, b))).collect();
     Ok(if dated.is_empty() { found } else { dated })
 }

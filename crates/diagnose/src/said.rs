@@ -23,14 +23,17 @@ pub(super) fn apart(
     best: &JudgedHypothesis,
     of_all: f64,
 ) -> Result<(Vec<Found>, Option<NextTrial>), RefineError> {
-    let mut all: Vec<Found> = (0..best.candidates.len()).map(|place| found(request, search, best, place, of_all)).collect();
+    let mut all: Vec<Found> = (0..best.candidates.len())
+        .map(|place| found(request, search, best, place, of_all))
+        .collect();
     let mut next = None;
     if !all.is_empty() {
         let level = best.level.min(search.levels.len() - 1);
         let base = search.base(&best.candidates, &search.levels[level..=level])?;
         let responses = Responses::new(search, &base, best, &base.total(0));
         for (place, found) in all.iter_mut().enumerate() {
-            found.confounded_with = responses.as_ref().map(|responses| responses.beside(place)).unwrap_or_default();
+            found.confounded_with =
+                responses.as_ref().map(|responses| responses.beside(place)).unwrap_or_default();
         }
         next = next_trial(search, &base, best, &all);
     }
@@ -39,7 +42,13 @@ pub(super) fn apart(
 }
 
 /// `of_all` is the evidence of all effects together where the model alone may have any discrepancy: none has more.
-fn found(request: &Request<'_>, search: &HypothesisSearch<'_>, best: &JudgedHypothesis, place: usize, of_all: f64) -> Found {
+fn found(
+    request: &Request<'_>,
+    search: &HypothesisSearch<'_>,
+    best: &JudgedHypothesis,
+    place: usize,
+    of_all: f64,
+) -> Found {
     let candidate = &best.candidates[place];
     let discount = search.discount(candidate);
     let covariance = covariance(best, place, (&search.nuisance, &search.fixed), discount);
@@ -57,16 +66,24 @@ fn found(request: &Request<'_>, search: &HypothesisSearch<'_>, best: &JudgedHypo
 
 /// The parameters of an effect as a model carries them, where they are others than those found.
 pub(super) fn in_model(found: &Found, model: &Model) -> BTreeMap<String, Value> {
-    let carried = model.effects.iter().find(|own| own.name == found.name && own.form.name == found.form);
+    let carried =
+        model.effects.iter().find(|own| own.name == found.name && own.form.name == found.form);
     let all = carried.into_iter().flat_map(|own| &own.parameters);
-    let moved = all.clone().any(|(name, own)| found.parameters.get(name).is_some_and(|value| value.value != own.value));
-    let one =
-        |(name, own): (&String, &Quantity)| (name.clone(), Value { value: own.value, se: own.standard_error.unwrap_or(0.0) });
+    let moved = all.clone().any(|(name, own)| {
+        found.parameters.get(name).is_some_and(|value| value.value != own.value)
+    });
+    let one = |(name, own): (&String, &Quantity)| {
+        (name.clone(), Value { value: own.value, se: own.standard_error.unwrap_or(0.0) })
+    };
     if moved { all.map(one).collect() } else { BTreeMap::new() }
 }
 
 /// Everything that was judged where it stands, the most probable first.
-pub(super) fn hypotheses(request: &Request<'_>, search: &HypothesisSearch<'_>, choice: &EffectChoice) -> Vec<Hypothesis> {
+pub(super) fn hypotheses(
+    request: &Request<'_>,
+    search: &HypothesisSearch<'_>,
+    choice: &EffectChoice,
+) -> Vec<Hypothesis> {
     let alone = choice.alone.held_out(&search.fixed);
     let one = |(place, judged): (usize, &JudgedHypothesis)| Hypothesis {
         effects: judged.candidates.iter().map(crate::residual::EffectCandidate::key).collect(),
@@ -91,11 +108,16 @@ fn parameters(request: &Request<'_>, judged: &JudgedHypothesis) -> BTreeMap<Stri
 /// How trials were left out; `refit` is how the coefficients were fitted, where they were.
 pub(super) fn how(request: &Request<'_>, refit: Option<&str>) -> String {
     let fitted = match request.trials.len() {
-        1 => "there is one trial only: these are errors on the trial that the effects were fitted on".to_owned(),
+        1 => {
+            "there is one trial only: these are errors on the trial that the effects were fitted on"
+                .to_owned()
+        }
         count => format!("each of {count} trials simulated with effects fitted on the others"),
     };
     match refit {
-        Some(refit) => format!("{fitted}, and so were the coefficients, in the way that does best on the others ({refit})"),
+        Some(refit) => format!(
+            "{fitted}, and so were the coefficients, in the way that does best on the others ({refit})"
+        ),
         None => fitted,
     }
 }

@@ -21,13 +21,20 @@ pub(super) struct ScreenedEffect {
 
 /// The evidence of each other effect together with those taken, from one linearisation at the
 /// absence of all others, most probable first.
-pub(super) fn screen(search: &HypothesisSearch<'_>, base: &FilteredBase<'_>) -> Vec<ScreenedEffect> {
+pub(super) fn screen(
+    search: &HypothesisSearch<'_>,
+    base: &FilteredBase<'_>,
+) -> Vec<ScreenedEffect> {
     let others = search.others(&base.taken);
     let showing = |candidate: &&EffectCandidate| base.workspace.columns().showing(candidate);
-    let columns = base.taken.iter().flat_map(|kept| showing(&kept)).chain(others.iter().flat_map(showing));
+    let columns =
+        base.taken.iter().flat_map(|kept| showing(&kept)).chain(others.iter().flat_map(showing));
     let places: Vec<usize> = (0..search.nuisance.len()).chain(columns).collect();
-    let at_level = |level: usize| Some((level, MarginalInformation::new(&base.total(level).select(&places), &search.fixed)?));
-    let reduced: Vec<(usize, MarginalInformation)> = (0..base.levels.len()).into_par_iter().filter_map(at_level).collect();
+    let at_level = |level: usize| {
+        Some((level, MarginalInformation::new(&base.total(level).select(&places), &search.fixed)?))
+    };
+    let reduced: Vec<(usize, MarginalInformation)> =
+        (0..base.levels.len()).into_par_iter().filter_map(at_level).collect();
     screened(search, base, &others, &reduced)
 }
 
@@ -40,16 +47,20 @@ fn screened(
     let kept: Vec<usize> = (0..base.taken.iter().map(|kept| kept.at.len()).sum()).collect();
     let mut first = kept.len();
     let mut one = |candidate: &&EffectCandidate| {
-        let places: Vec<usize> = kept.iter().copied().chain(first..first + candidate.at.len()).collect();
+        let places: Vec<usize> =
+            kept.iter().copied().chain(first..first + candidate.at.len()).collect();
         first += candidate.at.len();
-        let fixing: Vec<NormalPrior> = base.taken.iter().chain([*candidate]).flat_map(priors).collect();
+        let fixing: Vec<NormalPrior> =
+            base.taken.iter().chain([*candidate]).flat_map(priors).collect();
         let gain = |(level, reduced): &(usize, MarginalInformation)| {
             let gain = reduced.estimate(&places, &fixing)?.gain;
             Some((base.levels[*level].level.log_prior - 0.5 * reduced.deviance + gain, *level))
         };
-        let (evidence, level) = reduced.iter().filter_map(gain).max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let (evidence, level) =
+            reduced.iter().filter_map(gain).max_by(|a, b| a.0.total_cmp(&b.0))?;
         let own = (&places[kept.len()..], *candidate);
-        let discounted = discounted(reduced, (&kept, &base.taken), own, search.discount(candidate))?;
+        let discounted =
+            discounted(reduced, (&kept, &base.taken), own, search.discount(candidate))?;
         let prior = search.log_prior(candidate);
         Some(ScreenedEffect {
             evidence: evidence + prior,

@@ -58,7 +58,10 @@ impl<'a> HypothesisSearch<'a> {
     ///
     /// # Errors
     /// Names what the model or a trial lacks.
-    pub fn workspace(&self, candidates: Vec<EffectCandidate>) -> Result<LinearisedTrials<'a>, RefineError> {
+    pub fn workspace(
+        &self,
+        candidates: Vec<EffectCandidate>,
+    ) -> Result<LinearisedTrials<'a>, RefineError> {
         let columns = Columns { nuisance: self.nuisance.clone(), candidates };
         LinearisedTrials::new(&self.calibrated_model, columns, self.trials, self.least_step_s)
     }
@@ -67,8 +70,14 @@ impl<'a> HypothesisSearch<'a> {
     ///
     /// # Errors
     /// Names what the model or a trial lacks.
-    pub fn base(&self, taken: &[EffectCandidate], levels: &[DiscrepancyFactor]) -> Result<FilteredBase<'a>, RefineError> {
-        let has_column = |candidate: &&EffectCandidate| !self.nuisance.iter().any(|n| n.name == candidate.form.file.name);
+    pub fn base(
+        &self,
+        taken: &[EffectCandidate],
+        levels: &[DiscrepancyFactor],
+    ) -> Result<FilteredBase<'a>, RefineError> {
+        let has_column = |candidate: &&EffectCandidate| {
+            !self.nuisance.iter().any(|n| n.name == candidate.form.file.name)
+        };
         let others = self.others(taken).into_iter().filter(has_column).cloned();
         let workspace = self.workspace(taken.iter().cloned().chain(others).collect())?;
         let levels = levels.iter().map(|&level| (level, self.discrepancies(level))).collect();
@@ -79,14 +88,22 @@ impl<'a> HypothesisSearch<'a> {
     ///
     /// # Errors
     /// Names what the model or a trial lacks.
-    pub fn bare(&self, taken: &[EffectCandidate], levels: &[DiscrepancyFactor]) -> Result<FilteredBase<'a>, RefineError> {
+    pub fn bare(
+        &self,
+        taken: &[EffectCandidate],
+        levels: &[DiscrepancyFactor],
+    ) -> Result<FilteredBase<'a>, RefineError> {
         let levels = levels.iter().map(|&level| (level, self.discrepancies(level))).collect();
         Ok(FilteredBase::new(taken, self.workspace(taken.to_vec())?, levels))
     }
 
     /// How far coefficients have given way to the trials that are diagnosed.
     pub fn given_way(&self) -> Vec<f64> {
-        self.calibrated.iter().zip(&self.calibrated_at_first).map(|(now, before)| now - before).collect()
+        self.calibrated
+            .iter()
+            .zip(&self.calibrated_at_first)
+            .map(|(now, before)| now - before)
+            .collect()
     }
 
     /// No form of an effect is tried any more.
@@ -97,7 +114,9 @@ impl<'a> HypothesisSearch<'a> {
 
     /// Every effect of which none is taken.
     pub fn others(&self, taken: &[EffectCandidate]) -> Vec<&EffectCandidate> {
-        let is_other = |candidate: &&EffectCandidate| !taken.iter().any(|kept| kept.effect == candidate.effect);
+        let is_other = |candidate: &&EffectCandidate| {
+            !taken.iter().any(|kept| kept.effect == candidate.effect)
+        };
         self.listed.iter().chain(&self.freed).filter(is_other).collect()
     }
 
@@ -105,19 +124,26 @@ impl<'a> HypothesisSearch<'a> {
     /// after what the number of hypotheses costs.
     pub fn evidence(&self, judged: &JudgedHypothesis, place: usize) -> Option<f64> {
         let candidate = &judged.candidates[place];
-        let sizes: Vec<usize> = judged.linearised_at.iter().map(|linearised_at| linearised_at.at.len()).collect();
+        let sizes: Vec<usize> =
+            judged.linearised_at.iter().map(|linearised_at| linearised_at.at.len()).collect();
         let first: usize = sizes[..place].iter().sum();
         let own: Vec<usize> = (first..first + sizes[place]).collect();
-        let others: Vec<usize> = (0..sizes.iter().sum()).filter(|column| !own.contains(column)).collect();
+        let others: Vec<usize> =
+            (0..sizes.iter().sum()).filter(|column| !own.contains(column)).collect();
         let fixing: Vec<NormalPrior> = judged.linearised_at.iter().flat_map(priors).collect();
-        let of = |columns: &[usize]| columns.iter().map(|&column| fixing[column]).collect::<Vec<_>>();
+        let of =
+            |columns: &[usize]| columns.iter().map(|&column| fixing[column]).collect::<Vec<_>>();
         let width = judged.grams.first()?.products.nrows();
-        let reduced =
-            MarginalInformation::new(&Gram::sum(&judged.grams, width), &self.fixed)?.given(&others, &of(&others), &own)?;
+        let reduced = MarginalInformation::new(&Gram::sum(&judged.grams, width), &self.fixed)?
+            .given(&others, &of(&others), &own)?;
         let reduced = reduced.discounted(self.discount(candidate));
         let estimate = reduced.estimate(&(0..own.len()).collect::<Vec<_>>(), &of(&own))?;
-        let linearised_at = judged.linearised_at[place].at.iter().zip(candidate.form.parameters.values());
-        let absent = reduced.at(&linearised_at.map(|(at, parameter)| parameter.absent - at).collect::<Vec<_>>().into());
+        let linearised_at =
+            judged.linearised_at[place].at.iter().zip(candidate.form.parameters.values());
+        let absent = reduced.at(&linearised_at
+            .map(|(at, parameter)| parameter.absent - at)
+            .collect::<Vec<_>>()
+            .into());
         Some(estimate.gain - absent + self.log_prior(candidate))
     }
 
@@ -141,8 +167,12 @@ impl<'a> HypothesisSearch<'a> {
             0 => Ok::<_, RefineError>(base.alone(level)),
             _ => Ok(base.linearised(&self.calibrated_model, &base.taken)?.grams(level)),
         };
-        let at = |level: usize| Some((level, self.judged(base, &base.taken, level, grams(level).ok()?, &places)?));
-        let best = (0..base.levels.len()).filter_map(at).max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
+        let at = |level: usize| {
+            Some((level, self.judged(base, &base.taken, level, grams(level).ok()?, &places)?))
+        };
+        let best = (0..base.levels.len())
+            .filter_map(at)
+            .max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
         best.ok_or_else(not_positive)
     }
 
@@ -180,19 +210,32 @@ impl<'a> HypothesisSearch<'a> {
     ///
     /// # Errors
     /// Says that the information is not positive.
-    pub fn calibrated_by(&self, request: &Request<'_>, judged: &JudgedHypothesis) -> Result<Self, RefineError> {
+    pub fn calibrated_by(
+        &self,
+        request: &Request<'_>,
+        judged: &JudgedHypothesis,
+    ) -> Result<Self, RefineError> {
         let size = self.nuisance.len();
-        let total = Gram::sum(&judged.grams, judged.grams.first().map_or(0, |gram| gram.products.nrows()));
+        let total =
+            Gram::sum(&judged.grams, judged.grams.first().map_or(0, |gram| gram.products.nrows()));
         let cross = total.products.view((1, 1 + size), (size, total.products.ncols() - 1 - size));
-        let right = total.products.view((1, 0), (size, 1)).column(0) - cross * DVector::from_vec(judged.moved());
+        let right = total.products.view((1, 0), (size, 1)).column(0)
+            - cross * DVector::from_vec(judged.moved());
         let known = CoefficientPrior {
             information: total.products.view((1, 1), (size, size)) + &self.fixed.information,
             weighted_mean: right + &self.fixed.weighted_mean,
         };
         let shift = known.expected_shift(&self.nuisance).ok_or_else(not_positive)?;
-        let calibrated: Vec<f64> = self.calibrated.iter().zip(&shift).map(|(before, more)| before + more).collect();
+        let calibrated: Vec<f64> =
+            self.calibrated.iter().zip(&shift).map(|(before, more)| before + more).collect();
         Ok(Self {
-            calibrated_model: CalibratedModel::new(request.model, request.law, &self.terms, &self.nuisance, &calibrated)?,
+            calibrated_model: CalibratedModel::new(
+                request.model,
+                request.law,
+                &self.terms,
+                &self.nuisance,
+                &calibrated,
+            )?,
             fixed: self.fixed.clone().from(&shift),
             calibrated,
             ..self.clone()
@@ -207,10 +250,14 @@ impl<'a> HypothesisSearch<'a> {
         level: usize,
     ) -> Result<(usize, JudgedHypothesis), RefineError> {
         let stand = base.linearised(&self.calibrated_model, candidates)?;
-        let places: Vec<usize> = (0..candidates.iter().map(|candidate| candidate.at.len()).sum()).collect();
-        let at = |level: usize| Some((level, self.judged(base, candidates, level, stand.grams(level), &places)?));
+        let places: Vec<usize> =
+            (0..candidates.iter().map(|candidate| candidate.at.len()).sum()).collect();
+        let at = |level: usize| {
+            Some((level, self.judged(base, candidates, level, stand.grams(level), &places)?))
+        };
         let levels = level.saturating_sub(1)..=level;
-        let best = levels.filter_map(at).max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
+        let best =
+            levels.filter_map(at).max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
         best.ok_or_else(not_positive)
     }
 
@@ -228,7 +275,9 @@ impl<'a> HypothesisSearch<'a> {
         let estimate = reduced.estimate(places, &priors)?;
         let prior: f64 = candidates.iter().map(|candidate| self.log_prior(candidate)).sum();
         Some(JudgedHypothesis {
-            log_evidence: base.levels[level].level.log_prior - 0.5 * reduced.deviance + estimate.gain + prior,
+            log_evidence: base.levels[level].level.log_prior - 0.5 * reduced.deviance
+                + estimate.gain
+                + prior,
             candidates: placed(candidates.to_vec(), &estimate),
             linearised_at: candidates.to_vec(),
             shift: &reduced.shift - &reduced.answers * &estimate.mean,

@@ -20,9 +20,19 @@ pub(super) fn residuals(
     settled: &HypothesisSearch<'_>,
     best: &JudgedHypothesis,
 ) -> Result<Vec<ResidualSeries>, RefineError> {
-    let before = LinearisedTrials::new(&search.calibrated_model, Columns::default(), search.trials, search.least_step_s)?;
+    let before = LinearisedTrials::new(
+        &search.calibrated_model,
+        Columns::default(),
+        search.trials,
+        search.least_step_s,
+    )?;
     let columns = Columns { nuisance: Vec::new(), candidates: best.candidates.clone() };
-    let after = LinearisedTrials::new(&settled.calibrated_model, columns, search.trials, search.least_step_s)?;
+    let after = LinearisedTrials::new(
+        &settled.calibrated_model,
+        columns,
+        search.trials,
+        search.least_step_s,
+    )?;
     let level = search.levels[search.levels.len() - 1];
     let of = |workspace: &LinearisedTrials<'_>, trial: usize| -> Vec<Smoothed> {
         let parts = workspace.linear()[trial].iter();
@@ -30,21 +40,39 @@ pub(super) fn residuals(
     };
     let mut all = Vec::new();
     for (place, trial) in search.trials.iter().enumerate() {
-        let samples: Vec<usize> = before.linear()[place].iter().flat_map(|part| part.samples.clone()).collect();
+        let samples: Vec<usize> =
+            before.linear()[place].iter().flat_map(|part| part.samples.clone()).collect();
         let (before_it, after_it) = (of(&before, place), of(&after, place));
         for axis in 0..before.axes().len() {
-            all.push(series(trial, before.axes()[axis].velocity(), &samples, axis, [&before_it, &after_it]));
+            all.push(series(
+                trial,
+                before.axes()[axis].velocity(),
+                &samples,
+                axis,
+                [&before_it, &after_it],
+            ));
         }
     }
     explain(search.trials, &mut all);
     Ok(all)
 }
 
-fn series(trial: &Trial, channel: &str, samples: &[usize], axis: usize, [before, after]: [&[Smoothed]; 2]) -> ResidualSeries {
+fn series(
+    trial: &Trial,
+    channel: &str,
+    samples: &[usize],
+    axis: usize,
+    [before, after]: [&[Smoothed]; 2],
+) -> ResidualSeries {
     let stride = samples.len().div_ceil(THRESHOLDS.series.points).max(1);
     let thin = |values: Vec<f64>| values.into_iter().step_by(stride).collect::<Vec<f64>>();
-    let joined = |parts: &[Smoothed]| thin(parts.iter().flat_map(|part| part.values[axis].clone()).collect());
-    let band = before.iter().flat_map(|part| part.deviations[axis].iter().map(|sd| THRESHOLDS.series.band * sd)).collect();
+    let joined = |parts: &[Smoothed]| {
+        thin(parts.iter().flat_map(|part| part.values[axis].clone()).collect())
+    };
+    let band = before
+        .iter()
+        .flat_map(|part| part.deviations[axis].iter().map(|sd| THRESHOLDS.series.band * sd))
+        .collect();
     ResidualSeries {
         trial: trial.name.clone(),
         channel: channel.to_owned(),
@@ -64,12 +92,18 @@ fn explain(trials: &[&Trial], all: &mut [ResidualSeries]) {
     channels.sort_unstable();
     channels.dedup();
     for channel in channels {
-        let of: Vec<&ResidualSeries> = all.iter().filter(|series| series.channel == channel).collect();
+        let of: Vec<&ResidualSeries> =
+            all.iter().filter(|series| series.channel == channel).collect();
         let share = |variable: &Channel| {
-            let pairs: Option<Vec<Vec<(f64, f64)>>> = of.iter().map(|series| pairs(trials, series, *variable)).collect();
+            let pairs: Option<Vec<Vec<(f64, f64)>>> =
+                of.iter().map(|series| pairs(trials, series, *variable)).collect();
             explained(pairs?.into_iter().flatten().collect())
         };
-        let shares = THRESHOLDS.series.variables.iter().filter_map(|variable| Some((share(variable)?, *variable)));
+        let shares = THRESHOLDS
+            .series
+            .variables
+            .iter()
+            .filter_map(|variable| Some((share(variable)?, *variable)));
         let Some((_, best)) = shares.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
         for series in all.iter_mut().filter(|series| series.channel == channel) {
             let pairs = pairs(trials, series, best).unwrap_or_default();
@@ -84,7 +118,9 @@ fn pairs(trials: &[&Trial], series: &ResidualSeries, variable: Channel) -> Optio
     let trial = trials.iter().find(|trial| trial.name == series.trial)?;
     let values = trial.channel(variable)?;
     let at = |t_s: &f64| values[trial.t_s.partition_point(|t| t < t_s).min(values.len() - 1)];
-    let turned = |value: f64| if variable == Channel::Psi { value.rem_euclid(std::f64::consts::TAU) } else { value };
+    let turned = |value: f64| {
+        if variable == Channel::Psi { value.rem_euclid(std::f64::consts::TAU) } else { value }
+    };
     Some(series.t_s.iter().map(|t| turned(at(t))).zip(series.before.iter().copied()).collect())
 }
 
@@ -95,7 +131,8 @@ fn explained(mut pairs: Vec<(f64, f64)>) -> Option<f64> {
     if last - first < 1e-9 {
         return None;
     }
-    let mean = |part: &[(f64, f64)]| part.iter().map(|pair| pair.1).sum::<f64>() / part.len() as f64;
+    let mean =
+        |part: &[(f64, f64)]| part.iter().map(|pair| pair.1).sum::<f64>() / part.len() as f64;
     let all = mean(&pairs);
     let total: f64 = pairs.iter().map(|pair| (pair.1 - all).powi(2)).sum();
     let classes = pairs.chunks(pairs.len().div_ceil(THRESHOLDS.series.classes));
@@ -110,7 +147,9 @@ pub(super) fn levels(
     before: &JudgedHypothesis,
     after: &JudgedHypothesis,
 ) -> Vec<DiscrepancyLevel> {
-    let at = |judged: &JudgedHypothesis| search.discrepancies(search.levels[judged.level.min(search.levels.len() - 1)]);
+    let at = |judged: &JudgedHypothesis| {
+        search.discrepancies(search.levels[judged.level.min(search.levels.len() - 1)])
+    };
     let (before, after) = (at(before), at(after));
     let is_known = search.model.uncertainty.is_some();
     let one = |(place, axis): (usize, &sistership_model::coefficient::Axis)| DiscrepancyLevel {

@@ -30,7 +30,13 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { restart_s: None, least_step_s: None, slack: 0.02, least_evidence: 5.0, most_effects: 3 }
+        Self {
+            restart_s: None,
+            least_step_s: None,
+            slack: 0.02,
+            least_evidence: 5.0,
+            most_effects: 3,
+        }
     }
 }
 
@@ -41,7 +47,8 @@ impl Settings {
     /// Names the field and what it may be.
     pub fn check(&self) -> Result<(), (String, String)> {
         let refuse = |field: &str, message: &str| Err((field.to_owned(), message.to_owned()));
-        let positive = |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
+        let positive =
+            |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
         if !positive(self.restart_s) {
             return refuse("restart_s", "must be above 0 s");
         }

@@ -19,13 +19,27 @@ use sistership_estimate::refine::RefineError;
 
 /// The forms that can be tried on trials: those whose channels every trial has, of effects that the model does not carry,
 /// but for what its instruments are known to do.
-pub(super) fn listed(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Vec<EffectCandidate> {
-    let carried = |effect: &&Arc<Effect>| !model.effects.iter().any(|applied| applied.name == effect.name);
-    let systematic_errors = model.uncertainty.as_ref().map(|known| known.systematic_errors.as_slice()).unwrap_or_default();
+pub(super) fn listed(
+    model: &Model,
+    law: &Law,
+    effects: &[Arc<Effect>],
+    trials: &[&Trial],
+) -> Vec<EffectCandidate> {
+    let carried =
+        |effect: &&Arc<Effect>| !model.effects.iter().any(|applied| applied.name == effect.name);
+    let systematic_errors = model
+        .uncertainty
+        .as_ref()
+        .map(|known| known.systematic_errors.as_slice())
+        .unwrap_or_default();
     let of = |effect: &Arc<Effect>| -> Vec<EffectCandidate> {
-        let is_systematic =
-            |form: &Form| systematic_errors.iter().any(|error| error.name == effect.name && error.form.name == form.file.name);
-        let forms = effect.forms.iter().filter(|form| fits(form, law, trials) && !is_systematic(form));
+        let is_systematic = |form: &Form| {
+            systematic_errors
+                .iter()
+                .any(|error| error.name == effect.name && error.form.name == form.file.name)
+        };
+        let forms =
+            effect.forms.iter().filter(|form| fits(form, law, trials) && !is_systematic(form));
         forms.map(|form| EffectCandidate::absent(&effect.name, form)).collect()
     };
     effects.iter().filter(carried).flat_map(of).collect()
@@ -38,18 +52,24 @@ fn freed(request: &Request<'_>) -> Vec<EffectCandidate> {
 }
 
 fn fits(form: &Form, law: &Law, trials: &[&Trial]) -> bool {
-    let everywhere = |channel: &_| trials.iter().all(|trial: &&Trial| trial.channel(*channel).is_some());
-    let somewhere = |channel: &_| trials.iter().any(|trial: &&Trial| trial.channel(*channel).is_some());
+    let everywhere =
+        |channel: &_| trials.iter().all(|trial: &&Trial| trial.channel(*channel).is_some());
+    let somewhere =
+        |channel: &_| trials.iter().any(|trial: &&Trial| trial.channel(*channel).is_some());
     let rolls = form.file.only_without_roll && law.has_roll();
     form.file.needs.iter().all(everywhere) && !form.file.unless.iter().any(somewhere) && !rolls
 }
 
 /// Every effect is as probable as another, and so is every form of it.
-fn log_priors<'a>(candidates: impl Iterator<Item = &'a EffectCandidate> + Clone) -> BTreeMap<String, f64> {
+fn log_priors<'a>(
+    candidates: impl Iterator<Item = &'a EffectCandidate> + Clone,
+) -> BTreeMap<String, f64> {
     let mut forms: BTreeMap<&str, f64> = BTreeMap::new();
     candidates.clone().for_each(|candidate| *forms.entry(&candidate.effect).or_default() += 1.0);
     let effects = forms.len() as f64;
-    candidates.map(|candidate| (candidate.key(), -(effects * forms[candidate.effect.as_str()]).ln())).collect()
+    candidates
+        .map(|candidate| (candidate.key(), -(effects * forms[candidate.effect.as_str()]).ln()))
+        .collect()
 }
 
 /// # Errors
@@ -60,18 +80,27 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, 
     let terms: Terms = learned(request.model, request.law, request.effects, request.trials);
     let nuisance = columns(request.model, request.law);
     let (fixed, levels) = match &request.model.uncertainty {
-        Some(uncertainty) => (learned_prior(uncertainty)?, THRESHOLDS.discrepancy.known_factors.map(known).to_vec()),
+        Some(uncertainty) => {
+            (learned_prior(uncertainty)?, THRESHOLDS.discrepancy.known_factors.map(known).to_vec())
+        }
         None => (
             prior(request.model, &nuisance, &terms, request.settings.slack),
             THRESHOLDS.discrepancy.unknown_factors.map(unknown).to_vec(),
         ),
     };
-    let shift =
-        fixed.expected_shift(&nuisance).ok_or_else(|| RefineError::Law("what it knows of itself is not positive".into()))?;
+    let shift = fixed
+        .expected_shift(&nuisance)
+        .ok_or_else(|| RefineError::Law("what it knows of itself is not positive".into()))?;
     let mut search = HypothesisSearch {
         model: request.model,
         law: request.law,
-        calibrated_model: CalibratedModel::new(request.model, request.law, &terms, &nuisance, &shift)?,
+        calibrated_model: CalibratedModel::new(
+            request.model,
+            request.law,
+            &terms,
+            &nuisance,
+            &shift,
+        )?,
         trials: request.trials,
         nuisance,
         terms,
@@ -90,7 +119,10 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, 
 }
 
 fn known(factor: f64) -> DiscrepancyFactor {
-    DiscrepancyFactor { factor, log_prior: -0.5 * (factor.ln() / THRESHOLDS.discrepancy.known_spread).powi(2) }
+    DiscrepancyFactor {
+        factor,
+        log_prior: -0.5 * (factor.ln() / THRESHOLDS.discrepancy.known_spread).powi(2),
+    }
 }
 
 fn unknown(factor: f64) -> DiscrepancyFactor {
@@ -98,9 +130,13 @@ fn unknown(factor: f64) -> DiscrepancyFactor {
 }
 
 /// The discrepancy that the model brings with it, or the least that is weighed.
-fn expected(request: &Request<'_>, search: &HypothesisSearch<'_>) -> Result<Discrepancies, RefineError> {
+fn expected(
+    request: &Request<'_>,
+    search: &HypothesisSearch<'_>,
+) -> Result<Discrepancies, RefineError> {
     let columns = Columns::default();
-    let workspace = LinearisedTrials::new(&search.calibrated_model, columns, search.trials, Some(f64::MAX))?;
+    let workspace =
+        LinearisedTrials::new(&search.calibrated_model, columns, search.trials, Some(f64::MAX))?;
     let mut expected = workspace.scales().discrepancies(THRESHOLDS.discrepancy.least_level);
     if let Some(uncertainty) = &request.model.uncertainty {
         for (axis, discrepancy) in workspace.axes().iter().zip(&mut expected) {

@@ -12,15 +12,25 @@ use super::thresholds::THRESHOLDS;
 use crate::residual::EffectCandidate;
 
 /// The parameters of a candidate and what follows from them, by the delta method; `covariance` is of its parameters.
-pub(super) fn values(candidate: &EffectCandidate, covariance: &DMatrix<f64>, model: &Model) -> BTreeMap<String, Value> {
+pub(super) fn values(
+    candidate: &EffectCandidate,
+    covariance: &DMatrix<f64>,
+    model: &Model,
+) -> BTreeMap<String, Value> {
     let names: Vec<&String> = candidate.form.parameters.keys().collect();
     let error = |i: usize| covariance[(i, i)].max(0.0).sqrt();
-    let own = names.iter().enumerate().map(|(i, name)| ((*name).clone(), Value { value: candidate.at[i], se: error(i) }));
+    let own = names
+        .iter()
+        .enumerate()
+        .map(|(i, name)| ((*name).clone(), Value { value: candidate.at[i], se: error(i) }));
     let mut values: BTreeMap<String, Value> = own.collect();
     for name in candidate.form.reports.keys() {
         let at = |point: &[f64]| {
-            let parameter = |known: &str| names.iter().position(|name| *name == known).map(|i| point[i]);
-            candidate.form.report(name, &|known| parameter(known).or_else(|| particulars::value(&model.particulars, known)))
+            let parameter =
+                |known: &str| names.iter().position(|name| *name == known).map(|i| point[i]);
+            candidate.form.report(name, &|known| {
+                parameter(known).or_else(|| particulars::value(&model.particulars, known))
+            })
         };
         let Some(value) = at(&candidate.at) else { continue };
         let slope = |i: usize| {
@@ -29,7 +39,8 @@ pub(super) fn values(candidate: &EffectCandidate, covariance: &DMatrix<f64>, mod
             (above[i], below[i]) = (above[i] + step, below[i] - step);
             Some((at(&above)? - at(&below)?) / (2.0 * step))
         };
-        let gradient = DVector::from_iterator(names.len(), (0..names.len()).map(|i| slope(i).unwrap_or(0.0)));
+        let gradient =
+            DVector::from_iterator(names.len(), (0..names.len()).map(|i| slope(i).unwrap_or(0.0)));
         let se = (gradient.transpose() * covariance * &gradient)[(0, 0)].max(0.0).sqrt();
         values.insert(name.clone(), Value { value, se });
     }
@@ -37,7 +48,11 @@ pub(super) fn values(candidate: &EffectCandidate, covariance: &DMatrix<f64>, mod
 }
 
 /// The part of a joint covariance that belongs to a candidate.
-pub(super) fn own_covariance(candidates: &[EffectCandidate], place: usize, covariance: &DMatrix<f64>) -> DMatrix<f64> {
+pub(super) fn own_covariance(
+    candidates: &[EffectCandidate],
+    place: usize,
+    covariance: &DMatrix<f64>,
+) -> DMatrix<f64> {
     let start: usize = candidates[..place].iter().map(|candidate| candidate.at.len()).sum();
     let size = candidates[place].at.len();
     covariance.view((start, start), (size, size)).into_owned()
@@ -45,7 +60,11 @@ pub(super) fn own_covariance(candidates: &[EffectCandidate], place: usize, covar
 
 /// A model with effects. Its coefficients stay: what the new trials move them by is fitted together with terms that
 /// the model does not have, and would be wrong without these.
-pub(super) fn model_with(model: &Model, candidates: &[EffectCandidate], errors: Option<&DMatrix<f64>>) -> Model {
+pub(super) fn model_with(
+    model: &Model,
+    candidates: &[EffectCandidate],
+    errors: Option<&DMatrix<f64>>,
+) -> Model {
     let mut model = model.clone();
     for (place, candidate) in candidates.iter().enumerate() {
         let covariance = errors.map(|errors| own_covariance(candidates, place, errors));
@@ -62,7 +81,14 @@ fn applied(candidate: &EffectCandidate, covariance: Option<&DMatrix<f64>>) -> Ap
     AppliedEffect {
         name: candidate.effect.clone(),
         acts_on: acts_on(candidate),
-        parameters: candidate.form.parameters.keys().zip(&candidate.at).enumerate().map(quantity).collect(),
+        parameters: candidate
+            .form
+            .parameters
+            .keys()
+            .zip(&candidate.at)
+            .enumerate()
+            .map(quantity)
+            .collect(),
         form: candidate.form.file.clone(),
     }
 }

@@ -23,18 +23,31 @@ fn trials(zoo: &Zoo, hidden: Option<AppliedEffect>) -> Vec<Trial> {
     let mut truth = zoo.model("mariner").unwrap();
     truth.effects.extend(hidden);
     let ship = Ship::new(&truth, zoo.law(&truth.law).unwrap()).unwrap();
-    let settings = ManoeuvreSettings { duration_s: Some(300.0), run_in_s: 30.0, ..ManoeuvreSettings::default() };
-    let tracks = [turn(&ship, 15.0, &settings).unwrap().track, zigzag(&ship, 10.0, 10.0, &settings).unwrap().track];
+    let settings = ManoeuvreSettings {
+        duration_s: Some(300.0),
+        run_in_s: 30.0,
+        ..ManoeuvreSettings::default()
+    };
+    let tracks = [
+        turn(&ship, 15.0, &settings).unwrap().track,
+        zigzag(&ship, 10.0, 10.0, &settings).unwrap().track,
+    ];
     let mut random = ChaCha12Rng::seed_from_u64(7);
     let mut record = |(place, track): (usize, &sistership_dynamics::Trajectory)| {
         let mut trial = Trial { name: format!("trial-{place}"), ..Trial::default() };
         trial.t_s = track.t_s.iter().copied().step_by(5).collect();
         for (&(channel, index), sigma) in RECORDED.iter().zip(NOISE) {
             let normal = Normal::new(0.0, sigma).unwrap();
-            let noisy = track.column(index).into_iter().step_by(5).map(|value| value + normal.sample(&mut random));
+            let noisy = track
+                .column(index)
+                .into_iter()
+                .step_by(5)
+                .map(|value| value + normal.sample(&mut random));
             trial.channels.insert(channel, noisy.collect());
         }
-        trial.channels.insert(Channel::Delta, track.column(at::DELTA).into_iter().step_by(5).collect());
+        trial
+            .channels
+            .insert(Channel::Delta, track.column(at::DELTA).into_iter().step_by(5).collect());
         trial
     };
     tracks.iter().enumerate().map(&mut record).collect()
@@ -42,25 +55,43 @@ fn trials(zoo: &Zoo, hidden: Option<AppliedEffect>) -> Vec<Trial> {
 
 fn hidden(zoo: &Zoo, effect: &str, parameters: &[(&str, f64)]) -> AppliedEffect {
     let effect = zoo.effect(effect).unwrap();
-    let parameters = parameters.iter().map(|(name, value)| ((*name).to_owned(), Quantity::new(*value, "hidden")));
+    let parameters = parameters
+        .iter()
+        .map(|(name, value)| ((*name).to_owned(), Quantity::new(*value, "hidden")));
     let form = effect.forms[0].file.clone();
-    AppliedEffect { name: effect.name.clone(), acts_on: effect.acts_on, parameters: parameters.collect(), form }
+    AppliedEffect {
+        name: effect.name.clone(),
+        acts_on: effect.acts_on,
+        parameters: parameters.collect(),
+        form,
+    }
 }
 
 fn diagnosed(zoo: &Zoo, model: &Model, trials: &[Trial]) -> Diagnosis {
     let names = ["current", "rudder-offset", "yaw-rate-bias", "extra-resistance"];
-    let effects: Vec<Arc<Effect>> = names.iter().map(|name| Arc::clone(zoo.effect(name).unwrap())).collect();
+    let effects: Vec<Arc<Effect>> =
+        names.iter().map(|name| Arc::clone(zoo.effect(name).unwrap())).collect();
     let trials: Vec<&Trial> = trials.iter().collect();
     let settings = Settings::default();
     let law = zoo.law(&model.law).unwrap();
-    diagnose(&Request { model, law, effects: &effects, trials: &trials, settings: &settings }, &|_, _| true).unwrap()
+    diagnose(
+        &Request { model, law, effects: &effects, trials: &trials, settings: &settings },
+        &|_, _| true,
+    )
+    .unwrap()
 }
 
 #[test]
 fn nothing_is_missing_from_the_true_model() {
     let zoo = Zoo::embedded().unwrap();
     let diagnosis = diagnosed(&zoo, &zoo.model("mariner").unwrap(), &trials(&zoo, None));
-    assert_eq!(diagnosis.verdict, Verdict::Complete, "{:?} {:?}", diagnosis.effects, diagnosis.unexplained);
+    assert_eq!(
+        diagnosis.verdict,
+        Verdict::Complete,
+        "{:?} {:?}",
+        diagnosis.effects,
+        diagnosis.unexplained
+    );
     assert!(diagnosis.effects.is_empty() && diagnosis.model.is_none());
 }
 
@@ -73,7 +104,12 @@ fn a_hidden_current_is_named_with_its_speed_and_direction() {
     assert_eq!(names, ["current"]);
     let speed = diagnosis.effects[0].parameters["speed_m_s"];
     assert!((speed.value - 0.5).abs() < 0.01, "{speed:?}");
-    assert!(diagnosis.after["u"] < 0.5 * diagnosis.before["u"], "{:?} {:?}", diagnosis.before, diagnosis.after);
+    assert!(
+        diagnosis.after["u"] < 0.5 * diagnosis.before["u"],
+        "{:?} {:?}",
+        diagnosis.before,
+        diagnosis.after
+    );
 }
 
 #[test]

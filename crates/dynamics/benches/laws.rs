@@ -33,8 +33,8 @@ fn point<const N: usize>(plant: &Plant, model: &Model) -> (States<N>, [Lanes<N>;
 fn lanes<const N: usize>(criterion: &mut Criterion, name: &str) {
     let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
     let model = zoo.model(name).unwrap_or_else(|error| panic!("{error}"));
-    let plant =
-        Plant::new(&model, zoo.law(&model.law).expect("the law of a zoo model")).unwrap_or_else(|error| panic!("{error}"));
+    let plant = Plant::new(&model, zoo.law(&model.law).expect("the law of a zoo model"))
+        .unwrap_or_else(|error| panic!("{error}"));
     let (states, inputs) = point::<N>(&plant, &model);
     let mut work = Work::<N>::default();
     let mut group = criterion.benchmark_group(format!("{}, {name}", model.law));

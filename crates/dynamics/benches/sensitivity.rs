@@ -19,7 +19,10 @@ fn ready() -> (Model, Law) {
     let law = (**zoo.law(&model.law).expect("the law of a zoo model")).clone();
     let terms = ["vrr", "rrr", "rrdelta", "rdeltadelta", "vrdelta", "uuv", "uur", "vvr", "ur"];
     let surge = ["0", "rdelta", "uvr", "urr", "uvv", "urdelta"].map(|term| format!("X_{term}"));
-    let further = ["Y", "N"].into_iter().flat_map(|axis| terms.map(|term| format!("{axis}_{term}"))).chain(surge);
+    let further = ["Y", "N"]
+        .into_iter()
+        .flat_map(|axis| terms.map(|term| format!("{axis}_{term}")))
+        .chain(surge);
     for name in further.collect::<Vec<_>>() {
         if model.coefficients.len() < COEFFICIENTS {
             model.coefficients.entry(name).or_insert_with(|| Quantity::new(1e-9, "bench"));

@@ -12,7 +12,9 @@ use sistership_model::coefficient::{Axis, split_submodel};
 use sistership_model::formula::Expr;
 use sistership_model::law::{Law, STATES, indicator};
 
-use crate::equations::{Attitude, EquationsOfMotion, Lowering, PlantError, constant_mobility, mobility};
+use crate::equations::{
+    Attitude, EquationsOfMotion, Lowering, PlantError, constant_mobility, mobility,
+};
 use crate::integrate::Method;
 use crate::plant::check_inputs;
 use crate::state::{StateVector, at};
@@ -69,7 +71,12 @@ impl CandidateSystem {
         let equations = EquationsOfMotion::new(model, law)?;
         check_inputs(equations.law())?;
         equations.without_lags_or_instruments("candidates")?;
-        Builder { equations: &equations, lowering: Lowering::new(&equations, &equations.names()), names: Vec::new() }.build()
+        Builder {
+            equations: &equations,
+            lowering: Lowering::new(&equations, &equations.names()),
+            names: Vec::new(),
+        }
+        .build()
     }
 
     /// The coefficients, in the order in which their values are given.
@@ -90,7 +97,8 @@ impl CandidateSystem {
     /// What a step takes for the inputs of the law at an instant: these, and what follows from them alone.
     pub fn prepared(&self, inputs: &[f64]) -> Vec<f64> {
         // The front depends on no state: any will do.
-        let point: Vec<f64> = std::iter::repeat_n(0.0, STATES.len()).chain(inputs.iter().copied()).collect();
+        let point: Vec<f64> =
+            std::iter::repeat_n(0.0, STATES.len()).chain(inputs.iter().copied()).collect();
         inputs.iter().copied().chain(self.front.values(&point)).collect()
     }
 }
@@ -113,13 +121,25 @@ impl Builder<'_> {
         let constant = constant_mobility(equations, &tape, &mass)?;
         let input_names = equations.law().inputs.keys().cloned().collect();
         let names = self.names;
-        Ok(CandidateSystem { front, tape, states, axes, mass, constant, additions, kinematics, names, input_names })
+        Ok(CandidateSystem {
+            front,
+            tape,
+            states,
+            axes,
+            mass,
+            constant,
+            additions,
+            kinematics,
+            names,
+            input_names,
+        })
     }
 
     fn sum(&mut self, axis: Axis) -> Result<Sum, PlantError> {
         let equations = self.equations;
         let of_law = &equations.law().axes[&axis];
-        let (scale, rest) = (self.lowering.output(&of_law.scale)?, self.lowering.output(&of_law.rest)?);
+        let (scale, rest) =
+            (self.lowering.output(&of_law.scale)?, self.lowering.output(&of_law.rest)?);
         let mut groups: BTreeMap<Option<&str>, Vec<(usize, usize)>> = BTreeMap::new();
         for name in equations.coefficients(axis) {
             let (shared, submodel) = split_submodel(name);
@@ -130,7 +150,9 @@ impl Builder<'_> {
             groups.entry(submodel).or_default().push(entry);
         }
         let group = |(submodel, terms): (Option<&str>, Vec<(usize, usize)>)| {
-            let gate = submodel.map(|submodel| self.lowering.output(&Expr::Name(indicator(submodel)))).transpose()?;
+            let gate = submodel
+                .map(|submodel| self.lowering.output(&Expr::Name(indicator(submodel))))
+                .transpose()?;
             Ok(Group { gate, terms })
         };
         let groups = groups.into_iter().map(group).collect::<Result<_, PlantError>>()?;
@@ -141,7 +163,10 @@ impl Builder<'_> {
         let mut all = Vec::new();
         for place in [at::PSI, at::PHI] {
             let Some(row) = states.iter().position(|&state| state == place) else { continue };
-            all.push((row, self.lowering.output(&self.equations.kinematic(place, Attitude::Upright)?)?));
+            all.push((
+                row,
+                self.lowering.output(&self.equations.kinematic(place, Attitude::Upright)?)?,
+            ));
         }
         Ok(all)
     }
@@ -176,7 +201,10 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
 
     /// Starts a lane anew at a state.
     pub fn start(&mut self, lane: usize, state: &StateVector) {
-        self.states.iter_mut().zip(self.system.states).for_each(|(lanes, &place)| lanes[lane] = state[place]);
+        self.states
+            .iter_mut()
+            .zip(self.system.states)
+            .for_each(|(lanes, &place)| lanes[lane] = state[place]);
     }
 
     /// A simulated state in every lane, counted as [`CandidateSystem::states`] does: u, v and r come first.
@@ -191,12 +219,24 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
 
     /// One step of every lane; `inputs` are [prepared](CandidateSystem::prepared) ones at its start, middle and end, of which
     /// Euler's method reads the first only.
-    pub fn step(&mut self, method: Method, step_s: f64, inputs: [&[Lanes<L>]; 3], coefficients: &[f64]) {
+    pub fn step(
+        &mut self,
+        method: Method,
+        step_s: f64,
+        inputs: [&[Lanes<L>]; 3],
+        coefficients: &[f64],
+    ) {
         widest(Step { run: self, method, step_s, inputs, coefficients });
     }
 
     #[inline(always)]
-    fn advance(&mut self, method: Method, h: f64, [start, middle, end]: [&[Lanes<L>]; 3], coefficients: &[f64]) {
+    fn advance(
+        &mut self,
+        method: Method,
+        h: f64,
+        [start, middle, end]: [&[Lanes<L>]; 3],
+        coefficients: &[f64],
+    ) {
         self.stage(0, 0.0, start, coefficients);
         if method == Method::Rk4 {
             self.stage(1, 0.5 * h, middle, coefficients);
@@ -208,7 +248,10 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
             for lane in 0..L {
                 state[lane] += match method {
                     Method::Euler => h * a[row][lane],
-                    Method::Rk4 => h / 6.0 * (a[row][lane] + 2.0 * (b[row][lane] + c[row][lane]) + d[row][lane]),
+                    Method::Rk4 => {
+                        h / 6.0
+                            * (a[row][lane] + 2.0 * (b[row][lane] + c[row][lane]) + d[row][lane])
+                    }
                 };
             }
         }
@@ -253,7 +296,12 @@ impl<const L: usize> Wide for Step<'_, '_, '_, L> {
 
 impl CandidateSystem {
     #[inline(always)]
-    fn forces<const L: usize>(&self, work: &[Lanes<L>], coefficients: &[f64], out: &mut [Lanes<L>]) {
+    fn forces<const L: usize>(
+        &self,
+        work: &[Lanes<L>],
+        coefficients: &[f64],
+        out: &mut [Lanes<L>],
+    ) {
         for (sum, out) in self.axes.iter().zip(out) {
             let mut total = [0.0; L];
             for Group { gate, terms } in &sum.groups {
@@ -302,10 +350,16 @@ impl CandidateSystem {
     fn solved<const L: usize>(&self, work: &[Lanes<L>], forces: &[Lanes<L>], out: &mut [Lanes<L>]) {
         let n = self.axes.len();
         for lane in 0..L {
-            let entry = |output: Option<usize>| output.map_or(0.0, |output| self.tape.at(output, work)[lane]);
+            let entry = |output: Option<usize>| {
+                output.map_or(0.0, |output| self.tape.at(output, work)[lane])
+            };
             let solved = mobility(n, |i, j| entry(self.mass[i * n + j]));
             for (row, out) in out[..n].iter_mut().enumerate() {
-                out[lane] = forces.iter().enumerate().map(|(axis, force)| solved[(row, axis)] * force[lane]).sum();
+                out[lane] = forces
+                    .iter()
+                    .enumerate()
+                    .map(|(axis, force)| solved[(row, axis)] * force[lane])
+                    .sum();
             }
         }
     }

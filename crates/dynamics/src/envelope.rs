@@ -25,7 +25,11 @@ impl Envelope {
     /// yaw rate of one length in a sixth of the time she takes to sail it, 80 degrees of roll.
     pub fn new(lpp_m: f64, approach_speed_m_s: f64) -> Self {
         let reference = approach_speed_m_s.abs().max(0.1 * (9.806_65 * lpp_m).sqrt());
-        Self { speed_m_s: 3.0 * reference, yaw_rate_rad_s: 6.0 * reference / lpp_m, roll_rad: 80_f64.to_radians() }
+        Self {
+            speed_m_s: 3.0 * reference,
+            yaw_rate_rad_s: 6.0 * reference / lpp_m,
+            roll_rad: 80_f64.to_radians(),
+        }
     }
 
     /// Greatest speed, m/s.
@@ -48,14 +52,24 @@ impl Envelope {
             return stop("the state is no longer a number".into());
         }
         if speed(state) > self.speed_m_s {
-            return stop(format!("speed {} m/s exceeds {:.2} m/s", figure(speed(state)), self.speed_m_s));
+            return stop(format!(
+                "speed {} m/s exceeds {:.2} m/s",
+                figure(speed(state)),
+                self.speed_m_s
+            ));
         }
         if state[at::R].abs() > self.yaw_rate_rad_s {
             let limit = self.yaw_rate_rad_s.to_degrees();
-            return stop(format!("yaw rate {} deg/s exceeds {limit:.2} deg/s", figure(state[at::R].to_degrees())));
+            return stop(format!(
+                "yaw rate {} deg/s exceeds {limit:.2} deg/s",
+                figure(state[at::R].to_degrees())
+            ));
         }
         if state[at::PHI].abs() > self.roll_rad {
-            return stop(format!("roll {:.0} deg: the ship has capsized", state[at::PHI].to_degrees()));
+            return stop(format!(
+                "roll {:.0} deg: the ship has capsized",
+                state[at::PHI].to_degrees()
+            ));
         }
         Ok(())
     }

@@ -17,10 +17,14 @@ impl SquaredError {
     /// The differences of one simulated trial; the heading's is wrapped to half a turn. Roll counts for ships that roll.
     pub fn of(trial: &Trial, replay: &Replay) -> Self {
         let mut error = Self::default();
-        let compared = RECORDED.iter().filter(|(channel, _)| replay.has_roll || !matches!(channel, Channel::Phi | Channel::P));
+        let compared = RECORDED.iter().filter(|(channel, _)| {
+            replay.has_roll || !matches!(channel, Channel::Phi | Channel::P)
+        });
         for &(channel, index) in compared {
             let Some(measured) = trial.channel(channel) else { continue };
-            let square = |(state, &k): (&crate::StateVector, &usize)| difference(channel, state[index], measured[k]).powi(2);
+            let square = |(state, &k): (&crate::StateVector, &usize)| {
+                difference(channel, state[index], measured[k]).powi(2)
+            };
             let sum = replay.track.states.iter().zip(&replay.samples).map(square).sum();
             error.sums.insert(channel, (sum, replay.samples.len()));
         }
@@ -38,13 +42,17 @@ impl SquaredError {
 
     /// Root mean square by channel name; channels of which nothing was simulated are absent.
     pub fn rmse(&self) -> BTreeMap<String, f64> {
-        let named = |channel: &Channel| Some((channel.name().to_owned(), self.channel_rmse(*channel)?));
+        let named =
+            |channel: &Channel| Some((channel.name().to_owned(), self.channel_rmse(*channel)?));
         self.sums.keys().filter_map(named).collect()
     }
 
     /// Root mean square of one channel.
     pub fn channel_rmse(&self, channel: Channel) -> Option<f64> {
-        self.sums.get(&channel).filter(|(_, count)| *count > 0).map(|(sum, count)| (sum / *count as f64).sqrt())
+        self.sums
+            .get(&channel)
+            .filter(|(_, count)| *count > 0)
+            .map(|(sum, count)| (sum / *count as f64).sqrt())
     }
 }
 
@@ -62,9 +70,11 @@ pub fn wrapped(angle: f64) -> f64 {
 /// Standard deviations of the compared channels over trials, the scale of [`standardised_mse`].
 pub fn standard_deviations(trials: &[&Trial]) -> BTreeMap<Channel, f64> {
     let of = |channel: Channel| {
-        let values: Vec<f64> = trials.iter().filter_map(|trial| trial.channel(channel)).flatten().copied().collect();
+        let values: Vec<f64> =
+            trials.iter().filter_map(|trial| trial.channel(channel)).flatten().copied().collect();
         let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64;
+        let variance =
+            values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64;
         (!values.is_empty()).then(|| variance.sqrt())
     };
     RECORDED.iter().filter_map(|&(channel, _)| Some((channel, of(channel)?))).collect()

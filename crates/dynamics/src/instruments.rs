@@ -9,8 +9,16 @@ use crate::state::{RECORDED, StateVector, at};
 use crate::tape::{Lanes, Slots, Tape};
 
 /// The names that the formula of an instrument may use, with their places: states, then their rates.
-const STATES: [(&str, usize); 8] =
-    [("u", at::U), ("v", at::V), ("r", at::R), ("p", at::P), ("phi", at::PHI), ("psi", at::PSI), ("x", at::X), ("y", at::Y)];
+const STATES: [(&str, usize); 8] = [
+    ("u", at::U),
+    ("v", at::V),
+    ("r", at::R),
+    ("p", at::P),
+    ("phi", at::PHI),
+    ("psi", at::PSI),
+    ("x", at::X),
+    ("y", at::Y),
+];
 
 /// Instruments: for each channel that does not say the truth, what it says.
 #[derive(Debug)]
@@ -32,19 +40,30 @@ impl Instruments {
     ///
     /// # Errors
     /// Names what the model does not give.
-    pub fn new(equations: &EquationsOfMotion<'_>, frame: VelocityFrame) -> Result<Option<Self>, PlantError> {
+    pub fn new(
+        equations: &EquationsOfMotion<'_>,
+        frame: VelocityFrame,
+    ) -> Result<Option<Self>, PlantError> {
         let law = equations.law();
         let mut lowering = Lowering::new(equations, &input_names(law));
         let mut says = Vec::new();
         for (channel, expr) in readings(law, frame) {
-            let Some(&(_, place)) = RECORDED.iter().find(|(known, _)| *known == channel) else { continue };
+            let Some(&(_, place)) = RECORDED.iter().find(|(known, _)| *known == channel) else {
+                continue;
+            };
             says.push((place, lowering.output(&expr)?));
         }
         Ok((!says.is_empty()).then(|| Self { tape: lowering.finish(), says }))
     }
 
     /// What they say of a state with its rate of change.
-    pub fn read(&self, state: &StateVector, rate: &StateVector, inputs: &[f64], room: &mut Room) -> StateVector {
+    pub fn read(
+        &self,
+        state: &StateVector,
+        rate: &StateVector,
+        inputs: &[f64],
+        room: &mut Room,
+    ) -> StateVector {
         let Room { values, work } = room;
         values.clear();
         values.extend(STATES.iter().map(|&(_, place)| [state[place]]));
@@ -65,7 +84,10 @@ pub fn input_names(law: &Law) -> Vec<String> {
 }
 
 /// What each channel says, where it is not the truth: a log that measures through the water says what the hull sees.
-pub fn readings(law: &Law, frame: VelocityFrame) -> Vec<(Channel, sistership_model::formula::Expr)> {
+pub fn readings(
+    law: &Law,
+    frame: VelocityFrame,
+) -> Vec<(Channel, sistership_model::formula::Expr)> {
     use sistership_model::formula::Expr;
     let mut readings: Vec<(Channel, Expr)> = Vec::new();
     if frame == VelocityFrame::Water {
@@ -77,7 +99,9 @@ pub fn readings(law: &Law, frame: VelocityFrame) -> Vec<(Channel, sistership_mod
     for (channel, expr) in &law.dressing.measures {
         match readings.iter_mut().find(|(known, _)| known == channel) {
             // The second effect acts on what the first one left.
-            Some((_, before)) => *before = expr.renamed(&|name| (name == channel.name()).then(|| before.clone())),
+            Some((_, before)) => {
+                *before = expr.renamed(&|name| (name == channel.name()).then(|| before.clone()))
+            }
             None => readings.push((*channel, expr.clone())),
         }
     }

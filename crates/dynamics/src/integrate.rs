@@ -6,7 +6,9 @@ use crate::state::{StateVector, States};
 use crate::tape::Lanes;
 
 /// An integration method.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "IntegrationMethod")]
 pub enum Method {
@@ -19,7 +21,12 @@ pub enum Method {
 
 impl Method {
     /// The state one step later; `rate(fraction, state)` is the rate of change at that fraction of the step.
-    pub fn step(self, state: &StateVector, step_s: f64, mut rate: impl FnMut(f64, &StateVector) -> StateVector) -> StateVector {
+    pub fn step(
+        self,
+        state: &StateVector,
+        step_s: f64,
+        mut rate: impl FnMut(f64, &StateVector) -> StateVector,
+    ) -> StateVector {
         match self {
             Self::Euler => state + rate(0.0, state) * step_s,
             Self::Rk4 => {
@@ -52,7 +59,9 @@ impl Method {
         let mut slope = first;
         for (place, slope) in slope.iter_mut().enumerate() {
             for lane in 0..N {
-                slope[lane] = slope[lane] + (second[place][lane] + third[place][lane]) * 2.0 + fourth[place][lane];
+                slope[lane] = slope[lane]
+                    + (second[place][lane] + third[place][lane]) * 2.0
+                    + fourth[place][lane];
             }
         }
         moved(states, &slope, &steps_s.map(|step_s| step_s / 6.0))

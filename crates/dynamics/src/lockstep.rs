@@ -57,7 +57,8 @@ impl<'p, P: Passage, const N: usize> Convoy<'p, P, N> {
         (0..N).for_each(|lane| self.board(lane));
         while self.lanes.iter().any(Option::is_some) {
             let Self { ship, lanes, states, steps_s, work, .. } = &mut self;
-            *states = method.steps(states, steps_s, |stage, states| rates(ship, lanes, stage, states, work));
+            *states = method
+                .steps(states, steps_s, |stage, states| rates(ship, lanes, stage, states, work));
             for lane in 0..N {
                 if self.is_over(lane) {
                     self.board(lane);
@@ -109,7 +110,11 @@ fn rates<P: Passage, const N: usize>(
     for (lane, passage) in lanes.iter().enumerate() {
         let (Some(passage), angle) = (passage, states[at::DELTA][lane]) else { continue };
         let own = passage.inputs(ship, stage, angle);
-        inputs.iter_mut().zip(own).take(ship.input_count()).for_each(|(lanes, value)| lanes[lane] = value);
+        inputs
+            .iter_mut()
+            .zip(own)
+            .take(ship.input_count())
+            .for_each(|(lanes, value)| lanes[lane] = value);
         rudder[lane] = passage.rudder_rate(ship, angle);
     }
     let mut rates = ship.rates(states, &inputs, work);

@@ -67,19 +67,25 @@ impl Plant {
     ///
     /// # Errors
     /// As [`Plant::new`].
-    pub fn of(equations: &EquationsOfMotion<'_>, coefficients: Coefficients) -> Result<Self, PlantError> {
+    pub fn of(
+        equations: &EquationsOfMotion<'_>,
+        coefficients: Coefficients,
+    ) -> Result<Self, PlantError> {
         let (model, law) = (equations.model(), equations.law());
         check_inputs(law)?;
         let open: Vec<String> = match coefficients {
             Coefficients::Values => Vec::new(),
             Coefficients::Names => model.coefficients.keys().cloned().collect(),
         };
-        let names: Vec<String> = equations.names().into_iter().chain(open.iter().cloned()).collect();
+        let names: Vec<String> =
+            equations.names().into_iter().chain(open.iter().cloned()).collect();
         let mut lowering = Lowering::new(equations, &names);
         let layout = lay_out(equations, &mut lowering, coefficients)?;
         let tape = lowering.finish();
         let mobility = match constant_mass(&tape, &layout).map(LU::new) {
-            Some(lu) if lu.determinant() > 0.0 => Some(lu.try_inverse().ok_or_else(|| PlantError::Mass(model.name.clone()))?),
+            Some(lu) if lu.determinant() > 0.0 => {
+                Some(lu.try_inverse().ok_or_else(|| PlantError::Mass(model.name.clone()))?)
+            }
             Some(_) => return Err(PlantError::Mass(model.name.clone())),
             None => None,
         };

@@ -46,7 +46,11 @@ pub struct Recorded<'a> {
 ///
 /// # Errors
 /// Names the channel that the trial lacks: velocities, rudder, or another input of the law that has no default.
-pub fn replay(ship: &Ship, trial: &Trial, settings: &ReplaySettings) -> Result<Replay, MissingChannel> {
+pub fn replay(
+    ship: &Ship,
+    trial: &Trial,
+    settings: &ReplaySettings,
+) -> Result<Replay, MissingChannel> {
     let mut all = replay_all(ship, &[Recorded { trial, coefficients: &[] }], settings)?;
     Ok(all.remove(0))
 }
@@ -55,12 +59,22 @@ pub fn replay(ship: &Ship, trial: &Trial, settings: &ReplaySettings) -> Result<R
 ///
 /// # Errors
 /// As [`replay`], of the first trial that lacks something.
-pub fn replay_all(ship: &Ship, trials: &[Recorded<'_>], settings: &ReplaySettings) -> Result<Vec<Replay>, MissingChannel> {
-    let records = trials.iter().map(|recorded| Record::new(ship, recorded.trial)).collect::<Result<Vec<_>, _>>()?;
+pub fn replay_all(
+    ship: &Ship,
+    trials: &[Recorded<'_>],
+    settings: &ReplaySettings,
+) -> Result<Vec<Replay>, MissingChannel> {
+    let records = trials
+        .iter()
+        .map(|recorded| Record::new(ship, recorded.trial))
+        .collect::<Result<Vec<_>, _>>()?;
     let mut passages: Vec<Part<'_>> = Vec::new();
     for (index, (record, recorded)) in records.iter().zip(trials).enumerate() {
         let parts = parts(recorded.trial, settings.restart_s).into_iter();
-        passages.extend(parts.map(|part| Part::new(index, record, recorded.coefficients, part, settings.step_s)));
+        passages
+            .extend(parts.map(|part| {
+                Part::new(index, record, recorded.coefficients, part, settings.step_s)
+            }));
     }
     lockstep::sail(ship, settings.method, &mut passages);
     let nothing = || Replay::nothing(ship.has_roll());

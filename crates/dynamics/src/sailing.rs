@@ -50,7 +50,11 @@ impl Ship {
 }
 
 /// Sails runs in lockstep.
-pub(crate) fn sail_all<'a, B>(ship: &Ship, method: Method, mut sailings: Vec<Sailing<'a, B>>) -> Vec<Sailed>
+pub(crate) fn sail_all<'a, B>(
+    ship: &Ship,
+    method: Method,
+    mut sailings: Vec<Sailing<'a, B>>,
+) -> Vec<Sailed>
 where
     B: FnMut(f64, &StateVector) -> Option<Order>,
 {

@@ -66,13 +66,20 @@ impl Ship {
         Self::of(&EquationsOfMotion::new(model, law)?, Coefficients::Names)
     }
 
-    fn of(equations: &EquationsOfMotion<'_>, coefficients: Coefficients) -> Result<Self, PlantError> {
+    fn of(
+        equations: &EquationsOfMotion<'_>,
+        coefficients: Coefficients,
+    ) -> Result<Self, PlantError> {
         let plant = Plant::of(equations, coefficients)?;
         let (model, law) = (equations.model(), equations.law());
         let instruments = |frame| Instruments::new(equations, frame);
         let instruments = [instruments(VelocityFrame::Ground)?, instruments(VelocityFrame::Water)?];
         let need = |name: &str, value: Option<f64>| {
-            value.ok_or_else(|| PlantError::Missing { law: law.name.clone(), name: name.into(), model: model.name.clone() })
+            value.ok_or_else(|| PlantError::Missing {
+                law: law.name.clone(),
+                name: name.into(),
+                model: model.name.clone(),
+            })
         };
         let lpp_m = need("lpp_m", particulars::value(&model.particulars, "lpp_m"))?;
         let service = particulars::value(&model.particulars, "service_speed_m_s");
@@ -85,7 +92,11 @@ impl Ship {
         }
         let envelope = Envelope::new(lpp_m, speed);
         let approach_n_rps = model.revolutions_rps.unwrap_or(0.0);
-        let lag_s = plant.lags_s().iter().find(|(place, _)| Some(*place) == slots.delta).map_or(0.0, |&(_, lag_s)| lag_s);
+        let lag_s = plant
+            .lags_s()
+            .iter()
+            .find(|(place, _)| Some(*place) == slots.delta)
+            .map_or(0.0, |&(_, lag_s)| lag_s);
         Ok(Self {
             gear: Gear::new(&model.steering).with_lag(lag_s),
             plant,
@@ -134,13 +145,18 @@ impl Ship {
 
     /// What the law takes from outside, with what it takes where nothing is given.
     pub fn law_inputs(&self) -> impl Iterator<Item = (&str, Option<f64>)> {
-        self.plant.input_names().iter().map(String::as_str).zip(self.plant.input_defaults().iter().copied())
+        self.plant
+            .input_names()
+            .iter()
+            .map(String::as_str)
+            .zip(self.plant.input_defaults().iter().copied())
     }
 
     /// A sister's coefficients as passages take them; none where hers are not those of the others by name.
     pub fn sister(&self, model: &Model) -> Option<Vec<f64>> {
         let names = self.plant.open_coefficients();
-        let same = model.coefficients.len() == names.len() && model.coefficients.keys().all(|name| names.contains(name));
+        let same = model.coefficients.len() == names.len()
+            && model.coefficients.keys().all(|name| names.contains(name));
         same.then(|| names.iter().map(|name| model.coefficient(name)).collect())
     }
 
@@ -160,14 +176,31 @@ impl Ship {
     }
 
     /// What the instruments say of a state; `inputs` as in [`Ship::rate_with`].
-    pub fn says(&self, frame: VelocityFrame, state: &StateVector, inputs: &Inputs, work: &mut Work) -> StateVector {
+    pub fn says(
+        &self,
+        frame: VelocityFrame,
+        state: &StateVector,
+        inputs: &Inputs,
+        work: &mut Work,
+    ) -> StateVector {
         let Some(instruments) = &self.instruments[frame as usize] else { return *state };
         let rate = self.plant.rate(state, inputs, work);
-        instruments.read(state, &rate, &inputs[..self.plant.input_names().len()], &mut work.instruments)
+        instruments.read(
+            state,
+            &rate,
+            &inputs[..self.plant.input_names().len()],
+            &mut work.instruments,
+        )
     }
 
     /// The state of which the instruments say `said`.
-    pub fn truth(&self, frame: VelocityFrame, said: &StateVector, inputs: &Inputs, work: &mut Work) -> StateVector {
+    pub fn truth(
+        &self,
+        frame: VelocityFrame,
+        said: &StateVector,
+        inputs: &Inputs,
+        work: &mut Work,
+    ) -> StateVector {
         if self.instruments[frame as usize].is_none() {
             return *said;
         }
@@ -206,14 +239,26 @@ impl Ship {
     }
 
     /// The rate of change of the state with the steering gear following `order`.
-    pub fn rate_under(&self, state: &StateVector, order: Order, step_s: f64, work: &mut Work) -> StateVector {
+    pub fn rate_under(
+        &self,
+        state: &StateVector,
+        order: Order,
+        step_s: f64,
+        work: &mut Work,
+    ) -> StateVector {
         let mut rate = self.plant.rate(state, &self.inputs(state[at::DELTA], order.n_rps), work);
         rate[at::DELTA] = self.gear.rate(order.delta_rad, state[at::DELTA], step_s);
         rate
     }
 
     /// The rate of change of the state at a recorded rudder angle.
-    pub fn rate_at(&self, state: &StateVector, delta_rad: f64, n_rps: f64, work: &mut Work) -> StateVector {
+    pub fn rate_at(
+        &self,
+        state: &StateVector,
+        delta_rad: f64,
+        n_rps: f64,
+        work: &mut Work,
+    ) -> StateVector {
         self.plant.rate(state, &self.inputs(delta_rad, n_rps), work)
     }
 
@@ -223,7 +268,12 @@ impl Ship {
     }
 
     /// The rates of change of several states, each with every input of the law.
-    pub(crate) fn rates<const N: usize>(&self, states: &States<N>, inputs: &[Lanes<N>], work: &mut Work<N>) -> States<N> {
+    pub(crate) fn rates<const N: usize>(
+        &self,
+        states: &States<N>,
+        inputs: &[Lanes<N>],
+        work: &mut Work<N>,
+    ) -> States<N> {
         self.plant.rates(states, inputs, work)
     }
 

@@ -20,13 +20,18 @@ const BOUNDED: [(Channel, Option<usize>); 5] = [
 /// The region of `u, v, r, delta` and, where the law takes revolutions, `n` that trials covered; channels that one of them
 /// lacks are left out.
 pub fn covered(trials: &[&Trial], law: &Law) -> Option<Region> {
-    let bounds = |channel: Channel| channel != Channel::N || law.inputs.contains_key(channel.name());
+    let bounds =
+        |channel: Channel| channel != Channel::N || law.inputs.contains_key(channel.name());
     let column = |channel: Channel| -> Option<(String, Vec<f64>)> {
-        let columns: Option<Vec<&[f64]>> = trials.iter().map(|trial| trial.channel(channel)).collect();
+        let columns: Option<Vec<&[f64]>> =
+            trials.iter().map(|trial| trial.channel(channel)).collect();
         Some((channel.name().to_owned(), columns?.concat()))
     };
-    let columns: BTreeMap<String, Vec<f64>> =
-        BOUNDED.into_iter().filter(|(channel, _)| bounds(*channel)).filter_map(|(channel, _)| column(channel)).collect();
+    let columns: BTreeMap<String, Vec<f64>> = BOUNDED
+        .into_iter()
+        .filter(|(channel, _)| bounds(*channel))
+        .filter_map(|(channel, _)| column(channel))
+        .collect();
     Region::of(&columns)
 }
 

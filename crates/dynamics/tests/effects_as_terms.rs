@@ -34,25 +34,43 @@ fn rate(model: &Model, law: &Law) -> StateVector {
         state[place] = value;
     }
     let mut inputs = [0.0; MAX_INPUTS];
-    plant.input_names().iter().zip(&mut inputs).enumerate().for_each(|(place, (_, input))| *input = 0.3 + 0.2 * place as f64);
+    plant
+        .input_names()
+        .iter()
+        .zip(&mut inputs)
+        .enumerate()
+        .for_each(|(place, (_, input))| *input = 0.3 + 0.2 * place as f64);
     plant.rate(&state, &inputs, &mut Work::default())
 }
 
 #[test]
 fn forces_that_are_linear_become_terms() {
     let zoo = Zoo::embedded().unwrap();
-    for (effect, form) in [("wind", "measured"), ("propeller-asymmetry", "constant"), ("extra-resistance", "quadratic")] {
+    for (effect, form) in [
+        ("wind", "measured"),
+        ("propeller-asymmetry", "constant"),
+        ("extra-resistance", "quadratic"),
+    ] {
         let model = with(&zoo, effect, form);
         let law = zoo.law(&model.law).unwrap();
         let mut terms = AsTerms::new(&model, law).unwrap().unwrap();
         let at_priors = rate(&terms.model, &terms.law);
         for (name, quantity) in &model.effects[0].parameters {
             let term = format!("{effect}/{form}.{name}");
-            let own = terms.model.coefficients.iter_mut().find(|(coefficient, _)| coefficient.ends_with(&term)).unwrap().1;
+            let own = terms
+                .model
+                .coefficients
+                .iter_mut()
+                .find(|(coefficient, _)| coefficient.ends_with(&term))
+                .unwrap()
+                .1;
             own.value = quantity.value;
         }
         let (expected, found) = (rate(&model, law), rate(&terms.model, &terms.law));
-        assert!((expected - found).amax() < 1e-12 * expected.amax(), "{effect}: {expected} {found}");
+        assert!(
+            (expected - found).amax() < 1e-12 * expected.amax(),
+            "{effect}: {expected} {found}"
+        );
         assert!((at_priors - found).amax() > 1e-9 * expected.amax(), "{effect} does nothing");
         let back = terms.fitted(&terms.model.coefficients);
         for (name, quantity) in &model.effects[0].parameters {
@@ -65,10 +83,16 @@ fn forces_that_are_linear_become_terms() {
 #[test]
 fn what_is_not_linear_or_no_force_stays_an_effect() {
     let zoo = Zoo::embedded().unwrap();
-    for (effect, form) in
-        [("wind", "constant"), ("current", "constant"), ("rudder-offset", "constant"), ("yaw-rate-bias", "constant")]
-    {
+    for (effect, form) in [
+        ("wind", "constant"),
+        ("current", "constant"),
+        ("rudder-offset", "constant"),
+        ("yaw-rate-bias", "constant"),
+    ] {
         let model = with(&zoo, effect, form);
-        assert!(AsTerms::new(&model, zoo.law(&model.law).unwrap()).unwrap().is_none(), "{effect}/{form}");
+        assert!(
+            AsTerms::new(&model, zoo.law(&model.law).unwrap()).unwrap().is_none(),
+            "{effect}/{form}"
+        );
     }
 }

@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used)]
 
 use sistership_dynamics::Ship;
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, standard, standard_of_sisters, turn, zigzag};
+use sistership_dynamics::manoeuvre::{
+    ManoeuvreSettings, standard, standard_of_sisters, turn, zigzag,
+};
 use sistership_dynamics::recorded::{Recorded, Replay, ReplaySettings, replay, replay_all};
 use sistership_dynamics::state::at;
 use sistership_model::trial::Channel;
@@ -20,7 +22,8 @@ fn trial(ship: &Ship, rudder_deg: f64, samples: usize) -> Trial {
     let settings = ManoeuvreSettings { step_s: Some(1.0), ..ManoeuvreSettings::default() };
     let track = turn(ship, rudder_deg, &settings).unwrap().track;
     let column = |index: usize| track.column(index)[..samples].to_vec();
-    let channels = [(Channel::U, at::U), (Channel::V, at::V), (Channel::R, at::R), (Channel::Psi, at::PSI)];
+    let channels =
+        [(Channel::U, at::U), (Channel::V, at::V), (Channel::R, at::R), (Channel::Psi, at::PSI)];
     let mut trial = Trial { name: format!("turn {rudder_deg}"), ..Trial::default() };
     trial.t_s = track.t_s[..samples].to_vec();
     trial.channels = channels.iter().map(|&(channel, index)| (channel, column(index))).collect();
@@ -30,10 +33,13 @@ fn trial(ship: &Ship, rudder_deg: f64, samples: usize) -> Trial {
 }
 
 fn trials(ship: &Ship) -> Vec<Trial> {
-    [(35.0, 300), (-20.0, 41), (10.0, 200), (5.0, 2), (-35.0, 120)].map(|(rudder, samples)| trial(ship, rudder, samples)).to_vec()
+    [(35.0, 300), (-20.0, 41), (10.0, 200), (5.0, 2), (-35.0, 120)]
+        .map(|(rudder, samples)| trial(ship, rudder, samples))
+        .to_vec()
 }
 
-const RESTARTED: fn() -> ReplaySettings = || ReplaySettings { restart_s: Some(37.0), ..ReplaySettings::default() };
+const RESTARTED: fn() -> ReplaySettings =
+    || ReplaySettings { restart_s: Some(37.0), ..ReplaySettings::default() };
 
 #[test]
 fn trials_in_lockstep_are_simulated_as_each_alone() {
@@ -41,12 +47,17 @@ fn trials_in_lockstep_are_simulated_as_each_alone() {
         let (model, law) = ready(name);
         let ship = Ship::new(&model, &law).unwrap();
         let trials = trials(&ship);
-        let recorded: Vec<Recorded<'_>> = trials.iter().map(|trial| Recorded { trial, coefficients: &[] }).collect();
+        let recorded: Vec<Recorded<'_>> =
+            trials.iter().map(|trial| Recorded { trial, coefficients: &[] }).collect();
         let together = replay_all(&ship, &recorded, &RESTARTED()).unwrap();
-        let alone: Vec<Replay> = trials.iter().map(|trial| replay(&ship, trial, &RESTARTED()).unwrap()).collect();
+        let alone: Vec<Replay> =
+            trials.iter().map(|trial| replay(&ship, trial, &RESTARTED()).unwrap()).collect();
         assert_eq!(together, alone, "{name}");
         let whole = ReplaySettings::default();
-        assert_eq!(replay_all(&ship, &recorded[..1], &whole).unwrap()[0], replay_all(&ship, &recorded, &whole).unwrap()[0]);
+        assert_eq!(
+            replay_all(&ship, &recorded[..1], &whole).unwrap()[0],
+            replay_all(&ship, &recorded, &whole).unwrap()[0]
+        );
     }
 }
 
@@ -70,12 +81,16 @@ fn sisters_sail_by_their_own_coefficients() {
     };
     let models = [1.0, 0.9, 1.1].map(changed);
     let sisters = Ship::sisters(&model, &law).unwrap();
-    let coefficients: Vec<Vec<f64>> = models.iter().map(|model| sisters.sister(model).unwrap()).collect();
+    let coefficients: Vec<Vec<f64>> =
+        models.iter().map(|model| sisters.sister(model).unwrap()).collect();
     let given: Vec<&[f64]> = coefficients.iter().map(Vec::as_slice).collect();
     let settings = ManoeuvreSettings::default();
     for (model, sailed) in models.iter().zip(standard_of_sisters(&sisters, &given, &settings)) {
         let alone = standard(&Ship::new(model, &law).unwrap(), &settings);
-        let (here, there) = (sailed.turns[0].tactical_diameter_m.unwrap(), alone.turns[0].tactical_diameter_m.unwrap());
+        let (here, there) = (
+            sailed.turns[0].tactical_diameter_m.unwrap(),
+            alone.turns[0].tactical_diameter_m.unwrap(),
+        );
         assert!((here / there - 1.0).abs() < 1e-9, "{here} {there}");
     }
     assert_eq!(sisters.sister(&ready("kvlcc2").0), None);
@@ -92,5 +107,8 @@ fn a_sister_that_diverges_disturbs_no_other() {
     let runs = replay_all(&sisters, &recorded, &ReplaySettings::default()).unwrap();
     assert!(runs[1].stopped.is_some() && runs[1].samples.len() < 200);
     assert_eq!(runs[0], runs[2]);
-    assert_eq!(runs[0], replay_all(&sisters, &recorded[..1], &ReplaySettings::default()).unwrap()[0]);
+    assert_eq!(
+        runs[0],
+        replay_all(&sisters, &recorded[..1], &ReplaySettings::default()).unwrap()[0]
+    );
 }

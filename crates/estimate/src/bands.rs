@@ -95,7 +95,8 @@ pub fn draws(model: &Model, sampling: Sampling) -> Option<Vec<Model>> {
     let mut rng = ChaCha12Rng::seed_from_u64(sampling.seed);
     let one = |_| {
         let normal: Vec<f64> = (0..root.len()).map(|_| rng.sample(StandardNormal)).collect();
-        let moved: Vec<f64> = root.iter().map(|row| row.iter().zip(&normal).map(|(r, z)| r * z).sum()).collect();
+        let moved: Vec<f64> =
+            root.iter().map(|row| row.iter().zip(&normal).map(|(r, z)| r * z).sum()).collect();
         [1.0, -1.0].map(|side| shifted(&bare, &posterior.names, &moved, side))
     };
     Some((0..sampling.samples.div_ceil(2)).flat_map(one).collect())
@@ -105,14 +106,24 @@ pub fn draws(model: &Model, sampling: Sampling) -> Option<Vec<Model>> {
 fn shifted(model: &Model, names: &[String], moved: &[f64], side: f64) -> Model {
     let mut model = model.clone();
     for (name, by) in names.iter().zip(moved) {
-        model.coefficients.get_mut(name).into_iter().for_each(|quantity| quantity.value += side * by);
+        model
+            .coefficients
+            .get_mut(name)
+            .into_iter()
+            .for_each(|quantity| quantity.value += side * by);
     }
     model
 }
 
 /// The bands of the standard manoeuvres; none where the model has no posterior of its present coefficients. Where no step is
 /// given, a fiftieth of the time in which the ship sails her length. `depth_m` is for laws that know it.
-pub fn bands(model: &Model, law: &Law, settings: &ManoeuvreSettings, depth_m: Option<f64>, sampling: Sampling) -> Option<Bands> {
+pub fn bands(
+    model: &Model,
+    law: &Law,
+    settings: &ManoeuvreSettings,
+    depth_m: Option<f64>,
+    sampling: Sampling,
+) -> Option<Bands> {
     let draws = draws(model, sampling)?;
     let mut ship = Ship::sisters(model, law).ok()?;
     let speed_m_s = settings.speed_m_s.unwrap_or(ship.approach_speed_m_s());
@@ -121,7 +132,8 @@ pub fn bands(model: &Model, law: &Law, settings: &ManoeuvreSettings, depth_m: Op
     depth_m.into_iter().for_each(|depth_m| ship.set_depth(depth_m));
     let coarse = 0.02 * ship.lpp_m() / speed_m_s;
     let settings = ManoeuvreSettings { step_s: settings.step_s.or(Some(coarse)), ..*settings };
-    let sisters: Vec<Vec<f64>> = draws.iter().map(|draw| ship.sister(draw)).collect::<Option<_>>()?;
+    let sisters: Vec<Vec<f64>> =
+        draws.iter().map(|draw| ship.sister(draw)).collect::<Option<_>>()?;
     let together = |sisters: &[Vec<f64>]| {
         let sisters: Vec<&[f64]> = sisters.iter().map(Vec::as_slice).collect();
         standard_of_sisters(&ship, &sisters, &settings)
@@ -153,7 +165,8 @@ fn band(figures: &[Figure], draws: usize) -> Option<Band> {
         low: quantile(&values, 0.025)?,
         high: quantile(&values, 0.975)?,
         reached: share(values.len(), draws),
-        pass: (!judged.is_empty()).then(|| share(judged.iter().filter(|pass| **pass).count(), judged.len())),
+        pass: (!judged.is_empty())
+            .then(|| share(judged.iter().filter(|pass| **pass).count(), judged.len())),
     })
 }
 
@@ -188,9 +201,16 @@ mod tests {
     fn draws_have_the_posterior_s_covariance_and_the_estimate_in_their_midst() {
         let (model, _) = mariner(0.1);
         let draws = draws(&model, Sampling { samples: 4000, seed: 3 }).unwrap();
-        let moved = |name: &str| draws.iter().map(|d| d.coefficient(name) / model.coefficient(name) - 1.0).collect::<Vec<f64>>();
+        let moved = |name: &str| {
+            draws
+                .iter()
+                .map(|d| d.coefficient(name) / model.coefficient(name) - 1.0)
+                .collect::<Vec<f64>>()
+        };
         let (a, b) = (moved("N_delta"), moved("Y_delta"));
-        let mean = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>() / x.len() as f64;
+        let mean = |x: &[f64], y: &[f64]| {
+            x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>() / x.len() as f64
+        };
         assert!(a.iter().sum::<f64>().abs() < 1e-9);
         assert!((mean(&a, &a).sqrt() - 0.1).abs() < 0.003);
         // N_delta is negative: -0.6 between the coefficients is 0.6 between their relative changes.
@@ -201,8 +221,20 @@ mod tests {
     fn bands_widen_with_the_posterior_and_follow_from_the_seed() {
         let width = |deviation: f64, seed: u64| {
             let (model, law) = mariner(deviation);
-            let bands = bands(&model, &law, &ManoeuvreSettings::default(), None, Sampling { samples: 20, seed }).unwrap();
-            let band = bands.figures.iter().find(|band| band.figure == "turn 35 deg: tactical diameter").unwrap().clone();
+            let bands = bands(
+                &model,
+                &law,
+                &ManoeuvreSettings::default(),
+                None,
+                Sampling { samples: 20, seed },
+            )
+            .unwrap();
+            let band = bands
+                .figures
+                .iter()
+                .find(|band| band.figure == "turn 35 deg: tactical diameter")
+                .unwrap()
+                .clone();
             assert!(bands.figures.iter().any(|band| band.pass.is_some()));
             band.high - band.low
         };
@@ -215,7 +247,10 @@ mod tests {
     fn a_model_whose_coefficients_were_changed_has_no_bands() {
         let (mut model, law) = mariner(0.1);
         model.coefficients.get_mut("N_delta").unwrap().value *= 1.1;
-        assert_eq!(bands(&model, &law, &ManoeuvreSettings::default(), None, Sampling::default()), None);
+        assert_eq!(
+            bands(&model, &law, &ManoeuvreSettings::default(), None, Sampling::default()),
+            None
+        );
     }
 
     #[test]

@@ -4,7 +4,9 @@ use serde::Serialize;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{FileError, Model, Vessel, Zoo};
 
-use crate::similarity::{CharacteristicVector, Definition, EligibilityLimits, RankedSource, SourceCandidate, Trend, rank};
+use crate::similarity::{
+    CharacteristicVector, Definition, EligibilityLimits, RankedSource, SourceCandidate, Trend, rank,
+};
 use crate::transfer::{approach_of, transfer};
 use crate::trend::{TrendError, trend};
 
@@ -45,12 +47,19 @@ pub fn definition_for(target: &Vessel) -> Definition {
 
 /// Ranks the zoo for a target. Without a `definition`, by that of [`definition_for`].
 /// `trials` let the third step of eligibility be measured.
-pub fn similar(zoo: &Zoo, target: &Vessel, definition: Option<Definition>, trials: &[&Trial]) -> Similarity {
+pub fn similar(
+    zoo: &Zoo,
+    target: &Vessel,
+    definition: Option<Definition>,
+    trials: &[&Trial],
+) -> Similarity {
     let definition = definition.unwrap_or_else(|| definition_for(target));
     let models: Vec<(&Vessel, Option<Model>)> =
         zoo.vessels().map(|vessel| (&**vessel, zoo.published(vessel, None).ok())).collect();
-    let candidates: Vec<SourceCandidate<'_>> =
-        models.iter().map(|(vessel, model)| SourceCandidate { vessel, model: model.as_ref() }).collect();
+    let candidates: Vec<SourceCandidate<'_>> = models
+        .iter()
+        .map(|(vessel, model)| SourceCandidate { vessel, model: model.as_ref() })
+        .collect();
     let measured = |model: &Model| trend_on(zoo, target, model, trials);
     let measured: Option<Trend<'_>> = if trials.is_empty() { None } else { Some(&measured) };
     Similarity {
@@ -62,10 +71,16 @@ pub fn similar(zoo: &Zoo, target: &Vessel, definition: Option<Definition>, trial
 }
 
 /// The trend of a source on the target's trials, started anew each time she has sailed 20 of her lengths.
-fn trend_on(zoo: &Zoo, target: &Vessel, source: &Model, trials: &[&Trial]) -> Result<f64, TrendError> {
+fn trend_on(
+    zoo: &Zoo,
+    target: &Vessel,
+    source: &Model,
+    trials: &[&Trial],
+) -> Result<f64, TrendError> {
     let law = zoo.law(&source.law).ok_or_else(|| TrendError::NoLaw(source.law.clone()))?;
     let silent = [Channel::Phi, Channel::P].into_iter().find_map(|channel| {
-        let without = trials.iter().find(|trial| law.has_roll() && trial.channel(channel).is_none())?;
+        let without =
+            trials.iter().find(|trial| law.has_roll() && trial.channel(channel).is_none())?;
         Some(TrendError::Roll { trial: without.name.clone(), channel })
     });
     if let Some(reason) = silent {
@@ -89,12 +104,19 @@ pub fn best_source(zoo: &Zoo, similarity: &Similarity) -> Result<Model, SourceEr
 ///
 /// # Errors
 /// As [`best_source`].
-pub fn best_source_except(zoo: &Zoo, similarity: &Similarity, exclude: &[String]) -> Result<Model, SourceError> {
-    let eligible = similarity.ranking.iter().find(|ranked| ranked.eligible && !exclude.contains(&ranked.ship));
+pub fn best_source_except(
+    zoo: &Zoo,
+    similarity: &Similarity,
+    exclude: &[String],
+) -> Result<Model, SourceError> {
+    let eligible =
+        similarity.ranking.iter().find(|ranked| ranked.eligible && !exclude.contains(&ranked.ship));
     if let Some(model) = eligible.and_then(|ranked| ranked.model.as_deref()) {
         return Ok(zoo.model(model)?);
     }
-    let why = |ranked: &RankedSource| format!("{}: {}", ranked.ship, ranked.reasons.last().map_or("", String::as_str));
+    let why = |ranked: &RankedSource| {
+        format!("{}: {}", ranked.ship, ranked.reasons.last().map_or("", String::as_str))
+    };
     let reasons: Vec<String> = similarity.ranking.iter().map(why).collect();
     Err(SourceError::NotEligible { target: similarity.target.clone(), reasons: reasons.join("; ") })
 }

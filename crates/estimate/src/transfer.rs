@@ -24,13 +24,20 @@ pub struct Approach {
 /// The approach of a set of trials: the median speed at their first samples; where they start from rest, the median
 /// speed under way. `None` without velocities.
 pub fn approach_of(trials: &[&Trial]) -> Option<Approach> {
-    let first = |trial: &&Trial| Some(trial.channel(Channel::U)?.first()?.hypot(*trial.channel(Channel::V)?.first()?));
+    let first = |trial: &&Trial| {
+        Some(trial.channel(Channel::U)?.first()?.hypot(*trial.channel(Channel::V)?.first()?))
+    };
     let mut starts: Vec<f64> = trials.iter().filter_map(first).collect();
-    let mut speeds: Vec<f64> = trials.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten().copied()).collect();
-    let mut revolutions: Vec<f64> = trials.iter().flat_map(|t| t.channel(Channel::N).into_iter().flatten().copied()).collect();
+    let mut speeds: Vec<f64> = trials
+        .iter()
+        .flat_map(|trial| trial.channel(Channel::U).into_iter().flatten().copied())
+        .collect();
+    let mut revolutions: Vec<f64> =
+        trials.iter().flat_map(|t| t.channel(Channel::N).into_iter().flatten().copied()).collect();
     let (start, under_way) = (median(&mut starts)?, median(&mut speeds)?);
     let speed_m_s = if start > 0.5 * under_way { start } else { under_way };
-    (speed_m_s > 0.0).then(|| Approach { speed_m_s, n_rps: median(&mut revolutions).filter(|n| *n > 0.0) })
+    (speed_m_s > 0.0)
+        .then(|| Approach { speed_m_s, n_rps: median(&mut revolutions).filter(|n| *n > 0.0) })
 }
 
 fn median(values: &mut [f64]) -> Option<f64> {
@@ -48,7 +55,11 @@ pub fn transfer(source: &Model, law: &Law, target: &Vessel, approach: Option<App
     let speed = approach.map(|a| a.speed_m_s).or(service).or(froude);
     let mut model = source.transferred(law, target.name(), &particulars, speed);
     model.speed_m_s = speed;
-    let scaled_n = source.revolutions_rps.zip(froude).zip(speed).map(|((n, froude), speed)| n / ratio.sqrt() * speed / froude);
+    let scaled_n = source
+        .revolutions_rps
+        .zip(froude)
+        .zip(speed)
+        .map(|((n, froude), speed)| n / ratio.sqrt() * speed / froude);
     model.revolutions_rps = approach.and_then(|a| a.n_rps).or(scaled_n);
     model.steering.rate_deg_s = source.steering.rate_deg_s / ratio.sqrt();
     model.steering.time_constant_s = source.steering.time_constant_s * ratio.sqrt();
@@ -91,12 +102,24 @@ pub(crate) fn blank_of(
 ///
 /// # Errors
 /// Names a parameter of the law that does not follow from her particulars.
-pub fn blank(law: &Law, target: &Vessel, approach: Option<Approach>) -> Result<Model, UnknownParameter> {
+pub fn blank(
+    law: &Law,
+    target: &Vessel,
+    approach: Option<Approach>,
+) -> Result<Model, UnknownParameter> {
     let zero = |name: &String| (name.clone(), Quantity::new(0.0, "nothing known"));
     let parameter = |name: &String| {
-        let own = if law.approach_speed_parameter() == Some(name) { approach.map(|a| a.speed_m_s) } else { None };
+        let own = if law.approach_speed_parameter() == Some(name) {
+            approach.map(|a| a.speed_m_s)
+        } else {
+            None
+        };
         let value = own.or_else(|| law.derived_parameter(name, &target.particulars));
-        let unknown = || UnknownParameter { name: name.clone(), law: law.name.clone(), ship: target.name().to_owned() };
+        let unknown = || UnknownParameter {
+            name: name.clone(),
+            law: law.name.clone(),
+            ship: target.name().to_owned(),
+        };
         Ok((name.clone(), Quantity::new(value.ok_or_else(unknown)?, DERIVED)))
     };
     Ok(Model {
@@ -111,7 +134,11 @@ pub fn blank(law: &Law, target: &Vessel, approach: Option<Approach>) -> Result<M
         revolutions_rps: approach.and_then(|a| a.n_rps),
         steering: Default::default(),
         particulars: target.particulars.clone(),
-        parameters: law.parameters.keys().map(parameter).collect::<Result<_, UnknownParameter>>()?,
+        parameters: law
+            .parameters
+            .keys()
+            .map(parameter)
+            .collect::<Result<_, UnknownParameter>>()?,
         coefficients: law.axes.values().flat_map(|axis| axis.terms.keys().map(zero)).collect(),
         effects: Vec::new(),
         uncertainty: None,
@@ -130,16 +157,20 @@ fn complete(source: &Model, law: &Law, target: &Vessel, ratio: f64) -> Particula
             continue;
         };
         let factor = ratio.powf(dimension.length + 3.0 * dimension.mass + 0.5 * dimension.time);
-        particulars.insert(name, Quantity::new(value * factor, format!("scaled from {}", source.name)));
+        particulars
+            .insert(name, Quantity::new(value * factor, format!("scaled from {}", source.name)));
     }
     particulars
 }
 
 /// The particulars that a law's formulas mention.
 fn needed_particulars(law: &Law) -> BTreeSet<String> {
-    let axes = law.axes.values().flat_map(|axis| axis.terms.values().chain([&axis.scale, &axis.rest]));
+    let axes =
+        law.axes.values().flat_map(|axis| axis.terms.values().chain([&axis.scale, &axis.rest]));
     let formulas: Vec<&Expr> = law.values.values().chain(law.mass.values()).chain(axes).collect();
-    let names = formulas.into_iter().flat_map(|expr| expr.names().into_iter().map(str::to_owned).collect::<Vec<_>>());
+    let names = formulas
+        .into_iter()
+        .flat_map(|expr| expr.names().into_iter().map(str::to_owned).collect::<Vec<_>>());
     names.filter(|name| particulars::dimension(name).is_some()).collect()
 }
 
@@ -149,7 +180,11 @@ pub fn ready(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, PlantE
 }
 
 /// As [`ready`], for all models that have the same names of coefficients.
-pub(crate) fn ready_for_sisters(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, PlantError> {
+pub(crate) fn ready_for_sisters(
+    model: &Model,
+    law: &Law,
+    trials: &[&Trial],
+) -> Result<Ship, PlantError> {
     let mut ship = widened(Ship::sisters(model, law), trials)?;
     ship.forget_validity();
     Ok(ship)
@@ -157,7 +192,10 @@ pub(crate) fn ready_for_sisters(model: &Model, law: &Law, trials: &[&Trial]) -> 
 
 fn widened(ship: Result<Ship, PlantError>, trials: &[&Trial]) -> Result<Ship, PlantError> {
     let mut ship = ship?;
-    let fastest = trials.iter().flat_map(|t| t.channel(Channel::U).into_iter().flatten()).fold(0.0_f64, |a, b| a.max(b.abs()));
+    let fastest = trials
+        .iter()
+        .flat_map(|t| t.channel(Channel::U).into_iter().flatten())
+        .fold(0.0_f64, |a, b| a.max(b.abs()));
     ship.set_envelope_speed(fastest);
     Ok(ship)
 }

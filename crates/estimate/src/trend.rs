@@ -48,7 +48,12 @@ pub enum TrendError {
 ///
 /// # Errors
 /// Says which channel is missing, or that the simulation left the physical range.
-pub fn trend(model: &Model, law: &Law, trials: &[&Trial], restart_s: f64) -> Result<f64, TrendError> {
+pub fn trend(
+    model: &Model,
+    law: &Law,
+    trials: &[&Trial],
+    restart_s: f64,
+) -> Result<f64, TrendError> {
     let ship = ready(model, law, trials)?;
     let settings = ReplaySettings { restart_s: Some(restart_s), ..ReplaySettings::default() };
     let mut pairs = Vec::new();
@@ -58,7 +63,13 @@ pub fn trend(model: &Model, law: &Law, trials: &[&Trial], restart_s: f64) -> Res
             return Err(TrendError::Stopped { trial: trial.name.clone(), stopped });
         }
         let measured = trial.channel(Channel::R).unwrap_or_default();
-        pairs.extend(run.track.states.iter().zip(&run.samples).map(|(state, &k)| (state[at::R], measured[k])));
+        pairs.extend(
+            run.track
+                .states
+                .iter()
+                .zip(&run.samples)
+                .map(|(state, &k)| (state[at::R], measured[k])),
+        );
     }
     pearson(&pairs).ok_or(TrendError::Constant)
 }

@@ -38,7 +38,12 @@ pub(super) struct Connection {
 }
 
 impl Connection {
-    pub(super) fn new(router: &Router, limits: Limits, seats: &Arc<Seats>, party: IpAddr) -> Option<Self> {
+    pub(super) fn new(
+        router: &Router,
+        limits: Limits,
+        seats: &Arc<Seats>,
+        party: IpAddr,
+    ) -> Option<Self> {
         let pace = Arc::new(Pace::new(&limits));
         let seat = Seats::admit(seats, party, &pace)?;
         Some(Self { router: router.clone(), limits, party, pace, seat })
@@ -68,8 +73,13 @@ impl Connection {
         // Who waits to be told whether to send the body has not begun to.
         let waits = request.headers().contains_key(header::EXPECT);
         let (pace, rest) = (Arc::clone(&self.pace), Rest::default());
-        let mut request = request.map(|body| Body::new(Received::new(body, Arc::clone(&pace), rest.clone())));
-        request.extensions_mut().insert(Peer { party: self.party, pace: Arc::clone(&pace), crowded });
+        let mut request =
+            request.map(|body| Body::new(Received::new(body, Arc::clone(&pace), rest.clone())));
+        request.extensions_mut().insert(Peer {
+            party: self.party,
+            pace: Arc::clone(&pace),
+            crowded,
+        });
         let answered = TowerToHyperService::new(self.router.clone()).call(request).await;
         let response = answered.unwrap_or_else(|never| match never {});
         if !(crowded || waits || pace.is_too_slow()) {

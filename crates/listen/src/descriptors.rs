@@ -32,7 +32,8 @@ fn needed_by(limits: &Limits) -> usize {
 
 fn fitting(mut limits: Limits, have: usize) -> Limits {
     let lacking = needed_by(&limits).saturating_sub(have);
-    limits.connections = limits.connections.saturating_sub(lacking).max(FEWEST.min(limits.connections));
+    limits.connections =
+        limits.connections.saturating_sub(lacking).max(FEWEST.min(limits.connections));
     limits.connections_per_address = limits.connections_per_address.min(limits.connections);
     limits
 }

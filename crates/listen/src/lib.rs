@@ -13,6 +13,7 @@ mod seats;
 mod serve;
 mod stopping;
 mod stream;
+mod throttle;
 
 pub use address::party;
 pub use bind::bind;
@@ -21,3 +22,4 @@ pub use limits::Limits;
 pub use peer::{Peer, is_health};
 pub use serve::listen;
 pub use stopping::Stopping;
+pub use throttle::Throttle;

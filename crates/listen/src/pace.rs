@@ -74,7 +74,12 @@ pub(crate) struct Pace {
 impl Pace {
     pub(super) fn new(limits: &Limits) -> Self {
         let body = Credit::new(limits.body_grace);
-        let state = State { head: Some(Instant::now()), body, answer: Credit::new(limits.answer_grace), cut: false };
+        let state = State {
+            head: Some(Instant::now()),
+            body,
+            answer: Credit::new(limits.answer_grace),
+            cut: false,
+        };
         Self {
             rate: limits.least_rate,
             grace: limits.body_grace,
@@ -145,7 +150,8 @@ impl Pace {
     /// Cuts the connection if it still waits for its other end; says whether it does.
     pub(super) fn cut_if_stuck(&self) -> bool {
         let mut state = self.state();
-        let stuck = state.answer.since.is_some() || state.body.since.is_some() || state.head.is_some();
+        let stuck =
+            state.answer.since.is_some() || state.body.since.is_some() || state.head.is_some();
         state.cut |= stuck;
         if stuck {
             self.cut.notify_one();
@@ -190,7 +196,11 @@ mod tests {
         assert_eq!(credit.wait(start + s(3)), start + s(10), "waiting goes on");
         assert_eq!(credit.waited(start + s(4)), Some(s(4)));
         credit.earn(200, 100, start + s(4));
-        assert_eq!(credit.wait(start + s(4)), start + s(12), "10 s - 4 s + 200 bytes of 100 bytes/s");
+        assert_eq!(
+            credit.wait(start + s(4)),
+            start + s(12),
+            "10 s - 4 s + 200 bytes of 100 bytes/s"
+        );
         assert_eq!(credit.waited(start + s(5)), Some(s(3)), "3 s more than was earned");
         credit.earn(1 << 20, 100, start + s(5));
         assert_eq!(credit.wait(start + s(5)), start + s(5) + MOST_CREDIT);

@@ -83,7 +83,8 @@ impl Seats {
             return true;
         }
         let most = table.shares.iter().max_by_key(|(_, seats)| **seats).map(|(party, _)| *party);
-        table.evict(PATIENCE, |entry| entry.seated && Some(entry.party) == most) || table.evict(PATIENCE, |entry| entry.seated)
+        table.evict(PATIENCE, |entry| entry.seated && Some(entry.party) == most)
+            || table.evict(PATIENCE, |entry| entry.seated)
     }
 
     /// Cuts who has waited longest, when the system has no more sockets.
@@ -128,7 +129,9 @@ impl Table {
         let now = Instant::now();
         let waited = self.entries.iter().filter(|(_, entry)| of(entry));
         let waited = waited.filter_map(|(id, entry)| Some((entry.pace.stuck(now)?, *id)));
-        let Some((_, id)) = waited.filter(|(waited, _)| *waited >= patience).max() else { return false };
+        let Some((_, id)) = waited.filter(|(waited, _)| *waited >= patience).max() else {
+            return false;
+        };
         let cut = self.entries.get(&id).is_some_and(|entry| entry.pace.cut_if_stuck());
         if cut {
             self.remove(id);
@@ -234,6 +237,9 @@ mod tests {
         let held: Vec<_> = (0..=RESERVE).map(|_| seats.admit(from(1), &busy()).unwrap()).collect();
         assert!(seats.admit(from(1), &busy()).is_none());
         let start = Instant::now();
-        assert!(!held[RESERVE].taken().await && start.elapsed() < WAIT / 2, "where many wait, nobody waits longer");
+        assert!(
+            !held[RESERVE].taken().await && start.elapsed() < WAIT / 2,
+            "where many wait, nobody waits longer"
+        );
     }
 }

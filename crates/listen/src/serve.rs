@@ -23,7 +23,8 @@ const BREATH: Duration = Duration::from_millis(100);
 
 /// Serves until it is told to stop, then lets what is under way end.
 pub async fn listen(listener: TcpListener, router: Router, limits: Limits, mut stopping: Stopping) {
-    let server = Server { router, limits, graceful: GracefulShutdown::new(), seats: Seats::new(&limits) };
+    let server =
+        Server { router, limits, graceful: GracefulShutdown::new(), seats: Seats::new(&limits) };
     loop {
         tokio::select! {
             () = stopping.wait() => break,
@@ -60,7 +61,9 @@ impl Server {
             tracing::debug!(%error, "no TCP_NODELAY or TCP_NOTSENT_LOWAT");
         }
         match Connection::new(&self.router, self.limits, &self.seats, party(from.ip())) {
-            Some(connection) => drop(tokio::spawn(connection.serve(stream, self.graceful.watcher()))),
+            Some(connection) => {
+                drop(tokio::spawn(connection.serve(stream, self.graceful.watcher())))
+            }
             None => tracing::debug!("a connection was not taken: all others are at work"),
         }
     }

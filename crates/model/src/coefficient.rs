@@ -9,7 +9,19 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 /// An axis of the equations of motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Hash,
+    Serialize,
+    Deserialize,
+    schemars::JsonSchema,
+)]
 pub enum Axis {
     /// Surge force.
     X,
@@ -147,11 +159,13 @@ impl CoefficientName {
             return Err(NameError::Long { head: crate::formula::head(name), length: name.len() });
         }
         let (shared, submodel) = split_submodel(name);
-        let (axis, rest) = shared.split_once('_').ok_or_else(|| NameError::Form(name.to_owned()))?;
+        let (axis, rest) =
+            shared.split_once('_').ok_or_else(|| NameError::Form(name.to_owned()))?;
         let axis = Axis::ALL.into_iter().find(|a| a.to_string() == axis);
         let axis = axis.ok_or_else(|| NameError::Axis(name.to_owned()))?;
         let wrong = |fault| NameError::Factors { name: name.to_owned(), fault };
-        let mut factors = if rest == "0" { Vec::new() } else { split(rest, extra).map_err(wrong)? };
+        let mut factors =
+            if rest == "0" { Vec::new() } else { split(rest, extra).map_err(wrong)? };
         let as_written = factors.clone();
         factors.sort();
         let canonical = Self { axis, factors, submodel: submodel.map(str::to_owned) };
@@ -173,9 +187,9 @@ impl fmt::Display for CoefficientName {
         if self.factors.is_empty() {
             out.write_str("0")?;
         }
-        self.factors
-            .iter()
-            .try_for_each(|f| if f.absolute { write!(out, "|{}|", f.symbol) } else { out.write_str(&f.symbol) })?;
+        self.factors.iter().try_for_each(|f| {
+            if f.absolute { write!(out, "|{}|", f.symbol) } else { out.write_str(&f.symbol) }
+        })?;
         self.submodel.as_ref().map_or(Ok(()), |submodel| write!(out, "@{submodel}"))
     }
 }
@@ -185,10 +199,12 @@ fn split(mut rest: &str, extra: &[&str]) -> Result<Vec<Factor>, FactorsError> {
     while !rest.is_empty() {
         let absolute = rest.starts_with('|');
         let inner = rest.strip_prefix('|').unwrap_or(rest);
-        let (rank, symbol) = longest_symbol(inner, extra).ok_or_else(|| FactorsError::Unknown(rest.to_owned()))?;
+        let (rank, symbol) =
+            longest_symbol(inner, extra).ok_or_else(|| FactorsError::Unknown(rest.to_owned()))?;
         rest = &inner[symbol.len()..];
         if absolute {
-            rest = rest.strip_prefix('|').ok_or_else(|| FactorsError::OpenBar(symbol.to_owned()))?;
+            rest =
+                rest.strip_prefix('|').ok_or_else(|| FactorsError::OpenBar(symbol.to_owned()))?;
         }
         factors.push(Factor { rank, absolute, symbol: symbol.to_owned() });
         if factors.len() > MAX_FACTORS {
@@ -213,7 +229,9 @@ mod tests {
     use super::*;
 
     fn canonical(name: &str) -> Result<String, String> {
-        CoefficientName::parse(name, &["T", "beta", "c", "zeta"]).map(|n| n.to_string()).map_err(|e| e.to_string())
+        CoefficientName::parse(name, &["T", "beta", "c", "zeta"])
+            .map(|n| n.to_string())
+            .map_err(|e| e.to_string())
     }
 
     #[test]

@@ -21,14 +21,23 @@ impl fmt::Display for FileError {
         if let Some(line) = self.line {
             write!(out, ":{line}")?;
         }
-        if self.field.is_empty() { write!(out, ": {}", self.message) } else { write!(out, ": {}: {}", self.field, self.message) }
+        if self.field.is_empty() {
+            write!(out, ": {}", self.message)
+        } else {
+            write!(out, ": {}: {}", self.field, self.message)
+        }
     }
 }
 
 impl FileError {
     /// What is wrong with a file as YAML.
     pub fn of_yaml(file: &str, error: crate::yaml::YamlError) -> Self {
-        Self { file: file.to_owned(), line: error.line, field: String::new(), message: error.message }
+        Self {
+            file: file.to_owned(),
+            line: error.line,
+            field: String::new(),
+            message: error.message,
+        }
     }
 }
 
@@ -50,7 +59,12 @@ impl<'a> Blame<'a> {
 
     /// An error at a dotted field; the line is that of the path's keys, each looked for below the one before.
     pub(crate) fn at(&self, field: &str, message: impl ToString) -> FileError {
-        FileError { file: self.file.to_owned(), line: self.line_of(field), field: field.to_owned(), message: message.to_string() }
+        FileError {
+            file: self.file.to_owned(),
+            line: self.line_of(field),
+            field: field.to_owned(),
+            message: message.to_string(),
+        }
     }
 
     fn line_of(&self, field: &str) -> Option<usize> {
@@ -72,7 +86,8 @@ fn names_key(line: &str, key: &str) -> bool {
     line.match_indices(key).any(|(at, _)| {
         let before = line[..at].chars().next_back();
         let after = line[at + key.len()..].chars().next();
-        let boundary = |c: Option<char>| c.is_none_or(|c| !c.is_alphanumeric() && c != '_' && c != '|');
+        let boundary =
+            |c: Option<char>| c.is_none_or(|c| !c.is_alphanumeric() && c != '_' && c != '|');
         boundary(before) && boundary(after) && !line[..at].contains('#')
     })
 }

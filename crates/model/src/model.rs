@@ -83,11 +83,17 @@ impl Model {
     ///
     /// # Errors
     /// Names file, line and field of the first thing that is wrong.
-    pub fn parse(file: &str, text: &str, law_of: &dyn Fn(&str) -> Option<Law>) -> Result<Self, FileError> {
+    pub fn parse(
+        file: &str,
+        text: &str,
+        law_of: &dyn Fn(&str) -> Option<Law>,
+    ) -> Result<Self, FileError> {
         let blame = Blame::new(file, text);
         let model: Self = blame.read()?;
-        let law = law_of(&model.law).ok_or_else(|| blame.at("law", format!("there is no law `{}`", model.law)))?;
-        particulars::check(&model.particulars).map_err(|(name, e)| blame.at(&format!("particulars.{name}"), e))?;
+        let law = law_of(&model.law)
+            .ok_or_else(|| blame.at("law", format!("there is no law `{}`", model.law)))?;
+        particulars::check(&model.particulars)
+            .map_err(|(name, e)| blame.at(&format!("particulars.{name}"), e))?;
         model.check(&law).map_err(|(field, e)| blame.at(&field, e))?;
         Ok(model)
     }
@@ -102,7 +108,9 @@ impl Model {
         let path = |section: &str| format!("models.{}.{section}", raw.name);
         let keys = vessel.source_keys();
         let section = |what: &str, section: &crate::quantity::Section| {
-            section.resolve(&keys).map_err(|(name, e)| blame.at(&format!("{}.{name}", path(what)), e))
+            section
+                .resolve(&keys)
+                .map_err(|(name, e)| blame.at(&format!("{}.{name}", path(what)), e))
         };
         let mut model = Self {
             kind: ModelKind::Model,
@@ -124,7 +132,9 @@ impl Model {
             validity: None,
         };
         model.fill_parameters(law);
-        model.check(law).map_err(|(field, e)| blame.at(&format!("models.{}.{field}", raw.name), e))?;
+        model
+            .check(law)
+            .map_err(|(field, e)| blame.at(&format!("models.{}.{field}", raw.name), e))?;
         if vessel.file.conventions.rudder_positive == RudderSign::PortTurn {
             model.flip_rudder(law);
         }
@@ -134,7 +144,13 @@ impl Model {
     /// This model carried over to another ship: the same coefficients in the law's own scaling, her particulars, and
     /// every parameter that the law derives from particulars recomputed for her. `approach_speed_m_s` replaces the speed
     /// about which the law is expanded, which belongs to the trials.
-    pub fn transferred(&self, law: &Law, ship: &str, particulars: &Particulars, approach_speed_m_s: Option<f64>) -> Self {
+    pub fn transferred(
+        &self,
+        law: &Law,
+        ship: &str,
+        particulars: &Particulars,
+        approach_speed_m_s: Option<f64>,
+    ) -> Self {
         let mut model = self.clone();
         model.name = format!("{ship}/{}", self.law);
         model.ship = ship.to_owned();
@@ -170,7 +186,9 @@ impl Model {
 
     /// How far its coefficients may be from the truth; none where they are no longer those that were estimated.
     pub fn posterior(&self) -> Option<&Posterior> {
-        self.posterior.as_ref().filter(|p| p.is_about(|name| self.coefficients.get(name).map(|quantity| quantity.value)))
+        self.posterior.as_ref().filter(|p| {
+            p.is_about(|name| self.coefficients.get(name).map(|quantity| quantity.value))
+        })
     }
 
     /// Checks that the law knows every name and that every parameter has a value.
@@ -180,19 +198,28 @@ impl Model {
     pub fn check(&self, law: &Law) -> Result<(), (String, String)> {
         most("coefficients", self.coefficients.len(), MAX_COEFFICIENTS)?;
         for name in self.coefficients.keys() {
-            law.regressor(name).map_err(|e| (format!("coefficients.values.{name}"), e.to_string()))?;
+            law.regressor(name)
+                .map_err(|e| (format!("coefficients.values.{name}"), e.to_string()))?;
         }
         let unknown = self.parameters.keys().find(|name| !law.parameters.contains_key(*name));
         if let Some(name) = unknown {
             let known: Vec<&str> = law.parameters.keys().map(String::as_str).collect();
-            let message = format!("law `{}` has no such parameter; it has {}", law.name, known.join(", "));
+            let message =
+                format!("law `{}` has no such parameter; it has {}", law.name, known.join(", "));
             return Err((format!("parameters.values.{name}"), message));
         }
         let values = self.parameters.iter().chain(&self.coefficients);
-        if let Some((name, quantity)) = values.into_iter().find(|(_, quantity)| !quantity.value.is_finite()) {
-            return Err((format!("values.{name}"), format!("{} is not a finite number", quantity.value)));
+        if let Some((name, quantity)) =
+            values.into_iter().find(|(_, quantity)| !quantity.value.is_finite())
+        {
+            return Err((
+                format!("values.{name}"),
+                format!("{} is not a finite number", quantity.value),
+            ));
         }
-        if let Some((name, parameter)) = law.parameters.iter().find(|(name, _)| !self.parameters.contains_key(*name)) {
+        if let Some((name, parameter)) =
+            law.parameters.iter().find(|(name, _)| !self.parameters.contains_key(*name))
+        {
             return Err((format!("parameters.values.{name}"), missing_parameter(name, parameter)));
         }
         if let Some(uncertainty) = &self.uncertainty {
@@ -240,17 +267,22 @@ impl Law {
         most("effects", model.effects.len(), MAX_EFFECTS)?;
         let mut forms = Vec::new();
         for effect in &model.effects {
-            let field = |(field, message): (String, String)| (format!("effects.{}.{field}", effect.name), message);
+            let field = |(field, message): (String, String)| {
+                (format!("effects.{}.{field}", effect.name), message)
+            };
             forms.push((effect, effect.checked().map_err(field)?));
         }
-        let listed: Vec<(&str, &Form)> = forms.iter().map(|(effect, form)| (effect.name.as_str(), form)).collect();
+        let listed: Vec<(&str, &Form)> =
+            forms.iter().map(|(effect, form)| (effect.name.as_str(), form)).collect();
         let mut law = self.dressed(model, &listed);
         if !listed.is_empty() {
             law.check_depth().map_err(|message| ("effects".to_owned(), message))?;
         }
         for (effect, _) in &forms {
             for (name, quantity) in &effect.parameters {
-                law.dressing.parameters.insert(qualified(&effect.name, &effect.form.name, name), quantity.value);
+                law.dressing
+                    .parameters
+                    .insert(qualified(&effect.name, &effect.form.name, name), quantity.value);
             }
         }
         Ok(law)
@@ -264,16 +296,25 @@ impl Law {
 
 fn missing_parameter(name: &str, parameter: &crate::law::Parameter) -> String {
     let derivation = match &parameter.from {
-        Some(from) => format!(" or the particulars it follows from: {}", from.names().into_iter().collect::<Vec<_>>().join(", ")),
+        Some(from) => format!(
+            " or the particulars it follows from: {}",
+            from.names().into_iter().collect::<Vec<_>>().join(", ")
+        ),
         None => String::new(),
     };
     format!("give `{name}` ({}, unit {}){derivation}", parameter.meaning, parameter.unit)
 }
 
-fn published_file<'a>(vessel: &'a Vessel, name: Option<&str>) -> Result<&'a PublishedModelFile, String> {
+fn published_file<'a>(
+    vessel: &'a Vessel,
+    name: Option<&str>,
+) -> Result<&'a PublishedModelFile, String> {
     let models = &vessel.file.models;
     if models.is_empty() {
-        return Err(format!("`{}` is known by particulars only; refine a source model against her trials", vessel.name()));
+        return Err(format!(
+            "`{}` is known by particulars only; refine a source model against her trials",
+            vessel.name()
+        ));
     }
     let Some(name) = name else { return Ok(&models[0]) };
     models.iter().find(|model| model.name == name).ok_or_else(|| {

@@ -68,7 +68,10 @@ pub fn check(particulars: &Particulars) -> Result<(), (String, String)> {
             return Err((name.clone(), format!("unknown particular; known: {}", known.join(", "))));
         };
         if !(low..=high).contains(&quantity.value) {
-            return Err((name.clone(), format!("{} is outside {low} to {high}; is the unit right?", quantity.value)));
+            return Err((
+                name.clone(),
+                format!("{} is outside {low} to {high}; is the unit right?", quantity.value),
+            ));
         }
     }
     check_block_coefficient(particulars)
@@ -77,14 +80,20 @@ pub fn check(particulars: &Particulars) -> Result<(), (String, String)> {
 /// Displacement and block coefficient must tell the same story.
 fn check_block_coefficient(particulars: &Particulars) -> Result<(), (String, String)> {
     let of = |name: &str| particulars.get(name).map(|q| q.value);
-    let (Some(c_b), Some(volume), Some(l), Some(b), Some(t)) =
-        (of("block_coefficient"), of("displacement_m3"), of("lpp_m"), of("beam_m"), of("draught_m"))
-    else {
+    let (Some(c_b), Some(volume), Some(l), Some(b), Some(t)) = (
+        of("block_coefficient"),
+        of("displacement_m3"),
+        of("lpp_m"),
+        of("beam_m"),
+        of("draught_m"),
+    ) else {
         return Ok(());
     };
     let from_volume = volume / (l * b * t);
     if (from_volume / c_b - 1.0).abs() > 0.08 {
-        let message = format!("{c_b} contradicts displacement_m3 / (lpp_m beam_m draught_m) = {from_volume:.3}");
+        let message = format!(
+            "{c_b} contradicts displacement_m3 / (lpp_m beam_m draught_m) = {from_volume:.3}"
+        );
         return Err(("block_coefficient".into(), message));
     }
     Ok(())
@@ -93,7 +102,8 @@ fn check_block_coefficient(particulars: &Particulars) -> Result<(), (String, Str
 /// A particular's value, stated, derived from others, or by default.
 pub fn value(particulars: &Particulars, name: &str) -> Option<f64> {
     let stated = |name: &str| particulars.get(name).map(|q| q.value);
-    let default = |name: &str| DEFAULTS.iter().find(|(known, _)| *known == name).map(|&(_, value)| value);
+    let default =
+        |name: &str| DEFAULTS.iter().find(|(known, _)| *known == name).map(|&(_, value)| value);
     stated(name).or_else(|| derived(name, &stated)).or_else(|| default(name))
 }
 
@@ -107,8 +117,12 @@ fn derived(name: &str, stated: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
         "displacement_m3" => volume().or_else(from_block),
         "block_coefficient" => Some(volume()? / box_volume()?),
         "mass_kg" => Some(stated("displacement_m3").or_else(from_block)? * density),
-        "rudder_height_m" => Some((stated("rudder_area_m2")? * stated("rudder_aspect_ratio")?).sqrt()),
-        "rudder_aspect_ratio" => Some(stated("rudder_height_m")?.powi(2) / stated("rudder_area_m2")?),
+        "rudder_height_m" => {
+            Some((stated("rudder_area_m2")? * stated("rudder_aspect_ratio")?).sqrt())
+        }
+        "rudder_aspect_ratio" => {
+            Some(stated("rudder_height_m")?.powi(2) / stated("rudder_area_m2")?)
+        }
         _ => None,
     }
 }
@@ -119,7 +133,10 @@ mod tests {
     use super::*;
 
     fn ship(values: &[(&str, f64)]) -> Particulars {
-        values.iter().map(|&(name, value)| (name.to_owned(), Quantity::new(value, "test"))).collect()
+        values
+            .iter()
+            .map(|&(name, value)| (name.to_owned(), Quantity::new(value, "test")))
+            .collect()
     }
 
     #[test]

@@ -40,7 +40,9 @@ pub enum PosteriorError {
 impl Posterior {
     /// Writes a lower triangle row by row; `entry(i, j)` for `j <= i`.
     pub fn rows(size: usize, entry: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
-        let row = |i: usize| (0..=i).map(|j| format!("{:.5e}", entry(i, j))).collect::<Vec<_>>().join(" ");
+        let row = |i: usize| {
+            (0..=i).map(|j| format!("{:.5e}", entry(i, j))).collect::<Vec<_>>().join(" ")
+        };
         (0..size).map(row).collect()
     }
 
@@ -49,8 +51,14 @@ impl Posterior {
     /// # Errors
     /// Names the row that is not as long as it should be, or not of numbers.
     pub fn root(&self) -> Result<Vec<Vec<f64>>, TriangleError> {
-        let rows = triangle::read("root_correlation", &self.root_correlation, self.names.len(), |place| place + 1)?;
-        let scaled = |(row, deviation): (Vec<f64>, &f64)| row.into_iter().map(|x| x * deviation).collect();
+        let rows = triangle::read(
+            "root_correlation",
+            &self.root_correlation,
+            self.names.len(),
+            |place| place + 1,
+        )?;
+        let scaled =
+            |(row, deviation): (Vec<f64>, &f64)| row.into_iter().map(|x| x * deviation).collect();
         Ok(rows.into_iter().zip(&self.deviations).map(scaled).collect())
     }
 
@@ -98,7 +106,11 @@ mod tests {
     #[test]
     fn the_root_is_in_the_units_of_the_coefficients() {
         let root = posterior().root().unwrap();
-        assert!((root[0][0] - 0.1).abs() < 1e-12 && (root[1][0] - 0.12).abs() < 1e-12 && (root[1][1] - 0.16).abs() < 1e-12);
+        assert!(
+            (root[0][0] - 0.1).abs() < 1e-12
+                && (root[1][0] - 0.12).abs() < 1e-12
+                && (root[1][1] - 0.16).abs() < 1e-12
+        );
     }
 
     #[test]

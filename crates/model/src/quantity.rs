@@ -80,9 +80,13 @@ impl Section {
     ///
     /// # Errors
     /// Names the value that is not a finite number, has no source, or cites one that the file does not list.
-    pub fn resolve(&self, sources: &[&str]) -> Result<BTreeMap<String, Quantity>, (String, String)> {
+    pub fn resolve(
+        &self,
+        sources: &[&str],
+    ) -> Result<BTreeMap<String, Quantity>, (String, String)> {
         let one = |(name, written): (&String, &Written)| {
-            let quantity = resolve(written, self.source.as_deref(), sources).map_err(|e| (name.clone(), e.to_string()))?;
+            let quantity = resolve(written, self.source.as_deref(), sources)
+                .map_err(|e| (name.clone(), e.to_string()))?;
             Ok((name.clone(), quantity))
         };
         self.values.iter().map(one).collect()
@@ -102,7 +106,11 @@ enum QuantityError {
     Unlisted(String),
 }
 
-fn resolve(written: &Written, default_source: Option<&str>, sources: &[&str]) -> Result<Quantity, QuantityError> {
+fn resolve(
+    written: &Written,
+    default_source: Option<&str>,
+    sources: &[&str],
+) -> Result<Quantity, QuantityError> {
     let (value, source, note, standard_error) = match written {
         Written::Number(number) => (*number, None, None, None),
         Written::Expression(text) => (formula::constant(text)?, None, None, None),

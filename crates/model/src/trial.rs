@@ -11,7 +11,9 @@ use crate::units::Dimension;
 
 /// What a trial may record besides time. Ship-fixed velocities are of midship, over the ground unless the trial says
 /// through the water; positive `Delta` turns the ship to starboard; angles in radians, revolutions per second.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum Channel {
     /// Position north, m.
@@ -60,7 +62,12 @@ const CHANNELS: [(Channel, &str, &str, Dimension); 15] = [
     (Channel::N, "n", "n_rps", Dimension::RATE),
     (Channel::WindSpeed, "wind_speed", "wind_speed_m_s", Dimension::SPEED),
     (Channel::WindFrom, "wind_from", "wind_from_rad", Dimension::NONE),
-    (Channel::ApparentWindSpeed, "apparent_wind_speed", "apparent_wind_speed_m_s", Dimension::SPEED),
+    (
+        Channel::ApparentWindSpeed,
+        "apparent_wind_speed",
+        "apparent_wind_speed_m_s",
+        Dimension::SPEED,
+    ),
     (Channel::ApparentWindFrom, "apparent_wind_from", "apparent_wind_from_rad", Dimension::NONE),
     (Channel::Depth, "depth", "depth_m", Dimension::LENGTH),
 ];

@@ -36,9 +36,14 @@ pub fn read(
         return Err(TriangleError::Rows { field, rows: rows.len(), names });
     }
     let row = |(place, text): (usize, &String)| {
-        let numbers: Option<Vec<f64>> = text.split_whitespace().map(|number| number.parse().ok()).collect();
+        let numbers: Option<Vec<f64>> =
+            text.split_whitespace().map(|number| number.parse().ok()).collect();
         let fits = |row: &Vec<f64>| row.len() == length(place) && row.iter().all(|x| x.is_finite());
-        numbers.filter(fits).ok_or(TriangleError::Row { field, row: place + 1, length: length(place) })
+        numbers.filter(fits).ok_or(TriangleError::Row {
+            field,
+            row: place + 1,
+            length: length(place),
+        })
     };
     rows.iter().enumerate().map(row).collect()
 }

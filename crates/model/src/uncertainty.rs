@@ -95,7 +95,9 @@ pub enum UncertaintyError {
 impl Uncertainty {
     /// Writes R row by row; `entry(i, j)` for `j >= i`.
     pub fn rows(size: usize, entry: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
-        let row = |i: usize| (i..size).map(|j| format!("{:.7e}", entry(i, j))).collect::<Vec<_>>().join(" ");
+        let row = |i: usize| {
+            (i..size).map(|j| format!("{:.7e}", entry(i, j))).collect::<Vec<_>>().join(" ")
+        };
         (0..size).map(row).collect()
     }
 
@@ -122,7 +124,11 @@ impl Uncertainty {
             return Err(UncertaintyError::Scales);
         }
         if self.discrepancy.values().any(|d| {
-            !(d.white >= 0.0 && d.white.is_finite() && d.deviation >= 0.0 && d.deviation.is_finite() && positive(d.time_s))
+            !(d.white >= 0.0
+                && d.white.is_finite()
+                && d.deviation >= 0.0
+                && d.deviation.is_finite()
+                && positive(d.time_s))
         }) {
             return Err(UncertaintyError::Discrepancy);
         }

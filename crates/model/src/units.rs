@@ -64,7 +64,11 @@ impl fmt::Display for Dimension {
         let factors: Vec<String> = [("kg", self.mass), ("m", self.length), ("s", self.time)]
             .into_iter()
             .filter(|(_, exponent)| *exponent != 0.0)
-            .map(|(unit, exponent)| if exponent == 1.0 { unit.into() } else { format!("{unit}^{exponent}") })
+            .map(
+                |(unit, exponent)| {
+                    if exponent == 1.0 { unit.into() } else { format!("{unit}^{exponent}") }
+                },
+            )
             .collect();
         if factors.is_empty() { out.write_str("1") } else { out.write_str(&factors.join(" ")) }
     }

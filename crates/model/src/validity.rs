@@ -37,17 +37,24 @@ impl Region {
     /// The least region that holds samples, given by channel; none where there is no sample.
     pub fn of(columns: &BTreeMap<String, Vec<f64>>) -> Option<Self> {
         let range = |values: &mut dyn Iterator<Item = f64>| {
-            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+                [low.min(x), high.max(x)]
+            })
         };
-        let ranges: BTreeMap<String, [f64; 2]> =
-            columns.iter().map(|(name, column)| (name.clone(), range(&mut column.iter().copied()))).collect();
+        let ranges: BTreeMap<String, [f64; 2]> = columns
+            .iter()
+            .map(|(name, column)| (name.clone(), range(&mut column.iter().copied())))
+            .collect();
         if ranges.is_empty() || ranges.values().flatten().any(|bound| !bound.is_finite()) {
             return None;
         }
-        let scaled = |name: &String| columns[name].iter().map(|x| scale(*x, ranges[name])).collect::<Vec<f64>>();
+        let scaled = |name: &String| {
+            columns[name].iter().map(|x| scale(*x, ranges[name])).collect::<Vec<f64>>()
+        };
         let of_pair = |(a, b): (&String, &String)| {
             let (first, second) = (scaled(a), scaled(b));
-            let along = |sign: f64| range(&mut first.iter().zip(&second).map(|(x, y)| x + sign * y));
+            let along =
+                |sign: f64| range(&mut first.iter().zip(&second).map(|(x, y)| x + sign * y));
             [(format!("{a}+{b}"), along(1.0)), (format!("{a}-{b}"), along(-1.0))]
         };
         let pairs = pairs(&ranges).flat_map(of_pair).collect();
@@ -58,7 +65,10 @@ impl Region {
     /// not count.
     pub fn beyond(&self, value: &dyn Fn(&str) -> Option<f64>) -> Option<(String, f64)> {
         let scaled = |name: &String| Some(scale(value(name)?, self.ranges[name]));
-        let single = self.ranges.keys().filter_map(|name| Some((name.clone(), excess(scaled(name)?, [-1.0, 1.0]))));
+        let single = self
+            .ranges
+            .keys()
+            .filter_map(|name| Some((name.clone(), excess(scaled(name)?, [-1.0, 1.0]))));
         let together = pairs(&self.ranges).filter_map(|(a, b)| {
             let (x, y) = (scaled(a)?, scaled(b)?);
             let along = |sign: char, at: f64| Some((format!("{a}{sign}{b}"), at));
@@ -70,20 +80,31 @@ impl Region {
             Some(if sum.1 >= difference.1 { sum } else { difference })
         });
         // A channel alone is named before two together where it is as far.
-        single.chain(together).filter(|(_, beyond)| *beyond > SLACK).fold(None, |furthest, one| match furthest {
-            Some((_, beyond)) if one.1 <= beyond => furthest,
-            _ => Some(one),
+        single.chain(together).filter(|(_, beyond)| *beyond > SLACK).fold(None, |furthest, one| {
+            match furthest {
+                Some((_, beyond)) if one.1 <= beyond => furthest,
+                _ => Some(one),
+            }
         })
     }
 
     /// How a motion leaves it; none where it stays inside. `value(k, name)` is a channel at sample `k`.
-    pub fn excursion(&self, t_s: &[f64], value: &dyn Fn(usize, &str) -> Option<f64>) -> Option<Excursion> {
+    pub fn excursion(
+        &self,
+        t_s: &[f64],
+        value: &dyn Fn(usize, &str) -> Option<f64>,
+    ) -> Option<Excursion> {
         let mut outside: Option<Excursion> = None;
         let mut count = 0_usize;
         for (k, t) in t_s.iter().enumerate() {
             let Some((along, beyond)) = self.beyond(&|name| value(k, name)) else { continue };
             count += 1;
-            let excursion = outside.get_or_insert_with(|| Excursion { first_s: *t, share: 0.0, along: along.clone(), beyond });
+            let excursion = outside.get_or_insert_with(|| Excursion {
+                first_s: *t,
+                share: 0.0,
+                along: along.clone(),
+                beyond,
+            });
             if beyond > excursion.beyond {
                 (excursion.along, excursion.beyond) = (along, beyond);
             }
@@ -96,7 +117,9 @@ impl Region {
     /// # Errors
     /// Names the channel.
     pub fn check(&self) -> Result<(), RangeError> {
-        let wrong = |(_, [low, high]): &(&String, &[f64; 2])| !(low.is_finite() && high.is_finite() && low <= high);
+        let wrong = |(_, [low, high]): &(&String, &[f64; 2])| {
+            !(low.is_finite() && high.is_finite() && low <= high)
+        };
         match self.ranges.iter().chain(&self.pairs).find(wrong) {
             Some((name, &[low, high])) => Err(RangeError { name: name.clone(), low, high }),
             None => Ok(()),
@@ -162,7 +185,8 @@ mod tests {
             ("v", t().map(|t| 0.5 * (2.0 * t).sin()).collect()),
             ("r", t().map(|t| -0.01 * (2.0 * t).sin()).collect()),
         ];
-        Region::of(&columns.map(|(name, column): (_, Vec<f64>)| (name.to_owned(), column)).into()).unwrap()
+        Region::of(&columns.map(|(name, column): (_, Vec<f64>)| (name.to_owned(), column)).into())
+            .unwrap()
     }
 
     fn beyond(u: f64, v: f64, r: f64) -> Option<(String, f64)> {
@@ -204,7 +228,11 @@ mod tests {
         let t_s: Vec<f64> = (0..10).map(f64::from).collect();
         let inside = region().excursion(&t_s, &|_, name| (name == "u").then_some(5.0));
         assert_eq!(inside, None);
-        let out = region().excursion(&t_s, &|k, name| (name == "u").then_some(if k < 4 { 5.0 } else { 4.0 + k as f64 })).unwrap();
+        let out = region()
+            .excursion(&t_s, &|k, name| {
+                (name == "u").then_some(if k < 4 { 5.0 } else { 4.0 + k as f64 })
+            })
+            .unwrap();
         assert_eq!((out.first_s, out.share, out.along.as_str()), (4.0, 0.6, "u"));
         assert!(out.beyond > 5.0 && out.words().contains("from 4 s, 60 % of the time"));
     }

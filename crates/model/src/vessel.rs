@@ -213,11 +213,18 @@ impl Vessel {
 
 type FieldError = (String, String);
 
-fn quoted(raw: &VesselFile, keys: &[&str]) -> Result<BTreeMap<String, BTreeMap<String, f64>>, FieldError> {
+fn quoted(
+    raw: &VesselFile,
+    keys: &[&str],
+) -> Result<BTreeMap<String, BTreeMap<String, f64>>, FieldError> {
     let one = |(name, vector): (&String, &QuotedVectorFile)| {
-        let section = Section { source: Some(vector.source.clone()), values: vector.values.clone() };
+        let section =
+            Section { source: Some(vector.source.clone()), values: vector.values.clone() };
         let values: BTreeMap<String, Quantity> = section.resolve(keys)?;
-        Ok((name.clone(), values.into_iter().map(|(name, quantity)| (name, quantity.value)).collect()))
+        Ok((
+            name.clone(),
+            values.into_iter().map(|(name, quantity)| (name, quantity.value)).collect(),
+        ))
     };
     raw.quoted_vectors.iter().map(one).collect()
 }
@@ -231,15 +238,24 @@ fn check_model<'a>(
         return Err(("name".into(), invalid.to_string()));
     }
     if earlier.any(|other| other.name == model.name) {
-        return Err((model.name.clone(), "two models of one ship must have different names".into()));
+        return Err((
+            model.name.clone(),
+            "two models of one ship must have different names".into(),
+        ));
     }
     let gear = &model.steering;
     if !(gear.limit_deg > 0.0 && gear.limit_deg <= 90.0) {
         return blame("steering.limit_deg", "must be above 0 and at most 90 deg");
     }
-    if !(gear.rate_deg_s > 0.0 && gear.rate_deg_s.is_finite() && gear.time_constant_s >= 0.0 && gear.time_constant_s.is_finite())
+    if !(gear.rate_deg_s > 0.0
+        && gear.rate_deg_s.is_finite()
+        && gear.time_constant_s >= 0.0
+        && gear.time_constant_s.is_finite())
     {
-        return blame("steering.rate_deg_s", "the rate must be above 0 deg/s and the time constant not below 0 s");
+        return blame(
+            "steering.rate_deg_s",
+            "the rate must be above 0 deg/s and the time constant not below 0 s",
+        );
     }
     if model.speed_m_s.is_some_and(|speed| !(speed > 0.0 && speed < 50.0)) {
         return blame("speed_m_s", "must be above 0 and below 50 m/s");

@@ -34,8 +34,10 @@ pub struct YamlError {
 /// Says what is wrong, with the parser's own line and column, or which bound the text exceeds.
 pub fn read<T: DeserializeOwned>(text: &str) -> Result<T, YamlError> {
     check(text)?;
-    let refused =
-        |error: serde_yaml::Error| YamlError { line: error.location().map(|place| place.line()), message: error.to_string() };
+    let refused = |error: serde_yaml::Error| YamlError {
+        line: error.location().map(|place| place.line()),
+        message: error.to_string(),
+    };
     // As a value first: of a key that is given twice, a map would silently keep the second.
     serde_yaml::from_str::<serde_yaml::Value>(text).map_err(refused)?;
     serde_yaml::from_str(text).map_err(refused)

@@ -80,7 +80,11 @@ impl Zoo {
     /// # Errors
     /// Names the model and the field.
     pub fn check_models(&self, vessel: &Vessel) -> Result<(), FileError> {
-        vessel.file.models.iter().try_for_each(|model| self.published(vessel, Some(&model.name)).map(|_| ()))
+        vessel
+            .file
+            .models
+            .iter()
+            .try_for_each(|model| self.published(vessel, Some(&model.name)).map(|_| ()))
     }
 
     /// A published model of a vessel, by default her first.
@@ -89,7 +93,8 @@ impl Zoo {
     /// Says which law, model, parameter or coefficient is missing.
     pub fn published(&self, vessel: &Vessel, name: Option<&str>) -> Result<Model, FileError> {
         let models = &vessel.file.models;
-        let wanted = name.map_or_else(|| models.first(), |name| models.iter().find(|model| model.name == name));
+        let wanted = name
+            .map_or_else(|| models.first(), |name| models.iter().find(|model| model.name == name));
         let law_name = wanted.map_or("", |model| model.law.as_str());
         match self.laws.get(law_name) {
             Some(law) => Model::published(vessel, name, law),
@@ -98,7 +103,10 @@ impl Zoo {
                 file: vessel.name().to_owned(),
                 line: None,
                 field: "models.law".into(),
-                message: format!("there is no law `{law_name}`; there are {}", self.law_names().join(", ")),
+                message: format!(
+                    "there is no law `{law_name}`; there are {}",
+                    self.law_names().join(", ")
+                ),
             }),
         }
     }
@@ -108,7 +116,8 @@ impl Zoo {
     /// # Errors
     /// Says what is not in the zoo, and what is.
     pub fn model(&self, name: &str) -> Result<Model, FileError> {
-        let (ship, model) = name.split_once('/').map_or((name, None), |(ship, model)| (ship, Some(model)));
+        let (ship, model) =
+            name.split_once('/').map_or((name, None), |(ship, model)| (ship, Some(model)));
         let vessel = self.vessels.get(ship).ok_or_else(|| self.no_ship(ship))?;
         self.published(vessel, model)
     }
@@ -116,7 +125,10 @@ impl Zoo {
     /// The refusal of a ship that is not here.
     pub fn no_ship(&self, name: &str) -> FileError {
         let known: Vec<&str> = self.vessels.keys().map(String::as_str).collect();
-        let message = format!("there is no such ship in the zoo and no such file; the zoo has {}", known.join(", "));
+        let message = format!(
+            "there is no such ship in the zoo and no such file; the zoo has {}",
+            known.join(", ")
+        );
         FileError { file: name.to_owned(), line: None, field: String::new(), message }
     }
 
@@ -185,7 +197,16 @@ mod tests {
     #[test]
     fn every_embedded_file_reads() {
         let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-        for ship in ["mariner", "sr108", "kvlcc2", "kvlcc2-7m", "kcs", "esso-tanker", "pcc", "esso-osaka-3m"] {
+        for ship in [
+            "mariner",
+            "sr108",
+            "kvlcc2",
+            "kvlcc2-7m",
+            "kcs",
+            "esso-tanker",
+            "pcc",
+            "esso-osaka-3m",
+        ] {
             assert!(zoo.vessel(ship).is_some(), "{ship} is missing");
         }
     }

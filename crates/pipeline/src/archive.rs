@@ -9,7 +9,9 @@ use sistership_model::trial::Trial;
 use sistership_model::version::{RecipeTrial, SourceVersion, sha256};
 use sistership_model::vessel::VesselFile;
 use sistership_model::{Law, Model, Vessel};
-use sistership_store::{MAX_LIMIT, Objects, ObjectsPlace, Page, Store, StoreError, SystemClock, Version};
+use sistership_store::{
+    MAX_LIMIT, Objects, ObjectsPlace, Page, Store, StoreError, SystemClock, Version,
+};
 use sistership_trials::samples::from_parquet;
 
 use crate::error::DeriveError;
@@ -41,17 +43,24 @@ impl Archive {
     ///
     /// # Errors
     /// Says which of them cannot be opened.
-    pub async fn open_at(database_url: &str, samples: &ObjectsPlace) -> sistership_store::Result<Self> {
+    pub async fn open_at(
+        database_url: &str,
+        samples: &ObjectsPlace,
+    ) -> sistership_store::Result<Self> {
         let objects = Objects::at(samples)?;
         match objects.mark().await {
             // The server leaves it once there is room.
-            Err(error) if error.is_out_of_space() => tracing::error!(%error, "the objects could not be marked"),
+            Err(error) if error.is_out_of_space() => {
+                tracing::error!(%error, "the objects could not be marked")
+            }
             other => other?,
         }
         let store = Store::connect(database_url, Arc::new(SystemClock)).await?;
         match library::keep(&store).await {
             // Versions that this release makes wait for room, too.
-            Err(error) if error.is_out_of_space() => tracing::error!(%error, "the library of effects could not be kept"),
+            Err(error) if error.is_out_of_space() => {
+                tracing::error!(%error, "the library of effects could not be kept")
+            }
             other => other?,
         }
         Ok(Self { store, objects })
@@ -62,10 +71,14 @@ impl Archive {
         let mut page = Page::first(MAX_LIMIT);
         loop {
             let revisions = self.store.ships().revisions(name, &page).await?;
-            if let Some(found) = revisions.items.iter().find(|revision| sha256(revision.document.as_bytes()) == hash) {
+            if let Some(found) =
+                revisions.items.iter().find(|revision| sha256(revision.document.as_bytes()) == hash)
+            {
                 return vessel(name, &found.document);
             }
-            let lost = || DeriveError::Lost(format!("no revision of the ship `{name}` has the hash {hash}"));
+            let lost = || {
+                DeriveError::Lost(format!("no revision of the ship `{name}` has the hash {hash}"))
+            };
             page = Page::after(revisions.next.ok_or_else(lost)?, MAX_LIMIT);
         }
     }
@@ -90,7 +103,9 @@ impl Archive {
         let found = match self.store.effects().get(hash).await {
             Err(StoreError::NotFound { .. }) => {
                 let mend = "restore it from a backup, or open the store once with a release that carries it";
-                return Err(DeriveError::Lost(format!("the store has no library of effects {hash}: {mend}")));
+                return Err(DeriveError::Lost(format!(
+                    "the store has no library of effects {hash}: {mend}"
+                )));
             }
             other => other?,
         };
@@ -102,7 +117,11 @@ impl Archive {
     pub async fn prior(&self, name: &PriorName) -> Result<FamilyPrior> {
         let PriorName { family, revision, sha256 } = name;
         let row = self.store.families().prior(family, Some(*revision)).await?;
-        same_hash(&format!("the prior of the family `{family}` at revision {revision}"), &row.document, sha256)?;
+        same_hash(
+            &format!("the prior of the family `{family}` at revision {revision}"),
+            &row.document,
+            sha256,
+        )?;
         Ok(serde_json::from_str(&row.document)?)
     }
 
@@ -120,7 +139,8 @@ impl Archive {
 
 /// A ship from her document.
 pub fn vessel(name: &str, document: &str) -> Result<Vessel> {
-    let file: VesselFile = serde_json::from_str(document).map_err(|error| damaged("ship", name, &error))?;
+    let file: VesselFile =
+        serde_json::from_str(document).map_err(|error| damaged("ship", name, &error))?;
     Ok(Vessel::from_file(name, file)?)
 }
 
@@ -128,7 +148,9 @@ pub fn vessel(name: &str, document: &str) -> Result<Vessel> {
 fn same_hash(what: &str, document: &str, hash: &str) -> Result<()> {
     match sha256(document.as_bytes()) {
         actual if actual == hash => Ok(()),
-        actual => Err(DeriveError::Lost(format!("{what} has the hash {actual}, not {hash}: it is damaged or another one"))),
+        actual => Err(DeriveError::Lost(format!(
+            "{what} has the hash {actual}, not {hash}: it is damaged or another one"
+        ))),
     }
 }
 

@@ -70,9 +70,15 @@ fn mib(bytes: u64) -> u64 {
 impl Budget {
     /// Of so many bytes; `setting` is what its user knows it by.
     pub fn new(bytes: u64, setting: &'static str) -> Self {
-        let permits = usize::try_from(bytes / KIB).unwrap_or(usize::MAX).min(Semaphore::MAX_PERMITS);
+        let permits =
+            usize::try_from(bytes / KIB).unwrap_or(usize::MAX).min(Semaphore::MAX_PERMITS);
         let given_back = Arc::new(Notify::new());
-        Self(Arc::new(Inner { permits: Arc::new(Semaphore::new(permits)), given_back, bytes, setting }))
+        Self(Arc::new(Inner {
+            permits: Arc::new(Semaphore::new(permits)),
+            given_back,
+            bytes,
+            setting,
+        }))
     }
 
     /// A share, if it is free now.
@@ -82,11 +88,14 @@ impl Budget {
     pub fn try_take(&self, bytes: u64) -> Result<Share, Shortage> {
         let Inner { permits, given_back, bytes: all, setting } = &*self.0;
         let never = || Shortage::Never { needed: bytes, bytes: *all, setting };
-        let needed =
-            u32::try_from(bytes.div_ceil(KIB)).ok().filter(|needed| u64::from(*needed) * KIB <= *all).ok_or_else(never)?;
+        let needed = u32::try_from(bytes.div_ceil(KIB))
+            .ok()
+            .filter(|needed| u64::from(*needed) * KIB <= *all)
+            .ok_or_else(never)?;
         let taken = Arc::clone(permits).try_acquire_many_owned(needed);
         let free = permits.available_permits() as u64 * KIB;
-        let permit = taken.map_err(|_| Shortage::Busy { needed: bytes, free, bytes: *all, setting })?;
+        let permit =
+            taken.map_err(|_| Shortage::Busy { needed: bytes, free, bytes: *all, setting })?;
         Ok(Share { permit: Some(permit), given_back: Arc::clone(given_back) })
     }
 
@@ -99,11 +108,15 @@ impl Budget {
         loop {
             let given_back = self.0.given_back.notified();
             let shortage = match self.try_take(bytes) {
-                Err(shortage @ Shortage::Busy { .. }) if tokio::time::Instant::now() < end => shortage,
+                Err(shortage @ Shortage::Busy { .. }) if tokio::time::Instant::now() < end => {
+                    shortage
+                }
                 other => return other,
             };
             tracing::trace!(%shortage, "waiting for memory");
-            let _ = tokio::time::timeout_at(end.min(tokio::time::Instant::now() + LOOK), given_back).await;
+            let _ =
+                tokio::time::timeout_at(end.min(tokio::time::Instant::now() + LOOK), given_back)
+                    .await;
         }
     }
 
@@ -193,7 +206,9 @@ pub fn take_now(bytes: u64) -> Result<(), Shortage> {
 }
 
 /// Runs work on a thread that may block, with what the request has taken until the work has ended.
-pub fn carried<T>(work: impl FnOnce() -> T + Send + 'static) -> impl FnOnce() -> T + Send + 'static {
+pub fn carried<T>(
+    work: impl FnOnce() -> T + Send + 'static,
+) -> impl FnOnce() -> T + Send + 'static {
     let held = Held::current();
     move || match held {
         Some(held) => held.sync_scope(work),
@@ -220,7 +235,10 @@ mod tests {
     async fn what_never_fits_is_refused_and_what_is_taken_waits() {
         let budget = Budget::new(4 * MIB, "--memory-mb");
         let never = budget.take(5 * MIB, Duration::from_secs(60)).await.unwrap_err();
-        assert_eq!(never.to_string(), "this takes about 5 MiB of memory, more than the 4 MiB that there are (--memory-mb)");
+        assert_eq!(
+            never.to_string(),
+            "this takes about 5 MiB of memory, more than the 4 MiB that there are (--memory-mb)"
+        );
         assert!(matches!(never, Shortage::Never { .. }));
         let most = budget.try_take(3 * MIB).unwrap();
         let busy = budget.take(2 * MIB, Duration::from_millis(20)).await.unwrap_err();
@@ -242,7 +260,10 @@ mod tests {
         let budget = Budget::new(4 * MIB, "x");
         let first = budget.try_take(2 * MIB).unwrap();
         let other = budget.clone();
-        let large = tokio::spawn(async move { other.take(4 * MIB, Duration::from_secs(60)).await.map(drop) });
+        let large =
+            tokio::spawn(
+                async move { other.take(4 * MIB, Duration::from_secs(60)).await.map(drop) },
+            );
         tokio::task::yield_now().await;
         drop(budget.take(2 * MIB, Duration::ZERO).await.unwrap());
         drop(first);

@@ -96,7 +96,10 @@ async fn read<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> R
 
 impl Laws {
     fn known(&self, name: &str) -> Option<KnownLaw> {
-        Some(KnownLaw { law: Arc::clone(self.zoo.law(name)?), sha256: self.hashes.get(name)?.clone() })
+        Some(KnownLaw {
+            law: Arc::clone(self.zoo.law(name)?),
+            sha256: self.hashes.get(name)?.clone(),
+        })
     }
 
     /// These laws with what is new.
@@ -112,7 +115,9 @@ impl Laws {
 
 impl Ships {
     fn is(&self, laws: &Arc<Zoo>, ships: &[Ship]) -> bool {
-        Arc::ptr_eq(&self.laws, laws) && self.revisions.len() == ships.len() && ships.iter().all(|ship| self.has(ship))
+        Arc::ptr_eq(&self.laws, laws)
+            && self.revisions.len() == ships.len()
+            && ships.iter().all(|ship| self.has(ship))
     }
 
     fn has(&self, ship: &Ship) -> bool {
@@ -172,7 +177,9 @@ mod tests {
 
     #[tokio::test]
     async fn the_zoo_follows_the_database() {
-        let store = Store::connect("sqlite::memory:", Arc::new(sistership_store::SystemClock)).await.unwrap();
+        let store = Store::connect("sqlite::memory:", Arc::new(sistership_store::SystemClock))
+            .await
+            .unwrap();
         let archive = Archive { store: store.clone(), objects: Objects::memory() };
         let catalogue = Catalogue::default();
         let embedded = Zoo::embedded().unwrap();
@@ -187,7 +194,14 @@ mod tests {
         assert_eq!(zoo.model("mariner").unwrap(), embedded.model("mariner").unwrap());
         assert_eq!(catalogue.laws(&store).await.unwrap().vessels().count(), 0);
         assert!(Arc::ptr_eq(&zoo, &catalogue.around(&archive, target).await.unwrap()));
-        store.ships().update(&NewShip { document: mariner.document.replace("Mariner", "Marinara"), ..mariner }, 1).await.unwrap();
+        store
+            .ships()
+            .update(
+                &NewShip { document: mariner.document.replace("Mariner", "Marinara"), ..mariner },
+                1,
+            )
+            .await
+            .unwrap();
         let zoo = catalogue.around(&archive, target).await.unwrap();
         assert!(zoo.vessel("mariner").unwrap().file.title.contains("Marinara"));
         store.ships().delete("mariner", None).await.unwrap();
@@ -197,13 +211,19 @@ mod tests {
     /// Beyond [`MOST`] ships, those of the target's category that resemble her; others of hers stay out.
     #[tokio::test]
     async fn of_many_ships_the_most_similar_are_taken() {
-        let store = Store::connect("sqlite::memory:", Arc::new(sistership_store::SystemClock)).await.unwrap();
+        let store = Store::connect("sqlite::memory:", Arc::new(sistership_store::SystemClock))
+            .await
+            .unwrap();
         let archive = Archive { store: store.clone(), objects: Objects::memory() };
         let embedded = Zoo::embedded().unwrap();
         let target = embedded.vessel("kvlcc2").unwrap();
         let kvlcc2 = crate::seed::new_ship(target).unwrap();
         for number in 0..=MOST {
-            let other = NewShip { name: format!("other-{number:03}"), category: "ferry".into(), ..kvlcc2.clone() };
+            let other = NewShip {
+                name: format!("other-{number:03}"),
+                category: "ferry".into(),
+                ..kvlcc2.clone()
+            };
             store.ships().create(&other).await.unwrap();
         }
         for law in embedded.laws() {
@@ -215,8 +235,11 @@ mod tests {
         crate::search::catch_up(&archive).await.unwrap();
         let zoo = Catalogue::default().around(&archive, target).await.unwrap();
         let taken: Vec<&str> = zoo.vessels().map(|vessel| vessel.name()).collect();
-        let same = |vessel: &&Arc<Vessel>| vessel.file.category == target.file.category && vessel.name() != target.name();
-        let expected: Vec<&str> = embedded.vessels().filter(same).map(|vessel| vessel.name()).collect();
+        let same = |vessel: &&Arc<Vessel>| {
+            vessel.file.category == target.file.category && vessel.name() != target.name()
+        };
+        let expected: Vec<&str> =
+            embedded.vessels().filter(same).map(|vessel| vessel.name()).collect();
         assert!(!expected.is_empty());
         assert_eq!(taken, expected);
     }

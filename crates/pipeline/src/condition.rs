@@ -69,16 +69,23 @@ impl Condition {
     /// The store does not answer.
     pub async fn of(store: &Store, ship: &str) -> Result<Self, StoreError> {
         let Some(champion) = alias(store, ship, CHAMPION).await? else {
-            return Ok(Self { sentence: "Unknown: she has no champion yet.".into(), ..Self::default() });
+            return Ok(Self {
+                sentence: "Unknown: she has no champion yet.".into(),
+                ..Self::default()
+            });
         };
         let version = store.versions().get(ship, champion.version_number).await?.head;
-        let newest = store.diagnoses().by_version(&version.id, &Page::first(MAX_LIMIT)).await?.items;
+        let newest =
+            store.diagnoses().by_version(&version.id, &Page::first(MAX_LIMIT)).await?.items;
         let mut condition = Self::found(&version, &newest);
         condition.sentence = condition.in_words();
-        if let Some(made) =
-            newest.first().filter(|newest| newest.version_id == version.id).and_then(|newest| newest.made_id.as_ref())
+        if let Some(made) = newest
+            .first()
+            .filter(|newest| newest.version_id == version.id)
+            .and_then(|newest| newest.made_id.as_ref())
         {
-            condition.with_effects = Some(MadeVersion::of(store.versions().by_id(made).await?.head));
+            condition.with_effects =
+                Some(MadeVersion::of(store.versions().by_id(made).await?.head));
         }
         Ok(condition)
     }
@@ -88,7 +95,8 @@ impl Condition {
         let Some(last) = newest.first() else { return Self { version: number, ..Self::default() } };
         let list = |text: &str| serde_json::from_str(text).unwrap_or_default();
         let (verdict, effects) = of_version(version, last);
-        let same = newest.iter().take_while(|earlier| of_version(version, earlier) == (verdict, effects));
+        let same =
+            newest.iter().take_while(|earlier| of_version(version, earlier) == (verdict, effects));
         Self {
             model: if verdict == "complete" { Standing::Holds } else { Standing::DoesNotHold },
             sentence: String::new(),
@@ -105,7 +113,8 @@ impl Condition {
     /// Tells one state of the condition from another.
     pub fn tag(&self) -> String {
         let version = self.version.map(|number| format!(".{number}")).unwrap_or_default();
-        let found = self.found_by.as_ref().map(|found| format!(".{}", found.diagnosis)).unwrap_or_default();
+        let found =
+            self.found_by.as_ref().map(|found| format!(".{}", found.diagnosis)).unwrap_or_default();
         version + &found
     }
 
@@ -116,12 +125,22 @@ impl Condition {
         };
         let effects = self.effects.join(" and ");
         match (self.model, effects.is_empty(), self.verdict.as_deref()) {
-            (Standing::Unknown, ..) => "Unknown: her champion has not been diagnosed on a trial yet.".into(),
-            (Standing::Holds, ..) => format!("Her model holds: on {trials} its residual is what the noise predicts."),
-            (_, false, Some("effects")) => format!("Her model does not hold: on {trials} it lacks {effects}."),
-            (_, true, _) => format!("Her model does not hold: on {trials} something is missing that no known effect explains."),
+            (Standing::Unknown, ..) => {
+                "Unknown: her champion has not been diagnosed on a trial yet.".into()
+            }
+            (Standing::Holds, ..) => {
+                format!("Her model holds: on {trials} its residual is what the noise predicts.")
+            }
+            (_, false, Some("effects")) => {
+                format!("Her model does not hold: on {trials} it lacks {effects}.")
+            }
+            (_, true, _) => format!(
+                "Her model does not hold: on {trials} something is missing that no known effect explains."
+            ),
             (_, false, _) => {
-                format!("Her model does not hold: on {trials} it lacks {effects}, and something that no known effect explains.")
+                format!(
+                    "Her model does not hold: on {trials} it lacks {effects}, and something that no known effect explains."
+                )
             }
         }
     }
@@ -145,6 +164,9 @@ impl FoundBy {
 
 impl MadeVersion {
     fn of(head: VersionHead) -> Self {
-        Self { number: head.number, at: format!("/v1/models/{}/versions/{}", head.model, head.number) }
+        Self {
+            number: head.number,
+            at: format!("/v1/models/{}/versions/{}", head.model, head.number),
+        }
     }
 }

@@ -82,9 +82,14 @@ impl<'a> Inputs<'a> {
     /// # Errors
     /// Names each input of which that is not so: a defect of the program, which must not make a version.
     pub fn check(&self, recipe: &Recipe) -> Result<()> {
-        let (read, named) = (self.read.lock().unwrap_or_else(PoisonError::into_inner), recipe.inputs());
-        let unnamed = read.difference(&named).map(|input| format!("{input} was read, but the recipe does not name it"));
-        let unread = named.difference(&read).map(|input| format!("the recipe names {input}, which was not read"));
+        let (read, named) =
+            (self.read.lock().unwrap_or_else(PoisonError::into_inner), recipe.inputs());
+        let unnamed = read
+            .difference(&named)
+            .map(|input| format!("{input} was read, but the recipe does not name it"));
+        let unread = named
+            .difference(&read)
+            .map(|input| format!("the recipe names {input}, which was not read"));
         let faults: Vec<String> = unnamed.chain(unread).collect();
         if faults.is_empty() { Ok(()) } else { Err(DeriveError::Lost(faults.join("; "))) }
     }

@@ -32,9 +32,11 @@ impl Library {
     pub fn parse(document: &str) -> Result<Self, FileError> {
         let hash = sha256(document.as_bytes());
         let read = |(index, text): (usize, String)| {
-            Effect::parse(&format!("library of effects {hash}, effect {}", index + 1), &text).map(Arc::new)
+            Effect::parse(&format!("library of effects {hash}, effect {}", index + 1), &text)
+                .map(Arc::new)
         };
-        let effects = files(document).into_iter().enumerate().map(read).collect::<Result<_, _>>()?;
+        let effects =
+            files(document).into_iter().enumerate().map(read).collect::<Result<_, _>>()?;
         Ok(Self { effects, sha256: hash, document: document.to_owned() })
     }
 }
@@ -43,7 +45,8 @@ impl Library {
 fn files(document: &str) -> Vec<String> {
     let mut files = vec![String::new()];
     for line in document.split_inclusive('\n') {
-        let begun = files.last().is_some_and(|file| file.lines().any(|line| line.trim_end() == BEGIN));
+        let begun =
+            files.last().is_some_and(|file| file.lines().any(|line| line.trim_end() == BEGIN));
         if begun && line.trim_end() == BEGIN {
             files.push(String::new());
         }
@@ -62,14 +65,18 @@ pub fn library() -> Result<&'static Library, FileError> {
 }
 
 fn of(zoo: &Zoo) -> Result<Library, FileError> {
-    Library::parse(&zoo.effects().filter_map(|effect| zoo.effect_text(&effect.name)).collect::<String>())
+    Library::parse(
+        &zoo.effects().filter_map(|effect| zoo.effect_text(&effect.name)).collect::<String>(),
+    )
 }
 
 /// Puts the libraries that this program carries into a store, beside those that are there.
 pub async fn keep(store: &Store) -> Result<(), StoreError> {
     let current = match library() {
         Ok(library) => &library.document,
-        Err(error) => return Err(StoreError::Invalid { field: "effects", message: error.to_string() }),
+        Err(error) => {
+            return Err(StoreError::Invalid { field: "effects", message: error.to_string() });
+        }
     };
     for document in [FIRST, current] {
         store.effects().keep(document).await?;
@@ -98,7 +105,8 @@ mod tests {
 
     #[test]
     fn the_effect_that_does_not_read_is_named() {
-        let error = Library::parse(&FIRST.replace("name: wind\n", "nome: wind\n")).unwrap_err().to_string();
+        let error =
+            Library::parse(&FIRST.replace("name: wind\n", "nome: wind\n")).unwrap_err().to_string();
         assert!(error.contains("effect 14"), "{error}");
     }
 }

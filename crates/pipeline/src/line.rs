@@ -20,7 +20,12 @@ pub fn alias_of(model: &str) -> String {
 
 /// A move of an alias by the server itself.
 pub fn step(alias: &str, expect: Expect, reason: &str) -> AliasMove {
-    AliasMove { alias: alias.to_owned(), expect, reason: reason.to_owned(), actor: "sistership".to_owned() }
+    AliasMove {
+        alias: alias.to_owned(),
+        expect,
+        reason: reason.to_owned(),
+        actor: "sistership".to_owned(),
+    }
 }
 
 /// What an alias must still be while it is moved.
@@ -50,7 +55,11 @@ impl Standing {
     pub async fn of(store: &Store, model: &str) -> Result<Self> {
         let latest = alias(store, model, LATEST).await?;
         let champion = alias(store, model, CHAMPION).await?.is_some();
-        Ok(Self { champion, next: latest.as_ref().map_or(1, |alias| alias.version_number + 1), latest })
+        Ok(Self {
+            champion,
+            next: latest.as_ref().map_or(1, |alias| alias.version_number + 1),
+            latest,
+        })
     }
 
     /// The move that goes with every new version; it fails where another version was first.

@@ -24,7 +24,13 @@ pub async fn publish(store: &Store, zoo: &Zoo, vessel: &Vessel, ship_document: &
         let no_law = || DeriveError::Unexpected(format!("there is no law `{}`", file.law));
         let law = zoo.law(&file.law).ok_or_else(no_law)?;
         let text = zoo.law_text(&file.law).unwrap_or_default();
-        let published = published_document(vessel, &file.name, law, &sha256(ship_document.as_bytes()), &sha256(text.as_bytes()))?;
+        let published = published_document(
+            vessel,
+            &file.name,
+            law,
+            &sha256(ship_document.as_bytes()),
+            &sha256(text.as_bytes()),
+        )?;
         let new = NewVersion {
             model: vessel.name().to_owned(),
             parent: None,
@@ -37,7 +43,12 @@ pub async fn publish(store: &Store, zoo: &Zoo, vessel: &Vessel, ship_document: &
     Ok(())
 }
 
-async fn put(store: &Store, new: &NewVersion, name: &str, published: &VersionDocument) -> Result<()> {
+async fn put(
+    store: &Store,
+    new: &NewVersion,
+    name: &str,
+    published: &VersionDocument,
+) -> Result<()> {
     for _ in 0..TRIES {
         let current = alias(store, &new.model, &alias_of(name)).await?;
         if let Some(current) = &current
@@ -54,9 +65,15 @@ async fn put(store: &Store, new: &NewVersion, name: &str, published: &VersionDoc
     Err(DeriveError::Unexpected(format!("the published models of `{}` kept changing", new.model)))
 }
 
-async fn moves(store: &Store, model: &str, name: &str, current: Option<Alias>) -> Result<Vec<AliasMove>> {
+async fn moves(
+    store: &Store,
+    model: &str,
+    name: &str,
+    current: Option<Alias>,
+) -> Result<Vec<AliasMove>> {
     let standing = Standing::of(store, model).await?;
-    let mut moves = vec![step(&alias_of(name), expected(current.as_ref()), REASON), standing.follow(REASON)];
+    let mut moves =
+        vec![step(&alias_of(name), expected(current.as_ref()), REASON), standing.follow(REASON)];
     if !standing.champion {
         moves.push(step(CHAMPION, Expect::Absent, REASON));
     }

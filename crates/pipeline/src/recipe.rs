@@ -127,9 +127,10 @@ impl Recipe {
             Self::Diagnosis(DiagnosisRecipe { law_sha256, .. })
             | Self::Family(FamilyRecipe { law_sha256, .. })
             | Self::Registered(RegisteredRecipe { law_sha256, .. })
-            | Self::Plain(version::Recipe::Published { law_sha256, .. } | version::Recipe::Refinement { law_sha256, .. }) => {
-                law_sha256
-            }
+            | Self::Plain(
+                version::Recipe::Published { law_sha256, .. }
+                | version::Recipe::Refinement { law_sha256, .. },
+            ) => law_sha256,
         }
     }
 
@@ -156,9 +157,10 @@ impl Recipe {
     /// The hash of the ship's document, where it names one.
     pub fn ship_sha256(&self) -> Option<&str> {
         match self {
-            Self::Plain(version::Recipe::Published { ship_sha256, .. } | version::Recipe::Refinement { ship_sha256, .. }) => {
-                Some(ship_sha256)
-            }
+            Self::Plain(
+                version::Recipe::Published { ship_sha256, .. }
+                | version::Recipe::Refinement { ship_sha256, .. },
+            ) => Some(ship_sha256),
             Self::Family(recipe) => recipe.ship_sha256.as_deref(),
             Self::Diagnosis(_) | Self::Registered(_) => None,
         }
@@ -181,7 +183,9 @@ impl Recipe {
             Self::Plain(version::Recipe::Refinement { effects_sha256, .. }) => {
                 Some(effects_sha256.as_deref().unwrap_or(FIRST_SHA256))
             }
-            Self::Family(_) | Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => None,
+            Self::Family(_)
+            | Self::Plain(version::Recipe::Published { .. })
+            | Self::Registered(_) => None,
         }
     }
 
@@ -209,7 +213,9 @@ impl Recipe {
             inputs.insert(InputKind::Law.of(&across.source_law_sha256));
         }
         inputs.extend(self.ship_sha256().map(|hash| InputKind::Ship.of(hash)));
-        inputs.extend(self.versions().into_iter().map(|version| InputKind::Version.of(&version.sha256)));
+        inputs.extend(
+            self.versions().into_iter().map(|version| InputKind::Version.of(&version.sha256)),
+        );
         inputs.extend(self.trials().iter().map(|trial| InputKind::Samples.of(&trial.sha256)));
         inputs.extend(self.effects_sha256().map(|hash| InputKind::Effects.of(hash)));
         inputs.extend(self.prior().map(|prior| InputKind::Prior.of(&prior.sha256)));
@@ -233,11 +239,13 @@ mod tests {
 
     #[test]
     fn recipes_are_told_by_their_kind_and_keep_their_bytes() {
-        let published = json!({ "kind": "published", "model": "own", "ship_sha256": "a", "law_sha256": "b" });
+        let published =
+            json!({ "kind": "published", "model": "own", "ship_sha256": "a", "law_sha256": "b" });
         let diagnosed = json!({ "kind": "diagnosis", "diagnosed": { "ship": "kcs", "number": 2, "sha256": "c" },
             "law_sha256": "b", "trials": [{ "name": "t.csv", "sha256": "d" }], "effects_sha256": "e",
             "settings": { "slack": 0.02 }, "code_revision": "1" });
-        let registered = json!({ "kind": "registered", "law_sha256": "b", "origin": "a towing tank" });
+        let registered =
+            json!({ "kind": "registered", "law_sha256": "b", "origin": "a towing tank" });
         for (value, kind) in [(published, None), (registered, None), (diagnosed, Some(2))] {
             let recipe: Recipe = serde_json::from_value(value.clone()).unwrap();
             assert_eq!(recipe.diagnosed().map(|source| source.number), kind);

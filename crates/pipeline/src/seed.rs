@@ -33,7 +33,8 @@ pub async fn seed(store: &Store, catalogue: &Catalogue) -> Result<(), SeedError>
 }
 
 async fn put_in(store: &Store, catalogue: &Catalogue) -> Result<(), SeedError> {
-    let embedded = tokio::task::spawn_blocking(Zoo::embedded).await.map_err(|error| broken(&error))??;
+    let embedded =
+        tokio::task::spawn_blocking(Zoo::embedded).await.map_err(|error| broken(&error))??;
     library::keep(store).await?;
     laws(store, &embedded).await?;
     ships(store, &embedded).await?;
@@ -52,7 +53,9 @@ async fn publish_one(store: &Store, zoo: &Zoo, name: &str) -> Result<(), SeedErr
         other => other?,
     };
     match vessel(name, &ship.document) {
-        Ok(vessel) => publish(store, zoo, &vessel, &ship.document).await.map_err(|error| publishing(name, error)),
+        Ok(vessel) => publish(store, zoo, &vessel, &ship.document)
+            .await
+            .map_err(|error| publishing(name, error)),
         Err(error) => {
             tracing::error!(ship = name, %error, "a ship of the database does not read");
             Ok(())
@@ -64,7 +67,9 @@ async fn laws(store: &Store, embedded: &Zoo) -> Result<(), SeedError> {
     for law in embedded.laws() {
         let text = embedded.law_text(&law.name).unwrap_or_default();
         match store.laws().insert(&law.name, text).await {
-            Err(StoreError::Conflict { .. }) => tracing::warn!(law = %law.name, "the database keeps its older text of this law"),
+            Err(StoreError::Conflict { .. }) => {
+                tracing::warn!(law = %law.name, "the database keeps its older text of this law")
+            }
             other => drop(other?),
         }
     }
@@ -126,11 +131,17 @@ mod tests {
             let ship = store.ships().get(known.name()).await.unwrap();
             let read = vessel(known.name(), &ship.document).unwrap();
             assert_eq!(new_ship(&read).unwrap().document, ship.document);
-            let versions = store.versions().list(known.name(), &sistership_store::Page::first(10)).await.unwrap().items;
+            let versions = store
+                .versions()
+                .list(known.name(), &sistership_store::Page::first(10))
+                .await
+                .unwrap()
+                .items;
             assert_eq!(versions.len(), known.file.models.len(), "{}", known.name());
             if let Ok(model) = embedded.published(known, None) {
                 let champion = store.aliases().get(known.name(), "champion").await.unwrap();
-                let version = store.versions().get(known.name(), champion.version_number).await.unwrap();
+                let version =
+                    store.versions().get(known.name(), champion.version_number).await.unwrap();
                 let read = document(&version).unwrap();
                 assert_eq!((champion.version_number, &read.model), (1, &model));
                 assert_eq!(read.canonical().unwrap(), version.document);

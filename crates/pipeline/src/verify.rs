@@ -43,7 +43,11 @@ pub struct Verification {
 ///
 /// # Errors
 /// Says what the recipe needs and the store does not have, or why the refinement is refused now.
-pub async fn verify(archive: &Archive, ship: &str, number: i64) -> Result<Verification, DeriveError> {
+pub async fn verify(
+    archive: &Archive,
+    ship: &str,
+    number: i64,
+) -> Result<Verification, DeriveError> {
     verify_with(archive, ship, number, Arc::new(|_, _| true)).await
 }
 
@@ -66,17 +70,27 @@ pub async fn demand(archive: &Archive, ship: &str, number: i64) -> Result<u64, D
 ///
 /// # Errors
 /// As [`verify`].
-pub async fn verify_with(archive: &Archive, ship: &str, number: i64, progress: Progress) -> Result<Verification, DeriveError> {
+pub async fn verify_with(
+    archive: &Archive,
+    ship: &str,
+    number: i64,
+    progress: Progress,
+) -> Result<Verification, DeriveError> {
     let version = archive.store.versions().get(ship, number).await?;
     let stored = document(&version)?;
     let derived = match &stored.recipe {
         Recipe::Registered(recipe) => checked(archive, &stored, &recipe.law_sha256).await?,
         recipe => derive(archive, ship, recipe, progress).await?.document.canonical()?,
     };
-    let (stored_sha256, derived_sha256) = (sha256(version.document.as_bytes()), sha256(derived.as_bytes()));
+    let (stored_sha256, derived_sha256) =
+        (sha256(version.document.as_bytes()), sha256(derived.as_bytes()));
     let made_by = stored.recipe.code_revision().map(str::to_owned);
     let identical = version.head.sha256 == stored_sha256 && version.document == derived;
-    let remarks = remarks(made_by.as_deref(), (&version.document, &derived), version.head.sha256 == stored_sha256);
+    let remarks = remarks(
+        made_by.as_deref(),
+        (&version.document, &derived),
+        version.head.sha256 == stored_sha256,
+    );
     Ok(Verification {
         model: ship.to_owned(),
         number,
@@ -91,9 +105,14 @@ pub async fn verify_with(archive: &Archive, ship: &str, number: i64, progress: P
 }
 
 /// A model that was made elsewhere comes of nothing but itself: it is written again, and checked against its law.
-async fn checked(archive: &Archive, stored: &VersionDocument, law_sha256: &str) -> Result<String, DeriveError> {
+async fn checked(
+    archive: &Archive,
+    stored: &VersionDocument,
+    law_sha256: &str,
+) -> Result<String, DeriveError> {
     let law = archive.law(&stored.model.law, law_sha256).await?;
-    let wrong = |(field, message): (String, String)| DeriveError::Lost(format!("{field}: {message}"));
+    let wrong =
+        |(field, message): (String, String)| DeriveError::Lost(format!("{field}: {message}"));
     stored.model.check(&law).map_err(wrong)?;
     Ok(stored.canonical()?)
 }
@@ -126,13 +145,16 @@ fn remarks(made_by: Option<&str>, (stored, derived): (&str, &str), undamaged: bo
 
 /// The largest relative difference of two documents that differ in the last digits of numbers only.
 fn rounding(stored: &Value, derived: &Value) -> Option<f64> {
-    let largest =
-        |mut all: &mut dyn Iterator<Item = Option<f64>>| (&mut all).try_fold(0.0, |most: f64, one| Some(most.max(one?)));
+    let largest = |mut all: &mut dyn Iterator<Item = Option<f64>>| {
+        (&mut all).try_fold(0.0, |most: f64, one| Some(most.max(one?)))
+    };
     match (stored, derived) {
         (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
             largest(&mut a.values().zip(b.values()).map(|(a, b)| rounding(a, b)))
         }
-        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => largest(&mut a.iter().zip(b).map(|(a, b)| rounding(a, b))),
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
+            largest(&mut a.iter().zip(b).map(|(a, b)| rounding(a, b)))
+        }
         (Value::Number(a), Value::Number(b)) => {
             let (a, b) = (a.as_f64()?, b.as_f64()?);
             let share = if a == b { 0.0 } else { (a - b).abs() / a.abs().max(b.abs()) };
@@ -145,14 +167,21 @@ fn rounding(stored: &Value, derived: &Value) -> Option<f64> {
 /// The first place at which two documents differ.
 fn difference(stored: &Value, derived: &Value, path: String) -> Option<String> {
     match (stored, derived) {
-        (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
-            a.iter().zip(b.values()).find_map(|((key, a), b)| difference(a, b, format!("{path}/{key}")))
-        }
-        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
-            a.iter().zip(b).enumerate().find_map(|(index, (a, b))| difference(a, b, format!("{path}/{index}")))
-        }
+        (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => a
+            .iter()
+            .zip(b.values())
+            .find_map(|((key, a), b)| difference(a, b, format!("{path}/{key}"))),
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => a
+            .iter()
+            .zip(b)
+            .enumerate()
+            .find_map(|(index, (a, b))| difference(a, b, format!("{path}/{index}"))),
         _ if stored == derived => None,
-        _ => Some(format!("first difference at {path}: stored {}, derived {}", short(stored), short(derived))),
+        _ => Some(format!(
+            "first difference at {path}: stored {}, derived {}",
+            short(stored),
+            short(derived)
+        )),
     }
 }
 
@@ -177,14 +206,19 @@ mod tests {
     fn rounding_is_told_from_another_input() {
         let said = |derived: &str| remarks(None, (r#"{"a":[1.0,2],"b":"x"}"#, derived), true);
         assert!(said(r#"{"a":[1.0000000001,2],"b":"x"}"#)[1].contains("by at most 1e-10"));
-        for other in [r#"{"a":[1.1,2],"b":"x"}"#, r#"{"a":[1.0,2],"b":"y"}"#, r#"{"a":[1.0],"b":"x"}"#] {
+        for other in
+            [r#"{"a":[1.1,2],"b":"x"}"#, r#"{"a":[1.0,2],"b":"y"}"#, r#"{"a":[1.0],"b":"x"}"#]
+        {
             assert_eq!(said(other).len(), 1, "{other}");
         }
     }
 
     #[test]
     fn another_revision_is_said() {
-        assert!(remarks(Some("0.0.0-other"), ("{}", "{}"), true)[0].contains("made by revision 0.0.0-other"));
+        assert!(
+            remarks(Some("0.0.0-other"), ("{}", "{}"), true)[0]
+                .contains("made by revision 0.0.0-other")
+        );
         assert!(remarks(Some(code_revision()), ("{}", "{}"), true).is_empty());
         assert!(remarks(None, ("{}", "{}"), false)[0].contains("damaged"));
     }

@@ -21,10 +21,17 @@ impl Metric {
     pub fn of_regressors(moments: &Moments, shrinkage: &[f64]) -> Self {
         let p = moments.regressors();
         let deviation = |j: usize| moments.variance(j).sqrt();
-        let still: Vec<bool> = (0..p).map(|j| deviation(j) / moments.mean(j).abs().max(1e-300) <= 1e-10).collect();
-        let scales = DVector::from_fn(p, |j, _| if still[j] { 0.0 } else { (moments.variance(j) * shrinkage[j]).sqrt() });
+        let still: Vec<bool> =
+            (0..p).map(|j| deviation(j) / moments.mean(j).abs().max(1e-300) <= 1e-10).collect();
+        let scales = DVector::from_fn(p, |j, _| {
+            if still[j] { 0.0 } else { (moments.variance(j) * shrinkage[j]).sqrt() }
+        });
         let inverse = scales.map(|scale| if scale > 0.0 { 1.0 / scale } else { 0.0 });
-        Self { root: DMatrix::from_diagonal(&scales), back: DMatrix::from_diagonal(&inverse), still }
+        Self {
+            root: DMatrix::from_diagonal(&scales),
+            back: DMatrix::from_diagonal(&inverse),
+            still,
+        }
     }
 
     /// All coefficients jointly by a precision; one that has none is still. None where it is not positive definite.
@@ -33,9 +40,12 @@ impl Metric {
         let still: Vec<bool> = precision.diagonal().iter().map(|own| *own == 0.0).collect();
         let scales = precision.diagonal().map(f64::sqrt);
         let inverse = scales.map(|scale| if scale > 0.0 { 1.0 / scale } else { 0.0 });
-        let entry = |i: usize, j: usize| if i == j { 1.0 } else { precision[(i, j)] * inverse[i] * inverse[j] };
+        let entry = |i: usize, j: usize| {
+            if i == j { 1.0 } else { precision[(i, j)] * inverse[i] * inverse[j] }
+        };
         let unit = DMatrix::from_fn(p, p, entry).cholesky()?.unpack().transpose();
-        let back = DMatrix::from_diagonal(&inverse) * unit.solve_upper_triangular(&DMatrix::identity(p, p))?;
+        let back = DMatrix::from_diagonal(&inverse)
+            * unit.solve_upper_triangular(&DMatrix::identity(p, p))?;
         Some(Self { root: unit * DMatrix::from_diagonal(&scales), back, still })
     }
 
@@ -89,7 +99,11 @@ mod tests {
     fn regressors_in_their_own_deviations_have_ones_on_the_diagonal_and_what_is_still_has_none() {
         let metric = Metric::of_regressors(&moments(), &[1.0, 4.0, 1.0]);
         let products = metric.products(&moments());
-        assert!((products[(0, 0)] - 1.0).abs() < 1e-12 && (products[(1, 1)] - 0.25).abs() < 1e-12 && products[(2, 2)] == 0.0);
+        assert!(
+            (products[(0, 0)] - 1.0).abs() < 1e-12
+                && (products[(1, 1)] - 0.25).abs() < 1e-12
+                && products[(2, 2)] == 0.0
+        );
         assert!(metric.is_still(2) && !metric.is_still(0));
     }
 
@@ -101,8 +115,15 @@ mod tests {
         assert!((0..4).all(|k| (again[k] - precision[k]).abs() < 1e-9 * precision[k]));
         let one = metric.root() * metric.back();
         assert!((one - DMatrix::identity(2, 2)).abs().max() < 1e-9);
-        let with_none = Metric::of_precision(&DMatrix::from_row_slice(2, 2, &[4.0, 0.0, 0.0, 0.0])).unwrap();
-        assert!(with_none.is_still(1) && with_none.back()[(0, 0)] == 0.5 && with_none.back()[(1, 1)] == 0.0);
-        assert!(Metric::of_precision(&DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 1.0])).is_none());
+        let with_none =
+            Metric::of_precision(&DMatrix::from_row_slice(2, 2, &[4.0, 0.0, 0.0, 0.0])).unwrap();
+        assert!(
+            with_none.is_still(1)
+                && with_none.back()[(0, 0)] == 0.5
+                && with_none.back()[(1, 1)] == 0.0
+        );
+        assert!(
+            Metric::of_precision(&DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 1.0])).is_none()
+        );
     }
 }

@@ -22,7 +22,12 @@ impl Moments {
     /// Of no samples.
     pub fn empty(regressors: usize, targets: usize) -> Self {
         let size = regressors + targets;
-        Self { count: 0.0, mean: DVector::zeros(size), products: DMatrix::zeros(size, size), regressors }
+        Self {
+            count: 0.0,
+            mean: DVector::zeros(size),
+            products: DMatrix::zeros(size, size),
+            regressors,
+        }
     }
 
     /// Of samples given by column: each column holds one regressor or target over all samples.
@@ -56,8 +61,12 @@ impl Moments {
     fn of_chunk(columns: &[&[f64]], regressors: usize) -> Self {
         let size = columns.len();
         let count = columns[0].len() as f64;
-        let mean = DVector::from_iterator(size, columns.iter().map(|column| column.iter().sum::<f64>() / count));
-        let centre = |(column, mean): (&&[f64], &f64)| column.iter().map(|x| x - mean).collect::<Vec<f64>>();
+        let mean = DVector::from_iterator(
+            size,
+            columns.iter().map(|column| column.iter().sum::<f64>() / count),
+        );
+        let centre =
+            |(column, mean): (&&[f64], &f64)| column.iter().map(|x| x - mean).collect::<Vec<f64>>();
         let centred: Vec<Vec<f64>> = columns.iter().zip(mean.iter()).map(centre).collect();
         let mut products = DMatrix::zeros(size, size);
         for i in 0..size {
@@ -117,13 +126,23 @@ impl Moments {
     /// columns of the map give the new regressors. Maps and merges may change places.
     pub fn mapped(&self, map: &DMatrix<f64>, regressors: usize) -> Self {
         let transposed = map.transpose();
-        Self { count: self.count, mean: &transposed * &self.mean, products: &transposed * (&self.products * map), regressors }
+        Self {
+            count: self.count,
+            mean: &transposed * &self.mean,
+            products: &transposed * (&self.products * map),
+            regressors,
+        }
     }
 
     /// The same samples about zero instead of their means, for models without intercept.
     pub fn about_origin(&self) -> Self {
         let products = self.raw_products() * self.count;
-        Self { count: self.count, mean: DVector::zeros(self.mean.len()), products, regressors: self.regressors }
+        Self {
+            count: self.count,
+            mean: DVector::zeros(self.mean.len()),
+            products,
+            regressors: self.regressors,
+        }
     }
 
     /// The same with the upper triangle of the products below as well: sums leave the two apart by a rounding.
@@ -135,14 +154,17 @@ impl Moments {
     /// Count, means and the upper triangle of the centred products, a row after another.
     pub fn numbers(&self) -> Vec<f64> {
         let size = self.mean.len();
-        let triangle = (0..size).flat_map(|i| (i..size).map(move |j| (i, j))).map(|at| self.products[at]);
+        let triangle =
+            (0..size).flat_map(|i| (i..size).map(move |j| (i, j))).map(|at| self.products[at]);
         std::iter::once(self.count).chain(self.mean.iter().copied()).chain(triangle).collect()
     }
 
     /// From [`numbers`](Self::numbers); none where they are not as many as these regressors and targets need, or not finite.
     pub fn from_numbers(numbers: &[f64], regressors: usize, targets: usize) -> Option<Self> {
         let size = regressors + targets;
-        if numbers.len() != 1 + size + size * (size + 1) / 2 || numbers.iter().any(|x| !x.is_finite()) {
+        if numbers.len() != 1 + size + size * (size + 1) / 2
+            || numbers.iter().any(|x| !x.is_finite())
+        {
             return None;
         }
         let mut triangle = numbers[1 + size..].iter();
@@ -152,7 +174,12 @@ impl Moments {
             products[(i, j)] = product;
             products[(j, i)] = product;
         }
-        Some(Self { count: numbers[0], mean: DVector::from_column_slice(&numbers[1..=size]), products, regressors })
+        Some(Self {
+            count: numbers[0],
+            mean: DVector::from_column_slice(&numbers[1..=size]),
+            products,
+            regressors,
+        })
     }
 
     /// Number of regressors.
@@ -206,7 +233,10 @@ impl Moments {
     /// Covariances of the regressors with each other, and with the targets.
     pub fn covariances(&self) -> (DMatrix<f64>, DMatrix<f64>) {
         let (p, q) = (self.regressors, self.targets());
-        (self.products.view((0, 0), (p, p)) / self.count, self.products.view((0, p), (p, q)) / self.count)
+        (
+            self.products.view((0, 0), (p, p)) / self.count,
+            self.products.view((0, p), (p, q)) / self.count,
+        )
     }
 
     /// Mean products without centring: `E[x x']`, as the error of a model without intercept needs them; zero of no samples.
@@ -236,11 +266,17 @@ mod tests {
 
     #[test]
     fn merging_parts_gives_the_whole() {
-        let column = |f: &dyn Fn(f64) -> f64| (0..1000).map(|k| f(f64::from(k))).collect::<Vec<f64>>();
-        let columns = vec![column(&|k| 1e4 + (0.1 * k).sin()), column(&|k| k * 0.01), column(&|k| (0.3 * k).cos())];
+        let column =
+            |f: &dyn Fn(f64) -> f64| (0..1000).map(|k| f(f64::from(k))).collect::<Vec<f64>>();
+        let columns = vec![
+            column(&|k| 1e4 + (0.1 * k).sin()),
+            column(&|k| k * 0.01),
+            column(&|k| (0.3 * k).cos()),
+        ];
         let whole = Moments::of_columns(&columns, 2);
         let part = |range: std::ops::Range<usize>| {
-            let columns: Vec<Vec<f64>> = columns.iter().map(|column| column[range.clone()].to_vec()).collect();
+            let columns: Vec<Vec<f64>> =
+                columns.iter().map(|column| column[range.clone()].to_vec()).collect();
             Moments::of_columns(&columns, 2)
         };
         let mut merged = part(0..137);
@@ -253,8 +289,17 @@ mod tests {
 
     fn parts() -> Vec<Moments> {
         let part = |phase: f64| {
-            let column = |f: &dyn Fn(f64) -> f64| (0..50).map(|k| f(f64::from(k) + phase)).collect::<Vec<f64>>();
-            Moments::of_columns(&[column(&|k| (0.3 * k).sin()), column(&|k| 2.0 + (0.1 * k).cos()), column(&|k| 0.01 * k)], 2)
+            let column = |f: &dyn Fn(f64) -> f64| {
+                (0..50).map(|k| f(f64::from(k) + phase)).collect::<Vec<f64>>()
+            };
+            Moments::of_columns(
+                &[
+                    column(&|k| (0.3 * k).sin()),
+                    column(&|k| 2.0 + (0.1 * k).cos()),
+                    column(&|k| 0.01 * k),
+                ],
+                2,
+            )
         };
         [0.0, 11.0, 37.0].map(part).to_vec()
     }
@@ -274,9 +319,13 @@ mod tests {
 
     #[test]
     fn mapping_statistics_is_mapping_samples() {
-        let (x, z, y) = (vec![1.0, 2.0, 4.0, 7.0], vec![0.5, -1.0, 2.0, 0.0], vec![3.0, 1.0, 0.0, 2.0]);
+        let (x, z, y) =
+            (vec![1.0, 2.0, 4.0, 7.0], vec![0.5, -1.0, 2.0, 0.0], vec![3.0, 1.0, 0.0, 2.0]);
         let less = |k: usize| y[k] - 0.3 * x[k] + 2.0 * z[k];
-        let direct = Moments::of_columns(&[x.iter().map(|x| 5.0 * x).collect(), z.clone(), (0..4).map(less).collect()], 2);
+        let direct = Moments::of_columns(
+            &[x.iter().map(|x| 5.0 * x).collect(), z.clone(), (0..4).map(less).collect()],
+            2,
+        );
         let map = DMatrix::from_row_slice(3, 3, &[5.0, 0.0, -0.3, 0.0, 1.0, 2.0, 0.0, 0.0, 1.0]);
         assert!(near(&Moments::of_columns(&[x, z, y], 2).mapped(&map, 2), &direct));
     }
@@ -284,7 +333,10 @@ mod tests {
     #[test]
     fn about_the_origin_are_the_products_themselves() {
         let columns = vec![vec![1.0, 2.0, 4.0], vec![3.0, 1.0, 0.0]];
-        assert!(near(&Moments::of_columns(&columns, 1).about_origin(), &Moments::about_zero(&columns, 1, 1.0)));
+        assert!(near(
+            &Moments::of_columns(&columns, 1).about_origin(),
+            &Moments::about_zero(&columns, 1, 1.0)
+        ));
     }
 
     #[test]

@@ -45,14 +45,28 @@ impl RidgePath {
 
     /// The same with any measure of the coefficients.
     pub fn measured(moments: &Moments, source: &[Vec<f64>], metric: Metric) -> Self {
-        let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(metric.products(moments));
+        let SymmetricEigen { eigenvalues, eigenvectors } =
+            SymmetricEigen::new(metric.products(moments));
         let targets = 0..moments.targets();
-        let data = targets.clone().map(|t| tr_mul(&eigenvectors, &metric.products_with_target(moments, t))).collect();
-        let source = source.iter().map(|beta| tr_mul(&eigenvectors, &(metric.root() * DVector::from_column_slice(beta))));
+        let data = targets
+            .clone()
+            .map(|t| tr_mul(&eigenvectors, &metric.products_with_target(moments, t)))
+            .collect();
+        let source = source
+            .iter()
+            .map(|beta| tr_mul(&eigenvectors, &(metric.root() * DVector::from_column_slice(beta))));
         let source = source.collect();
         let target_variance = targets.map(|t| moments.target_variance(t)).collect();
         let eigenvalues = eigenvalues.map(|value| value.max(0.0));
-        Self { metric, eigenvalues, eigenvectors, data, source, target_variance, count: moments.count }
+        Self {
+            metric,
+            eigenvalues,
+            eigenvectors,
+            data,
+            source,
+            target_variance,
+            count: moments.count,
+        }
     }
 
     /// The coefficients of a target in the units of the regressors.
@@ -63,7 +77,9 @@ impl RidgePath {
 
     /// The two vectors of which every solution at `lambda` is `data + (1 - alpha) source`, standardised.
     fn parts(&self, target: usize, lambda: f64) -> (DVector<f64>, DVector<f64>) {
-        let divide = |v: &DVector<f64>, by: f64| v.zip_map(&self.eigenvalues, |x, d| by * x / (d + lambda).max(1e-300));
+        let divide = |v: &DVector<f64>, by: f64| {
+            v.zip_map(&self.eigenvalues, |x, d| by * x / (d + lambda).max(1e-300))
+        };
         let data = &self.eigenvectors * divide(&self.data[target], 1.0);
         let source = &self.eigenvectors * divide(&self.source[target], lambda);
         (data, source)
@@ -71,7 +87,9 @@ impl RidgePath {
 
     fn unscaled(&self, beta: &DVector<f64>, source: &[f64]) -> Vec<f64> {
         let coefficients = self.metric.back() * beta;
-        let one = |(j, kept): (usize, &f64)| if self.metric.is_still(j) { *kept } else { coefficients[j] };
+        let one = |(j, kept): (usize, &f64)| {
+            if self.metric.is_still(j) { *kept } else { coefficients[j] }
+        };
         source.iter().enumerate().map(one).collect()
     }
 
@@ -104,7 +122,8 @@ impl RidgePath {
         let explained: f64 = (0..self.eigenvalues.len())
             .map(|i| solution(i) * (2.0 * self.data[target][i] - self.eigenvalues[i] * solution(i)))
             .sum();
-        let freedom: f64 = self.eigenvalues.iter().map(|d| d / (d + choice.lambda).max(1e-300)).sum();
+        let freedom: f64 =
+            self.eigenvalues.iter().map(|d| d / (d + choice.lambda).max(1e-300)).sum();
         let mean = (self.target_variance[target] - explained).max(0.0);
         mean * self.count / (self.count - freedom - 1.0).max(1.0)
     }
@@ -121,7 +140,8 @@ impl RidgePath {
     pub fn misfit(&self, target: usize, lambda: f64) -> f64 {
         let (data, source, d) = (&self.data[target], &self.source[target], &self.eigenvalues);
         let terms = || data.iter().zip(source).zip(d).map(|((z, s), d)| (*z, *s, *d));
-        let unexplained = self.target_variance[target] + terms().map(|(z, s, d)| s * (d * s - 2.0 * z)).sum::<f64>();
+        let unexplained = self.target_variance[target]
+            + terms().map(|(z, s, d)| s * (d * s - 2.0 * z)).sum::<f64>();
         let gained: f64 = terms().map(|(z, s, d)| (z - d * s).powi(2) / (d + lambda)).sum();
         let width: f64 = d.iter().map(|d| (1.0 + d / lambda).ln()).sum();
         (unexplained - gained).max(1e-300).ln() + width / self.count.max(1.0)
@@ -132,7 +152,9 @@ impl RidgePath {
     pub fn deviations(&self, lambda: f64) -> Vec<(f64, f64)> {
         let weights = self.eigenvalues.map(|d| 1.0 / (self.count * (d + lambda).max(1e-300)));
         let directions = self.metric.back() * &self.eigenvectors;
-        let posterior = |j: usize| directions.row(j).iter().zip(weights.iter()).map(|(v, w)| v * v * w).sum::<f64>();
+        let posterior = |j: usize| {
+            directions.row(j).iter().zip(weights.iter()).map(|(v, w)| v * v * w).sum::<f64>()
+        };
         let prior = 1.0 / (self.count * lambda.max(1e-300));
         let held = |j: usize| prior * self.metric.back().row(j).norm_squared();
         (0..self.metric.size()).map(|j| (posterior(j).sqrt(), held(j).sqrt())).collect()
@@ -142,12 +164,15 @@ impl RidgePath {
     /// units of the regressors; 1 for a regressor that does not vary.
     pub fn curvature(&self, lambda: f64) -> DMatrix<f64> {
         let weights = self.eigenvalues.map(|d| self.count * (d + lambda));
-        let standard = &self.eigenvectors * DMatrix::from_diagonal(&weights) * self.eigenvectors.transpose();
+        let standard =
+            &self.eigenvectors * DMatrix::from_diagonal(&weights) * self.eigenvectors.transpose();
         let own = self.metric.root().transpose() * standard * self.metric.root();
         let still = |j: usize| self.metric.is_still(j);
-        DMatrix::from_fn(self.metric.size(), self.metric.size(), |i, j| match still(i) || still(j) {
-            true => f64::from(u8::from(i == j)),
-            false => own[(i, j)],
+        DMatrix::from_fn(self.metric.size(), self.metric.size(), |i, j| {
+            match still(i) || still(j) {
+                true => f64::from(u8::from(i == j)),
+                false => own[(i, j)],
+            }
         })
     }
 
@@ -164,13 +189,18 @@ impl RidgePath {
     /// `tolerance` of the largest.
     pub fn collinear_groups(&self, tolerance: f64) -> Vec<Vec<usize>> {
         let largest = self.eigenvalues.max();
-        let small = (0..self.eigenvalues.len()).filter(|&i| self.eigenvalues[i] < tolerance * largest);
+        let small =
+            (0..self.eigenvalues.len()).filter(|&i| self.eigenvalues[i] < tolerance * largest);
         let members = |i: usize| -> Vec<usize> {
             let moved = self.metric.back() * self.eigenvectors.column(i);
-            let moved = DVector::from_fn(moved.len(), |j, _| moved[j] * self.metric.root().column(j).norm()).normalize();
+            let moved = DVector::from_fn(moved.len(), |j, _| {
+                moved[j] * self.metric.root().column(j).norm()
+            })
+            .normalize();
             (0..moved.len()).filter(|&j| moved[j].abs() > 0.3).collect()
         };
-        let mut groups: Vec<Vec<usize>> = small.map(members).filter(|group| group.len() > 1).collect();
+        let mut groups: Vec<Vec<usize>> =
+            small.map(members).filter(|group| group.len() > 1).collect();
         groups.sort();
         groups.dedup();
         groups
@@ -231,7 +261,8 @@ mod tests {
     #[test]
     fn known_coefficients_are_recovered_and_the_source_holds_when_told_to() {
         let path = RidgePath::new(&Moments::of_columns(&samples(), 2), &[vec![1.0, 1.0]]);
-        let at = |lambda: f64, alpha: f64| path.solve(0, RidgeChoice { lambda, alpha }, &[1.0, 1.0]);
+        let at =
+            |lambda: f64, alpha: f64| path.solve(0, RidgeChoice { lambda, alpha }, &[1.0, 1.0]);
         let free = at(1e-12, 0.0);
         assert!((free[0] - 2.0).abs() < 1e-9 && (free[1] + 0.5).abs() < 1e-9);
         let held = at(1e9, 0.0);
@@ -243,11 +274,17 @@ mod tests {
     fn the_closed_form_solves_the_normal_equations() {
         let moments = Moments::of_columns(&samples(), 2);
         let (lambda, alpha, source) = (0.3, 0.2, [1.5, -1.0]);
-        let beta = RidgePath::new(&moments, &[source.to_vec()]).solve(0, RidgeChoice { lambda, alpha }, &source);
+        let beta = RidgePath::new(&moments, &[source.to_vec()]).solve(
+            0,
+            RidgeChoice { lambda, alpha },
+            &source,
+        );
         for i in 0..2 {
             let sigma = moments.variance(i).sqrt();
-            let left: f64 = (0..2).map(|j| moments.covariance(i, j) * beta[j]).sum::<f64>() / sigma + lambda * beta[i] * sigma;
-            let right = moments.covariance_with_target(i, 0) / sigma + lambda * (1.0 - alpha) * source[i] * sigma;
+            let left: f64 = (0..2).map(|j| moments.covariance(i, j) * beta[j]).sum::<f64>() / sigma
+                + lambda * beta[i] * sigma;
+            let right = moments.covariance_with_target(i, 0) / sigma
+                + lambda * (1.0 - alpha) * source[i] * sigma;
             assert!((left - right).abs() < 1e-12);
         }
     }
@@ -260,18 +297,24 @@ mod tests {
         let beta = path.solve(0, RidgeChoice { lambda, alpha: 0.0 }, &source);
         for i in 0..2 {
             let precision = lambda * shrinkage[i] * moments.variance(i);
-            let left: f64 = (0..2).map(|j| moments.covariance(i, j) * beta[j]).sum::<f64>() + precision * beta[i];
-            assert!((left - moments.covariance_with_target(i, 0) - precision * source[i]).abs() < 1e-12);
+            let left: f64 = (0..2).map(|j| moments.covariance(i, j) * beta[j]).sum::<f64>()
+                + precision * beta[i];
+            assert!(
+                (left - moments.covariance_with_target(i, 0) - precision * source[i]).abs() < 1e-12
+            );
         }
         let ratio = |deviations: Vec<(f64, f64)>| deviations[1].1;
         let plain = RidgePath::new(&moments, &[source.to_vec()]);
-        assert!((ratio(plain.deviations(lambda)) / ratio(path.deviations(lambda)) - 3.0).abs() < 1e-12);
+        assert!(
+            (ratio(plain.deviations(lambda)) / ratio(path.deviations(lambda)) - 3.0).abs() < 1e-12
+        );
     }
 
     /// Against the density of the samples themselves, a normal distribution of as many dimensions as there are samples.
     #[test]
     fn the_misfit_is_that_of_the_marginal_likelihood() {
-        let mut columns: Vec<Vec<f64>> = samples().iter().map(|column| column[..40].to_vec()).collect();
+        let mut columns: Vec<Vec<f64>> =
+            samples().iter().map(|column| column[..40].to_vec()).collect();
         columns[2].iter_mut().enumerate().for_each(|(k, y)| *y += 0.3 * (5.1 * k as f64).sin());
         let source = [1.5, -1.0];
         let path = RidgePath::new(&Moments::of_columns(&columns, 2), &[source.to_vec()]);
@@ -285,7 +328,8 @@ mod tests {
         let direct = |lambda: f64| {
             let spread = |x: &DVector<f64>| x * x.transpose() / (x.norm_squared() * lambda);
             let covariance = DMatrix::identity(40, 40) + spread(&centred[0]) + spread(&centred[1]);
-            let variance = unexplained.dot(&covariance.clone().lu().solve(&unexplained).unwrap()) / 40.0;
+            let variance =
+                unexplained.dot(&covariance.clone().lu().solve(&unexplained).unwrap()) / 40.0;
             variance.ln() + covariance.determinant().ln() / 40.0
         };
         for lambda in [1e-4, 1e-2, 1.0] {
@@ -303,7 +347,11 @@ mod tests {
         for other in [alpha - 0.05, alpha + 0.05] {
             let beta = path.solve(0, RidgeChoice { lambda: 1.0, alpha: other }, &source);
             let columns = samples();
-            let mse = (0..400).map(|k| (columns[2][k] - beta[0] * columns[0][k] - beta[1] * columns[1][k]).powi(2)).sum::<f64>()
+            let mse = (0..400)
+                .map(|k| {
+                    (columns[2][k] - beta[0] * columns[0][k] - beta[1] * columns[1][k]).powi(2)
+                })
+                .sum::<f64>()
                 / 400.0;
             assert!(mse > error);
         }

@@ -55,10 +55,17 @@ impl Whitened {
 
     /// Residual variance of a target at a solution; degrees of freedom as the ridge uses them.
     pub fn residual_variance(&self, target: usize, lambda: f64) -> f64 {
-        let terms = || self.data.column(target).into_iter().zip(&self.eigenvalues).map(|(x, d)| (x / (d + lambda), *x, *d));
+        let terms = || {
+            self.data
+                .column(target)
+                .into_iter()
+                .zip(&self.eigenvalues)
+                .map(|(x, d)| (x / (d + lambda), *x, *d))
+        };
         let explained: f64 = terms().map(|(g, x, d)| g * (2.0 * x - d * g)).sum();
         let freedom: f64 = self.eigenvalues.iter().map(|d| d / (d + lambda)).sum();
-        (self.target_variance[target] - explained).max(0.0) * self.count / (self.count - freedom - 1.0).max(1.0)
+        (self.target_variance[target] - explained).max(0.0) * self.count
+            / (self.count - freedom - 1.0).max(1.0)
     }
 
     /// Mean squared errors of the solutions for each target at each lambda on other samples, as of a model without intercept.
@@ -69,13 +76,18 @@ impl Whitened {
         let back = self.eigenvectors.transpose();
         let turned = &back * (raw.view((0, 0), (p, p)) * &self.eigenvectors);
         let cross = back * raw.view((0, p), (p, self.data.ncols()));
-        let weights = DMatrix::from_fn(p, lambdas.len(), |k, l| 1.0 / (self.eigenvalues[k] + lambdas[l]));
+        let weights =
+            DMatrix::from_fn(p, lambdas.len(), |k, l| 1.0 / (self.eigenvalues[k] + lambdas[l]));
         let of_target = |target: usize| {
             let mut solutions = weights.clone();
-            solutions.column_iter_mut().for_each(|mut column| column.component_mul_assign(&self.data.column(target)));
+            solutions
+                .column_iter_mut()
+                .for_each(|mut column| column.component_mul_assign(&self.data.column(target)));
             let pulled = &turned * &solutions;
             let (own, linear) = (raw[(p + target, p + target)], cross.column(target));
-            let error = |(g, pulled): (DVectorView<'_, f64>, DVectorView<'_, f64>)| own + g.dot(&pulled) - 2.0 * g.dot(&linear);
+            let error = |(g, pulled): (DVectorView<'_, f64>, DVectorView<'_, f64>)| {
+                own + g.dot(&pulled) - 2.0 * g.dot(&linear)
+            };
             solutions.column_iter().zip(pulled.column_iter()).map(error).collect()
         };
         (0..self.data.ncols()).map(of_target).collect()
@@ -88,22 +100,40 @@ mod tests {
     use super::*;
 
     fn columns(phase: f64) -> Vec<Vec<f64>> {
-        let column = |f: &dyn Fn(f64) -> f64| (0..300).map(|k| f(f64::from(k) + phase)).collect::<Vec<f64>>();
+        let column = |f: &dyn Fn(f64) -> f64| {
+            (0..300).map(|k| f(f64::from(k) + phase)).collect::<Vec<f64>>()
+        };
         let (x, z) = (column(&|k| (0.11 * k).sin()), column(&|k| 3.0 + (0.07 * k).cos()));
-        let y = x.iter().zip(&z).enumerate().map(|(k, (x, z))| 2.0 * x - 0.5 * z + 0.1 * (7.0 * k as f64).sin()).collect();
+        let y = x
+            .iter()
+            .zip(&z)
+            .enumerate()
+            .map(|(k, (x, z))| 2.0 * x - 0.5 * z + 0.1 * (7.0 * k as f64).sin())
+            .collect();
         vec![x, z, y]
     }
 
     /// Against the path that keeps the source apart, with regressors in units of their deviation.
     #[test]
     fn about_the_source_it_is_the_published_path() {
-        let (training, left_out) = (Moments::of_columns(&columns(0.0), 2), Moments::of_columns(&columns(500.0), 2));
+        let (training, left_out) =
+            (Moments::of_columns(&columns(0.0), 2), Moments::of_columns(&columns(500.0), 2));
         let source = [1.5, -1.0];
         let deviation = |j: usize| training.variance(j).sqrt();
         let map = DMatrix::from_row_slice(
             3,
             3,
-            &[1.0 / deviation(0), 0.0, -source[0], 0.0, 1.0 / deviation(1), -source[1], 0.0, 0.0, 1.0],
+            &[
+                1.0 / deviation(0),
+                0.0,
+                -source[0],
+                0.0,
+                1.0 / deviation(1),
+                -source[1],
+                0.0,
+                0.0,
+                1.0,
+            ],
         );
         let whitened = Whitened::new(&training.mapped(&map, 2));
         let path = RidgePath::new(&training, &[source.to_vec()]);
@@ -113,10 +143,16 @@ mod tests {
             let choice = RidgeChoice { lambda, alpha: 0.0 };
             let direct = path.solve(0, choice, &source);
             let solved = whitened.basis() * whitened.solution(0, lambda);
-            (0..2).for_each(|j| assert!((source[j] + solved[j] / deviation(j) - direct[j]).abs() < 1e-10));
-            let (_, expected) = path.best_alpha(0, lambda, &source, &Validation::new(&left_out), (0.0, 0.0));
+            (0..2).for_each(|j| {
+                assert!((source[j] + solved[j] / deviation(j) - direct[j]).abs() < 1e-10)
+            });
+            let (_, expected) =
+                path.best_alpha(0, lambda, &source, &Validation::new(&left_out), (0.0, 0.0));
             assert!((error - expected).abs() < 1e-10, "{lambda}: {error} {expected}");
-            assert!((whitened.residual_variance(0, lambda) - path.residual_variance(0, choice)).abs() < 1e-10);
+            assert!(
+                (whitened.residual_variance(0, lambda) - path.residual_variance(0, choice)).abs()
+                    < 1e-10
+            );
         }
     }
 }

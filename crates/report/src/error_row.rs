@@ -23,7 +23,11 @@ pub(crate) struct ErrorRow {
 
 impl ErrorRow {
     /// The error of a channel in both models.
-    pub fn of(quantity: ShownChannel, source: &BTreeMap<String, f64>, refined: &BTreeMap<String, f64>) -> Self {
+    pub fn of(
+        quantity: ShownChannel,
+        source: &BTreeMap<String, f64>,
+        refined: &BTreeMap<String, f64>,
+    ) -> Self {
         let shown = |errors| error(errors, quantity.channel).map(|value| value * quantity.factor);
         let (source, refined) = (shown(source), shown(refined));
         let factor = source.zip(refined).filter(|(s, r)| *s > 0.0 && *r > 0.0).map(|(s, r)| s / r);

@@ -26,7 +26,11 @@ pub(crate) type MetricValue = (&'static str, &'static str, Option<f64>);
 /// The figures of a manoeuvre.
 pub(crate) fn read(metrics: &ManoeuvreMetrics) -> Vec<MetricValue> {
     match metrics {
-        ManoeuvreMetrics::Turn(turn) => TURN.iter().map(|(name, read)| (*name, "m", read(turn))).collect(),
-        ManoeuvreMetrics::Zigzag(zigzag) => ZIGZAG.iter().map(|(name, unit, read)| (*name, *unit, read(zigzag))).collect(),
+        ManoeuvreMetrics::Turn(turn) => {
+            TURN.iter().map(|(name, read)| (*name, "m", read(turn))).collect()
+        }
+        ManoeuvreMetrics::Zigzag(zigzag) => {
+            ZIGZAG.iter().map(|(name, unit, read)| (*name, *unit, read(zigzag))).collect()
+        }
     }
 }

@@ -19,9 +19,14 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
 /// A stated value: as many digits as it was given with, at most so many.
 pub(crate) fn stated(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
-    let (number, power) =
-        text.split_once('×').map_or((text.as_str(), String::new()), |(number, power)| (number, format!("×{power}")));
-    let trimmed = if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number };
+    let (number, power) = text
+        .split_once('×')
+        .map_or((text.as_str(), String::new()), |(number, power)| (number, format!("×{power}")));
+    let trimmed = if number.contains('.') {
+        number.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        number
+    };
     format!("{trimmed}{power}")
 }
 
@@ -40,7 +45,9 @@ fn power_of_ten(value: f64, digits: usize, exponent: i32) -> String {
 pub(crate) fn superscript(number: i32) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',
-        _ => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][c.to_digit(10).unwrap_or(0) as usize],
+        _ => {
+            ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][c.to_digit(10).unwrap_or(0) as usize]
+        }
     };
     number.to_string().chars().map(raised).collect()
 }
@@ -84,15 +91,27 @@ mod tests {
 
     #[test]
     fn digits_are_those_that_mean_something() {
-        let cases =
-            [(12.345, "12.3"), (0.012_345, "0.0123"), (-1.84e-5, "−1.84×10⁻⁵"), (0.0, "0"), (99.96, "100"), (f64::MAX, "–")];
+        let cases = [
+            (12.345, "12.3"),
+            (0.012_345, "0.0123"),
+            (-1.84e-5, "−1.84×10⁻⁵"),
+            (0.0, "0"),
+            (99.96, "100"),
+            (f64::MAX, "–"),
+        ];
         for (value, text) in cases {
             assert_eq!(significant(value, 3), text);
         }
-        assert_eq!((significant(1.2345e7, 3), significant(171_298.0, 2)), ("1.23×10⁷".into(), "1.7×10⁵".into()));
+        assert_eq!(
+            (significant(1.2345e7, 3), significant(171_298.0, 2)),
+            ("1.23×10⁷".into(), "1.7×10⁵".into())
+        );
         let stated = [175.0, 0.562, 21222.0, -4.646e-5, 0.0].map(|value| stated(value, 5));
         assert_eq!(stated, ["175", "0.562", "21222", "−4.646×10⁻⁵", "0"]);
-        assert_eq!((fixed(-0.001, 1), signed(2.0, 1), signed(-2.0, 1)), ("0.0".into(), "+2.0".into(), "−2.0".into()));
+        assert_eq!(
+            (fixed(-0.001, 1), signed(2.0, 1), signed(-2.0, 1)),
+            ("0.0".into(), "+2.0".into(), "−2.0".into())
+        );
     }
 
     #[test]

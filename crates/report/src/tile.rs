@@ -18,7 +18,9 @@ impl Tile {
     /// Of one channel.
     pub fn of(row: &ErrorRow) -> Self {
         let unit = row.quantity.unit;
-        let text = |value: Option<f64>| value.map_or_else(|| "–".into(), |value| format!("{} {unit}", significant(value, 3)));
+        let text = |value: Option<f64>| {
+            value.map_or_else(|| "–".into(), |value| format!("{} {unit}", significant(value, 3)))
+        };
         let most = row.source.unwrap_or(0.0).max(row.refined.unwrap_or(0.0)).max(1e-300);
         let bar = |value: Option<f64>| fixed(100.0 * value.unwrap_or(0.0) / most, 1);
         let class = match row.change().0 {

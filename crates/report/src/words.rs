@@ -67,8 +67,10 @@ const UNITS: [(&str, &str); 9] = [
 
 /// A field such as `rudder_area_m2` in words and its unit.
 pub(crate) fn field(name: &str) -> (String, &'static str) {
-    let (stem, unit) =
-        UNITS.into_iter().find_map(|(ending, unit)| Some((name.strip_suffix(ending)?, unit))).unwrap_or((name, "–"));
+    let (stem, unit) = UNITS
+        .into_iter()
+        .find_map(|(ending, unit)| Some((name.strip_suffix(ending)?, unit)))
+        .unwrap_or((name, "–"));
     let words = match stem {
         "lpp" => "length between perpendiculars".into(),
         "loa" => "length over all".into(),
@@ -94,7 +96,9 @@ pub(crate) fn status_meaning(status: Status) -> &'static str {
     match status {
         Status::Published => "figures as published from captive tests, computations or trials",
         Status::Estimated => "figures estimated from particulars by regression formulas: a stopgap",
-        Status::Transferred => "a source model carried over by its scaling, not fitted to this ship",
+        Status::Transferred => {
+            "a source model carried over by its scaling, not fitted to this ship"
+        }
         Status::Refined => "fitted to trials of this ship",
     }
 }
@@ -102,10 +106,14 @@ pub(crate) fn status_meaning(status: Status) -> &'static str {
 /// An estimator in words.
 pub(crate) fn method(name: &str) -> &'static str {
     match name {
-        "published" => "one-step differences, ridge regression drawn towards the source (Kanazawa 2023)",
+        "published" => {
+            "one-step differences, ridge regression drawn towards the source (Kanazawa 2023)"
+        }
         "weak" => "motions integrated over windows, ridge regression drawn towards the source",
         "trajectory" => "simulated segments matched to the measured ones, drawn towards the source",
-        "cma-es" => "simulated subsequences matched to the measured ones by a random search (Miyauchi 2024)",
+        "cma-es" => {
+            "simulated subsequences matched to the measured ones by a random search (Miyauchi 2024)"
+        }
         _ => "",
     }
 }

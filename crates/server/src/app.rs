@@ -13,8 +13,7 @@ use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
 use crate::upload::Spool;
 use crate::web::api_key::ApiKey;
-use crate::web::throttle::Throttle;
-use sistership_listen::Stopping;
+use sistership_listen::{Stopping, Throttle};
 use sistership_pipeline::archive::Archive;
 use sistership_pipeline::budget::{self, Budget, Held};
 use sistership_pipeline::catalogue::{Catalogue, KnownLaw};
@@ -42,7 +41,12 @@ struct Inner {
 }
 
 impl App {
-    pub(crate) fn new(config: &Config, archive: Archive, catalogue: Catalogue, stopping: Stopping) -> Self {
+    pub(crate) fn new(
+        config: &Config,
+        archive: Archive,
+        catalogue: Catalogue,
+        stopping: Stopping,
+    ) -> Self {
         let seats = std::thread::available_parallelism().map_or(2, std::num::NonZero::get);
         let inner = Inner {
             catalogue,
@@ -163,7 +167,9 @@ impl App {
     /// A law of the database.
     pub(crate) async fn law(&self, name: &str) -> Result<Arc<Law>> {
         let known = self.find_law(name).await?;
-        known.map(|known| known.law).ok_or_else(|| Problem::internal(format!("the law `{name}` does not read")))
+        known
+            .map(|known| known.law)
+            .ok_or_else(|| Problem::internal(format!("the law `{name}` does not read")))
     }
 
     /// A law that may not be there.
@@ -172,7 +178,10 @@ impl App {
     }
 
     /// Runs numerics away from the threads that serve; as many at a time as there are cores.
-    pub(crate) async fn compute<T: Send + 'static>(&self, work: impl FnOnce() -> T + Send + 'static) -> Result<T> {
+    pub(crate) async fn compute<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> T + Send + 'static,
+    ) -> Result<T> {
         let seat = Arc::clone(&self.0.seats).acquire_owned().await.map_err(Problem::internal)?;
         let task = tokio::task::spawn_blocking(budget::carried(move || {
             let _seat = seat;

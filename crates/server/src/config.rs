@@ -10,7 +10,8 @@ use sistership_store::ObjectsPlace;
 use crate::start_error::StartError;
 
 /// Where the server listens when nobody says otherwise.
-pub const DEFAULT_LISTEN: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(std::net::Ipv4Addr::LOCALHOST), 8080);
+pub const DEFAULT_LISTEN: SocketAddr =
+    SocketAddr::new(std::net::IpAddr::V4(std::net::Ipv4Addr::LOCALHOST), 8080);
 
 /// What closing the store may take.
 const CLOSING: Duration = Duration::from_secs(5);
@@ -114,9 +115,13 @@ impl Config {
     pub fn check(&self) -> Result<(), StartError> {
         match &self.api_key {
             None if !self.listen.ip().is_loopback() => Err(StartError::OpenWithoutKey(self.listen)),
-            Some(key) if key.is_empty() || !key.bytes().all(|byte| byte.is_ascii_graphic()) => Err(StartError::Key),
+            Some(key) if key.is_empty() || !key.bytes().all(|byte| byte.is_ascii_graphic()) => {
+                Err(StartError::Key)
+            }
             _ if self.leases.beat >= self.leases.lease => Err(StartError::Leases),
-            _ if !(1..=self.limits.connections).contains(&self.limits.connections_per_address) => Err(StartError::Connections),
+            _ if !(1..=self.limits.connections).contains(&self.limits.connections_per_address) => {
+                Err(StartError::Connections)
+            }
             _ => Ok(()),
         }
     }
@@ -149,8 +154,16 @@ impl fmt::Debug for Config {
 impl Limits {
     /// Those of connections.
     pub(crate) fn of_connections(&self) -> sistership_listen::Limits {
-        let Self { header_time, connections, connections_per_address, least_rate, body_grace, answer_grace, stop_time, .. } =
-            *self;
+        let Self {
+            header_time,
+            connections,
+            connections_per_address,
+            least_rate,
+            body_grace,
+            answer_grace,
+            stop_time,
+            ..
+        } = *self;
         sistership_listen::Limits {
             header_time,
             connections,
@@ -198,7 +211,12 @@ impl Leases {
 
     /// A lease of a length, with five beats in it: four may be missed before the job is lost.
     pub fn of(lease: Duration) -> Self {
-        Self { lease, beat: lease / 5, poll: Duration::from_millis(500), drain: Duration::from_secs(20) }
+        Self {
+            lease,
+            beat: lease / 5,
+            poll: Duration::from_millis(500),
+            drain: Duration::from_secs(20),
+        }
     }
 }
 

@@ -30,8 +30,11 @@ impl Server {
         sistership_store::provide_cryptography();
         // The address first: a process that cannot have it takes no job from others.
         let limits = sistership_listen::suited(config.limits.of_connections());
-        let listener = bind(config.listen).map_err(|error| StartError::Listen { listen: config.listen, error })?;
-        let addr = listener.local_addr().map_err(|error| StartError::Listen { listen: config.listen, error })?;
+        let listener = bind(config.listen)
+            .map_err(|error| StartError::Listen { listen: config.listen, error })?;
+        let addr = listener
+            .local_addr()
+            .map_err(|error| StartError::Listen { listen: config.listen, error })?;
         let (mut process, app) = Process::start(&config, true).await?;
         let stopping = app.stopping();
         process.tasks.spawn(listen(listener, routes::router(app), limits, stopping));

@@ -49,8 +49,12 @@ async fn look_for_room(app: &App) {
     let before = app.no_room().load(Ordering::Relaxed);
     match found {
         Ok(true) if before => tracing::info!("there is room to write again"),
-        Ok(false) if !before => tracing::error!("there is no room to write; reading goes on, and writing once there is room"),
-        Err(error) => return tracing::warn!(%error, "whether there is room to write could not be found out"),
+        Ok(false) if !before => tracing::error!(
+            "there is no room to write; reading goes on, and writing once there is room"
+        ),
+        Err(error) => {
+            return tracing::warn!(%error, "whether there is room to write could not be found out");
+        }
         _ => {}
     }
     app.no_room().store(matches!(found, Ok(false)), Ordering::Relaxed);
@@ -70,5 +74,7 @@ async fn has_room(app: &App) -> Result<bool, StoreError> {
     }
     let inner = app.clone();
     let room = tokio::task::spawn_blocking(move || inner.spool().has_room(ROOM_BYTES)).await;
-    Ok(room.map_err(sistership_store::ObjectsError::from)?.map_err(sistership_store::ObjectsError::from)?)
+    Ok(room
+        .map_err(sistership_store::ObjectsError::from)?
+        .map_err(sistership_store::ObjectsError::from)?)
 }

@@ -13,21 +13,29 @@ fn the_document_is_the_one_in_the_repository() {
         std::fs::write(&path, &now).unwrap();
     }
     let there = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(there == now, "the endpoints have changed: run `UPDATE_OPENAPI=1 cargo test -p sistership-server --test openapi`");
+    assert!(
+        there == now,
+        "the endpoints have changed: run `UPDATE_OPENAPI=1 cargo test -p sistership-server --test openapi`"
+    );
 }
 
 /// Two types of one name are one schema in the document, and one of them is described by the other.
 #[test]
 fn no_two_types_share_a_name() {
     let mut names = std::collections::BTreeMap::<String, Vec<String>>::new();
-    for file in walk(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")) {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let rooms = ["server", "pipeline"].map(|name| crates.join(name).join("src"));
+    for file in rooms.iter().flat_map(|room| walk(room)) {
         let text = std::fs::read_to_string(&file).unwrap();
         let mut lines = text.lines();
         while let Some(line) = lines.next() {
             if line.trim_start().starts_with("#[derive(") && line.contains("ToSchema") {
-                let rest: Vec<&str> = lines.by_ref().take_while(|line| !line.trim_end().is_empty()).take(8).collect();
+                let rest: Vec<&str> =
+                    lines.by_ref().take_while(|line| !line.trim_end().is_empty()).take(8).collect();
                 let name = rest.iter().find_map(|line| name(line));
-                let renamed = rest.iter().find_map(|line| line.split_once("schema(as = ")?.1.split([')', ',']).next());
+                let renamed = rest
+                    .iter()
+                    .find_map(|line| line.split_once("schema(as = ")?.1.split([')', ',']).next());
                 let name = renamed.or(name).unwrap_or_else(|| panic!("{}: {line}", file.display()));
                 names.entry(name.to_owned()).or_default().push(file.display().to_string());
             }
@@ -54,10 +62,15 @@ fn walk(folder: &Path) -> Vec<std::path::PathBuf> {
 fn every_reference_leads_somewhere_and_every_file_that_is_named_is_there() {
     let document = sistership_server::openapi();
     let text = document.to_string();
-    for reference in text.split("\"$ref\":\"#").skip(1).map(|rest| rest.split('"').next().unwrap()) {
+    for reference in text.split("\"$ref\":\"#").skip(1).map(|rest| rest.split('"').next().unwrap())
+    {
         assert!(document.pointer(reference).is_some(), "{reference}");
     }
-    for file in text.split("models/schema/").skip(1).map(|rest| rest.split(['`', ')', ' ', '"']).next().unwrap()) {
+    for file in text
+        .split("models/schema/")
+        .skip(1)
+        .map(|rest| rest.split(['`', ')', ' ', '"']).next().unwrap())
+    {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/schema").join(file);
         assert!(path.is_file(), "models/schema/{file} is no file");
     }

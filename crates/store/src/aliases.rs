@@ -141,7 +141,12 @@ impl Aliases<'_> {
     }
 
     /// How an alias has moved, the latest first, by revision.
-    pub async fn history(&self, model: &str, alias: &str, page: &Page<i64>) -> Result<List<AliasChange, i64>> {
+    pub async fn history(
+        &self,
+        model: &str,
+        alias: &str,
+        page: &Page<i64>,
+    ) -> Result<List<AliasChange, i64>> {
         let values = args![model: model, alias: alias, after: page.after, limit: page.fetch()?];
         let changes = self.0.database().all(HISTORY, values).await?;
         Ok(page.of(changes, |change: &AliasChange| change.revision))
@@ -149,7 +154,13 @@ impl Aliases<'_> {
 }
 
 /// Moves an alias within a transaction.
-pub(crate) async fn shift(store: &Store, tx: &mut Transaction, model: &str, to: i64, change: &AliasMove) -> Result<Alias> {
+pub(crate) async fn shift(
+    store: &Store,
+    tx: &mut Transaction,
+    model: &str,
+    to: i64,
+    change: &AliasMove,
+) -> Result<Alias> {
     checks::name("alias", &change.alias)?;
     lock(tx, model).await?;
     version::check_exists(tx, model, to).await?;
@@ -169,7 +180,13 @@ async fn lock(tx: &mut Transaction, model: &str) -> Result<()> {
     locked.map(drop).ok_or_else(|| StoreError::missing("model", model))
 }
 
-async fn remember(store: &Store, tx: &mut Transaction, before: Option<Alias>, after: &Alias, change: &AliasMove) -> Result<()> {
+async fn remember(
+    store: &Store,
+    tx: &mut Transaction,
+    before: Option<Alias>,
+    after: &Alias,
+    change: &AliasMove,
+) -> Result<()> {
     let from = before.map(|alias| alias.version_number);
     let id = store.new_id();
     let values = args![id: &id, model: &after.model, alias: &after.alias, from_number: from, to_number: after.version_number,

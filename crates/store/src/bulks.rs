@@ -187,7 +187,11 @@ impl Bulks<'_> {
         self.all(RETRY, &[("bulk", id.into())]).await
     }
 
-    async fn all(&self, statement: crate::statements::Statement, values: &[(&'static str, Arg<'_>)]) -> Result<u64> {
+    async fn all(
+        &self,
+        statement: crate::statements::Statement,
+        values: &[(&'static str, Arg<'_>)],
+    ) -> Result<u64> {
         let mut tx = self.0.begin().await?;
         let changed = tx.execute(statement, values).await?;
         tx.commit().await?;
@@ -195,7 +199,12 @@ impl Bulks<'_> {
     }
 
     /// What has become of the ships, by name.
-    pub async fn outcomes(&self, id: &str, outcome: Option<&str>, page: &Page) -> Result<List<BulkOutcome>> {
+    pub async fn outcomes(
+        &self,
+        id: &str,
+        outcome: Option<&str>,
+        page: &Page,
+    ) -> Result<List<BulkOutcome>> {
         let values = args![bulk: id, outcome: outcome, after: &page.after, limit: page.fetch()?];
         let outcomes = self.0.database().all(OUTCOMES, values).await?;
         Ok(page.of(outcomes, |outcome: &BulkOutcome| outcome.ship.clone()))
@@ -207,18 +216,34 @@ impl Bulks<'_> {
     }
 
     /// Makes a candidate of this refinement champion, by a person's word.
-    pub async fn promote(&self, id: &str, ship: &str, version: i64, change: &AliasMove) -> Result<()> {
+    pub async fn promote(
+        &self,
+        id: &str,
+        ship: &str,
+        version: i64,
+        change: &AliasMove,
+    ) -> Result<()> {
         let mut tx = self.0.begin().await?;
         crate::aliases::shift(self.0, &mut tx, ship, version, change).await?;
         if tx.execute(PROMOTED, args![bulk: id, ship: ship]).await? == 0 {
-            return Err(StoreError::conflict("outcome", ship, "is no candidate of this refinement"));
+            return Err(StoreError::conflict(
+                "outcome",
+                ship,
+                "is no candidate of this refinement",
+            ));
         }
         tx.commit().await
     }
 
     /// Keeps what a worker has made of a chunk and ends its job, all or nothing: a worker that has lost the job to another (an
     /// older `fence`) leaves nothing behind, and no ship gets two outcomes.
-    pub async fn commit(&self, bulk: &str, job: (&str, i64), outcomes: &[NewOutcome], result: &str) -> Result<Job> {
+    pub async fn commit(
+        &self,
+        bulk: &str,
+        job: (&str, i64),
+        outcomes: &[NewOutcome],
+        result: &str,
+    ) -> Result<Job> {
         let mut tx = self.0.begin().await?;
         for outcome in outcomes {
             keep(self.0, &mut tx, bulk, outcome).await?;

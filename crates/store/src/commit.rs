@@ -34,12 +34,19 @@ pub struct Committed {
 impl Store {
     /// Keeps what a refinement brings and ends its job, all or nothing: a worker that has lost the job to another (an older
     /// `fence`) leaves nothing behind. `result` writes the job's result, JSON, from what was kept.
-    pub async fn commit_refinement<F>(&self, job: &str, fence: i64, refinement: &Refinement, result: F) -> Result<Committed>
+    pub async fn commit_refinement<F>(
+        &self,
+        job: &str,
+        fence: i64,
+        refinement: &Refinement,
+        result: F,
+    ) -> Result<Committed>
     where
         F: FnOnce(&VersionHead, Option<&ReportHead>) -> String,
     {
         let mut tx = self.begin().await?;
-        let version = versions::insert(self, &mut tx, &refinement.version, &refinement.moves).await?;
+        let version =
+            versions::insert(self, &mut tx, &refinement.version, &refinement.moves).await?;
         let report = match refinement.report.clone() {
             Some(report) => {
                 let report = NewReport { version_id: Some(version.id.clone()), ..report };

@@ -37,7 +37,13 @@ pub struct CommittedDiagnosis {
 impl Store {
     /// Keeps what a diagnosis brings and ends its job, all or nothing: a worker that has lost the job to another (an older
     /// `fence`) leaves nothing behind. `result` writes the job's result, JSON, from what was kept.
-    pub async fn commit_diagnosis<F>(&self, job: &str, fence: i64, diagnosis: &Diagnosis, result: F) -> Result<CommittedDiagnosis>
+    pub async fn commit_diagnosis<F>(
+        &self,
+        job: &str,
+        fence: i64,
+        diagnosis: &Diagnosis,
+        result: F,
+    ) -> Result<CommittedDiagnosis>
     where
         F: FnOnce(Option<&VersionHead>, &ReportHead) -> String,
     {
@@ -49,7 +55,9 @@ impl Store {
         let made_id = version.as_ref().map(|version| version.id.clone());
         let report = NewReport { version_id: made_id.clone(), ..diagnosis.report.clone() };
         let report = reports::insert(self, &mut tx, &report).await?;
-        let found = diagnoses::insert(self, &mut tx, &diagnosis.found, made_id.as_deref(), &report.id).await?;
+        let found =
+            diagnoses::insert(self, &mut tx, &diagnosis.found, made_id.as_deref(), &report.id)
+                .await?;
         let result = result(version.as_ref(), &report);
         let job = work::complete(&mut tx, job, fence, &result, self.now_us()).await?;
         tx.commit().await?;

@@ -39,10 +39,18 @@ pub(crate) fn sqlite_file(url: &str) -> Option<PathBuf> {
 /// One connection that lasts as long as the store: with it the data would go.
 async fn memory(url: &str) -> Result<Database> {
     let options = SqliteConnectOptions::from_str(url)?.foreign_keys(true);
-    let pool = SqlitePoolOptions::new().max_connections(1).min_connections(1).idle_timeout(None).max_lifetime(None);
+    let pool = SqlitePoolOptions::new()
+        .max_connections(1)
+        .min_connections(1)
+        .idle_timeout(None)
+        .max_lifetime(None);
     let pool = pool.connect_with(options).await?;
     migrate::sqlite(&pool).await?;
-    Ok(Database { read: Pool::Sqlite(pool.clone()), write: Writer::Sqlite(WriterGroup::new(pool)), unit: None })
+    Ok(Database {
+        read: Pool::Sqlite(pool.clone()),
+        write: Writer::Sqlite(WriterGroup::new(pool)),
+        unit: None,
+    })
 }
 
 async fn file(url: &str) -> Result<Database> {
@@ -52,9 +60,14 @@ async fn file(url: &str) -> Result<Database> {
     let write = writer(write.journal_mode(SqliteJournalMode::Wal)).await?;
     migrate::sqlite(&write).await?;
     // A file's connection does not go stale.
-    let readers = SqlitePoolOptions::new().max_connections(SQLITE_READERS).test_before_acquire(false);
+    let readers =
+        SqlitePoolOptions::new().max_connections(SQLITE_READERS).test_before_acquire(false);
     let read = readers.connect_with(options.pragma("query_only", "ON")).await?;
-    Ok(Database { read: Pool::Sqlite(read), write: Writer::Sqlite(WriterGroup::new(write)), unit: None })
+    Ok(Database {
+        read: Pool::Sqlite(read),
+        write: Writer::Sqlite(WriterGroup::new(write)),
+        unit: None,
+    })
 }
 
 /// The one connection that writes. Turning on the write-ahead log needs the file for itself and does not wait for it, so
@@ -62,7 +75,11 @@ async fn file(url: &str) -> Result<Database> {
 async fn writer(options: SqliteConnectOptions) -> Result<SqlitePool> {
     let mut tries = 100;
     loop {
-        let pool = SqlitePoolOptions::new().max_connections(1).test_before_acquire(false).connect_with(options.clone()).await;
+        let pool = SqlitePoolOptions::new()
+            .max_connections(1)
+            .test_before_acquire(false)
+            .connect_with(options.clone())
+            .await;
         match pool {
             Err(error) if tries > 0 && is_locked(&error) => tries -= 1,
             other => return Ok(other?),
@@ -77,7 +94,8 @@ fn is_locked(error: &sqlx::Error) -> bool {
 
 async fn postgres(url: &str) -> Result<Database> {
     let options = PgConnectOptions::from_str(url)?.application_name("sistership");
-    let pool = PgPoolOptions::new().max_connections(POSTGRES_CONNECTIONS).test_before_acquire(false);
+    let pool =
+        PgPoolOptions::new().max_connections(POSTGRES_CONNECTIONS).test_before_acquire(false);
     // A connection that was used a moment ago is there; asking each time would cost as much as the query.
     let pool = pool.before_acquire(|connection, about| {
         Box::pin(async move {
@@ -106,13 +124,24 @@ mod tests {
     async fn a_sqlite_file_is_durable_and_its_readers_only_read() {
         let folder = tempfile::tempdir().unwrap();
         let url = format!("sqlite://{}", folder.path().join("new/store.db").display());
-        let Database { read: Pool::Sqlite(read), write: Writer::Sqlite(write), .. } = connect(&url).await.unwrap() else {
+        let Database { read: Pool::Sqlite(read), write: Writer::Sqlite(write), .. } =
+            connect(&url).await.unwrap()
+        else {
             panic!()
         };
         let write = write.pool();
         assert_eq!(pragma(write, "SELECT journal_mode FROM pragma_journal_mode").await, "wal");
-        assert_eq!(pragma(write, "SELECT CAST(synchronous AS TEXT) FROM pragma_synchronous").await, "2");
-        assert_eq!(pragma(write, "SELECT CAST(foreign_keys AS TEXT) FROM pragma_foreign_keys").await, "1");
-        assert_eq!(pragma(&read, "SELECT CAST(query_only AS TEXT) FROM pragma_query_only").await, "1");
+        assert_eq!(
+            pragma(write, "SELECT CAST(synchronous AS TEXT) FROM pragma_synchronous").await,
+            "2"
+        );
+        assert_eq!(
+            pragma(write, "SELECT CAST(foreign_keys AS TEXT) FROM pragma_foreign_keys").await,
+            "1"
+        );
+        assert_eq!(
+            pragma(&read, "SELECT CAST(query_only AS TEXT) FROM pragma_query_only").await,
+            "1"
+        );
     }
 }

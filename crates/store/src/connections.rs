@@ -75,13 +75,25 @@ macro_rules! within {
 
 impl Pool {
     /// The row that a reading statement finds, if any.
-    pub(crate) async fn optional<T: Record>(&self, statement: Statement, args: Args<'_>) -> Result<Option<T>> {
-        Ok(on!(self, statement, |pool, sql| bind!(sqlx::query_as(sql), args).fetch_optional(pool).await)?)
+    pub(crate) async fn optional<T: Record>(
+        &self,
+        statement: Statement,
+        args: Args<'_>,
+    ) -> Result<Option<T>> {
+        Ok(on!(self, statement, |pool, sql| bind!(sqlx::query_as(sql), args)
+            .fetch_optional(pool)
+            .await)?)
     }
 
     /// The rows that a reading statement finds.
-    pub(crate) async fn all<T: Record>(&self, statement: Statement, args: Args<'_>) -> Result<Vec<T>> {
-        Ok(on!(self, statement, |pool, sql| bind!(sqlx::query_as(sql), args).fetch_all(pool).await)?)
+    pub(crate) async fn all<T: Record>(
+        &self,
+        statement: Statement,
+        args: Args<'_>,
+    ) -> Result<Vec<T>> {
+        Ok(on!(self, statement, |pool, sql| bind!(sqlx::query_as(sql), args)
+            .fetch_all(pool)
+            .await)?)
     }
 
     /// A connection for several reading statements in a row.
@@ -121,11 +133,19 @@ impl Writer {
 
 impl Reader {
     /// The rows that a reading statement finds.
-    pub(crate) async fn all<T: Record>(&mut self, statement: Statement, args: Args<'_>) -> Result<Vec<T>> {
+    pub(crate) async fn all<T: Record>(
+        &mut self,
+        statement: Statement,
+        args: Args<'_>,
+    ) -> Result<Vec<T>> {
         check(args)?;
         Ok(match self {
-            Self::Sqlite(one) => bind!(sqlx::query_as(statement.sqlite), args).fetch_all(&mut **one).await,
-            Self::Postgres(one) => bind!(sqlx::query_as(statement.postgres), args).fetch_all(&mut **one).await,
+            Self::Sqlite(one) => {
+                bind!(sqlx::query_as(statement.sqlite), args).fetch_all(&mut **one).await
+            }
+            Self::Postgres(one) => {
+                bind!(sqlx::query_as(statement.postgres), args).fetch_all(&mut **one).await
+            }
         }?)
     }
 }
@@ -133,22 +153,43 @@ impl Reader {
 impl DatabaseTransaction {
     /// The number of rows that a writing statement changed.
     pub(crate) async fn execute(&mut self, statement: Statement, args: Args<'_>) -> Result<u64> {
-        Ok(within!(self, statement, |to, sql| bind!(sqlx::query(sql), args).execute(to).await?.rows_affected()))
+        Ok(within!(self, statement, |to, sql| bind!(sqlx::query(sql), args)
+            .execute(to)
+            .await?
+            .rows_affected()))
     }
 
     /// The row that a statement is sure to return.
-    pub(crate) async fn one<T: Record>(&mut self, statement: Statement, args: Args<'_>) -> Result<T> {
-        Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args).fetch_one(to).await)?)
+    pub(crate) async fn one<T: Record>(
+        &mut self,
+        statement: Statement,
+        args: Args<'_>,
+    ) -> Result<T> {
+        Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args)
+            .fetch_one(to)
+            .await)?)
     }
 
     /// The row that a statement finds or returns, if any.
-    pub(crate) async fn optional<T: Record>(&mut self, statement: Statement, args: Args<'_>) -> Result<Option<T>> {
-        Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args).fetch_optional(to).await)?)
+    pub(crate) async fn optional<T: Record>(
+        &mut self,
+        statement: Statement,
+        args: Args<'_>,
+    ) -> Result<Option<T>> {
+        Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args)
+            .fetch_optional(to)
+            .await)?)
     }
 
     /// The rows that a statement finds or returns.
-    pub(crate) async fn all<T: Record>(&mut self, statement: Statement, args: Args<'_>) -> Result<Vec<T>> {
-        Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args).fetch_all(to).await)?)
+    pub(crate) async fn all<T: Record>(
+        &mut self,
+        statement: Statement,
+        args: Args<'_>,
+    ) -> Result<Vec<T>> {
+        Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args)
+            .fetch_all(to)
+            .await)?)
     }
 
     /// Says something about the transaction itself.

@@ -43,7 +43,11 @@ impl Store {
             return self.database().optional(CURRENT, args![alias: alias, ship: ship]).await;
         }
         let (answer, answered) = oneshot::channel();
-        if self.questions().enter(Question { ship: ship.to_owned(), alias: alias.to_owned(), answer }) {
+        if self.questions().enter(Question {
+            ship: ship.to_owned(),
+            alias: alias.to_owned(),
+            answer,
+        }) {
             tokio::spawn(QuestionRound(self.clone()).run());
         }
         match answered.await {
@@ -68,7 +72,12 @@ impl QuestionRound {
         }
     }
 
-    async fn ask(&self, reader: &mut Option<Reader>, alias: &str, questions: &[Question]) -> Result<Vec<CurrentVersion>> {
+    async fn ask(
+        &self,
+        reader: &mut Option<Reader>,
+        alias: &str,
+        questions: &[Question],
+    ) -> Result<Vec<CurrentVersion>> {
         let mut values = [("ship", Arg::Text(None)); AT_ONCE + 1];
         values[0] = ("alias", Arg::from(alias));
         for (place, question) in values[1..].iter_mut().zip(questions) {

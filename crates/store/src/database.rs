@@ -34,7 +34,11 @@ impl Database {
     }
 
     /// The row that a reading statement finds, if any; a unit of work sees what it has written.
-    pub(crate) async fn optional<T: Record>(&self, statement: Statement, args: Args<'_>) -> Result<Option<T>> {
+    pub(crate) async fn optional<T: Record>(
+        &self,
+        statement: Statement,
+        args: Args<'_>,
+    ) -> Result<Option<T>> {
         check(args)?;
         if let Some(unit) = &self.unit
             && let Some(mut open) = unit.open().await?
@@ -45,7 +49,11 @@ impl Database {
     }
 
     /// The rows that a reading statement finds; a unit of work sees what it has written.
-    pub(crate) async fn all<T: Record>(&self, statement: Statement, args: Args<'_>) -> Result<Vec<T>> {
+    pub(crate) async fn all<T: Record>(
+        &self,
+        statement: Statement,
+        args: Args<'_>,
+    ) -> Result<Vec<T>> {
         check(args)?;
         if let Some(unit) = &self.unit
             && let Some(mut open) = unit.open().await?
@@ -82,13 +90,21 @@ impl Transaction {
     }
 
     /// The row that a statement finds or returns, if any.
-    pub(crate) async fn optional<T: Record>(&mut self, statement: Statement, args: Args<'_>) -> Result<Option<T>> {
+    pub(crate) async fn optional<T: Record>(
+        &mut self,
+        statement: Statement,
+        args: Args<'_>,
+    ) -> Result<Option<T>> {
         check(args)?;
         self.transaction()?.optional(statement, args).await
     }
 
     /// The row that a statement is sure to return.
-    pub(crate) async fn one<T: Record>(&mut self, statement: Statement, args: Args<'_>) -> Result<T> {
+    pub(crate) async fn one<T: Record>(
+        &mut self,
+        statement: Statement,
+        args: Args<'_>,
+    ) -> Result<T> {
         check(args)?;
         self.transaction()?.one(statement, args).await
     }

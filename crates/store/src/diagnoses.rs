@@ -69,7 +69,8 @@ impl Store {
 impl Diagnoses<'_> {
     /// Every diagnosis, in the order in which they were made.
     pub async fn all(&self, page: &Page) -> Result<List<Diagnosed>> {
-        let diagnoses = self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
+        let diagnoses =
+            self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
         Ok(page.of(diagnoses, |diagnosis: &Diagnosed| diagnosis.id.clone()))
     }
 

@@ -44,7 +44,11 @@ impl EffectLibraries<'_> {
         let sha256 = sha256_hex(document.as_bytes());
         if self.find(&sha256).await?.is_none() {
             let mut tx = self.0.begin().await?;
-            tx.execute(INSERT, args![sha256: &sha256, document: document, created_us: self.0.now_us()]).await?;
+            tx.execute(
+                INSERT,
+                args![sha256: &sha256, document: document, created_us: self.0.now_us()],
+            )
+            .await?;
             tx.commit().await?;
         }
         Ok(sha256)
@@ -61,7 +65,8 @@ impl EffectLibraries<'_> {
 
     /// All libraries by hash.
     pub async fn list(&self, page: &Page) -> Result<List<EffectLibrary>> {
-        let libraries = self.0.database().all(LIST, args![after: &page.after, limit: page.fetch()?]).await?;
+        let libraries =
+            self.0.database().all(LIST, args![after: &page.after, limit: page.fetch()?]).await?;
         Ok(page.of(libraries, |library: &EffectLibrary| library.sha256.clone()))
     }
 }

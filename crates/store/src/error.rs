@@ -64,7 +64,10 @@ pub enum StoreError {
 }
 
 fn at(current: Option<i64>) -> String {
-    current.map_or_else(|| "no revision (it does not exist)".to_owned(), |revision| format!("revision {revision}"))
+    current.map_or_else(
+        || "no revision (it does not exist)".to_owned(),
+        |revision| format!("revision {revision}"),
+    )
 }
 
 impl StoreError {
@@ -88,7 +91,11 @@ impl StoreError {
         Self::NotFound { kind, id: id.into() }
     }
 
-    pub(crate) fn conflict(kind: &'static str, id: impl Into<String>, message: impl Into<String>) -> Self {
+    pub(crate) fn conflict(
+        kind: &'static str,
+        id: impl Into<String>,
+        message: impl Into<String>,
+    ) -> Self {
         Self::Conflict { kind, id: id.into(), message: message.into() }
     }
 
@@ -113,11 +120,14 @@ pub(crate) fn is_full(error: &sqlx::Error) -> bool {
         sqlx::Error::Database(error) => {
             let sqlite = error.try_downcast_ref::<sqlx::sqlite::SqliteError>().is_some();
             let code = error.code();
-            code.is_some_and(|code| if sqlite { SQLITE_FULL.contains(&&*code) } else { code == POSTGRES_FULL })
+            code.is_some_and(|code| {
+                if sqlite { SQLITE_FULL.contains(&&*code) } else { code == POSTGRES_FULL }
+            })
         }
         sqlx::Error::Migrate(error) => {
             io_errors(&**error).any(is_out_of_space)
-                || sources(&**error).any(|error| error.downcast_ref::<sqlx::Error>().is_some_and(is_full))
+                || sources(&**error)
+                    .any(|error| error.downcast_ref::<sqlx::Error>().is_some_and(is_full))
         }
         other => io_errors(other).any(is_out_of_space),
     }
@@ -125,11 +135,16 @@ pub(crate) fn is_full(error: &sqlx::Error) -> bool {
 
 /// Whether the system has no room for what was to be written: the disk, the owner's share of it, or the longest file.
 pub fn is_out_of_space(error: &io::Error) -> bool {
-    matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge)
+    matches!(
+        error.kind(),
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge
+    )
 }
 
 /// An error and those behind it.
-fn sources<'a>(error: &'a (dyn Error + 'static)) -> impl Iterator<Item = &'a (dyn Error + 'static)> {
+fn sources<'a>(
+    error: &'a (dyn Error + 'static),
+) -> impl Iterator<Item = &'a (dyn Error + 'static)> {
     std::iter::successors(Some(error), |error: &&'a (dyn Error + 'static)| (*error).source())
 }
 
@@ -143,10 +158,25 @@ mod tests {
 
     #[test]
     fn a_full_disk_is_told_from_other_failures() {
-        for (kind, full) in [(ErrorKind::StorageFull, true), (ErrorKind::QuotaExceeded, true), (ErrorKind::NotFound, false)] {
-            let object = object_store::Error::Generic { store: "folder", source: Box::new(io::Error::from(kind)) };
-            assert_eq!(StoreError::from(ObjectsError::from(object)).is_out_of_space(), full, "{kind}");
-            assert_eq!(StoreError::from(sqlx::Error::Io(kind.into())).is_out_of_space(), full, "{kind}");
+        for (kind, full) in [
+            (ErrorKind::StorageFull, true),
+            (ErrorKind::QuotaExceeded, true),
+            (ErrorKind::NotFound, false),
+        ] {
+            let object = object_store::Error::Generic {
+                store: "folder",
+                source: Box::new(io::Error::from(kind)),
+            };
+            assert_eq!(
+                StoreError::from(ObjectsError::from(object)).is_out_of_space(),
+                full,
+                "{kind}"
+            );
+            assert_eq!(
+                StoreError::from(sqlx::Error::Io(kind.into())).is_out_of_space(),
+                full,
+                "{kind}"
+            );
         }
         assert!(!StoreError::missing("ship", "kcs").is_out_of_space());
     }

@@ -102,9 +102,12 @@ impl Families<'_> {
         checks::name("name", name)?;
         let mut tx = self.0.begin().await?;
         version::check_id(&mut tx, "foundation", foundation).await?;
-        let values = args![name: name, title: title, foundation: foundation, created_us: self.0.now_us()];
+        let values =
+            args![name: name, title: title, foundation: foundation, created_us: self.0.now_us()];
         let family = tx.optional(INSERT, values).await?;
-        let family = family.ok_or_else(|| StoreError::conflict("family", name, "there is one of this name already"))?;
+        let family = family.ok_or_else(|| {
+            StoreError::conflict("family", name, "there is one of this name already")
+        })?;
         tx.commit().await?;
         Ok(family)
     }
@@ -117,7 +120,8 @@ impl Families<'_> {
 
     /// The families by name.
     pub async fn list(&self, page: &Page) -> Result<List<Family>> {
-        let families = self.0.database().all(LIST, args![after: &page.after, limit: page.fetch()?]).await?;
+        let families =
+            self.0.database().all(LIST, args![after: &page.after, limit: page.fetch()?]).await?;
         Ok(page.of(families, |family: &Family| family.name.clone()))
     }
 
@@ -141,7 +145,9 @@ impl Families<'_> {
             if rows == 0 {
                 return Err(StoreError::invalid("ships", format!("there is no ship `{ship}`")));
             }
-            added += tx.execute(ADD, args![family: family, ship: ship, added_us: self.0.now_us()]).await?;
+            added += tx
+                .execute(ADD, args![family: family, ship: ship, added_us: self.0.now_us()])
+                .await?;
         }
         tx.commit().await?;
         Ok(added)
@@ -157,7 +163,8 @@ impl Families<'_> {
 
     /// How many members a family has.
     pub async fn count(&self, family: &str) -> Result<i64> {
-        let counted: Option<Counted> = self.0.database().optional(COUNT, args![family: family]).await?;
+        let counted: Option<Counted> =
+            self.0.database().optional(COUNT, args![family: family]).await?;
         Ok(counted.map_or(0, |counted| counted.rows))
     }
 
@@ -184,7 +191,9 @@ impl Families<'_> {
     /// What a family has taught: at a revision, or last.
     pub async fn prior(&self, family: &str, revision: Option<i64>) -> Result<FamilyPrior> {
         let prior = match revision {
-            Some(revision) => self.0.database().optional(PRIOR, args![family: family, revision: revision]).await?,
+            Some(revision) => {
+                self.0.database().optional(PRIOR, args![family: family, revision: revision]).await?
+            }
             None => self.0.database().optional(LAST_PRIOR, args![family: family]).await?,
         };
         prior.ok_or_else(|| StoreError::missing("family prior", family))
@@ -192,11 +201,20 @@ impl Families<'_> {
 }
 
 /// Keeps what a family has taught within a transaction.
-pub(crate) async fn teach(store: &Store, tx: &mut Transaction, family: &str, document: &str) -> Result<FamilyPrior> {
+pub(crate) async fn teach(
+    store: &Store,
+    tx: &mut Transaction,
+    family: &str,
+    document: &str,
+) -> Result<FamilyPrior> {
     checks::json("document", document)?;
     exists(tx, family).await?;
     let sha256 = sha256_hex(document.as_bytes());
-    tx.one(TEACH, args![family: family, document: document, sha256: &sha256, created_us: store.now_us()]).await
+    tx.one(
+        TEACH,
+        args![family: family, document: document, sha256: &sha256, created_us: store.now_us()],
+    )
+    .await
 }
 
 async fn exists(tx: &mut Transaction, family: &str) -> Result<()> {

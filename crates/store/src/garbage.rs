@@ -27,12 +27,19 @@ impl Store {
     /// Removes the objects of those keys that no trial refers to, and returns these keys. No trial is put in meanwhile, and
     /// [`crate::Trials::insert_all_and_enqueue`] looks for its objects after it has waited for this: neither order of the two
     /// leaves a trial without samples.
-    pub async fn remove_unreferred(&self, objects: &Objects, keys: &[String]) -> Result<Vec<String>> {
+    pub async fn remove_unreferred(
+        &self,
+        objects: &Objects,
+        keys: &[String],
+    ) -> Result<Vec<String>> {
         let mut tx = self.begin().await?;
         tx.execute(LOCK, &[]).await?;
         let removed = unreferred(&mut tx, keys).await?;
         let removal = |key: &String| objects.remove(key.clone());
-        stream::iter(removed.iter().map(removal).collect::<Vec<_>>()).buffer_unordered(AT_ONCE).try_collect::<()>().await?;
+        stream::iter(removed.iter().map(removal).collect::<Vec<_>>())
+            .buffer_unordered(AT_ONCE)
+            .try_collect::<()>()
+            .await?;
         tx.commit().await?;
         Ok(removed)
     }

@@ -148,7 +148,11 @@ impl WriterTurn {
 
 impl SharedTransaction {
     async fn begin(pool: &SqlitePool) -> sqlx::Result<Self> {
-        let mut begun = Self { connection: pool.acquire().await?, outcome: CommitOutcome::default(), awaited: false };
+        let mut begun = Self {
+            connection: pool.acquire().await?,
+            outcome: CommitOutcome::default(),
+            awaited: false,
+        };
         match begun.run("BEGIN IMMEDIATE").await {
             Ok(()) => Ok(begun),
             Err(error) => Err(begun.give_up(error)),
@@ -192,7 +196,9 @@ fn not_kept(reason: &str) -> sqlx::Error {
 }
 
 /// Does work to its end even if nobody waits for it any more: half a transaction must not be left behind.
-async fn uninterrupted<T: Send + 'static>(work: impl Future<Output = sqlx::Result<T>> + Send + 'static) -> sqlx::Result<T> {
+async fn uninterrupted<T: Send + 'static>(
+    work: impl Future<Output = sqlx::Result<T>> + Send + 'static,
+) -> sqlx::Result<T> {
     match tokio::spawn(work).await {
         Ok(done) => done,
         Err(error) => Err(not_kept(&error.to_string())),
@@ -209,13 +215,18 @@ mod tests {
     use super::*;
 
     async fn group() -> (WriterGroup, SqlitePool) {
-        let pool = SqlitePoolOptions::new().max_connections(1).connect("sqlite::memory:").await.unwrap();
+        let pool =
+            SqlitePoolOptions::new().max_connections(1).connect("sqlite::memory:").await.unwrap();
         sqlx::query("CREATE TABLE kept (n INTEGER PRIMARY KEY)").execute(&pool).await.unwrap();
         (WriterGroup::new(pool.clone()), pool)
     }
 
     async fn put(part: &mut TransactionPart, n: i64) -> sqlx::Result<()> {
-        sqlx::query("INSERT INTO kept VALUES ($1)").bind(n).execute(part.connection()?).await.map(drop)
+        sqlx::query("INSERT INTO kept VALUES ($1)")
+            .bind(n)
+            .execute(part.connection()?)
+            .await
+            .map(drop)
     }
 
     async fn kept(pool: &SqlitePool) -> Vec<i64> {

@@ -103,7 +103,8 @@ impl Idempotency<'_> {
     /// conflict when somebody has.
     pub async fn prolong(&self, ticket: &Ticket) -> Result<()> {
         let Ticket { scope, key, began_us } = ticket;
-        let values = args![scope: scope, key: key, created_us: *began_us, alive_us: self.0.now_us()];
+        let values =
+            args![scope: scope, key: key, created_us: *began_us, alive_us: self.0.now_us()];
         let mut tx = self.0.begin().await?;
         let prolonged = tx.execute(PROLONG, values).await?;
         tx.commit().await?;
@@ -121,16 +122,23 @@ impl Idempotency<'_> {
     /// Forgets the keys that are older than [`KEEP_KEYS`] and returns their number.
     pub async fn purge(&self) -> Result<u64> {
         let mut tx = self.0.begin().await?;
-        let purged = tx.execute(PURGE, args![created_us: self.0.now_us() - micros(KEEP_KEYS)]).await?;
+        let purged =
+            tx.execute(PURGE, args![created_us: self.0.now_us() - micros(KEEP_KEYS)]).await?;
         tx.commit().await?;
         Ok(purged)
     }
 }
 
 /// Keeps the answer to a request for replay, within the transaction of its work.
-pub(crate) async fn answered(tx: &mut Transaction, ticket: &Ticket, status: i64, body: &str) -> Result<()> {
+pub(crate) async fn answered(
+    tx: &mut Transaction,
+    ticket: &Ticket,
+    status: i64,
+    body: &str,
+) -> Result<()> {
     let Ticket { scope, key, began_us } = ticket;
-    let values = args![scope: scope, key: key, created_us: *began_us, status: status, response: body];
+    let values =
+        args![scope: scope, key: key, created_us: *began_us, status: status, response: body];
     match tx.execute(FINISH, values).await? {
         0 => Err(taken_over(key)),
         _ => Ok(()),
@@ -138,23 +146,36 @@ pub(crate) async fn answered(tx: &mut Transaction, ticket: &Ticket, status: i64,
 }
 
 fn taken_over(key: &str) -> StoreError {
-    StoreError::conflict("idempotency key", key, "the request has been taken over by another; repeat it for its answer")
+    StoreError::conflict(
+        "idempotency key",
+        key,
+        "the request has been taken over by another; repeat it for its answer",
+    )
 }
 
 /// What to do with a key that is there already.
-async fn again(tx: &mut Transaction, scope: &str, key: &str, request_sha256: &str, now: i64) -> Result<Begun> {
+async fn again(
+    tx: &mut Transaction,
+    scope: &str,
+    key: &str,
+    request_sha256: &str,
+    now: i64,
+) -> Result<Begun> {
     let entry: Option<KeyEntry> = tx.optional(GET, args![scope: scope, key: key]).await?;
     Ok(match entry {
         // It was abandoned between two statements; the caller comes again.
         None => Begun::InProgress,
         Some(entry) if entry.request_sha256 != request_sha256 => Begun::Mismatch,
-        Some(KeyEntry { status: Some(status), response, .. }) => Begun::Replay { status, body: response.unwrap_or_default() },
+        Some(KeyEntry { status: Some(status), response, .. }) => {
+            Begun::Replay { status, body: response.unwrap_or_default() }
+        }
         Some(_) => take_over(tx, scope, key, now).await?,
     })
 }
 
 async fn take_over(tx: &mut Transaction, scope: &str, key: &str, now: i64) -> Result<Begun> {
-    let values = args![scope: scope, key: key, created_us: now, before_us: now - micros(TAKE_OVER_AFTER)];
+    let values =
+        args![scope: scope, key: key, created_us: now, before_us: now - micros(TAKE_OVER_AFTER)];
     Ok(match tx.execute(TAKE_OVER, values).await? {
         0 => Begun::InProgress,
         _ => Begun::New(ticket(scope, key, now)),

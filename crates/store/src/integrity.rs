@@ -162,7 +162,9 @@ impl Store {
         let mut faults = Vec::new();
         for (check, statement) in CHECKS {
             let found: Vec<Found> = self.database().all(*statement, &[]).await?;
-            faults.extend(found.into_iter().map(|found| Fault::new(check, found.place, found.message)));
+            faults.extend(
+                found.into_iter().map(|found| Fault::new(check, found.place, found.message)),
+            );
         }
         Ok(faults)
     }

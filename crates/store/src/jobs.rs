@@ -59,9 +59,18 @@ impl Jobs<'_> {
         let (database, limit) = (self.0.database(), page.fetch()?);
         let jobs = match (&filter.ship, state) {
             (None, None) => database.all(LIST, args![after: &page.after, limit: limit]).await?,
-            (None, Some(state)) => database.all(LIST_STATE, args![after: &page.after, limit: limit, state: state]).await?,
+            (None, Some(state)) => {
+                database
+                    .all(LIST_STATE, args![after: &page.after, limit: limit, state: state])
+                    .await?
+            }
             (Some(ship), state) => {
-                database.all(LIST_SHIP, args![after: &page.after, limit: limit, ship: ship, state: state]).await?
+                database
+                    .all(
+                        LIST_SHIP,
+                        args![after: &page.after, limit: limit, ship: ship, state: state],
+                    )
+                    .await?
             }
         };
         Ok(page.of(jobs, |job: &Job| job.id.clone()))
@@ -74,16 +83,34 @@ impl Jobs<'_> {
 
     /// Cancels a job that waits, or asks the worker of a running one to stop.
     pub async fn request_cancel(&self, id: &str) -> Result<Job> {
-        self.unless(CANCEL, id, args![id: id, finished_us: self.0.now_us()], "only what waits or runs can be cancelled").await
+        self.unless(
+            CANCEL,
+            id,
+            args![id: id, finished_us: self.0.now_us()],
+            "only what waits or runs can be cancelled",
+        )
+        .await
     }
 
     /// Puts a job that failed or was cancelled back in the queue.
     pub async fn retry(&self, id: &str) -> Result<Job> {
-        self.unless(RETRY, id, args![id: id], "only what failed or was cancelled can be tried again").await
+        self.unless(
+            RETRY,
+            id,
+            args![id: id],
+            "only what failed or was cancelled can be tried again",
+        )
+        .await
     }
 
     /// A change that the job's state may rule out.
-    async fn unless(&self, statement: Statement, id: &str, values: Args<'_>, rule: &str) -> Result<Job> {
+    async fn unless(
+        &self,
+        statement: Statement,
+        id: &str,
+        values: Args<'_>,
+        rule: &str,
+    ) -> Result<Job> {
         let mut tx = self.0.begin().await?;
         let Some(job) = tx.optional(statement, values).await? else {
             let state = find(&mut tx, id).await?.state;
@@ -99,7 +126,8 @@ pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewJob) ->
     checks::name("kind", &new.kind)?;
     checks::json("request", &new.request)?;
     let (id, now) = (store.new_id(), store.now_us());
-    let values = args![id: &id, kind: &new.kind, ship: &new.ship, request: &new.request, created_us: now];
+    let values =
+        args![id: &id, kind: &new.kind, ship: &new.ship, request: &new.request, created_us: now];
     tx.one(INSERT, values).await
 }
 

@@ -46,12 +46,20 @@ impl Laws<'_> {
         checks::name("name", name)?;
         let sha256 = sha256_hex(document.as_bytes());
         let mut tx = self.0.begin().await?;
-        tx.execute(INSERT, args![name: name, document: document, sha256: &sha256, created_us: self.0.now_us()]).await?;
+        tx.execute(
+            INSERT,
+            args![name: name, document: document, sha256: &sha256, created_us: self.0.now_us()],
+        )
+        .await?;
         let law: Law = tx.one(GET, args![name: name]).await?;
         tx.commit().await?;
         match law.sha256 == sha256 {
             true => Ok(law),
-            false => Err(StoreError::conflict("law", name, "exists with another text, and a law never changes")),
+            false => Err(StoreError::conflict(
+                "law",
+                name,
+                "exists with another text, and a law never changes",
+            )),
         }
     }
 
@@ -63,7 +71,8 @@ impl Laws<'_> {
 
     /// All laws by name.
     pub async fn list(&self, page: &Page) -> Result<List<Law>> {
-        let laws = self.0.database().all(LIST, args![after: &page.after, limit: page.fetch()?]).await?;
+        let laws =
+            self.0.database().all(LIST, args![after: &page.after, limit: page.fetch()?]).await?;
         Ok(page.of(laws, |law: &Law| law.name.clone()))
     }
 }

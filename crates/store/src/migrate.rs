@@ -46,13 +46,22 @@ pub(crate) async fn postgres(pool: &PgPool) -> Result<()> {
 
 /// The schema as it was after a migration, within a transaction of the caller's.
 pub(crate) async fn postgres_up_to(version: i64, connection: &mut PgConnection) -> Result<()> {
-    Ok(migrator(POSTGRES).run_direct(Some(version), connection, false).await.map_err(sqlx::Error::from)?)
+    Ok(migrator(POSTGRES)
+        .run_direct(Some(version), connection, false)
+        .await
+        .map_err(sqlx::Error::from)?)
 }
 
 /// The same on SQLite, for tests of upgrades.
 #[cfg(all(unix, feature = "testing"))]
-pub(crate) async fn sqlite_up_to(version: i64, connection: &mut sqlx::SqliteConnection) -> Result<()> {
-    Ok(migrator(SQLITE).run_direct(Some(version), connection, false).await.map_err(sqlx::Error::from)?)
+pub(crate) async fn sqlite_up_to(
+    version: i64,
+    connection: &mut sqlx::SqliteConnection,
+) -> Result<()> {
+    Ok(migrator(SQLITE)
+        .run_direct(Some(version), connection, false)
+        .await
+        .map_err(sqlx::Error::from)?)
 }
 
 /// The number of the newest migration.
@@ -68,7 +77,9 @@ mod tests {
 
     fn files(dialect: &str) -> Vec<String> {
         let folder = format!("{}/../../migrations/{dialect}", env!("CARGO_MANIFEST_DIR"));
-        let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
+        let name = |entry: std::io::Result<std::fs::DirEntry>| {
+            entry.unwrap().file_name().into_string().unwrap()
+        };
         let mut names: Vec<_> = std::fs::read_dir(folder).unwrap().map(name).collect();
         names.sort();
         names
@@ -77,7 +88,10 @@ mod tests {
     #[test]
     fn every_migration_file_is_embedded() {
         for (dialect, sources) in [("sqlite", SQLITE), ("postgres", POSTGRES)] {
-            let embedded: Vec<_> = sources.iter().map(|(version, name, _)| format!("{version:04}_{name}.sql")).collect();
+            let embedded: Vec<_> = sources
+                .iter()
+                .map(|(version, name, _)| format!("{version:04}_{name}.sql"))
+                .collect();
             assert_eq!(files(dialect), embedded);
         }
     }

@@ -45,20 +45,34 @@ impl Objects {
     /// # Errors
     /// Names the first one that is not.
     pub(crate) async fn must_have(&self, keys: impl Iterator<Item = String> + Send) -> Result<()> {
-        let there =
-            |key: String| async move { if self.exists(&key).await? { Ok(()) } else { Err(StoreError::missing("object", key)) } };
-        stream::iter(keys.collect::<Vec<_>>()).map(there).buffer_unordered(AT_ONCE).try_collect().await
+        let there = |key: String| async move {
+            if self.exists(&key).await? { Ok(()) } else { Err(StoreError::missing("object", key)) }
+        };
+        stream::iter(keys.collect::<Vec<_>>())
+            .map(there)
+            .buffer_unordered(AT_ONCE)
+            .try_collect()
+            .await
     }
 }
 
 fn head(meta: &ObjectMeta) -> ObjectHead {
     let path = meta.location.as_ref();
-    ObjectHead { name: name(path), bytes: meta.size, modified_us: meta.last_modified.timestamp_micros() }
+    ObjectHead {
+        name: name(path),
+        bytes: meta.size,
+        modified_us: meta.last_modified.timestamp_micros(),
+    }
 }
 
 fn name(path: &str) -> ObjectName {
-    let key = path.strip_prefix(FOLDER).and_then(|rest| rest.strip_prefix('/')).map(|rest| rest.replacen('/', "", 1));
-    match key.filter(|key| checks::sha256("key", key).is_ok() && path.as_bytes().get(FOLDER.len() + 3) == Some(&b'/')) {
+    let key = path
+        .strip_prefix(FOLDER)
+        .and_then(|rest| rest.strip_prefix('/'))
+        .map(|rest| rest.replacen('/', "", 1));
+    match key.filter(|key| {
+        checks::sha256("key", key).is_ok() && path.as_bytes().get(FOLDER.len() + 3) == Some(&b'/')
+    }) {
         Some(key) => ObjectName::Key(key),
         None => ObjectName::Stranger(path.to_owned()),
     }
@@ -72,7 +86,12 @@ mod tests {
     fn only_hashes_in_their_folders_are_keys() {
         let key = "ab".to_owned() + &"0".repeat(62);
         assert_eq!(name(&format!("objects/ab/{}", &key[2..])), ObjectName::Key(key.clone()));
-        for other in [format!("objects/abc/{}", &key[3..]), format!("objects/{key}"), "objects/ab/x".into(), "other".into()] {
+        for other in [
+            format!("objects/abc/{}", &key[3..]),
+            format!("objects/{key}"),
+            "objects/ab/x".into(),
+            "other".into(),
+        ] {
             assert_eq!(name(&other), ObjectName::Stranger(other.clone()));
         }
     }

@@ -54,7 +54,9 @@ impl Objects {
         if self.store.head(&ObjectPath::from(MARK)).await.is_ok() {
             return Ok(());
         }
-        let about = PutPayload::from_static(b"The objects of a Sistership store, named by the SHA-256 of their bytes.\n");
+        let about = PutPayload::from_static(
+            b"The objects of a Sistership store, named by the SHA-256 of their bytes.\n",
+        );
         self.store.put(&ObjectPath::from(MARK), about).await.map_err(ObjectsError::from)?;
         Ok(())
     }

@@ -51,7 +51,8 @@ impl ObjectsPlace {
     /// # Errors
     /// Says what would be right.
     pub fn s3(url: &str, endpoint: Option<String>, region: Option<String>) -> Result<Self> {
-        let wrong = || StoreError::invalid("objects_url", "write s3://BUCKET or s3://BUCKET/PREFIX");
+        let wrong =
+            || StoreError::invalid("objects_url", "write s3://BUCKET or s3://BUCKET/PREFIX");
         let rest = url.strip_prefix("s3://").ok_or_else(wrong)?;
         let (bucket, prefix) = rest.split_once('/').unwrap_or((rest, ""));
         let prefix = prefix.trim_matches('/');
@@ -61,10 +62,21 @@ impl ObjectsPlace {
         {
             return Err(wrong());
         }
-        if endpoint.as_ref().is_some_and(|url| !url.starts_with("http://") && !url.starts_with("https://")) {
-            return Err(StoreError::invalid("objects_endpoint", "write http://HOST:PORT or https://HOST"));
+        if endpoint
+            .as_ref()
+            .is_some_and(|url| !url.starts_with("http://") && !url.starts_with("https://"))
+        {
+            return Err(StoreError::invalid(
+                "objects_endpoint",
+                "write http://HOST:PORT or https://HOST",
+            ));
         }
-        Ok(Self::S3(S3Place { bucket: bucket.to_owned(), prefix: prefix.to_owned(), endpoint, region }))
+        Ok(Self::S3(S3Place {
+            bucket: bucket.to_owned(),
+            prefix: prefix.to_owned(),
+            endpoint,
+            region,
+        }))
     }
 
     /// The folder, where it is one.
@@ -93,7 +105,9 @@ impl Objects {
     pub fn at(place: &ObjectsPlace) -> Result<Self> {
         match place {
             ObjectsPlace::Folder(folder) => Self::local(folder),
-            ObjectsPlace::S3(place) => Ok(Self::over(bucket(builder(place), place).map_err(ObjectsError::from)?)),
+            ObjectsPlace::S3(place) => {
+                Ok(Self::over(bucket(builder(place), place).map_err(ObjectsError::from)?))
+            }
         }
     }
 }
@@ -101,15 +115,25 @@ impl Objects {
 /// The client of a bucket, with what the environment says.
 pub(crate) fn builder(place: &S3Place) -> AmazonS3Builder {
     let plain = place.endpoint.as_ref().is_some_and(|url| url.starts_with("http://"));
-    let client = ClientOptions::new().with_connect_timeout(CONNECT).with_timeout(REQUEST).with_allow_http(plain);
-    let retry = RetryConfig { backoff: BackoffConfig::default(), max_retries: 5, retry_timeout: RETRY };
-    let builder = AmazonS3Builder::from_env().with_bucket_name(&place.bucket).with_client_options(client).with_retry(retry);
+    let client = ClientOptions::new()
+        .with_connect_timeout(CONNECT)
+        .with_timeout(REQUEST)
+        .with_allow_http(plain);
+    let retry =
+        RetryConfig { backoff: BackoffConfig::default(), max_retries: 5, retry_timeout: RETRY };
+    let builder = AmazonS3Builder::from_env()
+        .with_bucket_name(&place.bucket)
+        .with_client_options(client)
+        .with_retry(retry);
     let builder = match &place.endpoint {
         Some(endpoint) => builder.with_endpoint(endpoint),
         None => builder,
     };
-    let environment = || ["AWS_REGION", "AWS_DEFAULT_REGION"].into_iter().find_map(|name| std::env::var(name).ok());
-    builder.with_region(place.region.clone().or_else(environment).unwrap_or_else(|| REGION.to_owned()))
+    let environment = || {
+        ["AWS_REGION", "AWS_DEFAULT_REGION"].into_iter().find_map(|name| std::env::var(name).ok())
+    };
+    builder
+        .with_region(place.region.clone().or_else(environment).unwrap_or_else(|| REGION.to_owned()))
 }
 
 /// Gives the process the cryptography of TLS, once: no HTTP client can be made without it, not even for plain HTTP.
@@ -119,7 +143,10 @@ pub fn provide_cryptography() {
 }
 
 /// The bucket, below its prefix.
-pub(crate) fn bucket(builder: AmazonS3Builder, place: &S3Place) -> object_store::Result<Arc<dyn ObjectStore>> {
+pub(crate) fn bucket(
+    builder: AmazonS3Builder,
+    place: &S3Place,
+) -> object_store::Result<Arc<dyn ObjectStore>> {
     provide_cryptography();
     let store = builder.build()?;
     Ok(match place.prefix.as_str() {
@@ -139,8 +166,19 @@ mod tests {
         let ObjectsPlace::S3(place) = read("s3://samples/fleet/a/").unwrap() else { panic!() };
         assert_eq!((place.bucket.as_str(), place.prefix.as_str()), ("samples", "fleet/a"));
         assert_eq!(read("s3://samples").unwrap().to_string(), "s3://samples/");
-        for wrong in ["", "samples", "s3://", "s3:///a", "gs://samples", "s3://user@host/a", "s3://samples/a//b"] {
-            assert!(matches!(read(wrong), Err(StoreError::Invalid { field: "objects_url", .. })), "{wrong}");
+        for wrong in [
+            "",
+            "samples",
+            "s3://",
+            "s3:///a",
+            "gs://samples",
+            "s3://user@host/a",
+            "s3://samples/a//b",
+        ] {
+            assert!(
+                matches!(read(wrong), Err(StoreError::Invalid { field: "objects_url", .. })),
+                "{wrong}"
+            );
         }
         let endpoint = ObjectsPlace::s3("s3://samples", Some("localhost:9000".into()), None);
         assert!(matches!(endpoint, Err(StoreError::Invalid { field: "objects_endpoint", .. })));

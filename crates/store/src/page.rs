@@ -38,7 +38,10 @@ impl<K> Page<K> {
     pub(crate) fn fetch(&self) -> Result<i64> {
         match (1..=MAX_LIMIT).contains(&self.limit) {
             true => Ok(self.limit + 1),
-            false => Err(StoreError::invalid("limit", format!("must be from 1 to {MAX_LIMIT}, is {}", self.limit))),
+            false => Err(StoreError::invalid(
+                "limit",
+                format!("must be from 1 to {MAX_LIMIT}, is {}", self.limit),
+            )),
         }
     }
 

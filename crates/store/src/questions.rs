@@ -87,7 +87,9 @@ impl Questions {
     /// The questions of one alias that wait the longest.
     pub(crate) fn take(&self) -> Vec<Question> {
         let waiting = &mut self.open().waiting;
-        let Some(alias) = waiting.first().map(|first| first.alias.clone()) else { return Vec::new() };
+        let Some(alias) = waiting.first().map(|first| first.alias.clone()) else {
+            return Vec::new();
+        };
         waiting.extract_if(.., |question| question.alias == alias).take(AT_ONCE).collect()
     }
 

@@ -95,7 +95,11 @@ impl Reports<'_> {
 }
 
 /// Puts a report in within a transaction.
-pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewReport) -> Result<ReportHead> {
+pub(crate) async fn insert(
+    store: &Store,
+    tx: &mut Transaction,
+    new: &NewReport,
+) -> Result<ReportHead> {
     checks::name("ship", &new.ship)?;
     checks::name("kind", &new.kind)?;
     checks::json("document", &new.document)?;

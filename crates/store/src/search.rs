@@ -174,7 +174,10 @@ impl ShipSearch {
 
     fn check(&self) -> Result<()> {
         if self.ranges.len() > MAX_RANGES {
-            return Err(StoreError::invalid("ranges", format!("at most {MAX_RANGES} ranges can be asked for at once")));
+            return Err(StoreError::invalid(
+                "ranges",
+                format!("at most {MAX_RANGES} ranges can be asked for at once"),
+            ));
         }
         for range in &self.ranges {
             checks::finite("min", range.min)?;
@@ -185,11 +188,14 @@ impl ShipSearch {
 
     /// The conditions, then what a statement has beside them.
     fn values<'a>(&'a self, others: Args<'a>) -> Vec<(&'static str, Arg<'a>)> {
-        let mut values: Vec<(&'static str, Arg<'a>)> = args![category: &self.category, tag: &self.tag].to_vec();
+        let mut values: Vec<(&'static str, Arg<'a>)> =
+            args![category: &self.category, tag: &self.tag].to_vec();
         for index in 0..MAX_RANGES {
             let range = self.ranges.get(index);
             let (min, max) = range.map_or((0.0, 0.0), |range| (range.min, range.max));
-            values.extend_from_slice(args![fact: range.map(|range| &*range.fact), min: min, max: max]);
+            values.extend_from_slice(
+                args![fact: range.map(|range| &*range.fact), min: min, max: max],
+            );
         }
         values.extend_from_slice(others);
         values
@@ -198,7 +204,11 @@ impl ShipSearch {
 
 impl Ships<'_> {
     /// Ships that a search finds, by the value of its first range's fact where it has one, else by name.
-    pub async fn search(&self, search: &ShipSearch, page: &Page<ShipKey>) -> Result<List<FoundShip, ShipKey>> {
+    pub async fn search(
+        &self,
+        search: &ShipSearch,
+        page: &Page<ShipKey>,
+    ) -> Result<List<FoundShip, ShipKey>> {
         search.check()?;
         let (value, name) = page.after.clone().unwrap_or_default();
         let (limit, database) = (page.fetch()?, self.0.database());
@@ -211,9 +221,15 @@ impl Ships<'_> {
                 if let Some(FurtherCondition::Range(FactRange { fact, min, max })) = few {
                     values.extend_from_slice(args![fact: fact, min: *min, max: *max]);
                 }
-                database.all(few.map_or(search.statement(), FurtherCondition::statement), &values).await?
+                database
+                    .all(few.map_or(search.statement(), FurtherCondition::statement), &values)
+                    .await?
             }
-            None => database.all(search.statement(), &search.values(args![after: &name, limit: limit])).await?,
+            None => {
+                database
+                    .all(search.statement(), &search.values(args![after: &name, limit: limit]))
+                    .await?
+            }
         };
         Ok(page.of(found, |ship: &FoundShip| (ship.value, ship.name.clone())))
     }
@@ -232,12 +248,16 @@ impl Ships<'_> {
     async fn more(&self, condition: FurtherCondition<'_>) -> Result<Option<Counted>> {
         let database = self.0.database();
         match condition {
-            FurtherCondition::Tag(tag) => database.optional(MORE_OF_TAG, args![tag: tag, few: FEW]).await,
+            FurtherCondition::Tag(tag) => {
+                database.optional(MORE_OF_TAG, args![tag: tag, few: FEW]).await
+            }
             FurtherCondition::Category(category) => {
                 database.optional(MORE_OF_CATEGORY, args![category: category, few: FEW]).await
             }
             FurtherCondition::Range(FactRange { fact, min, max }) => {
-                database.optional(MORE_OF_RANGE, args![fact: fact, min: *min, max: *max, few: FEW]).await
+                database
+                    .optional(MORE_OF_RANGE, args![fact: fact, min: *min, max: *max, few: FEW])
+                    .await
             }
         }
     }
@@ -246,7 +266,10 @@ impl Ships<'_> {
     pub async fn vectors(&self, search: &ShipSearch) -> Result<Vec<ShipVectors>> {
         search.check()?;
         if search.category.is_none() {
-            return Err(StoreError::invalid("category", "is needed: ships are compared within one"));
+            return Err(StoreError::invalid(
+                "category",
+                "is needed: ships are compared within one",
+            ));
         }
         self.0.database().all(VECTORS, &search.values(&[])).await
     }

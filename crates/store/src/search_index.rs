@@ -79,7 +79,8 @@ impl SearchIndex<'_> {
         let mut written = 0;
         for ship in all {
             checks::json("vectors", &ship.vectors)?;
-            let taken = tx.execute(TAKE, args![ship: &ship.waiting.ship, mark: &ship.waiting.mark]).await?;
+            let taken =
+                tx.execute(TAKE, args![ship: &ship.waiting.ship, mark: &ship.waiting.mark]).await?;
             if taken > 0 {
                 write(&mut tx, ship).await?;
                 written += 1;
@@ -96,7 +97,9 @@ async fn write(tx: &mut Transaction, facts: &ShipFacts) -> Result<()> {
     for (fact, value) in &facts.facts {
         tx.execute(FACT, args![ship: ship, fact: fact, value: *value]).await?;
     }
-    tx.execute(VECTORS, args![ship: ship, category: &facts.category, vectors: &facts.vectors]).await.map(drop)
+    tx.execute(VECTORS, args![ship: ship, category: &facts.category, vectors: &facts.vectors])
+        .await
+        .map(drop)
 }
 
 /// Puts a ship in the queue within a transaction, if there is one of this name.
@@ -106,6 +109,11 @@ pub(crate) async fn mark(store: &Store, tx: &mut Transaction, ship: &str) -> Res
 }
 
 /// Puts a ship in the queue where the alias that has moved tells facts of it.
-pub(crate) async fn mark_moved(store: &Store, tx: &mut Transaction, model: &str, alias: &str) -> Result<()> {
+pub(crate) async fn mark_moved(
+    store: &Store,
+    tx: &mut Transaction,
+    model: &str,
+    alias: &str,
+) -> Result<()> {
     if alias == ALIAS { mark(store, tx, model).await } else { Ok(()) }
 }

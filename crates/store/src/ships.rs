@@ -168,7 +168,11 @@ impl Ships<'_> {
         let (database, limit) = (self.0.database(), page.fetch()?);
         let ships = match category {
             None => database.all(LIST, args![after: &page.after, limit: limit]).await?,
-            Some(category) => database.all(LIST_CATEGORY, args![after: &page.after, limit: limit, category: category]).await?,
+            Some(category) => {
+                database
+                    .all(LIST_CATEGORY, args![after: &page.after, limit: limit, category: category])
+                    .await?
+            }
         };
         Ok(page.of(ships, |ship: &Ship| ship.name.clone()))
     }
@@ -194,7 +198,9 @@ fn present(name: &str, ship: Option<Ship>) -> Result<Ship> {
 fn taken(name: &str, holder: Result<Ship>) -> StoreError {
     match holder {
         Ok(_) => StoreError::conflict("ship", name, "exists already"),
-        Err(StoreError::NotFound { .. }) => StoreError::conflict("ship", name, "was deleted; undelete it instead"),
+        Err(StoreError::NotFound { .. }) => {
+            StoreError::conflict("ship", name, "was deleted; undelete it instead")
+        }
         Err(error) => error,
     }
 }

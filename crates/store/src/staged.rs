@@ -36,7 +36,10 @@ impl Objects {
     /// Holds off [`clear_staged`](Self::clear_staged) while something is put; nothing where the file system knows no locks.
     pub(crate) async fn putting(&self) -> Result<Option<fs::File>> {
         let Some(root) = self.folder.clone() else { return Ok(None) };
-        blocking(move || Ok(fs::File::open(root).ok().filter(|folder| folder.lock_shared().is_ok()))).await
+        blocking(move || {
+            Ok(fs::File::open(root).ok().filter(|folder| folder.lock_shared().is_ok()))
+        })
+        .await
     }
 
     /// Removes what puts have left whose processes have ended: nobody puts anything while this holds the folder, and what was
@@ -49,7 +52,8 @@ impl Objects {
                 return Ok(0);
             }
             let settled = |staged: &Staged| {
-                let age = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, micros) - staged.modified_us;
+                let age = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, micros)
+                    - staged.modified_us;
                 age > micros(SETTLED)
             };
             let left: Vec<_> = find(&root)?.into_iter().filter(settled).collect();
@@ -67,7 +71,9 @@ impl Objects {
     }
 }
 
-async fn blocking<T: Send + 'static>(work: impl FnOnce() -> io::Result<T> + Send + 'static) -> Result<T> {
+async fn blocking<T: Send + 'static>(
+    work: impl FnOnce() -> io::Result<T> + Send + 'static,
+) -> Result<T> {
     let done = tokio::task::spawn_blocking(work).await.map_err(ObjectsError::from)?;
     Ok(done.map_err(ObjectsError::from)?)
 }
@@ -91,8 +97,14 @@ fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
 }
 
 fn is_staged(path: &Path) -> bool {
-    let suffix = path.file_name().and_then(|name| name.to_str()).and_then(|name| name.rsplit_once('#')).map(|(_, suffix)| suffix);
-    suffix.is_some_and(|suffix| !suffix.is_empty() && suffix.bytes().all(|byte| byte.is_ascii_digit()))
+    let suffix = path
+        .file_name()
+        .and_then(|name| name.to_str())
+        .and_then(|name| name.rsplit_once('#'))
+        .map(|(_, suffix)| suffix);
+    suffix.is_some_and(|suffix| {
+        !suffix.is_empty() && suffix.bytes().all(|byte| byte.is_ascii_digit())
+    })
 }
 
 /// The file, unless its put has ended by now.
@@ -125,7 +137,8 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let objects = Objects::local(root.path()).unwrap();
         let key = objects.put("samples".into()).await.unwrap();
-        let (left, fresh) = (root.path().join(FOLDER).join("ab#1"), root.path().join(FOLDER).join("ab#2"));
+        let (left, fresh) =
+            (root.path().join(FOLDER).join("ab#1"), root.path().join(FOLDER).join("ab#2"));
         let folder = root.path().join(FOLDER).join(&key[..2]);
         let [left, fresh] = [left, fresh].map(|path| folder.join(path.file_name().unwrap()));
         let old = SystemTime::now() - 2 * SETTLED;
@@ -140,7 +153,14 @@ mod tests {
 
     #[test]
     fn only_a_number_behind_the_sign_is_a_put_under_way() {
-        for (name, staged) in [("ab#1", true), ("ab#12", true), ("ab", false), ("ab#", false), ("ab#x", false), ("#x#3", true)] {
+        for (name, staged) in [
+            ("ab#1", true),
+            ("ab#12", true),
+            ("ab", false),
+            ("ab#", false),
+            ("ab#x", false),
+            ("#x#3", true),
+        ] {
             assert_eq!(is_staged(Path::new(name)), staged, "{name}");
         }
     }

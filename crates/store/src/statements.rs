@@ -41,8 +41,9 @@ mod prepare {
     use crate::error::{Result, StoreError};
     use crate::store::Store;
     use crate::{
-        aliases, bulks, current, diagnoses, effects, families, garbage, idempotency, integrity, jobs, laws, reports, room,
-        search, search_index, ships, statistics, store, tags, trials, version, versions, work,
+        aliases, bulks, current, diagnoses, effects, families, garbage, idempotency, integrity,
+        jobs, laws, reports, room, search, search_index, ships, statistics, store, tags, trials,
+        version, versions, work,
     };
 
     pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[
@@ -77,7 +78,9 @@ mod prepare {
             let mut count = 0;
             for (table, statements) in ALL {
                 for (name, statement) in *statements {
-                    self.prepare(*statement).await.map_err(|error| StoreError::conflict(table, *name, error.to_string()))?;
+                    self.prepare(*statement)
+                        .await
+                        .map_err(|error| StoreError::conflict(table, *name, error.to_string()))?;
                     count += 1;
                 }
             }
@@ -86,8 +89,12 @@ mod prepare {
 
         async fn prepare(&self, statement: super::Statement) -> sqlx::Result<()> {
             match &self.database().write {
-                Writer::Sqlite(group) => group.pool().prepare(statement.sqlite.into_sql_str()).await.map(drop),
-                Writer::Postgres(pool) => pool.prepare(statement.postgres.into_sql_str()).await.map(drop),
+                Writer::Sqlite(group) => {
+                    group.pool().prepare(statement.sqlite.into_sql_str()).await.map(drop)
+                }
+                Writer::Postgres(pool) => {
+                    pool.prepare(statement.postgres.into_sql_str()).await.map(drop)
+                }
             }
         }
     }

@@ -46,7 +46,8 @@ impl TrialStatistics<'_> {
             checks::sha256("key", key)?;
             checks::json("document", document)?;
             let sha256 = sha256_hex(document.as_bytes());
-            let values = args![key: key, document: document, sha256: &sha256, created_us: self.0.now_us()];
+            let values =
+                args![key: key, document: document, sha256: &sha256, created_us: self.0.now_us()];
             tx.execute(PUT, values).await?;
         }
         tx.commit().await
@@ -54,10 +55,17 @@ impl TrialStatistics<'_> {
 
     /// The document under a key, if it is there. One that is not what was kept is refused.
     pub async fn get(&self, key: &str) -> Result<Option<String>> {
-        let Some(found) = self.0.database().optional::<StatisticsRow>(GET, args![key: key]).await? else { return Ok(None) };
+        let Some(found) = self.0.database().optional::<StatisticsRow>(GET, args![key: key]).await?
+        else {
+            return Ok(None);
+        };
         match sha256_hex(found.document.as_bytes()) == found.sha256 {
             true => Ok(Some(found.document)),
-            false => Err(StoreError::conflict("statistics", key, "the document does not have its hash: the database is damaged")),
+            false => Err(StoreError::conflict(
+                "statistics",
+                key,
+                "the document does not have its hash: the database is damaged",
+            )),
         }
     }
 }

@@ -58,7 +58,9 @@ impl Store {
     /// The same, with ids made by `ids`.
     pub async fn connect_with(url: &str, clock: Arc<dyn Clock>, ids: Arc<dyn Ids>) -> Result<Self> {
         let database = match connect::connect(url).await {
-            Err(error) if error.is_out_of_space() && reserve::release(url) => connect::connect(url).await?,
+            Err(error) if error.is_out_of_space() && reserve::release(url) => {
+                connect::connect(url).await?
+            }
             other => other?,
         };
         Ok(Self::of(StoreParts {

@@ -60,6 +60,10 @@ async fn check_count(tx: &mut Transaction, name: &str) -> Result<()> {
     let count: Counted = tx.one(COUNT, args![ship: name]).await?;
     match usize::try_from(count.rows).is_ok_and(|rows| rows <= MAX_TAGS) {
         true => Ok(()),
-        false => Err(StoreError::conflict("ship", name, format!("has {MAX_TAGS} tags already, which is the most"))),
+        false => Err(StoreError::conflict(
+            "ship",
+            name,
+            format!("has {MAX_TAGS} tags already, which is the most"),
+        )),
     }
 }

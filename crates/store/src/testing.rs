@@ -43,10 +43,17 @@ impl TestDatabase {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let server = server::shared()?;
         let name = format!("test_{}", COUNT.fetch_add(1, Ordering::SeqCst));
-        let mut connection = server.options().connect().await.expect("a connection to the private PostgreSQL server");
+        let mut connection = server
+            .options()
+            .connect()
+            .await
+            .expect("a connection to the private PostgreSQL server");
         create(&mut connection, &name).await.expect("a new database");
         connection.close().await.expect("the end of a connection");
-        Some(Self { url: server.url(&name), folder: tempfile::tempdir().expect("a temporary folder") })
+        Some(Self {
+            url: server.url(&name),
+            folder: tempfile::tempdir().expect("a temporary folder"),
+        })
     }
 
     /// Opens it with a clock that stands still.
@@ -70,7 +77,9 @@ impl TestDatabase {
     async fn damage_sqlite(&self, sql: &str) -> sqlx::Result<()> {
         let options = SqliteConnectOptions::from_str(&self.url)?.foreign_keys(false);
         let mut connection = options.connect().await?;
-        let triggers = sqlx::query_scalar::<_, String>("SELECT name FROM sqlite_master WHERE type = 'trigger'");
+        let triggers = sqlx::query_scalar::<_, String>(
+            "SELECT name FROM sqlite_master WHERE type = 'trigger'",
+        );
         for trigger in triggers.fetch_all(&mut connection).await? {
             connection.execute(AssertSqlSafe(format!("DROP TRIGGER {trigger}"))).await?;
         }
@@ -98,7 +107,9 @@ impl Store {
     /// How many rows each table has, but for what follows ships in the background.
     pub async fn row_counts(&self) -> sqlx::Result<Vec<(&'static str, i64)>> {
         let mut counts = Vec::new();
-        let kept = |table: &&&str| !["ship_facts", "ship_vectors", "search_queue", "idempotency_keys"].contains(*table);
+        let kept = |table: &&&str| {
+            !["ship_facts", "ship_vectors", "search_queue", "idempotency_keys"].contains(*table)
+        };
         for table in TABLES.iter().filter(kept) {
             let count = AssertSqlSafe(format!("SELECT COUNT(*) FROM {table}"));
             let rows = match &self.database().read {

@@ -151,7 +151,12 @@ impl Trials<'_> {
         self.write(all, Some(objects), job).await
     }
 
-    async fn write<F>(&self, all: &[NewTrial], objects: Option<&Objects>, job: F) -> Result<(Vec<Inserted<Trial>>, Option<Job>)>
+    async fn write<F>(
+        &self,
+        all: &[NewTrial],
+        objects: Option<&Objects>,
+        job: F,
+    ) -> Result<(Vec<Inserted<Trial>>, Option<Job>)>
     where
         F: FnOnce(&[Inserted<Trial>]) -> Option<NewJob>,
     {
@@ -203,7 +208,8 @@ impl Trials<'_> {
 
     /// Every trial of every ship, deleted or not, in the order of their upload.
     pub async fn all(&self, page: &Page) -> Result<List<Trial>> {
-        let trials = self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
+        let trials =
+            self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
         Ok(page.of(trials, |trial: &Trial| trial.id.clone()))
     }
 

@@ -71,14 +71,17 @@ impl NewVersion {
 
 /// Whether the transaction sees this version.
 pub(crate) async fn check_exists(tx: &mut Transaction, model: &str, number: i64) -> Result<()> {
-    let version: Option<VersionHead> = tx.optional(HEAD, args![model: model, number: number]).await?;
+    let version: Option<VersionHead> =
+        tx.optional(HEAD, args![model: model, number: number]).await?;
     version.map(drop).ok_or_else(|| missing(model, number))
 }
 
 /// Whether the transaction sees the version that `field` names.
 pub(crate) async fn check_id(tx: &mut Transaction, field: &'static str, id: &str) -> Result<()> {
     let version: Option<VersionHead> = tx.optional(HEAD_BY_ID, args![id: id]).await?;
-    version.map(drop).ok_or_else(|| StoreError::invalid(field, format!("there is no version `{id}`")))
+    version
+        .map(drop)
+        .ok_or_else(|| StoreError::invalid(field, format!("there is no version `{id}`")))
 }
 
 /// The error of a version that is not there.

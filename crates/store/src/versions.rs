@@ -91,7 +91,8 @@ impl Versions<'_> {
 
     /// Every version of every model with its document, in the order in which they were made.
     pub async fn all(&self, page: &Page) -> Result<List<Version>> {
-        let versions = self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
+        let versions =
+            self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
         Ok(page.of(versions, |version: &Version| version.head.id.clone()))
     }
 
@@ -104,7 +105,12 @@ impl Versions<'_> {
 }
 
 /// Makes a version and moves aliases to it within a transaction.
-pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewVersion, moves: &[AliasMove]) -> Result<VersionHead> {
+pub(crate) async fn insert(
+    store: &Store,
+    tx: &mut Transaction,
+    new: &NewVersion,
+    moves: &[AliasMove],
+) -> Result<VersionHead> {
     new.check()?;
     if let Some(parent) = &new.parent {
         check_id(tx, "parent", parent).await?;

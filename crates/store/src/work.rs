@@ -64,7 +64,9 @@ impl Jobs<'_> {
         let mut tx = self.0.begin().await?;
         let now = self.0.now_us();
         let claimed = loop {
-            let Some(job) = tx.optional::<Job>(NEXT, args![now_us: now]).await? else { break Claimed::Nothing };
+            let Some(job) = tx.optional::<Job>(NEXT, args![now_us: now]).await? else {
+                break Claimed::Nothing;
+            };
             let lost = job.lost_workers + i64::from(job.state == JobState::Running);
             if bury(&mut tx, &job, lost, now).await? {
                 continue;
@@ -72,8 +74,7 @@ impl Jobs<'_> {
             if lost > 0 && !alone {
                 break Claimed::Alone;
             }
-            let values =
-                args![id: &job.id, worker: worker, lease_until_us: until(now, lease), started_us: now, lost_workers: lost];
+            let values = args![id: &job.id, worker: worker, lease_until_us: until(now, lease), started_us: now, lost_workers: lost];
             break Claimed::Job(Box::new(tx.one(START, values).await?));
         };
         tx.commit().await?;
@@ -88,7 +89,14 @@ impl Jobs<'_> {
     }
 
     /// Tells how far a job is and prolongs its lease. Returns whether its worker is asked to stop.
-    pub async fn heartbeat(&self, id: &str, fence: i64, progress: f64, message: &str, lease: Duration) -> Result<bool> {
+    pub async fn heartbeat(
+        &self,
+        id: &str,
+        fence: i64,
+        progress: f64,
+        message: &str,
+        lease: Duration,
+    ) -> Result<bool> {
         let until = until(self.0.now_us(), lease);
         let values = args![id: id, fence: fence, progress: progress, message: message, lease_until_us: until];
         self.held(HEARTBEAT, id, fence, values).await.map(|job| job.cancel_requested)
@@ -115,7 +123,13 @@ impl Jobs<'_> {
     }
 
     /// A change that only the holder of the job's fence may make.
-    async fn held(&self, statement: Statement, id: &str, fence: i64, values: Args<'_>) -> Result<Job> {
+    async fn held(
+        &self,
+        statement: Statement,
+        id: &str,
+        fence: i64,
+        values: Args<'_>,
+    ) -> Result<Job> {
         let mut tx = self.0.begin().await?;
         let job = held(&mut tx, statement, id, fence, values).await?;
         tx.commit().await?;
@@ -131,11 +145,23 @@ impl Jobs<'_> {
 }
 
 /// Ends a job with its result within a transaction.
-pub(crate) async fn complete(tx: &mut Transaction, id: &str, fence: i64, result: &str, now_us: i64) -> Result<Job> {
+pub(crate) async fn complete(
+    tx: &mut Transaction,
+    id: &str,
+    fence: i64,
+    result: &str,
+    now_us: i64,
+) -> Result<Job> {
     end(tx, id, fence, JobEnd::Succeeded { result }, now_us).await
 }
 
-async fn end(tx: &mut Transaction, id: &str, fence: i64, how: JobEnd<'_>, now_us: i64) -> Result<Job> {
+async fn end(
+    tx: &mut Transaction,
+    id: &str,
+    fence: i64,
+    how: JobEnd<'_>,
+    now_us: i64,
+) -> Result<Job> {
     let (state, result, error) = match how {
         JobEnd::Succeeded { result } => (JobState::Succeeded, Some(result), None),
         JobEnd::Failed { error } => (JobState::Failed, None, Some(error)),
@@ -165,12 +191,19 @@ async fn bury(tx: &mut Transaction, job: &Job, lost: i64, now_us: i64) -> Result
     end(tx, &job.id, job.fence, how, now_us).await.map(|_| true)
 }
 
-async fn held(tx: &mut Transaction, statement: Statement, id: &str, fence: i64, values: Args<'_>) -> Result<Job> {
+async fn held(
+    tx: &mut Transaction,
+    statement: Statement,
+    id: &str,
+    fence: i64,
+    values: Args<'_>,
+) -> Result<Job> {
     if let Some(job) = tx.optional(statement, values).await? {
         return Ok(job);
     }
     let job = find(tx, id).await?;
-    let message = format!("is {} under fence {}; who holds fence {fence} has lost it", job.state, job.fence);
+    let message =
+        format!("is {} under fence {}; who holds fence {fence} has lost it", job.state, job.fence);
     Err(StoreError::conflict("job", id, message))
 }
 

@@ -56,11 +56,20 @@ impl Rows {
 
     /// `row 3 has 7 cells, row 5 has 8, and so on in 12 further rows, the last of them row 90`
     fn named(&self) -> String {
-        let cells = |count: usize| if count == 1 { "1 cell".to_owned() } else { format!("{count} cells") };
-        let first: Vec<String> = self.first.iter().map(|&(row, count)| format!("row {row} has {}", cells(count))).collect();
+        let cells =
+            |count: usize| if count == 1 { "1 cell".to_owned() } else { format!("{count} cells") };
+        let first: Vec<String> = self
+            .first
+            .iter()
+            .map(|&(row, count)| format!("row {row} has {}", cells(count)))
+            .collect();
         match self.count - self.first.len() {
             0 => first.join(", "),
-            more => format!("{}, and {more} further rows, the last of them row {}", first.join(", "), self.last),
+            more => format!(
+                "{}, and {more} further rows, the last of them row {}",
+                first.join(", "),
+                self.last
+            ),
         }
     }
 }
@@ -69,7 +78,16 @@ impl Counter {
     /// For a file with so many headings.
     pub(crate) fn new(separator: u8, width: usize) -> Self {
         let none = Rows::default;
-        Self { separator, width, exact: false, point: false, decimal_commas: 0, closed: none(), few: none(), many: none() }
+        Self {
+            separator,
+            width,
+            exact: false,
+            point: false,
+            decimal_commas: 0,
+            closed: none(),
+            few: none(),
+            many: none(),
+        }
     }
 
     /// Counts one row.
@@ -84,12 +102,15 @@ impl Counter {
             self.few.add(row, count);
             return Cells::Few(count);
         }
-        if count == self.width + 1 && record.get(self.width).is_some_and(|cell| cell.trim_ascii().is_empty()) {
+        if count == self.width + 1
+            && record.get(self.width).is_some_and(|cell| cell.trim_ascii().is_empty())
+        {
             self.closed.add(row, count);
             return Cells::Fit;
         }
         self.many.add(row, count);
-        self.decimal_commas += usize::from(self.separator == b',' && is_decimal_comma(record, self.width));
+        self.decimal_commas +=
+            usize::from(self.separator == b',' && is_decimal_comma(record, self.width));
         Cells::Many
     }
 
@@ -123,18 +144,28 @@ impl Counter {
     }
 
     fn error(&self, rows: &Rows, what: &str, findings: &mut Findings) {
-        let separator = if self.separator == b'\t' { "tab".to_owned() } else { format!("`{}`", self.separator as char) };
+        let separator = if self.separator == b'\t' {
+            "tab".to_owned()
+        } else {
+            format!("`{}`", self.separator as char)
+        };
         let row = rows.first.first().map(|&(row, _)| row);
         let (named, width) = (rows.named(), self.width);
-        findings.error(row, None, format!("{named}; the header has {width} (separated by {separator}); {what}"));
+        findings.error(
+            row,
+            None,
+            format!("{named}; the header has {width} (separated by {separator}); {what}"),
+        );
     }
 }
 
 /// Whether as many pairs of neighbours as there are cells too many are the halves of a decimal number.
 fn is_decimal_comma(record: &ByteRecord, width: usize) -> bool {
     let digits = |cell: &[u8]| !cell.is_empty() && cell.iter().all(u8::is_ascii_digit);
-    let whole = |cell: &[u8]| digits(cell.strip_prefix(b"-").or(cell.strip_prefix(b"+")).unwrap_or(cell));
-    let fraction = |cell: &[u8]| cell.split(|byte| matches!(byte, b'e' | b'E')).next().is_some_and(digits);
+    let whole =
+        |cell: &[u8]| digits(cell.strip_prefix(b"-").or(cell.strip_prefix(b"+")).unwrap_or(cell));
+    let fraction =
+        |cell: &[u8]| cell.split(|byte| matches!(byte, b'e' | b'E')).next().is_some_and(digits);
     let cells: Vec<&[u8]> = record.iter().map(<[u8]>::trim_ascii).collect();
     let (mut pairs, mut k) = (0, 0);
     while k + 1 < cells.len() {

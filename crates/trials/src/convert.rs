@@ -11,7 +11,12 @@ use crate::recording::Recording;
 use crate::table::{Table, Target};
 
 /// Applies the conventions: rudder sign, wind direction, continuous heading.
-pub(crate) fn convert(name: &str, table: Table, mapping: &Mapping, findings: &mut Findings) -> Recording {
+pub(crate) fn convert(
+    name: &str,
+    table: Table,
+    mapping: &Mapping,
+    findings: &mut Findings,
+) -> Recording {
     let trial = Trial {
         name: name.to_owned(),
         manoeuvre: mapping.manoeuvre.clone(),
@@ -19,7 +24,8 @@ pub(crate) fn convert(name: &str, table: Table, mapping: &Mapping, findings: &mu
         velocity: mapping.conventions.velocity,
         ..Trial::default()
     };
-    let mut recording = Recording { trial, rows: table.rows, resumed: table.resumed, ..Recording::default() };
+    let mut recording =
+        Recording { trial, rows: table.rows, resumed: table.resumed, ..Recording::default() };
     for (column, mut values) in table.columns.into_iter().zip(table.values) {
         match column.target {
             Target::Time => {
@@ -37,7 +43,13 @@ pub(crate) fn convert(name: &str, table: Table, mapping: &Mapping, findings: &mu
     recording
 }
 
-fn sign(channel: Channel, values: &mut [f64], conventions: &TrialConventions, recording: &Recording, findings: &mut Findings) {
+fn sign(
+    channel: Channel,
+    values: &mut [f64],
+    conventions: &TrialConventions,
+    recording: &Recording,
+    findings: &mut Findings,
+) {
     match channel {
         Channel::Delta if conventions.rudder_positive == RudderSign::PortTurn => {
             values.iter_mut().for_each(|value| *value = -*value);
@@ -78,7 +90,8 @@ fn wrap(angle: f64) -> f64 {
 
 /// A step of about 360 "rad" between two samples is a compass passing north in degrees.
 fn degree_wrap(values: &[f64], recording: &Recording, findings: &mut Findings) {
-    let jump = (1..values.len()).find(|&k| (300.0..=361.0).contains(&(values[k] - values[k - 1]).abs()));
+    let jump =
+        (1..values.len()).find(|&k| (300.0..=361.0).contains(&(values[k] - values[k - 1]).abs()));
     if let Some(k) = jump {
         let (header, unit) = (recording.header(Channel::Psi), recording.unit(Channel::Psi));
         let message = format!(
@@ -93,13 +106,17 @@ fn degree_wrap(values: &[f64], recording: &Recording, findings: &mut Findings) {
 /// No wind direction needs two full turns in radians.
 fn degree_wind(channel: Channel, values: &[f64], recording: &Recording, findings: &mut Findings) {
     if let Some(k) = values.iter().position(|value| value.abs() > 2.0 * TAU) {
-        let message = format!("{:.1} rad is more than two turns; the values look like degrees: declare `deg`", values[k]);
+        let message = format!(
+            "{:.1} rad is more than two turns; the values look like degrees: declare `deg`",
+            values[k]
+        );
         findings.error(Some(recording.row(k)), Some(recording.header(channel)), message);
     }
 }
 
 fn tell_frame(recording: &Recording, findings: &mut Findings) {
-    let moving = [Channel::U, Channel::V].into_iter().find(|&channel| recording.channel(channel).is_some());
+    let moving =
+        [Channel::U, Channel::V].into_iter().find(|&channel| recording.channel(channel).is_some());
     if let (VelocityFrame::Water, Some(channel)) = (recording.trial.velocity, moving) {
         let message = "u and v are speeds through the water, as declared: a current shows in the positions only";
         findings.warning(None, Some(recording.header(channel)), message);
@@ -111,7 +128,11 @@ mod tests {
     use super::*;
     use crate::testing::{messages, table};
 
-    fn run(channel: Channel, values: &[f64], change: impl Fn(&mut TrialConventions)) -> (Vec<f64>, String) {
+    fn run(
+        channel: Channel,
+        values: &[f64],
+        change: impl Fn(&mut TrialConventions),
+    ) -> (Vec<f64>, String) {
         let mut mapping = Mapping::canonical();
         change(&mut mapping.conventions);
         let mut findings = Findings::default();
@@ -121,14 +142,16 @@ mod tests {
 
     #[test]
     fn port_turn_flips_the_rudder_only() {
-        let port = |conventions: &mut TrialConventions| conventions.rudder_positive = RudderSign::PortTurn;
+        let port =
+            |conventions: &mut TrialConventions| conventions.rudder_positive = RudderSign::PortTurn;
         assert_eq!(run(Channel::Delta, &[0.1, -0.2], port).0, [-0.1, 0.2]);
         assert_eq!(run(Channel::R, &[0.1, -0.2], port).0, [0.1, -0.2]);
     }
 
     #[test]
     fn wind_comes_from_where_it_does_not_go_to() {
-        let to = |conventions: &mut TrialConventions| conventions.wind.direction = WindDirection::To;
+        let to =
+            |conventions: &mut TrialConventions| conventions.wind.direction = WindDirection::To;
         let (from, _) = run(Channel::WindFrom, &[0.0, PI], to);
         assert!((from[0] - PI).abs() < 1e-12 && from[1] < 1e-12);
         assert_eq!(run(Channel::WindFrom, &[-1e-20, 0.1 - TAU], |_| ()).0[0], 0.0);
@@ -147,7 +170,9 @@ mod tests {
     #[test]
     fn speeds_through_the_water_stay_marked() {
         assert!(
-            run(Channel::U, &[1.0], |conventions| conventions.velocity = VelocityFrame::Water).1.contains("through the water")
+            run(Channel::U, &[1.0], |conventions| conventions.velocity = VelocityFrame::Water)
+                .1
+                .contains("through the water")
         );
     }
 }

@@ -30,7 +30,8 @@ pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings)
     meter.reset();
     let columns = resolve(&headers, mapping, findings)?;
     let mut counter = Counter::new(separator, headers.len());
-    let mut builder = Builder::new(columns, mapping.conventions.missing, findings).with_room(mapping.room);
+    let mut builder =
+        Builder::new(columns, mapping.conventions.missing, findings).with_room(mapping.room);
     let stopped = rows(&mut reader, &meter, mapping.limits.rows, &mut counter, &mut builder);
     let drops = builder.drops();
     let table = builder.finish();
@@ -65,13 +66,19 @@ pub(crate) fn measure(mut input: impl Read, mapping: &Mapping) -> Option<(usize,
 /// How many columns of the file that starts like this are read.
 fn columns(start: &[u8], mapping: &Mapping) -> Option<usize> {
     let mut findings = Findings::default();
-    let mut reader = ReaderBuilder::new().delimiter(separator(start)).flexible(true).from_reader(start);
+    let mut reader =
+        ReaderBuilder::new().delimiter(separator(start)).flexible(true).from_reader(start);
     let headers = headers(&mut reader, mapping, &mut findings)?;
     Some(resolve(&headers, mapping, &mut findings)?.len())
 }
 
 /// The file up to the end of the header's line at least, however small the pieces are in which it comes.
-fn start(input: &mut impl Read, meter: &Meter, most: usize, findings: &mut Findings) -> Option<Vec<u8>> {
+fn start(
+    input: &mut impl Read,
+    meter: &Meter,
+    most: usize,
+    findings: &mut Findings,
+) -> Option<Vec<u8>> {
     let mut start = Vec::new();
     loop {
         let read = match input.by_ref().take(CHUNK).read_to_end(&mut start) {
@@ -85,7 +92,8 @@ fn start(input: &mut impl Read, meter: &Meter, most: usize, findings: &mut Findi
             findings.error(Some(1), None, "the file is UTF-16 text; save it as UTF-8");
             return None;
         }
-        let complete = header_line(&start).is_some_and(|line| line.len() < text(&start).trim_ascii_start().len());
+        let complete = header_line(&start)
+            .is_some_and(|line| line.len() < text(&start).trim_ascii_start().len());
         if read == 0 || complete || start.len() > most {
             return Some(start);
         }
@@ -121,7 +129,11 @@ fn separator(start: &[u8]) -> u8 {
     [b'\t', b';', b','].into_iter().max_by_key(|&separator| bare(separator)).unwrap_or(b',')
 }
 
-fn headers(reader: &mut csv::Reader<impl Read>, mapping: &Mapping, findings: &mut Findings) -> Option<Vec<String>> {
+fn headers(
+    reader: &mut csv::Reader<impl Read>,
+    mapping: &Mapping,
+    findings: &mut Findings,
+) -> Option<Vec<String>> {
     let record = match reader.byte_headers() {
         Ok(record) => record,
         Err(error) => {
@@ -129,10 +141,13 @@ fn headers(reader: &mut csv::Reader<impl Read>, mapping: &Mapping, findings: &mu
             return None;
         }
     };
-    let headers: Vec<String> = record.iter().map(|name| String::from_utf8_lossy(name).trim().to_owned()).collect();
+    let headers: Vec<String> =
+        record.iter().map(|name| String::from_utf8_lossy(name).trim().to_owned()).collect();
     let problem = match headers.len() {
         0 => "the file is empty; it needs a header with column names".to_owned(),
-        n if n > mapping.limits.columns => format!("{n} columns are more than the {} that are read", mapping.limits.columns),
+        n if n > mapping.limits.columns => {
+            format!("{n} columns are more than the {} that are read", mapping.limits.columns)
+        }
         _ => return Some(headers),
     };
     findings.error(Some(1), None, problem);
@@ -151,18 +166,24 @@ fn rows(
     let mut count = 0;
     loop {
         let next = usize::try_from(reader.position().line()).unwrap_or(usize::MAX);
-        let more = reader.read_byte_record(&mut record).map_err(|error| (next, format!("cannot be read on: {error}")))?;
+        let more = reader
+            .read_byte_record(&mut record)
+            .map_err(|error| (next, format!("cannot be read on: {error}")))?;
         if !more {
             return Ok(());
         }
         let row = line(reader, &record);
         count += 1;
         if count > most {
-            return Err((row, format!("the file has more than the {most} rows that are read; split it")));
+            return Err((
+                row,
+                format!("the file has more than the {most} rows that are read; split it"),
+            ));
         }
         meter.reset();
         match counter.row(row, &record) {
-            Cells::Fit => builder.row(row, |_, column| record.get(column.index).map_or(Err(Fault::Absent), number)),
+            Cells::Fit => builder
+                .row(row, |_, column| record.get(column.index).map_or(Err(Fault::Absent), number)),
             Cells::Few(_) => builder.short(row),
             Cells::Many => {}
         }
@@ -183,7 +204,15 @@ mod tests {
     fn run(text: &str, mapping: &Mapping) -> (Option<Table>, Vec<String>) {
         let mut findings = Findings::default();
         let table = read(text.as_bytes(), mapping, &mut findings);
-        (table, findings.finish().0.iter().map(|error| format!("{:?} {}", error.row, error.message)).collect())
+        (
+            table,
+            findings
+                .finish()
+                .0
+                .iter()
+                .map(|error| format!("{:?} {}", error.row, error.message))
+                .collect(),
+        )
     }
 
     #[test]
@@ -207,7 +236,8 @@ mod tests {
     #[test]
     fn sizes_are_bounded() {
         let mut mapping = Mapping::canonical();
-        mapping.limits = crate::Limits { rows: 2, columns: 2, line_bytes: 100, ..crate::Limits::default() };
+        mapping.limits =
+            crate::Limits { rows: 2, columns: 2, line_bytes: 100, ..crate::Limits::default() };
         assert!(run("t_s,u_m_s\n0,1\n1,1\n", &mapping).1.is_empty());
         assert!(run("t_s,u_m_s\n0,1\n1,1\n2,1\n", &mapping).1[0].contains("more than the 2 rows"));
         assert!(run("t_s,u_m_s,v_m_s\n", &mapping).1[0].contains("3 columns"));

@@ -33,8 +33,16 @@ fn rows_of_other_lengths_are_told_together_with_row_and_counts() {
     let long: String = (0..9).map(|k| format!("{k}.5,1.5,a\n")).collect();
     let text = said(&format!("t_s,u_m_s\n{long}9\n10,1\n"));
     assert!(text.contains("row 2 has 3 cells, row 3 has 3 cells"), "{text}");
-    assert!(text.contains("and 4 further rows, the last of them row 10; the header has 2 (separated by `,`)"), "{text}");
-    assert!(text.contains("error Some(11)") && text.contains("row 11 has 1 cell; the header has 2"), "{text}");
+    assert!(
+        text.contains(
+            "and 4 further rows, the last of them row 10; the header has 2 (separated by `,`)"
+        ),
+        "{text}"
+    );
+    assert!(
+        text.contains("error Some(11)") && text.contains("row 11 has 1 cell; the header has 2"),
+        "{text}"
+    );
     assert_eq!(text.lines().count(), 2, "{text}");
     assert!(!text.contains("decimal comma"), "{text}");
 }
@@ -51,7 +59,10 @@ fn a_decimal_comma_is_recognised() {
         assert!(text.contains("decimal comma") && text.contains("with a point"), "{file}: {text}");
         assert!(text.contains("row 2 has"), "{text}");
     }
-    assert!(said("t_s;u_m_s\n0;1,5\n1;1,6\n").contains("row") || said("t_s;u_m_s\n0;1,5\n").contains("with a point"));
+    assert!(
+        said("t_s;u_m_s\n0;1,5\n1;1,6\n").contains("row")
+            || said("t_s;u_m_s\n0;1,5\n").contains("with a point")
+    );
     assert!(said("t_s,u_m_s\n0,\"1,5\"\n").contains("with a point"));
 }
 
@@ -60,7 +71,9 @@ fn separators_that_close_lines_are_passed_over_only_where_nothing_can_shift() {
     assert_eq!(accepted("t_s,u_m_s,\n0,1,\n1,2,\n").values[1], [1.0, 2.0]);
     assert_eq!(accepted("t_s,u_m_s\n0,1.5,\n1,2.5,\n").values[1], [1.5, 2.5]);
     assert_eq!(accepted("t_s;u_m_s\n0;1;\n1;2;\n").values[1], [1.0, 2.0]);
-    for file in ["t_s,u_m_s\n0,1,\n1,2,\n", "t_s,u_m_s\n0,1.5,\n1,2.5\n", "t_s,u_m_s\n0,1.5,,\n1,2.5,,\n"] {
+    for file in
+        ["t_s,u_m_s\n0,1,\n1,2,\n", "t_s,u_m_s\n0,1.5,\n1,2.5\n", "t_s,u_m_s\n0,1.5,,\n1,2.5,,\n"]
+    {
         assert!(said(file).contains("the header has 2"), "{file}");
     }
 }
@@ -70,7 +83,9 @@ fn short_rows_are_left_out_only_on_demand_and_long_ones_never() {
     let (table, text) = run("t_s,u_m_s,note\n0,1,a\n1,2\n2,3,c\n", &drops());
     assert_eq!(table.unwrap().values[0], [0.0, 2.0]);
     assert!(text.contains("row 3 left out: the row has fewer cells"), "{text}");
-    assert!(said("t_s,u_m_s,note\n0,1,a\n1,2\n2,3,c\n").contains("row 3 has 2 cells; the header has 3"));
+    assert!(
+        said("t_s,u_m_s,note\n0,1,a\n1,2\n2,3,c\n").contains("row 3 has 2 cells; the header has 3")
+    );
     assert!(run("t_s,u_m_s\n0,1\n1,2,3\n2,3\n", &drops()).1.contains("error Some(3)"));
 }
 
@@ -79,7 +94,10 @@ fn rows_are_the_lines_of_an_editor() {
     for end in ["\n", "\r\n", "\r"] {
         let text = ["t_s,u_m_s,note", "", "0,1,\"two", "lines\"", "", "1,x,", "2,y,"].join(end);
         let text = said(&text);
-        assert!(text.contains("error Some(6)") && text.contains("error Some(7)"), "{end:?}: {text}");
+        assert!(
+            text.contains("error Some(6)") && text.contains("error Some(7)"),
+            "{end:?}: {text}"
+        );
     }
     let mixed = said("t_s,u_m_s\r\n0,1\n\r1,x\r2,2\n");
     assert!(mixed.contains("error Some(4)"), "{mixed}");
@@ -96,17 +114,23 @@ fn the_separator_does_not_depend_on_how_the_bytes_arrive() {
             self.0.read(&mut buffer[..most])
         }
     }
-    for file in ["t_s;u_m_s\r\n0;1\r\n1;2\r\n", "\u{feff}\n\"t_s\";\"a, b, c\";u_m_s\n0;1;1\n1;1;2\n"] {
+    for file in
+        ["t_s;u_m_s\r\n0;1\r\n1;2\r\n", "\u{feff}\n\"t_s\";\"a, b, c\";u_m_s\n0;1;1\n1;1;2\n"]
+    {
         let mut findings = Findings::default();
         let table = read(Slow(file.as_bytes()), &Mapping::canonical(), &mut findings).unwrap();
-        assert_eq!((table.values[0].clone(), table.values[1].clone()), (vec![0.0, 1.0], vec![1.0, 2.0]));
+        assert_eq!(
+            (table.values[0].clone(), table.values[1].clone()),
+            (vec![0.0, 1.0], vec![1.0, 2.0])
+        );
     }
 }
 
 #[test]
 fn what_is_no_utf8_text_is_told() {
     let mut findings = Findings::default();
-    let utf16: Vec<u8> = "\u{feff}t_s,u_m_s\n0,1\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let utf16: Vec<u8> =
+        "\u{feff}t_s,u_m_s\n0,1\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
     assert!(read(utf16.as_slice(), &Mapping::canonical(), &mut findings).is_none());
     assert!(messages(findings).contains("save it as UTF-8"));
     assert!(said("t_s,u_m_s\n0,1\0\n").contains("NUL"));

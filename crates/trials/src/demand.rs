@@ -35,7 +35,9 @@ pub fn measuring(path: &Path) -> io::Result<u64> {
     let mut file = File::open(path)?;
     let mut end = [0; 8];
     let footer = match file.seek(SeekFrom::End(-8)).and_then(|_| file.read_exact(&mut end)) {
-        Ok(()) if end.ends_with(b"PAR1") => u64::from(u32::from_le_bytes([end[0], end[1], end[2], end[3]])),
+        Ok(()) if end.ends_with(b"PAR1") => {
+            u64::from(u32::from_le_bytes([end[0], end[1], end[2], end[3]]))
+        }
         _ => 0,
     };
     Ok(EVERY / 4 + BY_FOOTER * footer.min(crate::Limits::default().footer_bytes as u64))
@@ -48,7 +50,9 @@ pub fn measuring(path: &Path) -> io::Result<u64> {
 /// The file cannot be read.
 pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
     let (size, holding) = match Source::open("", path)?.content {
-        Content::Csv(input) => (csv_file::measure(input, mapping), 4 * mapping.limits.line_bytes as u64),
+        Content::Csv(input) => {
+            (csv_file::measure(input, mapping), 4 * mapping.limits.line_bytes as u64)
+        }
         Content::ParquetFile(file) => of_parquet(&file, mapping),
         Content::ParquetBytes(bytes) => of_parquet(&bytes, mapping),
     };
@@ -59,10 +63,17 @@ pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
     let row = 8 * columns as u64 + 5 + 8;
     // A column as it is compressed.
     let writing = 8 * rows.min(GROUP_ROWS) as u64;
-    Ok(Demand { rows, columns, bytes: EVERY + measuring(path)? + holding + rows as u64 * row + writing })
+    Ok(Demand {
+        rows,
+        columns,
+        bytes: EVERY + measuring(path)? + holding + rows as u64 * row + writing,
+    })
 }
 
-fn of_parquet<R: parquet::file::reader::ChunkReader + 'static>(input: &R, mapping: &Mapping) -> (Option<(usize, usize)>, u64) {
+fn of_parquet<R: parquet::file::reader::ChunkReader + 'static>(
+    input: &R,
+    mapping: &Mapping,
+) -> (Option<(usize, usize)>, u64) {
     match parquet_file::measure(input, mapping) {
         Some((rows, columns, holding)) => (Some((rows, columns)), holding),
         None => (None, 0),
@@ -88,8 +99,10 @@ mod tests {
         assert_eq!(csv.columns, 2);
         assert!((3..=6).contains(&csv.rows), "{csv:?}");
         let t_s: Vec<f64> = (0..100_000).map(f64::from).collect();
-        let channels = [Channel::U, Channel::V, Channel::R].map(|channel| (channel, vec![1.0; t_s.len()]));
-        let parquet = at(&to_parquet(&Trial { t_s, channels: channels.into(), ..Trial::default() }).unwrap());
+        let channels =
+            [Channel::U, Channel::V, Channel::R].map(|channel| (channel, vec![1.0; t_s.len()]));
+        let parquet =
+            at(&to_parquet(&Trial { t_s, channels: channels.into(), ..Trial::default() }).unwrap());
         assert_eq!((parquet.rows, parquet.columns), (100_000, 4));
         assert!((100_000 * 45..100_000 * 45 + (6 << 20)).contains(&parquet.bytes), "{parquet:?}");
     }

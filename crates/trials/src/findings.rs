@@ -48,15 +48,31 @@ pub(crate) struct Findings {
 }
 
 impl Findings {
-    pub(crate) fn error(&mut self, row: Option<usize>, column: Option<&str>, message: impl Into<String>) {
+    pub(crate) fn error(
+        &mut self,
+        row: Option<usize>,
+        column: Option<&str>,
+        message: impl Into<String>,
+    ) {
         self.add(Severity::Error, row, column, message.into());
     }
 
-    pub(crate) fn warning(&mut self, row: Option<usize>, column: Option<&str>, message: impl Into<String>) {
+    pub(crate) fn warning(
+        &mut self,
+        row: Option<usize>,
+        column: Option<&str>,
+        message: impl Into<String>,
+    ) {
         self.add(Severity::Warning, row, column, message.into());
     }
 
-    fn add(&mut self, severity: Severity, row: Option<usize>, column: Option<&str>, message: String) {
+    fn add(
+        &mut self,
+        severity: Severity,
+        row: Option<usize>,
+        column: Option<&str>,
+        message: String,
+    ) {
         let (list, more, most) = match severity {
             Severity::Error => (&mut self.errors, &mut self.more_errors, MAX_ERRORS),
             Severity::Warning => (&mut self.warnings, &mut self.more_warnings, MAX_WARNINGS),
@@ -69,12 +85,23 @@ impl Findings {
     }
 
     /// The same fault in several rows: the first few one by one, the rest as a count.
-    pub(crate) fn rows(&mut self, severity: Severity, column: &str, hits: &Hits, message: impl Fn(usize) -> String) {
+    pub(crate) fn rows(
+        &mut self,
+        severity: Severity,
+        column: &str,
+        hits: &Hits,
+        message: impl Fn(usize) -> String,
+    ) {
         for &(sample, row) in &hits.first {
             self.add(severity, Some(row), Some(column), message(sample));
         }
         if let (Some(more @ 1..), Some(last)) = (hits.count.checked_sub(MAX_ROWS), hits.last) {
-            self.add(severity, None, Some(column), format!("the same in {more} further rows, the last of them row {last}"));
+            self.add(
+                severity,
+                None,
+                Some(column),
+                format!("the same in {more} further rows, the last of them row {last}"),
+            );
         }
     }
 
@@ -84,11 +111,16 @@ impl Findings {
 
     /// Errors and warnings, each with a last line about those not listed.
     pub(crate) fn finish(mut self) -> (Vec<Finding>, Vec<Finding>) {
-        for (list, more, what) in
-            [(&mut self.errors, self.more_errors, "errors"), (&mut self.warnings, self.more_warnings, "warnings")]
-        {
+        for (list, more, what) in [
+            (&mut self.errors, self.more_errors, "errors"),
+            (&mut self.warnings, self.more_warnings, "warnings"),
+        ] {
             if more > 0 {
-                list.push(Finding { row: None, column: None, message: format!("{more} further {what} are not listed") });
+                list.push(Finding {
+                    row: None,
+                    column: None,
+                    message: format!("{more} further {what} are not listed"),
+                });
             }
         }
         (self.errors, self.warnings)

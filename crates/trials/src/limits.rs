@@ -17,6 +17,12 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { rows: 5_000_000, columns: 200, line_bytes: 64 * 1024, page_bytes: 16 << 20, footer_bytes: 2 << 20 }
+        Self {
+            rows: 5_000_000,
+            columns: 200,
+            line_bytes: 64 * 1024,
+            page_bytes: 16 << 20,
+            footer_bytes: 2 << 20,
+        }
     }
 }

@@ -26,10 +26,13 @@ pub struct Loaded {
 /// # Errors
 /// The manifest is wrong, or the path cannot be read. A single trial that is refused is no error of the whole.
 pub fn load_path(path: &Path) -> Result<Loaded, FileError> {
-    let (manifest, mut trials) = each(path, |name, file, mapping| match Source::open(name, file) {
-        Ok(source) => read_trial(source, mapping),
-        Err(error) => Err(Refusal { file: name.to_owned(), findings: vec![unreadable(&error)] }),
-    })?;
+    let (manifest, mut trials) =
+        each(path, |name, file, mapping| match Source::open(name, file) {
+            Ok(source) => read_trial(source, mapping),
+            Err(error) => {
+                Err(Refusal { file: name.to_owned(), findings: vec![unreadable(&error)] })
+            }
+        })?;
     if manifest.is_none()
         && let (Some(Ok(trial)), Some(name)) = (trials.first_mut(), path.file_name())
     {
@@ -57,7 +60,10 @@ pub fn check_path(path: &Path) -> Result<Vec<CheckOutcome>, FileError> {
     Ok(outcomes.1)
 }
 
-fn each<T>(path: &Path, mut take: impl FnMut(&str, &Path, &Mapping) -> T) -> Result<(Option<Manifest>, Vec<T>), FileError> {
+fn each<T>(
+    path: &Path,
+    mut take: impl FnMut(&str, &Path, &Mapping) -> T,
+) -> Result<(Option<Manifest>, Vec<T>), FileError> {
     let shown = path.display().to_string();
     if !is_manifest(path) {
         std::fs::metadata(path).map_err(|error| missing(&shown, &error))?;
@@ -66,17 +72,27 @@ fn each<T>(path: &Path, mut take: impl FnMut(&str, &Path, &Mapping) -> T) -> Res
     let text = std::fs::read_to_string(path).map_err(|error| missing(&shown, &error))?;
     let manifest = read_manifest(&shown, &text)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let taken = manifest.trials.iter().map(|trial| take(&trial.file, &folder.join(&trial.file), &Mapping::of(&manifest, trial)));
+    let taken = manifest
+        .trials
+        .iter()
+        .map(|trial| take(&trial.file, &folder.join(&trial.file), &Mapping::of(&manifest, trial)));
     let taken = taken.collect();
     Ok((Some(manifest), taken))
 }
 
 fn is_manifest(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("yaml") || extension.eq_ignore_ascii_case("yml"))
+    path.extension().is_some_and(|extension| {
+        extension.eq_ignore_ascii_case("yaml") || extension.eq_ignore_ascii_case("yml")
+    })
 }
 
 fn missing(file: &str, error: &std::io::Error) -> FileError {
-    FileError { file: file.to_owned(), line: None, field: String::new(), message: format!("cannot be read: {error}") }
+    FileError {
+        file: file.to_owned(),
+        line: None,
+        field: String::new(),
+        message: format!("cannot be read: {error}"),
+    }
 }
 
 fn unreadable(error: &std::io::Error) -> Finding {
@@ -99,7 +115,13 @@ mod tests {
         let loaded = load_path(&folder.path().join("m.yaml")).unwrap();
         assert_eq!(loaded.manifest.unwrap().ship, "a");
         assert_eq!(loaded.trials[0].as_ref().unwrap().manoeuvre.as_deref(), Some("zigzag 10/10"));
-        assert!(loaded.trials[1].as_ref().unwrap_err().to_string().contains("lost.csv is refused:\n  cannot be read"));
+        assert!(
+            loaded.trials[1]
+                .as_ref()
+                .unwrap_err()
+                .to_string()
+                .contains("lost.csv is refused:\n  cannot be read")
+        );
         let outcomes = check_path(&folder.path().join("m.yaml")).unwrap();
         assert_eq!(outcomes.iter().map(CheckOutcome::accepted).collect::<Vec<_>>(), [true, false]);
     }
@@ -112,6 +134,11 @@ mod tests {
         let loaded = load_path(&file).unwrap();
         let trial = loaded.trials[0].as_ref().unwrap();
         assert_eq!((trial.name.as_str(), trial.len()), ("a.csv", 3));
-        assert!(load_path(&folder.path().join("lost.csv")).unwrap_err().to_string().contains("cannot be read"));
+        assert!(
+            load_path(&folder.path().join("lost.csv"))
+                .unwrap_err()
+                .to_string()
+                .contains("cannot be read")
+        );
     }
 }

@@ -32,7 +32,11 @@ impl Mapping {
     /// The mapping of one file of a manifest.
     pub fn of(manifest: &Manifest, trial: &ManifestTrial) -> Self {
         Self {
-            columns: manifest.columns.iter().map(|(name, column)| (name.clone(), column.clone())).collect(),
+            columns: manifest
+                .columns
+                .iter()
+                .map(|(name, column)| (name.clone(), column.clone()))
+                .collect(),
             conventions: manifest.conventions.clone(),
             manoeuvre: trial.manoeuvre.clone(),
             depth_m: trial.depth_m,

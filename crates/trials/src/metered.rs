@@ -57,8 +57,10 @@ impl<R: Read> Read for Metered<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         loop {
             if self.meter.0.get() > self.limit {
-                let message =
-                    format!("a row is longer than {} bytes; is a quote left open, or is this not a CSV file?", self.limit);
+                let message = format!(
+                    "a row is longer than {} bytes; is a quote left open, or is this not a CSV file?",
+                    self.limit
+                );
                 return Err(io::Error::new(io::ErrorKind::InvalidData, message));
             }
             let read = self.inner.read(buffer)?;
@@ -95,7 +97,9 @@ mod tests {
 
     #[test]
     fn every_line_end_becomes_one() {
-        for (text, wanted) in [("a\r\nb\rc\nd", "a\nb\nc\nd\n"), ("\r\r\n\r", "\n\n\n"), ("", ""), ("a\n\n", "a\n\n")] {
+        for (text, wanted) in
+            [("a\r\nb\rc\nd", "a\nb\nc\nd\n"), ("\r\r\n\r", "\n\n\n"), ("", ""), ("a\n\n", "a\n\n")]
+        {
             for size in 1..5 {
                 let mut out = Vec::new();
                 let (mut reader, _) = Metered::new(text.as_bytes(), 1000);

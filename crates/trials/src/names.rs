@@ -6,7 +6,8 @@ use crate::table::Target;
 use crate::units::Kind;
 
 /// Other names in use for a channel; a wind direction without more is where the wind comes from.
-const ALIASES: [(&str, Channel); 2] = [("wind_dir", Channel::WindFrom), ("apparent_wind_dir", Channel::ApparentWindFrom)];
+const ALIASES: [(&str, Channel); 2] =
+    [("wind_dir", Channel::WindFrom), ("apparent_wind_dir", Channel::ApparentWindFrom)];
 
 /// The target and unit that a header names, such as `r_radps` or `wind_speed_kn`; a channel's name followed by anything
 /// but a unit of its kind (`delta_ordered_rad`) is some other quantity.

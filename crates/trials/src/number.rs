@@ -37,17 +37,21 @@ pub(crate) fn number(cell: &[u8]) -> Result<f64, Fault> {
     match parsed {
         Some(value) if value.is_finite() => Ok(value),
         Some(_) => Err(Fault::NotANumber),
-        None => Err(Fault::Text(String::from_utf8_lossy(&text[..text.len().min(SHOWN)]).into_owned())),
+        None => {
+            Err(Fault::Text(String::from_utf8_lossy(&text[..text.len().min(SHOWN)]).into_owned()))
+        }
     }
 }
 
 /// What to write instead, where the text shows what was meant.
 fn remedy(text: &str) -> &'static str {
-    let thousands = |c: char| matches!(c, ' ' | '\u{a0}' | '\u{2009}' | '\u{202f}' | '\'' | '\u{2019}' | '_');
+    let thousands =
+        |c: char| matches!(c, ' ' | '\u{a0}' | '\u{2009}' | '\u{202f}' | '\'' | '\u{2019}' | '_');
     let digits = text.chars().any(|c| c.is_ascii_digit());
     if text.contains('\0') {
         "; it holds a NUL byte: the file is damaged, or is not UTF-8 text"
-    } else if digits && text.contains(',') && (text.contains('.') || text.matches(',').count() > 1) {
+    } else if digits && text.contains(',') && (text.contains('.') || text.matches(',').count() > 1)
+    {
         "; leave out the thousands separator and write decimals with a point"
     } else if digits && text.contains(',') {
         "; write decimals with a point"
@@ -71,7 +75,15 @@ mod tests {
 
     #[test]
     fn numbers_are_read_as_they_are_written() {
-        for (text, value) in [("1", 1.0), (" -1.5 ", -1.5), ("+2", 2.0), ("1e-3", 1e-3), (".5", 0.5), ("5.", 5.0), ("1E5", 1e5)] {
+        for (text, value) in [
+            ("1", 1.0),
+            (" -1.5 ", -1.5),
+            ("+2", 2.0),
+            ("1e-3", 1e-3),
+            (".5", 0.5),
+            ("5.", 5.0),
+            ("1E5", 1e5),
+        ] {
             assert_eq!(number(text.as_bytes()).unwrap(), value);
         }
         for text in ["nan", "NaN", "inf", "-Infinity", "1e400"] {
@@ -96,7 +108,10 @@ mod tests {
         ];
         for (text, wanted) in told {
             let fault = number(text.as_bytes()).unwrap_err().to_string();
-            assert!(fault.contains("is not a number") && fault.contains(wanted), "{text:?}: {fault}");
+            assert!(
+                fault.contains("is not a number") && fault.contains(wanted),
+                "{text:?}: {fault}"
+            );
         }
         for text in ["1d", "1.0f", "#N/A", "NULL", "--1", "1e", "1/2", "%"] {
             assert!(number(text.as_bytes()).is_err(), "{text}");

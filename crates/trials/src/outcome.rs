@@ -80,12 +80,22 @@ mod tests {
 
     #[test]
     fn refusals_and_outcomes_read_well() {
-        let finding = Finding { row: Some(3), column: Some("u".into()), message: "too fast".into() };
+        let finding =
+            Finding { row: Some(3), column: Some("u".into()), message: "too fast".into() };
         let bare = Finding { row: None, column: None, message: "empty".into() };
-        let refusal = Refusal { file: "a.csv".into(), findings: vec![finding.clone(), bare.clone()] };
-        assert_eq!(refusal.to_string(), "a.csv is refused:\n  row 3: column `u`: too fast\n  empty");
-        let outcome =
-            CheckOutcome { file: "a.csv".into(), rows: 2, duration_s: 0.5, errors: vec![bare], warnings: vec![finding] };
+        let refusal =
+            Refusal { file: "a.csv".into(), findings: vec![finding.clone(), bare.clone()] };
+        assert_eq!(
+            refusal.to_string(),
+            "a.csv is refused:\n  row 3: column `u`: too fast\n  empty"
+        );
+        let outcome = CheckOutcome {
+            file: "a.csv".into(),
+            rows: 2,
+            duration_s: 0.5,
+            errors: vec![bare],
+            warnings: vec![finding],
+        };
         let text = serde_json::to_string(&outcome).unwrap();
         assert_eq!(
             text,

@@ -38,25 +38,35 @@ impl Held {
 ///
 /// # Errors
 /// A page is larger than `most` bytes, or not what its header says.
-pub(crate) fn held<R: ChunkReader>(input: &R, chunk: &ColumnChunkMetaData, most: usize) -> Result<Held, String> {
+pub(crate) fn held<R: ChunkReader>(
+    input: &R,
+    chunk: &ColumnChunkMetaData,
+    most: usize,
+) -> Result<Held, String> {
     if matches!(chunk.compression(), Compression::LZ4) {
         return Err("is compressed by the old LZ4, whose size is not bounded; write it with zstd, snappy or LZ4_RAW".into());
     }
     let (mut at, length) = chunk.byte_range();
-    let end = at.checked_add(length).filter(|end| *end <= input.len()).ok_or("lies outside the file")?;
+    let end =
+        at.checked_add(length).filter(|end| *end <= input.len()).ok_or("lies outside the file")?;
     let mut held = Held::default();
     while at < end {
-        let header = Header::read(input, at).map_err(|error| format!("has a page that cannot be read: {error}"))?;
+        let header = Header::read(input, at)
+            .map_err(|error| format!("has a page that cannot be read: {error}"))?;
         let next = at.saturating_add(header.length).saturating_add(header.compressed);
         if next > end {
             return Err("has a page that ends outside of it".into());
         }
         if header.uncompressed.max(header.compressed) > most as u64 {
             let size = header.uncompressed.max(header.compressed);
-            return Err(format!("has a page of {size} bytes, more than the {most} that are read; write smaller pages"));
+            return Err(format!(
+                "has a page of {size} bytes, more than the {most} that are read; write smaller pages"
+            ));
         }
         if matches!(chunk.compression(), Compression::GZIP(_)) {
-            header.unpacked(input, at).map_err(|error| format!("has a page that cannot be unpacked: {error}"))?;
+            header
+                .unpacked(input, at)
+                .map_err(|error| format!("has a page that cannot be unpacked: {error}"))?;
         }
         let one = match header.is_dictionary {
             // It is decoded as a whole.
@@ -151,8 +161,12 @@ impl<R: Read> Thrift<R> {
                 return Ok(());
             }
             id = match byte >> 4 {
-                0 => i16::try_from(self.integer()?).map_err(|_| invalid("a field has no number"))?,
-                delta => id.checked_add(i16::from(delta)).ok_or_else(|| invalid("a field has no number"))?,
+                0 => {
+                    i16::try_from(self.integer()?).map_err(|_| invalid("a field has no number"))?
+                }
+                delta => id
+                    .checked_add(i16::from(delta))
+                    .ok_or_else(|| invalid("a field has no number"))?,
             };
             path.push(id);
             self.value(byte & 15, path, deeper, take)?;
@@ -160,7 +174,13 @@ impl<R: Read> Thrift<R> {
         }
     }
 
-    fn value(&mut self, kind: u8, path: &mut Vec<i16>, depth: usize, take: Take<'_>) -> io::Result<()> {
+    fn value(
+        &mut self,
+        kind: u8,
+        path: &mut Vec<i16>,
+        depth: usize,
+        take: Take<'_>,
+    ) -> io::Result<()> {
         match kind {
             // Truth is in the kind.
             1 | 2 => Ok(()),

@@ -14,7 +14,9 @@ use crate::{Limits, Mapping, Source, check};
 
 /// Time and a constant speed.
 fn file(rows: usize, properties: WriterProperties) -> Bytes {
-    let schema = Arc::new(parse_message_type("message m { required double t_s; required double u_m_s; }").unwrap());
+    let schema = Arc::new(
+        parse_message_type("message m { required double t_s; required double u_m_s; }").unwrap(),
+    );
     let mut bytes = Vec::new();
     let mut writer = SerializedFileWriter::new(&mut bytes, schema, Arc::new(properties)).unwrap();
     let mut group = writer.next_row_group().unwrap();
@@ -30,8 +32,10 @@ fn file(rows: usize, properties: WriterProperties) -> Bytes {
 
 /// One page for each column, whatever its size.
 fn one_page(compression: Compression, version: WriterVersion) -> WriterProperties {
-    let plain =
-        WriterProperties::builder().set_dictionary_enabled(false).set_compression(compression).set_writer_version(version);
+    let plain = WriterProperties::builder()
+        .set_dictionary_enabled(false)
+        .set_compression(compression)
+        .set_writer_version(version);
     plain.set_data_page_size_limit(1 << 30).set_data_page_row_count_limit(1 << 30).build()
 }
 
@@ -43,7 +47,11 @@ fn second(bytes: &Bytes, most: usize) -> Result<Held, String> {
 #[test]
 fn pages_are_measured_without_being_read() {
     for version in [WriterVersion::PARQUET_1_0, WriterVersion::PARQUET_2_0] {
-        for compression in [Compression::UNCOMPRESSED, Compression::SNAPPY, Compression::GZIP(GzipLevel::default())] {
+        for compression in [
+            Compression::UNCOMPRESSED,
+            Compression::SNAPPY,
+            Compression::GZIP(GzipLevel::default()),
+        ] {
             let bytes = file(10_000, one_page(compression, version));
             let found = second(&bytes, 1 << 20).unwrap();
             assert!((80_000..170_000).contains(&found.bytes()), "{found:?}");
@@ -78,15 +86,24 @@ fn files_of_large_pages_are_refused_by_column() {
     let limits = Limits { page_bytes: 1 << 20, ..Limits::default() };
     let outcome = check(Source::parquet("a", bytes), &Mapping { limits, ..Mapping::canonical() });
     assert_eq!(outcome.errors.len(), 2, "{outcome:?}");
-    assert!(outcome.errors[1].column.as_deref() == Some("u_m_s") && outcome.errors[1].message.contains("2400000 bytes"));
+    assert!(
+        outcome.errors[1].column.as_deref() == Some("u_m_s")
+            && outcome.errors[1].message.contains("2400000 bytes")
+    );
 }
 
 #[test]
 fn what_is_no_page_header_ends_in_an_error() {
-    let read = |bytes: &'static [u8]| Header::read(&Bytes::from_static(bytes), 0).map(|header| header.length);
+    let read = |bytes: &'static [u8]| {
+        Header::read(&Bytes::from_static(bytes), 0).map(|header| header.length)
+    };
     assert!(read(b"").is_err() && read(&[0x15]).is_err() && read(&[0x15, 0xff, 0xff]).is_err());
     // Structures within structures without an end, a list, a binary longer than there is.
-    assert!(read(&[0x1c; 4096]).is_err() && read(&[0x19, 0xff]).is_err() && read(&[0x18, 0xff, 0x7f]).is_err());
+    assert!(
+        read(&[0x1c; 4096]).is_err()
+            && read(&[0x19, 0xff]).is_err()
+            && read(&[0x18, 0xff, 0x7f]).is_err()
+    );
     // A negative size.
     assert!(read(&[0x15, 0, 0x15, 0x01, 0]).is_err());
     assert_eq!(read(&[0x15, 0, 0x15, 2, 0x15, 2, 0]).unwrap(), 7);
@@ -101,7 +118,12 @@ fn lists_that_are_not_there_take_no_time() {
     ];
     for bytes in lists {
         let begun = std::time::Instant::now();
-        let outcome = check(Source::parquet("a.parquet", Bytes::from_static(bytes)), &Mapping::canonical());
-        assert!(!outcome.errors.is_empty() && begun.elapsed() < std::time::Duration::from_millis(200), "{:?}", begun.elapsed());
+        let outcome =
+            check(Source::parquet("a.parquet", Bytes::from_static(bytes)), &Mapping::canonical());
+        assert!(
+            !outcome.errors.is_empty() && begun.elapsed() < std::time::Duration::from_millis(200),
+            "{:?}",
+            begun.elapsed()
+        );
     }
 }

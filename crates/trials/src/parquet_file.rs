@@ -22,10 +22,15 @@ use crate::table::{Column, Table};
 /// Reads the mapped columns; nothing after errors that leave nothing to check.
 ///
 /// Rows are counted as in a CSV file: the first row of data is row 2.
-pub(crate) fn read<R: ChunkReader + 'static>(input: R, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
+pub(crate) fn read<R: ChunkReader + 'static>(
+    input: R,
+    mapping: &Mapping,
+    findings: &mut Findings,
+) -> Option<Table> {
     let columns = mapped(&input, mapping, findings)?.columns;
     let opened = guarded(|| SerializedFileReader::new(input));
-    let reader = opened.map_err(|error| findings.error(None, None, FileRefusal::unreadable(error).to_string()));
+    let reader = opened
+        .map_err(|error| findings.error(None, None, FileRefusal::unreadable(error).to_string()));
     let reader = reader.ok()?;
     let rows = reader.metadata().row_groups().iter().map(|group| group.num_rows()).sum::<i64>();
     let builder = Builder::new(columns.clone(), mapping.conventions.missing, findings);
@@ -39,7 +44,10 @@ pub(crate) fn read<R: ChunkReader + 'static>(input: R, mapping: &Mapping, findin
 }
 
 /// Rows, columns that are read, and bytes that pages take at a time; nothing of a file that will be refused.
-pub(crate) fn measure<R: ChunkReader + 'static>(input: &R, mapping: &Mapping) -> Option<(usize, usize, u64)> {
+pub(crate) fn measure<R: ChunkReader + 'static>(
+    input: &R,
+    mapping: &Mapping,
+) -> Option<(usize, usize, u64)> {
     let mapped = mapped(input, mapping, &mut Findings::default())?;
     Some((mapped.rows, mapped.columns.len(), mapped.holding))
 }
@@ -53,15 +61,22 @@ struct Mapped {
 }
 
 /// Finds the columns to read, and holds their pages against the limits before any is decompressed.
-fn mapped<R: ChunkReader + 'static>(input: &R, mapping: &Mapping, findings: &mut Findings) -> Option<Mapped> {
-    let opened = metadata(input, mapping.limits).map_err(|refused| findings.error(None, None, refused.to_string()));
+fn mapped<R: ChunkReader + 'static>(
+    input: &R,
+    mapping: &Mapping,
+    findings: &mut Findings,
+) -> Option<Mapped> {
+    let opened = metadata(input, mapping.limits)
+        .map_err(|refused| findings.error(None, None, refused.to_string()));
     let (meta, rows) = opened.ok()?;
     let schema = meta.file_metadata().schema_descr();
     let columns = resolve(&names(schema), mapping, findings)?;
     check_types(schema, &columns, findings);
     let mut holding = 0;
     for column in columns.iter().filter(|_| !findings.has_errors()).collect::<Vec<_>>() {
-        let of_group = |group: &RowGroupMetaData| held(input, group.column(column.index), mapping.limits.page_bytes);
+        let of_group = |group: &RowGroupMetaData| {
+            held(input, group.column(column.index), mapping.limits.page_bytes)
+        };
         let parts: Result<Vec<Held>, String> = meta.row_groups().iter().map(of_group).collect();
         match parts {
             Ok(parts) => holding += parts.into_iter().fold(Held::default(), Held::max).bytes(),
@@ -97,30 +112,41 @@ impl FileRefusal {
 }
 
 /// Opens the file and holds it against the limits before any sample is decoded.
-pub(crate) fn open<R: ChunkReader + 'static>(input: R, limits: Limits) -> Result<SerializedFileReader<R>, FileRefusal> {
+pub(crate) fn open<R: ChunkReader + 'static>(
+    input: R,
+    limits: Limits,
+) -> Result<SerializedFileReader<R>, FileRefusal> {
     metadata(&input, limits)?;
     guarded(|| SerializedFileReader::new(input)).map_err(FileRefusal::unreadable)
 }
 
 /// What the file says of itself, as far as that is within the limits, and its rows.
-fn metadata<R: ChunkReader + 'static>(input: &R, limits: Limits) -> Result<(ParquetMetaData, usize), FileRefusal> {
+fn metadata<R: ChunkReader + 'static>(
+    input: &R,
+    limits: Limits,
+) -> Result<(ParquetMetaData, usize), FileRefusal> {
     let footer = footer_bytes(input).map_err(FileRefusal::unreadable)?;
     if footer > limits.footer_bytes as u64 {
         return Err(FileRefusal::Footer { found: footer, most: limits.footer_bytes });
     }
     pages::footer(input, footer).map_err(FileRefusal::unreadable)?;
-    let meta = guarded(|| ParquetMetaDataReader::new().parse_and_finish(input)).map_err(FileRefusal::unreadable)?;
+    let meta = guarded(|| ParquetMetaDataReader::new().parse_and_finish(input))
+        .map_err(FileRefusal::unreadable)?;
     let columns = meta.file_metadata().schema_descr().num_columns();
     let mut chunks = meta.row_groups().iter().flat_map(|group| group.columns());
     if chunks.any(|chunk| {
-        chunk.compressed_size() < 0 || chunk.data_page_offset() < 0 || chunk.dictionary_page_offset().is_some_and(|at| at < 0)
+        chunk.compressed_size() < 0
+            || chunk.data_page_offset() < 0
+            || chunk.dictionary_page_offset().is_some_and(|at| at < 0)
     }) {
         return Err(FileRefusal::unreadable("a column lies outside the file"));
     }
     // The groups are what is read, so they are counted, not the file's own total.
     let groups = meta.row_groups().iter().map(|group| group.num_rows());
-    let counted: Option<Vec<usize>> = groups.clone().map(|rows| usize::try_from(rows).ok()).collect();
-    let counted = counted.ok_or_else(|| FileRefusal::unreadable("a row group has a negative number of rows"))?;
+    let counted: Option<Vec<usize>> =
+        groups.clone().map(|rows| usize::try_from(rows).ok()).collect();
+    let counted = counted
+        .ok_or_else(|| FileRefusal::unreadable("a row group has a negative number of rows"))?;
     let rows = counted.into_iter().fold(0, usize::saturating_add);
     if rows > limits.rows {
         return Err(FileRefusal::Rows { found: rows, most: limits.rows });
@@ -133,7 +159,10 @@ fn metadata<R: ChunkReader + 'static>(input: &R, limits: Limits) -> Result<(Parq
 
 /// Bytes of what the file says of itself; its last eight bytes hold their number and a mark.
 fn footer_bytes<R: ChunkReader>(input: &R) -> ParquetResult<u64> {
-    let at = input.len().checked_sub(8).ok_or_else(|| ParquetError::General("it is too short".into()))?;
+    let at = input
+        .len()
+        .checked_sub(8)
+        .ok_or_else(|| ParquetError::General("it is too short".into()))?;
     let end = input.get_bytes(at, 8)?;
     Ok(end.first_chunk().map_or(0, |bytes| u64::from(u32::from_le_bytes(*bytes))))
 }
@@ -151,7 +180,10 @@ fn check_types(schema: &SchemaDescriptor, columns: &[Column], findings: &mut Fin
     for column in columns {
         let found = schema.column(column.index);
         if !is_number(&found) {
-            let message = format!("holds {} values; write the column as DOUBLE, FLOAT, INT32 or INT64", type_name(&found));
+            let message = format!(
+                "holds {} values; write the column as DOUBLE, FLOAT, INT32 or INT64",
+                type_name(&found)
+            );
             findings.error(Some(1), Some(&column.header), message);
         }
     }
@@ -163,7 +195,15 @@ fn is_number(column: &ColumnDescriptor) -> bool {
     let plain = matches!(column.logical_type_ref(), None | Some(LogicalType::Integer { .. }))
         && matches!(
             column.converted_type(),
-            C::NONE | C::INT_8 | C::INT_16 | C::INT_32 | C::INT_64 | C::UINT_8 | C::UINT_16 | C::UINT_32 | C::UINT_64
+            C::NONE
+                | C::INT_8
+                | C::INT_16
+                | C::INT_32
+                | C::INT_64
+                | C::UINT_8
+                | C::UINT_16
+                | C::UINT_32
+                | C::UINT_64
         );
     plain
         && column.max_rep_level() == 0
@@ -200,12 +240,17 @@ fn groups<R: ChunkReader + 'static>(
     let mut row = 1;
     for index in 0..reader.num_row_groups() {
         let group = reader.get_row_group(index)?;
-        let mut cells: Vec<Cells> = columns.iter().map(|column| Cells::new(&*group, column.index)).collect::<Result<_, _>>()?;
+        let mut cells: Vec<Cells> = columns
+            .iter()
+            .map(|column| Cells::new(&*group, column.index))
+            .collect::<Result<_, _>>()?;
         let rows = group_rows(&*group)?;
         for start in (0..rows).step_by(BATCH) {
             let count = BATCH.min(rows - start);
             cells.iter_mut().try_for_each(|cells| cells.next(count))?;
-            let number = |k: usize, at: usize| cells[at].values.get(k).copied().filter(|value| value.is_finite());
+            let number = |k: usize, at: usize| {
+                cells[at].values.get(k).copied().filter(|value| value.is_finite())
+            };
             for k in 0..count {
                 row += 1;
                 builder.row(row, |position, _| number(k, position).ok_or(Fault::NotANumber));
@@ -248,16 +293,24 @@ impl Cells {
         let (full, values) = (self.full, &mut self.values);
         values.clear();
         let records = match &mut self.reader {
-            ColumnReader::DoubleColumnReader(reader) => batch(reader, count, full, |value| value, values),
-            ColumnReader::FloatColumnReader(reader) => batch(reader, count, full, f64::from, values),
+            ColumnReader::DoubleColumnReader(reader) => {
+                batch(reader, count, full, |value| value, values)
+            }
+            ColumnReader::FloatColumnReader(reader) => {
+                batch(reader, count, full, f64::from, values)
+            }
             ColumnReader::Int32ColumnReader(reader) if self.unsigned => {
                 batch(reader, count, full, |value| f64::from(value.cast_unsigned()), values)
             }
-            ColumnReader::Int32ColumnReader(reader) => batch(reader, count, full, f64::from, values),
+            ColumnReader::Int32ColumnReader(reader) => {
+                batch(reader, count, full, f64::from, values)
+            }
             ColumnReader::Int64ColumnReader(reader) if self.unsigned => {
                 batch(reader, count, full, |value| exact(value.cast_unsigned().into()), values)
             }
-            ColumnReader::Int64ColumnReader(reader) => batch(reader, count, full, |value| exact(value.into()), values),
+            ColumnReader::Int64ColumnReader(reader) => {
+                batch(reader, count, full, |value| exact(value.into()), values)
+            }
             _ => Err(ParquetError::General("a column is of an unexpected type".into())),
         }?;
         self.read += self.values.len();
@@ -265,7 +318,9 @@ impl Cells {
             return Ok(());
         }
         let (read, rows) = (self.read, self.rows);
-        Err(ParquetError::General(format!("a column holds {read} values where {rows} are promised")))
+        Err(ParquetError::General(format!(
+            "a column holds {read} values where {rows} are promised"
+        )))
     }
 }
 
@@ -281,7 +336,11 @@ fn batch<T: DataType>(
     let mut present = present.into_iter().map(to_f64);
     match full {
         0 => values.extend(present),
-        _ => values.extend(levels.iter().map(|&at| if at == full { present.next().unwrap_or(f64::NAN) } else { f64::NAN })),
+        _ => values.extend(
+            levels
+                .iter()
+                .map(|&at| if at == full { present.next().unwrap_or(f64::NAN) } else { f64::NAN }),
+        ),
     }
     Ok(records)
 }

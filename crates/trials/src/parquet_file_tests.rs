@@ -12,10 +12,13 @@ use crate::testing::messages;
 
 /// Three rows as another program might write them: integers, floats with a null, and text.
 fn foreign() -> Bytes {
-    let schema = "message m { required int64 t_ms; optional float u_m_s; required binary note (UTF8); }";
+    let schema =
+        "message m { required int64 t_ms; optional float u_m_s; required binary note (UTF8); }";
     let schema = Arc::new(parse_message_type(schema).unwrap());
     let mut bytes = Vec::new();
-    let mut writer = SerializedFileWriter::new(&mut bytes, schema, Arc::new(WriterProperties::default())).unwrap();
+    let mut writer =
+        SerializedFileWriter::new(&mut bytes, schema, Arc::new(WriterProperties::default()))
+            .unwrap();
     let mut group = writer.next_row_group().unwrap();
     let mut column = group.next_column().unwrap().unwrap();
     column.typed::<Int64Type>().write_batch(&[0, 100, 200], None, None).unwrap();
@@ -24,7 +27,10 @@ fn foreign() -> Bytes {
     column.typed::<FloatType>().write_batch(&[1.5, 2.5], Some(&[1, 0, 1]), None).unwrap();
     column.close().unwrap();
     let mut column = group.next_column().unwrap().unwrap();
-    column.typed::<ByteArrayType>().write_batch(&["a", "b", "c"].map(ByteArray::from), None, None).unwrap();
+    column
+        .typed::<ByteArrayType>()
+        .write_batch(&["a", "b", "c"].map(ByteArray::from), None, None)
+        .unwrap();
     column.close().unwrap();
     group.close().unwrap();
     writer.close().unwrap();
@@ -35,16 +41,23 @@ fn foreign() -> Bytes {
 fn integers_floats_and_nulls_are_read() {
     let mut findings = Findings::default();
     let table = read(foreign(), &Mapping::canonical(), &mut findings).unwrap();
-    assert_eq!((table.values[0].clone(), table.values[1].clone()), (vec![0.0, 0.2], vec![1.5, 2.5]));
+    assert_eq!(
+        (table.values[0].clone(), table.values[1].clone()),
+        (vec![0.0, 0.2], vec![1.5, 2.5])
+    );
     assert_eq!(table.rows, [2, 4]);
     let text = messages(findings);
-    assert!(text.contains("error Some(3) Some(\"u_m_s\")") && text.contains("columns not read: note"), "{text}");
+    assert!(
+        text.contains("error Some(3) Some(\"u_m_s\")") && text.contains("columns not read: note"),
+        "{text}"
+    );
 }
 
 #[test]
 fn text_is_no_channel_and_sizes_are_bounded() {
     let mut mapping = Mapping::canonical();
-    let note = sistership_model::manifest::ColumnMapping { column: "note".into(), unit: "m/s".into() };
+    let note =
+        sistership_model::manifest::ColumnMapping { column: "note".into(), unit: "m/s".into() };
     mapping.columns.push(("v".into(), note));
     let mut findings = Findings::default();
     assert!(read(foreign(), &mapping, &mut findings).is_none());
@@ -62,7 +75,9 @@ fn integers(kind: &str, small: &[i32], large: &[i64]) -> Bytes {
     let schema = format!("message m {{ required double t_s; required {kind}; }}");
     let schema = Arc::new(parse_message_type(&schema).unwrap());
     let mut bytes = Vec::new();
-    let mut writer = SerializedFileWriter::new(&mut bytes, schema, Arc::new(WriterProperties::default())).unwrap();
+    let mut writer =
+        SerializedFileWriter::new(&mut bytes, schema, Arc::new(WriterProperties::default()))
+            .unwrap();
     let mut group = writer.next_row_group().unwrap();
     let mut column = group.next_column().unwrap().unwrap();
     let times: Vec<f64> = (0..small.len().max(large.len())).map(|k| k as f64).collect();
@@ -71,7 +86,9 @@ fn integers(kind: &str, small: &[i32], large: &[i64]) -> Bytes {
     let mut column = group.next_column().unwrap().unwrap();
     match small {
         [] => column.typed::<Int64Type>().write_batch(large, None, None).unwrap(),
-        _ => column.typed::<parquet::data_type::Int32Type>().write_batch(small, None, None).unwrap(),
+        _ => {
+            column.typed::<parquet::data_type::Int32Type>().write_batch(small, None, None).unwrap()
+        }
     };
     column.close().unwrap();
     group.close().unwrap();
@@ -99,10 +116,22 @@ fn integers_that_no_f64_holds_are_told() {
 
 #[test]
 fn times_and_decimals_are_no_plain_integers() {
-    for kind in ["int32 x_m (TIME_MILLIS)", "int64 x_m (TIMESTAMP_MICROS)", "int32 x_m (DECIMAL(9,2))", "int32 x_m (DATE)"] {
-        let (small, large) = if kind.starts_with("int32") { (vec![1, 2, 3], vec![]) } else { (vec![], vec![1, 2, 3]) };
+    for kind in [
+        "int32 x_m (TIME_MILLIS)",
+        "int64 x_m (TIMESTAMP_MICROS)",
+        "int32 x_m (DECIMAL(9,2))",
+        "int32 x_m (DATE)",
+    ] {
+        let (small, large) = if kind.starts_with("int32") {
+            (vec![1, 2, 3], vec![])
+        } else {
+            (vec![], vec![1, 2, 3])
+        };
         let mut findings = Findings::default();
-        assert!(read(integers(kind, &small, &large), &Mapping::canonical(), &mut findings).is_none(), "{kind}");
+        assert!(
+            read(integers(kind, &small, &large), &Mapping::canonical(), &mut findings).is_none(),
+            "{kind}"
+        );
         assert!(messages(findings).contains("write the column as DOUBLE"), "{kind}");
     }
 }

@@ -19,7 +19,11 @@ use crate::{csv_file, parquet_file};
 pub fn read_trial(source: Source, mapping: &Mapping) -> Result<Trial, Refusal> {
     let file = source.name.clone();
     let (trial, errors, warnings) = examine(source, mapping);
-    if errors.is_empty() { Ok(Trial { warnings, ..trial }) } else { Err(Refusal { file, findings: errors }) }
+    if errors.is_empty() {
+        Ok(Trial { warnings, ..trial })
+    } else {
+        Err(Refusal { file, findings: errors })
+    }
 }
 
 /// Runs the checks of [`read_trial`] and tells what they found.
@@ -66,7 +70,9 @@ mod tests {
 
     #[test]
     fn a_file_with_canonical_names_becomes_a_trial() {
-        let trial = csv("t_s,u_kn,psi_deg,note\n0,10,350,a\n1,11,5,b\n2,12,10,c\n", &Mapping::canonical()).unwrap();
+        let trial =
+            csv("t_s,u_kn,psi_deg,note\n0,10,350,a\n1,11,5,b\n2,12,10,c\n", &Mapping::canonical())
+                .unwrap();
         assert!((trial.channel(Channel::U).unwrap()[0] - 5.144_444).abs() < 1e-5);
         let psi = trial.channel(Channel::Psi).unwrap();
         assert!((psi[1] - psi[0] - 15.0_f64.to_radians()).abs() < 1e-12);
@@ -75,15 +81,20 @@ mod tests {
 
     #[test]
     fn every_error_is_told_at_once() {
-        let refusal = csv("t_s,u_m_s,delta_rad\n0,1,35\n1,,20\n1,99,10\n", &Mapping::canonical()).unwrap_err();
+        let refusal = csv("t_s,u_m_s,delta_rad\n0,1,35\n1,,20\n1,99,10\n", &Mapping::canonical())
+            .unwrap_err();
         let text = refusal.to_string();
         assert!(text.contains("row 3: column `u_m_s`: the cell is empty"), "{text}");
-        assert!(text.contains("row 4: column `u_m_s`: 99.0000 m/s") && text.contains("declare `deg`"), "{text}");
+        assert!(
+            text.contains("row 4: column `u_m_s`: 99.0000 m/s") && text.contains("declare `deg`"),
+            "{text}"
+        );
     }
 
     #[test]
     fn smoothing_is_done_on_demand_and_its_refusal_is_an_error() {
-        let text: String = (0..50).map(|k| format!("{k},{}\n", (k as f64).powi(2) * 1e-3)).collect();
+        let text: String =
+            (0..50).map(|k| format!("{k},{}\n", (k as f64).powi(2) * 1e-3)).collect();
         let text = format!("t_s,u_m_s\n{text}");
         let mut mapping = Mapping::canonical();
         mapping.conventions.smoothing = Some(Smoothing { window: 9, degree: 2 });
@@ -95,7 +106,10 @@ mod tests {
 
     #[test]
     fn check_tells_rows_and_duration() {
-        let outcome = check(Source::csv("a.csv", "t_s,u_m_s\n0,1\n2,2\n4,3\n".as_bytes()), &Mapping::canonical());
+        let outcome = check(
+            Source::csv("a.csv", "t_s,u_m_s\n0,1\n2,2\n4,3\n".as_bytes()),
+            &Mapping::canonical(),
+        );
         assert_eq!((outcome.rows, outcome.duration_s, outcome.accepted()), (3, 4.0, true));
     }
 }

@@ -8,7 +8,12 @@ fn run(headers: &[&str], mapping: &Mapping) -> (Option<Vec<Column>>, String) {
     let mut findings = Findings::default();
     let columns = resolve(&headers, mapping, &mut findings);
     let (errors, warnings) = findings.finish();
-    let text = errors.into_iter().chain(warnings).map(|finding| finding.message).collect::<Vec<_>>().join("\n");
+    let text = errors
+        .into_iter()
+        .chain(warnings)
+        .map(|finding| finding.message)
+        .collect::<Vec<_>>()
+        .join("\n");
     (columns, text)
 }
 
@@ -89,9 +94,12 @@ fn a_header_and_a_manifest_agree_on_the_unit() {
         let (columns, text) = run(&[time, header], &mapped(&[(name, header, unit)]));
         assert!(columns.is_none() && text.contains("the header says"), "{header}: {text}");
     }
-    for (name, header, unit) in
-        [("u", "log_kn", "kn"), ("u", "speed [m/s]", "m/s"), ("x", "east_m", "m"), ("psi", "hdg_s", "deg")]
-    {
+    for (name, header, unit) in [
+        ("u", "log_kn", "kn"),
+        ("u", "speed [m/s]", "m/s"),
+        ("x", "east_m", "m"),
+        ("psi", "hdg_s", "deg"),
+    ] {
         assert!(run(&["t_s", header], &mapped(&[(name, header, unit)])).0.is_some(), "{header}");
     }
 }

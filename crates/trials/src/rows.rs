@@ -59,7 +59,11 @@ impl<'a> Builder<'a> {
         }
         self.end_run();
         self.table.rows.push(row);
-        self.table.values.iter_mut().zip(&self.scratch).for_each(|(values, &value)| values.push(value));
+        self.table
+            .values
+            .iter_mut()
+            .zip(&self.scratch)
+            .for_each(|(values, &value)| values.push(value));
     }
 
     /// A row that ends before the header does: left out as one without a value, or told by whoever counts the cells.
@@ -80,8 +84,9 @@ impl<'a> Builder<'a> {
     fn faulty(&mut self, row: usize, column: String, fault: Fault) {
         self.faulty += 1;
         if self.missing == Missing::Refuse && self.faulty <= LISTED {
-            let message =
-                format!("{fault}; fill it in, or set `missing: drop` in the manifest's conventions to leave such rows out");
+            let message = format!(
+                "{fault}; fill it in, or set `missing: drop` in the manifest's conventions to leave such rows out"
+            );
             self.findings.error(Some(row), Some(&column), message);
         }
         match &mut self.run {
@@ -92,9 +97,13 @@ impl<'a> Builder<'a> {
 
     fn end_run(&mut self) {
         let Some(run) = self.run.take().filter(|_| self.missing == Missing::Drop) else { return };
-        let rows =
-            if run.first == run.last { format!("row {}", run.first) } else { format!("rows {} to {}", run.first, run.last) };
-        let message = format!("{rows} left out: {}; nothing is interpolated over the gap", run.fault);
+        let rows = if run.first == run.last {
+            format!("row {}", run.first)
+        } else {
+            format!("rows {} to {}", run.first, run.last)
+        };
+        let message =
+            format!("{rows} left out: {}; nothing is interpolated over the gap", run.fault);
         self.findings.warning(Some(run.first), Some(&run.column), message);
     }
 
@@ -104,9 +113,15 @@ impl<'a> Builder<'a> {
         self.table.values.iter_mut().for_each(Vec::shrink_to_fit);
         let last = self.run.as_ref().map(|run| run.last);
         self.end_run();
-        if let Some(more @ 1..) = self.faulty.checked_sub(LISTED).filter(|_| self.missing == Missing::Refuse) {
+        if let Some(more @ 1..) =
+            self.faulty.checked_sub(LISTED).filter(|_| self.missing == Missing::Refuse)
+        {
             let end = last.map_or(String::new(), |row| format!(", up to row {row}"));
-            self.findings.error(None, None, format!("{more} further rows hold cells without a number{end}"));
+            self.findings.error(
+                None,
+                None,
+                format!("{more} further rows hold cells without a number{end}"),
+            );
         }
         self.table
     }
@@ -120,12 +135,19 @@ mod tests {
     use crate::table::Target;
 
     fn fill(missing: Missing) -> (Table, Findings) {
-        let column =
-            Column { index: 0, header: "u".into(), target: Target::Channel(Channel::U), unit: "km/h".into(), to_si: 0.5 };
+        let column = Column {
+            index: 0,
+            header: "u".into(),
+            target: Target::Channel(Channel::U),
+            unit: "km/h".into(),
+            to_si: 0.5,
+        };
         let mut findings = Findings::default();
         let mut builder = Builder::new(vec![column], missing, &mut findings);
         for row in 2..12 {
-            builder.row(row, |_, _| if (4..=6).contains(&row) || row == 11 { Err(Fault::Empty) } else { Ok(row as f64) });
+            builder.row(row, |_, _| {
+                if (4..=6).contains(&row) || row == 11 { Err(Fault::Empty) } else { Ok(row as f64) }
+            });
         }
         let table = builder.finish();
         (table, findings)
@@ -145,7 +167,10 @@ mod tests {
     #[test]
     fn refused_rows_are_named() {
         let (errors, _) = fill(Missing::Refuse).1.finish();
-        assert_eq!(errors.iter().map(|finding| finding.row).collect::<Vec<_>>(), [Some(4), Some(5), Some(6), Some(11)]);
+        assert_eq!(
+            errors.iter().map(|finding| finding.row).collect::<Vec<_>>(),
+            [Some(4), Some(5), Some(6), Some(11)]
+        );
         assert!(errors[0].message.contains("missing: drop"));
     }
 }

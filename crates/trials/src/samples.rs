@@ -93,13 +93,16 @@ pub fn write_parquet(out: impl Write + Send, trial: &Trial) -> Result<(), Sample
 /// # Errors
 /// The file is damaged, too large, or not written by [`to_parquet`].
 pub fn from_parquet(bytes: Bytes) -> Result<Trial, SamplesError> {
-    let reader = parquet_file::open(bytes, Limits::default()).map_err(|refused| SamplesError::Content(refused.to_string()))?;
+    let reader = parquet_file::open(bytes, Limits::default())
+        .map_err(|refused| SamplesError::Content(refused.to_string()))?;
     let About { name, manoeuvre, depth_m, velocity, warnings } = about(&reader)?;
     let mut trial = Trial { name, manoeuvre, depth_m, velocity, warnings, ..Trial::default() };
     let mut columns = parquet_file::guarded(|| read_columns(&reader))?;
-    trial.t_s = columns.remove(TIME).ok_or_else(|| SamplesError::Content(format!("no column `{TIME}`")))?;
+    trial.t_s =
+        columns.remove(TIME).ok_or_else(|| SamplesError::Content(format!("no column `{TIME}`")))?;
     for (name, values) in columns {
-        let channel = Channel::by_column(&name).ok_or_else(|| SamplesError::Content(format!("unknown column `{name}`")))?;
+        let channel = Channel::by_column(&name)
+            .ok_or_else(|| SamplesError::Content(format!("unknown column `{name}`")))?;
         trial.channels.insert(channel, values);
     }
     Ok(trial)
@@ -128,7 +131,8 @@ fn columns(trial: &Trial) -> Result<Vec<(&'static str, &[f64])>, SamplesError> {
     let mut columns = vec![(TIME, trial.t_s.as_slice())];
     for (channel, values) in &trial.channels {
         if values.len() != trial.len() {
-            let message = format!("{channel} has {} samples, time has {}", values.len(), trial.len());
+            let message =
+                format!("{channel} has {} samples, time has {}", values.len(), trial.len());
             return Err(SamplesError::Content(message));
         }
         columns.push((channel.column(), values.as_slice()));
@@ -137,8 +141,12 @@ fn columns(trial: &Trial) -> Result<Vec<(&'static str, &[f64])>, SamplesError> {
 }
 
 fn schema(names: impl Iterator<Item = &'static str>) -> ParquetResult<Arc<Type>> {
-    let column =
-        |name| Type::primitive_type_builder(name, Physical::DOUBLE).with_repetition(Repetition::REQUIRED).build().map(Arc::new);
+    let column = |name| {
+        Type::primitive_type_builder(name, Physical::DOUBLE)
+            .with_repetition(Repetition::REQUIRED)
+            .build()
+            .map(Arc::new)
+    };
     let fields = names.map(column).collect::<ParquetResult<_>>()?;
     Type::group_type_builder("trial").with_fields(fields).build().map(Arc::new)
 }
@@ -151,7 +159,8 @@ fn properties(trial: &Trial) -> Result<WriterProperties, SamplesError> {
         velocity: trial.velocity,
         warnings: trial.warnings.clone(),
     };
-    let text = serde_json::to_string(&about).map_err(|error| SamplesError::Content(error.to_string()))?;
+    let text =
+        serde_json::to_string(&about).map_err(|error| SamplesError::Content(error.to_string()))?;
     Ok(WriterProperties::builder()
         .set_created_by("sistership".into())
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
@@ -175,15 +184,23 @@ fn write_column<W: Write + Send>(
 
 fn about(reader: &SerializedFileReader<Bytes>) -> Result<About, SamplesError> {
     let metadata = reader.metadata().file_metadata().key_value_metadata();
-    let text = metadata.into_iter().flatten().find(|entry| entry.key == KEY).and_then(|entry| entry.value.as_deref());
-    let text = text.ok_or_else(|| SamplesError::Content(format!("no metadata `{KEY}`; not written by Sistership")))?;
-    serde_json::from_str(text).map_err(|error| SamplesError::Content(format!("metadata `{KEY}`: {error}")))
+    let text = metadata
+        .into_iter()
+        .flatten()
+        .find(|entry| entry.key == KEY)
+        .and_then(|entry| entry.value.as_deref());
+    let text = text.ok_or_else(|| {
+        SamplesError::Content(format!("no metadata `{KEY}`; not written by Sistership"))
+    })?;
+    serde_json::from_str(text)
+        .map_err(|error| SamplesError::Content(format!("metadata `{KEY}`: {error}")))
 }
 
 fn read_columns(reader: &SerializedFileReader<Bytes>) -> ParquetResult<BTreeMap<String, Vec<f64>>> {
     let (names, groups) = (parquet_file::headers(reader), reader.metadata().row_groups());
     let rows: i64 = groups.iter().map(|group| group.num_rows()).sum();
-    let mut columns: Vec<Vec<f64>> = names.iter().map(|_| Vec::with_capacity(usize::try_from(rows).unwrap_or(0))).collect();
+    let mut columns: Vec<Vec<f64>> =
+        names.iter().map(|_| Vec::with_capacity(usize::try_from(rows).unwrap_or(0))).collect();
     for index in 0..reader.num_row_groups() {
         let group = reader.get_row_group(index)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
@@ -219,7 +236,8 @@ impl CsvPieces {
     /// # Errors
     /// It is damaged, or too large.
     pub fn open(file: File) -> Result<Self, SamplesError> {
-        let reader = parquet_file::open(file, Limits::default()).map_err(|refused| SamplesError::Content(refused.to_string()))?;
+        let reader = parquet_file::open(file, Limits::default())
+            .map_err(|refused| SamplesError::Content(refused.to_string()))?;
         let names = parquet_file::headers(&reader);
         Ok(Self { reader, names, group: 0, cells: Vec::new(), left: 0, has_begun: false })
     }
@@ -252,7 +270,9 @@ impl CsvPieces {
                 return Ok(0);
             }
             let group = self.reader.get_row_group(self.group)?;
-            self.cells = (0..self.names.len()).map(|column| Cells::new(&*group, column)).collect::<Result<_, _>>()?;
+            self.cells = (0..self.names.len())
+                .map(|column| Cells::new(&*group, column))
+                .collect::<Result<_, _>>()?;
             self.left = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
             self.group += 1;
         }

@@ -3,11 +3,17 @@ use super::*;
 use crate::{Mapping, Source, read_trial};
 
 fn trial() -> Trial {
-    let values = |scale: f64| (0..300).map(|k| scale * (k as f64).sin() / 3.0).collect::<Vec<f64>>();
+    let values =
+        |scale: f64| (0..300).map(|k| scale * (k as f64).sin() / 3.0).collect::<Vec<f64>>();
     Trial {
         name: "zigzag/a.csv".into(),
         t_s: (0..300).map(|k| k as f64 * 0.1).collect(),
-        channels: [(Channel::U, values(1.0)), (Channel::Delta, values(-1e-9)), (Channel::Y, values(1e5))].into(),
+        channels: [
+            (Channel::U, values(1.0)),
+            (Channel::Delta, values(-1e-9)),
+            (Channel::Y, values(1e5)),
+        ]
+        .into(),
         manoeuvre: Some("zigzag 10/10".into()),
         depth_m: Some(12.5),
         velocity: VelocityFrame::Water,
@@ -42,7 +48,9 @@ fn foreign_damaged_and_uneven_samples_are_errors() {
     assert!(from_parquet(Bytes::from_static(b"PAR1")).is_err());
     let mut uneven = trial();
     uneven.t_s.pop();
-    assert!(to_parquet(&uneven).unwrap_err().to_string().contains("y has 300 samples, time has 299"));
+    assert!(
+        to_parquet(&uneven).unwrap_err().to_string().contains("y has 300 samples, time has 299")
+    );
 }
 
 #[test]

@@ -18,8 +18,16 @@ const UNEVEN: f64 = 0.1;
 
 /// The measured motions. Rudder and revolutions are commands with edges that a smoother would blur ahead of time, and
 /// wind directions wrap: these stay as recorded.
-const SMOOTHED: [Channel; 8] =
-    [Channel::X, Channel::Y, Channel::Psi, Channel::U, Channel::V, Channel::R, Channel::Phi, Channel::P];
+const SMOOTHED: [Channel; 8] = [
+    Channel::X,
+    Channel::Y,
+    Channel::Psi,
+    Channel::U,
+    Channel::V,
+    Channel::R,
+    Channel::Phi,
+    Channel::P,
+];
 
 /// Why values cannot be smoothed so.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -55,7 +63,11 @@ pub enum SmoothingError {
 ///
 /// # Errors
 /// Says which of these does not hold.
-pub fn savitzky_golay(values: &[f64], window: usize, degree: usize) -> Result<Vec<f64>, SmoothingError> {
+pub fn savitzky_golay(
+    values: &[f64],
+    window: usize,
+    degree: usize,
+) -> Result<Vec<f64>, SmoothingError> {
     check(window, degree)?;
     if values.len() < window {
         return Err(SmoothingError::Short { window, samples: values.len() });
@@ -63,8 +75,9 @@ pub fn savitzky_golay(values: &[f64], window: usize, degree: usize) -> Result<Ve
     let basis = basis(window, degree);
     let (half, last) = (window / 2, values.len() - window);
     // The fitted value at a place of a window is the projection onto the polynomials, read there.
-    let fitted =
-        |start: usize, weights: &[f64]| -> f64 { values[start..start + window].iter().zip(weights).map(|(a, b)| a * b).sum() };
+    let fitted = |start: usize, weights: &[f64]| -> f64 {
+        values[start..start + window].iter().zip(weights).map(|(a, b)| a * b).sum()
+    };
     let middle = weights(&basis, half);
     let head = (0..half).map(|place| fitted(0, &weights(&basis, place)));
     let body = (0..=last).map(|start| fitted(start, &middle));
@@ -75,7 +88,9 @@ pub fn savitzky_golay(values: &[f64], window: usize, degree: usize) -> Result<Ve
 /// Whether window and degree are ones that [`savitzky_golay`] takes.
 pub(crate) fn check(window: usize, degree: usize) -> Result<(), SmoothingError> {
     match () {
-        () if window.is_multiple_of(2) || window > MAX_WINDOW => Err(SmoothingError::Window(window)),
+        () if window.is_multiple_of(2) || window > MAX_WINDOW => {
+            Err(SmoothingError::Window(window))
+        }
         () if degree >= window => Err(SmoothingError::Degree { degree, window }),
         () if degree > MAX_DEGREE => Err(SmoothingError::High(degree)),
         () => Ok(()),
@@ -118,14 +133,23 @@ fn uneven(recording: &Recording) -> Option<usize> {
     inside.into_iter().find(|&k| ((t[k] - t[k - 1]) / interval - 1.0).abs() > UNEVEN)
 }
 
-fn smooth_segment(recording: &mut Recording, segment: std::ops::Range<usize>, smoothing: Smoothing, findings: &mut Findings) {
+fn smooth_segment(
+    recording: &mut Recording,
+    segment: std::ops::Range<usize>,
+    smoothing: Smoothing,
+    findings: &mut Findings,
+) {
     if segment.len() < smoothing.window {
-        let message = format!("{} samples between gaps are fewer than the smoothing window; left as recorded", segment.len());
+        let message = format!(
+            "{} samples between gaps are fewer than the smoothing window; left as recorded",
+            segment.len()
+        );
         return findings.warning(Some(recording.row(segment.start)), None, message);
     }
     for channel in SMOOTHED {
         if let Some(values) = recording.trial.channels.get_mut(&channel)
-            && let Ok(smooth) = savitzky_golay(&values[segment.clone()], smoothing.window, smoothing.degree)
+            && let Ok(smooth) =
+                savitzky_golay(&values[segment.clone()], smoothing.window, smoothing.degree)
         {
             values[segment.clone()].copy_from_slice(&smooth);
         }
@@ -141,7 +165,8 @@ mod tests {
     #[test]
     fn scipys_example_comes_out() {
         let smooth = savitzky_golay(&[2.0, 2.0, 5.0, 2.0, 1.0, 0.0, 1.0, 4.0, 9.0], 5, 2).unwrap();
-        let scipy = [1.65714286, 3.17142857, 3.54285714, 2.85714286, 0.65714286, 0.17142857, 1.0, 4.0, 9.0];
+        let scipy =
+            [1.65714286, 3.17142857, 3.54285714, 2.85714286, 0.65714286, 0.17142857, 1.0, 4.0, 9.0];
         assert!(smooth.iter().zip(scipy).all(|(a, b)| (a - b).abs() < 1e-8), "{smooth:?}");
     }
 
@@ -168,7 +193,9 @@ mod tests {
         gap.trial.t_s.iter_mut().skip(20).for_each(|t| *t += 10.0);
         gap.settle_time();
         smooth(&mut gap, smoothing, &mut Findings::default());
-        assert!(gap.channel(Channel::U).unwrap().iter().zip(&step).all(|(a, b)| (a - b).abs() < 1e-12));
+        assert!(
+            gap.channel(Channel::U).unwrap().iter().zip(&step).all(|(a, b)| (a - b).abs() < 1e-12)
+        );
         let mut uneven = recording(&[(Channel::U, step)]);
         uneven.trial.t_s[7] += 0.2;
         uneven.settle_time();

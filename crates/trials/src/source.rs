@@ -34,7 +34,11 @@ impl<'a> Source<'a> {
 
     /// A file in memory; Parquet is told from CSV by its first bytes, whatever the name says.
     pub fn bytes(name: impl Into<String>, bytes: Bytes) -> Self {
-        if bytes.starts_with(PARQUET_MAGIC) { Self::parquet(name, bytes) } else { Self::csv(name, io::Cursor::new(bytes)) }
+        if bytes.starts_with(PARQUET_MAGIC) {
+            Self::parquet(name, bytes)
+        } else {
+            Self::csv(name, io::Cursor::new(bytes))
+        }
     }
 
     /// A file on disk, streamed; Parquet is told from CSV by its first bytes.

@@ -18,10 +18,16 @@ pub(crate) struct Block {
 pub(crate) fn blocks(recording: &Recording) -> Vec<Block> {
     let steps = (recording.trial.len() / BLOCKS).max(1);
     let inside = |segment: &std::ops::Range<usize>| {
-        (segment.start..segment.end).step_by(steps).map(move |first| Block { first, last: first + steps })
+        (segment.start..segment.end)
+            .step_by(steps)
+            .map(move |first| Block { first, last: first + steps })
     };
     let fits = |block: &Block, end: usize| block.last < end;
-    recording.segments.iter().flat_map(|segment| inside(segment).filter(|block| fits(block, segment.end))).collect()
+    recording
+        .segments
+        .iter()
+        .flat_map(|segment| inside(segment).filter(|block| fits(block, segment.end)))
+        .collect()
 }
 
 impl Block {
@@ -46,14 +52,16 @@ pub(crate) struct Proportion {
 pub(crate) fn proportion(pairs: &[(f64, f64)]) -> Option<Proportion> {
     let sum = |term: fn(f64, f64) -> f64| pairs.iter().map(|&(a, b)| term(a, b)).sum::<f64>();
     let (aa, ab, bb) = (sum(|a, _| a * a), sum(|a, b| a * b), sum(|_, b| b * b));
-    (pairs.len() >= 3 && aa > 0.0 && bb > 0.0).then(|| Proportion { slope: ab / aa, correlation: ab / (aa * bb).sqrt() })
+    (pairs.len() >= 3 && aa > 0.0 && bb > 0.0)
+        .then(|| Proportion { slope: ab / aa, correlation: ab / (aa * bb).sqrt() })
 }
 
 /// Pearson's correlation of pairs that can be gone through again; zero where one side is constant.
 pub(crate) fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
     let count = pairs.clone().count();
     let n = count.max(1) as f64;
-    let (mean_a, mean_b) = pairs.clone().fold((0.0, 0.0), |(a, b), pair| (a + pair.0 / n, b + pair.1 / n));
+    let (mean_a, mean_b) =
+        pairs.clone().fold((0.0, 0.0), |(a, b), pair| (a + pair.0 / n, b + pair.1 / n));
     let add = |(aa, ab, bb), (a, b)| {
         let (a, b): (f64, f64) = (a - mean_a, b - mean_b);
         (aa + a * a, ab + a * b, bb + b * b)
@@ -69,7 +77,9 @@ pub(crate) fn range(values: &[f64]) -> f64 {
 
 /// As [`range`].
 pub(crate) fn spread(values: impl Iterator<Item = f64>) -> f64 {
-    let bounds = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    let bounds = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
     (bounds.1 - bounds.0).max(0.0)
 }
 
@@ -123,13 +133,18 @@ mod tests {
 
     #[test]
     fn quantiles_are_those_of_sorted_values() {
-        let mut values: Vec<f64> = (0..1000).map(|k| f64::from(k * 7919 % 1000 - 500).powi(3) * 1e-3).collect();
+        let mut values: Vec<f64> =
+            (0..1000).map(|k| f64::from(k * 7919 % 1000 - 500).powi(3) * 1e-3).collect();
         values.extend([0.0, -0.0, 1e300, -1e-300, f64::MAX]);
         let mut sorted = values.clone();
         sorted.sort_by(f64::total_cmp);
         for fraction in [0.0, 0.05, 0.5, 0.95, 1.0] {
             let at = ((sorted.len() - 1) as f64 * fraction).round() as usize;
-            assert_eq!(quantile(values.iter().copied(), fraction).to_bits(), sorted[at].to_bits(), "{fraction}");
+            assert_eq!(
+                quantile(values.iter().copied(), fraction).to_bits(),
+                sorted[at].to_bits(),
+                "{fraction}"
+            );
         }
     }
 
@@ -137,7 +152,9 @@ mod tests {
     fn quantiles_and_correlations() {
         assert_eq!(quantile([3.0, 1.0, 2.0].into_iter(), 0.5), 2.0);
         assert_eq!(quantile(std::iter::empty(), 0.5), 0.0);
-        assert!((correlation([(0.0, 5.0), (1.0, 3.0), (2.0, 1.0)].into_iter()) + 1.0).abs() < 1e-12);
+        assert!(
+            (correlation([(0.0, 5.0), (1.0, 3.0), (2.0, 1.0)].into_iter()) + 1.0).abs() < 1e-12
+        );
         assert_eq!(correlation([(1.0, 5.0), (1.0, 3.0), (1.0, 1.0)].into_iter()), 0.0);
         assert_eq!(range(&[1.0, -2.0]), 3.0);
     }

@@ -18,19 +18,30 @@ pub(crate) fn table(channels: &[(Channel, Vec<f64>)]) -> Table {
     table.columns.push(column(0, Target::Time, "t_s"));
     table.values.push((0..rows).map(|k| k as f64 * 0.5).collect());
     for (channel, values) in channels {
-        table.columns.push(column(table.columns.len(), Target::Channel(*channel), channel.column()));
+        table.columns.push(column(
+            table.columns.len(),
+            Target::Channel(*channel),
+            channel.column(),
+        ));
         table.values.push(values.clone());
     }
     table
 }
 
 fn column(index: usize, target: Target, header: &str) -> Column {
-    Column { index, header: header.into(), target, unit: Kind::of(target).canonical().into(), to_si: 1.0 }
+    Column {
+        index,
+        header: header.into(),
+        target,
+        unit: Kind::of(target).canonical().into(),
+        to_si: 1.0,
+    }
 }
 
 /// A recording at 2 Hz with canonical names and units.
 pub(crate) fn recording(channels: &[(Channel, Vec<f64>)]) -> Recording {
-    let mut recording = convert("a.csv", table(channels), &Mapping::canonical(), &mut Findings::default());
+    let mut recording =
+        convert("a.csv", table(channels), &Mapping::canonical(), &mut Findings::default());
     recording.settle_time();
     recording
 }
@@ -48,14 +59,19 @@ pub(crate) fn messages(findings: Findings) -> String {
         format!("{kind} {:?} {:?} {}", finding.row, finding.column, finding.message)
     };
     let errors = errors.iter().map(|finding| line("error", finding));
-    errors.chain(warnings.iter().map(|finding| line("warning", finding))).collect::<Vec<_>>().join("\n")
+    errors
+        .chain(warnings.iter().map(|finding| line("warning", finding)))
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
 /// A zigzag of a Nomoto ship (K = 0.1 1/s, T = 10 s) at 5 m/s for 300 s: x, y, psi, u, v, r, delta.
 pub(crate) fn zigzag() -> Vec<(Channel, Vec<f64>)> {
     let (mut x, mut y, mut psi, mut r, mut delta) = (0.0, 0.0, 0.0_f64, 0.0, 20.0 * PI / 180.0);
-    let names = [Channel::X, Channel::Y, Channel::Psi, Channel::U, Channel::V, Channel::R, Channel::Delta];
-    let mut channels: Vec<(Channel, Vec<f64>)> = names.into_iter().map(|channel| (channel, Vec::new())).collect();
+    let names =
+        [Channel::X, Channel::Y, Channel::Psi, Channel::U, Channel::V, Channel::R, Channel::Delta];
+    let mut channels: Vec<(Channel, Vec<f64>)> =
+        names.into_iter().map(|channel| (channel, Vec::new())).collect();
     for _ in 0..600 {
         let (u, v) = (5.0, -15.0 * r);
         let sample = [x, y, psi, u, v, r, delta];

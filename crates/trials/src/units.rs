@@ -62,13 +62,17 @@ impl Kind {
 
     /// The unit that a header's suffix stands for.
     pub(crate) fn suffix(self, suffix: &str) -> Option<&'static str> {
-        SUFFIXES.iter().find(|(known, kind, _)| *kind == self && *known == suffix).map(|&(_, _, unit)| unit)
+        SUFFIXES
+            .iter()
+            .find(|(known, kind, _)| *kind == self && *known == suffix)
+            .map(|&(_, _, unit)| unit)
     }
 
     /// The unit that a header ends in, as `log_kn`, `log [kn]` or `log (kn)`.
     pub(crate) fn named_in(self, header: &str) -> Option<&'static str> {
-        let bracket =
-            |open: char, close: char| header.trim_end().strip_suffix(close)?.rsplit_once(open).map(|(_, unit)| unit.trim());
+        let bracket = |open: char, close: char| {
+            header.trim_end().strip_suffix(close)?.rsplit_once(open).map(|(_, unit)| unit.trim())
+        };
         let written = bracket('[', ']').or_else(|| bracket('(', ')'));
         if let Some(written) = written {
             return self.accepted().into_iter().find(|unit| *unit == written);
@@ -79,7 +83,11 @@ impl Kind {
 
     /// Units accepted, the canonical one first.
     pub(crate) fn accepted(self) -> Vec<&'static str> {
-        let mut units: Vec<&str> = SUFFIXES.iter().filter(|(_, kind, _)| *kind == self).map(|&(_, _, unit)| unit).collect();
+        let mut units: Vec<&str> = SUFFIXES
+            .iter()
+            .filter(|(_, kind, _)| *kind == self)
+            .map(|&(_, _, unit)| unit)
+            .collect();
         units.dedup();
         units
     }
@@ -114,7 +122,9 @@ mod tests {
     #[test]
     fn revolutions_are_not_a_yaw_rate() {
         assert!(Kind::of(Target::Channel(Channel::R)).factor("rpm").unwrap_err().contains("rad/s"));
-        assert!(Kind::of(Target::Channel(Channel::N)).factor("rad/s").unwrap_err().contains("rps, rpm"));
+        assert!(
+            Kind::of(Target::Channel(Channel::N)).factor("rad/s").unwrap_err().contains("rps, rpm")
+        );
         assert_eq!(Kind::of(Target::Channel(Channel::Depth)), Kind::Length);
         assert_eq!(Kind::of(Target::Channel(Channel::WindFrom)), Kind::Angle);
     }

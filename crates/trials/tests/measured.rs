@@ -37,7 +37,10 @@ fn shared() -> Option<PathBuf> {
     if folder.is_dir() {
         return Some(folder);
     }
-    assert!(std::env::var_os("SISTERSHIP_REQUIRE_SHARED").is_none_or(|value| value != "1"), "../shared/data is missing");
+    assert!(
+        std::env::var_os("SISTERSHIP_REQUIRE_SHARED").is_none_or(|value| value != "1"),
+        "../shared/data is missing"
+    );
     println!("skipped: ../shared/data is missing");
     None
 }
@@ -94,10 +97,18 @@ fn missing_values_are_refused_unless_they_may_be_dropped() {
     let mut mapping = esso_osaka();
     let dropped = read(&file, &mapping).unwrap();
     assert_eq!(dropped.len(), 1701);
-    assert!(dropped.warnings.iter().any(|warning| warning.message.starts_with("rows 1703 to 2029 left out")));
+    assert!(
+        dropped
+            .warnings
+            .iter()
+            .any(|warning| warning.message.starts_with("rows 1703 to 2029 left out"))
+    );
     mapping.conventions.missing = sistership_model::manifest::Missing::Refuse;
     let refusal = read(&file, &mapping).unwrap_err();
-    assert_eq!((refusal.findings[0].row, refusal.findings[0].column.as_deref()), (Some(1703), Some("t [s]")));
+    assert_eq!(
+        (refusal.findings[0].row, refusal.findings[0].column.as_deref()),
+        (Some(1703), Some("t [s]"))
+    );
 }
 
 #[test]
@@ -109,7 +120,10 @@ fn reference_simulations_and_examples_are_accepted() {
             let trial = loaded.trials[0].as_ref().unwrap();
             show(trial);
             assert!(trial.channel(Channel::R).is_some() && trial.channel(Channel::Delta).is_some());
-            assert!(!trial.warnings.iter().any(|warning| warning.message.contains("drift")), "speeds are over the ground");
+            assert!(
+                !trial.warnings.iter().any(|warning| warning.message.contains("drift")),
+                "speeds are over the ground"
+            );
         }
     }
 }
@@ -119,7 +133,9 @@ fn reference_simulations_and_examples_are_accepted() {
 fn broken_conventions_are_found_in_most_real_files() {
     let Some(folder) = shared() else { return };
     let (mut files, mut rudder, mut degrees) = (0, 0, 0);
-    for file in csv_files(&folder).into_iter().filter(|file| !file.to_string_lossy().contains("berthing")) {
+    for file in
+        csv_files(&folder).into_iter().filter(|file| !file.to_string_lossy().contains("berthing"))
+    {
         let esso = file.to_string_lossy().contains("esso-osaka");
         let mut mapping = if esso { esso_osaka() } else { Mapping::canonical() };
         mapping.conventions.rudder_positive = sistership_model::manifest::RudderSign::PortTurn;
@@ -139,13 +155,18 @@ fn broken_conventions_are_found_in_most_real_files() {
                 usize::from(outcome.errors.iter().any(|error| error.message.contains(what)))
             };
             let text = std::fs::read_to_string(&file).unwrap();
-            let rate = mapping.columns.iter_mut().find(|(name, _)| name == "r").map(|(_, column)| column);
+            let rate =
+                mapping.columns.iter_mut().find(|(name, _)| name == "r").map(|(_, column)| column);
             let rate = rate.unwrap();
             rate.unit = "deg/s".into();
             let header = std::mem::replace(&mut rate.column, "yaw rate".into());
             // By what the header says of its unit, and by the samples where it says nothing.
             degrees += told(&mapping, "57.3", &text.replacen(&header, "yaw rate", 1));
-            mapping.columns.iter_mut().filter(|(name, _)| name == "r").for_each(|(_, r)| r.column = header.clone());
+            mapping
+                .columns
+                .iter_mut()
+                .filter(|(name, _)| name == "r")
+                .for_each(|(_, r)| r.column = header.clone());
             assert_eq!(told(&mapping, "the header says `rad/s`", &text), 1);
         }
     }

@@ -18,27 +18,50 @@ fn a_source_of_another_law_helps_where_trials_are_few() {
     let Some(folder) = shared::data("esso-osaka") else { return };
     let trials = esso_osaka::trials(&folder, &KINDS);
     let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-    let (target, law) = (zoo.vessel("esso-osaka-3m").expect("in the zoo"), zoo.law("low-speed").expect("in the zoo"));
+    let (target, law) = (
+        zoo.vessel("esso-osaka-3m").expect("in the zoo"),
+        zoo.law("low-speed").expect("in the zoo"),
+    );
     let kvlcc2 = zoo.model("kvlcc2").unwrap_or_else(|error| panic!("{error}"));
     let own = zoo.law(&kvlcc2.law).expect("in the zoo");
-    let settings = Settings { strengths: vec![1e1, 1.0, 1e-1, 1e-2, 1e-3], ..compared(Method::Weak) };
+    let settings =
+        Settings { strengths: vec![1e1, 1.0, 1e-1, 1e-2, 1e-3], ..compared(Method::Weak) };
     let as_it_is = over_all(&trials, &by_source(&trials, "kvlcc2"), "all");
-    println!("standardised mean squared error of the other files; the source as it is: {as_it_is:.4}");
+    println!(
+        "standardised mean squared error of the other files; the source as it is: {as_it_is:.4}"
+    );
     println!("files  first  without  with the source");
     let mut sums = [0.0; 2];
     for (count, first) in FEW {
-        let chosen = |k: usize| (0..count).any(|i| (first + i * (trials.len() / count)) % trials.len() == k);
-        let (inside, outside): (Vec<_>, Vec<_>) = trials.iter().enumerate().partition(|(k, _)| chosen(*k));
-        let [inside, outside] = [inside, outside].map(|some| some.into_iter().map(|(_, trial)| trial).collect::<Vec<_>>());
-        let nothing = blank(law, target, approach_of(&inside)).unwrap_or_else(|error| panic!("{error}"));
+        let chosen =
+            |k: usize| (0..count).any(|i| (first + i * (trials.len() / count)) % trials.len() == k);
+        let (inside, outside): (Vec<_>, Vec<_>) =
+            trials.iter().enumerate().partition(|(k, _)| chosen(*k));
+        let [inside, outside] = [inside, outside]
+            .map(|some| some.into_iter().map(|(_, trial)| trial).collect::<Vec<_>>());
+        let nothing =
+            blank(law, target, approach_of(&inside)).unwrap_or_else(|error| panic!("{error}"));
         let error = |source: &Model, source_law: &Law| {
-            let request = Request { target, source, source_law: Some(source_law), law, trials: &inside, settings: &settings };
+            let request = Request {
+                target,
+                source,
+                source_law: Some(source_law),
+                law,
+                trials: &inside,
+                settings: &settings,
+            };
             let model = refine(&request, &|_, _| true).ok()?.model;
             Some(over_all(&trials, &simulated(&model, law, &outside), "all"))
         };
         let (without, with) = (error(&nothing, law), error(&kvlcc2, own).expect("a refined model"));
-        println!("{count:5}  {first:5}  {}  {with:.4}", without.map_or("   none".into(), |error| format!("{error:.4} ")));
-        assert!(with < 0.6 * as_it_is, "{count} files from {first}: {with} against the source's {as_it_is}");
+        println!(
+            "{count:5}  {first:5}  {}  {with:.4}",
+            without.map_or("   none".into(), |error| format!("{error:.4} "))
+        );
+        assert!(
+            with < 0.6 * as_it_is,
+            "{count} files from {first}: {with} against the source's {as_it_is}"
+        );
         sums = [sums[0] + without.unwrap_or(as_it_is).ln(), sums[1] + with.ln()];
     }
     assert!(sums[1] < sums[0], "{sums:?}");

@@ -28,7 +28,14 @@ fn refined(trials: &[Trial], held_out: Vec<String>) -> Refinement {
     let source = best_source(&zoo, &ranking).unwrap_or_else(|reason| panic!("{reason}"));
     let law = zoo.law(&source.law).expect("the law of a zoo model");
     let settings = Settings { held_out, ..Settings::default() };
-    let request = Request { target, source: &source, source_law: None, law, trials: &trials, settings: &settings };
+    let request = Request {
+        target,
+        source: &source,
+        source_law: None,
+        law,
+        trials: &trials,
+        settings: &settings,
+    };
     refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -36,15 +43,24 @@ fn refined(trials: &[Trial], held_out: Vec<String>) -> Refinement {
 fn judge(refinement: &Refinement) {
     println!("source {}; {}", refinement.source, refinement.held_out.how);
     for channel in ["u", "v", "r", "psi", "x", "y"] {
-        let (before, after) = (refinement.held_out.source[channel], refinement.held_out.refined[channel]);
+        let (before, after) =
+            (refinement.held_out.source[channel], refinement.held_out.refined[channel]);
         println!("{channel:>4} {before:10.4} -> {after:10.4}  factor {:.2}", before / after);
     }
     for channel in ["u", "v", "r", "psi"] {
-        assert!(refinement.held_out.refined[channel] < refinement.held_out.source[channel], "{channel} did not improve");
+        assert!(
+            refinement.held_out.refined[channel] < refinement.held_out.source[channel],
+            "{channel} did not improve"
+        );
     }
-    let diverged: Vec<_> = refinement.options.iter().filter_map(|option| option.reason.as_ref()).collect();
+    let diverged: Vec<_> =
+        refinement.options.iter().filter_map(|option| option.reason.as_ref()).collect();
     assert!(diverged.is_empty(), "{diverged:?}");
-    assert!(refinement.manoeuvres.refined.failures.is_empty(), "{:?}", refinement.manoeuvres.refined.failures);
+    assert!(
+        refinement.manoeuvres.refined.failures.is_empty(),
+        "{:?}",
+        refinement.manoeuvres.refined.failures
+    );
 }
 
 #[test]

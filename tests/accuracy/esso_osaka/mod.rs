@@ -13,5 +13,11 @@ use score::RESTART_S;
 /// The estimators that are compared: the weak and the trajectory form among few strengths, which is enough and quicker.
 fn compared(method: Method) -> Settings {
     let strengths = if method == Method::Published { Vec::new() } else { vec![1e-1, 1e-2, 1e-3] };
-    Settings { method, restart_s: Some(RESTART_S), families: vec![Family::Own], strengths, ..Settings::default() }
+    Settings {
+        method,
+        restart_s: Some(RESTART_S),
+        families: vec![Family::Own],
+        strengths,
+        ..Settings::default()
+    }
 }

@@ -34,12 +34,17 @@ pub fn by_source(trials: &[Trial], name: &str) -> Vec<(String, SquaredError)> {
     let mut ship = Ship::new(&scaled, law).expect("a ready ship");
     ship.set_envelope_speed(1.0);
     let restarted = ReplaySettings { restart_s: Some(RESTART_S), ..ReplaySettings::default() };
-    let run = |trial: &Trial| replay(&ship, trial, &restarted).expect("every channel that the law needs");
-    let sailed = trials.iter().map(|trial| (trial, run(trial))).filter(|(_, run)| run.stopped.is_none());
+    let run =
+        |trial: &Trial| replay(&ship, trial, &restarted).expect("every channel that the law needs");
+    let sailed =
+        trials.iter().map(|trial| (trial, run(trial))).filter(|(_, run)| run.stopped.is_none());
     sailed.map(|(trial, run)| (trial.name.clone(), SquaredError::of(trial, &run))).collect()
 }
 
-pub fn of_kind<'e>(errors: &'e [(String, SquaredError)], kind: &'e str) -> impl Iterator<Item = &'e (String, SquaredError)> {
+pub fn of_kind<'e>(
+    errors: &'e [(String, SquaredError)],
+    kind: &'e str,
+) -> impl Iterator<Item = &'e (String, SquaredError)> {
     errors.iter().filter(move |(name, _)| kind == "all" || name.contains(file_prefix(kind)))
 }
 

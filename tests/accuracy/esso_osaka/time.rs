@@ -27,32 +27,54 @@ const TZRB: [&str; 8] = [
 fn the_time_of_a_fit_on_one_core() {
     let Some(folder) = shared::data("esso-osaka") else { return };
     let all = esso_osaka::trials(&folder, &KINDS);
-    let few: Vec<Trial> = all.iter().filter(|trial| TZRB.iter().any(|name| trial.name.contains(name))).cloned().collect();
+    let few: Vec<Trial> = all
+        .iter()
+        .filter(|trial| TZRB.iter().any(|name| trial.name.contains(name)))
+        .cloned()
+        .collect();
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     for (what, trials) in [("every file", &all), ("Train-TZRB", &few)] {
         for method in [Method::Weak, Method::Trajectory] {
             let (fit_s, whole_s, taken) = one.install(|| timed(trials, method));
-            println!("{what:<10} {:<10} fit {fit_s:.2} s, whole {whole_s:.2} s; taken: {taken}", method.name());
+            println!(
+                "{what:<10} {:<10} fit {fit_s:.2} s, whole {whole_s:.2} s; taken: {taken}",
+                method.name()
+            );
         }
     }
 }
 
 fn timed(trials: &[Trial], method: Method) -> (f64, f64, String) {
     let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-    let (target, law) = (zoo.vessel("esso-osaka-3m").expect("in the zoo"), zoo.law("low-speed").expect("in the zoo"));
+    let (target, law) = (
+        zoo.vessel("esso-osaka-3m").expect("in the zoo"),
+        zoo.law("low-speed").expect("in the zoo"),
+    );
     let trials: Vec<&Trial> = trials.iter().collect();
     let source = blank(law, target, approach_of(&trials)).unwrap_or_else(|error| panic!("{error}"));
     let settings = compared(method);
-    let request = Request { target, source: &source, source_law: None, law, trials: &trials, settings: &settings };
+    let request = Request {
+        target,
+        source: &source,
+        source_law: None,
+        law,
+        trials: &trials,
+        settings: &settings,
+    };
     let begun = std::time::Instant::now();
     let fitted_s = std::sync::Mutex::new(0.0);
     let told = |fraction: f64, _: &str| {
         if fraction == 0.9 {
-            *fitted_s.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = begun.elapsed().as_secs_f64();
+            *fitted_s.lock().unwrap_or_else(std::sync::PoisonError::into_inner) =
+                begun.elapsed().as_secs_f64();
         }
         true
     };
     let refinement = refine(&request, &told).unwrap_or_else(|error| panic!("{error}"));
-    let taken = refinement.options.into_iter().find(|option| option.chosen).map_or(String::new(), |option| option.step);
+    let taken = refinement
+        .options
+        .into_iter()
+        .find(|option| option.chosen)
+        .map_or(String::new(), |option| option.step);
     (fitted_s.into_inner().unwrap_or_default(), begun.elapsed().as_secs_f64(), taken)
 }

@@ -42,19 +42,31 @@ pub fn foundation() -> (Model, Arc<Law>) {
 fn hull(rng: &mut ChaCha12Rng) -> Hull {
     let lpp_m = rng.random_range(150.0..330.0);
     let beam_m = lpp_m / rng.random_range(5.2..6.6);
-    Hull { lpp_m, beam_m, draught_m: beam_m / rng.random_range(2.5..3.1), block_coefficient: rng.random_range(0.62..0.84) }
+    Hull {
+        lpp_m,
+        beam_m,
+        draught_m: beam_m / rng.random_range(2.5..3.1),
+        block_coefficient: rng.random_range(0.62..0.84),
+    }
 }
 
 /// Draws a ship.
 pub fn draw(rng: &mut ChaCha12Rng, index: usize, foundation: &Model, law: &Law) -> Sistership {
     let (name, hull) = (format!("sister-{index:02}"), hull(rng));
-    let frame = foundation.transferred(law, &name, &particulars(foundation, hull), Some(speed(foundation, hull)));
+    let frame = foundation.transferred(
+        law,
+        &name,
+        &particulars(foundation, hull),
+        Some(speed(foundation, hull)),
+    );
     let frame = Model { revolutions_rps: scaled_revolutions(foundation, hull), ..frame };
     let mut normal = || -> f64 { StandardNormal.sample(rng) };
     let mut truth = frame.clone();
     let (m_x, m_y) = (truth.parameters["m_x"].value, truth.parameters["m_y"].value);
     for (name, value) in derivatives(hull, m_x, m_y) {
-        truth.coefficients.insert(name.to_owned(), Quantity::new(value * (1.0 + SCATTER * normal()), "drawn"));
+        truth
+            .coefficients
+            .insert(name.to_owned(), Quantity::new(value * (1.0 + SCATTER * normal()), "drawn"));
     }
     for name in ["a_H", "x_H", "gamma_R_plus", "gamma_R_minus", "w_P0", "t_R"] {
         let factor = 1.0 + INTERACTION * normal();
@@ -84,11 +96,14 @@ fn particulars(foundation: &Model, hull: Hull) -> sistership_model::particulars:
 
 /// By Froude's law.
 fn speed(foundation: &Model, hull: Hull) -> f64 {
-    foundation.speed_m_s.expect("a speed") * (hull.lpp_m / foundation.particulars["lpp_m"].value).sqrt()
+    foundation.speed_m_s.expect("a speed")
+        * (hull.lpp_m / foundation.particulars["lpp_m"].value).sqrt()
 }
 
 fn scaled_revolutions(foundation: &Model, hull: Hull) -> Option<f64> {
-    foundation.revolutions_rps.map(|n| n / (hull.lpp_m / foundation.particulars["lpp_m"].value).sqrt())
+    foundation
+        .revolutions_rps
+        .map(|n| n / (hull.lpp_m / foundation.particulars["lpp_m"].value).sqrt())
 }
 
 /// A manoeuvre.
@@ -103,15 +118,26 @@ pub fn sail(model: &Model, law: &Law, what: Sailed, lengths: f64) -> Option<Traj
     let ship = Ship::new(model, law).ok()?;
     let step_s = 0.02 * ship.lpp_m() / ship.approach_speed_m_s();
     let duration_s = lengths * ship.lpp_m() / ship.approach_speed_m_s();
-    let settings = ManoeuvreSettings { step_s: Some(step_s), duration_s: Some(duration_s), ..ManoeuvreSettings::default() };
+    let settings = ManoeuvreSettings {
+        step_s: Some(step_s),
+        duration_s: Some(duration_s),
+        ..ManoeuvreSettings::default()
+    };
     match what {
         Sailed::Turn(angle) => turn(&ship, angle, &settings).ok().map(|turn| turn.track),
-        Sailed::Zigzag(angle) => zigzag(&ship, angle, angle.abs(), &settings).ok().map(|zigzag| zigzag.track),
+        Sailed::Zigzag(angle) => {
+            zigzag(&ship, angle, angle.abs(), &settings).ok().map(|zigzag| zigzag.track)
+        }
     }
 }
 
 /// A ship's trials as statistics; none where the drawn ship does not sail.
-pub fn statistics(ship: &Sistership, law: &Law, rng: &mut ChaCha12Rng, sailed: &[(Sailed, f64)]) -> Option<Vec<TrialStatistics>> {
+pub fn statistics(
+    ship: &Sistership,
+    law: &Law,
+    rng: &mut ChaCha12Rng,
+    sailed: &[(Sailed, f64)],
+) -> Option<Vec<TrialStatistics>> {
     let frame = Frame::new(&ship.frame, law, "law", None).expect("a frame");
     let mut one = |&(what, lengths): &(Sailed, f64)| {
         let track = sail(&ship.truth, law, what, lengths)?;

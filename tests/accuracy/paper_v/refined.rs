@@ -16,7 +16,8 @@ use sistership_trials::smoothing::savitzky_golay;
 use super::truth::{FITTED, Truth, recorded};
 
 /// Rudder and heading of the zigzag in each of the five data sets, deg.
-pub const ZIGZAGS: [(f64, f64); 5] = [(10.0, 10.0), (10.0, 5.0), (12.5, 10.0), (5.0, 5.0), (12.5, 15.0)];
+pub const ZIGZAGS: [(f64, f64); 5] =
+    [(10.0, 10.0), (10.0, 5.0), (12.5, 10.0), (5.0, 5.0), (12.5, 15.0)];
 /// Rudder of the turns that are in every data set, deg.
 pub const TURNS: [f64; 2] = [12.5, -12.5];
 /// Standard deviations of the noise, m/s and rad/s: amplitude, reduction by channel and general reduction of Eq. 22.
@@ -40,7 +41,8 @@ pub fn refinements(source: &Model, law: &Law, truth: &Truth, rng: &mut ChaCha8Rn
     let turns = TURNS.map(|rudder_deg| truth.turn(rudder_deg));
     let one = |(rudder_deg, heading_deg): (f64, f64)| {
         let [starboard, port] = &turns;
-        let trials = [&truth.zigzag(rudder_deg, heading_deg), starboard, port].map(|track| measured(track, rng));
+        let trials = [&truth.zigzag(rudder_deg, heading_deg), starboard, port]
+            .map(|track| measured(track, rng));
         refined(source, &blocks, &trials, rng)
     };
     ZIGZAGS.into_iter().map(one).collect()
@@ -50,11 +52,16 @@ pub fn refinements(source: &Model, law: &Law, truth: &Truth, rng: &mut ChaCha8Rn
 fn refined(source: &Model, blocks: &Blocks, trials: &[Trial], rng: &mut ChaCha8Rng) -> Model {
     let tables = samples(blocks, trials);
     let (training, validation) = split(&tables, rng);
-    let fold = Fold::new(blocks, source, &moments(blocks, &training), &moments(blocks, &validation));
+    let fold =
+        Fold::new(blocks, source, &moments(blocks, &training), &moments(blocks, &validation));
     let choices = tune(&[fold], &RANGE, LAMBDAS);
     let fit = fit(blocks, &moments(blocks, &tables), source, &choices);
     let mut model = source.clone();
-    model.coefficients.extend(fit.coefficients.into_iter().map(|(name, fitted)| (name, Quantity::new(fitted.value, "refined"))));
+    model.coefficients.extend(
+        fit.coefficients
+            .into_iter()
+            .map(|(name, fitted)| (name, Quantity::new(fitted.value, "refined"))),
+    );
     model
 }
 
@@ -70,16 +77,23 @@ fn measured(track: &Trajectory, rng: &mut ChaCha8Rng) -> Trial {
 /// A state as measured: with noise, smoothed, without the straight run before.
 pub fn noisy(track: &Trajectory, index: usize, deviation: f64, rng: &mut ChaCha8Rng) -> Vec<f64> {
     let noise = Normal::new(0.0, deviation).expect("a finite deviation");
-    let noisy: Vec<f64> = track.column(index).into_iter().map(|value| value + noise.sample(rng)).collect();
-    let smooth = savitzky_golay(&noisy, SMOOTHING.0, SMOOTHING.1).expect("a record longer than the window");
+    let noisy: Vec<f64> =
+        track.column(index).into_iter().map(|value| value + noise.sample(rng)).collect();
+    let smooth =
+        savitzky_golay(&noisy, SMOOTHING.0, SMOOTHING.1).expect("a record longer than the window");
     smooth[FITTED].to_vec()
 }
 
 /// One table for each regression over the samples of all trials.
 fn samples(blocks: &Blocks, trials: &[Trial]) -> Vec<Table> {
-    let tables = trials.iter().map(|trial| trial_tables(blocks, trial, None).expect("every channel that the law needs"));
+    let tables = trials
+        .iter()
+        .map(|trial| trial_tables(blocks, trial, None).expect("every channel that the law needs"));
     let append = |mut all: Vec<Table>, more: Vec<Table>| {
-        all.iter_mut().flatten().zip(more.iter().flatten()).for_each(|(column, more)| column.extend(more));
+        all.iter_mut()
+            .flatten()
+            .zip(more.iter().flatten())
+            .for_each(|(column, more)| column.extend(more));
         all
     };
     tables.reduce(append).expect("at least one trial")
@@ -98,5 +112,10 @@ fn split(tables: &[Table], rng: &mut ChaCha8Rng) -> (Vec<Table>, Vec<Table>) {
 }
 
 fn moments(blocks: &Blocks, tables: &[Table]) -> Vec<Moments> {
-    blocks.blocks.iter().zip(tables).map(|(block, table)| Moments::of_columns(table, block.regressors())).collect()
+    blocks
+        .blocks
+        .iter()
+        .zip(tables)
+        .map(|(block, table)| Moments::of_columns(table, block.regressors()))
+        .collect()
 }

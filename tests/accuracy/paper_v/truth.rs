@@ -58,20 +58,29 @@ impl Truth {
 
     /// The product's manoeuvres do not take a step as long as the paper's.
     fn sail(&self, mut rudder: impl FnMut(&StateVector) -> f64) -> Trajectory {
-        let run = Run { start: straight(self.speed_m_s), duration_s: DURATION_S, step_s: STEP_S, method: Method::Euler };
+        let run = Run {
+            start: straight(self.speed_m_s),
+            duration_s: DURATION_S,
+            step_s: STEP_S,
+            method: Method::Euler,
+        };
         let mut track = Trajectory::default();
         let bridge = |t_s: f64, state: &StateVector| {
             let delta_rad = if t_s >= EXECUTE_S { rudder(state) } else { 0.0 };
             Some(Order { delta_rad, n_rps: self.n_rps })
         };
-        self.ship.sail(run, &mut track, bridge).unwrap_or_else(|stopped| panic!("the true ship {stopped}"));
+        self.ship
+            .sail(run, &mut track, bridge)
+            .unwrap_or_else(|stopped| panic!("the true ship {stopped}"));
         track
     }
 }
 
 /// A part of a track as a trial without measurement errors.
 pub fn recorded(track: &Trajectory, samples: Range<usize>) -> Trial {
-    let column = |(channel, index): (Channel, usize)| (channel, track.column(index)[samples.clone()].to_vec());
+    let column = |(channel, index): (Channel, usize)| {
+        (channel, track.column(index)[samples.clone()].to_vec())
+    };
     let channels = RECORDED.into_iter().chain([(Channel::Delta, at::DELTA)]).map(column).collect();
     Trial { t_s: track.t_s[samples.clone()].to_vec(), channels, ..Trial::default() }
 }

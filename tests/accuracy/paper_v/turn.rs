@@ -19,9 +19,16 @@ impl Metrics {
     /// what reproduces the paper's; the product's metrics, as the ITTC's, start at the execution of the rudder.
     pub fn of(states: &[StateVector]) -> Self {
         let (first, last) = (&states[0], &states[states.len() - 1]);
-        let farthest = |index: usize| states.iter().map(|state| (state[index] - first[index]).abs()).fold(0.0, f64::max);
+        let farthest = |index: usize| {
+            states.iter().map(|state| (state[index] - first[index]).abs()).fold(0.0, f64::max)
+        };
         let advance = states.iter().map(|state| state[at::X] - first[at::X]).fold(0.0, f64::max);
-        Self([speed(last) / last[at::R].abs(), farthest(at::Y), advance, speed(first) - speed(last)])
+        Self([
+            speed(last) / last[at::R].abs(),
+            farthest(at::Y),
+            advance,
+            speed(first) - speed(last),
+        ])
     }
 
     /// Errors of a prediction against this truth, % (Eq. 23).
@@ -31,6 +38,8 @@ impl Metrics {
 
     /// The mean over predictions (Eq. 24).
     pub fn mean(all: &[Self]) -> Self {
-        Self(std::array::from_fn(|i| all.iter().map(|metrics| metrics.0[i]).sum::<f64>() / all.len() as f64))
+        Self(std::array::from_fn(|i| {
+            all.iter().map(|metrics| metrics.0[i]).sum::<f64>() / all.len() as f64
+        }))
     }
 }

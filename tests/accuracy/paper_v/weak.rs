@@ -14,11 +14,22 @@ use super::refined::{NOISE, TURNS, ZIGZAGS, noisy};
 use super::truth::{FITTED, Truth, recorded};
 
 /// Noise of roll: the yaw rate's, on the angle (rad) and its rate (rad/s).
-const ROLL: [(Channel, usize, f64); 2] = [(Channel::Phi, at::PHI, NOISE[2].2), (Channel::P, at::P, NOISE[2].2)];
+const ROLL: [(Channel, usize, f64); 2] =
+    [(Channel::Phi, at::PHI, NOISE[2].2), (Channel::P, at::P, NOISE[2].2)];
 
 /// A source refined by the weak form on some zigzags and the turns to both sides.
-pub fn refined(zoo: &Zoo, law: &Law, source: &Model, truth: &Truth, zigzags: &[(f64, f64)], rng: &mut ChaCha8Rng) -> Model {
-    let mut tracks: Vec<_> = zigzags.iter().map(|&(rudder_deg, heading_deg)| truth.zigzag(rudder_deg, heading_deg)).collect();
+pub fn refined(
+    zoo: &Zoo,
+    law: &Law,
+    source: &Model,
+    truth: &Truth,
+    zigzags: &[(f64, f64)],
+    rng: &mut ChaCha8Rng,
+) -> Model {
+    let mut tracks: Vec<_> = zigzags
+        .iter()
+        .map(|&(rudder_deg, heading_deg)| truth.zigzag(rudder_deg, heading_deg))
+        .collect();
     tracks.extend(TURNS.map(|rudder_deg| truth.turn(rudder_deg)));
     let trials: Vec<Trial> = tracks.iter().map(|track| measured(track, rng)).collect();
     let trials: Vec<&Trial> = trials.iter().collect();
@@ -26,7 +37,8 @@ pub fn refined(zoo: &Zoo, law: &Law, source: &Model, truth: &Truth, zigzags: &[(
     let families = if law.has_roll() { vec![Family::ThirdOrder] } else { Vec::new() };
     let settings = Settings { method: Method::Weak, families, ..Settings::default() };
     let target = zoo.vessel("sr108").expect("a ship of the zoo");
-    let request = Request { target, source, source_law: None, law, trials: &trials, settings: &settings };
+    let request =
+        Request { target, source, source_law: None, law, trials: &trials, settings: &settings };
     refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}")).model
 }
 
@@ -45,7 +57,9 @@ fn measured(track: &sistership_dynamics::Trajectory, rng: &mut ChaCha8Rng) -> Tr
     for (channel, index, deviation) in ROLL.into_iter().chain(NOISE) {
         trial.channels.insert(channel, noisy(track, index, deviation, rng));
     }
-    [Channel::X, Channel::Y, Channel::Psi].iter().for_each(|channel| drop(trial.channels.remove(channel)));
+    [Channel::X, Channel::Y, Channel::Psi]
+        .iter()
+        .for_each(|channel| drop(trial.channels.remove(channel)));
     trial
 }
 
@@ -57,11 +71,18 @@ const DAMPING: f64 = 0.1;
 pub fn with_roll(source: &Model, law: &Law, truth: &Truth) -> Model {
     let own = |name: &str| truth.model.parameters[name].value;
     let coupling = own("m_y") * own("l_y");
-    let masses = [("I_x", own("I_x")), ("K_pdot", -own("J_x")), ("Y_pdot", coupling), ("K_vdot", coupling)];
+    let masses =
+        [("I_x", own("I_x")), ("K_pdot", -own("J_x")), ("Y_pdot", coupling), ("K_vdot", coupling)];
     let mut model = source.clone();
     model.law.clone_from(&law.name);
-    model.parameters.extend(masses.map(|(name, value)| (name.to_owned(), Quantity::new(value, truth.model.name.as_str()))));
-    let of_ship = |name: &str| particulars::value(&truth.model.particulars, name).expect("a particular of the true ship");
+    model.parameters.extend(
+        masses.map(|(name, value)| {
+            (name.to_owned(), Quantity::new(value, truth.model.name.as_str()))
+        }),
+    );
+    let of_ship = |name: &str| {
+        particulars::value(&truth.model.particulars, name).expect("a particular of the true ship")
+    };
     let length = of_ship("lpp_m");
     let stiffness = 2.0 * of_ship("displacement_m3") * of_ship("gm_m") / length.powi(4);
     // By 0.5 rho L^5 and the time L/U, as the law scales them; gravity by its own.

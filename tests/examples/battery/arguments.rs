@@ -40,7 +40,8 @@ impl Arguments {
             only: Vec::new(),
         };
         while let Some(flag) = words.next() {
-            let value = words.next().ok_or_else(|| format!("{flag} needs a value; there are {USAGE}"))?;
+            let value =
+                words.next().ok_or_else(|| format!("{flag} needs a value; there are {USAGE}"))?;
             read.set(&flag, &value)?;
         }
         Ok(read)
@@ -59,7 +60,10 @@ impl Arguments {
                 let minutes = value.parse().ok().filter(|minutes| (0.0..=1e4).contains(minutes));
                 self.minutes = minutes.ok_or_else(|| wrong("give minutes, such as 0.5"))?;
             }
-            "--database" => self.databases = databases(value).ok_or_else(|| wrong("there are sqlite, postgres, both"))?,
+            "--database" => {
+                self.databases =
+                    databases(value).ok_or_else(|| wrong("there are sqlite, postgres, both"))?
+            }
             "--seed" => self.seed = number()?,
             "--requests-mb" => self.requests_mb = number()?,
             "--jobs-mb" => self.jobs_mb = number()?,
@@ -84,7 +88,9 @@ fn names(value: &str) -> Result<Vec<String>, String> {
     let known: Vec<_> = crate::attacks::all().iter().map(|attack| attack.name()).collect();
     let names: Vec<String> = value.split(',').map(str::to_owned).collect();
     match names.iter().find(|name| !known.contains(&name.as_str())) {
-        Some(name) => Err(format!("--only: there is no attack {name}; there are {}", known.join(", "))),
+        Some(name) => {
+            Err(format!("--only: there is no attack {name}; there are {}", known.join(", ")))
+        }
         None => Ok(names),
     }
 }

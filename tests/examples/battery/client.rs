@@ -53,7 +53,11 @@ impl Reply {
 impl Client {
     /// Of the server at an address.
     pub fn new(address: SocketAddr, tally: Arc<Tally>) -> Self {
-        let http = reqwest::Client::builder().pool_max_idle_per_host(0).no_proxy().timeout(PATIENCE).build();
+        let http = reqwest::Client::builder()
+            .pool_max_idle_per_host(0)
+            .no_proxy()
+            .timeout(PATIENCE)
+            .build();
         Self { http: http.unwrap_or_default(), address, tally }
     }
 
@@ -78,12 +82,14 @@ impl Client {
         self.tally.tried(1);
         let answer = http.execute(request).await?;
         let (status, headers) = (answer.status().as_u16(), answer.headers().clone());
-        let kind = headers.get("content-type").and_then(|kind| kind.to_str().ok()).unwrap_or_default();
+        let kind =
+            headers.get("content-type").and_then(|kind| kind.to_str().ok()).unwrap_or_default();
         let bytes = match kind.starts_with("text/event-stream") {
             true => Vec::new(),
             false => answer.bytes().await?.to_vec(),
         };
-        self.tally.status(status, || format!("{what}: {}", clipped(&String::from_utf8_lossy(&bytes))));
+        self.tally
+            .status(status, || format!("{what}: {}", clipped(&String::from_utf8_lossy(&bytes))));
         Ok(Reply { status, headers, bytes })
     }
 
@@ -113,7 +119,9 @@ impl Client {
 /// A text as a part of a query.
 pub fn encoded(text: &str) -> String {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-_.".contains(&byte);
-    text.bytes().map(|byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") }).collect()
+    text.bytes()
+        .map(|byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") })
+        .collect()
 }
 
 /// The beginning of a text.

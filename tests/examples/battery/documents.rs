@@ -39,7 +39,11 @@ pub fn law_of(name: &str, formula: &str) -> String {
 
 /// A law that other ships can be refined in, with another formula for the apparent wind speed.
 pub fn low_speed_law(name: &str, formula: &str) -> String {
-    let law = include_str!("../../../models/laws/low-speed.yaml").replacen("name: low-speed", &format!("name: {name}"), 1);
+    let law = include_str!("../../../models/laws/low-speed.yaml").replacen(
+        "name: low-speed",
+        &format!("name: {name}"),
+        1,
+    );
     law.replacen("sqrt(u_A^2 + v_A^2 + 1e-6)", formula, 1)
 }
 
@@ -52,7 +56,9 @@ pub fn version(ship: &str, origin: &str) -> Result<Value, Failure> {
     let mut model = match MODEL.get() {
         Some(model) => model.clone(),
         None => {
-            let made = serde_json::to_value(Zoo::embedded()?.model(PATTERN).map_err(|error| error.to_string())?)?;
+            let made = serde_json::to_value(
+                Zoo::embedded()?.model(PATTERN).map_err(|error| error.to_string())?,
+            )?;
             MODEL.get_or_init(|| made).clone()
         }
     };
@@ -73,14 +79,16 @@ pub fn rows(number: u64) -> String {
 pub fn trials() -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let zoo = Zoo::embedded()?;
     let model = zoo.model(PATTERN).map_err(|error| error.to_string())?;
-    let ship = Ship::new(&model, zoo.law(&model.law).ok_or("no law")?).map_err(|error| error.to_string())?;
+    let ship = Ship::new(&model, zoo.law(&model.law).ok_or("no law")?)
+        .map_err(|error| error.to_string())?;
     let programme = [
         TrialManoeuvre::Zigzag(10.0, 10.0),
         TrialManoeuvre::Zigzag(20.0, 20.0),
         TrialManoeuvre::Turn(12.0),
         TrialManoeuvre::Turn(-20.0),
     ];
-    let trials: Vec<Trial> = record(&ship, 10.47, &programme, 3).map_err(|stopped| stopped.to_string())?;
+    let trials: Vec<Trial> =
+        record(&ship, 10.47, &programme, 3).map_err(|stopped| stopped.to_string())?;
     let csv = |trial: &Trial| -> Result<_, Failure> {
         let mut bytes = Vec::new();
         to_csv(&mut bytes, trial).map_err(|error| error.to_string())?;

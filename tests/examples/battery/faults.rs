@@ -40,7 +40,10 @@ impl Faults {
         let source = folder.path().join("faults.c");
         std::fs::write(&source, include_str!("faults.c"))?;
         let mut cc = Command::new("cc");
-        cc.args(["-shared", "-fPIC", "-O1", "-o"]).arg(folder.path().join("faults.so")).arg(source).arg("-ldl");
+        cc.args(["-shared", "-fPIC", "-O1", "-o"])
+            .arg(folder.path().join("faults.so"))
+            .arg(source)
+            .arg("-ldl");
         match cc.output() {
             Ok(built) if built.status.success() => Ok(Some(Self { folder })),
             Ok(built) => {
@@ -67,7 +70,8 @@ impl Control {
     /// Its file cannot be written.
     pub fn new(folder: &Path) -> io::Result<Self> {
         let path = folder.join("faults.control");
-        let file = OpenOptions::new().create(true).truncate(true).read(true).write(true).open(&path)?;
+        let file =
+            OpenOptions::new().create(true).truncate(true).read(true).write(true).open(&path)?;
         file.set_len(4 * 8)?;
         Ok(Self { path, file })
     }

@@ -38,7 +38,10 @@ impl Ledger {
         let said = reply.json();
         match acknowledged {
             Some(before) if *before != said => {
-                tally.wrong(format!("{:?} {}: answered {before}, then {said}", write.kind, write.mark));
+                tally.wrong(format!(
+                    "{:?} {}: answered {before}, then {said}",
+                    write.kind, write.mark
+                ));
             }
             _ => *acknowledged = Some(said),
         }
@@ -57,7 +60,8 @@ impl Ledger {
 
     /// Sends a write of which nobody knows what came, under its key: the answer must be that of the first time.
     pub async fn repeat(&self, place: usize, client: &Client, tally: &Tally) -> Option<bool> {
-        let keyed = self.entries()[place].write.key.is_some() || self.entries()[place].write.kind == Kind::Tag;
+        let keyed = self.entries()[place].write.key.is_some()
+            || self.entries()[place].write.kind == Kind::Tag;
         if keyed { self.send(place, client, tally).await } else { Some(false) }
     }
 
@@ -70,7 +74,10 @@ impl Ledger {
     fn refused(&self, write: &Write, reply: &Reply, tally: &Tally) {
         if reply.status < 500 && reply.status != 429 && !in_progress(reply) {
             let detail = &reply.json()["detail"];
-            tally.wrong(format!("{:?} {} is refused: {} {detail}", write.kind, write.mark, reply.status));
+            tally.wrong(format!(
+                "{:?} {} is refused: {} {detail}",
+                write.kind, write.mark, reply.status
+            ));
         }
     }
 
@@ -81,7 +88,11 @@ impl Ledger {
         let acknowledged = entries.iter().filter(|entry| entry.acknowledged.is_some());
         let ships: BTreeSet<&str> = acknowledged.map(|entry| entry.write.ship.as_str()).collect();
         for ship in ships {
-            let of = |kind: Kind| entries.iter().filter(move |entry| entry.write.kind == kind && entry.write.ship == ship);
+            let of = |kind: Kind| {
+                entries
+                    .iter()
+                    .filter(move |entry| entry.write.kind == kind && entry.write.ship == ship)
+            };
             self::trials(&of(Kind::Trial).collect::<Vec<_>>(), ship, client, tally).await;
             self::versions(&of(Kind::Version).collect::<Vec<_>>(), ship, client, tally).await;
             self::jobs(&of(Kind::Refinement).collect::<Vec<_>>(), ship, client, tally).await;
@@ -117,19 +128,24 @@ impl Shared {
 
 /// Whether a key is said to be carried out by another.
 pub fn in_progress(reply: &Reply) -> bool {
-    reply.status == 409 && reply.json()["detail"].as_str().is_some_and(|detail| detail.contains("Idempotency-Key"))
+    reply.status == 409
+        && reply.json()["detail"].as_str().is_some_and(|detail| detail.contains("Idempotency-Key"))
 }
 
 /// Ships and laws: the text that was sent is what is kept.
 async fn named(entry: &Entry, list: &str, client: &Client, tally: &Tally) {
     let name = &entry.write.mark;
     let request = client.request(Method::GET, &format!("{list}/{name}"));
-    let Some(reply) = client.send(request).await else { return tally.wrong(format!("{list}/{name}: no answer")) };
+    let Some(reply) = client.send(request).await else {
+        return tally.wrong(format!("{list}/{name}: no answer"));
+    };
     if reply.status == 404 {
         return tally.lost(format!("{list}/{name}"));
     }
     let (said, found) = (entry.acknowledged.as_ref().unwrap_or(&Value::Null), reply.json());
-    let same = ["name", "sha256", "title", "revision", "created_us"].iter().all(|field| said[field] == found[field]);
+    let same = ["name", "sha256", "title", "revision", "created_us"]
+        .iter()
+        .all(|field| said[field] == found[field]);
     if !same && !found.is_null() {
         tally.wrong(format!("{list}/{name}: acknowledged as {said}, found as {found}"));
     }
@@ -143,7 +159,9 @@ fn compare(kind: Kind, said: &[(&str, Option<&Value>)], found: &[(String, &Value
         let items = by_mark.get(mark).map_or(&[][..], Vec::as_slice);
         match (acknowledged, items) {
             (Some(said), []) => tally.lost(format!("{kind:?} {mark}, acknowledged as {said}")),
-            (_, [_, _, ..]) => tally.wrong(format!("{kind:?} {mark} is there {} times", items.len())),
+            (_, [_, _, ..]) => {
+                tally.wrong(format!("{kind:?} {mark} is there {} times", items.len()))
+            }
             (Some(said), [found]) if !same(kind, said, found) => {
                 tally.wrong(format!("{kind:?} {mark}: acknowledged as {said}, found as {found}"));
             }
@@ -171,12 +189,15 @@ async fn trials(entries: &[&Entry], ship: &str, client: &Client, tally: &Tally) 
     let found: Vec<_> = items.iter().map(|item| (text(item, "name"), item)).collect();
     let said: Vec<_> = entries
         .iter()
-        .map(|entry| (entry.write.mark.as_str(), entry.acknowledged.as_ref().map(|said| &said["trials"][0])))
+        .map(|entry| {
+            (entry.write.mark.as_str(), entry.acknowledged.as_ref().map(|said| &said["trials"][0]))
+        })
         .collect();
     compare(Kind::Trial, &said, &found, tally);
     for (_, item) in found.iter().rev().take(20) {
         let path = format!("/v1/trials/{}/samples", text(item, "id"));
-        let samples = client.send(client.request(Method::GET, &path).header("accept", "text/csv")).await;
+        let samples =
+            client.send(client.request(Method::GET, &path).header("accept", "text/csv")).await;
         if !samples.is_some_and(|samples| samples.ok()) {
             tally.lost(format!("the samples of {item}"));
         }
@@ -198,11 +219,18 @@ async fn versions(entries: &[&Entry], ship: &str, client: &Client, tally: &Tally
     }
     let found: Vec<_> = items.iter().map(|item| (text(item, "sha256"), item)).collect();
     let hashes: Vec<_> = entries.iter().map(|entry| entry.acknowledged.as_ref()).collect();
-    let said: Vec<_> = hashes.iter().flatten().map(|said| (said["sha256"].as_str().unwrap_or("none"), Some(*said))).collect();
+    let said: Vec<_> = hashes
+        .iter()
+        .flatten()
+        .map(|said| (said["sha256"].as_str().unwrap_or("none"), Some(*said)))
+        .collect();
     compare(Kind::Version, &said, &found, tally);
     let distinct: BTreeSet<&String> = found.iter().map(|(hash, _)| hash).collect();
     let twins = found.len() - distinct.len();
-    let known = said.iter().filter(|(hash, _)| found.iter().filter(|(other, _)| other == hash).count() > 1).count();
+    let known = said
+        .iter()
+        .filter(|(hash, _)| found.iter().filter(|(other, _)| other == hash).count() > 1)
+        .count();
     if twins > known {
         tally.wrong(format!("{twins} versions of {ship} are twins of others"));
     }
@@ -217,8 +245,12 @@ async fn jobs(entries: &[&Entry], ship: &str, client: &Client, tally: &Tally) {
     };
     let items: Vec<&Value> = items.iter().filter(|item| item["kind"] == "refinement").collect();
     let found: Vec<_> = items.iter().map(|item| (text(item, "id"), *item)).collect();
-    let acknowledged: Vec<&Value> = entries.iter().filter_map(|entry| entry.acknowledged.as_ref()).collect();
-    let said: Vec<_> = acknowledged.iter().map(|said| (said["id"].as_str().unwrap_or("none"), Some(*said))).collect();
+    let acknowledged: Vec<&Value> =
+        entries.iter().filter_map(|entry| entry.acknowledged.as_ref()).collect();
+    let said: Vec<_> = acknowledged
+        .iter()
+        .map(|said| (said["id"].as_str().unwrap_or("none"), Some(*said)))
+        .collect();
     compare(Kind::Refinement, &said, &found, tally);
     if items.len() > entries.len() {
         tally.wrong(format!("{} jobs of {ship} came of {} keys", items.len(), entries.len()));
@@ -230,13 +262,18 @@ async fn moves(entries: &[&Entry], ship: &str, client: &Client, tally: &Tally) {
     if !acknowledged {
         return;
     }
-    let Some(items) = client.items(&format!("/v1/models/{ship}/aliases/ledger/history")).await else {
+    let Some(items) = client.items(&format!("/v1/models/{ship}/aliases/ledger/history")).await
+    else {
         return tally.lost(format!("the alias `ledger` of {ship}"));
     };
     let found: Vec<_> = items.iter().map(|item| (text(item, "reason"), item)).collect();
-    let said: Vec<_> = entries.iter().map(|entry| (entry.write.mark.as_str(), entry.acknowledged.as_ref())).collect();
+    let said: Vec<_> = entries
+        .iter()
+        .map(|entry| (entry.write.mark.as_str(), entry.acknowledged.as_ref()))
+        .collect();
     compare(Kind::Alias, &said, &found, tally);
-    let mut revisions: Vec<u64> = items.iter().filter_map(|item| item["revision"].as_u64()).collect();
+    let mut revisions: Vec<u64> =
+        items.iter().filter_map(|item| item["revision"].as_u64()).collect();
     revisions.sort_unstable();
     if !revisions.iter().copied().eq(1..=items.len() as u64) {
         tally.wrong(format!("the moves of `ledger` of {ship} have gaps: {revisions:?}"));

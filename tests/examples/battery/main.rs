@@ -61,7 +61,8 @@ async fn run(arguments: Arguments) -> Result<bool, Failure> {
     let mut rows = Vec::new();
     for &database in &arguments.databases {
         let mut left = Duration::from_secs_f64(60.0 * arguments.minutes);
-        let attacks: Vec<_> = attacks::all().into_iter().filter(|attack| arguments.takes(attack.name())).collect();
+        let attacks: Vec<_> =
+            attacks::all().into_iter().filter(|attack| arguments.takes(attack.name())).collect();
         for (place, attack) in attacks.iter().enumerate() {
             let shares: f64 = attacks[place..].iter().map(|attack| attack.share()).sum();
             let part = left.mul_f64(attack.share() / shares);
@@ -74,13 +75,31 @@ async fn run(arguments: Arguments) -> Result<bool, Failure> {
 }
 
 /// One attack on one database. What keeps it from going on counts as wrong.
-async fn one(attack: &dyn Attack, database: Database, part: Duration, arguments: &Arguments, faults: Option<Arc<Faults>>) -> Row {
+async fn one(
+    attack: &dyn Attack,
+    database: Database,
+    part: Duration,
+    arguments: &Arguments,
+    faults: Option<Arc<Faults>>,
+) -> Row {
     let (begun, tally) = (Instant::now(), Arc::new(Tally::default()));
     eprintln!("{} on {}, {:.0} s", attack.name(), database.name(), part.as_secs_f64());
-    let field = Field { database, seed: arguments.seed, until: begun + part, tally: Arc::clone(&tally), faults };
+    let field = Field {
+        database,
+        seed: arguments.seed,
+        until: begun + part,
+        tally: Arc::clone(&tally),
+        faults,
+    };
     if let Err(failure) = attack.run(&field).await {
         tally.wrong(format!("the attack broke off: {failure}"));
     }
     let jobs_mb = if attack.works() { arguments.jobs_mb } else { 0 };
-    Row::new(database.name(), attack.name(), &tally, arguments.requests_mb + jobs_mb + BEYOND_MB, begun.elapsed())
+    Row::new(
+        database.name(),
+        attack.name(),
+        &tally,
+        arguments.requests_mb + jobs_mb + BEYOND_MB,
+        begun.elapsed(),
+    )
 }

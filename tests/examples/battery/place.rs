@@ -37,7 +37,9 @@ impl Database {
     pub async fn empty(self) -> Result<TestDatabase, Failure> {
         match self {
             Self::Sqlite => Ok(TestDatabase::sqlite()),
-            Self::Postgres => Ok(TestDatabase::postgres().await.ok_or("PostgreSQL is not installed")?),
+            Self::Postgres => {
+                Ok(TestDatabase::postgres().await.ok_or("PostgreSQL is not installed")?)
+            }
         }
     }
 }
@@ -120,7 +122,11 @@ impl Place {
         let json = serde_json::from_slice(&output.stdout).unwrap_or(Value::Null);
         let errors = String::from_utf8_lossy(&output.stderr).trim().to_owned();
         if output.status.code().is_none() {
-            self.tally.aborted(format!("sistership {}: {}: {errors}", words.join(" "), output.status));
+            self.tally.aborted(format!(
+                "sistership {}: {}: {errors}",
+                words.join(" "),
+                output.status
+            ));
         }
         Ok(Outcome { status: output.status.code(), json, errors })
     }
@@ -133,7 +139,10 @@ impl Place {
         let found = self.command(&["fsck"]).await?;
         if found.status != Some(0) {
             let faults = found.json["faults"].to_string();
-            self.tally.wrong(format!("fsck {when}: status {:?}: {faults} {}", found.status, found.errors));
+            self.tally.wrong(format!(
+                "fsck {when}: status {:?}: {faults} {}",
+                found.status, found.errors
+            ));
         }
         Ok(())
     }
@@ -141,7 +150,9 @@ impl Place {
     /// Files of uploads under way: there are none where no server runs, but for those of a kill.
     pub fn uploads_under_way(&self) -> Vec<PathBuf> {
         // Each process has a folder of its own among them.
-        let entries = |folder: PathBuf| std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+        let entries = |folder: PathBuf| {
+            std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path())
+        };
         entries(self.data.join("uploads")).flat_map(entries).collect()
     }
 }

@@ -55,7 +55,10 @@ impl Start {
     }
 
     /// With more in its environment.
-    pub fn environment<K: Into<OsString>, V: Into<OsString>>(mut self, more: impl IntoIterator<Item = (K, V)>) -> Self {
+    pub fn environment<K: Into<OsString>, V: Into<OsString>>(
+        mut self,
+        more: impl IntoIterator<Item = (K, V)>,
+    ) -> Self {
         self.environment.extend(more.into_iter().map(|(name, value)| (name.into(), value.into())));
         self
     }
@@ -106,7 +109,10 @@ impl Start {
                 process.dismiss();
                 Err(format!("`{command}` ends at its start: {tail}").into())
             }
-            Err(_) => Err(format!("`{command}` does not start within {PATIENCE:?}: {}", process.tail()).into()),
+            Err(_) => {
+                Err(format!("`{command}` does not start within {PATIENCE:?}: {}", process.tail())
+                    .into())
+            }
         }
     }
 }
@@ -170,8 +176,13 @@ impl Process {
     /// Tells it to stop, as a service manager does. Whether it ended in time, well.
     pub async fn terminate(mut self, patience: Duration) -> bool {
         let told = Command::new("kill").args(["-TERM", &self.id().to_string()]).status();
-        let stopped = told.is_ok_and(|status| status.success()) && self.ended_within(patience).await;
-        let well = stopped && self.child.try_wait().is_ok_and(|status| status.is_some_and(|status| status.success()));
+        let stopped =
+            told.is_ok_and(|status| status.success()) && self.ended_within(patience).await;
+        let well = stopped
+            && self
+                .child
+                .try_wait()
+                .is_ok_and(|status| status.is_some_and(|status| status.success()));
         if well {
             self.dismiss();
         }
@@ -188,7 +199,8 @@ impl Process {
     /// The end of its log.
     pub fn tail(&self) -> String {
         let log = std::fs::read(&self.log).unwrap_or_default();
-        let log = String::from_utf8_lossy(&log[log.len().saturating_sub(SHOWN)..]).replace('\n', " ");
+        let log =
+            String::from_utf8_lossy(&log[log.len().saturating_sub(SHOWN)..]).replace('\n', " ");
         log.trim().to_owned()
     }
 

@@ -22,8 +22,21 @@ pub struct Row {
 
 impl Row {
     /// Of an attack that has ended.
-    pub fn new(database: &'static str, attack: &'static str, tally: &Tally, allowed_mb: u64, took: Duration) -> Self {
-        Self { database, attack, counts: tally.counts(), allowed_mb, took, remarks: tally.remarks() }
+    pub fn new(
+        database: &'static str,
+        attack: &'static str,
+        tally: &Tally,
+        allowed_mb: u64,
+        took: Duration,
+    ) -> Self {
+        Self {
+            database,
+            attack,
+            counts: tally.counts(),
+            allowed_mb,
+            took,
+            remarks: tally.remarks(),
+        }
     }
 
     /// Whether nothing is to be mended.

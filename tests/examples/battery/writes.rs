@@ -65,24 +65,52 @@ pub const FOR_ONE_SHIP: u64 = 300;
 impl Write {
     /// A new ship.
     pub fn ship(name: &str) -> Self {
-        Self::keyed(Kind::Ship, name, name, "/v1/ships".to_owned(), "application/yaml", documents::ship(name))
+        Self::keyed(
+            Kind::Ship,
+            name,
+            name,
+            "/v1/ships".to_owned(),
+            "application/yaml",
+            documents::ship(name),
+        )
     }
 
     /// A new law.
     pub fn law(ship: &str, name: &str) -> Self {
-        Self::keyed(Kind::Law, ship, name, "/v1/laws".to_owned(), "application/yaml", documents::law(name))
+        Self::keyed(
+            Kind::Law,
+            ship,
+            name,
+            "/v1/laws".to_owned(),
+            "application/yaml",
+            documents::law(name),
+        )
     }
 
     /// A trial of a ship.
     pub fn trial(ship: &str, name: &str, number: u64) -> Self {
         let path = format!("/v1/trials?ship={ship}&name={name}.csv&diagnose=false");
-        Self::keyed(Kind::Trial, ship, &format!("{name}.csv"), path, "text/csv", documents::rows(number))
+        Self::keyed(
+            Kind::Trial,
+            ship,
+            &format!("{name}.csv"),
+            path,
+            "text/csv",
+            documents::rows(number),
+        )
     }
 
     /// A refinement of a ship by all its trials.
     pub fn refinement(ship: &str, mark: &str) -> Self {
         let body = json!({ "ship": ship, "source": documents::PATTERN }).to_string();
-        Self::keyed(Kind::Refinement, ship, mark, "/v1/refinements".to_owned(), "application/json", body)
+        Self::keyed(
+            Kind::Refinement,
+            ship,
+            mark,
+            "/v1/refinements".to_owned(),
+            "application/json",
+            body,
+        )
     }
 
     /// A version of a ship.
@@ -91,7 +119,14 @@ impl Write {
     /// The zoo has no model for it.
     pub fn version(ship: &str, origin: &str) -> Result<Self, Failure> {
         let body = documents::version(ship, origin)?.to_string();
-        Ok(Self::keyed(Kind::Version, ship, origin, format!("/v1/models/{ship}/versions"), "application/json", body))
+        Ok(Self::keyed(
+            Kind::Version,
+            ship,
+            origin,
+            format!("/v1/models/{ship}/versions"),
+            "application/json",
+            body,
+        ))
     }
 
     /// A move of an alias to a version, from a revision or from nothing.
@@ -117,7 +152,12 @@ impl Write {
     ///
     /// # Errors
     /// As [`Write::version`].
-    pub async fn any(client: &Client, ship: &str, number: u64, rng: &mut ChaCha12Rng) -> Result<Self, Failure> {
+    pub async fn any(
+        client: &Client,
+        ship: &str,
+        number: u64,
+        rng: &mut ChaCha12Rng,
+    ) -> Result<Self, Failure> {
         let name = format!("{ship}-{number}");
         Ok(match KINDS[rng.random_range(0..KINDS.len())] {
             Kind::Ship => Self::ship(&name),
@@ -127,9 +167,12 @@ impl Write {
             Kind::Tag => Self::tag(ship, &name),
             Kind::Version => Self::version(ship, &name)?,
             Kind::Alias => {
-                let alias = client.request(Method::GET, &format!("/v1/models/{ship}/aliases/ledger"));
+                let alias =
+                    client.request(Method::GET, &format!("/v1/models/{ship}/aliases/ledger"));
                 match client.send(alias).await {
-                    Some(alias) if alias.ok() => Self::alias(ship, &name, 1, Some(alias.header("etag"))),
+                    Some(alias) if alias.ok() => {
+                        Self::alias(ship, &name, 1, Some(alias.header("etag")))
+                    }
                     _ => Self::alias(ship, &name, 1, None),
                 }
             }
@@ -141,7 +184,11 @@ impl Write {
     /// # Errors
     /// The zoo has no model for it.
     pub fn first(ship: &str, number: u64) -> Result<[Self; 3], Failure> {
-        Ok([Self::ship(ship), Self::version(ship, "the first")?, Self::trial(ship, "the-first", number)])
+        Ok([
+            Self::ship(ship),
+            Self::version(ship, "the first")?,
+            Self::trial(ship, "the-first", number),
+        ])
     }
 
     /// The same without its key.
@@ -151,16 +198,38 @@ impl Write {
 
     /// Sends it once.
     pub async fn send(&self, client: &Client) -> Option<Reply> {
-        let request = client.request(self.method.clone(), &self.path).header("content-type", self.media);
-        let request = self.key.iter().fold(request, |request, key| request.header("idempotency-key", key));
-        let request = self.conditions.iter().fold(request, |request, (name, value)| request.header(*name, value));
+        let request =
+            client.request(self.method.clone(), &self.path).header("content-type", self.media);
+        let request =
+            self.key.iter().fold(request, |request, key| request.header("idempotency-key", key));
+        let request = self
+            .conditions
+            .iter()
+            .fold(request, |request, (name, value)| request.header(*name, value));
         client.send(request.body(self.body.clone())).await
     }
 
-    fn keyed(kind: Kind, ship: &str, mark: &str, path: String, media: &'static str, body: String) -> Self {
+    fn keyed(
+        kind: Kind,
+        ship: &str,
+        mark: &str,
+        path: String,
+        media: &'static str,
+        body: String,
+    ) -> Self {
         // Keys are the caller's over all ships, and have no spaces.
         let key = Some(format!("{ship}-{kind:?}-{mark}").replace(' ', "-"));
         let (ship, mark) = (ship.to_owned(), mark.to_owned());
-        Self { kind, ship, mark, method: Method::POST, path, media, body, key, conditions: Vec::new() }
+        Self {
+            kind,
+            ship,
+            mark,
+            method: Method::POST,
+            path,
+            media,
+            body,
+            key,
+            conditions: Vec::new(),
+        }
     }
 }

@@ -20,7 +20,9 @@ const POLL: Duration = Duration::from_millis(10);
 
 #[tokio::main]
 async fn main() {
-    let number = |place: usize, usual: usize| std::env::args().nth(place).map_or(usual, |count| count.parse().expect("a number"));
+    let number = |place: usize, usual: usize| {
+        std::env::args().nth(place).map_or(usual, |count| count.parse().expect("a number"))
+    };
     let (ships, families) = (number(1, 100), number(2, 1));
     let folder = tempfile::tempdir().expect("a folder");
     let mut config = Config::new(folder.path());
@@ -38,7 +40,12 @@ async fn main() {
     timed("indexed", ships, search::index(&archive)).await;
     search::search(&config, ships).await;
     let learned_from = ships.min(1000 * families);
-    timed("statistics made, and learned from (at most 1000 a family)", learned_from, teach(&archive, families)).await;
+    timed(
+        "statistics made, and learned from (at most 1000 a family)",
+        learned_from,
+        teach(&archive, families),
+    )
+    .await;
     let workers = Workers::start(config.clone()).await.expect("workers");
     for (what, prior) in [
         ("refined, statistics made on the way where there were none", PriorChoice::Family),
@@ -71,9 +78,11 @@ fn family(number: usize) -> String {
 
 async fn load(archive: &Archive, ships: usize, families: usize) -> String {
     Yard::new().launch(&archive.store, &archive.objects, 0..ships, TRIALS).await;
-    let foundation = archive.store.versions().get(FOUNDATION, 1).await.expect("the foundation").head;
+    let foundation =
+        archive.store.versions().get(FOUNDATION, 1).await.expect("the foundation").head;
     for number in 0..families {
-        let (own, members): (String, Vec<String>) = (family(number), (number..ships).step_by(families).map(name).collect());
+        let (own, members): (String, Vec<String>) =
+            (family(number), (number..ships).step_by(families).map(name).collect());
         archive.store.families().create(&own, "Sisters", &foundation.id).await.expect("a family");
         archive.store.families().add(&own, &members).await.expect("members");
     }

@@ -33,7 +33,9 @@ pub async fn search(config: &Config, ships: usize) {
     config.listen.set_port(0);
     let server = Server::start(config).await.expect("a server");
     let (client, url) = (Client::new(), server.url());
-    println!("| search of {ships} ships, {TIMES} of each kind | p50, ms | slowest, ms | ships on the page, mean |");
+    println!(
+        "| search of {ships} ships, {TIMES} of each kind | p50, ms | slowest, ms | ships on the page, mean |"
+    );
     println!("| --- | --- | --- | --- |");
     for (what, query) in kinds() {
         let ask = async |turn: usize, next: Option<String>| {
@@ -57,7 +59,12 @@ async fn print(what: &str, ask: impl AsyncFn(usize, Option<String>) -> (usize, O
     }
     times.sort_unstable();
     let ms = |time: Duration| 1e3 * time.as_secs_f64();
-    println!("| {what} | {:.2} | {:.2} | {} |", ms(times[TIMES / 2]), ms(times[TIMES - 1]), found / TIMES);
+    println!(
+        "| {what} | {:.2} | {:.2} | {} |",
+        ms(times[TIMES / 2]),
+        ms(times[TIMES - 1]),
+        found / TIMES
+    );
 }
 
 const PAGED: &str = "page after page";
@@ -70,15 +77,29 @@ fn kinds() -> [(&'static str, Query); 9] {
         ("by name, page after page", |_, _| String::new()),
         ("category, page after page", |_, _| "category=dry-cargo".to_owned()),
         ("category and tag", |_, _| format!("category=dry-cargo&tag={TAG}")),
-        ("range of a particular", |turn, _| format!("particular=lpp_m:{:.1}..{:.1}", length(turn), length(turn) + 5.0)),
+        ("range of a particular", |turn, _| {
+            format!("particular=lpp_m:{:.1}..{:.1}", length(turn), length(turn) + 5.0)
+        }),
         ("ranges of two particulars", |turn, _| {
-            format!("particular=lpp_m:{:.1}..&particular=draught_m:..{:.2}", length(turn), 8.0 + 0.01 * turn as f64)
+            format!(
+                "particular=lpp_m:{:.1}..&particular=draught_m:..{:.2}",
+                length(turn),
+                8.0 + 0.01 * turn as f64
+            )
         }),
         ("range and tag", |turn, _| format!("particular=lpp_m:{:.1}..&tag={TAG}", length(turn))),
-        ("range of a metric of the champion", |turn, _| format!("metric=turn_35.tactical_diameter_m:{}..", 400 + 10 * turn)),
-        ("most similar to a ship", |turn, ships| format!("similar_to={}", name(turn * ships / TIMES))),
+        ("range of a metric of the champion", |turn, _| {
+            format!("metric=turn_35.tactical_diameter_m:{}..", 400 + 10 * turn)
+        }),
+        ("most similar to a ship", |turn, ships| {
+            format!("similar_to={}", name(turn * ships / TIMES))
+        }),
         ("most similar to a ship, of a tag and above a length", |turn, ships| {
-            format!("similar_to={}&tag={TAG}&particular=lpp_m:{:.1}..", name(turn * ships / TIMES), length(turn))
+            format!(
+                "similar_to={}&tag={TAG}&particular=lpp_m:{:.1}..",
+                name(turn * ships / TIMES),
+                length(turn)
+            )
         }),
     ]
 }

@@ -41,7 +41,13 @@ pub struct Curve {
 }
 
 /// The standardised mean squared error of u, v and r together; infinite where a simulation leaves the physical range.
-pub fn held_out_error(model: &Model, law: &Law, trials: &[Trial], deviations: &BTreeMap<Channel, f64>, restart_s: f64) -> f64 {
+pub fn held_out_error(
+    model: &Model,
+    law: &Law,
+    trials: &[Trial],
+    deviations: &BTreeMap<Channel, f64>,
+    restart_s: f64,
+) -> f64 {
     let mut ship = Ship::new(model, law).unwrap_or_else(|error| panic!("{error}"));
     ship.set_envelope_speed(2.0);
     let settings = ReplaySettings { restart_s: Some(restart_s), ..ReplaySettings::default() };
@@ -53,19 +59,36 @@ pub fn held_out_error(model: &Model, law: &Law, trials: &[Trial], deviations: &B
     let mut sum = SquaredError::default();
     let Some(errors) = errors else { return f64::INFINITY };
     errors.iter().for_each(|error| sum.add(error));
-    let of = |channel: Channel| (sum.channel_rmse(channel).unwrap_or(f64::INFINITY) / deviations[&channel]).powi(2);
+    let of = |channel: Channel| {
+        (sum.channel_rmse(channel).unwrap_or(f64::INFINITY) / deviations[&channel]).powi(2)
+    };
     [Channel::U, Channel::V, Channel::R].map(of).iter().sum()
 }
 
 impl Curve {
     pub fn new(method: &str, folder: &Folder) -> Self {
-        let mut file = std::fs::File::create(folder.0.join(format!("{method}.csv"))).expect("a file in the folder");
-        writeln!(file, "wall_s,cpu_s,evaluations,objective,held_out_error").expect("room on the disk");
-        Self { method: method.to_owned(), points: Vec::new(), spent: Spent::nothing(), paused_s: 0.0, paused_cpu_s: 0.0, file }
+        let mut file = std::fs::File::create(folder.0.join(format!("{method}.csv")))
+            .expect("a file in the folder");
+        writeln!(file, "wall_s,cpu_s,evaluations,objective,held_out_error")
+            .expect("room on the disk");
+        Self {
+            method: method.to_owned(),
+            points: Vec::new(),
+            spent: Spent::nothing(),
+            paused_s: 0.0,
+            paused_cpu_s: 0.0,
+            file,
+        }
     }
 
     /// Keeps a point where it is `due` or 5 % and a second have passed since the last.
-    pub fn see(&mut self, evaluations: usize, objective: f64, due: bool, held_out: &dyn Fn() -> f64) {
+    pub fn see(
+        &mut self,
+        evaluations: usize,
+        objective: f64,
+        due: bool,
+        held_out: &dyn Fn() -> f64,
+    ) {
         let last = self.points.last().map_or(0.0, |point| point.wall_s);
         let now = self.spent.wall_s() - self.paused_s;
         if due || now > (1.05 * last).max(last + 1.0) {
@@ -75,15 +98,18 @@ impl Curve {
 
     /// The point at which a refinement has ended, selection and all.
     pub fn end(&mut self, held_out: &dyn Fn() -> f64) {
-        let (evaluations, objective) = self.points.last().map_or((0, f64::NAN), |point| (point.evaluations, point.objective));
+        let (evaluations, objective) =
+            self.points.last().map_or((0, f64::NAN), |point| (point.evaluations, point.objective));
         self.keep(evaluations, objective, held_out);
     }
 
     fn keep(&mut self, evaluations: usize, objective: f64, held_out: &dyn Fn() -> f64) {
-        let (wall_s, cpu_s) = (self.spent.wall_s() - self.paused_s, self.cpu_s() - self.paused_cpu_s);
+        let (wall_s, cpu_s) =
+            (self.spent.wall_s() - self.paused_s, self.cpu_s() - self.paused_cpu_s);
         let begun = (Instant::now(), self.cpu_s());
         let point = Point { wall_s, cpu_s, evaluations, objective, held_out: held_out() };
-        writeln!(self.file, "{wall_s:.3},{cpu_s:.3},{evaluations},{objective},{}", point.held_out).expect("room on the disk");
+        writeln!(self.file, "{wall_s:.3},{cpu_s:.3},{evaluations},{objective},{}", point.held_out)
+            .expect("room on the disk");
         eprintln!(
             "{} {wall_s:.1} s: {evaluations} evaluations, objective {objective:.5}, held out {:.5}",
             self.method, point.held_out
@@ -113,7 +139,8 @@ impl Folder {
 
     /// The curve of a method as its file has it: empty where there is none.
     fn kept(&self, method: &str) -> Kept {
-        let text = std::fs::read_to_string(self.0.join(format!("{method}.csv"))).unwrap_or_default();
+        let text =
+            std::fs::read_to_string(self.0.join(format!("{method}.csv"))).unwrap_or_default();
         let point = |line: &str| {
             let mut values = line.split(',').map_while(|value| value.parse::<f64>().ok());
             let mut next = || values.next();
@@ -130,14 +157,22 @@ const LEFT: f64 = 70.0;
 const EDGE: f64 = 50.0;
 
 fn svg(curves: &[Kept]) -> String {
-    let all = || curves.iter().flat_map(|(_, points)| points).filter(|point| point.held_out.is_finite());
+    let all =
+        || curves.iter().flat_map(|(_, points)| points).filter(|point| point.held_out.is_finite());
     let range = |of: &dyn Fn(&Point) -> f64| {
-        let (low, high) = all().map(of).fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+        let (low, high) = all()
+            .map(of)
+            .fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
         (low.log10().floor(), high.log10().ceil().max(low.log10().floor() + 1.0))
     };
     let (seconds, errors) = (range(&|point| point.wall_s.max(0.1)), range(&|point| point.held_out));
-    let x = |value: f64| LEFT + (value.max(0.1).log10() - seconds.0) / (seconds.1 - seconds.0) * (WIDTH - LEFT - EDGE);
-    let y = |value: f64| EDGE + (errors.1 - value.log10()) / (errors.1 - errors.0) * (HEIGHT - 2.0 * EDGE);
+    let x = |value: f64| {
+        LEFT + (value.max(0.1).log10() - seconds.0) / (seconds.1 - seconds.0)
+            * (WIDTH - LEFT - EDGE)
+    };
+    let y = |value: f64| {
+        EDGE + (errors.1 - value.log10()) / (errors.1 - errors.0) * (HEIGHT - 2.0 * EDGE)
+    };
     let mut out = format!(
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {WIDTH} {HEIGHT}' font-family='sans-serif' font-size='13'>"
     );
@@ -161,13 +196,19 @@ fn svg(curves: &[Kept]) -> String {
             at + 4.0
         );
     }
-    for (index, ((method, points), colour)) in curves.iter().zip(["#0b5394", "#b45f06", "#38761d"]).enumerate() {
+    for (index, ((method, points), colour)) in
+        curves.iter().zip(["#0b5394", "#b45f06", "#38761d"]).enumerate()
+    {
         let points: Vec<String> = points
             .iter()
             .filter(|point| point.held_out.is_finite())
             .map(|point| format!("{:.1},{:.1}", x(point.wall_s), y(point.held_out)))
             .collect();
-        let _ = write!(out, "<polyline points='{}' fill='none' stroke='{colour}' stroke-width='2'/>", points.join(" "));
+        let _ = write!(
+            out,
+            "<polyline points='{}' fill='none' stroke='{colour}' stroke-width='2'/>",
+            points.join(" ")
+        );
         let _ = write!(
             out,
             "<text x='{}' y='{}' fill='{colour}'>{}</text>",
@@ -176,7 +217,12 @@ fn svg(curves: &[Kept]) -> String {
             method
         );
     }
-    let _ = write!(out, "<text x='{}' y='{}' text-anchor='middle'>seconds on the wall</text>", WIDTH / 2.0, HEIGHT - 10.0);
+    let _ = write!(
+        out,
+        "<text x='{}' y='{}' text-anchor='middle'>seconds on the wall</text>",
+        WIDTH / 2.0,
+        HEIGHT - 10.0
+    );
     let _ = write!(
         out,
         "<text x='{LEFT}' y='{}'>standardised squared error of u, v, r on manoeuvres held out, 100 s at a time</text></svg>",
@@ -187,7 +233,10 @@ fn svg(curves: &[Kept]) -> String {
 
 /// What each method had at certain times, and at its end.
 fn table(curves: &[Kept]) {
-    println!("{:<11} {:>9} {:>9} {:>12} {:>12} {:>12}", "method", "wall s", "cpu s", "evaluations", "objective", "held out");
+    println!(
+        "{:<11} {:>9} {:>9} {:>12} {:>12} {:>12}",
+        "method", "wall s", "cpu s", "evaluations", "objective", "held out"
+    );
     let times = [10.0, 20.0, 60.0, 120.0, 300.0, 600.0, 1200.0, 1800.0, 3600.0, f64::INFINITY];
     for (method, points) in curves {
         let mut told = None;
@@ -195,7 +244,10 @@ fn table(curves: &[Kept]) {
             let Some(at) = points.iter().rposition(|point| point.wall_s <= time) else { continue };
             if told != Some(at) {
                 let Point { wall_s, cpu_s, evaluations, objective, held_out } = points[at];
-                println!("{:<11} {wall_s:>9.1} {cpu_s:>9.1} {evaluations:>12} {objective:>12.5} {held_out:>12.5}", method);
+                println!(
+                    "{:<11} {wall_s:>9.1} {cpu_s:>9.1} {evaluations:>12} {objective:>12.5} {held_out:>12.5}",
+                    method
+                );
             }
             told = Some(at);
         }

@@ -32,18 +32,32 @@ pub fn blank(truth: &Model, law: &Law) -> Model {
     law.name.clone_into(&mut model.law);
     model.name = format!("{}/{}", model.ship, law.name);
     let of = |name: &str| truth.parameters[name].value;
-    let value = |name: &str| sistership_model::particulars::value(&truth.particulars, name).expect("a particular of the ship");
-    let own = value("mass_kg") / (0.5 * value("water_density_kg_m3") * value("lpp_m").powi(2) * value("draught_m"));
-    let inertia = [("m_x", of("m_x") / own), ("m_y", of("m_y") / own), ("I_zz_plus_J_zz", of("k_zz").powi(2) + of("J_z") / own)];
+    let value = |name: &str| {
+        sistership_model::particulars::value(&truth.particulars, name)
+            .expect("a particular of the ship")
+    };
+    let own = value("mass_kg")
+        / (0.5 * value("water_density_kg_m3") * value("lpp_m").powi(2) * value("draught_m"));
+    let inertia = [
+        ("m_x", of("m_x") / own),
+        ("m_y", of("m_y") / own),
+        ("I_zz_plus_J_zz", of("k_zz").powi(2) + of("J_z") / own),
+    ];
     model.parameters = law
         .parameters
         .keys()
         .map(|name| {
             let known = inertia.iter().find(|(own, _)| own == name).map(|(_, value)| *value);
-            let value = known.or_else(|| law.derived_parameter(name, &model.particulars)).expect("a parameter of the law");
+            let value = known
+                .or_else(|| law.derived_parameter(name, &model.particulars))
+                .expect("a parameter of the law");
             (name.clone(), Quantity::new(value, "the truth"))
         })
         .collect();
-    model.coefficients = law.coefficient_names().into_iter().map(|name| (name, Quantity::new(0.0, "nothing known"))).collect();
+    model.coefficients = law
+        .coefficient_names()
+        .into_iter()
+        .map(|name| (name, Quantity::new(0.0, "nothing known")))
+        .collect();
     model
 }

@@ -16,7 +16,9 @@ use std::sync::{Arc, Mutex};
 
 use sistership_dynamics::Method as Integration;
 use sistership_dynamics::error::standard_deviations;
-use sistership_estimate::refine::{CmaEs, Family, Iterate, Method, Request, Settings, refine_watched};
+use sistership_estimate::refine::{
+    CmaEs, Family, Iterate, Method, Request, Settings, refine_watched,
+};
 use sistership_model::{Law, Model, Trial, Vessel, Zoo};
 
 use curve::{Curve, Folder, held_out_error};
@@ -50,8 +52,13 @@ fn main() {
 }
 
 fn arguments() -> Arguments {
-    let mut arguments =
-        Arguments { minutes: 60.0, cpu_minutes: None, out: "hybrid-race".into(), method: None, search: CmaEs::default() };
+    let mut arguments = Arguments {
+        minutes: 60.0,
+        cpu_minutes: None,
+        out: "hybrid-race".into(),
+        method: None,
+        search: CmaEs::default(),
+    };
     let mut given = std::env::args().skip(1);
     while let Some(flag) = given.next() {
         if flag == "--rk4" {
@@ -59,7 +66,9 @@ fn arguments() -> Arguments {
             continue;
         }
         let value = given.next().unwrap_or_else(|| panic!("{flag} needs a value"));
-        let number = || value.parse::<f64>().unwrap_or_else(|_| panic!("{flag} needs a number, not {value}"));
+        let number = || {
+            value.parse::<f64>().unwrap_or_else(|_| panic!("{flag} needs a number, not {value}"))
+        };
         match flag.as_str() {
             "--minutes" => arguments.minutes = number(),
             "--cpu-minutes" => arguments.cpu_minutes = Some(number()),
@@ -68,7 +77,9 @@ fn arguments() -> Arguments {
             "--seed" => arguments.search.seed = number() as u64,
             "--spread" => arguments.search.spread = number(),
             "--box" => arguments.search.box_width = number(),
-            _ => panic!("there are --minutes, --cpu-minutes, --out, --method, --seed, --spread, --box and --rk4, not {flag}"),
+            _ => panic!(
+                "there are --minutes, --cpu-minutes, --out, --method, --seed, --spread, --box and --rk4, not {flag}"
+            ),
         }
     }
     arguments
@@ -117,8 +128,21 @@ impl Race {
             settings: &settings,
         };
         let look = |glimpse: &Iterate<'_>| {
-            let error = || held_out_error(&(glimpse.model)(), &self.law, &self.held_out, &deviations, SUBSEQUENCE_S);
-            curve.lock().expect("a curve").see(glimpse.evaluations, glimpse.objective, method == Method::Trajectory, &error);
+            let error = || {
+                held_out_error(
+                    &(glimpse.model)(),
+                    &self.law,
+                    &self.held_out,
+                    &deviations,
+                    SUBSEQUENCE_S,
+                )
+            };
+            curve.lock().expect("a curve").see(
+                glimpse.evaluations,
+                glimpse.objective,
+                method == Method::Trajectory,
+                &error,
+            );
         };
         // The race ends with the fit on all trials: fits with trials left out, with which a search is weighed, are not part of it.
         let over = AtomicBool::new(false);
@@ -134,9 +158,22 @@ impl Race {
             Ok(refinement) => {
                 println!("{}: took {}", method.name(), chosen(&refinement.options));
                 for option in &refinement.options {
-                    println!("  {:<36} error {:?} {}", option.step, option.error, option.reason.as_deref().unwrap_or_default());
+                    println!(
+                        "  {:<36} error {:?} {}",
+                        option.step,
+                        option.error,
+                        option.reason.as_deref().unwrap_or_default()
+                    );
                 }
-                let error = || held_out_error(&refinement.model, &self.law, &self.held_out, &deviations, SUBSEQUENCE_S);
+                let error = || {
+                    held_out_error(
+                        &refinement.model,
+                        &self.law,
+                        &self.held_out,
+                        &deviations,
+                        SUBSEQUENCE_S,
+                    )
+                };
                 curve.end(&error);
             }
             Err(_) if over.load(Ordering::Relaxed) => {}
@@ -157,5 +194,12 @@ fn settings(method: Method, arguments: &Arguments) -> Settings {
         ..arguments.search.clone()
     };
     let cma_es = (method == Method::CmaEs).then_some(search);
-    Settings { method, families: vec![Family::Own], restart_s: Some(SUBSEQUENCE_S), folds: 4, cma_es, ..Settings::default() }
+    Settings {
+        method,
+        families: vec![Family::Own],
+        restart_s: Some(SUBSEQUENCE_S),
+        folds: 4,
+        cma_es,
+        ..Settings::default()
+    }
 }

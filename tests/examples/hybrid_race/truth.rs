@@ -21,7 +21,9 @@ const NOISE: [f64; 6] = [0.004, 0.004, 2e-4, 1e-3, 0.02, 0.02];
 /// So many trials of so many seconds at 10 Hz.
 pub fn trials(model: &Model, law: &Law, count: usize, duration_s: f64, seed: u64) -> Vec<Trial> {
     let ship = Ship::new(model, law).unwrap_or_else(|error| panic!("{error}"));
-    let one = |index: usize| trial(&ship, &format!("random {seed}-{index}"), duration_s, &mut replica(seed, index));
+    let one = |index: usize| {
+        trial(&ship, &format!("random {seed}-{index}"), duration_s, &mut replica(seed, index))
+    };
     (0..count).map(one).collect()
 }
 
@@ -55,7 +57,8 @@ fn trial(ship: &Ship, name: &str, duration_s: f64, rng: &mut ChaCha12Rng) -> Tri
 fn measured(name: &str, track: &Trajectory, rng: &mut ChaCha12Rng) -> Trial {
     let mut channels: BTreeMap<Channel, Vec<f64>> = BTreeMap::new();
     for (&(channel, place), noise) in RECORDED[..6].iter().zip(NOISE) {
-        let mut noisy = |state: &StateVector| state[place] + noise * rng.sample::<f64, _>(StandardNormal);
+        let mut noisy =
+            |state: &StateVector| state[place] + noise * rng.sample::<f64, _>(StandardNormal);
         channels.insert(channel, track.states.iter().map(&mut noisy).collect());
     }
     channels.insert(Channel::Delta, track.column(at::DELTA));

@@ -22,7 +22,9 @@ pub fn run(data: &[u8]) {
 
 fn is_determined(expr: &Expr, lookup: &dyn Fn(&str) -> Option<f64>) -> bool {
     let is_finite = expr.value(lookup).is_some_and(f64::is_finite);
-    is_finite && !is_angle_by_sign_of_zero(expr, lookup) && expr.children().into_iter().all(|child| is_determined(child, lookup))
+    is_finite
+        && !is_angle_by_sign_of_zero(expr, lookup)
+        && expr.children().into_iter().all(|child| is_determined(child, lookup))
 }
 
 fn is_angle_by_sign_of_zero(expr: &Expr, lookup: &dyn Fn(&str) -> Option<f64>) -> bool {
@@ -39,5 +41,8 @@ fn lowered(expr: &Expr, value: f64) {
     }
     let of_tape = lowering.finish().values(&VALUES)[0];
     let close = (of_tape - value).abs() <= 1e-9 * value.abs().max(1.0);
-    assert!(close || !value.is_finite() || !of_tape.is_finite(), "{expr:?}: {value} by the tree, {of_tape} by the tape");
+    assert!(
+        close || !value.is_finite() || !of_tape.is_finite(),
+        "{expr:?}: {value} by the tree, {of_tape} by the tape"
+    );
 }

@@ -6,6 +6,9 @@ use sistership_model::Law;
 pub fn run(data: &[u8]) {
     let Some(text) = super::text(data) else { return };
     if let Ok(read) = Law::parse("fuzz.yaml", text) {
-        assert!(Law::parse("fuzz.yaml", text).as_ref() == Ok(&read), "read twice to something else");
+        assert!(
+            Law::parse("fuzz.yaml", text).as_ref() == Ok(&read),
+            "read twice to something else"
+        );
     }
 }

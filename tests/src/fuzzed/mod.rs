@@ -21,7 +21,10 @@ fn text(data: &[u8]) -> Option<&str> {
 
 /// Bounds small enough that an input of a few kB cannot ask for more.
 fn small() -> Mapping {
-    Mapping { limits: Limits { rows: 10_000, columns: 50, line_bytes: 4096, ..Limits::default() }, ..Mapping::canonical() }
+    Mapping {
+        limits: Limits { rows: 10_000, columns: 50, line_bytes: 4096, ..Limits::default() },
+        ..Mapping::canonical()
+    }
 }
 
 /// What holds of every trial that is accepted: as many samples in each channel as in time, all finite, time increasing,
@@ -32,7 +35,8 @@ fn holds(trial: &Trial) {
         assert_eq!(values.len(), trial.len(), "{channel} is not as long as time");
         assert!(values.iter().all(|value| value.is_finite()), "{channel} holds what is no number");
     }
-    let bytes = sistership_trials::samples::to_parquet(trial).expect("an accepted trial is written");
+    let bytes =
+        sistership_trials::samples::to_parquet(trial).expect("an accepted trial is written");
     let again = sistership_trials::samples::from_parquet(bytes.into()).expect("and read");
     assert!(*trial == again, "a trial does not read back to itself");
 }

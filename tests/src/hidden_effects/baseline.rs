@@ -39,7 +39,13 @@ pub fn refined(source: &Model, ship: &str, trials: &[&Trial]) -> Baseline {
 }
 
 /// As [`refined`], by a law and settings.
-pub fn by(source: &Model, law: &Arc<Law>, ship: &str, trials: &[&Trial], settings: &Settings) -> Baseline {
+pub fn by(
+    source: &Model,
+    law: &Arc<Law>,
+    ship: &str,
+    trials: &[&Trial],
+    settings: &Settings,
+) -> Baseline {
     let target = ZOO.vessel(ship).unwrap();
     let request = Request { target, source, source_law: None, law, trials, settings };
     let refinement = refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"));
@@ -49,7 +55,8 @@ pub fn by(source: &Model, law: &Arc<Law>, ship: &str, trials: &[&Trial], setting
         println!("{channel:>6} {:10.5} -> {:10.5}", before[channel], after[channel]);
     }
     let mut model = refinement.model;
-    let uncertainty = calibrate(&model, law, &library(), trials).unwrap_or_else(|error| panic!("{error}"));
+    let uncertainty =
+        calibrate(&model, law, &library(), trials).unwrap_or_else(|error| panic!("{error}"));
     println!("discrepancy {:?}", uncertainty.discrepancy);
     model.uncertainty = Some(uncertainty);
     Baseline { model, law: law.clone() }
@@ -57,10 +64,14 @@ pub fn by(source: &Model, law: &Arc<Law>, ship: &str, trials: &[&Trial], setting
 
 /// Twelve clean trials: six zigzags that start to either side, and turns of three angles to both.
 pub fn programme() -> Vec<Sailing> {
-    let zigzags = [(10.0, 10.0), (-10.0, 10.0), (20.0, 10.0), (-20.0, 10.0), (10.0, 5.0), (-15.0, 10.0)];
+    let zigzags =
+        [(10.0, 10.0), (-10.0, 10.0), (20.0, 10.0), (-20.0, 10.0), (10.0, 5.0), (-15.0, 10.0)];
     let zigzags = zigzags.map(|(rudder, switch)| Manoeuvre::Zigzag(rudder, switch));
     let turns = [8.0, -8.0, 12.0, -12.0, 20.0, -20.0].map(Manoeuvre::Turn);
     let headings = [0.0, 90.0].into_iter().cycle();
     let manoeuvres = zigzags.into_iter().chain(turns);
-    manoeuvres.zip(headings).map(|(manoeuvre, heading_deg)| Sailing { manoeuvre, heading_deg, execute_s: 60.0 }).collect()
+    manoeuvres
+        .zip(headings)
+        .map(|(manoeuvre, heading_deg)| Sailing { manoeuvre, heading_deg, execute_s: 60.0 })
+        .collect()
 }

@@ -30,7 +30,12 @@ pub fn confusion(part: &Part) -> Vec<String> {
 
 /// What is named first in a case; nothing where nothing is.
 pub fn named(label: &str, share: f64) -> Vec<String> {
-    let part = Part { cases: Some(vec![label.to_owned()]), strengths: vec![share], seeds: 1, is_judged: false };
+    let part = Part {
+        cases: Some(vec![label.to_owned()]),
+        strengths: vec![share],
+        seeds: 1,
+        is_judged: false,
+    };
     cases(&part).first().map(|case| run(case).named).unwrap_or_default()
 }
 
@@ -39,7 +44,9 @@ fn in_parallel<T: Send>(cases: &[Case], run: impl Fn(&Case) -> T + Sync) -> Vec<
     let next = AtomicUsize::new(0);
     let done = Mutex::new(Vec::new());
     let work = || {
-        while let Some((place, case)) = Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|k| Some((k, cases.get(k)?))) {
+        while let Some((place, case)) =
+            Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|k| Some((k, cases.get(k)?)))
+        {
             let outcome = run(case);
             done.lock().unwrap().push((place, outcome));
         }
@@ -55,9 +62,16 @@ fn run(case: &Case) -> Outcome {
     let trials = trials(&case.hidden, &programme(), case.seed);
     let trials: Vec<&Trial> = trials.iter().collect();
     let (settings, effects) = (Settings::default(), library());
-    let request = Request { model: &BASELINE.model, law: &BASELINE.law, effects: &effects, trials: &trials, settings: &settings };
+    let request = Request {
+        model: &BASELINE.model,
+        law: &BASELINE.law,
+        effects: &effects,
+        trials: &trials,
+        settings: &settings,
+    };
     let started = Instant::now();
-    let diagnosis = diagnose(&request, &|_, _| true).unwrap_or_else(|error| panic!("{}: {error}", case.label));
+    let diagnosis =
+        diagnose(&request, &|_, _| true).unwrap_or_else(|error| panic!("{}: {error}", case.label));
     let seconds = started.elapsed().as_secs_f64();
     let outcome = Outcome::new(case, &diagnosis, &trials, seconds);
     println!("{}", outcome.line());

@@ -16,7 +16,8 @@ pub use sailing::{Manoeuvre, Sailing, TrueShip};
 pub use weather::Weather;
 
 /// The ships, laws and effects that everybody knows.
-pub static ZOO: LazyLock<Zoo> = LazyLock::new(|| Zoo::embedded().unwrap_or_else(|error| panic!("{error}")));
+pub static ZOO: LazyLock<Zoo> =
+    LazyLock::new(|| Zoo::embedded().unwrap_or_else(|error| panic!("{error}")));
 
 /// What the trials hide.
 #[derive(Debug, Clone, Default)]
@@ -56,17 +57,32 @@ pub fn effect(name: &str, form: &str, values: &[(&str, f64)]) -> AppliedEffect {
         terms.into_iter().find(|term| term.file.name == form)
     };
     let form = listed.or_else(spelled).unwrap_or_else(|| panic!("no form `{form}` of `{name}`"));
-    assert!(values.iter().all(|(name, _)| form.parameters.contains_key(*name)), "{values:?} of {}", form.file.name);
-    let value = |name: &str, absent: f64| values.iter().find(|(known, _)| *known == name).map_or(absent, |&(_, value)| value);
+    assert!(
+        values.iter().all(|(name, _)| form.parameters.contains_key(*name)),
+        "{values:?} of {}",
+        form.file.name
+    );
+    let value = |name: &str, absent: f64| {
+        values.iter().find(|(known, _)| *known == name).map_or(absent, |&(_, value)| value)
+    };
     let parameters = form.parameters.iter();
-    let parameters = parameters.map(|(name, p)| (name.clone(), Quantity::new(value(name, p.absent), "the truth"))).collect();
-    AppliedEffect { name: name.into(), acts_on: effect.acts_on, parameters, form: form.file.clone() }
+    let parameters = parameters
+        .map(|(name, p)| (name.clone(), Quantity::new(value(name, p.absent), "the truth")))
+        .collect();
+    AppliedEffect {
+        name: name.into(),
+        acts_on: effect.acts_on,
+        parameters,
+        form: form.file.clone(),
+    }
 }
 
 /// Sails a programme and records it; the same seed gives the same noise.
 pub fn trials(hidden: &Hidden, programme: &[Sailing], seed: u64) -> Vec<Trial> {
     let ship = TrueShip::new(hidden);
-    let one = |(k, sailing): (usize, &Sailing)| instruments::record(&ship, sailing, seed.wrapping_mul(1000) + k as u64);
+    let one = |(k, sailing): (usize, &Sailing)| {
+        instruments::record(&ship, sailing, seed.wrapping_mul(1000) + k as u64)
+    };
     programme.iter().enumerate().map(one).collect()
 }
 

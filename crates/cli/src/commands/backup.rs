@@ -58,7 +58,8 @@ pub struct RestoreArguments {
 /// # Errors
 /// The store is not there, the folder is not empty, something cannot be read or written, or samples are lost.
 pub fn backup(backup: &BackupArguments) -> Result<(), Failure> {
-    let manifest = with_archive(&backup.store, async |archive| upkeep::backup(archive, &backup.folder).await)?;
+    let manifest =
+        with_archive(&backup.store, async |archive| upkeep::backup(archive, &backup.folder).await)?;
     output::print(backup.json, &manifest, || text("backed up", &manifest))?;
     if manifest.lost.is_empty() { Ok(()) } else { Err(Failure::Told) }
 }
@@ -79,7 +80,14 @@ pub fn restore(restore: &RestoreArguments) -> Result<(), Failure> {
 
 fn text(done: &str, manifest: &BackupManifest) -> String {
     let files: u64 = manifest.files.values().map(|file| file.bytes).sum();
-    let lost: String = manifest.lost.iter().map(|key| format!("lost: the samples {key} are missing or damaged\n")).collect();
+    let lost: String = manifest
+        .lost
+        .iter()
+        .map(|key| format!("lost: the samples {key} are missing or damaged\n"))
+        .collect();
     let objects = count(manifest.objects, "object");
-    format!("{lost}{done}: {files} bytes of the database, {objects} of {} bytes\n", manifest.object_bytes)
+    format!(
+        "{lost}{done}: {files} bytes of the database, {objects} of {} bytes\n",
+        manifest.object_bytes
+    )
 }

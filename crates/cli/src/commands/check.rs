@@ -52,14 +52,19 @@ fn text(outcomes: &[CheckOutcome]) -> String {
     let refused = outcomes.iter().filter(|outcome| !outcome.accepted()).count();
     let warnings: usize = outcomes.iter().map(|outcome| outcome.warnings.len()).sum();
     let each: String = outcomes.iter().map(one).collect();
-    format!("{each}{}: {refused} refused, {}\n", count(outcomes.len(), "trial"), count(warnings, "warning"))
+    format!(
+        "{each}{}: {refused} refused, {}\n",
+        count(outcomes.len(), "trial"),
+        count(warnings, "warning")
+    )
 }
 
 fn one(outcome: &CheckOutcome) -> String {
     let verdict = if outcome.accepted() { "accepted" } else { "REFUSED" };
     let size = format!("{}, {} s", count(outcome.rows, "row"), number(outcome.duration_s));
     let errors = outcome.errors.iter().map(|finding| format!("  error: {}\n", place(finding)));
-    let warnings = outcome.warnings.iter().map(|finding| format!("  warning: {}\n", place(finding)));
+    let warnings =
+        outcome.warnings.iter().map(|finding| format!("  warning: {}\n", place(finding)));
     format!("{}: {verdict} ({size})\n{}", outcome.file, errors.chain(warnings).collect::<String>())
 }
 
@@ -74,7 +79,11 @@ mod tests {
         let path = folder.path().join("a.csv");
         std::fs::write(&path, "t_s,u_m_s\n0,1\n0,2\n").unwrap();
         let text = text(&check_path(&path).unwrap());
-        assert!(text.contains("a.csv: REFUSED (2 rows") && text.contains("\n  error: row 3: column `t_s`"), "{text}");
+        assert!(
+            text.contains("a.csv: REFUSED (2 rows")
+                && text.contains("\n  error: row 3: column `t_s`"),
+            "{text}"
+        );
         assert!(text.ends_with("1 trial: 1 refused, 0 warnings\n"), "{text}");
     }
 }

@@ -57,7 +57,8 @@ pub fn read(path: Option<&Path>) -> Result<ConfigFile, Failure> {
     if text.lines().all(|line| line.trim().is_empty() || line.trim_start().starts_with('#')) {
         return Ok(ConfigFile::default());
     }
-    let mut file: ConfigFile = sistership_model::yaml::read(&text).map_err(|error| about_file(path, error))?;
+    let mut file: ConfigFile =
+        sistership_model::yaml::read(&text).map_err(|error| about_file(path, error))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     for relative in [&mut file.data_dir, &mut file.api_key_file].into_iter().flatten() {
         *relative = folder.join(&*relative);
@@ -75,7 +76,9 @@ mod tests {
         let path = folder.path().join("sistership.yaml");
         std::fs::write(&path, text).unwrap();
         read(Some(&path)).map(|mut file| {
-            file.data_dir = file.data_dir.map(|data| data.strip_prefix(folder.path()).unwrap_or(&data).to_path_buf());
+            file.data_dir = file
+                .data_dir
+                .map(|data| data.strip_prefix(folder.path()).unwrap_or(&data).to_path_buf());
             file
         })
     }
@@ -86,10 +89,15 @@ mod tests {
 
     #[test]
     fn settings_are_read_and_paths_start_at_the_file() {
-        let file = read_text("listen: 127.0.0.1:9000\ndata_dir: data\nlease_s: 2\nlog_format: json\n").unwrap();
+        let file =
+            read_text("listen: 127.0.0.1:9000\ndata_dir: data\nlease_s: 2\nlog_format: json\n")
+                .unwrap();
         assert_eq!((file.listen.unwrap().port(), file.lease_s), (9000, Some(2.0)));
         assert_eq!(file.data_dir.unwrap(), Path::new("data"));
-        assert_eq!(read_text("data_dir: /var/lib/x\n").unwrap().data_dir.unwrap(), Path::new("/var/lib/x"));
+        assert_eq!(
+            read_text("data_dir: /var/lib/x\n").unwrap().data_dir.unwrap(),
+            Path::new("/var/lib/x")
+        );
         assert_eq!(read_text("# nothing yet\n").unwrap(), ConfigFile::default());
     }
 

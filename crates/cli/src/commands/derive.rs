@@ -52,11 +52,16 @@ struct DeriveDocument<'a> {
 /// The declaration is refused, or the law cannot be written.
 pub fn run(zoo: &Zoo, asked: &DeriveArguments) -> Result<(), Failure> {
     let path = &asked.declaration;
-    let promised = asked.out.as_deref().map(|out| PromisedFile::new(out, std::slice::from_ref(path))).transpose()?;
+    let promised = asked
+        .out
+        .as_deref()
+        .map(|out| PromisedFile::new(out, std::slice::from_ref(path)))
+        .transpose()?;
     let text = text_of(path)?;
     named::must_be(path, &text, "hybrid", "a declaration")?;
     let derived = derive(&path.display().to_string(), &text)?;
-    let unknowns = derived.unknowns(zoo).map_err(|(field, message)| blamed(path, field, message))?;
+    let unknowns =
+        derived.unknowns(zoo).map_err(|(field, message)| blamed(path, field, message))?;
     if let Some(promised) = promised {
         promised.write(derived.text.as_bytes())?;
     }
@@ -82,15 +87,26 @@ fn report(derived: &Derivation, unknowns: &Unknowns, out: Option<&Path>) -> Stri
         table.row([rule.rule.to_owned(), rule.setting.clone()].into_iter().chain(counts));
     }
     let written = out.map_or(String::new(), |out| format!("\nlaw written to {}", out.display()));
-    format!("{}: {}\n\n{table}\n{}{written}", derived.law.name, derived.law.title, sum(derived, unknowns))
+    format!(
+        "{}: {}\n\n{table}\n{}{written}",
+        derived.law.name,
+        derived.law.title,
+        sum(derived, unknowns)
+    )
 }
 
 /// `60 coefficients in 3 sets (shared, stalled, astern): 180`, and what comes on top.
 fn sum(derived: &Derivation, unknowns: &Unknowns) -> String {
     let mut table = TextTable::new(["unknowns", "of", "number"]);
-    let sets: Vec<&str> = std::iter::once("shared").chain(derived.law.submodels.keys().map(String::as_str)).collect();
-    let mut row = |what: &str, of: String, count: usize| table.row([what.to_owned(), of, count.to_string()]);
-    row("coefficients", format!("{} sets: {}", unknowns.coefficient_sets, sets.join(", ")), unknowns.coefficients);
+    let sets: Vec<&str> =
+        std::iter::once("shared").chain(derived.law.submodels.keys().map(String::as_str)).collect();
+    let mut row =
+        |what: &str, of: String, count: usize| table.row([what.to_owned(), of, count.to_string()]);
+    row(
+        "coefficients",
+        format!("{} sets: {}", unknowns.coefficient_sets, sets.join(", ")),
+        unknowns.coefficients,
+    );
     row("inertia", unknowns.parameters.join(", "), unknowns.parameters.len());
     for effect in &unknowns.effects {
         row("effect", format!("{}, {}", effect.effect, effect.form), effect.unknowns);
@@ -138,8 +154,13 @@ mod tests {
             run(&zoo, &asked).unwrap_err().message().unwrap().to_owned()
         };
         assert!(refused("order: 2", "order: 0").contains("ferry.yaml:4: order"));
-        assert!(refused("form: measured", "form: felt").contains("effects: `wind` has no form `felt`"));
-        assert!(refused("kind: hybrid", "kind: law").contains("is of `kind: law`; a declaration is of `kind: hybrid`"));
+        assert!(
+            refused("form: measured", "form: felt").contains("effects: `wind` has no form `felt`")
+        );
+        assert!(
+            refused("kind: hybrid", "kind: law")
+                .contains("is of `kind: law`; a declaration is of `kind: hybrid`")
+        );
         assert!(refused("kind: hybrid\n", "").contains("is no declaration"));
         assert!(!folder.path().join("law.yaml").exists());
     }

@@ -79,13 +79,15 @@ struct DiagnoseDocument<'a> {
 pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
     let settings = settings(arguments)?;
     let (model, law) = named::model(zoo, &arguments.model)?;
-    let named: Vec<PathBuf> = arguments.trials.iter().cloned().chain([PathBuf::from(&arguments.model)]).collect();
+    let named: Vec<PathBuf> =
+        arguments.trials.iter().cloned().chain([PathBuf::from(&arguments.model)]).collect();
     let out = promised(arguments.out.as_deref(), &named)?;
     let report = promised(arguments.report.as_deref(), &named)?;
     let read = trials::read(&arguments.trials)?;
     trials::remark_other_ship(&read, &model.ship);
     note(&format!("{}: {} read", model.name, count(read.len(), "trial")));
-    let mut files = WrittenFiles { out: arguments.out.as_deref(), report: arguments.report.as_deref() };
+    let mut files =
+        WrittenFiles { out: arguments.out.as_deref(), report: arguments.report.as_deref() };
     guard(&files, &read)?;
     let diagnosis = diagnosed(zoo, &model, &law, &settings, &read)?;
     let kept = written(zoo, out, &diagnosis)?;
@@ -108,11 +110,19 @@ fn settings(arguments: &DiagnoseArguments) -> Result<Settings, Failure> {
         most_effects: arguments.most_effects.unwrap_or(default.most_effects),
     };
     let flag = |field: String| field.replace('_', "-");
-    settings.check().map_err(|(field, message)| Failure::Call(format!("--{}: {message}", flag(field))))?;
+    settings
+        .check()
+        .map_err(|(field, message)| Failure::Call(format!("--{}: {message}", flag(field))))?;
     Ok(settings)
 }
 
-fn diagnosed(zoo: &Zoo, model: &Model, law: &Law, settings: &Settings, read: &[ReadTrial]) -> Result<Diagnosis, Failure> {
+fn diagnosed(
+    zoo: &Zoo,
+    model: &Model,
+    law: &Law,
+    settings: &Settings,
+    read: &[ReadTrial],
+) -> Result<Diagnosis, Failure> {
     let effects: Vec<Arc<Effect>> = zoo.effects().cloned().collect();
     let trials = trials::trials(read);
     let request = Request { model, law, effects: &effects, trials: &trials, settings };
@@ -126,9 +136,9 @@ fn diagnosed(zoo: &Zoo, model: &Model, law: &Law, settings: &Settings, read: &[R
 /// Writes the model with the effects; whether there was one to write.
 fn written(zoo: &Zoo, out: Option<PromisedFile>, diagnosis: &Diagnosis) -> Result<bool, Failure> {
     match (out, &diagnosis.model) {
-        (Some(out), Some(model)) => {
-            out.write(model_file(zoo, model, "with the effects that a diagnosis found")?.as_bytes()).map(|()| true)
-        }
+        (Some(out), Some(model)) => out
+            .write(model_file(zoo, model, "with the effects that a diagnosis found")?.as_bytes())
+            .map(|()| true),
         (Some(_), None) => {
             note("no effect was found: the model stays as it is, and --out writes nothing");
             Ok(false)
@@ -137,17 +147,24 @@ fn written(zoo: &Zoo, out: Option<PromisedFile>, diagnosis: &Diagnosis) -> Resul
     }
 }
 
-fn report_html(model: &Model, law: &Law, diagnosis: &Diagnosis, read: &[ReadTrial]) -> Result<Vec<u8>, Failure> {
+fn report_html(
+    model: &Model,
+    law: &Law,
+    diagnosis: &Diagnosis,
+    read: &[ReadTrial],
+) -> Result<Vec<u8>, Failure> {
     let trials = trials::trials(read);
     let input = DiagnosisInput { diagnosis, model, law, trials: &trials, of: None, made: None };
-    let rendered = render_diagnosis(&input).map_err(|error| Failure::Refused(format!("the report: {error}")))?;
+    let rendered = render_diagnosis(&input)
+        .map_err(|error| Failure::Refused(format!("the report: {error}")))?;
     Ok(rendered.html.into_bytes())
 }
 
 /// The diagnosis without the model, which `--out` writes, and without the series that only plots need.
 fn printed(diagnosis: &Diagnosis) -> Result<Value, Failure> {
     let document = serde_json::to_value(diagnosis);
-    let mut document = document.map_err(|error| Failure::Refused(format!("the result cannot be written: {error}")))?;
+    let mut document = document
+        .map_err(|error| Failure::Refused(format!("the result cannot be written: {error}")))?;
     if let Some(fields) = document.as_object_mut() {
         fields.remove("model");
         fields.remove("residuals");

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use sistership_diagnose::{Confounded, Diagnosis, Found, Hypothesis, NextTrial, Unexplained, Verdict};
+use sistership_diagnose::{
+    Confounded, Diagnosis, Found, Hypothesis, NextTrial, Unexplained, Verdict,
+};
 use sistership_model::Model;
 use sistership_report::distinct;
 
@@ -16,14 +18,22 @@ const MOST: usize = 8;
 
 /// Everything that came of a diagnosis.
 pub fn text(diagnosis: &Diagnosis, model: &Model, files: &WrittenFiles<'_>) -> String {
-    let mut parts = vec![format!("{} ({})\n{}\n", diagnosis.diagnosed, worth(model.status), verdict(diagnosis))];
+    let mut parts = vec![format!(
+        "{} ({})\n{}\n",
+        diagnosis.diagnosed,
+        worth(model.status),
+        verdict(diagnosis)
+    )];
     parts.extend(diagnosis.effects.iter().map(effect));
     if !diagnosis.unexplained.is_empty() {
         parts.push(format!("What no effect explains\n{}", unexplained(&diagnosis.unexplained)));
     }
     parts.extend(diagnosis.next_trial.as_ref().map(next_trial));
     parts.push(format!("Root mean square errors: {}\n{}", diagnosis.how, errors(diagnosis)));
-    parts.push(format!("Most probable hypotheses (evidence: natural logarithm)\n{}", hypotheses(&diagnosis.hypotheses)));
+    parts.push(format!(
+        "Most probable hypotheses (evidence: natural logarithm)\n{}",
+        hypotheses(&diagnosis.hypotheses)
+    ));
     parts.push(end(diagnosis, files));
     parts.join("\n")
 }
@@ -32,11 +42,18 @@ pub fn text(diagnosis: &Diagnosis, model: &Model, files: &WrittenFiles<'_>) -> S
 fn verdict(diagnosis: &Diagnosis) -> String {
     let names: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.name.as_str()).collect();
     match diagnosis.verdict {
-        Verdict::Complete => "COMPLETE: nothing is missing; the residual is what the noise predicts".to_owned(),
+        Verdict::Complete => {
+            "COMPLETE: nothing is missing; the residual is what the noise predicts".to_owned()
+        }
         Verdict::Effects => format!("EFFECTS: the model lacks {}", names.join(" and ")),
-        Verdict::Unexplained if names.is_empty() => "UNEXPLAINED: something is missing that no known effect explains".to_owned(),
+        Verdict::Unexplained if names.is_empty() => {
+            "UNEXPLAINED: something is missing that no known effect explains".to_owned()
+        }
         Verdict::Unexplained => {
-            format!("UNEXPLAINED: the model lacks {}, and something that no known effect explains", names.join(" and "))
+            format!(
+                "UNEXPLAINED: the model lacks {}, and something that no known effect explains",
+                names.join(" and ")
+            )
         }
     }
 }
@@ -47,11 +64,20 @@ fn effect(found: &Found) -> String {
     for (name, value) in &found.parameters {
         table.row([name.clone(), number(value.value), number(value.se)]);
     }
-    let (name, form, meaning, evidence) = (&found.name, &found.form, &found.meaning, found.evidence);
-    let head = format!("{name} ({form}): {meaning}; evidence {evidence:.1} (above 5 is very strong)\n{table}");
-    let other = |other: &Confounded| format!("{} ({:.1} deg, evidence {:.1} behind)", other.name, other.angle_deg, other.behind);
+    let (name, form, meaning, evidence) =
+        (&found.name, &found.form, &found.meaning, found.evidence);
+    let head = format!(
+        "{name} ({form}): {meaning}; evidence {evidence:.1} (above 5 is very strong)\n{table}"
+    );
+    let other = |other: &Confounded| {
+        format!("{} ({:.1} deg, evidence {:.1} behind)", other.name, other.angle_deg, other.behind)
+    };
     let others: Vec<String> = found.confounded_with.iter().map(other).collect();
-    if others.is_empty() { head } else { format!("{head}  hard to tell by these trials from {}\n", others.join(", ")) }
+    if others.is_empty() {
+        head
+    } else {
+        format!("{head}  hard to tell by these trials from {}\n", others.join(", "))
+    }
 }
 
 fn unexplained(stretches: &[Unexplained]) -> TextTable {
@@ -74,18 +100,36 @@ fn next_trial(next: &NextTrial) -> String {
 
 /// The errors on trials left out, before and after, and what they are by the noise.
 fn errors(diagnosis: &Diagnosis) -> TextTable {
-    let mut table = TextTable::new(["channel", "unit", "before", "after", "change", "noise", "before / noise", "after / noise"]);
+    let mut table = TextTable::new([
+        "channel",
+        "unit",
+        "before",
+        "after",
+        "change",
+        "noise",
+        "before / noise",
+        "after / noise",
+    ]);
     for (name, unit, factor) in CHANNELS {
-        let of = |all: &BTreeMap<String, f64>| all.get(name).copied().filter(|value| *value != f64::MAX);
-        let (before, after, noise) = (of(&diagnosis.before), of(&diagnosis.after), of(&diagnosis.noise).filter(|n| *n > 0.0));
+        let of =
+            |all: &BTreeMap<String, f64>| all.get(name).copied().filter(|value| *value != f64::MAX);
+        let (before, after, noise) = (
+            of(&diagnosis.before),
+            of(&diagnosis.after),
+            of(&diagnosis.noise).filter(|n| *n > 0.0),
+        );
         if before.is_none() && after.is_none() {
             continue;
         }
         let shown = |value: Option<f64>| optional(value.map(|value| value * factor));
-        let over = |value: Option<f64>| optional(value.zip(noise).map(|(value, noise)| value / noise));
+        let over =
+            |value: Option<f64>| optional(value.zip(noise).map(|(value, noise)| value / noise));
         let change = before.zip(after).filter(|(before, _)| *before > 0.0);
-        let change = change.map_or("-".to_owned(), |(before, after)| format!("{:+.0} %", 100.0 * (after / before - 1.0)));
-        let figures = [shown(before), shown(after), change, shown(noise), over(before), over(after)];
+        let change = change.map_or("-".to_owned(), |(before, after)| {
+            format!("{:+.0} %", 100.0 * (after / before - 1.0))
+        });
+        let figures =
+            [shown(before), shown(after), change, shown(noise), over(before), over(after)];
         table.row([name.to_owned(), unit.to_owned()].into_iter().chain(figures));
     }
     table
@@ -94,18 +138,30 @@ fn errors(diagnosis: &Diagnosis) -> TextTable {
 fn hypotheses(hypotheses: &[Hypothesis]) -> TextTable {
     let mut table = TextTable::new(["hypothesis", "evidence", "on trials left out", "taken"]);
     for hypothesis in distinct(hypotheses).into_iter().take(MOST) {
-        let name = if hypothesis.effects.is_empty() { "the model alone".to_owned() } else { hypothesis.effects.join(" + ") };
+        let name = if hypothesis.effects.is_empty() {
+            "the model alone".to_owned()
+        } else {
+            hypothesis.effects.join(" + ")
+        };
         let taken = if hypothesis.taken { "yes" } else { "" };
-        table.row([name, number(hypothesis.evidence), optional(hypothesis.held_out), taken.to_owned()]);
+        table.row([
+            name,
+            number(hypothesis.evidence),
+            optional(hypothesis.held_out),
+            taken.to_owned(),
+        ]);
     }
     table
 }
 
 fn end(diagnosis: &Diagnosis, files: &WrittenFiles<'_>) -> String {
-    let mut lines: Vec<String> = diagnosis.remarks.iter().map(|remark| format!("remark: {remark}")).collect();
+    let mut lines: Vec<String> =
+        diagnosis.remarks.iter().map(|remark| format!("remark: {remark}")).collect();
     lines.extend(match (files.out, &diagnosis.model) {
         (Some(path), _) => Some(format!("model with the effects written to {}", path.display())),
-        (None, Some(_)) => Some("model not written: give --out MODEL.yaml to keep it with the effects".to_owned()),
+        (None, Some(_)) => {
+            Some("model not written: give --out MODEL.yaml to keep it with the effects".to_owned())
+        }
         (None, None) => None,
     });
     lines.extend(files.report.map(|path| format!("report written to {}", path.display())));

@@ -4,7 +4,9 @@ use clap::{Args, Subcommand, ValueEnum};
 use serde_json::{Value, json};
 use sistership_pipeline::Archive;
 use sistership_pipeline::derive::DeriveError;
-use sistership_pipeline::fleet::{Asked, OrderError, PriorChoice, Rule, Standing, Start, learn, order_refinement};
+use sistership_pipeline::fleet::{
+    Asked, OrderError, PriorChoice, Rule, Standing, Start, learn, order_refinement,
+};
 use sistership_store::StoreError;
 
 use super::store::{StoreArguments, with_archive};
@@ -107,7 +109,8 @@ enum PriorArgument {
 /// # Errors
 /// What is named is not there, or the store says no.
 pub fn run(family: &FamilyArguments) -> Result<(), Failure> {
-    let (document, text) = with_archive(&family.store, async |archive| done(&family.what, archive).await)?;
+    let (document, text) =
+        with_archive(&family.store, async |archive| done(&family.what, archive).await)?;
     output::print(family.json, &document, || text)
 }
 
@@ -180,7 +183,10 @@ async fn version(archive: &Archive, name: &str) -> Result<String, FamilyError> {
 async fn added(archive: &Archive, family: &str, ships: &[String]) -> FamilyResult {
     let new = archive.store.families().add(family, ships).await?;
     let members = archive.store.families().count(family).await?;
-    let text = format!("{family}: {new} added, {}", count(usize::try_from(members).unwrap_or(0), "member"));
+    let text = format!(
+        "{family}: {new} added, {}",
+        count(usize::try_from(members).unwrap_or(0), "member")
+    );
     Ok((json!({ "family": family, "added": new, "members": members }), text))
 }
 
@@ -195,7 +201,12 @@ async fn learned(archive: &Archive, family: &str) -> FamilyResult {
     let mut table = TextTable::new(["coefficient", "mean", "differs by", "told by trials"]);
     for axis in &prior.axes {
         for (j, name) in axis.names.iter().enumerate() {
-            table.row([name.clone(), number(axis.mean[j]), number(axis.deviation[j]), format!("{:.2}", axis.told_by_trials[j])]);
+            table.row([
+                name.clone(),
+                number(axis.mean[j]),
+                number(axis.deviation[j]),
+                format!("{:.2}", axis.told_by_trials[j]),
+            ]);
         }
     }
     let head = format!(
@@ -205,14 +216,23 @@ async fn learned(archive: &Archive, family: &str) -> FamilyResult {
         prior.design_effect,
         100.0 * prior.correlations_kept
     );
-    Ok((json!({ "family": family, "revision": kept.revision, "prior": prior }), format!("{head}{table}")))
+    Ok((
+        json!({ "family": family, "revision": kept.revision, "prior": prior }),
+        format!("{head}{table}"),
+    ))
 }
 
 async fn status(archive: &Archive, id: &str) -> FamilyResult {
     let bulk = archive.store.bulks().get(id).await?;
     let standing = Standing::of(&archive.store, &bulk).await?;
-    let mut text = format!("{} of {}: {}, {} of {} ships done", bulk.id, bulk.family, standing.state, standing.done, bulk.ships);
-    standing.outcomes.iter().for_each(|(outcome, ships)| text.push_str(&format!(", {ships} {outcome}")));
+    let mut text = format!(
+        "{} of {}: {}, {} of {} ships done",
+        bulk.id, bulk.family, standing.state, standing.done, bulk.ships
+    );
+    standing
+        .outcomes
+        .iter()
+        .for_each(|(outcome, ships)| text.push_str(&format!(", {ships} {outcome}")));
     if let Some(pace) = standing.ships_per_s {
         text.push_str(&format!("; {pace:.1} ships/s"));
     }

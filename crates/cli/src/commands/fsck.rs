@@ -47,11 +47,15 @@ fn text(findings: &Findings) -> String {
     );
     if unreferred.objects > 0 {
         let (objects, bytes) = (count(unreferred.objects, "object"), unreferred.bytes);
-        text += &format!("{objects} ({bytes} bytes) that no trial refers to; `sistership gc` removes what is old enough\n");
+        text += &format!(
+            "{objects} ({bytes} bytes) that no trial refers to; `sistership gc` removes what is old enough\n"
+        );
     }
     if unfinished.objects > 0 {
         let (puts, bytes) = (count(unfinished.objects, "put"), unfinished.bytes);
-        text += &format!("{puts} ({bytes} bytes) under way or never ended; `sistership gc` removes what is old enough\n");
+        text += &format!(
+            "{puts} ({bytes} bytes) under way or never ended; `sistership gc` removes what is old enough\n"
+        );
     }
     text
 }

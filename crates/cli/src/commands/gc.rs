@@ -40,14 +40,19 @@ pub struct GcArguments {
 /// # Errors
 /// The store is not there, or does not answer.
 pub fn run(gc: &GcArguments) -> Result<(), Failure> {
-    let collected = with_archive(&gc.store, async |archive| upkeep::gc(archive, gc.grace_h, gc.dry_run).await)?;
+    let collected =
+        with_archive(&gc.store, async |archive| upkeep::gc(archive, gc.grace_h, gc.dry_run).await)?;
     output::print(gc.json, &collected, || text(&collected))
 }
 
 fn text(collected: &Collected) -> String {
     let Collected { dry_run, removed, unfinished, bytes, objects } = collected;
-    let lines: String = removed.iter().chain(unfinished).map(|place| format!("{place}\n")).collect();
+    let lines: String =
+        removed.iter().chain(unfinished).map(|place| format!("{place}\n")).collect();
     let done = if *dry_run { "would be removed" } else { "removed" };
     let puts = count(unfinished.len(), "put");
-    format!("{lines}{} of {objects} and {puts} that never ended ({bytes} bytes) {done}\n", count(removed.len(), "object"))
+    format!(
+        "{lines}{} of {objects} and {puts} that never ended ({bytes} bytes) {done}\n",
+        count(removed.len(), "object")
+    )
 }

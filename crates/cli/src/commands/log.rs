@@ -27,7 +27,8 @@ impl LogArguments {
     /// The filter does not read.
     pub fn begin(&self, file: &ConfigFile) -> Result<(), Failure> {
         let filter = self.log.as_deref().or(file.log.as_deref()).unwrap_or("info");
-        let filter = EnvFilter::try_new(filter).map_err(|error| Failure::Call(format!("log filter `{filter}`: {error}")))?;
+        let filter = EnvFilter::try_new(filter)
+            .map_err(|error| Failure::Call(format!("log filter `{filter}`: {error}")))?;
         let log = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr);
         match self.log_format.or(file.log_format).unwrap_or_default() {
             LogFormat::Text => log.with_ansi(std::io::stderr().is_terminal()).init(),

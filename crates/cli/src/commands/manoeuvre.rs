@@ -79,7 +79,9 @@ pub struct ManoeuvreArguments {
 /// The model is refused or a manoeuvre leaves the physical range.
 pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     if manoeuvre.out.is_some() && manoeuvre.turn.len() + manoeuvre.zigzag.len() != 1 {
-        return Err(Failure::Call("--out writes the track of a single manoeuvre: give one --turn or one --zigzag".into()));
+        return Err(Failure::Call(
+            "--out writes the track of a single manoeuvre: give one --turn or one --zigzag".into(),
+        ));
     }
     let (mut model, law) = named::model(zoo, &manoeuvre.model)?;
     let inputs = [PathBuf::from(&manoeuvre.model)];
@@ -92,25 +94,36 @@ pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     }
     let bands = drawn(manoeuvre, &model, &law)?;
     let document = ManoeuvreDocument::of(&model, &ship, sailed, bands, remarks);
-    output::print(manoeuvre.json, &document, || manoeuvre_text::text(&document, &model, &law, &ship))?;
+    output::print(manoeuvre.json, &document, || {
+        manoeuvre_text::text(&document, &model, &law, &ship)
+    })?;
     if document.failures.is_empty() { Ok(()) } else { Err(Failure::Told) }
 }
 
 /// Moves a law that is expanded about a speed to the speed asked for, and says so.
 fn remarks(manoeuvre: &ManoeuvreArguments, model: &mut Model, law: &Law) -> Vec<String> {
     let mut remarks = Vec::new();
-    if let (Some(speed), Some(own), Some(_)) = (manoeuvre.speed_m_s, model.speed_m_s, law.approach_speed_parameter())
+    if let (Some(speed), Some(own), Some(_)) =
+        (manoeuvre.speed_m_s, model.speed_m_s, law.approach_speed_parameter())
         && speed != own
     {
         model.set_approach_speed(law, speed);
         model.revolutions_rps = model.revolutions_rps.map(|n| n * speed / own);
-        remarks.push(format!("the law is expanded about {speed} m/s here; the model belongs to {own} m/s"));
+        remarks.push(format!(
+            "the law is expanded about {speed} m/s here; the model belongs to {own} m/s"
+        ));
     }
-    let largest =
-        manoeuvre.turn.iter().chain(manoeuvre.zigzag.iter().map(|(rudder, _)| rudder)).fold(0.0_f64, |a, b| a.max(b.abs()));
+    let largest = manoeuvre
+        .turn
+        .iter()
+        .chain(manoeuvre.zigzag.iter().map(|(rudder, _)| rudder))
+        .fold(0.0_f64, |a, b| a.max(b.abs()));
     let ordered = if largest == 0.0 { 35.0 } else { largest };
     if ordered > model.steering.limit_deg {
-        remarks.push(format!("{ordered} deg were ordered; the rudder stops at {} deg", model.steering.limit_deg));
+        remarks.push(format!(
+            "{ordered} deg were ordered; the rudder stops at {} deg",
+            model.steering.limit_deg
+        ));
     }
     remarks
 }
@@ -120,7 +133,10 @@ fn ship(manoeuvre: &ManoeuvreArguments, model: &Model, law: &Law) -> Result<Ship
     let speed = manoeuvre.speed_m_s.unwrap_or(ship.approach_speed_m_s());
     ship.set_envelope_speed(speed);
     if ship.has_propeller() && manoeuvre.n_rps.is_none() && ship.revolutions_at(speed) == 0.0 {
-        let message = format!("law `{}` needs propeller revolutions and {} gives none: add --n-rps", law.name, model.name);
+        let message = format!(
+            "law `{}` needs propeller revolutions and {} gives none: add --n-rps",
+            law.name, model.name
+        );
         return Err(Failure::Refused(message));
     }
     if let Some(depth_m) = manoeuvre.depth_m {
@@ -141,7 +157,11 @@ fn settings(manoeuvre: &ManoeuvreArguments) -> ManoeuvreSettings {
 }
 
 /// The bands that are asked for.
-fn drawn(manoeuvre: &ManoeuvreArguments, model: &Model, law: &Law) -> Result<Option<Bands>, Failure> {
+fn drawn(
+    manoeuvre: &ManoeuvreArguments,
+    model: &Model,
+    law: &Law,
+) -> Result<Option<Bands>, Failure> {
     let Some(samples) = manoeuvre.bands else { return Ok(None) };
     let sampling = Sampling { samples, seed: manoeuvre.seed };
     sampling.check().map_err(|message| Failure::Call(format!("--bands: {message}")))?;

@@ -43,7 +43,13 @@ pub struct ManoeuvreDocument {
 
 impl ManoeuvreDocument {
     /// Puts together what was sailed.
-    pub fn of(model: &Model, ship: &Ship, sailed: StandardManoeuvres, bands: Option<Bands>, remarks: Vec<String>) -> Self {
+    pub fn of(
+        model: &Model,
+        ship: &Ship,
+        sailed: StandardManoeuvres,
+        bands: Option<Bands>,
+        remarks: Vec<String>,
+    ) -> Self {
         Self {
             model: model.name.clone(),
             law: model.law.clone(),

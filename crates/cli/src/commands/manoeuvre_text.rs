@@ -18,14 +18,24 @@ pub fn text(document: &ManoeuvreDocument, model: &Model, law: &Law, ship: &Ship)
         number(document.speed_m_s)
     );
     let parts = [
-        section("Turning circles", document.turns.is_empty(), || turns(&document.turns, ship.lpp_m())),
+        section("Turning circles", document.turns.is_empty(), || {
+            turns(&document.turns, ship.lpp_m())
+        }),
         section("Zigzags", document.zigzags.is_empty(), || zigzags(&document.zigzags)),
         section("IMO criteria, MSC.137(76)", document.imo.is_empty(), || criteria(&document.imo)),
-        document.bands.as_ref().map_or(String::new(), |bands| section(&title(bands), false, || banded(bands))),
+        document
+            .bands
+            .as_ref()
+            .map_or(String::new(), |bands| section(&title(bands), false, || banded(bands))),
     ];
-    let lines = |label: &str, lines: &[String]| lines.iter().map(|line| format!("{label}: {line}\n")).collect::<String>();
-    let outside: Vec<String> = document.outside.iter().map(|(name, how)| format!("{name}: {}", how.words())).collect();
-    let end = lines("OUTSIDE", &outside) + &lines("remark", &document.remarks) + &lines("FAILED", &document.failures);
+    let lines = |label: &str, lines: &[String]| {
+        lines.iter().map(|line| format!("{label}: {line}\n")).collect::<String>()
+    };
+    let outside: Vec<String> =
+        document.outside.iter().map(|(name, how)| format!("{name}: {}", how.words())).collect();
+    let end = lines("OUTSIDE", &outside)
+        + &lines("remark", &document.remarks)
+        + &lines("FAILED", &document.failures);
     let gap = if end.is_empty() { "" } else { "\n" };
     format!("{head}{}{gap}{end}", parts.concat())
 }
@@ -51,7 +61,10 @@ fn turns(turns: &[TurningMetrics], lpp_m: f64) -> TextTable {
     for turn in turns {
         let mut cells = vec![number(turn.rudder_deg)];
         for length in [turn.advance_m, turn.transfer_m, turn.tactical_diameter_m] {
-            cells.extend([optional(length), length.map_or_else(|| "-".to_owned(), |m| format!("{:.2}", m / lpp_m))]);
+            cells.extend([
+                optional(length),
+                length.map_or_else(|| "-".to_owned(), |m| format!("{:.2}", m / lpp_m)),
+            ]);
         }
         cells.push(optional(turn.steady_radius_m));
         cells.extend([turn.max_advance_m, turn.max_transfer_m, turn.speed_loss_m_s].map(number));
@@ -61,17 +74,36 @@ fn turns(turns: &[TurningMetrics], lpp_m: f64) -> TextTable {
 }
 
 fn zigzags(zigzags: &[ZigzagMetrics]) -> TextTable {
-    let mut table =
-        TextTable::new(["rudder deg", "heading deg", "1st overshoot deg", "2nd overshoot deg", "initial turning s", "period s"]);
+    let mut table = TextTable::new([
+        "rudder deg",
+        "heading deg",
+        "1st overshoot deg",
+        "2nd overshoot deg",
+        "initial turning s",
+        "period s",
+    ]);
     for zigzag in zigzags {
-        let known = [zigzag.first_overshoot_deg, zigzag.second_overshoot_deg, zigzag.initial_turning_time_s, zigzag.period_s];
-        table.row([number(zigzag.rudder_deg), number(zigzag.switch_deg)].into_iter().chain(known.map(optional)));
+        let known = [
+            zigzag.first_overshoot_deg,
+            zigzag.second_overshoot_deg,
+            zigzag.initial_turning_time_s,
+            zigzag.period_s,
+        ];
+        table.row(
+            [number(zigzag.rudder_deg), number(zigzag.switch_deg)]
+                .into_iter()
+                .chain(known.map(optional)),
+        );
     }
     table
 }
 
 fn title(bands: &Bands) -> String {
-    let failed = if bands.failed > 0 { format!(", {} of which left the physical range", bands.failed) } else { String::new() };
+    let failed = if bands.failed > 0 {
+        format!(", {} of which left the physical range", bands.failed)
+    } else {
+        String::new()
+    };
     format!("Bands of 95 % by {} draws from the posterior{failed}", bands.sampling.samples)
 }
 
@@ -80,7 +112,14 @@ fn banded(bands: &Bands) -> TextTable {
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     for band in &bands.figures {
         let met = band.pass.map_or_else(|| "-".to_owned(), percent);
-        table.row([band.figure.clone(), band.unit.clone(), number(band.low), number(band.high), percent(band.reached), met]);
+        table.row([
+            band.figure.clone(),
+            band.unit.clone(),
+            number(band.low),
+            number(band.high),
+            percent(band.reached),
+            met,
+        ]);
     }
     table
 }
@@ -88,10 +127,17 @@ fn banded(bands: &Bands) -> TextTable {
 fn criteria(criteria: &[Criterion]) -> TextTable {
     let mut table = TextTable::new(["criterion", "value", "limit", "unit", "verdict"]);
     for criterion in criteria {
-        let verdict = criterion.pass.map_or("not reached", |pass| if pass { "pass" } else { "FAIL" });
+        let verdict =
+            criterion.pass.map_or("not reached", |pass| if pass { "pass" } else { "FAIL" });
         let value = criterion.value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"));
         let limit = format!("{:.2}", criterion.limit);
-        table.row([criterion.criterion.clone(), value, limit, criterion.unit.clone(), verdict.to_owned()]);
+        table.row([
+            criterion.criterion.clone(),
+            value,
+            limit,
+            criterion.unit.clone(),
+            verdict.to_owned(),
+        ]);
     }
     table
 }

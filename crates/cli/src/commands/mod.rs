@@ -50,7 +50,10 @@ fn ready(model: &Model, law: &Law) -> Result<Ship, Failure> {
 /// Its law does not know water depth, or the water is too shallow for it.
 fn set_depth(ship: &mut Ship, model: &Model, law: &Law, depth_m: f64) -> Result<(), Failure> {
     if !knows_depth(law) {
-        return Err(Failure::Refused(format!("law `{}` does not know water depth: it sails in deep water only", law.name)));
+        return Err(Failure::Refused(format!(
+            "law `{}` does not know water depth: it sails in deep water only",
+            law.name
+        )));
     }
     check_floats(model, depth_m)?;
     ship.set_depth(depth_m);
@@ -64,7 +67,10 @@ fn set_depth(ship: &mut Ship, model: &Model, law: &Law, depth_m: f64) -> Result<
 fn check_floats(model: &Model, depth_m: f64) -> Result<(), Failure> {
     let draught_m = particulars::value(&model.particulars, "draught_m").unwrap_or(0.0);
     if depth_m <= draught_m {
-        return Err(Failure::Refused(format!("{depth_m} m of water do not float {}, which draws {draught_m} m", model.ship)));
+        return Err(Failure::Refused(format!(
+            "{depth_m} m of water do not float {}, which draws {draught_m} m",
+            model.ship
+        )));
     }
     Ok(())
 }

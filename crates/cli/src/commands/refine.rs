@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use sistership_estimate::refine::{Constraints, Method, Refinement, Request, Settings, StraightLine, refine};
+use sistership_estimate::refine::{
+    Constraints, Method, Refinement, Request, Settings, StraightLine, refine,
+};
 use sistership_estimate::similarity::RankedSource;
 use sistership_estimate::source::{Similarity, best_source, similar};
 use sistership_estimate::transfer::{approach_of, blank};
@@ -138,8 +140,11 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     settings.held_out = held_out(&settings.held_out, &read)?;
     let (source, similarity) = match (given, &law) {
         (Some(model), _) => (model, None),
-        (None, Some(law)) if arguments.source.is_none() => (of_law(law, &target, &settings, &read)?, None),
-        (None, _) => chosen(zoo, &target, &settings, &read).map(|(model, similarity)| (model, Some(similarity)))?,
+        (None, Some(law)) if arguments.source.is_none() => {
+            (of_law(law, &target, &settings, &read)?, None)
+        }
+        (None, _) => chosen(zoo, &target, &settings, &read)
+            .map(|(model, similarity)| (model, Some(similarity)))?,
     };
     let source_law = named::law_of(zoo, &source)?;
     let law = law.unwrap_or_else(|| source_law.clone());
@@ -154,7 +159,9 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     }
     let ranking = similarity.as_ref().map(|similarity| similarity.ranking.as_slice());
     let document = RefineDocument { refinement: &refinement, ranking, files };
-    output::print(arguments.json, &document, || refine_text::text(&refinement, &source, ranking, &files))
+    output::print(arguments.json, &document, || {
+        refine_text::text(&refinement, &source, ranking, &files)
+    })
 }
 
 fn report_html(
@@ -166,14 +173,23 @@ fn report_html(
 ) -> Result<Vec<u8>, Failure> {
     let law = named::law_of(zoo, &refinement.model)?;
     let trials = trials::trials(read);
-    let input = RefinementInput { refinement, law: &law, vessel, trials: &trials, similarity, version: None };
-    let rendered = render_refinement(&input).map_err(|error| Failure::Refused(format!("the report: {error}")))?;
+    let input = RefinementInput {
+        refinement,
+        law: &law,
+        vessel,
+        trials: &trials,
+        similarity,
+        version: None,
+    };
+    let rendered = render_refinement(&input)
+        .map_err(|error| Failure::Refused(format!("the report: {error}")))?;
     Ok(rendered.html.into_bytes())
 }
 
 /// Settings from the file, if any, and the flags.
 fn settings(arguments: &RefineArguments) -> Result<Settings, Failure> {
-    let mut settings = arguments.settings.as_deref().map(settings_file).transpose()?.unwrap_or_default();
+    let mut settings =
+        arguments.settings.as_deref().map(settings_file).transpose()?.unwrap_or_default();
     settings.method = arguments.method.unwrap_or(settings.method);
     settings.restart_s = arguments.restart_s.or(settings.restart_s);
     settings.difference_s = arguments.difference_s.or(settings.difference_s);
@@ -190,24 +206,37 @@ fn named_files(arguments: &RefineArguments) -> Vec<PathBuf> {
 
 fn law(zoo: &Zoo, name: &str) -> Result<Arc<Law>, Failure> {
     let known = || zoo.laws().map(|law| law.name.as_str()).collect::<Vec<_>>().join(", ");
-    let missing = || Failure::Refused(format!("--law {name}: the zoo has no such law; it has {}", known()));
+    let missing =
+        || Failure::Refused(format!("--law {name}: the zoo has no such law; it has {}", known()));
     zoo.law(name).cloned().ok_or_else(missing)
 }
 
 /// A law without coefficients, for the approach of the trials that are fitted.
-fn of_law(law: &Law, target: &Vessel, settings: &Settings, read: &[ReadTrial]) -> Result<Model, Failure> {
-    let fitted = trials::trials(read).into_iter().filter(|trial| !settings.held_out.contains(&trial.name));
+fn of_law(
+    law: &Law,
+    target: &Vessel,
+    settings: &Settings,
+    read: &[ReadTrial],
+) -> Result<Model, Failure> {
+    let fitted =
+        trials::trials(read).into_iter().filter(|trial| !settings.held_out.contains(&trial.name));
     let approach = approach_of(&fitted.collect::<Vec<_>>());
     blank(law, target, approach).map_err(|error| Failure::Refused(error.to_string()))
 }
 
 /// The best eligible source; trials kept out have no say in it.
-fn chosen(zoo: &Zoo, target: &Vessel, settings: &Settings, read: &[ReadTrial]) -> Result<(Model, Similarity), Failure> {
+fn chosen(
+    zoo: &Zoo,
+    target: &Vessel,
+    settings: &Settings,
+    read: &[ReadTrial],
+) -> Result<(Model, Similarity), Failure> {
     note("choosing the source: similarity, and the trend of the trials");
-    let fitted = trials::trials(read).into_iter().filter(|trial| !settings.held_out.contains(&trial.name));
+    let fitted =
+        trials::trials(read).into_iter().filter(|trial| !settings.held_out.contains(&trial.name));
     let similarity = similar(zoo, target, None, &fitted.collect::<Vec<_>>());
-    let source =
-        best_source(zoo, &similarity).map_err(|reasons| Failure::Refused(format!("{reasons}; name one with --source")))?;
+    let source = best_source(zoo, &similarity)
+        .map_err(|reasons| Failure::Refused(format!("{reasons}; name one with --source")))?;
     note(&format!("source: {}", source.name));
     Ok((source, similarity))
 }
@@ -221,12 +250,14 @@ fn refined(
     read: &[ReadTrial],
 ) -> Result<Refinement, Failure> {
     let trials = trials::trials(read);
-    let request = Request { target, source, source_law: Some(source_law), law, trials: &trials, settings };
+    let request =
+        Request { target, source, source_law: Some(source_law), law, trials: &trials, settings };
     let told = |fraction: f64, what: &str| {
         note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true
     };
-    let refinement = refine(&request, &told).map_err(|error| Failure::Refused(error.to_string()))?;
+    let refinement =
+        refine(&request, &told).map_err(|error| Failure::Refused(error.to_string()))?;
     note("learning what these trials leave open");
     let effects: Vec<_> = zoo.effects().cloned().collect();
     Ok(with_uncertainty(refinement, law, &effects, &trials))

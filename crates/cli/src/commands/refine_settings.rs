@@ -23,7 +23,9 @@ pub fn settings_file(path: &Path) -> Result<Settings, Failure> {
     };
     let read: Result<Settings, _> = sistership_model::yaml::read(&text);
     let settings = read.map_err(|error| FileError::of_yaml(&path.display().to_string(), error))?;
-    let line_of = |field: &str| text.lines().position(|line| line.trim_start().starts_with(field)).map(|index| index + 1);
+    let line_of = |field: &str| {
+        text.lines().position(|line| line.trim_start().starts_with(field)).map(|index| index + 1)
+    };
     settings.check().map_err(|(field, message)| refuse(line_of(&field), field, message))?;
     Ok(settings)
 }
@@ -34,10 +36,17 @@ pub fn settings_file(path: &Path) -> Result<Settings, Failure> {
 /// Lists the trials there are.
 pub fn held_out(names: &[String], read: &[ReadTrial]) -> Result<Vec<String>, Failure> {
     let one = |name: &String| {
-        let is_meant = |read: &&ReadTrial| read.trial.name == *name || read.file == *name || read.path == Path::new(name);
+        let is_meant = |read: &&ReadTrial| {
+            read.trial.name == *name || read.file == *name || read.path == Path::new(name)
+        };
         let found = read.iter().find(is_meant).map(|read| read.trial.name.clone());
         let known: Vec<&str> = read.iter().map(|read| read.trial.name.as_str()).collect();
-        found.ok_or_else(|| Failure::Refused(format!("--held-out {name}: no trial is called so; there are {}", known.join(", "))))
+        found.ok_or_else(|| {
+            Failure::Refused(format!(
+                "--held-out {name}: no trial is called so; there are {}",
+                known.join(", ")
+            ))
+        })
     };
     names.iter().map(one).collect()
 }
@@ -51,7 +60,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("s.yaml");
         std::fs::write(&path, text).unwrap();
-        settings_file(&path).map_or_else(|failure| failure.message().unwrap().to_owned(), |settings| settings.folds.to_string())
+        settings_file(&path).map_or_else(
+            |failure| failure.message().unwrap().to_owned(),
+            |settings| settings.folds.to_string(),
+        )
     }
 
     #[test]
@@ -64,7 +76,8 @@ mod tests {
     #[test]
     fn trials_kept_out_are_known_by_name_and_file() {
         let trial = sistership_model::trial::Trial { name: "b.csv".into(), ..Default::default() };
-        let read = [ReadTrial { trial, file: "a/b.csv".into(), path: "a/b.csv".into(), ship: None }];
+        let read =
+            [ReadTrial { trial, file: "a/b.csv".into(), path: "a/b.csv".into(), ship: None }];
         let found = |name: &str| held_out(&[name.to_owned()], &read);
         assert_eq!(found("b.csv").unwrap(), ["b.csv"]);
         assert_eq!(found("a/b.csv").unwrap(), ["b.csv"]);

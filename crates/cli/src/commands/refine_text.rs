@@ -12,17 +12,32 @@ use super::{similar, worth};
 use crate::table::{TextTable, number, optional};
 
 /// Everything that came of a refinement.
-pub fn text(refinement: &Refinement, source: &Model, ranking: Option<&[RankedSource]>, files: &WrittenFiles<'_>) -> String {
-    let ranked = ranking.map_or(String::new(), |ranking| format!("Similar ships\n{}\n", similar::ranking(ranking)));
-    let head =
-        format!("{} refined from {} ({}) by `{}`\n\n", refinement.ship, source.name, worth(source.status), refinement.method);
-    let restart =
-        refinement.settings.restart_s.map_or(String::new(), |s| format!(";\nsimulations start anew every {} s", number(s)));
+pub fn text(
+    refinement: &Refinement,
+    source: &Model,
+    ranking: Option<&[RankedSource]>,
+    files: &WrittenFiles<'_>,
+) -> String {
+    let ranked = ranking
+        .map_or(String::new(), |ranking| format!("Similar ships\n{}\n", similar::ranking(ranking)));
+    let head = format!(
+        "{} refined from {} ({}) by `{}`\n\n",
+        refinement.ship,
+        source.name,
+        worth(source.status),
+        refinement.method
+    );
+    let restart = refinement
+        .settings
+        .restart_s
+        .map_or(String::new(), |s| format!(";\nsimulations start anew every {} s", number(s)));
     let how = format!("Root mean square errors: {}{restart}", refinement.held_out.how);
     let errors = format!("{how}\n{}\n", errors(&refinement.held_out, has_roll(&refinement.model)));
     let options = format!("Options, from the source outwards\n{}\n", options(&refinement.options));
-    let coefficients =
-        format!("Coefficients (moved: in standard deviations of the prior)\n{}\n", coefficients(&refinement.coefficients));
+    let coefficients = format!(
+        "Coefficients (moved: in standard deviations of the prior)\n{}\n",
+        coefficients(&refinement.coefficients)
+    );
     let manoeuvres = format!("Standard manoeuvres\n{}\n", manoeuvres(&refinement.manoeuvres));
     format!("{ranked}{head}{errors}{options}{coefficients}{manoeuvres}{}", end(refinement, files))
 }
@@ -35,14 +50,24 @@ fn has_roll(model: &Model) -> bool {
 /// The errors on manoeuvres left out, before and after.
 pub fn errors(held_out: &HeldOut, has_roll: bool) -> TextTable {
     let mut table = TextTable::new(["channel", "unit", "source", "refined", "change"]);
-    for (name, unit, factor) in CHANNELS.into_iter().filter(|(name, ..)| has_roll || !matches!(*name, "phi" | "p")) {
+    for (name, unit, factor) in
+        CHANNELS.into_iter().filter(|(name, ..)| has_roll || !matches!(*name, "phi" | "p"))
+    {
         let of = |errors: &std::collections::BTreeMap<String, f64>| {
             errors.get(name).filter(|rmse| **rmse != f64::MAX).map(|rmse| rmse * factor)
         };
         let (before, after) = (of(&held_out.source), of(&held_out.refined));
         if before.is_some() || after.is_some() {
-            let change = before.zip(after).map_or_else(|| "-".to_owned(), |(before, after)| percent(before, after));
-            table.row([name.to_owned(), unit.to_owned(), optional(before), optional(after), change]);
+            let change = before
+                .zip(after)
+                .map_or_else(|| "-".to_owned(), |(before, after)| percent(before, after));
+            table.row([
+                name.to_owned(),
+                unit.to_owned(),
+                optional(before),
+                optional(after),
+                change,
+            ]);
         }
     }
     table
@@ -55,7 +80,8 @@ fn percent(before: f64, after: f64) -> String {
 fn options(options: &[StepOption]) -> TextTable {
     let mut table = TextTable::new(["step", "least lambda", "error", "taken", "why not"]);
     for option in options {
-        let least = option.lambda_min.map_or_else(|| "-".to_owned(), |lambda| format!("{lambda:.0e}"));
+        let least =
+            option.lambda_min.map_or_else(|| "-".to_owned(), |lambda| format!("{lambda:.0e}"));
         let taken = if option.chosen { "yes" } else { "" };
         let reason = option.reason.clone().unwrap_or_default();
         table.row([option.step.clone(), least, optional(option.error), taken.to_owned(), reason]);
@@ -68,7 +94,9 @@ fn coefficients(coefficients: &[CoefficientChange]) -> TextTable {
     for change in coefficients {
         let figures = [change.source, change.refined, change.standard_error].map(number);
         let moved = format!("{:.2}", change.moved_sd);
-        table.row([change.name.clone(), change.unit.clone()].into_iter().chain(figures).chain([moved]));
+        table.row(
+            [change.name.clone(), change.unit.clone()].into_iter().chain(figures).chain([moved]),
+        );
     }
     table
 }
@@ -79,13 +107,23 @@ const SHOWN: [&str; 3] = ["advance", "tactical diameter", "first overshoot"];
 fn manoeuvres(manoeuvres: &Manoeuvres) -> TextTable {
     let mut table = TextTable::new(["figure", "unit", "source", "refined", "from", "to (95 %)"]);
     let (source, refined) = (manoeuvres.source.figures(), manoeuvres.refined.figures());
-    let shown = |name: &str| !name.starts_with("IMO") && SHOWN.iter().any(|what| name.ends_with(what));
+    let shown =
+        |name: &str| !name.starts_with("IMO") && SHOWN.iter().any(|what| name.ends_with(what));
     let all = if refined.len() < source.len() { &source } else { &refined };
     for Figure { name, unit, .. } in all.iter().filter(|figure| shown(&figure.name)) {
-        let of = |figures: &[Figure]| optional(figures.iter().find(|other| other.name == *name).and_then(|other| other.value));
+        let of = |figures: &[Figure]| {
+            optional(figures.iter().find(|other| other.name == *name).and_then(|other| other.value))
+        };
         let band = manoeuvres.bands.as_ref().and_then(|bands| bands.of(name));
         let edge = |of: fn(&Band) -> f64| optional(band.map(of));
-        table.row([name.clone(), unit.clone(), of(&source), of(&refined), edge(|band| band.low), edge(|band| band.high)]);
+        table.row([
+            name.clone(),
+            unit.clone(),
+            of(&source),
+            of(&refined),
+            edge(|band| band.low),
+            edge(|band| band.high),
+        ]);
     }
     table
 }
@@ -93,10 +131,17 @@ fn manoeuvres(manoeuvres: &Manoeuvres) -> TextTable {
 fn end(refinement: &Refinement, files: &WrittenFiles<'_>) -> String {
     let mut lines = vec![format!("condition number {}", number(refinement.condition_number))];
     lines.extend(
-        refinement.collinear_groups.iter().map(|group| format!("cannot be told apart by these trials: {}", group.join(", "))),
+        refinement
+            .collinear_groups
+            .iter()
+            .map(|group| format!("cannot be told apart by these trials: {}", group.join(", "))),
     );
     let failures = refinement.manoeuvres.refined.failures.iter();
-    lines.extend(failures.map(|failure| format!("remark: the refined model fails a standard manoeuvre: {failure}")));
+    lines.extend(
+        failures.map(|failure| {
+            format!("remark: the refined model fails a standard manoeuvre: {failure}")
+        }),
+    );
     let outside = refinement.manoeuvres.refined.outside.iter();
     lines.extend(outside.map(|(name, how)| format!("OUTSIDE: {name}: {}", how.words())));
     lines.extend(refinement.remarks.iter().map(|remark| format!("remark: {remark}")));

@@ -50,7 +50,10 @@ impl LeaseArguments {
 fn seconds(name: &str, value: f64, least: f64, most: Duration) -> Result<Duration, Failure> {
     match (least..=most.as_secs_f64()).contains(&value) {
         true => Ok(Duration::from_secs_f64(value)),
-        false => Err(Failure::Call(format!("{name} must be from {least} to {} s, not {value}", most.as_secs()))),
+        false => Err(Failure::Call(format!(
+            "{name} must be from {least} to {} s, not {value}",
+            most.as_secs()
+        ))),
     }
 }
 
@@ -58,11 +61,18 @@ fn seconds(name: &str, value: f64, least: f64, most: Duration) -> Result<Duratio
 ///
 /// # Errors
 /// Names the setting that is out of bounds.
-pub fn memory(name: &str, given: Option<u64>, file: Option<u64>, default: u64) -> Result<u64, Failure> {
+pub fn memory(
+    name: &str,
+    given: Option<u64>,
+    file: Option<u64>,
+    default: u64,
+) -> Result<u64, Failure> {
     let Some(mb) = given.or(file) else { return Ok(default) };
     match (LEAST_MEMORY_MB..=MOST_MEMORY_MB).contains(&mb) {
         true => Ok(mb << 20),
-        false => Err(Failure::Call(format!("{name} must be from {LEAST_MEMORY_MB} to {MOST_MEMORY_MB} MB, not {mb}"))),
+        false => Err(Failure::Call(format!(
+            "{name} must be from {LEAST_MEMORY_MB} to {MOST_MEMORY_MB} MB, not {mb}"
+        ))),
     }
 }
 
@@ -74,7 +84,9 @@ pub fn workers(given: Option<u16>, file: &ConfigFile, least: u16) -> Result<usiz
     let workers = given.or(file.workers).unwrap_or(WORKERS);
     match (least..=MOST_WORKERS).contains(&workers) {
         true => Ok(usize::from(workers)),
-        false => Err(Failure::Call(format!("workers must be from {least} to {MOST_WORKERS}, not {workers}"))),
+        false => Err(Failure::Call(format!(
+            "workers must be from {least} to {MOST_WORKERS}, not {workers}"
+        ))),
     }
 }
 
@@ -112,7 +124,8 @@ pub fn run_until_stopped<T>(
 fn watch(bound: Duration) -> Result<oneshot::Receiver<()>, Failure> {
     let (tell, told) = oneshot::channel();
     let none = |error| Failure::Refused(format!("no threads: {error}"));
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(none)?;
+    let runtime =
+        tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(none)?;
     let mut signals = runtime.block_on(async { StopSignals::hear() })?;
     let heard = move || {
         runtime.block_on(async {
@@ -121,7 +134,10 @@ fn watch(bound: Duration) -> Result<oneshot::Receiver<()>, Failure> {
             tell.send(()).ok();
             output::note("stopping; once more to stop at once");
             if tokio::time::timeout(bound, signals.next()).await.is_err() {
-                output::note(&format!("not everything under way has ended within {} s", bound.as_secs()));
+                output::note(&format!(
+                    "not everything under way has ended within {} s",
+                    bound.as_secs()
+                ));
             }
             std::process::exit(i32::from(Failure::Told.status()));
         });
@@ -170,7 +186,12 @@ mod tests {
 
     #[test]
     fn flags_come_before_the_file_and_the_file_before_the_default() {
-        let file = ConfigFile { lease_s: Some(30.0), drain_s: Some(1.0), workers: Some(3), ..ConfigFile::default() };
+        let file = ConfigFile {
+            lease_s: Some(30.0),
+            drain_s: Some(1.0),
+            workers: Some(3),
+            ..ConfigFile::default()
+        };
         let leases = LeaseArguments { lease_s: Some(2.0), drain_s: None }.leases(&file).unwrap();
         assert_eq!((leases.lease.as_secs(), leases.drain.as_secs()), (2, 1));
         let none = LeaseArguments { lease_s: None, drain_s: None };
@@ -190,13 +211,22 @@ mod tests {
 
     #[test]
     fn what_is_out_of_bounds_is_named() {
-        let lease = |lease_s| LeaseArguments { lease_s: Some(lease_s), drain_s: None }.leases(&ConfigFile::default());
+        let lease = |lease_s| {
+            LeaseArguments { lease_s: Some(lease_s), drain_s: None }.leases(&ConfigFile::default())
+        };
         for wrong in [0.1, 3601.0, f64::NAN] {
-            assert!(lease(wrong).is_err_and(|why| why.message().unwrap().contains("lease_s must be from 0.5 to 3600")));
+            assert!(lease(wrong).is_err_and(|why| {
+                why.message().unwrap().contains("lease_s must be from 0.5 to 3600")
+            }));
         }
         let file = ConfigFile { drain_s: Some(-1.0), workers: Some(65), ..ConfigFile::default() };
         assert!(
-            LeaseArguments { lease_s: None, drain_s: None }.leases(&file).unwrap_err().message().unwrap().contains("drain_s")
+            LeaseArguments { lease_s: None, drain_s: None }
+                .leases(&file)
+                .unwrap_err()
+                .message()
+                .unwrap()
+                .contains("drain_s")
         );
         assert!(workers(None, &file, 0).is_err() && workers(Some(0), &file, 1).is_err());
     }
@@ -214,7 +244,13 @@ mod tests {
         assert!(lines.any(|line| line.unwrap().contains("begun")));
         std::thread::sleep(Duration::from_millis(200));
         let told = std::time::Instant::now();
-        assert!(Command::new("kill").args(["-TERM", &process.id().to_string()]).status().unwrap().success());
+        assert!(
+            Command::new("kill")
+                .args(["-TERM", &process.id().to_string()])
+                .status()
+                .unwrap()
+                .success()
+        );
         let code = process.wait().unwrap().code();
         (code, told.elapsed())
     }
@@ -252,9 +288,15 @@ mod tests {
             _ => {
                 let test = "a_process_ends_in_time_whatever_holds_its_threads";
                 let (code, took) = stopped("computes", test);
-                assert!(code == Some(0) && took < Duration::from_secs(2), "a blocking thread: {code:?} after {took:?}");
+                assert!(
+                    code == Some(0) && took < Duration::from_secs(2),
+                    "a blocking thread: {code:?} after {took:?}"
+                );
                 let (code, took) = stopped("held", test);
-                assert!(code == Some(1) && took < Duration::from_secs(5), "every thread: {code:?} after {took:?}");
+                assert!(
+                    code == Some(1) && took < Duration::from_secs(5),
+                    "every thread: {code:?} after {took:?}"
+                );
             }
         }
     }

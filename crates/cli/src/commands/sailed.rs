@@ -1,6 +1,8 @@
 //! Sailing what a call asks for.
 
-use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard, turn, zigzag};
+use sistership_dynamics::manoeuvre::{
+    ManoeuvreSettings, StandardManoeuvres, standard, turn, zigzag,
+};
 use sistership_dynamics::{Ship, Trajectory};
 
 /// Sails the turns and zigzags asked for, or the standard set where none is; what diverges is a failure in the result.
@@ -50,7 +52,10 @@ mod tests {
         let zoo = Zoo::embedded().unwrap();
         let ship = Ship::new(&zoo.model("mariner").unwrap(), zoo.law("abkowitz").unwrap()).unwrap();
         let (sailed, tracks) = sail(&ship, &[35.0, -35.0], &[], &ManoeuvreSettings::default());
-        assert_eq!((sailed.turns.len(), sailed.zigzags.len(), sailed.imo.len(), tracks.len()), (2, 0, 0, 2));
+        assert_eq!(
+            (sailed.turns.len(), sailed.zigzags.len(), sailed.imo.len(), tracks.len()),
+            (2, 0, 0, 2)
+        );
         let (all, tracks) = sail(&ship, &[], &[], &ManoeuvreSettings::default());
         assert!(!all.imo.is_empty() && tracks.is_empty());
     }

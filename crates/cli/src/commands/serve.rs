@@ -96,8 +96,14 @@ fn config(serve: &ServeArguments, file: &ConfigFile) -> Result<Config, Failure> 
     config.leases = serve.lease.leases(file)?;
     config.limits = limits(serve, file)?;
     let limits = &mut config.limits;
-    limits.request_memory = memory("request_memory_mb", serve.request_memory_mb, file.request_memory_mb, limits.request_memory)?;
-    limits.job_memory = memory("job_memory_mb", serve.job_memory_mb, file.job_memory_mb, limits.job_memory)?;
+    limits.request_memory = memory(
+        "request_memory_mb",
+        serve.request_memory_mb,
+        file.request_memory_mb,
+        limits.request_memory,
+    )?;
+    limits.job_memory =
+        memory("job_memory_mb", serve.job_memory_mb, file.job_memory_mb, limits.job_memory)?;
     config.api_key = api_key(serve, file)?;
     config.check().map_err(refused)?;
     Ok(config)
@@ -105,7 +111,9 @@ fn config(serve: &ServeArguments, file: &ConfigFile) -> Result<Config, Failure> 
 
 /// Bounds on connections.
 fn limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, Failure> {
-    let within = |name: &str, value: u32, least: u32, most: u32| match (least..=most).contains(&value) {
+    let within = |name: &str, value: u32, least: u32, most: u32| match (least..=most)
+        .contains(&value)
+    {
         true => Ok(value as usize),
         false => Err(Failure::Call(format!("{name} must be from {least} to {most}, not {value}"))),
     };
@@ -115,7 +123,8 @@ fn limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, Failure> 
         limits.connections_per_address = limits.connections / 2;
     }
     if let Some(share) = serve.connections_per_address.or(file.connections_per_address) {
-        limits.connections_per_address = within("connections_per_address", share, 1, limits.connections as u32)?;
+        limits.connections_per_address =
+            within("connections_per_address", share, 1, limits.connections as u32)?;
     }
     Ok(limits)
 }

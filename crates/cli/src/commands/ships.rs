@@ -4,7 +4,9 @@ use clap::Args;
 use serde_json::{Value, json};
 use sistership_estimate::similarity::Definition;
 use sistership_pipeline::Archive;
-use sistership_pipeline::search::{self, FactRange, FoundShip, MAX_RANGES, Page, Search, ShipSearch};
+use sistership_pipeline::search::{
+    self, FactRange, FoundShip, MAX_RANGES, Page, Search, ShipSearch,
+};
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
@@ -63,7 +65,8 @@ pub fn run(ships: &ShipsArguments) -> Result<(), Failure> {
         return Err(Failure::Call(format!("at most {MAX_RANGES} ranges can be asked for at once")));
     }
     let known = ShipSearch { category: ships.category.clone(), tag: ships.tag.clone(), ranges };
-    let search = Search { ships: known, similar_to: ships.similar_to.clone(), vector: ships.vector };
+    let search =
+        Search { ships: known, similar_to: ships.similar_to.clone(), vector: ships.vector };
     let found = with_archive(&ships.store, async |archive: &Archive| {
         search::catch_up(archive).await?;
         search::ships(archive, &search, &Page::first(i64::from(ships.limit))).await

@@ -48,10 +48,18 @@ pub fn run(zoo: &Zoo, similar_to: &SimilarArguments) -> Result<(), Failure> {
 }
 
 fn text(target: &Vessel, similarity: &Similarity) -> String {
-    let vector: Vec<String> = similarity.vector.iter().map(|(name, value)| format!("{name} {}", number(*value))).collect();
+    let vector: Vec<String> = similarity
+        .vector
+        .iter()
+        .map(|(name, value)| format!("{name} {}", number(*value)))
+        .collect();
     let Vessel { file, .. } = target;
     let head = format!("{} ({}), category {}\n", file.name, file.title, file.category);
-    let vector = format!("characteristic vector {}: {}\n\n", similarity.definition.name(), vector.join(", "));
+    let vector = format!(
+        "characteristic vector {}: {}\n\n",
+        similarity.definition.name(),
+        vector.join(", ")
+    );
     format!("{head}{vector}{}", ranking(&similarity.ranking))
 }
 
@@ -59,8 +67,12 @@ fn text(target: &Vessel, similarity: &Similarity) -> String {
 pub fn ranking(ranking: &[RankedSource]) -> TextTable {
     let mut table = TextTable::new(["ship", "model", "correlation", "eligible", "why"]);
     for ranked in ranking {
-        let correlation = ranked.correlation.map_or_else(|| "-".to_owned(), |value| format!("{value:.3}"));
-        let model = ranked.model.as_deref().map_or("-", |model| model.split_once('/').map_or(model, |(_, name)| name));
+        let correlation =
+            ranked.correlation.map_or_else(|| "-".to_owned(), |value| format!("{value:.3}"));
+        let model = ranked
+            .model
+            .as_deref()
+            .map_or("-", |model| model.split_once('/').map_or(model, |(_, name)| name));
         let eligible = if ranked.eligible { "yes" } else { "no" };
         let mut cells = [ranked.ship.as_str(), model, &correlation, eligible].map(str::to_owned);
         for reason in &ranked.reasons {
@@ -80,8 +92,16 @@ mod tests {
         let zoo = Zoo::embedded().unwrap();
         let target = zoo.vessel("kvlcc2").unwrap();
         let text = text(target, &similar(&zoo, target, None, &[]));
-        for figures in [["mariner", "-0.576"], ["esso-tanker", "0.851"], ["sr108", "-0.887"], ["pcc", "-0.723"]] {
-            assert!(text.lines().any(|line| figures.iter().all(|part| line.contains(part))), "{figures:?} in\n{text}");
+        for figures in [
+            ["mariner", "-0.576"],
+            ["esso-tanker", "0.851"],
+            ["sr108", "-0.887"],
+            ["pcc", "-0.723"],
+        ] {
+            assert!(
+                text.lines().any(|line| figures.iter().all(|part| line.contains(part))),
+                "{figures:?} in\n{text}"
+            );
         }
     }
 }

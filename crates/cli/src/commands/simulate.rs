@@ -72,12 +72,20 @@ pub fn run(zoo: &Zoo, simulate: &SimulateArguments) -> Result<(), Failure> {
     let files = promised(simulate, &read)?;
     let runs = simulate_all(simulate, &model, &law, &read)?;
     let simulated = written(runs, files, &law, &read)?;
-    let document = SimulateDocument { model: &model.name, law: &model.law, trials: &simulated, all: total(&simulated) };
+    let document = SimulateDocument {
+        model: &model.name,
+        law: &model.law,
+        trials: &simulated,
+        all: total(&simulated),
+    };
     output::print(simulate.json, &document, || text(simulate, &model, &law, &document))?;
     if simulated.iter().any(|trial| trial.diverged) { Err(Failure::Told) } else { Ok(()) }
 }
 
-fn promised(simulate: &SimulateArguments, read: &[ReadTrial]) -> Result<Vec<folder::PromisedTrack>, Failure> {
+fn promised(
+    simulate: &SimulateArguments,
+    read: &[ReadTrial],
+) -> Result<Vec<folder::PromisedTrack>, Failure> {
     let Some(out) = &simulate.out else { return Ok(Vec::new()) };
     let names: Vec<&str> = read.iter().map(|read| read.trial.name.as_str()).collect();
     folder::promise(out, &names, &trials::inputs(read, &simulate.trials))
@@ -89,7 +97,11 @@ fn simulate_all(
     law: &Law,
     read: &[ReadTrial],
 ) -> Result<Vec<(SimulatedTrial, Replay)>, Failure> {
-    let settings = ReplaySettings { restart_s: simulate.restart_s, method: simulate.method.into(), step_s: simulate.step_s };
+    let settings = ReplaySettings {
+        restart_s: simulate.restart_s,
+        method: simulate.method.into(),
+        step_s: simulate.step_s,
+    };
     let deviations = standard_deviations(&trials::trials(read));
     let simulator = TrialSimulator { model, law, settings, deviations };
     note(&format!("simulating {} with {}", count(read.len(), "trial"), model.name));
@@ -106,7 +118,11 @@ fn written(
     let mut files = files.into_iter();
     let one = |((mut simulated, run), read): ((SimulatedTrial, Replay), &ReadTrial)| {
         if let Some(promised) = files.next() {
-            promised.file.write(&track::csv(&run.track, law, read.trial.channel(Channel::N).is_some())?)?;
+            promised.file.write(&track::csv(
+                &run.track,
+                law,
+                read.trial.channel(Channel::N).is_some(),
+            )?)?;
             simulated.out = Some(promised.shown);
         }
         Ok(simulated)
@@ -114,19 +130,35 @@ fn written(
     runs.into_iter().zip(read).map(one).collect()
 }
 
-fn text(simulate: &SimulateArguments, model: &Model, law: &Law, document: &SimulateDocument<'_>) -> String {
-    let restart = simulate.restart_s.map_or("once from the first sample".to_owned(), |s| format!("anew every {} s", number(s)));
-    let head = format!("{}\nstarted {restart}; root mean square errors\n\n", model_line(model, law));
-    let mut table = TextTable::new(["trial", "s", "u m/s", "v m/s", "r deg/s", "psi deg", "x m", "y m", "std. MSE"]);
+fn text(
+    simulate: &SimulateArguments,
+    model: &Model,
+    law: &Law,
+    document: &SimulateDocument<'_>,
+) -> String {
+    let restart = simulate
+        .restart_s
+        .map_or("once from the first sample".to_owned(), |s| format!("anew every {} s", number(s)));
+    let head =
+        format!("{}\nstarted {restart}; root mean square errors\n\n", model_line(model, law));
+    let mut table = TextTable::new([
+        "trial", "s", "u m/s", "v m/s", "r deg/s", "psi deg", "x m", "y m", "std. MSE",
+    ]);
     document
         .trials
         .iter()
         .chain(document.all.as_ref().filter(|_| document.trials.len() > 1))
         .for_each(|trial| table.row(trial.cells()));
-    let diverged =
-        document.trials.iter().filter_map(|trial| Some(format!("DIVERGED: {}: {}\n", trial.file, trial.reason.as_ref()?)));
-    let outside = |trial: &SimulatedTrial| Some(format!("OUTSIDE: {}: {}\n", trial.file, trial.outside.as_ref()?.words()));
+    let diverged = document.trials.iter().filter_map(|trial| {
+        Some(format!("DIVERGED: {}: {}\n", trial.file, trial.reason.as_ref()?))
+    });
+    let outside = |trial: &SimulatedTrial| {
+        Some(format!("OUTSIDE: {}: {}\n", trial.file, trial.outside.as_ref()?.words()))
+    };
     let outside: String = document.trials.iter().filter_map(outside).collect();
-    let written = simulate.out.as_ref().map_or(String::new(), |out| format!("simulated states written to {}\n", out.display()));
+    let written = simulate
+        .out
+        .as_ref()
+        .map_or(String::new(), |out| format!("simulated states written to {}\n", out.display()));
     format!("{head}{table}{}{outside}{written}", diverged.collect::<String>())
 }

@@ -17,7 +17,8 @@ use crate::table::{number, optional};
 use crate::trials::ReadTrial;
 
 /// The channels whose errors every document holds, null where they are unknown.
-const CHANNELS: [Channel; 6] = [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::X, Channel::Y];
+const CHANNELS: [Channel; 6] =
+    [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::X, Channel::Y];
 
 /// Errors of one trial as the `simulate` command prints them.
 #[derive(Debug, Clone, Serialize)]
@@ -65,7 +66,9 @@ impl TrialSimulator<'_> {
     pub fn run(&self, read: &ReadTrial) -> Result<(SimulatedTrial, Replay), Failure> {
         let ship = self.ship(&read.trial)?;
         let run = replay(&ship, &read.trial, &self.settings);
-        let run = run.map_err(|error| Failure::Refused(format!("{error} of {} by law `{}`", self.model.name, self.law.name)))?;
+        let run = run.map_err(|error| {
+            Failure::Refused(format!("{error} of {} by law `{}`", self.model.name, self.law.name))
+        })?;
         Ok((self.errors(&read.file, &read.trial, &run), run))
     }
 
@@ -75,10 +78,15 @@ impl TrialSimulator<'_> {
         let speeds = trial.channel(Channel::U).into_iter().flatten();
         ship.set_envelope_speed(speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs())));
         match trial.depth_m.or_else(|| mean(trial.channel(Channel::Depth)?)) {
-            Some(depth_m) if commands::knows_depth(self.law) => commands::check_floats(self.model, depth_m)?,
+            Some(depth_m) if commands::knows_depth(self.law) => {
+                commands::check_floats(self.model, depth_m)?
+            }
             Some(depth_m) => {
                 let law = &self.law.name;
-                note(&format!("warning: {}: sailed in {depth_m} m of water; law `{law}` knows deep water only", trial.name));
+                note(&format!(
+                    "warning: {}: sailed in {depth_m} m of water; law `{law}` knows deep water only",
+                    trial.name
+                ));
             }
             None => {}
         }
@@ -108,7 +116,8 @@ impl SimulatedTrial {
     /// A row of the table.
     pub fn cells(&self) -> Vec<String> {
         let value = |channel: Channel| {
-            let scale = if matches!(channel, Channel::R | Channel::Psi) { 1_f64.to_degrees() } else { 1.0 };
+            let scale =
+                if matches!(channel, Channel::R | Channel::Psi) { 1_f64.to_degrees() } else { 1.0 };
             optional(self.rmse.get(channel.name()).copied().flatten().map(|value| value * scale))
         };
         let mut cells = vec![self.file.clone(), number(self.duration_s)];
@@ -125,11 +134,15 @@ pub fn total(trials: &[SimulatedTrial]) -> Option<SimulatedTrial> {
     }
     let mean = |of: &dyn Fn(&SimulatedTrial) -> Option<f64>| {
         let pairs = trials.iter().filter_map(|trial| Some((of(trial)?, trial.samples as f64)));
-        let (sum, samples) = pairs.fold((0.0, 0.0), |(sum, all), (value, samples)| (sum + value * samples, all + samples));
+        let (sum, samples) = pairs.fold((0.0, 0.0), |(sum, all), (value, samples)| {
+            (sum + value * samples, all + samples)
+        });
         (samples > 0.0).then(|| sum / samples)
     };
     let rmse = CHANNELS.map(|channel| {
-        let square = |trial: &SimulatedTrial| trial.rmse.get(channel.name()).copied().flatten().map(|rmse| rmse * rmse);
+        let square = |trial: &SimulatedTrial| {
+            trial.rmse.get(channel.name()).copied().flatten().map(|rmse| rmse * rmse)
+        };
         (channel.name(), mean(&square).map(f64::sqrt))
     });
     Some(SimulatedTrial {

@@ -61,18 +61,29 @@ impl StoreArguments {
     /// # Errors
     /// The samples cannot be where they say.
     pub fn place(&self, file: &ConfigFile) -> Result<StorePlace, Failure> {
-        let data_dir = self.data_dir.as_ref().or(file.data_dir.as_ref()).map_or(Path::new(DATA_DIR), PathBuf::as_path);
+        let data_dir = self
+            .data_dir
+            .as_ref()
+            .or(file.data_dir.as_ref())
+            .map_or(Path::new(DATA_DIR), PathBuf::as_path);
         let url = self.database_url.as_ref().or(file.database_url.as_ref());
         let database_url = url.cloned().unwrap_or_else(|| sistership_server::sqlite_url(data_dir));
-        Ok(StorePlace { database_url, objects: self.objects(file, data_dir)?, data_dir: data_dir.to_path_buf() })
+        Ok(StorePlace {
+            database_url,
+            objects: self.objects(file, data_dir)?,
+            data_dir: data_dir.to_path_buf(),
+        })
     }
 
     fn objects(&self, file: &ConfigFile, data_dir: &Path) -> Result<ObjectsPlace, Failure> {
         let endpoint = self.objects_endpoint.clone().or_else(|| file.objects_endpoint.clone());
         let region = self.objects_region.clone().or_else(|| file.objects_region.clone());
         match self.objects_url.as_ref().or(file.objects_url.as_ref()) {
-            Some(url) => ObjectsPlace::s3(url, endpoint, region).map_err(|error| Failure::Call(error.to_string())),
-            None if endpoint.is_some() => Err(Failure::Call("objects_endpoint: say where on it, with objects_url".into())),
+            Some(url) => ObjectsPlace::s3(url, endpoint, region)
+                .map_err(|error| Failure::Call(error.to_string())),
+            None if endpoint.is_some() => {
+                Err(Failure::Call("objects_endpoint: say where on it, with objects_url".into()))
+            }
             None => Ok(ObjectsPlace::Folder(data_dir.to_path_buf())),
         }
     }
@@ -91,9 +102,10 @@ impl StorePlace {
             )));
         }
         match self.objects.folder().filter(|folder| !folder.is_dir()) {
-            Some(folder) => {
-                Err(Failure::Refused(format!("there is no data folder {}; name it with --data-dir", folder.display())))
-            }
+            Some(folder) => Err(Failure::Refused(format!(
+                "there is no data folder {}; name it with --data-dir",
+                folder.display()
+            ))),
             None => Ok(()),
         }
     }
@@ -118,7 +130,8 @@ pub fn with_archive<T, E: std::fmt::Display>(
     place.must_exist()?;
     block_on(async {
         let archive = Archive::open_at(&place.database_url, &place.objects).await;
-        let archive = archive.map_err(|error| Failure::Refused(format!("cannot open the store: {error}")))?;
+        let archive =
+            archive.map_err(|error| Failure::Refused(format!("cannot open the store: {error}")))?;
         let done = work(&archive).await;
         archive.store.close().await;
         done.map_err(|error| Failure::Refused(error.to_string()))
@@ -156,9 +169,14 @@ mod tests {
 
     #[test]
     fn a_store_that_is_not_there_is_not_made() {
-        let arguments = StoreArguments { data_dir: Some("/nowhere/at/all".into()), ..StoreArguments::default() };
+        let arguments = StoreArguments {
+            data_dir: Some("/nowhere/at/all".into()),
+            ..StoreArguments::default()
+        };
         let Ok(place) = arguments.place(&ConfigFile::default()) else { panic!("a place") };
-        assert!(place.must_exist().is_err_and(|failure| failure.message().is_some_and(|m| m.contains("there is no database"))));
+        assert!(place.must_exist().is_err_and(|failure| {
+            failure.message().is_some_and(|m| m.contains("there is no database"))
+        }));
         assert!(!Path::new("/nowhere").exists());
     }
 
@@ -166,13 +184,24 @@ mod tests {
     fn samples_may_be_in_a_bucket() {
         let place = |url: Option<&str>, endpoint: Option<&str>| {
             let file = ConfigFile { objects_url: url.map(str::to_owned), ..ConfigFile::default() };
-            let arguments = StoreArguments { objects_endpoint: endpoint.map(str::to_owned), ..StoreArguments::default() };
+            let arguments = StoreArguments {
+                objects_endpoint: endpoint.map(str::to_owned),
+                ..StoreArguments::default()
+            };
             arguments.place(&file).map(|place| place.objects.to_string())
         };
         assert_eq!(place(None, None), Ok("sistership-data".to_owned()));
-        assert_eq!(place(Some("s3://samples/fleet"), Some("http://localhost:9000")), Ok("s3://samples/fleet".to_owned()));
-        for (url, endpoint, field) in [(Some("samples"), None, "objects_url"), (None, Some("http://a"), "objects_endpoint")] {
-            assert!(place(url, endpoint).is_err_and(|failure| failure.message().is_some_and(|m| m.starts_with(field))));
+        assert_eq!(
+            place(Some("s3://samples/fleet"), Some("http://localhost:9000")),
+            Ok("s3://samples/fleet".to_owned())
+        );
+        for (url, endpoint, field) in
+            [(Some("samples"), None, "objects_url"), (None, Some("http://a"), "objects_endpoint")]
+        {
+            assert!(
+                place(url, endpoint)
+                    .is_err_and(|failure| failure.message().is_some_and(|m| m.starts_with(field)))
+            );
         }
     }
 }

@@ -38,7 +38,8 @@ pub struct VerifyArguments {
 /// # Errors
 /// The store or the version is not there, or the version is not what its recipe gives.
 pub fn run(verify: &VerifyArguments) -> Result<(), Failure> {
-    let verification = with_archive(&verify.store, async |archive| verification(verify, archive).await)?;
+    let verification =
+        with_archive(&verify.store, async |archive| verification(verify, archive).await)?;
     output::print(verify.json, &verification, || text(&verification))?;
     if verification.identical { Ok(()) } else { Err(Failure::Told) }
 }
@@ -52,7 +53,10 @@ struct VerifyError {
     error: DeriveError,
 }
 
-async fn verification(verify: &VerifyArguments, archive: &Archive) -> Result<Verification, VerifyError> {
+async fn verification(
+    verify: &VerifyArguments,
+    archive: &Archive,
+) -> Result<Verification, VerifyError> {
     let (ship, number) = &verify.version;
     let told = |fraction: f64, what: &str| {
         note(&format!("{:3.0} % {what}", 100.0 * fraction));
@@ -63,7 +67,8 @@ async fn verification(verify: &VerifyArguments, archive: &Archive) -> Result<Ver
 }
 
 fn text(verification: &Verification) -> String {
-    let Verification { model, number, sha256, derived_sha256, identical, remarks, .. } = verification;
+    let Verification { model, number, sha256, derived_sha256, identical, remarks, .. } =
+        verification;
     let head = if *identical {
         format!("{model}/{number}: derived again, identical byte for byte\n  sha256 {sha256}\n")
     } else {

@@ -47,8 +47,12 @@ pub fn run(work: &WorkArguments) -> Result<(), Failure> {
     let config = config(work, &file)?;
     work.log.begin(&file)?;
     let start = async {
-        let workers = Workers::start(config.clone()).await.map_err(|error| Failure::Refused(error.to_string()))?;
-        output::print(false, &(), || format!("sistership works as process {}", std::process::id()))?;
+        let workers = Workers::start(config.clone())
+            .await
+            .map_err(|error| Failure::Refused(error.to_string()))?;
+        output::print(false, &(), || {
+            format!("sistership works as process {}", std::process::id())
+        })?;
         Ok(workers)
     };
     run_until_stopped(config.stop_bound(), start, Workers::stop)
@@ -60,7 +64,8 @@ fn config(work: &WorkArguments, file: &ConfigFile) -> Result<Config, Failure> {
     config.objects = place.objects;
     config.database_url = place.database_url;
     config.workers = workers(work.workers, file, 1)?;
-    config.limits.job_memory = memory("job_memory_mb", work.job_memory_mb, file.job_memory_mb, config.limits.job_memory)?;
+    config.limits.job_memory =
+        memory("job_memory_mb", work.job_memory_mb, file.job_memory_mb, config.limits.job_memory)?;
     config.leases = work.lease.leases(file)?;
     Ok(config)
 }

@@ -43,8 +43,10 @@ pub fn guard(files: &WrittenFiles<'_>, read: &[ReadTrial]) -> Result<(), Failure
 /// # Errors
 /// It does not read back.
 pub fn model_file(zoo: &Zoo, model: &Model, how: &str) -> Result<String, Failure> {
-    let text = serde_yaml::to_string(model).map_err(|error| Failure::Refused(format!("the model cannot be written: {error}")))?;
-    let text = format!("# {} by sistership {}, {how}\n{text}", model.name, env!("CARGO_PKG_VERSION"));
+    let text = serde_yaml::to_string(model)
+        .map_err(|error| Failure::Refused(format!("the model cannot be written: {error}")))?;
+    let text =
+        format!("# {} by sistership {}, {how}\n{text}", model.name, env!("CARGO_PKG_VERSION"));
     Model::parse("the model to be written", &text, &|law| zoo.law(law).map(|law| (**law).clone()))?;
     Ok(text)
 }

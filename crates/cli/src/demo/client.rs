@@ -40,7 +40,8 @@ impl ApiClient {
     /// # Errors
     /// As [`ApiClient::get`].
     pub async fn post_yaml(&self, path: &str, body: String) -> Result<Value, Failure> {
-        json(self.client.post(self.at(path)).header("content-type", "application/yaml").body(body)).await
+        json(self.client.post(self.at(path)).header("content-type", "application/yaml").body(body))
+            .await
     }
 
     /// Sends JSON.
@@ -55,9 +56,15 @@ impl ApiClient {
     ///
     /// # Errors
     /// As [`ApiClient::get`].
-    pub async fn upload(&self, manifest: String, files: Vec<(String, Vec<u8>)>) -> Result<Value, Failure> {
+    pub async fn upload(
+        &self,
+        manifest: String,
+        files: Vec<(String, Vec<u8>)>,
+    ) -> Result<Value, Failure> {
         let form = Form::new().text("manifest", manifest);
-        let form = files.into_iter().fold(form, |form, (name, bytes)| form.part("file", Part::bytes(bytes).file_name(name)));
+        let form = files.into_iter().fold(form, |form, (name, bytes)| {
+            form.part("file", Part::bytes(bytes).file_name(name))
+        });
         json(self.client.post(self.at("/v1/trials")).multipart(form)).await
     }
 
@@ -85,7 +92,10 @@ async fn answered(request: RequestBuilder) -> Result<Response, Failure> {
         return Ok(response);
     }
     let problem: Value = response.json().await.map_err(broken)?;
-    Err(Failure::Refused(format!("the server says: {}", problem["detail"].as_str().unwrap_or("no reason given"))))
+    Err(Failure::Refused(format!(
+        "the server says: {}",
+        problem["detail"].as_str().unwrap_or("no reason given")
+    )))
 }
 
 fn broken(error: reqwest::Error) -> Failure {

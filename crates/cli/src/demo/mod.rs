@@ -65,7 +65,8 @@ pub fn run(demo: &DemoArguments, zoo: &Zoo) -> Result<(), Failure> {
     block_on(async {
         let mut config = Config::new(demo.out.join("data"));
         config.listen.set_port(0);
-        let running = Server::start(config).await.map_err(|error| Failure::Refused(error.to_string()))?;
+        let running =
+            Server::start(config).await.map_err(|error| Failure::Refused(error.to_string()))?;
         let told = tell(&running, &trials, &demo.out).await;
         running.stop().await;
         told
@@ -74,11 +75,16 @@ pub fn run(demo: &DemoArguments, zoo: &Zoo) -> Result<(), Failure> {
 
 /// The trials of the unknown ship.
 fn sail(zoo: &Zoo) -> Result<Vec<Trial>, Failure> {
-    output::note("1/8  sailing the trials: SR108 with roll, by Son and Nomoto's law, and noisy instruments");
+    output::note(
+        "1/8  sailing the trials: SR108 with roll, by Son and Nomoto's law, and noisy instruments",
+    );
     let model = zoo.model(TRUTH).map_err(|error| Failure::Refused(error.to_string()))?;
-    let law = zoo.law(&model.law).ok_or_else(|| Failure::Refused(format!("there is no law `{}`", model.law)))?;
+    let law = zoo
+        .law(&model.law)
+        .ok_or_else(|| Failure::Refused(format!("there is no law `{}`", model.law)))?;
     let ship = Ship::new(&model, law).map_err(|error| Failure::Refused(error.to_string()))?;
-    record(&ship, SPEED_M_S, &PROGRAMME, SEED).map_err(|stopped| Failure::Refused(stopped.to_string()))
+    record(&ship, SPEED_M_S, &PROGRAMME, SEED)
+        .map_err(|stopped| Failure::Refused(stopped.to_string()))
 }
 
 /// An old demonstration goes; a folder that holds anything else is left alone.
@@ -95,7 +101,8 @@ fn empty(folder: &Path) -> Result<(), Failure> {
     for (name, is_folder) in [("data", true), ("report.html", false)] {
         let path = folder.join(name);
         if path.exists() {
-            if is_folder { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) }.map_err(failed)?;
+            if is_folder { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) }
+                .map_err(failed)?;
         }
     }
     Ok(())
@@ -103,22 +110,35 @@ fn empty(folder: &Path) -> Result<(), Failure> {
 
 async fn tell(running: &Running, trials: &[Trial], out: &Path) -> Result<(), Failure> {
     let api = ApiClient::new(running.url());
-    output::note(&format!("2/8  server on {} with an embedded database in {}", running.url(), out.display()));
+    output::note(&format!(
+        "2/8  server on {} with an embedded database in {}",
+        running.url(),
+        out.display()
+    ));
     api.delete(&format!("/v1/ships/{TRUTH}")).await?;
-    output::note("3/8  creating the ship northern-star; SR108 is taken out of the zoo, as it made the trials");
+    output::note(
+        "3/8  creating the ship northern-star; SR108 is taken out of the zoo, as it made the trials",
+    );
     api.post_yaml("/v1/ships", SHIP.to_owned()).await?;
     upload(&api, trials).await?;
     let job = refine(&api, trials).await?;
     let champion = api.get(&format!("/v1/ships/{NAME}/model")).await?;
     output::note(&format!("7/8  champion: {}", described(&champion)));
-    let report = job["report"].as_str().ok_or_else(|| Failure::Refused("the job names no report".into()))?;
+    let report =
+        job["report"].as_str().ok_or_else(|| Failure::Refused("the job names no report".into()))?;
     let path = out.join("report.html");
     let html = api.text(&format!("/v1/reports/{report}"), "text/html").await?;
     std::fs::write(&path, html).map_err(|error| about_file(&path, error.to_string()))?;
-    let held_out: HeldOut =
-        serde_json::from_value(job["held_out"].clone()).map_err(|error| Failure::Refused(error.to_string()))?;
+    let held_out: HeldOut = serde_json::from_value(job["held_out"].clone())
+        .map_err(|error| Failure::Refused(error.to_string()))?;
     output::note(&format!("8/8  report written to {}\n", path.display()));
-    output::print(false, &job, || format!("Root mean square errors, {}\n{}", held_out.how, refine_text::errors(&held_out, false)))
+    output::print(false, &job, || {
+        format!(
+            "Root mean square errors, {}\n{}",
+            held_out.how,
+            refine_text::errors(&held_out, false)
+        )
+    })
 }
 
 async fn upload(api: &ApiClient, trials: &[Trial]) -> Result<(), Failure> {
@@ -133,29 +153,46 @@ async fn upload(api: &ApiClient, trials: &[Trial]) -> Result<(), Failure> {
     // JSON is YAML.
     let manifest = json!({ "kind": "trials", "ship": NAME, "trials": entries }).to_string();
     let uploaded = api.upload(manifest, files).await?;
-    let rows: i64 = uploaded["trials"].as_array().into_iter().flatten().filter_map(|trial| trial["rows"].as_i64()).sum();
-    output::note(&format!("4/8  uploaded {} trials, {rows} samples, every check passed", trials.len()));
+    let rows: i64 = uploaded["trials"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|trial| trial["rows"].as_i64())
+        .sum();
+    output::note(&format!(
+        "4/8  uploaded {} trials, {rows} samples, every check passed",
+        trials.len()
+    ));
     Ok(())
 }
 
 /// Asks for a refinement and follows its job.
 async fn refine(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failure> {
-    let held_out: Vec<&str> = trials[trials.len() - JUDGED..].iter().map(|trial| trial.name.as_str()).collect();
+    let held_out: Vec<&str> =
+        trials[trials.len() - JUDGED..].iter().map(|trial| trial.name.as_str()).collect();
     let request = json!({ "ship": NAME, "source": "auto", "settings": { "held_out": held_out } });
     let queued = api.post_json("/v1/refinements", &request).await?;
     let id = queued["id"].as_str().unwrap_or_default().to_owned();
-    output::note(&format!("5/8  refinement job {id}; kept out to judge on: {}", held_out.join(", ")));
+    output::note(&format!(
+        "5/8  refinement job {id}; kept out to judge on: {}",
+        held_out.join(", ")
+    ));
     let mut last = String::new();
     loop {
         let job = api.get(&format!("/v1/jobs/{id}")).await?;
         let message = job["message"].as_str().unwrap_or_default();
         if message != last {
-            output::note(&format!("     {:3.0} % {message}", 100.0 * job["progress"].as_f64().unwrap_or(0.0)));
+            output::note(&format!(
+                "     {:3.0} % {message}",
+                100.0 * job["progress"].as_f64().unwrap_or(0.0)
+            ));
             message.clone_into(&mut last);
         }
         match job["state"].as_str() {
             Some("succeeded") => return chosen(&job["result"]),
-            Some("failed" | "cancelled") => return Err(Failure::Refused(format!("the job ended: {}", job["error"]))),
+            Some("failed" | "cancelled") => {
+                return Err(Failure::Refused(format!("the job ended: {}", job["error"])));
+            }
             _ => tokio::time::sleep(Duration::from_millis(100)).await,
         }
     }
@@ -164,9 +201,16 @@ async fn refine(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failure> {
 /// Says which source was selected, and why others fell.
 fn chosen(result: &Value) -> Result<Value, Failure> {
     output::note(&format!("6/8  selected source: {}", result["source"].as_str().unwrap_or("?")));
-    for ranked in result["ranking"].as_array().into_iter().flatten().filter(|ranked| ranked["model"].is_string()) {
-        let correlation = ranked["correlation"].as_f64().map_or("?".to_owned(), |r| format!("{r:+.3}"));
-        let reasons: Vec<&str> = ranked["reasons"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+    for ranked in result["ranking"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter(|ranked| ranked["model"].is_string())
+    {
+        let correlation =
+            ranked["correlation"].as_f64().map_or("?".to_owned(), |r| format!("{r:+.3}"));
+        let reasons: Vec<&str> =
+            ranked["reasons"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
         let verdict = if ranked["eligible"] == true { "eligible" } else { "not eligible" };
         output::note(&format!(
             "     {:<12} {correlation} {verdict}: {}",
@@ -180,7 +224,8 @@ fn chosen(result: &Value) -> Result<Value, Failure> {
 fn described(champion: &Value) -> String {
     let version = &champion["version"];
     let text = |value: &Value| value.as_str().unwrap_or("?").to_owned();
-    let coefficients = champion["model"]["coefficients"].as_object().map_or(0, serde_json::Map::len);
+    let coefficients =
+        champion["model"]["coefficients"].as_object().map_or(0, serde_json::Map::len);
     let hash: String = text(&version["sha256"]).chars().take(12).collect();
     format!(
         "version {} of {}, law {}, {coefficients} coefficients, sha256 {hash}",

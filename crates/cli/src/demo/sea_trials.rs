@@ -34,7 +34,9 @@ impl TrialManoeuvre {
         let side = |rudder_deg: f64| if rudder_deg < 0.0 { "port" } else { "starboard" };
         match self {
             Self::Turn(rudder_deg) => format!("turn-{}-{}.csv", side(rudder_deg), rudder_deg.abs()),
-            Self::Zigzag(rudder_deg, switch_deg) => format!("zigzag-{}-{}-{switch_deg}.csv", side(rudder_deg), rudder_deg.abs()),
+            Self::Zigzag(rudder_deg, switch_deg) => {
+                format!("zigzag-{}-{}-{switch_deg}.csv", side(rudder_deg), rudder_deg.abs())
+            }
         }
     }
 }
@@ -63,7 +65,12 @@ const REVOLUTIONS_NOISE_RPS: f64 = 1e-3;
 ///
 /// # Errors
 /// Says when and why the ship left the physical range.
-pub fn record(ship: &Ship, speed_m_s: f64, programme: &[TrialManoeuvre], seed: u64) -> Result<Vec<Trial>, Stopped> {
+pub fn record(
+    ship: &Ship,
+    speed_m_s: f64,
+    programme: &[TrialManoeuvre],
+    seed: u64,
+) -> Result<Vec<Trial>, Stopped> {
     let mut noise = ChaCha12Rng::seed_from_u64(seed);
     let settings = ManoeuvreSettings {
         speed_m_s: Some(speed_m_s),
@@ -72,22 +79,33 @@ pub fn record(ship: &Ship, speed_m_s: f64, programme: &[TrialManoeuvre], seed: u
         ..ManoeuvreSettings::default()
     };
     let sail = |manoeuvre: &TrialManoeuvre| match *manoeuvre {
-        TrialManoeuvre::Turn(rudder_deg) => turn(ship, rudder_deg, &settings).map(|turn| turn.track),
+        TrialManoeuvre::Turn(rudder_deg) => {
+            turn(ship, rudder_deg, &settings).map(|turn| turn.track)
+        }
         TrialManoeuvre::Zigzag(rudder_deg, switch_deg) => {
             zigzag(ship, rudder_deg, switch_deg, &settings).map(|zigzag| zigzag.track)
         }
     };
-    programme.iter().map(|manoeuvre| Ok(recorded(*manoeuvre, &sail(manoeuvre)?, &mut noise))).collect()
+    programme
+        .iter()
+        .map(|manoeuvre| Ok(recorded(*manoeuvre, &sail(manoeuvre)?, &mut noise)))
+        .collect()
 }
 
 fn recorded(manoeuvre: TrialManoeuvre, track: &Trajectory, noise: &mut ChaCha12Rng) -> Trial {
     let sampled = |values: Vec<f64>, deviation: f64, noise: &mut ChaCha12Rng| -> Vec<f64> {
         let values = values.into_iter().step_by(STRIDE);
-        values.map(|value| value + Normal::new(0.0, deviation).map_or(0.0, |normal| normal.sample(noise))).collect()
+        values
+            .map(|value| {
+                value + Normal::new(0.0, deviation).map_or(0.0, |normal| normal.sample(noise))
+            })
+            .collect()
     };
     let mut channels: BTreeMap<Channel, Vec<f64>> = INSTRUMENTS
         .iter()
-        .map(|&(channel, index, deviation)| (channel, sampled(track.column(index), deviation, noise)))
+        .map(|&(channel, index, deviation)| {
+            (channel, sampled(track.column(index), deviation, noise))
+        })
         .collect();
     channels.insert(Channel::N, sampled(track.n_rps.clone(), REVOLUTIONS_NOISE_RPS, noise));
     Trial {

@@ -33,7 +33,12 @@ use sistership_estimate::refine::RefineError;
 ///
 /// # Errors
 /// Names the channel that a trial lacks, or says that the information is not positive.
-pub fn calibrate(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Result<Uncertainty, RefineError> {
+pub fn calibrate(
+    model: &Model,
+    law: &Law,
+    effects: &[Arc<Effect>],
+    trials: &[&Trial],
+) -> Result<Uncertainty, RefineError> {
     let model = &Model { uncertainty: None, ..model.clone() };
     let first = by_instruments(model, law, effects, trials)?;
     let systematic_errors = systematic_errors::of(model, &first, law, effects, trials)?;
@@ -45,19 +50,32 @@ pub fn calibrate(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&T
 }
 
 /// What the trials leave open where instruments err as the model's uncertainty says, or not at all.
-fn by_instruments(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Result<Uncertainty, RefineError> {
+fn by_instruments(
+    model: &Model,
+    law: &Law,
+    effects: &[Arc<Effect>],
+    trials: &[&Trial],
+) -> Result<Uncertainty, RefineError> {
     let terms = learned(model, law, effects, trials);
-    let extra: Vec<_> = terms.iter().filter_map(|(name, form)| Some((name.clone(), regressor(model, form)?.0))).collect();
+    let extra: Vec<_> = terms
+        .iter()
+        .filter_map(|(name, form)| Some((name.clone(), regressor(model, form)?.0)))
+        .collect();
     let nuisance = Columns::nuisance(model, law, &extra);
     let prior = prior(model, &nuisance, &terms, THRESHOLDS.calibration.prior_share);
     let (shift, rough) = first_shift(model, law, &terms, &nuisance, &prior, trials)?;
     let candidates = listed(model, law, effects, trials);
     let columns = Columns { nuisance: nuisance.clone(), candidates: candidates.clone() };
-    let mut workspace =
-        LinearisedTrials::new(&CalibratedModel::new(model, law, &terms, &nuisance, &shift)?, columns, trials, None)?;
+    let mut workspace = LinearisedTrials::new(
+        &CalibratedModel::new(model, law, &terms, &nuisance, &shift)?,
+        columns,
+        trials,
+        None,
+    )?;
     let fixed = prior.from(&shift);
     let scatter = workspace.noise.clone();
-    let NoiseModel { discrepancies, noise } = noise_model::most_probable(&workspace, &fixed, Some(rough))?;
+    let NoiseModel { discrepancies, noise } =
+        noise_model::most_probable(&workspace, &fixed, Some(rough))?;
     workspace.noise = noise;
     let grams = workspace.each(&discrepancies);
     let freed = lacked(model, law, effects, trials);
@@ -67,7 +85,11 @@ fn by_instruments(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&
     let known = TrialInformation { scatter: known.scatter(), ..known };
     Ok(Uncertainty {
         instruments: instruments(&workspace.noise, &scatter),
-        systematic_errors: model.uncertainty.as_ref().map(|known| known.systematic_errors.clone()).unwrap_or_default(),
+        systematic_errors: model
+            .uncertainty
+            .as_ref()
+            .map(|known| known.systematic_errors.clone())
+            .unwrap_or_default(),
         false_alarm_levels: false_alarm::levels(&workspace, &known, &all),
         remainder: remainder(&workspace, &known, &discrepancies),
         ..uncertainty(&workspace, &known, &shift, &discrepancies)?
@@ -89,7 +111,9 @@ fn first_shift(
     let scatter = noise_model::most_probable(&workspace, prior, None)?;
     workspace.noise.clone_from(&scatter.noise);
     let grams = workspace.each(&scatter.discrepancies);
-    let shift = TrialInformation { fixed: prior, grams: &grams, scatter: 1.0 }.by(&|_| true).expected_shift(nuisance);
+    let shift = TrialInformation { fixed: prior, grams: &grams, scatter: 1.0 }
+        .by(&|_| true)
+        .expected_shift(nuisance);
     Ok((shift.ok_or_else(not_positive)?, scatter))
 }
 
@@ -113,7 +137,9 @@ fn remainder(
         let Some(shift) = known.shift(trial, workspace.columns().len()) else { continue };
         for (channel, size) in largest(workspace, trial, discrepancies, &shift) {
             let limit = limits.entry(channel.name().to_owned()).or_default();
-            *limit = limit.max((THRESHOLDS.calibration.rounding * size).round() / THRESHOLDS.calibration.rounding);
+            *limit = limit.max(
+                (THRESHOLDS.calibration.rounding * size).round() / THRESHOLDS.calibration.rounding,
+            );
         }
     }
     limits
@@ -129,14 +155,17 @@ fn uncertainty(
     let back: Vec<f64> = shift.iter().map(|shift| -shift).collect();
     let all = known.by(&|_| true).from(&back);
     let size = all.weighted_mean.len();
-    let scales: Vec<f64> = (0..size).map(|i| known.fixed.information[(i, i)].sqrt().recip()).collect();
-    let scaled = DMatrix::from_fn(size, size, |i, j| all.information[(i, j)] * scales[i] * scales[j]);
+    let scales: Vec<f64> =
+        (0..size).map(|i| known.fixed.information[(i, i)].sqrt().recip()).collect();
+    let scaled =
+        DMatrix::from_fn(size, size, |i, j| all.information[(i, j)] * scales[i] * scales[j]);
     let right = DVector::from_fn(size, |i, _| all.weighted_mean[i] * scales[i]);
     let factor = Cholesky::new(scaled).ok_or_else(not_positive)?;
     let lower = factor.l();
     let offset = lower.solve_lower_triangular(&right).unwrap_or(right);
     let axes = workspace.axes();
-    let discrepancy: BTreeMap<_, Discrepancy> = axes.iter().copied().zip(discrepancies.iter().copied()).collect();
+    let discrepancy: BTreeMap<_, Discrepancy> =
+        axes.iter().copied().zip(discrepancies.iter().copied()).collect();
     Ok(Uncertainty {
         names: workspace.columns().nuisance.iter().map(|n: &Nuisance| n.name.clone()).collect(),
         scales,

@@ -31,7 +31,9 @@ enum NoiseParameter {
 impl NoiseModel {
     fn times(&self, number: NoiseParameter, factor: f64) -> Self {
         let mut changed = self.clone();
-        let instrument = |noise: &mut Noise, channel| noise.remove(&channel).map(|instrument| (channel, instrument));
+        let instrument = |noise: &mut Noise, channel| {
+            noise.remove(&channel).map(|instrument| (channel, instrument))
+        };
         match number {
             NoiseParameter::Deviation(axis) => changed.discrepancies[axis].deviation *= factor,
             NoiseParameter::White(axis) => changed.discrepancies[axis].white *= factor,
@@ -53,9 +55,13 @@ impl NoiseModel {
 
     fn numbers(&self) -> Vec<NoiseParameter> {
         let axes = 0..self.discrepancies.len();
-        let of_axes = axes.flat_map(|axis| [NoiseParameter::Deviation(axis), NoiseParameter::White(axis)]);
+        let of_axes =
+            axes.flat_map(|axis| [NoiseParameter::Deviation(axis), NoiseParameter::White(axis)]);
         let follow = [Channel::Psi, Channel::X, Channel::Y];
-        let drifts = follow.into_iter().filter(|channel| self.noise.contains_key(channel)).map(NoiseParameter::Drift);
+        let drifts = follow
+            .into_iter()
+            .filter(|channel| self.noise.contains_key(channel))
+            .map(NoiseParameter::Drift);
         of_axes.chain(drifts).chain(self.noise.keys().copied().map(NoiseParameter::Noise)).collect()
     }
 }
@@ -83,13 +89,25 @@ pub(super) fn most_probable(
 fn coarse(workspace: &LinearisedTrials<'_>) -> Option<NoiseModel> {
     let as_it_is = vec![vec![0.0; workspace.columns().len()]; workspace.trials.len()];
     let (scales, parts) = (workspace.scales(), along(workspace, &as_it_is));
-    let at = |level: &f64| NoiseModel { discrepancies: scales.discrepancies(*level), noise: workspace.noise.clone() };
-    let scored = THRESHOLDS.calibration.first_levels.iter().map(at).map(|tried| (deviance(&parts, &tried), tried));
+    let at = |level: &f64| NoiseModel {
+        discrepancies: scales.discrepancies(*level),
+        noise: workspace.noise.clone(),
+    };
+    let scored = THRESHOLDS
+        .calibration
+        .first_levels
+        .iter()
+        .map(at)
+        .map(|tried| (deviance(&parts, &tried), tried));
     Some(scored.min_by(|a, b| a.0.total_cmp(&b.0))?.1)
 }
 
 /// For each trial the coefficients by the others; of a single trial, by itself.
-fn coefficients(workspace: &LinearisedTrials<'_>, fixed: &CoefficientPrior, scatter: &NoiseModel) -> Option<Vec<Vec<f64>>> {
+fn coefficients(
+    workspace: &LinearisedTrials<'_>,
+    fixed: &CoefficientPrior,
+    scatter: &NoiseModel,
+) -> Option<Vec<Vec<f64>>> {
     let columns: Vec<usize> = (0..fixed.weighted_mean.len()).collect();
     let grams = workspace.each_under(&scatter.noise, &scatter.discrepancies);
     let grams: Vec<_> = grams.iter().map(|gram| gram.select(&columns)).collect();
@@ -107,7 +125,9 @@ fn coefficients(workspace: &LinearisedTrials<'_>, fixed: &CoefficientPrior, scat
 type LinearisedParts = Vec<Vec<Linearised>>;
 
 fn along(workspace: &LinearisedTrials<'_>, parameters: &[Vec<f64>]) -> LinearisedParts {
-    let along = |(parts, of): (&Vec<Linearised>, &Vec<f64>)| parts.iter().map(|part| part.along(of)).collect();
+    let along = |(parts, of): (&Vec<Linearised>, &Vec<f64>)| {
+        parts.iter().map(|part| part.along(of)).collect()
+    };
     workspace.linear().par_iter().zip(parameters).map(along).collect()
 }
 
@@ -123,7 +143,12 @@ fn deviance(parts: &LinearisedParts, scatter: &NoiseModel) -> f64 {
 }
 
 /// Each number alone, as far as it helps.
-fn refined(workspace: &LinearisedTrials<'_>, start: NoiseModel, coefficients: &[Vec<f64>], factors: &[f64]) -> NoiseModel {
+fn refined(
+    workspace: &LinearisedTrials<'_>,
+    start: NoiseModel,
+    coefficients: &[Vec<f64>],
+    factors: &[f64],
+) -> NoiseModel {
     let parts = along(workspace, coefficients);
     let mut best = (deviance(&parts, &start), start);
     for factor in factors {
@@ -148,9 +173,17 @@ fn refined(workspace: &LinearisedTrials<'_>, start: NoiseModel, coefficients: &[
 }
 
 /// No instrument errs by less than its readings scatter.
-fn is_possible(workspace: &LinearisedTrials<'_>, tried: &NoiseModel, number: NoiseParameter) -> bool {
-    let (NoiseParameter::Noise(channel) | NoiseParameter::Drift(channel)) = number else { return true };
+fn is_possible(
+    workspace: &LinearisedTrials<'_>,
+    tried: &NoiseModel,
+    number: NoiseParameter,
+) -> bool {
+    let (NoiseParameter::Noise(channel) | NoiseParameter::Drift(channel)) = number else {
+        return true;
+    };
     let pair = workspace.noise.get(&channel).zip(tried.noise.get(&channel));
     let share = THRESHOLDS.calibration.scatter_share;
-    pair.is_none_or(|(least, own)| own.deviation >= share * least.deviation && own.drift >= share * least.drift)
+    pair.is_none_or(|(least, own)| {
+        own.deviation >= share * least.deviation && own.drift >= share * least.drift
+    })
 }

@@ -26,11 +26,16 @@ pub(super) fn of(
     // False-alarm levels are not yet to be asked: an effect may be there.
     let known = Uncertainty { false_alarm_levels: Default::default(), ..known.clone() };
     let model = Model { uncertainty: Some(known), ..model.clone() };
-    let settings = Settings { least_evidence: THRESHOLDS.calibration.systematic_error_evidence, ..Settings::default() };
+    let settings = Settings {
+        least_evidence: THRESHOLDS.calibration.systematic_error_evidence,
+        ..Settings::default()
+    };
     let request = Request { model: &model, law, effects, trials, settings: &settings };
     let mut search = search(&request)?;
     search.freed.clear();
     search.listed.retain(|candidate| acts_on(candidate) == ActsOn::Measurement);
     let choice = choose(&search, &settings)?;
-    Ok(model_with(search.model, &choice.best().candidates, None).effects.split_off(model.effects.len()))
+    Ok(model_with(search.model, &choice.best().candidates, None)
+        .effects
+        .split_off(model.effects.len()))
 }

@@ -32,7 +32,10 @@ impl TrialInformation<'_> {
         let mut sum = (0.0, 0.0);
         for (trial, gram) in self.grams.iter().enumerate() {
             let others = self.by(&|other| other != trial);
-            let (Some(mean), products) = (others.mean(), gram.products.view((1, 1), (size, size))) else { continue };
+            let (Some(mean), products) = (others.mean(), gram.products.view((1, 1), (size, size)))
+            else {
+                continue;
+            };
             let left = gram.products.view((1, 0), (size, 1)).column(0) - products * mean;
             let Some(factor) = Cholesky::new(products + &others.information) else { continue };
             sum.0 += left.dot(&factor.solve(&left));

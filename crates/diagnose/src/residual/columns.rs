@@ -58,7 +58,11 @@ impl EffectCandidate {
 
     /// How far each parameter is from the absence of the effect.
     pub fn change(&self) -> Vec<f64> {
-        self.at.iter().zip(self.form.parameters.values()).map(|(at, parameter)| at - parameter.absent).collect()
+        self.at
+            .iter()
+            .zip(self.form.parameters.values())
+            .map(|(at, parameter)| at - parameter.absent)
+            .collect()
     }
 
     /// The names of its parameters in a dressed law.
@@ -84,7 +88,8 @@ pub struct Columns {
 impl Columns {
     /// How many there are.
     pub fn len(&self) -> usize {
-        self.nuisance.len() + self.candidates.iter().map(|candidate| candidate.at.len()).sum::<usize>()
+        self.nuisance.len()
+            + self.candidates.iter().map(|candidate| candidate.at.len()).sum::<usize>()
     }
 
     /// Whether there is none.
@@ -94,7 +99,8 @@ impl Columns {
 
     /// The places of a candidate's parameters.
     pub fn places(&self, candidate: usize) -> Range<usize> {
-        let before: usize = self.candidates[..candidate].iter().map(|candidate| candidate.at.len()).sum();
+        let before: usize =
+            self.candidates[..candidate].iter().map(|candidate| candidate.at.len()).sum();
         let start = self.nuisance.len() + before;
         start..start + self.candidates[candidate].at.len()
     }
@@ -102,17 +108,23 @@ impl Columns {
     /// The places of the columns in which a candidate shows: its own, or that of the coefficient which it frees.
     pub fn showing(&self, candidate: &EffectCandidate) -> Vec<usize> {
         let own = self.candidates.iter().position(|known| known.key() == candidate.key());
-        let freed = || self.nuisance.iter().position(|nuisance| nuisance.name == candidate.form.file.name);
+        let freed =
+            || self.nuisance.iter().position(|nuisance| nuisance.name == candidate.form.file.name);
         own.map_or_else(|| freed().into_iter().collect(), |own| self.places(own).collect())
     }
 
     /// The coefficients that a model has, terms of a grammar that it lacks, and the virtual masses of its law.
     pub fn nuisance(model: &Model, law: &Law, extra: &[(String, Axis)]) -> Vec<Nuisance> {
         let axis = |name: &str| law.term(name).ok().map(|(axis, _)| axis);
-        let own = model.coefficients.keys().filter_map(|name| Some((name.clone(), NuisanceKind::Own(axis(name)?))));
+        let own = model
+            .coefficients
+            .keys()
+            .filter_map(|name| Some((name.clone(), NuisanceKind::Own(axis(name)?))));
         let lacked = extra.iter().map(|(name, axis)| (name.clone(), NuisanceKind::Lacked(*axis)));
         let upper = law.mass.keys().filter(|(row, column)| row <= column);
-        let masses = upper.map(|&(row, column)| (format!("{MASS}{row}{column}"), NuisanceKind::Mass(row, column)));
+        let masses = upper.map(|&(row, column)| {
+            (format!("{MASS}{row}{column}"), NuisanceKind::Mass(row, column))
+        });
         own.chain(lacked).chain(masses).map(|(name, kind)| Nuisance { name, kind }).collect()
     }
 }

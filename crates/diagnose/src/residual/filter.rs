@@ -22,7 +22,11 @@ pub fn filter(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies)
 
 /// Prediction errors of parts with all columns in one ([`Linearised::along`]), divided by the predicted deviation, sample
 /// after sample and in each by recorded channel; and the sum of the logarithms of the predicted variances.
-pub fn errors(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) -> (Vec<f64>, f64) {
+pub fn errors(
+    linear: &Linearised,
+    noise: &Noise,
+    discrepancies: &Discrepancies,
+) -> (Vec<f64>, f64) {
     let (rows, log_variance) = whitened(linear, noise, discrepancies);
     (rows.chunks_exact(2).map(|row| row[0] - row[1]).collect(), log_variance)
 }
@@ -34,7 +38,11 @@ pub fn responses(linear: &Linearised, noise: &Noise, discrepancies: &Discrepanci
 
 /// Prediction errors and what each column adds to them, divided by the predicted deviation: for each sample and recorded
 /// channel a row, the residual first; and the sum of the logarithms of the predicted variances.
-pub fn whitened(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) -> (Vec<f64>, f64) {
+pub fn whitened(
+    linear: &Linearised,
+    noise: &Noise,
+    discrepancies: &Discrepancies,
+) -> (Vec<f64>, f64) {
     let width = 1 + linear.sizes.columns;
     let mut rows = Vec::with_capacity(linear.reading.len() * width);
     let mut log_variance = 0.0;
@@ -74,17 +82,29 @@ pub(super) struct FilterState {
 }
 
 impl FilterState {
-    pub fn start(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies, width: usize) -> Self {
+    pub fn start(
+        linear: &Linearised,
+        noise: &Noise,
+        discrepancies: &Discrepancies,
+        width: usize,
+    ) -> Self {
         let states = linear.sizes.states;
         let order = states + linear.sizes.axes;
         let mut drift = vec![0.0; states];
         let mut covariance = vec![0.0; order * order];
         for state in 0..states {
-            let channel = linear.channels.iter().find(|(_, place)| *place == state).and_then(|(channel, _)| noise.get(channel));
-            drift[state] = channel.map_or(RESIDUAL.unread_drift, |instrument| instrument.drift).powi(2);
+            let channel = linear
+                .channels
+                .iter()
+                .find(|(_, place)| *place == state)
+                .and_then(|(channel, _)| noise.get(channel));
+            drift[state] =
+                channel.map_or(RESIDUAL.unread_drift, |instrument| instrument.drift).powi(2);
             // What nobody reads starts on the path.
-            covariance[state * order + state] =
-                channel.map_or(RESIDUAL.unread_variance, |instrument| (RESIDUAL.start * instrument.deviation).powi(2));
+            covariance[state * order + state] = channel
+                .map_or(RESIDUAL.unread_variance, |instrument| {
+                    (RESIDUAL.start * instrument.deviation).powi(2)
+                });
         }
         for (axis, discrepancy) in discrepancies.iter().enumerate() {
             covariance[(states + axis) * (order + 1)] = discrepancy.deviation.powi(2);
@@ -117,12 +137,19 @@ impl FilterState {
         for (axis, discrepancy) in discrepancies.iter().enumerate() {
             self.covariance[axis * (order + 1)] += dt * discrepancy.white.powi(2);
             let renewed = 1.0 - (-2.0 * dt / discrepancy.time_s).exp();
-            self.covariance[(linear.sizes.states + axis) * (order + 1)] += renewed * discrepancy.deviation.powi(2);
+            self.covariance[(linear.sizes.states + axis) * (order + 1)] +=
+                renewed * discrepancy.deviation.powi(2);
         }
     }
 
     /// Fills the transition matrix to second order in the step; gives `dt (I + A dt/2)` on the accelerations.
-    fn transit(&mut self, linear: &Linearised, k: usize, dt: f64, discrepancies: &Discrepancies) -> Vec<f64> {
+    fn transit(
+        &mut self,
+        linear: &Linearised,
+        k: usize,
+        dt: f64,
+        discrepancies: &Discrepancies,
+    ) -> Vec<f64> {
         let (n, axes, order) = (linear.sizes.states, linear.sizes.axes, self.order);
         let a = &linear.jacobian[k * n * n..(k + 1) * n * n];
         let mut square = Vec::new();
@@ -133,7 +160,8 @@ impl FilterState {
             for column in 0..n {
                 let unit = f64::from(u8::from(row == column));
                 let at = row * n + column;
-                self.transition[row * order + column] = unit + dt * a[at] + 0.5 * dt * dt * square[at];
+                self.transition[row * order + column] =
+                    unit + dt * a[at] + 0.5 * dt * dt * square[at];
                 if column < axes {
                     half[row * axes + column] = dt * (unit + 0.5 * dt * a[at]);
                     self.transition[row * order + n + column] = half[row * axes + column];
@@ -168,13 +196,18 @@ impl FilterState {
 
     /// Takes the readings of a sample; `take` is given each prediction error (the residual's, then minus each column's) and
     /// its variance.
-    pub fn update(&mut self, linear: &Linearised, k: usize, noise: &Noise, mut take: impl FnMut(&[f64], f64)) {
+    pub fn update(
+        &mut self,
+        linear: &Linearised,
+        k: usize,
+        noise: &Noise,
+        mut take: impl FnMut(&[f64], f64),
+    ) {
         let (order, width) = (self.order, self.width);
         for (i, &(channel, place)) in linear.channels.iter().enumerate() {
-            let row = linear
-                .by_state
-                .as_ref()
-                .map(|by| &by[(k * linear.channels.len() + i) * linear.sizes.states..][..linear.sizes.states]);
+            let row = linear.by_state.as_ref().map(|by| {
+                &by[(k * linear.channels.len() + i) * linear.sizes.states..][..linear.sizes.states]
+            });
             self.error.clear();
             self.error.resize(width, 0.0);
             self.error[0] = linear.reading[k * linear.channels.len() + i];
@@ -183,19 +216,29 @@ impl FilterState {
             self.gain.resize(order, 0.0);
             let one = [1.0];
             let (from, weights): (usize, &[f64]) = row.map_or((place, &one), |row| (0, row));
-            for (state, &weight) in weights.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
+            for (state, &weight) in weights.iter().enumerate().filter(|(_, weight)| **weight != 0.0)
+            {
                 let state = from + state;
-                axpy(-weight, &self.deviations[state * width..(state + 1) * width], &mut self.error);
+                axpy(
+                    -weight,
+                    &self.deviations[state * width..(state + 1) * width],
+                    &mut self.error,
+                );
                 axpy(weight, &self.covariance[state * order..(state + 1) * order], &mut self.gain);
             }
             let sigma = noise.get(&channel).map_or(1.0, |instrument| instrument.deviation);
-            let own: f64 = weights.iter().enumerate().map(|(state, weight)| weight * self.gain[from + state]).sum();
+            let own: f64 = weights
+                .iter()
+                .enumerate()
+                .map(|(state, weight)| weight * self.gain[from + state])
+                .sum();
             let variance = own + sigma * sigma;
             take(&self.error, variance);
             for state in 0..order {
                 let gain = self.gain[state] / variance;
                 axpy(gain, &self.error, &mut self.deviations[state * width..(state + 1) * width]);
-                let (gains, covariance) = (&self.gain, &mut self.covariance[state * order..(state + 1) * order]);
+                let (gains, covariance) =
+                    (&self.gain, &mut self.covariance[state * order..(state + 1) * order]);
                 axpy(-gain, gains, covariance);
             }
         }
@@ -221,7 +264,14 @@ fn axpy(weight: f64, from: &[f64], to: &mut [f64]) {
 }
 
 /// `left (rows x inner) right (inner x columns)`, row by row.
-fn multiply(left: &[f64], right: &[f64], rows: usize, inner: usize, columns: usize, out: &mut Vec<f64>) {
+fn multiply(
+    left: &[f64],
+    right: &[f64],
+    rows: usize,
+    inner: usize,
+    columns: usize,
+    out: &mut Vec<f64>,
+) {
     out.clear();
     out.resize(rows * columns, 0.0);
     for row in 0..rows {
@@ -239,7 +289,10 @@ fn multiply(left: &[f64], right: &[f64], rows: usize, inner: usize, columns: usi
 fn multiply_transposed(left: &[f64], right: &[f64], order: usize, out: &mut [f64]) {
     for row in 0..order {
         for column in 0..=row {
-            let (a, b) = (&left[row * order..(row + 1) * order], &right[column * order..(column + 1) * order]);
+            let (a, b) = (
+                &left[row * order..(row + 1) * order],
+                &right[column * order..(column + 1) * order],
+            );
             let sum: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
             out[row * order + column] = sum;
             out[column * order + row] = sum;

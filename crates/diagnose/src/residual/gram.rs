@@ -30,7 +30,8 @@ impl Gram {
         let mut products = DMatrix::zeros(width, width);
         for start in (0..width).step_by(BLOCK) {
             let size = BLOCK.min(width - start);
-            let below = readings.rows(start, width - start) * readings.rows(start, size).transpose();
+            let below =
+                readings.rows(start, width - start) * readings.rows(start, size).transpose();
             products.view_mut((start, start), (width - start, size)).copy_from(&below);
         }
         products.fill_upper_triangle_with_lower_triangle();

@@ -17,12 +17,19 @@ pub(super) struct InstrumentJacobian {
 }
 
 impl InstrumentJacobian {
-    pub fn new(system: &ResidualSystem, primal: &[Lanes<1>], inputs: usize, measured: &[usize], detail: Detail) -> Self {
+    pub fn new(
+        system: &ResidualSystem,
+        primal: &[Lanes<1>],
+        inputs: usize,
+        measured: &[usize],
+        detail: Detail,
+    ) -> Self {
         let of_state = |&state: &usize| of_instruments(state);
         let first = inputs - system.lagged.len();
         let of_column = |column: &usize| first + column - system.columns.nuisance.len();
         let states = if detail == Detail::Whole { system.states } else { &[] };
-        let seeds: Vec<usize> = states.iter().map(of_state).chain(measured.iter().map(of_column)).collect();
+        let seeds: Vec<usize> =
+            states.iter().map(of_state).chain(measured.iter().map(of_column)).collect();
         let mut outputs = vec![Vec::new(); system.says.len()];
         let mut work = Slots::default();
         for chunk in seeds.chunks(LANES) {
@@ -39,7 +46,9 @@ impl InstrumentJacobian {
     pub fn by_state(&self, system: &ResidualSystem, channel: usize) -> Vec<f64> {
         match system.says.iter().position(|&place| place == channel) {
             Some(output) => self.outputs[output][..self.states].to_vec(),
-            None => (0..self.states).map(|state| f64::from(u8::from(state == system.channels[channel].1))).collect(),
+            None => (0..self.states)
+                .map(|state| f64::from(u8::from(state == system.channels[channel].1)))
+                .collect(),
         }
     }
 

@@ -13,12 +13,18 @@ pub fn undisturbed(trial: &Trial, settles_s: f64) -> Vec<Range<usize>> {
     let jumps = jumps(trial);
     let is_near = |k: usize| {
         let next = jumps.partition_point(|&jump| jump < trial.t_s[k]);
-        let near = |jump: Option<&f64>| jump.is_some_and(|jump| (jump - trial.t_s[k]).abs() < settles_s);
+        let near =
+            |jump: Option<&f64>| jump.is_some_and(|jump| (jump - trial.t_s[k]).abs() < settles_s);
         near(jumps.get(next)) || near(next.checked_sub(1).and_then(|before| jumps.get(before)))
     };
-    let kept: Vec<Range<usize>> = trial.segments().into_iter().flat_map(|range| runs(range, &|k| !is_near(k))).collect();
+    let kept: Vec<Range<usize>> =
+        trial.segments().into_iter().flat_map(|range| runs(range, &|k| !is_near(k))).collect();
     let left: usize = kept.iter().map(Range::len).sum();
-    if (left as f64) < (1.0 - RESIDUAL.most_lost) * trial.len() as f64 { trial.segments() } else { kept }
+    if (left as f64) < (1.0 - RESIDUAL.most_lost) * trial.len() as f64 {
+        trial.segments()
+    } else {
+        kept
+    }
 }
 
 /// Stretches of a range over which all samples are kept.
@@ -37,18 +43,24 @@ fn runs(range: Range<usize>, keep: &dyn Fn(usize) -> bool) -> Vec<Range<usize>> 
 
 /// Times in the middle of steps that jump, in order.
 fn jumps(trial: &Trial) -> Vec<f64> {
-    let rates = [(Channel::X, ground(trial, 0.0)), (Channel::Y, ground(trial, -0.5 * std::f64::consts::PI))];
+    let rates = [
+        (Channel::X, ground(trial, 0.0)),
+        (Channel::Y, ground(trial, -0.5 * std::f64::consts::PI)),
+    ];
     let turn = trial.channel(Channel::R).map(<[f64]>::to_vec);
     let pairs = rates.into_iter().chain([(Channel::Psi, turn)]);
-    let mut jumps: Vec<f64> = pairs.flat_map(|(channel, rate)| of_channel(trial, channel, rate.as_deref())).collect();
+    let mut jumps: Vec<f64> =
+        pairs.flat_map(|(channel, rate)| of_channel(trial, channel, rate.as_deref())).collect();
     jumps.sort_by(f64::total_cmp);
     jumps
 }
 
 /// Speed over the ground along the x axis turned by an angle.
 fn ground(trial: &Trial, turned: f64) -> Option<Vec<f64>> {
-    let (u, v, psi) = (trial.channel(Channel::U)?, trial.channel(Channel::V)?, trial.channel(Channel::Psi)?);
-    let one = |((u, v), psi): ((&f64, &f64), &f64)| u * (psi + turned).cos() - v * (psi + turned).sin();
+    let (u, v, psi) =
+        (trial.channel(Channel::U)?, trial.channel(Channel::V)?, trial.channel(Channel::Psi)?);
+    let one =
+        |((u, v), psi): ((&f64, &f64), &f64)| u * (psi + turned).cos() - v * (psi + turned).sin();
     Some(u.iter().zip(v).zip(psi).map(one).collect())
 }
 
@@ -56,8 +68,10 @@ fn of_channel(trial: &Trial, channel: Channel, rate: Option<&[f64]>) -> Vec<f64>
     let (Some(values), Some(rate)) = (trial.channel(channel), rate) else { return Vec::new() };
     let step = |k: usize| trial.t_s[k] - trial.t_s[k - 1];
     let steps: Vec<usize> = trial.segments().into_iter().flat_map(|range| range.skip(1)).collect();
-    let apart: Vec<f64> =
-        steps.iter().map(|&k| (values[k] - values[k - 1] - 0.5 * step(k) * (rate[k] + rate[k - 1])).abs()).collect();
+    let apart: Vec<f64> = steps
+        .iter()
+        .map(|&k| (values[k] - values[k - 1] - 0.5 * step(k) * (rate[k] + rate[k - 1])).abs())
+        .collect();
     let fastest = steps.iter().map(|&k| (step(k) * rate[k]).abs()).fold(0.0, f64::max);
     let limit = (RESIDUAL.jump * scatter(&apart)).max(RESIDUAL.least_jump * fastest);
     let jumping = steps.iter().zip(&apart).filter(|(_, apart)| **apart > limit);
@@ -87,7 +101,11 @@ mod tests {
             (Channel::X, (0..1000).map(x).collect()),
             (Channel::Y, (0..1000).map(noise).collect()),
         ];
-        Trial { t_s: (0..1000).map(|k| 0.1 * k as f64).collect(), channels: channels.into(), ..Trial::default() }
+        Trial {
+            t_s: (0..1000).map(|k| 0.1 * k as f64).collect(),
+            channels: channels.into(),
+            ..Trial::default()
+        }
     }
 
     #[test]

@@ -10,7 +10,15 @@ use sistership_estimate::refine::RefineError;
 ///
 /// # Errors
 /// Names the channel that the trial lacks.
-pub fn linearise(system: &ResidualSystem, record: &TrialReadings<'_>, detail: Detail) -> Result<Vec<Linearised>, RefineError> {
+pub fn linearise(
+    system: &ResidualSystem,
+    record: &TrialReadings<'_>,
+    detail: Detail,
+) -> Result<Vec<Linearised>, RefineError> {
     let path = RecordedPath::new(system, record)?;
-    Ok(record.parts.iter().map(|part| PathLineariser::new(system, &path, detail).walk(part)).collect())
+    Ok(record
+        .parts
+        .iter()
+        .map(|part| PathLineariser::new(system, &path, detail).walk(part))
+        .collect())
 }

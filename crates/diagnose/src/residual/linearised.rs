@@ -61,12 +61,18 @@ impl Linearised {
 
     /// All columns at given parameters, as one column.
     pub fn along(&self, parameters: &[f64]) -> Self {
-        let weighted = |row: &[f64]| row.iter().zip(parameters).map(|(value, by)| value * by).sum::<f64>();
+        let weighted =
+            |row: &[f64]| row.iter().zip(parameters).map(|(value, by)| value * by).sum::<f64>();
         let measured: Vec<f64> = self.measured.iter().map(|&column| parameters[column]).collect();
-        let said = |row: &[f64]| row.iter().zip(&measured).map(|(value, by)| value * by).sum::<f64>();
+        let said =
+            |row: &[f64]| row.iter().zip(&measured).map(|(value, by)| value * by).sum::<f64>();
         Self {
             sizes: Sizes { columns: 1, ..self.sizes },
-            accelerations: self.accelerations.chunks_exact(self.sizes.columns.max(1)).map(weighted).collect(),
+            accelerations: self
+                .accelerations
+                .chunks_exact(self.sizes.columns.max(1))
+                .map(weighted)
+                .collect(),
             by_column: self.by_column.chunks_exact(self.measured.len().max(1)).map(said).collect(),
             measured: if self.measured.is_empty() { Vec::new() } else { vec![0] },
             samples: self.samples.clone(),

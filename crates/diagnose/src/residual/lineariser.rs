@@ -52,7 +52,12 @@ impl TangentSweep {
         let mut lanes = vec![[0.0; LANES]; tape.inputs().len()];
         seeds.iter().enumerate().for_each(|(lane, seed)| lanes[seed.input()][lane] = 1.0);
         let inputs: Vec<usize> = seeds.iter().map(|seed| seed.input()).collect();
-        Self { seeds: seeds.to_vec(), lanes, reached: tape.depending_on(&inputs), tangents: Slots::default() }
+        Self {
+            seeds: seeds.to_vec(),
+            lanes,
+            reached: tape.depending_on(&inputs),
+            tangents: Slots::default(),
+        }
     }
 }
 
@@ -65,22 +70,32 @@ struct SampleLinearisation {
 
 impl<'a> PathLineariser<'a> {
     pub fn new(system: &'a ResidualSystem, path: &'a RecordedPath<'a>, detail: Detail) -> Self {
-        let sizes = Sizes { states: system.order(), axes: system.axes.len(), columns: system.columns.len() };
+        let sizes = Sizes {
+            states: system.order(),
+            axes: system.axes.len(),
+            columns: system.columns.len(),
+        };
         let states = STATES.iter().enumerate().filter_map(|(input, (name, _))| {
             let place = place_of(name);
             Some(TangentSeed::State(input, system.states.iter().position(|&state| state == place)?))
         });
         let states: Vec<TangentSeed> = states.filter(|_| detail == Detail::Whole).collect();
         let first = STATES.len() + system.inputs.len();
-        let parameters = (0..system.lagged.len()).map(|j| TangentSeed::Parameter(first + j, system.columns.nuisance.len() + j));
+        let parameters = (0..system.lagged.len())
+            .map(|j| TangentSeed::Parameter(first + j, system.columns.nuisance.len() + j));
         let parameters: Vec<TangentSeed> = parameters.collect();
-        let sweeps = states.chunks(LANES).chain(parameters.chunks(LANES)).map(|seeds| TangentSweep::new(system, seeds)).collect();
+        let sweeps = states
+            .chunks(LANES)
+            .chain(parameters.chunks(LANES))
+            .map(|seeds| TangentSweep::new(system, seeds))
+            .collect();
         Self { system, path, detail, sizes, point: Vec::new(), primal: Slots::default(), sweeps }
     }
 
     pub fn walk(mut self, part: &[usize]) -> Linearised {
         let trial = self.path.record.trial;
-        let recorded: Vec<usize> = (0..self.system.channels.len()).filter(|&c| self.path.said[c].is_some()).collect();
+        let recorded: Vec<usize> =
+            (0..self.system.channels.len()).filter(|&c| self.path.said[c].is_some()).collect();
         let channels = recorded.iter().map(|&c| self.system.channels[c]).collect();
         let (Sizes { states, axes, columns }, steps) = (self.sizes, part.len().saturating_sub(1));
         let mut out = Linearised {
@@ -113,9 +128,11 @@ impl<'a> PathLineariser<'a> {
     /// Columns of candidates that act on instruments.
     fn measuring(&self) -> Vec<usize> {
         let columns = &self.system.columns;
-        let acting = (0..columns.candidates.len()).filter(|&c| !columns.candidates[c].form.measures.is_empty());
+        let acting = (0..columns.candidates.len())
+            .filter(|&c| !columns.candidates[c].form.measures.is_empty());
         let water = self.system.frame == sistership_model::manifest::VelocityFrame::Water;
-        let seeing = (0..columns.candidates.len()).filter(|&c| water && !columns.candidates[c].form.sees.is_empty());
+        let seeing = (0..columns.candidates.len())
+            .filter(|&c| water && !columns.candidates[c].form.sees.is_empty());
         acting.chain(seeing).flat_map(|c| columns.places(c)).collect()
     }
 
@@ -149,14 +166,17 @@ impl<'a> PathLineariser<'a> {
         let force: Vec<f64> = motion.forces.iter().map(|&output| self.read(output)).collect();
         let added = |axis: usize| motion.additions[axis].map_or(0.0, |output| self.read(output));
         (0..self.sizes.axes)
-            .map(|row| (0..self.sizes.axes).map(|c| inverse[(row, c)] * force[c]).sum::<f64>() + added(row))
+            .map(|row| {
+                (0..self.sizes.axes).map(|c| inverse[(row, c)] * force[c]).sum::<f64>() + added(row)
+            })
             .collect()
     }
 
     fn inverse_mass(&self) -> DMatrix<f64> {
         let axes = self.sizes.axes;
         let entry = |output: &Option<usize>| output.map_or(0.0, |output| self.read(output));
-        let mass = DMatrix::from_row_iterator(axes, axes, self.system.motion.mass.iter().map(entry));
+        let mass =
+            DMatrix::from_row_iterator(axes, axes, self.system.motion.mass.iter().map(entry));
         mass.try_inverse().unwrap_or_else(|| DMatrix::from_element(axes, axes, f64::NAN))
     }
 
@@ -167,8 +187,11 @@ impl<'a> PathLineariser<'a> {
         let mut rate = self.solve(&inverse);
         rate.extend(self.system.motion.kinematics.iter().map(|&output| self.read(output)));
         let Sizes { states, axes, columns } = self.sizes;
-        let mut instant =
-            SampleLinearisation { rate, jacobian: vec![0.0; states * states], accelerations: vec![0.0; axes * columns] };
+        let mut instant = SampleLinearisation {
+            rate,
+            jacobian: vec![0.0; states * states],
+            accelerations: vec![0.0; axes * columns],
+        };
         self.differentiate(&inverse, &mut instant);
         self.regressors(&inverse, &mut instant);
         self.secants(k, &inverse, &mut instant);
@@ -179,16 +202,28 @@ impl<'a> PathLineariser<'a> {
         let motion = &self.system.motion;
         let Sizes { states, axes, columns } = self.sizes;
         for sweep in &mut self.sweeps {
-            motion.tape.tangents_among(&sweep.reached, &self.primal, &sweep.lanes, &mut sweep.tangents);
+            motion.tape.tangents_among(
+                &sweep.reached,
+                &self.primal,
+                &sweep.lanes,
+                &mut sweep.tangents,
+            );
             let read = |output: usize| motion.tape.read(output, &sweep.tangents);
-            let forces: Vec<Lanes<LANES>> = motion.forces.iter().map(|&output| read(output)).collect();
+            let forces: Vec<Lanes<LANES>> =
+                motion.forces.iter().map(|&output| read(output)).collect();
             for (lane, seed) in sweep.seeds.iter().enumerate() {
                 for row in 0..axes {
-                    let of_forces: f64 = (0..axes).map(|c| inverse[(row, c)] * forces[c][lane]).sum();
-                    let value = of_forces + motion.additions[row].map_or(0.0, |output| read(output)[lane]);
+                    let of_forces: f64 =
+                        (0..axes).map(|c| inverse[(row, c)] * forces[c][lane]).sum();
+                    let value =
+                        of_forces + motion.additions[row].map_or(0.0, |output| read(output)[lane]);
                     match *seed {
-                        TangentSeed::State(_, state) => instant.jacobian[row * states + state] = value,
-                        TangentSeed::Parameter(_, column) => instant.accelerations[row * columns + column] = value,
+                        TangentSeed::State(_, state) => {
+                            instant.jacobian[row * states + state] = value
+                        }
+                        TangentSeed::Parameter(_, column) => {
+                            instant.accelerations[row * columns + column] = value
+                        }
                     }
                 }
                 if let TangentSeed::State(_, state) = *seed {
@@ -213,9 +248,12 @@ impl<'a> PathLineariser<'a> {
                 kind => vec![(kind.axis(), self.system.regressors.read(column, &work)[0])],
             };
             for (axis, force) in forces {
-                let Some(axis) = self.system.axes.iter().position(|&known| known == axis) else { continue };
+                let Some(axis) = self.system.axes.iter().position(|&known| known == axis) else {
+                    continue;
+                };
                 for row in 0..self.sizes.axes {
-                    instant.accelerations[row * self.sizes.columns + column] += inverse[(row, axis)] * force;
+                    instant.accelerations[row * self.sizes.columns + column] +=
+                        inverse[(row, axis)] * force;
                 }
             }
         }
@@ -225,15 +263,27 @@ impl<'a> PathLineariser<'a> {
     fn heavier(&self, (row, column): (Axis, Axis), rate: &[f64]) -> Vec<(Axis, f64)> {
         let place = |axis: Axis| self.system.axes.iter().position(|&known| known == axis);
         let (Some(i), Some(j)) = (place(row), place(column)) else { return Vec::new() };
-        let diagonal = |i: usize| self.system.motion.mass[i * (self.sizes.axes + 1)].map_or(0.0, |output| self.read(output));
+        let diagonal = |i: usize| {
+            self.system.motion.mass[i * (self.sizes.axes + 1)]
+                .map_or(0.0, |output| self.read(output))
+        };
         let unit = (diagonal(i) * diagonal(j)).sqrt();
-        if i == j { vec![(row, -unit * rate[i])] } else { vec![(row, -unit * rate[j]), (column, -unit * rate[i])] }
+        if i == j {
+            vec![(row, -unit * rate[i])]
+        } else {
+            vec![(row, -unit * rate[j]), (column, -unit * rate[i])]
+        }
     }
 
     /// Parameters whose derivative at their absence says nothing, and lags: what they change at a distance, by it.
     fn secants(&mut self, k: usize, inverse: &DMatrix<f64>, instant: &mut SampleLinearisation) {
         let first = STATES.len() + self.system.inputs.len();
-        let parameters = self.system.columns.candidates.iter().flat_map(|c| c.at.iter().zip(c.form.parameters.values()));
+        let parameters = self
+            .system
+            .columns
+            .candidates
+            .iter()
+            .flat_map(|c| c.at.iter().zip(c.form.parameters.values()));
         for (j, (&value, parameter)) in parameters.enumerate() {
             let (input, moved, by) = match (&self.path.delayed[j], self.system.lagged[j]) {
                 (Some((longer, by)), Some(input)) => (STATES.len() + input, longer[k], *by),
@@ -248,7 +298,8 @@ impl<'a> PathLineariser<'a> {
             let there = self.solve(inverse);
             let column = self.system.columns.nuisance.len() + j;
             for (row, there) in there.iter().enumerate() {
-                instant.accelerations[row * self.sizes.columns + column] = (there - instant.rate[row]) / by;
+                instant.accelerations[row * self.sizes.columns + column] =
+                    (there - instant.rate[row]) / by;
             }
         }
     }
@@ -262,7 +313,9 @@ impl<'a> PathLineariser<'a> {
         out: &mut Linearised,
     ) {
         let dt = self.path.record.trial.t_s[next] - self.path.record.trial.t_s[k];
-        let mean = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| 0.5 * (x + y)).collect::<Vec<f64>>();
+        let mean = |a: &[f64], b: &[f64]| {
+            a.iter().zip(b).map(|(x, y)| 0.5 * (x + y)).collect::<Vec<f64>>()
+        };
         out.jacobian.extend(mean(&before.jacobian, &after.jacobian));
         out.accelerations.extend(mean(&before.accelerations, &after.accelerations));
         for (state, rate) in mean(&before.rate, &after.rate).into_iter().enumerate() {
@@ -273,13 +326,17 @@ impl<'a> PathLineariser<'a> {
 
     fn readings(&mut self, k: usize, rate: &[f64], recorded: &[usize], out: &mut Linearised) {
         let system = self.system;
-        let mut says: Vec<f64> = system.channels.iter().map(|&(_, place)| self.path.states[place][k]).collect();
+        let mut says: Vec<f64> =
+            system.channels.iter().map(|&(_, place)| self.path.states[place][k]).collect();
         if let Some(by_state) = &mut out.by_state {
             let inputs = self.path.instrument_inputs(system, k, &|state| rate[state]);
             let mut work = Slots::default();
             system.instruments.run(&inputs, &mut work);
-            system.says.iter().enumerate().for_each(|(output, &place)| says[place] = system.instruments.read(output, &work)[0]);
-            let jacobian = InstrumentJacobian::new(system, &work, inputs.len(), &out.measured, self.detail);
+            system.says.iter().enumerate().for_each(|(output, &place)| {
+                says[place] = system.instruments.read(output, &work)[0]
+            });
+            let jacobian =
+                InstrumentJacobian::new(system, &work, inputs.len(), &out.measured, self.detail);
             for &channel in recorded {
                 if self.detail == Detail::Whole {
                     by_state.extend(jacobian.by_state(system, channel));

@@ -34,7 +34,8 @@ const GAIN: f64 = 924.0;
 /// What sixth differences leave of a ship's motion is far below the noise of any instrument; their median is not moved
 /// by the few samples at which something jumps.
 pub fn scatter(records: &[TrialReadings<'_>], channel: Channel, every: usize) -> Option<f64> {
-    let mut magnitudes: Vec<f64> = records.iter().flat_map(|record| differences(record, channel, every)).collect();
+    let mut magnitudes: Vec<f64> =
+        records.iter().flat_map(|record| differences(record, channel, every)).collect();
     if magnitudes.is_empty() {
         return None;
     }
@@ -56,7 +57,8 @@ pub fn sparseness(records: &[TrialReadings<'_>]) -> usize {
 
 fn differences(record: &TrialReadings<'_>, channel: Channel, every: usize) -> Vec<f64> {
     let Some(values) = record.trial.channel(channel) else { return Vec::new() };
-    let difference = |window: &[usize]| SIXTH.iter().zip(window).map(|(c, &k)| c * values[k]).sum::<f64>().abs();
+    let difference =
+        |window: &[usize]| SIXTH.iter().zip(window).map(|(c, &k)| c * values[k]).sum::<f64>().abs();
     let of = |part: &Vec<usize>| {
         let taken: Vec<usize> = part.iter().copied().step_by(every).collect();
         taken.windows(7).map(difference).collect::<Vec<f64>>()

@@ -23,7 +23,10 @@ pub(super) struct RecordedPath<'a> {
 }
 
 impl<'a> RecordedPath<'a> {
-    pub fn new(system: &ResidualSystem, record: &'a TrialReadings<'a>) -> Result<Self, RefineError> {
+    pub fn new(
+        system: &ResidualSystem,
+        record: &'a TrialReadings<'a>,
+    ) -> Result<Self, RefineError> {
         for channel in [Channel::U, Channel::V, Channel::R] {
             record.need(channel)?;
         }
@@ -31,7 +34,8 @@ impl<'a> RecordedPath<'a> {
             record.need(Channel::Phi)?;
             record.need(Channel::P)?;
         }
-        let said: Vec<Option<&[f64]>> = system.channels.iter().map(|&(channel, _)| record.trial.channel(channel)).collect();
+        let said: Vec<Option<&[f64]>> =
+            system.channels.iter().map(|&(channel, _)| record.trial.channel(channel)).collect();
         let mut states = vec![vec![0.0; record.trial.len()]; system.order()];
         for (&(_, place), said) in system.channels.iter().zip(&said) {
             if let Some(said) = said {
@@ -59,17 +63,26 @@ impl<'a> RecordedPath<'a> {
         for k in 0..t_s.len() {
             let inputs = self.instrument_inputs(system, k, &|state| slope(t_s, &smooth[state], k));
             system.instruments.run(&inputs, &mut work);
-            for (output, &channel) in system.says.iter().enumerate().filter(|(_, channel)| self.said[**channel].is_some()) {
+            for (output, &channel) in
+                system.says.iter().enumerate().filter(|(_, channel)| self.said[**channel].is_some())
+            {
                 let state = system.channels[channel].1;
-                let beside = system.instruments.read(output, &work)[0] - inputs[of_instruments(system.states[state])][0];
+                let beside = system.instruments.read(output, &work)[0]
+                    - inputs[of_instruments(system.states[state])][0];
                 self.states[state][k] -= beside;
             }
         }
     }
 
-    pub fn instrument_inputs(&self, system: &ResidualSystem, k: usize, rate: &dyn Fn(usize) -> f64) -> Vec<Lanes<1>> {
+    pub fn instrument_inputs(
+        &self,
+        system: &ResidualSystem,
+        k: usize,
+        rate: &dyn Fn(usize) -> f64,
+    ) -> Vec<Lanes<1>> {
         let by_place = |values: &dyn Fn(usize) -> f64| {
-            let of = |place: usize| system.states.iter().position(|&s| s == place).map_or(0.0, values);
+            let of =
+                |place: usize| system.states.iter().position(|&s| s == place).map_or(0.0, values);
             INSTRUMENTS.map(of).map(|value| [value])
         };
         let mut inputs: Vec<Lanes<1>> = by_place(&|state| self.states[state][k]).to_vec();
@@ -102,17 +115,28 @@ impl RecordedPath<'_> {
 }
 
 /// Puts lags into effect and prepares their derivatives.
-fn delayed(system: &ResidualSystem, record: &TrialReadings<'_>, inputs: &mut [Vec<f64>]) -> Vec<Option<(Vec<f64>, f64)>> {
+fn delayed(
+    system: &ResidualSystem,
+    record: &TrialReadings<'_>,
+    inputs: &mut [Vec<f64>],
+) -> Vec<Option<(Vec<f64>, f64)>> {
     let t_s = &record.trial.t_s;
-    let parameters = system.columns.candidates.iter().flat_map(|c| c.at.iter().copied().zip(c.form.parameters.values()));
+    let parameters = system
+        .columns
+        .candidates
+        .iter()
+        .flat_map(|c| c.at.iter().copied().zip(c.form.parameters.values()));
     let mut derivatives = Vec::new();
     for ((value, parameter), input) in parameters.zip(&system.lagged) {
         let Some(input) = *input else {
             derivatives.push(None);
             continue;
         };
-        let more =
-            if value > 0.0 { RESIDUAL.lag_share * value + RESIDUAL.lag_step_s } else { parameter.start.max(RESIDUAL.lag_step_s) };
+        let more = if value > 0.0 {
+            RESIDUAL.lag_share * value + RESIDUAL.lag_step_s
+        } else {
+            parameter.start.max(RESIDUAL.lag_step_s)
+        };
         let longer = lagged(t_s, &inputs[input], value + more);
         if value > 0.0 {
             inputs[input] = lagged(t_s, &inputs[input], value);

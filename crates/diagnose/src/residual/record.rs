@@ -22,7 +22,9 @@ impl<'a> TrialReadings<'a> {
     /// a jump.
     pub fn new(trial: &'a Trial, least_step_s: f64, settles_s: f64) -> Self {
         let stride = (least_step_s / trial.interval_s().max(1e-9) + 1e-9).floor().max(1.0) as usize;
-        let parts = undisturbed(trial, settles_s).into_iter().map(|range| range.step_by(stride).collect::<Vec<usize>>());
+        let parts = undisturbed(trial, settles_s)
+            .into_iter()
+            .map(|range| range.step_by(stride).collect::<Vec<usize>>());
         Self { trial, parts: parts.filter(|part| part.len() > 2).collect(), every: 1 }
     }
 
@@ -41,7 +43,9 @@ impl<'a> TrialReadings<'a> {
     /// # Errors
     /// Names the trial and the channel.
     pub fn need(&self, channel: Channel) -> Result<&'a [f64], RefineError> {
-        self.trial.channel(channel).ok_or_else(|| RefineError::Channel { trial: self.trial.name.clone(), channel })
+        self.trial
+            .channel(channel)
+            .ok_or_else(|| RefineError::Channel { trial: self.trial.name.clone(), channel })
     }
 
     /// An input of a law over the samples of the trial: recorded, or constant.
@@ -58,11 +62,16 @@ impl<'a> TrialReadings<'a> {
         if let Some(column) = channel.and_then(|channel| trial.channel(channel)) {
             return Ok(column.to_vec());
         }
-        let constant = if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
+        let constant =
+            if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
         match (constant, channel) {
             (Some(value), _) => Ok(vec![value; trial.len()]),
-            (None, Some(channel)) => Err(RefineError::Channel { trial: trial.name.clone(), channel }),
-            (None, None) => Err(RefineError::Law(format!("no trial can record the input `{name}`"))),
+            (None, Some(channel)) => {
+                Err(RefineError::Channel { trial: trial.name.clone(), channel })
+            }
+            (None, None) => {
+                Err(RefineError::Law(format!("no trial can record the input `{name}`")))
+            }
         }
     }
 }

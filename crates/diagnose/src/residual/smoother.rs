@@ -33,16 +33,23 @@ struct FilterStep {
 pub fn smoothed(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) -> Smoothed {
     let steps = forward(linear, noise, discrepancies);
     let (states, axes) = (linear.sizes.states, linear.sizes.axes);
-    let mut smoothed = Smoothed { values: vec![vec![0.0; steps.len()]; axes], deviations: vec![vec![0.0; steps.len()]; axes] };
+    let mut smoothed = Smoothed {
+        values: vec![vec![0.0; steps.len()]; axes],
+        deviations: vec![vec![0.0; steps.len()]; axes],
+    };
     let mut later: Option<GaussianState> = None;
     for k in (0..steps.len()).rev() {
         let belief = match &later {
             Some(later) => backward(&steps[k].known, &steps[k + 1], later),
-            None => GaussianState { mean: steps[k].known.mean.clone(), covariance: steps[k].known.covariance.clone() },
+            None => GaussianState {
+                mean: steps[k].known.mean.clone(),
+                covariance: steps[k].known.covariance.clone(),
+            },
         };
         for axis in 0..axes {
             smoothed.values[axis][k] = belief.mean[states + axis];
-            smoothed.deviations[axis][k] = belief.covariance[(states + axis, states + axis)].max(0.0).sqrt();
+            smoothed.deviations[axis][k] =
+                belief.covariance[(states + axis, states + axis)].max(0.0).sqrt();
         }
         later = Some(belief);
     }
@@ -79,6 +86,7 @@ fn backward(known: &GaussianState, next: &FilterStep, later: &GaussianState) -> 
     // The gain is P F' Q^-1; all are symmetric but F.
     let gain = expected.solve(&(&next.transition * &known.covariance)).transpose();
     let mean = &known.mean + &gain * (&later.mean - &next.expected.mean);
-    let covariance = &known.covariance + &gain * (&later.covariance - &next.expected.covariance) * gain.transpose();
+    let covariance = &known.covariance
+        + &gain * (&later.covariance - &next.expected.covariance) * gain.transpose();
     GaussianState { mean, covariance }
 }

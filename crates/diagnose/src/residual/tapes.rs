@@ -58,12 +58,20 @@ impl ResidualSystem {
     ///
     /// # Errors
     /// Names what the model does not give.
-    pub fn new(model: &Model, law: &Law, columns: Columns, frame: VelocityFrame) -> Result<Self, RefineError> {
-        let forms: Vec<_> = columns.candidates.iter().map(|c| (c.effect.as_str(), &*c.form)).collect();
+    pub fn new(
+        model: &Model,
+        law: &Law,
+        columns: Columns,
+        frame: VelocityFrame,
+    ) -> Result<Self, RefineError> {
+        let forms: Vec<_> =
+            columns.candidates.iter().map(|c| (c.effect.as_str(), &*c.form)).collect();
         let equations = EquationsOfMotion::of_law(model, Cow::Owned(law.dressed(model, &forms)));
         let build = SystemBuilder { equations: &equations, columns: &columns };
         let (axes, states) = (equations.axes(), equations.states());
-        let channels = RECORDED.iter().filter_map(|&(channel, place)| Some((channel, states.iter().position(|&s| s == place)?)));
+        let channels = RECORDED.iter().filter_map(|&(channel, place)| {
+            Some((channel, states.iter().position(|&s| s == place)?))
+        });
         let channels: Vec<(Channel, usize)> = channels.collect();
         let (instruments, says) = build.instruments(&channels, frame)?;
         Ok(Self {
@@ -140,9 +148,14 @@ impl SystemBuilder<'_> {
         Ok(lowering.finish())
     }
 
-    fn instruments(&self, channels: &[(Channel, usize)], frame: VelocityFrame) -> Result<(Tape, Vec<usize>), RefineError> {
+    fn instruments(
+        &self,
+        channels: &[(Channel, usize)],
+        frame: VelocityFrame,
+    ) -> Result<(Tape, Vec<usize>), RefineError> {
         let law = self.equations.law();
-        let mut lowering = Lowering::new(self.equations, &[input_names(law), self.parameters()].concat());
+        let mut lowering =
+            Lowering::new(self.equations, &[input_names(law), self.parameters()].concat());
         let mut says = Vec::new();
         for (channel, expr) in readings(law, frame) {
             if let Some(place) = channels.iter().position(|(known, _)| *known == channel) {
@@ -158,8 +171,14 @@ impl SystemBuilder<'_> {
         let mut lagged = Vec::new();
         for candidate in &self.columns.candidates {
             for name in candidate.form.parameters.keys() {
-                let input = candidate.form.lags.iter().find(|(_, expr)| expr.names().contains(name.as_str()));
-                lagged.push(input.and_then(|(input, _)| self.equations.law().inputs.get_index_of(input)));
+                let input = candidate
+                    .form
+                    .lags
+                    .iter()
+                    .find(|(_, expr)| expr.names().contains(name.as_str()));
+                lagged.push(
+                    input.and_then(|(input, _)| self.equations.law().inputs.get_index_of(input)),
+                );
             }
         }
         lagged

@@ -53,7 +53,8 @@ pub(crate) struct ConstancyThresholds {
 }
 
 /// Constancy's values.
-pub(super) const CONSTANCY: ConstancyThresholds = ConstancyThresholds { pieces: 2, limit: 0.1, least_response: 1e-9 };
+pub(super) const CONSTANCY: ConstancyThresholds =
+    ConstancyThresholds { pieces: 2, limit: 0.1, least_response: 1e-9 };
 
 /// When two effects count as different.
 #[derive(Debug, Clone, Copy)]
@@ -68,4 +69,5 @@ pub(crate) struct ConfoundingThresholds {
 }
 
 /// Confounding's values.
-pub(super) const CONFOUNDING: ConfoundingThresholds = ConfoundingThresholds { apart_deg: 40.0, ridge: 1e-9 };
+pub(super) const CONFOUNDING: ConfoundingThresholds =
+    ConfoundingThresholds { apart_deg: 40.0, ridge: 1e-9 };

@@ -13,7 +13,9 @@ mod search;
 mod trials;
 
 use calibration::{CALIBRATION, CalibrationThresholds, DISCREPANCY, DiscrepancyThresholds};
-use effects::{CONFOUNDING, CONSTANCY, ConfoundingThresholds, ConstancyThresholds, EFFECT, EffectThresholds};
+use effects::{
+    CONFOUNDING, CONSTANCY, ConfoundingThresholds, ConstancyThresholds, EFFECT, EffectThresholds,
+};
 use remainder::{REMAINDER, RemainderThresholds};
 use search::{REFIT, RefitThresholds, SEARCH, SearchThresholds};
 use trials::{NEXT_TRIAL, NextTrialThresholds, SERIES, SeriesThresholds, TRIALS, TrialThresholds};

@@ -27,8 +27,14 @@ pub(crate) struct SearchThresholds {
 }
 
 /// The search's values.
-pub(super) const SEARCH: SearchThresholds =
-    SearchThresholds { judged: 6, companions: 3, joint_rounds: 2, rounds: 3, same: 0.5, exchange: 1.0 };
+pub(super) const SEARCH: SearchThresholds = SearchThresholds {
+    judged: 6,
+    companions: 3,
+    joint_rounds: 2,
+    rounds: 3,
+    same: 0.5,
+    exchange: 1.0,
+};
 
 /// The fit of the model that is given.
 #[derive(Debug, Clone, Copy)]
@@ -43,4 +49,5 @@ pub(crate) struct RefitThresholds {
 }
 
 /// The refit's values.
-pub(super) const REFIT: RefitThresholds = RefitThresholds { strengths: [1000.0, 100.0, 10.0, 1.0], difference: 0.1 };
+pub(super) const REFIT: RefitThresholds =
+    RefitThresholds { strengths: [1000.0, 100.0, 10.0, 1.0], difference: 0.1 };

@@ -19,7 +19,8 @@ pub(crate) struct TrialThresholds {
 }
 
 /// The trials' values.
-pub(super) const TRIALS: TrialThresholds = TrialThresholds { least_step: 0.02, settles: 0.2, restart: 10.0 };
+pub(super) const TRIALS: TrialThresholds =
+    TrialThresholds { least_step: 0.02, settles: 0.2, restart: 10.0 };
 
 /// Rudder and switching angle of a manoeuvre, deg; none of a turn.
 #[derive(Debug, Clone, Copy)]

@@ -17,7 +17,13 @@ fn inputs(names: &[String], law: &Law, revolutions: f64, t_s: f64) -> Vec<f64> {
     names.iter().map(value).collect()
 }
 
-fn plain(model: &Model, law: &Law, start: &StateVector, method: Method, revolutions: f64) -> StateVector {
+fn plain(
+    model: &Model,
+    law: &Law,
+    start: &StateVector,
+    method: Method,
+    revolutions: f64,
+) -> StateVector {
     let plant = Plant::new(model, law).unwrap();
     let mut work = Work::default();
     (0..200).fold(*start, |state, k| {
@@ -32,12 +38,14 @@ fn plain(model: &Model, law: &Law, start: &StateVector, method: Method, revoluti
 
 fn check(model: &Model, law: &Law, starts: [StateVector; 2], method: Method, revolutions: f64) {
     let system = CandidateSystem::new(model, law).unwrap();
-    let coefficients: Vec<f64> = system.names().iter().map(|name| model.coefficient(name)).collect();
+    let coefficients: Vec<f64> =
+        system.names().iter().map(|name| model.coefficient(name)).collect();
     let mut run = CandidateRun::<2>::new(&system);
     starts.iter().enumerate().for_each(|(lane, start)| run.start(lane, start));
     for k in 0..200 {
         let at = |fraction: f64| -> Vec<Lanes<2>> {
-            let now = inputs(system.input_names(), law, revolutions, STEP_S * (k as f64 + fraction));
+            let now =
+                inputs(system.input_names(), law, revolutions, STEP_S * (k as f64 + fraction));
             system.prepared(&now).into_iter().map(|value| [value; 2]).collect()
         };
         run.step(method, STEP_S, [&at(0.0), &at(0.5), &at(1.0)], &coefficients);
@@ -46,7 +54,12 @@ fn check(model: &Model, law: &Law, starts: [StateVector; 2], method: Method, rev
         let end = plain(model, law, start, method, revolutions);
         for (row, &place) in system.states().iter().enumerate() {
             let here = run.state(row)[lane];
-            assert!((here - end[place]).abs() < 1e-9 * (1.0 + end[place].abs()), "{} {place}: {here} {}", model.name, end[place]);
+            assert!(
+                (here - end[place]).abs() < 1e-9 * (1.0 + end[place].abs()),
+                "{} {place}: {here} {}",
+                model.name,
+                end[place]
+            );
         }
     }
 }
@@ -64,7 +77,9 @@ fn candidates_sail_as_plain_models() {
         let model = zoo.model(name).unwrap();
         let law = zoo.law(&model.law).unwrap();
         let (speed, n) = (model.speed_m_s.unwrap(), model.revolutions_rps.unwrap_or(1.0));
-        [Method::Rk4, Method::Euler].into_iter().for_each(|method| check(&model, law, starts(speed), method, n));
+        [Method::Rk4, Method::Euler]
+            .into_iter()
+            .for_each(|method| check(&model, law, starts(speed), method, n));
     }
 }
 

@@ -55,7 +55,9 @@ impl<'a> EquationsOfMotion<'a> {
         if model.effects.is_empty() {
             return Ok(Self::of_law(model, Cow::Borrowed(law)));
         }
-        let dressed = law.with_effects(model).map_err(|(field, message)| PlantError::Effect { field, message })?;
+        let dressed = law
+            .with_effects(model)
+            .map_err(|(field, message)| PlantError::Effect { field, message })?;
         Ok(Self::of_law(model, Cow::Owned(dressed)))
     }
 
@@ -76,7 +78,11 @@ impl<'a> EquationsOfMotion<'a> {
 
     /// What tapes of forces take: the states that formulas know, then the inputs of the law.
     pub fn names(&self) -> Vec<String> {
-        STATES.iter().map(|&(name, _)| name.to_owned()).chain(self.law.inputs.keys().cloned()).collect()
+        STATES
+            .iter()
+            .map(|&(name, _)| name.to_owned())
+            .chain(self.law.inputs.keys().cloned())
+            .collect()
     }
 
     /// The inputs of the law with their defaults.
@@ -101,8 +107,11 @@ impl<'a> EquationsOfMotion<'a> {
             return Some(Binding::Formula(expr.clone()));
         }
         let of_effect = self.law.dressing.parameters.get(name).copied();
-        let parameter = of_effect.or_else(|| self.model.parameters.get(name).map(|quantity| quantity.value));
-        parameter.or_else(|| particulars::value(&self.model.particulars, name)).map(Binding::Constant)
+        let parameter =
+            of_effect.or_else(|| self.model.parameters.get(name).map(|quantity| quantity.value));
+        parameter
+            .or_else(|| particulars::value(&self.model.particulars, name))
+            .map(Binding::Constant)
     }
 
     /// The names of the coefficients that the model has on an axis.
@@ -150,7 +159,13 @@ impl<'a> EquationsOfMotion<'a> {
 
     /// What effects add to the acceleration of an axis, m/s2 (rad/s2).
     pub fn addition(&self, axis: Axis) -> Option<Expr> {
-        let added = self.law.dressing.accelerations.iter().filter(|(of, _)| *of == axis).map(|(_, expr)| expr.clone());
+        let added = self
+            .law
+            .dressing
+            .accelerations
+            .iter()
+            .filter(|(of, _)| *of == axis)
+            .map(|(_, expr)| expr.clone());
         added.reduce(|sum, expr| Expr::Add(Box::new(sum), Box::new(expr)))
     }
 

@@ -66,7 +66,9 @@ impl<'e> Lowering<'e> {
     /// Names what the model does not give.
     pub fn additions(&mut self, axes: &[Axis]) -> Result<Vec<Option<usize>>, PlantError> {
         let equations = self.equations;
-        axes.iter().map(|&axis| equations.addition(axis).map(|sum| self.output(&sum)).transpose()).collect()
+        axes.iter()
+            .map(|&axis| equations.addition(axis).map(|sum| self.output(&sum)).transpose())
+            .collect()
     }
 
     /// The finished tape, without operations that no output needs.
@@ -81,5 +83,9 @@ impl<'e> Lowering<'e> {
 }
 
 fn missing(equations: &EquationsOfMotion<'_>, Unbound(name): Unbound) -> PlantError {
-    PlantError::Missing { law: equations.law().name.clone(), name, model: equations.model().name.clone() }
+    PlantError::Missing {
+        law: equations.law().name.clone(),
+        name,
+        model: equations.model().name.clone(),
+    }
 }

@@ -8,7 +8,10 @@ use crate::tape::Tape;
 
 /// Accelerations that unit forces cause; not a number where the matrix cannot be solved.
 pub fn mobility(n: usize, mass: impl Fn(usize, usize) -> f64) -> Matrix4<f64> {
-    let padded = Matrix4::from_fn(|i, j| if i < n && j < n { mass(i, j) } else { f64::from(u8::from(i == j)) });
+    let padded =
+        Matrix4::from_fn(
+            |i, j| if i < n && j < n { mass(i, j) } else { f64::from(u8::from(i == j)) },
+        );
     padded.lu().solve(&Matrix4::identity()).unwrap_or_else(|| Matrix4::repeat(f64::NAN))
 }
 
@@ -22,7 +25,8 @@ pub fn constant_mobility(
     tape: &Tape,
     mass: &[Option<usize>],
 ) -> Result<Option<Vec<f64>>, PlantError> {
-    let entries: Option<Vec<f64>> = mass.iter().map(|o| o.map_or(Some(0.0), |o| tape.constant_output(o))).collect();
+    let entries: Option<Vec<f64>> =
+        mass.iter().map(|o| o.map_or(Some(0.0), |o| tape.constant_output(o))).collect();
     let Some(entries) = entries else { return Ok(None) };
     let n = equations.axes().len();
     let solved = mobility(n, |i, j| entries[i * n + j]);

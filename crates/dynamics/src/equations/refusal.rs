@@ -17,7 +17,9 @@ pub enum PlantError {
         model: String,
     },
     /// The mass matrix cannot be solved.
-    #[error("the mass matrix of `{0}` is singular or not positive: check mass, inertia and added masses")]
+    #[error(
+        "the mass matrix of `{0}` is singular or not positive: check mass, inertia and added masses"
+    )]
     Mass(String),
     /// The mass matrix depends on the motion, and is to be differentiated.
     #[error("masses of law `{0}` change with the motion: no sensitivities")]

@@ -9,7 +9,11 @@ use crate::sensitivity::SensitiveSystem;
 
 /// What each view says of a model.
 fn refusals(model: &Model, law: &Law) -> [Option<PlantError>; 3] {
-    [Plant::new(model, law).err(), CandidateSystem::new(model, law).err(), SensitiveSystem::new(model, law).err()]
+    [
+        Plant::new(model, law).err(),
+        CandidateSystem::new(model, law).err(),
+        SensitiveSystem::new(model, law).err(),
+    ]
 }
 
 #[test]

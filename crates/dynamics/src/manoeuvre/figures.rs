@@ -18,10 +18,17 @@ pub struct Figure {
 impl StandardManoeuvres {
     /// Every figure, in an order that depends on what was sailed only.
     pub fn figures(&self) -> Vec<Figure> {
-        let plain = |name: String, unit: &str, value| Figure { name, unit: unit.to_owned(), value, pass: None };
+        let plain = |name: String, unit: &str, value| Figure {
+            name,
+            unit: unit.to_owned(),
+            value,
+            pass: None,
+        };
         let mut all = Vec::new();
         for turn in &self.turns {
-            let of = |what: &str, value| plain(format!("turn {} deg: {what}", turn.rudder_deg), "m", value);
+            let of = |what: &str, value| {
+                plain(format!("turn {} deg: {what}", turn.rudder_deg), "m", value)
+            };
             all.push(of("advance", turn.advance_m));
             all.push(of("transfer", turn.transfer_m));
             all.push(of("tactical diameter", turn.tactical_diameter_m));
@@ -29,7 +36,11 @@ impl StandardManoeuvres {
         }
         for zigzag in &self.zigzags {
             let of = |what: &str, unit, value| {
-                plain(format!("zigzag {}/{}: {what}", zigzag.rudder_deg, zigzag.switch_deg), unit, value)
+                plain(
+                    format!("zigzag {}/{}: {what}", zigzag.rudder_deg, zigzag.switch_deg),
+                    unit,
+                    value,
+                )
             };
             all.push(of("first overshoot", "deg", zigzag.first_overshoot_deg));
             all.push(of("second overshoot", "deg", zigzag.second_overshoot_deg));
@@ -38,7 +49,12 @@ impl StandardManoeuvres {
         all.push(plain("initial turning".to_owned(), "m", self.initial_turning_m));
         for criterion in &self.imo {
             let name = format!("IMO: {}", criterion.criterion);
-            all.push(Figure { name, unit: criterion.unit.clone(), value: criterion.value, pass: criterion.pass });
+            all.push(Figure {
+                name,
+                unit: criterion.unit.clone(),
+                value: criterion.value,
+                pass: criterion.pass,
+            });
         }
         all
     }

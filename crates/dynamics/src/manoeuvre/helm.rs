@@ -52,11 +52,11 @@ pub fn sail_together(
     settings: &ManoeuvreSettings,
 ) -> Vec<Result<Sailed, Stopped>> {
     let run = settings.run(ship, straight(settings.speed(ship)));
-    let mut helms: Vec<Helm> = manoeuvres.iter().map(|(manoeuvre, _)| Helm::new(ship, *manoeuvre, settings)).collect();
-    let sailings = helms
-        .iter_mut()
-        .zip(manoeuvres)
-        .map(|(helm, (_, coefficients))| Sailing::new(run, coefficients, |t_s, state: &StateVector| helm.order(t_s, state)));
+    let mut helms: Vec<Helm> =
+        manoeuvres.iter().map(|(manoeuvre, _)| Helm::new(ship, *manoeuvre, settings)).collect();
+    let sailings = helms.iter_mut().zip(manoeuvres).map(|(helm, (_, coefficients))| {
+        Sailing::new(run, coefficients, |t_s, state: &StateVector| helm.order(t_s, state))
+    });
     let sailings = sailings.collect();
     let sailed = sail_all(ship, settings.method, sailings);
     let one = |(helm, sailed): (Helm, crate::sailing::Sailed)| match sailed.stopped {
@@ -82,7 +82,13 @@ struct Helm {
 impl Helm {
     fn new(ship: &Ship, manoeuvre: Manoeuvre, settings: &ManoeuvreSettings) -> Self {
         let (n_rps, run_in_s) = (settings.revolutions(ship), settings.run_in_s);
-        Self { manoeuvre, n_rps, run_in_s, goes_on: settings.duration_s.is_some(), reversals_s: Vec::new() }
+        Self {
+            manoeuvre,
+            n_rps,
+            run_in_s,
+            goes_on: settings.duration_s.is_some(),
+            reversals_s: Vec::new(),
+        }
     }
 
     /// The order at a time; none when all is seen.

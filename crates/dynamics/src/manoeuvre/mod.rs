@@ -34,7 +34,14 @@ pub struct ManoeuvreSettings {
 
 impl Default for ManoeuvreSettings {
     fn default() -> Self {
-        Self { speed_m_s: None, n_rps: None, duration_s: None, step_s: None, method: Method::Rk4, run_in_s: 0.0 }
+        Self {
+            speed_m_s: None,
+            n_rps: None,
+            duration_s: None,
+            step_s: None,
+            method: Method::Rk4,
+            run_in_s: 0.0,
+        }
     }
 }
 
@@ -54,7 +61,12 @@ impl ManoeuvreSettings {
 
     fn run(&self, ship: &Ship, start: StateVector) -> Run {
         let default = 0.1_f64.min(0.02 * ship.lpp_m() / self.speed(ship));
-        Run { start, duration_s: self.duration(ship), step_s: self.step_s.unwrap_or(default), method: self.method }
+        Run {
+            start,
+            duration_s: self.duration(ship),
+            step_s: self.step_s.unwrap_or(default),
+            method: self.method,
+        }
     }
 }
 
@@ -71,7 +83,12 @@ pub fn turn(ship: &Ship, rudder_deg: f64, settings: &ManoeuvreSettings) -> Resul
 ///
 /// # Errors
 /// Says when and why the motion left the physical range.
-pub fn zigzag(ship: &Ship, rudder_deg: f64, switch_deg: f64, settings: &ManoeuvreSettings) -> Result<Zigzag, Stopped> {
+pub fn zigzag(
+    ship: &Ship,
+    rudder_deg: f64,
+    switch_deg: f64,
+    settings: &ManoeuvreSettings,
+) -> Result<Zigzag, Stopped> {
     let zigzag = Manoeuvre::Zigzag { rudder: rudder_deg, switch: switch_deg };
     Zigzag::of(sail_together(ship, &[(zigzag, &[])], settings).remove(0)?, rudder_deg, switch_deg)
 }

@@ -8,7 +8,9 @@ use sistership_model::validity::Excursion;
 use super::ManoeuvreSettings;
 use super::helm::{Manoeuvre, Sailed, sail_together};
 use crate::envelope::Stopped;
-use crate::metrics::{Criterion, TurningMetrics, ZigzagMetrics, criteria, initial_turning_distance};
+use crate::metrics::{
+    Criterion, TurningMetrics, ZigzagMetrics, criteria, initial_turning_distance,
+};
 use crate::ship::Ship;
 use crate::state::Trajectory;
 
@@ -72,7 +74,8 @@ impl Zigzag {
     /// # Errors
     /// Says that the track ends before the rudder is executed.
     pub fn of(sailed: Sailed, rudder_deg: f64, switch_deg: f64) -> Result<Self, Stopped> {
-        let metrics = ZigzagMetrics::of(&sailed.after, rudder_deg, switch_deg, &sailed.reversals_s).ok_or_else(nothing_sailed)?;
+        let metrics = ZigzagMetrics::of(&sailed.after, rudder_deg, switch_deg, &sailed.reversals_s)
+            .ok_or_else(nothing_sailed)?;
         Ok(Self { track: sailed.track, metrics })
     }
 }
@@ -102,9 +105,15 @@ pub fn standard(ship: &Ship, settings: &ManoeuvreSettings) -> StandardManoeuvres
 }
 
 /// Sails the standard manoeuvres with every sister in lockstep, each given by her coefficients, as [`standard`] would.
-pub fn standard_of_sisters(ship: &Ship, sisters: &[&[f64]], settings: &ManoeuvreSettings) -> Vec<StandardManoeuvres> {
-    let manoeuvres: Vec<(Manoeuvre, &[f64])> =
-        sisters.iter().flat_map(|coefficients| STANDARD.map(|manoeuvre| (manoeuvre, *coefficients))).collect();
+pub fn standard_of_sisters(
+    ship: &Ship,
+    sisters: &[&[f64]],
+    settings: &ManoeuvreSettings,
+) -> Vec<StandardManoeuvres> {
+    let manoeuvres: Vec<(Manoeuvre, &[f64])> = sisters
+        .iter()
+        .flat_map(|coefficients| STANDARD.map(|manoeuvre| (manoeuvre, *coefficients)))
+        .collect();
     let mut sailed = sail_together(ship, &manoeuvres, settings).into_iter();
     sisters.iter().map(|_| judged(ship, settings, sailed.by_ref().take(STANDARD.len()))).collect()
 }
@@ -131,7 +140,8 @@ fn judged(
             }
             Manoeuvre::Zigzag { rudder, switch } => {
                 let zigzag = sailed.and_then(|sailed| Zigzag::of(sailed, rudder, switch));
-                let zigzag = kept(ship, zigzag, &manoeuvre.to_string(), &mut all, |zigzag| &zigzag.track);
+                let zigzag =
+                    kept(ship, zigzag, &manoeuvre.to_string(), &mut all, |zigzag| &zigzag.track);
                 all.zigzags.extend(zigzag.map(|zigzag| zigzag.metrics));
             }
         }

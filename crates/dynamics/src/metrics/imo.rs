@@ -37,18 +37,40 @@ pub fn criteria(
 ) -> Vec<Criterion> {
     let hard = turns.iter().filter(|turn| turn.rudder_deg.abs() >= 34.5);
     let hard: Vec<&TurningMetrics> = hard.collect();
-    let lengths = |of: &dyn Fn(&TurningMetrics) -> Option<f64>| worst(hard.iter().map(|turn| of(turn))).map(|m| m / lpp_m);
+    let lengths = |of: &dyn Fn(&TurningMetrics) -> Option<f64>| {
+        worst(hard.iter().map(|turn| of(turn))).map(|m| m / lpp_m)
+    };
     let zigzag = |rudder: f64, of: &dyn Fn(&ZigzagMetrics) -> Option<f64>| {
-        worst(zigzags.iter().filter(|z| z.rudder_deg.abs() == rudder && z.switch_deg == rudder).map(of))
+        worst(
+            zigzags
+                .iter()
+                .filter(|z| z.rudder_deg.abs() == rudder && z.switch_deg == rudder)
+                .map(of),
+        )
     };
     let time = lpp_m / speed_m_s;
     vec![
         Criterion::new("advance", lengths(&|turn| turn.advance_m), 4.5, "L"),
         Criterion::new("tactical diameter", lengths(&|turn| turn.tactical_diameter_m), 5.0, "L"),
         Criterion::new("initial turning ability", initial_turning_m.map(|m| m / lpp_m), 2.5, "L"),
-        Criterion::new("10/10 first overshoot", zigzag(10.0, &|z| z.first_overshoot_deg), first_limit(time), "deg"),
-        Criterion::new("10/10 second overshoot", zigzag(10.0, &|z| z.second_overshoot_deg), second_limit(time), "deg"),
-        Criterion::new("20/20 first overshoot", zigzag(20.0, &|z| z.first_overshoot_deg), 25.0, "deg"),
+        Criterion::new(
+            "10/10 first overshoot",
+            zigzag(10.0, &|z| z.first_overshoot_deg),
+            first_limit(time),
+            "deg",
+        ),
+        Criterion::new(
+            "10/10 second overshoot",
+            zigzag(10.0, &|z| z.second_overshoot_deg),
+            second_limit(time),
+            "deg",
+        ),
+        Criterion::new(
+            "20/20 first overshoot",
+            zigzag(20.0, &|z| z.first_overshoot_deg),
+            25.0,
+            "deg",
+        ),
     ]
 }
 
@@ -86,8 +108,13 @@ mod tests {
 
     #[test]
     fn overshoot_limits_are_continuous() {
-        assert!((first_limit(10.0) - first_limit(9.999)).abs() < 0.01 && (first_limit(29.999) - 20.0).abs() < 0.01);
-        assert!((second_limit(10.0) - 25.0).abs() < 0.01 && (second_limit(29.999) - 40.0).abs() < 0.01);
+        assert!(
+            (first_limit(10.0) - first_limit(9.999)).abs() < 0.01
+                && (first_limit(29.999) - 20.0).abs() < 0.01
+        );
+        assert!(
+            (second_limit(10.0) - 25.0).abs() < 0.01 && (second_limit(29.999) - 40.0).abs() < 0.01
+        );
     }
 
     #[test]

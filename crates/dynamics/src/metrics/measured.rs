@@ -42,10 +42,14 @@ impl Recognised {
             return Some(Self { kind: Kind::Turn { rudder_deg }, start, reversals_s: Vec::new() });
         }
         let (rudder, switch) = name.strip_prefix("zigzag")?.trim().split_once('/')?;
-        let angle = |text: &str| text.trim().trim_end_matches("deg").trim().parse::<f64>().ok().map(f64::abs);
+        let angle = |text: &str| {
+            text.trim().trim_end_matches("deg").trim().parse::<f64>().ok().map(f64::abs)
+        };
         let kind = Kind::Zigzag { rudder_deg: side * angle(rudder)?, switch_deg: angle(switch)? };
-        let crossing = |k: &usize| delta[k - 1] * delta[*k] < 0.0 || (delta[*k] == 0.0 && delta[k - 1] != 0.0);
-        let reversals = (start + 1..delta.len()).filter(crossing).map(|k| trial.t_s[k] - trial.t_s[start]);
+        let crossing =
+            |k: &usize| delta[k - 1] * delta[*k] < 0.0 || (delta[*k] == 0.0 && delta[k - 1] != 0.0);
+        let reversals =
+            (start + 1..delta.len()).filter(crossing).map(|k| trial.t_s[k] - trial.t_s[start]);
         Some(Self { kind, start, reversals_s: reversals.collect() })
     }
 
@@ -57,9 +61,12 @@ impl Recognised {
             after.push(track.t_s[k] - track.t_s[first], track.states[k], track.n_rps[k]);
         }
         match self.kind {
-            Kind::Turn { rudder_deg } => TurningMetrics::of(&after, rudder_deg).map(ManoeuvreMetrics::Turn),
+            Kind::Turn { rudder_deg } => {
+                TurningMetrics::of(&after, rudder_deg).map(ManoeuvreMetrics::Turn)
+            }
             Kind::Zigzag { rudder_deg, switch_deg } => {
-                ZigzagMetrics::of(&after, rudder_deg, switch_deg, &self.reversals_s).map(ManoeuvreMetrics::Zigzag)
+                ZigzagMetrics::of(&after, rudder_deg, switch_deg, &self.reversals_s)
+                    .map(ManoeuvreMetrics::Zigzag)
             }
         }
     }
@@ -68,8 +75,10 @@ impl Recognised {
 /// A trial as a track; `None` where velocities, heading or position were not recorded.
 pub fn recorded_track(trial: &Trial) -> Option<Trajectory> {
     let needed = &RECORDED[..6];
-    let columns: Vec<(usize, &[f64])> =
-        needed.iter().filter_map(|&(channel, index)| Some((index, trial.channel(channel)?))).collect();
+    let columns: Vec<(usize, &[f64])> = needed
+        .iter()
+        .filter_map(|&(channel, index)| Some((index, trial.channel(channel)?)))
+        .collect();
     if columns.len() < needed.len() {
         return None;
     }
@@ -104,12 +113,18 @@ mod tests {
     fn trial(manoeuvre: &str, delta_deg: &[f64]) -> Trial {
         let delta: Vec<f64> = delta_deg.iter().map(|d| d.to_radians()).collect();
         let t_s = (0..delta.len()).map(|k| k as f64).collect();
-        Trial { t_s, channels: [(Channel::Delta, delta)].into(), manoeuvre: Some(manoeuvre.into()), ..Trial::default() }
+        Trial {
+            t_s,
+            channels: [(Channel::Delta, delta)].into(),
+            manoeuvre: Some(manoeuvre.into()),
+            ..Trial::default()
+        }
     }
 
     #[test]
     fn a_zigzag_is_recognised_with_its_reversals() {
-        let trial = trial("zigzag 10/5", &[0.0, 0.0, 5.0, 10.0, 10.0, 2.0, -8.0, -10.0, -10.0, 3.0, 10.0]);
+        let trial =
+            trial("zigzag 10/5", &[0.0, 0.0, 5.0, 10.0, 10.0, 2.0, -8.0, -10.0, -10.0, 3.0, 10.0]);
         let found = Recognised::of(&trial).unwrap();
         assert_eq!((found.start, found.reversals_s), (2, vec![4.0, 7.0]));
         assert_eq!(found.kind, Kind::Zigzag { rudder_deg: 10.0, switch_deg: 5.0 });
@@ -117,8 +132,12 @@ mod tests {
 
     #[test]
     fn a_turn_has_the_rudder_it_ends_with() {
-        let found = Recognised::of(&trial("turn", &[0.0, -3.0, -12.0, -12.0, -12.0, -12.0])).unwrap();
-        assert_eq!((found.start, found.kind), (1, Kind::Turn { rudder_deg: (-12_f64.to_radians()).to_degrees() }));
+        let found =
+            Recognised::of(&trial("turn", &[0.0, -3.0, -12.0, -12.0, -12.0, -12.0])).unwrap();
+        assert_eq!(
+            (found.start, found.kind),
+            (1, Kind::Turn { rudder_deg: (-12_f64.to_radians()).to_degrees() })
+        );
         assert_eq!(Recognised::of(&trial("random", &[0.0, 5.0])), None);
     }
 }

@@ -32,7 +32,9 @@ impl TurningMetrics {
         let seen = View::new(first, rudder_deg);
         let along = |state: &StateVector| seen.along(state);
         let across = |state: &StateVector| seen.across(state);
-        let largest = |of: &dyn Fn(&StateVector) -> f64| track.states.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+        let largest = |of: &dyn Fn(&StateVector) -> f64| {
+            track.states.iter().map(of).fold(f64::NEG_INFINITY, f64::max)
+        };
         let rate = last[at::R].abs();
         Some(Self {
             rudder_deg,
@@ -49,7 +51,11 @@ impl TurningMetrics {
 
 /// The distance sailed until the heading has changed by `change_deg`, m; with 10 deg of rudder and of change, IMO's
 /// initial turning ability.
-pub fn initial_turning_distance(track: &Trajectory, rudder_deg: f64, change_deg: f64) -> Option<f64> {
+pub fn initial_turning_distance(
+    track: &Trajectory,
+    rudder_deg: f64,
+    change_deg: f64,
+) -> Option<f64> {
     let first = track.states.first()?;
     let mut sailed = vec![0.0];
     for pair in track.states.windows(2) {
@@ -89,13 +95,20 @@ impl View {
 
     /// The sample after which the heading has changed by an angle, and how far between the two samples.
     fn crossing(&self, track: &Trajectory, change_deg: f64) -> Option<(usize, f64)> {
-        let turned = |state: &StateVector| self.side * (state[at::PSI] - self.origin[at::PSI]) - change_deg.to_radians();
+        let turned = |state: &StateVector| {
+            self.side * (state[at::PSI] - self.origin[at::PSI]) - change_deg.to_radians()
+        };
         let k = track.states.iter().position(|state| turned(state) >= 0.0).filter(|&k| k > 0)?;
         let (before, after) = (turned(&track.states[k - 1]), turned(&track.states[k]));
         Some((k, before / (before - after)))
     }
 
-    fn at_turn(&self, track: &Trajectory, change_deg: f64, of: &dyn Fn(&StateVector) -> f64) -> Option<f64> {
+    fn at_turn(
+        &self,
+        track: &Trajectory,
+        change_deg: f64,
+        of: &dyn Fn(&StateVector) -> f64,
+    ) -> Option<f64> {
         let (k, w) = self.crossing(track, change_deg)?;
         let (before, after) = (of(&track.states[k - 1]), of(&track.states[k]));
         Some(before + w * (after - before))

@@ -23,7 +23,12 @@ pub struct ZigzagMetrics {
 
 impl ZigzagMetrics {
     /// From a track that starts at the first execution, and the times of the reversals, s.
-    pub fn of(track: &Trajectory, rudder_deg: f64, switch_deg: f64, reversals_s: &[f64]) -> Option<Self> {
+    pub fn of(
+        track: &Trajectory,
+        rudder_deg: f64,
+        switch_deg: f64,
+        reversals_s: &[f64],
+    ) -> Option<Self> {
         let start = track.states.first()?[at::PSI];
         let end = *track.t_s.last()?;
         let side = if rudder_deg < 0.0 { -1.0 } else { 1.0 };
@@ -31,11 +36,14 @@ impl ZigzagMetrics {
             let from = *reversals_s.get(index)?;
             let until = reversals_s.get(index + 1).copied().unwrap_or(end);
             let side = if index.is_multiple_of(2) { side } else { -side };
-            let window = track.t_s.iter().zip(&track.states).filter(|(t, _)| (from..=until).contains(*t));
-            let swing: Vec<f64> = window.map(|(_, state)| side * (state[at::PSI] - start).to_degrees()).collect();
+            let window =
+                track.t_s.iter().zip(&track.states).filter(|(t, _)| (from..=until).contains(*t));
+            let swing: Vec<f64> =
+                window.map(|(_, state)| side * (state[at::PSI] - start).to_degrees()).collect();
             let peak = swing.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             // The peak must lie inside: a heading still growing at the end of the record has no overshoot yet.
-            (swing.len() > 2 && swing.last().is_some_and(|last| *last < peak)).then_some(peak - switch_deg)
+            (swing.len() > 2 && swing.last().is_some_and(|last| *last < peak))
+                .then_some(peak - switch_deg)
         };
         Some(Self {
             rudder_deg,

@@ -61,7 +61,12 @@ impl Plant {
 
     /// The rates of change of the states of several ships, each with her own inputs and open coefficients. `inputs` has at
     /// least as many as the law takes.
-    pub fn rates<const N: usize>(&self, states: &States<N>, inputs: &[Lanes<N>], room: &mut Work<N>) -> States<N> {
+    pub fn rates<const N: usize>(
+        &self,
+        states: &States<N>,
+        inputs: &[Lanes<N>],
+        room: &mut Work<N>,
+    ) -> States<N> {
         room.fill(states, &inputs[..self.input_names.len()]);
         self.tape.run(&room.point, &mut room.work);
         let mut rates = [[0.0; N]; 9];
@@ -71,14 +76,17 @@ impl Plant {
     }
 
     fn accelerate<const N: usize>(&self, work: &[Lanes<N>], rates: &mut States<N>) {
-        let read = |output: Option<usize>| output.map_or([0.0; N], |output| self.tape.read(output, work));
+        let read =
+            |output: Option<usize>| output.map_or([0.0; N], |output| self.tape.read(output, work));
         let forces = self.layout.forces.map(read);
         let accelerations = match &self.mobility {
             Some(mobility) => product(mobility, &forces),
             None => self.solved(work, &forces),
         };
-        for ((place, acceleration), output) in
-            [at::U, at::V, at::P, at::R].into_iter().zip(accelerations).zip(self.layout.accelerations)
+        for ((place, acceleration), output) in [at::U, at::V, at::P, at::R]
+            .into_iter()
+            .zip(accelerations)
+            .zip(self.layout.accelerations)
         {
             let added = read(output);
             rates[place] = std::array::from_fn(|lane| acceleration[lane] + added[lane]);
@@ -91,10 +99,15 @@ impl Plant {
         for lane in 0..N {
             let entry = |row: usize, column: usize| {
                 let output = self.layout.mass[row][column];
-                output.map_or(f64::from(u8::from(row == column)), |output| self.tape.at(output, work)[lane])
+                output.map_or(f64::from(u8::from(row == column)), |output| {
+                    self.tape.at(output, work)[lane]
+                })
             };
             let own = Vector4::from_fn(|row, _| forces[row][lane]);
-            let solved = Matrix4::from_fn(entry).lu().solve(&own).unwrap_or_else(|| Vector4::repeat(f64::NAN));
+            let solved = Matrix4::from_fn(entry)
+                .lu()
+                .solve(&own)
+                .unwrap_or_else(|| Vector4::repeat(f64::NAN));
             out.iter_mut().zip(solved.iter()).for_each(|(out, value)| out[lane] = *value);
         }
         out
@@ -112,7 +125,9 @@ impl Plant {
         if self.has_roll() {
             rates[at::PHI] = states[at::P];
         }
-        for (place, output) in [at::X, at::Y, at::PSI, at::PHI].into_iter().zip(self.layout.kinematics) {
+        for (place, output) in
+            [at::X, at::Y, at::PSI, at::PHI].into_iter().zip(self.layout.kinematics)
+        {
             output.into_iter().for_each(|output| rates[place] = self.tape.read(output, work));
         }
     }

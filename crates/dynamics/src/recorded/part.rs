@@ -30,10 +30,28 @@ pub struct Part<'a> {
 }
 
 impl<'a> Part<'a> {
-    pub fn new(trial: usize, record: &'a Record<'a>, coefficients: &'a [f64], part: Range<usize>, longest_s: f64) -> Self {
+    pub fn new(
+        trial: usize,
+        record: &'a Record<'a>,
+        coefficients: &'a [f64],
+        part: Range<usize>,
+        longest_s: f64,
+    ) -> Self {
         let (track, samples) = (Trajectory::default(), Vec::with_capacity(part.len()));
         let sample = part.start;
-        Self { trial, record, coefficients, part, longest_s, sample, taken: 0, steps: 0, track, samples, stopped: None }
+        Self {
+            trial,
+            record,
+            coefficients,
+            part,
+            longest_s,
+            sample,
+            taken: 0,
+            steps: 0,
+            track,
+            samples,
+            stopped: None,
+        }
     }
 
     /// Adds what was simulated to that of its trial.
@@ -93,7 +111,8 @@ impl Passage for Part<'_> {
     }
 
     fn inputs(&self, _: &Ship, stage: Stage, _: f64) -> Inputs {
-        self.record.inputs_at(self.sample, (self.taken as f64 + stage.fraction()) / self.steps as f64)
+        self.record
+            .inputs_at(self.sample, (self.taken as f64 + stage.fraction()) / self.steps as f64)
     }
 
     fn rudder_rate(&self, _: &Ship, _: f64) -> f64 {

@@ -30,17 +30,33 @@ pub struct Record<'a> {
 
 impl<'a> Record<'a> {
     pub fn new(ship: &Ship, trial: &'a Trial) -> Result<Self, MissingChannel> {
-        let need = |channel| trial.channel(channel).ok_or_else(|| MissingChannel { trial: trial.name.clone(), channel });
+        let need = |channel| {
+            trial
+                .channel(channel)
+                .ok_or_else(|| MissingChannel { trial: trial.name.clone(), channel })
+        };
         // Velocities must be known at the start of a part; heading and position start at zero where they are not.
         for (channel, _) in &RECORDED[..3] {
             need(*channel)?;
         }
-        let start = RECORDED.iter().filter_map(|&(channel, index)| Some((index, trial.channel(channel)?))).collect();
-        let lag_s = |place: usize| ship.lags_s().iter().find(|(of, _)| *of == place).map(|&(_, lag_s)| lag_s);
+        let start = RECORDED
+            .iter()
+            .filter_map(|&(channel, index)| Some((index, trial.channel(channel)?)))
+            .collect();
+        let lag_s = |place: usize| {
+            ship.lags_s().iter().find(|(of, _)| *of == place).map(|&(_, lag_s)| lag_s)
+        };
         let inputs = ship.law_inputs().enumerate();
-        let inputs =
-            inputs.map(|(place, (name, default))| input(trial, name, default, lag_s(place))).collect::<Result<_, _>>()?;
-        Ok(Self { trial, delta: need(Channel::Delta)?, n: trial.channel(Channel::N), inputs, start })
+        let inputs = inputs
+            .map(|(place, (name, default))| input(trial, name, default, lag_s(place)))
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            trial,
+            delta: need(Channel::Delta)?,
+            n: trial.channel(Channel::N),
+            inputs,
+            start,
+        })
     }
 
     pub fn state_at(&self, sample: usize) -> StateVector {
@@ -69,18 +85,27 @@ fn input<'a>(
 ) -> Result<Result<MonotoneCubic<'a>, f64>, MissingChannel> {
     if name == TIME {
         let start = trial.t_s.first().copied().unwrap_or_default();
-        return Ok(Ok(MonotoneCubic::new(&trial.t_s, trial.t_s.iter().map(|t| t - start).collect::<Vec<f64>>())));
+        return Ok(Ok(MonotoneCubic::new(
+            &trial.t_s,
+            trial.t_s.iter().map(|t| t - start).collect::<Vec<f64>>(),
+        )));
     }
     let channel = input_channel(name);
     if let Some(column) = channel.and_then(|channel| trial.channel(channel)) {
         return Ok(Ok(match lag_s {
-            Some(lag_s) if lag_s > 0.0 => MonotoneCubic::new(&trial.t_s, lagged(&trial.t_s, column, lag_s)),
+            Some(lag_s) if lag_s > 0.0 => {
+                MonotoneCubic::new(&trial.t_s, lagged(&trial.t_s, column, lag_s))
+            }
             _ => MonotoneCubic::new(&trial.t_s, column),
         }));
     }
-    let constant = if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
+    let constant =
+        if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
     match (constant, channel) {
         (Some(value), _) => Ok(Err(value)),
-        (None, channel) => Err(MissingChannel { trial: trial.name.clone(), channel: channel.unwrap_or(Channel::Delta) }),
+        (None, channel) => Err(MissingChannel {
+            trial: trial.name.clone(),
+            channel: channel.unwrap_or(Channel::Delta),
+        }),
     }
 }

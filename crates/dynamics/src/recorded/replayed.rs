@@ -22,6 +22,12 @@ pub struct Replay {
 
 impl Replay {
     pub(crate) fn nothing(has_roll: bool) -> Self {
-        Self { track: Trajectory::default(), samples: Vec::new(), stopped: None, has_roll, outside: None }
+        Self {
+            track: Trajectory::default(),
+            samples: Vec::new(),
+            stopped: None,
+            has_roll,
+            outside: None,
+        }
     }
 }

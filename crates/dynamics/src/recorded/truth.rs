@@ -16,7 +16,12 @@ pub fn as_true_instruments_say(ship: &Ship, trial: &Trial) -> Result<Trial, Miss
     let record = Record::new(ship, trial)?;
     let (mut truth, mut work) = (trial.clone(), Work::default());
     for sample in 0..trial.len() {
-        let state = ship.truth(trial.velocity, &record.state_at(sample), &record.inputs_at(sample, 0.0), &mut work);
+        let state = ship.truth(
+            trial.velocity,
+            &record.state_at(sample),
+            &record.inputs_at(sample, 0.0),
+            &mut work,
+        );
         for (channel, place) in RECORDED {
             if let Some(column) = truth.channels.get_mut(&channel) {
                 column[sample] = state[place];

@@ -45,7 +45,8 @@ struct Room<const L: usize> {
 impl<'a, const L: usize> SensitiveRun<'a, L> {
     /// Of nothing yet; every lane must be started.
     pub fn new(system: &'a SensitiveSystem) -> Self {
-        let (order, axes, count) = (system.states.len(), system.axes.len(), system.regressors.len());
+        let (order, axes, count) =
+            (system.states.len(), system.axes.len(), system.regressors.len());
         let columns = count + order;
         let stage = || Stage {
             rate: vec![[0.0; L]; order],
@@ -64,7 +65,14 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
             reach: std::array::from_fn(|_| vec![[0.0; L]; order * axes]),
         };
         let sensitivities = vec![0.0; L * order * columns + WIDE];
-        Self { system, states: vec![[0.0; L]; order], sensitivities, columns, stages: std::array::from_fn(|_| stage()), room }
+        Self {
+            system,
+            states: vec![[0.0; L]; order],
+            sensitivities,
+            columns,
+            stages: std::array::from_fn(|_| stage()),
+            room,
+        }
     }
 
     /// Starts a lane anew at a state: sensitivities to coefficients are zero, those to the starting state one.
@@ -74,7 +82,8 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
             self.states[row][lane] = state[place];
         }
         let count = self.columns - order;
-        let own = &mut self.sensitivities[lane * order * self.columns..(lane + 1) * order * self.columns];
+        let own =
+            &mut self.sensitivities[lane * order * self.columns..(lane + 1) * order * self.columns];
         own.fill(0.0);
         (0..order).for_each(|row| own[row * self.columns + count + row] = 1.0);
     }
@@ -82,7 +91,11 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
     /// The state of a lane; what does not move is zero.
     pub fn state(&self, lane: usize) -> StateVector {
         let mut state = StateVector::zeros();
-        self.system.states.iter().zip(&self.states).for_each(|(&place, lanes)| state[place] = lanes[lane]);
+        self.system
+            .states
+            .iter()
+            .zip(&self.states)
+            .for_each(|(&place, lanes)| state[place] = lanes[lane]);
         state
     }
 
@@ -112,7 +125,9 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
     }
 
     fn rk4(&mut self, h: f64, [start, middle, end]: [&[Lanes<L>]; 3]) {
-        for (i, (reach, inputs)) in [(0.0, start), (0.5 * h, middle), (0.5 * h, middle), (h, end)].into_iter().enumerate() {
+        for (i, (reach, inputs)) in
+            [(0.0, start), (0.5 * h, middle), (0.5 * h, middle), (h, end)].into_iter().enumerate()
+        {
             self.stage(i, reach, inputs);
         }
         self.advance_states(|[a, b, c, d]| h / 6.0 * (a + 2.0 * (b + c) + d));
@@ -196,7 +211,9 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         let (size, count) = (order * columns, columns - order);
         let Self { system, sensitivities, stages: pushing, room, .. } = self;
         let own = &mut sensitivities[lane * size..(lane + 1) * size + WIDE];
-        let pushing: [&[f64]; 4] = std::array::from_fn(|i| &pushing[i].regressors[lane * count..(lane + 1) * count + WIDE]);
+        let pushing: [&[f64]; 4] = std::array::from_fn(|i| {
+            &pushing[i].regressors[lane * count..(lane + 1) * count + WIDE]
+        });
         let starting = count..columns;
         for (axis, range) in system.of_axis.iter().chain(std::iter::once(&starting)).enumerate() {
             // Where she started pushes no more.
@@ -255,7 +272,13 @@ impl<const L: usize> Stage<L> {
     }
 
     /// Adds a multiple of a value with its slopes to the rate of a state.
-    fn add(&mut self, row: usize, factor: &Lanes<L>, sloped: &Sloped, read: &impl Fn(usize) -> Lanes<L>) {
+    fn add(
+        &mut self,
+        row: usize,
+        factor: &Lanes<L>,
+        sloped: &Sloped,
+        read: &impl Fn(usize) -> Lanes<L>,
+    ) {
         let value = read(sloped.value);
         (0..L).for_each(|lane| self.rate[row][lane] += factor[lane] * value[lane]);
         for &(column, output) in &sloped.slopes {

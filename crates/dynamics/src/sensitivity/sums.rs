@@ -33,7 +33,13 @@ impl Sums {
 
     /// Replaces some columns of rows that lie one after the other, `stride` apart, by the sums of them and of `others`.
     #[inline(always)]
-    pub fn replace(&self, own: &mut [f64], stride: usize, others: &[&[f64]], columns: Range<usize>) {
+    pub fn replace(
+        &self,
+        own: &mut [f64],
+        stride: usize,
+        others: &[&[f64]],
+        columns: Range<usize>,
+    ) {
         let mut block = [[0.0; WIDE]; TERMS];
         let mut from = columns.start;
         while from < columns.end {
@@ -76,7 +82,9 @@ mod tests {
     #[test]
     fn rows_are_replaced_in_some_columns_and_kept_in_others() {
         const STRIDE: usize = 41;
-        let row = |of: f64, length: usize| (0..length).map(|k| (of * k as f64).sin()).collect::<Vec<f64>>();
+        let row = |of: f64, length: usize| {
+            (0..length).map(|k| (of * k as f64).sin()).collect::<Vec<f64>>()
+        };
         let (own, other) = (row(0.3, 2 * STRIDE + WIDE), row(1.1, STRIDE + WIDE));
         let mut sums = Sums::new(2);
         [(0, 1, 0.5), (0, 0, 0.0), (0, 2, -2.0), (1, 1, 1.0), (1, 0, 3.0)]
@@ -87,7 +95,8 @@ mod tests {
             sums.replace(&mut out, STRIDE, &[&other], columns.clone());
             for k in 0..STRIDE {
                 let (a, b, inside) = (own[k], own[STRIDE + k], columns.contains(&k));
-                let expected = if inside { [0.5 * b - 2.0 * other[k], b + 3.0 * a] } else { [a, b] };
+                let expected =
+                    if inside { [0.5 * b - 2.0 * other[k], b + 3.0 * a] } else { [a, b] };
                 assert_eq!([out[k], out[STRIDE + k]], expected, "column {k} of {columns:?}");
             }
             assert_eq!(out[2 * STRIDE..], own[2 * STRIDE..]);

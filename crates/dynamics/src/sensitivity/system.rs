@@ -7,7 +7,9 @@ use sistership_model::coefficient::Axis;
 use sistership_model::formula::Expr;
 use sistership_model::law::Law;
 
-use crate::equations::{Attitude, Coefficients, EquationsOfMotion, Lowering, PlantError, constant_mobility, mobility};
+use crate::equations::{
+    Attitude, Coefficients, EquationsOfMotion, Lowering, PlantError, constant_mobility, mobility,
+};
 use crate::plant::check_inputs;
 use crate::tape::{Lanes, Tape};
 
@@ -51,7 +53,8 @@ impl SensitiveSystem {
         let equations = EquationsOfMotion::new(model, law)?;
         check_inputs(equations.law())?;
         equations.without_lags_or_instruments("sensitivities")?;
-        Builder { equations: &equations, lowering: Lowering::new(&equations, &equations.names()) }.build()
+        Builder { equations: &equations, lowering: Lowering::new(&equations, &equations.names()) }
+            .build()
     }
 
     /// The coefficients, in the order of the sensitivities' columns.
@@ -77,7 +80,9 @@ impl SensitiveSystem {
         }
         let n = self.axes.len();
         for lane in 0..L {
-            let entry = |output: Option<usize>| output.map_or(0.0, |output| self.tape.read(output, work)[lane]);
+            let entry = |output: Option<usize>| {
+                output.map_or(0.0, |output| self.tape.read(output, work)[lane])
+            };
             let solved = mobility(n, |i, j| entry(self.mass[i * n + j]));
             out.iter_mut().enumerate().for_each(|(k, out)| out[lane] = solved[(k / n, k % n)]);
         }
@@ -99,10 +104,14 @@ struct Regressors {
 
 impl Builder<'_> {
     fn build(mut self) -> Result<SensitiveSystem, PlantError> {
-        let (equations, axes, states) = (self.equations, self.equations.axes(), self.equations.states());
+        let (equations, axes, states) =
+            (self.equations, self.equations.axes(), self.equations.states());
         let forces = axes.iter().map(|&axis| self.force(axis)).collect::<Result<_, _>>()?;
         let additions = axes.iter().map(|&axis| self.addition(axis)).collect::<Result<_, _>>()?;
-        let kinematics = states[axes.len()..].iter().map(|&state| self.kinematic(state)).collect::<Result<_, _>>()?;
+        let kinematics = states[axes.len()..]
+            .iter()
+            .map(|&state| self.kinematic(state))
+            .collect::<Result<_, _>>()?;
         let mass = self.mass()?;
         let Regressors { names, of_axis, outputs: regressors } = self.regressors()?;
         let tape = self.lowering.finish();
@@ -127,7 +136,9 @@ impl Builder<'_> {
 
     fn sloped(&mut self, expr: &Expr) -> Result<Sloped, PlantError> {
         let value = self.lowering.output(expr)?;
-        let by = |(row, &place): (usize, &usize)| Some((row, self.lowering.derivative(value, NAMES[place])?));
+        let by = |(row, &place): (usize, &usize)| {
+            Some((row, self.lowering.derivative(value, NAMES[place])?))
+        };
         let slopes = self.equations.states().iter().enumerate().filter_map(by).collect();
         Ok(Sloped { value, slopes })
     }
@@ -150,9 +161,13 @@ impl Builder<'_> {
     fn mass(&mut self) -> Result<Vec<Option<usize>>, PlantError> {
         let (axes, states) = (self.equations.axes(), self.equations.states());
         let mut all = Vec::new();
-        for (&row, &column) in axes.iter().flat_map(|row| axes.iter().map(move |column| (row, column))) {
+        for (&row, &column) in
+            axes.iter().flat_map(|row| axes.iter().map(move |column| (row, column)))
+        {
             let output = self.lowering.mass(row, column)?;
-            if output.is_some_and(|o| states.iter().any(|&s| self.lowering.derivative(o, NAMES[s]).is_some())) {
+            if output.is_some_and(|o| {
+                states.iter().any(|&s| self.lowering.derivative(o, NAMES[s]).is_some())
+            }) {
                 return Err(PlantError::MovingMass(self.equations.law().name.clone()));
             }
             all.push(output);

@@ -53,7 +53,10 @@ fn sensitive<'a>(
     for k in 0..STEPS {
         let at = |fraction: f64| -> Vec<Lanes<2>> {
             let t_s = STEP_S * (k as f64 + fraction);
-            inputs(system.input_names(), law, model, t_s).into_iter().map(|value| [value; 2]).collect()
+            inputs(system.input_names(), law, model, t_s)
+                .into_iter()
+                .map(|value| [value; 2])
+                .collect()
         };
         run.step(method, STEP_S, [&at(0.0), &at(0.5), &at(1.0)]);
     }
@@ -85,7 +88,10 @@ fn check(name: &str, method: Method, within: f64) {
     for (lane, start) in starts.iter().enumerate() {
         let end = plain(&model, &law, start, method);
         for &place in system.states() {
-            assert!((run.state(lane)[place] - end[place]).abs() < 1e-9 * (1.0 + end[place].abs()), "{name} state {place}");
+            assert!(
+                (run.state(lane)[place] - end[place]).abs() < 1e-9 * (1.0 + end[place].abs()),
+                "{name} state {place}"
+            );
         }
         for (column, coefficient) in system.names().iter().enumerate().step_by(3) {
             let at = |by: f64| {

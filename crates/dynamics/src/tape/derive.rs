@@ -211,7 +211,10 @@ mod tests {
                 let (values, exact) = (tape.values(&at), tape.jacobian(&at)[0].clone());
                 for (slope, exact) in slopes.iter().zip(exact) {
                     let here = slope.map_or(0.0, |output| values[output]);
-                    assert!((here - exact).abs() < 1e-12 * (1.0 + exact.abs()), "{text}: {here} against {exact}");
+                    assert!(
+                        (here - exact).abs() < 1e-12 * (1.0 + exact.abs()),
+                        "{text}: {here} against {exact}"
+                    );
                 }
             }
         }
@@ -224,7 +227,9 @@ mod tests {
         let small = std::thread::Builder::new().stack_size(1 << 20);
         let tried = small.spawn(|| {
             let term = |k: usize| parse(&format!("{k}.5*u*v")).unwrap();
-            let sum = (1..20_000).map(term).fold(Expr::Number(0.0), |sum, term| Expr::Add(Box::new(sum), Box::new(term)));
+            let sum = (1..20_000)
+                .map(term)
+                .fold(Expr::Number(0.0), |sum, term| Expr::Add(Box::new(sum), Box::new(term)));
             let mut builder = TapeBuilder::new(&["u", "v"], |_| None);
             builder.output(&sum).unwrap();
             let slope = builder.derivative(0, "u").unwrap();
@@ -248,7 +253,8 @@ mod tests {
         let small = std::thread::Builder::new().stack_size(1 << 20);
         let bind = move |name: &str| {
             let number: usize = name.strip_prefix('a')?.parse().ok()?;
-            let text = if number == 0 { "u".to_owned() } else { format!("a{0}*a{0} + 1", number - 1) };
+            let text =
+                if number == 0 { "u".to_owned() } else { format!("a{0}*a{0} + 1", number - 1) };
             parse(&text).ok().map(Binding::Formula)
         };
         let tried = small.spawn(move || {

@@ -20,7 +20,11 @@ impl Tape {
 
     /// As [`Tape::read`], without a copy.
     #[inline(always)]
-    pub(crate) fn at<'w, const N: usize>(&self, output: usize, work: &'w [Lanes<N>]) -> &'w Lanes<N> {
+    pub(crate) fn at<'w, const N: usize>(
+        &self,
+        output: usize,
+        work: &'w [Lanes<N>],
+    ) -> &'w Lanes<N> {
         &work[self.outputs[output] as usize]
     }
 
@@ -93,7 +97,11 @@ fn products<const N: usize>(first: Slot, terms: &[[Slot; 2]], work: &[Lanes<N>])
 }
 
 #[inline(always)]
-pub(super) fn zip<const N: usize>(a: &Lanes<N>, b: &Lanes<N>, f: impl Fn(f64, f64) -> f64) -> Lanes<N> {
+pub(super) fn zip<const N: usize>(
+    a: &Lanes<N>,
+    b: &Lanes<N>,
+    f: impl Fn(f64, f64) -> f64,
+) -> Lanes<N> {
     let mut out = [0.0; N];
     for k in 0..N {
         out[k] = f(a[k], b[k]);
@@ -148,7 +156,9 @@ mod tests {
 
     #[test]
     fn wide_instructions_round_as_plain_ones() {
-        let tape = tape("if(u > v, sqrt(u^2 + v^2), atan2(v, u))*exp(-v)/(u*v + 3) - abs(u)^2.5 + tanh(u)*max(u, v)");
+        let tape = tape(
+            "if(u > v, sqrt(u^2 + v^2), atan2(v, u))*exp(-v)/(u*v + 3) - abs(u)^2.5 + tanh(u)*max(u, v)",
+        );
         let lane = |from: f64| std::array::from_fn::<f64, 8, _>(|k| from + 0.37 * k as f64);
         let inputs = [lane(-1.1), lane(-0.8)];
         let (mut wide, mut plain) = (Slots::default(), vec![[0.0; 8]; tape.len()]);
@@ -160,7 +170,13 @@ mod tests {
     #[test]
     fn a_condition_switches_by_lane_and_has_no_derivative() {
         let mut builder = TapeBuilder::new(&["u", "v"], |_| None);
-        builder.output(&sistership_model::formula::parse_condition("u*v < 1").unwrap().times(parse("u^2").unwrap())).unwrap();
+        builder
+            .output(
+                &sistership_model::formula::parse_condition("u*v < 1")
+                    .unwrap()
+                    .times(parse("u^2").unwrap()),
+            )
+            .unwrap();
         let tape = builder.finish();
         let mut work = Slots::default();
         tape.run(&[[0.5, 2.0, -3.0], [1.0, 1.0, 1.0]], &mut work);

@@ -51,13 +51,21 @@ impl<'a> Fusing<'a> {
         let mut uses = vec![0; ops.len()];
         let read = ops.iter().flat_map(|op| op.operands().into_iter().flatten());
         read.chain(listing.outputs.iter().copied()).for_each(|slot| uses[slot as usize] += 1);
-        Self { ops, uses, sums: ops.iter().map(|_| None).collect(), absorbed: vec![false; ops.len()] }
+        Self {
+            ops,
+            uses,
+            sums: ops.iter().map(|_| None).collect(),
+            absorbed: vec![false; ops.len()],
+        }
     }
 
     /// A product that an addition reads, and nothing else, becomes a term; so does the sum before it.
     fn look(&mut self, index: usize) {
         let Op::Add(a, b) = self.ops[index] else { return };
-        let Some((before, product, factors)) = self.product(a, b).or_else(|| self.product(b, a)) else { return };
+        let Some((before, product, factors)) = self.product(a, b).or_else(|| self.product(b, a))
+        else {
+            return;
+        };
         let kept = if self.is_only_here(before) { self.sums[before as usize].take() } else { None };
         self.absorbed[before as usize] |= kept.is_some();
         self.absorbed[product as usize] = true;
@@ -87,7 +95,8 @@ mod tests {
     fn both(texts: &[&str]) -> [Tape; 2] {
         let mut builder = TapeBuilder::new(&["u", "v", "r"], |_| None);
         texts.iter().for_each(|text| assert!(builder.output(&parse(text).unwrap()).is_ok()));
-        let (inputs, ops, outputs) = (builder.inputs.clone(), builder.ops.clone(), builder.outputs.clone());
+        let (inputs, ops, outputs) =
+            (builder.inputs.clone(), builder.ops.clone(), builder.outputs.clone());
         let listing = Listing { inputs, ops, outputs }.needed();
         let plain = Tape {
             inputs: listing.inputs.clone(),
@@ -100,7 +109,8 @@ mod tests {
 
     #[test]
     fn sums_of_products_round_as_one_by_one() {
-        let texts = ["0.3*u + 1.7*v*v - r + u*v*r + 0.1*(u*v + r*r) + v*r", "u*v + (u*v + v*r)", "u + v"];
+        let texts =
+            ["0.3*u + 1.7*v*v - r + u*v*r + 0.1*(u*v + r*r) + v*r", "u*v + (u*v + v*r)", "u + v"];
         let [fused, plain] = both(&texts);
         assert!(fused.len() < plain.len());
         for k in 0..50 {

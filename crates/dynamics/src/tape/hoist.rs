@@ -26,7 +26,8 @@ impl Listing {
                 _ => op.operands().into_iter().flatten().any(|slot| later[slot as usize]),
             };
         }
-        let dear = |op: &Op| matches!(op, Op::Call1(..) | Op::Call2(..) | Op::Power(..) | Op::Divide(..));
+        let dear =
+            |op: &Op| matches!(op, Op::Call1(..) | Op::Call2(..) | Op::Power(..) | Op::Divide(..));
         let kept = self.ops.iter().enumerate().filter(|(index, op)| !later[*index] && dear(op));
         kept.map(|(index, _)| index as Slot).collect()
     }
@@ -40,7 +41,8 @@ mod tests {
 
     #[test]
     fn what_is_done_ahead_changes_nothing() {
-        let texts = ["u*sin(delta)/(2 + cos(u)) + n/delta", "sin(delta)*n", "u*cos(sin(delta)) + abs(n)"];
+        let texts =
+            ["u*sin(delta)/(2 + cos(u)) + n/delta", "sin(delta)*n", "u*cos(sin(delta)) + abs(n)"];
         let builder = || {
             let mut builder = TapeBuilder::new(&["u", "delta", "n"], |_| None);
             texts.iter().for_each(|text| assert!(builder.output(&parse(text).unwrap()).is_ok()));

@@ -117,10 +117,16 @@ impl<'a> TapeBuilder<'a> {
             Expr::Number(number) => self.push(Op::Constant(*number)),
             Expr::Name(name) => self.name(name)?,
             Expr::Negate(a) => self.unary(a, Op::Negate)?,
-            Expr::Add(..) | Expr::Subtract(..) | Expr::Multiply(..) | Expr::Divide(..) => self.lower(expr)?,
+            Expr::Add(..) | Expr::Subtract(..) | Expr::Multiply(..) | Expr::Divide(..) => {
+                self.lower(expr)?
+            }
             Expr::Power(a, b) => self.power(a, b)?,
-            Expr::Call(function, arguments) if arguments.len() == 1 => self.unary(&arguments[0], |a| Op::Call1(*function, a))?,
-            Expr::Call(function, arguments) => self.binary(&arguments[0], &arguments[1], |a, b| Op::Call2(*function, a, b))?,
+            Expr::Call(function, arguments) if arguments.len() == 1 => {
+                self.unary(&arguments[0], |a| Op::Call1(*function, a))?
+            }
+            Expr::Call(function, arguments) => {
+                self.binary(&arguments[0], &arguments[1], |a, b| Op::Call2(*function, a, b))?
+            }
             Expr::If(comparison, parts) => self.select(*comparison, parts)?,
         })
     }
@@ -147,7 +153,12 @@ impl<'a> TapeBuilder<'a> {
         Ok(self.push(make(a)))
     }
 
-    fn binary(&mut self, a: &Expr, b: &Expr, make: impl Fn(Slot, Slot) -> Op) -> Result<Slot, Unbound> {
+    fn binary(
+        &mut self,
+        a: &Expr,
+        b: &Expr,
+        make: impl Fn(Slot, Slot) -> Op,
+    ) -> Result<Slot, Unbound> {
         let (a, b) = (self.lower(a)?, self.lower(b)?);
         Ok(self.push(make(a, b)))
     }
@@ -161,7 +172,9 @@ impl<'a> TapeBuilder<'a> {
     /// Whole powers become products: faster than `powf`, and defined for negative bases.
     fn power(&mut self, base: &Expr, exponent: &Expr) -> Result<Slot, Unbound> {
         let (base, exponent) = (self.lower(base)?, self.lower(exponent)?);
-        let Op::Constant(number) = self.ops[exponent as usize] else { return Ok(self.push(Op::Power(base, exponent))) };
+        let Op::Constant(number) = self.ops[exponent as usize] else {
+            return Ok(self.push(Op::Power(base, exponent)));
+        };
         if number == 0.5 {
             return Ok(self.push(Op::Call1(Function::Sqrt, base)));
         }

@@ -27,7 +27,9 @@ impl Op {
         match *self {
             Self::Constant(_) | Self::Input(_) => [None; 4],
             Self::Negate(a) | Self::Call1(_, a) => [Some(a), None, None, None],
-            Self::Add(a, b) | Self::Subtract(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => [Some(a), Some(b), None, None],
+            Self::Add(a, b) | Self::Subtract(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => {
+                [Some(a), Some(b), None, None]
+            }
             Self::Power(a, b) | Self::Call2(_, a, b) => [Some(a), Some(b), None, None],
             Self::Select(_, a, b, c, d) => [Some(a), Some(b), Some(c), Some(d)],
         }
@@ -53,7 +55,9 @@ impl Op {
             Self::Power(a, b) => Self::Power(to(a), to(b)),
             Self::Call1(function, a) => Self::Call1(function, to(a)),
             Self::Call2(function, a, b) => Self::Call2(function, to(a), to(b)),
-            Self::Select(comparison, a, b, c, d) => Self::Select(comparison, to(a), to(b), to(c), to(d)),
+            Self::Select(comparison, a, b, c, d) => {
+                Self::Select(comparison, to(a), to(b), to(c), to(d))
+            }
         }
     }
 

@@ -8,7 +8,12 @@ use super::{Instruction, Lanes, Op, Slot, Slots, Tape};
 impl Tape {
     /// Directional derivatives at the point that `primal` holds after a [`Tape::run`] of one lane: lane `k` of
     /// `seeds[i]` is the change of input `i` in direction `k`.
-    pub fn tangents<const N: usize>(&self, primal: &[Lanes<1>], seeds: &[Lanes<N>], work: &mut Slots<N>) {
+    pub fn tangents<const N: usize>(
+        &self,
+        primal: &[Lanes<1>],
+        seeds: &[Lanes<N>],
+        work: &mut Slots<N>,
+    ) {
         work.resize(self.len());
         (0..self.len()).for_each(|index| work[index] = self.tangent(index, primal, seeds, work));
     }
@@ -22,7 +27,11 @@ impl Tape {
                 Instruction::Op(Op::Input(input)) => inputs.contains(&(input as usize)),
                 Instruction::Op(op) => op.operands().into_iter().flatten().any(reads),
                 Instruction::Products { first, from, to } => {
-                    reads(first) || self.terms[from as usize..to as usize].iter().flatten().any(|&slot| reads(slot))
+                    reads(first)
+                        || self.terms[from as usize..to as usize]
+                            .iter()
+                            .flatten()
+                            .any(|&slot| reads(slot))
                 }
             };
         }
@@ -46,7 +55,13 @@ impl Tape {
     }
 
     #[inline(always)]
-    fn tangent<const N: usize>(&self, index: usize, primal: &[Lanes<1>], seeds: &[Lanes<N>], work: &[Lanes<N>]) -> Lanes<N> {
+    fn tangent<const N: usize>(
+        &self,
+        index: usize,
+        primal: &[Lanes<1>],
+        seeds: &[Lanes<N>],
+        work: &[Lanes<N>],
+    ) -> Lanes<N> {
         match &self.instructions[index] {
             Instruction::Op(op) => tangent(op, index, primal, seeds, work),
             &Instruction::Products { first, from, to } => {
@@ -66,12 +81,16 @@ impl Tape {
         let (mut primal, mut work) = (Slots::default(), Slots::default());
         self.run(&point, &mut primal);
         let column = |direction: usize, work: &mut Slots<1>| {
-            let seeds: Vec<Lanes<1>> = (0..inputs.len()).map(|i| [f64::from(u8::from(i == direction))]).collect();
+            let seeds: Vec<Lanes<1>> =
+                (0..inputs.len()).map(|i| [f64::from(u8::from(i == direction))]).collect();
             self.tangents(&primal, &seeds, work);
             (0..self.outputs.len()).map(|output| self.read(output, work)[0]).collect::<Vec<f64>>()
         };
-        let columns: Vec<Vec<f64>> = (0..inputs.len()).map(|direction| column(direction, &mut work)).collect();
-        (0..self.outputs.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect()
+        let columns: Vec<Vec<f64>> =
+            (0..inputs.len()).map(|direction| column(direction, &mut work)).collect();
+        (0..self.outputs.len())
+            .map(|row| columns.iter().map(|column| column[row]).collect())
+            .collect()
     }
 }
 
@@ -82,11 +101,19 @@ fn times<const N: usize>(lanes: &Lanes<N>, factor: f64) -> Lanes<N> {
 }
 
 #[inline(always)]
-fn tangent<const N: usize>(op: &Op, index: usize, primal: &[Lanes<1>], seeds: &[Lanes<N>], work: &[Lanes<N>]) -> Lanes<N> {
+fn tangent<const N: usize>(
+    op: &Op,
+    index: usize,
+    primal: &[Lanes<1>],
+    seeds: &[Lanes<N>],
+    work: &[Lanes<N>],
+) -> Lanes<N> {
     let value = |slot: u32| primal[slot as usize][0];
     let d = |slot: u32| &work[slot as usize];
     let scaled = |slot: u32, factor: f64| times(d(slot), factor);
-    let both = |a: u32, by_a: f64, b: u32, by_b: f64| zip(&times(d(a), by_a), &times(d(b), by_b), |x, y| x + y);
+    let both = |a: u32, by_a: f64, b: u32, by_b: f64| {
+        zip(&times(d(a), by_a), &times(d(b), by_b), |x, y| x + y)
+    };
     match *op {
         Op::Constant(_) => [0.0; N],
         Op::Input(input) => seeds[input as usize],
@@ -158,7 +185,8 @@ mod tests {
     fn what_does_not_depend_on_a_direction_is_not_visited() {
         let tape = tape("u^2*sin(u) + sqrt(1 + v^2)*exp(v)");
         let point = [[1.3], [0.4]];
-        let (mut primal, mut all, mut some) = (Slots::default(), Slots::default(), Slots::default());
+        let (mut primal, mut all, mut some) =
+            (Slots::default(), Slots::default(), Slots::default());
         tape.run(&point, &mut primal);
         let seeds = [[0.0], [1.0]];
         let depending = tape.depending_on(&[1]);
@@ -170,8 +198,12 @@ mod tests {
 
     #[test]
     fn derivatives_agree_with_differences() {
-        for text in ["u^3*v/(1 + v^2)", "atan2(v, u)*abs(v)", "max(u, v)*tanh(u*v) - u^-2", "sin(u)*cos(v)*log(u)*exp(v) + u^2.5"]
-        {
+        for text in [
+            "u^3*v/(1 + v^2)",
+            "atan2(v, u)*abs(v)",
+            "max(u, v)*tanh(u*v) - u^-2",
+            "sin(u)*cos(v)*log(u)*exp(v) + u^2.5",
+        ] {
             let tape = tape(text);
             let at = [1.3, -0.7];
             let exact = tape.jacobian(&at)[0].clone();

@@ -30,7 +30,12 @@ pub struct Alternative {
 ///
 /// # Errors
 /// Says which trial or channel is at fault.
-pub fn alternatives(model: &Model, law: &Law, trials: &[&Trial], restart_s: f64) -> Result<Vec<Alternative>, RefineError> {
+pub fn alternatives(
+    model: &Model,
+    law: &Law,
+    trials: &[&Trial],
+    restart_s: f64,
+) -> Result<Vec<Alternative>, RefineError> {
     let settings = Settings {
         method: Method::Trajectory,
         families: vec![Family::Own],
@@ -46,7 +51,8 @@ pub fn alternatives(model: &Model, law: &Law, trials: &[&Trial], restart_s: f64)
     let variants = variants(&problem, estimator.equations(&problem.settings))?;
     let mut candidates = vec![source_candidate(&problem, &variants)?];
     estimator.candidates(&problem, &variants, &mut candidates, &|_, _| true)?;
-    let left_out = candidates.into_iter().filter(|one| one.option.error.is_some() && !one.left_out.is_empty());
+    let left_out =
+        candidates.into_iter().filter(|one| one.option.error.is_some() && !one.left_out.is_empty());
     let one = |one: CandidateFit| {
         let all = one.solution.fit(&variants)?.map(|fit| problem.model_with(&fit.coefficients));
         Ok(all.map(|all| Alternative { label: one.option.step, all, without: one.left_out }))

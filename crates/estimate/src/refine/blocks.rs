@@ -67,7 +67,10 @@ impl Blocks {
         forces.ok_or_else(|| RefineError::Law(format!("law `{}` cannot be regressed", law.name)))
     }
 
-    fn build(equations: &EquationsOfMotion<'_>, allow_common: bool) -> Result<Option<Self>, RefineError> {
+    fn build(
+        equations: &EquationsOfMotion<'_>,
+        allow_common: bool,
+    ) -> Result<Option<Self>, RefineError> {
         let names = equations.names();
         let mut lowering = Lowering::new(equations, &names);
         let mut blocks = Vec::new();
@@ -89,8 +92,11 @@ impl Blocks {
 fn coupled(law: &Law) -> Vec<Vec<Axis>> {
     let mut groups: Vec<Vec<Axis>> = Vec::new();
     for axis in law.axes.keys().copied() {
-        let touches =
-            |group: &Vec<Axis>| group.iter().any(|&o| law.mass.contains_key(&(axis, o)) || law.mass.contains_key(&(o, axis)));
+        let touches = |group: &Vec<Axis>| {
+            group
+                .iter()
+                .any(|&o| law.mass.contains_key(&(axis, o)) || law.mass.contains_key(&(o, axis)))
+        };
         let (mut joined, apart): (Vec<_>, Vec<_>) = groups.into_iter().partition(touches);
         let mut group: Vec<Axis> = joined.drain(..).flatten().collect();
         group.push(axis);
@@ -122,7 +128,8 @@ fn block(
     group: &[Axis],
 ) -> Result<Option<Block>, RefineError> {
     let law = equations.law();
-    let names: Vec<Vec<String>> = axes.iter().map(|&axis| equations.coefficients(axis).cloned().collect()).collect();
+    let names: Vec<Vec<String>> =
+        axes.iter().map(|&axis| equations.coefficients(axis).cloned().collect()).collect();
     if names[0].is_empty() {
         return Ok(None);
     }
@@ -130,15 +137,33 @@ fn block(
     for name in &names[0] {
         terms.push(lowering.output(&equations.term(name)?)?);
     }
-    let scales = axes.iter().map(|axis| lowering.output(&law.axes[axis].scale)).collect::<Result<_, _>>()?;
-    let rests = axes.iter().map(|axis| lowering.output(&law.axes[axis].rest)).collect::<Result<_, _>>()?;
+    let scales =
+        axes.iter().map(|axis| lowering.output(&law.axes[axis].scale)).collect::<Result<_, _>>()?;
+    let rests =
+        axes.iter().map(|axis| lowering.output(&law.axes[axis].rest)).collect::<Result<_, _>>()?;
     let mut mass = Vec::new();
     for &axis in &axes {
-        mass.push(group.iter().map(|&other| lowering.mass(axis, other)).collect::<Result<Vec<_>, _>>()?);
+        mass.push(
+            group.iter().map(|&other| lowering.mass(axis, other)).collect::<Result<Vec<_>, _>>()?,
+        );
     }
     let mixing = DMatrix::identity(axes.len(), axes.len());
-    let shrinkage = names[0].iter().map(|name| law.deviation(name).map_or(1.0, |submodel| submodel.shrinkage)).collect();
-    Ok(Some(Block { axes, names, terms, shrinkage, precision: None, scales, rests, mass, columns: group.to_vec(), mixing }))
+    let shrinkage = names[0]
+        .iter()
+        .map(|name| law.deviation(name).map_or(1.0, |submodel| submodel.shrinkage))
+        .collect();
+    Ok(Some(Block {
+        axes,
+        names,
+        terms,
+        shrinkage,
+        precision: None,
+        scales,
+        rests,
+        mass,
+        columns: group.to_vec(),
+        mixing,
+    }))
 }
 
 impl Block {
@@ -170,14 +195,18 @@ fn mixing(block: &Block, tape: &Tape, inputs: usize) -> Option<DMatrix<f64>> {
     if q == 1 {
         return Some(DMatrix::identity(1, 1));
     }
-    let entry = |output: Option<usize>| output.map_or(Some(0.0), |output| tape.constant_output(output));
+    let entry =
+        |output: Option<usize>| output.map_or(Some(0.0), |output| tape.constant_output(output));
     let mut mass = DMatrix::zeros(q, q);
     for (row, column) in (0..q).flat_map(|row| (0..q).map(move |column| (row, column))) {
         mass[(row, column)] = entry(block.mass[row][column])?;
     }
     let ratios = |at: f64| {
         let values = tape.values(&(0..inputs).map(|i| at + 0.1 * i as f64).collect::<Vec<f64>>());
-        nalgebra::DVector::from_iterator(q, block.scales.iter().map(|&scale| values[scale] / values[block.scales[0]]))
+        nalgebra::DVector::from_iterator(
+            q,
+            block.scales.iter().map(|&scale| values[scale] / values[block.scales[0]]),
+        )
     };
     let (here, there) = (ratios(0.7), ratios(1.9));
     let constant = here.iter().zip(there.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * a.abs());

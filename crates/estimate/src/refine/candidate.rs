@@ -25,7 +25,11 @@ pub(super) trait Solution {
     ///
     /// # Errors
     /// A trial lacks a channel.
-    fn errors(&self, problem: &Problem<'_>, variants: &[Variant]) -> Result<Option<CoefficientErrors>, RefineError>;
+    fn errors(
+        &self,
+        problem: &Problem<'_>,
+        variants: &[Variant],
+    ) -> Result<Option<CoefficientErrors>, RefineError>;
 
     /// The ridge that it is: the place of its variant, and its choices.
     fn ridge(&self) -> Option<(usize, &Choices)> {
@@ -41,7 +45,11 @@ impl Solution for UnchangedSource {
         Ok(None)
     }
 
-    fn errors(&self, _: &Problem<'_>, _: &[Variant]) -> Result<Option<CoefficientErrors>, RefineError> {
+    fn errors(
+        &self,
+        _: &Problem<'_>,
+        _: &[Variant],
+    ) -> Result<Option<CoefficientErrors>, RefineError> {
         Ok(None)
     }
 }
@@ -75,11 +83,24 @@ impl CandidateFit {
         let error = reason.is_none().then(|| standardised_mse(&errors, &deviations));
         let each = each.iter().map(|error| standardised_mse(error, &deviations)).collect();
         let flat = |of: &dyn Fn(&RidgeChoice) -> f64| {
-            solution.ridge().into_iter().flat_map(|(_, choices)| choices.iter().flatten()).map(of).collect()
+            solution
+                .ridge()
+                .into_iter()
+                .flat_map(|(_, choices)| choices.iter().flatten())
+                .map(of)
+                .collect()
         };
         let (lambda, alpha) = (flat(&|c| c.lambda), flat(&|c| c.alpha));
         let option = StepOption { step, lambda_min, lambda, alpha, error, chosen: false, reason };
-        Self { option, solution: Box::new(solution), errors, each, size, left_out: Vec::new(), search: None }
+        Self {
+            option,
+            solution: Box::new(solution),
+            errors,
+            each,
+            size,
+            left_out: Vec::new(),
+            search: None,
+        }
     }
 }
 
@@ -88,8 +109,12 @@ impl CandidateFit {
 /// Classification and regression trees, section 3.4.3).
 pub(super) fn best(options: &[CandidateFit]) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
-    for (index, error) in options.iter().enumerate().filter_map(|(index, o)| Some((index, o.option.error?))) {
-        let better = |(at, least): (usize, f64)| error < SELECTION.better * least && clearly(&options[index], &options[at]);
+    for (index, error) in
+        options.iter().enumerate().filter_map(|(index, o)| Some((index, o.option.error?)))
+    {
+        let better = |(at, least): (usize, f64)| {
+            error < SELECTION.better * least && clearly(&options[index], &options[at])
+        };
         if error.is_finite() && best.is_none_or(better) {
             best = Some((index, error));
         }
@@ -99,7 +124,11 @@ pub(super) fn best(options: &[CandidateFit]) -> Option<usize> {
 
 /// Whether an option may replace one that has fewer coefficients; the source has none of its own to count.
 fn clearly(new: &CandidateFit, old: &CandidateFit) -> bool {
-    if old.size == 0 || new.size <= old.size || new.each.len() != old.each.len() || new.each.len() < 2 {
+    if old.size == 0
+        || new.size <= old.size
+        || new.each.len() != old.each.len()
+        || new.each.len() < 2
+    {
         return true;
     }
     let gains: Vec<f64> = old.each.iter().zip(&new.each).map(|(old, new)| old - new).collect();

@@ -67,15 +67,32 @@ impl OperatingEnvelope {
     pub fn new(source: &Model, law: &Law, trials: &[&Trial]) -> Result<Self, RefineError> {
         let ship = ready(source, law, trials)?;
         let asked = SourceResponse::new(&ship, source, law);
-        let recorded = trials.iter().filter_map(|trial| asked.group(trial.depth_m, asked.recorded(trial)));
-        let sailed = sail_together(&ship, &STANDARD.map(|manoeuvre| (manoeuvre, &[][..])), &ManoeuvreSettings::default());
-        let sailed = sailed.into_iter().flatten().filter_map(|sailed| asked.group(None, asked.sailed(&sailed.track)));
-        let (recorded, sailed): (Vec<SampleGroup>, Vec<SampleGroup>) = (recorded.collect(), sailed.collect());
+        let recorded =
+            trials.iter().filter_map(|trial| asked.group(trial.depth_m, asked.recorded(trial)));
+        let sailed = sail_together(
+            &ship,
+            &STANDARD.map(|manoeuvre| (manoeuvre, &[][..])),
+            &ManoeuvreSettings::default(),
+        );
+        let sailed = sailed
+            .into_iter()
+            .flatten()
+            .filter_map(|sailed| asked.group(None, asked.sailed(&sailed.track)));
+        let (recorded, sailed): (Vec<SampleGroup>, Vec<SampleGroup>) =
+            (recorded.collect(), sailed.collect());
         if recorded.is_empty() && sailed.is_empty() {
-            return Err(RefineError::Data(format!("`{}` can neither sail the standard manoeuvres nor the trials", source.name)));
+            return Err(RefineError::Data(format!(
+                "`{}` can neither sail the standard manoeuvres nor the trials",
+                source.name
+            )));
         }
         let groups = [recorded, sailed].into_iter().flat_map(evened).collect();
-        Ok(Self { source: source.name.clone(), law: law.name.clone(), roll: law.has_roll(), groups })
+        Ok(Self {
+            source: source.name.clone(),
+            law: law.name.clone(),
+            roll: law.has_roll(),
+            groups,
+        })
     }
 
     /// The statistics of what the source says, as a law's regressions see it: by group and regression.
@@ -111,7 +128,12 @@ impl<'a> SourceResponse<'a> {
     fn new(ship: &'a Ship, source: &Model, law: &Law) -> Self {
         let expanded = law.approach_speed_parameter().is_some();
         let least_m_s = if expanded { SOURCE.least_speed * ship.approach_speed_m_s() } else { 0.0 };
-        Self { ship, propeller: ship.has_propeller(), n_rps: source.revolutions_rps.unwrap_or(0.0), least_m_s }
+        Self {
+            ship,
+            propeller: ship.has_propeller(),
+            n_rps: source.revolutions_rps.unwrap_or(0.0),
+            least_m_s,
+        }
     }
 
     /// The states that a trial recorded; nothing where it lacks velocities or the rudder.
@@ -146,12 +168,18 @@ impl<'a> SourceResponse<'a> {
         points.retain(|point| self.knows(point));
         points.iter_mut().for_each(|(state, _)| state[at::PSI] = 0.0);
         let mut work = Work::default();
-        let rate = |point: &OperatingPoint| self.ship.rate_with(&point.0, &self.inputs(point, depth_m), &mut work);
+        let rate = |point: &OperatingPoint| {
+            self.ship.rate_with(&point.0, &self.inputs(point, depth_m), &mut work)
+        };
         let rates: Vec<StateVector> = points.iter().map(rate).collect();
         let of = |place: usize| rates.iter().map(|rate| rate[place]).collect::<Vec<f64>>();
         let rates = [at::U, at::V, at::P, at::R].map(of);
         let finite = rates.iter().flatten().all(|rate| rate.is_finite());
-        (finite && !points.is_empty()).then(|| SampleGroup { samples: self.samples(&points, depth_m), rates, weight: 1.0 })
+        (finite && !points.is_empty()).then(|| SampleGroup {
+            samples: self.samples(&points, depth_m),
+            rates,
+            weight: 1.0,
+        })
     }
 
     fn inputs(&self, (state, n_rps): &OperatingPoint, depth_m: Option<f64>) -> Inputs {
@@ -171,16 +199,28 @@ impl<'a> SourceResponse<'a> {
     }
 
     fn samples(&self, points: &[OperatingPoint], depth_m: Option<f64>) -> Trial {
-        let states =
-            [(Channel::U, at::U), (Channel::V, at::V), (Channel::R, at::R), (Channel::P, at::P), (Channel::Phi, at::PHI)];
-        let column = |place: usize| points.iter().map(|(state, _)| state[place]).collect::<Vec<f64>>();
+        let states = [
+            (Channel::U, at::U),
+            (Channel::V, at::V),
+            (Channel::R, at::R),
+            (Channel::P, at::P),
+            (Channel::Phi, at::PHI),
+        ];
+        let column =
+            |place: usize| points.iter().map(|(state, _)| state[place]).collect::<Vec<f64>>();
         let columns = states.into_iter().chain([(Channel::Delta, at::DELTA)]);
-        let mut channels: BTreeMap<Channel, Vec<f64>> = columns.map(|(channel, place)| (channel, column(place))).collect();
+        let mut channels: BTreeMap<Channel, Vec<f64>> =
+            columns.map(|(channel, place)| (channel, column(place))).collect();
         let n = points.iter().map(|(_, n_rps)| if self.propeller { *n_rps } else { self.n_rps });
         channels.insert(Channel::N, n.collect());
         let (wind_m_s, wind_from) = points.iter().map(|(state, _)| calm(state)).unzip();
         channels.extend([(Channel::WindSpeed, wind_m_s), (Channel::WindFrom, wind_from)]);
-        Trial { t_s: (0..points.len()).map(|k| k as f64).collect(), channels, depth_m, ..Trial::default() }
+        Trial {
+            t_s: (0..points.len()).map(|k| k as f64).collect(),
+            channels,
+            depth_m,
+            ..Trial::default()
+        }
     }
 }
 

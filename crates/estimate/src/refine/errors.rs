@@ -32,14 +32,23 @@ impl CoefficientErrors {
         let deviations = self.covariance.diagonal().map(|variance| variance.max(0.0).sqrt());
         let inverse = deviations.map(reciprocal);
         let size = self.names.len();
-        let entry = |i: usize, j: usize| if i == j { 1.0 } else { self.covariance[(i, j)] * inverse[i] * inverse[j] };
+        let entry = |i: usize, j: usize| {
+            if i == j { 1.0 } else { self.covariance[(i, j)] * inverse[i] * inverse[j] }
+        };
         let correlation = DMatrix::from_fn(size, size, entry);
-        let rooted = |slack: &f64| (&correlation * (1.0 - slack) + DMatrix::identity(size, size) * *slack).cholesky();
+        let rooted = |slack: &f64| {
+            (&correlation * (1.0 - slack) + DMatrix::identity(size, size) * *slack).cholesky()
+        };
         let root = SLACK.iter().find_map(rooted)?.unpack();
         let names = self.names.clone();
         let values = names.iter().map(|name| model.coefficient(name)).collect();
         let root_correlation = Posterior::rows(size, &|i, j| root[(i, j)]);
-        Some(Posterior { names, values, deviations: deviations.iter().copied().collect(), root_correlation })
+        Some(Posterior {
+            names,
+            values,
+            deviations: deviations.iter().copied().collect(),
+            root_correlation,
+        })
     }
 }
 

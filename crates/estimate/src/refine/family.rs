@@ -62,7 +62,8 @@ fn added() -> Quantity {
 fn breaks_symmetry(name: &str, law: &Law) -> bool {
     let Ok(parsed) = CoefficientName::parse(name, &law.extra_factors()) else { return false };
     let odd = |symbol: &str| !matches!(symbol, "u" | "n" | "cosdelta");
-    let count = parsed.factors.iter().filter(|factor| !factor.absolute && odd(&factor.symbol)).count();
+    let count =
+        parsed.factors.iter().filter(|factor| !factor.absolute && odd(&factor.symbol)).count();
     (count % 2 == 1) != parsed.axis.is_odd()
 }
 
@@ -73,7 +74,8 @@ fn third_order(law: &Law) -> Vec<String> {
     let linear: Vec<&str> = LINEAR.iter().filter(known).copied().collect();
     let open = law.axes.iter().filter(|(_, axis)| axis.open).map(|(axis, _)| *axis);
     let of_axis = |axis: Axis| {
-        let terms = if axis.is_odd() { odd_terms(&products, &linear) } else { even_terms(&products) };
+        let terms =
+            if axis.is_odd() { odd_terms(&products, &linear) } else { even_terms(&products) };
         let spelled = terms.into_iter().map(move |factors| format!("{axis}_{factors}"));
         spelled.filter(|name| law.term(name).is_ok()).collect::<Vec<_>>()
     };
@@ -115,8 +117,12 @@ mod tests {
         let zoo = Zoo::embedded().unwrap();
         let (model, law) = (zoo.model("mariner").unwrap(), zoo.law("abkowitz").unwrap());
         let symmetric = Family::Symmetric.of(&model, law).unwrap();
-        let dropped: Vec<&str> =
-            model.coefficients.keys().filter(|name| !symmetric.coefficients.contains_key(*name)).map(String::as_str).collect();
+        let dropped: Vec<&str> = model
+            .coefficients
+            .keys()
+            .filter(|name| !symmetric.coefficients.contains_key(*name))
+            .map(String::as_str)
+            .collect();
         assert_eq!(dropped, ["N_0", "N_u", "N_uu", "Y_0", "Y_u", "Y_uu"]);
         assert_eq!(Family::Symmetric.of(&symmetric, law), None);
         let third = Family::ThirdOrder.of(&model, law).unwrap();

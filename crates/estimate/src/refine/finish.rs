@@ -46,15 +46,29 @@ pub(super) fn finish(
     let before = standard_manoeuvres(&problem.transferred, problem.law);
     loop {
         let Some(best) = best(&candidates) else {
-            let reasons: Vec<String> = candidates.iter().filter_map(|one| one.option.reason.clone()).collect();
+            let reasons: Vec<String> =
+                candidates.iter().filter_map(|one| one.option.reason.clone()).collect();
             return Err(RefineError::Diverged(reasons.join("; ")));
         };
-        step(progress, 0.9, &format!("standard manoeuvres of option {}", candidates[best].option.step))?;
+        step(
+            progress,
+            0.9,
+            &format!("standard manoeuvres of option {}", candidates[best].option.step),
+        )?;
         match accepted(problem, candidates[best].solution.as_ref(), variants, &before)? {
             Ok((fitted, after)) => {
-                return take(problem, (candidates, best), (fitted, variants), (before, after), progress);
+                return take(
+                    problem,
+                    (candidates, best),
+                    (fitted, variants),
+                    (before, after),
+                    progress,
+                );
             }
-            Err(refusal) => (candidates[best].option.reason, candidates[best].option.error) = (Some(refusal.to_string()), None),
+            Err(refusal) => {
+                (candidates[best].option.reason, candidates[best].option.error) =
+                    (Some(refusal.to_string()), None)
+            }
         }
     }
 }
@@ -67,11 +81,14 @@ fn accepted(
     before: &StandardManoeuvres,
 ) -> Result<Accepted, RefineError> {
     let fitted = match solution.fit(variants) {
-        Err(RefineError::Constraints(reason)) => return Ok(Err(CandidateRefusal::Constraints(reason))),
+        Err(RefineError::Constraints(reason)) => {
+            return Ok(Err(CandidateRefusal::Constraints(reason)));
+        }
         fitted => fitted?,
     };
     let after = standard_manoeuvres(&model_of(problem, fitted.as_ref()), problem.law);
-    let worse = after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
+    let worse =
+        after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
     Ok(match worse {
         Some(failure) => Err(CandidateRefusal::Manoeuvre(failure.clone())),
         None => Ok((fitted, after)),
@@ -80,7 +97,8 @@ fn accepted(
 
 /// The refined model; the source where nothing was fitted.
 fn model_of(problem: &Problem<'_>, fitted: Option<&Fit>) -> Model {
-    let mut model = fitted.map_or_else(|| problem.transferred.clone(), |fit| problem.model_with(&fit.coefficients));
+    let mut model = fitted
+        .map_or_else(|| problem.transferred.clone(), |fit| problem.model_with(&fit.coefficients));
     model.validity = covered(&problem.whole, problem.law);
     model
 }
@@ -100,7 +118,8 @@ fn take(
     model.posterior = posterior(problem, &model, fitted.as_ref(), variants)?;
     let measured = measured_manoeuvres(problem, &model);
     step(progress, 0.93, "confidence bands")?;
-    let bands = bands(&model, problem.law, &ManoeuvreSettings::default(), None, problem.settings.bands);
+    let bands =
+        bands(&model, problem.law, &ManoeuvreSettings::default(), None, problem.settings.bands);
     let manoeuvres = Manoeuvres { source: before, refined: after, bands, measured };
     refinement(problem, ChosenCandidate { candidates, best, model, fitted }, manoeuvres)
 }
@@ -123,5 +142,9 @@ fn posterior(
 
 /// Choices that keep the source.
 fn held(blocks: &Blocks) -> Choices {
-    blocks.blocks.iter().map(|block| vec![RidgeChoice { lambda: SELECTION.held, alpha: 0.0 }; block.axes.len()]).collect()
+    blocks
+        .blocks
+        .iter()
+        .map(|block| vec![RidgeChoice { lambda: SELECTION.held, alpha: 0.0 }; block.axes.len()])
+        .collect()
 }

@@ -32,13 +32,17 @@ pub(super) fn refinement(
     let ChosenCandidate { candidates, best, model, fitted } = taken;
     let held_out = held_out(problem, &candidates, best, &model)?;
     let lambdas = candidates[best].option.lambda.clone();
-    let (condition_number, collinear_groups) =
-        fitted.as_ref().map_or((1.0, Vec::new()), |fit| (fit.condition_number, fit.collinear_groups.clone()));
+    let (condition_number, collinear_groups) = fitted
+        .as_ref()
+        .map_or((1.0, Vec::new()), |fit| (fit.condition_number, fit.collinear_groups.clone()));
     let mut remarks = remarks(problem, best, &lambdas);
     if candidates[best].search.is_some() {
         remarks.push(SEARCHED.to_owned());
     }
-    let search = candidates[best].search.clone().or_else(|| candidates.iter().find_map(|one| one.search.clone()));
+    let search = candidates[best]
+        .search
+        .clone()
+        .or_else(|| candidates.iter().find_map(|one| one.search.clone()));
     Ok(Refinement {
         ship: problem.transferred.ship.clone(),
         source: problem.source.to_owned(),
@@ -66,7 +70,12 @@ fn recorded(settings: &Settings, search: Option<&SearchReport>) -> Settings {
     settings
 }
 
-fn held_out(problem: &Problem<'_>, candidates: &[CandidateFit], best: usize, model: &Model) -> Result<HeldOut, RefineError> {
+fn held_out(
+    problem: &Problem<'_>,
+    candidates: &[CandidateFit],
+    best: usize,
+    model: &Model,
+) -> Result<HeldOut, RefineError> {
     if problem.judged.is_empty() {
         let how = if problem.training.len() == 1 {
             "nothing could be left out of a single trial: these are errors on the trial that was fitted".to_owned()
@@ -75,12 +84,22 @@ fn held_out(problem: &Problem<'_>, candidates: &[CandidateFit], best: usize, mod
                 whole if whole == problem.training.len() => format!("{whole} trials"),
                 whole => format!("{} parts of {whole} trials", problem.training.len()),
             };
-            format!("each of {what} simulated by a model fitted without it, in {} folds", problem.fold_count())
+            format!(
+                "each of {what} simulated by a model fitted without it, in {} folds",
+                problem.fold_count()
+            )
         };
-        return Ok(HeldOut { source: candidates[0].errors.rmse(), refined: candidates[best].errors.rmse(), how });
+        return Ok(HeldOut {
+            source: candidates[0].errors.rmse(),
+            refined: candidates[best].errors.rmse(),
+            how,
+        });
     }
-    let source = simulate_all(problem, &problem.judged, std::slice::from_ref(&problem.transferred), &|_| 0)?.total;
-    let refined = simulate_all(problem, &problem.judged, std::slice::from_ref(model), &|_| 0)?.total;
+    let source =
+        simulate_all(problem, &problem.judged, std::slice::from_ref(&problem.transferred), &|_| 0)?
+            .total;
+    let refined =
+        simulate_all(problem, &problem.judged, std::slice::from_ref(model), &|_| 0)?.total;
     let names: Vec<&str> = problem.judged.iter().map(|trial| trial.name.as_str()).collect();
     Ok(HeldOut {
         source: source.rmse(),
@@ -94,7 +113,10 @@ fn changes(problem: &Problem<'_>, model: &Model, fitted: Option<&Fit>) -> Vec<Co
         let source = problem.transferred.coefficient(name);
         let fitted = fitted.and_then(|fit| fit.coefficients.get(name));
         let prior = fitted.map_or(0.0, |f| f.prior_deviation);
-        let unit = problem.law.coefficient_dimension(name).map_or_else(|_| "?".to_owned(), |d| d.to_string());
+        let unit = problem
+            .law
+            .coefficient_dimension(name)
+            .map_or_else(|_| "?".to_owned(), |d| d.to_string());
         CoefficientChange {
             name: name.clone(),
             unit,
@@ -109,23 +131,33 @@ fn changes(problem: &Problem<'_>, model: &Model, fitted: Option<&Fit>) -> Vec<Co
 
 fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
     let mut remarks = Vec::new();
-    let strongest = problem.settings.ranges.iter().map(|range| range.lambda_max).fold(0.0, f64::max);
+    let strongest =
+        problem.settings.ranges.iter().map(|range| range.lambda_max).fold(0.0, f64::max);
     if lambdas.iter().any(|lambda| *lambda > SELECTION.strongest_share * strongest) {
-        let what =
-            "an acceleration took the strongest prior allowed: its coefficients are the source's, scaled as a whole by 1 - alpha";
+        let what = "an acceleration took the strongest prior allowed: its coefficients are the source's, scaled as a whole by 1 - alpha";
         remarks.push(format!("{what}, and their standard errors say nothing"));
     }
     remarks.extend(problem.measure.words(&problem.transferred, problem.law));
     if best == 0 {
-        remarks.push("no option beat the source on manoeuvres left out: the source is kept as it is".to_owned());
+        remarks.push(
+            "no option beat the source on manoeuvres left out: the source is kept as it is"
+                .to_owned(),
+        );
     }
     if problem.training.len() == 1 {
         remarks.push("a single trial: only the most conservative range was tried".to_owned());
     }
-    let scaled = problem.transferred.particulars.iter().filter(|(_, quantity)| quantity.source.starts_with("scaled from"));
+    let scaled = problem
+        .transferred
+        .particulars
+        .iter()
+        .filter(|(_, quantity)| quantity.source.starts_with("scaled from"));
     let names: Vec<&str> = scaled.map(|(name, _)| name.as_str()).collect();
     if !names.is_empty() {
-        remarks.push(format!("the ship does not state {}: scaled from the source ship", names.join(", ")));
+        remarks.push(format!(
+            "the ship does not state {}: scaled from the source ship",
+            names.join(", ")
+        ));
     }
     remarks
 }

@@ -13,12 +13,21 @@ use super::problem::Problem;
 use crate::transfer::ready;
 
 /// The turning circles and zigzags among the trials, beside what both models make of the recorded rudder.
-pub(super) fn measured_manoeuvres(problem: &Problem<'_>, refined: &Model) -> Vec<MeasuredManoeuvre> {
-    let trials = problem.whole.iter().map(|trial| (*trial, true)).chain(problem.judged.iter().map(|trial| (*trial, false)));
-    let recognised: Vec<(&Trial, bool, Recognised)> =
-        trials.filter_map(|(trial, fitted)| Some((trial, fitted, Recognised::of(trial)?))).collect();
+pub(super) fn measured_manoeuvres(
+    problem: &Problem<'_>,
+    refined: &Model,
+) -> Vec<MeasuredManoeuvre> {
+    let trials = problem
+        .whole
+        .iter()
+        .map(|trial| (*trial, true))
+        .chain(problem.judged.iter().map(|trial| (*trial, false)));
+    let recognised: Vec<(&Trial, bool, Recognised)> = trials
+        .filter_map(|(trial, fitted)| Some((trial, fitted, Recognised::of(trial)?)))
+        .collect();
     let trials: Vec<&Trial> = recognised.iter().map(|(trial, ..)| *trial).collect();
-    let [source, refined] = [&problem.transferred, refined].map(|model| sailed(model, problem.law, &trials));
+    let [source, refined] =
+        [&problem.transferred, refined].map(|model| sailed(model, problem.law, &trials));
     let one = |(k, (trial, fitted, recognised)): (usize, &(&Trial, bool, Recognised))| {
         let samples: Vec<usize> = (0..trial.len()).collect();
         let simulated = |runs: &[Replay]| {
@@ -39,7 +48,8 @@ pub(super) fn measured_manoeuvres(problem: &Problem<'_>, refined: &Model) -> Vec
 /// Trials from beginning to end by a model; nothing where it cannot sail them.
 fn sailed(model: &Model, law: &Law, trials: &[&Trial]) -> Vec<Replay> {
     let Ok(ship) = ready(model, law, trials) else { return Vec::new() };
-    let recorded: Vec<Recorded<'_>> = trials.iter().map(|trial| Recorded { trial, coefficients: &[] }).collect();
+    let recorded: Vec<Recorded<'_>> =
+        trials.iter().map(|trial| Recorded { trial, coefficients: &[] }).collect();
     replay_all(&ship, &recorded, &ReplaySettings::default()).unwrap_or_default()
 }
 
@@ -47,6 +57,8 @@ fn sailed(model: &Model, law: &Law, trials: &[&Trial]) -> Vec<Replay> {
 pub(super) fn standard_manoeuvres(model: &Model, law: &Law) -> StandardManoeuvres {
     match Ship::new(model, law) {
         Ok(ship) => standard(&ship, &ManoeuvreSettings::default()),
-        Err(error) => StandardManoeuvres { failures: vec![error.to_string()], ..Default::default() },
+        Err(error) => {
+            StandardManoeuvres { failures: vec![error.to_string()], ..Default::default() }
+        }
     }
 }

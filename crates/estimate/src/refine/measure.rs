@@ -40,7 +40,12 @@ impl PriorMeasure {
     ///
     /// # Errors
     /// The law takes something that the trials do not record.
-    pub fn hold(&self, blocks: &mut Blocks, model: &mut Model, trials: &[Moments]) -> Result<(), RefineError> {
+    pub fn hold(
+        &self,
+        blocks: &mut Blocks,
+        model: &mut Model,
+        trials: &[Moments],
+    ) -> Result<(), RefineError> {
         match self {
             Self::Trials => {}
             Self::Envelope(envelope) => sized(blocks, &envelope.moments(blocks)?, trials),

@@ -40,7 +40,9 @@ pub use blocks::{Block, Blocks};
 pub use cma_es::{CmaEs, SearchReport};
 pub use constraints::{Bound, ConstraintError, Constraints, LimitError, StraightLine};
 pub use family::Family;
-pub use outcome::{CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement, StepOption};
+pub use outcome::{
+    CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement, StepOption,
+};
 pub use progress::{Iterate, Progress, Watch};
 pub use ridge::{Choices, Fit, Fitted, Fold, fit, tune};
 pub use rows::{Table, trial_moments, trial_tables};

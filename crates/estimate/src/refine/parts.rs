@@ -13,7 +13,12 @@ use super::settings::Settings;
 
 /// The training trials in parts as long as simulations run between restarts, at least two of each, where a law rolls and there
 /// are fewer trials than folds; nothing where the trials stay whole.
-pub(super) fn parts(training: &[&Trial], law: &Law, equations: Equations, settings: &Settings) -> Vec<Trial> {
+pub(super) fn parts(
+    training: &[&Trial],
+    law: &Law,
+    equations: Equations,
+    settings: &Settings,
+) -> Vec<Trial> {
     let Some(part_s) = settings.restart_s else { return Vec::new() };
     if equations.are_differences() || !law.has_roll() || training.len() >= settings.folds {
         return Vec::new();
@@ -25,7 +30,10 @@ pub(super) fn parts(training: &[&Trial], law: &Law, equations: Equations, settin
 fn cut(trial: &Trial, part_s: f64) -> Vec<Trial> {
     let count = ((trial.duration_s() / part_s).round() as usize).max(2);
     let size = trial.len().div_ceil(count).max(1);
-    (0..trial.len()).step_by(size).map(|from| slice(trial, from..(from + size).min(trial.len()))).collect()
+    (0..trial.len())
+        .step_by(size)
+        .map(|from| slice(trial, from..(from + size).min(trial.len())))
+        .collect()
 }
 
 pub(super) fn slice(trial: &Trial, samples: Range<usize>) -> Trial {
@@ -60,7 +68,8 @@ mod tests {
         for (part_s, count) in [(200.0, 3), (1000.0, 2)] {
             let parts = cut(&whole, part_s);
             assert_eq!(parts.len(), count);
-            let together: Vec<f64> = parts.iter().flat_map(|part| part.channel(Channel::U).unwrap().to_vec()).collect();
+            let together: Vec<f64> =
+                parts.iter().flat_map(|part| part.channel(Channel::U).unwrap().to_vec()).collect();
             assert_eq!(together, whole.t_s);
         }
     }
@@ -71,8 +80,9 @@ mod tests {
         let one = trial(1000);
         let settings = Settings { restart_s: Some(100.0), ..Settings::default() };
         let windows = Equations::Windows(Windows { length_s: 20.0, hop_s: 2.0 });
-        let count =
-            |law: &str, trials: usize, equations| parts(&vec![&one; trials], zoo.law(law).unwrap(), equations, &settings).len();
+        let count = |law: &str, trials: usize, equations| {
+            parts(&vec![&one; trials], zoo.law(law).unwrap(), equations, &settings).len()
+        };
         assert_eq!(count("abkowitz-roll", 3, windows), 15);
         assert_eq!(count("abkowitz-roll", 8, windows), 0);
         assert_eq!(count("abkowitz", 3, windows), 0);

@@ -37,7 +37,12 @@ pub(super) struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     /// Of a model with itself as the source, on whole trials.
-    pub fn of_model(model: &'a Model, law: &'a Law, trials: &[&'a Trial], settings: Settings) -> Self {
+    pub fn of_model(
+        model: &'a Model,
+        law: &'a Law,
+        trials: &[&'a Trial],
+        settings: Settings,
+    ) -> Self {
         let training = trials.to_vec();
         let (whole, judged, transferred) = (training.clone(), Vec::new(), model.clone());
         let thinned = for_simulation(particulars::value(&model.particulars, "lpp_m"), &training);
@@ -97,6 +102,8 @@ impl<'a> Problem<'a> {
 
 /// Trials with samples as far apart as a thirtieth of the time in which the ship sails its length.
 pub(super) fn for_simulation(lpp_m: Option<f64>, training: &[&Trial]) -> Vec<Trial> {
-    let step_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s / SELECTION.samples_a_length);
+    let step_s = lpp_m
+        .zip(approach_of(training))
+        .map(|(l, approach)| l / approach.speed_m_s / SELECTION.samples_a_length);
     training.iter().map(|trial| thinned(trial, step_s)).collect()
 }

@@ -67,7 +67,9 @@ mod tests {
             })
         };
         let forward = MonotoneProgress::new(&note);
-        assert!([0.1, 0.8, 0.6, f64::NAN, 0.9].into_iter().all(|fraction| forward.tell(fraction, "")));
+        assert!(
+            [0.1, 0.8, 0.6, f64::NAN, 0.9].into_iter().all(|fraction| forward.tell(fraction, ""))
+        );
         assert_eq!(told.into_inner().unwrap_or_default(), [0.1, 0.8, 0.8, 0.8, 0.9]);
     }
 }

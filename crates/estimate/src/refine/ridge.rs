@@ -54,7 +54,9 @@ impl<'a> PreparedRegression<'a> {
     }
 
     fn solve(&self, choices: &[RidgeChoice]) -> Vec<Vec<f64>> {
-        let one = |(target, choice): (usize, &RidgeChoice)| self.path.solve(target, *choice, &self.source[target]);
+        let one = |(target, choice): (usize, &RidgeChoice)| {
+            self.path.solve(target, *choice, &self.source[target])
+        };
         choices.iter().enumerate().map(one).collect()
     }
 }
@@ -67,16 +69,28 @@ pub struct Fold<'a> {
 
 impl<'a> Fold<'a> {
     /// Decomposes the training statistics (one set per regression) and prepares the left-out ones.
-    pub fn new(blocks: &'a Blocks, model: &Model, training: &[Moments], left_out: &[Moments]) -> Self {
-        let prepared =
-            blocks.blocks.iter().zip(training).map(|(block, moments)| PreparedRegression::new(block, moments, model)).collect();
+    pub fn new(
+        blocks: &'a Blocks,
+        model: &Model,
+        training: &[Moments],
+        left_out: &[Moments],
+    ) -> Self {
+        let prepared = blocks
+            .blocks
+            .iter()
+            .zip(training)
+            .map(|(block, moments)| PreparedRegression::new(block, moments, model))
+            .collect();
         Self { prepared, validations: left_out.iter().map(Validation::new).collect() }
     }
 
     /// The coefficients fitted on the training samples.
     pub fn solve(&self, choices: &Choices) -> BTreeMap<String, Fitted> {
         let mut coefficients = BTreeMap::new();
-        self.prepared.iter().zip(choices).for_each(|(prepared, choices)| unmix(prepared, choices, &mut coefficients));
+        self.prepared
+            .iter()
+            .zip(choices)
+            .for_each(|(prepared, choices)| unmix(prepared, choices, &mut coefficients));
         coefficients
     }
 }
@@ -101,7 +115,13 @@ impl Fold<'_> {
     pub(super) fn shares(&self, lambda: f64) -> Vec<(Axis, f64)> {
         let of_block = |(prepared, validation): (&PreparedRegression<'_>, &Validation)| {
             let one = |(target, axis): (usize, &Axis)| {
-                let (_, error) = prepared.path.best_alpha(target, lambda, &prepared.source[target], validation, (0.0, 0.0));
+                let (_, error) = prepared.path.best_alpha(
+                    target,
+                    lambda,
+                    &prepared.source[target],
+                    validation,
+                    (0.0, 0.0),
+                );
                 (*axis, error / prepared.path.target_variance(target).max(f64::MIN_POSITIVE))
             };
             prepared.block.axes.iter().enumerate().map(one).collect::<Vec<_>>()
@@ -131,20 +151,33 @@ pub fn tune(folds: &[Fold<'_>], range: &Range, count: usize) -> Choices {
     let of_block = |b: usize| {
         let pairs: Vec<(&PreparedRegression<'_>, &Validation)> =
             folds.iter().map(|fold| (&fold.prepared[b], &fold.validations[b])).collect();
-        (0..first.prepared[b].source.len()).map(|target| tune_target(target, &pairs, range, count)).collect()
+        (0..first.prepared[b].source.len())
+            .map(|target| tune_target(target, &pairs, range, count))
+            .collect()
     };
     (0..first.prepared.len()).map(of_block).collect()
 }
 
 /// The lambda and alpha with the least error, summed over the folds.
-fn tune_target(target: usize, folds: &[(&PreparedRegression<'_>, &Validation)], range: &Range, count: usize) -> RidgeChoice {
+fn tune_target(
+    target: usize,
+    folds: &[(&PreparedRegression<'_>, &Validation)],
+    range: &Range,
+    count: usize,
+) -> RidgeChoice {
     let mut best = (f64::INFINITY, RidgeChoice { lambda: range.lambda_max, alpha: 0.0 });
     for lambda in log_spaced(range.lambda_min, range.lambda_max, count) {
         let mut error = 0.0;
         let mut alpha = 0.0;
         for (prepared, validation) in folds {
             let source = &prepared.source[target];
-            let (a, e) = prepared.path.best_alpha(target, lambda, source, validation, (0.0, range.alpha_max));
+            let (a, e) = prepared.path.best_alpha(
+                target,
+                lambda,
+                source,
+                validation,
+                (0.0, range.alpha_max),
+            );
             error += e;
             alpha += a / folds.len() as f64;
         }
@@ -156,13 +189,21 @@ fn tune_target(target: usize, folds: &[(&PreparedRegression<'_>, &Validation)], 
 }
 
 /// The strengths with the greatest marginal likelihood, for each target of each regression, on the given statistics.
-pub(super) fn most_likely(blocks: &Blocks, moments: &[Moments], model: &Model, range: &Range, count: usize) -> Choices {
+pub(super) fn most_likely(
+    blocks: &Blocks,
+    moments: &[Moments],
+    model: &Model,
+    range: &Range,
+    count: usize,
+) -> Choices {
     let of_block = |(block, moments): (&Block, &Moments)| {
         let prepared = PreparedRegression::new(block, moments, model);
         let of_target = |target: usize| {
             let misfit = |lambda: f64| (prepared.path.misfit(target, lambda), lambda);
             let all = log_spaced(range.lambda_min, range.lambda_max, count).map(misfit);
-            let best = all.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(range.lambda_max, |(_, lambda)| lambda);
+            let best = all
+                .min_by(|a, b| a.0.total_cmp(&b.0))
+                .map_or(range.lambda_max, |(_, lambda)| lambda);
             RidgeChoice { lambda: best, alpha: 0.0 }
         };
         (0..prepared.source.len()).map(of_target).collect()
@@ -181,7 +222,8 @@ pub(super) fn mixed_source(block: &Block, model: &Model) -> Vec<Vec<f64>> {
     let q = block.axes.len();
     let mut mixed = vec![vec![0.0; block.regressors()]; q];
     for i in 0..block.regressors() {
-        let own = DVector::from_iterator(q, block.names.iter().map(|names| model.coefficient(&names[i])));
+        let own =
+            DVector::from_iterator(q, block.names.iter().map(|names| model.coefficient(&names[i])));
         let seen = &block.mixing * own;
         (0..q).for_each(|target| mixed[target][i] = seen[target]);
     }
@@ -194,7 +236,9 @@ impl Fit {
         if let Some(errors) = &errors {
             for (k, name) in errors.names.iter().enumerate() {
                 let fitted = self.coefficients.get_mut(name).into_iter();
-                fitted.for_each(|fitted| fitted.standard_error = errors.covariance[(k, k)].max(0.0).sqrt());
+                fitted.for_each(|fitted| {
+                    fitted.standard_error = errors.covariance[(k, k)].max(0.0).sqrt()
+                });
             }
         }
         self.errors = errors;
@@ -204,7 +248,12 @@ impl Fit {
 
 /// Fits every regression at its choices on the given statistics (one set per regression).
 pub fn fit(blocks: &Blocks, moments: &[Moments], model: &Model, choices: &Choices) -> Fit {
-    let mut result = Fit { coefficients: BTreeMap::new(), condition_number: 1.0, collinear_groups: Vec::new(), errors: None };
+    let mut result = Fit {
+        coefficients: BTreeMap::new(),
+        condition_number: 1.0,
+        collinear_groups: Vec::new(),
+        errors: None,
+    };
     for ((block, moments), choices) in blocks.blocks.iter().zip(moments).zip(choices) {
         let prepared = PreparedRegression::new(block, moments, model);
         unmix(&prepared, choices, &mut result.coefficients);
@@ -222,22 +271,40 @@ fn joined(block: &Block, i: usize) -> String {
 }
 
 /// From what the regression solved for back to the coefficients of each axis.
-fn unmix(prepared: &PreparedRegression<'_>, choices: &[RidgeChoice], into: &mut BTreeMap<String, Fitted>) {
+fn unmix(
+    prepared: &PreparedRegression<'_>,
+    choices: &[RidgeChoice],
+    into: &mut BTreeMap<String, Fitted>,
+) {
     let block = prepared.block;
     let q = block.axes.len();
     let solutions = prepared.solve(choices);
-    let scatter: Vec<f64> =
-        choices.iter().enumerate().map(|(t, choice)| prepared.path.residual_variance(t, *choice).sqrt()).collect();
-    let deviations: Vec<Vec<(f64, f64)>> = choices.iter().map(|choice| prepared.path.deviations(choice.lambda)).collect();
-    let unmixing = block.mixing.clone().lu().solve(&DMatrix::identity(q, q)).unwrap_or_else(|| DMatrix::identity(q, q));
+    let scatter: Vec<f64> = choices
+        .iter()
+        .enumerate()
+        .map(|(t, choice)| prepared.path.residual_variance(t, *choice).sqrt())
+        .collect();
+    let deviations: Vec<Vec<(f64, f64)>> =
+        choices.iter().map(|choice| prepared.path.deviations(choice.lambda)).collect();
+    let unmixing = block
+        .mixing
+        .clone()
+        .lu()
+        .solve(&DMatrix::identity(q, q))
+        .unwrap_or_else(|| DMatrix::identity(q, q));
     for i in 0..block.regressors() {
         let solved = DVector::from_iterator(q, solutions.iter().map(|solution| solution[i]));
         let own = &unmixing * solved;
         for axis in 0..q {
             let spread = |of: &dyn Fn(usize) -> f64| {
-                (0..q).map(|t| (unmixing[(axis, t)] * scatter[t] * of(t)).powi(2)).sum::<f64>().sqrt()
+                (0..q)
+                    .map(|t| (unmixing[(axis, t)] * scatter[t] * of(t)).powi(2))
+                    .sum::<f64>()
+                    .sqrt()
             };
-            let pulled = (0..q).map(|t| unmixing[(axis, t)] * choices[t].alpha * prepared.source[t][i]).sum::<f64>();
+            let pulled = (0..q)
+                .map(|t| unmixing[(axis, t)] * choices[t].alpha * prepared.source[t][i])
+                .sum::<f64>();
             let fitted = Fitted {
                 value: own[axis],
                 standard_error: spread(&|t| deviations[t][i].0),

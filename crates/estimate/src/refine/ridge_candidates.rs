@@ -30,7 +30,11 @@ impl Solution for RidgeSolution {
         Ok(Some(fitted))
     }
 
-    fn errors(&self, problem: &Problem<'_>, variants: &[Variant]) -> Result<Option<CoefficientErrors>, RefineError> {
+    fn errors(
+        &self,
+        problem: &Problem<'_>,
+        variants: &[Variant],
+    ) -> Result<Option<CoefficientErrors>, RefineError> {
         variants[self.variant].errors(&problem.training, &self.choices)
     }
 
@@ -43,7 +47,10 @@ impl Solution for RidgeSolution {
 ///
 /// # Errors
 /// A trial lacks a channel.
-pub(super) fn source_candidate(problem: &Problem<'_>, variants: &[Variant]) -> Result<CandidateFit, RefineError> {
+pub(super) fn source_candidate(
+    problem: &Problem<'_>,
+    variants: &[Variant],
+) -> Result<CandidateFit, RefineError> {
     let limits = variants.iter().find_map(|variant| variant.limits.as_ref());
     let simulated = match limits.map(|limits| limits.check(&problem.transferred)) {
         Some(Err(reason)) => Simulated::refused(reason.to_string()),
@@ -69,17 +76,30 @@ pub(super) fn ridge_candidate(
         Ok(models) => models,
         Err(reason) => {
             let ridge = RidgeSolution { variant: index, choices };
-            return Ok(CandidateFit::new(problem, step, ridge, 0, Simulated::refused(reason.to_string())));
+            return Ok(CandidateFit::new(
+                problem,
+                step,
+                ridge,
+                0,
+                Simulated::refused(reason.to_string()),
+            ));
         }
     };
     let simulated = simulate_training(problem, &models, &|trial| problem.fold_of(trial))?;
     let size = models.first().map_or(0, |model| model.coefficients.len());
-    let candidate = CandidateFit::new(problem, step, RidgeSolution { variant: index, choices }, size, simulated);
+    let candidate = CandidateFit::new(
+        problem,
+        step,
+        RidgeSolution { variant: index, choices },
+        size,
+        simulated,
+    );
     Ok(CandidateFit { left_out: models, ..candidate })
 }
 
 /// What is done with a variant: its place, itself, its folds, and whom to tell how far it is.
-pub(super) type WithFolds<'a> = &'a mut dyn FnMut((usize, &Variant), &[Fold<'_>], PartProgress<'_>) -> Result<(), RefineError>;
+pub(super) type WithFolds<'a> =
+    &'a mut dyn FnMut((usize, &Variant), &[Fold<'_>], PartProgress<'_>) -> Result<(), RefineError>;
 
 /// Takes the variants one after the other, each with its folds.
 ///

@@ -17,9 +17,18 @@ pub(super) const LANES: usize = 8;
 ///
 /// # Errors
 /// Names the channel that the trial lacks.
-pub fn trial_moments(blocks: &Blocks, trial: &Trial, difference_s: Option<f64>) -> Result<Vec<Moments>, RefineError> {
+pub fn trial_moments(
+    blocks: &Blocks,
+    trial: &Trial,
+    difference_s: Option<f64>,
+) -> Result<Vec<Moments>, RefineError> {
     let tables = trial_tables(blocks, trial, difference_s)?;
-    Ok(blocks.blocks.iter().zip(&tables).map(|(block, table)| Moments::of_columns(table, block.regressors())).collect())
+    Ok(blocks
+        .blocks
+        .iter()
+        .zip(&tables)
+        .map(|(block, table)| Moments::of_columns(table, block.regressors()))
+        .collect())
 }
 
 /// The columns of each regression over the samples of a trial: regressors, then targets.
@@ -29,7 +38,11 @@ pub type Table = Vec<Vec<f64>>;
 ///
 /// # Errors
 /// As [`trial_moments`].
-pub fn trial_tables(blocks: &Blocks, trial: &Trial, difference_s: Option<f64>) -> Result<Vec<Table>, RefineError> {
+pub fn trial_tables(
+    blocks: &Blocks,
+    trial: &Trial,
+    difference_s: Option<f64>,
+) -> Result<Vec<Table>, RefineError> {
     let record = RegressionRecord::new(blocks, trial)?;
     let difference = |axis: Axis, pair: (usize, usize)| record.acceleration(axis, pair);
     Ok(tables(blocks, &record, &pairs(trial, difference_s), &difference))
@@ -58,7 +71,8 @@ fn tables(
     pairs: &[(usize, usize)],
     acceleration: Acceleration<'_>,
 ) -> Vec<Table> {
-    let mut tables: Vec<Table> = blocks.blocks.iter().map(|b| vec![Vec::with_capacity(pairs.len()); b.width()]).collect();
+    let mut tables: Vec<Table> =
+        blocks.blocks.iter().map(|b| vec![Vec::with_capacity(pairs.len()); b.width()]).collect();
     let mut work = Slots::default();
     let mut lanes = vec![[0.0; LANES]; record.columns.len()];
     for chunk in pairs.chunks(LANES) {
@@ -74,8 +88,9 @@ fn tables(
 /// Samples and the later samples to which they are differenced.
 fn pairs(trial: &Trial, difference_s: Option<f64>) -> Vec<(usize, usize)> {
     let stride = difference_s.map_or(1, |s| (s / trial.interval_s()).round().max(1.0) as usize);
-    let within =
-        |segment: std::ops::Range<usize>| (segment.start..segment.end.saturating_sub(stride)).map(move |k| (k, k + stride));
+    let within = |segment: std::ops::Range<usize>| {
+        (segment.start..segment.end.saturating_sub(stride)).map(move |k| (k, k + stride))
+    };
     trial.segments().into_iter().flat_map(within).collect()
 }
 
@@ -90,7 +105,8 @@ pub(super) struct RegressionRecord<'a> {
 
 impl<'a> RegressionRecord<'a> {
     pub(super) fn new(blocks: &Blocks, trial: &'a Trial) -> Result<Self, RefineError> {
-        let missing = |channel: Channel| RefineError::Channel { trial: trial.name.clone(), channel };
+        let missing =
+            |channel: Channel| RefineError::Channel { trial: trial.name.clone(), channel };
         let need = |channel: Channel| trial.channel(channel).ok_or_else(|| missing(channel));
         let or_zero = |channel: Channel| trial.channel(channel).ok_or(0.0);
         let mut columns = vec![Ok(need(Channel::U)?), Ok(need(Channel::V)?), Ok(need(Channel::R)?)];
@@ -98,12 +114,17 @@ impl<'a> RegressionRecord<'a> {
         for (name, default) in &blocks.inputs {
             let channel = input_channel(name);
             let recorded = channel.and_then(|channel| trial.channel(channel));
-            let constant = if channel == Some(Channel::Depth) { trial.depth_m.or(*default) } else { *default };
+            let constant =
+                if channel == Some(Channel::Depth) { trial.depth_m.or(*default) } else { *default };
             columns.push(match (recorded, constant, channel) {
                 (Some(column), ..) => Ok(column),
                 (None, Some(value), _) => Err(value),
                 (None, None, Some(channel)) => return Err(missing(channel)),
-                (None, None, None) => return Err(RefineError::Law(format!("no trial can record the input `{name}`"))),
+                (None, None, None) => {
+                    return Err(RefineError::Law(format!(
+                        "no trial can record the input `{name}`"
+                    )));
+                }
             });
         }
         let roll = blocks.blocks.iter().any(|block| block.columns.contains(&Axis::K));
@@ -111,7 +132,8 @@ impl<'a> RegressionRecord<'a> {
             need(Channel::P)?;
             need(Channel::Phi)?;
         }
-        let velocities = [Channel::U, Channel::V, Channel::P, Channel::R].map(|channel| trial.channel(channel));
+        let velocities =
+            [Channel::U, Channel::V, Channel::P, Channel::R].map(|channel| trial.channel(channel));
         Ok(Self { t_s: &trial.t_s, columns, velocities })
     }
 
@@ -149,7 +171,8 @@ fn append(
     table: &mut [Vec<f64>],
 ) {
     let read = |output: usize| blocks.tape.read(output, work);
-    let own_mass = if block.is_force() || block.axes.len() > 1 { None } else { block.mass[0][0].map(read) };
+    let own_mass =
+        if block.is_force() || block.axes.len() > 1 { None } else { block.mass[0][0].map(read) };
     let scale = read(block.scales[0]);
     let divided = |value: f64, lane: usize| own_mass.map_or(value, |mass| value / mass[lane]);
     for (column, &term) in table.iter_mut().zip(&block.terms) {
@@ -186,11 +209,18 @@ fn target(
             .sum();
         return nalgebra::DVector::from_element(1, inertia - rests[0]);
     }
-    let accelerations = nalgebra::DVector::from_iterator(q, block.axes.iter().map(|&axis| acceleration(axis, pair)));
+    let accelerations = nalgebra::DVector::from_iterator(
+        q,
+        block.axes.iter().map(|&axis| acceleration(axis, pair)),
+    );
     if rests.iter().all(|rest| *rest == 0.0) {
         return accelerations;
     }
-    let ratios: Vec<f64> = block.scales.iter().map(|&scale| read(scale) / read(block.scales[0])).collect();
-    let unscaled = nalgebra::DVector::from_iterator(q, rests.iter().zip(&ratios).map(|(rest, ratio)| rest / ratio));
+    let ratios: Vec<f64> =
+        block.scales.iter().map(|&scale| read(scale) / read(block.scales[0])).collect();
+    let unscaled = nalgebra::DVector::from_iterator(
+        q,
+        rests.iter().zip(&ratios).map(|(rest, ratio)| rest / ratio),
+    );
     accelerations - &block.mixing * unscaled
 }

@@ -49,7 +49,11 @@ pub fn refine(request: &Request<'_>, progress: Progress<'_>) -> Result<Refinemen
 ///
 /// # Errors
 /// As [`refine`].
-pub fn refine_watched(request: &Request<'_>, progress: Progress<'_>, watch: Watch<'_>) -> Result<Refinement, RefineError> {
+pub fn refine_watched(
+    request: &Request<'_>,
+    progress: Progress<'_>,
+    watch: Watch<'_>,
+) -> Result<Refinement, RefineError> {
     request.settings.check().map_err(|(field, message)| RefineError::Setting { field, message })?;
     let (judged, whole) = divided(request)?;
     let progress = MonotoneProgress::new(progress);
@@ -62,7 +66,18 @@ pub fn refine_watched(request: &Request<'_>, progress: Progress<'_>, watch: Watc
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
     let (law, source, watch) = (request.law, request.source.name.as_str(), Some(watch));
     let thinned = for_simulation(request.target.particular("lpp_m"), &training);
-    let problem = Problem { law, source, training, thinned, whole, judged, transferred, measure, settings, watch };
+    let problem = Problem {
+        law,
+        source,
+        training,
+        thinned,
+        whole,
+        judged,
+        transferred,
+        measure,
+        settings,
+        watch,
+    };
     step(progress, 0.05, "sufficient statistics of each trial")?;
     let variants = variants(&problem, equations)?;
     let mut candidates = vec![source_candidate(&problem, &variants)?];
@@ -72,7 +87,11 @@ pub fn refine_watched(request: &Request<'_>, progress: Progress<'_>, watch: Watc
 }
 
 /// What the prior is about: the source carried over, by its own law or as another law says what it says.
-fn starting(request: &Request<'_>, whole: &[&Trial], in_parts: bool) -> Result<(Model, PriorMeasure), RefineError> {
+fn starting(
+    request: &Request<'_>,
+    whole: &[&Trial],
+    in_parts: bool,
+) -> Result<(Model, PriorMeasure), RefineError> {
     let Request { target, source, source_law, law, .. } = *request;
     let approach = approach_of(whole);
     let Some(own) = source_law.filter(|own| own.name != law.name) else {
@@ -90,11 +109,14 @@ fn starting(request: &Request<'_>, whole: &[&Trial], in_parts: bool) -> Result<(
 /// The trials that are kept out of fit and choice, and the others.
 fn divided<'a>(request: &'a Request<'a>) -> Result<(Vec<&'a Trial>, Vec<&'a Trial>), RefineError> {
     let names = &request.settings.held_out;
-    if let Some(unknown) = names.iter().find(|name| !request.trials.iter().any(|trial| trial.name == **name)) {
+    if let Some(unknown) =
+        names.iter().find(|name| !request.trials.iter().any(|trial| trial.name == **name))
+    {
         let message = format!("no trial is called `{unknown}`");
         return Err(RefineError::Setting { field: "held_out".into(), message });
     }
-    let (judged, whole): (Vec<&Trial>, Vec<&Trial>) = request.trials.iter().partition(|trial| names.contains(&trial.name));
+    let (judged, whole): (Vec<&Trial>, Vec<&Trial>) =
+        request.trials.iter().partition(|trial| names.contains(&trial.name));
     if whole.is_empty() {
         return Err(RefineError::Data("there is no trial to fit on".into()));
     }

@@ -182,7 +182,10 @@ impl Settings {
             return refuse("ranges", "give 1 to 20 tuning ranges");
         }
         for range in &self.ranges {
-            if !(range.lambda_min > 0.0 && range.lambda_min <= range.lambda_max && range.lambda_max.is_finite()) {
+            if !(range.lambda_min > 0.0
+                && range.lambda_min <= range.lambda_max
+                && range.lambda_max.is_finite())
+            {
                 return refuse("ranges", "lambda_min must be above 0 and not above lambda_max");
             }
             if !(0.0..=1.0).contains(&range.alpha_max) {
@@ -198,13 +201,18 @@ impl Settings {
         if !self.method.keeps_constraints() && !self.constraints.is_empty() {
             return refuse("constraints", "are kept by the methods `published` and `weak` only");
         }
-        self.cma_es.as_ref().map_or(Ok(()), CmaEs::check).map_err(|error| ("cma_es".to_owned(), error.to_string()))?;
+        self.cma_es
+            .as_ref()
+            .map_or(Ok(()), CmaEs::check)
+            .map_err(|error| ("cma_es".to_owned(), error.to_string()))?;
         self.constraints.check().map_err(|error| ("constraints".to_owned(), error.to_string()))?;
         self.bands.check().map_err(|error| ("bands".to_owned(), error.to_string()))?;
-        if self.strengths.len() > 100 || self.strengths.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
+        if self.strengths.len() > 100 || self.strengths.iter().any(|s| !(*s > 0.0 && s.is_finite()))
+        {
             return refuse("strengths", "give at most 100, each above 0");
         }
-        let positive = |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
+        let positive =
+            |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
         if !positive(self.difference_s) {
             return refuse("difference_s", "must be above 0 s");
         }

@@ -30,9 +30,12 @@ impl Simulated {
 
     fn of(trials: &[&Trial], runs: &[Replay]) -> Self {
         let mut total = SquaredError::default();
-        let each: Vec<SquaredError> = trials.iter().zip(runs).map(|(trial, run)| SquaredError::of(trial, run)).collect();
+        let each: Vec<SquaredError> =
+            trials.iter().zip(runs).map(|(trial, run)| SquaredError::of(trial, run)).collect();
         each.iter().for_each(|error| total.add(error));
-        let stopped = |(trial, run): (&&Trial, &Replay)| Some(format!("{} {}", trial.name, run.stopped.as_ref()?));
+        let stopped = |(trial, run): (&&Trial, &Replay)| {
+            Some(format!("{} {}", trial.name, run.stopped.as_ref()?))
+        };
         Self { total, each, reason: trials.iter().zip(runs).find_map(stopped) }
     }
 }
@@ -59,25 +62,34 @@ pub(super) fn simulate_all(
     models: &[Model],
     model_of: &(dyn Fn(usize) -> usize + Sync),
 ) -> Result<Simulated, RefineError> {
-    let Some(first) = models.first().filter(|_| !trials.is_empty()) else { return Ok(Simulated::of(&[], &[])) };
+    let Some(first) = models.first().filter(|_| !trials.is_empty()) else {
+        return Ok(Simulated::of(&[], &[]));
+    };
     let ship = match ready_for_sisters(first, problem.law, trials) {
         Ok(ship) => ship,
         Err(error) => return Ok(Simulated::refused(error.to_string())),
     };
     let coefficients = sisters(&ship, models)?;
     let numbered = trials.iter().enumerate();
-    let all: Vec<_> = numbered.map(|(k, trial)| Recorded { trial, coefficients: &coefficients[model_of(k)] }).collect();
-    let settings = ReplaySettings { restart_s: problem.settings.restart_s, ..ReplaySettings::default() };
+    let all: Vec<_> = numbered
+        .map(|(k, trial)| Recorded { trial, coefficients: &coefficients[model_of(k)] })
+        .collect();
+    let settings =
+        ReplaySettings { restart_s: problem.settings.restart_s, ..ReplaySettings::default() };
     let together = |some: &[Recorded<'_>]| {
-        replay_all(&ship, some, &settings).map_err(|e| RefineError::Channel { trial: e.trial, channel: e.channel })
+        replay_all(&ship, some, &settings)
+            .map_err(|e| RefineError::Channel { trial: e.trial, channel: e.channel })
     };
-    let runs: Vec<Vec<Replay>> = all.par_chunks(TOGETHER).map(together).collect::<Result<_, _>>()?;
+    let runs: Vec<Vec<Replay>> =
+        all.par_chunks(TOGETHER).map(together).collect::<Result<_, _>>()?;
     Ok(Simulated::of(trials, &runs.concat()))
 }
 
 fn sisters(ship: &Ship, models: &[Model]) -> Result<Vec<Vec<f64>>, RefineError> {
     let one = |model: &Model| {
-        let differ = || RefineError::Law(format!("`{}` has not the coefficients of its sisters", model.name));
+        let differ = || {
+            RefineError::Law(format!("`{}` has not the coefficients of its sisters", model.name))
+        };
         ship.sister(model).ok_or_else(differ)
     };
     models.iter().map(one).collect()

@@ -6,7 +6,9 @@ use sistership_model::trial::Trial;
 /// joined to another. The trial itself where that would leave gaps out, or nothing.
 pub(super) fn thinned(trial: &Trial, step_s: Option<f64>) -> Trial {
     let interval_s = trial.interval_s();
-    let every = step_s.filter(|_| interval_s > 0.0).map_or(1, |step_s| (step_s / interval_s + 1e-9).floor().max(1.0) as usize);
+    let every = step_s
+        .filter(|_| interval_s > 0.0)
+        .map_or(1, |step_s| (step_s / interval_s + 1e-9).floor().max(1.0) as usize);
     let parts = trial.segments();
     let kept: Vec<usize> = parts.iter().flat_map(|part| part.clone().step_by(every)).collect();
     let of = |column: &[f64]| kept.iter().map(|&k| column[k]).collect::<Vec<f64>>();
@@ -22,7 +24,8 @@ mod tests {
     use sistership_model::trial::Channel;
 
     fn trial(gap_s: f64) -> Trial {
-        let t_s: Vec<f64> = (0..100).map(|k| 0.1 * f64::from(k) + if k < 51 { 0.0 } else { gap_s }).collect();
+        let t_s: Vec<f64> =
+            (0..100).map(|k| 0.1 * f64::from(k) + if k < 51 { 0.0 } else { gap_s }).collect();
         Trial { channels: [(Channel::U, t_s.clone())].into(), t_s, ..Trial::default() }
     }
 

@@ -45,7 +45,12 @@ impl Variant {
     ///
     /// # Errors
     /// The trials lack a channel or have too few samples, or the constraints name what the model lacks.
-    fn new(problem: &Problem<'_>, equations: Equations, family: Family, mut model: Model) -> Result<Self, RefineError> {
+    fn new(
+        problem: &Problem<'_>,
+        equations: Equations,
+        family: Family,
+        mut model: Model,
+    ) -> Result<Self, RefineError> {
         let mut blocks = Blocks::new(&model, problem.law)?;
         let moments = moments(problem, equations, &blocks)?;
         if let Some(all) = merged(&moments, |_| true) {
@@ -59,7 +64,11 @@ impl Variant {
     ///
     /// # Errors
     /// Names the limits that cannot be kept together.
-    pub fn solve(&self, fold: &Fold<'_>, choices: &Choices) -> Result<BTreeMap<String, Fitted>, LimitError> {
+    pub fn solve(
+        &self,
+        fold: &Fold<'_>,
+        choices: &Choices,
+    ) -> Result<BTreeMap<String, Fitted>, LimitError> {
         let mut fitted = fold.solve(choices);
         let Some(limits) = &self.limits else { return Ok(fitted) };
         let (names, curvature) = fold.curvature(choices);
@@ -77,19 +86,25 @@ impl Variant {
     /// # Errors
     /// They have no sample.
     pub fn together(&self, keep: impl Fn(usize) -> bool) -> Result<Vec<Moments>, RefineError> {
-        merged(&self.moments, keep).ok_or_else(|| RefineError::Data("the trials have no sample".into()))
+        merged(&self.moments, keep)
+            .ok_or_else(|| RefineError::Data("the trials have no sample".into()))
     }
 
     /// The model with other values of some coefficients.
     pub fn model_at(&self, values: &BTreeMap<String, f64>) -> Model {
         let mut model = self.model.clone();
-        let all = values.iter().map(|(name, value)| (name.clone(), Quantity::new(*value, "refined")));
+        let all =
+            values.iter().map(|(name, value)| (name.clone(), Quantity::new(*value, "refined")));
         model.coefficients.extend(all);
         model
     }
 
     /// How far a ridge's coefficients on all trials may be from the truth.
-    pub fn errors(&self, training: &[&Trial], choices: &Choices) -> Result<Option<CoefficientErrors>, RefineError> {
+    pub fn errors(
+        &self,
+        training: &[&Trial],
+        choices: &Choices,
+    ) -> Result<Option<CoefficientErrors>, RefineError> {
         let Some(all) = merged(&self.moments, |_| true) else { return Ok(None) };
         Ok(errors(&self.blocks, &all, &self.rows(training)?, &self.model, choices))
     }
@@ -97,8 +112,11 @@ impl Variant {
     /// The rows behind the statistics. Differences of neighbouring samples share most of what they say: they are merged
     /// over the time of a difference.
     fn rows(&self, training: &[&Trial]) -> Result<SequencedRows, RefineError> {
-        let parts = |trial: &&Trial| trial.segments().into_iter().map(|part| slice(trial, part)).collect::<Vec<_>>();
-        let parts: Vec<Trial> = training.iter().flat_map(parts).filter(|part| part.len() > 1).collect();
+        let parts = |trial: &&Trial| {
+            trial.segments().into_iter().map(|part| slice(trial, part)).collect::<Vec<_>>()
+        };
+        let parts: Vec<Trial> =
+            training.iter().flat_map(parts).filter(|part| part.len() > 1).collect();
         let one = |part: &Trial| self.equations.tables(&self.blocks, part);
         let tables: Vec<Vec<Table>> = parts.par_iter().map(one).collect::<Result<_, _>>()?;
         let dependent = self.equations.dependent_rows(parts.first().map_or(1.0, Trial::interval_s));
@@ -112,8 +130,10 @@ impl Variant {
     pub fn folds(&self, problem: &Problem<'_>) -> Result<Vec<Fold<'_>>, RefineError> {
         let nothing = || RefineError::Data("a fold has no sample".into());
         let one = |fold: usize| {
-            let training = merged(&self.moments, |trial| problem.is_fitted(trial, fold)).ok_or_else(nothing)?;
-            let left_out = merged(&self.moments, |trial| problem.fold_of(trial) == fold).ok_or_else(nothing)?;
+            let training = merged(&self.moments, |trial| problem.is_fitted(trial, fold))
+                .ok_or_else(nothing)?;
+            let left_out = merged(&self.moments, |trial| problem.fold_of(trial) == fold)
+                .ok_or_else(nothing)?;
             Ok(Fold::new(&self.blocks, &self.model, &training, &left_out))
         };
         (0..problem.fold_count()).map(one).collect()
@@ -127,7 +147,13 @@ impl Variant {
         let [lambda_min, lambda_max] = SELECTION.roll_strengths;
         let free = Range { lambda_min, lambda_max, alpha_max: 0.0 };
         let tuned = if blocks.iter().any(|block| block.axes.contains(&Axis::K)) {
-            most_likely(&self.blocks, &self.together(|_| true)?, &self.model, &free, SELECTION.roll_strength_count)
+            most_likely(
+                &self.blocks,
+                &self.together(|_| true)?,
+                &self.model,
+                &free,
+                SELECTION.roll_strength_count,
+            )
         } else {
             Choices::new()
         };
@@ -135,7 +161,8 @@ impl Variant {
             Axis::K => tuned[b][target],
             _ => RidgeChoice { lambda, alpha: 0.0 },
         };
-        let of_block = |b: usize| blocks[b].axes.iter().enumerate().map(|axis| of_axis(b, axis)).collect();
+        let of_block =
+            |b: usize| blocks[b].axes.iter().enumerate().map(|axis| of_axis(b, axis)).collect();
         Ok((0..blocks.len()).map(of_block).collect())
     }
 }
@@ -145,7 +172,10 @@ impl Variant {
 ///
 /// # Errors
 /// As of the first family.
-pub(super) fn variants(problem: &Problem<'_>, equations: Equations) -> Result<Vec<Variant>, RefineError> {
+pub(super) fn variants(
+    problem: &Problem<'_>,
+    equations: Equations,
+) -> Result<Vec<Variant>, RefineError> {
     let families = &problem.settings.families;
     let families = if families.is_empty() { &[Family::Own][..] } else { families };
     let mut variants = Vec::new();
@@ -166,22 +196,34 @@ fn limits(problem: &Problem<'_>, model: &Model) -> Result<Option<CoefficientLimi
     if asked.is_empty() {
         return Ok(None);
     }
-    let speeds = problem.whole.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
-    let speeds = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], u| [low.min(*u), high.max(*u)]);
+    let speeds =
+        problem.whole.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
+    let speeds = speeds
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], u| [low.min(*u), high.max(*u)]);
     let limits = CoefficientLimits::new(asked, model, problem.law, speeds);
-    limits.map(Some).map_err(|error| RefineError::Setting { field: "constraints".into(), message: error.to_string() })
+    limits.map(Some).map_err(|error| RefineError::Setting {
+        field: "constraints".into(),
+        message: error.to_string(),
+    })
 }
 
 /// Statistics by trial and regression.
-fn moments(problem: &Problem<'_>, equations: Equations, blocks: &Blocks) -> Result<Vec<Vec<Moments>>, RefineError> {
+fn moments(
+    problem: &Problem<'_>,
+    equations: Equations,
+    blocks: &Blocks,
+) -> Result<Vec<Vec<Moments>>, RefineError> {
     let one = |trial: &&Trial| equations.moments(blocks, trial);
-    let moments: Vec<Vec<Moments>> = problem.training.par_iter().map(one).collect::<Result<_, _>>()?;
+    let moments: Vec<Vec<Moments>> =
+        problem.training.par_iter().map(one).collect::<Result<_, _>>()?;
     let samples: f64 = moments.iter().map(|m| m.first().map_or(0.0, |m| m.count)).sum();
     let widest = blocks.blocks.iter().map(super::Block::regressors).max().unwrap_or(0) as f64;
     // A prior as strong as a source's lets rows be fewer than coefficients.
     let least = if problem.measure.is_source() { 1.0 } else { equations.least_samples(widest) };
     if samples < least {
-        let message = format!("{samples:.0} samples are too few for {widest} coefficients an axis; give at least {least}");
+        let message = format!(
+            "{samples:.0} samples are too few for {widest} coefficients an axis; give at least {least}"
+        );
         return Err(RefineError::Data(message));
     }
     Ok(moments)

@@ -22,12 +22,23 @@ type Component = (&'static str, f64);
 
 /// Norms of the rows of Mei's Table 4 (Eq. 4). They stay those of her five ships: were they taken over the ships
 /// compared, adding a ship to the zoo would change the correlation of two others.
-const MEI_2019: [Component; 5] =
-    [("C_b", 1.567_947), ("L/B", 14.082_16), ("B/T", 6.957_127), ("L/V0", 62.763_39), ("Ar/(LT)", 0.044_075_1)];
+const MEI_2019: [Component; 5] = [
+    ("C_b", 1.567_947),
+    ("L/B", 14.082_16),
+    ("B/T", 6.957_127),
+    ("L/V0", 62.763_39),
+    ("Ar/(LT)", 0.044_075_1),
+];
 
 /// Norms over the five full-scale ships of the zoo that have every component, for the same reason held fixed.
-const KANAZAWA_2023: [Component; 6] =
-    [("C_b", 1.56), ("L/B", 14.79), ("B/T", 6.33), ("L/volume^(1/3)", 12.75), ("Ar/(LT)", 0.04351), ("Dp/T", 1.419)];
+const KANAZAWA_2023: [Component; 6] = [
+    ("C_b", 1.56),
+    ("L/B", 14.79),
+    ("B/T", 6.33),
+    ("L/volume^(1/3)", 12.75),
+    ("Ar/(LT)", 0.04351),
+    ("Dp/T", 1.419),
+];
 
 impl Definition {
     /// Every definition.
@@ -68,8 +79,13 @@ impl CharacteristicVector {
     pub fn of(vessel: &Vessel, definition: Definition) -> Self {
         let quoted = vessel.quoted_vectors.get(definition.name());
         let computed = |name: &str| component(vessel, name);
-        let value = |name: &str| quoted.and_then(|values| values.get(name).copied()).or_else(|| computed(name));
-        let values = definition.components().iter().filter_map(|(name, _)| Some(((*name).to_owned(), value(name)?)));
+        let value = |name: &str| {
+            quoted.and_then(|values| values.get(name).copied()).or_else(|| computed(name))
+        };
+        let values = definition
+            .components()
+            .iter()
+            .filter_map(|(name, _)| Some(((*name).to_owned(), value(name)?)));
         Self { definition, values: values.collect() }
     }
 
@@ -82,26 +98,37 @@ impl CharacteristicVector {
     /// The components divided by their norms (Mei 2019, Eq. 4).
     pub fn normalised(&self) -> BTreeMap<String, f64> {
         let norms: BTreeMap<&str, f64> = self.definition.components().iter().copied().collect();
-        self.values.iter().map(|(name, value)| (name.clone(), value / norms[name.as_str()])).collect()
+        self.values
+            .iter()
+            .map(|(name, value)| (name.clone(), value / norms[name.as_str()]))
+            .collect()
     }
 
     /// Pearson's correlation of the normalised components that both have (Mei 2019, Eq. 5); `None` below four.
     pub fn correlation(&self, other: &Self) -> Option<f64> {
         let (here, there) = (self.normalised(), other.normalised());
-        let pairs: Vec<(f64, f64)> = here.iter().filter_map(|(name, a)| Some((*a, *there.get(name)?))).collect();
+        let pairs: Vec<(f64, f64)> =
+            here.iter().filter_map(|(name, a)| Some((*a, *there.get(name)?))).collect();
         if pairs.len() < 4 {
             return None;
         }
         let n = pairs.len() as f64;
-        let (mean_a, mean_b) = (pairs.iter().map(|p| p.0).sum::<f64>() / n, pairs.iter().map(|p| p.1).sum::<f64>() / n);
-        let sum = |f: &dyn Fn(f64, f64) -> f64| pairs.iter().map(|(a, b)| f(a - mean_a, b - mean_b)).sum::<f64>();
+        let (mean_a, mean_b) = (
+            pairs.iter().map(|p| p.0).sum::<f64>() / n,
+            pairs.iter().map(|p| p.1).sum::<f64>() / n,
+        );
+        let sum = |f: &dyn Fn(f64, f64) -> f64| {
+            pairs.iter().map(|(a, b)| f(a - mean_a, b - mean_b)).sum::<f64>()
+        };
         let spread = (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt();
         (spread > 0.0).then(|| (sum(&|a, b| a * b) / spread).clamp(-1.0, 1.0))
     }
 
     /// The component in which two ships differ most, relative to this one.
     pub fn largest_difference(&self, other: &Self) -> Option<(String, f64)> {
-        let difference = |(name, a): (&String, &f64)| Some((name.clone(), (other.values.get(name)? / a - 1.0).abs()));
+        let difference = |(name, a): (&String, &f64)| {
+            Some((name.clone(), (other.values.get(name)? / a - 1.0).abs()))
+        };
         self.values.iter().filter_map(difference).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }
@@ -131,9 +158,12 @@ mod tests {
     #[test]
     fn norms_are_those_of_table_4() {
         let zoo = Zoo::embedded().unwrap();
-        let ships = ["kvlcc2", "mariner", "esso-tanker", "sr108", "pcc"].map(|name| zoo.vessel(name).unwrap().clone());
+        let ships = ["kvlcc2", "mariner", "esso-tanker", "sr108", "pcc"]
+            .map(|name| zoo.vessel(name).unwrap().clone());
         for (name, norm) in MEI_2019 {
-            let square = |v: &std::sync::Arc<Vessel>| CharacteristicVector::of(v, Definition::Mei2019).values[name].powi(2);
+            let square = |v: &std::sync::Arc<Vessel>| {
+                CharacteristicVector::of(v, Definition::Mei2019).values[name].powi(2)
+            };
             let sum = ships.iter().map(square).sum::<f64>().sqrt();
             assert!((sum / norm - 1.0).abs() < 1e-5, "{name}: {sum}");
         }
@@ -142,10 +172,14 @@ mod tests {
     #[test]
     fn norms_of_the_zoo() {
         let zoo = Zoo::embedded().unwrap();
-        let ships = ["kvlcc2", "mariner", "esso-tanker", "sr108", "kcs"].map(|name| zoo.vessel(name).unwrap().clone());
+        let ships = ["kvlcc2", "mariner", "esso-tanker", "sr108", "kcs"]
+            .map(|name| zoo.vessel(name).unwrap().clone());
         for (name, norm) in KANAZAWA_2023 {
             let square = |v: &std::sync::Arc<Vessel>| {
-                CharacteristicVector::of(v, Definition::Kanazawa2023).values.get(name).map(|x| x * x)
+                CharacteristicVector::of(v, Definition::Kanazawa2023)
+                    .values
+                    .get(name)
+                    .map(|x| x * x)
             };
             let sum = ships.iter().filter_map(square).sum::<f64>().sqrt();
             assert!((sum / norm - 1.0).abs() < 5e-3, "{name}: {sum}");

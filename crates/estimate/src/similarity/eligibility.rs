@@ -78,7 +78,8 @@ pub fn rank(
     let others = candidates.iter().filter(|candidate| candidate.vessel.name() != target.name());
     let mut ranking: Vec<RankedSource> = others
         .map(|candidate| {
-            let correlation = here.correlation(&CharacteristicVector::of(candidate.vessel, definition));
+            let correlation =
+                here.correlation(&CharacteristicVector::of(candidate.vessel, definition));
             let Eligibility { eligible, reasons } = judge(target, candidate, limits, trend);
             RankedSource {
                 ship: candidate.vessel.name().to_owned(),
@@ -97,14 +98,24 @@ pub fn rank(
     ranking
 }
 
-fn judge(target: &Vessel, candidate: &SourceCandidate<'_>, limits: &EligibilityLimits, trend: Option<Trend<'_>>) -> Eligibility {
-    let mut steps = vec![same_category(target, candidate.vessel), similar_vector(target, candidate.vessel, limits)];
+fn judge(
+    target: &Vessel,
+    candidate: &SourceCandidate<'_>,
+    limits: &EligibilityLimits,
+    trend: Option<Trend<'_>>,
+) -> Eligibility {
+    let mut steps = vec![
+        same_category(target, candidate.vessel),
+        similar_vector(target, candidate.vessel, limits),
+    ];
     match candidate.model {
         None => steps.push(StepOutcome::failed("no model: known by particulars only".into())),
         // A simulation costs more than a comparison of numbers: it is run for those that passed them.
         Some(model) if steps.iter().all(|step| step.passed) => match trend {
             Some(trend) => steps.push(captures_trend(trend(model), limits)),
-            None => steps.push(StepOutcome::passed("trend of the trials: not checked, no trials given".into())),
+            None => steps.push(StepOutcome::passed(
+                "trend of the trials: not checked, no trials given".into(),
+            )),
         },
         Some(_) => {}
     }
@@ -143,22 +154,26 @@ fn similar_vector(target: &Vessel, source: &Vessel, limits: &EligibilityLimits) 
     let there = CharacteristicVector::of(source, definition);
     let shared = here.values.keys().filter(|name| there.values.contains_key(*name)).count();
     let Some((name, difference)) = here.largest_difference(&there).filter(|_| shared >= 4) else {
-        return StepOutcome::failed(format!("characteristic vector unknown: only {shared} components in common"));
+        return StepOutcome::failed(format!(
+            "characteristic vector unknown: only {shared} components in common"
+        ));
     };
     let (percent, limit) = (100.0 * difference, 100.0 * limits.vector_difference);
     if difference <= limits.vector_difference {
         StepOutcome::passed(format!("similar vector: largest difference {percent:.0} % in {name}"))
     } else {
-        StepOutcome::failed(format!("vector too different: {percent:.0} % in {name}, at most {limit:.0} %"))
+        StepOutcome::failed(format!(
+            "vector too different: {percent:.0} % in {name}, at most {limit:.0} %"
+        ))
     }
 }
 
 fn captures_trend(measured: Result<f64, TrendError>, limits: &EligibilityLimits) -> StepOutcome {
     match measured {
         Err(reason) => StepOutcome::failed(format!("does not capture the trials: {reason}")),
-        Ok(r) if r >= limits.trend => {
-            StepOutcome::passed(format!("captures the trend of the trials: yaw rate correlates at {r:.2}"))
-        }
+        Ok(r) if r >= limits.trend => StepOutcome::passed(format!(
+            "captures the trend of the trials: yaw rate correlates at {r:.2}"
+        )),
         Ok(r) => StepOutcome::failed(format!(
             "misses the trend of the trials: yaw rate correlates at {r:.2}, at least {:.2}",
             limits.trend

@@ -4,7 +4,11 @@
 /// of that difference over the trials (after Breiman et al. 1984, Classification and regression trees, section 3.4.3): one-step
 /// errors alone would always take the weakest prior. `errors[fold][k]` at the k-th strength, from the weakest on; `untold` is
 /// taken where nothing can be left out.
-pub(super) fn strongest_within_one_error(errors: &[&[f64]], strengths: usize, untold: usize) -> usize {
+pub(super) fn strongest_within_one_error(
+    errors: &[&[f64]],
+    strengths: usize,
+    untold: usize,
+) -> usize {
     if errors.len() < 2 {
         return untold;
     }
@@ -26,8 +30,13 @@ mod tests {
 
     #[test]
     fn what_the_trials_do_not_tell_apart_goes_to_the_prior() {
-        let choose = |errors: [[f64; 4]; 2]| strongest_within_one_error(&[&errors[0], &errors[1]], 4, 3);
-        assert_eq!(choose([[4.0, 1.0, 1.5, 4.0], [5.0, 2.1, 2.5, 5.0]]), 1, "both trials lose, whatever their own level");
+        let choose =
+            |errors: [[f64; 4]; 2]| strongest_within_one_error(&[&errors[0], &errors[1]], 4, 3);
+        assert_eq!(
+            choose([[4.0, 1.0, 1.5, 4.0], [5.0, 2.1, 2.5, 5.0]]),
+            1,
+            "both trials lose, whatever their own level"
+        );
         assert_eq!(choose([[4.0, 1.0, 1.5, 4.0], [4.0, 1.1, 1.0, 4.1]]), 2, "one wins, one loses");
         assert_eq!(strongest_within_one_error(&[&[4.0, 1.0, 1.5, 4.0]], 4, 3), 3);
     }

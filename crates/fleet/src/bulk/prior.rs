@@ -35,7 +35,9 @@ impl Prior<'_> {
     /// Means of an axis' coefficients.
     pub(super) fn means(&self, names: &[String]) -> Option<Vec<f64>> {
         match self {
-            Self::Source(source) => Some(names.iter().map(|name| source.get(name).copied().unwrap_or(0.0)).collect()),
+            Self::Source(source) => {
+                Some(names.iter().map(|name| source.get(name).copied().unwrap_or(0.0)).collect())
+            }
             Self::Family { .. } => self.of_axis(names).map(|axis| axis.mean.clone()),
         }
     }
@@ -53,9 +55,10 @@ impl Prior<'_> {
     pub(super) fn allows(&self, settings: &BulkSettings) -> BulkSettings {
         match self {
             Self::Source(_) => *settings,
-            Self::Family { .. } => {
-                BulkSettings { lambda_min: settings.lambda_min.max(1.0).min(0.1 * settings.lambda_max), ..*settings }
-            }
+            Self::Family { .. } => BulkSettings {
+                lambda_min: settings.lambda_min.max(1.0).min(0.1 * settings.lambda_max),
+                ..*settings
+            },
         }
     }
 }

@@ -34,19 +34,30 @@ pub fn refine(request: &BulkRequest<'_>) -> Result<BulkRefinement, RefineError> 
             return outcome(&solved, request, pulled, &coefficients, (before, after));
         }
         if !moved {
-            let failure = after.failures.first().cloned().unwrap_or_else(|| "a turn or zigzag does not answer".to_owned());
-            return Err(RefineError::Diverged(format!("not even the prior sails what the model before sails: {failure}")));
+            let failure = after
+                .failures
+                .first()
+                .cloned()
+                .unwrap_or_else(|| "a turn or zigzag does not answer".to_owned());
+            return Err(RefineError::Diverged(format!(
+                "not even the prior sails what the model before sails: {failure}"
+            )));
         }
     }
     Err(RefineError::Cancelled)
 }
 
 /// The model with these coefficients and no others.
-pub fn refined_model(model: &Model, coefficients: &BTreeMap<String, Fitted>, source: &str) -> Model {
+pub fn refined_model(
+    model: &Model,
+    coefficients: &BTreeMap<String, Fitted>,
+    source: &str,
+) -> Model {
     let quantity = |fitted: &Fitted| Quantity {
         standard_error: Some(fitted.standard_error),
         ..Quantity::new(fitted.value, format!("refined from {source}"))
     };
-    let coefficients = coefficients.iter().map(|(name, fitted)| (name.clone(), quantity(fitted))).collect();
+    let coefficients =
+        coefficients.iter().map(|(name, fitted)| (name.clone(), quantity(fitted))).collect();
     Model { status: Status::Refined, coefficients, uncertainty: None, ..model.clone() }
 }

@@ -22,11 +22,19 @@ pub(super) fn outcome(
 ) -> Result<BulkRefinement, RefineError> {
     let mut priors = BTreeMap::new();
     for group in &solved.groups {
-        let pairs =
-            group.names.iter().zip(&group.means).flat_map(|(names, means)| names.iter().cloned().zip(means.iter().copied()));
+        let pairs = group
+            .names
+            .iter()
+            .zip(&group.means)
+            .flat_map(|(names, means)| names.iter().cloned().zip(means.iter().copied()));
         priors.extend(pairs);
     }
-    let values = request.model.coefficients.iter().map(|(name, quantity)| (name.clone(), quantity.value)).collect();
+    let values = request
+        .model
+        .coefficients
+        .iter()
+        .map(|(name, quantity)| (name.clone(), quantity.value))
+        .collect();
     let axes = axes(solved, request.trials, pulled, &values, &priors)?;
     let coefficient = |(name, fitted): (&String, &Fitted)| Coefficient {
         name: name.clone(),
@@ -48,7 +56,11 @@ fn axes(
     priors: &BTreeMap<String, f64>,
 ) -> Result<Vec<AxisOutcome>, RefineError> {
     let (before, prior) = (left(trials, before)?, left(trials, priors)?);
-    let places = solved.groups.iter().enumerate().flat_map(|(g, group)| (0..group.axes.len()).map(move |axis| (g, axis)));
+    let places = solved
+        .groups
+        .iter()
+        .enumerate()
+        .flat_map(|(g, group)| (0..group.axes.len()).map(move |axis| (g, axis)));
     let one = |(place, (group, axis)): (usize, (usize, usize))| {
         let (left, target) = before[place];
         AxisOutcome {
@@ -63,13 +75,21 @@ fn axes(
 }
 
 /// Mean squares of what coefficients leave and of the targets, by axis, in the mean over the trials.
-fn left(trials: &[TrialStatistics], coefficients: &BTreeMap<String, f64>) -> Result<Vec<(f64, f64)>, RefineError> {
+fn left(
+    trials: &[TrialStatistics],
+    coefficients: &BTreeMap<String, f64>,
+) -> Result<Vec<(f64, f64)>, RefineError> {
     let mut all: Vec<(f64, f64)> = Vec::new();
     for trial in trials {
         let left = trial.left_by(coefficients)?;
         all.resize(left.len(), (0.0, 0.0));
         let share = 1.0 / trials.len() as f64;
-        all.iter_mut().zip(left).for_each(|(sum, left)| *sum = (sum.0 + share * left.residual, sum.1 + share * left.target));
+        all.iter_mut().zip(left).for_each(|(sum, left)| {
+            *sum = (sum.0 + share * left.residual, sum.1 + share * left.target)
+        });
     }
-    Ok(all.into_iter().map(|(residual, target)| (residual, target.max(f64::MIN_POSITIVE))).collect())
+    Ok(all
+        .into_iter()
+        .map(|(residual, target)| (residual, target.max(f64::MIN_POSITIVE)))
+        .collect())
 }

@@ -2,7 +2,9 @@
 //! diverges in these, and thousands of ships can be asked.
 
 use serde::{Deserialize, Serialize};
-use sistership_dynamics::manoeuvre::{Manoeuvre, ManoeuvreSettings, Sailed as Track, Turn, Zigzag, sail_together};
+use sistership_dynamics::manoeuvre::{
+    Manoeuvre, ManoeuvreSettings, Sailed as Track, Turn, Zigzag, sail_together,
+};
 use sistership_dynamics::{PlantError, Ship, Stopped};
 use sistership_model::{Law, Model};
 
@@ -35,17 +37,26 @@ impl SailedFigures {
             (before.advance_l, self.advance_l),
             (before.first_overshoot_deg, self.first_overshoot_deg),
         ];
-        self.failures.len() <= before.failures.len() && metrics.into_iter().all(|(was, is)| kept(was, is))
+        self.failures.len() <= before.failures.len()
+            && metrics.into_iter().all(|(was, is)| kept(was, is))
     }
 }
 
 /// What is sailed: rudder and switching angle, deg.
-const SAILED: [Manoeuvre; 2] = [Manoeuvre::Turn { rudder: 35.0 }, Manoeuvre::Zigzag { rudder: 20.0, switch: 20.0 }];
+const SAILED: [Manoeuvre; 2] =
+    [Manoeuvre::Turn { rudder: 35.0 }, Manoeuvre::Zigzag { rudder: 20.0, switch: 20.0 }];
 
 /// Sails both manoeuvres with each model of a ship; those that differ in the values of their coefficients alone sail in lockstep.
 pub fn sail(models: &[&Model], law: &Law) -> Vec<SailedFigures> {
-    let alone = || models.iter().map(|model| together(Ship::new(model, law), &[Vec::new()]).remove(0)).collect();
-    let Some(Ok(ship)) = models.first().map(|model| Ship::sisters(model, law)) else { return alone() };
+    let alone = || {
+        models
+            .iter()
+            .map(|model| together(Ship::new(model, law), &[Vec::new()]).remove(0))
+            .collect()
+    };
+    let Some(Ok(ship)) = models.first().map(|model| Ship::sisters(model, law)) else {
+        return alone();
+    };
     let sisters: Option<Vec<Vec<f64>>> = models.iter().map(|model| ship.sister(model)).collect();
     sisters.map_or_else(alone, |sisters| together(Ok(ship), &sisters))
 }
@@ -54,13 +65,21 @@ fn together(ship: Result<Ship, PlantError>, sisters: &[Vec<f64>]) -> Vec<SailedF
     let ship = match ship {
         Ok(ship) => ship,
         Err(error) => {
-            return vec![SailedFigures { failures: vec![error.to_string()], ..SailedFigures::default() }; sisters.len()];
+            return vec![
+                SailedFigures {
+                    failures: vec![error.to_string()],
+                    ..SailedFigures::default()
+                };
+                sisters.len()
+            ];
         }
     };
     let step_s = ship.lpp_m() / (STEPS_A_LENGTH * ship.approach_speed_m_s());
     let settings = ManoeuvreSettings { step_s: Some(step_s), ..ManoeuvreSettings::default() };
-    let manoeuvres: Vec<(Manoeuvre, &[f64])> =
-        sisters.iter().flat_map(|sister| SAILED.map(|manoeuvre| (manoeuvre, sister.as_slice()))).collect();
+    let manoeuvres: Vec<(Manoeuvre, &[f64])> = sisters
+        .iter()
+        .flat_map(|sister| SAILED.map(|manoeuvre| (manoeuvre, sister.as_slice())))
+        .collect();
     let mut sailed = sail_together(&ship, &manoeuvres, &settings).into_iter();
     sisters.iter().map(|_| SailedFigures::of(&ship, sailed.by_ref().take(SAILED.len()))).collect()
 }
@@ -70,10 +89,16 @@ impl SailedFigures {
         let mut own = Self::default();
         for (manoeuvre, sailed) in SAILED.into_iter().zip(sailed) {
             let noted = match manoeuvre {
-                Manoeuvre::Turn { rudder } => sailed.and_then(|track| Turn::of(track, rudder)).map(|turn| {
-                    own.tactical_diameter_l = turn.metrics.tactical_diameter_m.map(|diameter| diameter / ship.lpp_m());
-                    own.advance_l = turn.metrics.advance_m.map(|advance| advance / ship.lpp_m());
-                }),
+                Manoeuvre::Turn { rudder } => {
+                    sailed.and_then(|track| Turn::of(track, rudder)).map(|turn| {
+                        own.tactical_diameter_l = turn
+                            .metrics
+                            .tactical_diameter_m
+                            .map(|diameter| diameter / ship.lpp_m());
+                        own.advance_l =
+                            turn.metrics.advance_m.map(|advance| advance / ship.lpp_m());
+                    })
+                }
                 Manoeuvre::Zigzag { rudder, switch } => {
                     sailed.and_then(|track| Zigzag::of(track, rudder, switch)).map(|zigzag| {
                         own.first_overshoot_deg = zigzag.metrics.first_overshoot_deg;

@@ -35,11 +35,16 @@ impl BulkSettings {
     /// # Errors
     /// Names the field and what it may be.
     pub fn check(&self) -> Result<(), RefineError> {
-        let refuse = |field: &str, message: &str| Err(RefineError::Setting { field: field.into(), message: message.into() });
+        let refuse = |field: &str, message: &str| {
+            Err(RefineError::Setting { field: field.into(), message: message.into() })
+        };
         if !(2..=1000).contains(&self.lambda_count) {
             return refuse("lambda_count", "must be from 2 to 1000");
         }
-        if !(self.lambda_min > 0.0 && self.lambda_min < self.lambda_max && self.lambda_max.is_finite()) {
+        if !(self.lambda_min > 0.0
+            && self.lambda_min < self.lambda_max
+            && self.lambda_max.is_finite())
+        {
             return refuse("lambda_min", "must be above 0 and below lambda_max");
         }
         if !self.difference_s.is_none_or(|s| s > 0.0 && s.is_finite()) {

@@ -33,7 +33,14 @@ impl AxisPlace {
         let mut map = DMatrix::zeros(p + q, p + 1);
         (0..p).for_each(|j| map[(j, j)] = self.units[j]);
         (0..q).for_each(|target| map[(p + target, p)] = unmixing[(self.axis, target)]);
-        Some(trials.iter().map(|trial| trial.regressions[self.regression].moments.mapped(&map, p).about_origin()).collect())
+        Some(
+            trials
+                .iter()
+                .map(|trial| {
+                    trial.regressions[self.regression].moments.mapped(&map, p).about_origin()
+                })
+                .collect(),
+        )
     }
 
     /// What a member's trials say; none where they have no sample.
@@ -46,8 +53,13 @@ impl AxisPlace {
         let (covariance, cross) = all.covariances();
         let share = all.count / variance;
         let least = whitened.basis() * whitened.solution(0, lambda);
-        let design_effect = (parts.len() > 1).then(|| scatter(&parts, &all, &whitened, &least) / variance);
-        Some(MemberEvidence { precision: covariance * share, information: cross.column(0) * share, design_effect })
+        let design_effect =
+            (parts.len() > 1).then(|| scatter(&parts, &all, &whitened, &least) / variance);
+        Some(MemberEvidence {
+            precision: covariance * share,
+            information: cross.column(0) * share,
+            design_effect,
+        })
     }
 }
 
@@ -56,7 +68,8 @@ impl AxisPlace {
 fn scatter(parts: &[Moments], all: &Moments, whitened: &Whitened, least: &DVector<f64>) -> f64 {
     let variances = whitened.variances(0.0);
     let best = variances.min();
-    let told: Vec<usize> = (0..variances.len()).filter(|&k| best / variances[k] > FAMILY.telling).collect();
+    let told: Vec<usize> =
+        (0..variances.len()).filter(|&k| best / variances[k] > FAMILY.telling).collect();
     let of_trial = |part: &Moments| -> f64 {
         let score = whitened.basis().transpose() * part.score(all, least);
         told.iter().map(|&k| score[k].powi(2) * variances[k]).sum()

@@ -71,13 +71,15 @@ impl FamilyAxis {
     fn prior(&self) -> Result<AxisPrior, FamilyPriorError> {
         let p = self.names.len();
         let long = |length: usize| length == p;
-        let whole = long(self.mean.len()) && long(self.deviation.len()) && long(self.correlation.len());
+        let whole =
+            long(self.mean.len()) && long(self.deviation.len()) && long(self.correlation.len());
         if !whole || !self.correlation.iter().all(|row| long(row.len())) {
             return Err(FamilyPriorError::Lengths(self.axis));
         }
         // In units of the deviations, which differ by orders of magnitude.
         let correlation = DMatrix::from_fn(p, p, |i, j| self.correlation[i][j]);
-        let root = correlation.cholesky().ok_or(FamilyPriorError::Correlations(self.axis))?.unpack();
+        let root =
+            correlation.cholesky().ok_or(FamilyPriorError::Correlations(self.axis))?.unpack();
         let root = DMatrix::from_fn(p, p, |i, j| self.deviation[i] * root[(i, j)]);
         Ok(AxisPrior { names: self.names.clone(), mean: self.mean.clone(), root })
     }

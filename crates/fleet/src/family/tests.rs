@@ -15,7 +15,13 @@ fn draw(rng: &mut ChaCha12Rng) -> [f64; 2] {
 }
 
 /// A trial that excites both, or the first only; noise is the same for `repeat` samples on end.
-fn trial(rng: &mut ChaCha12Rng, own: [f64; 2], samples: usize, second: bool, repeat: usize) -> TrialStatistics {
+fn trial(
+    rng: &mut ChaCha12Rng,
+    own: [f64; 2],
+    samples: usize,
+    second: bool,
+    repeat: usize,
+) -> TrialStatistics {
     let mut columns = vec![Vec::new(); 3];
     let mut noise = [0.0; 3];
     for k in 0..samples {
@@ -34,20 +40,33 @@ fn trial(rng: &mut ChaCha12Rng, own: [f64; 2], samples: usize, second: bool, rep
         mixing: vec![vec![1.0]],
         moments: Moments::of_columns(&columns, 2),
     };
-    TrialStatistics { format: statistics::FORMAT.into(), duration_s: samples as f64, regressions: vec![regression] }
+    TrialStatistics {
+        format: statistics::FORMAT.into(),
+        duration_s: samples as f64,
+        regressions: vec![regression],
+    }
 }
 
-fn family(rng: &mut ChaCha12Rng, members: usize, samples: usize, repeat: usize) -> Vec<(String, Vec<TrialStatistics>)> {
+fn family(
+    rng: &mut ChaCha12Rng,
+    members: usize,
+    samples: usize,
+    repeat: usize,
+) -> Vec<(String, Vec<TrialStatistics>)> {
     let mut member = |index: usize| {
         let own = draw(rng);
         let second = !index.is_multiple_of(4);
-        (format!("ship-{index:03}"), (0..3).map(|_| trial(rng, own, samples, second, repeat)).collect())
+        (
+            format!("ship-{index:03}"),
+            (0..3).map(|_| trial(rng, own, samples, second, repeat)).collect(),
+        )
     };
     (0..members).map(&mut member).collect()
 }
 
 fn learned(family: &[(String, Vec<TrialStatistics>)]) -> Result<FamilyPrior, FamilyError> {
-    let members: Vec<Member<'_>> = family.iter().map(|(name, trials)| Member { name, trials }).collect();
+    let members: Vec<Member<'_>> =
+        family.iter().map(|(name, trials)| Member { name, trials }).collect();
     learn(&members)
 }
 
@@ -56,14 +75,19 @@ fn mean_and_covariance_come_back_though_no_member_tells_all() {
     let mut rng = ChaCha12Rng::seed_from_u64(3);
     let prior = learned(&family(&mut rng, 300, 40, 1)).unwrap();
     let axis = &prior.axes[0];
-    let near = |value: f64, truth: f64, within: f64| assert!((value - truth).abs() < within, "{value} {truth} {axis:?}");
+    let near = |value: f64, truth: f64, within: f64| {
+        assert!((value - truth).abs() < within, "{value} {truth} {axis:?}")
+    };
     near(axis.mean[0], 1.0, 0.06);
     near(axis.mean[1], -2.0, 0.12);
     near(axis.deviation[0], 0.3, 0.05);
     near(axis.deviation[1], 0.6, 0.1);
     near(axis.correlation[0][1], 0.8, 0.12);
     assert!(prior.design_effect < 1.4, "{}", prior.design_effect);
-    assert!(axis.told_by_trials[0] > axis.told_by_trials[1], "a quarter of the members do not excite the second");
+    assert!(
+        axis.told_by_trials[0] > axis.told_by_trials[1],
+        "a quarter of the members do not excite the second"
+    );
 }
 
 #[test]

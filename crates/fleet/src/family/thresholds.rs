@@ -29,5 +29,11 @@ pub(super) struct FamilyThresholds {
 }
 
 /// The values.
-pub(super) const FAMILY: FamilyThresholds =
-    FamilyThresholds { least_members: 3, steps: 200, settled: 2e-3, start: 0.5, least: 1e-4, telling: 1e-8 };
+pub(super) const FAMILY: FamilyThresholds = FamilyThresholds {
+    least_members: 3,
+    steps: 200,
+    settled: 2e-3,
+    start: 0.5,
+    least: 1e-4,
+    telling: 1e-8,
+};

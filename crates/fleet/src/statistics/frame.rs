@@ -27,16 +27,28 @@ impl Frame {
     ///
     /// # Errors
     /// Names what the model does not give. A model with effects is refused: what acted on its own trials acts on no others.
-    pub fn new(model: &Model, law: &Law, law_sha256: &str, difference_s: Option<f64>) -> Result<Self, RefineError> {
+    pub fn new(
+        model: &Model,
+        law: &Law,
+        law_sha256: &str,
+        difference_s: Option<f64>,
+    ) -> Result<Self, RefineError> {
         if let Some(effect) = model.effects.first() {
-            let message = format!("`{}` carries the effect `{}`, which statistics do not describe", model.name, effect.name);
+            let message = format!(
+                "`{}` carries the effect `{}`, which statistics do not describe",
+                model.name, effect.name
+            );
             return Err(RefineError::Law(message));
         }
         let difference_s = difference_s.or_else(|| tenth_of_a_length(model)).ok_or_else(|| {
             let message = format!("`{}` has no length or speed from which to take it", model.name);
             RefineError::Setting { field: "difference_s".into(), message }
         })?;
-        Ok(Self { difference_s, blocks: Blocks::new(model, law)?, shape: shape(model, law_sha256, difference_s) })
+        Ok(Self {
+            difference_s,
+            blocks: Blocks::new(model, law)?,
+            shape: shape(model, law_sha256, difference_s),
+        })
     }
 
     /// What the statistics of a trial, named by the hash of its samples, are kept under.
@@ -55,7 +67,9 @@ fn shape(model: &Model, law_sha256: &str, difference_s: f64) -> String {
     let mut text = format!("{FORMAT}\n{law_sha256}\npublished {difference_s:?}\n");
     let mut write = |title: &str, values: &BTreeMap<String, Quantity>| {
         text.push_str(title);
-        values.iter().for_each(|(name, quantity)| text.push_str(&format!(" {name}={:?}", quantity.value)));
+        values
+            .iter()
+            .for_each(|(name, quantity)| text.push_str(&format!(" {name}={:?}", quantity.value)));
         text.push('\n');
     };
     write("particulars", &model.particulars);

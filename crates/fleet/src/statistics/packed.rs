@@ -19,10 +19,17 @@ struct PackedMoments {
     numbers: String,
 }
 
-pub(super) fn serialize<S: Serializer>(moments: &Moments, serializer: S) -> Result<S::Ok, S::Error> {
+pub(super) fn serialize<S: Serializer>(
+    moments: &Moments,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     let bytes: Vec<u8> = moments.numbers().iter().flat_map(|number| number.to_le_bytes()).collect();
-    PackedMoments { regressors: moments.regressors(), targets: moments.targets(), numbers: STANDARD.encode(bytes) }
-        .serialize(serializer)
+    PackedMoments {
+        regressors: moments.regressors(),
+        targets: moments.targets(),
+        numbers: STANDARD.encode(bytes),
+    }
+    .serialize(serializer)
 }
 
 pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Moments, D::Error> {
@@ -31,5 +38,9 @@ pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<
     let (doubles, rest) = bytes.as_chunks::<8>();
     let numbers: Vec<f64> = doubles.iter().map(|double| f64::from_le_bytes(*double)).collect();
     let moments = Moments::from_numbers(&numbers, regressors, targets).filter(|_| rest.is_empty());
-    moments.ok_or_else(|| D::Error::custom(format!("not the statistics of {regressors} regressors and {targets} targets")))
+    moments.ok_or_else(|| {
+        D::Error::custom(format!(
+            "not the statistics of {regressors} regressors and {targets} targets"
+        ))
+    })
 }

@@ -12,8 +12,16 @@ fn a_document_keeps_every_bit_and_refuses_damage() {
     let read: TrialStatistics = serde_json::from_str(&text).unwrap();
     assert!(read == statistics);
     read.check().unwrap();
-    assert!(text.len() < 10_000, "{} bytes for {} coefficients", text.len(), model.coefficients.len());
-    assert!(serde_json::from_str::<TrialStatistics>(&text.replace("\"targets\":2", "\"targets\":1")).is_err());
+    assert!(
+        text.len() < 10_000,
+        "{} bytes for {} coefficients",
+        text.len(),
+        model.coefficients.len()
+    );
+    assert!(
+        serde_json::from_str::<TrialStatistics>(&text.replace("\"targets\":2", "\"targets\":1"))
+            .is_err()
+    );
     let mut short = read.clone();
     short.regressions[1].names[0].pop();
     assert!(short.check().unwrap_err().to_string().contains("do not go together"));
@@ -48,11 +56,21 @@ fn the_true_coefficients_leave_what_the_difference_leaves() {
     let (model, law) = mariner();
     let frame = Frame::new(&model, &law, "law", Some(1.0)).unwrap();
     let statistics = TrialStatistics::of(&frame, &trials(&model, &law, 0.0)[1]).unwrap();
-    let values = |factor: f64| model.coefficients.iter().map(|(name, q)| (name.clone(), factor * q.value)).collect();
+    let values = |factor: f64| {
+        model.coefficients.iter().map(|(name, q)| (name.clone(), factor * q.value)).collect()
+    };
     let share = |factor: f64| -> Vec<f64> {
-        statistics.left_by(&values(factor)).unwrap().iter().map(|left| (left.residual / left.target).sqrt()).collect()
+        statistics
+            .left_by(&values(factor))
+            .unwrap()
+            .iter()
+            .map(|left| (left.residual / left.target).sqrt())
+            .collect()
     };
     let (right, wrong) = (share(1.0), share(1.3));
     assert!(right.iter().all(|share| *share < 0.12), "{right:?}");
-    assert!(right.iter().zip(&wrong).all(|(right, wrong)| wrong > &(2.0 * right)), "{right:?} {wrong:?}");
+    assert!(
+        right.iter().zip(&wrong).all(|(right, wrong)| wrong > &(2.0 * right)),
+        "{right:?} {wrong:?}"
+    );
 }

@@ -59,8 +59,17 @@ impl TrialStatistics {
     /// Names the channel that the trial lacks.
     pub fn of(frame: &Frame, trial: &Trial) -> Result<Self, RefineError> {
         let moments = trial_moments(&frame.blocks, trial, Some(frame.difference_s))?;
-        let regressions = frame.blocks.blocks.iter().zip(moments).map(|(block, moments)| Regression::of(block, moments));
-        Ok(Self { format: FORMAT.to_owned(), duration_s: trial.duration_s(), regressions: regressions.collect() })
+        let regressions = frame
+            .blocks
+            .blocks
+            .iter()
+            .zip(moments)
+            .map(|(block, moments)| Regression::of(block, moments));
+        Ok(Self {
+            format: FORMAT.to_owned(),
+            duration_s: trial.duration_s(),
+            regressions: regressions.collect(),
+        })
     }
 
     /// Checks that lists and statistics go together.
@@ -72,20 +81,30 @@ impl TrialStatistics {
         if self.format != FORMAT {
             return refuse(&format!("the format is `{}`, not `{FORMAT}`", self.format));
         }
-        if self.regressions.iter().all(Regression::is_whole) { Ok(()) } else { refuse("lists and numbers do not go together") }
+        if self.regressions.iter().all(Regression::is_whole) {
+            Ok(())
+        } else {
+            refuse("lists and numbers do not go together")
+        }
     }
 
     /// Whether two trials were regressed in the same frame, so that their statistics may be added.
     pub fn goes_with(&self, other: &Self) -> bool {
-        let same = |(a, b): (&Regression, &Regression)| (&a.axes, &a.names, &a.mixing) == (&b.axes, &b.names, &b.mixing);
-        self.regressions.len() == other.regressions.len() && self.regressions.iter().zip(&other.regressions).all(same)
+        let same = |(a, b): (&Regression, &Regression)| {
+            (&a.axes, &a.names, &a.mixing) == (&b.axes, &b.names, &b.mixing)
+        };
+        self.regressions.len() == other.regressions.len()
+            && self.regressions.iter().zip(&other.regressions).all(same)
     }
 
     /// What coefficients leave of each axis; those that are not named count as zero.
     ///
     /// # Errors
     /// The statistics mix axes that cannot be told apart.
-    pub fn left_by(&self, coefficients: &BTreeMap<String, f64>) -> Result<Vec<AxisResidual>, RefineError> {
+    pub fn left_by(
+        &self,
+        coefficients: &BTreeMap<String, f64>,
+    ) -> Result<Vec<AxisResidual>, RefineError> {
         let mut all = Vec::new();
         for regression in &self.regressions {
             all.extend(regression.left_by(coefficients)?);
@@ -102,7 +121,9 @@ impl Regression {
     pub fn unmixing(&self) -> Result<DMatrix<f64>, RefineError> {
         let q = self.axes.len();
         let mixing = DMatrix::from_fn(q, q, |target, axis| self.mixing[target][axis]);
-        mixing.try_inverse().ok_or_else(|| RefineError::Data("the statistics mix axes that cannot be told apart".into()))
+        mixing.try_inverse().ok_or_else(|| {
+            RefineError::Data("the statistics mix axes that cannot be told apart".into())
+        })
     }
 
     /// Whether its lists are as long as its statistics need.
@@ -124,7 +145,10 @@ impl Regression {
         }
     }
 
-    fn left_by(&self, coefficients: &BTreeMap<String, f64>) -> Result<Vec<AxisResidual>, RefineError> {
+    fn left_by(
+        &self,
+        coefficients: &BTreeMap<String, f64>,
+    ) -> Result<Vec<AxisResidual>, RefineError> {
         let (raw, unmixing) = (self.moments.raw_products(), self.unmixing()?);
         let p = self.moments.regressors();
         let mean_square = |weights: &DVector<f64>| weights.dot(&(&raw * weights)).max(0.0);
@@ -132,7 +156,8 @@ impl Regression {
             let mut weights = DVector::zeros(raw.nrows());
             (0..self.axes.len()).for_each(|target| weights[p + target] = unmixing[(index, target)]);
             let target = mean_square(&weights);
-            let values = self.names[index].iter().map(|name| coefficients.get(name).copied().unwrap_or(0.0));
+            let values =
+                self.names[index].iter().map(|name| coefficients.get(name).copied().unwrap_or(0.0));
             values.enumerate().for_each(|(j, value)| weights[j] = -value);
             AxisResidual { axis, residual: mean_square(&weights), target }
         };

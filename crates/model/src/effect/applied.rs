@@ -36,7 +36,9 @@ impl AppliedEffect {
             }
         }
         match self.parameters.keys().find(|name| !form.parameters.contains_key(*name)) {
-            Some(name) => Err((format!("parameters.{name}"), "the effect has no such parameter".into())),
+            Some(name) => {
+                Err((format!("parameters.{name}"), "the effect has no such parameter".into()))
+            }
             None => Ok(form),
         }
     }

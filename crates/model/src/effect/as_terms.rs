@@ -40,10 +40,13 @@ impl AsTerms {
             return Ok(None);
         }
         let bare = Model { effects: Vec::new(), ..model.clone() };
-        let mut as_terms = Self { law: dressed.clone(), model: bare, of: model.clone(), terms: Vec::new() };
+        let mut as_terms =
+            Self { law: dressed.clone(), model: bare, of: model.clone(), terms: Vec::new() };
         for (place, effect) in model.effects.iter().enumerate() {
             let Some(by_axis) = Affine::new(&dressed, effect).by_axis() else { return Ok(None) };
-            by_axis.iter().for_each(|(axis, parameters)| as_terms.add(place, effect, *axis, parameters));
+            by_axis
+                .iter()
+                .for_each(|(axis, parameters)| as_terms.add(place, effect, *axis, parameters));
         }
         Ok((!as_terms.terms.is_empty()).then_some(as_terms))
     }
@@ -59,7 +62,9 @@ impl AsTerms {
             self.law.dressing.parameters.remove(&factor);
             self.law.factors.insert(factor, term);
             let mean = effect.form.parameters.get(parameter).map_or(0.0, |own| own.prior.mean);
-            self.model.coefficients.insert(name.clone(), Quantity::new(mean, format!("prior of {}", effect.name)));
+            self.model
+                .coefficients
+                .insert(name.clone(), Quantity::new(mean, format!("prior of {}", effect.name)));
             self.terms.push((name, place, parameter.clone()));
         }
     }
@@ -73,7 +78,9 @@ impl AsTerms {
                 Some((_, place, parameter)) => model.effects[*place].parameters.get_mut(parameter),
                 None => model.coefficients.get_mut(name),
             };
-            old.into_iter().for_each(|old| (old.value, old.standard_error) = (fitted.value, fitted.standard_error));
+            old.into_iter().for_each(|old| {
+                (old.value, old.standard_error) = (fitted.value, fitted.standard_error)
+            });
         }
         model
     }
@@ -111,8 +118,11 @@ impl<'a> Affine<'a> {
             let below = expr.children().into_iter().map(|child| self.written_out(child, known));
             return below.fold(1, usize::saturating_add);
         };
-        let Some((name, value)) =
-            self.law.values.get_key_value(name.as_str()).filter(|(name, _)| self.acting.contains(name.as_str()))
+        let Some((name, value)) = self
+            .law
+            .values
+            .get_key_value(name.as_str())
+            .filter(|(name, _)| self.acting.contains(name.as_str()))
         else {
             return 1;
         };
@@ -150,7 +160,10 @@ impl<'a> Affine<'a> {
                 None => by_axis.push((axis, vec![parameter.clone()])),
             }
         }
-        by_axis.iter().all(|(axis, parameters)| self.is_affine(*axis, parameters)).then_some(by_axis)
+        by_axis
+            .iter()
+            .all(|(axis, parameters)| self.is_affine(*axis, parameters))
+            .then_some(by_axis)
     }
 
     fn name(&self, parameter: &str) -> String {
@@ -160,12 +173,17 @@ impl<'a> Affine<'a> {
     /// Whether a formula mentions a parameter by its whole name, itself or through values, each looked at once.
     fn depends_given(&self, expr: &Expr, wanted: &str, known: &mut HashMap<&'a str, bool>) -> bool {
         let Expr::Name(name) = expr else {
-            return expr.children().into_iter().any(|child| self.depends_given(child, wanted, known));
+            return expr
+                .children()
+                .into_iter()
+                .any(|child| self.depends_given(child, wanted, known));
         };
         if name == wanted {
             return true;
         }
-        let Some((name, value)) = self.law.values.get_key_value(name.as_str()) else { return false };
+        let Some((name, value)) = self.law.values.get_key_value(name.as_str()) else {
+            return false;
+        };
         if let Some(depends) = known.get(name.as_str()) {
             return *depends;
         }
@@ -179,7 +197,8 @@ impl<'a> Affine<'a> {
         let law = self.law;
         let of_axes = law.axes.values().flat_map(|axis| axis.terms.values().chain([&axis.scale]));
         let of_coefficients = law.dressing.coefficients.iter().map(|(_, expr)| expr);
-        let all = of_axes.chain(of_coefficients).chain(law.factors.values()).chain(law.mass.values());
+        let all =
+            of_axes.chain(of_coefficients).chain(law.factors.values()).chain(law.mass.values());
         all.chain(law.kinematics.values()).any(|expr| self.depends_given(expr, wanted, known))
     }
 
@@ -226,9 +245,14 @@ impl<'a> Affine<'a> {
             let of = |number: &dyn Fn(&str) -> f64| probe.of(&self.rest(axis, number));
             let size = |own: &str| probe.of(&Expr::Name(self.name(own))).unwrap_or(1.0);
             let Some((together, still)) = of(&size).zip(of(&|_| 0.0)) else { return false };
-            let one = |own: &String| Some(size(own) * (of(&|name| f64::from(u8::from(name == own)))? - still));
-            let Some(each) = parameters.iter().map(one).collect::<Option<Vec<f64>>>() else { return false };
-            let scale = together.abs() + still.abs() + each.iter().map(|one| one.abs()).sum::<f64>();
+            let one = |own: &String| {
+                Some(size(own) * (of(&|name| f64::from(u8::from(name == own)))? - still))
+            };
+            let Some(each) = parameters.iter().map(one).collect::<Option<Vec<f64>>>() else {
+                return false;
+            };
+            let scale =
+                together.abs() + still.abs() + each.iter().map(|one| one.abs()).sum::<f64>();
             (together - still - each.iter().sum::<f64>()).abs() <= 1e-9 * scale
         })
     }

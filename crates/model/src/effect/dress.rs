@@ -27,12 +27,19 @@ pub const TIME: &str = "recorded.t";
 
 /// A law with forms of effects, each at its absence, for a ship of these particulars; the speed is
 /// that at which the model's trials approach.
-pub fn dress(law: &Law, particulars: &Particulars, speed_m_s: Option<f64>, forms: &[(&str, &Form)]) -> Law {
+pub fn dress(
+    law: &Law,
+    particulars: &Particulars,
+    speed_m_s: Option<f64>,
+    forms: &[(&str, &Form)],
+) -> Law {
     let mut dressed = law.clone();
     // What the law sees is changed before forces are added: an added force sees the ship as she moves over the ground.
-    let (inflow, others): (Vec<_>, Vec<_>) = forms.iter().partition(|(_, form)| !form.sees.is_empty());
+    let (inflow, others): (Vec<_>, Vec<_>) =
+        forms.iter().partition(|(_, form)| !form.sees.is_empty());
     for (effect, form) in inflow.into_iter().chain(others) {
-        Dresser { effect, form, particulars, speed_m_s, has_roll: law.has_roll() }.dress(&mut dressed);
+        Dresser { effect, form, particulars, speed_m_s, has_roll: law.has_roll() }
+            .dress(&mut dressed);
     }
     dressed
 }
@@ -63,17 +70,32 @@ impl Dresser<'_> {
                 axis.rest = Expr::Add(Box::new(axis.rest.clone()), Box::new(self.expr(expr)));
             }
         }
-        law.dressing.accelerations.extend(self.form.accelerates.iter().map(|(axis, e)| (*axis, self.expr(e))));
-        law.dressing.coefficients.extend(self.form.coefficients.iter().map(|(name, e)| (name.clone(), self.expr(e))));
-        law.dressing.lags.extend(self.form.lags.iter().map(|(name, e)| (name.clone(), self.expr(e))));
-        law.dressing.measures.extend(self.form.measures.iter().map(|(channel, e)| (*channel, self.expr(e))));
+        law.dressing
+            .accelerations
+            .extend(self.form.accelerates.iter().map(|(axis, e)| (*axis, self.expr(e))));
+        law.dressing
+            .coefficients
+            .extend(self.form.coefficients.iter().map(|(name, e)| (name.clone(), self.expr(e))));
+        law.dressing
+            .lags
+            .extend(self.form.lags.iter().map(|(name, e)| (name.clone(), self.expr(e))));
+        law.dressing
+            .measures
+            .extend(self.form.measures.iter().map(|(channel, e)| (*channel, self.expr(e))));
     }
 
     fn parameters(&self, law: &mut Law) {
         for (name, parameter) in &self.form.parameters {
-            let unit = self.form.file.parameters.get(name).map(|p| p.unit.clone()).unwrap_or_default();
+            let unit =
+                self.form.file.parameters.get(name).map(|p| p.unit.clone()).unwrap_or_default();
             let meaning = format!("{name} of {}", self.effect);
-            let known = Parameter { dimension: parameter.dimension, unit, meaning, from: None, is_approach_speed: false };
+            let known = Parameter {
+                dimension: parameter.dimension,
+                unit,
+                meaning,
+                from: None,
+                is_approach_speed: false,
+            };
             law.parameters.insert(self.name(name), known);
             law.dressing.parameters.insert(self.name(name), parameter.absent);
         }
@@ -85,13 +107,24 @@ impl Dresser<'_> {
     /// Channels that the law does not take yet become inputs; where nobody records them they are still: no wind, no roll,
     /// deep water.
     fn inputs(&self, law: &mut Law) {
-        let mentioned = self.form.formulas().flat_map(|expr| expr.names().into_iter().map(str::to_owned).collect::<Vec<_>>());
+        let mentioned = self
+            .form
+            .formulas()
+            .flat_map(|expr| expr.names().into_iter().map(str::to_owned).collect::<Vec<_>>());
         for name in mentioned.collect::<Vec<_>>() {
             let input = self.input(&name);
             let channel = input_channel(&input);
-            let dimension = if input == TIME { Some(crate::units::Dimension::TIME) } else { channel.map(Channel::dimension) };
-            let is_state = STATES.iter().any(|(state, _)| *state == input) || input == "x" || input == "y";
-            let (Some(dimension), false) = (dimension, is_state || law.inputs.contains_key(&input)) else { continue };
+            let dimension = if input == TIME {
+                Some(crate::units::Dimension::TIME)
+            } else {
+                channel.map(Channel::dimension)
+            };
+            let is_state =
+                STATES.iter().any(|(state, _)| *state == input) || input == "x" || input == "y";
+            let (Some(dimension), false) = (dimension, is_state || law.inputs.contains_key(&input))
+            else {
+                continue;
+            };
             let still = if channel == Some(Channel::Depth) { f64::INFINITY } else { 0.0 };
             law.inputs.insert(input, Input { dimension, default: Some(still) });
         }
@@ -127,7 +160,9 @@ impl Dresser<'_> {
 impl Law {
     /// Replaces a state or an input by another name in everything that makes forces; kinematics stay.
     fn rename_in_forces(&mut self, name: &str, by: &str) {
-        let rename = |expr: &mut Expr| *expr = expr.renamed(&|found| (found == name).then(|| Expr::Name(by.to_owned())));
+        let rename = |expr: &mut Expr| {
+            *expr = expr.renamed(&|found| (found == name).then(|| Expr::Name(by.to_owned())))
+        };
         self.values.values_mut().for_each(rename);
         self.factors.values_mut().for_each(rename);
         self.mass.values_mut().for_each(rename);

@@ -69,13 +69,25 @@ pub struct Report {
 impl Form {
     /// Every formula that acts.
     pub(crate) fn formulas(&self) -> impl Iterator<Item = &Expr> {
-        let named = self.values.values().chain(self.sees.values()).chain(self.coefficients.values()).chain(self.lags.values());
-        named.chain(self.accelerates.values()).chain(self.forces.values()).chain(self.measures.values())
+        let named = self
+            .values
+            .values()
+            .chain(self.sees.values())
+            .chain(self.coefficients.values())
+            .chain(self.lags.values());
+        named
+            .chain(self.accelerates.values())
+            .chain(self.forces.values())
+            .chain(self.measures.values())
     }
 
     /// A figure that follows from the parameters, in the unit of its name; `None` without a finite value.
     pub fn report(&self, name: &str, lookup: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
         let report = self.reports.get(name)?;
-        report.formula.value(lookup).map(|value| value * report.factor).filter(|value| value.is_finite())
+        report
+            .formula
+            .value(lookup)
+            .map(|value| value * report.factor)
+            .filter(|value| value.is_finite())
     }
 }

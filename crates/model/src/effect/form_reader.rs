@@ -39,14 +39,39 @@ impl Form {
         let parameters = parameters(&mut scope, file)?;
         let values = scope.values(&file.values)?;
         let form = Self {
-            particulars: scope.formulas("particulars", &file.particulars, &|name| stand_in(name), true)?,
+            particulars: scope.formulas(
+                "particulars",
+                &file.particulars,
+                &|name| stand_in(name),
+                true,
+            )?,
             reports: reports(&scope, file)?,
             sees: scope.formulas("sees", &file.sees, &|name| seen(name), false)?,
-            accelerates: scope.formulas("accelerates", &file.accelerates, &|axis| Ok(acceleration_dimension(*axis)), false)?,
-            coefficients: scope.formulas("coefficients", &file.coefficients, &|name| factor(name), false)?,
+            accelerates: scope.formulas(
+                "accelerates",
+                &file.accelerates,
+                &|axis| Ok(acceleration_dimension(*axis)),
+                false,
+            )?,
+            coefficients: scope.formulas(
+                "coefficients",
+                &file.coefficients,
+                &|name| factor(name),
+                false,
+            )?,
             lags: scope.formulas("lags", &file.lags, &|name| lagged(name), false)?,
-            forces: scope.formulas("forces", &file.forces, &|axis| Ok(axis_dimension(*axis)), false)?,
-            measures: scope.formulas("measures", &file.measures, &|channel| Ok(Channel::dimension(*channel)), false)?,
+            forces: scope.formulas(
+                "forces",
+                &file.forces,
+                &|axis| Ok(axis_dimension(*axis)),
+                false,
+            )?,
+            measures: scope.formulas(
+                "measures",
+                &file.measures,
+                &|channel| Ok(Channel::dimension(*channel)),
+                false,
+            )?,
             file: file.clone(),
             parameters,
             values,
@@ -68,9 +93,16 @@ const MAX_DEPTH: usize = 128;
 const MAX_SIZE: usize = 5000;
 
 fn check_counts(file: &FormFile) -> Result<(), Refusal> {
-    let sections =
-        [("parameters", file.parameters.len()), ("values", file.values.len()), ("particulars", file.particulars.len())];
-    let acting = [("sees", file.sees.len()), ("coefficients", file.coefficients.len()), ("lags", file.lags.len())];
+    let sections = [
+        ("parameters", file.parameters.len()),
+        ("values", file.values.len()),
+        ("particulars", file.particulars.len()),
+    ];
+    let acting = [
+        ("sees", file.sees.len()),
+        ("coefficients", file.coefficients.len()),
+        ("lags", file.lags.len()),
+    ];
     let all = sections.into_iter().chain(acting).chain([("reports", file.reports.len())]);
     all.into_iter().try_for_each(|(section, count)| most(section, count, MAX_NAMES))
 }
@@ -82,8 +114,9 @@ impl Form {
         let reports = self.reports.values().map(|report| &report.formula);
         let all = || self.formulas().chain(self.particulars.values()).chain(reports.clone());
         let size = all().map(Expr::size).sum();
-        most("", size, MAX_SIZE)
-            .map_err(|(_, e)| (String::new(), format!("numbers, names and operators of all formulas: {e}")))?;
+        most("", size, MAX_SIZE).map_err(|(_, e)| {
+            (String::new(), format!("numbers, names and operators of all formulas: {e}"))
+        })?;
         all().try_for_each(|expr| depths.check("values", expr, MAX_DEPTH))
     }
 }
@@ -103,9 +136,16 @@ fn check_actions(acts_on: ActsOn, file: &FormFile) -> Result<(), Refusal> {
         return Err(((*section).into(), format!("belongs to effects that act on {}", word(*of))));
     }
     if counts.iter().all(|(.., count)| *count == 0) {
-        return Err((String::new(), format!("does nothing: an effect that acts on {} says how", word(acts_on))));
+        return Err((
+            String::new(),
+            format!("does nothing: an effect that acts on {} says how", word(acts_on)),
+        ));
     }
-    if file.parameters.is_empty() { Err(("parameters".into(), "give at least one".into())) } else { Ok(()) }
+    if file.parameters.is_empty() {
+        Err(("parameters".into(), "give at least one".into()))
+    } else {
+        Ok(())
+    }
 }
 
 fn word(acts_on: ActsOn) -> &'static str {
@@ -116,7 +156,10 @@ fn word(acts_on: ActsOn) -> &'static str {
     }
 }
 
-fn parameters(scope: &mut Scope, file: &FormFile) -> Result<IndexMap<String, EffectParameter>, Refusal> {
+fn parameters(
+    scope: &mut Scope,
+    file: &FormFile,
+) -> Result<IndexMap<String, EffectParameter>, Refusal> {
     let mut parameters = IndexMap::new();
     for (name, raw) in &file.parameters {
         let field = format!("parameters.{name}");
@@ -137,14 +180,18 @@ fn parameter(raw: &EffectParameterFile) -> Result<EffectParameter, String> {
     if !(low.is_finite() && high.is_finite() && low < high) {
         return Err(format!("bounds [{low}, {high}] must be finite and in order"));
     }
-    for (what, value) in [("absent", raw.absent), ("start", start), ("the mean of the prior", raw.prior.mean)] {
+    for (what, value) in
+        [("absent", raw.absent), ("start", start), ("the mean of the prior", raw.prior.mean)]
+    {
         if !(low..=high).contains(&value) {
             return Err(format!("{what}, {value}, is outside the bounds [{low}, {high}]"));
         }
     }
     let prior_deviation = raw.prior.deviation;
     if !(prior_deviation.is_finite() && prior_deviation > 0.0) {
-        return Err(format!("the deviation of the prior must be finite and above zero, not {prior_deviation}"));
+        return Err(format!(
+            "the deviation of the prior must be finite and above zero, not {prior_deviation}"
+        ));
     }
     Ok(EffectParameter {
         dimension: unit.dimension,
@@ -162,8 +209,12 @@ fn reports(scope: &Scope, file: &FormFile) -> Result<IndexMap<String, Report>, R
     for (name, formula) in &file.reports {
         let field = format!("reports.{name}");
         let ending = REPORTED.iter().find(|(ending, ..)| name.ends_with(ending));
-        let formula = scope.constant(&field, formula, ending.map(|(_, dimension, _)| *dimension))?;
-        reports.insert(name.clone(), Report { formula, factor: ending.map_or(1.0, |(.., factor)| *factor) });
+        let formula =
+            scope.constant(&field, formula, ending.map(|(_, dimension, _)| *dimension))?;
+        reports.insert(
+            name.clone(),
+            Report { formula, factor: ending.map_or(1.0, |(.., factor)| *factor) },
+        );
     }
     Ok(reports)
 }
@@ -173,15 +224,23 @@ fn stand_in(name: &str) -> Result<Dimension, String> {
 }
 
 fn seen(name: &str) -> Result<Dimension, String> {
-    names::seen(name).ok_or_else(|| "a law sees u, v, r, p, phi, psi and channels such as delta, n and depth".into())
+    names::seen(name).ok_or_else(|| {
+        "a law sees u, v, r, p, phi, psi and channels such as delta, n and depth".into()
+    })
 }
 
 fn lagged(name: &str) -> Result<Dimension, String> {
-    names::input(name).map(|_| Dimension::TIME).ok_or_else(|| "only an input such as delta or n can lag".into())
+    names::input(name)
+        .map(|_| Dimension::TIME)
+        .ok_or_else(|| "only an input such as delta or n can lag".into())
 }
 
 fn factor(name: &str) -> Result<Dimension, String> {
     let axis = name.split_once('_').map(|(axis, _)| axis);
     let known = Axis::ALL.iter().any(|known| axis == Some(known.to_string().as_str()));
-    if known { Ok(Dimension::NONE) } else { Err("a coefficient is written Axis_factors, such as Y_v or N_vvr".into()) }
+    if known {
+        Ok(Dimension::NONE)
+    } else {
+        Err("a coefficient is written Axis_factors, such as Y_v or N_vvr".into())
+    }
 }

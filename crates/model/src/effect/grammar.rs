@@ -35,13 +35,17 @@ impl Grammar {
     pub fn read(file: &GrammarFile) -> Result<Self, Refusal> {
         let scope = Scope::new(false);
         let dimension = |axis: &Axis| Ok(axis_dimension(*axis));
-        let factors = scope.formulas("factors", &file.factors, &|_: &String| Ok(Dimension::NONE), false)?;
-        let scales: BTreeMap<Axis, Expr> = scope.formulas("scales", &file.scales, &dimension, false)?;
+        let factors =
+            scope.formulas("factors", &file.factors, &|_: &String| Ok(Dimension::NONE), false)?;
+        let scales: BTreeMap<Axis, Expr> =
+            scope.formulas("scales", &file.scales, &dimension, false)?;
         check(file, &scales)?;
         let grammar = Self { factors: ordered(file, &factors)?, scales, file: file.clone() };
         // Each term once, so that none that is searched for later can be refused.
         grammar.terms().iter().try_for_each(|term| {
-            let readable = |axis: &Axis| Form::read(ActsOn::Force, &term.form(&grammar.file, *axis)).map(|_| ());
+            let readable = |axis: &Axis| {
+                Form::read(ActsOn::Force, &term.form(&grammar.file, *axis)).map(|_| ())
+            };
             grammar.scales.keys().filter(|axis| term.fits(**axis)).try_for_each(readable)
         })?;
         Ok(grammar)
@@ -49,11 +53,23 @@ impl Grammar {
 
     /// Every term that fits an axis: products of factors of which the parity is the axis', named like coefficients, without
     /// those whose name is `known` and those that need a channel which nobody `has`.
-    pub fn forms(&self, axes: &[Axis], known: &dyn Fn(&str) -> bool, has: &dyn Fn(Channel) -> bool) -> Vec<Arc<Form>> {
+    pub fn forms(
+        &self,
+        axes: &[Axis],
+        known: &dyn Fn(&str) -> bool,
+        has: &dyn Fn(Channel) -> bool,
+    ) -> Vec<Arc<Form>> {
         let terms = self.terms();
-        let spelled = |axis: Axis| terms.iter().filter(move |term| term.fits(axis)).map(move |term| term.form(&self.file, axis));
+        let spelled = |axis: Axis| {
+            terms
+                .iter()
+                .filter(move |term| term.fits(axis))
+                .map(move |term| term.form(&self.file, axis))
+        };
         let axes = axes.iter().copied().filter(|axis| self.scales.contains_key(axis));
-        let wanted = axes.flat_map(spelled).filter(|form| !known(&form.name) && form.needs.iter().all(|&channel| has(channel)));
+        let wanted = axes
+            .flat_map(spelled)
+            .filter(|form| !known(&form.name) && form.needs.iter().all(|&channel| has(channel)));
         wanted.filter_map(|form| Form::read(ActsOn::Force, &form).ok()).map(Arc::new).collect()
     }
 
@@ -61,7 +77,8 @@ impl Grammar {
     pub fn constants(&self, axes: &[Axis], known: &dyn Fn(&str) -> bool) -> Vec<Arc<Form>> {
         let constant = Term { factors: Vec::new(), bars: false };
         let axes = axes.iter().copied().filter(|axis| self.scales.contains_key(axis));
-        let wanted = axes.map(|axis| constant.form(&self.file, axis)).filter(|form| !known(&form.name));
+        let wanted =
+            axes.map(|axis| constant.form(&self.file, axis)).filter(|form| !known(&form.name));
         wanted.filter_map(|form| Form::read(ActsOn::Force, &form).ok()).map(Arc::new).collect()
     }
 
@@ -74,7 +91,13 @@ impl Grammar {
     }
 
     /// Products of `left` more factors from place `from` on, each with its variant in bars.
-    fn add_products<'a>(&'a self, left: usize, from: usize, taken: &mut Vec<&'a Factor>, terms: &mut Vec<Term<'a>>) {
+    fn add_products<'a>(
+        &'a self,
+        left: usize,
+        from: usize,
+        taken: &mut Vec<&'a Factor>,
+        terms: &mut Vec<Term<'a>>,
+    ) {
         if left == 0 {
             terms.push(Term { factors: taken.clone(), bars: false });
             if taken.len() == 2 && taken[1].absolute {
@@ -101,7 +124,10 @@ fn check(file: &GrammarFile, scales: &BTreeMap<Axis, Expr>) -> Result<(), Refusa
     for (axis, scale) in scales {
         let deviation = file.deviations.get(axis).copied().unwrap_or(f64::NAN);
         if !(deviation.is_finite() && deviation > 0.0) {
-            return Err((format!("deviations.{axis}"), "give a deviation above zero for each scale".into()));
+            return Err((
+                format!("deviations.{axis}"),
+                "give a deviation above zero for each scale".into(),
+            ));
         }
         if !symmetry::has_parity(&IndexMap::new(), &IndexMap::new(), scale, false) {
             return Err((format!("scales.{axis}"), symmetry::broken(false)));
@@ -122,7 +148,9 @@ fn ordered(file: &GrammarFile, formulas: &IndexMap<String, Expr>) -> Result<Vec<
         factors.push(Factor { symbol: symbol.clone(), text, odd: is(true), absolute });
     }
     // A stable sort: factors that coefficients do not know of stay in the order of the file, behind.
-    let rank = |symbol: &str| STANDARD_FACTORS.iter().position(|known| *known == symbol).unwrap_or(STANDARD_FACTORS.len());
+    let rank = |symbol: &str| {
+        STANDARD_FACTORS.iter().position(|known| *known == symbol).unwrap_or(STANDARD_FACTORS.len())
+    };
     factors.sort_by_key(|factor| rank(&factor.symbol));
     Ok(factors)
 }
@@ -154,7 +182,8 @@ grammar:
 
     fn names(known: &[&str], has_roll: bool) -> Vec<String> {
         let has = |channel| has_roll || channel != Channel::Phi;
-        let forms = grammar().forms(&[Axis::X, Axis::Y, Axis::N], &|name| known.contains(&name), &has);
+        let forms =
+            grammar().forms(&[Axis::X, Axis::Y, Axis::N], &|name| known.contains(&name), &has);
         forms.iter().map(|form| form.file.name.clone()).collect()
     }
 
@@ -180,7 +209,10 @@ grammar:
         let parameter = &form.parameters["Y_v_abs_v"];
         assert_eq!((parameter.prior_deviation, parameter.bounds), (0.01, [-0.2, 0.2]));
         let roll = forms.iter().find(|form| form.file.name == "Y_phi").unwrap();
-        assert_eq!((roll.parameters.len(), roll.file.needs.as_slice()), (1, [Channel::Phi].as_slice()));
+        assert_eq!(
+            (roll.parameters.len(), roll.file.needs.as_slice()),
+            (1, [Channel::Phi].as_slice())
+        );
         assert_eq!(Form::read(ActsOn::Force, &form.file).as_ref(), Ok(form.as_ref()));
     }
 

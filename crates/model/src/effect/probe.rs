@@ -66,12 +66,20 @@ impl Probe<'_> {
         if let Some((value, _)) = formula::builtin(name) {
             return Some(value);
         }
-        Some(self.parameters.get(name).map_or_else(|| self.outside(name), |parameter| self.parameter(name, parameter)))
+        Some(
+            self.parameters
+                .get(name)
+                .map_or_else(|| self.outside(name), |parameter| self.parameter(name, parameter)),
+        )
     }
 
     fn parameter(&self, name: &str, parameter: &EffectParameter) -> f64 {
         let [low, high] = parameter.bounds;
-        let here = if self.absent { parameter.absent } else { low + (0.3 + 0.4 * self.fraction(name)) * (high - low) };
+        let here = if self.absent {
+            parameter.absent
+        } else {
+            low + (0.3 + 0.4 * self.fraction(name)) * (high - low)
+        };
         if self.mirrored && parameter.mirror == Mirror::Opposite { -here } else { here }
     }
 
@@ -90,6 +98,7 @@ impl Probe<'_> {
     }
 
     fn hash(&self, name: &str) -> u32 {
-        name.bytes().fold(self.seed, |hash, byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)))
+        name.bytes()
+            .fold(self.seed, |hash, byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)))
     }
 }

@@ -49,7 +49,12 @@ fn read(file: &str, text: &str) -> Result<Effect, FileError> {
     let at = |(field, message): (String, String)| blame.at(&field, message);
     Ok(Effect {
         forms: forms(raw.acts_on, &raw.forms).map_err(at)?,
-        grammar: raw.grammar.as_ref().map(|grammar| read_grammar(raw.acts_on, grammar)).transpose().map_err(at)?,
+        grammar: raw
+            .grammar
+            .as_ref()
+            .map(|grammar| read_grammar(raw.acts_on, grammar))
+            .transpose()
+            .map_err(at)?,
         name: raw.name,
         title: raw.title,
         acts_on: raw.acts_on,
@@ -114,21 +119,39 @@ forms:
         let effect = read("drag.yaml", DRAG).unwrap_or_else(|e| panic!("{e}"));
         let form = &effect.forms[0];
         assert_eq!(form.reports["share_percent"].factor, 100.0);
-        assert_eq!((form.parameters["share"].start, form.parameters["share"].prior_mean), (0.0, 0.0));
+        assert_eq!(
+            (form.parameters["share"].start, form.parameters["share"].prior_mean),
+            (0.0, 0.0)
+        );
     }
 
     #[test]
     fn refusals_name_file_line_and_field() {
         let unknown = refused("*phi^2", "*beta^2");
-        assert!(unknown.starts_with("drag.yaml:16: forms.only.forces.X: ") && unknown.contains("`beta`"), "{unknown}");
+        assert!(
+            unknown.starts_with("drag.yaml:16: forms.only.forces.X: ")
+                && unknown.contains("`beta`"),
+            "{unknown}"
+        );
         let dimension = refused("force*phi^2", "force*lpp_m*phi^2");
-        assert!(dimension.contains("drag.yaml:16") && dimension.contains("kg m^2 s^-2"), "{dimension}");
+        assert!(
+            dimension.contains("drag.yaml:16") && dimension.contains("kg m^2 s^-2"),
+            "{dimension}"
+        );
         let symmetry = refused("phi^2", "phi");
-        assert!(symmetry.contains("drag.yaml:16: forms.only.forces.X") && symmetry.contains("stay as it is"), "{symmetry}");
+        assert!(
+            symmetry.contains("drag.yaml:16: forms.only.forces.X")
+                && symmetry.contains("stay as it is"),
+            "{symmetry}"
+        );
         let needs = refused("needs: [phi]", "needs: [p]");
         assert!(needs.contains("drag.yaml:16: forms.only.forces.X: uses `phi`"), "{needs}");
         let absent = refused("-share*", "-(share + 0.1)*");
-        assert!(absent.contains("forms.only.forces.X: does not vanish") && absent.contains("should be 0"), "{absent}");
+        assert!(
+            absent.contains("forms.only.forces.X: does not vanish")
+                && absent.contains("should be 0"),
+            "{absent}"
+        );
     }
 
     #[test]

@@ -26,17 +26,30 @@ pub struct Scope {
 impl Scope {
     /// Nothing but what every formula knows; `measuring` adds positions and rates of change.
     pub fn new(measuring: bool) -> Self {
-        Self { measuring, parameters: BTreeMap::new(), values: BTreeMap::new(), needed: RefCell::default() }
+        Self {
+            measuring,
+            parameters: BTreeMap::new(),
+            values: BTreeMap::new(),
+            needed: RefCell::default(),
+        }
     }
 
-    pub fn add_parameter(&mut self, field: &str, name: &str, dimension: Dimension) -> Result<(), Refusal> {
+    pub fn add_parameter(
+        &mut self,
+        field: &str,
+        name: &str,
+        dimension: Dimension,
+    ) -> Result<(), Refusal> {
         self.check_name(field, name)?;
         self.parameters.insert(name.to_owned(), dimension);
         Ok(())
     }
 
     /// Values in their order, each from earlier ones.
-    pub fn values(&mut self, raw: &IndexMap<String, String>) -> Result<IndexMap<String, Expr>, Refusal> {
+    pub fn values(
+        &mut self,
+        raw: &IndexMap<String, String>,
+    ) -> Result<IndexMap<String, Expr>, Refusal> {
         let mut values = IndexMap::new();
         for (name, text) in raw {
             let field = format!("values.{name}");
@@ -63,21 +76,31 @@ impl Scope {
         let one = |(key, text): (&K, &String)| {
             let field = format!("{section}.{key}");
             let wanted = wanted(key).map_err(|e| (field.clone(), e))?;
-            let known = |name: &str| if constant { names::constant(name) } else { self.dimension(name) };
+            let known =
+                |name: &str| if constant { names::constant(name) } else { self.dimension(name) };
             Ok((key.clone(), self.formula(&field, text, Some(wanted), &known)?))
         };
         raw.into_iter().map(one).collect()
     }
 
     /// A formula of parameters and particulars.
-    pub fn constant(&self, field: &str, text: &str, wanted: Option<Dimension>) -> Result<Expr, Refusal> {
-        self.formula(field, text, wanted, &|name| self.parameters.get(name).copied().or_else(|| names::constant(name)))
+    pub fn constant(
+        &self,
+        field: &str,
+        text: &str,
+        wanted: Option<Dimension>,
+    ) -> Result<Expr, Refusal> {
+        self.formula(field, text, wanted, &|name| {
+            self.parameters.get(name).copied().or_else(|| names::constant(name))
+        })
     }
 
     /// Channels that formulas use must be listed, so that the form is tried only where they were recorded.
     pub fn check_needs(&self, listed: &[Channel]) -> Result<(), Refusal> {
         match self.needed.borrow().iter().find(|(channel, _)| !listed.contains(channel)) {
-            Some((channel, field)) => Err((field.clone(), format!("uses `{channel}`, which `needs` does not list"))),
+            Some((channel, field)) => {
+                Err((field.clone(), format!("uses `{channel}`, which `needs` does not list")))
+            }
             None => Ok(()),
         }
     }
@@ -92,7 +115,10 @@ impl Scope {
             return Err((field.to_owned(), "is not a name that formulas can use".into()));
         }
         if self.dimension(name).or_else(|| names::dimension(name, true)).is_some() {
-            return Err((field.to_owned(), "this name already means a state, channel, particular, parameter or value".into()));
+            return Err((
+                field.to_owned(),
+                "this name already means a state, channel, particular, parameter or value".into(),
+            ));
         }
         Ok(())
     }
@@ -106,18 +132,29 @@ impl Scope {
     ) -> Result<Expr, Refusal> {
         let (expr, found) = self.read(field, text, known)?;
         match wanted {
-            Some(wanted) if wanted != found && expr != Expr::Number(0.0) => {
-                Err((field.to_owned(), format!("`{text}` has the dimension {found}; {wanted} is needed")))
-            }
+            Some(wanted) if wanted != found && expr != Expr::Number(0.0) => Err((
+                field.to_owned(),
+                format!("`{text}` has the dimension {found}; {wanted} is needed"),
+            )),
             _ => Ok(expr),
         }
     }
 
-    fn read(&self, field: &str, text: &str, known: &dyn Fn(&str) -> Option<Dimension>) -> Result<(Expr, Dimension), Refusal> {
+    fn read(
+        &self,
+        field: &str,
+        text: &str,
+        known: &dyn Fn(&str) -> Option<Dimension>,
+    ) -> Result<(Expr, Dimension), Refusal> {
         let expr = formula::parse(text).map_err(|e| (field.to_owned(), e.to_string()))?;
-        let dimension = formula::dimension_of(&expr, known).map_err(|e| (field.to_owned(), format!("`{text}` {e}")))?;
+        let dimension = formula::dimension_of(&expr, known)
+            .map_err(|e| (field.to_owned(), format!("`{text}` {e}")))?;
         let names: BTreeSet<&str> = expr.names();
-        for channel in names.into_iter().filter(|name| !self.parameters.contains_key(*name)).filter_map(names::needed) {
+        for channel in names
+            .into_iter()
+            .filter(|name| !self.parameters.contains_key(*name))
+            .filter_map(names::needed)
+        {
             self.needed.borrow_mut().entry(channel).or_insert_with(|| field.to_owned());
         }
         Ok((expr, dimension))

@@ -36,17 +36,29 @@ fn actions(form: &Form) -> Vec<Action<'_>> {
     };
     let itself = |name: &str| Expr::Name(name.to_owned());
     form.sees.iter().for_each(|(name, e)| add("sees", name, e, is_odd(name), itself(name)));
-    form.measures.iter().for_each(|(c, e)| add("measures", c.name(), e, is_odd(c.name()), itself(c.name())));
-    form.forces.iter().for_each(|(axis, e)| add("forces", &axis.to_string(), e, axis.is_odd(), Expr::Number(0.0)));
-    form.accelerates.iter().for_each(|(axis, e)| add("accelerates", &axis.to_string(), e, axis.is_odd(), Expr::Number(0.0)));
-    form.coefficients.iter().for_each(|(name, e)| add("coefficients", name, e, false, Expr::Number(1.0)));
+    form.measures
+        .iter()
+        .for_each(|(c, e)| add("measures", c.name(), e, is_odd(c.name()), itself(c.name())));
+    form.forces.iter().for_each(|(axis, e)| {
+        add("forces", &axis.to_string(), e, axis.is_odd(), Expr::Number(0.0))
+    });
+    form.accelerates.iter().for_each(|(axis, e)| {
+        add("accelerates", &axis.to_string(), e, axis.is_odd(), Expr::Number(0.0))
+    });
+    form.coefficients
+        .iter()
+        .for_each(|(name, e)| add("coefficients", name, e, false, Expr::Number(1.0)));
     form.lags.iter().for_each(|(name, e)| add("lags", name, e, false, Expr::Number(0.0)));
     actions
 }
 
 fn check_finite(form: &Form, action: &Action<'_>) -> Result<(), String> {
     let finite = |seed: u32| probe(form, seed, false).of(action.formula).is_some();
-    if SEEDS.into_iter().all(finite) { Ok(()) } else { Err("has no finite value at an ordinary state".into()) }
+    if SEEDS.into_iter().all(finite) {
+        Ok(())
+    } else {
+        Err("has no finite value at an ordinary state".into())
+    }
 }
 
 fn check_absence(form: &Form, action: &Action<'_>) -> Result<(), String> {
@@ -54,7 +66,9 @@ fn check_absence(form: &Form, action: &Action<'_>) -> Result<(), String> {
         let absent = probe(form, seed, true);
         let present = probe(form, seed, false).of(action.formula).map_or(0.0, f64::abs);
         let pair = absent.of(action.formula).zip(absent.of(&action.absent));
-        pair.is_some_and(|(found, wanted)| (found - wanted).abs() <= 1e-9 * (wanted.abs() + present))
+        pair.is_some_and(|(found, wanted)| {
+            (found - wanted).abs() <= 1e-9 * (wanted.abs() + present)
+        })
     };
     if SEEDS.into_iter().all(harmless) {
         return Ok(());
@@ -64,17 +78,28 @@ fn check_absence(form: &Form, action: &Action<'_>) -> Result<(), String> {
         Expr::Number(number) => number.to_string(),
         _ => String::new(),
     };
-    Err(format!("does not vanish with the effect: with every parameter at `absent` it should be {wanted}"))
+    Err(format!(
+        "does not vanish with the effect: with every parameter at `absent` it should be {wanted}"
+    ))
 }
 
 fn probe(form: &Form, seed: u32, absent: bool) -> Probe<'_> {
-    Probe { parameters: &form.parameters, values: &form.values, seed, mirrored: false, absent, known: RefCell::default() }
+    Probe {
+        parameters: &form.parameters,
+        values: &form.values,
+        seed,
+        mirrored: false,
+        absent,
+        known: RefCell::default(),
+    }
 }
 
 /// What is wrong with a formula that is not as odd (or even) as it should be.
 pub fn broken(odd: bool) -> String {
     let wanted = if odd { "change its sign" } else { "stay as it is" };
-    format!("breaks the port/starboard symmetry: mirrored (v, r, p, phi, psi, delta and `mirror: opposite`) it should {wanted}")
+    format!(
+        "breaks the port/starboard symmetry: mirrored (v, r, p, phi, psi, delta and `mirror: opposite`) it should {wanted}"
+    )
 }
 
 /// Whether the formula changes its sign (`odd`) or stays as it is in the mirror.
@@ -86,8 +111,13 @@ pub fn has_parity(
 ) -> bool {
     let sign = if odd { -1.0 } else { 1.0 };
     SEEDS.into_iter().all(|seed| {
-        let at = |mirrored| Probe { parameters, values, seed, mirrored, absent: false, known: RefCell::default() }.of(formula);
+        let at = |mirrored| {
+            Probe { parameters, values, seed, mirrored, absent: false, known: RefCell::default() }
+                .of(formula)
+        };
         let pair = at(false).zip(at(true));
-        pair.is_some_and(|(here, there)| (here - sign * there).abs() <= 1e-9 * (here.abs() + there.abs()))
+        pair.is_some_and(|(here, there)| {
+            (here - sign * there).abs() <= 1e-9 * (here.abs() + there.abs())
+        })
     })
 }

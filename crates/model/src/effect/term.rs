@@ -38,7 +38,11 @@ impl Term<'_> {
     fn name(&self, axis: Axis, bar: &str) -> String {
         let Some(last) = self.factors.len().checked_sub(1) else { return format!("{axis}_0") };
         let symbol = |(place, factor): (usize, &&Factor)| {
-            if self.bars && place == last { format!("{bar}{}{bar}", factor.symbol) } else { factor.symbol.clone() }
+            if self.bars && place == last {
+                format!("{bar}{}{bar}", factor.symbol)
+            } else {
+                factor.symbol.clone()
+            }
         };
         format!("{axis}_{}", self.factors.iter().enumerate().map(symbol).collect::<String>())
     }
@@ -46,14 +50,19 @@ impl Term<'_> {
     fn product(&self) -> String {
         let Some(last) = self.factors.len().checked_sub(1) else { return "1".into() };
         let one = |(place, factor): (usize, &&Factor)| {
-            if self.bars && place == last { format!("abs({})", factor.text) } else { format!("({})", factor.text) }
+            if self.bars && place == last {
+                format!("abs({})", factor.text)
+            } else {
+                format!("({})", factor.text)
+            }
         };
         self.factors.iter().enumerate().map(one).collect::<Vec<_>>().join("*")
     }
 
     /// The form of the term on an axis.
     pub fn form(&self, grammar: &GrammarFile, axis: Axis) -> FormFile {
-        let (name, parameter) = (self.name(axis, "|"), self.name(axis, "_abs_").trim_end_matches("_abs_").to_owned());
+        let (name, parameter) =
+            (self.name(axis, "|"), self.name(axis, "_abs_").trim_end_matches("_abs_").to_owned());
         let force = format!("{parameter}*({})*{}", grammar.scales[&axis], self.product());
         FormFile {
             meaning: format!("the term {name} of the hull's polynomial"),
@@ -62,7 +71,10 @@ impl Term<'_> {
             unless: Vec::new(),
             only_without_roll: false,
             particulars: IndexMap::new(),
-            parameters: IndexMap::from([(parameter, coefficient(grammar.deviations[&axis], self.fits(axis)))]),
+            parameters: IndexMap::from([(
+                parameter,
+                coefficient(grammar.deviations[&axis], self.fits(axis)),
+            )]),
             reports: IndexMap::new(),
             values: IndexMap::new(),
             sees: IndexMap::new(),
@@ -78,7 +90,8 @@ impl Term<'_> {
 /// The channels that a formula uses and that trials may lack.
 fn needs(formula: &str) -> Vec<Channel> {
     let parsed = formula::parse(formula);
-    let mut needs: Vec<Channel> = parsed.iter().flat_map(Expr::names).filter_map(names::needed).collect();
+    let mut needs: Vec<Channel> =
+        parsed.iter().flat_map(Expr::names).filter_map(names::needed).collect();
     needs.sort_unstable();
     needs
 }

@@ -11,7 +11,9 @@ pub fn constant(text: &str) -> Result<f64, FormulaError> {
     let expr = parse(text)?;
     let value = expr.value(&|_| None);
     value.filter(|v| v.is_finite()).ok_or_else(|| match expr.names().first() {
-        Some(name) => FormulaError::NotConstant { formula: text.to_owned(), name: (*name).to_owned() },
+        Some(name) => {
+            FormulaError::NotConstant { formula: text.to_owned(), name: (*name).to_owned() }
+        }
         None => FormulaError::NotFinite(text.to_owned()),
     })
 }

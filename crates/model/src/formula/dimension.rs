@@ -8,7 +8,10 @@ use crate::units::Dimension;
 ///
 /// # Errors
 /// Names the unknown name, or the two sides that do not go together.
-pub fn dimension_of(expr: &Expr, lookup: &dyn Fn(&str) -> Option<Dimension>) -> Result<Dimension, FormulaError> {
+pub fn dimension_of(
+    expr: &Expr,
+    lookup: &dyn Fn(&str) -> Option<Dimension>,
+) -> Result<Dimension, FormulaError> {
     let of = |e: &Expr| dimension_of(e, lookup);
     match expr {
         Expr::Number(_) => Ok(Dimension::NONE),
@@ -26,7 +29,11 @@ pub fn dimension_of(expr: &Expr, lookup: &dyn Fn(&str) -> Option<Dimension>) -> 
     }
 }
 
-fn power(base: Dimension, exponent: &Expr, of_exponent: Dimension) -> Result<Dimension, FormulaError> {
+fn power(
+    base: Dimension,
+    exponent: &Expr,
+    of_exponent: Dimension,
+) -> Result<Dimension, FormulaError> {
     if of_exponent != Dimension::NONE {
         return Err(FormulaError::Exponent(of_exponent));
     }
@@ -37,14 +44,19 @@ fn power(base: Dimension, exponent: &Expr, of_exponent: Dimension) -> Result<Dim
     }
 }
 
-fn call(function: Function, arguments: &[Expr], lookup: &dyn Fn(&str) -> Option<Dimension>) -> Result<Dimension, FormulaError> {
+fn call(
+    function: Function,
+    arguments: &[Expr],
+    lookup: &dyn Fn(&str) -> Option<Dimension>,
+) -> Result<Dimension, FormulaError> {
     let first = dimension_of(&arguments[0], lookup)?;
     match function {
         Function::Abs => Ok(first),
         Function::Sqrt => Ok(first.pow(0.5)),
         Function::Sign => Ok(Dimension::NONE),
         Function::Min | Function::Max | Function::Atan2 => {
-            let common = same(&arguments[0], first, &arguments[1], dimension_of(&arguments[1], lookup)?)?;
+            let common =
+                same(&arguments[0], first, &arguments[1], dimension_of(&arguments[1], lookup)?)?;
             Ok(if function == Function::Atan2 { Dimension::NONE } else { common })
         }
         _ if first == Dimension::NONE => Ok(first),

@@ -28,7 +28,9 @@ pub enum FormulaError {
         most: usize,
     },
     /// It has too many operators.
-    #[error("formula `{head}...` has {found} operators; {most} are the most: write parts of it as values")]
+    #[error(
+        "formula `{head}...` has {found} operators; {most} are the most: write parts of it as values"
+    )]
     Operators {
         /// How it begins.
         head: String,

@@ -27,7 +27,11 @@ pub fn check(text: &str) -> Result<(), FormulaError> {
         return Err(FormulaError::Nested { head: head(text), found: nesting, most: MAX_NESTING });
     }
     if operators > MAX_OPERATORS {
-        return Err(FormulaError::Operators { head: head(text), found: operators, most: MAX_OPERATORS });
+        return Err(FormulaError::Operators {
+            head: head(text),
+            found: operators,
+            most: MAX_OPERATORS,
+        });
     }
     Ok(())
 }
@@ -50,7 +54,8 @@ impl Measure {
         let (mut waiting, mut depth) = (vec![0_usize], 0_usize);
         let mut before = None;
         for (at, &byte) in text.iter().enumerate().filter(|(_, byte)| !byte.is_ascii_whitespace()) {
-            let is_operand = before.is_some_and(|b: u8| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'.' | b')'));
+            let is_operand = before
+                .is_some_and(|b: u8| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'.' | b')'));
             match byte {
                 b'(' => {
                     waiting.push(0);
@@ -90,7 +95,8 @@ fn wait(waiting: &mut [usize], depth: &mut usize) {
 /// Whether the sign at a place may be that of a number's exponent, as in `1e-3`.
 fn in_number(text: &[u8], at: usize) -> bool {
     let before = |back: usize| at.checked_sub(back).map(|place| text[place]);
-    matches!(before(1), Some(b'e' | b'E')) && before(2).is_some_and(|b| b.is_ascii_digit() || b == b'.')
+    matches!(before(1), Some(b'e' | b'E'))
+        && before(2).is_some_and(|b| b.is_ascii_digit() || b == b'.')
 }
 
 #[cfg(test)]
@@ -133,11 +139,15 @@ mod tests {
                 for n in [most / 2, most] {
                     let expr = parse(&make(n)).unwrap_or_else(|e| panic!("{n} of {what}: {e}"));
                     assert_eq!(expr.clone(), expr);
-                    let _ = (expr.value(&|_| Some(1.0)), expr.names().len(), expr.renamed(&|_| None));
+                    let _ =
+                        (expr.value(&|_| Some(1.0)), expr.names().len(), expr.renamed(&|_| None));
                 }
                 for n in [most + 2, 10 * most, 1_000_000 / 8] {
                     let refused = parse(&make(n)).unwrap_err().to_string();
-                    assert!(refused.contains("are the most") && refused.len() < 200, "{n} of {what}: {refused}");
+                    assert!(
+                        refused.contains("are the most") && refused.len() < 200,
+                        "{n} of {what}: {refused}"
+                    );
                 }
             }
         });

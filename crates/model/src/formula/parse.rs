@@ -2,7 +2,8 @@
 
 use winnow::ascii::{float, multispace0};
 use winnow::combinator::{
-    Infix, Prefix, alt, cut_err, delimited, dispatch, empty, expression, fail, peek, preceded, separated, terminated,
+    Infix, Prefix, alt, cut_err, delimited, dispatch, empty, expression, fail, peek, preceded,
+    separated, terminated,
 };
 use winnow::error::{ContextError, ErrMode, StrContext, StrContextValue};
 use winnow::prelude::*;
@@ -22,7 +23,8 @@ pub fn parse(text: &str) -> std::result::Result<Expr, FormulaError> {
     super::limits::check(text)?;
     let parsed = delimited(multispace0, sum, multispace0).parse(text);
     parsed.map_err(|error| {
-        let rest: String = text.chars().skip(text[..error.offset()].chars().count()).take(12).collect();
+        let rest: String =
+            text.chars().skip(text[..error.offset()].chars().count()).take(12).collect();
         let place = if rest.is_empty() { "its end".into() } else { format!("`{rest}`") };
         let expected = error.inner().to_string().replace('\n', ", ");
         let expected = if expected.is_empty() { String::new() } else { format!(": {expected}") };
@@ -38,7 +40,8 @@ pub fn parse_condition(text: &str) -> std::result::Result<Expr, FormulaError> {
     match text.find(['<', '>']) {
         Some(_) => {
             super::limits::check(text)?;
-            parse(&format!("if({text}, 1, 0)")).map_err(|_| FormulaError::Condition(text.to_owned()))
+            parse(&format!("if({text}, 1, 0)"))
+                .map_err(|_| FormulaError::Condition(text.to_owned()))
         }
         None => Err(FormulaError::Comparison(text.to_owned())),
     }
@@ -71,9 +74,13 @@ fn sum(input: &mut &str) -> Result<Expr> {
 }
 
 fn operand(input: &mut &str) -> Result<Expr> {
-    alt((number, delimited('(', sum, cut_err(')').context(expected("a closing parenthesis"))), name_or_call))
-        .context(expected("a number, a name or a parenthesis"))
-        .parse_next(input)
+    alt((
+        number,
+        delimited('(', sum, cut_err(')').context(expected("a closing parenthesis"))),
+        name_or_call,
+    ))
+    .context(expected("a number, a name or a parenthesis"))
+    .parse_next(input)
 }
 
 fn expected(what: &'static str) -> StrContext {
@@ -86,7 +93,9 @@ fn number(input: &mut &str) -> Result<Expr> {
 }
 
 fn identifier<'a>(input: &mut &'a str) -> Result<&'a str> {
-    (one_of(('a'..='z', 'A'..='Z', '_')), take_while(0.., ('a'..='z', 'A'..='Z', '0'..='9', '_'))).take().parse_next(input)
+    (one_of(('a'..='z', 'A'..='Z', '_')), take_while(0.., ('a'..='z', 'A'..='Z', '0'..='9', '_')))
+        .take()
+        .parse_next(input)
 }
 
 fn name_or_call(input: &mut &str) -> Result<Expr> {
@@ -100,9 +109,11 @@ fn name_or_call(input: &mut &str) -> Result<Expr> {
     let Some((function, count)) = Function::by_name(name) else {
         return cut_err(fail.context(expected("a known function"))).parse_next(input);
     };
-    let arguments: Vec<Expr> = cut_err(delimited((multispace0, '('), separated(1.., sum, ','), ')')).parse_next(input)?;
+    let arguments: Vec<Expr> =
+        cut_err(delimited((multispace0, '('), separated(1.., sum, ','), ')')).parse_next(input)?;
     if arguments.len() != count {
-        return cut_err(fail.context(expected("as many arguments as the function takes"))).parse_next(input);
+        return cut_err(fail.context(expected("as many arguments as the function takes")))
+            .parse_next(input);
     }
     Ok(Expr::Call(function, arguments))
 }
@@ -116,9 +127,11 @@ fn condition(input: &mut &str) -> Result<Expr> {
         ">".value(Comparison::Greater),
     ))
     .context(expected("a comparison"));
-    let (left, comparison, right) = preceded((multispace0, '('), (sum, compare, sum)).parse_next(input)?;
-    let (then, otherwise) =
-        (preceded(',', sum), preceded(',', terminated(sum, ')'))).context(expected("two alternatives")).parse_next(input)?;
+    let (left, comparison, right) =
+        preceded((multispace0, '('), (sum, compare, sum)).parse_next(input)?;
+    let (then, otherwise) = (preceded(',', sum), preceded(',', terminated(sum, ')')))
+        .context(expected("two alternatives"))
+        .parse_next(input)?;
     Ok(Expr::If(comparison, Box::new([left, right, then, otherwise])))
 }
 

@@ -133,7 +133,11 @@ impl Expr {
         match self {
             Self::Number(_) | Self::Name(_) => Vec::new(),
             Self::Negate(a) => vec![a],
-            Self::Add(a, b) | Self::Subtract(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) | Self::Power(a, b) => {
+            Self::Add(a, b)
+            | Self::Subtract(a, b)
+            | Self::Multiply(a, b)
+            | Self::Divide(a, b)
+            | Self::Power(a, b) => {
                 vec![a, b]
             }
             Self::Call(_, arguments) => arguments.iter().collect(),
@@ -161,8 +165,12 @@ impl Expr {
             Self::Multiply(a, b) => Self::Multiply(of(a), of(b)),
             Self::Divide(a, b) => Self::Divide(of(a), of(b)),
             Self::Power(a, b) => Self::Power(of(a), of(b)),
-            Self::Call(function, arguments) => Self::Call(*function, arguments.iter().map(|e| e.renamed(by)).collect()),
-            Self::If(comparison, parts) => Self::If(*comparison, Box::new(parts.each_ref().map(|e| e.renamed(by)))),
+            Self::Call(function, arguments) => {
+                Self::Call(*function, arguments.iter().map(|e| e.renamed(by)).collect())
+            }
+            Self::If(comparison, parts) => {
+                Self::If(*comparison, Box::new(parts.each_ref().map(|e| e.renamed(by))))
+            }
         }
     }
 
@@ -171,7 +179,11 @@ impl Expr {
         let left = match self {
             Self::Number(_) | Self::Name(_) | Self::Call(..) | Self::If(..) => return None,
             Self::Negate(a) => a,
-            Self::Add(a, _) | Self::Subtract(a, _) | Self::Multiply(a, _) | Self::Divide(a, _) | Self::Power(a, _) => a,
+            Self::Add(a, _)
+            | Self::Subtract(a, _)
+            | Self::Multiply(a, _)
+            | Self::Divide(a, _)
+            | Self::Power(a, _) => a,
         };
         match **left {
             Self::Number(_) | Self::Name(_) => None,
@@ -186,14 +198,20 @@ impl Expr {
 
     /// How many operators are within each other, where `of_name` says how many a name stands for; none where there are more
     /// than `most`, which is told without going further down.
-    pub fn depth(&self, most: usize, of_name: &dyn Fn(&str, usize) -> Option<usize>) -> Option<usize> {
+    pub fn depth(
+        &self,
+        most: usize,
+        of_name: &dyn Fn(&str, usize) -> Option<usize>,
+    ) -> Option<usize> {
         match self {
             Self::Number(_) => Some(0),
             Self::Name(name) => of_name(name, most).filter(|depth| *depth <= most),
             other => {
                 let below = most.checked_sub(1)?;
                 let depths = other.children().into_iter().map(|child| child.depth(below, of_name));
-                depths.collect::<Option<Vec<usize>>>().map(|depths| 1 + depths.into_iter().max().unwrap_or(0))
+                depths
+                    .collect::<Option<Vec<usize>>>()
+                    .map(|depths| 1 + depths.into_iter().max().unwrap_or(0))
             }
         }
     }

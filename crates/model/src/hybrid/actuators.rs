@@ -62,12 +62,15 @@ pub fn inputs_and_variables(file: &HybridFile) -> (Vec<ActuatorInput>, Vec<Varia
     let mut variables = motion();
     for (name, actuator) in &file.actuators {
         for side in sides(actuator) {
-            let one = One { name, side, actuator, exchanges: file.rules.symmetry == Symmetry::Mirror };
+            let one =
+                One { name, side, actuator, exchanges: file.rules.symmetry == Symmetry::Mirror };
             inputs.extend(one.inputs());
             variables.extend(one.variables());
         }
     }
-    let rank = |v: &Variable| STANDARD_FACTORS.iter().position(|f| *f == v.symbol).unwrap_or(STANDARD_FACTORS.len());
+    let rank = |v: &Variable| {
+        STANDARD_FACTORS.iter().position(|f| *f == v.symbol).unwrap_or(STANDARD_FACTORS.len())
+    };
     variables.sort_by_key(rank);
     (inputs, variables)
 }
@@ -130,12 +133,16 @@ impl One<'_> {
     }
 
     fn variables(&self) -> Vec<Variable> {
-        let revolutions = |prefix: &str, odd| self.variable("", prefix, Unit::Rate, odd, |input| input.to_owned());
+        let revolutions = |prefix: &str, odd| {
+            self.variable("", prefix, Unit::Rate, odd, |input| input.to_owned())
+        };
         match self.actuator.kind {
             ActuatorKind::Propeller => vec![revolutions("", false)],
             ActuatorKind::TunnelThruster => vec![revolutions("", true)],
             ActuatorKind::Rudder | ActuatorKind::Vectwin => self.angle(),
-            ActuatorKind::Azimuth => std::iter::once(revolutions("n_", false)).chain(self.angle()).collect(),
+            ActuatorKind::Azimuth => {
+                std::iter::once(revolutions("n_", false)).chain(self.angle()).collect()
+            }
         }
     }
 
@@ -146,13 +153,26 @@ impl One<'_> {
         };
         let sine = trigonometric("sin", true, |input| format!("sin({input})"));
         match self.actuator.angle {
-            AngleFeature::SineCosine => vec![sine, trigonometric("cos", false, |input| format!("cos({input})"))],
-            AngleFeature::SineVersine => vec![sine, trigonometric("cos", false, |input| format!("1 - cos({input})"))],
-            AngleFeature::Plain => vec![self.variable("", "", Unit::Number, true, |input| input.to_owned())],
+            AngleFeature::SineCosine => {
+                vec![sine, trigonometric("cos", false, |input| format!("cos({input})"))]
+            }
+            AngleFeature::SineVersine => {
+                vec![sine, trigonometric("cos", false, |input| format!("1 - cos({input})"))]
+            }
+            AngleFeature::Plain => {
+                vec![self.variable("", "", Unit::Number, true, |input| input.to_owned())]
+            }
         }
     }
 
-    fn variable(&self, function: &str, prefix: &str, unit: Unit, odd: bool, formula: impl Fn(&str) -> String) -> Variable {
+    fn variable(
+        &self,
+        function: &str,
+        prefix: &str,
+        unit: Unit,
+        odd: bool,
+        formula: impl Fn(&str) -> String,
+    ) -> Variable {
         let (name, other) = self.input(prefix);
         let ActuatorFile { couples, axes, .. } = self.actuator;
         Variable {

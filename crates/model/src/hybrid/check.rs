@@ -51,7 +51,10 @@ fn check_name(name: &str) -> Result<(), String> {
         return Err("an actuator's name is made of letters, digits and underscores and starts with a letter".into());
     }
     let state = STATES.iter().any(|(state, _)| *state == name);
-    let known = state || formula::builtin(name).is_some() || formula::Function::by_name(name).is_some() || name == "if";
+    let known = state
+        || formula::builtin(name).is_some()
+        || formula::Function::by_name(name).is_some()
+        || name == "if";
     if known || particulars::dimension(name).is_some() {
         return Err(format!("`{name}` means something else in formulas; choose another name"));
     }
@@ -62,20 +65,33 @@ fn check_actuator(actuator: &ActuatorFile) -> Result<(), (&'static str, String)>
     use ActuatorKind::{Propeller, Rudder, TunnelThruster, Vectwin};
     let kind = actuator.kind;
     if actuator.pair && kind == TunnelThruster {
-        return Err((".pair", "a tunnel thruster has no twin on the other side; declare each by its name".into()));
+        return Err((
+            ".pair",
+            "a tunnel thruster has no twin on the other side; declare each by its name".into(),
+        ));
     }
     if actuator.angle != AngleFeature::default() && matches!(kind, Propeller | TunnelThruster) {
         return Err((".angle", "it has no angle".into()));
     }
-    if actuator.axes.as_ref().is_some_and(|axes| axes.is_empty() || axes.iter().any(|axis| !AXES.contains(axis))) {
+    if actuator
+        .axes
+        .as_ref()
+        .is_some_and(|axes| axes.is_empty() || axes.iter().any(|axis| !AXES.contains(axis)))
+    {
         return Err((".axes", "give some of X, Y and N".into()));
     }
     let Some(stall) = actuator.stall_deg else { return Ok(()) };
     if !matches!(kind, Rudder | Vectwin) {
         return Err((".stall_deg", "only rudders stall".into()));
     }
-    match sides(actuator).iter().map(|side| stall.of(side)).find(|angle| !(*angle > 0.0 && *angle < 180.0)) {
-        Some(angle) => Err((".stall_deg", format!("must be above 0 and below 180 deg, not {angle}"))),
+    match sides(actuator)
+        .iter()
+        .map(|side| stall.of(side))
+        .find(|angle| !(*angle > 0.0 && *angle < 180.0))
+    {
+        Some(angle) => {
+            Err((".stall_deg", format!("must be above 0 and below 180 deg, not {angle}")))
+        }
         None => Ok(()),
     }
 }
@@ -90,11 +106,19 @@ fn check_inputs(inputs: &[ActuatorInput]) -> Result<(), Fault> {
         let wanted = match input.name.as_str() {
             "delta" => "rad",
             "n" => "rps",
-            name if STANDARD_FACTORS.contains(&name) => return Err((field(), format!("`{name}` is a state"))),
+            name if STANDARD_FACTORS.contains(&name) => {
+                return Err((field(), format!("`{name}` is a state")));
+            }
             _ => input.unit,
         };
         if wanted != input.unit {
-            return Err((field(), format!("the input `{}` is in {wanted} everywhere; choose another name", input.name)));
+            return Err((
+                field(),
+                format!(
+                    "the input `{}` is in {wanted} everywhere; choose another name",
+                    input.name
+                ),
+            ));
         }
     }
     Ok(())
@@ -104,16 +128,26 @@ fn check_rules(file: &HybridFile, variables: &[Variable]) -> Result<(), Fault> {
     let rules = &file.rules;
     let mirrors = rules.symmetry == Symmetry::Mirror;
     if mirrors && rules.zeroth_powers {
-        return Err(("rules.zeroth_powers".into(), "keeps biases, which `symmetry: mirror` excludes".into()));
+        return Err((
+            "rules.zeroth_powers".into(),
+            "keeps biases, which `symmetry: mirror` excludes".into(),
+        ));
     }
     if mirrors && rules.squares == Squares::AsPrinted {
-        return Err(("rules.squares".into(), "`as_printed` makes biases, which `symmetry: mirror` excludes".into()));
+        return Err((
+            "rules.squares".into(),
+            "`as_printed` makes biases, which `symmetry: mirror` excludes".into(),
+        ));
     }
     for exception in &rules.trigonometric_exceptions {
-        let found = variables.iter().any(|variable| variable.trigonometric && variable.symbol == exception.factor);
+        let found = variables
+            .iter()
+            .any(|variable| variable.trigonometric && variable.symbol == exception.factor);
         if !found {
-            let known: Vec<&str> = variables.iter().filter(|v| v.trigonometric).map(|v| v.symbol.as_str()).collect();
-            let message = format!("there is no `{}`; there are {}", exception.factor, known.join(", "));
+            let known: Vec<&str> =
+                variables.iter().filter(|v| v.trigonometric).map(|v| v.symbol.as_str()).collect();
+            let message =
+                format!("there is no `{}`; there are {}", exception.factor, known.join(", "));
             return Err(("rules.trigonometric_exceptions".into(), message));
         }
     }
@@ -121,10 +155,13 @@ fn check_rules(file: &HybridFile, variables: &[Variable]) -> Result<(), Fault> {
 }
 
 fn check_size(file: &HybridFile, variables: usize) -> Result<(), Fault> {
-    let terms = (0..file.order as usize).fold(1, |product, i| product * (variables + file.order as usize - i) / (i + 1));
+    let terms = (0..file.order as usize)
+        .fold(1, |product, i| product * (variables + file.order as usize - i) / (i + 1));
     if terms > MOST_TERMS {
-        let message =
-            format!("{variables} variables to order {} make {terms} terms on an axis; {MOST_TERMS} are the most", file.order);
+        let message = format!(
+            "{variables} variables to order {} make {terms} terms on an axis; {MOST_TERMS} are the most",
+            file.order
+        );
         return Err(("order".into(), message));
     }
     Ok(())

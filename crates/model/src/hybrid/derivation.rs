@@ -39,7 +39,13 @@ pub fn derive(file: &str, text: &str) -> Result<Derivation, FileError> {
     let setting = format!("order {} in {} variables", declared.order, variables.len());
     let (terms, steps) = rules::select(&expansion, &declared.rules, &variables, &setting);
     check_names(&terms, &variables).map_err(|e| blame.at("actuators", e))?;
-    let writer = Writer { file: &declared, inputs: &inputs, variables: &variables, terms: &terms, submodels };
+    let writer = Writer {
+        file: &declared,
+        inputs: &inputs,
+        variables: &variables,
+        terms: &terms,
+        submodels,
+    };
     let law_file = writer.law();
     let text = write(&law_file).map_err(|e| blame.at("", e))?;
     // What the reader of laws refuses, it refuses for something that the declaration says under the same field.
@@ -49,19 +55,27 @@ pub fn derive(file: &str, text: &str) -> Result<Derivation, FileError> {
 
 fn write(law: &LawFile) -> Result<String, String> {
     let yaml = serde_yaml::to_string(law).map_err(|error| error.to_string())?;
-    Ok(format!("# Derived by `sistership derive` from the declaration of the same name: change that, not this.\n{yaml}"))
+    Ok(format!(
+        "# Derived by `sistership derive` from the declaration of the same name: change that, not this.\n{yaml}"
+    ))
 }
 
 /// Names must be read factor by factor as they were spelled: with `n` and `nn`, what would `X_nn` be?
 fn check_names(terms: &[Vec<Term>; 3], variables: &[Variable]) -> Result<(), String> {
     let symbols: Vec<&str> = variables.iter().map(|variable| variable.symbol.as_str()).collect();
-    let extra: Vec<&str> = symbols.iter().copied().filter(|symbol| !STANDARD_FACTORS.contains(symbol)).collect();
+    let extra: Vec<&str> =
+        symbols.iter().copied().filter(|symbol| !STANDARD_FACTORS.contains(symbol)).collect();
     for monomial in terms.iter().flatten().map(|term| &term.monomial) {
         let name = monomial.name(Axis::X, variables);
-        let spelled: Vec<&str> =
-            monomial.powers.iter().flat_map(|&(place, power)| std::iter::repeat_n(symbols[place], power as usize)).collect();
+        let spelled: Vec<&str> = monomial
+            .powers
+            .iter()
+            .flat_map(|&(place, power)| std::iter::repeat_n(symbols[place], power as usize))
+            .collect();
         let read = CoefficientName::parse(&name, &extra).ok();
-        if !read.is_some_and(|read| spelled.iter().eq(read.factors.iter().map(|factor| &factor.symbol))) {
+        if !read
+            .is_some_and(|read| spelled.iter().eq(read.factors.iter().map(|factor| &factor.symbol)))
+        {
             return Err(format!("their names make `{name}` ambiguous: rename one of them"));
         }
     }

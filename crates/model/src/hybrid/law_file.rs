@@ -24,7 +24,9 @@ pub struct Writer<'a> {
 impl Writer<'_> {
     pub fn law(self) -> LawFile {
         let inertia = Inertia::of(self.file.scaling);
-        let input = |input: &ActuatorInput| (input.name.clone(), InputFile { unit: input.unit.into(), default: None });
+        let input = |input: &ActuatorInput| {
+            (input.name.clone(), InputFile { unit: input.unit.into(), default: None })
+        };
         let mirror = |input: &ActuatorInput| Some((input.name.clone(), input.mirror.clone()?));
         let factor = |place: usize| (self.variables[place].symbol.clone(), self.called(place));
         LawFile {
@@ -36,7 +38,11 @@ impl Writer<'_> {
             parameters: inertia.parameters(),
             values: self.values(),
             factors: (0..self.variables.len()).map(factor).collect(),
-            axes: AXES.into_iter().zip(self.terms).map(|(axis, terms)| (axis, self.axis(axis, terms, &inertia))).collect(),
+            axes: AXES
+                .into_iter()
+                .zip(self.terms)
+                .map(|(axis, terms)| (axis, self.axis(axis, terms, &inertia)))
+                .collect(),
             mass: inertia.mass(),
             kinematics: BTreeMap::new(),
             mirrors: self.inputs.iter().filter_map(mirror).collect(),
@@ -60,7 +66,11 @@ impl Writer<'_> {
     /// What a variable is called in formulas.
     fn called(&self, place: usize) -> String {
         let variable = &self.variables[place];
-        if self.is_scaled(variable) { format!("{}_bis", variable.symbol) } else { variable.symbol.clone() }
+        if self.is_scaled(variable) {
+            format!("{}_bis", variable.symbol)
+        } else {
+            variable.symbol.clone()
+        }
     }
 
     fn values(&self) -> IndexMap<String, String> {
@@ -71,7 +81,9 @@ impl Writer<'_> {
         }
         for (place, variable) in self.variables.iter().enumerate() {
             let formula = match variable.unit {
-                Unit::Speed if self.is_scaled(variable) => format!("{}/speed_unit", variable.formula),
+                Unit::Speed if self.is_scaled(variable) => {
+                    format!("{}/speed_unit", variable.formula)
+                }
                 Unit::Rate if self.is_scaled(variable) => format!("{}*time_unit", variable.formula),
                 _ => variable.formula.clone(),
             };
@@ -93,13 +105,19 @@ impl Writer<'_> {
 
     fn term(&self, axis: Axis, term: &Term) -> TermFile {
         let name = term.monomial.name(axis, self.variables);
-        let formula = |monomial: &super::monomial::Monomial| monomial.formula(&|place| self.called(place));
+        let formula =
+            |monomial: &super::monomial::Monomial| monomial.formula(&|place| self.called(place));
         match &term.image {
-            None if term.monomial.degree() == 0 => TermFile::Formula(BTreeMap::from([(name, "1".into())])),
+            None if term.monomial.degree() == 0 => {
+                TermFile::Formula(BTreeMap::from([(name, "1".into())]))
+            }
             None => TermFile::Name(name),
             Some((image, subtracted)) => {
                 let sign = if *subtracted { '-' } else { '+' };
-                TermFile::Formula(BTreeMap::from([(name, format!("{} {sign} {}", formula(&term.monomial), formula(image)))]))
+                TermFile::Formula(BTreeMap::from([(
+                    name,
+                    format!("{} {sign} {}", formula(&term.monomial), formula(image)),
+                )]))
             }
         }
     }
@@ -127,16 +145,21 @@ impl Inertia {
                 yaw: "m*lpp_m^2*(I_zz_plus_J_zz + x_G^2)",
                 moment: "m*lpp_m*x_G",
             },
-            Scaling::Dimensional => {
-                Self { scaling, surge: "(m + m_x)", sway: "(m + m_y)", yaw: "(I_zz_plus_J_zz + m*x_G^2)", moment: "m*x_G" }
-            }
+            Scaling::Dimensional => Self {
+                scaling,
+                surge: "(m + m_x)",
+                sway: "(m + m_y)",
+                yaw: "(I_zz_plus_J_zz + m*x_G^2)",
+                moment: "m*x_G",
+            },
         }
     }
 
     fn parameters(&self) -> IndexMap<String, ParameterFile> {
         let bis = self.scaling == Scaling::Bis;
         let one = |name: &str, unit: &str, of: &str, by: &str, from: Option<&str>| {
-            let meaning = if bis && !by.is_empty() { format!("{of} by {by}") } else { of.to_owned() };
+            let meaning =
+                if bis && !by.is_empty() { format!("{of} by {by}") } else { of.to_owned() };
             let unit = if bis && !by.is_empty() { "1" } else { unit };
             let from = from.map(str::to_owned);
             (name.to_owned(), ParameterFile { unit: unit.into(), meaning, from, role: None })
@@ -147,7 +170,13 @@ impl Inertia {
             one("x_G", "m", "centre of gravity forward of midship", "L", Some(x_g)),
             one("m_x", "kg", "added mass in surge", "m", None),
             one("m_y", "kg", "added mass in sway", "m", None),
-            one("I_zz_plus_J_zz", "kg m2", "yaw moment of inertia about the centre of gravity with the added one", "m L^2", None),
+            one(
+                "I_zz_plus_J_zz",
+                "kg m2",
+                "yaw moment of inertia about the centre of gravity with the added one",
+                "m L^2",
+                None,
+            ),
         ])
     }
 
@@ -166,7 +195,9 @@ impl Inertia {
     }
 
     fn mass(&self) -> BTreeMap<Axis, BTreeMap<Axis, String>> {
-        let row = |entries: &[(Axis, &str)]| entries.iter().map(|(axis, formula)| (*axis, (*formula).to_owned())).collect();
+        let row = |entries: &[(Axis, &str)]| {
+            entries.iter().map(|(axis, formula)| (*axis, (*formula).to_owned())).collect()
+        };
         BTreeMap::from([
             (Axis::X, row(&[(Axis::X, self.surge)])),
             (Axis::Y, row(&[(Axis::Y, self.sway), (Axis::N, self.moment)])),

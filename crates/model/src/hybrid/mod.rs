@@ -16,8 +16,8 @@ mod unknowns;
 
 pub use derivation::{Derivation, derive};
 pub use file::{
-    ActuatorFile, ActuatorKind, AngleFeature, Coupling, EffectUse, ExceptionFile, HybridFile, Rules, Scaling, Scheme, Squares,
-    StallFile, SubmodelsFile, Symmetry, TrigonometricPowers,
+    ActuatorFile, ActuatorKind, AngleFeature, Coupling, EffectUse, ExceptionFile, HybridFile,
+    Rules, Scaling, Scheme, Squares, StallFile, SubmodelsFile, Symmetry, TrigonometricPowers,
 };
 pub use rules::{AXES, Step};
 pub use unknowns::{EffectUnknowns, RuleCount, Unknowns};

@@ -56,27 +56,39 @@ impl Monomial {
     /// Whether it changes sign in the mirror; `x|x|` does where `x` does.
     pub fn is_odd(&self, variables: &[Variable]) -> bool {
         let odd = self.powers.iter().filter(|(place, _)| variables[*place].odd);
-        let signs = odd.filter(|(place, power)| (power - u32::from(self.moduli.contains(place))) % 2 == 1);
+        let signs =
+            odd.filter(|(place, power)| (power - u32::from(self.moduli.contains(place))) % 2 == 1);
         signs.count() % 2 == 1
     }
 
     /// With the sides of every pair exchanged.
     pub fn exchanged(&self, variables: &[Variable]) -> Self {
-        let twin = |place: usize| variables.iter().position(|v| v.symbol == variables[place].twin).unwrap_or(place);
-        let mut powers: Vec<(usize, u32)> = self.powers.iter().map(|&(place, power)| (twin(place), power)).collect();
+        let twin = |place: usize| {
+            variables.iter().position(|v| v.symbol == variables[place].twin).unwrap_or(place)
+        };
+        let mut powers: Vec<(usize, u32)> =
+            self.powers.iter().map(|&(place, power)| (twin(place), power)).collect();
         powers.sort_unstable();
         Self { powers, moduli: self.moduli.iter().map(|&place| twin(place)).collect() }
     }
 
     /// The name of its coefficient on an axis, such as `Y_v|v|`.
     pub fn name(&self, axis: Axis, variables: &[Variable]) -> String {
-        let factors: Vec<String> = self.powers.iter().map(|&(place, power)| self.spelled(place, power, variables)).collect();
+        let factors: Vec<String> = self
+            .powers
+            .iter()
+            .map(|&(place, power)| self.spelled(place, power, variables))
+            .collect();
         format!("{axis}_{}", if factors.is_empty() { "0".to_owned() } else { factors.concat() })
     }
 
     fn spelled(&self, place: usize, power: u32, variables: &[Variable]) -> String {
         let symbol = &variables[place].symbol;
-        if self.moduli.contains(&place) { format!("{symbol}|{symbol}|") } else { symbol.repeat(power as usize) }
+        if self.moduli.contains(&place) {
+            format!("{symbol}|{symbol}|")
+        } else {
+            symbol.repeat(power as usize)
+        }
     }
 
     /// Its formula, of what each variable is called in formulas.
@@ -97,11 +109,15 @@ mod tests {
 
     #[test]
     fn an_expansion_has_every_product_once() {
-        let binomial = |n: usize, k: usize| (0..k).fold(1, |product, i| product * (n - i) / (i + 1));
+        let binomial =
+            |n: usize, k: usize| (0..k).fold(1, |product, i| product * (n - i) / (i + 1));
         for (variables, order) in [(8, 2), (8, 3), (6, 3), (3, 4)] {
             let all = expand(variables, order);
             let distinct: BTreeSet<&Monomial> = all.iter().collect();
-            assert_eq!((all.len(), distinct.len()), (binomial(variables + order as usize, order as usize), all.len()));
+            assert_eq!(
+                (all.len(), distinct.len()),
+                (binomial(variables + order as usize, order as usize), all.len())
+            );
             assert!(all.iter().all(|monomial| monomial.degree() <= order));
         }
     }

@@ -29,10 +29,19 @@ pub struct Step {
 pub const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::N];
 
 /// Applies the rules one after another; returns the terms by axis, as [`AXES`], and what each rule left.
-pub fn select(all: &[Monomial], rules: &Rules, variables: &[Variable], setting: &str) -> ([Vec<Term>; 3], Vec<Step>) {
+pub fn select(
+    all: &[Monomial],
+    rules: &Rules,
+    variables: &[Variable],
+    setting: &str,
+) -> ([Vec<Term>; 3], Vec<Step>) {
     let alone = |monomial: &Monomial| Term { monomial: monomial.clone(), image: None };
     let mut terms = AXES.map(|_| all.iter().map(alone).collect::<Vec<Term>>());
-    let mut steps = vec![Step { rule: "Taylor expansion", setting: setting.to_owned(), terms: terms.each_ref().map(Vec::len) }];
+    let mut steps = vec![Step {
+        rule: "Taylor expansion",
+        setting: setting.to_owned(),
+        terms: terms.each_ref().map(Vec::len),
+    }];
     let selector = Selector { rules, variables };
     for (rule, setting, apply) in selector.rules() {
         for (axis, terms) in AXES.into_iter().zip(&mut terms) {
@@ -70,7 +79,8 @@ impl<'a> Selector<'a> {
 
     /// Actuators act on their axes and meet what they couple with.
     fn reach(&self, axis: Axis, term: Term) -> Option<Term> {
-        let places = || term.monomial.powers.iter().map(|&(place, _)| &self.variables[place].actuator);
+        let places =
+            || term.monomial.powers.iter().map(|&(place, _)| &self.variables[place].actuator);
         let allowed = places().flatten().all(|one| {
             let met = |other: &Option<super::actuators::Reach>| match (one.couples, other) {
                 (Coupling::All, _) => true,
@@ -107,17 +117,23 @@ impl<'a> Selector<'a> {
     fn signed(&self, axis: Axis, mut term: Term) -> Option<Term> {
         let square = term.monomial.squares().find(|&place| self.variables[place].odd)?;
         term.monomial.moduli.insert(square);
-        (self.rules.signed_squares && term.monomial.is_odd(self.variables) == axis.is_odd()).then_some(term)
+        (self.rules.signed_squares && term.monomial.is_odd(self.variables) == axis.is_odd())
+            .then_some(term)
     }
 
     /// Modification B.
     fn trigonometric(&self, axis: Axis, term: Term) -> Option<Term> {
         let drops = self.rules.trigonometric_powers == TrigonometricPowers::Drop;
         let excepted = |place: usize, power: u32| {
-            let named = |of: &&super::file::ExceptionFile| of.factor == self.variables[place].symbol && of.axes.contains(&axis);
-            power == 2 && self.rules.trigonometric_exceptions.iter().any(|exception| named(&exception))
+            let named = |of: &&super::file::ExceptionFile| {
+                of.factor == self.variables[place].symbol && of.axes.contains(&axis)
+            };
+            power == 2
+                && self.rules.trigonometric_exceptions.iter().any(|exception| named(&exception))
         };
-        let goes = |&(place, power): &(usize, u32)| power > 1 && self.variables[place].trigonometric && !excepted(place, power);
+        let goes = |&(place, power): &(usize, u32)| {
+            power > 1 && self.variables[place].trigonometric && !excepted(place, power)
+        };
         (!drops || !term.monomial.powers.iter().any(goes)).then_some(term)
     }
 
@@ -136,7 +152,8 @@ impl<'a> Selector<'a> {
             Squares::AsPrinted => axis.is_odd(),
             Squares::AsDescribed => false,
         };
-        let squares: Vec<usize> = monomial.squares().filter(|&place| self.variables[place].odd == wanted).collect();
+        let squares: Vec<usize> =
+            monomial.squares().filter(|&place| self.variables[place].odd == wanted).collect();
         monomial.moduli.extend(squares);
     }
 }
@@ -147,7 +164,8 @@ fn symmetry_in_words(rules: &Rules) -> String {
         Symmetry::Mirror => "mirror",
         Symmetry::None => "none",
     };
-    let switches = [(rules.zeroth_powers, ", zeroth powers"), (rules.signed_squares, ", signed squares")];
+    let switches =
+        [(rules.zeroth_powers, ", zeroth powers"), (rules.signed_squares, ", signed squares")];
     let on: String = switches.into_iter().filter(|(on, _)| *on).map(|(_, name)| name).collect();
     format!("{selection}{on}")
 }
@@ -157,7 +175,8 @@ fn powers_in_words(rules: &Rules) -> String {
         TrigonometricPowers::Drop => "drop",
         TrigonometricPowers::Keep => "keep",
     };
-    let excepted: String = rules.trigonometric_exceptions.iter().map(|of| format!(", not {}^2", of.factor)).collect();
+    let excepted: String =
+        rules.trigonometric_exceptions.iter().map(|of| format!(", not {}^2", of.factor)).collect();
     format!("{powers}{excepted}")
 }
 

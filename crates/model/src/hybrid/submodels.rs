@@ -18,7 +18,9 @@ pub fn submodels(file: &HybridFile) -> Result<IndexMap<String, SubmodelFile>, St
     let listed: Vec<(&str, &str, Vec<String>)> = match &file.submodels {
         SubmodelsFile::Declared(declared) => return Ok(declared.clone()),
         SubmodelsFile::Scheme(Scheme::One) => Vec::new(),
-        SubmodelsFile::Scheme(Scheme::AheadAstern) => vec![("astern", "moving astern", vec![astern()])],
+        SubmodelsFile::Scheme(Scheme::AheadAstern) => {
+            vec![("astern", "moving astern", vec![astern()])]
+        }
         SubmodelsFile::Scheme(Scheme::AheadStalledAstern) => vec![
             ("stalled", "ahead, a rudder stalled", vec![ahead(), stalled(file, ">=")?]),
             ("astern", "moving astern", vec![astern()]),
@@ -31,7 +33,10 @@ pub fn submodels(file: &HybridFile) -> Result<IndexMap<String, SubmodelFile>, St
         SubmodelsFile::Scheme(Scheme::Quadrants) => quadrants(&propeller(file)?),
     };
     let named = |(name, meaning, when): (&str, &str, Vec<String>)| {
-        (name.to_owned(), SubmodelFile { when, meaning: meaning.to_owned(), shrinkage: file.shrinkage })
+        (
+            name.to_owned(),
+            SubmodelFile { when, meaning: meaning.to_owned(), shrinkage: file.shrinkage },
+        )
     };
     Ok(listed.into_iter().map(named).collect())
 }
@@ -47,11 +52,18 @@ fn quadrants(n: &str) -> Vec<(&'static str, &'static str, Vec<String>)> {
 
 /// The revolutions by which the quadrants are told.
 fn propeller(file: &HybridFile) -> Result<String, String> {
-    let propellers: Vec<&String> =
-        file.actuators.iter().filter(|(_, a)| a.kind == ActuatorKind::Propeller && !a.pair).map(|(name, _)| name).collect();
+    let propellers: Vec<&String> = file
+        .actuators
+        .iter()
+        .filter(|(_, a)| a.kind == ActuatorKind::Propeller && !a.pair)
+        .map(|(name, _)| name)
+        .collect();
     match propellers.as_slice() {
         [one] => Ok((*one).clone()),
-        _ => Err("`quadrants` needs one single propeller; declare the conditions by name instead".into()),
+        _ => {
+            Err("`quadrants` needs one single propeller; declare the conditions by name instead"
+                .into())
+        }
     }
 }
 
@@ -60,7 +72,8 @@ fn propeller(file: &HybridFile) -> Result<String, String> {
 fn stalled(file: &HybridFile, comparison: &str) -> Result<String, String> {
     let beyond = |(name, angle): (String, f64)| format!("abs({name}) - {angle}*pi/180");
     let excess = stall_angles(file).into_iter().map(beyond).reduce(|a, b| format!("max({a}, {b})"));
-    let excess = excess.ok_or("this scheme tells rudders by their stall: give a rudder `stall_deg`")?;
+    let excess =
+        excess.ok_or("this scheme tells rudders by their stall: give a rudder `stall_deg`")?;
     Ok(format!("{excess} {comparison} 0"))
 }
 

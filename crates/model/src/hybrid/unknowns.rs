@@ -62,8 +62,13 @@ impl Derivation {
     /// The field of the declaration that names an effect or form that is not in the zoo, and what is.
     pub fn unknowns(&self, zoo: &Zoo) -> Result<Unknowns, (String, String)> {
         let effects = self.effects(zoo)?;
-        let parameters: Vec<String> =
-            self.law.parameters.iter().filter(|(_, parameter)| parameter.from.is_none()).map(|(name, _)| name.clone()).collect();
+        let parameters: Vec<String> = self
+            .law
+            .parameters
+            .iter()
+            .filter(|(_, parameter)| parameter.from.is_none())
+            .map(|(name, _)| name.clone())
+            .collect();
         let coefficients = self.law.coefficient_names().len();
         let of_effects: usize = effects.iter().map(|effect| effect.unknowns).sum();
         Ok(Unknowns {
@@ -87,13 +92,29 @@ impl Derivation {
     fn effects(&self, zoo: &Zoo) -> Result<Vec<EffectUnknowns>, (String, String)> {
         let one = |used: &EffectUse| {
             let fault = |message| ("effects".to_owned(), message);
-            let names = || zoo.effects().map(|effect| effect.name.clone()).collect::<Vec<_>>().join(", ");
+            let names =
+                || zoo.effects().map(|effect| effect.name.clone()).collect::<Vec<_>>().join(", ");
             let effect = zoo.effect(&used.effect);
-            let effect = effect.ok_or_else(|| fault(format!("there is no effect `{}`; there are {}", used.effect, names())))?;
-            let forms = || effect.forms.iter().map(|form| form.file.name.clone()).collect::<Vec<_>>().join(", ");
+            let effect = effect.ok_or_else(|| {
+                fault(format!("there is no effect `{}`; there are {}", used.effect, names()))
+            })?;
+            let forms = || {
+                effect
+                    .forms
+                    .iter()
+                    .map(|form| form.file.name.clone())
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            };
             let form = effect.forms.iter().find(|form| form.file.name == used.form);
-            let form = form.ok_or_else(|| fault(format!("`{}` has no form `{}`; it has {}", used.effect, used.form, forms())))?;
-            Ok(EffectUnknowns { effect: used.effect.clone(), form: used.form.clone(), unknowns: form.parameters.len() })
+            let form = form.ok_or_else(|| {
+                fault(format!("`{}` has no form `{}`; it has {}", used.effect, used.form, forms()))
+            })?;
+            Ok(EffectUnknowns {
+                effect: used.effect.clone(),
+                form: used.form.clone(),
+                unknowns: form.parameters.len(),
+            })
         };
         self.file.effects.iter().map(one).collect()
     }

@@ -121,7 +121,11 @@ impl Law {
 
     /// The factors this law adds to the standard ones.
     pub fn extra_factors(&self) -> Vec<&str> {
-        self.factors.keys().map(String::as_str).filter(|f| !crate::coefficient::STANDARD_FACTORS.contains(f)).collect()
+        self.factors
+            .keys()
+            .map(String::as_str)
+            .filter(|f| !crate::coefficient::STANDARD_FACTORS.contains(f))
+            .collect()
     }
 
     /// The regressor of a coefficient with its axis' scale: the force in N (or N m) per unit of the coefficient.
@@ -139,7 +143,10 @@ impl Law {
     /// Says why the law has no such coefficient.
     pub fn term(&self, name: &str) -> Result<(Axis, Expr), TermError> {
         let parsed = CoefficientName::parse(name, &self.extra_factors())?;
-        let axis = self.axes.get(&parsed.axis).ok_or_else(|| TermError::Axis { law: self.name.clone(), axis: parsed.axis })?;
+        let axis = self
+            .axes
+            .get(&parsed.axis)
+            .ok_or_else(|| TermError::Axis { law: self.name.clone(), axis: parsed.axis })?;
         let (shared, submodel) = split_submodel(name);
         let term = match axis.terms.get(shared) {
             Some(term) => term.clone(),
@@ -159,9 +166,16 @@ impl Law {
     pub(crate) fn product(&self, name: &CoefficientName) -> Result<Expr, TermError> {
         name.factors.iter().try_fold(Expr::Number(1.0), |product, factor| {
             let of = self.factors.get(&factor.symbol);
-            let of = of.ok_or_else(|| TermError::Factor { law: self.name.clone(), symbol: factor.symbol.clone() })?;
+            let of = of.ok_or_else(|| TermError::Factor {
+                law: self.name.clone(),
+                symbol: factor.symbol.clone(),
+            })?;
             let of = of.clone();
-            let of = if factor.absolute { Expr::Call(crate::formula::Function::Abs, vec![of]) } else { of };
+            let of = if factor.absolute {
+                Expr::Call(crate::formula::Function::Abs, vec![of])
+            } else {
+                of
+            };
             Ok(if product == Expr::Number(1.0) { of } else { product.times(of) })
         })
     }
@@ -187,7 +201,8 @@ impl Law {
 
     /// The dimension of any name that a formula of this law may mention.
     pub fn dimension(&self, name: &str) -> Option<Dimension> {
-        let state = STATES.iter().find(|(state, _)| *state == name).map(|&(_, dimension)| dimension);
+        let state =
+            STATES.iter().find(|(state, _)| *state == name).map(|&(_, dimension)| dimension);
         state
             .or_else(|| crate::formula::builtin(name).map(|(_, dimension)| dimension))
             .or_else(|| self.inputs.get(name).map(|input| input.dimension))
@@ -207,12 +222,16 @@ impl Law {
     /// The value of a parameter for a ship: how it follows from her particulars, where the law says so and they suffice.
     pub fn derived_parameter(&self, name: &str, ship: &BTreeMap<String, Quantity>) -> Option<f64> {
         let from = self.parameters.get(name)?.from.as_ref()?;
-        from.value(&|particular| particulars::value(ship, particular)).filter(|value| value.is_finite())
+        from.value(&|particular| particulars::value(ship, particular))
+            .filter(|value| value.is_finite())
     }
 
     /// The parameter about which the law is expanded, if it has one.
     pub fn approach_speed_parameter(&self) -> Option<&str> {
-        self.parameters.iter().find(|(_, parameter)| parameter.is_approach_speed).map(|(name, _)| name.as_str())
+        self.parameters
+            .iter()
+            .find(|(_, parameter)| parameter.is_approach_speed)
+            .map(|(name, _)| name.as_str())
     }
 
     /// Whether roll is a state of its own.

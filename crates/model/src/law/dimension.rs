@@ -23,6 +23,7 @@ pub fn axis_dimension(axis: Axis) -> Dimension {
 
 /// The rate of a velocity for X and Y, of a rate for K and N.
 pub fn acceleration_dimension(axis: Axis) -> Dimension {
-    let velocity = if matches!(axis, Axis::X | Axis::Y) { Dimension::SPEED } else { Dimension::RATE };
+    let velocity =
+        if matches!(axis, Axis::X | Axis::Y) { Dimension::SPEED } else { Dimension::RATE };
     velocity - Dimension::TIME
 }

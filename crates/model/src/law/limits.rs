@@ -42,22 +42,31 @@ pub fn check_counts(raw: &LawFile) -> Result<(), Fault> {
         most(&format!("submodels.{name}.when"), submodel.when.len(), MAX_COMPARISONS)?;
     }
     let terms = raw.axes.values().map(|axis| axis.terms.len()).sum::<usize>();
-    most("axes", terms, MAX_TERMS).map_err(|(field, message)| (field, format!("terms: {message}")))?;
+    most("axes", terms, MAX_TERMS)
+        .map_err(|(field, message)| (field, format!("terms: {message}")))?;
     let coefficients = terms * (1 + raw.submodels.len());
-    let told = |(field, message)| (field, format!("coefficients, {terms} for each condition: {message}"));
+    let told =
+        |(field, message)| (field, format!("coefficients, {terms} for each condition: {message}"));
     most("submodels", coefficients, MAX_COEFFICIENTS).map_err(told)
 }
 
 /// Refuses more than some number of what a field lists.
 pub(crate) fn most(field: &str, found: usize, most: usize) -> Result<(), Fault> {
-    if found > most { Err((field.to_owned(), format!("there are {found}; {most} are the most"))) } else { Ok(()) }
+    if found > most {
+        Err((field.to_owned(), format!("there are {found}; {most} are the most")))
+    } else {
+        Ok(())
+    }
 }
 
 /// Refuses a law whose formulas are too many, or too deep through the values that they mention.
 pub fn check(law: &Law) -> Result<(), Fault> {
     let formulas = formulas(law);
-    most("axes", formulas.iter().map(|(_, expr)| expr.size()).sum(), MAX_SIZE)
-        .map_err(|(_, message)| (String::new(), format!("numbers, names and operators of all formulas: {message}")))?;
+    most("axes", formulas.iter().map(|(_, expr)| expr.size()).sum(), MAX_SIZE).map_err(
+        |(_, message)| {
+            (String::new(), format!("numbers, names and operators of all formulas: {message}"))
+        },
+    )?;
     let depths = Depths::of(&law.values);
     formulas.into_iter().try_for_each(|(field, expr)| depths.check(&field, expr, MAX_DEPTH))
 }
@@ -68,22 +77,30 @@ impl Law {
         let depths = Depths::of(&self.values);
         let more = self.dressing.formulas().map(|expr| ("effects".to_owned(), expr));
         let mut all = formulas(self).into_iter().chain(more);
-        all.try_for_each(|(field, expr)| depths.check(&field, expr, 2 * MAX_DEPTH)).map_err(|(_, message)| message)
+        all.try_for_each(|(field, expr)| depths.check(&field, expr, 2 * MAX_DEPTH))
+            .map_err(|(_, message)| message)
     }
 }
 
 /// Every formula of a law with its field.
 fn formulas(law: &Law) -> Vec<(String, &Expr)> {
-    let mut all: Vec<(String, &Expr)> = law.values.iter().map(|(name, expr)| (format!("values.{name}"), expr)).collect();
+    let mut all: Vec<(String, &Expr)> =
+        law.values.iter().map(|(name, expr)| (format!("values.{name}"), expr)).collect();
     all.extend(law.factors.iter().map(|(name, expr)| (format!("factors.{name}"), expr)));
     for (axis, of_axis) in &law.axes {
         all.push((format!("axes.{axis}.scale"), &of_axis.scale));
         all.push((format!("axes.{axis}.rest"), &of_axis.rest));
-        all.extend(of_axis.terms.iter().map(|(name, expr)| (format!("axes.{axis}.terms.{name}"), expr)));
+        all.extend(
+            of_axis.terms.iter().map(|(name, expr)| (format!("axes.{axis}.terms.{name}"), expr)),
+        );
     }
     all.extend(law.mass.iter().map(|((row, column), expr)| (format!("mass.{row}.{column}"), expr)));
     all.extend(law.kinematics.iter().map(|(name, expr)| (format!("kinematics.{name}"), expr)));
-    all.extend(law.parameters.iter().filter_map(|(name, p)| Some((format!("parameters.{name}"), p.from.as_ref()?))));
+    all.extend(
+        law.parameters
+            .iter()
+            .filter_map(|(name, p)| Some((format!("parameters.{name}"), p.from.as_ref()?))),
+    );
     all
 }
 
@@ -103,7 +120,9 @@ impl<'a> Depths<'a> {
         match expr.depth(most, &|name, left| self.of_name(name, left)) {
             Some(_) => Ok(()),
             None => {
-                let message = format!("operators, through the values that it mentions, nest more than {most} deep");
+                let message = format!(
+                    "operators, through the values that it mentions, nest more than {most} deep"
+                );
                 Err((field.to_owned(), message))
             }
         }

@@ -51,13 +51,15 @@ fn read(file: &str, text: &str) -> Result<Law, FileError> {
     let reader = Reader { blame: &blame };
     for (name, input) in &raw.inputs {
         let unit = Unit::parse(&input.unit).map_err(|e| blame.at(&format!("inputs.{name}"), e))?;
-        law.inputs.insert(name.clone(), Input { dimension: unit.dimension, default: input.default });
+        law.inputs
+            .insert(name.clone(), Input { dimension: unit.dimension, default: input.default });
     }
     for (name, parameter) in &raw.parameters {
         law.parameters.insert(name.clone(), reader.parameter(name, parameter)?);
     }
     reader.values(&mut law, &raw.values)?;
-    read_submodels(&mut law, &raw.submodels).map_err(|(field, message)| blame.at(&field, message))?;
+    read_submodels(&mut law, &raw.submodels)
+        .map_err(|(field, message)| blame.at(&field, message))?;
     for (symbol, formula) in &raw.factors {
         let expr = reader.formula(&law, &format!("factors.{symbol}"), formula, None)?;
         law.factors.insert(symbol.clone(), expr);
@@ -82,7 +84,12 @@ impl Reader<'_> {
     fn parameter(&self, name: &str, raw: &ParameterFile) -> Result<Parameter, FileError> {
         let field = format!("parameters.{name}");
         let unit = Unit::parse(&raw.unit).map_err(|e| self.blame.at(&field, e))?;
-        let from = raw.from.as_deref().map(formula::parse).transpose().map_err(|e| self.blame.at(&field, e))?;
+        let from = raw
+            .from
+            .as_deref()
+            .map(formula::parse)
+            .transpose()
+            .map_err(|e| self.blame.at(&field, e))?;
         if let Some(from) = &from {
             self.check_from(&field, from, unit.dimension)?;
         }
@@ -100,7 +107,8 @@ impl Reader<'_> {
         if from.names().is_empty() {
             return Ok(());
         }
-        let found = formula::dimension_of(from, &particulars::dimension).map_err(|e| self.blame.at(field, e))?;
+        let found = formula::dimension_of(from, &particulars::dimension)
+            .map_err(|e| self.blame.at(field, e))?;
         if found == wanted {
             Ok(())
         } else {
@@ -111,9 +119,12 @@ impl Reader<'_> {
     fn values(&self, law: &mut Law, raw: &IndexMap<String, String>) -> Result<(), FileError> {
         for (name, formula) in raw {
             let field = format!("values.{name}");
-            let taken = STATES.iter().any(|(state, _)| state == name) || law.dimension(name).is_some();
+            let taken =
+                STATES.iter().any(|(state, _)| state == name) || law.dimension(name).is_some();
             if taken {
-                return Err(self.blame.at(&field, "this name is already a state, input, parameter or particular"));
+                return Err(self
+                    .blame
+                    .at(&field, "this name is already a state, input, parameter or particular"));
             }
             let expr = self.formula(law, &field, formula, None)?;
             law.add_value(name.clone(), expr);
@@ -122,14 +133,20 @@ impl Reader<'_> {
     }
 
     /// Parses a formula and checks its names and its dimension.
-    fn formula(&self, law: &Law, field: &str, text: &str, wanted: Option<Dimension>) -> Result<Expr, FileError> {
+    fn formula(
+        &self,
+        law: &Law,
+        field: &str,
+        text: &str,
+        wanted: Option<Dimension>,
+    ) -> Result<Expr, FileError> {
         let expr = formula::parse(text).map_err(|e| self.blame.at(field, e))?;
-        let found =
-            formula::dimension_of(&expr, &|n| law.dimension(n)).map_err(|e| self.blame.at(field, format!("`{text}` {e}")))?;
+        let found = formula::dimension_of(&expr, &|n| law.dimension(n))
+            .map_err(|e| self.blame.at(field, format!("`{text}` {e}")))?;
         match wanted {
-            Some(wanted) if wanted != found && expr != Expr::Number(0.0) => {
-                Err(self.blame.at(field, format!("`{text}` has the dimension {found}; {wanted} is needed")))
-            }
+            Some(wanted) if wanted != found && expr != Expr::Number(0.0) => Err(self
+                .blame
+                .at(field, format!("`{text}` has the dimension {found}; {wanted} is needed"))),
             _ => Ok(expr),
         }
     }
@@ -150,9 +167,14 @@ impl Reader<'_> {
         for (axis, raw_axis) in raw {
             for term in &raw_axis.terms {
                 let (name, expr) = self.term(law, *axis, term)?;
-                let axis_law = law.axes.get_mut(axis).ok_or_else(|| self.blame.at("axes", "an axis was lost"))?;
+                let axis_law = law
+                    .axes
+                    .get_mut(axis)
+                    .ok_or_else(|| self.blame.at("axes", "an axis was lost"))?;
                 if axis_law.terms.insert(name.clone(), expr).is_some() {
-                    return Err(self.blame.at(&format!("axes.{axis}.terms.{name}"), "is listed twice"));
+                    return Err(self
+                        .blame
+                        .at(&format!("axes.{axis}.terms.{name}"), "is listed twice"));
                 }
             }
         }
@@ -164,13 +186,18 @@ impl Reader<'_> {
             TermFile::Name(name) => name,
             TermFile::Formula(map) if map.len() == 1 => map.keys().next().unwrap_or(&law.name),
             TermFile::Formula(_) => {
-                return Err(self.blame.at(&format!("axes.{axis}.terms"), "write one `{name: formula}` an entry"));
+                return Err(self
+                    .blame
+                    .at(&format!("axes.{axis}.terms"), "write one `{name: formula}` an entry"));
             }
         };
         let field = format!("axes.{axis}.terms.{name}");
-        let parsed = CoefficientName::parse(name, &law.extra_factors()).map_err(|e| self.blame.at(&field, e))?;
+        let parsed = CoefficientName::parse(name, &law.extra_factors())
+            .map_err(|e| self.blame.at(&field, e))?;
         if parsed.axis != axis {
-            return Err(self.blame.at(&field, format!("acts on {} but is listed under {axis}", parsed.axis)));
+            return Err(self
+                .blame
+                .at(&field, format!("acts on {} but is listed under {axis}", parsed.axis)));
         }
         let expr = match raw {
             TermFile::Name(_) => law.product(&parsed).map_err(|e| self.blame.at(&field, e))?,
@@ -179,7 +206,11 @@ impl Reader<'_> {
         Ok((name.clone(), expr))
     }
 
-    fn mass(&self, law: &mut Law, raw: &BTreeMap<Axis, BTreeMap<Axis, String>>) -> Result<(), FileError> {
+    fn mass(
+        &self,
+        law: &mut Law,
+        raw: &BTreeMap<Axis, BTreeMap<Axis, String>>,
+    ) -> Result<(), FileError> {
         for (row, columns) in raw {
             for (column, formula) in columns {
                 let field = format!("mass.{row}.{column}");
@@ -205,7 +236,11 @@ impl Reader<'_> {
             let wanted = match name.as_str() {
                 "x" | "y" => Dimension::SPEED,
                 "psi" | "phi" => Dimension::RATE,
-                _ => return Err(self.blame.at(&field, "only x, y, psi and phi have a kinematic rate")),
+                _ => {
+                    return Err(self
+                        .blame
+                        .at(&field, "only x, y, psi and phi have a kinematic rate"));
+                }
             };
             law.kinematics.insert(name.clone(), self.formula(law, &field, formula, Some(wanted))?);
         }

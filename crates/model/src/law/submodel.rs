@@ -13,7 +13,10 @@ use crate::formula::{self, Expr};
 use crate::name::check_slug;
 
 /// Reads submodels into `law`, whose inputs, parameters and values are there already.
-pub fn read_submodels(law: &mut Law, raw: &IndexMap<String, SubmodelFile>) -> Result<(), (String, String)> {
+pub fn read_submodels(
+    law: &mut Law,
+    raw: &IndexMap<String, SubmodelFile>,
+) -> Result<(), (String, String)> {
     for (name, file) in raw {
         let field = |e: String| (format!("submodels.{name}"), e);
         check_slug(name).map_err(|e| field(e.to_string()))?;
@@ -22,7 +25,10 @@ pub fn read_submodels(law: &mut Law, raw: &IndexMap<String, SubmodelFile>) -> Re
         }
         let expr = applies(law, file).map_err(field)?;
         law.add_value(indicator(name), expr);
-        law.submodels.insert(name.clone(), Submodel { meaning: file.meaning.clone(), shrinkage: file.shrinkage });
+        law.submodels.insert(
+            name.clone(),
+            Submodel { meaning: file.meaning.clone(), shrinkage: file.shrinkage },
+        );
     }
     Ok(())
 }
@@ -32,12 +38,14 @@ fn applies(law: &Law, file: &SubmodelFile) -> Result<Expr, String> {
     let mut product: Option<Expr> = None;
     for text in &file.when {
         let condition = formula::parse_condition(text).map_err(|e| e.to_string())?;
-        formula::dimension_of(&condition, &|n| law.dimension(n)).map_err(|e| format!("`{text}` {e}"))?;
+        formula::dimension_of(&condition, &|n| law.dimension(n))
+            .map_err(|e| format!("`{text}` {e}"))?;
         product = Some(product.map_or(condition.clone(), |product| product.times(condition)));
     }
     let holds = product.ok_or("give at least one comparison under `when`")?;
     Ok(law.submodels.keys().fold(holds, |holds, earlier| {
-        let elsewhere = Expr::Subtract(Box::new(Expr::Number(1.0)), Box::new(Expr::Name(indicator(earlier))));
+        let elsewhere =
+            Expr::Subtract(Box::new(Expr::Number(1.0)), Box::new(Expr::Name(indicator(earlier))));
         holds.times(elsewhere)
     }))
 }
@@ -53,8 +61,9 @@ impl Law {
     pub fn coefficient_names(&self) -> Vec<String> {
         let of_axis = |axis: &AxisLaw| -> Vec<String> {
             let shared = axis.terms.keys().cloned();
-            let deviations =
-                self.submodels.keys().flat_map(|submodel| axis.terms.keys().map(move |name| format!("{name}@{submodel}")));
+            let deviations = self.submodels.keys().flat_map(|submodel| {
+                axis.terms.keys().map(move |name| format!("{name}@{submodel}"))
+            });
             shared.chain(deviations).collect()
         };
         self.axes.values().flat_map(of_axis).collect()
@@ -94,11 +103,17 @@ mass: { X: { X: mass_kg }, Y: { Y: mass_kg }, N: { N: mass_kg*lpp_m^2 } }
     #[test]
     fn a_deviation_acts_while_the_first_conditions_hold() {
         let law = Law::parse("two.yaml", LAW).unwrap();
-        for (u, delta, active) in [(2.0, 0.1, None), (2.0, -0.7, Some("stalled")), (-2.0, 0.7, Some("astern"))] {
+        for (u, delta, active) in
+            [(2.0, 0.1, None), (2.0, -0.7, Some("stalled")), (-2.0, 0.7, Some("astern"))]
+        {
             let at = [("u", u), ("delta", delta)];
             for submodel in ["stalled", "astern"] {
                 let wanted = if active == Some(submodel) { u } else { 0.0 };
-                assert_eq!(value(&law, &format!("X_u@{submodel}"), &at), wanted, "{u} {delta} {submodel}");
+                assert_eq!(
+                    value(&law, &format!("X_u@{submodel}"), &at),
+                    wanted,
+                    "{u} {delta} {submodel}"
+                );
             }
             assert_eq!(value(&law, "X_u", &at), u);
         }
@@ -117,13 +132,25 @@ mass: { X: { X: mass_kg }, Y: { Y: mass_kg }, N: { N: mass_kg*lpp_m^2 } }
 
     #[test]
     fn wrong_submodels_are_refused_with_their_field() {
-        let refused = |from: &str, to: &str| Law::parse("two.yaml", &LAW.replace(from, to)).unwrap_err().to_string();
-        assert!(refused("[u < 0]", "[u]").contains("submodels.astern: condition `u` lacks a comparison"));
+        let refused = |from: &str, to: &str| {
+            Law::parse("two.yaml", &LAW.replace(from, to)).unwrap_err().to_string()
+        };
+        assert!(
+            refused("[u < 0]", "[u]")
+                .contains("submodels.astern: condition `u` lacks a comparison")
+        );
         assert!(refused("[u < 0]", "[w < 0]").contains("unknown name `w`"));
         assert!(refused("[u < 0]", "[u < r]").contains("compares"));
         assert!(refused("[u < 0]", "[]").contains("at least one"));
         assert!(refused("[u < 0]", "[v < 0]").contains("symmetry"));
         assert!(refused("shrinkage: 4.0", "shrinkage: 0").contains("above 0"));
-        assert!(Law::parse("two.yaml", LAW).unwrap().term("X_u@backing").unwrap_err().to_string().contains("stalled, astern"));
+        assert!(
+            Law::parse("two.yaml", LAW)
+                .unwrap()
+                .term("X_u@backing")
+                .unwrap_err()
+                .to_string()
+                .contains("stalled, astern")
+        );
     }
 }

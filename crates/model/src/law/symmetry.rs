@@ -27,8 +27,13 @@ pub fn check(law: &Law) -> Result<(), (String, String)> {
     for (first, second) in &law.mirrors {
         let second = second.trim_start_matches('-');
         let both = |known: &dyn Fn(&str) -> bool| known(first) && known(second);
-        if !both(&|name| law.parameters.contains_key(name)) && !both(&|name| law.inputs.contains_key(name)) {
-            return Err((format!("mirrors.{first}"), "both must be parameters of the law, or both inputs".into()));
+        if !both(&|name| law.parameters.contains_key(name))
+            && !both(&|name| law.inputs.contains_key(name))
+        {
+            return Err((
+                format!("mirrors.{first}"),
+                "both must be parameters of the law, or both inputs".into(),
+            ));
         }
     }
     let places = Places::new(law);
@@ -49,24 +54,41 @@ pub fn check(law: &Law) -> Result<(), (String, String)> {
 
 /// Whether the factors that a name spells make an odd product in the mirror. Where one of them is neither odd nor even, as
 /// the angle of one rudder of a pair, the name cannot spell a bias and the axis decides.
-fn spelled_parity(law: &Law, factors: &BTreeMap<&str, Option<bool>>, name: &str, axis: Axis) -> bool {
-    let Ok(parsed) = CoefficientName::parse(name, &law.extra_factors()) else { return axis.is_odd() };
+fn spelled_parity(
+    law: &Law,
+    factors: &BTreeMap<&str, Option<bool>>,
+    name: &str,
+    axis: Axis,
+) -> bool {
+    let Ok(parsed) = CoefficientName::parse(name, &law.extra_factors()) else {
+        return axis.is_odd();
+    };
     // A factor that only explicit formulas use is known by its symbol alone.
-    let of_symbol =
-        |symbol: &String| factors.get(symbol.as_str()).copied().unwrap_or_else(|| Some(ODD.contains(&symbol.as_str())));
+    let of_symbol = |symbol: &String| {
+        factors
+            .get(symbol.as_str())
+            .copied()
+            .unwrap_or_else(|| Some(ODD.contains(&symbol.as_str())))
+    };
     let plain = parsed.factors.iter().filter(|f| !f.absolute).map(|f| of_symbol(&f.symbol));
     let odd = plain.collect::<Option<Vec<bool>>>();
     odd.map_or(axis.is_odd(), |odd| odd.into_iter().filter(|odd| *odd).count() % 2 == 1)
 }
 
-fn check_parity(places: &Places<'_>, expr: &Expr, odd: bool, field: &str) -> Result<(), (String, String)> {
+fn check_parity(
+    places: &Places<'_>,
+    expr: &Expr,
+    odd: bool,
+    field: &str,
+) -> Result<(), (String, String)> {
     let vanishes = places.0.iter().all(|[here, _]| here.of(expr) == Some(0.0));
     if vanishes || is_odd(places, expr) == Some(odd) {
         return Ok(());
     }
     let wanted = if odd { "change its sign" } else { "stay as it is" };
-    let message =
-        format!("breaks the port/starboard symmetry: mirrored (v, r, p, phi, delta with other signs) it should {wanted}");
+    let message = format!(
+        "breaks the port/starboard symmetry: mirrored (v, r, p, phi, delta with other signs) it should {wanted}"
+    );
     Err((field.to_owned(), message))
 }
 
@@ -74,7 +96,9 @@ fn check_parity(places: &Places<'_>, expr: &Expr, odd: bool, field: &str) -> Res
 fn is_odd(places: &Places<'_>, expr: &Expr) -> Option<bool> {
     let parity = |sign: f64| {
         places.0.iter().all(|[here, there]| match (here.of(expr), there.of(expr)) {
-            (Some(here), Some(there)) => (here - sign * there).abs() <= 1e-9 * (here.abs() + there.abs()),
+            (Some(here), Some(there)) => {
+                (here - sign * there).abs() <= 1e-9 * (here.abs() + there.abs())
+            }
             _ => true,
         })
     };
@@ -101,17 +125,27 @@ impl Law {
 
     /// Whether a coefficient's regressor changes sign with what is `odd`.
     pub(crate) fn is_odd_in(&self, coefficient: &str, odd: &BTreeSet<&str>) -> bool {
-        let Ok(name) = CoefficientName::parse(coefficient, &self.extra_factors()) else { return false };
-        name.factors.iter().filter(|factor| !factor.absolute && odd.contains(factor.symbol.as_str())).count() % 2 == 1
+        let Ok(name) = CoefficientName::parse(coefficient, &self.extra_factors()) else {
+            return false;
+        };
+        name.factors
+            .iter()
+            .filter(|factor| !factor.absolute && odd.contains(factor.symbol.as_str()))
+            .count()
+            % 2
+            == 1
     }
 }
 
 /// Whether a formula changes sign with every rudder angle, `delta` or one of a pair, all else as it is.
 fn is_odd_in_rudder(law: &Law, expr: &Expr) -> bool {
-    let rudders = || law.inputs.keys().filter(|name| *name == "delta" || name.starts_with("delta_"));
+    let rudders =
+        || law.inputs.keys().filter(|name| *name == "delta" || name.starts_with("delta_"));
     let value = |point: &[f64; 8], sign: f64| {
         let mut place = Place::new(law, point, false);
-        place.known.extend(rudders().enumerate().map(|(k, name)| (name.as_str(), sign * (0.2 + 0.1 * k as f64))));
+        place.known.extend(
+            rudders().enumerate().map(|(k, name)| (name.as_str(), sign * (0.2 + 0.1 * k as f64))),
+        );
         place.of(expr)
     };
     POINTS.iter().all(|point| match (value(point, 1.0), value(point, -1.0)) {
@@ -130,7 +164,8 @@ struct Place<'a> {
 
 impl<'a> Place<'a> {
     fn new(law: &'a Law, point: &[f64; 8], mirrored: bool) -> Self {
-        let mut known: BTreeMap<&str, f64> = AT.iter().copied().zip(point.iter().copied()).collect();
+        let mut known: BTreeMap<&str, f64> =
+            AT.iter().copied().zip(point.iter().copied()).collect();
         if mirrored {
             for name in ODD {
                 known.entry(name).and_modify(|value| *value = -*value).or_insert(0.0);
@@ -161,7 +196,12 @@ struct Places<'a>(Vec<[Place<'a>; 2]>);
 
 impl<'a> Places<'a> {
     fn new(law: &'a Law) -> Self {
-        Self(POINTS.iter().map(|point| [false, true].map(|mirrored| Place::new(law, point, mirrored))).collect())
+        Self(
+            POINTS
+                .iter()
+                .map(|point| [false, true].map(|mirrored| Place::new(law, point, mirrored)))
+                .collect(),
+        )
     }
 }
 
@@ -173,7 +213,8 @@ fn stand_in(law: &Law, name: &str, mirrored: bool) -> f64 {
     let twin = if mirrored { twin(law, name) } else { None };
     let (sign, name) = twin.unwrap_or((1.0, name));
     let sign = if mirrored && ODD_INPUTS.contains(&name) { -sign } else { sign };
-    let hash = name.bytes().fold(7_u32, |hash, byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)));
+    let hash =
+        name.bytes().fold(7_u32, |hash, byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)));
     sign * (0.2 + f64::from(hash % 997) / 997.0)
 }
 

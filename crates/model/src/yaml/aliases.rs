@@ -4,8 +4,10 @@ use std::collections::HashSet;
 
 /// Refuses aliases of anchors, and directives of tags, at a byte.
 pub fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
-    let marks: Vec<(usize, &[u8])> = (0..bytes.len()).filter_map(|at| Some((at, name(bytes, at)?))).collect();
-    let anchors: HashSet<&[u8]> = marks.iter().filter(|(at, _)| bytes[*at] == b'&').map(|(_, name)| *name).collect();
+    let marks: Vec<(usize, &[u8])> =
+        (0..bytes.len()).filter_map(|at| Some((at, name(bytes, at)?))).collect();
+    let anchors: HashSet<&[u8]> =
+        marks.iter().filter(|(at, _)| bytes[*at] == b'&').map(|(_, name)| *name).collect();
     let alias = marks.iter().find(|(at, name)| bytes[*at] == b'*' && anchors.contains(name));
     if let Some((at, name)) = alias {
         let name = crate::formula::head(&String::from_utf8_lossy(name));
@@ -23,7 +25,8 @@ fn name(bytes: &[u8], at: usize) -> Option<&[u8]> {
         return None;
     }
     let rest = &bytes[at + 1..];
-    let length = rest.iter().take_while(|b| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-')).count();
+    let length =
+        rest.iter().take_while(|b| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-')).count();
     (length > 0).then(|| &rest[..length])
 }
 
@@ -34,5 +37,6 @@ fn may_begin(bytes: &[u8], at: usize) -> bool {
 }
 
 fn begins_line(bytes: &[u8], at: usize) -> bool {
-    at.checked_sub(1).is_none_or(|before| matches!(bytes[before], b'\n' | b'\r') || !bytes[before].is_ascii())
+    at.checked_sub(1)
+        .is_none_or(|before| matches!(bytes[before], b'\n' | b'\r') || !bytes[before].is_ascii())
 }

@@ -22,10 +22,18 @@ pub fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
         let mut inside = Inside { bytes, at, depth: 0, most: 0 };
         inside.read();
         if inside.most > MAX_DEPTH {
-            return Err((inside.at, format!("brackets and braces nest more than {MAX_DEPTH} deep")));
+            return Err((
+                inside.at,
+                format!("brackets and braces nest more than {MAX_DEPTH} deep"),
+            ));
         }
         let Some(left) = budget.checked_sub(inside.at - at) else {
-            return Err((at, format!("brackets nest too deep or are not closed: {MAX_PASSES} are the most in a long document")));
+            return Err((
+                at,
+                format!(
+                    "brackets nest too deep or are not closed: {MAX_PASSES} are the most in a long document"
+                ),
+            ));
         };
         budget = left;
     }
@@ -60,7 +68,9 @@ impl Inside<'_> {
                 b'!' => self.tag(),
                 b'&' | b'*' => self.anchor(),
                 b' ' | b'\t' | b',' | b':' | b'?' => self.at += 1,
-                b'-' if self.bytes.get(self.at + 1).is_none_or(|next| !next.is_ascii_graphic()) => self.at += 1,
+                b'-' if self.bytes.get(self.at + 1).is_none_or(|next| !next.is_ascii_graphic()) => {
+                    self.at += 1
+                }
                 _ => match break_at(self.bytes, self.at) {
                     Some(length) => self.at += length,
                     None => self.plain(),

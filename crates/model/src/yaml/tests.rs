@@ -7,19 +7,46 @@ fn refused(text: &str) -> String {
     let began = Instant::now();
     let error = read::<serde_yaml::Value>(text).unwrap_err();
     let took = began.elapsed();
-    assert!(took < Duration::from_secs(5), "{took:?}: {}", text.chars().take(40).collect::<String>());
+    assert!(
+        took < Duration::from_secs(5),
+        "{took:?}: {}",
+        text.chars().take(40).collect::<String>()
+    );
     error.message
 }
 
 #[test]
 fn brackets_are_bounded_however_they_are_written() {
-    let before =
-        ["", "a: ", "- ", "'it''s': ", "x: |\n  it's \"\ny: ", "# it's \"\n", "a: it's\nb: ", "? ", "a: {b: \"\\\"\", c: "];
-    for open in ["{a: ", "[", "[[", "{? ", "{\"a\": ", "[a, ", "{a: it's, b: ", "[ # \"\n", "[\u{85}'\u{85}',", "[!<]]]> "] {
+    let before = [
+        "",
+        "a: ",
+        "- ",
+        "'it''s': ",
+        "x: |\n  it's \"\ny: ",
+        "# it's \"\n",
+        "a: it's\nb: ",
+        "? ",
+        "a: {b: \"\\\"\", c: ",
+    ];
+    for open in [
+        "{a: ",
+        "[",
+        "[[",
+        "{? ",
+        "{\"a\": ",
+        "[a, ",
+        "{a: it's, b: ",
+        "[ # \"\n",
+        "[\u{85}'\u{85}',",
+        "[!<]]]> ",
+    ] {
         for before in before {
             for count in [700, 50_000] {
                 let message = refused(&format!("{before}{}", open.repeat(count)));
-                assert!(message.contains("64 deep") || message.contains("brackets nest"), "{before}{open}: {message}");
+                assert!(
+                    message.contains("64 deep") || message.contains("brackets nest"),
+                    "{before}{open}: {message}"
+                );
             }
         }
     }
@@ -32,7 +59,10 @@ fn brackets_are_bounded_however_they_are_written() {
 fn aliases_and_tags_are_refused() {
     assert!(refused("a: &x [1]\nb: *x").contains("write out what `&x` stands for at line 2"));
     assert!(refused("[&x 1,*x]").contains("alias"));
-    assert!(refused(&format!("a: &x \"{}\"\nb: [{}]", "y".repeat(1 << 20), "*x, ".repeat(300_000))).contains("alias"));
+    assert!(
+        refused(&format!("a: &x \"{}\"\nb: [{}]", "y".repeat(1 << 20), "*x, ".repeat(300_000)))
+            .contains("alias")
+    );
     assert!(refused("%TAG !a! b\n---\na: 1").contains("%TAG"));
     assert!(read::<serde_yaml::Value>("a: 2 *x & y\nb: R&D\nc: u *v\nd: '&'").is_ok());
 }
@@ -42,10 +72,16 @@ fn aliases_and_tags_are_refused() {
 fn honest_documents_are_read() {
     let note = "note: half open [0, 1) and \"[[\" it's {\n# [[[ 'x\n";
     let entry = "- { value: 1.5, source: 'a [1]', note: \"b: {c\", list: [1, [2, 3]] }\n";
-    let text = format!("{note}text: |\n  it's [ \"quoted\n  {{ open\nlist:\n{}", entry.repeat(20_000));
+    let text =
+        format!("{note}text: |\n  it's [ \"quoted\n  {{ open\nlist:\n{}", entry.repeat(20_000));
     let value: serde_yaml::Value = read(&text).unwrap();
     assert_eq!(value["list"].as_sequence().unwrap().len(), 20_000);
-    assert!(read::<serde_yaml::Value>(&"a".repeat(MAX_BYTES + 1)).unwrap_err().message.contains("are the most"));
+    assert!(
+        read::<serde_yaml::Value>(&"a".repeat(MAX_BYTES + 1))
+            .unwrap_err()
+            .message
+            .contains("are the most")
+    );
 }
 
 /// The most time that 4 MB can take, by construct: none may be worse than in proportion.
@@ -77,7 +113,9 @@ fn no_construct_takes_more_than_its_share() {
     ];
     for (what, text) in texts {
         let began = Instant::now();
-        let read = read::<serde_yaml::Value>(&text).map(|_| ()).map_err(|e| e.message.chars().take(60).collect::<String>());
+        let read = read::<serde_yaml::Value>(&text)
+            .map(|_| ())
+            .map_err(|e| e.message.chars().take(60).collect::<String>());
         let took = began.elapsed();
         println!("{what}: {took:?}: {read:?}");
         assert!(took < Duration::from_secs(4), "{what}: {took:?}: {read:?}");

@@ -10,12 +10,20 @@ use sistership_model::{Effect, Law};
 
 /// Learns what the fitted trials leave open of a refined model; where that fails, the model goes without and a remark says
 /// why.
-pub fn with_uncertainty(mut refinement: Refinement, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Refinement {
+pub fn with_uncertainty(
+    mut refinement: Refinement,
+    law: &Law,
+    effects: &[Arc<Effect>],
+    trials: &[&Trial],
+) -> Refinement {
     let held_out = &refinement.settings.held_out;
-    let fitted: Vec<&Trial> = trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
+    let fitted: Vec<&Trial> =
+        trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
     match calibrate(&refinement.model, law, effects, &fitted) {
         Ok(uncertainty) => refinement.model.uncertainty = Some(uncertainty),
-        Err(error) => refinement.remarks.push(format!("what these trials leave open could not be learned: {error}")),
+        Err(error) => refinement
+            .remarks
+            .push(format!("what these trials leave open could not be learned: {error}")),
     }
     refinement
 }

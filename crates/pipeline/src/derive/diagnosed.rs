@@ -34,7 +34,11 @@ pub struct Diagnosed {
 ///
 /// # Errors
 /// Says what is missing or has changed, or why the diagnosis is refused.
-pub async fn diagnosed(archive: &Archive, recipe: DiagnosisRecipe, progress: Progress) -> Result<Diagnosed, DeriveError> {
+pub async fn diagnosed(
+    archive: &Archive,
+    recipe: DiagnosisRecipe,
+    progress: Progress,
+) -> Result<Diagnosed, DeriveError> {
     let inputs = Inputs::new(archive);
     let named = Recipe::Diagnosis(recipe.clone());
     let diagnosed = diagnosed_from(&inputs, recipe, progress).await?;
@@ -67,7 +71,8 @@ fn carry_out(
 ) -> Result<Diagnosis, DeriveError> {
     let settings: Settings = serde_json::from_value(recipe.settings.clone())?;
     let trials: Vec<&Trial> = trials.iter().collect();
-    let request = Request { model, law, effects: &library.effects, trials: &trials, settings: &settings };
+    let request =
+        Request { model, law, effects: &library.effects, trials: &trials, settings: &settings };
     Ok(diagnose(&request, &**progress)?)
 }
 

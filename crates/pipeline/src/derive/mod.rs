@@ -27,7 +27,12 @@ use crate::recipe::Recipe;
 ///
 /// # Errors
 /// Says what is missing or has changed, or why the refinement is refused.
-pub async fn derive(archive: &Archive, ship: &str, recipe: &Recipe, progress: Progress) -> Result<Derived, DeriveError> {
+pub async fn derive(
+    archive: &Archive,
+    ship: &str,
+    recipe: &Recipe,
+    progress: Progress,
+) -> Result<Derived, DeriveError> {
     let inputs = &Inputs::new(archive);
     let derived = match recipe {
         Recipe::Plain(version::Recipe::Published { model, ship_sha256, law_sha256 }) => {
@@ -36,15 +41,23 @@ pub async fn derive(archive: &Archive, ship: &str, recipe: &Recipe, progress: Pr
         Recipe::Plain(recipe @ version::Recipe::Refinement { .. }) => {
             let ingredients = refined::gather(inputs, ship, recipe).await?;
             let recipe = recipe.clone();
-            tokio::task::spawn_blocking(move || refined::refined(ingredients, &recipe, &progress)).await?
+            tokio::task::spawn_blocking(move || refined::refined(ingredients, &recipe, &progress))
+                .await?
         }
-        Recipe::Family(recipe) => Ok(Derived { document: fleet::derived(inputs, ship, recipe).await?, refined: None }),
-        Recipe::Registered(_) => {
-            Err(DeriveError::Lost("the model was made elsewhere: its own bytes are all there is of it".into()))
+        Recipe::Family(recipe) => {
+            Ok(Derived { document: fleet::derived(inputs, ship, recipe).await?, refined: None })
         }
+        Recipe::Registered(_) => Err(DeriveError::Lost(
+            "the model was made elsewhere: its own bytes are all there is of it".into(),
+        )),
         Recipe::Diagnosis(recipe) => {
-            let document = diagnosed::diagnosed_from(inputs, recipe.clone(), progress).await?.document()?;
-            let nothing = || DeriveError::Lost("the diagnosis finds no effect now, so that no version comes of it".into());
+            let document =
+                diagnosed::diagnosed_from(inputs, recipe.clone(), progress).await?.document()?;
+            let nothing = || {
+                DeriveError::Lost(
+                    "the diagnosis finds no effect now, so that no version comes of it".into(),
+                )
+            };
             Ok(Derived { document: document.ok_or_else(nothing)?, refined: None })
         }
     }?;

@@ -15,13 +15,27 @@ use crate::sorted::sorted;
 use crate::version::VersionDocument;
 
 /// Loads what a recipe names, each by its hash.
-pub(super) async fn gather(inputs: &Inputs<'_>, ship: &str, recipe: &Recipe) -> Result<Ingredients, DeriveError> {
-    let Recipe::Refinement { source, ship_sha256, law_sha256, across, effects_sha256, trials, settings: recorded, .. } = recipe
+pub(super) async fn gather(
+    inputs: &Inputs<'_>,
+    ship: &str,
+    recipe: &Recipe,
+) -> Result<Ingredients, DeriveError> {
+    let Recipe::Refinement {
+        source,
+        ship_sha256,
+        law_sha256,
+        across,
+        effects_sha256,
+        trials,
+        settings: recorded,
+        ..
+    } = recipe
     else {
         return Err(DeriveError::Lost("the recipe is not that of a refinement".into()));
     };
     let model = inputs.source(source).await?;
-    let law = inputs.law(across.as_ref().map_or(&model.law, |across| &across.law), law_sha256).await?;
+    let law =
+        inputs.law(across.as_ref().map_or(&model.law, |across| &across.law), law_sha256).await?;
     let source_law = match across {
         Some(across) => Some(inputs.law(&model.law, &across.source_law_sha256).await?),
         None => None,
@@ -34,7 +48,11 @@ pub(super) async fn gather(inputs: &Inputs<'_>, ship: &str, recipe: &Recipe) -> 
     Ok(Ingredients { target, source, model, source_law, law, library, trials, settings })
 }
 
-pub(super) fn refined(ingredients: Ingredients, recipe: &Recipe, progress: &Progress) -> Result<Derived, DeriveError> {
+pub(super) fn refined(
+    ingredients: Ingredients,
+    recipe: &Recipe,
+    progress: &Progress,
+) -> Result<Derived, DeriveError> {
     let (document, refinement) = refined_document(&ingredients, recipe, &**progress)?;
     Ok(Derived { document, refined: Some(Refined { refinement, ingredients }) })
 }
@@ -50,8 +68,17 @@ pub fn refined_document(
 ) -> Result<(VersionDocument, Refinement), DeriveError> {
     let Ingredients { target, model, source_law, law, settings, .. } = ingredients;
     let trials: Vec<&Trial> = ingredients.trials.iter().collect();
-    let refinement =
-        refine(&Request { target, source: model, source_law: source_law.as_ref(), law, trials: &trials, settings }, progress)?;
+    let refinement = refine(
+        &Request {
+            target,
+            source: model,
+            source_law: source_law.as_ref(),
+            law,
+            trials: &trials,
+            settings,
+        },
+        progress,
+    )?;
     if !progress(0.97, "learning what the trials leave open") {
         return Err(RefineError::Cancelled.into());
     }

@@ -39,7 +39,13 @@ fn text(value: &Value) -> String {
 
 fn version_of(row: &Value) -> NewVersion {
     let field = |name: &str| text(&row[name]);
-    NewVersion { model: field("model"), parent: None, law: field("law"), method: field("method"), document: field("document") }
+    NewVersion {
+        model: field("model"),
+        parent: None,
+        law: field("law"),
+        method: field("method"),
+        document: field("document"),
+    }
 }
 
 /// An archive that holds the versions and their inputs, and of the program's own nothing but libraries of effects.
@@ -51,7 +57,8 @@ async fn archive(database: &TestDatabase) -> Archive {
     }
     for ship in kept["ships"].as_array().unwrap() {
         let field = |name: &str| text(&ship[name]);
-        let (name, title, category, document) = (field("name"), field("title"), field("category"), field("document"));
+        let (name, title, category, document) =
+            (field("name"), field("title"), field("category"), field("document"));
         archive.store.ships().create(&NewShip { name, title, category, document }).await.unwrap();
     }
     for file in std::fs::read_dir(folder()).unwrap().map(|file| file.unwrap().path()) {
@@ -61,7 +68,10 @@ async fn archive(database: &TestDatabase) -> Archive {
     }
     for row in kept["versions"].as_array().unwrap() {
         let made = archive.store.versions().create(&version_of(row), &[]).await.unwrap();
-        assert_eq!((made.number, &made.sha256), (row["number"].as_i64().unwrap(), &text(&row["sha256"])));
+        assert_eq!(
+            (made.number, &made.sha256),
+            (row["number"].as_i64().unwrap(), &text(&row["sha256"]))
+        );
     }
     archive
 }
@@ -83,11 +93,19 @@ async fn versions_of_the_release_without_named_libraries_verify() {
         let version = archive.store.versions().get(SHIP, number).await.unwrap();
         assert_eq!(version.head.method, method);
         let read = document(&version).unwrap();
-        assert_eq!(read.canonical().unwrap(), version.document, "{method}: reads and writes the same bytes");
+        assert_eq!(
+            read.canonical().unwrap(),
+            version.document,
+            "{method}: reads and writes the same bytes"
+        );
         let verification = verify(&archive, SHIP, number).await.unwrap();
-        assert!(verification.identical && verification.remarks.is_empty(), "{method}: {verification:?}");
+        assert!(
+            verification.identical && verification.remarks.is_empty(),
+            "{method}: {verification:?}"
+        );
     }
-    let Recipe::Plain(sistership_model::version::Recipe::Refinement { effects_sha256, .. }) = stored(&archive, 1).await.recipe
+    let Recipe::Plain(sistership_model::version::Recipe::Refinement { effects_sha256, .. }) =
+        stored(&archive, 1).await.recipe
     else {
         panic!("a refinement")
     };
@@ -110,7 +128,9 @@ async fn another_library_gives_another_calibration_by_its_own_hash() {
     assert_eq!(Library::parse(&small).unwrap().effects.len(), 2);
     let mut old = stored(&archive, 1).await;
     let before = old.canonical().unwrap();
-    if let Recipe::Plain(sistership_model::version::Recipe::Refinement { effects_sha256, .. }) = &mut old.recipe {
+    if let Recipe::Plain(sistership_model::version::Recipe::Refinement { effects_sha256, .. }) =
+        &mut old.recipe
+    {
         *effects_sha256 = Some(hash.clone());
     }
     assert_eq!(old.recipe.effects_sha256(), Some(hash.as_str()));
@@ -119,7 +139,8 @@ async fn another_library_gives_another_calibration_by_its_own_hash() {
     let before: VersionDocument = serde_json::from_str(&before).unwrap();
     assert_ne!(now.model.uncertainty, before.model.uncertainty);
     assert_eq!(now.model.coefficients, before.model.coefficients);
-    let row = NewVersion { document: now.canonical().unwrap(), ..version_of(&kept()["versions"][1]) };
+    let row =
+        NewVersion { document: now.canonical().unwrap(), ..version_of(&kept()["versions"][1]) };
     let number = archive.store.versions().create(&row, &[]).await.unwrap().number;
     assert!(verify(&archive, SHIP, number).await.unwrap().identical);
     gc(&archive, std::time::Duration::ZERO, false).await.unwrap();
@@ -137,7 +158,9 @@ async fn another_library_gives_another_calibration_by_its_own_hash() {
 async fn every_kind_of_version_reads_what_its_recipe_names() {
     let database = TestDatabase::sqlite();
     let archive = archive(&database).await;
-    let kinds = |recipe: &Recipe| recipe.inputs().into_iter().map(|input| input.kind).collect::<BTreeSet<InputKind>>();
+    let kinds = |recipe: &Recipe| {
+        recipe.inputs().into_iter().map(|input| input.kind).collect::<BTreeSet<InputKind>>()
+    };
     use InputKind::{Effects, Law, Samples, Ship, Version};
     for (number, named) in [
         (1, vec![Ship, Law, Version, Samples, Effects]),
@@ -148,11 +171,18 @@ async fn every_kind_of_version_reads_what_its_recipe_names() {
         assert_eq!(kinds(&recipe), BTreeSet::from_iter(named), "version {number}");
         let inputs = super::Inputs::new(&archive);
         let unread = inputs.check(&recipe).unwrap_err().to_string();
-        let every = recipe.inputs().iter().all(|input| unread.contains(&format!("the recipe names {input}, which was not read")));
+        let every = recipe
+            .inputs()
+            .iter()
+            .all(|input| unread.contains(&format!("the recipe names {input}, which was not read")));
         assert!(every, "{unread}");
         inputs.effects(FIRST_SHA256).await.unwrap();
         let unnamed = inputs.check(&recipe).unwrap_err().to_string();
-        assert_eq!(unnamed.contains("was read, but the recipe does not name it"), number == 3, "{unnamed}");
+        assert_eq!(
+            unnamed.contains("was read, but the recipe does not name it"),
+            number == 3,
+            "{unnamed}"
+        );
         // Deriving ends in the same check, with success.
         derived(&archive, &recipe).await;
     }
@@ -161,7 +191,8 @@ async fn every_kind_of_version_reads_what_its_recipe_names() {
 /// Each input of each kind of version, damaged and lost.
 #[tokio::test(flavor = "multi_thread")]
 async fn an_input_that_is_not_what_it_was_is_named() {
-    let (law, ship, source) = ("the law `son-nomoto`", "ship `demo-ship` has the hash", "version sr108/1");
+    let (law, ship, source) =
+        ("the law `son-nomoto`", "ship `demo-ship` has the hash", "version sr108/1");
     let library = "library of effects";
     for (number, damage, named) in [
         (1, "UPDATE laws SET document = document || ' '", law),
@@ -173,10 +204,18 @@ async fn an_input_that_is_not_what_it_was_is_named() {
         (1, "DELETE FROM effect_libraries", FIRST_SHA256),
         (2, "UPDATE effect_libraries SET document = document || ' '", library),
         (2, "DELETE FROM effect_libraries", FIRST_SHA256),
-        (2, "UPDATE versions SET document = replace(document, '0', '1') WHERE number = 1", "version demo-ship/1"),
+        (
+            2,
+            "UPDATE versions SET document = replace(document, '0', '1') WHERE number = 1",
+            "version demo-ship/1",
+        ),
         (3, "UPDATE laws SET document = document || ' '", law),
         (3, "UPDATE ship_revisions SET document = document || ' '", ship),
-        (3, "UPDATE versions SET document = document || ' ' WHERE number = 1", "version demo-ship/1"),
+        (
+            3,
+            "UPDATE versions SET document = document || ' ' WHERE number = 1",
+            "version demo-ship/1",
+        ),
     ] {
         let database = TestDatabase::sqlite();
         let archive = archive(&database).await;
@@ -207,14 +246,25 @@ async fn samples_that_are_lost_are_named() {
 /// A later release adds its library beside the older ones, on both databases; a backup has all of them.
 #[tokio::test(flavor = "multi_thread")]
 async fn libraries_stay_beside_each_other_and_are_backed_up() {
-    for database in [Some(TestDatabase::sqlite()), TestDatabase::postgres().await].into_iter().flatten() {
+    for database in
+        [Some(TestDatabase::sqlite()), TestDatabase::postgres().await].into_iter().flatten()
+    {
         let archive = Archive::open(&database.url, database.folder.path()).await.unwrap();
         let later = archive.store.effects().keep("kind: effect\nname: later\n").await.unwrap();
         crate::library::keep(&archive.store).await.unwrap();
         let page = sistership_store::Page::first(10);
-        let all: Vec<String> =
-            archive.store.effects().list(&page).await.unwrap().items.into_iter().map(|library| library.sha256).collect();
-        let expected = BTreeSet::from([later, FIRST_SHA256.to_owned(), library().unwrap().sha256.clone()]);
+        let all: Vec<String> = archive
+            .store
+            .effects()
+            .list(&page)
+            .await
+            .unwrap()
+            .items
+            .into_iter()
+            .map(|library| library.sha256)
+            .collect();
+        let expected =
+            BTreeSet::from([later, FIRST_SHA256.to_owned(), library().unwrap().sha256.clone()]);
         assert_eq!(all, Vec::from_iter(expected));
     }
     let (database, other) = (TestDatabase::sqlite(), TestDatabase::sqlite());
@@ -223,8 +273,14 @@ async fn libraries_stay_beside_each_other_and_are_backed_up() {
     crate::upkeep::backup(&archive, &folder).await.unwrap();
     let place = sistership_store::ObjectsPlace::Folder(other.folder.path().join("samples"));
     crate::upkeep::restore(&folder, &other.url, &place).await.unwrap();
-    let store = sistership_store::Store::connect(&other.url, Arc::new(sistership_store::SystemClock)).await.unwrap();
-    assert_eq!(sha256(store.effects().get(FIRST_SHA256).await.unwrap().document.as_bytes()), FIRST_SHA256);
+    let store =
+        sistership_store::Store::connect(&other.url, Arc::new(sistership_store::SystemClock))
+            .await
+            .unwrap();
+    assert_eq!(
+        sha256(store.effects().get(FIRST_SHA256).await.unwrap().document.as_bytes()),
+        FIRST_SHA256
+    );
 }
 
 /// Every setting that was used is in the recipe of a new version, and the spelled out recipe gives the same model.
@@ -234,12 +290,20 @@ async fn new_recipes_spell_out_every_setting() {
     let archive = archive(&database).await;
     for method in ["published", "weak", "trajectory", "cma-es"] {
         let mut recipe = stored(&archive, 1).await.recipe;
-        if let Recipe::Plain(sistership_model::version::Recipe::Refinement { settings, .. }) = &mut recipe {
+        if let Recipe::Plain(sistership_model::version::Recipe::Refinement { settings, .. }) =
+            &mut recipe
+        {
             settings["method"] = method.into();
             settings["cma_es"] = serde_json::json!({ "evaluations": 300 });
         }
-        let made = derive(&archive, SHIP, &recipe, Arc::new(|_, _| true)).await.unwrap().spelled_out().unwrap();
-        let Recipe::Plain(sistership_model::version::Recipe::Refinement { settings, .. }) = &made.document.recipe else {
+        let made = derive(&archive, SHIP, &recipe, Arc::new(|_, _| true))
+            .await
+            .unwrap()
+            .spelled_out()
+            .unwrap();
+        let Recipe::Plain(sistership_model::version::Recipe::Refinement { settings, .. }) =
+            &made.document.recipe
+        else {
             panic!("a refinement")
         };
         let mut used = made.document.report["settings"].clone();
@@ -269,7 +333,14 @@ fn numerics_read_nothing_but_their_arguments() {
     for file in files.iter().filter(|file| !file.to_string_lossy().contains("test")) {
         let text = std::fs::read_to_string(file).unwrap();
         let product = text.split("#[cfg(test)]").next().unwrap();
-        for word in ["Zoo::embedded", "std::fs", "std::env", "SystemTime", "available_parallelism", "current_num_threads"] {
+        for word in [
+            "Zoo::embedded",
+            "std::fs",
+            "std::env",
+            "SystemTime",
+            "available_parallelism",
+            "current_num_threads",
+        ] {
             assert!(!product.contains(word), "{} reads {word}", file.display());
         }
     }

@@ -75,12 +75,16 @@ pub async fn order_refinement(store: &Store, family: &str, asked: &Asked) -> Res
     let order = order(store, family, asked).await?;
     let ships = members(store, family).await?;
     if ships.is_empty() {
-        return Err(setting("family", format!("`{family}` has no members; add some with POST /v1/families/{family}/members")));
+        return Err(setting(
+            "family",
+            format!("`{family}` has no members; add some with POST /v1/families/{family}/members"),
+        ));
     }
     let chunks: Vec<Vec<String>> = ships.chunks(size).map(<[String]>::to_vec).collect();
     let request = serde_json::to_string(&order)?;
     let chunk = |bulk: &str, ships: &[String]| {
-        serde_json::to_string(&Chunk { bulk: bulk.to_owned(), ships: ships.to_vec() }).unwrap_or_default()
+        serde_json::to_string(&Chunk { bulk: bulk.to_owned(), ships: ships.to_vec() })
+            .unwrap_or_default()
     };
     Ok(store.bulks().create(family, &request, BULK, &chunks, chunk).await?)
 }
@@ -95,7 +99,11 @@ async fn order(store: &Store, name: &str, asked: &Asked) -> Result<Order> {
     };
     Ok(Order {
         family: family.name,
-        foundation: SourceVersion { ship: foundation.model, number: foundation.number, sha256: foundation.sha256 },
+        foundation: SourceVersion {
+            ship: foundation.model,
+            number: foundation.number,
+            sha256: foundation.sha256,
+        },
         law_sha256: law.sha256,
         start: asked.start,
         prior,
@@ -106,9 +114,12 @@ async fn order(store: &Store, name: &str, asked: &Asked) -> Result<Order> {
 
 async fn last_prior(store: &Store, family: &str) -> Result<PriorName> {
     match store.families().prior(family, None).await {
-        Ok(prior) => Ok(PriorName { family: prior.family, revision: prior.revision, sha256: prior.sha256 }),
+        Ok(prior) => {
+            Ok(PriorName { family: prior.family, revision: prior.revision, sha256: prior.sha256 })
+        }
         Err(StoreError::NotFound { .. }) => {
-            let how = format!("POST /v1/families/{family}/prior learns it; `foundation` needs none");
+            let how =
+                format!("POST /v1/families/{family}/prior learns it; `foundation` needs none");
             Err(setting("prior", format!("the family `{family}` has taught nothing yet; {how}")))
         }
         Err(error) => Err(error.into()),

@@ -73,7 +73,12 @@ impl Drift {
             Ok(frame) => frame,
             Err(error) => return Ok(Some(Self { reason: Some(error.to_string()), ..drift })),
         };
-        let coefficients = version.model.coefficients.iter().map(|(name, quantity)| (name.clone(), quantity.value)).collect();
+        let coefficients = version
+            .model
+            .coefficients
+            .iter()
+            .map(|(name, quantity)| (name.clone(), quantity.value))
+            .collect();
         for trial in store.trials().list(ship, &Page::first(MAX_LIMIT)).await?.items {
             let named = RecipeTrial { name: trial.name.clone(), sha256: trial.sha256.clone() };
             let residual = match statistics_of(archive, &frame, &[named]).await {
@@ -83,7 +88,13 @@ impl Drift {
                 Err(error) => return Err(error),
             };
             let fitted = version.recipe.trials().iter().any(|known| known.sha256 == trial.sha256);
-            drift.trials.push(TrialResidual { trial: trial.id, name: trial.name, at_us: trial.created_us, fitted, residual });
+            drift.trials.push(TrialResidual {
+                trial: trial.id,
+                name: trial.name,
+                at_us: trial.created_us,
+                fitted,
+                residual,
+            });
         }
         drift.compare();
         Ok(Some(drift))
@@ -92,12 +103,17 @@ impl Drift {
     fn compare(&mut self) {
         for axis in Axis::ALL.map(|axis| axis.to_string()) {
             let mean_square = |fitted: bool| {
-                let of =
-                    |trial: &TrialResidual| (trial.fitted == fitted).then(|| trial.residual.get(&axis).map(|r| r * r)).flatten();
+                let of = |trial: &TrialResidual| {
+                    (trial.fitted == fitted)
+                        .then(|| trial.residual.get(&axis).map(|r| r * r))
+                        .flatten()
+                };
                 let all: Vec<f64> = self.trials.iter().filter_map(of).collect();
                 (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
             };
-            if let (Some(new), Some(old)) = (mean_square(false), mean_square(true).filter(|old| *old > 0.0)) {
+            if let (Some(new), Some(old)) =
+                (mean_square(false), mean_square(true).filter(|old| *old > 0.0))
+            {
                 self.ratio.insert(axis, (new / old).sqrt());
             }
         }
@@ -105,7 +121,10 @@ impl Drift {
     }
 }
 
-fn residual(statistics: &TrialStatistics, coefficients: &BTreeMap<String, f64>) -> Result<BTreeMap<String, f64>, DeriveError> {
+fn residual(
+    statistics: &TrialStatistics,
+    coefficients: &BTreeMap<String, f64>,
+) -> Result<BTreeMap<String, f64>, DeriveError> {
     let left = statistics.left_by(coefficients)?;
     let share = |left: &sistership_fleet::statistics::AxisResidual| {
         (left.target > 0.0).then(|| (left.axis.to_string(), (left.residual / left.target).sqrt()))

@@ -60,19 +60,38 @@ impl Frames<'_> {
         let row = store.ships().get(ship).await?;
         let model = transfer(self.model, self.law, &vessel(ship, &row.document)?, None);
         let ship_sha256 = Some(sha256(row.document.as_bytes()));
-        Ok(Framed { model, from: self.foundation.clone(), ship_sha256, version_id: None, champion: revision })
+        Ok(Framed {
+            model,
+            from: self.foundation.clone(),
+            ship_sha256,
+            version_id: None,
+            champion: revision,
+        })
     }
 
     fn own(&self, version: Version) -> Result<Framed, DeriveError> {
         let model = document(&version)?.model;
-        if model.law != self.model.law || !model.coefficients.keys().eq(self.model.coefficients.keys()) {
+        if model.law != self.model.law
+            || !model.coefficients.keys().eq(self.model.coefficients.keys())
+        {
             let (own, family) = (&model.name, &self.model.name);
-            let message =
-                format!("`{own}` does not have the law and coefficients of the foundation `{family}`; start at the foundation");
+            let message = format!(
+                "`{own}` does not have the law and coefficients of the foundation `{family}`; start at the foundation"
+            );
             return Err(DeriveError::Lost(message));
         }
-        let from = SourceVersion { ship: version.head.model, number: version.head.number, sha256: version.head.sha256 };
-        Ok(Framed { model, from, ship_sha256: None, version_id: Some(version.head.id), champion: None })
+        let from = SourceVersion {
+            ship: version.head.model,
+            number: version.head.number,
+            sha256: version.head.sha256,
+        };
+        Ok(Framed {
+            model,
+            from,
+            ship_sha256: None,
+            version_id: Some(version.head.id),
+            champion: None,
+        })
     }
 }
 
@@ -84,7 +103,9 @@ pub(super) async fn recorded(
     recipe: &FamilyRecipe,
 ) -> Result<Model, DeriveError> {
     match &recipe.ship_sha256 {
-        Some(hash) => Ok(transfer(&loaded.foundation, &loaded.law, &inputs.ship(ship, hash).await?, None)),
+        Some(hash) => {
+            Ok(transfer(&loaded.foundation, &loaded.law, &inputs.ship(ship, hash).await?, None))
+        }
         None => inputs.source(&recipe.start).await,
     }
 }

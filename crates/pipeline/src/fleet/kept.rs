@@ -44,7 +44,11 @@ fn read(document: &str) -> Result<TrialStatistics, DeriveError> {
 }
 
 /// Of a trial's samples, away from the threads that serve.
-async fn make(archive: &Archive, frame: &Frame, trial: &RecipeTrial) -> Result<TrialStatistics, DeriveError> {
+async fn make(
+    archive: &Archive,
+    frame: &Frame,
+    trial: &RecipeTrial,
+) -> Result<TrialStatistics, DeriveError> {
     made(frame, archive.objects.get(&trial.sha256).await?).await
 }
 

@@ -29,7 +29,11 @@ pub struct LearnJob {
 ///
 /// # Errors
 /// Why nothing can be learned.
-pub async fn learn(archive: &Archive, name: &str, told: &(dyn Fn(f64, &str) -> bool + Sync)) -> Result<FamilyPrior, DeriveError> {
+pub async fn learn(
+    archive: &Archive,
+    name: &str,
+    told: &(dyn Fn(f64, &str) -> bool + Sync),
+) -> Result<FamilyPrior, DeriveError> {
     let store = &archive.store;
     let family = store.families().get(name).await?;
     let foundation = store.versions().by_id(&family.foundation).await?;
@@ -45,18 +49,27 @@ pub async fn learn(archive: &Archive, name: &str, told: &(dyn Fn(f64, &str) -> b
         if !told(0.9 * index as f64 / ships.len() as f64, &format!("statistics of {ship}")) {
             return Err(DeriveError::Refine(sistership_estimate::refine::RefineError::Cancelled));
         }
-        known.extend(of_member(&frames, ship, &law_sha256).await?.map(|statistics| (ship.clone(), statistics)));
+        known.extend(
+            of_member(&frames, ship, &law_sha256)
+                .await?
+                .map(|statistics| (ship.clone(), statistics)),
+        );
     }
     told(0.9, "learning");
     let learned = tokio::task::spawn_blocking(move || {
-        let members: Vec<Member<'_>> = known.iter().map(|(name, trials)| Member { name, trials }).collect();
+        let members: Vec<Member<'_>> =
+            known.iter().map(|(name, trials)| Member { name, trials }).collect();
         family::learn(&members)
     });
     learned.await?.map_err(|error| DeriveError::Lost(error.to_string()))
 }
 
 /// The statistics of a member; none of one without trials, or whose model is not of this family's kind.
-async fn of_member(frames: &Frames<'_>, ship: &str, law_sha256: &str) -> Result<Option<Vec<TrialStatistics>>, DeriveError> {
+async fn of_member(
+    frames: &Frames<'_>,
+    ship: &str,
+    law_sha256: &str,
+) -> Result<Option<Vec<TrialStatistics>>, DeriveError> {
     let trials = trials_of(frames.archive, ship).await?;
     let framed = match frames.of(ship, Start::Champion).await {
         Ok(framed) => framed,
@@ -77,7 +90,10 @@ async fn of_member(frames: &Frames<'_>, ship: &str, law_sha256: &str) -> Result<
 pub async fn trials_of(archive: &Archive, ship: &str) -> Result<Vec<RecipeTrial>, DeriveError> {
     let page = sistership_store::Page::first(sistership_store::MAX_LIMIT);
     let trials = archive.store.trials().list(ship, &page).await?.items;
-    Ok(trials.into_iter().map(|trial| RecipeTrial { name: trial.name, sha256: trial.sha256 }).collect())
+    Ok(trials
+        .into_iter()
+        .map(|trial| RecipeTrial { name: trial.name, sha256: trial.sha256 })
+        .collect())
 }
 
 /// At most [`MOST`], evenly spaced.

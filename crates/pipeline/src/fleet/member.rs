@@ -41,12 +41,22 @@ pub type Outcome = std::result::Result<(BulkRefinement, VersionDocument), String
 /// The database, and not the ship.
 pub async fn member(archive: &Archive, loaded: &Loaded, ship: &str) -> Result<Member> {
     let standing = Standing::of(&archive.store, ship).await?;
-    let mut member = Member { ship: ship.to_owned(), standing, champion: None, parent: None, gathered: Err(String::new()) };
+    let mut member = Member {
+        ship: ship.to_owned(),
+        standing,
+        champion: None,
+        parent: None,
+        gathered: Err(String::new()),
+    };
     match gathered(archive, loaded, &mut member).await {
         Ok(gathered) => member.gathered = Ok(gathered),
         // The database, and not the ship.
-        Err(error @ (DeriveError::Broken(_) | DeriveError::Refine(RefineError::Cancelled))) => return Err(error),
-        Err(DeriveError::Store(error)) if !matches!(error, StoreError::NotFound { .. } | StoreError::Objects(_)) => {
+        Err(error @ (DeriveError::Broken(_) | DeriveError::Refine(RefineError::Cancelled))) => {
+            return Err(error);
+        }
+        Err(DeriveError::Store(error))
+            if !matches!(error, StoreError::NotFound { .. } | StoreError::Objects(_)) =>
+        {
             return Err(error.into());
         }
         Err(error) => member.gathered = Err(error.to_string()),
@@ -56,14 +66,20 @@ pub async fn member(archive: &Archive, loaded: &Loaded, ship: &str) -> Result<Me
 
 async fn gathered(archive: &Archive, loaded: &Loaded, member: &mut Member) -> Result<Gathered> {
     let order = &loaded.order;
-    let frames = Frames { archive, foundation: &order.foundation, model: &loaded.foundation, law: &loaded.law };
+    let frames = Frames {
+        archive,
+        foundation: &order.foundation,
+        model: &loaded.foundation,
+        law: &loaded.law,
+    };
     let framed = frames.of(&member.ship, order.start).await?;
     (member.champion, member.parent) = (framed.champion, framed.version_id);
     let trials = trials_of(archive, &member.ship).await?;
     if trials.is_empty() {
         return Err(DeriveError::Lost("it has no trials".to_owned()));
     }
-    let frame = Frame::new(&framed.model, &loaded.law, &order.law_sha256, order.settings.difference_s)?;
+    let frame =
+        Frame::new(&framed.model, &loaded.law, &order.law_sha256, order.settings.difference_s)?;
     let statistics = statistics_of(archive, &frame, &trials).await?;
     let recipe = order.recipe(framed.from, framed.ship_sha256, trials);
     Ok(Gathered { model: framed.model, statistics, recipe })
@@ -72,7 +88,9 @@ async fn gathered(archive: &Archive, loaded: &Loaded, member: &mut Member) -> Re
 /// Refines a member, or says why not.
 pub fn refine(loaded: &Loaded, mut member: Member) -> (Member, Outcome) {
     let gathered = std::mem::replace(&mut member.gathered, Err(String::new()));
-    let outcome = gathered.and_then(|gathered| refined(loaded, &member.ship, gathered).map_err(|error| error.to_string()));
+    let outcome = gathered.and_then(|gathered| {
+        refined(loaded, &member.ship, gathered).map_err(|error| error.to_string())
+    });
     (member, outcome)
 }
 
@@ -86,17 +104,30 @@ pub fn kept(loaded: &Loaded, bulk: &str, member: Member, outcome: Outcome) -> Re
         Ok(done) => done,
         Err(reason) => {
             let document = json!({ "reason": reason }).to_string();
-            return Ok(NewOutcome { ship, outcome: "refused".into(), version: None, worst_change: None, document });
+            return Ok(NewOutcome {
+                ship,
+                outcome: "refused".into(),
+                version: None,
+                worst_change: None,
+                document,
+            });
         }
     };
     let worst = refinement.worst_change();
     let summary = summary(&refinement);
     if unmoved(&refinement) {
         let outcome = "unchanged".to_owned();
-        return Ok(NewOutcome { ship, outcome, version: None, worst_change: Some(worst), document: summary.to_string() });
+        return Ok(NewOutcome {
+            ship,
+            outcome,
+            version: None,
+            worst_change: Some(worst),
+            document: summary.to_string(),
+        });
     }
     let champion = loaded.order.rule.no_worse_than.is_some_and(|share| worst <= share);
-    let reason = format!("refined with the family {} in bulk refinement {bulk}", loaded.order.family);
+    let reason =
+        format!("refined with the family {} in bulk refinement {bulk}", loaded.order.family);
     let version = NewVersion {
         model: ship.clone(),
         parent: member.parent.clone(),
@@ -117,7 +148,11 @@ pub fn kept(loaded: &Loaded, bulk: &str, member: Member, outcome: Outcome) -> Re
 impl Member {
     fn moves(&self, champion: bool, reason: &str) -> Vec<AliasMove> {
         let expect = self.champion.map_or(Expect::Absent, Expect::Revision);
-        let named = if champion { step(CHAMPION, expect, reason) } else { step(CANDIDATE, Expect::Any, reason) };
+        let named = if champion {
+            step(CHAMPION, expect, reason)
+        } else {
+            step(CANDIDATE, Expect::Any, reason)
+        };
         vec![named, self.standing.follow(reason)]
     }
 }

@@ -3,7 +3,10 @@
 use sistership_store::{MAX_LIMIT, Page, Store, StoreError};
 
 /// Every member by name.
-pub(super) async fn members(store: &Store, family: &str) -> std::result::Result<Vec<String>, StoreError> {
+pub(super) async fn members(
+    store: &Store,
+    family: &str,
+) -> std::result::Result<Vec<String>, StoreError> {
     let (mut all, mut page) = (Vec::new(), Page::first(MAX_LIMIT));
     loop {
         let list = store.families().members(family, &page).await?;

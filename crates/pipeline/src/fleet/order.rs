@@ -67,7 +67,12 @@ enum Held {
 
 impl Order {
     /// The recipe of a member.
-    pub fn recipe(&self, start: SourceVersion, ship_sha256: Option<String>, trials: Vec<RecipeTrial>) -> FamilyRecipe {
+    pub fn recipe(
+        &self,
+        start: SourceVersion,
+        ship_sha256: Option<String>,
+        trials: Vec<RecipeTrial>,
+    ) -> FamilyRecipe {
         FamilyRecipe {
             kind: FamilyKind::Family,
             start,
@@ -92,7 +97,9 @@ impl Loaded {
         let law = inputs.law(&foundation.law, &order.law_sha256).await?;
         let held = match &order.prior {
             Some(name) => family(inputs, name).await?,
-            None => Held::Foundation(foundation.coefficients.iter().map(|(name, q)| (name.clone(), q.value)).collect()),
+            None => Held::Foundation(
+                foundation.coefficients.iter().map(|(name, q)| (name.clone(), q.value)).collect(),
+            ),
         };
         Ok(Self { order, foundation, law, held })
     }
@@ -101,14 +108,19 @@ impl Loaded {
     pub fn prior(&self) -> Prior<'_> {
         match &self.held {
             Held::Foundation(values) => Prior::Source(values),
-            Held::Family { axes, design_effect } => Prior::Family { axes, design_effect: *design_effect },
+            Held::Family { axes, design_effect } => {
+                Prior::Family { axes, design_effect: *design_effect }
+            }
         }
     }
 
     /// What held the coefficients, in words.
     pub fn held_by(&self) -> String {
         match &self.order.prior {
-            Some(name) => format!("{}, held by the family {} at revision {}", self.foundation.name, name.family, name.revision),
+            Some(name) => format!(
+                "{}, held by the family {} at revision {}",
+                self.foundation.name, name.family, name.revision
+            ),
             None => self.foundation.name.clone(),
         }
     }
@@ -117,7 +129,10 @@ impl Loaded {
 async fn family(inputs: &Inputs<'_>, name: &PriorName) -> Result<Held, DeriveError> {
     let prior = inputs.prior(name).await?;
     let lost = |what: FamilyPriorError| {
-        DeriveError::Lost(format!("the prior of the family `{}` at revision {} {what}", name.family, name.revision))
+        DeriveError::Lost(format!(
+            "the prior of the family `{}` at revision {} {what}",
+            name.family, name.revision
+        ))
     };
     Ok(Held::Family { axes: prior.axes().map_err(lost)?, design_effect: prior.design_effect })
 }

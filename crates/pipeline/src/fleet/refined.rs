@@ -30,7 +30,11 @@ pub struct Gathered {
 }
 
 /// Refines a member: a function of what was gathered and nothing else.
-pub fn refined(loaded: &Loaded, ship: &str, gathered: Gathered) -> Result<(BulkRefinement, VersionDocument), DeriveError> {
+pub fn refined(
+    loaded: &Loaded,
+    ship: &str,
+    gathered: Gathered,
+) -> Result<(BulkRefinement, VersionDocument), DeriveError> {
     let Gathered { model, statistics, recipe } = gathered;
     let request = BulkRequest {
         model: &model,
@@ -41,7 +45,11 @@ pub fn refined(loaded: &Loaded, ship: &str, gathered: Gathered) -> Result<(BulkR
     };
     let refinement = refine(&request)?;
     let fitted = refinement.coefficients.iter().map(|c| {
-        let fitted = Fitted { value: c.refined, standard_error: c.standard_error, prior_deviation: c.prior_deviation };
+        let fitted = Fitted {
+            value: c.refined,
+            standard_error: c.standard_error,
+            prior_deviation: c.prior_deviation,
+        };
         (c.name.clone(), fitted)
     });
     let mut refined = refined_model(&model, &fitted.collect::<BTreeMap<_, _>>(), &loaded.held_by());
@@ -61,15 +69,23 @@ pub fn refined(loaded: &Loaded, ship: &str, gathered: Gathered) -> Result<(BulkR
 /// What is not a number has no place in a document, where it would read as nothing.
 fn finite(report: &Value) -> Result<(), DeriveError> {
     let bad = |key: &str| {
-        DeriveError::Refine(RefineError::Data(format!("`{key}` is not a finite number: the trials do not excite her")))
+        DeriveError::Refine(RefineError::Data(format!(
+            "`{key}` is not a finite number: the trials do not excite her"
+        )))
     };
-    let lists = ["axes", "coefficients"].into_iter().flat_map(|list| report[list].as_array().into_iter().flatten());
+    let lists = ["axes", "coefficients"]
+        .into_iter()
+        .flat_map(|list| report[list].as_array().into_iter().flatten());
     let mut fields = lists.filter_map(Value::as_object).flatten();
     fields.find(|(_, value)| value.is_null()).map_or(Ok(()), |(key, _)| Err(bad(key)))
 }
 
 /// Derives a member's version again, from the samples themselves.
-pub async fn derived(inputs: &Inputs<'_>, ship: &str, recipe: &FamilyRecipe) -> Result<VersionDocument, DeriveError> {
+pub async fn derived(
+    inputs: &Inputs<'_>,
+    ship: &str,
+    recipe: &FamilyRecipe,
+) -> Result<VersionDocument, DeriveError> {
     let order = Order {
         family: String::new(),
         foundation: recipe.foundation.clone(),

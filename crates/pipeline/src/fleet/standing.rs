@@ -34,17 +34,25 @@ impl Standing {
     /// # Errors
     /// The database.
     pub async fn of(store: &Store, bulk: &Bulk) -> Result<Self, StoreError> {
-        let (chunks, counts) = (store.bulks().chunks(&bulk.id).await?, store.bulks().counts(&bulk.id).await?);
-        let outcomes: BTreeMap<String, i64> = counts.into_iter().map(|count| (count.outcome, count.ships)).collect();
+        let (chunks, counts) =
+            (store.bulks().chunks(&bulk.id).await?, store.bulks().counts(&bulk.id).await?);
+        let outcomes: BTreeMap<String, i64> =
+            counts.into_iter().map(|count| (count.outcome, count.ships)).collect();
         let done: i64 = outcomes.values().sum();
         let in_state = |state: JobState| chunks.iter().any(|count| count.state == state);
         let begun = chunks.iter().filter_map(|count| count.started_us).min();
         let open = in_state(JobState::Queued) || in_state(JobState::Running);
-        let ended = if open { None } else { chunks.iter().filter_map(|count| count.finished_us).max() };
-        let seconds = begun.map(|begun| (ended.unwrap_or_else(|| store.now_us()) - begun) as f64 / 1e6);
-        let ships_per_s = seconds.filter(|seconds| *seconds > 0.0 && done > 0).map(|seconds| done as f64 / seconds);
+        let ended =
+            if open { None } else { chunks.iter().filter_map(|count| count.finished_us).max() };
+        let seconds =
+            begun.map(|begun| (ended.unwrap_or_else(|| store.now_us()) - begun) as f64 / 1e6);
+        let ships_per_s = seconds
+            .filter(|seconds| *seconds > 0.0 && done > 0)
+            .map(|seconds| done as f64 / seconds);
         let state = match () {
-            () if in_state(JobState::Running) || (in_state(JobState::Queued) && done > 0) => "running",
+            () if in_state(JobState::Running) || (in_state(JobState::Queued) && done > 0) => {
+                "running"
+            }
             () if in_state(JobState::Queued) => "queued",
             () if in_state(JobState::Failed) => "failed",
             () if in_state(JobState::Cancelled) => "cancelled",

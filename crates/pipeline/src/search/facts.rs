@@ -31,19 +31,30 @@ struct Read {
 }
 
 /// The facts of ships, which are computed on all cores: manoeuvres may have to be sailed for them.
-pub(super) async fn of_ships(archive: &Archive, laws: &Arc<Zoo>, waiting: Vec<Waiting>) -> Result<Vec<ShipFacts>, StoreError> {
+pub(super) async fn of_ships(
+    archive: &Archive,
+    laws: &Arc<Zoo>,
+    waiting: Vec<Waiting>,
+) -> Result<Vec<ShipFacts>, StoreError> {
     let mut ships = Vec::with_capacity(waiting.len());
     for ship in waiting {
         ships.push(read(archive, laws, ship).await?);
     }
     let laws = Arc::clone(laws);
-    let known = tokio::task::spawn_blocking(move || ships.into_par_iter().map(|ship| ship.facts(&laws)).collect());
+    let known = tokio::task::spawn_blocking(move || {
+        ships.into_par_iter().map(|ship| ship.facts(&laws)).collect()
+    });
     Ok(known.await.map_err(sistership_store::ObjectsError::from)?)
 }
 
 /// Reads a ship; nothing where she is deleted. What does not read is told and left out: it must not keep others waiting.
 async fn read(archive: &Archive, laws: &Zoo, waiting: Waiting) -> Result<Read, StoreError> {
-    let nothing = |waiting: Waiting, category: String| Read { waiting, category, vessel: None, champion: None };
+    let nothing = |waiting: Waiting, category: String| Read {
+        waiting,
+        category,
+        vessel: None,
+        champion: None,
+    };
     let ship = match archive.store.ships().get(&waiting.ship).await {
         Err(StoreError::NotFound { .. }) => return Ok(nothing(waiting, String::new())),
         other => other?,
@@ -74,7 +85,12 @@ impl Read {
 }
 
 /// Makes the versions that her document publishes, where whoever wrote it was stopped before that.
-async fn published(archive: &Archive, laws: &Zoo, vessel: &Vessel, ship: &Ship) -> Result<(), StoreError> {
+async fn published(
+    archive: &Archive,
+    laws: &Zoo,
+    vessel: &Vessel,
+    ship: &Ship,
+) -> Result<(), StoreError> {
     if let Err(error) = publish(&archive.store, laws, vessel, &ship.document).await {
         tracing::error!(ship = %ship.name, %error, "the published models of a ship could not be made versions");
     }
@@ -87,18 +103,26 @@ async fn champion(archive: &Archive, ship: &str) -> Result<Option<VersionDocumen
         other => other?,
     };
     let version = archive.store.versions().get(ship, alias.version_number).await?;
-    Ok(document(&version).inspect_err(|error: &DeriveError| tracing::error!(%error, "a champion has no metrics")).ok())
+    Ok(document(&version)
+        .inspect_err(|error: &DeriveError| tracing::error!(%error, "a champion has no metrics"))
+        .ok())
 }
 
 fn known(vessel: &Vessel, champion: Option<&VersionDocument>, laws: &Zoo) -> Vec<(String, f64)> {
-    let particulars = particulars::names().filter_map(|name| Some((fact("particular", name), vessel.particular(name)?)));
+    let particulars = particulars::names()
+        .filter_map(|name| Some((fact("particular", name), vessel.particular(name)?)));
     let metrics = champion.map_or_else(Vec::new, |champion| metrics::metrics(champion, laws));
-    particulars.chain(metrics.into_iter().map(|(name, value)| (fact("metric", name), value))).collect()
+    particulars
+        .chain(metrics.into_iter().map(|(name, value)| (fact("metric", name), value)))
+        .collect()
 }
 
 fn vectors(vessel: &Vessel) -> String {
-    let of = |definition: Definition| (definition.name().to_owned(), CharacteristicVector::of(vessel, definition).values);
-    serde_json::to_string(&Definition::ALL.map(of).into_iter().collect::<Vectors>()).unwrap_or_else(|_| "{}".to_owned())
+    let of = |definition: Definition| {
+        (definition.name().to_owned(), CharacteristicVector::of(vessel, definition).values)
+    };
+    serde_json::to_string(&Definition::ALL.map(of).into_iter().collect::<Vectors>())
+        .unwrap_or_else(|_| "{}".to_owned())
 }
 
 /// The vector of one definition among those that are stored. The others are passed over: ships are compared by thousands.
@@ -143,6 +167,9 @@ mod tests {
     fn one_vector_is_read_among_several() {
         let stored = r#"{"a":{"x":[1,{}]},"b":{"y":0.1,"z":2}}"#;
         let expected = BTreeMap::from([("y".to_owned(), 0.1), ("z".to_owned(), 2.0)]);
-        assert_eq!((vector(stored, "b"), vector(stored, "c"), vector(stored, "a")), (Some(expected), None, None));
+        assert_eq!(
+            (vector(stored, "b"), vector(stored, "c"), vector(stored, "a")),
+            (Some(expected), None, None)
+        );
     }
 }

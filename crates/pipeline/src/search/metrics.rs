@@ -29,12 +29,18 @@ const INITIAL: &str = "initial_turning_m";
 
 /// The names of all metrics.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
-    TURNS.iter().map(|(name, _)| *name).chain(ZIGZAGS.iter().map(|(name, ..)| *name)).chain([INITIAL])
+    TURNS
+        .iter()
+        .map(|(name, _)| *name)
+        .chain(ZIGZAGS.iter().map(|(name, ..)| *name))
+        .chain([INITIAL])
 }
 
 /// The metrics of a version: from its report where that has them, else sailed now. What she does not reach is left out.
 pub(super) fn metrics(version: &VersionDocument, laws: &Zoo) -> Vec<(&'static str, f64)> {
-    reported(&version.report).or_else(|| sailed(version, laws)).map_or_else(Vec::new, |all| of(&all))
+    reported(&version.report)
+        .or_else(|| sailed(version, laws))
+        .map_or_else(Vec::new, |all| of(&all))
 }
 
 fn reported(report: &Value) -> Option<StandardManoeuvres> {
@@ -48,10 +54,14 @@ fn sailed(version: &VersionDocument, laws: &Zoo) -> Option<StandardManoeuvres> {
 
 fn of(all: &StandardManoeuvres) -> Vec<(&'static str, f64)> {
     let turns = TURNS.iter().map(|(name, of)| (*name, greatest(all.turns.iter().map(of))));
-    let zigzag = |angle: f64, of: Zigzag| greatest(all.zigzags.iter().filter(|zigzag| zigzag.switch_deg == angle).map(of));
+    let zigzag = |angle: f64, of: Zigzag| {
+        greatest(all.zigzags.iter().filter(|zigzag| zigzag.switch_deg == angle).map(of))
+    };
     let zigzags = ZIGZAGS.iter().map(|(name, angle, of)| (*name, zigzag(*angle, *of)));
     let found = turns.chain(zigzags).chain([(INITIAL, all.initial_turning_m)]);
-    found.filter_map(|(name, value)| Some((name, value.filter(|value| value.is_finite())?))).collect()
+    found
+        .filter_map(|(name, value)| Some((name, value.filter(|value| value.is_finite())?)))
+        .collect()
 }
 
 /// The greatest of several, unknown as soon as one is unknown.
@@ -69,7 +79,9 @@ mod tests {
     fn a_published_ship_has_every_metric_of_what_she_sails() {
         let zoo = Zoo::embedded().unwrap();
         let (vessel, law) = (zoo.vessel("mariner").unwrap(), zoo.law("abkowitz").unwrap());
-        let version = crate::derive::published_document(vessel, &vessel.file.models[0].name, law, "", "").unwrap();
+        let version =
+            crate::derive::published_document(vessel, &vessel.file.models[0].name, law, "", "")
+                .unwrap();
         let metrics = metrics(&version, &zoo);
         assert!(metrics.iter().map(|(name, _)| *name).eq(names()), "{metrics:?}");
         let sailed = sailed(&version, &zoo).unwrap();

@@ -51,7 +51,8 @@ pub fn metrics() -> impl Iterator<Item = &'static str> {
 
 /// An end of a range.
 const END: &str = r"[+-]?[0-9]{1,15}(\.[0-9]{1,15})?(e[+-]?[0-9]{1,2})?";
-static ENDS: LazyLock<Option<Regex>> = LazyLock::new(|| Regex::new(&format!(r"^({END})?\.\.({END})?$")).ok());
+static ENDS: LazyLock<Option<Regex>> =
+    LazyLock::new(|| Regex::new(&format!(r"^({END})?\.\.({END})?$")).ok());
 
 /// What a range of one of these names looks like, as a regular expression.
 pub fn pattern(names: impl Iterator<Item = &'static str>) -> String {
@@ -60,13 +61,20 @@ pub fn pattern(names: impl Iterator<Item = &'static str>) -> String {
 }
 
 fn range(text: &str, kind: &str, known: &[&str]) -> Result<FactRange, RangeFault> {
-    let form =
-        || format!("write {}:MIN..MAX, with either end left out where it is open, not `{text}`", known.first().unwrap_or(&""));
+    let form = || {
+        format!(
+            "write {}:MIN..MAX, with either end left out where it is open, not `{text}`",
+            known.first().unwrap_or(&"")
+        )
+    };
     let (name, ends) = text.split_once(':').ok_or_else(form)?;
     if !known.contains(&name) {
         return Err(format!("there is no {kind} `{name}`; there are {}", known.join(", ")));
     }
-    let (min, max) = ends.split_once("..").filter(|_| ENDS.as_ref().is_some_and(|form| form.is_match(ends))).ok_or_else(form)?;
+    let (min, max) = ends
+        .split_once("..")
+        .filter(|_| ENDS.as_ref().is_some_and(|form| form.is_match(ends)))
+        .ok_or_else(form)?;
     let end = |text: &str, open: f64| match text {
         "" => Ok(open),
         number => number.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(form),
@@ -94,7 +102,11 @@ mod tests {
         assert_eq!((read.fact.as_str(), read.min, read.max), ("particular lpp_m", 100.0, 200.5));
         assert_eq!(particular("x_g_m:-3..").unwrap().max, f64::MAX);
         assert_eq!(metric("turn_35.tactical_diameter_m:..900").unwrap().min, f64::MIN);
-        assert!(particular("length_m:1..2").unwrap_err().contains("there is no particular `length_m`; there are lpp_m, "));
+        assert!(
+            particular("length_m:1..2")
+                .unwrap_err()
+                .contains("there is no particular `length_m`; there are lpp_m, ")
+        );
         assert!(metric("lpp_m:1..2").unwrap_err().contains("turn_35.advance_m"));
         assert!(particular("lpp_m:2..1").unwrap_err().contains("2 is above 1"));
         for wrong in ["lpp_m", "lpp_m:", "lpp_m:1", "lpp_m:a..b", "lpp_m:NaN..1", "lpp_m:..inf"] {

@@ -32,7 +32,11 @@ pub(super) async fn ships(
 }
 
 /// The names of the ships of a ship's category that are most similar to her, the most similar first.
-pub async fn nearest(archive: &Archive, target: &Vessel, count: usize) -> Result<Vec<String>, StoreError> {
+pub async fn nearest(
+    archive: &Archive,
+    target: &Vessel,
+    count: usize,
+) -> Result<Vec<String>, StoreError> {
     let found = ranked(archive, &ShipSearch::default(), target, definition_for(target)).await?;
     Ok(found.into_iter().take(count).map(|ship| ship.name).collect())
 }
@@ -54,10 +58,12 @@ async fn ranked(
 fn rank(all: Vec<ShipVectors>, name: &str, target: &CharacteristicVector) -> Vec<FoundShip> {
     let correlated = |ship: ShipVectors| {
         let values = facts::vector(&ship.vectors, target.definition.name())?;
-        let correlation = target.correlation(&CharacteristicVector { definition: target.definition, values })?;
+        let correlation =
+            target.correlation(&CharacteristicVector { definition: target.definition, values })?;
         Some(FoundShip { value: Some(correlation), ..ship.head })
     };
-    let mut found: Vec<FoundShip> = all.into_iter().filter(|ship| ship.head.name != name).filter_map(correlated).collect();
+    let mut found: Vec<FoundShip> =
+        all.into_iter().filter(|ship| ship.head.name != name).filter_map(correlated).collect();
     found.sort_unstable_by(|a, b| order(place(a), place(b)));
     found
 }

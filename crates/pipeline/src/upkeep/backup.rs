@@ -18,7 +18,11 @@ pub async fn backup(archive: &Archive, folder: &Path) -> Result<BackupManifest> 
 ///
 /// # Errors
 /// The place is not empty, the backup is damaged or of another kind of database, or something cannot be written.
-pub async fn restore(folder: &Path, database_url: &str, samples: &ObjectsPlace) -> Result<BackupManifest> {
+pub async fn restore(
+    folder: &Path,
+    database_url: &str,
+    samples: &ObjectsPlace,
+) -> Result<BackupManifest> {
     // Before the data folder is made: a backup that does not read leaves nothing behind.
     BackupManifest::read(folder)?;
     Store::restore(folder, database_url, &Objects::at(samples)?).await

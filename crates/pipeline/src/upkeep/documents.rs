@@ -73,9 +73,18 @@ async fn recipe(
 ) -> Result<()> {
     let recipe = &document.recipe;
     if document.ship != version.head.model {
-        findings.add("version-document", place.to_owned(), format!("its document is about `{}`", document.ship));
+        findings.add(
+            "version-document",
+            place.to_owned(),
+            format!("its document is about `{}`", document.ship),
+        );
     }
-    told("version-law", place, archive.law(&version.head.law, recipe.law_sha256()).await.map(drop), findings)?;
+    told(
+        "version-law",
+        place,
+        archive.law(&version.head.law, recipe.law_sha256()).await.map(drop),
+        findings,
+    )?;
     if let Some(hash) = recipe.ship_sha256() {
         told("version-ship", place, archive.ship(&document.ship, hash).await.map(drop), findings)?;
     }
@@ -90,7 +99,8 @@ async fn recipe(
     }
     for trial in recipe.trials() {
         if !there(&archive.objects, &trial.sha256).await? {
-            let message = format!("the samples {} of its trial `{}` are missing", trial.sha256, trial.name);
+            let message =
+                format!("the samples {} of its trial `{}` are missing", trial.sha256, trial.name);
             findings.add("version-trial", place.to_owned(), message);
         }
     }
@@ -120,9 +130,14 @@ async fn job(archive: &Archive, job: &Job, findings: &mut Findings) -> Result<()
     };
     if let (Some(model), Some(number)) = (result["model"].as_str(), result["version"].as_i64()) {
         match archive.store.versions().get(model, number).await {
-            Ok(version) if result["sha256"].as_str().is_none_or(|sha256| sha256 == version.head.sha256) => {}
+            Ok(version)
+                if result["sha256"].as_str().is_none_or(|sha256| sha256 == version.head.sha256) => {
+            }
             Ok(version) => {
-                let message = format!("names another hash of version {model}/{number} than {}", version.head.sha256);
+                let message = format!(
+                    "names another hash of version {model}/{number} than {}",
+                    version.head.sha256
+                );
                 findings.add("job-result", place.clone(), message);
             }
             Err(error) => findings.add("job-result", place.clone(), store_fault(error)?),
@@ -153,19 +168,38 @@ pub(super) async fn diagnoses(archive: &Archive, findings: &mut Findings) -> Res
 }
 
 /// The trials of a diagnosis, deleted or not.
-async fn diagnosed(archive: &Archive, trials: &[String], place: &str, findings: &mut Findings) -> Result<()> {
+async fn diagnosed(
+    archive: &Archive,
+    trials: &[String],
+    place: &str,
+    findings: &mut Findings,
+) -> Result<()> {
     for trial in trials {
         if !archive.store.trials().was(trial).await? {
-            findings.add("diagnosis-trials", place.to_owned(), format!("there is no trial {trial}"));
+            findings.add(
+                "diagnosis-trials",
+                place.to_owned(),
+                format!("there is no trial {trial}"),
+            );
         }
     }
     Ok(())
 }
 
-fn hash(check: &'static str, place: String, document: &str, recorded: &str, findings: &mut Findings) {
+fn hash(
+    check: &'static str,
+    place: String,
+    document: &str,
+    recorded: &str,
+    findings: &mut Findings,
+) {
     let actual = sha256(document.as_bytes());
     if actual != recorded {
-        findings.add(check, place, format!("its document has the hash {actual}, not {recorded} as recorded"));
+        findings.add(
+            check,
+            place,
+            format!("its document has the hash {actual}, not {recorded} as recorded"),
+        );
     }
 }
 

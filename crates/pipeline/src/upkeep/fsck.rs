@@ -11,7 +11,8 @@ use crate::archive::Archive;
 /// # Errors
 /// The database or the object store does not answer; what they hold is told as faults.
 pub async fn fsck(archive: &Archive) -> Result<Findings> {
-    let mut findings = Findings { faults: archive.store.row_faults().await?, ..Findings::default() };
+    let mut findings =
+        Findings { faults: archive.store.row_faults().await?, ..Findings::default() };
     documents::laws(archive, &mut findings).await?;
     documents::effects(archive, &mut findings).await?;
     documents::versions(archive, &mut findings).await?;

@@ -37,7 +37,8 @@ pub struct Collected {
 /// The database or the object store does not answer; what has been removed by then is gone.
 pub async fn gc(archive: &Archive, grace: Duration, dry_run: bool) -> Result<Collected> {
     let named = named(archive).await?;
-    let before_us = archive.store.now_us().saturating_sub(i64::try_from(grace.as_micros()).unwrap_or(i64::MAX));
+    let before_us =
+        archive.store.now_us().saturating_sub(i64::try_from(grace.as_micros()).unwrap_or(i64::MAX));
     let mut collected = Collected { dry_run, ..Collected::default() };
     let mut old = Vec::new();
     let mut all = archive.objects.list();
@@ -51,7 +52,11 @@ pub async fn gc(archive: &Archive, grace: Duration, dry_run: bool) -> Result<Col
             true => archive.store.unreferred(&keys).await?,
             false => archive.store.remove_unreferred(&archive.objects, &keys).await?,
         };
-        collected.bytes += some.iter().filter(|(key, _)| removed.contains(key)).map(|(_, bytes)| bytes).sum::<u64>();
+        collected.bytes += some
+            .iter()
+            .filter(|(key, _)| removed.contains(key))
+            .map(|(_, bytes)| bytes)
+            .sum::<u64>();
         collected.removed.extend(removed);
     }
     unfinished(archive, before_us, &mut collected).await?;
@@ -61,7 +66,9 @@ pub async fn gc(archive: &Archive, grace: Duration, dry_run: bool) -> Result<Col
 /// Removes what puts have left that never ended. No row can refer to it.
 async fn unfinished(archive: &Archive, before_us: i64, collected: &mut Collected) -> Result<()> {
     let before_us = before_us.min(archive.store.now_us() - LONGEST_PUT_US);
-    for staged in archive.objects.staged().await?.into_iter().filter(|staged| staged.modified_us < before_us) {
+    for staged in
+        archive.objects.staged().await?.into_iter().filter(|staged| staged.modified_us < before_us)
+    {
         if !collected.dry_run {
             archive.objects.remove_staged(&staged).await?;
         }
@@ -74,7 +81,9 @@ async fn unfinished(archive: &Archive, before_us: i64, collected: &mut Collected
 /// Key and size of an object that is old enough and that no version names. What is not named by a hash is not ours.
 fn candidate(head: ObjectHead, before_us: i64, named: &HashSet<String>) -> Option<(String, u64)> {
     match head.name {
-        ObjectName::Key(key) if head.modified_us < before_us && !named.contains(&key) => Some((key, head.bytes)),
+        ObjectName::Key(key) if head.modified_us < before_us && !named.contains(&key) => {
+            Some((key, head.bytes))
+        }
         _ => None,
     }
 }
@@ -87,7 +96,12 @@ async fn named(archive: &Archive) -> Result<HashSet<String>> {
         for version in &versions.items {
             // What a damaged document named cannot be known; `fsck` tells of it.
             let document = document(version).ok();
-            named.extend(document.iter().flat_map(|document| document.recipe.trials()).map(|trial| trial.sha256.clone()));
+            named.extend(
+                document
+                    .iter()
+                    .flat_map(|document| document.recipe.trials())
+                    .map(|trial| trial.sha256.clone()),
+            );
         }
         let Some(next) = versions.next else { return Ok(named) };
         page = Page::after(next, ROWS);

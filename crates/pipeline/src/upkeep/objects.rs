@@ -23,22 +23,33 @@ pub(super) async fn check(archive: &Archive, findings: &mut Findings) -> Result<
     trials(archive, &mut objects, findings).await?;
     findings.unreferred = Unreferred { objects: objects.len(), bytes: objects.values().sum() };
     let staged = archive.objects.staged().await?;
-    findings.unfinished = Unreferred { objects: staged.len(), bytes: staged.iter().map(|staged| staged.bytes).sum() };
+    findings.unfinished =
+        Unreferred { objects: staged.len(), bytes: staged.iter().map(|staged| staged.bytes).sum() };
     Ok(())
 }
 
 /// The key of an object, after a look at its bytes; none where it has none.
-async fn object(archive: &Archive, head: &ObjectHead, findings: &mut Findings) -> Result<Option<String>> {
+async fn object(
+    archive: &Archive,
+    head: &ObjectHead,
+    findings: &mut Findings,
+) -> Result<Option<String>> {
     match &head.name {
         ObjectName::Stranger(path) => {
-            findings.add("object-name", format!("object {path}"), "is not named by a hash: the store has not put it there");
+            findings.add(
+                "object-name",
+                format!("object {path}"),
+                "is not named by a hash: the store has not put it there",
+            );
             Ok(None)
         }
         ObjectName::Key(key) => {
             // One that is gone by now was removed as garbage; where a trial needs it, that is told with the trial.
             match archive.objects.get(key).await {
                 Ok(_) | Err(sistership_store::StoreError::NotFound { .. }) => {}
-                Err(error) => findings.add("object-hash", format!("object {key}"), store_fault(error)?),
+                Err(error) => {
+                    findings.add("object-hash", format!("object {key}"), store_fault(error)?)
+                }
             }
             Ok(Some(key.clone()))
         }
@@ -46,15 +57,25 @@ async fn object(archive: &Archive, head: &ObjectHead, findings: &mut Findings) -
 }
 
 /// Takes the objects that trials refer to out of `objects`.
-async fn trials(archive: &Archive, objects: &mut HashMap<String, u64>, findings: &mut Findings) -> Result<()> {
+async fn trials(
+    archive: &Archive,
+    objects: &mut HashMap<String, u64>,
+    findings: &mut Findings,
+) -> Result<()> {
     let mut page = Page::first(ROWS);
     loop {
         let trials = archive.store.trials().all(&page).await?;
         for trial in trials.items {
             findings.checked.trials += 1;
-            if objects.remove(&trial.object_key).is_none() && !there(&archive.objects, &trial.object_key).await? {
+            if objects.remove(&trial.object_key).is_none()
+                && !there(&archive.objects, &trial.object_key).await?
+            {
                 let place = format!("trial {} of {}", trial.id, trial.ship);
-                findings.add("trial-object", place, format!("its samples {} are missing", trial.object_key));
+                findings.add(
+                    "trial-object",
+                    place,
+                    format!("its samples {} are missing", trial.object_key),
+                );
             }
         }
         let Some(next) = trials.next else { return Ok(()) };

@@ -27,7 +27,9 @@ pub(super) fn fault(error: DeriveError) -> Result<String, StoreError> {
 pub(super) fn store_fault(error: StoreError) -> Result<String, StoreError> {
     match error {
         StoreError::NotFound { .. } | StoreError::Invalid { .. } => Ok(error.to_string()),
-        StoreError::Objects(sistership_store::ObjectsError::Damaged { .. }) => Ok(error.to_string()),
+        StoreError::Objects(sistership_store::ObjectsError::Damaged { .. }) => {
+            Ok(error.to_string())
+        }
         other => Err(other),
     }
 }

@@ -65,8 +65,15 @@ async fn places() -> Vec<Place> {
     }
     for database in databases().await {
         let s3 = TestS3::start().await;
-        let (store, objects) = (Store::connect(&database.url, Arc::new(SystemClock)).await.unwrap(), s3.objects("fleet"));
-        places.push(Place { archive: filled(Archive { store, objects }).await, _database: database, _s3: Some(s3) });
+        let (store, objects) = (
+            Store::connect(&database.url, Arc::new(SystemClock)).await.unwrap(),
+            s3.objects("fleet"),
+        );
+        places.push(Place {
+            archive: filled(Archive { store, objects }).await,
+            _database: database,
+            _s3: Some(s3),
+        });
     }
     places
 }
@@ -76,9 +83,14 @@ async fn a_healthy_archive_is_clean() {
     for Place { archive, .. } in &places().await {
         let findings = found(archive).await;
         assert!(findings.clean && findings.faults.is_empty(), "{findings:#?}");
-        assert_eq!((findings.checked.trials, findings.checked.objects, findings.unreferred.objects), (1, 1, 0));
+        assert_eq!(
+            (findings.checked.trials, findings.checked.objects, findings.unreferred.objects),
+            (1, 1, 0)
+        );
         assert!(
-            findings.checked.laws > 3 && findings.checked.effects > 0 && findings.checked.versions > 5,
+            findings.checked.laws > 3
+                && findings.checked.effects > 0
+                && findings.checked.versions > 5,
             "{:?}",
             findings.checked
         );
@@ -91,24 +103,64 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ("DELETE FROM ships WHERE name = 'mariner'", "revision-ship", "ship mariner revision 1"),
     ("UPDATE ships SET title = 'Another' WHERE name = 'mariner'", "revision-last", "ship mariner"),
     ("UPDATE ships SET revision = 2 WHERE name = 'mariner'", "revision-last", "ship mariner"),
-    ("UPDATE ship_revisions SET revision = 2 WHERE ship = 'mariner'", "revision-gap", "ship mariner"),
-    ("UPDATE ship_revisions SET document = '{}' WHERE ship = 'mariner'", "version-ship", "version mariner/1"),
+    (
+        "UPDATE ship_revisions SET revision = 2 WHERE ship = 'mariner'",
+        "revision-gap",
+        "ship mariner",
+    ),
+    (
+        "UPDATE ship_revisions SET document = '{}' WHERE ship = 'mariner'",
+        "version-ship",
+        "version mariner/1",
+    ),
     ("UPDATE trials SET sha256 = 'x'", "trial-key", "trial "),
     ("UPDATE trials SET object_key = '00'", "trial-key", "trial "),
-    ("UPDATE laws SET document = document || ' ' WHERE name = 'abkowitz'", "law-hash", "law abkowitz"),
+    (
+        "UPDATE laws SET document = document || ' ' WHERE name = 'abkowitz'",
+        "law-hash",
+        "law abkowitz",
+    ),
     ("UPDATE laws SET sha256 = 'x' WHERE name = 'abkowitz'", "law-hash", "law abkowitz"),
-    ("UPDATE effect_libraries SET document = document || ' '", "effects-hash", "library of effects 4ffa"),
+    (
+        "UPDATE effect_libraries SET document = document || ' '",
+        "effects-hash",
+        "library of effects 4ffa",
+    ),
     ("DELETE FROM laws WHERE name = 'abkowitz'", "version-law", "version "),
-    ("UPDATE versions SET document = document || ' ' WHERE model = 'mariner'", "version-hash", "version mariner/1"),
-    ("UPDATE versions SET document = '{}' WHERE model = 'mariner'", "version-document", "version mariner/1"),
-    ("UPDATE versions SET parent = 'none' WHERE model = 'mariner'", "version-parent", "version mariner/1"),
+    (
+        "UPDATE versions SET document = document || ' ' WHERE model = 'mariner'",
+        "version-hash",
+        "version mariner/1",
+    ),
+    (
+        "UPDATE versions SET document = '{}' WHERE model = 'mariner'",
+        "version-document",
+        "version mariner/1",
+    ),
+    (
+        "UPDATE versions SET parent = 'none' WHERE model = 'mariner'",
+        "version-parent",
+        "version mariner/1",
+    ),
     ("DELETE FROM models WHERE name = 'mariner'", "version-model", "version mariner/1"),
     ("UPDATE models SET next_number = 9 WHERE name = 'mariner'", "version-gap", "model mariner"),
     ("DELETE FROM versions WHERE model = 'mariner'", "version-gap", "model mariner"),
     ("DELETE FROM versions WHERE model = 'mariner'", "alias-version", "alias mariner/champion"),
-    ("DELETE FROM versions WHERE model = 'mariner'", "move-version", "alias mariner/champion revision 1"),
-    ("UPDATE aliases SET revision = 7 WHERE model = 'mariner'", "alias-last", "alias mariner/champion"),
-    ("UPDATE alias_moves SET from_number = 4 WHERE model = 'mariner'", "move-chain", "alias mariner/champion revision 1"),
+    (
+        "DELETE FROM versions WHERE model = 'mariner'",
+        "move-version",
+        "alias mariner/champion revision 1",
+    ),
+    (
+        "UPDATE aliases SET revision = 7 WHERE model = 'mariner'",
+        "alias-last",
+        "alias mariner/champion",
+    ),
+    (
+        "UPDATE alias_moves SET from_number = 4 WHERE model = 'mariner'",
+        "move-chain",
+        "alias mariner/champion revision 1",
+    ),
     ("DELETE FROM aliases WHERE model = 'mariner'", "move-alias", "alias mariner/champion"),
     (REPORT, "report-ship", "report r"),
     (REPORT, "report-version", "report r"),
@@ -129,14 +181,17 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     (JOB, "job-state", "job j"),
     (JOB, "job-result", "job j"),
 ];
-const REPORT: &str = "INSERT INTO reports VALUES ('r', 'none', 'nobody', 'refinement', '{}', '', 0)";
-const DIAGNOSIS: &str = "INSERT INTO diagnoses VALUES ('d', 'none', 'none', 'none', 'effects', '[]', '[\"none\"]', 0)";
+const REPORT: &str =
+    "INSERT INTO reports VALUES ('r', 'none', 'nobody', 'refinement', '{}', '', 0)";
+const DIAGNOSIS: &str =
+    "INSERT INTO diagnoses VALUES ('d', 'none', 'none', 'none', 'effects', '[]', '[\"none\"]', 0)";
 const FAMILY: &str = "INSERT INTO families VALUES ('f', 'F', 'none', 0)";
 const MEMBER: &str = "INSERT INTO family_members VALUES ('f', 'nobody', 0)";
 const PRIOR: &str = "INSERT INTO family_priors VALUES ('f', 2, '{}', 'x', 0)";
 const BULK: &str = "INSERT INTO bulk_refinements VALUES ('b', 'f', '{}', 1, 0)";
 const CHUNK: &str = "INSERT INTO bulk_chunks VALUES ('b', 1, 'none')";
-const OUTCOME: &str = "INSERT INTO bulk_outcomes VALUES ('b', 'mariner', 'champion', NULL, NULL, '{}', 0)";
+const OUTCOME: &str =
+    "INSERT INTO bulk_outcomes VALUES ('b', 'mariner', 'champion', NULL, NULL, '{}', 0)";
 const TAG: &str = "INSERT INTO ship_tags VALUES ('nobody', 'own')";
 const FACT: &str = "INSERT INTO ship_facts VALUES ('nobody', 'particular lpp_m', 1)";
 const JOB: &str = "INSERT INTO jobs VALUES ('j', 'refinement', 'nobody', '{}', 'succeeded', 1, '', \
@@ -163,8 +218,14 @@ async fn damaged(database: TestDatabase) {
     for (sql, check, place) in DAMAGES {
         database.damage(sql).await;
         let findings = found(&archive).await;
-        let hit = findings.faults.iter().any(|fault| fault.check == *check && fault.place.starts_with(place));
-        assert!(hit && !findings.clean, "`{sql}` must be told by `{check}` at `{place}`: {findings:#?}");
+        let hit = findings
+            .faults
+            .iter()
+            .any(|fault| fault.check == *check && fault.place.starts_with(place));
+        assert!(
+            hit && !findings.clean,
+            "`{sql}` must be told by `{check}` at `{place}`: {findings:#?}"
+        );
         for table in TABLES {
             database.damage(&format!("DELETE FROM {table}")).await;
             database.damage(&format!("INSERT INTO {table} SELECT * FROM healthy_{table}")).await;
@@ -206,10 +267,16 @@ async fn each_damage_to_objects_is_named() {
     let file = database.folder.path().join("objects").join(&key[..2]).join(&key[2..]);
     std::fs::write(&file, b"sample5").unwrap();
     let findings = found(&archive).await;
-    assert_eq!((findings.faults[0].check, &findings.faults[0].place), ("object-hash", &format!("object {key}")));
+    assert_eq!(
+        (findings.faults[0].check, &findings.faults[0].place),
+        ("object-hash", &format!("object {key}"))
+    );
     std::fs::remove_file(&file).unwrap();
     let findings = found(&archive).await;
-    assert!(findings.faults.len() == 1 && findings.faults[0].check == "trial-object", "{findings:#?}");
+    assert!(
+        findings.faults.len() == 1 && findings.faults[0].check == "trial-object",
+        "{findings:#?}"
+    );
     std::fs::write(database.folder.path().join("objects/notes.txt"), b"?").unwrap();
     assert!(found(&archive).await.faults.iter().any(|fault| fault.check == "object-name"));
 }
@@ -231,9 +298,21 @@ async fn a_source_that_has_changed_is_named() {
         method: "published".into(),
         document: document.to_string(),
     };
-    archive.store.versions().create(&new, &[step("candidate", Expect::Any, "a test")]).await.unwrap();
-    let checks: Vec<_> = found(&archive).await.faults.into_iter().map(|fault| (fault.check, fault.place)).collect();
-    assert_eq!(checks, [("version-source", "version mariner/2".into()), ("version-trial", "version mariner/2".into())]);
+    archive
+        .store
+        .versions()
+        .create(&new, &[step("candidate", Expect::Any, "a test")])
+        .await
+        .unwrap();
+    let checks: Vec<_> =
+        found(&archive).await.faults.into_iter().map(|fault| (fault.check, fault.place)).collect();
+    assert_eq!(
+        checks,
+        [
+            ("version-source", "version mariner/2".into()),
+            ("version-trial", "version mariner/2".into())
+        ]
+    );
 }
 
 #[tokio::test(flavor = "multi_thread")]
@@ -242,12 +321,19 @@ async fn garbage_goes_when_it_is_old_and_nobodys() {
         let orphan = archive.objects.put(Bytes::from_static(b"orphan")).await.unwrap();
         assert_eq!(found(archive).await.unreferred, super::Unreferred { objects: 1, bytes: 6 });
         let young = gc(archive, Duration::from_secs(3600), false).await.unwrap();
-        assert_eq!((young.removed.len(), young.objects), (0, 2), "what was put just now may still get its row");
+        assert_eq!(
+            (young.removed.len(), young.objects),
+            (0, 2),
+            "what was put just now may still get its row"
+        );
         tokio::time::sleep(Duration::from_millis(20)).await;
         let asked = gc(archive, Duration::ZERO, true).await.unwrap();
         assert_eq!((asked.removed.as_slice(), asked.bytes), ([orphan.clone()].as_slice(), 6));
         assert!(archive.objects.exists(&orphan).await.unwrap(), "a dry run removes nothing");
-        assert_eq!(gc(archive, Duration::ZERO, false).await.unwrap().removed, std::slice::from_ref(&orphan));
+        assert_eq!(
+            gc(archive, Duration::ZERO, false).await.unwrap().removed,
+            std::slice::from_ref(&orphan)
+        );
         assert!(!archive.objects.exists(&orphan).await.unwrap());
         assert!(found(archive).await.clean);
     }
@@ -263,8 +349,14 @@ async fn puts_that_never_ended_are_seen_and_go_when_they_are_old() {
     let file = std::fs::File::create(&place).unwrap();
     std::io::Write::write_all(&mut &file, b"half").unwrap();
     let findings = found(&archive).await;
-    assert!(findings.clean && findings.unfinished == super::Unreferred { objects: 1, bytes: 4 }, "{findings:#?}");
-    assert!(gc(&archive, Duration::ZERO, false).await.unwrap().unfinished.is_empty(), "it may be under way");
+    assert!(
+        findings.clean && findings.unfinished == super::Unreferred { objects: 1, bytes: 4 },
+        "{findings:#?}"
+    );
+    assert!(
+        gc(&archive, Duration::ZERO, false).await.unwrap().unfinished.is_empty(),
+        "it may be under way"
+    );
     file.set_modified(SystemTime::now() - Duration::from_secs(7200)).unwrap();
     assert_eq!(gc(&archive, Duration::ZERO, true).await.unwrap().unfinished, ["objects/00/11#1"]);
     assert_eq!(gc(&archive, Duration::ZERO, false).await.unwrap().bytes, 4);
@@ -306,7 +398,8 @@ async fn upload(archive: &Archive, objects: &Objects, number: i32) {
     for _ in 0..1000 {
         let key = objects.put(Bytes::from(format!("samples {number}"))).await.unwrap();
         tokio::task::yield_now().await;
-        match archive.store.trials().insert_all_and_enqueue(&[trial(&key)], objects, |_| None).await {
+        match archive.store.trials().insert_all_and_enqueue(&[trial(&key)], objects, |_| None).await
+        {
             Err(sistership_store::StoreError::NotFound { kind: "object", .. }) => {}
             other => return drop(other.unwrap()),
         }

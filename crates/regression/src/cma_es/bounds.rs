@@ -18,7 +18,12 @@ pub(super) struct Bounds {
 
 impl Bounds {
     pub fn new(widths: &[f64]) -> Self {
-        Self { widths: widths.to_vec(), weights: vec![1.0; widths.len()], begun: false, spreads: VecDeque::new() }
+        Self {
+            widths: widths.to_vec(),
+            weights: vec![1.0; widths.len()],
+            begun: false,
+            spreads: VecDeque::new(),
+        }
     }
 
     /// The point of the box that is nearest.
@@ -30,14 +35,18 @@ impl Bounds {
     pub fn penalty(&self, point: &[f64]) -> f64 {
         let beyond = |(x, width): (&f64, &f64)| (x.abs() - width).max(0.0);
         let one = |(weight, at): (&f64, (&f64, &f64))| weight * beyond(at).powi(2);
-        self.weights.iter().zip(point.iter().zip(&self.widths)).map(one).sum::<f64>() / point.len() as f64
+        self.weights.iter().zip(point.iter().zip(&self.widths)).map(one).sum::<f64>()
+            / point.len() as f64
     }
 
     /// Adapts the weights to how the costs of a generation (without penalty) spread and to how far the mean is outside.
     pub fn adapt(&mut self, strategy: &Strategy, costs: &[f64]) {
         let variances = strategy.variances();
         let n = variances.len() as f64;
-        self.remember(quartiles(costs) / (variances.sum() / n), 20 + 3 * self.widths.len() / costs.len().max(1));
+        self.remember(
+            quartiles(costs) / (variances.sum() / n),
+            20 + 3 * self.widths.len() / costs.len().max(1),
+        );
         let mut recent: Vec<f64> = self.spreads.iter().copied().collect();
         recent.sort_by(f64::total_cmp);
         let Some(&typical) = recent.get(recent.len() / 2) else { return };

@@ -89,7 +89,13 @@ impl CmaEsSearch {
         let start: Vec<f64> = Bounds::new(&self.widths).inside(first.mean().as_slice());
         let (mut spent, worth) = (Spent::nothing(), cost(&start));
         spent.evaluations += 1;
-        let mut outcome = SearchOutcome { best: start, cost: worth, strategy: first.clone(), spent, populations: Vec::new() };
+        let mut outcome = SearchOutcome {
+            best: start,
+            cost: worth,
+            strategy: first.clone(),
+            spent,
+            populations: Vec::new(),
+        };
         let mut strategy = first;
         loop {
             outcome.populations.push(strategy.population());
@@ -108,8 +114,14 @@ impl CmaEsSearch {
     fn restarted(&self, restart: usize, population: usize) -> Strategy {
         let seed = self.seed.wrapping_add(restart as u64);
         let mut rng = ChaCha12Rng::seed_from_u64(seed);
-        let start: Vec<f64> = self.widths.iter().map(|width| rng.random_range(-1.0..=1.0) * width).collect();
-        Strategy::new(&start, self.sigma, (2 * population).min(self.largest_population.max(self.population)), seed)
+        let start: Vec<f64> =
+            self.widths.iter().map(|width| rng.random_range(-1.0..=1.0) * width).collect();
+        Strategy::new(
+            &start,
+            self.sigma,
+            (2 * population).min(self.largest_population.max(self.population)),
+            seed,
+        )
     }
 
     /// One run until it has converged or the budget is used up; says whether it found something better.
@@ -129,8 +141,11 @@ impl CmaEsSearch {
             outcome.spent.evaluations += costs.len();
             // Among hundreds of coordinates the mean is better than most of what is drawn about it: it is evaluated too.
             let of_mean = costs.pop().zip(points.pop());
-            let penalised: Vec<f64> =
-                candidates.column_iter().zip(&costs).map(|(x, cost)| cost + bounds.penalty(x.as_slice())).collect();
+            let penalised: Vec<f64> = candidates
+                .column_iter()
+                .zip(&costs)
+                .map(|(x, cost)| cost + bounds.penalty(x.as_slice()))
+                .collect();
             let generation = costs.iter().copied().zip(points).chain(of_mean);
             if let Some((cost, point)) = generation.min_by(|a, b| a.0.total_cmp(&b.0)) {
                 recent.push_front(cost);
@@ -169,13 +184,18 @@ fn evaluated(
 ) -> (Vec<Vec<f64>>, Vec<f64>) {
     let inside = candidates.column_iter().map(|x| bounds.inside(x.as_slice()));
     let points: Vec<Vec<f64>> = inside.chain([bounds.inside(mean.as_slice())]).collect();
-    let costs = points.par_iter().map(|point| cost(point)).map(|cost| if cost.is_nan() { f64::INFINITY } else { cost });
+    let costs = points
+        .par_iter()
+        .map(|point| cost(point))
+        .map(|cost| if cost.is_nan() { f64::INFINITY } else { cost });
     let costs = costs.collect();
     (points, costs)
 }
 
 /// Whether the best of a generation has not changed for long: Auger and Hansen 2005, with a tolerance by its own size.
 fn converged(recent: &VecDeque<f64>, patience: usize) -> bool {
-    let (low, high) = recent.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| (low.min(*c), high.max(*c)));
+    let (low, high) = recent
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| (low.min(*c), high.max(*c)));
     recent.len() >= patience && high - low <= 1e-12 + 1e-9 * low.abs()
 }

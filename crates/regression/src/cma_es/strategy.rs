@@ -93,7 +93,9 @@ impl Strategy {
         let steady = self.follow(&moved, &normal);
         self.adapt(&order, steady);
         let Weights { step_rate, step_damping, expected_length, .. } = self.weights;
-        self.sigma *= (step_rate / step_damping * (self.step_path.norm() / expected_length - 1.0)).min(1.0).exp();
+        self.sigma *= (step_rate / step_damping * (self.step_path.norm() / expected_length - 1.0))
+            .min(1.0)
+            .exp();
         if self.generation - self.decomposed >= self.weights.patience(self.mean.len()) {
             self.decompose();
         }
@@ -104,7 +106,8 @@ impl Strategy {
         let Weights { step_rate, path_rate, mass, expected_length, .. } = self.weights;
         self.step_path *= 1.0 - step_rate;
         self.step_path += (&self.vectors * normal) * (step_rate * (2.0 - step_rate) * mass).sqrt();
-        let settled = (1.0 - (1.0 - step_rate).powi(2 * self.generation.min(1 << 20) as i32)).sqrt();
+        let settled =
+            (1.0 - (1.0 - step_rate).powi(2 * self.generation.min(1 << 20) as i32)).sqrt();
         let longest = (1.4 + 2.0 / (self.mean.len() as f64 + 1.0)) * expected_length;
         let steady = self.step_path.norm() / settled < longest;
         self.path *= 1.0 - path_rate;
@@ -119,10 +122,16 @@ impl Strategy {
         let Weights { rank_one_rate, rank_mu_rate, path_rate, .. } = self.weights;
         let n = self.mean.len() as f64;
         let missed = if steady { 0.0 } else { path_rate * (2.0 - path_rate) };
-        let kept = 1.0 + rank_one_rate * missed - rank_one_rate - rank_mu_rate * self.weights.all.iter().sum::<f64>();
+        let kept = 1.0 + rank_one_rate * missed
+            - rank_one_rate
+            - rank_mu_rate * self.weights.all.iter().sum::<f64>();
         let mut scaled = self.shaped.clone();
         for (k, w) in order.iter().zip(&self.weights.all) {
-            let factor = if *w >= 0.0 { *w } else { w * n / self.normal.column(*k).norm_squared().max(f64::MIN_POSITIVE) };
+            let factor = if *w >= 0.0 {
+                *w
+            } else {
+                w * n / self.normal.column(*k).norm_squared().max(f64::MIN_POSITIVE)
+            };
             scaled.column_mut(*k).scale_mut(factor);
         }
         self.covariance.gemm(rank_mu_rate, &scaled, &self.shaped.transpose(), kept);
@@ -132,7 +141,8 @@ impl Strategy {
     fn decompose(&mut self) {
         self.decomposed = self.generation;
         self.covariance = (&self.covariance + self.covariance.transpose()) * 0.5;
-        let SymmetricEigen { eigenvectors, eigenvalues } = self.covariance.clone().symmetric_eigen();
+        let SymmetricEigen { eigenvectors, eigenvalues } =
+            self.covariance.clone().symmetric_eigen();
         let least = 1e-14 * eigenvalues.max();
         self.roots = eigenvalues.map(|value| value.max(least).sqrt());
         self.axes = &eigenvectors * DMatrix::from_diagonal(&self.roots);
@@ -167,7 +177,8 @@ impl Strategy {
     /// Whether no axis can move the mean any more, or the covariance has become as good as singular (Auger and Hansen 2005).
     pub(super) fn exhausted(&self) -> bool {
         let (low, high) = (self.roots.min(), self.roots.max());
-        let still = self.mean.iter().zip(self.variances().iter()).all(|(m, v)| m + 0.2 * v.sqrt() == *m);
+        let still =
+            self.mean.iter().zip(self.variances().iter()).all(|(m, v)| m + 0.2 * v.sqrt() == *m);
         still || !self.sigma.is_finite() || high >= 1e7 * low
     }
 }

@@ -2,7 +2,14 @@ use super::*;
 
 fn search(dimension: usize, width: f64, evaluations: usize) -> CmaEsSearch {
     let budget = Budget { evaluations, wall_s: None, cpu_s: None };
-    CmaEsSearch { widths: vec![width; dimension], sigma: 0.5, population: 16, largest_population: 64, seed: 7, budget }
+    CmaEsSearch {
+        widths: vec![width; dimension],
+        sigma: 0.5,
+        population: 16,
+        largest_population: 64,
+        seed: 7,
+        budget,
+    }
 }
 
 fn least(search: &CmaEsSearch, cost: &(dyn Fn(&[f64]) -> f64 + Sync)) -> SearchOutcome {
@@ -47,7 +54,9 @@ fn the_valley_of_rosenbrock() {
 #[test]
 fn an_optimum_on_the_edge_of_the_box() {
     let aim = |k: usize| if k.is_multiple_of(2) { 3.0 } else { -0.25 };
-    let cost = |x: &[f64]| x.iter().enumerate().map(|(k, x)| (1.0 + k as f64) * (x - aim(k)).powi(2)).sum::<f64>();
+    let cost = |x: &[f64]| {
+        x.iter().enumerate().map(|(k, x)| (1.0 + k as f64) * (x - aim(k)).powi(2)).sum::<f64>()
+    };
     let outcome = least(&search(10, 1.0, 20_000), &cost);
     for (k, x) in outcome.best.iter().enumerate() {
         let wanted = aim(k).min(1.0);
@@ -75,11 +84,17 @@ fn populations_grow_to_the_largest_and_all_candidates_are_inside() {
 #[test]
 fn many_hills_are_left_behind_by_restarts() {
     let hills = |x: &[f64]| {
-        let one = |x: &f64| (x - 0.7).powi(2) + 10.0 * (1.0 - (std::f64::consts::TAU * (x - 0.7)).cos());
+        let one =
+            |x: &f64| (x - 0.7).powi(2) + 10.0 * (1.0 - (std::f64::consts::TAU * (x - 0.7)).cos());
         x.iter().map(one).sum::<f64>()
     };
     let outcome = least(&search(4, 5.0, 60_000), &hills);
-    assert!(outcome.cost < 1e-8 && outcome.populations.len() > 1, "{} {:?}", outcome.cost, outcome.populations);
+    assert!(
+        outcome.cost < 1e-8 && outcome.populations.len() > 1,
+        "{} {:?}",
+        outcome.cost,
+        outcome.populations
+    );
 }
 
 #[test]

@@ -21,12 +21,15 @@ pub(super) struct Weights {
 impl Weights {
     pub fn new(dimension: usize, population: usize) -> Self {
         let n = dimension as f64;
-        let raw: Vec<f64> = (1..=population).map(|i| (0.5 * (population as f64 + 1.0)).ln() - (i as f64).ln()).collect();
+        let raw: Vec<f64> = (1..=population)
+            .map(|i| (0.5 * (population as f64 + 1.0)).ln() - (i as f64).ln())
+            .collect();
         let parents = raw.iter().filter(|w| **w > 0.0).count();
         let (better, worse) = raw.split_at(parents);
         let mass = effective(better);
         let rank_one_rate = 2.0 / ((n + 1.3).powi(2) + mass);
-        let rank_mu_rate = (2.0 * (0.25 + mass + 1.0 / mass - 2.0) / ((n + 2.0).powi(2) + mass)).min(1.0 - rank_one_rate);
+        let rank_mu_rate = (2.0 * (0.25 + mass + 1.0 / mass - 2.0) / ((n + 2.0).powi(2) + mass))
+            .min(1.0 - rank_one_rate);
         let against = [
             1.0 + rank_one_rate / rank_mu_rate,
             1.0 + 2.0 * effective(worse) / (mass + 2.0),
@@ -34,7 +37,10 @@ impl Weights {
         ];
         let against = against.into_iter().fold(f64::INFINITY, f64::min);
         let (up, down) = (better.iter().sum::<f64>(), -worse.iter().sum::<f64>());
-        let all = raw.iter().map(|w| if *w >= 0.0 { w / up } else { against * w / down.max(f64::MIN_POSITIVE) }).collect();
+        let all = raw
+            .iter()
+            .map(|w| if *w >= 0.0 { w / up } else { against * w / down.max(f64::MIN_POSITIVE) })
+            .collect();
         let step_rate = (mass + 2.0) / (n + mass + 5.0);
         Self {
             all,
@@ -44,18 +50,22 @@ impl Weights {
             rank_one_rate,
             rank_mu_rate,
             step_rate,
-            step_damping: 1.0 + 2.0 * (((mass - 1.0) / (n + 1.0)).sqrt() - 1.0).max(0.0) + step_rate,
+            step_damping: 1.0
+                + 2.0 * (((mass - 1.0) / (n + 1.0)).sqrt() - 1.0).max(0.0)
+                + step_rate,
             expected_length: n.sqrt() * (1.0 - 1.0 / (4.0 * n) + 1.0 / (21.0 * n * n)),
         }
     }
 
     /// Generations in which the covariance changes too little for its decomposition to be worth repeating.
     pub fn patience(&self, dimension: usize) -> usize {
-        (0.5 / (dimension as f64 * (self.rank_one_rate + self.rank_mu_rate))).floor().max(1.0) as usize
+        (0.5 / (dimension as f64 * (self.rank_one_rate + self.rank_mu_rate))).floor().max(1.0)
+            as usize
     }
 }
 
 fn effective(weights: &[f64]) -> f64 {
-    let (sum, squares) = weights.iter().fold((0.0, 0.0), |(sum, squares), w| (sum + w, squares + w * w));
+    let (sum, squares) =
+        weights.iter().fold((0.0, 0.0), |(sum, squares), w| (sum + w, squares + w * w));
     if squares > 0.0 { sum * sum / squares } else { 0.0 }
 }

@@ -7,7 +7,8 @@ use sistership_diagnose::Hypothesis;
 /// Each set of effects once, in the order given: judged several times on the way, it stands where it was taken, or else
 /// where it was most probable.
 pub fn distinct(all: &[Hypothesis]) -> Vec<&Hypothesis> {
-    let taken: Vec<Vec<&str>> = all.iter().filter(|hypothesis| hypothesis.taken).map(effects).collect();
+    let taken: Vec<Vec<&str>> =
+        all.iter().filter(|hypothesis| hypothesis.taken).map(effects).collect();
     let mut seen = BTreeSet::new();
     let kept = all.iter().filter(|hypothesis| {
         let effects = effects(hypothesis);
@@ -41,7 +42,8 @@ mod tests {
             hypothesis(&["c"], 7.0, false),
             hypothesis(&["c"], 6.0, false),
         ];
-        let kept: Vec<f64> = distinct(&all).into_iter().map(|hypothesis| hypothesis.evidence).collect();
+        let kept: Vec<f64> =
+            distinct(&all).into_iter().map(|hypothesis| hypothesis.evidence).collect();
         assert_eq!(kept, [8.0, 7.0]);
     }
 }

@@ -15,7 +15,9 @@ type ChannelErrors = BTreeMap<String, f64>;
 
 /// Every channel of which an error is known.
 pub(crate) fn rows(diagnosis: &Diagnosis) -> Vec<ErrorRow> {
-    let rows = CHANNELS.into_iter().map(|quantity| ErrorRow::of(quantity, &diagnosis.before, &diagnosis.after));
+    let rows = CHANNELS
+        .into_iter()
+        .map(|quantity| ErrorRow::of(quantity, &diagnosis.before, &diagnosis.after));
     rows.filter(|row| row.source.is_some() || row.refined.is_some()).collect()
 }
 
@@ -31,12 +33,17 @@ pub(crate) fn by_channel(diagnosis: &Diagnosis) -> Table {
         Column::number("after", "÷ noise"),
         Column::text("change", ""),
     ];
-    Table { columns, rows: rows(diagnosis).iter().map(|row| channel(row, &diagnosis.noise)).collect() }
+    Table {
+        columns,
+        rows: rows(diagnosis).iter().map(|row| channel(row, &diagnosis.noise)).collect(),
+    }
 }
 
 fn channel(row: &ErrorRow, noise: &ChannelErrors) -> Row {
     let noise = noise_of(noise, &row.quantity);
-    let over = |value: Option<f64>| known(value.zip(noise).map(|(value, noise)| value / noise), |ratio| fixed(ratio, 1));
+    let over = |value: Option<f64>| {
+        known(value.zip(noise).map(|(value, noise)| value / noise), |ratio| fixed(ratio, 1))
+    };
     let plain = |value: Option<f64>| known(value, |value| significant(value, 3));
     let kind = match row.change().0 {
         "fell" => "good",
@@ -58,23 +65,42 @@ fn channel(row: &ErrorRow, noise: &ChannelErrors) -> Row {
 /// The noise in the unit shown; that of the position is put together from north and east.
 fn noise_of(noise: &ChannelErrors, quantity: &ShownChannel) -> Option<f64> {
     let of = |channel: &str| noise.get(channel).copied().filter(|noise| *noise > 0.0);
-    let si = if quantity.channel == "position" { Some(of("x")?.hypot(of("y")?)) } else { of(quantity.channel) };
+    let si = if quantity.channel == "position" {
+        Some(of("x")?.hypot(of("y")?))
+    } else {
+        of(quantity.channel)
+    };
     si.map(|noise| noise * quantity.factor)
 }
 
 /// ChannelErrors trial by trial.
 pub(crate) fn by_trial(trials: &[TrialErrors]) -> Table {
-    let has = |quantity: &ShownChannel| trials.iter().any(|trial| trial.before.contains_key(quantity.channel));
+    let has = |quantity: &ShownChannel| {
+        trials.iter().any(|trial| trial.before.contains_key(quantity.channel))
+    };
     let channels: Vec<ShownChannel> = CHANNELS.into_iter().filter(has).collect();
     let mut columns = vec![Column::text("trial", ""), Column::text("", "")];
     columns.extend(channels.iter().map(|quantity| Column::number(quantity.symbol, quantity.unit)));
     let side = |name: &str, side: &str, errors: &ChannelErrors| {
-        let value =
-            |quantity: &ShownChannel| errors.get(quantity.channel).copied().filter(|value| value.is_finite() && *value < 1e300);
-        let cell = |quantity: &ShownChannel| Cell::new(known(value(quantity), |value| significant(value * quantity.factor, 3)));
-        Row::of([Cell::new(name), Cell::new(side)].into_iter().chain(channels.iter().map(cell)).collect())
+        let value = |quantity: &ShownChannel| {
+            errors
+                .get(quantity.channel)
+                .copied()
+                .filter(|value| value.is_finite() && *value < 1e300)
+        };
+        let cell = |quantity: &ShownChannel| {
+            Cell::new(known(value(quantity), |value| significant(value * quantity.factor, 3)))
+        };
+        Row::of(
+            [Cell::new(name), Cell::new(side)]
+                .into_iter()
+                .chain(channels.iter().map(cell))
+                .collect(),
+        )
     };
-    let both = |trial: &TrialErrors| [side(&trial.trial, "before", &trial.before), side("", "after", &trial.after)];
+    let both = |trial: &TrialErrors| {
+        [side(&trial.trial, "before", &trial.before), side("", "after", &trial.after)]
+    };
     Table { columns, rows: trials.iter().flat_map(both).collect() }
 }
 
@@ -94,7 +120,8 @@ pub(crate) fn manoeuvres(manoeuvres: &[SailedManoeuvre]) -> Table {
 
 fn manoeuvre(manoeuvre: &SailedManoeuvre) -> Vec<Row> {
     let of = |metrics: &Option<ManoeuvreMetrics>| metrics.as_ref().map(read).unwrap_or_default();
-    let (measured, before, after) = (read(&manoeuvre.measured), of(&manoeuvre.before), of(&manoeuvre.after));
+    let (measured, before, after) =
+        (read(&manoeuvre.measured), of(&manoeuvre.before), of(&manoeuvre.after));
     // With the recorded rudder both models have the period of the record.
     let known = |(_, figure): &(usize, &MetricValue)| figure.2.is_some() && figure.0 != "period";
     let row = |(index, figure): (usize, &MetricValue)| {
@@ -105,11 +132,26 @@ fn manoeuvre(manoeuvre: &SailedManoeuvre) -> Vec<Row> {
     std::iter::once(Row::heading(&manoeuvre.trial)).chain(rows).collect()
 }
 
-fn figure_row(&(name, unit, measured): &MetricValue, before: Option<f64>, after: Option<f64>) -> Row {
+fn figure_row(
+    &(name, unit, measured): &MetricValue,
+    before: Option<f64>,
+    after: Option<f64>,
+) -> Row {
     let value = |value: Option<f64>| Cell::new(known(value, |value| significant(value, 4)));
     let off = |simulated: Option<f64>| {
         let both = simulated.zip(measured).filter(|(_, measured)| *measured != 0.0);
-        Cell::new(known(both.map(|(simulated, measured)| 100.0 * (simulated / measured - 1.0)), |value| signed(value, 1)))
+        Cell::new(known(
+            both.map(|(simulated, measured)| 100.0 * (simulated / measured - 1.0)),
+            |value| signed(value, 1),
+        ))
     };
-    Row::of(vec![Cell::new(name), Cell::new(unit), value(measured), value(before), value(after), off(before), off(after)])
+    Row::of(vec![
+        Cell::new(name),
+        Cell::new(unit),
+        value(measured),
+        value(before),
+        value(after),
+        off(before),
+        off(after),
+    ])
 }

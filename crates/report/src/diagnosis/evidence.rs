@@ -19,7 +19,8 @@ const CELL: usize = 4;
 
 /// Every hypothesis that was tried: the most probable, and the others.
 pub(crate) fn hypotheses(diagnosis: &Diagnosis) -> (Table, Table) {
-    let mut rows: Vec<(usize, &Hypothesis)> = distinct(&diagnosis.hypotheses).into_iter().enumerate().collect();
+    let mut rows: Vec<(usize, &Hypothesis)> =
+        distinct(&diagnosis.hypotheses).into_iter().enumerate().collect();
     // What was taken is shown wherever it ranks.
     rows.sort_by_key(|(rank, hypothesis)| (*rank >= SHOWN && !hypothesis.taken, *rank));
     let shown = rows.iter().filter(|(rank, hypothesis)| *rank < SHOWN || hypothesis.taken).count();
@@ -45,7 +46,8 @@ fn columns() -> Vec<Column> {
 fn hypothesis(hypothesis: &Hypothesis) -> Row {
     let effects: Vec<String> = hypothesis.effects.iter().map(|effect| in_words(effect)).collect();
     let name = if effects.is_empty() { "the model alone".to_owned() } else { effects.join(" + ") };
-    let taken = if hypothesis.taken { Cell::new("").mark("✓ taken", "chosen") } else { Cell::new("") };
+    let taken =
+        if hypothesis.taken { Cell::new("").mark("✓ taken", "chosen") } else { Cell::new("") };
     let cells = vec![
         Cell::new(name),
         Cell::new(signed(hypothesis.evidence, 1)),
@@ -80,9 +82,15 @@ fn strength(evidence: f64) -> &'static str {
 fn parameter_list(parameters: &BTreeMap<String, Value>) -> String {
     let parameters = ShownParameter::all(parameters);
     let one = |(_, parameter): &(&str, ShownParameter)| {
-        format!("{} {} ± {} {}", parameter.words, parameter.value_text(), parameter.se_text(), parameter.unit)
-            .trim_end()
-            .to_owned()
+        format!(
+            "{} {} ± {} {}",
+            parameter.words,
+            parameter.value_text(),
+            parameter.se_text(),
+            parameter.unit
+        )
+        .trim_end()
+        .to_owned()
     };
     let mut texts: Vec<String> = parameters.iter().map(one).take(CELL).collect();
     if parameters.len() > CELL {
@@ -102,13 +110,19 @@ pub(crate) fn parameters(found: &Found) -> Table {
         Column::number("value ÷ error", ""),
     ];
     if !found.in_model.is_empty() {
-        columns.extend([Column::number("in the new version", ""), Column::number("standard error", "")]);
+        columns.extend([
+            Column::number("in the new version", ""),
+            Column::number("standard error", ""),
+        ]);
     }
     let row = |named: &(&str, ShownParameter)| parameter(named, &found.in_model);
     Table { columns, rows: ShownParameter::all(&found.parameters).iter().map(row).collect() }
 }
 
-fn parameter((name, parameter): &(&str, ShownParameter), in_model: &BTreeMap<String, Value>) -> Row {
+fn parameter(
+    (name, parameter): &(&str, ShownParameter),
+    in_model: &BTreeMap<String, Value>,
+) -> Row {
     let ratio = (parameter.se > 0.0).then(|| (parameter.value / parameter.se).abs());
     let mut cells = vec![
         Cell::new(&parameter.words),
@@ -120,7 +134,9 @@ fn parameter((name, parameter): &(&str, ShownParameter), in_model: &BTreeMap<Str
     ];
     if !in_model.is_empty() {
         let own = in_model.get(*name).map(|value| ShownParameter::of(name, value));
-        let text = |of: &dyn Fn(&ShownParameter) -> String| Cell::new(own.as_ref().map_or_else(|| "–".to_owned(), of));
+        let text = |of: &dyn Fn(&ShownParameter) -> String| {
+            Cell::new(own.as_ref().map_or_else(|| "–".to_owned(), of))
+        };
         cells.extend([text(&ShownParameter::value_text), text(&ShownParameter::se_text)]);
     }
     Row::of(cells)
@@ -135,8 +151,16 @@ pub(crate) fn confounded(found: &Found) -> Table {
         Column::text("", ""),
     ];
     let row = |other: &Confounded| {
-        let (mark, kind) = if other.behind < 3.0 { ("could as well be this", "bad") } else { ("less likely", "open") };
-        let cells = vec![Cell::code(&other.name), Cell::new(fixed(other.angle_deg, 1)), Cell::new(fixed(other.behind, 1))];
+        let (mark, kind) = if other.behind < 3.0 {
+            ("could as well be this", "bad")
+        } else {
+            ("less likely", "open")
+        };
+        let cells = vec![
+            Cell::code(&other.name),
+            Cell::new(fixed(other.angle_deg, 1)),
+            Cell::new(fixed(other.behind, 1)),
+        ];
         Row::of(cells.into_iter().chain([Cell::new("").mark(mark, kind)]).collect())
     };
     Table { columns, rows: found.confounded_with.iter().map(row).collect() }

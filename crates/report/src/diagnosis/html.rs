@@ -60,7 +60,10 @@ struct DiagnosisTrialPlots<'a> {
 }
 
 /// Writes the page.
-pub(crate) fn page(input: &DiagnosisInput<'_>, replayed: &[ReplayedTrial<'_>]) -> Result<String, ReportError> {
+pub(crate) fn page(
+    input: &DiagnosisInput<'_>,
+    replayed: &[ReplayedTrial<'_>],
+) -> Result<String, ReportError> {
     let diagnosis = input.diagnosis;
     let (hypotheses, further) = evidence::hypotheses(diagnosis);
     let page = DiagnosisPage {
@@ -78,7 +81,10 @@ pub(crate) fn page(input: &DiagnosisInput<'_>, replayed: &[ReplayedTrial<'_>]) -
         scatters: plots::scatters(&diagnosis.residuals),
         unexplained: remaining::unexplained(&diagnosis.unexplained),
         discrepancies: remaining::discrepancies(&diagnosis.discrepancies),
-        coefficients: diagnosis.model.as_ref().and_then(|after| remaining::coefficients(input.model, after)),
+        coefficients: diagnosis
+            .model
+            .as_ref()
+            .and_then(|after| remaining::coefficients(input.model, after)),
         provenance: provenance::model(input.model),
         given: provenance::trials(input.trials),
         settings: remaining::settings(&diagnosis.settings),
@@ -92,7 +98,10 @@ fn tiles(input: &DiagnosisInput<'_>) -> Vec<Tile> {
         return Vec::new();
     }
     let rows = errors::rows(input.diagnosis);
-    rows.iter().filter(|row| ["u", "v", "r", "psi", "position"].contains(&row.quantity.channel)).map(Tile::of).collect()
+    rows.iter()
+        .filter(|row| ["u", "v", "r", "psi", "position"].contains(&row.quantity.channel))
+        .map(Tile::of)
+        .collect()
 }
 
 impl DiagnosisPage<'_> {
@@ -134,8 +143,10 @@ impl<'a> ShownEffect<'a> {
 impl<'a> DiagnosisTrialPlots<'a> {
     fn of(input: &DiagnosisInput<'_>, replayed: &'a ReplayedTrial<'a>) -> Self {
         let name = &replayed.trial.name;
-        let own: Vec<&ResidualSeries> = input.diagnosis.residuals.iter().filter(|series| series.trial == *name).collect();
-        let stretches: Vec<&Unexplained> = input.diagnosis.unexplained.iter().filter(|stretch| stretch.trial == *name).collect();
+        let own: Vec<&ResidualSeries> =
+            input.diagnosis.residuals.iter().filter(|series| series.trial == *name).collect();
+        let stretches: Vec<&Unexplained> =
+            input.diagnosis.unexplained.iter().filter(|stretch| stretch.trial == *name).collect();
         Self {
             caption: caption(replayed),
             trajectory: plots::trajectory(replayed),
@@ -150,10 +161,20 @@ impl<'a> DiagnosisTrialPlots<'a> {
 fn caption(replayed: &ReplayedTrial<'_>) -> String {
     let shown = &replayed.shown;
     let error = |quantity: &words::ShownChannel| {
-        let of = |errors: &BTreeMap<String, f64>| Some(significant(errors.get(quantity.channel)? * quantity.factor, 3));
-        Some(format!("{} {} → {} {}", quantity.name, of(&shown.source)?, of(&shown.refined)?, quantity.unit))
+        let of = |errors: &BTreeMap<String, f64>| {
+            Some(significant(errors.get(quantity.channel)? * quantity.factor, 3))
+        };
+        Some(format!(
+            "{} {} → {} {}",
+            quantity.name,
+            of(&shown.source)?,
+            of(&shown.refined)?,
+            quantity.unit
+        ))
     };
-    let wanted = |quantity: &&words::ShownChannel| ["u", "v", "r", "psi", "x", "y"].contains(&quantity.channel);
+    let wanted = |quantity: &&words::ShownChannel| {
+        ["u", "v", "r", "psi", "x", "y"].contains(&quantity.channel)
+    };
     let errors: Vec<String> = words::CHANNELS.iter().filter(wanted).filter_map(error).collect();
     let dots = stated(plots::mark_interval_s(shown.duration_s), 3);
     format!("Dots every {dots} s. RMS error over the whole run, before → after: {}.", list(&errors))

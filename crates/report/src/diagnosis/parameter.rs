@@ -32,7 +32,9 @@ pub(crate) struct ShownParameter {
 
 impl ShownParameter {
     pub fn of(name: &str, value: &Value) -> Self {
-        let known = UNITS.into_iter().find_map(|(ending, unit, factor)| Some((name.strip_suffix(ending)?, unit, factor)));
+        let known = UNITS
+            .into_iter()
+            .find_map(|(ending, unit, factor)| Some((name.strip_suffix(ending)?, unit, factor)));
         let (stem, unit, factor) = known.unwrap_or((name, "", 1.0));
         let is_symbol = stem.starts_with(|first: char| first.is_ascii_uppercase());
         let words = if is_symbol { stem.to_owned() } else { stem.replace('_', " ") };
@@ -81,8 +83,12 @@ mod tests {
         assert_eq!(shown("towards_deg", 45.3, 12.0), ("towards".into(), "45 deg".into()));
         assert_eq!(shown("N_phi", 1.2e-4, 2e-5), ("N_phi".into(), "0.000120 ".into()));
         assert_eq!(shown("yaw_lever", 0.5, 0.0).0, "yaw lever");
-        let twice = ["offset_deg", "offset_rad", "rate_rad_s"].map(|name| (name.to_owned(), Value { value: 1.0, se: 0.1 }));
-        let names: Vec<String> = ShownParameter::all(&twice.into()).into_iter().map(|(name, _)| name.to_owned()).collect();
+        let twice = ["offset_deg", "offset_rad", "rate_rad_s"]
+            .map(|name| (name.to_owned(), Value { value: 1.0, se: 0.1 }));
+        let names: Vec<String> = ShownParameter::all(&twice.into())
+            .into_iter()
+            .map(|(name, _)| name.to_owned())
+            .collect();
         assert_eq!(names, ["offset_deg", "rate_rad_s"]);
     }
 }

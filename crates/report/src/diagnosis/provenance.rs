@@ -10,10 +10,18 @@ use crate::words;
 
 /// What is known of the model, a line each: a word and what it is.
 pub(crate) fn model(model: &Model) -> Vec<(&'static str, String)> {
-    let mut lines = vec![("Status", format!("{}: {}", words::status(model.status), words::status_meaning(model.status)))];
-    lines.extend(model.speed_m_s.map(|speed| ("Approach speed", format!("{} m/s", stated(speed, 3)))));
+    let mut lines = vec![(
+        "Status",
+        format!("{}: {}", words::status(model.status), words::status_meaning(model.status)),
+    )];
+    lines.extend(
+        model.speed_m_s.map(|speed| ("Approach speed", format!("{} m/s", stated(speed, 3)))),
+    );
     let carried: Vec<String> = model.effects.iter().map(carried).collect();
-    lines.push(("Effects it carries already", if carried.is_empty() { "none".into() } else { carried.join("; ") }));
+    lines.push((
+        "Effects it carries already",
+        if carried.is_empty() { "none".into() } else { carried.join("; ") },
+    ));
     let open = match &model.uncertainty {
         Some(uncertainty) => format!("learned on {}", uncertainty.trials.join(", ")),
         None => "not known; what the settings say is allowed instead".into(),
@@ -24,7 +32,10 @@ pub(crate) fn model(model: &Model) -> Vec<(&'static str, String)> {
 }
 
 fn carried(effect: &AppliedEffect) -> String {
-    let values = effect.parameters.iter().map(|(name, quantity)| format!("{name} {}", significant(quantity.value, 3)));
+    let values = effect
+        .parameters
+        .iter()
+        .map(|(name, quantity)| format!("{name} {}", significant(quantity.value, 3)));
     format!("{} ({})", effect.name, values.collect::<Vec<_>>().join(", "))
 }
 

@@ -39,7 +39,13 @@ pub(crate) fn discrepancies(levels: &[DiscrepancyLevel]) -> Table {
         let (unit, factor) = acceleration(&level.channel);
         let cell = |value: f64| Cell::new(significant(value * factor, 2));
         let expected = Cell::new(known(level.expected, |value| significant(value * factor, 2)));
-        Row::of(vec![Cell::new(motion(&level.channel)), expected, cell(level.before), cell(level.after), Cell::new(unit)])
+        Row::of(vec![
+            Cell::new(motion(&level.channel)),
+            expected,
+            cell(level.before),
+            cell(level.after),
+            Cell::new(unit),
+        ])
     };
     Table { columns, rows: levels.iter().map(row).collect() }
 }
@@ -55,29 +61,50 @@ pub(crate) fn coefficients(before: &Model, after: &Model) -> Option<Table> {
     let row = |name: &String| {
         let (before, after) = (before.coefficient(name), after.coefficient(name));
         let change = (before != 0.0).then(|| 100.0 * (after - before) / before.abs());
-        let cells = [significant(before, 4), significant(after, 4), known(change, |change| signed(change, 1))];
+        let cells = [
+            significant(before, 4),
+            significant(after, 4),
+            known(change, |change| signed(change, 1)),
+        ];
         Row::of(std::iter::once(Cell::code(name)).chain(cells.into_iter().map(Cell::new)).collect())
     };
-    let changed = after.coefficients.keys().filter(|name| before.coefficient(name) != after.coefficient(name));
+    let changed = after
+        .coefficients
+        .keys()
+        .filter(|name| before.coefficient(name) != after.coefficient(name));
     let rows: Vec<Row> = changed.map(row).collect();
     (!rows.is_empty()).then_some(Table { columns, rows })
 }
 
 /// What the settings mean.
 const MEANINGS: [(&str, &str); 5] = [
-    ("restart_s", "simulations that judge start anew from the measured state every so often, s; by default ten times L/U"),
-    ("least_step_s", "shortest interval between samples that are used, s; by default a fiftieth of L/U"),
-    ("slack", "how far a published coefficient may be from the truth, as a share of its value, where the model does not say"),
+    (
+        "restart_s",
+        "simulations that judge start anew from the measured state every so often, s; by default ten times L/U",
+    ),
+    (
+        "least_step_s",
+        "shortest interval between samples that are used, s; by default a fiftieth of L/U",
+    ),
+    (
+        "slack",
+        "how far a published coefficient may be from the truth, as a share of its value, where the model does not say",
+    ),
     ("least_evidence", "least evidence for an effect to be named"),
     ("most_effects", "most effects that are named together"),
 ];
 
 /// Every setting with what it means.
 pub(crate) fn settings(settings: &Settings) -> Table {
-    let columns = vec![Column::text("setting", ""), Column::prose("value"), Column::prose("meaning")];
+    let columns =
+        vec![Column::text("setting", ""), Column::prose("value"), Column::prose("meaning")];
     let written = serde_json::to_value(settings).unwrap_or_default();
-    let meaning = |name: &str| MEANINGS.iter().find(|(known, _)| *known == name).map_or("", |(_, meaning)| meaning);
+    let meaning = |name: &str| {
+        MEANINGS.iter().find(|(known, _)| *known == name).map_or("", |(_, meaning)| meaning)
+    };
     let fields = written.as_object().into_iter().flatten();
-    let rows = fields.map(|(name, value)| Row::of(vec![Cell::code(name), Cell::new(setting(value)), Cell::new(meaning(name))]));
+    let rows = fields.map(|(name, value)| {
+        Row::of(vec![Cell::code(name), Cell::new(setting(value)), Cell::new(meaning(name))])
+    });
     Table { columns, rows: rows.collect() }
 }

@@ -15,18 +15,26 @@ const MOST: usize = 4;
 
 /// Simulates the trials on which the model is most off; those that lack a channel are left out. What is called source and
 /// refined there is the model before and after here.
-pub(crate) fn replay_chosen<'a>(input: &DiagnosisInput<'a>) -> Result<Vec<ReplayedTrial<'a>>, PlantError> {
+pub(crate) fn replay_chosen<'a>(
+    input: &DiagnosisInput<'a>,
+) -> Result<Vec<ReplayedTrial<'a>>, PlantError> {
     let after = input.diagnosis.model.as_ref().unwrap_or(input.model);
     let (before, after) = (ready(input.model, input)?, ready(after, input)?);
     let settings = ReplaySettings::default();
     let one = |trial: &'a Trial| {
-        let (before, after) = (replay(&before, trial, &settings).ok()?, replay(&after, trial, &settings).ok()?);
+        let (before, after) =
+            (replay(&before, trial, &settings).ok()?, replay(&after, trial, &settings).ok()?);
         Some(replayed(input, trial, before, after))
     };
     Ok(ranked(input).into_iter().filter_map(one).take(MOST).collect())
 }
 
-fn replayed<'a>(input: &DiagnosisInput<'a>, trial: &'a Trial, before: Replay, after: Replay) -> ReplayedTrial<'a> {
+fn replayed<'a>(
+    input: &DiagnosisInput<'a>,
+    trial: &'a Trial,
+    before: Replay,
+    after: Replay,
+) -> ReplayedTrial<'a> {
     let stopped = |run: &Replay| run.stopped.as_ref().map(ToString::to_string);
     let shown = ReplaySummary {
         trial: &trial.name,
@@ -44,7 +52,8 @@ fn replayed<'a>(input: &DiagnosisInput<'a>, trial: &'a Trial, before: Replay, af
 /// A ship whose envelope covers the speeds of the trials.
 fn ready(model: &Model, input: &DiagnosisInput<'_>) -> Result<Ship, PlantError> {
     let mut ship = Ship::new(model, input.law)?;
-    let speeds = input.trials.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
+    let speeds =
+        input.trials.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
     ship.set_envelope_speed(speeds.fold(0.0, |most: f64, speed| most.max(speed.abs())));
     Ok(ship)
 }
@@ -55,7 +64,8 @@ fn ranked<'a>(input: &DiagnosisInput<'a>) -> Vec<&'a Trial> {
         let own = input.diagnosis.residuals.iter().filter(|series| series.trial == trial.name);
         own.map(over_noise).fold(0.0, f64::max)
     };
-    let mut trials: Vec<(f64, &Trial)> = input.trials.iter().map(|trial| (size(trial), *trial)).collect();
+    let mut trials: Vec<(f64, &Trial)> =
+        input.trials.iter().map(|trial| (size(trial), *trial)).collect();
     trials.sort_by(|a, b| b.0.total_cmp(&a.0));
     trials.into_iter().map(|(_, trial)| trial).collect()
 }

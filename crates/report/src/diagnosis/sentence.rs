@@ -12,12 +12,21 @@ const MOST: usize = 3;
 pub(crate) fn sentence(diagnosis: &Diagnosis) -> String {
     let lacks = list(&diagnosis.effects.iter().map(effect).collect::<Vec<_>>());
     match (diagnosis.verdict, diagnosis.effects.is_empty()) {
-        (Verdict::Complete, _) => "Your model holds: what remains between it and these trials is what the noise predicts.".into(),
+        (Verdict::Complete, _) => {
+            "Your model holds: what remains between it and these trials is what the noise predicts."
+                .into()
+        }
         (Verdict::Unexplained, true) => {
-            format!("Something is missing from your model that no known effect explains{}.", where_(diagnosis))
+            format!(
+                "Something is missing from your model that no known effect explains{}.",
+                where_(diagnosis)
+            )
         }
         (Verdict::Unexplained, false) => {
-            format!("Your model lacks: {lacks}; and something that no known effect explains{}.", where_(diagnosis))
+            format!(
+                "Your model lacks: {lacks}; and something that no known effect explains{}.",
+                where_(diagnosis)
+            )
         }
         (Verdict::Effects, _) => format!("Your model lacks: {lacks}."),
     }
@@ -32,7 +41,11 @@ pub(crate) fn effect(found: &Found) -> String {
 /// What an effect is called: a missing term by the term.
 fn name(found: &Found) -> String {
     let words = found.name.replace('-', " ");
-    if found.form.starts_with(|first: char| first.is_ascii_uppercase()) { format!("{words} {}", found.form) } else { words }
+    if found.form.starts_with(|first: char| first.is_ascii_uppercase()) {
+        format!("{words} {}", found.form)
+    } else {
+        words
+    }
 }
 
 fn figures(found: &Found) -> String {
@@ -42,13 +55,22 @@ fn figures(found: &Found) -> String {
             return format!("{} {word} {}", short(&speed), compass(&angle));
         }
     }
-    let all: Vec<ShownParameter> = ShownParameter::all(&found.parameters).into_iter().map(|(_, parameter)| parameter).collect();
-    let with_unit: Vec<&ShownParameter> = all.iter().filter(|parameter| !parameter.unit.is_empty()).collect();
+    let all: Vec<ShownParameter> = ShownParameter::all(&found.parameters)
+        .into_iter()
+        .map(|(_, parameter)| parameter)
+        .collect();
+    let with_unit: Vec<&ShownParameter> =
+        all.iter().filter(|parameter| !parameter.unit.is_empty()).collect();
     let shown = if with_unit.is_empty() { all.iter().collect() } else { with_unit };
     match shown.as_slice() {
         [only] => short(only),
         several if several.len() > MOST => String::new(),
-        several => list(&several.iter().map(|parameter| format!("{} {}", parameter.words, short(parameter))).collect::<Vec<_>>()),
+        several => list(
+            &several
+                .iter()
+                .map(|parameter| format!("{} {}", parameter.words, short(parameter)))
+                .collect::<Vec<_>>(),
+        ),
     }
 }
 
@@ -63,10 +85,14 @@ fn compass(angle: &ShownParameter) -> String {
 
 /// Where the largest remainder is.
 fn where_(diagnosis: &Diagnosis) -> String {
-    let largest = diagnosis.unexplained.iter().max_by(|a, b| a.rms_over_noise.total_cmp(&b.rms_over_noise));
+    let largest =
+        diagnosis.unexplained.iter().max_by(|a, b| a.rms_over_noise.total_cmp(&b.rms_over_noise));
     largest.map_or_else(String::new, |stretch| {
         let what = motion(&stretch.channel);
-        format!(", most of all in {what} of {} from {:.0} s to {:.0} s", stretch.trial, stretch.from_s, stretch.to_s)
+        format!(
+            ", most of all in {what} of {} from {:.0} s to {:.0} s",
+            stretch.trial, stretch.from_s, stretch.to_s
+        )
     })
 }
 

@@ -24,15 +24,23 @@ impl Scale {
     pub fn ticks(&self, about: usize) -> Vec<(f64, String)> {
         let step = nice_step((self.high - self.low) / about.max(1) as f64);
         let decimals = (-step.log10().floor()).max(0.0) as usize;
-        let (first, last) = ((self.low / step - 1e-9).ceil() as i64, (self.high / step + 1e-9).floor() as i64);
-        (first..=last).map(|k| k as f64 * step).map(|value| (value, fixed(value, decimals))).collect()
+        let (first, last) =
+            ((self.low / step - 1e-9).ceil() as i64, (self.high / step + 1e-9).floor() as i64);
+        (first..=last)
+            .map(|k| k as f64 * step)
+            .map(|value| (value, fixed(value, decimals)))
+            .collect()
     }
 }
 
 /// The next larger of 1, 2, 5 times a power of ten.
 pub(crate) fn nice_step(least: f64) -> f64 {
     let power = 10_f64.powf(least.log10().floor());
-    [1.0, 2.0, 5.0].into_iter().map(|of| of * power).find(|step| *step >= least * (1.0 - 1e-9)).unwrap_or(10.0 * power)
+    [1.0, 2.0, 5.0]
+        .into_iter()
+        .map(|of| of * power)
+        .find(|step| *step >= least * (1.0 - 1e-9))
+        .unwrap_or(10.0 * power)
 }
 
 /// The range of values with a margin, never empty.
@@ -75,13 +83,27 @@ pub(crate) fn rows(at: (f64, f64), width: f64, scale: &Scale, about: usize) -> V
 }
 
 /// A panel's grid lines upwards, with labels below it where asked.
-pub(crate) fn columns(at: (f64, f64), height: f64, scale: &Scale, about: usize, labelled: bool) -> Vec<Shape> {
+pub(crate) fn columns(
+    at: (f64, f64),
+    height: f64,
+    scale: &Scale,
+    about: usize,
+    labelled: bool,
+) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for (value, label) in scale.ticks(about) {
         let x = at.0 + scale.at(value);
-        shapes.push(Shape::Line { from: (x, at.1), to: (x, at.1 + height), class: if value == 0.0 { "zero" } else { "grid" } });
+        shapes.push(Shape::Line {
+            from: (x, at.1),
+            to: (x, at.1 + height),
+            class: if value == 0.0 { "zero" } else { "grid" },
+        });
         if labelled {
-            shapes.push(Shape::Text { at: (x, at.1 + height + 14.0), text: label, class: "tick mid" });
+            shapes.push(Shape::Text {
+                at: (x, at.1 + height + 14.0),
+                text: label,
+                class: "tick mid",
+            });
         }
     }
     shapes

@@ -15,11 +15,18 @@ pub(crate) struct PlottedLine<T> {
 
 /// Where a channel stands in the state.
 fn place(channel: Channel) -> Option<usize> {
-    sistership_dynamics::state::RECORDED.into_iter().find(|(known, _)| *known == channel).map(|(_, place)| place)
+    sistership_dynamics::state::RECORDED
+        .into_iter()
+        .find(|(known, _)| *known == channel)
+        .map(|(_, place)| place)
 }
 
 /// A channel over the samples, measured first, then the source, then the refined model.
-pub(crate) fn channel(replayed: &ReplayedTrial<'_>, channel: Channel, factor: f64) -> Vec<PlottedLine<f64>> {
+pub(crate) fn channel(
+    replayed: &ReplayedTrial<'_>,
+    channel: Channel,
+    factor: f64,
+) -> Vec<PlottedLine<f64>> {
     let mut lines = Vec::new();
     if let Some(values) = replayed.trial.channel(channel) {
         let values: Vec<f64> = values.iter().map(|value| value * factor).collect();
@@ -41,7 +48,10 @@ pub(crate) fn positions(replayed: &ReplayedTrial<'_>) -> Vec<PlottedLine<(f64, f
         let values: Vec<(f64, f64)> = north.iter().copied().zip(east.iter().copied()).collect();
         lines.push(PlottedLine { class: "measured", samples: (0..values.len()).collect(), values });
     }
-    lines.extend([("source", &replayed.source), ("refined", &replayed.refined)].map(|(class, run)| track(class, run)));
+    lines.extend(
+        [("source", &replayed.source), ("refined", &replayed.refined)]
+            .map(|(class, run)| track(class, run)),
+    );
     lines
 }
 

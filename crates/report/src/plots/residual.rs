@@ -14,21 +14,43 @@ const HEIGHT: f64 = 78.0;
 const BOTTOM: f64 = 34.0;
 
 /// The panels of one trial, one for each acceleration; stretches that nothing explains are shaded.
-pub(crate) fn residual(trial: &str, series: &[&ResidualSeries], stretches: &[&Unexplained]) -> Plot {
-    let (low, high) = extent(series.iter().flat_map(|series| series.t_s.iter().copied())).unwrap_or((0.0, 1.0));
-    let time = Scale { low, high: high.max(low + 1e-9), length: WIDTH - LEFT - RIGHT, reversed: false };
+pub(crate) fn residual(
+    trial: &str,
+    series: &[&ResidualSeries],
+    stretches: &[&Unexplained],
+) -> Plot {
+    let (low, high) =
+        extent(series.iter().flat_map(|series| series.t_s.iter().copied())).unwrap_or((0.0, 1.0));
+    let time =
+        Scale { low, high: high.max(low + 1e-9), length: WIDTH - LEFT - RIGHT, reversed: false };
     let mut shapes = Vec::new();
     for (index, one) in series.iter().enumerate() {
         let top = TITLE + index as f64 * (TITLE + HEIGHT);
-        let own: Vec<&Unexplained> = stretches.iter().copied().filter(|stretch| stretch.channel == one.channel).collect();
+        let own: Vec<&Unexplained> =
+            stretches.iter().copied().filter(|stretch| stretch.channel == one.channel).collect();
         shapes.extend(panel(one, &own, &time, top, index + 1 == series.len()));
     }
     let height = series.len() as f64 * (TITLE + HEIGHT) + BOTTOM;
-    shapes.push(Shape::Text { at: (LEFT + time.length / 2.0, height - 4.0), text: "time [s]".into(), class: "title mid" });
-    Plot { width: WIDTH, height, label: format!("Residual accelerations of trial {trial} over time"), shapes }
+    shapes.push(Shape::Text {
+        at: (LEFT + time.length / 2.0, height - 4.0),
+        text: "time [s]".into(),
+        class: "title mid",
+    });
+    Plot {
+        width: WIDTH,
+        height,
+        label: format!("Residual accelerations of trial {trial} over time"),
+        shapes,
+    }
 }
 
-fn panel(series: &ResidualSeries, stretches: &[&Unexplained], time: &Scale, top: f64, last: bool) -> Vec<Shape> {
+fn panel(
+    series: &ResidualSeries,
+    stretches: &[&Unexplained],
+    time: &Scale,
+    top: f64,
+    last: bool,
+) -> Vec<Shape> {
     let (unit, factor) = acceleration(&series.channel);
     let all = series.before.iter().chain(&series.after).chain(&series.band);
     let (low, high) = extent(all.map(|value| value * factor)).unwrap_or((-1.0, 1.0));
@@ -37,7 +59,12 @@ fn panel(series: &ResidualSeries, stretches: &[&Unexplained], time: &Scale, top:
     let title = format!("d{}/dt: what must be added to the model [{unit}]", series.channel);
     let mut shapes = vec![Shape::Text { at: (LEFT, top - 6.0), text: title, class: "title" }];
     let place = |values: &[f64]| -> Vec<(f64, f64)> {
-        series.t_s.iter().zip(values).map(|(t, value)| (time.at(*t), scale.at(value * factor))).collect()
+        series
+            .t_s
+            .iter()
+            .zip(values)
+            .map(|(t, value)| (time.at(*t), scale.at(value * factor)))
+            .collect()
     };
     let mut areas: Vec<Shape> = stretches.iter().map(|stretch| shade(stretch, time)).collect();
     areas.push(band(&place(&series.band), scale.at(0.0)));

@@ -24,15 +24,25 @@ pub(crate) fn series(replayed: &ReplayedTrial<'_>) -> Plot {
         shapes.extend(panel(replayed, *channel, *quantity, &time, top, index + 1 == panels.len()));
     }
     let height = panels.len() as f64 * (TITLE + HEIGHT) + BOTTOM;
-    shapes.push(Shape::Text { at: (LEFT + time.length / 2.0, height - 4.0), text: "time [s]".into(), class: "title mid" });
-    Plot { width: WIDTH, height, label: format!("Time series of trial {}", replayed.trial.name), shapes }
+    shapes.push(Shape::Text {
+        at: (LEFT + time.length / 2.0, height - 4.0),
+        text: "time [s]".into(),
+        class: "title mid",
+    });
+    Plot {
+        width: WIDTH,
+        height,
+        label: format!("Time series of trial {}", replayed.trial.name),
+        shapes,
+    }
 }
 
 /// What is shown: motions as they are called, then the rudder.
 fn panels(rolls: bool) -> Vec<(Channel, ShownChannel)> {
     let motions = [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::Phi];
     let motions = motions.into_iter().filter(|channel| rolls || *channel != Channel::Phi);
-    let mut panels: Vec<_> = motions.filter_map(|channel| Some((channel, words::channel(channel.name())?))).collect();
+    let mut panels: Vec<_> =
+        motions.filter_map(|channel| Some((channel, words::channel(channel.name())?))).collect();
     panels.push((Channel::Delta, RUDDER));
     panels
 }
@@ -69,10 +79,18 @@ fn panel(
     shapes
 }
 
-fn curve(replayed: &ReplayedTrial<'_>, line: &PlottedLine<f64>, time: &Scale, scale: &Scale) -> Shape {
+fn curve(
+    replayed: &ReplayedTrial<'_>,
+    line: &PlottedLine<f64>,
+    time: &Scale,
+    scale: &Scale,
+) -> Shape {
     let starts = lines::starts(replayed.trial);
-    let place = |(value, sample): (&f64, &usize)| (time.at(replayed.trial.t_s[*sample]), scale.at(*value));
+    let place =
+        |(value, sample): (&f64, &usize)| (time.at(replayed.trial.t_s[*sample]), scale.at(*value));
     let points: Vec<(f64, f64)> = line.values.iter().zip(&line.samples).map(place).collect();
-    let jumps = |from: usize, to: usize| lines::has_gap(replayed.trial, &starts, line.samples[from], line.samples[to]);
+    let jumps = |from: usize, to: usize| {
+        lines::has_gap(replayed.trial, &starts, line.samples[from], line.samples[to])
+    };
     Shape::Path { d: path(&points, jumps), class: line.class }
 }

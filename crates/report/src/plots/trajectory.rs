@@ -27,10 +27,23 @@ pub(crate) fn trajectory(replayed: &ReplayedTrial<'_>) -> Plot {
     let mut shapes = chart.grid();
     let mut inside: Vec<Shape> = lines.iter().map(|line| chart.line(replayed, line)).collect();
     inside.extend(lines.iter().flat_map(|line| chart.marks(replayed, line)));
-    shapes.push(Shape::Panel { at: (LEFT, TOP), size: (chart.east.length, chart.north.length), shapes: inside });
-    shapes.push(Shape::Rect { at: (LEFT, TOP), size: (chart.east.length, chart.north.length), class: "frame" });
+    shapes.push(Shape::Panel {
+        at: (LEFT, TOP),
+        size: (chart.east.length, chart.north.length),
+        shapes: inside,
+    });
+    shapes.push(Shape::Rect {
+        at: (LEFT, TOP),
+        size: (chart.east.length, chart.north.length),
+        class: "frame",
+    });
     shapes.extend(lines.first().into_iter().flat_map(|line| chart.start(line)));
-    Plot { width: WIDTH, height, label: format!("Trajectory of trial {}", replayed.trial.name), shapes }
+    Plot {
+        width: WIDTH,
+        height,
+        label: format!("Trajectory of trial {}", replayed.trial.name),
+        shapes,
+    }
 }
 
 /// Seconds between the dots on a path.
@@ -67,9 +80,19 @@ impl TrajectoryChart {
         let metres = (self.east.high - self.east.low) / self.east.length;
         let about = |length: f64| (length * metres / nice_step(50.0 * metres)).ceil() as usize;
         let mut shapes = rows((LEFT, TOP), self.east.length, &self.north, about(self.north.length));
-        shapes.extend(columns((LEFT, TOP), self.north.length, &self.east, about(self.east.length), true));
+        shapes.extend(columns(
+            (LEFT, TOP),
+            self.north.length,
+            &self.east,
+            about(self.east.length),
+            true,
+        ));
         let bottom = TOP + self.north.length + BOTTOM - 4.0;
-        shapes.push(Shape::Text { at: (LEFT, TOP - 9.0), text: "x north [m] ↑".into(), class: "title" });
+        shapes.push(Shape::Text {
+            at: (LEFT, TOP - 9.0),
+            text: "x north [m] ↑".into(),
+            class: "title",
+        });
         let east = (LEFT + self.east.length / 2.0, bottom);
         shapes.push(Shape::Text { at: east, text: "y east [m] →".into(), class: "title mid" });
         shapes
@@ -78,7 +101,9 @@ impl TrajectoryChart {
     fn line(&self, replayed: &ReplayedTrial<'_>, line: &PlottedLine<(f64, f64)>) -> Shape {
         let starts = lines::starts(replayed.trial);
         let points: Vec<(f64, f64)> = line.values.iter().map(|point| self.at(*point)).collect();
-        let jumps = |from: usize, to: usize| lines::has_gap(replayed.trial, &starts, line.samples[from], line.samples[to]);
+        let jumps = |from: usize, to: usize| {
+            lines::has_gap(replayed.trial, &starts, line.samples[from], line.samples[to])
+        };
         Shape::Path { d: path(&points, jumps), class: line.class }
     }
 
@@ -86,9 +111,14 @@ impl TrajectoryChart {
     fn marks(&self, replayed: &ReplayedTrial<'_>, line: &PlottedLine<(f64, f64)>) -> Vec<Shape> {
         let times = &replayed.trial.t_s;
         let interval = mark_interval_s(replayed.trial.duration_s());
-        let number = |index: usize| ((times[line.samples[index]] - times[0]) / interval + 1e-9).floor();
+        let number =
+            |index: usize| ((times[line.samples[index]] - times[0]) / interval + 1e-9).floor();
         let crossed = |index: &usize| number(*index) > number(*index - 1);
-        let dot = |index: usize| Shape::Dot { at: self.at(line.values[index]), radius: 2.6, class: dot_class(line.class) };
+        let dot = |index: usize| Shape::Dot {
+            at: self.at(line.values[index]),
+            radius: 2.6,
+            class: dot_class(line.class),
+        };
         (1..line.values.len()).filter(crossed).map(dot).collect()
     }
 
@@ -96,9 +126,13 @@ impl TrajectoryChart {
         let Some(first) = line.values.first() else { return Vec::new() };
         let (x, y) = self.at(*first);
         let (x, y) = (LEFT + x, TOP + y);
-        let (side, class) = if x > LEFT + 0.75 * self.east.length { (-9.0, "start end") } else { (9.0, "start") };
-        let text =
-            Shape::Text { at: (x + side, y + 13.0_f64.min(TOP + self.north.length - y - 3.0)), text: "start".into(), class };
+        let (side, class) =
+            if x > LEFT + 0.75 * self.east.length { (-9.0, "start end") } else { (9.0, "start") };
+        let text = Shape::Text {
+            at: (x + side, y + 13.0_f64.min(TOP + self.north.length - y - 3.0)),
+            text: "start".into(),
+            class,
+        };
         vec![Shape::Dot { at: (x, y), radius: 5.0, class: "ring" }, text]
     }
 }

@@ -40,12 +40,17 @@ impl<'a> Coefficients<'a> {
         let mut axes: Vec<AxisChanges<'a>> = Vec::new();
         for axis in ["X", "Y", "K", "N"] {
             let own = refinement.coefficients.iter().filter(|change| axis_of(&change.name) == axis);
-            let coefficients: Vec<ChangedCoefficient<'a>> = own.map(|change| ChangedCoefficient::of(input, change)).collect();
+            let coefficients: Vec<ChangedCoefficient<'a>> =
+                own.map(|change| ChangedCoefficient::of(input, change)).collect();
             if !coefficients.is_empty() {
                 axes.push(AxisChanges { axis, coefficients });
             }
         }
-        Self { axes, collinear_groups: &refinement.collinear_groups, condition_number: refinement.condition_number }
+        Self {
+            axes,
+            collinear_groups: &refinement.collinear_groups,
+            condition_number: refinement.condition_number,
+        }
     }
 
     /// Every coefficient.
@@ -55,7 +60,8 @@ impl<'a> Coefficients<'a> {
 
     /// The power of ten in which the values read best: that of prime systems where all are small numbers without unit.
     pub fn exponent(&self) -> i32 {
-        let mut sizes: Vec<f64> = self.all().map(|c| c.change.source.abs()).filter(|size| *size > 0.0).collect();
+        let mut sizes: Vec<f64> =
+            self.all().map(|c| c.change.source.abs()).filter(|size| *size > 0.0).collect();
         sizes.sort_by(f64::total_cmp);
         let bare = self.all().all(|c| c.change.unit == "1");
         let small = sizes.get(sizes.len() / 2).is_some_and(|median| *median < 0.02);
@@ -66,13 +72,17 @@ impl<'a> Coefficients<'a> {
 impl<'a> ChangedCoefficient<'a> {
     fn of(input: &RefinementInput<'_>, change: &'a CoefficientChange) -> Self {
         let groups = &input.refinement.collinear_groups;
-        let in_group = |group: &Vec<String>| group.iter().any(|names| names.split('/').any(|name| name == change.name));
+        let in_group = |group: &Vec<String>| {
+            group.iter().any(|names| names.split('/').any(|name| name == change.name))
+        };
         let quantity = input.refinement.transferred.coefficients.get(&change.name);
         Self {
             change,
-            moved_percent: (change.source != 0.0).then(|| 100.0 * (change.refined - change.source) / change.source.abs()),
+            moved_percent: (change.source != 0.0)
+                .then(|| 100.0 * (change.refined - change.source) / change.source.abs()),
             collinear_group: groups.iter().position(in_group).map(|index| index + 1),
-            source_estimated: quantity.is_some_and(|quantity| provenance::is_estimated(&quantity.source)),
+            source_estimated: quantity
+                .is_some_and(|quantity| provenance::is_estimated(&quantity.source)),
         }
     }
 }

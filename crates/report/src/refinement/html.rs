@@ -65,14 +65,22 @@ struct Citation<'a> {
 }
 
 /// Writes the page.
-pub(crate) fn page(content: &RefinementContent<'_>, replayed: &[ReplayedTrial<'_>]) -> Result<String, ReportError> {
+pub(crate) fn page(
+    content: &RefinementContent<'_>,
+    replayed: &[ReplayedTrial<'_>],
+) -> Result<String, ReportError> {
     let provenance = &content.provenance;
     let page = RefinementPage {
         content,
         method: method_text(&content.headline),
         tiles: content.errors.headline().map(Tile::of).collect(),
         errors: tables::errors(&content.errors),
-        trials: content.replays.iter().zip(replayed).map(|(shown, replayed)| RefinementTrialPlots::of(shown, replayed)).collect(),
+        trials: content
+            .replays
+            .iter()
+            .zip(replayed)
+            .map(|(shown, replayed)| RefinementTrialPlots::of(shown, replayed))
+            .collect(),
         moved: moved::moved(&content.coefficients),
         coefficients: tables::coefficients(&content.coefficients),
         groups: groups(&content.coefficients),
@@ -108,7 +116,12 @@ impl RefinementPage<'_> {
 
 impl<'a> RefinementTrialPlots<'a> {
     fn of(shown: &'a ReplaySummary<'a>, replayed: &ReplayedTrial<'_>) -> Self {
-        Self { shown, caption: caption(shown), trajectory: plots::trajectory(replayed), series: plots::series(replayed) }
+        Self {
+            shown,
+            caption: caption(shown),
+            trajectory: plots::trajectory(replayed),
+            series: plots::series(replayed),
+        }
     }
 }
 
@@ -118,9 +131,16 @@ fn caption(shown: &ReplaySummary<'_>) -> String {
         let of = |errors: &std::collections::BTreeMap<String, f64>| {
             Some(significant(errors.get(quantity.channel)? * quantity.factor, 3))
         };
-        Some(format!("{} {} → {} {}", quantity.name, of(&shown.source)?, of(&shown.refined)?, quantity.unit))
+        Some(format!(
+            "{} {} → {} {}",
+            quantity.name,
+            of(&shown.source)?,
+            of(&shown.refined)?,
+            quantity.unit
+        ))
     };
-    let wanted = |quantity: &&words::ShownChannel| ["r", "psi", "x", "y"].contains(&quantity.channel);
+    let wanted =
+        |quantity: &&words::ShownChannel| ["r", "psi", "x", "y"].contains(&quantity.channel);
     let errors: Vec<String> = words::CHANNELS.iter().filter(wanted).filter_map(error).collect();
     let dots = stated(plots::mark_interval_s(shown.duration_s), 3);
     let part = if shown.fitted { "was fitted with" } else { "has not seen" };
@@ -132,7 +152,11 @@ fn caption(shown: &ReplaySummary<'_>) -> String {
 
 /// Each collinear group as a line.
 fn groups(coefficients: &Coefficients<'_>) -> Vec<String> {
-    coefficients.collinear_groups.iter().map(|group| group.join(", ").replace('/', " and ")).collect()
+    coefficients
+        .collinear_groups
+        .iter()
+        .map(|group| group.join(", ").replace('/', " and "))
+        .collect()
 }
 
 fn why(content: &RefinementContent<'_>) -> Option<SourceChoice> {
@@ -147,8 +171,12 @@ fn why(content: &RefinementContent<'_>) -> Option<SourceChoice> {
 fn steering(content: &RefinementContent<'_>) -> String {
     let gear = content.provenance.steering;
     let source = gear.source.as_deref().unwrap_or("default of SOLAS II-1/29");
-    let figures = [gear.limit_deg, gear.rate_deg_s, gear.time_constant_s].map(|value| stated(value, 3));
-    format!("rudder to {} deg, at most {} deg/s, time constant {} s ({source})", figures[0], figures[1], figures[2])
+    let figures =
+        [gear.limit_deg, gear.rate_deg_s, gear.time_constant_s].map(|value| stated(value, 3));
+    format!(
+        "rudder to {} deg, at most {} deg/s, time constant {} s ({source})",
+        figures[0], figures[1], figures[2]
+    )
 }
 
 fn sources<'a>(content: &'a RefinementContent<'a>) -> Vec<(&'static str, Vec<Citation<'a>>)> {
@@ -158,6 +186,8 @@ fn sources<'a>(content: &'a RefinementContent<'a>) -> Vec<(&'static str, Vec<Cit
         ("of the source model", provenance.model_sources),
         ("of the law", provenance.law_sources),
     ];
-    let cited = lists.map(|(of, sources)| (of, sources.iter().map(|(key, source)| Citation { key, source }).collect::<Vec<_>>()));
+    let cited = lists.map(|(of, sources)| {
+        (of, sources.iter().map(|(key, source)| Citation { key, source }).collect::<Vec<_>>())
+    });
     cited.into_iter().filter(|(_, citations)| !citations.is_empty()).collect()
 }

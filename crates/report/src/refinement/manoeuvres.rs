@@ -77,8 +77,15 @@ impl<'a> ManoeuvreComparison<'a> {
 }
 
 /// The values of one key from both sides, in the order of the first; what only one side sailed is kept.
-fn matched<'t, T>(source: &'t [T], refined: &'t [T], same: impl Fn(&T, &T) -> bool) -> Vec<(Option<&'t T>, Option<&'t T>)> {
-    let mut pairs: Vec<_> = source.iter().map(|one| (Some(one), refined.iter().find(|other| same(one, other)))).collect();
+fn matched<'t, T>(
+    source: &'t [T],
+    refined: &'t [T],
+    same: impl Fn(&T, &T) -> bool,
+) -> Vec<(Option<&'t T>, Option<&'t T>)> {
+    let mut pairs: Vec<_> = source
+        .iter()
+        .map(|one| (Some(one), refined.iter().find(|other| same(one, other))))
+        .collect();
     let alone = refined.iter().filter(|other| !source.iter().any(|one| same(one, other)));
     pairs.extend(alone.map(|other| (None, Some(other))));
     pairs
@@ -89,7 +96,11 @@ fn band(bands: Option<&Bands>, name: &str) -> Option<[f64; 2]> {
     bands?.of(name).map(|band| [band.low, band.high])
 }
 
-fn turns(source: &[TurningMetrics], refined: &[TurningMetrics], bands: Option<&Bands>) -> Vec<ManoeuvreFigure> {
+fn turns(
+    source: &[TurningMetrics],
+    refined: &[TurningMetrics],
+    bands: Option<&Bands>,
+) -> Vec<ManoeuvreFigure> {
     let mut figures = Vec::new();
     for (before, after) in matched(source, refined, |a, b| a.rudder_deg == b.rudder_deg) {
         let rudder = before.or(after).map_or(0.0, |turn| turn.rudder_deg);
@@ -97,28 +108,56 @@ fn turns(source: &[TurningMetrics], refined: &[TurningMetrics], bands: Option<&B
         for (figure, read) in TURN {
             let pair = FigurePair { source: before.and_then(read), refined: after.and_then(read) };
             let band = band(bands, &format!("turn {rudder} deg: {figure}"));
-            figures.push(ManoeuvreFigure { manoeuvre: manoeuvre.clone(), figure, unit: "m", pair, band });
+            figures.push(ManoeuvreFigure {
+                manoeuvre: manoeuvre.clone(),
+                figure,
+                unit: "m",
+                pair,
+                band,
+            });
         }
     }
     figures
 }
 
-fn zigzags(source: &[ZigzagMetrics], refined: &[ZigzagMetrics], bands: Option<&Bands>) -> Vec<ManoeuvreFigure> {
-    let same = |a: &ZigzagMetrics, b: &ZigzagMetrics| a.rudder_deg == b.rudder_deg && a.switch_deg == b.switch_deg;
+fn zigzags(
+    source: &[ZigzagMetrics],
+    refined: &[ZigzagMetrics],
+    bands: Option<&Bands>,
+) -> Vec<ManoeuvreFigure> {
+    let same = |a: &ZigzagMetrics, b: &ZigzagMetrics| {
+        a.rudder_deg == b.rudder_deg && a.switch_deg == b.switch_deg
+    };
     let mut figures = Vec::new();
     for (before, after) in matched(source, refined, same) {
         let Some(one) = before.or(after) else { continue };
-        let manoeuvre = format!("zigzag {}/{}, first to {}", one.rudder_deg.abs(), one.switch_deg, side(one.rudder_deg));
+        let manoeuvre = format!(
+            "zigzag {}/{}, first to {}",
+            one.rudder_deg.abs(),
+            one.switch_deg,
+            side(one.rudder_deg)
+        );
         for (figure, unit, read) in ZIGZAG {
             let pair = FigurePair { source: before.and_then(read), refined: after.and_then(read) };
-            let band = band(bands, &format!("zigzag {}/{}: {figure}", one.rudder_deg, one.switch_deg));
-            figures.push(ManoeuvreFigure { manoeuvre: manoeuvre.clone(), figure, unit, pair, band });
+            let band =
+                band(bands, &format!("zigzag {}/{}: {figure}", one.rudder_deg, one.switch_deg));
+            figures.push(ManoeuvreFigure {
+                manoeuvre: manoeuvre.clone(),
+                figure,
+                unit,
+                pair,
+                band,
+            });
         }
     }
     figures
 }
 
-fn criteria<'a>(source: &'a [Criterion], refined: &'a [Criterion], bands: Option<&Bands>) -> Vec<CriterionComparison<'a>> {
+fn criteria<'a>(
+    source: &'a [Criterion],
+    refined: &'a [Criterion],
+    bands: Option<&Bands>,
+) -> Vec<CriterionComparison<'a>> {
     let pairs = matched(source, refined, |a, b| a.criterion == b.criterion);
     let one = |(before, after): (Option<&'a Criterion>, Option<&'a Criterion>)| {
         let any = after.or(before)?;

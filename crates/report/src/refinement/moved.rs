@@ -16,21 +16,35 @@ const BOTTOM: f64 = 38.0;
 
 /// One plot an axis, all on the same scale.
 pub(crate) fn moved(coefficients: &Coefficients<'_>) -> Vec<(&'static str, Plot)> {
-    let most = coefficients.all().map(|c| c.change.moved_sd.abs()).filter(|sd| sd.is_finite()).fold(1.1, f64::max);
-    let scale = Scale { low: -1.06 * most, high: 1.06 * most, length: WIDTH - LEFT - RIGHT, reversed: false };
+    let most = coefficients
+        .all()
+        .map(|c| c.change.moved_sd.abs())
+        .filter(|sd| sd.is_finite())
+        .fold(1.1, f64::max);
+    let scale = Scale {
+        low: -1.06 * most,
+        high: 1.06 * most,
+        length: WIDTH - LEFT - RIGHT,
+        reversed: false,
+    };
     coefficients.axes.iter().map(|axis| (words::axis(axis.axis), plot(axis, &scale))).collect()
 }
 
 fn plot(axis: &AxisChanges<'_>, scale: &Scale) -> Plot {
     let inner = ROW * axis.coefficients.len() as f64;
     let one = (scale.at(-1.0), scale.at(1.0));
-    let mut shapes = vec![Shape::Rect { at: (LEFT + one.0, TOP), size: (one.1 - one.0, inner), class: "prior" }];
+    let mut shapes =
+        vec![Shape::Rect { at: (LEFT + one.0, TOP), size: (one.1 - one.0, inner), class: "prior" }];
     shapes.extend(columns((LEFT, TOP), inner, scale, 5, true));
     for (index, change) in axis.coefficients.iter().enumerate() {
         shapes.extend(row(change, TOP + ROW * (index as f64 + 0.5), scale));
     }
     let title = (LEFT + scale.length / 2.0, TOP + inner + 32.0);
-    shapes.push(Shape::Text { at: title, text: "moved [prior standard deviations]".into(), class: "title mid" });
+    shapes.push(Shape::Text {
+        at: title,
+        text: "moved [prior standard deviations]".into(),
+        class: "title mid",
+    });
     let label = format!("How far the coefficients of {} moved", words::axis(axis.axis));
     Plot { width: WIDTH, height: TOP + inner + BOTTOM, label, shapes }
 }

@@ -17,7 +17,8 @@ impl<'a> StepOptions<'a> {
     pub fn of(input: &RefinementInput<'a>) -> Self {
         let steps = input.refinement.options.as_slice();
         let width = steps.iter().map(|step| step.lambda.len()).max().unwrap_or(0);
-        let axes: Vec<String> = input.law.axes.keys().map(|axis| format!("d{}/dt", axis.velocity())).collect();
+        let axes: Vec<String> =
+            input.law.axes.keys().map(|axis| format!("d{}/dt", axis.velocity())).collect();
         let numbered = || (1..=width).map(|number| format!("regression {number}")).collect();
         Self { accelerations: if axes.len() == width { axes } else { numbered() }, steps }
     }

@@ -45,8 +45,16 @@ impl<'a> Provenance<'a> {
     pub fn of(input: &RefinementInput<'a>) -> Self {
         let (refinement, model) = (input.refinement, &input.refinement.model);
         Self {
-            particulars: model.particulars.iter().map(|(name, quantity)| particular(name, quantity)).collect(),
-            parameters: model.parameters.iter().map(|(name, q)| parameter(name, q, input.law.parameters.get(name))).collect(),
+            particulars: model
+                .particulars
+                .iter()
+                .map(|(name, quantity)| particular(name, quantity))
+                .collect(),
+            parameters: model
+                .parameters
+                .iter()
+                .map(|(name, q)| parameter(name, q, input.law.parameters.get(name)))
+                .collect(),
             steering: &model.steering,
             ship_sources: &input.vessel.file.sources,
             model_sources: &refinement.transferred.sources,
@@ -65,9 +73,20 @@ fn particular<'a>(name: &'a str, quantity: &'a Quantity) -> StatedQuantity<'a> {
     StatedQuantity { name, meaning, unit, quantity, kind: kind(&quantity.source) }
 }
 
-fn parameter<'a>(name: &'a str, quantity: &'a Quantity, of: Option<&'a Parameter>) -> StatedQuantity<'a> {
-    let (meaning, unit) = of.map_or(("", "–"), |parameter| (parameter.meaning.as_str(), parameter.unit.as_str()));
-    StatedQuantity { name, meaning: meaning.to_owned(), unit, quantity, kind: kind(&quantity.source) }
+fn parameter<'a>(
+    name: &'a str,
+    quantity: &'a Quantity,
+    of: Option<&'a Parameter>,
+) -> StatedQuantity<'a> {
+    let (meaning, unit) =
+        of.map_or(("", "–"), |parameter| (parameter.meaning.as_str(), parameter.unit.as_str()));
+    StatedQuantity {
+        name,
+        meaning: meaning.to_owned(),
+        unit,
+        quantity,
+        kind: kind(&quantity.source),
+    }
 }
 
 /// How a figure came about, by its source.
@@ -93,6 +112,11 @@ pub(crate) fn source_status(input: &RefinementInput<'_>) -> Option<Status> {
         return Some(refinement.transferred.status);
     }
     let (ship, model) = refinement.source.split_once('/')?;
-    let own = input.vessel.file.models.iter().find(|file| ship == input.vessel.name() && file.name == model);
+    let own = input
+        .vessel
+        .file
+        .models
+        .iter()
+        .find(|file| ship == input.vessel.name() && file.name == model);
     own.map(|file| file.status)
 }

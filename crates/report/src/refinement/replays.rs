@@ -15,18 +15,25 @@ use crate::replayed::{ReplaySummary, ReplayedTrial};
 const MOST: usize = 4;
 
 /// Simulates the chosen trials; those that lack a channel are left out.
-pub(crate) fn replay_chosen<'a>(input: &RefinementInput<'a>) -> Result<Vec<ReplayedTrial<'a>>, PlantError> {
+pub(crate) fn replay_chosen<'a>(
+    input: &RefinementInput<'a>,
+) -> Result<Vec<ReplayedTrial<'a>>, PlantError> {
     let source = ready(&input.refinement.transferred, input)?;
     let refined = ready(&input.refinement.model, input)?;
     let settings = ReplaySettings::default();
     let one = |trial: &'a Trial| {
-        let runs = (replay(&source, trial, &settings).ok()?, replay(&refined, trial, &settings).ok()?);
+        let runs =
+            (replay(&source, trial, &settings).ok()?, replay(&refined, trial, &settings).ok()?);
         Some(replayed(input, trial, runs))
     };
     Ok(ranked(input).into_iter().filter_map(one).take(MOST).collect())
 }
 
-fn replayed<'a>(input: &RefinementInput<'a>, trial: &'a Trial, (source, refined): (Replay, Replay)) -> ReplayedTrial<'a> {
+fn replayed<'a>(
+    input: &RefinementInput<'a>,
+    trial: &'a Trial,
+    (source, refined): (Replay, Replay),
+) -> ReplayedTrial<'a> {
     let stopped = |run: &Replay| run.stopped.as_ref().map(ToString::to_string);
     let shown = ReplaySummary {
         trial: &trial.name,
@@ -48,7 +55,8 @@ fn is_fitted(input: &RefinementInput<'_>, trial: &Trial) -> bool {
 /// A ship whose envelope covers the speeds of the trials.
 fn ready(model: &Model, input: &RefinementInput<'_>) -> Result<Ship, PlantError> {
     let mut ship = Ship::new(model, input.law)?;
-    let speeds = input.trials.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
+    let speeds =
+        input.trials.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
     ship.set_envelope_speed(speeds.fold(0.0, |most: f64, speed| most.max(speed.abs())));
     Ok(ship)
 }
@@ -62,7 +70,12 @@ fn ranked<'a>(input: &RefinementInput<'a>) -> Vec<&'a Trial> {
     }
     let mut keyed: Vec<((bool, usize, ManoeuvreKind), &Trial)> = Vec::new();
     for ((fitted, kind), trials) in kinds {
-        keyed.extend(spread(trials).into_iter().enumerate().map(|(turn, trial)| ((fitted, turn, kind), trial)));
+        keyed.extend(
+            spread(trials)
+                .into_iter()
+                .enumerate()
+                .map(|(turn, trial)| ((fitted, turn, kind), trial)),
+        );
     }
     keyed.sort_by_key(|(key, _)| *key);
     keyed.into_iter().map(|(_, trial)| trial).collect()
@@ -87,7 +100,8 @@ enum ManoeuvreKind {
 
 impl ManoeuvreKind {
     fn of(trial: &Trial) -> Self {
-        let text = format!("{} {}", trial.manoeuvre.as_deref().unwrap_or(""), trial.name).to_lowercase();
+        let text =
+            format!("{} {}", trial.manoeuvre.as_deref().unwrap_or(""), trial.name).to_lowercase();
         if text.contains("zigzag") || text.contains("zig-zag") || text.contains("zz") {
             Self::Zigzag
         } else if text.contains("turn") || text.contains("circle") {

@@ -22,11 +22,19 @@ pub(crate) fn vector(similarity: &Similarity) -> String {
 
 /// What is to be said where the source is not the first eligible ship of the ranking.
 pub(crate) fn remark(similarity: &Similarity, chosen: &str) -> Option<String> {
-    let first = similarity.ranking.iter().find(|ranked| ranked.eligible).and_then(|ranked| ranked.model.as_deref());
+    let first = similarity
+        .ranking
+        .iter()
+        .find(|ranked| ranked.eligible)
+        .and_then(|ranked| ranked.model.as_deref());
     match first {
         Some(first) if first == chosen => None,
-        Some(first) => Some(format!("The source was named for this refinement; by the ranking it would have been {first}.")),
-        None => Some("The source was named for this refinement; by the ranking no ship is eligible.".into()),
+        Some(first) => Some(format!(
+            "The source was named for this refinement; by the ranking it would have been {first}."
+        )),
+        None => Some(
+            "The source was named for this refinement; by the ranking no ship is eligible.".into(),
+        ),
     }
 }
 
@@ -52,7 +60,11 @@ fn line(rank: usize, ranked: &RankedSource, chosen: &str) -> Row {
         if is_chosen { ship.mark("source", "chosen") } else { ship },
         Cell::new(ranked.model.as_deref().unwrap_or("–")),
         Cell::new(known(ranked.correlation, |value| fixed(value, 4))),
-        if ranked.eligible { Cell::new("").mark("✓ yes", "good") } else { Cell::new("").mark("✗ no", "bad") },
+        if ranked.eligible {
+            Cell::new("").mark("✓ yes", "good")
+        } else {
+            Cell::new("").mark("✗ no", "bad")
+        },
         Cell::new(ranked.reasons.join("; ")),
     ];
     Row::of(cells).highlighted(is_chosen)

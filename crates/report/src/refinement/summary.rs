@@ -58,8 +58,13 @@ pub(crate) struct HeldOutErrors<'a> {
 impl<'a> HeldOutErrors<'a> {
     pub fn of(input: &RefinementInput<'a>) -> Self {
         let (held_out, settings) = (&input.refinement.held_out, &input.refinement.settings);
-        let rolls = |quantity: &ShownChannel| input.law.has_roll() || !matches!(quantity.channel, "phi" | "p");
-        let rows = CHANNELS.into_iter().filter(rolls).map(|q| ErrorRow::of(q, &held_out.source, &held_out.refined));
+        let rolls = |quantity: &ShownChannel| {
+            input.law.has_roll() || !matches!(quantity.channel, "phi" | "p")
+        };
+        let rows = CHANNELS
+            .into_iter()
+            .filter(rolls)
+            .map(|q| ErrorRow::of(q, &held_out.source, &held_out.refined));
         Self {
             how: &held_out.how,
             on_fitted_trial: settings.held_out.is_empty() && input.trials.len() == 1,
@@ -70,7 +75,9 @@ impl<'a> HeldOutErrors<'a> {
 
     /// The rows of a headline: speeds, yaw rate, heading and position.
     pub fn headline(&self) -> impl Iterator<Item = &ErrorRow> {
-        self.rows.iter().filter(|row| ["u", "v", "r", "psi", "position"].contains(&row.quantity.channel))
+        self.rows
+            .iter()
+            .filter(|row| ["u", "v", "r", "psi", "position"].contains(&row.quantity.channel))
     }
 }
 
@@ -78,7 +85,8 @@ fn verdict(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
     if input.is_source_kept() {
         return "No refinement beat the source on manoeuvres left out: the source model is kept as it is.".into();
     }
-    let phrases: Vec<String> = ["fell", "rose", "unchanged"].into_iter().filter_map(|word| phrase(errors, word)).collect();
+    let phrases: Vec<String> =
+        ["fell", "rose", "unchanged"].into_iter().filter_map(|word| phrase(errors, word)).collect();
     let place = if errors.on_fitted_trial {
         "On the trial that was fitted (nothing could be left out)"
     } else {

@@ -15,11 +15,26 @@ fn trial(name: &str, period_s: f64, rudder: f64) -> Trial {
     let (mut r, mut psi, mut x, mut y) = (0.0, 0.0_f64, 0.0, 0.0);
     for k in 0..700 {
         let t = f64::from(k);
-        let delta = if t < 20.0 { 0.0 } else { rudder * (std::f64::consts::TAU * (t - 20.0) / period_s).sin() };
+        let delta = if t < 20.0 {
+            0.0
+        } else {
+            rudder * (std::f64::consts::TAU * (t - 20.0) / period_s).sin()
+        };
         let (u, v) = (7.5 - 400.0 * r * r, -25.0 * r);
         let sample = [u, v, r, psi, x, y, delta];
-        let channels = [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::X, Channel::Y, Channel::Delta];
-        channels.into_iter().zip(sample).for_each(|(channel, value)| trial.channels.entry(channel).or_default().push(value));
+        let channels = [
+            Channel::U,
+            Channel::V,
+            Channel::R,
+            Channel::Psi,
+            Channel::X,
+            Channel::Y,
+            Channel::Delta,
+        ];
+        channels
+            .into_iter()
+            .zip(sample)
+            .for_each(|(channel, value)| trial.channels.entry(channel).or_default().push(value));
         trial.t_s.push(t);
         r += (0.04 * delta - r) / 25.0;
         x += u * psi.cos() - v * psi.sin();
@@ -41,12 +56,23 @@ impl Case {
         let zoo = Zoo::embedded().unwrap();
         let mut vessel = Vessel::clone(zoo.vessel("sr108").unwrap());
         vessel.file.title = "<script>alert(\"a & b\")</script>".into();
-        let trials: Vec<Trial> =
-            names.iter().enumerate().map(|(k, name)| trial(name, 110.0 + 47.0 * k as f64, 0.1 + 0.06 * k as f64)).collect();
-        let (source, settings) = (zoo.model("mariner").unwrap(), Settings { lambda_count: 5, ..Settings::default() });
+        let trials: Vec<Trial> = names
+            .iter()
+            .enumerate()
+            .map(|(k, name)| trial(name, 110.0 + 47.0 * k as f64, 0.1 + 0.06 * k as f64))
+            .collect();
+        let (source, settings) =
+            (zoo.model("mariner").unwrap(), Settings { lambda_count: 5, ..Settings::default() });
         let given: Vec<&Trial> = trials.iter().collect();
         let law = zoo.law(&source.law).unwrap();
-        let request = Request { target: &vessel, source: &source, source_law: None, law, trials: &given, settings: &settings };
+        let request = Request {
+            target: &vessel,
+            source: &source,
+            source_law: None,
+            law,
+            trials: &given,
+            settings: &settings,
+        };
         let refinement = refine(&request, &|_, _| true).unwrap();
         Self { zoo, vessel, trials, refinement }
     }
@@ -74,8 +100,15 @@ fn the_same_input_gives_the_same_self_contained_page() {
     let case = Case::new(&["zz<1>", "turn & back", "free"]);
     let first = case.render();
     assert_eq!(first, case.render());
-    assert!(!first.html.contains("<script") && !first.html.contains("zz<1>"), "text from outside must be escaped");
-    assert!(["&#60;script", "zz&#60;1&#62;", "turn &#38; back"].iter().all(|text| first.html.contains(text)));
+    assert!(
+        !first.html.contains("<script") && !first.html.contains("zz<1>"),
+        "text from outside must be escaped"
+    );
+    assert!(
+        ["&#60;script", "zz&#60;1&#62;", "turn &#38; back"]
+            .iter()
+            .all(|text| first.html.contains(text))
+    );
     for outside in ["<link", "src=", "url(", "@import", "http://", "https://"] {
         assert!(!first.html.contains(outside), "{outside}");
     }
@@ -87,16 +120,24 @@ fn a_page_says_what_a_reader_asks() {
     let case = Case::new(&["zigzag", "turn"]);
     let Rendered { html, json } = case.render();
     let ids = ["errors", "trials", "coefficients", "options", "manoeuvres", "source", "provenance"];
-    let places: Vec<usize> = ids.iter().map(|id| html.find(&format!("<section id=\"{id}\"")).unwrap()).collect();
+    let places: Vec<usize> =
+        ids.iter().map(|id| html.find(&format!("<section id=\"{id}\"")).unwrap()).collect();
     assert!(places.is_sorted());
     assert!(html.contains(&"ab".repeat(32)) && html.contains("carried over from mariner/abkowitz"));
     assert_eq!(html.matches("class=\"plot\"").count(), 2 * 2 + 3);
     assert_eq!(json["headline"]["version"]["number"], 7);
     assert_eq!(json["coefficients"]["axes"][0]["axis"], "X");
     assert_eq!(json["manoeuvres"]["imo"].as_array().unwrap().len(), 6);
-    let heading = json["errors"]["rows"].as_array().unwrap().iter().find(|row| row["channel"] == "psi").unwrap();
+    let heading = json["errors"]["rows"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|row| row["channel"] == "psi")
+        .unwrap();
     let factor = heading["source"].as_f64().unwrap() / heading["refined"].as_f64().unwrap();
-    assert!((factor - heading["factor"].as_f64().unwrap()).abs() < 1e-9 && heading["unit"] == "deg");
+    assert!(
+        (factor - heading["factor"].as_f64().unwrap()).abs() < 1e-9 && heading["unit"] == "deg"
+    );
 }
 
 #[test]

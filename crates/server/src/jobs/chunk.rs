@@ -20,9 +20,14 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
         let members = members(app, &loaded, &chunk, &progress).await?;
         tell(&progress, 0.5, "refining")?;
         let work = std::sync::Arc::clone(&loaded);
-        let done = app.compute(move || members.into_par_iter().map(|member| refine(&work, member)).collect::<Vec<_>>()).await?;
+        let done = app
+            .compute(move || {
+                members.into_par_iter().map(|member| refine(&work, member)).collect::<Vec<_>>()
+            })
+            .await?;
         tell(&progress, 0.9, "keeping the versions")?;
-        let outcomes = done.into_iter().map(|(member, outcome)| kept(&loaded, &bulk.id, member, outcome));
+        let outcomes =
+            done.into_iter().map(|(member, outcome)| kept(&loaded, &bulk.id, member, outcome));
         let outcomes: Vec<NewOutcome> = outcomes.collect::<std::result::Result<_, _>>()?;
         let result = json!({ "bulk_refinement": bulk.id, "ships": outcomes.len() }).to_string();
         match app.store().bulks().commit(&bulk.id, (&job.id, job.fence), &outcomes, &result).await {
@@ -34,10 +39,19 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
     Err(failed("other versions of the ships kept coming in between; retry the job"))
 }
 
-async fn members(app: &App, loaded: &Loaded, chunk: &Chunk, progress: &Progress) -> Result<Vec<Member>> {
+async fn members(
+    app: &App,
+    loaded: &Loaded,
+    chunk: &Chunk,
+    progress: &Progress,
+) -> Result<Vec<Member>> {
     let mut members = Vec::with_capacity(chunk.ships.len());
     for (index, ship) in chunk.ships.iter().enumerate() {
-        tell(progress, 0.5 * index as f64 / chunk.ships.len() as f64, &format!("statistics of {ship}"))?;
+        tell(
+            progress,
+            0.5 * index as f64 / chunk.ships.len() as f64,
+            &format!("statistics of {ship}"),
+        )?;
         members.push(member(app.archive(), loaded, ship).await?);
     }
     Ok(members)

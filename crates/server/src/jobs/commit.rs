@@ -6,7 +6,9 @@ use serde_json::{Value, json};
 use sistership_estimate::source::Similarity;
 use sistership_model::trial::Trial;
 use sistership_model::version::sha256;
-use sistership_store::{Expect, Job, NewReport, NewVersion, Refinement, ReportHead, StoreError, VersionHead};
+use sistership_store::{
+    Expect, Job, NewReport, NewVersion, Refinement, ReportHead, StoreError, VersionHead,
+};
 
 use super::outcome::{JobError, Result, failed};
 use super::prepared::Prepared;
@@ -24,7 +26,12 @@ struct Made {
 }
 
 /// Keeps what was derived: champion where the ship has none, else candidate.
-pub(super) async fn commit(app: &App, job: &Job, derived: Derived, prepared: Prepared) -> Result<()> {
+pub(super) async fn commit(
+    app: &App,
+    job: &Job,
+    derived: Derived,
+    prepared: Prepared,
+) -> Result<()> {
     let made = Made::new(derived, prepared)?;
     for _ in 0..super::TRIES {
         let standing = Standing::of(app.store(), &made.version.model).await?;
@@ -52,14 +59,20 @@ impl Made {
         };
         let ranking = prepared.similarity.as_ref().map(|similarity| &similarity.ranking);
         let result = json!({ "source": source, "held_out": refined.refinement.held_out, "ranking": ranking });
-        Ok(Self { version, refined: Arc::new(refined), similarity: prepared.similarity.map(Arc::new), result })
+        Ok(Self {
+            version,
+            refined: Arc::new(refined),
+            similarity: prepared.similarity.map(Arc::new),
+            result,
+        })
     }
 
     async fn report(&self, app: &App, number: i64) -> Result<NewReport> {
         let sha256 = sha256(self.version.document.as_bytes());
         let label = VersionLabel { ship: self.version.model.clone(), number, sha256 };
         let (refined, similarity) = (Arc::clone(&self.refined), self.similarity.clone());
-        let rendered = app.compute(move || render(&refined, similarity.as_deref(), label)).await??;
+        let rendered =
+            app.compute(move || render(&refined, similarity.as_deref(), label)).await??;
         let document = serde_json::to_string(&rendered.json).map_err(failed)?;
         Ok(NewReport {
             version_id: None,
@@ -70,13 +83,25 @@ impl Made {
         })
     }
 
-    async fn keep(&self, app: &App, job: &Job, standing: &Standing, report: NewReport) -> Result<()> {
-        let reason = format!("refined from {} in job {}", self.result["source"].as_str().unwrap_or_default(), job.id);
+    async fn keep(
+        &self,
+        app: &App,
+        job: &Job,
+        standing: &Standing,
+        report: NewReport,
+    ) -> Result<()> {
+        let reason = format!(
+            "refined from {} in job {}",
+            self.result["source"].as_str().unwrap_or_default(),
+            job.id
+        );
         let alias = if standing.champion { CANDIDATE } else { CHAMPION };
         let expect = if standing.champion { Expect::Any } else { Expect::Absent };
         let moves = vec![step(alias, expect, &reason), standing.follow(&reason)];
         let refinement = Refinement { version: self.version.clone(), moves, report: Some(report) };
-        let result = |version: &VersionHead, report: Option<&ReportHead>| self.result(version, report, alias);
+        let result = |version: &VersionHead, report: Option<&ReportHead>| {
+            self.result(version, report, alias)
+        };
         app.store().commit_refinement(&job.id, job.fence, &refinement, result).await?;
         Ok(())
     }
@@ -92,7 +117,11 @@ impl Made {
     }
 }
 
-fn render(refined: &Refined, similarity: Option<&Similarity>, version: VersionLabel) -> Result<Rendered> {
+fn render(
+    refined: &Refined,
+    similarity: Option<&Similarity>,
+    version: VersionLabel,
+) -> Result<Rendered> {
     let trials: Vec<&Trial> = refined.ingredients.trials.iter().collect();
     let input = report::RefinementInput {
         refinement: &refined.refinement,

@@ -7,7 +7,8 @@ use serde_json::{Value, json};
 use sistership_model::trial::Trial;
 use sistership_model::version::sha256;
 use sistership_store::{
-    AliasMove, Diagnosis, Expect, Job, NewDiagnosed, NewReport, NewVersion, ReportHead, StoreError, VersionHead,
+    AliasMove, Diagnosis, Expect, Job, NewDiagnosed, NewReport, NewVersion, ReportHead, StoreError,
+    VersionHead,
 };
 
 use super::outcome::{JobError, Result, failed};
@@ -28,8 +29,15 @@ struct Made<'a> {
 }
 
 /// Keeps a diagnosis; where it has found effects, the version with them becomes the candidate.
-pub(super) async fn commit(app: &App, job: &Job, diagnosed: Diagnosed, of: &VersionHead, trials: &[String]) -> Result<()> {
-    let made = Made { version: version(&diagnosed, of)?, diagnosed: Arc::new(diagnosed), of, trials };
+pub(super) async fn commit(
+    app: &App,
+    job: &Job,
+    diagnosed: Diagnosed,
+    of: &VersionHead,
+    trials: &[String],
+) -> Result<()> {
+    let made =
+        Made { version: version(&diagnosed, of)?, diagnosed: Arc::new(diagnosed), of, trials };
     for _ in 0..super::TRIES {
         let standing = Standing::of(app.store(), &of.model).await?;
         let report = made.report(app, standing.next).await?;
@@ -60,19 +68,31 @@ impl Made<'_> {
             VersionLabel { ship: version.model.clone(), number, sha256 }
         };
         let (diagnosed, made) = (Arc::clone(&self.diagnosed), self.version.as_ref().map(label));
-        let of = VersionLabel { ship: self.of.model.clone(), number: self.of.number, sha256: self.of.sha256.clone() };
+        let of = VersionLabel {
+            ship: self.of.model.clone(),
+            number: self.of.number,
+            sha256: self.of.sha256.clone(),
+        };
         let rendered = app.compute(move || render(&diagnosed, of, made)).await??;
         let document = serde_json::to_string(&rendered.json).map_err(failed)?;
         let (kind, ship, html) = (DIAGNOSIS.to_owned(), self.of.model.clone(), rendered.html);
         Ok(NewReport { version_id: None, ship, kind, document, html })
     }
 
-    async fn keep(&self, app: &App, job: &Job, standing: &Standing, report: NewReport) -> Result<()> {
+    async fn keep(
+        &self,
+        app: &App,
+        job: &Job,
+        standing: &Standing,
+        report: NewReport,
+    ) -> Result<()> {
         let reason = format!("effects found missing from {} in job {}", self.name(), job.id);
-        let moves: Vec<AliasMove> = vec![step(CANDIDATE, Expect::Any, &reason), standing.follow(&reason)];
+        let moves: Vec<AliasMove> =
+            vec![step(CANDIDATE, Expect::Any, &reason), standing.follow(&reason)];
         let version = self.version.clone().map(|version| (version, moves));
         let diagnosis = Diagnosis { version, report, found: self.found()? };
-        let result = |version: Option<&VersionHead>, report: &ReportHead| self.result(version, report);
+        let result =
+            |version: Option<&VersionHead>, report: &ReportHead| self.result(version, report);
         app.store().commit_diagnosis(&job.id, job.fence, &diagnosis, result).await?;
         Ok(())
     }
@@ -117,5 +137,6 @@ impl Made<'_> {
 fn render(diagnosed: &Diagnosed, of: VersionLabel, made: Option<VersionLabel>) -> Result<Rendered> {
     let trials: Vec<&Trial> = diagnosed.trials.iter().collect();
     let Diagnosed { diagnosis, model, law, .. } = diagnosed;
-    render_diagnosis(&DiagnosisInput { diagnosis, model, law, trials: &trials, of: Some(of), made }).map_err(failed)
+    render_diagnosis(&DiagnosisInput { diagnosis, model, law, trials: &trials, of: Some(of), made })
+        .map_err(failed)
 }

@@ -21,7 +21,9 @@ pub(super) async fn taken(app: &App, job: &Job, progress: &Progress) -> Result<S
         match app.job_memory().take(bytes, LOOK).await {
             Ok(share) => return Ok(share),
             Err(never @ Shortage::Never { .. }) => {
-                return Err(failed(format!("{never}: give it fewer or shorter trials, or let jobs have more memory")));
+                return Err(failed(format!(
+                    "{never}: give it fewer or shorter trials, or let jobs have more memory"
+                )));
             }
             Err(busy) if progress.tell(0.0, &format!("waiting: {busy}")) => {}
             Err(_) => return Err(JobError::Stopped),

@@ -31,7 +31,8 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
 }
 
 async fn recipe(app: &App, asked: &DiagnosisJob, version: &Version) -> Result<DiagnosisRecipe> {
-    let (ship, number, sha256) = (version.head.model.clone(), version.head.number, version.head.sha256.clone());
+    let (ship, number, sha256) =
+        (version.head.model.clone(), version.head.number, version.head.sha256.clone());
     let law = app.store().laws().get(&version.head.law).await?;
     Ok(DiagnosisRecipe {
         kind: DiagnosisKind::Diagnosis,

@@ -28,7 +28,9 @@ impl From<StoreError> for JobError {
     fn from(error: StoreError) -> Self {
         match error {
             full if full.is_out_of_space() => Self::Store(full),
-            StoreError::NotFound { .. } | StoreError::Invalid { .. } | StoreError::Objects(_) => failed(error),
+            StoreError::NotFound { .. } | StoreError::Invalid { .. } | StoreError::Objects(_) => {
+                failed(error)
+            }
             other => Self::Store(other),
         }
     }

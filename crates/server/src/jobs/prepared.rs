@@ -2,7 +2,9 @@
 
 use sistership_estimate::source::{Similarity, best_source, similar};
 use sistership_model::trial::Trial as Recording;
-use sistership_model::version::{AcrossLaws, Recipe, RecipeTrial, SourceVersion, code_revision, sha256};
+use sistership_model::version::{
+    AcrossLaws, Recipe, RecipeTrial, SourceVersion, code_revision, sha256,
+};
 use sistership_model::{Vessel, Zoo};
 use sistership_pipeline::archive::vessel;
 use sistership_pipeline::derive::DeriveError;
@@ -23,12 +25,18 @@ pub(super) struct Prepared {
     pub similarity: Option<Similarity>,
 }
 
-pub(super) async fn prepare(app: &App, asked: &RefinementJob, progress: &Progress) -> Result<Prepared> {
+pub(super) async fn prepare(
+    app: &App,
+    asked: &RefinementJob,
+    progress: &Progress,
+) -> Result<Prepared> {
     let ship = app.store().ships().get(&asked.ship).await?;
     let trials = trials(app, &asked.trials).await?;
     let target = vessel(&ship.name, &ship.document)?;
     let (source, similarity) = match &asked.source {
-        SourceChoice::Version { ship, number } => (app.store().versions().get(ship, *number).await?, None),
+        SourceChoice::Version { ship, number } => {
+            (app.store().versions().get(ship, *number).await?, None)
+        }
         SourceChoice::Auto => {
             tell(progress, 0.03, "choosing the source")?;
             let (version, similarity) = choose(app, target, &trials).await?;
@@ -44,7 +52,11 @@ pub(super) async fn prepare(app: &App, asked: &RefinementJob, progress: &Progres
         }
     };
     let recipe = Recipe::Refinement {
-        source: SourceVersion { ship: source.head.model.clone(), number: source.head.number, sha256: source.head.sha256.clone() },
+        source: SourceVersion {
+            ship: source.head.model.clone(),
+            number: source.head.number,
+            sha256: source.head.sha256.clone(),
+        },
         ship_sha256: sha256(ship.document.as_bytes()),
         law_sha256: law.sha256,
         across,
@@ -72,13 +84,19 @@ pub(super) async fn trials(app: &App, ids: &[String]) -> Result<Vec<RecipeTrial>
 }
 
 /// The best eligible ship of the zoo, measured on the trials.
-async fn choose(app: &App, target: Vessel, trials: &[RecipeTrial]) -> Result<(Version, Similarity)> {
+async fn choose(
+    app: &App,
+    target: Vessel,
+    trials: &[RecipeTrial],
+) -> Result<(Version, Similarity)> {
     let zoo = app.zoo_around(&target).await?;
     let trials = app.archive().trials(trials).await?;
     let (name, similarity) = app.compute(move || best(&zoo, &target, &trials)).await??;
     let (ship, model) = name.split_once('/').unwrap_or((&name, ""));
     let found = alias(app.store(), ship, &alias_of(model)).await?;
-    let found = found.ok_or_else(|| failed(format!("the model `{name}` has no version; start the server again to make it")))?;
+    let found = found.ok_or_else(|| {
+        failed(format!("the model `{name}` has no version; start the server again to make it"))
+    })?;
     Ok((app.store().versions().get(ship, found.version_number).await?, similarity))
 }
 

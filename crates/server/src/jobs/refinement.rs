@@ -20,9 +20,14 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
     let prepared = prepare(app, &asked, &progress).await?;
     let step = progress.clone();
     let scaled = move |fraction: f64, what: &str| step.tell(0.1 + 0.8 * fraction, what);
-    let derived = derive(app.archive(), &asked.ship, &recipe::Recipe::Plain(prepared.recipe.clone()), Arc::new(scaled))
-        .await?
-        .spelled_out()?;
+    let derived = derive(
+        app.archive(),
+        &asked.ship,
+        &recipe::Recipe::Plain(prepared.recipe.clone()),
+        Arc::new(scaled),
+    )
+    .await?
+    .spelled_out()?;
     tell(&progress, 0.92, "writing the report and keeping the version")?;
     commit(app, job, derived, prepared).await
 }

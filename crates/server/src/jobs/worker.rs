@@ -125,7 +125,9 @@ impl Worker {
             self.rest(if error.is_out_of_space() { NO_ROOM } else { BREATH }).await;
             let jobs = self.app.store().jobs();
             let given = match jobs.release(&job.id, job.fence).await {
-                Err(StoreError::Conflict { .. } | StoreError::NotFound { .. }) => jobs.lives(&job.id, job.fence).await,
+                Err(StoreError::Conflict { .. } | StoreError::NotFound { .. }) => {
+                    jobs.lives(&job.id, job.fence).await
+                }
                 other => other.map(drop),
             };
             match given {
@@ -136,7 +138,11 @@ impl Worker {
     }
 
     /// Keeps the lease while the work runs; gives its outcome, or none when it did not stop in time.
-    async fn accompany(&mut self, job: &Job, watched: &mut Watched) -> Option<Result<(), JobError>> {
+    async fn accompany(
+        &mut self,
+        job: &Job,
+        watched: &mut Watched,
+    ) -> Option<Result<(), JobError>> {
         let mut beat = Instant::now();
         // When the job must be given back, once the server is told to stop.
         let mut leave: Option<Instant> = None;
@@ -151,7 +157,9 @@ impl Worker {
                 }
                 () = tokio::time::sleep(TELL.min(self.app.leases().beat)) => {}
             }
-            if watched.seen.has_changed().unwrap_or(false) || beat.elapsed() >= self.app.leases().beat {
+            if watched.seen.has_changed().unwrap_or(false)
+                || beat.elapsed() >= self.app.leases().beat
+            {
                 beat = Instant::now();
                 self.beat(job, watched).await;
             }
@@ -161,16 +169,24 @@ impl Worker {
     async fn beat(&self, job: &Job, watched: &mut Watched) {
         let (fraction, message) = watched.seen.borrow_and_update().clone();
         let lease = self.app.leases().lease;
-        match self.app.store().jobs().heartbeat(&job.id, job.fence, fraction, &message, lease).await {
+        match self.app.store().jobs().heartbeat(&job.id, job.fence, fraction, &message, lease).await
+        {
             Ok(false) => {}
             Ok(true) => watched.progress.stop(Stop::Cancelled),
-            Err(StoreError::Conflict { .. } | StoreError::NotFound { .. }) => watched.progress.stop(Stop::Lost),
+            Err(StoreError::Conflict { .. } | StoreError::NotFound { .. }) => {
+                watched.progress.stop(Stop::Lost)
+            }
             Err(error) => tracing::warn!(%error, "a beat was missed"),
         }
     }
 
     /// Writes how a job has ended.
-    async fn end(&self, job: &Job, ended: Option<Result<(), JobError>>, stopped: Option<Stop>) -> Result<(), StoreError> {
+    async fn end(
+        &self,
+        job: &Job,
+        ended: Option<Result<(), JobError>>,
+        stopped: Option<Stop>,
+    ) -> Result<(), StoreError> {
         let jobs = self.app.store().jobs();
         match (ended, stopped) {
             (Some(Ok(())), _) => tracing::info!("done"),
@@ -204,6 +220,8 @@ async fn work(app: App, job: Job, progress: Progress) -> Result<(), JobError> {
         DIAGNOSIS => diagnosis::run(&app, &job, progress).await,
         BULK => chunk::run(&app, &job, progress).await,
         LEARN => family_prior::run(&app, &job, progress).await,
-        other => Err(JobError::Failed(format!("this server does not know jobs of the kind `{other}`"))),
+        other => {
+            Err(JobError::Failed(format!("this server does not know jobs of the kind `{other}`")))
+        }
     }
 }

@@ -30,7 +30,8 @@ fn hostile() -> Vec<(&'static str, String, &'static str)> {
         around("", 10_000, "^2"),
         around("", 3_355, "+1"),
     ];
-    let mut all: Vec<_> = values.into_iter().map(|value| ("/v1/laws", law(&value, "X_u"), "values.U")).collect();
+    let mut all: Vec<_> =
+        values.into_iter().map(|value| ("/v1/laws", law(&value, "X_u"), "values.U")).collect();
     all.push(("/v1/laws", law("1", &"X_u, ".repeat(3_320)), "1500 are the most"));
     all.push(("/v1/laws", "{a: ".repeat(50_000), "64 deep"));
     all.push(("/v1/laws", format!("[{}", "1,".repeat(450_000)), "are the most"));
@@ -46,7 +47,11 @@ async fn hostile_documents_are_refused_at_once() {
     let harness = Harness::on(TestDatabase::sqlite()).await;
     for (path, body, words) in hostile() {
         let began = Instant::now();
-        let post = harness.client.post(harness.url(path)).header("content-type", "application/yaml").body(body);
+        let post = harness
+            .client
+            .post(harness.url(path))
+            .header("content-type", "application/yaml")
+            .body(body);
         let (status, problem) = read(post.send().await.unwrap()).await;
         assert_eq!(status, 422, "{words}: {problem}");
         let said = problem.to_string();
@@ -55,7 +60,11 @@ async fn hostile_documents_are_refused_at_once() {
     }
     for path in ["/v1/refinements", "/v1/predictions", "/v1/families", "/v1/ships"] {
         let body = "[".repeat(100_000);
-        let post = harness.client.post(harness.url(path)).header("content-type", "application/json").body(body);
+        let post = harness
+            .client
+            .post(harness.url(path))
+            .header("content-type", "application/json")
+            .body(body);
         let (status, problem) = read(post.send().await.unwrap()).await;
         assert!(status.is_client_error(), "{path}: {problem}");
     }
@@ -66,9 +75,18 @@ async fn hostile_documents_are_refused_at_once() {
 /// A law as deep as may be, through values, and with so many terms.
 fn deep(terms: usize) -> String {
     let values: String = (0..240).map(|n| format!(", a{}: a{n} + 0", n + 1)).collect();
-    let symbols: Vec<String> = (0..56_u8).map(|n| format!("F{}{}", char::from(b'A' + n / 8), char::from(b'a' + n % 8))).collect();
-    let factors: String = symbols.iter().enumerate().map(|(n, symbol)| format!(", {symbol}: '(1 + 0.01*{n})*u'")).collect();
-    let pairs = symbols.iter().enumerate().flat_map(|(n, a)| symbols[n..].iter().map(move |b| format!("X_{a}{b}")));
+    let symbols: Vec<String> = (0..56_u8)
+        .map(|n| format!("F{}{}", char::from(b'A' + n / 8), char::from(b'a' + n % 8)))
+        .collect();
+    let factors: String = symbols
+        .iter()
+        .enumerate()
+        .map(|(n, symbol)| format!(", {symbol}: '(1 + 0.01*{n})*u'"))
+        .collect();
+    let pairs = symbols
+        .iter()
+        .enumerate()
+        .flat_map(|(n, a)| symbols[n..].iter().map(move |b| format!("X_{a}{b}")));
     let terms: Vec<String> = pairs.take(terms).collect();
     format!(
         "kind: law\nname: deep\ntitle: deep\nsources: {{}}\nvalues: {{ a0: '1'{values} }}\nfactors: {{ u: u, v: v, r: r{factors} }}\n\
@@ -94,7 +112,11 @@ async fn jobs_on_a_law_of(terms: usize) {
     let harness = Harness::on(TestDatabase::sqlite()).await;
     harness.create_ship().await;
     harness.upload_trials().await;
-    let post = harness.client.post(harness.url("/v1/laws")).header("content-type", "application/yaml").body(deep(terms));
+    let post = harness
+        .client
+        .post(harness.url("/v1/laws"))
+        .header("content-type", "application/yaml")
+        .body(deep(terms));
     let (status, said) = read(post.send().await.unwrap()).await;
     assert_eq!(status, 201, "{said}");
     for method in ["weak", "trajectory"] {
@@ -102,7 +124,10 @@ async fn jobs_on_a_law_of(terms: usize) {
         let (status, job) = harness.post("/v1/refinements", &asked).await;
         assert_eq!(status, 202, "{job}");
         let job = harness.follow(job["id"].as_str().unwrap()).await;
-        assert!(["succeeded", "failed"].contains(&job["state"].as_str().unwrap()), "{method}: {job}");
+        assert!(
+            ["succeeded", "failed"].contains(&job["state"].as_str().unwrap()),
+            "{method}: {job}"
+        );
     }
     assert_eq!(harness.get("/v1/ships?limit=1").await["items"].as_array().unwrap().len(), 1);
     harness.server.stop().await;

@@ -32,7 +32,8 @@ pub(super) fn config(database: &TestDatabase) -> Config {
     let mut config = Config::new(database.folder.path().join("data"));
     config.listen.set_port(0);
     config.database_url = database.url.clone();
-    let (lease, beat, poll) = (Duration::from_secs(5), Duration::from_millis(200), Duration::from_millis(50));
+    let (lease, beat, poll) =
+        (Duration::from_secs(5), Duration::from_millis(200), Duration::from_millis(50));
     // Two thousand clients of one address, see `registry`.
     (config.limits.connections, config.limits.connections_per_address) = (4096, 4096);
     config.leases = Leases { lease, beat, poll, ..Leases::default() };
@@ -58,18 +59,22 @@ impl Harness {
     }
 
     pub async fn create_ship(&self) -> (StatusCode, Value) {
-        let post = self.client.post(self.url("/v1/ships")).header("content-type", "application/yaml");
+        let post =
+            self.client.post(self.url("/v1/ships")).header("content-type", "application/yaml");
         read(post.header("idempotency-key", "ship").body(SHIP).send().await.unwrap()).await
     }
 
     /// Trials that the 4-DOF SR108 has sailed, uploaded by manifest.
     pub async fn upload_trials(&self) -> (StatusCode, Value) {
-        let manoeuvres = [json!({ "turn_deg": 20 }), json!({ "turn_deg": -15 }), zigzag(10), zigzag(-20)];
+        let manoeuvres =
+            [json!({ "turn_deg": 20 }), json!({ "turn_deg": -15 }), zigzag(10), zigzag(-20)];
         let mut manifest = "kind: trials\nship: demo-ship\ntrials:\n".to_owned();
         let mut form = Form::new();
         for (index, manoeuvre) in manoeuvres.iter().enumerate() {
             manifest += &format!("  - {{ file: sailed/{index}.csv, manoeuvre: number {index} }}\n");
-            let (_, run) = self.post("/v1/predictions", &json!({ "model": "sr108", "manoeuvre": manoeuvre })).await;
+            let (_, run) = self
+                .post("/v1/predictions", &json!({ "model": "sr108", "manoeuvre": manoeuvre }))
+                .await;
             let part = Part::text(csv(&run["trajectory"])).file_name(format!("sailed/{index}.csv"));
             form = form.part(format!("file{index}"), part);
         }
@@ -79,7 +84,15 @@ impl Harness {
 
     /// Follows a job to its end by its events.
     pub async fn follow(&self, job: &str) -> Value {
-        let events = self.client.get(self.url(&format!("/v1/jobs/{job}/events"))).send().await.unwrap().text().await.unwrap();
+        let events = self
+            .client
+            .get(self.url(&format!("/v1/jobs/{job}/events")))
+            .send()
+            .await
+            .unwrap()
+            .text()
+            .await
+            .unwrap();
         let last = events.lines().rfind(|line| line.starts_with("data:")).unwrap();
         serde_json::from_str(last.trim_start_matches("data:")).unwrap()
     }
@@ -96,8 +109,23 @@ fn zigzag(angle: i64) -> Value {
 
 /// Every fifth sample.
 pub(super) fn csv(track: &Value) -> String {
-    let columns = ["t_s", "x_m", "y_m", "psi_rad", "u_m_s", "v_m_s", "r_rad_s", "phi_rad", "p_rad_s", "delta_rad", "n_rps"];
+    let columns = [
+        "t_s",
+        "x_m",
+        "y_m",
+        "psi_rad",
+        "u_m_s",
+        "v_m_s",
+        "r_rad_s",
+        "phi_rad",
+        "p_rad_s",
+        "delta_rad",
+        "n_rps",
+    ];
     let rows = track["t_s"].as_array().unwrap().len();
     let row = |k: usize| columns.map(|column| track[column][k].to_string()).join(",");
-    std::iter::once(columns.join(",")).chain((0..rows).step_by(5).map(row)).collect::<Vec<_>>().join("\n")
+    std::iter::once(columns.join(","))
+        .chain((0..rows).step_by(5).map(row))
+        .collect::<Vec<_>>()
+        .join("\n")
 }

@@ -16,7 +16,8 @@ fn keyed_routes() -> Vec<String> {
     let document = serde_json::to_value(crate::openapi()).unwrap();
     let keyed = |method: &Value| {
         let parameters = method["parameters"].as_array();
-        parameters.is_some_and(|all| all.iter().any(|parameter| parameter["name"] == "Idempotency-Key"))
+        parameters
+            .is_some_and(|all| all.iter().any(|parameter| parameter["name"] == "Idempotency-Key"))
     };
     let mut found = Vec::new();
     for (path, methods) in document["paths"].as_object().unwrap() {
@@ -34,7 +35,11 @@ async fn request(harness: &Harness, route: &str) -> RequestBuilder {
             let zoo = Zoo::embedded().unwrap();
             let law = zoo.law_text("abkowitz").unwrap().to_owned();
             let name = law.lines().find(|line| line.starts_with("name:")).unwrap().to_owned();
-            post("/v1/laws").header("content-type", "application/yaml").body(law.replacen(&name, "name: another-law", 1))
+            post("/v1/laws").header("content-type", "application/yaml").body(law.replacen(
+                &name,
+                "name: another-law",
+                1,
+            ))
         }
         "post /v1/ships" => post("/v1/ships").header("content-type", "application/yaml").body(SHIP),
         "post /v1/models/{model}/versions" => {
@@ -42,13 +47,14 @@ async fn request(harness: &Harness, route: &str) -> RequestBuilder {
             post("/v1/models/mariner/versions").json(&json!({ "model": model, "origin": "a test" }))
         }
         "post /v1/trials" => upload(harness, "again").await,
-        "post /v1/families" => {
-            post("/v1/families").json(&json!({ "name": "another", "foundation": "mariner", "members": ["mariner"] }))
-        }
+        "post /v1/families" => post("/v1/families")
+            .json(&json!({ "name": "another", "foundation": "mariner", "members": ["mariner"] })),
         "post /v1/families/{family}/refinements" => {
             post("/v1/families/family/refinements").json(&json!({ "prior": "foundation" }))
         }
-        "post /v1/refinements" => post("/v1/refinements").json(&json!({ "ship": "mariner", "source": "mariner" })),
+        "post /v1/refinements" => {
+            post("/v1/refinements").json(&json!({ "ship": "mariner", "source": "mariner" }))
+        }
         "post /v1/diagnoses" => post("/v1/diagnoses").json(&json!({ "model": "mariner" })),
         other => panic!("say here how `{other}` is asked"),
     }
@@ -91,8 +97,12 @@ async fn keys_survive(database: TestDatabase) {
     config.workers = 0;
     let server = Server::start(config).await.unwrap();
     let harness = Harness { server, client: reqwest::Client::new(), database };
-    let (status, made) =
-        harness.post("/v1/families", &json!({ "name": "family", "foundation": "mariner", "members": ["mariner"] })).await;
+    let (status, made) = harness
+        .post(
+            "/v1/families",
+            &json!({ "name": "family", "foundation": "mariner", "members": ["mariner"] }),
+        )
+        .await;
     assert_eq!(status, StatusCode::CREATED, "{made}");
     let (status, uploaded) = read(upload(&harness, "first").await.send().await.unwrap()).await;
     assert_eq!(status, StatusCode::CREATED, "{uploaded}");
@@ -109,8 +119,16 @@ async fn survives(harness: &Harness, route: &str) {
     let again = || request.try_clone().unwrap();
     let before = store.row_counts().await.unwrap();
     ended_at(harness, Moment::BeforeCommit, again()).await;
-    assert_eq!(store.row_counts().await.unwrap(), before, "{route}: nothing of what was not kept is there");
-    assert_eq!(again().send().await.unwrap().status(), StatusCode::CONFLICT, "{route}: it may still be carried out");
+    assert_eq!(
+        store.row_counts().await.unwrap(),
+        before,
+        "{route}: nothing of what was not kept is there"
+    );
+    assert_eq!(
+        again().send().await.unwrap().status(),
+        StatusCode::CONFLICT,
+        "{route}: it may still be carried out"
+    );
     later(harness).await;
     ended_at(harness, Moment::AfterCommit, again()).await;
     let kept = store.row_counts().await.unwrap();
@@ -119,7 +137,11 @@ async fn survives(harness: &Harness, route: &str) {
     let mut answers = Vec::new();
     for _ in 0..2 {
         let response = again().send().await.unwrap();
-        assert_eq!(response.headers().get("idempotency-replayed").map(|value| value.as_bytes()), Some(&b"true"[..]), "{route}");
+        assert_eq!(
+            response.headers().get("idempotency-replayed").map(|value| value.as_bytes()),
+            Some(&b"true"[..]),
+            "{route}"
+        );
         answers.push(read(response).await);
         assert_eq!(store.row_counts().await.unwrap(), kept, "{route}: no twin");
     }

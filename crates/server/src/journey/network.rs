@@ -11,8 +11,7 @@ use tokio::net::TcpStream;
 use super::harness::{Harness, config};
 use crate::{Config, Server};
 
-const STALLED: &str =
-    "POST /v1/ships HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 9000\r\n\r\n{";
+const STALLED: &str = "POST /v1/ships HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 9000\r\n\r\n{";
 
 async fn harness(change: impl FnOnce(&mut Config)) -> Harness {
     let database = TestDatabase::sqlite();
@@ -54,14 +53,22 @@ async fn a_body_that_does_not_come_is_given_up_and_a_slow_one_is_not() {
     let answer = harness.exchange(STALLED).await;
     assert!(answer.starts_with("HTTP/1.1 408") && answer.contains("too slowly"), "{answer}");
     assert!(start.elapsed() < Duration::from_secs(4), "{:?}", start.elapsed());
-    let mut slow =
-        harness.connect(&STALLED.replace("9000", "1001").replace("HTTP/1.1\r\n", "HTTP/1.1\r\nConnection: close\r\n")).await;
+    let mut slow = harness
+        .connect(
+            &STALLED
+                .replace("9000", "1001")
+                .replace("HTTP/1.1\r\n", "HTTP/1.1\r\nConnection: close\r\n"),
+        )
+        .await;
     for _ in 0..10 {
         tokio::time::sleep(Duration::from_millis(300)).await;
         slow.write_all(&[b' '; 100]).await.unwrap();
     }
     let answer = rest(slow).await;
-    assert!(answer.starts_with("HTTP/1.1 422") || answer.starts_with("HTTP/1.1 400"), "it was read: {answer}");
+    assert!(
+        answer.starts_with("HTTP/1.1 422") || answer.starts_with("HTTP/1.1 400"),
+        "it was read: {answer}"
+    );
     harness.server.stop().await;
 }
 
@@ -73,10 +80,20 @@ async fn who_sends_too_much_is_told_so() {
         let mut stream = harness.connect(&format!("{head}Content-Length: {bytes}\r\n\r\n")).await;
         stream.write_all(&vec![b'a'; bytes]).await.unwrap();
         let answer = rest(stream).await;
-        assert!(answer.starts_with("HTTP/1.1 413") && answer.contains("KiB that are read"), "{bytes}: {answer}");
+        assert!(
+            answer.starts_with("HTTP/1.1 413") && answer.contains("KiB that are read"),
+            "{bytes}: {answer}"
+        );
     }
-    let asks = harness.exchange(&format!("{head}Expect: 100-continue\r\nContent-Length: 9\r\nHost: elsewhere\r\n\r\n")).await;
-    assert!(asks.starts_with("HTTP/1.1 4"), "no body is asked for where it would not be read: {asks}");
+    let asks = harness
+        .exchange(&format!(
+            "{head}Expect: 100-continue\r\nContent-Length: 9\r\nHost: elsewhere\r\n\r\n"
+        ))
+        .await;
+    assert!(
+        asks.starts_with("HTTP/1.1 4"),
+        "no body is asked for where it would not be read: {asks}"
+    );
     harness.server.stop().await;
 }
 
@@ -100,12 +117,18 @@ async fn answers_that_nobody_reads_do_not_pile_up_and_end_the_connection() {
         }
     }
     tokio::time::sleep(Duration::from_secs(4)).await;
-    let metrics = harness.client.get(harness.url("/metrics")).send().await.unwrap().text().await.unwrap();
-    let line = metrics.lines().find(|line| line.contains("requests_total") && line.contains("/openapi.json")).unwrap();
+    let metrics =
+        harness.client.get(harness.url("/metrics")).send().await.unwrap().text().await.unwrap();
+    let line = metrics
+        .lines()
+        .find(|line| line.contains("requests_total") && line.contains("/openapi.json"))
+        .unwrap();
     let answered: u64 = line.rsplit(' ').next().unwrap().parse().unwrap();
     assert!(answered < 200 && answered * 10 < asked, "{answered} of {asked} answered for nobody");
     let mut all = Vec::new();
-    let read = tokio::time::timeout(Duration::from_secs(10), unread.read_to_end(&mut all)).await.expect("it has ended");
+    let read = tokio::time::timeout(Duration::from_secs(10), unread.read_to_end(&mut all))
+        .await
+        .expect("it has ended");
     assert!(read.is_err(), "it was cut, not answered: {} bytes", all.len());
     harness.server.stop().await;
 }
@@ -122,12 +145,14 @@ async fn a_connection_without_a_request_is_closed() {
 #[tokio::test]
 async fn who_stalls_gives_way_and_events_live_on() {
     let harness = harness(|config| {
-        (config.limits.connections, config.limits.connections_per_address, config.workers) = (8, 8, 0);
+        (config.limits.connections, config.limits.connections_per_address, config.workers) =
+            (8, 8, 0);
     })
     .await;
     harness.create_ship().await;
     harness.upload_trials().await;
-    let (_, job) = harness.post("/v1/refinements", &json!({ "ship": "demo-ship", "source": "auto" })).await;
+    let (_, job) =
+        harness.post("/v1/refinements", &json!({ "ship": "demo-ship", "source": "auto" })).await;
     let events = harness.url(&format!("/v1/jobs/{}/events", job["id"].as_str().unwrap()));
     let mut followed = harness.client.get(&events).send().await.unwrap();
     assert!(followed.chunk().await.unwrap().is_some());
@@ -138,7 +163,10 @@ async fn who_stalls_gives_way_and_events_live_on() {
     tokio::time::sleep(Duration::from_millis(600)).await;
     for _ in 0..20 {
         let start = Instant::now();
-        assert_eq!(harness.client.get(harness.url("/v1/ships")).send().await.unwrap().status(), 200);
+        assert_eq!(
+            harness.client.get(harness.url("/v1/ships")).send().await.unwrap().status(),
+            200
+        );
         assert!(start.elapsed() < Duration::from_secs(1), "{:?}", start.elapsed());
     }
     let quiet = tokio::time::timeout(Duration::from_millis(300), followed.chunk()).await;
@@ -149,12 +177,14 @@ async fn who_stalls_gives_way_and_events_live_on() {
 #[tokio::test]
 async fn where_all_are_at_work_the_rest_is_refused_and_health_answers() {
     let harness = harness(|config| {
-        (config.limits.connections, config.limits.connections_per_address, config.workers) = (4, 4, 0);
+        (config.limits.connections, config.limits.connections_per_address, config.workers) =
+            (4, 4, 0);
     })
     .await;
     harness.create_ship().await;
     harness.upload_trials().await;
-    let (_, job) = harness.post("/v1/refinements", &json!({ "ship": "demo-ship", "source": "auto" })).await;
+    let (_, job) =
+        harness.post("/v1/refinements", &json!({ "ship": "demo-ship", "source": "auto" })).await;
     let events = harness.url(&format!("/v1/jobs/{}/events", job["id"].as_str().unwrap()));
     let mut held = Vec::new();
     for _ in 0..4 {
@@ -164,10 +194,20 @@ async fn where_all_are_at_work_the_rest_is_refused_and_health_answers() {
     }
     let start = Instant::now();
     let refused = harness.client.get(harness.url("/v1/ships")).send().await.unwrap();
-    assert_eq!((refused.status(), start.elapsed() < Duration::from_secs(4)), (StatusCode::SERVICE_UNAVAILABLE, true));
-    assert!(refused.headers().contains_key("retry-after") && refused.headers().contains_key("x-request-id"));
+    assert_eq!(
+        (refused.status(), start.elapsed() < Duration::from_secs(4)),
+        (StatusCode::SERVICE_UNAVAILABLE, true)
+    );
+    assert!(
+        refused.headers().contains_key("retry-after")
+            && refused.headers().contains_key("x-request-id")
+    );
     for path in ["/healthz", "/readyz"] {
-        assert_eq!(harness.client.get(harness.url(path)).send().await.unwrap().status(), 200, "{path}");
+        assert_eq!(
+            harness.client.get(harness.url(path)).send().await.unwrap().status(),
+            200,
+            "{path}"
+        );
     }
     held.pop();
     tokio::time::sleep(Duration::from_millis(300)).await;
@@ -180,8 +220,12 @@ async fn without_the_key_no_body_is_awaited_and_guesses_are_throttled() {
     let harness = harness(|config| config.api_key = Some("sesame".into())).await;
     let start = Instant::now();
     let answer = harness.exchange(STALLED).await;
-    assert!(answer.starts_with("HTTP/1.1 401") && start.elapsed() < Duration::from_secs(5), "{answer}");
-    let ask = |key: &'static str| harness.client.get(harness.url("/v1/ships")).bearer_auth(key).send();
+    assert!(
+        answer.starts_with("HTTP/1.1 401") && start.elapsed() < Duration::from_secs(5),
+        "{answer}"
+    );
+    let ask =
+        |key: &'static str| harness.client.get(harness.url("/v1/ships")).bearer_auth(key).send();
     for _ in 0..10 {
         assert_eq!(ask("open").await.unwrap().status(), 401);
     }
@@ -198,9 +242,14 @@ async fn requests_are_addressed_to_this_server_and_to_no_other() {
     let harness = harness(|_| {}).await;
     let own = format!("http://{}", harness.server.addr());
     let host = format!("Host: {}\r\n", harness.server.addr());
-    let post =
-        |headers: &str| format!("POST /v1/refinements HTTP/1.1\r\nConnection: close\r\nContent-Length: 0\r\n{headers}\r\n");
-    let get = |version: &str, headers: &str| format!("GET /v1/ships HTTP/{version}\r\nConnection: close\r\n{headers}\r\n");
+    let post = |headers: &str| {
+        format!(
+            "POST /v1/refinements HTTP/1.1\r\nConnection: close\r\nContent-Length: 0\r\n{headers}\r\n"
+        )
+    };
+    let get = |version: &str, headers: &str| {
+        format!("GET /v1/ships HTTP/{version}\r\nConnection: close\r\n{headers}\r\n")
+    };
     let cases = [
         (get("1.1", &host), 200),
         (get("1.1", "Host: localhost\r\nHost: localhost\r\n"), 400),
@@ -220,7 +269,10 @@ async fn requests_are_addressed_to_this_server_and_to_no_other() {
     for (request, status) in cases {
         let answer = harness.exchange(&request).await;
         assert!(
-            answer.starts_with(&format!("HTTP/1.{} {status}", u8::from(!request.contains("HTTP/1.0")))),
+            answer.starts_with(&format!(
+                "HTTP/1.{} {status}",
+                u8::from(!request.contains("HTTP/1.0"))
+            )),
             "{request}: {answer}"
         );
     }

@@ -13,13 +13,23 @@ async fn text(harness: &Harness, path: &str) -> String {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn the_metrics_tell_requests_jobs_and_sizes() {
-    for database in [Some(TestDatabase::sqlite()), TestDatabase::postgres().await].into_iter().flatten() {
+    for database in
+        [Some(TestDatabase::sqlite()), TestDatabase::postgres().await].into_iter().flatten()
+    {
         let mut config = config(&database);
         config.workers = 0;
-        let harness = Harness { server: Server::start(config).await.unwrap(), client: reqwest::Client::new(), database };
+        let harness = Harness {
+            server: Server::start(config).await.unwrap(),
+            client: reqwest::Client::new(),
+            database,
+        };
         harness.create_ship().await;
         let uploaded = harness.upload_trials().await.1;
-        assert_eq!(harness.post("/v1/refinements", &json!({ "ship": "demo-ship" })).await.0, StatusCode::ACCEPTED, "{uploaded}");
+        assert_eq!(
+            harness.post("/v1/refinements", &json!({ "ship": "demo-ship" })).await.0,
+            StatusCode::ACCEPTED,
+            "{uploaded}"
+        );
         harness.get("/v1/ships/atlantis").await;
         let metrics = text(&harness, "/metrics").await;
         for line in [
@@ -32,10 +42,14 @@ async fn the_metrics_tell_requests_jobs_and_sizes() {
             assert!(metrics.lines().any(|other| other == line), "{line}: {metrics}");
         }
         let value = |name: &str| -> f64 {
-            let line = metrics.lines().find_map(|line| line.strip_prefix(name)?.trim().parse().ok());
+            let line =
+                metrics.lines().find_map(|line| line.strip_prefix(name)?.trim().parse().ok());
             line.unwrap_or_else(|| panic!("{name}: {metrics}"))
         };
-        assert!(value("sistership_queue_age_seconds ") > 0.0 && value("sistership_object_store_bytes ") > 1000.0);
+        assert!(
+            value("sistership_queue_age_seconds ") > 0.0
+                && value("sistership_object_store_bytes ") > 1000.0
+        );
         harness.server.stop().await;
     }
 }
@@ -60,5 +74,8 @@ async fn a_server_that_has_lost_its_database_is_not_ready() {
     let harness = Harness::on(TestDatabase::sqlite()).await;
     harness.server.archive().store.close().await;
     let unready = harness.get("/readyz").await;
-    assert!(unready["status"] == 503 && unready["detail"].as_str().unwrap().contains("database"), "{unready}");
+    assert!(
+        unready["status"] == 503 && unready["detail"].as_str().unwrap().contains("database"),
+        "{unready}"
+    );
 }

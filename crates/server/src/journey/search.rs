@@ -12,7 +12,12 @@ fn names(listing: &Value) -> Vec<&str> {
 }
 
 fn values(listing: &Value) -> Vec<f64> {
-    listing["items"].as_array().unwrap().iter().map(|ship| ship["value"].as_f64().unwrap()).collect()
+    listing["items"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|ship| ship["value"].as_f64().unwrap())
+        .collect()
 }
 
 /// What a path lists once it has at least `count` items: what ships are found by follows them in the background.
@@ -31,19 +36,28 @@ async fn once_there_are(harness: &Harness, count: usize, path: &str) -> Value {
 async fn find(database: TestDatabase) {
     let harness = Harness::on(database).await;
     let all = harness.get("/v1/ships").await;
-    let long = once_there_are(&harness, 5, "/v1/ships?particular=lpp_m:100..&particular=beam_m:..60").await;
-    assert!(values(&long).is_sorted() && values(&long)[0] >= 100.0 && names(&long).len() < names(&all).len());
-    let turning = once_there_are(&harness, 5, "/v1/ships?metric=turn_35.tactical_diameter_m:..").await;
+    let long =
+        once_there_are(&harness, 5, "/v1/ships?particular=lpp_m:100..&particular=beam_m:..60")
+            .await;
+    assert!(
+        values(&long).is_sorted()
+            && values(&long)[0] >= 100.0
+            && names(&long).len() < names(&all).len()
+    );
+    let turning =
+        once_there_are(&harness, 5, "/v1/ships?metric=turn_35.tactical_diameter_m:..").await;
     assert!(values(&turning).is_sorted());
     let half = values(&turning)[2];
-    let tight = harness.get(&format!("/v1/ships?metric=turn_35.tactical_diameter_m:..{half}")).await;
+    let tight =
+        harness.get(&format!("/v1/ships?metric=turn_35.tactical_diameter_m:..{half}")).await;
     assert_eq!(names(&tight), names(&turning)[..3]);
     page_by_page(&harness, "/v1/ships?metric=turn_35.tactical_diameter_m:..", &turning).await;
     page_by_page(&harness, "/v1/ships?", &all).await;
     tags(&harness).await;
     similar(&harness).await;
     harness.create_ship().await;
-    let new = once_there_are(&harness, 2, "/v1/ships?particular=rudder_area_m2:33.0375..33.0377").await;
+    let new =
+        once_there_are(&harness, 2, "/v1/ships?particular=rudder_area_m2:33.0375..33.0377").await;
     assert_eq!(names(&new), ["demo-ship", "sr108"]);
     harness.server.stop().await;
 }
@@ -61,7 +75,12 @@ async fn page_by_page(harness: &Harness, path: &str, whole: &Value) {
 
 async fn tags(harness: &Harness) {
     for ship in ["kcs", "mariner"] {
-        let put = harness.client.put(harness.url(&format!("/v1/ships/{ship}/tags/own"))).send().await.unwrap();
+        let put = harness
+            .client
+            .put(harness.url(&format!("/v1/ships/{ship}/tags/own")))
+            .send()
+            .await
+            .unwrap();
         assert_eq!(put.status(), 204);
     }
     assert_eq!(names(&harness.get("/v1/ships?tag=own").await), ["kcs", "mariner"]);
@@ -76,13 +95,21 @@ async fn similar(harness: &Harness) {
     let category = harness.get("/v1/ships/kvlcc2").await["category"].as_str().unwrap().to_owned();
     let same = harness.get(&format!("/v1/ships?category={category}")).await;
     let ranking = harness.get("/v1/ships/kvlcc2/similar?trials=false").await;
-    let ranked = ranking["ranking"].as_array().unwrap().iter().filter(|ranked| ranked["correlation"].is_number());
-    let ranked = ranked.map(|ranked| ranked["ship"].as_str().unwrap()).filter(|ship| names(&same).contains(ship));
+    let ranked = ranking["ranking"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|ranked| ranked["correlation"].is_number());
+    let ranked = ranked
+        .map(|ranked| ranked["ship"].as_str().unwrap())
+        .filter(|ship| names(&same).contains(ship));
     let found = harness.get("/v1/ships?similar_to=kvlcc2").await;
     assert!(!names(&found).is_empty() && values(&found).is_sorted_by(|a, b| a >= b));
     assert_eq!(names(&found), ranked.collect::<Vec<_>>());
     page_by_page(harness, "/v1/ships?similar_to=kvlcc2", &found).await;
-    let close = format!("/v1/ships?similar_to=kvlcc2&vector=kanazawa-2023&category={category}&particular=lpp_m:300..");
+    let close = format!(
+        "/v1/ships?similar_to=kvlcc2&vector=kanazawa-2023&category={category}&particular=lpp_m:300.."
+    );
     assert!(names(&harness.get(&close).await).iter().all(|ship| names(&found).contains(ship)));
 }
 

@@ -37,7 +37,11 @@ impl Measured {
         registry.register("jobs", "Jobs by kind and state", jobs(&counts));
         let age = Gauge::<f64, std::sync::atomic::AtomicU64>::default();
         age.set(queue_age_s(&counts, archive.store.now_us()));
-        registry.register("queue_age_seconds", "How long the oldest job that no worker has taken up has waited", age);
+        registry.register(
+            "queue_age_seconds",
+            "How long the oldest job that no worker has taken up has waited",
+            age,
+        );
         for (name, help, value) in [
             ("object_store_objects", "Objects in the object store, at most a minute ago", objects),
             ("object_store_bytes", "Bytes in the object store, at most a minute ago", bytes),
@@ -66,13 +70,18 @@ impl Measured {
 fn jobs(counts: &[JobCount]) -> Family<Kind, Gauge> {
     let jobs = Family::<Kind, Gauge>::default();
     for count in counts {
-        jobs.get_or_create(&Kind { kind: count.kind.clone(), state: count.state.as_str() }).set(count.jobs);
+        jobs.get_or_create(&Kind { kind: count.kind.clone(), state: count.state.as_str() })
+            .set(count.jobs);
     }
     jobs
 }
 
 /// 0 where nothing waits.
 fn queue_age_s(counts: &[JobCount], now_us: i64) -> f64 {
-    let oldest = counts.iter().filter(|count| count.state == JobState::Queued).map(|count| count.oldest_us).min();
+    let oldest = counts
+        .iter()
+        .filter(|count| count.state == JobState::Queued)
+        .map(|count| count.oldest_us)
+        .min();
     oldest.map_or(0.0, |oldest| (now_us - oldest).max(0) as f64 / 1e6)
 }

@@ -20,7 +20,8 @@ use sistership_pipeline::archive::Archive;
 /// The media type of what is scraped.
 pub(crate) const MEDIA: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
 /// Upper bounds of the histogram, s: from a look-up to a derivation that takes minutes.
-const SECONDS: [f64; 13] = [0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 1.0, 2.5, 10.0, 60.0, 600.0];
+const SECONDS: [f64; 13] =
+    [0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 1.0, 2.5, 10.0, 60.0, 600.0];
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
 struct Answered {
@@ -47,9 +48,17 @@ impl Default for Metrics {
     fn default() -> Self {
         let mut registry = Registry::with_prefix("sistership");
         let requests = Family::default();
-        registry.register("http_requests", "Requests answered, by route and status", requests.clone());
+        registry.register(
+            "http_requests",
+            "Requests answered, by route and status",
+            requests.clone(),
+        );
         let seconds = Family::new_with_constructor(histogram as fn() -> Histogram);
-        registry.register("http_request_duration_seconds", "Time until a request was answered", seconds.clone());
+        registry.register(
+            "http_request_duration_seconds",
+            "Time until a request was answered",
+            seconds.clone(),
+        );
         Self { registry, requests, seconds, measured: Measured::default() }
     }
 }
@@ -66,11 +75,19 @@ fn histogram() -> Histogram {
 
 impl Metrics {
     /// Counts an answer. `route` is the path as the router knows it, so that ids do not make labels without end.
-    pub(crate) fn answered(&self, method: &Method, route: &str, status: StatusCode, elapsed: Duration) {
+    pub(crate) fn answered(
+        &self,
+        method: &Method,
+        route: &str,
+        status: StatusCode,
+        elapsed: Duration,
+    ) {
         let method = named(method);
         let labels = Answered { method, route: route.to_owned(), status: status.as_u16() };
         self.requests.get_or_create(&labels).inc();
-        self.seconds.get_or_create(&Route { method, route: labels.route }).observe(elapsed.as_secs_f64());
+        self.seconds
+            .get_or_create(&Route { method, route: labels.route })
+            .observe(elapsed.as_secs_f64());
     }
 
     /// Everything there is to scrape, with what is asked of the archive now.
@@ -108,13 +125,24 @@ mod tests {
         for status in [StatusCode::OK, StatusCode::OK, StatusCode::NOT_FOUND] {
             metrics.answered(&Method::GET, "/v1/ships/{ship}", status, Duration::from_millis(3));
         }
-        metrics.answered(&Method::from_bytes(b"BREW").unwrap(), "none", StatusCode::NOT_FOUND, Duration::ZERO);
+        metrics.answered(
+            &Method::from_bytes(b"BREW").unwrap(),
+            "none",
+            StatusCode::NOT_FOUND,
+            Duration::ZERO,
+        );
         let mut text = String::new();
         encode_registry(&mut text, &metrics.registry).unwrap();
         let has = |line: &str| assert!(text.lines().any(|other| other == line), "{line}: {text}");
-        has(r#"sistership_http_requests_total{method="GET",route="/v1/ships/{ship}",status="200"} 2"#);
+        has(
+            r#"sistership_http_requests_total{method="GET",route="/v1/ships/{ship}",status="200"} 2"#,
+        );
         has(r#"sistership_http_requests_total{method="other",route="none",status="404"} 1"#);
-        has(r#"sistership_http_request_duration_seconds_bucket{le="0.0025",method="GET",route="/v1/ships/{ship}"} 0"#);
-        has(r#"sistership_http_request_duration_seconds_count{method="GET",route="/v1/ships/{ship}"} 3"#);
+        has(
+            r#"sistership_http_request_duration_seconds_bucket{le="0.0025",method="GET",route="/v1/ships/{ship}"} 0"#,
+        );
+        has(
+            r#"sistership_http_request_duration_seconds_count{method="GET",route="/v1/ships/{ship}"} 3"#,
+        );
     }
 }

@@ -69,9 +69,13 @@ impl InputsRequest {
         let settings = ReplaySettings::default();
         bounded("inputs.t_s", trial.duration_s() / settings.step_s + trial.len() as f64, most)?;
         ship.set_envelope_speed(self.start.u_m_s.hypot(self.start.v_m_s));
-        let run = replay(ship, &trial, &settings).map_err(|error| Problem::invalid("inputs", error.to_string()))?;
-        let stopped = run.stopped.map(|stopped| json!({ "t_s": stopped.t_s, "reason": stopped.reason }));
-        Ok(json!({ "metrics": null, "trajectory": columns(&run.track), "stopped": stopped, "outside": run.outside }))
+        let run = replay(ship, &trial, &settings)
+            .map_err(|error| Problem::invalid("inputs", error.to_string()))?;
+        let stopped =
+            run.stopped.map(|stopped| json!({ "t_s": stopped.t_s, "reason": stopped.reason }));
+        Ok(
+            json!({ "metrics": null, "trajectory": columns(&run.track), "stopped": stopped, "outside": run.outside }),
+        )
     }
 
     /// The inputs as a trial that starts where the request says.
@@ -81,11 +85,16 @@ impl InputsRequest {
         let n = self.n_rps.clone().unwrap_or_else(steady);
         for (field, values) in [("inputs.delta_rad", &self.delta_rad), ("inputs.n_rps", &n)] {
             if values.len() != count {
-                return Err(Problem::invalid(field, format!("has {} values, `t_s` has {count}", values.len())));
+                return Err(Problem::invalid(
+                    field,
+                    format!("has {} values, `t_s` has {count}", values.len()),
+                ));
             }
         }
         let mut trial = Trial { name: "inputs".into(), t_s: self.t_s.clone(), ..Trial::default() };
-        trial.channels.extend(self.start.channels().map(|(channel, value)| (channel, vec![value; count])));
+        trial
+            .channels
+            .extend(self.start.channels().map(|(channel, value)| (channel, vec![value; count])));
         trial.channels.extend([(Channel::Delta, self.delta_rad.clone()), (Channel::N, n)]);
         check_times(&trial)?;
         Ok(trial)
@@ -98,11 +107,19 @@ fn check_times(trial: &Trial) -> Result<()> {
         return refuse("give at least two times".into());
     }
     if let Some(at) = trial.t_s.windows(2).position(|pair| pair[1] <= pair[0]) {
-        return refuse(format!("must increase, but value {} is {} after {}", at + 2, trial.t_s[at + 1], trial.t_s[at]));
+        return refuse(format!(
+            "must increase, but value {} is {} after {}",
+            at + 2,
+            trial.t_s[at + 1],
+            trial.t_s[at]
+        ));
     }
     // Over a gap nothing is known of the inputs, and a simulation would start anew behind it.
     match trial.segments().get(1) {
-        Some(second) => refuse(format!("has a gap before {} s; resample the inputs evenly", trial.t_s[second.start])),
+        Some(second) => refuse(format!(
+            "has a gap before {} s; resample the inputs evenly",
+            trial.t_s[second.start]
+        )),
         None => Ok(()),
     }
 }

@@ -63,23 +63,33 @@ impl ManoeuvreRequest {
     pub(super) fn sail(&self, ship: &mut Ship, whose: Whose<'_>, most: usize) -> Result<Value> {
         let settings = self.settings(ship, most)?;
         if self.bands.is_some() && !self.all {
-            return Err(Problem::invalid("manoeuvre.bands", "are those of all standard manoeuvres: give `all`"));
+            return Err(Problem::invalid(
+                "manoeuvre.bands",
+                "are those of all standard manoeuvres: give `all`",
+            ));
         }
         match (self.turn_deg, &self.zigzag, self.all) {
             (Some(rudder), None, false) => {
                 let sailed = turn(ship, rudder.get(), &settings).map_err(diverged)?;
-                Ok(json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null,
-                    "outside": ship.leaves(&sailed.track) }))
+                Ok(
+                    json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null,
+                    "outside": ship.leaves(&sailed.track) }),
+                )
             }
             (None, Some(ZigzagRequest { rudder_deg, switch_deg }), false) => {
-                let sailed = zigzag(ship, rudder_deg.get(), switch_deg.get().abs(), &settings).map_err(diverged)?;
-                Ok(json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null,
-                    "outside": ship.leaves(&sailed.track) }))
+                let sailed = zigzag(ship, rudder_deg.get(), switch_deg.get().abs(), &settings)
+                    .map_err(diverged)?;
+                Ok(
+                    json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null,
+                    "outside": ship.leaves(&sailed.track) }),
+                )
             }
             (None, None, true) => {
-                let mut sailed = serde_json::to_value(standard(ship, &settings)).map_err(Problem::internal)?;
+                let mut sailed =
+                    serde_json::to_value(standard(ship, &settings)).map_err(Problem::internal)?;
                 if let Some(request) = self.bands {
-                    sailed["bands"] = serde_json::to_value(request.drawn(whose, &settings)?).map_err(Problem::internal)?;
+                    sailed["bands"] = serde_json::to_value(request.drawn(whose, &settings)?)
+                        .map_err(Problem::internal)?;
                 }
                 Ok(sailed)
             }
@@ -89,7 +99,10 @@ impl ManoeuvreRequest {
 
     /// The settings; they are refused where the run, of 60 lengths at most, would be out of all proportion.
     fn settings(&self, ship: &mut Ship, most: usize) -> Result<ManoeuvreSettings> {
-        let speed = positive("manoeuvre.speed_m_s", self.speed_m_s.map_or(ship.approach_speed_m_s(), Positive::get))?;
+        let speed = positive(
+            "manoeuvre.speed_m_s",
+            self.speed_m_s.map_or(ship.approach_speed_m_s(), Positive::get),
+        )?;
         if self.n_rps.is_some_and(|n| !n.is_finite()) {
             return Err(Problem::invalid("manoeuvre.n_rps", "must be a number"));
         }
@@ -97,7 +110,8 @@ impl ManoeuvreRequest {
         let step_s = STEP_S.min(0.02 * length_s);
         bounded("manoeuvre.speed_m_s", 60.0 * length_s / step_s, most)?;
         ship.set_envelope_speed(speed);
-        let (speed_m_s, n_rps, step_s) = (self.speed_m_s.map(Positive::get), self.n_rps, Some(step_s));
+        let (speed_m_s, n_rps, step_s) =
+            (self.speed_m_s.map(Positive::get), self.n_rps, Some(step_s));
         Ok(ManoeuvreSettings { speed_m_s, n_rps, step_s, ..ManoeuvreSettings::default() })
     }
 }
@@ -113,11 +127,15 @@ pub(super) struct Whose<'a> {
 impl BandsRequest {
     fn drawn(self, whose: Whose<'_>, settings: &ManoeuvreSettings) -> Result<Bands> {
         let default = Sampling::default();
-        let samples = usize::try_from(self.samples.unwrap_or_default().get()).unwrap_or(default.samples);
+        let samples =
+            usize::try_from(self.samples.unwrap_or_default().get()).unwrap_or(default.samples);
         let sampling = Sampling { samples, seed: self.seed.unwrap_or(default.seed) };
         let none = || {
             let why = "only a refined one whose coefficients are those that were estimated has one";
-            Problem::invalid("manoeuvre.bands", format!("the model has no posterior to draw from; {why}"))
+            Problem::invalid(
+                "manoeuvre.bands",
+                format!("the model has no posterior to draw from; {why}"),
+            )
         };
         let coarse = ManoeuvreSettings { step_s: None, ..*settings };
         bands(whose.model, whose.law, &coarse, whose.depth_m, sampling).ok_or_else(none)
@@ -127,6 +145,8 @@ impl BandsRequest {
 fn diverged(stopped: Stopped) -> Problem {
     Problem::invalid(
         "manoeuvre",
-        format!("the simulation left the physical range, {stopped}; the model does not hold for this manoeuvre"),
+        format!(
+            "the simulation left the physical range, {stopped}; the model does not hold for this manoeuvre"
+        ),
     )
 }

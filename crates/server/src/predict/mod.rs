@@ -35,15 +35,23 @@ pub(crate) struct PredictionRequest {
 }
 
 /// Simulates; no track has more than `most` samples.
-pub(crate) fn predict(request: &PredictionRequest, model: &Model, law: &Law, most: usize) -> Result<Value> {
-    let mut ship = Ship::new(model, law).map_err(|error| Problem::invalid("model", error.to_string()))?;
+pub(crate) fn predict(
+    request: &PredictionRequest,
+    model: &Model,
+    law: &Law,
+    most: usize,
+) -> Result<Value> {
+    let mut ship =
+        Ship::new(model, law).map_err(|error| Problem::invalid("model", error.to_string()))?;
     if let Some(depth) = request.depth_m {
         ship.set_depth(depth.get());
     }
     match (&request.manoeuvre, &request.inputs) {
-        (Some(manoeuvre), None) => {
-            manoeuvre.sail(&mut ship, Whose { model, law, depth_m: request.depth_m.map(Positive::get) }, most)
-        }
+        (Some(manoeuvre), None) => manoeuvre.sail(
+            &mut ship,
+            Whose { model, law, depth_m: request.depth_m.map(Positive::get) },
+            most,
+        ),
         (None, Some(inputs)) => inputs.follow(&mut ship, most),
         _ => Err(Problem::invalid("manoeuvre", "give either `manoeuvre` or `inputs`")),
     }
@@ -61,19 +69,26 @@ mod tests {
     fn ask(ship: &str, request: Value) -> Result<Value> {
         let zoo = Zoo::embedded().unwrap();
         let model = zoo.model(ship).unwrap();
-        let request: PredictionRequest = serde_path_to_error::deserialize(request)
-            .map_err(|error| Problem::invalid(&error.path().to_string(), error.inner().to_string()))?;
+        let request: PredictionRequest =
+            serde_path_to_error::deserialize(request).map_err(|error| {
+                Problem::invalid(&error.path().to_string(), error.inner().to_string())
+            })?;
         predict(&request, &model, zoo.law(&model.law).unwrap(), 100_000)
     }
 
     #[test]
     fn manoeuvres_give_tracks_and_figures() {
-        let turn = ask("mariner", json!({ "model": "mariner", "manoeuvre": { "turn_deg": -35 } })).unwrap();
+        let turn = ask("mariner", json!({ "model": "mariner", "manoeuvre": { "turn_deg": -35 } }))
+            .unwrap();
         assert!(turn["metrics"]["tactical_diameter_m"].as_f64().unwrap() > 300.0);
-        assert_eq!(turn["trajectory"]["t_s"].as_array().unwrap().len(), turn["trajectory"]["psi_rad"].as_array().unwrap().len());
+        assert_eq!(
+            turn["trajectory"]["t_s"].as_array().unwrap().len(),
+            turn["trajectory"]["psi_rad"].as_array().unwrap().len()
+        );
         let zigzag = json!({ "model": "mariner", "manoeuvre": { "zigzag": { "rudder_deg": 10, "switch_deg": 10 } } });
         assert!(ask("mariner", zigzag).unwrap()["metrics"]["first_overshoot_deg"].is_number());
-        let all = ask("kvlcc2-7m", json!({ "model": "kvlcc2-7m", "manoeuvre": { "all": true } })).unwrap();
+        let all = ask("kvlcc2-7m", json!({ "model": "kvlcc2-7m", "manoeuvre": { "all": true } }))
+            .unwrap();
         assert_eq!(all["turns"].as_array().unwrap().len(), 2);
     }
 
@@ -90,27 +105,36 @@ mod tests {
             root_correlation: vec!["1".into()],
         });
         model.validity = Region::of(&[("delta".to_owned(), vec![-0.2, 0.2])].into());
-        let sail =
-            |request: Value| predict(&serde_json::from_value(request).unwrap(), &model, zoo.law("abkowitz").unwrap(), 100_000);
-        let asked = json!({ "model": "m", "manoeuvre": { "all": true, "bands": { "samples": 10 } } });
+        let sail = |request: Value| {
+            predict(
+                &serde_json::from_value(request).unwrap(),
+                &model,
+                zoo.law("abkowitz").unwrap(),
+                100_000,
+            )
+        };
+        let asked =
+            json!({ "model": "m", "manoeuvre": { "all": true, "bands": { "samples": 10 } } });
         let all = sail(asked.clone()).unwrap();
         let band = &all["bands"]["figures"][2];
         let diameter = all["turns"][0]["tactical_diameter_m"].as_f64().unwrap();
         assert_eq!(band["figure"], "turn 35 deg: tactical diameter");
-        assert!(band["low"].as_f64().unwrap() < diameter && diameter < band["high"].as_f64().unwrap());
+        assert!(
+            band["low"].as_f64().unwrap() < diameter && diameter < band["high"].as_f64().unwrap()
+        );
         assert_eq!(all["outside"]["turn 35 deg"]["along"], "delta");
         assert_eq!(sail(asked).unwrap(), all);
         let turn = sail(json!({ "model": "m", "manoeuvre": { "turn_deg": 10 } })).unwrap();
         assert!(turn["outside"].is_null());
-        let published = ask("mariner", json!({ "model": "m", "manoeuvre": { "all": true, "bands": {} } }));
+        let published =
+            ask("mariner", json!({ "model": "m", "manoeuvre": { "all": true, "bands": {} } }));
         assert_eq!(published.unwrap_err().errors[0].field.as_deref(), Some("manoeuvre.bands"));
     }
 
     #[test]
     fn inputs_are_followed() {
         let t: Vec<f64> = (0..100).map(f64::from).collect();
-        let request =
-            json!({ "model": "sr108", "inputs": { "t_s": t, "delta_rad": vec![0.1; 100], "start": { "u_m_s": 10.0 } } });
+        let request = json!({ "model": "sr108", "inputs": { "t_s": t, "delta_rad": vec![0.1; 100], "start": { "u_m_s": 10.0 } } });
         let run = ask("sr108", request).unwrap();
         assert!(run["stopped"].is_null());
         assert!(run["trajectory"]["psi_rad"][99].as_f64().unwrap() > 0.1);
@@ -119,12 +143,22 @@ mod tests {
 
     #[test]
     fn impossible_requests_are_refused_by_field() {
-        let field = |request: Value| ask("mariner", request).unwrap_err().errors[0].field.clone().unwrap();
+        let field =
+            |request: Value| ask("mariner", request).unwrap_err().errors[0].field.clone().unwrap();
         let inputs = |t: Value, delta: Value| json!({ "model": "m", "inputs": { "t_s": t, "delta_rad": delta, "start": { "u_m_s": 8.0 } } });
         assert_eq!(field(json!({ "model": "m" })), "manoeuvre");
-        assert_eq!(field(json!({ "model": "m", "manoeuvre": { "turn_deg": 35, "all": true } })), "manoeuvre");
-        assert_eq!(field(json!({ "model": "m", "manoeuvre": { "turn_deg": 135 } })), "manoeuvre.turn_deg");
-        assert_eq!(field(json!({ "model": "m", "manoeuvre": { "turn_deg": 35, "speed_m_s": 1e-6 } })), "manoeuvre.speed_m_s");
+        assert_eq!(
+            field(json!({ "model": "m", "manoeuvre": { "turn_deg": 35, "all": true } })),
+            "manoeuvre"
+        );
+        assert_eq!(
+            field(json!({ "model": "m", "manoeuvre": { "turn_deg": 135 } })),
+            "manoeuvre.turn_deg"
+        );
+        assert_eq!(
+            field(json!({ "model": "m", "manoeuvre": { "turn_deg": 35, "speed_m_s": 1e-6 } })),
+            "manoeuvre.speed_m_s"
+        );
         assert_eq!(field(inputs(json!([0, 1, 2]), json!([0, 1]))), "inputs.delta_rad");
         assert_eq!(field(inputs(json!([0, 2, 1]), json!([0, 0, 0]))), "inputs.t_s");
         assert_eq!(field(inputs(json!([0, 1, 2, 3, 9]), json!([0, 0, 0, 0, 0]))), "inputs.t_s");

@@ -25,7 +25,9 @@ pub(super) fn bounded(field: &str, steps: f64, most: usize) -> Result<()> {
         true => Ok(take_now(SAMPLE_BYTES * steps.max(0.0).ceil() as u64)?),
         false => Err(Problem::invalid(
             field,
-            format!("would take {steps:.0} steps, at most {most} are made: give a higher speed or a shorter time"),
+            format!(
+                "would take {steps:.0} steps, at most {most} are made: give a higher speed or a shorter time"
+            ),
         )),
     }
 }

@@ -21,13 +21,17 @@ impl From<StoreError> for Problem {
             full if full.is_out_of_space() => Self::no_room(text),
             StoreError::NotFound { .. } => Self::not_found(text),
             StoreError::Conflict { .. } => Self::new(StatusCode::CONFLICT, text),
-            StoreError::PreconditionFailed { .. } => {
-                Self::new(StatusCode::PRECONDITION_FAILED, format!("{text}; read it again and decide anew"))
-            }
+            StoreError::PreconditionFailed { .. } => Self::new(
+                StatusCode::PRECONDITION_FAILED,
+                format!("{text}; read it again and decide anew"),
+            ),
             StoreError::Invalid { field, message } => Self::invalid(field, message),
             StoreError::Database(_) => {
                 tracing::error!(reason = %text, "the database failed");
-                Self::new(StatusCode::SERVICE_UNAVAILABLE, "the database did not carry this out; try again in a moment")
+                Self::new(
+                    StatusCode::SERVICE_UNAVAILABLE,
+                    "the database did not carry this out; try again in a moment",
+                )
             }
             StoreError::Objects(_) | StoreError::File { .. } => Self::internal(text),
         }
@@ -50,19 +54,28 @@ impl From<Vec<Refusal>> for Problem {
             "nothing was kept, because of {}: see `errors`, mend the files and upload all of them again",
             names.join(", ")
         );
-        let errors = refusals.iter().flat_map(|refusal| refusal.findings.iter().map(|finding| fault(&refusal.file, finding)));
+        let errors = refusals.iter().flat_map(|refusal| {
+            refusal.findings.iter().map(|finding| fault(&refusal.file, finding))
+        });
         Self { errors: errors.collect(), ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, detail) }
     }
 }
 
 fn fault(file: &str, finding: &Finding) -> Fault {
-    Fault { field: Some(file.to_owned()), row: finding.row, column: finding.column.clone(), message: finding.message.clone() }
+    Fault {
+        field: Some(file.to_owned()),
+        row: finding.row,
+        column: finding.column.clone(),
+        message: finding.message.clone(),
+    }
 }
 
 impl From<RefineError> for Problem {
     fn from(error: RefineError) -> Self {
         match error {
-            RefineError::Setting { field, message } => Self::invalid(&format!("settings.{field}"), message),
+            RefineError::Setting { field, message } => {
+                Self::invalid(&format!("settings.{field}"), message)
+            }
             other => Self::new(StatusCode::UNPROCESSABLE_ENTITY, other.to_string()),
         }
     }
@@ -82,10 +95,13 @@ impl From<DeriveError> for Problem {
 impl From<Shortage> for Problem {
     fn from(shortage: Shortage) -> Self {
         match &shortage {
-            Shortage::Never { .. } => Self::new(StatusCode::PAYLOAD_TOO_LARGE, format!("{shortage}; send less at a time")),
-            Shortage::Busy { .. } => {
-                Self::new(StatusCode::TOO_MANY_REQUESTS, format!("{shortage}; try again in some seconds, or with less"))
+            Shortage::Never { .. } => {
+                Self::new(StatusCode::PAYLOAD_TOO_LARGE, format!("{shortage}; send less at a time"))
             }
+            Shortage::Busy { .. } => Self::new(
+                StatusCode::TOO_MANY_REQUESTS,
+                format!("{shortage}; try again in some seconds, or with less"),
+            ),
         }
     }
 }
@@ -118,11 +134,15 @@ fn parameter(message: &str) -> &str {
 impl From<PathRejection> for Problem {
     fn from(rejection: PathRejection) -> Self {
         let PathRejection::FailedToDeserializePathParams(failed) = &rejection else {
-            return Self::not_found(format!("there is nothing under this path: {}", rejection.body_text()));
+            return Self::not_found(format!(
+                "there is nothing under this path: {}",
+                rejection.body_text()
+            ));
         };
         match failed.kind() {
             ErrorKind::DeserializeError { key, value, message } => {
-                Self::not_found(format!("{key}: there is no `{value}`: it {message}")).with(Fault::at(key, message))
+                Self::not_found(format!("{key}: there is no `{value}`: it {message}"))
+                    .with(Fault::at(key, message))
             }
             other => Self::not_found(format!("there is nothing under this path: {other}")),
         }
@@ -132,9 +152,10 @@ impl From<PathRejection> for Problem {
 impl From<BytesRejection> for Problem {
     fn from(rejection: BytesRejection) -> Self {
         match rejection.status() {
-            StatusCode::PAYLOAD_TOO_LARGE => {
-                Self::new(StatusCode::PAYLOAD_TOO_LARGE, "the body is larger than this endpoint reads; trials go to /v1/trials")
-            }
+            StatusCode::PAYLOAD_TOO_LARGE => Self::new(
+                StatusCode::PAYLOAD_TOO_LARGE,
+                "the body is larger than this endpoint reads; trials go to /v1/trials",
+            ),
             status => Self::new(status, rejection.body_text()),
         }
     }
@@ -146,9 +167,14 @@ mod tests {
 
     #[test]
     fn refused_trials_keep_row_and_column() {
-        let finding = Finding { row: Some(7), column: Some("u".into()), message: "not a number".into() };
-        let problem = Problem::from(vec![Refusal { file: "a.csv".into(), findings: vec![finding] }]);
-        assert_eq!((problem.status, problem.errors[0].row, problem.errors[0].field.as_deref()), (422, Some(7), Some("a.csv")));
+        let finding =
+            Finding { row: Some(7), column: Some("u".into()), message: "not a number".into() };
+        let problem =
+            Problem::from(vec![Refusal { file: "a.csv".into(), findings: vec![finding] }]);
+        assert_eq!(
+            (problem.status, problem.errors[0].row, problem.errors[0].field.as_deref()),
+            (422, Some(7), Some("a.csv"))
+        );
     }
 
     #[test]
@@ -163,7 +189,10 @@ mod tests {
     fn what_fits_later_is_told_from_what_never_fits() {
         let setting = "--request-memory-mb";
         assert_eq!(Problem::from(Shortage::Never { needed: 2, bytes: 1, setting }).status, 413);
-        assert_eq!(Problem::from(Shortage::Busy { needed: 2, free: 1, bytes: 3, setting }).status, 429);
+        assert_eq!(
+            Problem::from(Shortage::Busy { needed: 2, free: 1, bytes: 3, setting }).status,
+            429
+        );
     }
 
     #[test]
@@ -175,9 +204,15 @@ mod tests {
 
     #[test]
     fn what_the_database_says_stays_inside() {
-        let file = FileError { file: "body".into(), line: Some(3), field: "name".into(), message: "is taken".into() };
+        let file = FileError {
+            file: "body".into(),
+            line: Some(3),
+            field: "name".into(),
+            message: "is taken".into(),
+        };
         assert_eq!(Problem::from(file).errors[0].row, Some(3));
-        let stale = StoreError::PreconditionFailed { kind: "ship", id: "a".into(), current: Some(2) };
+        let stale =
+            StoreError::PreconditionFailed { kind: "ship", id: "a".into(), current: Some(2) };
         assert_eq!(Problem::from(stale).status, 412);
     }
 }

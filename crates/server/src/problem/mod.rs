@@ -61,7 +61,11 @@ const KINDS: [(u16, &str, &str); 19] = [
     (409, "urn:sistership:problem:conflict", "The request contradicts what is there"),
     (412, "urn:sistership:problem:stale", "It has changed since it was read"),
     (413, "urn:sistership:problem:too-large", "The request is too large"),
-    (415, "urn:sistership:problem:unsupported-media-type", "The content type is not one that is read here"),
+    (
+        415,
+        "urn:sistership:problem:unsupported-media-type",
+        "The content type is not one that is read here",
+    ),
     (422, "urn:sistership:problem:invalid", "The content is not valid"),
     (428, "urn:sistership:problem:precondition-required", "A precondition is needed"),
     (429, "urn:sistership:problem:too-many-requests", "Too much is asked at a time"),
@@ -75,8 +79,19 @@ const KINDS: [(u16, &str, &str); 19] = [
 impl Problem {
     pub(crate) fn new(status: StatusCode, detail: impl Into<String>) -> Self {
         let known = KINDS.iter().find(|(known, ..)| *known == status.as_u16());
-        let (_, kind, title) = known.copied().unwrap_or((0, "about:blank", status.canonical_reason().unwrap_or("Problem")));
-        Self { kind, title, status: status.as_u16(), detail: detail.into(), instance: None, errors: Vec::new() }
+        let (_, kind, title) = known.copied().unwrap_or((
+            0,
+            "about:blank",
+            status.canonical_reason().unwrap_or("Problem"),
+        ));
+        Self {
+            kind,
+            title,
+            status: status.as_u16(),
+            detail: detail.into(),
+            instance: None,
+            errors: Vec::new(),
+        }
     }
 
     pub(crate) fn bad_request(detail: impl Into<String>) -> Self {
@@ -90,7 +105,8 @@ impl Problem {
     /// A document of which one field is at fault.
     pub(crate) fn invalid(field: &str, message: impl Into<String>) -> Self {
         let message = message.into();
-        Self::new(StatusCode::UNPROCESSABLE_ENTITY, format!("{field}: {message}")).with(Fault::at(field, message))
+        Self::new(StatusCode::UNPROCESSABLE_ENTITY, format!("{field}: {message}"))
+            .with(Fault::at(field, message))
     }
 
     /// A failure of ours: the log has the reason, the answer does not.
@@ -105,8 +121,7 @@ impl Problem {
     /// There is no space left where it would be kept.
     pub(crate) fn no_room(reason: impl std::fmt::Display) -> Self {
         tracing::error!(%reason, "no room");
-        let detail =
-            "there is no room left where the server keeps this; nothing was kept. Reading goes on; make room and send it again";
+        let detail = "there is no room left where the server keeps this; nothing was kept. Reading goes on; make room and send it again";
         Self::new(StatusCode::INSUFFICIENT_STORAGE, detail)
     }
 
@@ -135,7 +150,9 @@ impl IntoResponse for Problem {
             response.headers_mut().insert(header::WWW_AUTHENTICATE, challenge);
         }
         if self.status == StatusCode::TOO_MANY_REQUESTS {
-            response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from_static(RETRY_AFTER_S));
+            response
+                .headers_mut()
+                .insert(header::RETRY_AFTER, HeaderValue::from_static(RETRY_AFTER_S));
         }
         // Whoever knows the request's id writes it in, see `web::envelope`.
         response.extensions_mut().insert(self);

@@ -36,9 +36,17 @@ struct About;
 pub(super) fn about() -> OpenApi {
     let mut about = About::openapi();
     about.info.version = env!("CARGO_PKG_VERSION").to_owned();
-    let key =
-        HttpBuilder::new().scheme(HttpAuthScheme::Bearer).description(Some("The server's API key, where it has one")).build();
-    about.components.get_or_insert_with(Components::new).add_security_scheme("api_key", SecurityScheme::Http(key));
-    about.security = Some(vec![SecurityRequirement::default(), SecurityRequirement::new("api_key", Vec::<String>::new())]);
+    let key = HttpBuilder::new()
+        .scheme(HttpAuthScheme::Bearer)
+        .description(Some("The server's API key, where it has one"))
+        .build();
+    about
+        .components
+        .get_or_insert_with(Components::new)
+        .add_security_scheme("api_key", SecurityScheme::Http(key));
+    about.security = Some(vec![
+        SecurityRequirement::default(),
+        SecurityRequirement::new("api_key", Vec::<String>::new()),
+    ]);
     about
 }

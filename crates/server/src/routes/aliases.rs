@@ -71,7 +71,9 @@ impl AliasView {
 
 impl AliasStep {
     fn of(change: AliasChange) -> Self {
-        let AliasChange { from_number: from, to_number: to, revision, reason, actor, moved_us, .. } = change;
+        let AliasChange {
+            from_number: from, to_number: to, revision, reason, actor, moved_us, ..
+        } = change;
         Self { from, to, revision, reason, actor, moved_us }
     }
 }
@@ -96,7 +98,10 @@ async fn list(
     get, path = "/v1/models/{model}/aliases/{alias}", tag = "models", params(("model" = inline(Name), Path), ("alias" = inline(Name), Path)),
     responses((status = 200, body = AliasView, headers(("ETag" = String))))
 )]
-async fn get(State(app): State<App>, Place((model, name)): Place<(Name, Name)>) -> Result<Response> {
+async fn get(
+    State(app): State<App>,
+    Place((model, name)): Place<(Name, Name)>,
+) -> Result<Response> {
     Ok(AliasView::of(app.store().aliases().get(&model, &name).await?).answer(StatusCode::OK))
 }
 
@@ -121,7 +126,12 @@ async fn put(
     check(&name)?;
     let current = alias(app.store(), &model, &name).await?.map(|alias| alias.revision);
     let expect = conditions.expect(&format!("alias `{model}/{name}`"), current)?;
-    let change = AliasMove { alias: name.into_string(), expect, reason: reason.into_string(), actor: "api".to_owned() };
+    let change = AliasMove {
+        alias: name.into_string(),
+        expect,
+        reason: reason.into_string(),
+        actor: "api".to_owned(),
+    };
     let moved = app.store().aliases().move_to(&model, version.get(), &change).await?;
     let status = if expect == Expect::Absent { StatusCode::CREATED } else { StatusCode::OK };
     Ok(AliasView::of(moved).answer(status))
@@ -129,7 +139,10 @@ async fn put(
 
 fn check(name: &str) -> Result<()> {
     match is_reserved(name) {
-        true => Err(Problem::invalid("alias", format!("`{name}` is moved by the server itself; choose another name"))),
+        true => Err(Problem::invalid(
+            "alias",
+            format!("`{name}` is moved by the server itself; choose another name"),
+        )),
         false => Ok(()),
     }
 }

@@ -133,7 +133,13 @@ impl BulkView {
     async fn of(app: &App, bulk: Bulk) -> Result<Self> {
         let standing = Standing::of(app.store(), &bulk).await?;
         let request = serde_json::from_str(&bulk.request).unwrap_or_default();
-        Ok(Self { id: bulk.id, family: bulk.family, created_us: bulk.created_us, request, standing })
+        Ok(Self {
+            id: bulk.id,
+            family: bulk.family,
+            created_us: bulk.created_us,
+            request,
+            standing,
+        })
     }
 }
 
@@ -154,12 +160,19 @@ impl OutcomeView {
     params(("family" = inline(Word), Path), ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
     request_body = Asked, responses((status = 202, body = BulkView, headers(("Location" = String))))
 )]
-async fn refine(State(app): State<App>, Place(family): Place<Word>, key: Key, payload: Payload) -> Result<Response> {
+async fn refine(
+    State(app): State<App>,
+    Place(family): Place<Word>,
+    key: Key,
+    payload: Payload,
+) -> Result<Response> {
     let asked: Asked = payload.json()?;
     let work = |app: App| async move {
         let bulk = order_refinement(app.store(), &family, &asked).await?;
         let location = format!("/v1/bulk-refinements/{}", bulk.id);
-        Ok(Reply::new(StatusCode::ACCEPTED, &BulkView::of(&app, bulk).await?)?.at(location).with_jobs())
+        Ok(Reply::new(StatusCode::ACCEPTED, &BulkView::of(&app, bulk).await?)?
+            .at(location)
+            .with_jobs())
     };
     key.once(&app, payload.bytes(), work).await
 }
@@ -168,8 +181,15 @@ async fn refine(State(app): State<App>, Place(family): Place<Word>, key: Key, pa
 #[utoipa::path(
     get, path = "/v1/bulk-refinements", tag = "families", params(ListQuery), responses((status = 200, body = Listing<BulkView>))
 )]
-async fn list(State(app): State<App>, Params(query): Params<ListQuery>) -> Result<Json<Listing<BulkView>>> {
-    let bulks = app.store().bulks().list(query.family.as_deref(), &page::page(query.limit, query.after.as_ref())?).await?;
+async fn list(
+    State(app): State<App>,
+    Params(query): Params<ListQuery>,
+) -> Result<Json<Listing<BulkView>>> {
+    let bulks = app
+        .store()
+        .bulks()
+        .list(query.family.as_deref(), &page::page(query.limit, query.after.as_ref())?)
+        .await?;
     let mut items = Vec::with_capacity(bulks.items.len());
     for bulk in bulks.items {
         items.push(BulkView::of(&app, bulk).await?);
@@ -221,7 +241,8 @@ async fn ships(
 ) -> Result<Json<Listing<OutcomeView>>> {
     let bulk = app.store().bulks().get(&id).await?;
     let page = page::page(query.limit, query.after.as_ref())?;
-    let outcomes = app.store().bulks().outcomes(&bulk.id, query.outcome.map(Outcome::name), &page).await?;
+    let outcomes =
+        app.store().bulks().outcomes(&bulk.id, query.outcome.map(Outcome::name), &page).await?;
     Ok(Json(Listing::of(outcomes, OutcomeView::of)))
 }
 
@@ -230,7 +251,11 @@ async fn ships(
     post, path = "/v1/bulk-refinements/{id}/champions", tag = "families", params(("id" = inline(Id), Path)), request_body = Promotion,
     responses((status = 200, body = Promoted))
 )]
-async fn promote(State(app): State<App>, Place(id): Place<Id>, payload: Payload) -> Result<Json<Promoted>> {
+async fn promote(
+    State(app): State<App>,
+    Place(id): Place<Id>,
+    payload: Payload,
+) -> Result<Json<Promoted>> {
     let word: Promotion = payload.json()?;
     let bulk = app.store().bulks().get(&id).await?;
     let (reason, actor) = (word.reason.into_string(), word.actor.into_string());
@@ -239,7 +264,10 @@ async fn promote(State(app): State<App>, Place(id): Place<Id>, payload: Payload)
     loop {
         let list = app.store().bulks().outcomes(&bulk.id, Some("candidate"), &page).await?;
         for outcome in &list.items {
-            let meant = word.ships.as_ref().is_none_or(|ships| ships.iter().any(|ship| **ship == *outcome.ship));
+            let meant = word
+                .ships
+                .as_ref()
+                .is_none_or(|ships| ships.iter().any(|ship| **ship == *outcome.ship));
             if let (true, Some(version)) = (meant, outcome.version) {
                 app.store().bulks().promote(&bulk.id, &outcome.ship, version, &change).await?;
                 champions += 1;

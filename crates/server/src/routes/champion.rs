@@ -79,12 +79,18 @@ async fn champion(
         Some(Format::Yaml) => YAML,
         None => accept::choose(&headers, &[JSON, YAML])?,
     };
-    let Some(current) = app.store().versions().current(&ship, CHAMPION).await? else { return Err(missing(&app, &ship).await) };
+    let Some(current) = app.store().versions().current(&ship, CHAMPION).await? else {
+        return Err(missing(&app, &ship).await);
+    };
     let Answer { etag, body } = answer(&app, current, media).await?;
     let known = etag.to_str().is_ok_and(|etag| conditions.has(etag));
     let (vary, media) = (HeaderValue::from_static("accept"), HeaderValue::from_static(media));
     let head = [(header::ETAG, etag), (header::VARY, vary), (header::CONTENT_TYPE, media)];
-    Ok(if known { (StatusCode::NOT_MODIFIED, head).into_response() } else { (head, body).into_response() })
+    Ok(if known {
+        (StatusCode::NOT_MODIFIED, head).into_response()
+    } else {
+        (head, body).into_response()
+    })
 }
 
 /// The answer, as it was given before where it was.
@@ -99,7 +105,10 @@ async fn answer(app: &App, current: CurrentVersion, media: &'static str) -> Resu
         YAML => (tag(format!("{sha256}.yaml")), yaml(&model)?),
         _ => (tag(sha256), json(version.head, key.1.clone(), &model)?),
     };
-    let answer = Answer { etag: HeaderValue::try_from(etag).map_err(Problem::internal)?, body: Bytes::from(body) };
+    let answer = Answer {
+        etag: HeaderValue::try_from(etag).map_err(Problem::internal)?,
+        body: Bytes::from(body),
+    };
     app.answers().keep(key, answer.clone());
     Ok(answer)
 }
@@ -110,14 +119,20 @@ async fn missing(app: &App, ship: &str) -> Problem {
         return error.into();
     }
     let todo = "upload trials to /v1/trials and POST a refinement to /v1/refinements";
-    Problem::not_found(format!("the ship `{ship}` is known by particulars only and has no model yet; {todo}"))
+    Problem::not_found(format!(
+        "the ship `{ship}` is known by particulars only and has no model yet; {todo}"
+    ))
 }
 
 fn yaml(model: &Model) -> Result<String> {
     serde_yaml::to_string(model).map_err(Problem::internal)
 }
 
-fn json(head: sistership_store::VersionHead, report: Option<String>, model: &Model) -> Result<String> {
+fn json(
+    head: sistership_store::VersionHead,
+    report: Option<String>,
+    model: &Model,
+) -> Result<String> {
     let ship = head.model.clone();
     let version = VersionHead { report, ..VersionHead::of(head) };
     let model = serde_json::to_value(model).map_err(Problem::internal)?;

@@ -30,7 +30,9 @@ impl utoipa::ToSchema for Vessel {
 /// The schemas of everything that a request takes from another crate, by name.
 pub(super) fn schemas() -> Map<String, Value> {
     let settings = SchemaSettings::draft2020_12().for_deserialize();
-    let mut generator = settings.with(|settings| settings.definitions_path = "/components/schemas".into()).into_generator();
+    let mut generator = settings
+        .with(|settings| settings.definitions_path = "/components/schemas".into())
+        .into_generator();
     generator.subschema_for::<refine::Settings>();
     generator.subschema_for::<diagnose::Settings>();
     generator.subschema_for::<BulkSettings>();

@@ -66,7 +66,9 @@ async fn queued(app: &App, request: DiagnosisRequest) -> Result<Reply> {
 async fn settled(app: &App, request: DiagnosisRequest) -> Result<DiagnosisJob> {
     let DiagnosisRequest { model, trials, settings } = request;
     let version = resolve(app.store(), "model", &model).await?;
-    settings.check().map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
+    settings
+        .check()
+        .map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
     let ship = version.head.model.clone();
     let trials = match trials {
         Some(ids) => named(app, &ship, ids, "those that the version was not made of").await?,
@@ -95,6 +97,7 @@ async fn seen(app: &App, version: &Version) -> Result<Vec<String>> {
     loop {
         seen.extend(recipe.trials().iter().map(|trial| trial.sha256.clone()));
         let Some(earlier) = recipe.diagnosed() else { return Ok(seen) };
-        recipe = document(&app.store().versions().get(&earlier.ship, earlier.number).await?)?.recipe;
+        recipe =
+            document(&app.store().versions().get(&earlier.ship, earlier.number).await?)?.recipe;
     }
 }

@@ -21,7 +21,9 @@ pub fn openapi() -> Value {
         }
     }
     let components = document.components.get_or_insert_with(Components::new);
-    components.responses.extend(PROBLEMS.map(|status| (problem_name(status), problem(status).into())));
+    components
+        .responses
+        .extend(PROBLEMS.map(|status| (problem_name(status), problem(status).into())));
     let mut document = serde_json::to_value(&document).unwrap_or_default();
     described::add(&mut document);
     tidy::tidy(&mut document);
@@ -29,7 +31,8 @@ pub fn openapi() -> Value {
 }
 
 /// Statuses of problems that operations have in common.
-const PROBLEMS: [u16; 17] = [400, 401, 403, 404, 406, 408, 409, 412, 413, 415, 422, 428, 429, 500, 503, 504, 507];
+const PROBLEMS: [u16; 17] =
+    [400, 401, 403, 404, 406, 408, 409, 412, 413, 415, 422, 428, 429, 500, 503, 504, 507];
 
 fn problem_name(status: u16) -> String {
     format!("Problem{status}")
@@ -38,17 +41,28 @@ fn problem_name(status: u16) -> String {
 fn problem(status: u16) -> Response {
     let status = StatusCode::from_u16(status).unwrap_or_default();
     let content = Content::new(Some(Ref::from_schema_name("Problem")));
-    ResponseBuilder::new().description(Problem::new(status, "").title).content(MEDIA, content).build()
+    ResponseBuilder::new()
+        .description(Problem::new(status, "").title)
+        .content(MEDIA, content)
+        .build()
 }
 
 fn operations(item: &mut PathItem) -> impl Iterator<Item = (&'static str, &mut Operation)> {
-    let all = [("get", &mut item.get), ("put", &mut item.put), ("post", &mut item.post), ("delete", &mut item.delete)];
+    let all = [
+        ("get", &mut item.get),
+        ("put", &mut item.put),
+        ("post", &mut item.post),
+        ("delete", &mut item.delete),
+    ];
     all.into_iter().filter_map(|(method, operation)| Some((method, operation.as_mut()?)))
 }
 
 /// A name for programs that are made from the document: `get_ships_ship_model`.
 fn id(method: &str, path: &str) -> String {
-    let words = path.split('/').filter(|word| !word.is_empty() && *word != "v1").map(|word| word.trim_matches(['{', '}']));
+    let words = path
+        .split('/')
+        .filter(|word| !word.is_empty() && *word != "v1")
+        .map(|word| word.trim_matches(['{', '}']));
     std::iter::once(method).chain(words).collect::<Vec<_>>().join("_")
 }
 
@@ -56,13 +70,15 @@ fn id(method: &str, path: &str) -> String {
 fn add_problems(method: &str, path: &str, operation: &mut Operation) {
     let has = |place: ParameterIn, name: &str| {
         let all = parameters(operation);
-        all.filter(|known| known.parameter_in == place).any(|known| name.is_empty() || known.name == name)
+        all.filter(|known| known.parameter_in == place)
+            .any(|known| name.is_empty() || known.name == name)
     };
     let forms = operation.responses.responses.get("200").map_or(0, |response| match response {
         RefOr::T(response) => response.content.len(),
         RefOr::Ref(_) => 0,
     });
-    let (body, change, key) = (operation.request_body.is_some(), method != "get", path.starts_with("/v1"));
+    let (body, change, key) =
+        (operation.request_body.is_some(), method != "get", path.starts_with("/v1"));
     let if_match = has(ParameterIn::Header, "If-Match");
     let statuses = PROBLEMS.into_iter().filter(|status| match status {
         400 | 401 | 403 | 429 | 504 => key,
@@ -77,7 +93,9 @@ fn add_problems(method: &str, path: &str, operation: &mut Operation) {
     let statuses: Vec<u16> = statuses.collect();
     let responses = &mut operation.responses.responses;
     for status in statuses {
-        responses.entry(status.to_string()).or_insert_with(|| RefOr::Ref(Ref::from_response_name(problem_name(status))));
+        responses
+            .entry(status.to_string())
+            .or_insert_with(|| RefOr::Ref(Ref::from_response_name(problem_name(status))));
     }
     responses.insert("default".to_owned(), RefOr::Ref(Ref::from_response_name(problem_name(500))));
     responses.iter_mut().for_each(|(status, response)| describe(status, response));
@@ -88,7 +106,8 @@ fn describe(status: &str, response: &mut RefOr<Response>) {
     let RefOr::T(response) = response else { return };
     if response.description.is_empty() {
         let known = status.parse().ok().and_then(|status: u16| StatusCode::from_u16(status).ok());
-        response.description = known.and_then(|status| status.canonical_reason()).unwrap_or("The answer").to_owned();
+        response.description =
+            known.and_then(|status| status.canonical_reason()).unwrap_or("The answer").to_owned();
     }
 }
 

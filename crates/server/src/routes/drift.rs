@@ -55,7 +55,12 @@ pub(super) struct MemberDrift {
 async fn of_ship(State(app): State<App>, Place(ship): Place<Name>) -> Result<Json<Drift>> {
     app.store().ships().get(&ship).await?;
     let drift = Drift::of(app.archive(), &ship).await?;
-    drift.map(Json).ok_or_else(|| Problem::invalid("ship", format!("`{ship}` has no champion yet; refine a model for her first")))
+    drift.map(Json).ok_or_else(|| {
+        Problem::invalid(
+            "ship",
+            format!("`{ship}` has no champion yet; refine a model for her first"),
+        )
+    })
 }
 
 /// Ships of a family whose model no longer holds, the worst first, with the effects that their diagnosis names
@@ -63,7 +68,11 @@ async fn of_ship(State(app): State<App>, Place(ship): Place<Name>) -> Result<Jso
     get, path = "/v1/families/{family}/drift", tag = "families", params(("family" = inline(Word), Path), Query),
     responses((status = 200, body = FamilyDrift))
 )]
-async fn of_family(State(app): State<App>, Place(name): Place<Word>, Params(query): Params<Query>) -> Result<Json<FamilyDrift>> {
+async fn of_family(
+    State(app): State<App>,
+    Place(name): Place<Word>,
+    Params(query): Params<Query>,
+) -> Result<Json<FamilyDrift>> {
     let limit = query.limit.unwrap_or_default().get();
     Ok(Json(FamilyDrift::of(&app, &name, limit).await?))
 }
@@ -75,7 +84,8 @@ impl FamilyDrift {
         let family = families.get(name).await?;
         let drifted = families.drifted(&family.name, limit).await?;
         let others = families.members(&family.name, &Page::first(limit)).await?.items;
-        let known: std::collections::BTreeSet<String> = drifted.iter().map(|member| member.ship.clone()).collect();
+        let known: std::collections::BTreeSet<String> =
+            drifted.iter().map(|member| member.ship.clone()).collect();
         let others = others.into_iter().filter(|member| !known.contains(&member.ship));
         let mut ships = Vec::new();
         for member in drifted.into_iter().chain(others).take(usize::try_from(limit).unwrap_or(0)) {
@@ -83,7 +93,9 @@ impl FamilyDrift {
             let drift = Drift::of(app.archive(), &member.ship).await?;
             ships.push(MemberDrift { ship: member.ship, condition, drift });
         }
-        ships.sort_by(|a, b| b.worse().0.cmp(&a.worse().0).then(b.worse().1.total_cmp(&a.worse().1)));
+        ships.sort_by(|a, b| {
+            b.worse().0.cmp(&a.worse().0).then(b.worse().1.total_cmp(&a.worse().1))
+        });
         Ok(Self { members: families.count(&family.name).await?, family: family.name, ships })
     }
 }
@@ -92,6 +104,9 @@ impl MemberDrift {
     /// Whether the diagnosis says that her model does not hold, and how much more it leaves of what is new.
     fn worse(&self) -> (bool, f64) {
         let worst = self.drift.as_ref().and_then(|drift| drift.worst);
-        (self.condition.model == sistership_pipeline::condition::Standing::DoesNotHold, worst.unwrap_or(0.0))
+        (
+            self.condition.model == sistership_pipeline::condition::Standing::DoesNotHold,
+            worst.unwrap_or(0.0),
+        )
     }
 }

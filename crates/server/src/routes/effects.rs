@@ -36,7 +36,10 @@ impl EffectLibraryHead {
     get, path = "/v1/effects", tag = "effects", params(Paged),
     responses((status = 200, body = Listing<EffectLibraryHead>))
 )]
-async fn list(State(app): State<App>, Params(query): Params<Paged>) -> Result<Json<Listing<EffectLibraryHead>>> {
+async fn list(
+    State(app): State<App>,
+    Params(query): Params<Paged>,
+) -> Result<Json<Listing<EffectLibraryHead>>> {
     let libraries = app.store().effects().list(&query.page()?).await?;
     Ok(Json(Listing::of(libraries, EffectLibraryHead::of)))
 }

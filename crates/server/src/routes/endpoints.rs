@@ -6,8 +6,9 @@ use tower_http::timeout::TimeoutLayer;
 use utoipa_axum::router::OpenApiRouter;
 
 use super::{
-    about, aliases, bulk_refinements, champion, diagnoses, drift, effects, events, families, health, jobs, laws, metrics,
-    predictions, refinements, register, reports, samples, ship_changes, ships, similar, tags, trials, uploads, versions,
+    about, aliases, bulk_refinements, champion, diagnoses, drift, effects, events, families,
+    health, jobs, laws, metrics, predictions, refinements, register, reports, samples,
+    ship_changes, ships, similar, tags, trials, uploads, versions,
 };
 use crate::app::App;
 use crate::config::Limits;
@@ -53,5 +54,8 @@ fn long(limits: &Limits) -> OpenApiRouter<App> {
         .merge(uploads::routes())
         .merge(versions::verification())
         .layer(DefaultBodyLimit::max(limits.upload_bytes))
-        .layer(TimeoutLayer::with_status_code(StatusCode::GATEWAY_TIMEOUT, limits.long_request_time))
+        .layer(TimeoutLayer::with_status_code(
+            StatusCode::GATEWAY_TIMEOUT,
+            limits.long_request_time,
+        ))
 }

@@ -30,7 +30,10 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     get, path = "/v1/jobs/{id}/events", tag = "jobs", params(("id" = inline(Id), Path)),
     responses((status = 200, body = JobView, content_type = "text/event-stream"))
 )]
-async fn events(State(app): State<App>, Place(id): Place<Id>) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>> {
+async fn events(
+    State(app): State<App>,
+    Place(id): Place<Id>,
+) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>> {
     let job = app.store().jobs().get(&id).await?;
     Ok(Sse::new(follow(app, job)).keep_alive(KeepAlive::default()))
 }
@@ -65,5 +68,7 @@ fn mark(job: &Job) -> (JobState, u64, String, bool, i64) {
 
 fn event(job: Job) -> Event {
     let event = Event::default().event("job");
-    event.json_data(JobView::of(job)).unwrap_or_else(|_| Event::default().comment("the job cannot be shown"))
+    event
+        .json_data(JobView::of(job))
+        .unwrap_or_else(|_| Event::default().comment("the job cannot be shown"))
 }

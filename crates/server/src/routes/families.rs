@@ -17,7 +17,9 @@ use super::queue::accepted;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::field::{Remark, RequestKey};
-use crate::web::{Key, Listing, ModelName, Name, Number, Paged, Params, Payload, Place, Reply, Word};
+use crate::web::{
+    Key, Listing, ModelName, Name, Number, Paged, Params, Payload, Place, Reply, Word,
+};
 use sistership_pipeline::fleet::{LEARN, LearnJob};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -139,7 +141,10 @@ impl MemberView {
 
 /// List the families by name
 #[utoipa::path(get, path = "/v1/families", tag = "families", params(Paged), responses((status = 200, body = Listing<FamilyView>)))]
-async fn list(State(app): State<App>, Params(query): Params<Paged>) -> Result<Json<Listing<FamilyView>>> {
+async fn list(
+    State(app): State<App>,
+    Params(query): Params<Paged>,
+) -> Result<Json<Listing<FamilyView>>> {
     let families = app.store().families().list(&query.page()?).await?;
     let mut items = Vec::with_capacity(families.items.len());
     for family in families.items {
@@ -183,7 +188,11 @@ async fn get(State(app): State<App>, Place(name): Place<Word>) -> Result<Json<Fa
     put, path = "/v1/families/{family}", tag = "families", params(("family" = inline(Word), Path)),
     request_body = NewFoundation, responses((status = 200, body = FamilyView))
 )]
-async fn found(State(app): State<App>, Place(name): Place<Word>, payload: Payload) -> Result<Json<FamilyView>> {
+async fn found(
+    State(app): State<App>,
+    Place(name): Place<Word>,
+    payload: Payload,
+) -> Result<Json<FamilyView>> {
     let new: NewFoundation = payload.json()?;
     let foundation = resolve(app.store(), "foundation", &new.foundation).await?.head;
     let family = app.store().families().found(&name, &foundation.id).await?;
@@ -210,7 +219,11 @@ async fn members(
     post, path = "/v1/families/{family}/members", tag = "families", params(("family" = inline(Word), Path)),
     request_body = NewMembers, responses((status = 200, body = FamilyView))
 )]
-async fn add(State(app): State<App>, Place(name): Place<Word>, payload: Payload) -> Result<Json<FamilyView>> {
+async fn add(
+    State(app): State<App>,
+    Place(name): Place<Word>,
+    payload: Payload,
+) -> Result<Json<FamilyView>> {
     let new: NewMembers = payload.json()?;
     let ships = bounded("ships", new.ships)?;
     app.store().families().add(&name, &ships).await?;
@@ -222,7 +235,10 @@ async fn add(State(app): State<App>, Place(name): Place<Word>, payload: Payload)
     delete, path = "/v1/families/{family}/members/{ship}", tag = "families",
     params(("family" = inline(Word), Path), ("ship" = inline(Name), Path)), responses((status = 200, body = FamilyView))
 )]
-async fn remove(State(app): State<App>, Place((name, ship)): Place<(Word, Name)>) -> Result<Json<FamilyView>> {
+async fn remove(
+    State(app): State<App>,
+    Place((name, ship)): Place<(Word, Name)>,
+) -> Result<Json<FamilyView>> {
     match app.store().families().remove(&name, &ship).await? {
         true => get(State(app), Place(name)).await,
         false => Err(StoreError::NotFound { kind: "member", id: format!("{name}/{ship}") }.into()),
@@ -234,7 +250,11 @@ async fn remove(State(app): State<App>, Place((name, ship)): Place<(Word, Name)>
     get, path = "/v1/families/{family}/prior", tag = "families", params(("family" = inline(Word), Path), Revision),
     responses((status = 200, body = PriorView))
 )]
-async fn prior(State(app): State<App>, Place(name): Place<Word>, Params(query): Params<Revision>) -> Result<Json<PriorView>> {
+async fn prior(
+    State(app): State<App>,
+    Place(name): Place<Word>,
+    Params(query): Params<Revision>,
+) -> Result<Json<PriorView>> {
     let prior = app.store().families().prior(&name, query.revision.map(Number::get)).await?;
     let document = serde_json::from_str(&prior.document).map_err(Problem::internal)?;
     let FamilyPrior { family, revision, sha256, created_us, .. } = prior;
@@ -248,8 +268,10 @@ async fn prior(State(app): State<App>, Place(name): Place<Word>, Params(query): 
 )]
 async fn learn(State(app): State<App>, Place(name): Place<Word>) -> Result<Reply> {
     let family = app.store().families().get(&name).await?;
-    let request = serde_json::to_string(&LearnJob { family: family.name }).map_err(Problem::internal)?;
-    let job = app.store().jobs().enqueue(&NewJob { kind: LEARN.to_owned(), ship: None, request }).await?;
+    let request =
+        serde_json::to_string(&LearnJob { family: family.name }).map_err(Problem::internal)?;
+    let job =
+        app.store().jobs().enqueue(&NewJob { kind: LEARN.to_owned(), ship: None, request }).await?;
     app.wake_all();
     accepted(job)
 }
@@ -257,6 +279,9 @@ async fn learn(State(app): State<App>, Place(name): Place<Word>) -> Result<Reply
 fn bounded(field: &str, ships: Vec<Name>) -> Result<Vec<String>> {
     match i64::try_from(ships.len()) {
         Ok(count) if count <= MAX_LIMIT => Ok(ships.into_iter().map(Name::into_string).collect()),
-        _ => Err(Problem::invalid(field, format!("are more than {MAX_LIMIT}; add them in several requests"))),
+        _ => Err(Problem::invalid(
+            field,
+            format!("are more than {MAX_LIMIT}; add them in several requests"),
+        )),
     }
 }

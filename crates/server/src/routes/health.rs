@@ -55,5 +55,8 @@ async fn readyz(State(app): State<App>) -> Result<Json<Health>> {
 
 fn unready(what: &str, error: &StoreError) -> Problem {
     tracing::warn!(%error, "the {what} does not answer");
-    Problem::new(StatusCode::SERVICE_UNAVAILABLE, format!("the {what} does not answer; the server's log tells why"))
+    Problem::new(
+        StatusCode::SERVICE_UNAVAILABLE,
+        format!("the {what} does not answer; the server's log tells why"),
+    )
 }

@@ -100,7 +100,18 @@ impl JobView {
         let result = job.result.as_deref().and_then(|result| serde_json::from_str(result).ok());
         let state = job.state.as_str();
         let Job {
-            id, kind, ship, progress, message, error, attempt, cancel_requested, created_us, started_us, finished_us, ..
+            id,
+            kind,
+            ship,
+            progress,
+            message,
+            error,
+            attempt,
+            cancel_requested,
+            created_us,
+            started_us,
+            finished_us,
+            ..
         } = job;
         Self {
             id,
@@ -123,9 +134,16 @@ impl JobView {
 
 /// List the jobs, the latest first
 #[utoipa::path(get, path = "/v1/jobs", tag = "jobs", params(Query), responses((status = 200, body = Listing<JobView>)))]
-async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<JobView>>> {
-    let filter = JobFilter { ship: query.ship.map(Name::into_string), state: query.state.map(JobState::from) };
-    let jobs = app.store().jobs().list(&filter, &page::page(query.limit, query.after.as_ref())?).await?;
+async fn list(
+    State(app): State<App>,
+    Params(query): Params<Query>,
+) -> Result<Json<Listing<JobView>>> {
+    let filter = JobFilter {
+        ship: query.ship.map(Name::into_string),
+        state: query.state.map(JobState::from),
+    };
+    let jobs =
+        app.store().jobs().list(&filter, &page::page(query.limit, query.after.as_ref())?).await?;
     Ok(Json(Listing::of(jobs, JobView::of)))
 }
 

@@ -47,7 +47,10 @@ impl LawHead {
 
 /// List the laws
 #[utoipa::path(get, path = "/v1/laws", tag = "laws", params(Paged), responses((status = 200, body = Listing<LawHead>)))]
-async fn list(State(app): State<App>, Params(query): Params<Paged>) -> Result<Json<Listing<LawHead>>> {
+async fn list(
+    State(app): State<App>,
+    Params(query): Params<Paged>,
+) -> Result<Json<Listing<LawHead>>> {
     let laws = app.store().laws().list(&query.page()?).await?;
     Ok(Json(Listing::of(laws, LawHead::of)))
 }
@@ -77,11 +80,20 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
     get, path = "/v1/laws/{law}", tag = "laws", params(("law" = inline(Name), Path)),
     responses((status = 200, content((LawText = "application/json"), (String = "application/yaml"))))
 )]
-async fn get(State(app): State<App>, Place(name): Place<Name>, headers: HeaderMap) -> Result<Response> {
+async fn get(
+    State(app): State<App>,
+    Place(name): Place<Name>,
+    headers: HeaderMap,
+) -> Result<Response> {
     let law = app.store().laws().get(&name).await?;
     if accept::choose(&headers, &["application/json", "application/yaml"])? == "application/yaml" {
-        return Ok(([(header::CONTENT_TYPE, "application/yaml"), (header::VARY, "accept")], law.document).into_response());
+        return Ok((
+            [(header::CONTENT_TYPE, "application/yaml"), (header::VARY, "accept")],
+            law.document,
+        )
+            .into_response());
     }
     let sistership_store::Law { name, sha256, created_us, document } = law;
-    Ok(([(header::VARY, "accept")], Json(LawText { name, sha256, created_us, document })).into_response())
+    Ok(([(header::VARY, "accept")], Json(LawText { name, sha256, created_us, document }))
+        .into_response())
 }

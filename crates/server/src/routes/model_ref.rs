@@ -10,7 +10,9 @@ pub(super) async fn resolve(store: &Store, field: &str, name: &str) -> Result<Ve
     let (ship, rest) = name.split_once('/').unwrap_or((name, CHAMPION));
     let number = match rest.parse() {
         Ok(number) => number,
-        Err(_) => alias(store, ship, rest).await?.ok_or_else(|| nothing(field, name))?.version_number,
+        Err(_) => {
+            alias(store, ship, rest).await?.ok_or_else(|| nothing(field, name))?.version_number
+        }
     };
     match store.versions().get(ship, number).await {
         Err(StoreError::NotFound { .. }) => Err(nothing(field, name)),
@@ -22,6 +24,8 @@ fn nothing(field: &str, name: &str) -> Problem {
     let forms = "give `ship` (her champion), `ship/number` or `ship/alias`";
     Problem::invalid(
         field,
-        format!("there is no model `{name}`; {forms}; GET /v1/ships lists the ships, /v1/models/SHIP/versions their versions"),
+        format!(
+            "there is no model `{name}`; {forms}; GET /v1/ships lists the ships, /v1/models/SHIP/versions their versions"
+        ),
     )
 }

@@ -9,15 +9,30 @@ use crate::problem::{Fault, Problem, Result};
 use crate::web::Id;
 
 /// The trials of these ids, checked.
-pub(super) async fn named(app: &App, ship: &str, ids: Vec<Id>, left_out: &str) -> Result<Vec<String>> {
+pub(super) async fn named(
+    app: &App,
+    ship: &str,
+    ids: Vec<Id>,
+    left_out: &str,
+) -> Result<Vec<String>> {
     bounded(app, ids.len())?;
     if ids.is_empty() {
-        return Err(Problem::invalid("trials", format!("is empty; name at least one, or leave it out for {left_out}")));
+        return Err(Problem::invalid(
+            "trials",
+            format!("is empty; name at least one, or leave it out for {left_out}"),
+        ));
     }
     for (index, id) in ids.iter().enumerate() {
-        let wrong = if ids[..index].contains(id) { Some("is named twice".to_owned()) } else { mismatch(app, ship, id).await? };
+        let wrong = if ids[..index].contains(id) {
+            Some("is named twice".to_owned())
+        } else {
+            mismatch(app, ship, id).await?
+        };
         if let Some(message) = wrong {
-            let problem = Problem::new(StatusCode::UNPROCESSABLE_ENTITY, format!("trials[{index}]: `{id}` {message}"));
+            let problem = Problem::new(
+                StatusCode::UNPROCESSABLE_ENTITY,
+                format!("trials[{index}]: `{id}` {message}"),
+            );
             return Err(problem.with(Fault::at(format!("trials[{index}]"), message)));
         }
     }
@@ -29,12 +44,17 @@ async fn mismatch(app: &App, ship: &str, id: &str) -> Result<Option<String>> {
     match app.store().trials().get(id).await {
         Ok(trial) if trial.ship == ship => Ok(None),
         Ok(trial) => Ok(Some(format!("is a trial of `{}`, not of `{ship}`", trial.ship))),
-        Err(StoreError::NotFound { .. }) => Ok(Some(format!("is not there; GET /v1/trials?ship={ship} lists her trials"))),
+        Err(StoreError::NotFound { .. }) => {
+            Ok(Some(format!("is not there; GET /v1/trials?ship={ship} lists her trials")))
+        }
         Err(error) => Err(error.into()),
     }
 }
 
 /// The refusal of work on a ship that has none.
 pub(super) fn no_trials(ship: &str) -> Problem {
-    Problem::invalid("trials", format!("the ship `{ship}` has no trials; upload some with POST /v1/trials"))
+    Problem::invalid(
+        "trials",
+        format!("the ship `{ship}` has no trials; upload some with POST /v1/trials"),
+    )
 }

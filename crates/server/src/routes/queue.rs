@@ -10,7 +10,12 @@ use crate::problem::{Problem, Result};
 use crate::web::Reply;
 
 /// Puts a job in the queue.
-pub(super) async fn enqueue(app: &App, kind: &str, ship: &str, request: &impl Serialize) -> Result<Job> {
+pub(super) async fn enqueue(
+    app: &App,
+    kind: &str,
+    ship: &str,
+    request: &impl Serialize,
+) -> Result<Job> {
     let request = serde_json::to_string(request).map_err(Problem::internal)?;
     let new = NewJob { kind: kind.to_owned(), ship: Some(ship.to_owned()), request };
     Ok(app.store().jobs().enqueue(&new).await?)

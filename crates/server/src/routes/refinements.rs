@@ -76,21 +76,36 @@ async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob>
     let RefinementRequest { ship, source, law, trials, settings } = request;
     match app.store().ships().get(&ship).await {
         Err(StoreError::NotFound { .. }) => {
-            return Err(Problem::invalid("ship", format!("there is no ship `{ship}`; create her with POST /v1/ships")));
+            return Err(Problem::invalid(
+                "ship",
+                format!("there is no ship `{ship}`; create her with POST /v1/ships"),
+            ));
         }
         other => drop(other?),
     }
-    settings.check().map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
+    settings
+        .check()
+        .map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
     repeatable(&settings)?;
     known(app, law.as_deref()).await?;
     let trials = trial_ids(app, &ship, trials).await?;
     let source = choice(app, source.as_deref().unwrap_or(AUTO)).await?;
-    Ok(RefinementJob { source, ship: ship.into_string(), law: law.map(Name::into_string), trials, settings, key_sha256: None })
+    Ok(RefinementJob {
+        source,
+        ship: ship.into_string(),
+        law: law.map(Name::into_string),
+        trials,
+        settings,
+        key_sha256: None,
+    })
 }
 
 /// A version must follow from its recipe again, which it does not where a clock ended the search.
 fn repeatable(settings: &Settings) -> Result<()> {
-    let timed = settings.cma_es.as_ref().is_some_and(|search| search.wall_s.is_some() || search.cpu_s.is_some());
+    let timed = settings
+        .cma_es
+        .as_ref()
+        .is_some_and(|search| search.wall_s.is_some() || search.cpu_s.is_some());
     let message = "a search that time ends cannot be derived again; limit `evaluations` in place of wall_s and cpu_s";
     if timed { Err(Problem::invalid("settings.cma_es", message)) } else { Ok(()) }
 }
@@ -99,9 +114,10 @@ fn repeatable(settings: &Settings) -> Result<()> {
 async fn known(app: &App, law: Option<&str>) -> Result<()> {
     let Some(law) = law else { return Ok(()) };
     match app.store().laws().get(law).await {
-        Err(StoreError::NotFound { .. }) => {
-            Err(Problem::invalid("law", format!("there is no law `{law}`; GET /v1/laws lists those that there are")))
-        }
+        Err(StoreError::NotFound { .. }) => Err(Problem::invalid(
+            "law",
+            format!("there is no law `{law}`; GET /v1/laws lists those that there are"),
+        )),
         other => other.map(drop).map_err(Problem::from),
     }
 }
@@ -118,6 +134,7 @@ async fn trial_ids(app: &App, ship: &str, ids: Option<Vec<Id>>) -> Result<Vec<St
     if let Some(ids) = ids {
         return named(app, ship, ids, "all of the ship's").await;
     }
-    let all: Vec<String> = all_of_ship(app, ship).await?.into_iter().map(|trial| trial.id).collect();
+    let all: Vec<String> =
+        all_of_ship(app, ship).await?.into_iter().map(|trial| trial.id).collect();
     if all.is_empty() { Err(no_trials(ship)) } else { Ok(all) }
 }

@@ -55,9 +55,17 @@ struct RegisterRequest {
     request_body = RegisterRequest,
     responses((status = 201, body = VersionHead, headers(("Location" = String))))
 )]
-async fn register(State(app): State<App>, Place(ship): Place<Name>, key: Key, payload: Payload) -> Result<Response> {
+async fn register(
+    State(app): State<App>,
+    Place(ship): Place<Name>,
+    key: Key,
+    payload: Payload,
+) -> Result<Response> {
     let request: RegisterRequest = payload.json()?;
-    key.once(&app, payload.bytes(), |app| async move { registered(&app, ship.into_string(), request).await }).await
+    key.once(&app, payload.bytes(), |app| async move {
+        registered(&app, ship.into_string(), request).await
+    })
+    .await
 }
 
 async fn registered(app: &App, ship: String, request: RegisterRequest) -> Result<Reply> {
@@ -67,7 +75,10 @@ async fn registered(app: &App, ship: String, request: RegisterRequest) -> Result
         Problem::invalid(field.trim_end_matches('.'), error.inner().to_string())
     })?;
     if model.ship != ship {
-        return Err(Problem::invalid("model.ship", format!("is `{}`, but the path says `{ship}`", model.ship)));
+        return Err(Problem::invalid(
+            "model.ship",
+            format!("is `{}`, but the path says `{ship}`", model.ship),
+        ));
     }
     app.store().ships().get(&ship).await?;
     let law_sha256 = checked(app, &model).await?;
@@ -87,9 +98,16 @@ async fn registered(app: &App, ship: String, request: RegisterRequest) -> Result
 
 /// Checks a model against its law, and returns the hash of the law's text.
 async fn checked(app: &App, model: &Model) -> Result<String> {
-    let no_law = || Problem::invalid("model.law", format!("there is no law `{}`; GET /v1/laws lists them", model.law));
+    let no_law = || {
+        Problem::invalid(
+            "model.law",
+            format!("there is no law `{}`; GET /v1/laws lists them", model.law),
+        )
+    };
     let law = app.find_law(&model.law).await?.ok_or_else(no_law)?;
-    model.check(&law.law).map_err(|(field, message)| Problem::invalid(&format!("model.{field}"), message))?;
+    model
+        .check(&law.law)
+        .map_err(|(field, message)| Problem::invalid(&format!("model.{field}"), message))?;
     Ok(law.sha256)
 }
 
@@ -107,7 +125,11 @@ fn document(ship: &str, model: Model, law_sha256: String, origin: String) -> Res
     let document = VersionDocument {
         format: FORMAT.to_owned(),
         ship: ship.to_owned(),
-        recipe: Recipe::Registered(RegisteredRecipe { kind: Default::default(), law_sha256, origin }),
+        recipe: Recipe::Registered(RegisteredRecipe {
+            kind: Default::default(),
+            law_sha256,
+            origin,
+        }),
         model,
         report: Value::Null,
     };

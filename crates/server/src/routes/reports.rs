@@ -41,7 +41,12 @@ enum Format {
     get, path = "/v1/reports/{id}", tag = "reports", params(("id" = inline(Id), Path), Query),
     responses((status = 200, content((Object = "application/json"), (String = "text/html"))))
 )]
-async fn get(State(app): State<App>, Place(id): Place<Id>, Params(query): Params<Query>, headers: HeaderMap) -> Result<Response> {
+async fn get(
+    State(app): State<App>,
+    Place(id): Place<Id>,
+    Params(query): Params<Query>,
+    headers: HeaderMap,
+) -> Result<Response> {
     let media = match query.format {
         Some(Format::Json) => JSON,
         Some(Format::Html) => HTML,
@@ -50,6 +55,10 @@ async fn get(State(app): State<App>, Place(id): Place<Id>, Params(query): Params
     let report = app.store().reports().get(&id).await?;
     let body = if media == HTML { report.html } else { report.document };
     let media = if media == HTML { "text/html; charset=utf-8" } else { media };
-    let head = [(header::CONTENT_TYPE, media), (header::VARY, "accept"), (header::CONTENT_SECURITY_POLICY, POLICY)];
+    let head = [
+        (header::CONTENT_TYPE, media),
+        (header::VARY, "accept"),
+        (header::CONTENT_SECURITY_POLICY, POLICY),
+    ];
     Ok((head, body).into_response())
 }

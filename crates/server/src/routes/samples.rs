@@ -37,7 +37,11 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     get, path = "/v1/trials/{id}/samples", tag = "trials", params(("id" = inline(Id), Path)),
     responses((status = 200, content((String = "text/csv"), (Binary = "application/vnd.apache.parquet"))))
 )]
-async fn samples(State(app): State<App>, Place(id): Place<Id>, headers: HeaderMap) -> Result<Response> {
+async fn samples(
+    State(app): State<App>,
+    Place(id): Place<Id>,
+    headers: HeaderMap,
+) -> Result<Response> {
     let media = accept::choose(&headers, &[CSV, PARQUET])?;
     let trial = app.store().trials().get(&id).await?;
     let (size, stream) = app.objects().stream(&trial.object_key).await?;
@@ -50,7 +54,10 @@ async fn samples(State(app): State<App>, Place(id): Place<Id>, headers: HeaderMa
 }
 
 /// The bytes as they come; where their hash is another than it was, the answer breaks off before its end.
-fn verified(key: String, mut bytes: Bytestream) -> impl Stream<Item = std::result::Result<Bytes, BoxError>> + Send {
+fn verified(
+    key: String,
+    mut bytes: Bytestream,
+) -> impl Stream<Item = std::result::Result<Bytes, BoxError>> + Send {
     async_stream::try_stream! {
         let (mut hash, mut held) = (Sha256::new(), Bytes::new());
         while let Some(next) = bytes.next().await {
@@ -69,7 +76,11 @@ fn verified(key: String, mut bytes: Bytestream) -> impl Stream<Item = std::resul
 type Bytestream = BoxStream<'static, sistership_store::Result<Bytes>>;
 
 fn damaged(key: &str, actual: &str) -> std::result::Result<(), BoxError> {
-    if key == actual { Ok(()) } else { Err(ObjectsError::Damaged { key: key.into(), actual: actual.into() }.into()) }
+    if key == actual {
+        Ok(())
+    } else {
+        Err(ObjectsError::Damaged { key: key.into(), actual: actual.into() }.into())
+    }
 }
 
 /// CSV as it is read, some rows at a time, from the samples on disk: nothing waits in memory for a caller who does not read.
@@ -80,7 +91,11 @@ async fn csv(app: &App, key: &str, bytes: Bytestream) -> Result<Body> {
     let open = move || CsvPieces::open(File::open(&spooled.path)?).map_err(BoxError::from);
     let pieces = app.compute(open).await?.map_err(Problem::internal)?;
     let next = |(mut pieces, share): (CsvPieces, Option<Share>)| async move {
-        let decode = move || pieces.next_piece().map(|piece| piece.map(|piece| (Bytes::from(piece), (pieces, share))));
+        let decode = move || {
+            pieces
+                .next_piece()
+                .map(|piece| piece.map(|piece| (Bytes::from(piece), (pieces, share))))
+        };
         tokio::task::spawn_blocking(decode).await.map_err(BoxError::from)?.map_err(BoxError::from)
     };
     Ok(Body::from_stream(futures::stream::try_unfold((pieces, share), next)))

@@ -19,7 +19,10 @@ use sistership_pipeline::publish::publish;
 use sistership_pipeline::seed::new_ship;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
-    OpenApiRouter::new().routes(routes!(create)).routes(routes!(replace, delete)).routes(routes!(undelete))
+    OpenApiRouter::new()
+        .routes(routes!(create))
+        .routes(routes!(replace, delete))
+        .routes(routes!(undelete))
 }
 
 /// Reads and checks a vessel as JSON or YAML.
@@ -27,7 +30,10 @@ async fn vessel(app: &App, payload: &Payload) -> Result<Vessel> {
     if payload.is_json() {
         return Ok(Vessel::from_file("body", payload.json::<VesselFile>()?)?);
     }
-    let text = payload.text().map_err(|_| payload.wrong("application/yaml` or `application/json"))?.to_owned();
+    let text = payload
+        .text()
+        .map_err(|_| payload.wrong("application/yaml` or `application/json"))?
+        .to_owned();
     Ok(app.compute(move || Vessel::parse("body", &text)).await??)
 }
 
@@ -64,7 +70,12 @@ async fn created(app: &App, vessel: &Vessel) -> Result<Reply> {
     request_body(content((VesselBody = "application/json"), (String = "application/yaml"))),
     responses((status = 200, body = ShipDetail, headers(("ETag" = String))))
 )]
-async fn replace(State(app): State<App>, Place(name): Place<Name>, conditions: Conditions, payload: Payload) -> Result<Response> {
+async fn replace(
+    State(app): State<App>,
+    Place(name): Place<Name>,
+    conditions: Conditions,
+    payload: Payload,
+) -> Result<Response> {
     let current = app.store().ships().get(&name).await?;
     let revision = conditions.revision(&format!("ship `{name}`"), current.revision)?;
     let vessel = vessel(&app, &payload).await?;
@@ -88,7 +99,11 @@ async fn replace(State(app): State<App>, Place(name): Place<Name>, conditions: C
     params(("ship" = inline(Name), Path), ("If-Match" = inline(Option<EntityTags>), Header, description = "Only if she is still as you last read her")),
     responses((status = 204, description = "Deleted"))
 )]
-async fn delete(State(app): State<App>, Place(name): Place<Name>, conditions: Conditions) -> Result<Response> {
+async fn delete(
+    State(app): State<App>,
+    Place(name): Place<Name>,
+    conditions: Conditions,
+) -> Result<Response> {
     let current = app.store().ships().get(&name).await?;
     let revision = conditions.optional_revision(&format!("ship `{name}`"), current.revision)?;
     app.store().ships().delete(&name, revision).await?;

@@ -54,11 +54,19 @@ pub(super) fn read(pairs: Vec<(String, String)>) -> Result<(Search, Page<ShipKey
         match name.as_str() {
             "limit" => once(&name, &mut limit, parsed::<Limit>(&name, &value)?)?,
             "after" => once(&name, &mut after, parsed::<Cursor>(&name, &value)?)?,
-            "category" => once(&name, &mut search.ships.category, parsed::<Name>(&name, &value)?.into_string())?,
-            "tag" => once(&name, &mut search.ships.tag, parsed::<Word>(&name, &value)?.into_string())?,
+            "category" => once(
+                &name,
+                &mut search.ships.category,
+                parsed::<Name>(&name, &value)?.into_string(),
+            )?,
+            "tag" => {
+                once(&name, &mut search.ships.tag, parsed::<Word>(&name, &value)?.into_string())?
+            }
             "particular" => add(&name, &mut search.ships.ranges, particular(&value))?,
             "metric" => add(&name, &mut search.ships.ranges, metric(&value))?,
-            "similar_to" => once(&name, &mut search.similar_to, parsed::<Name>(&name, &value)?.into_string())?,
+            "similar_to" => {
+                once(&name, &mut search.similar_to, parsed::<Name>(&name, &value)?.into_string())?
+            }
             "vector" => once(&name, &mut search.vector, definition(&value)?)?,
             _ => return Err(unknown(&name)),
         }
@@ -85,7 +93,10 @@ fn metrics() -> RefOr<Schema> {
 
 /// Ranges of what has one of these names.
 fn ranges(names: impl Iterator<Item = &'static str>) -> RefOr<Schema> {
-    let range = ObjectBuilder::new().schema_type(Type::String).pattern(Some(search::pattern(names))).build();
+    let range = ObjectBuilder::new()
+        .schema_type(Type::String)
+        .pattern(Some(search::pattern(names)))
+        .build();
     ArrayBuilder::new().items(range).min_items(Some(1)).max_items(Some(MAX_RANGES)).build().into()
 }
 
@@ -96,7 +107,11 @@ fn once<T>(name: &str, slot: &mut Option<T>, value: T) -> Result<()> {
     }
 }
 
-fn add(name: &str, ranges: &mut Vec<FactRange>, range: std::result::Result<FactRange, String>) -> Result<()> {
+fn add(
+    name: &str,
+    ranges: &mut Vec<FactRange>,
+    range: std::result::Result<FactRange, String>,
+) -> Result<()> {
     ranges.push(range.map_err(|message| wrong(name, message))?);
     match ranges.len() <= MAX_RANGES {
         true => Ok(()),
@@ -106,11 +121,15 @@ fn add(name: &str, ranges: &mut Vec<FactRange>, range: std::result::Result<FactR
 
 fn definition(value: &str) -> Result<Definition> {
     let known = Definition::ALL.map(Definition::name).join(" and ");
-    Definition::by_name(value).ok_or_else(|| wrong("vector", format!("there are {known}, not `{value}`")))
+    Definition::by_name(value)
+        .ok_or_else(|| wrong("vector", format!("there are {known}, not `{value}`")))
 }
 
 fn unknown(name: &str) -> Problem {
-    wrong(name, "is no parameter here; there are limit, after, category, tag, particular, metric, similar_to, vector")
+    wrong(
+        name,
+        "is no parameter here; there are limit, after, category, tag, particular, metric, similar_to, vector",
+    )
 }
 
 fn wrong(name: &str, message: impl Into<String>) -> Problem {
@@ -124,18 +143,25 @@ mod tests {
     use super::*;
 
     fn pairs(text: &str) -> Vec<(String, String)> {
-        let pair = |pair: &str| pair.split_once('=').map(|(name, value)| (name.to_owned(), value.to_owned()));
+        let pair = |pair: &str| {
+            pair.split_once('=').map(|(name, value)| (name.to_owned(), value.to_owned()))
+        };
         text.split('&').filter_map(pair).collect()
     }
 
     #[test]
     fn every_parameter_is_read() {
-        let text =
-            "category=tanker&tag=own&particular=lpp_m:1..2&metric=initial_turning_m:..9&similar_to=kcs&vector=mei-2019&limit=7";
+        let text = "category=tanker&tag=own&particular=lpp_m:1..2&metric=initial_turning_m:..9&similar_to=kcs&vector=mei-2019&limit=7";
         let (search, page) = read(pairs(text)).unwrap();
-        assert_eq!((page.limit, search.ships.ranges.len(), search.vector), (7, 2, Some(Definition::Mei2019)));
+        assert_eq!(
+            (page.limit, search.ships.ranges.len(), search.vector),
+            (7, 2, Some(Definition::Mei2019))
+        );
         assert_eq!(search.ships.category.as_deref(), Some("tanker"));
-        assert_eq!((search.ships.tag.as_deref(), search.similar_to.as_deref()), (Some("own"), Some("kcs")));
+        assert_eq!(
+            (search.ships.tag.as_deref(), search.similar_to.as_deref()),
+            (Some("own"), Some("kcs"))
+        );
     }
 
     #[test]
@@ -152,7 +178,11 @@ mod tests {
             ("categorie=tanker", "categorie"),
         ] {
             let problem = read(pairs(text)).unwrap_err();
-            assert_eq!((problem.status, problem.errors[0].field.as_deref()), (400, Some(field)), "{text}");
+            assert_eq!(
+                (problem.status, problem.errors[0].field.as_deref()),
+                (400, Some(field)),
+                "{text}"
+            );
         }
     }
 }

@@ -91,10 +91,15 @@ impl ShipDetail {
 /// By name; with ranges by the first of them, rising; with `similar_to` the most similar first. Particulars and metrics follow
 /// a change of ship or champion within a second or so.
 #[utoipa::path(get, path = "/v1/ships", tag = "ships", params(Query), responses((status = 200, body = Listing<ShipHead>)))]
-async fn list(State(app): State<App>, Params(query): Params<Vec<(String, String)>>) -> Result<Json<Listing<ShipHead>>> {
+async fn list(
+    State(app): State<App>,
+    Params(query): Params<Vec<(String, String)>>,
+) -> Result<Json<Listing<ShipHead>>> {
     let (asked, page) = ship_search::read(query)?;
     let ships = search::ships(app.archive(), &asked, &page).await.map_err(|error| match error {
-        DeriveError::Store(StoreError::NotFound { kind: "ship", .. }) => Problem::invalid("similar_to", error.to_string()),
+        DeriveError::Store(StoreError::NotFound { kind: "ship", .. }) => {
+            Problem::invalid("similar_to", error.to_string())
+        }
         other => other.into(),
     })?;
     Ok(Json(Listing::of(ships, ShipHead::of)))
@@ -106,7 +111,11 @@ async fn list(State(app): State<App>, Params(query): Params<Vec<(String, String)
         ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you have")),
     responses((status = 200, body = ShipDetail, headers(("ETag" = String))), (status = 304, description = "As you have her"))
 )]
-async fn get(State(app): State<App>, Place(name): Place<Name>, conditions: Conditions) -> Result<Response> {
+async fn get(
+    State(app): State<App>,
+    Place(name): Place<Name>,
+    conditions: Conditions,
+) -> Result<Response> {
     let ship = ShipDetail::of(&app, app.store().ships().get(&name).await?).await?;
     let etag = ship.etag();
     match conditions.has(&etag) {

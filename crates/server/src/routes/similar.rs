@@ -48,15 +48,21 @@ fn yes() -> bool {
     get, path = "/v1/ships/{ship}/similar", tag = "ships", params(("ship" = inline(Name), Path), Query),
     responses((status = 200, body = Object, description = "`target`, `definition`, `vector` and `ranking`, as `sistership similar --json`"))
 )]
-async fn similar(State(app): State<App>, Place(name): Place<Name>, Params(query): Params<Query>) -> Result<Json<Value>> {
+async fn similar(
+    State(app): State<App>,
+    Place(name): Place<Name>,
+    Params(query): Params<Query>,
+) -> Result<Json<Value>> {
     let ship = app.store().ships().get(&name).await?;
     let target = vessel(&ship.name, &ship.document)?;
     let trials = if query.trials { all_of_ship(&app, &name).await? } else { Vec::new() };
     budget::take(trials.iter().map(|trial| trial_bytes(trial.sample_rows)).sum()).await?;
-    let named = trials.into_iter().map(|trial| RecipeTrial { name: trial.name, sha256: trial.object_key });
+    let named =
+        trials.into_iter().map(|trial| RecipeTrial { name: trial.name, sha256: trial.object_key });
     let trials = app.archive().trials(&named.collect::<Vec<_>>()).await?;
     let zoo = app.zoo_around(&target).await?;
-    let ranked = move || source::similar(&zoo, &target, query.vector, &trials.iter().collect::<Vec<_>>());
+    let ranked =
+        move || source::similar(&zoo, &target, query.vector, &trials.iter().collect::<Vec<_>>());
     let ranked = app.compute(ranked).await?;
     Ok(Json(serde_json::to_value(ranked).map_err(Problem::internal)?))
 }

@@ -30,7 +30,10 @@ async fn list(State(app): State<App>, Place(ship): Place<Name>) -> Result<Json<V
     params(("ship" = inline(Name), Path), ("tag" = inline(Word), Path)),
     responses((status = 204, description = "She has it"))
 )]
-async fn put(State(app): State<App>, Place((ship, tag)): Place<(Name, Word)>) -> Result<StatusCode> {
+async fn put(
+    State(app): State<App>,
+    Place((ship, tag)): Place<(Name, Word)>,
+) -> Result<StatusCode> {
     app.store().ships().tag(&ship, &tag).await?;
     Ok(StatusCode::NO_CONTENT)
 }
@@ -40,7 +43,10 @@ async fn put(State(app): State<App>, Place((ship, tag)): Place<(Name, Word)>) ->
     delete, path = "/v1/ships/{ship}/tags/{tag}", tag = "ships", params(("ship" = inline(Name), Path), ("tag" = inline(Word), Path)),
     responses((status = 204, description = "She no longer has it"))
 )]
-async fn remove(State(app): State<App>, Place((ship, tag)): Place<(Name, Word)>) -> Result<StatusCode> {
+async fn remove(
+    State(app): State<App>,
+    Place((ship, tag)): Place<(Name, Word)>,
+) -> Result<StatusCode> {
     app.store().ships().untag(&ship, &tag).await?;
     Ok(StatusCode::NO_CONTENT)
 }

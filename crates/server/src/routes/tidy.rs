@@ -22,11 +22,13 @@ pub(super) fn tidy(document: &mut Value) {
 
 /// A schema and what is said of the field that has it are one schema, not two that both must hold: the second would be an object.
 fn described(object: &mut Map<String, Value>) {
-    let Some([Value::Object(schema), Value::Object(about)]) = object.get("allOf").and_then(Value::as_array).map(Vec::as_slice)
+    let Some([Value::Object(schema), Value::Object(about)]) =
+        object.get("allOf").and_then(Value::as_array).map(Vec::as_slice)
     else {
         return;
     };
-    let only = |name: &String| ["description", "type", "deprecated", "example"].contains(&name.as_str());
+    let only =
+        |name: &String| ["description", "type", "deprecated", "example"].contains(&name.as_str());
     if !about.keys().all(only) || about.get("type").is_some_and(|kind| kind != "object") {
         return;
     }
@@ -66,9 +68,12 @@ fn yaml(object: &mut Map<String, Value>) {
 
 /// The schema of an event stream is that of one event's data.
 fn events(object: &mut Map<String, Value>) {
-    let Some(stream) = object.get_mut("text/event-stream").and_then(Value::as_object_mut) else { return };
+    let Some(stream) = object.get_mut("text/event-stream").and_then(Value::as_object_mut) else {
+        return;
+    };
     let Some(data) = stream.remove("schema") else { return };
-    let data = json!({ "type": "string", "contentMediaType": "application/json", "contentSchema": data });
+    let data =
+        json!({ "type": "string", "contentMediaType": "application/json", "contentSchema": data });
     let event = json!({ "type": "object", "required": ["event", "data"],
         "properties": { "event": { "type": "string", "const": "job" }, "data": data } });
     stream.insert("x-itemSchema".to_owned(), event);
@@ -96,9 +101,15 @@ mod tests {
             { "in": "query", "name": "b", "schema": { "oneOf": [{ "type": "null" }, { "type": "integer" }] } },
         ], "content": { "text/event-stream": { "schema": { "type": "object" } } } });
         tidy(&mut document);
-        assert_eq!(document["parameters"][0]["schema"], json!({ "type": "string", "not": { "const": "b" } }));
+        assert_eq!(
+            document["parameters"][0]["schema"],
+            json!({ "type": "string", "not": { "const": "b" } })
+        );
         assert_eq!(document["parameters"][1]["schema"], json!({ "type": "integer" }));
         let stream = &document["content"]["text/event-stream"];
-        assert_eq!(stream["x-itemSchema"]["properties"]["data"]["contentSchema"], json!({ "type": "object" }));
+        assert_eq!(
+            stream["x-itemSchema"]["properties"]["data"]["contentSchema"],
+            json!({ "type": "object" })
+        );
     }
 }

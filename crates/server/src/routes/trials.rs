@@ -17,7 +17,10 @@ use crate::web::field::{Cursor, Limit};
 use crate::web::{Id, Listing, Name, Params, Place, page};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
-    OpenApiRouter::new().routes(routes!(list)).routes(routes!(get, delete)).routes(routes!(undelete))
+    OpenApiRouter::new()
+        .routes(routes!(list))
+        .routes(routes!(get, delete))
+        .routes(routes!(undelete))
 }
 
 /// A trial; its samples are under `/samples`.
@@ -62,16 +65,33 @@ impl TrialView {
     pub(super) fn of(trial: Trial) -> Self {
         let read = |text: &str| serde_json::from_str(text).unwrap_or_default();
         let (warnings, manifest) = (read(&trial.warnings), read(&trial.manifest));
-        let Trial { id, ship, name, sha256, sample_rows: rows, duration_s, manoeuvre, created_us, .. } = trial;
+        let Trial {
+            id,
+            ship,
+            name,
+            sha256,
+            sample_rows: rows,
+            duration_s,
+            manoeuvre,
+            created_us,
+            ..
+        } = trial;
         Self { id, ship, name, sha256, rows, duration_s, manoeuvre, warnings, manifest, created_us }
     }
 }
 
 /// List the trials of a ship, in the order of their upload
 #[utoipa::path(get, path = "/v1/trials", tag = "trials", params(Query), responses((status = 200, body = Listing<TrialView>)))]
-async fn list(State(app): State<App>, Params(query): Params<Query>) -> Result<Json<Listing<TrialView>>> {
+async fn list(
+    State(app): State<App>,
+    Params(query): Params<Query>,
+) -> Result<Json<Listing<TrialView>>> {
     app.store().ships().get(&query.ship).await?;
-    let trials = app.store().trials().list(&query.ship, &page::page(query.limit, query.after.as_ref())?).await?;
+    let trials = app
+        .store()
+        .trials()
+        .list(&query.ship, &page::page(query.limit, query.after.as_ref())?)
+        .await?;
     Ok(Json(Listing::of(trials, TrialView::of)))
 }
 
@@ -119,6 +139,9 @@ pub(super) fn bounded(app: &App, count: usize) -> Result<()> {
     let most = app.limits().refinement_trials;
     match count <= most {
         true => Ok(()),
-        false => Err(Problem::invalid("trials", format!("more than {most} trials at a time; name those that matter"))),
+        false => Err(Problem::invalid(
+            "trials",
+            format!("more than {most} trials at a time; name those that matter"),
+        )),
     }
 }

@@ -72,9 +72,12 @@ async fn kept(app: &App, upload: Upload) -> Result<Reply> {
     };
     let new = kept.iter().filter(|trial| trial.new).count();
     let trials = kept.into_iter().map(|trial| TrialView::of(trial.row)).collect();
-    Ok(Reply::new(StatusCode::CREATED, &Uploaded { ship, trials, new, diagnosis: job.map(|job| job.id) })?
-        .at(location)
-        .with_jobs())
+    Ok(Reply::new(
+        StatusCode::CREATED,
+        &Uploaded { ship, trials, new, diagnosis: job.map(|job| job.id) },
+    )?
+    .at(location)
+    .with_jobs())
 }
 
 /// Check trials without keeping them

@@ -57,11 +57,23 @@ struct VersionDetail {
 
 impl VersionHead {
     pub(super) fn of(head: sistership_store::VersionHead) -> Self {
-        let sistership_store::VersionHead { id, model, number, parent, law, method, sha256, created_us } = head;
+        let sistership_store::VersionHead {
+            id,
+            model,
+            number,
+            parent,
+            law,
+            method,
+            sha256,
+            created_us,
+        } = head;
         Self { id, model, number, parent, law, method, sha256, report: None, created_us }
     }
 
-    pub(super) async fn with_report(app: &App, head: sistership_store::VersionHead) -> Result<Self> {
+    pub(super) async fn with_report(
+        app: &App,
+        head: sistership_store::VersionHead,
+    ) -> Result<Self> {
         let reports = app.store().reports().by_version(&head.id, &Page::first(1)).await?;
         let report = reports.items.into_iter().next().map(|report| report.id);
         Ok(Self { report, ..Self::of(head) })
@@ -96,10 +108,16 @@ pub(super) async fn exists(app: &App, model: &str) -> Result<()> {
     get, path = "/v1/models/{model}/versions/{number}", tag = "models", params(("model" = inline(Name), Path), ("number" = inline(Number), Path)),
     responses((status = 200, body = VersionDetail))
 )]
-async fn get(State(app): State<App>, Place((model, number)): Place<(Name, Number)>) -> Result<Json<VersionDetail>> {
+async fn get(
+    State(app): State<App>,
+    Place((model, number)): Place<(Name, Number)>,
+) -> Result<Json<VersionDetail>> {
     let version = app.store().versions().get(&model, number.get()).await?;
     let document = serde_json::from_str(&version.document).map_err(Problem::internal)?;
-    Ok(Json(VersionDetail { version: VersionHead::with_report(&app, version.head).await?, document }))
+    Ok(Json(VersionDetail {
+        version: VersionHead::with_report(&app, version.head).await?,
+        document,
+    }))
 }
 
 /// The document of a version, byte for byte as it was hashed
@@ -116,7 +134,8 @@ async fn bytes(
 ) -> Result<Response> {
     let version = app.store().versions().get(&model, number.get()).await?;
     let etag = format!("\"{}\"", version.head.sha256);
-    let head = [(header::ETAG, etag.clone()), (header::CONTENT_TYPE, "application/json".to_owned())];
+    let head =
+        [(header::ETAG, etag.clone()), (header::CONTENT_TYPE, "application/json".to_owned())];
     match conditions.has(&etag) {
         true => Ok((StatusCode::NOT_MODIFIED, head).into_response()),
         false => Ok((head, version.document).into_response()),
@@ -129,9 +148,15 @@ async fn bytes(
     params(("model" = inline(Name), Path), ("number" = inline(Number), Path)),
     responses((status = 200, body = Verification, description = "`identical` tells whether they are the same"))
 )]
-async fn verify_again(State(app): State<App>, Place((model, number)): Place<(Name, Number)>) -> Result<Json<Verification>> {
+async fn verify_again(
+    State(app): State<App>,
+    Place((model, number)): Place<(Name, Number)>,
+) -> Result<Json<Verification>> {
     let number = number.get();
     // It is the work of a job, in a request.
-    let _share = app.job_memory().take(verify::demand(app.archive(), &model, number).await?, app.limits().memory_wait).await?;
+    let _share = app
+        .job_memory()
+        .take(verify::demand(app.archive(), &model, number).await?, app.limits().memory_wait)
+        .await?;
     Ok(Json(verify::verify(app.archive(), &model, number).await?))
 }

@@ -4,7 +4,9 @@ use std::io::BufWriter;
 
 use bytes::Bytes;
 use sistership_model::manifest::Manifest;
-use sistership_store::{Alias, Inserted, Job, NewJob, NewTrial, Objects, StoreError, Trial, is_out_of_space};
+use sistership_store::{
+    Alias, Inserted, Job, NewJob, NewTrial, Objects, StoreError, Trial, is_out_of_space,
+};
 use sistership_trials::samples::{self, SamplesError};
 use sistership_trials::{Mapping, Refusal, Source, read_trial};
 use tempfile::NamedTempFile;
@@ -55,15 +57,22 @@ pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option
 
 /// The diagnosis of a champion on what is new.
 fn follow_up(champion: &Alias, kept: &[Kept]) -> Option<NewJob> {
-    let trials: Vec<String> = kept.iter().filter(|trial| trial.new).map(|trial| trial.row.id.clone()).collect();
-    let (ship, number, settings) = (champion.model.clone(), champion.version_number, Default::default());
+    let trials: Vec<String> =
+        kept.iter().filter(|trial| trial.new).map(|trial| trial.row.id.clone()).collect();
+    let (ship, number, settings) =
+        (champion.model.clone(), champion.version_number, Default::default());
     let asked = DiagnosisJob { ship: ship.clone(), number, trials, settings, key_sha256: None };
     let request = serde_json::to_string(&asked).ok().filter(|_| !asked.trials.is_empty())?;
     Some(NewJob { kind: DIAGNOSIS.to_owned(), ship: Some(ship), request })
 }
 
 fn no_ship(ship: &str) -> Problem {
-    Problem::invalid("ship", format!("there is no ship `{ship}`; create her with POST /v1/ships first, or mend the name"))
+    Problem::invalid(
+        "ship",
+        format!(
+            "there is no ship `{ship}`; create her with POST /v1/ships first, or mend the name"
+        ),
+    )
 }
 
 impl Upload {
@@ -73,7 +82,8 @@ impl Upload {
         for (entry, file) in self.manifest.trials.iter().zip(self.files) {
             let mut mapping = Mapping::of(&self.manifest, entry);
             let share = room(app, &entry.file, &file.path, &mut mapping).await?;
-            let (only, inner) = (Manifest { trials: vec![entry.clone()], ..self.manifest.clone() }, app.clone());
+            let (only, inner) =
+                (Manifest { trials: vec![entry.clone()], ..self.manifest.clone() }, app.clone());
             let read = move || {
                 let _share = share;
                 read(&only, &file, &mapping, inner.spool())
@@ -88,7 +98,12 @@ impl Upload {
 }
 
 /// Reads the file of a manifest that lists one.
-fn read(only: &Manifest, file: &Spooled, mapping: &Mapping, spool: &Spool) -> Result<std::result::Result<Accepted, Refusal>> {
+fn read(
+    only: &Manifest,
+    file: &Spooled,
+    mapping: &Mapping,
+    spool: &Spool,
+) -> Result<std::result::Result<Accepted, Refusal>> {
     let name = only.trials.first().map_or("", |entry| entry.file.as_str());
     let source = Source::open(name, &file.path).map_err(|error| lost(name, &error));
     match source.and_then(|source| read_trial(source, mapping)) {
@@ -121,7 +136,10 @@ impl Accepted {
 fn unwritten(error: SamplesError) -> Problem {
     let first: &(dyn std::error::Error + 'static) = &error;
     let mut causes = std::iter::successors(Some(first), |cause| cause.source());
-    match causes.find_map(|cause| cause.downcast_ref::<std::io::Error>()).is_some_and(is_out_of_space) {
+    match causes
+        .find_map(|cause| cause.downcast_ref::<std::io::Error>())
+        .is_some_and(is_out_of_space)
+    {
         true => Problem::no_room(format!("an upload cannot be written: {error}")),
         false => Problem::internal(error),
     }
@@ -144,6 +162,10 @@ async fn put_samples(objects: &Objects, accepted: &[Accepted]) -> Result<Vec<Str
 }
 
 fn rows(accepted: &[Accepted], keys: Vec<String>) -> Vec<NewTrial> {
-    let row = |(trial, key): (&Accepted, String)| NewTrial { sha256: key.clone(), object_key: key, ..trial.new.clone() };
+    let row = |(trial, key): (&Accepted, String)| NewTrial {
+        sha256: key.clone(),
+        object_key: key,
+        ..trial.new.clone()
+    };
     accepted.iter().zip(keys).map(row).collect()
 }

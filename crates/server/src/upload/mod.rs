@@ -30,7 +30,10 @@ impl FromRequest<App> for Upload {
         match media(request.headers()).as_str() {
             "multipart/form-data" => {
                 let Query(Wish { diagnose }) = Query::try_from_uri(request.uri())?;
-                Ok(Self { diagnose: diagnose.unwrap_or(true), ..multipart::receive(request, app).await? })
+                Ok(Self {
+                    diagnose: diagnose.unwrap_or(true),
+                    ..multipart::receive(request, app).await?
+                })
             }
             other if FILE_MEDIA.contains(&other) => raw::receive(request, app).await,
             other => Err(Problem::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, unknown(other))),

@@ -29,7 +29,9 @@ struct Part {
 
 pub(super) async fn receive(request: Request, app: &App) -> Result<Upload> {
     let form = Multipart::from_request(request, &()).await;
-    let mut form = form.map_err(|error| Problem::bad_request(format!("the form cannot be read: {}", error.body_text())))?;
+    let mut form = form.map_err(|error| {
+        Problem::bad_request(format!("the form cannot be read: {}", error.body_text()))
+    })?;
     let mut parts = Parts::default();
     while let Some(field) = form.next_field().await? {
         parts.take(field, app).await?;
@@ -37,10 +39,13 @@ pub(super) async fn receive(request: Request, app: &App) -> Result<Upload> {
     match (parts.manifest.take(), parts.ship.take()) {
         (Some(manifest), None) => parts.listed(read(&manifest).await?),
         (None, Some(ship)) => parts.canonical(ship),
-        (Some(_), Some(_)) => Err(Problem::invalid("ship", "the manifest names the ship; leave the part `ship` out")),
-        (None, None) => {
-            Err(Problem::invalid("manifest", "send a part `manifest` (YAML), or a part `ship` for files with canonical columns"))
+        (Some(_), Some(_)) => {
+            Err(Problem::invalid("ship", "the manifest names the ship; leave the part `ship` out"))
         }
+        (None, None) => Err(Problem::invalid(
+            "manifest",
+            "send a part `manifest` (YAML), or a part `ship` for files with canonical columns",
+        )),
     }
 }
 
@@ -54,15 +59,24 @@ impl Parts {
         let name = field.name().unwrap_or_default().to_owned();
         match (name.as_str(), field.file_name().map(str::to_owned)) {
             ("manifest", _) => set(&mut self.manifest, "manifest", text(field, app).await?),
-            ("ship", None) => set(&mut self.ship, "ship", text(field, app).await?.trim().to_owned()),
-            (_, Some(file_name)) => self.file(name, file_name, field, app).await,
-            (other, None) => {
-                Err(Problem::invalid(other, "is not known here: parts are `manifest`, `ship`, and files with a filename"))
+            ("ship", None) => {
+                set(&mut self.ship, "ship", text(field, app).await?.trim().to_owned())
             }
+            (_, Some(file_name)) => self.file(name, file_name, field, app).await,
+            (other, None) => Err(Problem::invalid(
+                other,
+                "is not known here: parts are `manifest`, `ship`, and files with a filename",
+            )),
         }
     }
 
-    async fn file(&mut self, field: String, name: String, content: Field<'_>, app: &App) -> Result<()> {
+    async fn file(
+        &mut self,
+        field: String,
+        name: String,
+        content: Field<'_>,
+        app: &App,
+    ) -> Result<()> {
         let most = app.limits().upload_files;
         if self.files.len() >= most {
             return Err(Problem::new(
@@ -78,13 +92,16 @@ impl Parts {
     fn listed(mut self, manifest: Manifest) -> Result<Upload> {
         let mut files = Vec::with_capacity(manifest.trials.len());
         for (index, trial) in manifest.trials.iter().enumerate() {
-            let Some(found) = self.find(&trial.file) else { return Err(self.missing(index, &trial.file)) };
+            let Some(found) = self.find(&trial.file) else {
+                return Err(self.missing(index, &trial.file));
+            };
             files.push(self.files.swap_remove(found).file);
         }
         match self.files.first() {
-            Some(extra) => {
-                Err(Problem::invalid(&extra.name, "is not listed under `trials` of the manifest; list it or leave it out"))
-            }
+            Some(extra) => Err(Problem::invalid(
+                &extra.name,
+                "is not listed under `trials` of the manifest; list it or leave it out",
+            )),
             None => Ok(Upload { manifest, diagnose: true, files }),
         }
     }
@@ -93,24 +110,39 @@ impl Parts {
     fn find(&self, path: &str) -> Option<usize> {
         let exact = self.files.iter().position(|part| part.name == path || part.field == path);
         let base = |path: &str| path.rsplit('/').next().map(str::to_owned);
-        let mut alike = self.files.iter().enumerate().filter(|(_, part)| base(&part.name) == base(path)).map(|(index, _)| index);
+        let mut alike = self
+            .files
+            .iter()
+            .enumerate()
+            .filter(|(_, part)| base(&part.name) == base(path))
+            .map(|(index, _)| index);
         exact.or_else(|| alike.next().filter(|_| alike.next().is_none()))
     }
 
     fn missing(&self, index: usize, path: &str) -> Problem {
         let sent: Vec<&str> = self.files.iter().map(|part| part.name.as_str()).collect();
-        let sent = if sent.is_empty() { "none is left".to_owned() } else { format!("left are {}", sent.join(", ")) };
+        let sent = if sent.is_empty() {
+            "none is left".to_owned()
+        } else {
+            format!("left are {}", sent.join(", "))
+        };
         let message = format!("the manifest lists `{path}`, but no part has that filename; {sent}");
-        Problem::new(StatusCode::UNPROCESSABLE_ENTITY, message.clone()).with(Fault::at(format!("trials[{index}].file"), message))
+        Problem::new(StatusCode::UNPROCESSABLE_ENTITY, message.clone())
+            .with(Fault::at(format!("trials[{index}].file"), message))
     }
 
     fn canonical(self, ship: String) -> Result<Upload> {
         if self.files.is_empty() {
             return Err(Problem::invalid("file", "send at least one part with a filename"));
         }
-        let trial = |part: &Part| ManifestTrial { file: part.name.clone(), manoeuvre: None, depth_m: None };
+        let trial =
+            |part: &Part| ManifestTrial { file: part.name.clone(), manoeuvre: None, depth_m: None };
         let manifest = canonical(ship, self.files.iter().map(trial).collect())?;
-        Ok(Upload { manifest, diagnose: true, files: self.files.into_iter().map(|part| part.file).collect() })
+        Ok(Upload {
+            manifest,
+            diagnose: true,
+            files: self.files.into_iter().map(|part| part.file).collect(),
+        })
     }
 }
 
@@ -131,15 +163,17 @@ async fn text(mut field: Field<'_>, app: &App) -> Result<String> {
             return Err(Problem::new(StatusCode::PAYLOAD_TOO_LARGE, "the manifest is too large"));
         }
     }
-    String::from_utf8(bytes).map_err(|error| Problem::bad_request(format!("a part is not UTF-8: {error}")))
+    String::from_utf8(bytes)
+        .map_err(|error| Problem::bad_request(format!("a part is not UTF-8: {error}")))
 }
 
 impl From<MultipartError> for Problem {
     fn from(error: MultipartError) -> Self {
         match error.status() {
-            StatusCode::PAYLOAD_TOO_LARGE => {
-                Self::new(StatusCode::PAYLOAD_TOO_LARGE, "the upload is larger than this server takes; send several uploads")
-            }
+            StatusCode::PAYLOAD_TOO_LARGE => Self::new(
+                StatusCode::PAYLOAD_TOO_LARGE,
+                "the upload is larger than this server takes; send several uploads",
+            ),
             _ => Self::bad_request(format!("the form cannot be read: {}", error.body_text())),
         }
     }

@@ -46,7 +46,11 @@ pub(super) async fn receive(mut request: Request, app: &App) -> Result<Upload> {
     let (manoeuvre, depth_m) = (manoeuvre.map(Remark::into_string), depth_m.map(Positive::get));
     let manifest = canonical(ship.into_string(), vec![ManifestTrial { file, manoeuvre, depth_m }])?;
     let stream = request.with_limited_body().into_body().into_data_stream().map_err(interrupted);
-    Ok(Upload { manifest, diagnose: diagnose.unwrap_or(true), files: vec![spool(app.spool(), stream).await?] })
+    Ok(Upload {
+        manifest,
+        diagnose: diagnose.unwrap_or(true),
+        files: vec![spool(app.spool(), stream).await?],
+    })
 }
 
 /// Too much was sent, or the caller hung up.

@@ -56,7 +56,11 @@ fn unreadable(file: &str, error: &std::io::Error) -> CheckOutcome {
 
 /// What could not be read of it.
 pub(super) fn lost(file: &str, error: &std::io::Error) -> Refusal {
-    let finding = sistership_model::trial::Finding { row: None, column: None, message: format!("cannot be read: {error}") };
+    let finding = sistership_model::trial::Finding {
+        row: None,
+        column: None,
+        message: format!("cannot be read: {error}"),
+    };
     Refusal { file: file.to_owned(), findings: vec![finding] }
 }
 
@@ -67,11 +71,16 @@ pub(super) fn canonical(ship: String, trials: Vec<ManifestTrial>) -> Result<Mani
         if name.is_empty() || name.len() > NAME_BYTES || name.chars().any(char::is_control) {
             return Err(Problem::invalid(
                 "name",
-                format!("a file needs a name of 1 to {NAME_BYTES} bytes, without control characters"),
+                format!(
+                    "a file needs a name of 1 to {NAME_BYTES} bytes, without control characters"
+                ),
             ));
         }
         if trial.depth_m.is_some_and(|depth| !(depth > 0.0 && depth.is_finite())) {
-            return Err(Problem::invalid("depth_m", "must be positive; leave it out for deep water"));
+            return Err(Problem::invalid(
+                "depth_m",
+                "must be positive; leave it out for deep water",
+            ));
         }
     }
     let (kind, conventions) = (TrialsKind::Trials, TrialConventions::default());

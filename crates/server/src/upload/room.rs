@@ -12,7 +12,12 @@ use sistership_pipeline::budget::{self, Share, Shortage};
 ///
 /// # Errors
 /// There is not so much memory, or not soon; the file is named.
-pub(super) async fn room(app: &App, name: &str, path: &Path, mapping: &mut Mapping) -> Result<Option<Share>> {
+pub(super) async fn room(
+    app: &App,
+    name: &str,
+    path: &Path,
+    mapping: &mut Mapping,
+) -> Result<Option<Share>> {
     let measuring = measuring(path).map_err(Problem::internal)?;
     let share = budget::share(measuring).await.map_err(|shortage| named(name, None, shortage))?;
     let (at, asked) = (path.to_path_buf(), mapping.clone());
@@ -24,7 +29,9 @@ pub(super) async fn room(app: &App, name: &str, path: &Path, mapping: &mut Mappi
 }
 
 fn named(name: &str, measured: Option<Demand>, shortage: Shortage) -> Problem {
-    let size = measured.map(|Demand { rows, columns, .. }| format!("{rows} rows of {columns} columns: ")).unwrap_or_default();
+    let size = measured
+        .map(|Demand { rows, columns, .. }| format!("{rows} rows of {columns} columns: "))
+        .unwrap_or_default();
     let problem = Problem::from(shortage);
     let message = format!("{size}{}", problem.detail);
     Problem { detail: format!("{name}: {message}"), ..problem }.with(Fault::at(name, message))

@@ -146,7 +146,8 @@ fn clear_stale(file: &Path) -> io::Result<()> {
 
 /// What is gone already is gone.
 fn gone(removed: io::Result<()>) -> io::Result<()> {
-    removed.or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })
+    removed
+        .or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })
 }
 
 /// Writes a stream to a file.
@@ -190,7 +191,8 @@ mod tests {
     #[tokio::test]
     async fn what_no_living_process_holds_is_removed() {
         let root = tempfile::tempdir().unwrap();
-        let (alive, next) = (Spool::below(root.path().to_owned()), Spool::below(root.path().to_owned()));
+        let (alive, next) =
+            (Spool::below(root.path().to_owned()), Spool::below(root.path().to_owned()));
         let body = futures::stream::iter([Ok::<_, Problem>(Bytes::from_static(b"t_s,u_m_s"))]);
         let kept = spool(&alive, body).await.unwrap();
         let dead = root.path().join(format!("{FOLDER}dead"));
@@ -205,9 +207,11 @@ mod tests {
 
     #[test]
     fn a_full_disk_is_told() {
-        for (kind, status) in
-            [(io::ErrorKind::StorageFull, 507), (io::ErrorKind::QuotaExceeded, 507), (io::ErrorKind::Other, 500)]
-        {
+        for (kind, status) in [
+            (io::ErrorKind::StorageFull, 507),
+            (io::ErrorKind::QuotaExceeded, 507),
+            (io::ErrorKind::Other, 500),
+        ] {
             assert_eq!(unwritten(kind.into()).status, status);
         }
     }

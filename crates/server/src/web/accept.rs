@@ -18,7 +18,12 @@ pub(crate) fn choose(headers: &HeaderMap, offered: &[&'static str]) -> Result<&'
             best = Some((media, quality));
         }
     }
-    let refusal = || Problem::new(StatusCode::NOT_ACCEPTABLE, format!("this is available as {}", offered.join(", ")));
+    let refusal = || {
+        Problem::new(
+            StatusCode::NOT_ACCEPTABLE,
+            format!("this is available as {}", offered.join(", ")),
+        )
+    };
     best.map(|(media, _)| media).ok_or_else(refusal)
 }
 
@@ -26,14 +31,17 @@ pub(crate) fn choose(headers: &HeaderMap, offered: &[&'static str]) -> Result<&'
 fn range(text: &str) -> (&str, f64) {
     let mut parts = text.split(';').map(str::trim);
     let media = parts.next().unwrap_or_default();
-    let quality = parts.find_map(|part| part.strip_prefix("q=")).and_then(|q| q.parse().ok()).unwrap_or(1.0);
+    let quality =
+        parts.find_map(|part| part.strip_prefix("q=")).and_then(|q| q.parse().ok()).unwrap_or(1.0);
     (media, quality)
 }
 
 /// The quality that the most specific range gives a media type.
 fn quality(accepted: &[(&str, f64)], media: &str) -> f64 {
     let family = format!("{}/*", media.split('/').next().unwrap_or_default());
-    let of = |wanted: &str| accepted.iter().find(|(range, _)| range.eq_ignore_ascii_case(wanted)).map(|&(_, q)| q);
+    let of = |wanted: &str| {
+        accepted.iter().find(|(range, _)| range.eq_ignore_ascii_case(wanted)).map(|&(_, q)| q)
+    };
     of(media).or_else(|| of(&family)).or_else(|| of("*/*")).unwrap_or(0.0)
 }
 
@@ -43,7 +51,10 @@ mod tests {
     use super::*;
 
     fn chosen(accept: &str) -> Result<&'static str> {
-        choose(&HeaderMap::from_iter([(header::ACCEPT, accept.parse().unwrap())]), &["application/json", "text/html"])
+        choose(
+            &HeaderMap::from_iter([(header::ACCEPT, accept.parse().unwrap())]),
+            &["application/json", "text/html"],
+        )
     }
 
     #[test]

@@ -48,7 +48,8 @@ impl Tags {
 
     /// Whether the tags name this one. A weak tag is no ground to overwrite something.
     fn name(&self, tag: &str) -> bool {
-        matches!(self, Self::These(tags) if tags.iter().any(|known| known == tag)) || *self == Self::Any
+        matches!(self, Self::These(tags) if tags.iter().any(|known| known == tag))
+            || *self == Self::Any
     }
 }
 
@@ -82,8 +83,12 @@ impl Conditions {
             (Some(_), _, None) => Err(stale(what, None)),
             (None, Some(Tags::Any), None) => Ok(Expect::Absent),
             (None, Some(Tags::Any), current) => Err(stale(what, current)),
-            (None, Some(Tags::These(_)), _) => Err(Problem::bad_request("If-None-Match: only `*` is understood here")),
-            (None, None, _) => Err(required("If-Match with its ETag to move it, or If-None-Match: * to create it")),
+            (None, Some(Tags::These(_)), _) => {
+                Err(Problem::bad_request("If-None-Match: only `*` is understood here"))
+            }
+            (None, None, _) => {
+                Err(required("If-Match with its ETag to move it, or If-None-Match: * to create it"))
+            }
         }
     }
 
@@ -99,12 +104,21 @@ fn malformed(name: &HeaderName, message: String) -> Problem {
 }
 
 fn required(what: &str) -> Problem {
-    Problem::new(StatusCode::PRECONDITION_REQUIRED, format!("send {what}: so that nobody's change is lost"))
+    Problem::new(
+        StatusCode::PRECONDITION_REQUIRED,
+        format!("send {what}: so that nobody's change is lost"),
+    )
 }
 
 fn stale(what: &str, current: Option<i64>) -> Problem {
-    let now = current.map_or_else(|| "does not exist".to_owned(), |revision| format!("is now at {}", tag(revision)));
-    Problem::new(StatusCode::PRECONDITION_FAILED, format!("{what} {now}; read it again and decide anew"))
+    let now = current.map_or_else(
+        || "does not exist".to_owned(),
+        |revision| format!("is now at {}", tag(revision)),
+    );
+    Problem::new(
+        StatusCode::PRECONDITION_FAILED,
+        format!("{what} {now}; read it again and decide anew"),
+    )
 }
 
 #[cfg(test)]
@@ -132,10 +146,22 @@ mod tests {
 
     #[test]
     fn creation_needs_absence() {
-        assert_eq!(given(header::IF_NONE_MATCH, "*").expect("alias", None).unwrap(), Expect::Absent);
-        assert_eq!(given(header::IF_NONE_MATCH, "*").expect("alias", Some(1)).unwrap_err().status, 412);
+        assert_eq!(
+            given(header::IF_NONE_MATCH, "*").expect("alias", None).unwrap(),
+            Expect::Absent
+        );
+        assert_eq!(
+            given(header::IF_NONE_MATCH, "*").expect("alias", Some(1)).unwrap_err().status,
+            412
+        );
         assert_eq!(given(header::IF_MATCH, "\"1\"").expect("alias", None).unwrap_err().status, 412);
         assert_eq!(Conditions::default().expect("alias", None).unwrap_err().status, 428);
-        assert!(Tags::read(&HeaderMap::from_iter([(header::IF_MATCH, "3".parse().unwrap())]), &header::IF_MATCH).is_err());
+        assert!(
+            Tags::read(
+                &HeaderMap::from_iter([(header::IF_MATCH, "3".parse().unwrap())]),
+                &header::IF_MATCH
+            )
+            .is_err()
+        );
     }
 }

@@ -30,7 +30,11 @@ pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Nex
         if response.status() == StatusCode::INSUFFICIENT_STORAGE {
             app.no_room().store(true, Ordering::Relaxed);
         }
-        tracing::info!(status = response.status().as_u16(), elapsed_ms = elapsed.as_millis() as u64, "answered");
+        tracing::info!(
+            status = response.status().as_u16(),
+            elapsed_ms = elapsed.as_millis() as u64,
+            "answered"
+        );
         app.metrics().answered(&method, &route, response.status(), elapsed);
         response
     }
@@ -63,7 +67,10 @@ fn too_slow() -> Response {
 /// The same answer with a problem as its body; other headers stay (`Allow`, `WWW-Authenticate`).
 fn problem(response: Response, id: Uuid) -> Response {
     let (mut parts, _) = response.into_parts();
-    let mut problem = parts.extensions.remove::<Problem>().unwrap_or_else(|| Problem::new(parts.status, reason(parts.status)));
+    let mut problem = parts
+        .extensions
+        .remove::<Problem>()
+        .unwrap_or_else(|| Problem::new(parts.status, reason(parts.status)));
     problem.instance = Some(format!("urn:uuid:{id}"));
     let (fresh, body) = problem.into_response().into_parts();
     parts.headers.remove(header::CONTENT_LENGTH);
@@ -75,23 +82,33 @@ fn problem(response: Response, id: Uuid) -> Response {
 /// What to do about an error that a layer made.
 fn reason(status: StatusCode) -> &'static str {
     match status {
-        StatusCode::METHOD_NOT_ALLOWED => "this path does not know the method; the header `Allow` lists those it knows",
+        StatusCode::METHOD_NOT_ALLOWED => {
+            "this path does not know the method; the header `Allow` lists those it knows"
+        }
         StatusCode::PAYLOAD_TOO_LARGE => "the body is larger than this endpoint reads",
         StatusCode::REQUEST_TIMEOUT | StatusCode::GATEWAY_TIMEOUT => {
             "the request took too long; send less at a time, or try again later"
         }
-        StatusCode::INTERNAL_SERVER_ERROR => "the server failed to do this; its log tells why, under the id in `instance`",
+        StatusCode::INTERNAL_SERVER_ERROR => {
+            "the server failed to do this; its log tells why, under the id in `instance`"
+        }
         _ => "the request was refused",
     }
 }
 
 /// The answer where there is no route.
 pub(crate) async fn nowhere(request: Request) -> Problem {
-    Problem::not_found(format!("there is no {}; /openapi.json lists what there is", request.uri().path()))
+    Problem::not_found(format!(
+        "there is no {}; /openapi.json lists what there is",
+        request.uri().path()
+    ))
 }
 
 /// The answer where a handler panicked.
 pub(crate) fn panicked(reason: Box<dyn std::any::Any + Send>) -> Response {
-    let text = reason.downcast_ref::<String>().map(String::as_str).or_else(|| reason.downcast_ref::<&str>().copied());
+    let text = reason
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| reason.downcast_ref::<&str>().copied());
     Problem::internal(text.unwrap_or("a panic without a message")).into_response()
 }

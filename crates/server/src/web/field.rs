@@ -9,7 +9,9 @@ use std::sync::LazyLock;
 use regex::Regex;
 use sistership_store::MAX_LIMIT;
 use utoipa::openapi::RefOr;
-use utoipa::openapi::schema::{AdditionalProperties, KnownFormat, ObjectBuilder, Schema, SchemaFormat, Type};
+use utoipa::openapi::schema::{
+    AdditionalProperties, KnownFormat, ObjectBuilder, Schema, SchemaFormat, Type,
+};
 
 /// The greatest whole number that every reader of JSON holds exactly.
 pub(crate) const MAX_WHOLE: i64 = (1 << 53) - 1;
@@ -326,34 +328,67 @@ mod tests {
 
     #[test]
     fn every_pattern_compiles_and_takes_what_its_words_say() {
-        assert!("esso-osaka-3m".parse::<Name>().is_ok() && "-a".parse::<Name>().is_err() && "A".parse::<Name>().is_err());
-        assert!("größe".parse::<Word>().is_ok() && "two words".parse::<Word>().is_err() && "..".parse::<Word>().is_err());
+        assert!(
+            "esso-osaka-3m".parse::<Name>().is_ok()
+                && "-a".parse::<Name>().is_err()
+                && "A".parse::<Name>().is_err()
+        );
+        assert!(
+            "größe".parse::<Word>().is_ok()
+                && "two words".parse::<Word>().is_err()
+                && "..".parse::<Word>().is_err()
+        );
         assert!("01a-F".parse::<Id>().is_ok() && "a/b".parse::<Id>().is_err());
         assert!("a/1".parse::<ModelName>().is_ok() && "a/1/2".parse::<ModelName>().is_err());
         assert!("because\nof it".parse::<Remark>().is_ok() && " \n".parse::<Remark>().is_err());
-        assert!("sailed/1 a.csv".parse::<FileName>().is_ok() && "a\u{7}".parse::<FileName>().is_err());
+        assert!(
+            "sailed/1 a.csv".parse::<FileName>().is_ok() && "a\u{7}".parse::<FileName>().is_err()
+        );
         assert!("eyJ-_".parse::<Cursor>().is_ok() && "=".parse::<Cursor>().is_err());
         assert!("a.b".parse::<RequestKey>().is_ok() && "a/b".parse::<RequestKey>().is_err());
         for tags in ["*", "\"3\"", "W/\"3.a\" , \"4\"", " \"-\" "] {
             assert!(tags.parse::<EntityTags>().is_ok(), "{tags}");
         }
         assert!("3".parse::<EntityTags>().is_err() && "\"\"".parse::<EntityTags>().is_err());
-        assert_eq!("x".repeat(65).parse::<Name>().unwrap_err(), format!("must be {}", Name::RULE.says));
-        assert!("ü".repeat(200).parse::<Word>().is_ok() && "ü".repeat(201).parse::<Word>().is_err());
+        assert_eq!(
+            "x".repeat(65).parse::<Name>().unwrap_err(),
+            format!("must be {}", Name::RULE.says)
+        );
+        assert!(
+            "ü".repeat(200).parse::<Word>().is_ok() && "ü".repeat(201).parse::<Word>().is_err()
+        );
     }
 
     #[test]
     fn a_name_is_what_the_files_call_one() {
-        for name in ["a", "0-", "-a", "A", "", "a_b", "é", &"a".repeat(64), &"a".repeat(65), "a\n"] {
-            assert_eq!(Name::from_str(name).is_ok(), sistership_model::name::check_slug(name).is_ok(), "{name:?}");
+        for name in ["a", "0-", "-a", "A", "", "a_b", "é", &"a".repeat(64), &"a".repeat(65), "a\n"]
+        {
+            assert_eq!(
+                Name::from_str(name).is_ok(),
+                sistership_model::name::check_slug(name).is_ok(),
+                "{name:?}"
+            );
         }
     }
 
     #[test]
     fn a_whole_number_may_be_written_as_a_decimal() {
         let read = |text: &str| serde_json::from_str::<VersionNumber>(text).map(VersionNumber::get);
-        assert_eq!((read("3").unwrap(), read("3.0").unwrap(), read("9007199254740991").unwrap()), (3, 3, MAX_WHOLE));
-        for wrong in ["0", "9007199254740992", "1.5", "1e300", "-1", "\"3\"", "null", "true", "18446744073709551615"] {
+        assert_eq!(
+            (read("3").unwrap(), read("3.0").unwrap(), read("9007199254740991").unwrap()),
+            (3, 3, MAX_WHOLE)
+        );
+        for wrong in [
+            "0",
+            "9007199254740992",
+            "1.5",
+            "1e300",
+            "-1",
+            "\"3\"",
+            "null",
+            "true",
+            "18446744073709551615",
+        ] {
             assert!(read(wrong).is_err(), "{wrong}");
         }
     }

@@ -29,13 +29,15 @@ pub(crate) async fn guard(State(app): State<App>, request: Request, next: Next) 
     match allowed(&app, &request) {
         Ok(()) => next.run(request).await,
         Err(Refusal::Problem(problem)) => problem.into_response(),
-        Err(Refusal::WrongKey(problem)) => match peer.and_then(|peer| app.throttle().wrong(peer.party)) {
-            Some(wait) => {
-                let why = "too many wrong API keys from your address; check the key, and try again later";
-                later(Problem::new(StatusCode::TOO_MANY_REQUESTS, why), wait.as_secs().max(1))
+        Err(Refusal::WrongKey(problem)) => {
+            match peer.and_then(|peer| app.throttle().wrong(peer.party)) {
+                Some(wait) => {
+                    let why = "too many wrong API keys from your address; check the key, and try again later";
+                    later(Problem::new(StatusCode::TOO_MANY_REQUESTS, why), wait.as_secs().max(1))
+                }
+                None => problem.into_response(),
             }
-            None => problem.into_response(),
-        },
+        }
     }
 }
 
@@ -72,9 +74,17 @@ fn allowed(app: &App, request: &Request) -> std::result::Result<(), Refusal> {
     }
 }
 
-fn authorised(key: &ApiKey, method: &Method, headers: &HeaderMap) -> std::result::Result<(), Refusal> {
-    let needed =
-        || Problem::new(StatusCode::UNAUTHORIZED, "send the header `Authorization: Bearer KEY` with the server's API key");
+fn authorised(
+    key: &ApiKey,
+    method: &Method,
+    headers: &HeaderMap,
+) -> std::result::Result<(), Refusal> {
+    let needed = || {
+        Problem::new(
+            StatusCode::UNAUTHORIZED,
+            "send the header `Authorization: Bearer KEY` with the server's API key",
+        )
+    };
     let value = host::single(headers, &header::AUTHORIZATION)?.ok_or_else(needed)?;
     let (scheme, rest) = value.split_once(' ').ok_or_else(needed)?;
     let presented = match scheme.to_ascii_lowercase().as_str() {
@@ -112,9 +122,15 @@ mod tests {
     #[test]
     fn only_the_key_opens() {
         let key = ApiKey::new("secret");
-        let ask = |method: Method, value: &str| authorised(&key, &method, &with(header::AUTHORIZATION, value)).is_ok();
+        let ask = |method: Method, value: &str| {
+            authorised(&key, &method, &with(header::AUTHORIZATION, value)).is_ok()
+        };
         assert!(ask(Method::POST, "Bearer secret") && ask(Method::GET, "bearer secret"));
-        assert!(!ask(Method::GET, "Bearer secre") && !ask(Method::GET, "secret") && !ask(Method::GET, "Basic !"));
+        assert!(
+            !ask(Method::GET, "Bearer secre")
+                && !ask(Method::GET, "secret")
+                && !ask(Method::GET, "Basic !")
+        );
         let wrong = with(header::AUTHORIZATION, "Bearer secre");
         assert_eq!(status(authorised(&key, &Method::GET, &wrong)), (401, true));
         let basic = format!("Basic {}", BASE64_STANDARD.encode("me:secret"));

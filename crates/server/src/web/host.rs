@@ -19,18 +19,22 @@ pub(super) fn addressed(request: &Request) -> Result<Option<Authority>> {
         return Err(wrong_host());
     }
     if host.is_none() && request.version() >= Version::HTTP_11 {
-        return Err(Problem::bad_request("the header `Host` is missing; send one, with the name or address and the port"));
+        return Err(Problem::bad_request(
+            "the header `Host` is missing; send one, with the name or address and the port",
+        ));
     }
     match (request.uri().authority(), host) {
-        (Some(target), Some(host)) if *target != host => {
-            Err(Problem::bad_request("the header `Host` names another server than the request's target; send the same in both"))
-        }
+        (Some(target), Some(host)) if *target != host => Err(Problem::bad_request(
+            "the header `Host` names another server than the request's target; send the same in both",
+        )),
         (_, host) => Ok(host),
     }
 }
 
 fn wrong_host() -> Problem {
-    Problem::bad_request("the header `Host` must be a name or an address, with a port or without, such as localhost:8080")
+    Problem::bad_request(
+        "the header `Host` must be a name or an address, with a port or without, such as localhost:8080",
+    )
 }
 
 /// A header that may be there once.
@@ -38,32 +42,46 @@ pub(super) fn single<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Op
     let mut values = headers.get_all(name).iter();
     let first = values.next();
     if values.next().is_some() {
-        return Err(Problem::bad_request(format!("the header `{name}` is there more than once; send one")));
+        return Err(Problem::bad_request(format!(
+            "the header `{name}` is there more than once; send one"
+        )));
     }
     let text = |value: &'a axum::http::HeaderValue| {
-        value.to_str().map_err(|_| Problem::bad_request(format!("the header `{name}` must be of printable ASCII characters")))
+        value.to_str().map_err(|_| {
+            Problem::bad_request(format!(
+                "the header `{name}` must be of printable ASCII characters"
+            ))
+        })
     };
     first.map(text).transpose()
 }
 
 /// Without a key, web pages of others that a browser on this machine shows must not reach the server: neither by a name
 /// that they let point here (`Host`), nor by sending forms (`Origin`, `Sec-Fetch-Site`).
-pub(super) fn from_this_machine(method: &Method, headers: &HeaderMap, host: Option<&Authority>) -> Result<()> {
+pub(super) fn from_this_machine(
+    method: &Method,
+    headers: &HeaderMap,
+    host: Option<&Authority>,
+) -> Result<()> {
     if let Some(host) = host.filter(|host| !is_local(host.host())) {
-        return Err(refused(format!("without an API key this server answers to localhost only, not to `{host}`")));
+        return Err(refused(format!(
+            "without an API key this server answers to localhost only, not to `{host}`"
+        )));
     }
     let (origin, site) = (single(headers, &header::ORIGIN)?, single(headers, &SEC_FETCH_SITE)?);
     if method.is_safe() {
         return Ok(());
     }
     if let Some(origin) = origin.filter(|origin| !is_own(origin, host)) {
-        return Err(refused(format!("without an API key this server takes no changes from the web site `{origin}`")));
+        return Err(refused(format!(
+            "without an API key this server takes no changes from the web site `{origin}`"
+        )));
     }
     // `none` is what a person has typed or chosen.
     match site.filter(|site| !["same-origin", "none"].contains(site)) {
-        Some(site) => {
-            Err(refused(format!("without an API key this server takes no changes from other web sites (Sec-Fetch-Site: {site})")))
-        }
+        Some(site) => Err(refused(format!(
+            "without an API key this server takes no changes from other web sites (Sec-Fetch-Site: {site})"
+        ))),
         None => Ok(()),
     }
 }
@@ -78,7 +96,9 @@ fn is_own(origin: &str, host: Option<&Authority>) -> bool {
     let Some((scheme, authority)) = origin.split_once("://") else { return false };
     let (Ok(authority), Some(host)) = (authority.parse::<Authority>(), host) else { return false };
     let port = |authority: &Authority| authority.port_u16().unwrap_or(80);
-    scheme.eq_ignore_ascii_case("http") && authority.host().eq_ignore_ascii_case(host.host()) && port(&authority) == port(host)
+    scheme.eq_ignore_ascii_case("http")
+        && authority.host().eq_ignore_ascii_case(host.host())
+        && port(&authority) == port(host)
 }
 
 fn is_local(host: &str) -> bool {
@@ -101,16 +121,29 @@ mod tests {
 
     fn addressed_as(version: Version, target: &str, hosts: &[&str]) -> Result<Option<Authority>> {
         let pairs: Vec<_> = hosts.iter().map(|host| ("host", *host)).collect();
-        let mut request = Request::builder().version(version).uri(target).body(axum::body::Body::empty()).unwrap();
+        let mut request = Request::builder()
+            .version(version)
+            .uri(target)
+            .body(axum::body::Body::empty())
+            .unwrap();
         *request.headers_mut() = headers(&pairs);
         addressed(&request)
     }
 
     #[test]
     fn a_request_has_one_host() {
-        let of = |hosts: &[&str]| addressed_as(Version::HTTP_11, "/", hosts).map_err(|problem| problem.status);
+        let of = |hosts: &[&str]| {
+            addressed_as(Version::HTTP_11, "/", hosts).map_err(|problem| problem.status)
+        };
         assert!(of(&["localhost:8080"]).is_ok() && of(&["[::1]:80"]).is_ok());
-        for wrong in [&[][..], &["localhost", "localhost"], &["localhost", "evil.example"], &[""], &["a b"], &["me@localhost"]] {
+        for wrong in [
+            &[][..],
+            &["localhost", "localhost"],
+            &["localhost", "evil.example"],
+            &[""],
+            &["a b"],
+            &["me@localhost"],
+        ] {
             assert_eq!(of(wrong), Err(400), "{wrong:?}");
         }
         assert_eq!(addressed_as(Version::HTTP_10, "/", &[]), Ok(None));
@@ -122,7 +155,8 @@ mod tests {
     #[test]
     fn without_a_key_other_sites_are_kept_out() {
         let asks = |method: Method, host: &str, pairs: &[(&'static str, &str)]| {
-            from_this_machine(&method, &headers(pairs), Some(&host.parse().unwrap())).map_err(|problem| problem.status)
+            from_this_machine(&method, &headers(pairs), Some(&host.parse().unwrap()))
+                .map_err(|problem| problem.status)
         };
         for host in ["localhost:8080", "127.0.0.1:1", "[::1]:80", "LOCALHOST"] {
             assert_eq!(asks(Method::GET, host, &[]), Ok(()), "{host}");
@@ -149,8 +183,15 @@ mod tests {
         ] {
             assert_eq!(changes(&[refused]), Err(403), "{refused:?}");
         }
-        assert_eq!(changes(&[("origin", "http://127.0.0.1:8080"), ("origin", "http://evil.example")]), Err(400));
+        assert_eq!(
+            changes(&[("origin", "http://127.0.0.1:8080"), ("origin", "http://evil.example")]),
+            Err(400)
+        );
         assert_eq!(asks(Method::POST, "localhost", &[("origin", "http://localhost:80")]), Ok(()));
-        assert_eq!(asks(Method::GET, "localhost", &[("sec-fetch-site", "cross-site")]), Ok(()), "a link from elsewhere");
+        assert_eq!(
+            asks(Method::GET, "localhost", &[("sec-fetch-site", "cross-site")]),
+            Ok(()),
+            "a link from elsewhere"
+        );
     }
 }

@@ -39,7 +39,8 @@ impl<S: Send + Sync> FromRequestParts<S> for Key {
 fn check(value: &HeaderValue) -> Result<String> {
     let key = value.to_str().unwrap_or_default().parse::<RequestKey>();
     key.map(RequestKey::into_string).map_err(|message| {
-        Problem::bad_request(format!("Idempotency-Key: {message}")).with(Fault::at("Idempotency-Key", message))
+        Problem::bad_request(format!("Idempotency-Key: {message}"))
+            .with(Fault::at("Idempotency-Key", message))
     })
 }
 
@@ -53,19 +54,23 @@ impl Key {
     {
         let ticket = match &self.value {
             None => None,
-            Some(key) => match app.store().idempotency().begin(&self.scope, key, &sha256_hex(body)).await? {
-                Begun::New(ticket) => Some(ticket),
-                Begun::Replay { body, .. } => return replay(&body),
-                Begun::InProgress => return Err(in_progress()),
-                Begun::Mismatch => return Err(mismatch()),
-            },
+            Some(key) => {
+                match app.store().idempotency().begin(&self.scope, key, &sha256_hex(body)).await? {
+                    Begun::New(ticket) => Some(ticket),
+                    Begun::Replay { body, .. } => return replay(&body),
+                    Begun::InProgress => return Err(in_progress()),
+                    Begun::Mismatch => return Err(mismatch()),
+                }
+            }
         };
         Ok(finished(carried_out(app.clone(), ticket, work)).await?.into_response())
     }
 }
 
 /// Waits for work that goes on if nobody waits.
-async fn finished<T: Send + 'static>(work: impl Future<Output = Result<T>> + Send + 'static) -> Result<T> {
+async fn finished<T: Send + 'static>(
+    work: impl Future<Output = Result<T>> + Send + 'static,
+) -> Result<T> {
     let work = carried_on(Held::current(), work);
     tokio::spawn(work.in_current_span()).await.map_err(Problem::internal)?
 }
@@ -94,7 +99,11 @@ where
 }
 
 /// The outcome of the work, with the ticket held as long as it takes.
-async fn held(store: &Store, ticket: Option<&Ticket>, work: impl Future<Output = Result<Reply>>) -> Result<Reply> {
+async fn held(
+    store: &Store,
+    ticket: Option<&Ticket>,
+    work: impl Future<Output = Result<Reply>>,
+) -> Result<Reply> {
     let Some(ticket) = ticket else { return work.await };
     let prolonging = async {
         loop {
@@ -131,10 +140,14 @@ fn replay(text: &str) -> Result<Response> {
 }
 
 fn in_progress() -> Problem {
-    Problem::new(StatusCode::CONFLICT, "a request with this Idempotency-Key is being carried out; repeat it in a moment")
+    Problem::new(
+        StatusCode::CONFLICT,
+        "a request with this Idempotency-Key is being carried out; repeat it in a moment",
+    )
 }
 
 fn mismatch() -> Problem {
-    let detail = "this Idempotency-Key was used for another request; use a new key for a new request";
+    let detail =
+        "this Idempotency-Key was used for another request; use a new key for a new request";
     Problem::new(StatusCode::UNPROCESSABLE_ENTITY, detail)
 }

@@ -30,7 +30,9 @@ pub(crate) async fn counted(response: Response) -> Response {
         return response;
     }
     match budget::share(size).await {
-        Ok(share) => response.map(|body| Body::new(Large { body, rest: Bytes::new(), _share: share })),
+        Ok(share) => {
+            response.map(|body| Body::new(Large { body, rest: Bytes::new(), _share: share }))
+        }
         Err(shortage) => Problem::from(shortage).into_response(),
     }
 }
@@ -39,9 +41,14 @@ impl HttpBody for Large {
     type Data = Bytes;
     type Error = axum::Error;
 
-    fn poll_frame(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
+    fn poll_frame(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+    ) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
         if self.rest.is_empty() {
-            match ready!(Pin::new(&mut self.body).poll_frame(context)).map(|frame| frame.map(Frame::into_data)) {
+            match ready!(Pin::new(&mut self.body).poll_frame(context))
+                .map(|frame| frame.map(Frame::into_data))
+            {
                 Some(Ok(Ok(data))) => self.rest = data,
                 Some(Ok(Err(trailers))) => return Poll::Ready(Some(Ok(trailers))),
                 Some(Err(error)) => return Poll::Ready(Some(Err(error))),
@@ -78,13 +85,16 @@ mod tests {
     #[tokio::test]
     async fn a_large_answer_has_its_share_until_it_is_handed_out() {
         let budget = Budget::new(1 << 20, "x");
-        let answer = |size: usize| Held::new(budget.clone(), Duration::ZERO).scope(counted(vec![7; size].into_response()));
+        let answer = |size: usize| {
+            Held::new(budget.clone(), Duration::ZERO).scope(counted(vec![7; size].into_response()))
+        };
         assert_eq!(answer(2 << 20).await.status(), 413);
         let response = answer(600 << 10).await;
         assert_eq!(response.body().size_hint().exact(), Some(600 << 10));
         assert_eq!(answer(600 << 10).await.status(), 429);
         assert_eq!(answer(60 << 10).await.status(), 200);
-        let pieces: Vec<_> = response.into_body().into_data_stream().map(Result::unwrap).collect().await;
+        let pieces: Vec<_> =
+            response.into_body().into_data_stream().map(Result::unwrap).collect().await;
         assert!(pieces.len() == 10 && pieces.iter().all(|piece| piece.len() <= PIECE));
         assert_eq!(budget.free(), 1 << 20);
     }

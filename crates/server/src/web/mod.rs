@@ -14,7 +14,6 @@ pub(crate) mod params;
 pub(crate) mod payload;
 pub(crate) mod query;
 pub(crate) mod reply;
-pub(crate) mod throttle;
 
 pub(crate) use conditions::Conditions;
 pub(crate) use field::{Id, ModelName, Name, Number, Word};

@@ -41,7 +41,10 @@ pub(crate) struct Listing<T> {
 
 impl<T> Listing<T> {
     pub(crate) fn of<R, K: Serialize>(list: List<R, K>, view: impl FnMut(R) -> T) -> Self {
-        Self { items: list.items.into_iter().map(view).collect(), next: list.next.as_ref().and_then(cursor) }
+        Self {
+            items: list.items.into_iter().map(view).collect(),
+            next: list.next.as_ref().and_then(cursor),
+        }
     }
 }
 
@@ -51,7 +54,10 @@ pub(crate) fn cursor<K: Serialize>(key: &K) -> Option<String> {
 }
 
 /// The page that a query asks for.
-pub(crate) fn page<K: DeserializeOwned>(limit: Option<Limit>, after: Option<&Cursor>) -> Result<Page<K>> {
+pub(crate) fn page<K: DeserializeOwned>(
+    limit: Option<Limit>,
+    after: Option<&Cursor>,
+) -> Result<Page<K>> {
     let key = |text: &str| serde_json::from_slice(&BASE64_URL_SAFE_NO_PAD.decode(text).ok()?).ok();
     let wrong = || {
         let message = "is not the `next` of a page of this list; leave it out for the first page";
@@ -70,11 +76,20 @@ mod tests {
     fn a_cursor_is_taken_back_and_nothing_else_is() {
         let key = (Some(0.1 + 0.2), "a/b".to_owned());
         let text = cursor(&key).unwrap();
-        assert!(text.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_'));
-        assert_eq!(page(None, Some(&text.parse().unwrap())).unwrap(), Page { after: Some(key), limit: 100 });
+        assert!(
+            text.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_')
+        );
+        assert_eq!(
+            page(None, Some(&text.parse().unwrap())).unwrap(),
+            Page { after: Some(key), limit: 100 }
+        );
         for wrong in ["7", "mariner", &cursor(&7).unwrap()] {
             let problem = page::<String>(None, Some(&wrong.parse().unwrap())).unwrap_err();
-            assert_eq!((problem.status, problem.errors[0].field.as_deref()), (400, Some("after")), "{wrong}");
+            assert_eq!(
+                (problem.status, problem.errors[0].field.as_deref()),
+                (400, Some("after")),
+                "{wrong}"
+            );
         }
     }
 }

@@ -48,7 +48,10 @@ async fn whole(request: Request, most: usize) -> Result<Bytes> {
     while let Some(chunk) = stream.next().await {
         let chunk = chunk.map_err(interrupted)?;
         if bytes.len() + chunk.len() > most {
-            return Err(too_large(&format!("the document is larger than the {} KiB that are read", most >> 10)));
+            return Err(too_large(&format!(
+                "the document is larger than the {} KiB that are read",
+                most >> 10
+            )));
         }
         // The buffer grows by doubling.
         budget::take(2 * chunk.len() as u64).await?;
@@ -76,16 +79,18 @@ pub(crate) async fn read_yaml(bytes: usize) -> Result<()> {
 
 /// The media type of a body, in lower case and without parameters; empty where there is none.
 pub(crate) fn media(headers: &HeaderMap) -> String {
-    let value = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
+    let value =
+        headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
     value.split(';').next().unwrap_or_default().trim().to_ascii_lowercase()
 }
 
 /// Refuses a compressed body: what it grows to is not bounded by what is sent.
 pub(crate) fn plain(headers: &HeaderMap) -> Result<()> {
     match headers.get(header::CONTENT_ENCODING) {
-        Some(encoding) if encoding != "identity" => {
-            Err(Problem::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "send the body without Content-Encoding"))
-        }
+        Some(encoding) if encoding != "identity" => Err(Problem::new(
+            StatusCode::UNSUPPORTED_MEDIA_TYPE,
+            "send the body without Content-Encoding",
+        )),
         _ => Ok(()),
     }
 }
@@ -101,7 +106,8 @@ impl Payload {
     }
 
     fn is_text(&self) -> bool {
-        let known = ["application/yaml", "application/x-yaml", "text/yaml", "text/x-yaml", "text/plain"];
+        let known =
+            ["application/yaml", "application/x-yaml", "text/yaml", "text/x-yaml", "text/plain"];
         known.contains(&self.media.as_str())
     }
 
@@ -111,8 +117,8 @@ impl Payload {
             return Err(self.wrong("application/json"));
         }
         let mut reader = serde_json::Deserializer::from_slice(&self.bytes);
-        let value =
-            serde_path_to_error::deserialize(&mut reader).map_err(|error| refused(&error.path().to_string(), error.inner()))?;
+        let value = serde_path_to_error::deserialize(&mut reader)
+            .map_err(|error| refused(&error.path().to_string(), error.inner()))?;
         reader.end().map_err(|error| refused(".", &error))?;
         Ok(value)
     }
@@ -122,12 +128,14 @@ impl Payload {
         if !self.is_text() {
             return Err(self.wrong("application/yaml"));
         }
-        std::str::from_utf8(&self.bytes).map_err(|error| Problem::bad_request(format!("the body is not UTF-8: {error}")))
+        std::str::from_utf8(&self.bytes)
+            .map_err(|error| Problem::bad_request(format!("the body is not UTF-8: {error}")))
     }
 
     /// A refusal of the content type.
     pub(crate) fn wrong(&self, wanted: &str) -> Problem {
-        let found = if self.media.is_empty() { "nothing".to_owned() } else { format!("`{}`", self.media) };
+        let found =
+            if self.media.is_empty() { "nothing".to_owned() } else { format!("`{}`", self.media) };
         let detail = format!("Content-Type is {found}; send `{wanted}`");
         Problem::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, detail)
     }
@@ -143,11 +151,21 @@ const TYPES: [(&str, &str); 4] = [
 
 /// Broken JSON is 400, JSON that says the wrong thing 422.
 fn refused(path: &str, error: &serde_json::Error) -> Problem {
-    let status = if error.is_data() { StatusCode::UNPROCESSABLE_ENTITY } else { StatusCode::BAD_REQUEST };
+    let status =
+        if error.is_data() { StatusCode::UNPROCESSABLE_ENTITY } else { StatusCode::BAD_REQUEST };
     let message = TYPES.iter().fold(error.to_string(), |text, (from, to)| text.replace(from, to));
-    let (place, field) = if path == "." { (String::new(), None) } else { (format!("{path}: "), Some(path.to_owned())) };
+    let (place, field) = if path == "." {
+        (String::new(), None)
+    } else {
+        (format!("{path}: "), Some(path.to_owned()))
+    };
     let detail = format!("{place}{message}");
-    Problem::new(status, detail).with(Fault { field, row: Some(error.line()), column: None, message })
+    Problem::new(status, detail).with(Fault {
+        field,
+        row: Some(error.line()),
+        column: None,
+        message,
+    })
 }
 
 #[cfg(test)]
@@ -170,8 +188,15 @@ mod tests {
     #[test]
     fn faults_of_json_are_placed() {
         let problem = read("application/json", r#"{"settings": {"fold": 3}}"#);
-        assert_eq!((problem.status, problem.errors[0].field.as_deref()), (422, Some("settings.fold")));
-        assert!(problem.detail.contains("unknown field `fold`, expected `folds`"), "{}", problem.detail);
+        assert_eq!(
+            (problem.status, problem.errors[0].field.as_deref()),
+            (422, Some("settings.fold"))
+        );
+        assert!(
+            problem.detail.contains("unknown field `fold`, expected `folds`"),
+            "{}",
+            problem.detail
+        );
         assert_eq!(read("application/json", r#"{"settings": {"folds": "#).status, 400);
         assert_eq!(read("application/json", r#"{} {}"#).status, 400);
         assert!(

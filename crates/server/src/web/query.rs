@@ -19,18 +19,30 @@ pub(crate) struct KnownQuery(HashMap<(String, Method), Vec<String>>);
 impl KnownQuery {
     pub(crate) fn of(document: &OpenApi) -> Self {
         let mut known = HashMap::new();
-        for (path, item) in document.paths.paths.iter().filter(|(path, _)| path.starts_with("/v1")) {
-            let all =
-                [(Method::GET, &item.get), (Method::PUT, &item.put), (Method::POST, &item.post), (Method::DELETE, &item.delete)];
-            let there = all.into_iter().filter_map(|(method, operation)| Some((method, operation.as_ref()?)));
-            known.extend(there.map(|(method, operation)| ((path.clone(), method), names(operation))));
+        for (path, item) in document.paths.paths.iter().filter(|(path, _)| path.starts_with("/v1"))
+        {
+            let all = [
+                (Method::GET, &item.get),
+                (Method::PUT, &item.put),
+                (Method::POST, &item.post),
+                (Method::DELETE, &item.delete),
+            ];
+            let there = all
+                .into_iter()
+                .filter_map(|(method, operation)| Some((method, operation.as_ref()?)));
+            known.extend(
+                there.map(|(method, operation)| ((path.clone(), method), names(operation))),
+            );
         }
         Self(known)
     }
 
     fn check(&self, path: &str, method: &Method, query: &str) -> Result<()> {
         let method = if method == Method::HEAD { Method::GET } else { method.clone() };
-        let (Some(known), false) = (self.0.get(&(path.to_owned(), method)), query.is_empty()) else { return Ok(()) };
+        let (Some(known), false) = (self.0.get(&(path.to_owned(), method)), query.is_empty())
+        else {
+            return Ok(());
+        };
         let pairs: Vec<(String, String)> = pairs(query)?;
         let unknown = pairs.into_iter().map(|(name, _)| name).find(|name| !known.contains(name));
         unknown.map_or(Ok(()), |name| Err(refused(&name, known)))
@@ -47,7 +59,9 @@ pub(crate) fn parameters(operation: &Operation) -> impl Iterator<Item = &Paramet
 
 fn names(operation: &Operation) -> Vec<String> {
     let all = parameters(operation);
-    all.filter(|known| known.parameter_in == ParameterIn::Query).map(|known| known.name.clone()).collect()
+    all.filter(|known| known.parameter_in == ParameterIn::Query)
+        .map(|known| known.name.clone())
+        .collect()
 }
 
 fn pairs(query: &str) -> Result<Vec<(String, String)>> {

@@ -50,7 +50,9 @@ fn hash(path: &Path) -> io::Result<FileHead> {
 /// Writes a file so that it is there whole or not at all, also after the power has failed.
 pub(crate) fn write_whole(path: &Path, write: impl FnOnce(&Path) -> io::Result<()>) -> Result<()> {
     let partial = path.with_added_extension("partial");
-    let done = write(&partial).and_then(|()| File::open(&partial)?.sync_all()).and_then(|()| fs::rename(&partial, path));
+    let done = write(&partial)
+        .and_then(|()| File::open(&partial)?.sync_all())
+        .and_then(|()| fs::rename(&partial, path));
     done.and_then(|()| folders::sync(path.parent().unwrap_or(Path::new("")))).map_err(at(path))
 }
 

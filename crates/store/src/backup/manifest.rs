@@ -41,7 +41,12 @@ pub struct BackupManifest {
 }
 
 impl BackupManifest {
-    pub(crate) async fn new(folder: &Path, created_us: i64, taken: DatabaseCopy, copied: CopiedObjects) -> Result<Self> {
+    pub(crate) async fn new(
+        folder: &Path,
+        created_us: i64,
+        taken: DatabaseCopy,
+        copied: CopiedObjects,
+    ) -> Result<Self> {
         let mut files = BTreeMap::new();
         for file in taken.files {
             let head = files::head(folder.join(&file)).await?;
@@ -61,7 +66,8 @@ impl BackupManifest {
     }
 
     pub(crate) fn write(&self, folder: &Path) -> Result<()> {
-        let text = serde_json::to_vec_pretty(self).map_err(|error| not_a_backup(folder, error.to_string()))?;
+        let text = serde_json::to_vec_pretty(self)
+            .map_err(|error| not_a_backup(folder, error.to_string()))?;
         write_whole(&folder.join(FILE), |path| std::fs::write(path, text))
     }
 
@@ -69,16 +75,23 @@ impl BackupManifest {
     pub fn read(folder: &Path) -> Result<Self> {
         let path = folder.join(FILE);
         let text = std::fs::read(&path).map_err(|error| match error.kind() {
-            std::io::ErrorKind::NotFound => not_a_backup(folder, format!("is no backup, or an unfinished one: it has no {FILE}")),
+            std::io::ErrorKind::NotFound => not_a_backup(
+                folder,
+                format!("is no backup, or an unfinished one: it has no {FILE}"),
+            ),
             _ => at(&path)(error),
         })?;
-        serde_json::from_slice(&text).map_err(|error| not_a_backup(folder, format!("{FILE} does not read: {error}")))
+        serde_json::from_slice(&text)
+            .map_err(|error| not_a_backup(folder, format!("{FILE} does not read: {error}")))
     }
 
     /// Whether this program can restore it there, and whether its files are what they were.
     pub(crate) async fn check(&self, folder: &Path, url: &str) -> Result<()> {
         if self.format != FORMAT || self.schema > migrate::newest() {
-            let message = format!("was made by a newer program ({}, schema {}); restore it with that", self.format, self.schema);
+            let message = format!(
+                "was made by a newer program ({}, schema {}); restore it with that",
+                self.format, self.schema
+            );
             return Err(not_a_backup(folder, message));
         }
         if !self.database.is_of(url) {

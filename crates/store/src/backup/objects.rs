@@ -49,16 +49,22 @@ async fn copy_one(from: &Objects, key: String, to: &Objects) -> Result<ObjectCop
             to.put(bytes).await?;
             Ok(ObjectCopy::Whole { bytes: size })
         }
-        Err(StoreError::NotFound { .. } | StoreError::Invalid { .. } | StoreError::Objects(ObjectsError::Damaged { .. })) => {
-            Ok(ObjectCopy::Lost { key })
-        }
+        Err(
+            StoreError::NotFound { .. }
+            | StoreError::Invalid { .. }
+            | StoreError::Objects(ObjectsError::Damaged { .. }),
+        ) => Ok(ObjectCopy::Lost { key }),
         Err(error) => Err(error),
     }
 }
 
 pub(crate) async fn must_be_empty(objects: &Objects) -> Result<()> {
     match objects.list().try_next().await? {
-        Some(_) => Err(StoreError::conflict("object store", "objects", "is not empty; a backup is restored into an empty place")),
+        Some(_) => Err(StoreError::conflict(
+            "object store",
+            "objects",
+            "is not empty; a backup is restored into an empty place",
+        )),
         None => Ok(()),
     }
 }
@@ -75,6 +81,9 @@ pub(crate) async fn put(folder: &Path, expected: usize, to: &Objects) -> Result<
     }
     match count == expected {
         true => Ok(()),
-        false => Err(not_a_backup(folder, format!("has {count} objects, not {expected} as when it was made"))),
+        false => Err(not_a_backup(
+            folder,
+            format!("has {count} objects, not {expected} as when it was made"),
+        )),
     }
 }

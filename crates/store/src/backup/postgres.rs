@@ -56,10 +56,19 @@ pub(crate) async fn take(pool: &PgPool, folder: &Path) -> Result<DatabaseCopy> {
         take_table(&mut tx, &table, &folder.join(file_of(&table))).await?;
         tables.push(table);
     }
-    let keys = sqlx::query_scalar("SELECT DISTINCT object_key FROM trials ORDER BY 1").fetch_all(&mut *tx).await?;
-    let schema = sqlx::query_scalar("SELECT MAX(version) FROM _sqlx_migrations").fetch_one(&mut *tx).await?;
+    let keys = sqlx::query_scalar("SELECT DISTINCT object_key FROM trials ORDER BY 1")
+        .fetch_all(&mut *tx)
+        .await?;
+    let schema =
+        sqlx::query_scalar("SELECT MAX(version) FROM _sqlx_migrations").fetch_one(&mut *tx).await?;
     tx.commit().await?;
-    Ok(DatabaseCopy { kind: DatabaseKind::Postgres, schema, files: tables.iter().map(file_of).collect(), tables, keys })
+    Ok(DatabaseCopy {
+        kind: DatabaseKind::Postgres,
+        schema,
+        files: tables.iter().map(file_of).collect(),
+        tables,
+        keys,
+    })
 }
 
 async fn take_table(connection: &mut PgConnection, table: &TableHead, path: &Path) -> Result<()> {
@@ -74,12 +83,17 @@ async fn take_table(connection: &mut PgConnection, table: &TableHead, path: &Pat
 
 pub(crate) async fn must_be_empty(url: &str) -> Result<()> {
     let mut connection = PgConnection::connect(url).await?;
-    let tables = "SELECT COUNT(*) FROM information_schema.tables WHERE table_schema = current_schema()";
+    let tables =
+        "SELECT COUNT(*) FROM information_schema.tables WHERE table_schema = current_schema()";
     let tables: i64 = sqlx::query_scalar(tables).fetch_one(&mut connection).await?;
     connection.close().await?;
     match tables {
         0 => Ok(()),
-        _ => Err(StoreError::conflict("database", "postgres", "has tables already; a backup is restored into an empty database")),
+        _ => Err(StoreError::conflict(
+            "database",
+            "postgres",
+            "has tables already; a backup is restored into an empty database",
+        )),
     }
 }
 
@@ -90,7 +104,10 @@ pub(crate) async fn put(folder: &Path, manifest: &BackupManifest, url: &str) -> 
     migrate::postgres_up_to(manifest.schema, &mut tx).await?;
     for table in &manifest.tables {
         if !TABLES.contains(&table.name.as_str()) {
-            return Err(not_a_backup(folder, format!("has a table `{}` that no schema of ours has", table.name)));
+            return Err(not_a_backup(
+                folder,
+                format!("has a table `{}` that no schema of ours has", table.name),
+            ));
         }
         let path = folder.join(file_of(table));
         let file = File::open(&path).await.map_err(at(&path))?;
@@ -108,6 +125,7 @@ fn file_of(table: &TableHead) -> String {
 
 /// `table ("column", ...)`
 fn list(table: &TableHead) -> String {
-    let columns: Vec<String> = table.columns.iter().map(|column| format!("\"{}\"", column.replace('"', "\"\""))).collect();
+    let columns: Vec<String> =
+        table.columns.iter().map(|column| format!("\"{}\"", column.replace('"', "\"\""))).collect();
     format!("{} ({})", table.name, columns.join(", "))
 }

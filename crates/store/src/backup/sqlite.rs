@@ -15,12 +15,19 @@ use crate::folders;
 const FILE: &str = "database.sqlite";
 
 pub(crate) async fn take(pool: &SqlitePool, folder: &Path) -> Result<DatabaseCopy> {
-    let file: String = sqlx::query_scalar("SELECT file FROM pragma_database_list WHERE name = 'main'").fetch_one(pool).await?;
+    let file: String =
+        sqlx::query_scalar("SELECT file FROM pragma_database_list WHERE name = 'main'")
+            .fetch_one(pool)
+            .await?;
     if file.is_empty() {
-        return Err(StoreError::invalid("database_url", "a database in memory cannot be backed up"));
+        return Err(StoreError::invalid(
+            "database_url",
+            "a database in memory cannot be backed up",
+        ));
     }
     let path = folder.join(FILE);
-    let into = path.to_str().ok_or_else(|| StoreError::invalid("folder", "its path must be UTF-8"))?;
+    let into =
+        path.to_str().ok_or_else(|| StoreError::invalid("folder", "its path must be UTF-8"))?;
     // A connection of its own, so that neither readers nor the writer wait for it.
     let mut connection = pool.connect_options().as_ref().clone().connect().await?;
     sqlx::query("VACUUM INTO $1").bind(into).execute(&mut connection).await?;
@@ -33,10 +40,20 @@ pub(crate) async fn take(pool: &SqlitePool, folder: &Path) -> Result<DatabaseCop
 async fn look(path: &Path) -> Result<DatabaseCopy> {
     let options = SqliteConnectOptions::new().filename(path).read_only(true).immutable(true);
     let mut connection = options.connect().await?;
-    let keys = sqlx::query_scalar("SELECT DISTINCT object_key FROM trials ORDER BY 1").fetch_all(&mut connection).await?;
-    let schema = sqlx::query_scalar("SELECT MAX(version) FROM _sqlx_migrations").fetch_one(&mut connection).await?;
+    let keys = sqlx::query_scalar("SELECT DISTINCT object_key FROM trials ORDER BY 1")
+        .fetch_all(&mut connection)
+        .await?;
+    let schema = sqlx::query_scalar("SELECT MAX(version) FROM _sqlx_migrations")
+        .fetch_one(&mut connection)
+        .await?;
     connection.close().await?;
-    Ok(DatabaseCopy { kind: DatabaseKind::Sqlite, schema, files: vec![FILE.to_owned()], tables: Vec::new(), keys })
+    Ok(DatabaseCopy {
+        kind: DatabaseKind::Sqlite,
+        schema,
+        files: vec![FILE.to_owned()],
+        tables: Vec::new(),
+        keys,
+    })
 }
 
 fn file_of(url: &str) -> Result<PathBuf> {
@@ -58,6 +75,8 @@ pub(crate) fn must_be_absent(url: &str) -> Result<()> {
 pub(crate) async fn put(folder: &Path, url: &str) -> Result<()> {
     let (from, to) = (folder.join(FILE), file_of(url)?);
     to.parent().map_or(Ok(()), folders::make).map_err(at(&to))?;
-    let copying = tokio::task::spawn_blocking(move || write_whole(&to, |path| std::fs::copy(&from, path).map(drop)));
+    let copying = tokio::task::spawn_blocking(move || {
+        write_whole(&to, |path| std::fs::copy(&from, path).map(drop))
+    });
     copying.await.map_err(crate::objects_error::ObjectsError::from)?
 }

@@ -3,7 +3,10 @@
 use std::str::FromStr as _;
 
 use sqlx::sqlite::SqliteConnectOptions;
-use sqlx::{AssertSqlSafe, ConnectOptions as _, Connection as _, Executor as _, PgConnection, SqliteConnection};
+use sqlx::{
+    AssertSqlSafe, ConnectOptions as _, Connection as _, Executor as _, PgConnection,
+    SqliteConnection,
+};
 
 use super::TestDatabase;
 use crate::migrate;
@@ -41,7 +44,11 @@ impl TestDatabase {
     }
 
     async fn sqlite_connection(&self) -> sqlx::Result<SqliteConnection> {
-        SqliteConnectOptions::from_str(&self.url)?.create_if_missing(true).foreign_keys(false).connect().await
+        SqliteConnectOptions::from_str(&self.url)?
+            .create_if_missing(true)
+            .foreign_keys(false)
+            .connect()
+            .await
     }
 
     async fn fill_sqlite(&self, other: &Self) -> sqlx::Result<()> {
@@ -53,23 +60,31 @@ impl TestDatabase {
         for table in sqlx::query_scalar::<_, String>(tables).fetch_all(&mut connection).await? {
             let columns = "SELECT group_concat(name) FROM pragma_table_info($1, 'main') \
                 WHERE name IN (SELECT name FROM pragma_table_info($1, 'other'))";
-            let columns: String = sqlx::query_scalar(columns).bind(&table).fetch_one(&mut connection).await?;
-            let taken =
-                format!("DELETE FROM main.{table}; INSERT INTO main.{table} ({columns}) SELECT {columns} FROM other.{table}");
+            let columns: String =
+                sqlx::query_scalar(columns).bind(&table).fetch_one(&mut connection).await?;
+            let taken = format!(
+                "DELETE FROM main.{table}; INSERT INTO main.{table} ({columns}) SELECT {columns} FROM other.{table}"
+            );
             connection.execute(AssertSqlSafe(taken)).await?;
         }
         connection.close().await
     }
 
     async fn fill_postgres(&self, other: &Self) -> sqlx::Result<()> {
-        let (mut to, mut from) = (PgConnection::connect(&self.url).await?, PgConnection::connect(&other.url).await?);
+        let (mut to, mut from) =
+            (PgConnection::connect(&self.url).await?, PgConnection::connect(&other.url).await?);
         to.execute("SET session_replication_role = replica").await?;
         let tables = "SELECT table_name::text FROM information_schema.tables WHERE table_schema = 'public' \
             AND table_name NOT LIKE '%sqlx%'";
         for table in sqlx::query_scalar::<_, String>(tables).fetch_all(&mut to).await? {
-            let rows = AssertSqlSafe(format!("SELECT coalesce(json_agg(t), '[]')::text FROM {table} t"));
-            let Ok(rows) = sqlx::query_scalar::<_, String>(rows).fetch_one(&mut from).await else { continue };
-            let taken = format!("INSERT INTO {table} SELECT * FROM json_populate_recordset(NULL::{table}, $1::json)");
+            let rows =
+                AssertSqlSafe(format!("SELECT coalesce(json_agg(t), '[]')::text FROM {table} t"));
+            let Ok(rows) = sqlx::query_scalar::<_, String>(rows).fetch_one(&mut from).await else {
+                continue;
+            };
+            let taken = format!(
+                "INSERT INTO {table} SELECT * FROM json_populate_recordset(NULL::{table}, $1::json)"
+            );
             to.execute(AssertSqlSafe(format!("DELETE FROM {table}"))).await?;
             sqlx::query(AssertSqlSafe(taken)).bind(rows).execute(&mut to).await?;
         }

@@ -28,11 +28,13 @@ impl Store {
         let mut found = Vec::new();
         for (table, statements) in ALL {
             for (name, statement) in *statements {
-                if MAY.iter().any(|(of, which)| of == table && (which.is_empty() || which == name)) {
+                if MAY.iter().any(|(of, which)| of == table && (which.is_empty() || which == name))
+                {
                     continue;
                 }
                 let scans = self.scans(*statement).await;
-                let scans = scans.map_err(|error| StoreError::conflict(table, *name, error.to_string()))?;
+                let scans =
+                    scans.map_err(|error| StoreError::conflict(table, *name, error.to_string()))?;
                 found.extend(scans.into_iter().map(|scan| format!("{table}::{name}: {scan}")));
             }
         }
@@ -49,7 +51,10 @@ impl Store {
 
 async fn sqlite(pool: &SqlitePool, sql: &str) -> sqlx::Result<Vec<String>> {
     let rows = pool.fetch_all(AssertSqlSafe(format!("EXPLAIN QUERY PLAN {sql}"))).await?;
-    let steps = rows.into_iter().map(|row| row.try_get::<String, _>("detail")).collect::<sqlx::Result<Vec<_>>>()?;
+    let steps = rows
+        .into_iter()
+        .map(|row| row.try_get::<String, _>("detail"))
+        .collect::<sqlx::Result<Vec<_>>>()?;
     Ok(steps
         .into_iter()
         .filter(|step| step.starts_with("SCAN ") && step != "SCAN CONSTANT ROW")
@@ -70,13 +75,17 @@ async fn postgres(pool: &PgPool, sql: &str) -> sqlx::Result<Vec<String>> {
 }
 
 async fn explained(connection: &mut PgConnection, sql: &str) -> sqlx::Result<Value> {
-    connection.execute("SET enable_seqscan = off; SET plan_cache_mode = force_generic_plan").await?;
+    connection
+        .execute("SET enable_seqscan = off; SET plan_cache_mode = force_generic_plan")
+        .await?;
     connection.execute(AssertSqlSafe(format!("PREPARE explained AS {sql}"))).await?;
     let values = match (1..).take_while(|n| sql.contains(&format!("${n}"))).count() {
         0 => String::new(),
         count => format!("({})", vec!["NULL"; count].join(", ")),
     };
-    let row = connection.fetch_one(AssertSqlSafe(format!("EXPLAIN (FORMAT JSON) EXECUTE explained{values}"))).await?;
+    let row = connection
+        .fetch_one(AssertSqlSafe(format!("EXPLAIN (FORMAT JSON) EXECUTE explained{values}")))
+        .await?;
     let text: String = row.try_get_unchecked(0)?;
     serde_json::from_str(&text).map_err(|error| sqlx::Error::Decode(Box::new(error)))
 }
@@ -89,7 +98,8 @@ fn collect(plan: &Value, scans: &mut Vec<String>) {
             let text = |field: &str| fields.get(field).and_then(Value::as_str).unwrap_or_default();
             let kind = text("Node Type");
             let index = kind.starts_with("Index") || kind == "Bitmap Index Scan";
-            let whole = kind == "Seq Scan" || index && !fields.contains_key("Index Cond") && text("Index Name") != SHORT;
+            let whole = kind == "Seq Scan"
+                || index && !fields.contains_key("Index Cond") && text("Index Name") != SHORT;
             if whole {
                 scans.push(format!("{kind} on {}{}", text("Relation Name"), text("Index Name")));
             }

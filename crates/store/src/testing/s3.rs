@@ -33,7 +33,8 @@ impl TestS3 {
     pub async fn start() -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
         std::fs::create_dir(folder.path().join(BUCKET)).expect("a bucket");
-        let mut service = S3ServiceBuilder::new(FileSystem::new(folder.path()).expect("a file system"));
+        let mut service =
+            S3ServiceBuilder::new(FileSystem::new(folder.path()).expect("a file system"));
         service.set_auth(SimpleAuth::from_single(KEY.0, KEY.1));
         let listener = TcpListener::bind(("127.0.0.1", 0)).await.expect("a free port");
         let address = listener.local_addr().expect("an address");
@@ -42,7 +43,10 @@ impl TestS3 {
 
     /// The settings of a store in it, as the command line takes them: the URL of the objects and the endpoint.
     pub fn settings(&self, prefix: &str) -> [(&'static str, String); 2] {
-        [("--objects-url", format!("s3://{BUCKET}/{prefix}")), ("--objects-endpoint", format!("http://{}", self.address))]
+        [
+            ("--objects-url", format!("s3://{BUCKET}/{prefix}")),
+            ("--objects-endpoint", format!("http://{}", self.address)),
+        ]
     }
 
     /// What another process must find in its environment to be let in.
@@ -58,14 +62,19 @@ impl TestS3 {
     /// The same for whoever calls himself so.
     pub fn objects_as(&self, user: &str, prefix: &str) -> Objects {
         let [(_, url), (_, endpoint)] = self.settings(prefix);
-        let ObjectsPlace::S3(place) = ObjectsPlace::s3(&url, Some(endpoint), None).expect("a place") else { unreachable!() };
+        let ObjectsPlace::S3(place) =
+            ObjectsPlace::s3(&url, Some(endpoint), None).expect("a place")
+        else {
+            unreachable!()
+        };
         Objects::over(made(&place, user))
     }
 }
 
 /// The store of a place, with the credentials that the environment of a test does not have.
 fn made(place: &S3Place, user: &str) -> std::sync::Arc<dyn object_store::ObjectStore> {
-    bucket(builder(place).with_access_key_id(user).with_secret_access_key(KEY.1), place).expect("a bucket")
+    bucket(builder(place).with_access_key_id(user).with_secret_access_key(KEY.1), place)
+        .expect("a bucket")
 }
 
 impl Drop for TestS3 {
@@ -82,5 +91,6 @@ async fn serve(listener: TcpListener, service: S3Service) {
 
 async fn connection(stream: TcpStream, service: S3Service) {
     // A client that hangs up is no matter.
-    let _ = Builder::new(TokioExecutor::new()).serve_connection(TokioIo::new(stream), service).await;
+    let _ =
+        Builder::new(TokioExecutor::new()).serve_connection(TokioIo::new(stream), service).await;
 }

@@ -35,7 +35,9 @@ pub(super) struct Server {
 /// The server of this process, if this machine has PostgreSQL.
 pub(super) fn shared() -> Option<&'static Server> {
     static SERVER: OnceLock<Option<Server>> = OnceLock::new();
-    SERVER.get_or_init(|| programs().map(|programs| Server::start(&programs)).or_else(without)).as_ref()
+    SERVER
+        .get_or_init(|| programs().map(|programs| Server::start(&programs)).or_else(without))
+        .as_ref()
 }
 
 fn without() -> Option<Server> {
@@ -48,7 +50,8 @@ fn without() -> Option<Server> {
 /// The folder that holds `initdb` and `postgres`, in the search path or where Debian puts it.
 fn programs() -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
-    let mut debian: Vec<_> = fs::read_dir("/usr/lib/postgresql").into_iter().flatten().flatten().collect();
+    let mut debian: Vec<_> =
+        fs::read_dir("/usr/lib/postgresql").into_iter().flatten().flatten().collect();
     debian.sort_by_key(|entry| std::cmp::Reverse(entry.file_name()));
     std::env::split_paths(&path)
         .chain(debian.into_iter().map(|entry| entry.path().join("bin")))
@@ -57,7 +60,11 @@ fn programs() -> Option<PathBuf> {
 
 impl Server {
     fn start(programs: &Path) -> Self {
-        let folder = tempfile::Builder::new().prefix("sistership-pg-").tempdir().expect("a temporary folder").keep();
+        let folder = tempfile::Builder::new()
+            .prefix("sistership-pg-")
+            .tempdir()
+            .expect("a temporary folder")
+            .keep();
         let user = user(&folder);
         if let Some((uid, gid)) = user {
             chown(&folder, Some(uid), Some(gid)).expect("the folder for another user");
@@ -96,9 +103,18 @@ fn ids(line: &str, name: &str) -> Option<(u32, u32)> {
     Some((fields.nth(1)?.parse().ok()?, fields.next()?.parse().ok()?))
 }
 
-fn command(program: impl AsRef<std::ffi::OsStr>, folder: &Path, user: Option<(u32, u32)>) -> Command {
+fn command(
+    program: impl AsRef<std::ffi::OsStr>,
+    folder: &Path,
+    user: Option<(u32, u32)>,
+) -> Command {
     let mut command = Command::new(program);
-    command.current_dir(folder).process_group(0).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command
+        .current_dir(folder)
+        .process_group(0)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
     if let Some((uid, gid)) = user {
         command.uid(uid).gid(gid);
     }
@@ -107,7 +123,14 @@ fn command(program: impl AsRef<std::ffi::OsStr>, folder: &Path, user: Option<(u3
 
 fn initialise(programs: &Path, folder: &Path, user: Option<(u32, u32)>) {
     let mut initdb = command(programs.join("initdb"), folder, user);
-    initdb.args(["--username=postgres", "--auth=trust", "--encoding=UTF8", "--locale=C", "--no-sync", "--pgdata=data"]);
+    initdb.args([
+        "--username=postgres",
+        "--auth=trust",
+        "--encoding=UTF8",
+        "--locale=C",
+        "--no-sync",
+        "--pgdata=data",
+    ]);
     let output = initdb.stderr(Stdio::piped()).output().expect("initdb");
     assert!(output.status.success(), "initdb: {}", String::from_utf8_lossy(&output.stderr));
 }
@@ -124,7 +147,11 @@ fn await_ready(folder: &Path) {
     let status = || fs::read_to_string(folder.join("data/postmaster.pid")).unwrap_or_default();
     while status().lines().nth(7).is_none_or(|line| line.trim() != "ready") {
         let log = || fs::read_to_string(folder.join("log")).unwrap_or_default();
-        assert!(start.elapsed() < PATIENCE, "the private PostgreSQL server did not start: {}", log());
+        assert!(
+            start.elapsed() < PATIENCE,
+            "the private PostgreSQL server did not start: {}",
+            log()
+        );
         std::thread::sleep(Duration::from_millis(20));
     }
 }

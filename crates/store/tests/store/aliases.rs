@@ -8,7 +8,10 @@ async fn an_alias_moves_by_compare_and_swap(on: &TestStore) {
     assert_stale(aliases.move_to("kcs", 1, &champion(Expect::Revision(1))).await, None);
     assert_eq!(aliases.move_to("kcs", 1, &champion(Expect::Absent)).await.unwrap().revision, 1);
     assert_stale(aliases.move_to("kcs", 2, &champion(Expect::Absent)).await, Some(1));
-    assert_eq!(aliases.move_to("kcs", 2, &champion(Expect::Revision(1))).await.unwrap().revision, 2);
+    assert_eq!(
+        aliases.move_to("kcs", 2, &champion(Expect::Revision(1))).await.unwrap().revision,
+        2
+    );
     assert_stale(aliases.move_to("kcs", 3, &champion(Expect::Revision(1))).await, Some(2));
     let alias = aliases.move_to("kcs", 3, &champion(Expect::Any)).await.unwrap();
     assert_eq!((alias.version_number, alias.revision), (3, 3));
@@ -21,9 +24,18 @@ async fn an_alias_remembers_its_moves(on: &TestStore) {
         on.store.aliases().move_to("kcs", to, &champion(Expect::Any)).await.unwrap();
     }
     let first = on.store.aliases().history("kcs", "champion", &Page::first(2)).await.unwrap();
-    let second = on.store.aliases().history("kcs", "champion", &Page::after(first.next.unwrap(), 2)).await.unwrap();
-    let moves: Vec<_> =
-        first.items.iter().chain(&second.items).map(|change| (change.revision, change.from_number, change.to_number)).collect();
+    let second = on
+        .store
+        .aliases()
+        .history("kcs", "champion", &Page::after(first.next.unwrap(), 2))
+        .await
+        .unwrap();
+    let moves: Vec<_> = first
+        .items
+        .iter()
+        .chain(&second.items)
+        .map(|change| (change.revision, change.from_number, change.to_number))
+        .collect();
     assert_eq!(moves, [(3, Some(2), 1), (2, Some(1), 2), (1, None, 1)]);
     assert_eq!((first.items[0].reason.as_str(), first.items[0].actor.as_str()), ("better", "ann"));
 }
@@ -44,7 +56,10 @@ async fn aliases_are_listed(on: &TestStore) {
     }
     let list = on.store.aliases().list("kcs", &Page::first(2)).await.unwrap();
     let names: Vec<_> = list.items.iter().map(|alias| alias.alias.as_str()).collect();
-    assert_eq!((names, list.next.as_deref()), (vec!["best-in-wind", "candidate"], Some("candidate")));
+    assert_eq!(
+        (names, list.next.as_deref()),
+        (vec!["best-in-wind", "candidate"], Some("candidate"))
+    );
 }
 
 on_both_databases!(

@@ -13,7 +13,11 @@ async fn filled(on: &TestStore) -> Objects {
     on.store.ships().create(&ship("kcs")).await.unwrap();
     let strange = ship("kcs\u{1F6A2}");
     let document = "{\"text\":\"tab\\t line\\n \\\\. \\\\N quote' ü\"}".to_owned();
-    on.store.ships().create(&sistership_store::NewShip { title: "a\tb\\N\n\\.\nc".into(), document, ..strange }).await.unwrap();
+    on.store
+        .ships()
+        .create(&sistership_store::NewShip { title: "a\tb\\N\n\\.\nc".into(), document, ..strange })
+        .await
+        .unwrap();
     on.store.trials().insert(&trial("kcs", "turn")).await.unwrap();
     on.store.versions().create(&version("kcs"), &[champion(Expect::Any)]).await.unwrap();
     crate::diagnoses::one(on).await;
@@ -41,12 +45,27 @@ async fn what_is_restored_is_what_was_backed_up(on: &TestStore) {
     Store::restore(&folder(on, "backup"), &there.url, &copies).await.unwrap();
     let store = Store::connect(&there.url, Arc::new(SystemClock)).await.unwrap();
     let page = Page::first(100);
-    assert_eq!(store.ships().list(None, &page).await.unwrap(), on.store.ships().list(None, &page).await.unwrap());
-    assert_eq!(store.trials().all(&page).await.unwrap(), on.store.trials().all(&page).await.unwrap());
-    assert_eq!(store.versions().all(&page).await.unwrap(), on.store.versions().all(&page).await.unwrap());
-    assert_eq!(store.diagnoses().all(&page).await.unwrap(), on.store.diagnoses().all(&page).await.unwrap());
+    assert_eq!(
+        store.ships().list(None, &page).await.unwrap(),
+        on.store.ships().list(None, &page).await.unwrap()
+    );
+    assert_eq!(
+        store.trials().all(&page).await.unwrap(),
+        on.store.trials().all(&page).await.unwrap()
+    );
+    assert_eq!(
+        store.versions().all(&page).await.unwrap(),
+        on.store.versions().all(&page).await.unwrap()
+    );
+    assert_eq!(
+        store.diagnoses().all(&page).await.unwrap(),
+        on.store.diagnoses().all(&page).await.unwrap()
+    );
     let every = Default::default();
-    assert_eq!(store.jobs().list(&every, &page).await.unwrap(), on.store.jobs().list(&every, &page).await.unwrap());
+    assert_eq!(
+        store.jobs().list(&every, &page).await.unwrap(),
+        on.store.jobs().list(&every, &page).await.unwrap()
+    );
     assert!(store.row_faults().await.unwrap().is_empty());
     assert!(copies.exists(&trial("kcs", "turn").object_key).await.unwrap());
     let latest = on.store.versions().latest("kcs").await.unwrap().head.number;
@@ -77,7 +96,9 @@ async fn a_place_that_is_not_empty_is_refused(on: &TestStore) {
     assert_conflict(Store::restore(&backup, &on.database.url, &Objects::memory()).await, "empty");
     let there = empty(on).await;
     assert_conflict(Store::restore(&backup, &there.url, &objects).await, "empty");
-    Store::restore(&backup, &there.url, &Objects::memory()).await.expect("the refusals left nothing behind");
+    Store::restore(&backup, &there.url, &Objects::memory())
+        .await
+        .expect("the refusals left nothing behind");
 }
 
 async fn a_backup_that_is_damaged_is_refused(on: &TestStore) {
@@ -92,20 +113,33 @@ async fn a_backup_that_is_damaged_is_refused(on: &TestStore) {
     std::fs::write(&file, bytes).unwrap();
     let key = trial("kcs", "turn").object_key;
     std::fs::remove_file(backup.join("objects").join(&key[..2]).join(&key[2..])).unwrap();
-    assert_conflict(Store::restore(&backup, &there.url, &Objects::memory()).await, "has 0 objects, not 1");
+    assert_conflict(
+        Store::restore(&backup, &there.url, &Objects::memory()).await,
+        "has 0 objects, not 1",
+    );
     std::fs::remove_file(backup.join("backup.json")).unwrap();
-    assert_conflict(Store::restore(&backup, &there.url, &Objects::memory()).await, "no backup.json");
+    assert_conflict(
+        Store::restore(&backup, &there.url, &Objects::memory()).await,
+        "no backup.json",
+    );
 }
 
 async fn a_backup_of_another_kind_or_a_newer_program_is_refused(on: &TestStore) {
     let objects = filled(on).await;
     let backup = folder(on, "backup");
     let manifest = on.store.backup(&objects, &backup).await.unwrap();
-    let other = if on.database.url.starts_with("sqlite") { "postgres://localhost/x" } else { "sqlite://x.db" };
+    let other = if on.database.url.starts_with("sqlite") {
+        "postgres://localhost/x"
+    } else {
+        "sqlite://x.db"
+    };
     assert_invalid(Store::restore(&backup, other, &Objects::memory()).await, "database_url");
     let newer = BackupManifest { schema: manifest.schema + 1, ..manifest };
     std::fs::write(backup.join("backup.json"), serde_json::to_vec(&newer).unwrap()).unwrap();
-    assert_conflict(Store::restore(&backup, &empty(on).await.url, &Objects::memory()).await, "newer program");
+    assert_conflict(
+        Store::restore(&backup, &empty(on).await.url, &Objects::memory()).await,
+        "newer program",
+    );
 }
 
 async fn samples_that_are_lost_are_told_and_the_rest_is_kept(on: &TestStore) {
@@ -134,7 +168,10 @@ async fn every_table_is_backed_up() {
 async fn a_database_in_memory_is_refused() {
     let store = Store::connect("sqlite::memory:", Arc::new(SystemClock)).await.unwrap();
     let folder = tempfile::tempdir().unwrap();
-    assert_invalid(store.backup(&Objects::memory(), &folder.path().join("backup")).await, "database_url");
+    assert_invalid(
+        store.backup(&Objects::memory(), &folder.path().join("backup")).await,
+        "database_url",
+    );
 }
 
 on_both_databases!(

@@ -10,12 +10,15 @@ async fn fifty_creators_leave_no_gap(on: &TestStore) {
     let other = Store::connect(&on.database.url, Arc::new(SystemClock)).await.unwrap();
     let creators = (0..50).map(|n| {
         let store = if n % 2 == 0 { on.store.clone() } else { other.clone() };
-        tokio::spawn(async move { store.versions().create(&version("kcs"), &[champion(Expect::Any)]).await.unwrap().number })
+        tokio::spawn(async move {
+            store.versions().create(&version("kcs"), &[champion(Expect::Any)]).await.unwrap().number
+        })
     });
     let mut numbers: Vec<_> = join_all(creators).await.into_iter().map(Result::unwrap).collect();
     numbers.sort_unstable();
     assert_eq!(numbers, (1..=50).collect::<Vec<_>>());
-    let history = on.store.aliases().history("kcs", "champion", &Page::first(100)).await.unwrap().items;
+    let history =
+        on.store.aliases().history("kcs", "champion", &Page::first(100)).await.unwrap().items;
     assert!(history.windows(2).all(|pair| pair[0].from_number == Some(pair[1].to_number)));
 }
 
@@ -31,8 +34,10 @@ async fn a_hundred_movers_have_one_winner(on: &TestStore) {
         let results: Vec<_> = join_all(movers).await.into_iter().map(Result::unwrap).collect();
         let revision = round + 1;
         let stale = |result| matches!(result, &Err(StoreError::PreconditionFailed { current, .. }) if current == Some(revision));
-        let counts =
-            (results.iter().filter(|result| result.is_ok()).count(), results.iter().filter(|result| stale(result)).count());
+        let counts = (
+            results.iter().filter(|result| result.is_ok()).count(),
+            results.iter().filter(|result| stale(result)).count(),
+        );
         assert_eq!(counts, (1, 99), "in round {round}: {results:?}");
     }
 }
@@ -43,17 +48,22 @@ async fn no_job_is_claimed_twice(on: &TestStore) {
     }
     let workers = (0..30).map(|n| {
         let store = on.store.clone();
-        tokio::spawn(async move { store.jobs().claim(&format!("worker-{n}"), crate::jobs::LEASE, false).await.unwrap() })
+        tokio::spawn(async move {
+            store.jobs().claim(&format!("worker-{n}"), crate::jobs::LEASE, false).await.unwrap()
+        })
     });
     let id = |claimed| if let Claimed::Job(job) = claimed { Some(job.id) } else { None };
-    let claimed: Vec<_> = join_all(workers).await.into_iter().filter_map(|claim| id(claim.unwrap())).collect();
+    let claimed: Vec<_> =
+        join_all(workers).await.into_iter().filter_map(|claim| id(claim.unwrap())).collect();
     assert_eq!((claimed.len(), claimed.iter().collect::<HashSet<_>>().len()), (20, 20));
 }
 
 async fn one_of_many_requests_is_carried_out(on: &TestStore) {
     let requests = (0..30).map(|_| {
         let store = on.store.clone();
-        tokio::spawn(async move { store.idempotency().begin("POST /v1/ships", "k", &sha256_hex(b"")).await.unwrap() })
+        tokio::spawn(async move {
+            store.idempotency().begin("POST /v1/ships", "k", &sha256_hex(b"")).await.unwrap()
+        })
     });
     let begun: Vec<_> = join_all(requests).await.into_iter().map(Result::unwrap).collect();
     assert_eq!(begun.iter().filter(|begun| matches!(begun, Begun::New(_))).count(), 1);

@@ -18,7 +18,11 @@ fn name(ship: usize) -> String {
 async fn fleet(on: &TestStore) {
     for number in 0..SHIPS {
         on.store.ships().create(&ship(&name(number))).await.unwrap();
-        on.store.versions().create(&version(&name(number)), &[champion(Expect::Any)]).await.unwrap();
+        on.store
+            .versions()
+            .create(&version(&name(number)), &[champion(Expect::Any)])
+            .await
+            .unwrap();
     }
 }
 
@@ -30,7 +34,8 @@ async fn number(store: &Store, ship: &str, alias: &str) -> Option<i64> {
 
 async fn each_who_asks_gets_an_answer_of_her_own(on: &TestStore) {
     fleet(on).await;
-    let candidate = sistership_store::AliasMove { alias: "candidate".into(), ..champion(Expect::Any) };
+    let candidate =
+        sistership_store::AliasMove { alias: "candidate".into(), ..champion(Expect::Any) };
     let second = on.store.versions().create(&version("ship-07"), &[candidate]).await.unwrap();
     let new = NewReport { version_id: Some(second.id.clone()), ..report("ship-07") };
     on.store.reports().insert(&new).await.unwrap();
@@ -38,7 +43,10 @@ async fn each_who_asks_gets_an_answer_of_her_own(on: &TestStore) {
     on.store.ships().delete("ship-09", None).await.unwrap();
     let asked = (0..SHIPS + 10).map(|ship| async move {
         let name = name(ship);
-        let both = futures::join!(number(&on.store, &name, "champion"), number(&on.store, &name, "candidate"));
+        let both = futures::join!(
+            number(&on.store, &name, "champion"),
+            number(&on.store, &name, "candidate")
+        );
         (ship, both)
     });
     for (ship, (champion, candidate)) in join_all(asked).await {
@@ -57,11 +65,18 @@ async fn nobody_reads_an_alias_as_it_was_before_the_question(on: &TestStore) {
     let writer = async |first: usize| {
         for turn in 0..60 {
             let ship = (first + 7 * turn) % SHIPS;
-            let made = on.store.versions().create(&version(&name(ship)), &[champion(Expect::Any)]).await.unwrap();
+            let made = on
+                .store
+                .versions()
+                .create(&version(&name(ship)), &[champion(Expect::Any)])
+                .await
+                .unwrap();
             kept[ship].fetch_max(made.number, Ordering::SeqCst);
         }
     };
-    let readers: Vec<_> = (0..32).map(|reader| tokio::spawn(read(on.store.clone(), Arc::clone(&kept), reader))).collect();
+    let readers: Vec<_> = (0..32)
+        .map(|reader| tokio::spawn(read(on.store.clone(), Arc::clone(&kept), reader)))
+        .collect();
     futures::join!(writer(0), writer(3));
     for reader in readers {
         reader.await.unwrap();

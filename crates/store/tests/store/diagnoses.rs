@@ -1,4 +1,6 @@
-use sistership_store::{CommittedDiagnosis, Diagnosis, Expect, JobState, NewDiagnosed, NewReport, Page, Result};
+use sistership_store::{
+    CommittedDiagnosis, Diagnosis, Expect, JobState, NewDiagnosed, NewReport, Page, Result,
+};
 
 use crate::jobs::{claim, let_the_lease_run_out};
 use crate::support::*;
@@ -12,11 +14,22 @@ fn diagnosis(version_id: &str, with_version: bool) -> Diagnosis {
         trials: r#"["a"]"#.into(),
     };
     let report = NewReport { kind: "diagnosis".into(), ..report("kcs") };
-    Diagnosis { version: with_version.then(|| (version("kcs"), vec![champion(Expect::Any)])), report, found }
+    Diagnosis {
+        version: with_version.then(|| (version("kcs"), vec![champion(Expect::Any)])),
+        report,
+        found,
+    }
 }
 
-async fn commit(on: &TestStore, job: &str, fence: i64, diagnosis: &Diagnosis) -> Result<CommittedDiagnosis> {
-    let result = |version: Option<&sistership_store::VersionHead>, _: &_| format!(r#"{{"version":{}}}"#, version.is_some());
+async fn commit(
+    on: &TestStore,
+    job: &str,
+    fence: i64,
+    diagnosis: &Diagnosis,
+) -> Result<CommittedDiagnosis> {
+    let result = |version: Option<&sistership_store::VersionHead>, _: &_| {
+        format!(r#"{{"version":{}}}"#, version.is_some())
+    };
     on.store.commit_diagnosis(job, fence, diagnosis, result).await
 }
 
@@ -33,18 +46,32 @@ async fn diagnoses_are_found_by_version(on: &TestStore) {
     for with_version in [false, true] {
         on.store.jobs().enqueue(&job("kcs")).await.unwrap();
         let running = claim(on, "a").await.unwrap();
-        let kept = commit(on, &running.id, running.fence, &diagnosis(&diagnosed, with_version)).await.unwrap();
+        let kept = commit(on, &running.id, running.fence, &diagnosis(&diagnosed, with_version))
+            .await
+            .unwrap();
         assert_eq!((kept.job.state, kept.version.is_some()), (JobState::Succeeded, with_version));
         assert_eq!(kept.report.version_id, kept.version.as_ref().map(|version| version.id.clone()));
-        assert_eq!((&kept.found.report_id, kept.found.made_id.is_some()), (&kept.report.id, with_version));
-        let newest = on.store.diagnoses().by_version(&diagnosed, &Page::first(1)).await.unwrap().items;
+        assert_eq!(
+            (&kept.found.report_id, kept.found.made_id.is_some()),
+            (&kept.report.id, with_version)
+        );
+        let newest =
+            on.store.diagnoses().by_version(&diagnosed, &Page::first(1)).await.unwrap().items;
         assert_eq!(newest, std::slice::from_ref(&kept.found));
         if let Some(made) = kept.version {
-            let of_made = on.store.diagnoses().by_version(&made.id, &Page::first(9)).await.unwrap().items;
-            assert_eq!(of_made, [kept.found], "a version is found with the diagnosis that it came of");
+            let of_made =
+                on.store.diagnoses().by_version(&made.id, &Page::first(9)).await.unwrap().items;
+            assert_eq!(
+                of_made,
+                [kept.found],
+                "a version is found with the diagnosis that it came of"
+            );
         }
     }
-    assert_eq!(on.store.diagnoses().by_version(&diagnosed, &Page::first(9)).await.unwrap().items.len(), 2);
+    assert_eq!(
+        on.store.diagnoses().by_version(&diagnosed, &Page::first(9)).await.unwrap().items.len(),
+        2
+    );
 }
 
 async fn a_fenced_worker_leaves_no_diagnosis_behind(on: &TestStore) {
@@ -54,14 +81,25 @@ async fn a_fenced_worker_leaves_no_diagnosis_behind(on: &TestStore) {
     let_the_lease_run_out(on).await;
     claim(on, "new").await.unwrap();
     assert_conflict(commit(on, &old.id, old.fence, &diagnosis(&diagnosed, true)).await, "lost");
-    assert!(on.store.diagnoses().by_version(&diagnosed, &Page::first(9)).await.unwrap().items.is_empty());
+    assert!(
+        on.store
+            .diagnoses()
+            .by_version(&diagnosed, &Page::first(9))
+            .await
+            .unwrap()
+            .items
+            .is_empty()
+    );
     assert_eq!(on.store.versions().latest("kcs").await.unwrap().head.number, 1);
 }
 
 async fn a_diagnosis_is_of_a_version_that_is_there(on: &TestStore) {
     on.store.jobs().enqueue(&job("kcs")).await.unwrap();
     let running = claim(on, "a").await.unwrap();
-    assert_invalid(commit(on, &running.id, running.fence, &diagnosis("none", false)).await, "version_id");
+    assert_invalid(
+        commit(on, &running.id, running.fence, &diagnosis("none", false)).await,
+        "version_id",
+    );
 }
 
 on_both_databases!(

@@ -15,13 +15,20 @@ async fn family(on: &TestStore, ships: &[&str]) -> Vec<String> {
 }
 
 async fn bulk(on: &TestStore, chunks: &[Vec<String>]) -> String {
-    let chunk = |bulk: &str, ships: &[String]| format!(r#"{{"bulk":"{bulk}","ships":{}}}"#, ships.len());
+    let chunk =
+        |bulk: &str, ships: &[String]| format!(r#"{{"bulk":"{bulk}","ships":{}}}"#, ships.len());
     on.store.bulks().create("sisters", "{}", "bulk-refinement", chunks, chunk).await.unwrap().id
 }
 
 fn outcome(ship: &str, moves: Vec<AliasMove>) -> NewOutcome {
     let version = Some((version(ship), moves));
-    NewOutcome { ship: ship.into(), outcome: "candidate".into(), version, worst_change: Some(-0.1), document: "{}".into() }
+    NewOutcome {
+        ship: ship.into(),
+        outcome: "candidate".into(),
+        version,
+        worst_change: Some(-0.1),
+        document: "{}".into(),
+    }
 }
 
 async fn commit(on: &TestStore, bulk: &str, job: &Job, outcomes: &[NewOutcome]) -> Result<Job> {
@@ -35,10 +42,20 @@ async fn families_have_members_and_teach(on: &TestStore) {
     assert_eq!(families.add("sisters", &["c".into()]).await.unwrap(), 0, "it is a member already");
     on.store.ships().delete("b", None).await.unwrap();
     let members = families.members("sisters", &Page::first(2)).await.unwrap();
-    assert_eq!(members.items.iter().map(|m| m.ship.as_str()).collect::<Vec<_>>(), ["a", "c"], "a deleted ship is none");
+    assert_eq!(
+        members.items.iter().map(|m| m.ship.as_str()).collect::<Vec<_>>(),
+        ["a", "c"],
+        "a deleted ship is none"
+    );
     assert_eq!((families.count("sisters").await.unwrap(), members.items[0].champion), (2, None));
-    assert!(families.remove("sisters", "a").await.unwrap() && !families.remove("sisters", "a").await.unwrap());
-    assert_conflict(families.create("sisters", "Again", &versions(on, "other", 1).await[0].id).await, "already");
+    assert!(
+        families.remove("sisters", "a").await.unwrap()
+            && !families.remove("sisters", "a").await.unwrap()
+    );
+    assert_conflict(
+        families.create("sisters", "Again", &versions(on, "other", 1).await[0].id).await,
+        "already",
+    );
     assert_not_found(families.prior("sisters", None).await, "family prior");
     for revision in 1..=2 {
         let prior = families.teach("sisters", &format!(r#"{{"n":{revision}}}"#)).await.unwrap();
@@ -67,10 +84,16 @@ async fn a_ship_has_one_outcome_whoever_comes_twice(on: &TestStore) {
     let new = claim(on, "new").await.unwrap();
     let done = [outcome("a", vec![]), outcome("b", vec![champion(Expect::Absent)])];
     assert_conflict(commit(on, &id, &old, &done).await, "lost");
-    assert!(on.store.bulks().counts(&id).await.unwrap().is_empty(), "a fenced worker leaves nothing behind");
+    assert!(
+        on.store.bulks().counts(&id).await.unwrap().is_empty(),
+        "a fenced worker leaves nothing behind"
+    );
     assert_eq!(commit(on, &id, &new, &done).await.unwrap().state, JobState::Succeeded);
     let outcomes = on.store.bulks().outcomes(&id, None, &Page::first(9)).await.unwrap().items;
-    assert_eq!(outcomes.iter().map(|o| (o.ship.as_str(), o.version)).collect::<Vec<_>>(), [("a", Some(1)), ("b", Some(1))]);
+    assert_eq!(
+        outcomes.iter().map(|o| (o.ship.as_str(), o.version)).collect::<Vec<_>>(),
+        [("a", Some(1)), ("b", Some(1))]
+    );
     assert_eq!(on.store.versions().latest("a").await.unwrap().head.number, 1);
 }
 
@@ -91,7 +114,9 @@ async fn what_is_left_is_cancelled_and_goes_on(on: &TestStore) {
     let first = claim(on, "w").await.unwrap();
     commit(on, &id, &first, &[outcome("a", vec![])]).await.unwrap();
     assert_eq!(on.store.bulks().request_cancel(&id).await.unwrap(), 2);
-    let states = |counts: Vec<sistership_store::ChunkCount>| counts.into_iter().map(|c| (c.state, c.jobs)).collect::<Vec<_>>();
+    let states = |counts: Vec<sistership_store::ChunkCount>| {
+        counts.into_iter().map(|c| (c.state, c.jobs)).collect::<Vec<_>>()
+    };
     let expected = [(JobState::Cancelled, 2), (JobState::Succeeded, 1)];
     assert_eq!(states(on.store.bulks().chunks(&id).await.unwrap()), expected);
     assert_eq!(on.store.bulks().retry(&id).await.unwrap(), 2);

@@ -10,7 +10,12 @@ async fn begin(on: &TestStore, request: &str) -> Begun {
     on.store.idempotency().begin(SCOPE, "key-1", &sha256_hex(request.as_bytes())).await.unwrap()
 }
 
-async fn finish(on: &TestStore, ticket: &Ticket, status: i64, body: &str) -> sistership_store::Result<()> {
+async fn finish(
+    on: &TestStore,
+    ticket: &Ticket,
+    status: i64,
+    body: &str,
+) -> sistership_store::Result<()> {
     on.store.unit().keep(Some((ticket, status, body))).await
 }
 
@@ -27,7 +32,8 @@ async fn an_answer_is_given_again(on: &TestStore) {
     finish(on, &ticket, 202, r#"{"job":"1"}"#).await.unwrap();
     assert_eq!(begin(on, "{}").await, Begun::Replay { status: 202, body: r#"{"job":"1"}"#.into() });
     assert_eq!(begin(on, "{\"other\":1}").await, Begun::Mismatch);
-    let elsewhere = on.store.idempotency().begin("POST /v1/ships", "key-1", &sha256_hex(b"")).await.unwrap();
+    let elsewhere =
+        on.store.idempotency().begin("POST /v1/ships", "key-1", &sha256_hex(b"")).await.unwrap();
     assert!(matches!(elsewhere, Begun::New(_)));
 }
 
@@ -76,7 +82,10 @@ async fn work_is_kept_with_its_answer(on: &TestStore) {
     work.store().ships().create(&ship("kcs")).await.unwrap();
     // A step that fails takes nothing from the others.
     assert_conflict(work.store().ships().create(&ship("kcs")).await, "exists already");
-    assert_not_found(work.store().aliases().move_to("kcs", 1, &champion(sistership_store::Expect::Any)).await, "model");
+    assert_not_found(
+        work.store().aliases().move_to("kcs", 1, &champion(sistership_store::Expect::Any)).await,
+        "model",
+    );
     work.store().versions().create(&version("kcs"), &[]).await.unwrap();
     work.keep(Some((&alive, 201, "made"))).await.unwrap();
     assert_eq!(on.store.ships().get("kcs").await.unwrap().revision, 1);

@@ -25,7 +25,10 @@ async fn a_job_runs_and_ends(on: &TestStore) {
     let second = jobs.enqueue(&job("pcc")).await.unwrap();
     assert_eq!(first.state, JobState::Queued);
     let running = claim(on, "a").await.unwrap();
-    assert_eq!((&running.id, running.state, running.attempt, running.fence), (&first.id, JobState::Running, 1, 1));
+    assert_eq!(
+        (&running.id, running.state, running.attempt, running.fence),
+        (&first.id, JobState::Running, 1, 1)
+    );
     assert_eq!(claim(on, "b").await.unwrap().id, second.id);
     assert_eq!(claim(on, "c").await, None);
     assert!(!jobs.heartbeat(&first.id, 1, 0.5, "half way", LEASE).await.unwrap());
@@ -132,9 +135,15 @@ async fn a_failed_job_is_tried_again(on: &TestStore) {
     let id = jobs.enqueue(&job("kcs")).await.unwrap().id;
     let fence = claim(on, "a").await.unwrap().fence;
     assert_conflict(jobs.retry(&id).await, "running");
-    assert_eq!(jobs.fail(&id, fence, "the trials hold no turn").await.unwrap().error.unwrap(), "the trials hold no turn");
+    assert_eq!(
+        jobs.fail(&id, fence, "the trials hold no turn").await.unwrap().error.unwrap(),
+        "the trials hold no turn"
+    );
     let queued = jobs.retry(&id).await.unwrap();
-    assert_eq!((queued.state, queued.error, queued.attempt, queued.fence), (JobState::Queued, None, 0, 1));
+    assert_eq!(
+        (queued.state, queued.error, queued.attempt, queued.fence),
+        (JobState::Queued, None, 0, 1)
+    );
     assert_eq!(claim(on, "b").await.unwrap().fence, 2);
 }
 
@@ -157,7 +166,10 @@ async fn jobs_are_listed(on: &TestStore) {
     assert_eq!((first.items.len(), second.items, second.next), (2, vec![oldest.clone()], None));
     let running = JobFilter { ship: None, state: Some(JobState::Running) };
     assert_eq!(on.store.jobs().list(&running, &Page::first(9)).await.unwrap().items, [oldest]);
-    assert_eq!(on.store.jobs().list(&JobFilter::default(), &Page::first(9)).await.unwrap().items.len(), 4);
+    assert_eq!(
+        on.store.jobs().list(&JobFilter::default(), &Page::first(9)).await.unwrap().items.len(),
+        4
+    );
 }
 
 on_both_databases!(

@@ -32,7 +32,10 @@ async fn damaged_and_healed(objects: &Objects, root: &Path) {
     let file = root.join("objects").join(&key[..2]).join(&key[2..]);
     std::fs::write(&file, b"PAR1 damaged PAR1").unwrap();
     let damaged = objects.get(&key).await;
-    assert!(matches!(&damaged, Err(StoreError::Objects(ObjectsError::Damaged { key: at, .. })) if *at == key), "{damaged:?}");
+    assert!(
+        matches!(&damaged, Err(StoreError::Objects(ObjectsError::Damaged { key: at, .. })) if *at == key),
+        "{damaged:?}"
+    );
     objects.put(SAMPLES).await.unwrap();
     assert_eq!(objects.get(&key).await.unwrap(), SAMPLES);
 }
@@ -55,9 +58,11 @@ async fn objects_in_a_bucket() {
     damaged_and_healed(&objects, &s3.folder.path().join("samples/fleet/a")).await;
     many(&objects).await;
     let others = objects.put(Bytes::from_static(b"others")).await.unwrap();
-    let mut listed: Vec<_> = objects.list().map_ok(|head| (head.name, head.bytes)).try_collect().await.unwrap();
+    let mut listed: Vec<_> =
+        objects.list().map_ok(|head| (head.name, head.bytes)).try_collect().await.unwrap();
     listed.sort_by_key(|(_, bytes)| *bytes);
-    let expected = [(others, 6), (sha256_hex(&SAMPLES), SAMPLES.len() as u64)].map(|(key, bytes)| (ObjectName::Key(key), bytes));
+    let expected = [(others, 6), (sha256_hex(&SAMPLES), SAMPLES.len() as u64)]
+        .map(|(key, bytes)| (ObjectName::Key(key), bytes));
     assert_eq!(listed, expected);
     // Another prefix of the bucket is another store.
     assert_not_found(s3.objects("fleet/b").get(&sha256_hex(&SAMPLES)).await, "object");
@@ -68,8 +73,14 @@ async fn objects_in_a_bucket() {
 async fn a_bucket_that_does_not_let_one_in_is_an_error_and_no_missing_object() {
     let s3 = TestS3::start().await;
     let stranger = s3.objects_as("somebody", "fleet/a");
-    assert!(matches!(stranger.put(SAMPLES).await, Err(StoreError::Objects(ObjectsError::Store(_)))));
-    assert!(matches!(stranger.exists(&sha256_hex(&SAMPLES)).await, Err(StoreError::Objects(ObjectsError::Store(_)))));
+    assert!(matches!(
+        stranger.put(SAMPLES).await,
+        Err(StoreError::Objects(ObjectsError::Store(_)))
+    ));
+    assert!(matches!(
+        stranger.exists(&sha256_hex(&SAMPLES)).await,
+        Err(StoreError::Objects(ObjectsError::Store(_)))
+    ));
     assert!(stranger.health().await.is_err());
 }
 
@@ -83,7 +94,10 @@ async fn puts_that_never_ended_are_seen() {
     let place = format!("objects/{}/{}#1", &key[..2], &key[2..]);
     std::fs::write(folder.path().join(&place), b"PAR1").unwrap();
     let staged = objects.staged().await.unwrap();
-    assert_eq!(staged.iter().map(|staged| (staged.path.as_str(), staged.bytes)).collect::<Vec<_>>(), [(place.as_str(), 4)]);
+    assert_eq!(
+        staged.iter().map(|staged| (staged.path.as_str(), staged.bytes)).collect::<Vec<_>>(),
+        [(place.as_str(), 4)]
+    );
     objects.remove_staged(&staged[0]).await.unwrap();
     objects.remove_staged(&staged[0]).await.unwrap();
     assert_eq!(objects.staged().await.unwrap(), []);

@@ -4,11 +4,17 @@ use crate::jobs::{claim, let_the_lease_run_out};
 use crate::support::*;
 
 fn refinement() -> Refinement {
-    Refinement { version: version("kcs"), moves: vec![champion(Expect::Any)], report: Some(report("kcs")) }
+    Refinement {
+        version: version("kcs"),
+        moves: vec![champion(Expect::Any)],
+        report: Some(report("kcs")),
+    }
 }
 
 async fn commit(on: &TestStore, job: &str, fence: i64) -> Result<Committed> {
-    let result = |version: &sistership_store::VersionHead, _: Option<&_>| format!(r#"{{"version":{}}}"#, version.number);
+    let result = |version: &sistership_store::VersionHead, _: Option<&_>| {
+        format!(r#"{{"version":{}}}"#, version.number)
+    };
     on.store.commit_refinement(job, fence, &refinement(), result).await
 }
 
@@ -16,9 +22,13 @@ async fn all_of_it_is_kept(on: &TestStore) {
     on.store.jobs().enqueue(&job("kcs")).await.unwrap();
     let running = claim(on, "a").await.unwrap();
     let kept = commit(on, &running.id, running.fence).await.unwrap();
-    assert_eq!((kept.job.state, kept.job.result.as_deref()), (JobState::Succeeded, Some(r#"{"version":1}"#)));
+    assert_eq!(
+        (kept.job.state, kept.job.result.as_deref()),
+        (JobState::Succeeded, Some(r#"{"version":1}"#))
+    );
     assert_eq!(on.store.aliases().get("kcs", "champion").await.unwrap().version_number, 1);
-    let reports = on.store.reports().by_version(&kept.version.id, &Page::first(9)).await.unwrap().items;
+    let reports =
+        on.store.reports().by_version(&kept.version.id, &Page::first(9)).await.unwrap().items;
     assert_eq!(reports, [kept.report.unwrap()]);
     assert_conflict(commit(on, &running.id, running.fence).await, "succeeded");
     assert_eq!(on.store.versions().latest("kcs").await.unwrap().head.number, 1);
@@ -35,7 +45,8 @@ async fn a_fenced_worker_leaves_nothing_behind(on: &TestStore) {
     assert_eq!(on.store.jobs().get(&old.id).await.unwrap(), new);
     let kept = commit(on, &new.id, new.fence).await.unwrap();
     assert_eq!(kept.version.number, 1);
-    let history = on.store.aliases().history("kcs", "champion", &Page::first(9)).await.unwrap().items;
+    let history =
+        on.store.aliases().history("kcs", "champion", &Page::first(9)).await.unwrap().items;
     assert_eq!((history.len(), history[0].from_number), (1, None));
 }
 
@@ -44,11 +55,21 @@ async fn a_refused_part_leaves_the_job_running(on: &TestStore) {
     let running = claim(on, "a").await.unwrap();
     let refused = Refinement { moves: vec![champion(Expect::Revision(4))], ..refinement() };
     let result = |_: &_, _: Option<&_>| "{}".to_owned();
-    assert_stale(on.store.commit_refinement(&running.id, running.fence, &refused, result).await, None);
+    assert_stale(
+        on.store.commit_refinement(&running.id, running.fence, &refused, result).await,
+        None,
+    );
     let result = |_: &_, _: Option<&_>| "{".to_owned();
-    assert_invalid(on.store.commit_refinement(&running.id, running.fence, &refinement(), result).await, "result");
+    assert_invalid(
+        on.store.commit_refinement(&running.id, running.fence, &refinement(), result).await,
+        "result",
+    );
     assert_eq!(on.store.jobs().get(&running.id).await.unwrap(), running);
     assert_not_found(on.store.versions().latest("kcs").await, "model");
 }
 
-on_both_databases!(all_of_it_is_kept, a_fenced_worker_leaves_nothing_behind, a_refused_part_leaves_the_job_running);
+on_both_databases!(
+    all_of_it_is_kept,
+    a_fenced_worker_leaves_nothing_behind,
+    a_refused_part_leaves_the_job_running
+);

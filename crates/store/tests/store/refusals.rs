@@ -1,6 +1,8 @@
 use std::time::Duration;
 
-use sistership_store::{JobFilter, MAX_LIMIT, MAX_TEXT_BYTES, NewJob, NewReport, NewShip, NewTrial, NewVersion, Page};
+use sistership_store::{
+    JobFilter, MAX_LIMIT, MAX_TEXT_BYTES, NewJob, NewReport, NewShip, NewTrial, NewVersion, Page,
+};
 
 use crate::support::*;
 
@@ -9,14 +11,20 @@ async fn nul_is_refused_wherever_it_comes(on: &TestStore) {
     assert_invalid(store.laws().insert("a\0b", "").await, "name");
     assert_invalid(store.laws().insert("a", "a\0b").await, "document");
     assert_invalid(store.laws().get("a\0b").await, "name");
-    assert_invalid(store.ships().create(&NewShip { title: "\0".into(), ..ship("kcs") }).await, "title");
+    assert_invalid(
+        store.ships().create(&NewShip { title: "\0".into(), ..ship("kcs") }).await,
+        "title",
+    );
     assert_invalid(store.ships().list(Some("\0"), &Page::first(1)).await, "category");
     assert_invalid(store.ships().list(None, &Page::after("\0", 1)).await, "after");
     assert_invalid(store.versions().get("\0", 1).await, "model");
     assert_invalid(store.jobs().get("\0").await, "id");
     let filter = JobFilter { ship: Some("\0".into()), state: None };
     assert_invalid(store.jobs().list(&filter, &Page::first(1)).await, "ship");
-    assert_invalid(store.reports().insert(&NewReport { html: "\0".into(), ..report("kcs") }).await, "html");
+    assert_invalid(
+        store.reports().insert(&NewReport { html: "\0".into(), ..report("kcs") }).await,
+        "html",
+    );
     assert_not_found(store.ships().get("kcs").await, "ship");
 }
 
@@ -26,15 +34,36 @@ async fn what_is_no_number_is_refused(on: &TestStore) {
         let bad = NewTrial { duration_s, ..trial("kcs", "turn") };
         assert_invalid(on.store.trials().insert(&bad).await, "duration_s");
     }
-    assert_invalid(on.store.trials().insert(&NewTrial { sample_rows: -1, ..trial("kcs", "turn") }).await, "sample_rows");
-    assert_invalid(on.store.jobs().heartbeat("x", 1, f64::NAN, "", Duration::ZERO).await, "progress");
+    assert_invalid(
+        on.store.trials().insert(&NewTrial { sample_rows: -1, ..trial("kcs", "turn") }).await,
+        "sample_rows",
+    );
+    assert_invalid(
+        on.store.jobs().heartbeat("x", 1, f64::NAN, "", Duration::ZERO).await,
+        "progress",
+    );
 }
 
 async fn what_is_no_json_or_hash_is_refused(on: &TestStore) {
-    assert_invalid(on.store.ships().create(&NewShip { document: "{".into(), ..ship("kcs") }).await, "document");
-    assert_invalid(on.store.versions().create(&NewVersion { document: "".into(), ..version("kcs") }, &[]).await, "document");
-    assert_invalid(on.store.jobs().enqueue(&NewJob { request: "NaN".into(), ..job("kcs") }).await, "request");
-    assert_invalid(on.store.trials().insert(&NewTrial { sha256: "ABC".into(), ..trial("kcs", "turn") }).await, "sha256");
+    assert_invalid(
+        on.store.ships().create(&NewShip { document: "{".into(), ..ship("kcs") }).await,
+        "document",
+    );
+    assert_invalid(
+        on.store
+            .versions()
+            .create(&NewVersion { document: "".into(), ..version("kcs") }, &[])
+            .await,
+        "document",
+    );
+    assert_invalid(
+        on.store.jobs().enqueue(&NewJob { request: "NaN".into(), ..job("kcs") }).await,
+        "request",
+    );
+    assert_invalid(
+        on.store.trials().insert(&NewTrial { sha256: "ABC".into(), ..trial("kcs", "turn") }).await,
+        "sha256",
+    );
     assert_invalid(on.store.idempotency().begin("s", "k", "").await, "request_sha256");
 }
 

@@ -10,10 +10,14 @@ async fn reports_are_found_by_version(on: &TestStore) {
     let other = on.store.reports().insert(&report("kcs")).await.unwrap();
     let list = on.store.reports().by_version(&version, &Page::first(1)).await.unwrap();
     assert_eq!(list.items, [second]);
-    let list = on.store.reports().by_version(&version, &Page::after(list.next.unwrap(), 1)).await.unwrap();
+    let list =
+        on.store.reports().by_version(&version, &Page::after(list.next.unwrap(), 1)).await.unwrap();
     assert_eq!((list.items, list.next), (vec![first], None));
     let found = on.store.reports().get(&other.id).await.unwrap();
-    assert_eq!((found.head, found.document, found.html), (other, report("kcs").document, report("kcs").html));
+    assert_eq!(
+        (found.head, found.document, found.html),
+        (other, report("kcs").document, report("kcs").html)
+    );
     assert_not_found(on.store.reports().get("none").await, "report");
 }
 

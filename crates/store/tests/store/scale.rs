@@ -32,7 +32,9 @@ fn document(on: &TestStore, bytes: usize) -> String {
 async fn unpacked(on: &TestStore) {
     if !on.database.url.starts_with("sqlite") {
         for table in ["ships", "versions"] {
-            on.database.damage(&format!("ALTER TABLE {table} ALTER document SET STORAGE EXTERNAL")).await;
+            on.database
+                .damage(&format!("ALTER TABLE {table} ALTER document SET STORAGE EXTERNAL"))
+                .await;
         }
     }
 }
@@ -85,41 +87,95 @@ async fn times(on: &TestStore, ships: usize) -> Vec<(&'static str, Duration)> {
     let by = |ranges| ShipSearch { ranges, ..ShipSearch::default() };
     let category = ShipSearch { category: Some("category-7".into()), ..ShipSearch::default() };
     let page = |name: &str| Page { after: Some((None, name.to_owned())), limit: 100 };
-    let find = async |search: &ShipSearch, page: Page<_>| store.ships().search(search, &page).await.unwrap();
+    let find = async |search: &ShipSearch, page: Page<_>| {
+        store.ships().search(search, &page).await.unwrap()
+    };
     let failed = JobFilter { state: Some(JobState::Failed), ..JobFilter::default() };
     let of_one = JobFilter { ship: Some(middle.clone()), ..JobFilter::default() };
-    let (both, long) = (by(vec![range("lpp_m", 0.0), range("diameter_m", 50_000.0)]), by(vec![range("lpp_m", 0.0)]));
+    let (both, long) = (
+        by(vec![range("lpp_m", 0.0), range("diameter_m", 50_000.0)]),
+        by(vec![range("lpp_m", 0.0)]),
+    );
     let few = by(vec![range("lpp_m", 0.0), range("diameter_m", 99_000.0)]);
     let tag = ShipSearch { tag: Some("own".into()), ..ShipSearch::default() };
     let tagged = ShipSearch { tag: Some("own".into()), ..long };
     // Tagged ones are of category 0, so that this finds nothing however far it looks.
-    let none = ShipSearch { tag: Some("own".into()), category: Some("category-7".into()), ..ShipSearch::default() };
-    let last = store.versions().get(&middle, 10).await.unwrap().head.id;
-    let many = async || {
-        let names = (1..=64).map(|i| format!("ship-{}", 1_000_000 + i * ships / 64));
-        join_all(names.map(|name| async move { store.versions().current(&name, "champion").await.unwrap() })).await
+    let none = ShipSearch {
+        tag: Some("own".into()),
+        category: Some("category-7".into()),
+        ..ShipSearch::default()
     };
+    let last = store.versions().get(&middle, 10).await.unwrap().head.id;
+    let many =
+        async || {
+            let names = (1..=64).map(|i| format!("ship-{}", 1_000_000 + i * ships / 64));
+            join_all(names.map(|name| async move {
+                store.versions().current(&name, "champion").await.unwrap()
+            }))
+            .await
+        };
     vec![
-        ("ships by name, from the middle", median(async || find(&ShipSearch::default(), page(&middle)).await).await),
-        ("ships of a category, from the middle", median(async || find(&category, page(&middle)).await).await),
+        (
+            "ships by name, from the middle",
+            median(async || find(&ShipSearch::default(), page(&middle)).await).await,
+        ),
+        (
+            "ships of a category, from the middle",
+            median(async || find(&category, page(&middle)).await).await,
+        ),
         ("ships with a tag", median(async || find(&tag, page("")).await).await),
-        ("ships by a range", median(async || find(&by(vec![range("lpp_m", 50_000.0)]), page("")).await).await),
+        (
+            "ships by a range",
+            median(async || find(&by(vec![range("lpp_m", 50_000.0)]), page("")).await).await,
+        ),
         ("ships by two ranges", median(async || find(&both, page("")).await).await),
-        ("ships by a range and a second of which one in a hundred is", median(async || find(&few, page("")).await).await),
-        ("ships by a range, with a tag that one in a hundred has", median(async || find(&tagged, page("")).await).await),
-        ("ships with a tag and of a category, none", median(async || find(&none, page("")).await).await),
-        ("vectors of a category", median(async || store.ships().vectors(&category).await.unwrap()).await),
-        ("champion", median(async || store.versions().current(&middle, "champion").await.unwrap().unwrap()).await),
+        (
+            "ships by a range and a second of which one in a hundred is",
+            median(async || find(&few, page("")).await).await,
+        ),
+        (
+            "ships by a range, with a tag that one in a hundred has",
+            median(async || find(&tagged, page("")).await).await,
+        ),
+        (
+            "ships with a tag and of a category, none",
+            median(async || find(&none, page("")).await).await,
+        ),
+        (
+            "vectors of a category",
+            median(async || store.ships().vectors(&category).await.unwrap()).await,
+        ),
+        (
+            "champion",
+            median(async || store.versions().current(&middle, "champion").await.unwrap().unwrap())
+                .await,
+        ),
         ("64 champions at once", median(many).await),
         ("a version by id", median(async || store.versions().by_id(&last).await.unwrap()).await),
         (
             "versions made from a version",
-            median(async || store.versions().children(&last, &Page::first(100)).await.unwrap()).await,
+            median(async || store.versions().children(&last, &Page::first(100)).await.unwrap())
+                .await,
         ),
-        ("versions of a model", median(async || store.versions().list(&middle, &Page::first(100)).await.unwrap()).await),
-        ("jobs", median(async || store.jobs().list(&JobFilter::default(), &Page::first(100)).await.unwrap()).await),
-        ("jobs in a state", median(async || store.jobs().list(&failed, &Page::first(100)).await.unwrap()).await),
-        ("jobs of a ship", median(async || store.jobs().list(&of_one, &Page::first(100)).await.unwrap()).await),
+        (
+            "versions of a model",
+            median(async || store.versions().list(&middle, &Page::first(100)).await.unwrap()).await,
+        ),
+        (
+            "jobs",
+            median(async || {
+                store.jobs().list(&JobFilter::default(), &Page::first(100)).await.unwrap()
+            })
+            .await,
+        ),
+        (
+            "jobs in a state",
+            median(async || store.jobs().list(&failed, &Page::first(100)).await.unwrap()).await,
+        ),
+        (
+            "jobs of a ship",
+            median(async || store.jobs().list(&of_one, &Page::first(100)).await.unwrap()).await,
+        ),
         ("counts of jobs", median(async || store.jobs().counts().await.unwrap()).await),
     ]
 }
@@ -132,7 +188,11 @@ async fn scale(few: &TestStore, many: &TestStore) {
     let start = Instant::now();
     fill(few, 10).await;
     fill(many, ships).await;
-    println!("{ships} ships, {} versions filled in {:.0} s", 10 * ships, start.elapsed().as_secs_f64());
+    println!(
+        "{ships} ships, {} versions filled in {:.0} s",
+        10 * ships,
+        start.elapsed().as_secs_f64()
+    );
     println!("| | 10 ships, ms | {ships} ships, ms |\n| --- | --- | --- |");
     let mut slow = Vec::new();
     for ((what, few), (_, many)) in times(few, 10).await.into_iter().zip(times(many, ships).await) {
@@ -151,6 +211,9 @@ async fn scale_on_sqlite() {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 #[ignore = "takes minutes and gigabytes; see the head of the file"]
 async fn scale_on_postgres() {
-    let (Some(few), Some(many)) = (TestDatabase::postgres().await, TestDatabase::postgres().await) else { return };
+    let (Some(few), Some(many)) = (TestDatabase::postgres().await, TestDatabase::postgres().await)
+    else {
+        return;
+    };
     scale(&few.open().await, &many.open().await).await;
 }

@@ -29,8 +29,13 @@ async fn insert_only_holds_below_the_store_too(on: &TestStore) {
     on.store.laws().insert("abkowitz", "").await.unwrap();
     on.store.effects().keep("kind: effect").await.unwrap();
     on.store.versions().create(&version("kcs"), &[champion(Expect::Any)]).await.unwrap();
-    for table in ["laws", "effect_libraries", "ship_revisions", "versions", "alias_moves", "diagnoses"] {
-        for change in [format!("DELETE FROM {table}"), format!("UPDATE {table} SET id = id").replace("id = id", key(table))] {
+    for table in
+        ["laws", "effect_libraries", "ship_revisions", "versions", "alias_moves", "diagnoses"]
+    {
+        for change in [
+            format!("DELETE FROM {table}"),
+            format!("UPDATE {table} SET id = id").replace("id = id", key(table)),
+        ] {
             let error = execute(&on.database.url, change).await.unwrap_err().to_string();
             assert!(error.contains("is insert-only"), "{error}");
         }
@@ -47,8 +52,13 @@ fn key(table: &str) -> &'static str {
 
 async fn execute(url: &str, sql: String) -> sqlx::Result<()> {
     match url.starts_with("sqlite") {
-        true => sqlx::query(AssertSqlSafe(sql)).execute(&SqlitePool::connect(url).await?).await.map(drop),
-        false => sqlx::query(AssertSqlSafe(sql)).execute(&PgPool::connect(url).await?).await.map(drop),
+        true => sqlx::query(AssertSqlSafe(sql))
+            .execute(&SqlitePool::connect(url).await?)
+            .await
+            .map(drop),
+        false => {
+            sqlx::query(AssertSqlSafe(sql)).execute(&PgPool::connect(url).await?).await.map(drop)
+        }
     }
 }
 
@@ -57,7 +67,8 @@ async fn open_at_once(database: TestDatabase) {
         let url = database.url.clone();
         tokio::spawn(async move { Store::connect(&url, Arc::new(SystemClock)).await })
     });
-    let stores: Vec<_> = join_all(opening).await.into_iter().map(|store| store.unwrap().unwrap()).collect();
+    let stores: Vec<_> =
+        join_all(opening).await.into_iter().map(|store| store.unwrap().unwrap()).collect();
     for (n, store) in stores.iter().enumerate() {
         store.ships().create(&ship(&format!("ship-{n}"))).await.unwrap();
         assert_eq!(stores[0].ships().get(&format!("ship-{n}")).await.unwrap().revision, 1);
@@ -74,7 +85,9 @@ async fn many_open_a_new_sqlite_file_at_once() {
 async fn many_open_an_empty_sqlite_file_at_once() {
     for _ in 0..5 {
         let database = TestDatabase::sqlite();
-        execute(&format!("{}?mode=rwc", database.url), "PRAGMA journal_mode = WAL".into()).await.unwrap();
+        execute(&format!("{}?mode=rwc", database.url), "PRAGMA journal_mode = WAL".into())
+            .await
+            .unwrap();
         open_at_once(database).await;
     }
 }
@@ -99,9 +112,14 @@ async fn sequential_ids_repeat() {
     let clock = || Arc::new(sistership_store::ManualClock::new(1));
     let mut ids = Vec::new();
     for _ in 0..2 {
-        let store = Store::connect_with("sqlite::memory:", clock(), Arc::new(SequentialIds::default())).await.unwrap();
-        let (first, second) =
-            (store.versions().create(&version("a"), &[]).await, store.versions().create(&version("a"), &[]).await);
+        let store =
+            Store::connect_with("sqlite::memory:", clock(), Arc::new(SequentialIds::default()))
+                .await
+                .unwrap();
+        let (first, second) = (
+            store.versions().create(&version("a"), &[]).await,
+            store.versions().create(&version("a"), &[]).await,
+        );
         ids.push((first.unwrap().id, second.unwrap().id));
     }
     assert_eq!(ids[0], ids[1]);
@@ -110,7 +128,10 @@ async fn sequential_ids_repeat() {
 
 #[tokio::test]
 async fn another_kind_of_database_is_refused() {
-    assert_invalid(Store::connect("mysql://localhost/x", Arc::new(SystemClock)).await, "database_url");
+    assert_invalid(
+        Store::connect("mysql://localhost/x", Arc::new(SystemClock)).await,
+        "database_url",
+    );
 }
 
 on_both_databases!(

@@ -1,4 +1,6 @@
-use sistership_store::{Expect, FactRange, FoundShip, List, NewShip, Page, ShipFacts, ShipKey, ShipSearch};
+use sistership_store::{
+    Expect, FactRange, FoundShip, List, NewShip, Page, ShipFacts, ShipKey, ShipSearch,
+};
 
 use crate::support::*;
 
@@ -7,7 +9,11 @@ async fn fleet(on: &TestStore, count: usize) {
     for number in 0..count {
         let name = format!("s-{number:02}");
         let category = if number % 3 == 0 { "tanker" } else { "ferry" };
-        on.store.ships().create(&NewShip { category: category.into(), ..ship(&name) }).await.unwrap();
+        on.store
+            .ships()
+            .create(&NewShip { category: category.into(), ..ship(&name) })
+            .await
+            .unwrap();
         if number % 4 == 0 {
             on.store.ships().tag(&name, "own-fleet").await.unwrap();
         }
@@ -21,7 +27,12 @@ async fn index(on: &TestStore) -> usize {
     let facts = |waiting: &sistership_store::Waiting| {
         let number: f64 = waiting.ship.trim_start_matches("s-").parse().unwrap();
         let facts = vec![("lpp_m".to_owned(), 10.0 * number), ("beam_m".to_owned(), 20.0 - number)];
-        ShipFacts { waiting: waiting.clone(), category: "tanker".into(), facts, vectors: format!("[{number}]") }
+        ShipFacts {
+            waiting: waiting.clone(),
+            category: "tanker".into(),
+            facts,
+            vectors: format!("[{number}]"),
+        }
     };
     on.store.search_index().write(&waiting.iter().map(facts).collect::<Vec<_>>()).await.unwrap();
     waiting.len()
@@ -55,20 +66,44 @@ async fn ships_are_found_by_each_condition_and_all_together(on: &TestStore) {
         assert_eq!(every(on, &search, 2).await, all, "{search:?}");
         all.join(" ")
     };
-    assert_eq!(find(ShipSearch { category: tanker(), ..ShipSearch::default() }).await, "s-00 s-03 s-06 s-09 s-12");
-    assert_eq!(find(ShipSearch { tag: own(), ..ShipSearch::default() }).await, "s-00 s-04 s-08 s-12");
-    assert_eq!(find(ShipSearch { category: tanker(), tag: own(), ..ShipSearch::default() }).await, "s-00 s-12");
+    assert_eq!(
+        find(ShipSearch { category: tanker(), ..ShipSearch::default() }).await,
+        "s-00 s-03 s-06 s-09 s-12"
+    );
+    assert_eq!(
+        find(ShipSearch { tag: own(), ..ShipSearch::default() }).await,
+        "s-00 s-04 s-08 s-12"
+    );
+    assert_eq!(
+        find(ShipSearch { category: tanker(), tag: own(), ..ShipSearch::default() }).await,
+        "s-00 s-12"
+    );
     let long = vec![range("lpp_m", 40.0, 90.0)];
-    assert_eq!(find(ShipSearch { ranges: long.clone(), ..ShipSearch::default() }).await, "s-04 s-05 s-06 s-07 s-08 s-09");
+    assert_eq!(
+        find(ShipSearch { ranges: long.clone(), ..ShipSearch::default() }).await,
+        "s-04 s-05 s-06 s-07 s-08 s-09"
+    );
     assert_eq!(find(ShipSearch { ranges: long.clone(), tag: own(), category: tanker() }).await, "");
     assert_eq!(find(ShipSearch { ranges: long, tag: own(), category: None }).await, "s-04 s-08");
     let narrow = vec![range("beam_m", 0.0, 15.0), range("lpp_m", 0.0, 80.0)];
-    assert_eq!(find(ShipSearch { ranges: narrow, ..ShipSearch::default() }).await, "s-08 s-07 s-06 s-05");
-    assert_eq!(find(ShipSearch { ranges: vec![range("draught_m", 0.0, 9.0)], ..ShipSearch::default() }).await, "");
+    assert_eq!(
+        find(ShipSearch { ranges: narrow, ..ShipSearch::default() }).await,
+        "s-08 s-07 s-06 s-05"
+    );
+    assert_eq!(
+        find(ShipSearch { ranges: vec![range("draught_m", 0.0, 9.0)], ..ShipSearch::default() })
+            .await,
+        ""
+    );
     assert_eq!(find(ShipSearch::default()).await.split(' ').count(), 13);
-    let vectors =
-        on.store.ships().vectors(&ShipSearch { category: tanker(), tag: own(), ..ShipSearch::default() }).await.unwrap();
-    let vectors: Vec<_> = vectors.iter().map(|ship| (ship.head.name.as_str(), ship.vectors.as_str())).collect();
+    let vectors = on
+        .store
+        .ships()
+        .vectors(&ShipSearch { category: tanker(), tag: own(), ..ShipSearch::default() })
+        .await
+        .unwrap();
+    let vectors: Vec<_> =
+        vectors.iter().map(|ship| (ship.head.name.as_str(), ship.vectors.as_str())).collect();
     assert_eq!(vectors, [("s-00", "[0]"), ("s-12", "[12]")]);
 }
 
@@ -81,7 +116,8 @@ async fn many(on: &TestStore) {
         ),
         "INSERT INTO ship_facts SELECT name, 'lpp_m', 1.0 * created_us FROM ships".into(),
         "INSERT INTO ship_facts SELECT name, 'beam_m', 3000.0 - created_us FROM ships".into(),
-        "INSERT INTO ship_tags SELECT name, 'own-fleet' FROM ships WHERE created_us % 100 = 0".into(),
+        "INSERT INTO ship_tags SELECT name, 'own-fleet' FROM ships WHERE created_us % 100 = 0"
+            .into(),
     ] {
         on.database.damage(&sql).await;
     }
@@ -90,7 +126,9 @@ async fn many(on: &TestStore) {
 /// Whether few or many ships meet a condition, the same are found.
 async fn few_are_found_among_many(on: &TestStore) {
     many(on).await;
-    let ships = |numbers: Vec<usize>| numbers.iter().map(|number| format!("m-{}", 10_000 + number)).collect::<Vec<_>>();
+    let ships = |numbers: Vec<usize>| {
+        numbers.iter().map(|number| format!("m-{}", 10_000 + number)).collect::<Vec<_>>()
+    };
     let long = || range("lpp_m", 100.0, 2950.0);
     let with = |ranges| ShipSearch { ranges, ..ShipSearch::default() };
     let broad = with(vec![long(), range("beam_m", 10.0, 2800.0)]);
@@ -101,7 +139,9 @@ async fn few_are_found_among_many(on: &TestStore) {
     assert_eq!(every(on, &barge, 1000).await.len(), 2751);
     let own = ShipSearch { tag: Some("own-fleet".into()), ..barge };
     assert_eq!(every(on, &own, 10).await, ships((2..=29).map(|number| 100 * number).collect()));
-    assert!(every(on, &ShipSearch { category: Some("tanker".into()), ..broad }, 10).await.is_empty());
+    assert!(
+        every(on, &ShipSearch { category: Some("tanker".into()), ..broad }, 10).await.is_empty()
+    );
 }
 
 async fn a_page_goes_on_where_the_last_one_ended_whatever_is_added(on: &TestStore) {
@@ -118,7 +158,8 @@ async fn a_page_goes_on_where_the_last_one_ended_whatever_is_added(on: &TestStor
             on.store.ships().create(&ship(name)).await.unwrap();
         }
         index(on).await;
-        let second = on.store.ships().search(&search, &Page { after: first.next, limit: 9 }).await.unwrap();
+        let second =
+            on.store.ships().search(&search, &Page { after: first.next, limit: 9 }).await.unwrap();
         assert_eq!(names(&second).join(" "), expected);
     }
 }
@@ -136,7 +177,12 @@ async fn what_changes_is_written_anew(on: &TestStore) {
     let [old, same] = &waiting[..] else { panic!() };
     let facts = |waiting: &sistership_store::Waiting, value| {
         let facts = vec![("lpp_m".to_owned(), value)];
-        ShipFacts { waiting: waiting.clone(), category: "tanker".into(), facts, vectors: "[]".into() }
+        ShipFacts {
+            waiting: waiting.clone(),
+            category: "tanker".into(),
+            facts,
+            vectors: "[]".into(),
+        }
     };
     on.store.search_index().write(&[facts(old, 7.0), facts(same, 8.0)]).await.unwrap();
     let search = ShipSearch { ranges: vec![range("lpp_m", 5.0, 9.0)], ..ShipSearch::default() };
@@ -166,8 +212,14 @@ async fn tags_are_put_on_and_taken_off(on: &TestStore) {
 async fn a_search_that_cannot_be_is_refused(on: &TestStore) {
     let ships = on.store.ships();
     let search = |ranges| ShipSearch { ranges, ..ShipSearch::default() };
-    assert_invalid(ships.search(&search(vec![range("lpp_m", f64::NAN, 1.0)]), &Page::first(1)).await, "min");
-    assert_invalid(ships.search(&search(vec![range("lpp_m", 0.0, 1.0); 5]), &Page::first(1)).await, "ranges");
+    assert_invalid(
+        ships.search(&search(vec![range("lpp_m", f64::NAN, 1.0)]), &Page::first(1)).await,
+        "min",
+    );
+    assert_invalid(
+        ships.search(&search(vec![range("lpp_m", 0.0, 1.0); 5]), &Page::first(1)).await,
+        "ranges",
+    );
     assert_invalid(ships.search(&search(Vec::new()), &Page::first(1001)).await, "limit");
     assert_invalid(ships.vectors(&search(Vec::new())).await, "category");
 }

@@ -13,7 +13,8 @@ async fn a_ship_keeps_its_history(on: &TestStore) {
     let updated = ships.update(&changed, 1).await.unwrap();
     assert_eq!((updated.revision, updated.updated_us - updated.created_us), (2, 1_000_000));
     let history = ships.revisions("kvlcc2", &Page::first(10)).await.unwrap().items;
-    let documents: Vec<_> = history.iter().map(|revision| (revision.revision, revision.document.as_str())).collect();
+    let documents: Vec<_> =
+        history.iter().map(|revision| (revision.revision, revision.document.as_str())).collect();
     assert_eq!(documents, [(2, changed.document.as_str()), (1, ship("kvlcc2").document.as_str())]);
 }
 
@@ -43,8 +44,13 @@ async fn a_deletion_can_be_undone(on: &TestStore) {
 }
 
 async fn ships_are_listed_by_category(on: &TestStore) {
-    for (name, category) in [("a", "tanker"), ("b", "container"), ("c", "tanker"), ("d", "tanker")] {
-        on.store.ships().create(&NewShip { category: category.into(), ..ship(name) }).await.unwrap();
+    for (name, category) in [("a", "tanker"), ("b", "container"), ("c", "tanker"), ("d", "tanker")]
+    {
+        on.store
+            .ships()
+            .create(&NewShip { category: category.into(), ..ship(name) })
+            .await
+            .unwrap();
     }
     let names = |list: &sistership_store::List<sistership_store::Ship>| -> Vec<String> {
         list.items.iter().map(|ship| ship.name.clone()).collect()

@@ -3,7 +3,8 @@
 use std::fmt::Debug;
 
 use sistership_store::{
-    AliasMove, Expect, NewJob, NewReport, NewShip, NewTrial, NewVersion, Result, StoreError, VersionHead, sha256_hex,
+    AliasMove, Expect, NewJob, NewReport, NewShip, NewTrial, NewVersion, Result, StoreError,
+    VersionHead, sha256_hex,
 };
 
 pub use sistership_store::testing::{TestDatabase, TestStore};
@@ -51,7 +52,13 @@ pub fn trial(ship: &str, samples: &str) -> NewTrial {
 
 pub fn version(model: &str) -> NewVersion {
     let (law, method) = ("abkowitz".into(), "published".into());
-    NewVersion { model: model.into(), parent: None, law, method, document: r#"{"coefficients":{}}"#.into() }
+    NewVersion {
+        model: model.into(),
+        parent: None,
+        law,
+        method,
+        document: r#"{"coefficients":{}}"#.into(),
+    }
 }
 
 pub fn report(ship: &str) -> NewReport {
@@ -60,7 +67,11 @@ pub fn report(ship: &str) -> NewReport {
 }
 
 pub fn job(ship: &str) -> NewJob {
-    NewJob { kind: "refinement".into(), ship: Some(ship.into()), request: r#"{"source":"auto"}"#.into() }
+    NewJob {
+        kind: "refinement".into(),
+        ship: Some(ship.into()),
+        request: r#"{"source":"auto"}"#.into(),
+    }
 }
 
 pub fn champion(expect: Expect) -> AliasMove {
@@ -87,7 +98,9 @@ pub fn assert_not_found<T: Debug>(result: Result<T>, expected: &str) {
 #[track_caller]
 pub fn assert_conflict<T: Debug>(result: Result<T>, expected: &str) {
     match result {
-        Err(StoreError::Conflict { message, .. }) => assert!(message.contains(expected), "{message}"),
+        Err(StoreError::Conflict { message, .. }) => {
+            assert!(message.contains(expected), "{message}")
+        }
         other => panic!("expected a conflict ({expected}), got {other:?}"),
     }
 }

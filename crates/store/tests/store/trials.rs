@@ -28,7 +28,12 @@ async fn several_trials_are_put_in_all_or_none(on: &TestStore) {
     let batch = [trial("kcs", "one"), trial("nobody", "two")];
     assert_not_found(on.store.trials().insert_all(&batch).await, "ship");
     assert!(on.store.trials().list("kcs", &Page::first(10)).await.unwrap().items.is_empty());
-    let inserted = on.store.trials().insert_all(&[trial("kcs", "one"), trial("kcs", "two"), trial("kcs", "one")]).await.unwrap();
+    let inserted = on
+        .store
+        .trials()
+        .insert_all(&[trial("kcs", "one"), trial("kcs", "two"), trial("kcs", "one")])
+        .await
+        .unwrap();
     assert_eq!(inserted.iter().map(|one| one.new).collect::<Vec<_>>(), [true, true, false]);
 }
 
@@ -36,18 +41,31 @@ async fn a_job_follows_trials_or_both_are_undone(on: &TestStore) {
     on.store.ships().create(&ship("kcs")).await.unwrap();
     let objects = Objects::memory();
     let one = [trial("kcs", "one")];
-    assert_not_found(on.store.trials().insert_all_and_enqueue(&one, &objects, |_| None).await, "object");
-    assert!(on.store.trials().list("kcs", &Page::first(10)).await.unwrap().items.is_empty(), "no trial without samples");
+    assert_not_found(
+        on.store.trials().insert_all_and_enqueue(&one, &objects, |_| None).await,
+        "object",
+    );
+    assert!(
+        on.store.trials().list("kcs", &Page::first(10)).await.unwrap().items.is_empty(),
+        "no trial without samples"
+    );
     for samples in ["one", "two"] {
         objects.put(samples.into()).await.unwrap();
     }
-    let asked = |inserted: &[sistership_store::Inserted<_>]| inserted.iter().any(|one| one.new).then(|| job("kcs"));
-    let (_, queued) = on.store.trials().insert_all_and_enqueue(&one, &objects, asked).await.unwrap();
+    let asked = |inserted: &[sistership_store::Inserted<_>]| {
+        inserted.iter().any(|one| one.new).then(|| job("kcs"))
+    };
+    let (_, queued) =
+        on.store.trials().insert_all_and_enqueue(&one, &objects, asked).await.unwrap();
     assert_eq!(queued.unwrap().ship.as_deref(), Some("kcs"));
-    let (_, queued) = on.store.trials().insert_all_and_enqueue(&one, &objects, asked).await.unwrap();
+    let (_, queued) =
+        on.store.trials().insert_all_and_enqueue(&one, &objects, asked).await.unwrap();
     assert_eq!(queued, None, "nothing new, nothing to do");
     let broken = |_: &[_]| Some(sistership_store::NewJob { request: "{".into(), ..job("kcs") });
-    assert_invalid(on.store.trials().insert_all_and_enqueue(&[trial("kcs", "two")], &objects, broken).await, "request");
+    assert_invalid(
+        on.store.trials().insert_all_and_enqueue(&[trial("kcs", "two")], &objects, broken).await,
+        "request",
+    );
     assert_eq!(on.store.trials().list("kcs", &Page::first(10)).await.unwrap().items.len(), 1);
 }
 
@@ -74,7 +92,8 @@ async fn trials_are_listed_in_the_order_of_upload(on: &TestStore) {
     }
     let first = on.store.trials().list("kcs", &Page::first(3)).await.unwrap();
     let second = on.store.trials().list("kcs", &Page::after(first.next.unwrap(), 3)).await.unwrap();
-    let names: Vec<_> = first.items.iter().chain(&second.items).map(|trial| trial.name.as_str()).collect();
+    let names: Vec<_> =
+        first.items.iter().chain(&second.items).map(|trial| trial.name.as_str()).collect();
     assert_eq!(names, ["0.csv", "1.csv", "2.csv", "3.csv", "4.csv"]);
     assert_eq!(second.next, None);
 }

@@ -5,7 +5,10 @@ use crate::support::*;
 async fn a_version_is_found_again(on: &TestStore) {
     let store = on.store.versions();
     let head = store.create(&version("kcs"), &[champion(Expect::Absent)]).await.unwrap();
-    assert_eq!((head.number, head.sha256.as_str()), (1, sha256_hex(version("kcs").document.as_bytes()).as_str()));
+    assert_eq!(
+        (head.number, head.sha256.as_str()),
+        (1, sha256_hex(version("kcs").document.as_bytes()).as_str())
+    );
     let found = store.get("kcs", 1).await.unwrap();
     assert_eq!((&found.head, &found.document), (&head, &version("kcs").document));
     assert_eq!(store.by_id(&head.id).await.unwrap(), found);
@@ -20,8 +23,10 @@ async fn each_model_counts_for_itself_and_newest_first(on: &TestStore) {
     versions(on, "kcs", 5).await;
     versions(on, "pcc", 1).await;
     let first = on.store.versions().list("kcs", &Page::first(3)).await.unwrap();
-    let second = on.store.versions().list("kcs", &Page::after(first.next.unwrap(), 3)).await.unwrap();
-    let numbers: Vec<_> = first.items.iter().chain(&second.items).map(|version| version.number).collect();
+    let second =
+        on.store.versions().list("kcs", &Page::after(first.next.unwrap(), 3)).await.unwrap();
+    let numbers: Vec<_> =
+        first.items.iter().chain(&second.items).map(|version| version.number).collect();
     assert_eq!((numbers, second.next), (vec![5, 4, 3, 2, 1], None));
     assert_eq!(on.store.versions().latest("pcc").await.unwrap().head.number, 1);
 }
@@ -33,7 +38,8 @@ async fn children_name_their_parent(on: &TestStore) {
         on.store.versions().create(&child, &[]).await.unwrap();
     }
     let children = on.store.versions().children(&parent, &Page::first(10)).await.unwrap().items;
-    let models: Vec<_> = children.iter().map(|child| (child.model.as_str(), child.number)).collect();
+    let models: Vec<_> =
+        children.iter().map(|child| (child.model.as_str(), child.number)).collect();
     assert_eq!(models, [("kvlcc2", 2), ("esso-tanker", 1)]);
     let orphan = NewVersion { parent: Some("none".into()), ..version("kvlcc2") };
     assert_invalid(on.store.versions().create(&orphan, &[]).await, "parent");
@@ -41,7 +47,8 @@ async fn children_name_their_parent(on: &TestStore) {
 
 async fn a_refused_alias_takes_no_number(on: &TestStore) {
     versions(on, "kcs", 1).await;
-    let refused = on.store.versions().create(&version("kcs"), &[champion(Expect::Revision(7))]).await;
+    let refused =
+        on.store.versions().create(&version("kcs"), &[champion(Expect::Revision(7))]).await;
     assert_stale(refused, None);
     assert_eq!(versions(on, "kcs", 1).await[0].number, 2);
 }

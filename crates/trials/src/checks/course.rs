@@ -27,7 +27,9 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
     let doubtful = match (recording.channel(Channel::X), recording.channel(Channel::Y)) {
         (Some(x), Some(y)) => {
             let agreement = |scale: f64| agreement(recording, psi, scale, x, y);
-            range(psi) * PI / 180.0 > TURNED && agreement(1.0) < DOUBTED && agreement(PI / 180.0) > BELIEVED
+            range(psi) * PI / 180.0 > TURNED
+                && agreement(1.0) < DOUBTED
+                && agreement(PI / 180.0) > BELIEVED
         }
         _ => range(psi) > MANY_TURNS && range(psi) / recording.trial.duration_s() > FAST,
     };
@@ -58,9 +60,11 @@ mod tests {
     fn heading_only(scale: f64, keep: &[Channel]) -> String {
         let mut channels = zigzag();
         channels.retain(|(channel, _)| keep.contains(channel));
-        channels.iter_mut().filter(|(channel, _)| *channel == Channel::Psi).for_each(|(_, values)| {
-            values.iter_mut().for_each(|value| *value *= scale);
-        });
+        channels.iter_mut().filter(|(channel, _)| *channel == Channel::Psi).for_each(
+            |(_, values)| {
+                values.iter_mut().for_each(|value| *value *= scale);
+            },
+        );
         said(&recording(&channels), check)
     }
 

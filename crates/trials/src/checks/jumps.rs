@@ -30,12 +30,18 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
 }
 
 fn position(recording: &Recording, findings: &mut Findings) {
-    let (Some(x), Some(y)) = (recording.channel(Channel::X), recording.channel(Channel::Y)) else { return };
+    let (Some(x), Some(y)) = (recording.channel(Channel::X), recording.channel(Channel::Y)) else {
+        return;
+    };
     let (t, header) = (recording.time(), recording.header(Channel::X));
     let step = |k: usize| (x[k] - x[k - 1]).hypot(y[k] - y[k - 1]);
     let hits = recording.hits(1..t.len(), |k| step(k) > FIX_STEP + MAX_SPEED * (t[k] - t[k - 1]));
     findings.rows(Severity::Error, header, &hits, |k| {
-        format!("the position jumps {:.1} m in {:.3} s; remove the faulty fix, or split the file there", step(k), t[k] - t[k - 1])
+        format!(
+            "the position jumps {:.1} m in {:.3} s; remove the faulty fix, or split the file there",
+            step(k),
+            t[k] - t[k - 1]
+        )
     });
     if hits.is_empty() {
         unusual(recording, step, findings);
@@ -48,7 +54,9 @@ fn unusual(recording: &Recording, step: impl Fn(usize) -> f64, findings: &mut Fi
     let steady = recording.segments.iter().flat_map(|segment| segment.start + 1..segment.end);
     let unusual = steady.filter(|&k| step(k) > UNUSUAL * typical && typical > 0.0);
     let mut count = 0;
-    if let Some(largest) = unusual.inspect(|_| count += 1).max_by(|&a, &b| step(a).total_cmp(&step(b))) {
+    if let Some(largest) =
+        unusual.inspect(|_| count += 1).max_by(|&a, &b| step(a).total_cmp(&step(b)))
+    {
         let message = format!(
             "the position steps {:.2} m here where 95 % of steps are below {typical:.3} m ({count} such steps); satellite fixes do so",
             step(largest)
@@ -76,9 +84,14 @@ fn speed(recording: &Recording, channel: Channel, findings: &mut Findings) {
     let Some(values) = recording.channel(channel) else { return };
     let (t, header) = (recording.time(), recording.header(channel));
     let step = |k: usize| values[k] - values[k - 1];
-    let hits = recording.hits(1..t.len(), |k| step(k).abs() > SPEED_STEP + ACCELERATION * (t[k] - t[k - 1]));
+    let hits = recording
+        .hits(1..t.len(), |k| step(k).abs() > SPEED_STEP + ACCELERATION * (t[k] - t[k - 1]));
     findings.rows(Severity::Error, header, &hits, |k| {
-        format!("the speed steps {:.2} m/s in {:.3} s, which no ship does; remove the faulty row", step(k), t[k] - t[k - 1])
+        format!(
+            "the speed steps {:.2} m/s in {:.3} s, which no ship does; remove the faulty row",
+            step(k),
+            t[k] - t[k - 1]
+        )
     });
 }
 
@@ -96,12 +109,23 @@ mod tests {
     fn impossible_steps_name_their_row() {
         let broken = |channel: Channel, by: f64| {
             let mut channels = zigzag();
-            channels.iter_mut().filter(|(name, _)| *name == channel).for_each(|(_, values)| values[100] += by);
+            channels
+                .iter_mut()
+                .filter(|(name, _)| *name == channel)
+                .for_each(|(_, values)| values[100] += by);
             said(&recording(&channels), check)
         };
-        assert!(broken(Channel::X, 60.0).starts_with("error Some(102) Some(\"x_m\") the position jumps"));
-        assert!(broken(Channel::Psi, 1.2).starts_with("error Some(102) Some(\"psi_rad\") the heading steps"));
-        assert!(broken(Channel::U, 8.0).starts_with("error Some(102) Some(\"u_m_s\") the speed steps"));
+        assert!(
+            broken(Channel::X, 60.0)
+                .starts_with("error Some(102) Some(\"x_m\") the position jumps")
+        );
+        assert!(
+            broken(Channel::Psi, 1.2)
+                .starts_with("error Some(102) Some(\"psi_rad\") the heading steps")
+        );
+        assert!(
+            broken(Channel::U, 8.0).starts_with("error Some(102) Some(\"u_m_s\") the speed steps")
+        );
         // A satellite fix that steps is the seafarer's daily bread.
         let text = broken(Channel::X, 27.0);
         assert!(text.starts_with("warning Some(10") && text.contains("satellite fixes"), "{text}");

@@ -15,10 +15,26 @@ use crate::stats::quantile;
 const LIMITS: [(Channel, f64, &str); 9] = [
     (Channel::U, 40.0, "no ship is that fast; check the column and its unit"),
     (Channel::V, 40.0, "no ship is that fast; check the column and its unit"),
-    (Channel::R, 1.5, "no ship turns that fast; if the values are degrees per second declare `deg/s`"),
-    (Channel::P, 3.0, "no ship rolls that fast; if the values are degrees per second declare `deg/s`"),
-    (Channel::Phi, FRAC_PI_2, "the ship would lie on her side; if the values are degrees declare `deg`"),
-    (Channel::Delta, FRAC_PI_2, "no rudder turns that far; if the values are degrees declare `deg`"),
+    (
+        Channel::R,
+        1.5,
+        "no ship turns that fast; if the values are degrees per second declare `deg/s`",
+    ),
+    (
+        Channel::P,
+        3.0,
+        "no ship rolls that fast; if the values are degrees per second declare `deg/s`",
+    ),
+    (
+        Channel::Phi,
+        FRAC_PI_2,
+        "the ship would lie on her side; if the values are degrees declare `deg`",
+    ),
+    (
+        Channel::Delta,
+        FRAC_PI_2,
+        "no rudder turns that far; if the values are degrees declare `deg`",
+    ),
     (Channel::N, 200.0, "no propeller turns that fast; if the values are per minute declare `rpm`"),
     (Channel::WindSpeed, 100.0, "no wind blows that fast; check the column and its unit"),
     (Channel::ApparentWindSpeed, 100.0, "no wind blows that fast; check the column and its unit"),
@@ -29,19 +45,39 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
         beyond(recording, channel, |value| value.abs() > limit, advice, findings);
     }
     for channel in [Channel::WindSpeed, Channel::ApparentWindSpeed] {
-        beyond(recording, channel, |value| value < 0.0, "a wind speed is not negative; give its direction apart", findings);
+        beyond(
+            recording,
+            channel,
+            |value| value < 0.0,
+            "a wind speed is not negative; give its direction apart",
+            findings,
+        );
     }
-    beyond(recording, Channel::Depth, |value| value <= 0.0, "depth is positive downwards", findings);
+    beyond(
+        recording,
+        Channel::Depth,
+        |value| value <= 0.0,
+        "depth is positive downwards",
+        findings,
+    );
     tiny_rudder(recording, findings);
     fast_propeller(recording, findings);
 }
 
-fn beyond(recording: &Recording, channel: Channel, wrong: impl Fn(f64) -> bool, advice: &str, findings: &mut Findings) {
+fn beyond(
+    recording: &Recording,
+    channel: Channel,
+    wrong: impl Fn(f64) -> bool,
+    advice: &str,
+    findings: &mut Findings,
+) {
     let Some(values) = recording.channel(channel) else { return };
     let hits = recording.hits(0..values.len(), |k| wrong(values[k]));
     let unit = recording.canonical_unit(channel);
     let note = converted(recording, channel, unit);
-    findings.rows(Severity::Error, recording.header(channel), &hits, |k| format!("{:.4} {unit}{note}: {advice}", values[k]));
+    findings.rows(Severity::Error, recording.header(channel), &hits, |k| {
+        format!("{:.4} {unit}{note}: {advice}", values[k])
+    });
 }
 
 fn converted(recording: &Recording, channel: Channel, canonical: &str) -> String {
@@ -52,10 +88,15 @@ fn converted(recording: &Recording, channel: Channel, canonical: &str) -> String
 
 /// A rudder that never leaves a degree is one recorded in radians and declared in degrees.
 fn tiny_rudder(recording: &Recording, findings: &mut Findings) {
-    let Some(values) = recording.channel(Channel::Delta).filter(|_| recording.unit(Channel::Delta) == "deg") else { return };
+    let Some(values) =
+        recording.channel(Channel::Delta).filter(|_| recording.unit(Channel::Delta) == "deg")
+    else {
+        return;
+    };
     let most = values.iter().fold(0.0_f64, |most, value| most.max(value.abs())) * 180.0 / PI;
     if (0.03..1.0).contains(&most) {
-        let message = format!("the rudder never exceeds {most:.2} deg; if these are radians declare `rad`");
+        let message =
+            format!("the rudder never exceeds {most:.2} deg; if these are radians declare `rad`");
         findings.warning(None, Some(recording.header(Channel::Delta)), message);
     }
 }
@@ -64,8 +105,9 @@ fn fast_propeller(recording: &Recording, findings: &mut Findings) {
     let Some(values) = recording.channel(Channel::N) else { return };
     let typical = quantile(values.iter().map(|value| value.abs()), 0.5);
     if typical > 40.0 {
-        let message =
-            format!("the propeller typically makes {typical:.0} turns per second; if these are per minute declare `rpm`");
+        let message = format!(
+            "the propeller typically makes {typical:.0} turns per second; if these are per minute declare `rpm`"
+        );
         findings.warning(None, Some(recording.header(Channel::N)), message);
     }
 }
@@ -82,7 +124,12 @@ mod tests {
     #[test]
     fn degrees_taken_for_radians_are_named() {
         let text = of(Channel::Delta, &[0.0, 35.0, -20.0]);
-        assert!(text.starts_with("error Some(3) Some(\"delta_rad\") 35.0000 rad: no rudder turns that far"), "{text}");
+        assert!(
+            text.starts_with(
+                "error Some(3) Some(\"delta_rad\") 35.0000 rad: no rudder turns that far"
+            ),
+            "{text}"
+        );
         assert!(text.contains("declare `deg`"));
         assert!(of(Channel::R, &[0.0, 2.5]).contains("declare `deg/s`"));
     }
@@ -97,9 +144,13 @@ mod tests {
 
     #[test]
     fn ordinary_values_pass() {
-        for (channel, value) in
-            [(Channel::U, 15.0), (Channel::R, 0.11), (Channel::Delta, -0.62), (Channel::N, 20.0), (Channel::Phi, 0.5)]
-        {
+        for (channel, value) in [
+            (Channel::U, 15.0),
+            (Channel::R, 0.11),
+            (Channel::Delta, -0.62),
+            (Channel::N, 20.0),
+            (Channel::Phi, 0.5),
+        ] {
             assert_eq!(of(channel, &[value, 0.5 * value]), "");
         }
     }

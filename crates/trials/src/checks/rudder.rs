@@ -24,9 +24,15 @@ const EACH: f64 = 0.25;
 const BOTH: f64 = -0.6;
 
 pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
-    let (Some(r), Some(delta)) = (recording.channel(Channel::R), recording.channel(Channel::Delta)) else { return };
+    let (Some(r), Some(delta)) = (recording.channel(Channel::R), recording.channel(Channel::Delta))
+    else {
+        return;
+    };
     let ahead = ahead(recording);
-    let blocks: Vec<Block> = blocks(recording).into_iter().filter(|block| (block.first..=block.last).all(|k| ahead[k])).collect();
+    let blocks: Vec<Block> = blocks(recording)
+        .into_iter()
+        .filter(|block| (block.first..=block.last).all(|k| ahead[k]))
+        .collect();
     if blocks.len() < ENOUGH || !manoeuvres(recording, r, delta) {
         return;
     }
@@ -72,8 +78,11 @@ fn lagged(r: &[f64], delta: &[f64], ahead: &[bool]) -> f64 {
 /// The partial correlation of rudder and yaw acceleration: b of Nomoto's model over its standard error, brought to -1 to 1.
 fn fitted(recording: &Recording, blocks: &[Block], r: &[f64], delta: &[f64]) -> f64 {
     let t = recording.time();
-    let row = |block: &Block| Vector3::new(block.integral(t, |k| r[k]), block.integral(t, |k| delta[k]), block.change(t));
-    let rows: Vec<(Vector3<f64>, f64)> = blocks.iter().map(|block| (row(block), block.change(r))).collect();
+    let row = |block: &Block| {
+        Vector3::new(block.integral(t, |k| r[k]), block.integral(t, |k| delta[k]), block.change(t))
+    };
+    let rows: Vec<(Vector3<f64>, f64)> =
+        blocks.iter().map(|block| (row(block), block.change(r))).collect();
     let gram: Matrix3<f64> = rows.iter().map(|(row, _)| row * row.transpose()).sum();
     let moment: Vector3<f64> = rows.iter().map(|(row, change)| row * *change).sum();
     let Some(inverse) = gram.try_inverse() else { return 0.0 };
@@ -94,7 +103,10 @@ mod tests {
     fn a_rudder_of_the_other_sign_is_refused() {
         assert_eq!(said(&recording(&zigzag()), check), "");
         let text = said(&zigzag_with(Channel::Delta, |delta| -delta), check);
-        assert!(text.starts_with("error None Some(\"delta_rad\")") && text.contains("port_turn"), "{text}");
+        assert!(
+            text.starts_with("error None Some(\"delta_rad\")") && text.contains("port_turn"),
+            "{text}"
+        );
     }
 
     #[test]

@@ -15,7 +15,10 @@ const ALMOST: f64 = 0.98;
 
 pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
     if recording.trial.len() < FEWEST {
-        let message = format!("{} usable rows are no trial; at least {FEWEST} are needed", recording.trial.len());
+        let message = format!(
+            "{} usable rows are no trial; at least {FEWEST} are needed",
+            recording.trial.len()
+        );
         findings.error(None, None, message);
         return;
     }
@@ -30,7 +33,11 @@ fn constant(recording: &Recording, findings: &mut Findings) {
             findings.warning(
                 None,
                 Some(recording.header(channel)),
-                format!("constant at {:.4} {} throughout", values[0], recording.canonical_unit(channel)),
+                format!(
+                    "constant at {:.4} {} throughout",
+                    values[0],
+                    recording.canonical_unit(channel)
+                ),
             );
         }
     }
@@ -71,12 +78,19 @@ mod tests {
 
     #[test]
     fn a_constant_channel_and_a_short_turn_are_told() {
-        let mut turn =
-            recording(&[(Channel::Psi, vec![0.0, 0.5, 1.0]), (Channel::N, vec![2.0; 3]), (Channel::Depth, vec![9.0; 3])]);
+        let mut turn = recording(&[
+            (Channel::Psi, vec![0.0, 0.5, 1.0]),
+            (Channel::N, vec![2.0; 3]),
+            (Channel::Depth, vec![9.0; 3]),
+        ]);
         assert!(!said(&turn, check).contains("too short"));
         turn.trial.manoeuvre = Some("turn 35 deg".into());
         let text = said(&turn, check);
-        assert!(text.contains("Some(\"n_rps\") constant at 2.0000 rps") && text.contains("57 deg of heading"), "{text}");
+        assert!(
+            text.contains("Some(\"n_rps\") constant at 2.0000 rps")
+                && text.contains("57 deg of heading"),
+            "{text}"
+        );
         assert!(!text.contains("depth"));
     }
 

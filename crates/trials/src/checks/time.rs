@@ -24,8 +24,9 @@ pub(crate) fn in_order(recording: &Recording, findings: &mut Findings) -> bool {
 /// Warns of gaps and of a start that is not zero. A gap left by dropped rows has been told already.
 pub(crate) fn gaps(recording: &Recording, findings: &mut Findings) {
     let (t, limit) = (recording.time(), GAP * recording.interval_s);
-    let hits =
-        recording.hits(1..t.len(), |k| t[k] - t[k - 1] > limit && recording.resumed.binary_search(&recording.rows[k]).is_err());
+    let hits = recording.hits(1..t.len(), |k| {
+        t[k] - t[k - 1] > limit && recording.resumed.binary_search(&recording.rows[k]).is_err()
+    });
     findings.rows(Severity::Warning, &recording.time, &hits, |k| {
         format!(
             "gap of {:.3} s (samples are {:.3} s apart); nothing is interpolated over it",
@@ -57,7 +58,9 @@ mod tests {
 
     #[test]
     fn time_runs_forwards() {
-        let text = said(&at(&[0.0, 1.0, 1.0, 0.5]), |recording, findings| assert!(!in_order(recording, findings)));
+        let text = said(&at(&[0.0, 1.0, 1.0, 0.5]), |recording, findings| {
+            assert!(!in_order(recording, findings))
+        });
         assert!(text.contains("error Some(4) Some(\"t_s\") time 1 s stands twice"), "{text}");
         assert!(text.contains("error Some(5)") && text.contains("back from 1 s to 0.5 s"));
     }

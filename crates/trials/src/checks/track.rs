@@ -24,7 +24,10 @@ type Axes = fn(f64, f64, f64, f64) -> Step;
 const DECLARED: Axes = |u, v, c, s| (u * c - v * s, u * s + v * c);
 
 const MISTAKES: [(Axes, &str); 4] = [
-    (|u, v, _, _| (u, v), "u and v are the velocities north and east, not along the ship; rotate them by the heading first"),
+    (
+        |u, v, _, _| (u, v),
+        "u and v are the velocities north and east, not along the ship; rotate them by the heading first",
+    ),
     (
         |u, v, c, s| (u * s + v * c, u * c - v * s),
         "x and y are exchanged: x points north and y east; map them the other way round",
@@ -33,7 +36,10 @@ const MISTAKES: [(Axes, &str); 4] = [
         |u, v, c, s| (u * c - v * s, -u * s - v * c),
         "y points west, or the heading counts anticlockwise; y points east and the heading counts clockwise: change the sign",
     ),
-    (|u, v, c, s| (u * c + v * s, u * s - v * c), "v is positive to port; it counts to starboard: change its sign"),
+    (
+        |u, v, c, s| (u * c + v * s, u * s - v * c),
+        "v is positive to port; it counts to starboard: change its sign",
+    ),
 ];
 
 /// Ratio of measured to predicted track, and the unit mistake it betrays.
@@ -47,7 +53,8 @@ const SCALES: [(f64, &str); 5] = [
 
 pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
     let Some(track) = Track::of(recording) else { return };
-    let message = if range(track.psi) < TURNED { None } else { track.mistake().or_else(|| track.scale()) };
+    let message =
+        if range(track.psi) < TURNED { None } else { track.mistake().or_else(|| track.scale()) };
     match message {
         Some(message) => findings.error(None, Some(recording.header(Channel::U)), message),
         None if recording.trial.velocity == VelocityFrame::Ground => track.remark(findings),
@@ -76,24 +83,34 @@ impl<'a> Track<'a> {
         let (u, v) = (recording.channel(Channel::U)?, recording.channel(Channel::V)?);
         let psi = recording.channel(Channel::Psi)?;
         let blocks = blocks(recording);
-        let measured: Vec<Step> = blocks.iter().map(|block| (block.change(x), block.change(y))).collect();
+        let measured: Vec<Step> =
+            blocks.iter().map(|block| (block.change(x), block.change(y))).collect();
         (blocks.len() >= 10).then_some(Self { recording, blocks, measured, psi, u, v })
     }
 
     fn predicted(&self, axes: Axes) -> Vec<Step> {
         let t = self.recording.time();
         let velocity = |k: usize| axes(self.u[k], self.v[k], self.psi[k].cos(), self.psi[k].sin());
-        self.blocks.iter().map(|block| (block.integral(t, |k| velocity(k).0), block.integral(t, |k| velocity(k).1))).collect()
+        self.blocks
+            .iter()
+            .map(|block| {
+                (block.integral(t, |k| velocity(k).0), block.integral(t, |k| velocity(k).1))
+            })
+            .collect()
     }
 
     /// A steady drift is taken out first: it is a current, and no sign of wrong axes.
     fn rest(&self, predicted: &[Step]) -> Rest {
-        let left: Vec<Step> = self.measured.iter().zip(predicted).map(|(a, b)| (a.0 - b.0, a.1 - b.1)).collect();
+        let left: Vec<Step> =
+            self.measured.iter().zip(predicted).map(|(a, b)| (a.0 - b.0, a.1 - b.1)).collect();
         let seconds = self.seconds();
         let sum = left.iter().fold((0.0, 0.0), |sum, step| (sum.0 + step.0, sum.1 + step.1));
         let drift = (sum.0 / seconds, sum.1 / seconds);
         let each = seconds / left.len() as f64;
-        let squares = left.iter().map(|step| (step.0 - drift.0 * each).powi(2) + (step.1 - drift.1 * each).powi(2)).sum();
+        let squares = left
+            .iter()
+            .map(|step| (step.0 - drift.0 * each).powi(2) + (step.1 - drift.1 * each).powi(2))
+            .sum();
         Rest { drift, squares }
     }
 
@@ -105,17 +122,27 @@ impl<'a> Track<'a> {
     fn mistake(&self) -> Option<String> {
         let declared = self.rest(&self.predicted(DECLARED)).squares;
         let whole = self.rest(&vec![(0.0, 0.0); self.blocks.len()]).squares;
-        let left = MISTAKES.iter().map(|&(axes, message)| (self.rest(&self.predicted(axes)).squares, message));
+        let left = MISTAKES
+            .iter()
+            .map(|&(axes, message)| (self.rest(&self.predicted(axes)).squares, message));
         let (best, message) = left.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        (best < MUCH_BETTER * declared && best < MUCH_BETTER * whole).then(|| format!("the track shows that {message}"))
+        (best < MUCH_BETTER * declared && best < MUCH_BETTER * whole)
+            .then(|| format!("the track shows that {message}"))
     }
 
     fn scale(&self) -> Option<String> {
         let predicted = self.predicted(DECLARED);
-        let pairs: Vec<(f64, f64)> = predicted.iter().zip(&self.measured).flat_map(|(a, b)| [(a.0, b.0), (a.1, b.1)]).collect();
+        let pairs: Vec<(f64, f64)> = predicted
+            .iter()
+            .zip(&self.measured)
+            .flat_map(|(a, b)| [(a.0, b.0), (a.1, b.1)])
+            .collect();
         let found = proportion(&pairs).filter(|found| found.correlation > 0.98)?;
         let unit = SCALES.iter().find(|(factor, _)| (found.slope / factor - 1.0).abs() < 0.03)?.1;
-        Some(format!("the positions move {:.4} times as fast as u and v say; the velocities are likely {unit}", found.slope))
+        Some(format!(
+            "the positions move {:.4} times as fast as u and v say; the velocities are likely {unit}",
+            found.slope
+        ))
     }
 
     fn remark(&self, findings: &mut Findings) {
@@ -127,7 +154,8 @@ impl<'a> Track<'a> {
         let drift = rest.drift.0.hypot(rest.drift.1);
         let header = self.recording.header(Channel::X);
         if drift > STEADY * speed && drift > 4.0 * scatter / n.sqrt() {
-            let towards = rest.drift.1.atan2(rest.drift.0).to_degrees().rem_euclid(360.0).round() % 360.0;
+            let towards =
+                rest.drift.1.atan2(rest.drift.0).to_degrees().rem_euclid(360.0).round() % 360.0;
             let message = format!(
                 "the positions drift {drift:.3} m/s towards {towards:.0} deg beyond what u and v say: a current with speeds through the water, or a speed sensor's error"
             );

@@ -22,7 +22,12 @@ fn earth_fixed_velocities_are_refused() {
         let (c, s) = (psi.cos(), psi.sin());
         [x, y, psi, u * c - v * s, u * s + v * c]
     });
-    assert!(text.starts_with("error None Some(\"u_m_s\") the track shows that u and v are the velocities north"), "{text}");
+    assert!(
+        text.starts_with(
+            "error None Some(\"u_m_s\") the track shows that u and v are the velocities north"
+        ),
+        "{text}"
+    );
 }
 
 #[test]

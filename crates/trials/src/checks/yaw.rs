@@ -18,9 +18,14 @@ const DEGREES: f64 = 180.0 / PI;
 
 /// Compares the change of heading over blocks of samples with the integral of the yaw rate.
 pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
-    let (Some(psi), Some(r)) = (recording.channel(Channel::Psi), recording.channel(Channel::R)) else { return };
-    let pairs: Vec<(f64, f64)> =
-        blocks(recording).into_iter().map(|block| (block.integral(recording.time(), |k| r[k]), block.change(psi))).collect();
+    let (Some(psi), Some(r)) = (recording.channel(Channel::Psi), recording.channel(Channel::R))
+    else {
+        return;
+    };
+    let pairs: Vec<(f64, f64)> = blocks(recording)
+        .into_iter()
+        .map(|block| (block.integral(recording.time(), |k| r[k]), block.change(psi)))
+        .collect();
     let Some(found) = proportion(&pairs) else { return };
     if found.correlation.abs() < CERTAIN {
         return;
@@ -55,8 +60,10 @@ fn fault(recording: &Recording, slope: f64) -> Option<String> {
 fn remark(recording: &Recording, found: Proportion, findings: &mut Findings) {
     if (found.slope - 1.0).abs() > MODERATE {
         let psi = recording.header(Channel::Psi);
-        let message =
-            format!("the heading `{psi}` turns {:.2} times as fast as the yaw rate says; check both sensors", found.slope);
+        let message = format!(
+            "the heading `{psi}` turns {:.2} times as fast as the yaw rate says; check both sensors",
+            found.slope
+        );
         findings.warning(None, Some(recording.header(Channel::R)), message);
     }
 }
@@ -69,15 +76,23 @@ mod tests {
     #[test]
     fn degrees_and_signs_are_told_from_radians() {
         assert_eq!(said(&recording(&zigzag()), check), "");
-        assert!(said(&zigzag_with(Channel::R, |r| r * DEGREES), check).contains("declare `r_rad_s` in `deg/s`"));
-        assert!(said(&zigzag_with(Channel::Psi, |psi| psi * DEGREES), check).contains("declare `psi_rad` in `deg`"));
+        assert!(
+            said(&zigzag_with(Channel::R, |r| r * DEGREES), check)
+                .contains("declare `r_rad_s` in `deg/s`")
+        );
+        assert!(
+            said(&zigzag_with(Channel::Psi, |psi| psi * DEGREES), check)
+                .contains("declare `psi_rad` in `deg`")
+        );
         assert!(said(&zigzag_with(Channel::R, |r| -r), check).contains("opposite ways"));
         assert!(said(&zigzag_with(Channel::R, |r| 1.2 * r), check).starts_with("warning"));
     }
 
     #[test]
     fn noise_about_a_straight_course_says_nothing() {
-        let noise = |seed: usize| (0..600).map(|k| ((k * 7919 + seed) % 101) as f64 * 1e-5).collect::<Vec<f64>>();
+        let noise = |seed: usize| {
+            (0..600).map(|k| ((k * 7919 + seed) % 101) as f64 * 1e-5).collect::<Vec<f64>>()
+        };
         let straight = recording(&[(Channel::Psi, noise(3)), (Channel::R, noise(57))]);
         assert!(!said(&straight, check).contains("error"));
     }

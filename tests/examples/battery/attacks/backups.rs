@@ -51,7 +51,12 @@ async fn run(field: &Field) -> Result<(), Failure> {
     Ok(())
 }
 
-async fn write(shared: Arc<Shared>, client: Client, number: u64, mut rng: rand_chacha::ChaCha12Rng) -> Result<(), Failure> {
+async fn write(
+    shared: Arc<Shared>,
+    client: Client,
+    number: u64,
+    mut rng: rand_chacha::ChaCha12Rng,
+) -> Result<(), Failure> {
     let Shared { ledger, tally, stop } = shared.as_ref();
     let (mut ship, mut writes) = (String::new(), Vec::new());
     for count in 0.. {
@@ -83,20 +88,26 @@ async fn one(field: &Field, place: &Place, ledger: &Ledger, number: usize) -> Re
     let all = ledger.entries().clone();
     let begun = all.len();
     if taken.status != Some(0) {
-        field.tally.wrong(format!("a backup: status {:?}: {} {}", taken.status, taken.json, taken.errors));
+        field
+            .tally
+            .wrong(format!("a backup: status {:?}: {} {}", taken.status, taken.json, taken.errors));
         return Ok(());
     }
     let other = Place::new(field.database, Arc::clone(&field.tally)).await?;
     let restored = other.command(&["restore", &folder]).await?;
     if restored.status != Some(0) {
-        field.tally.wrong(format!("a restoration: status {:?}: {} {}", restored.status, restored.json, restored.errors));
+        field.tally.wrong(format!(
+            "a restoration: status {:?}: {} {}",
+            restored.status, restored.json, restored.errors
+        ));
         return Ok(());
     }
     other.check("of a restored store").await?;
     let server = other.serve().await?;
     let known = Ledger::default();
     // What was sent while it was taken may be in it or not.
-    let sent = all.into_iter().skip(before.len()).map(|entry| Entry { acknowledged: None, ..entry });
+    let sent =
+        all.into_iter().skip(before.len()).map(|entry| Entry { acknowledged: None, ..entry });
     known.entries().extend(before.into_iter().chain(sent));
     known.check(&server.client, &field.tally).await;
     let later = ledger.entries()[begun..].to_vec();
@@ -111,9 +122,13 @@ async fn none_of_later(field: &Field, client: &Client, later: &[Entry]) {
     let ships: BTreeSet<&str> = later.iter().map(|entry| entry.write.ship.as_str()).collect();
     for ship in ships {
         let trials = client.items(&format!("/v1/trials?ship={ship}")).await.unwrap_or_default();
-        let there = |entry: &&Entry| entry.write.ship == ship && trials.iter().any(|trial| trial["name"] == entry.write.mark);
+        let there = |entry: &&Entry| {
+            entry.write.ship == ship && trials.iter().any(|trial| trial["name"] == entry.write.mark)
+        };
         for entry in later.iter().filter(there) {
-            field.tally.wrong(format!("{} was begun after the backup, and is in it", entry.write.mark));
+            field
+                .tally
+                .wrong(format!("{} was begun after the backup, and is in it", entry.write.mark));
         }
     }
 }

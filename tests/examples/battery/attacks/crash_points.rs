@@ -39,7 +39,14 @@ async fn run(field: &Field) -> Result<(), Failure> {
     };
     let place = field.place().await?;
     let control = Control::new(place.folder())?;
-    let mut points = Points { field, faults, server: Some(place.serve_under(faults, &control).await?), place, control, round: 0 };
+    let mut points = Points {
+        field,
+        faults,
+        server: Some(place.serve_under(faults, &control).await?),
+        place,
+        control,
+        round: 0,
+    };
     let count = points.count().await?;
     // All of them where there is time for all, else a sample in an order of its own.
     let mut order: Vec<(i64, Strike)> = (1..=count).map(|at| (at, Strike::Kill)).collect();
@@ -110,7 +117,12 @@ impl Points<'_> {
         ];
         for write in &sequence {
             let place = ledger.begin(write);
-            if write.send(client).await.map(|reply| keep(&ledger, place, &reply, self.field)).is_none() {
+            if write
+                .send(client)
+                .await
+                .map(|reply| keep(&ledger, place, &reply, self.field))
+                .is_none()
+            {
                 break;
             }
         }
@@ -169,7 +181,12 @@ impl Points<'_> {
                 server.process.kill();
                 break;
             }
-            place.serve().await.map_err(|error| format!("after a first start killed at operation {at}: {error}"))?.process.kill();
+            place
+                .serve()
+                .await
+                .map_err(|error| format!("after a first start killed at operation {at}: {error}"))?
+                .process
+                .kill();
             place.check(&format!("after a first start killed at operation {at}")).await?;
             (done, at) = (done + 1, at * 2 + 1);
         }

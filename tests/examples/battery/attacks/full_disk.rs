@@ -130,7 +130,13 @@ async fn filled(field: &Field, place: &Place, disk: &Disk) -> Result<(), Failure
 }
 
 /// Writes of every kind: each is acknowledged, if there is room for it, or refused by 507.
-async fn writes(field: &Field, client: &Client, ledger: &Ledger, ship: &str, round: u64) -> Result<(), Failure> {
+async fn writes(
+    field: &Field,
+    client: &Client,
+    ledger: &Ledger,
+    ship: &str,
+    round: u64,
+) -> Result<(), Failure> {
     let name = |what: &str| format!("{ship}-{what}-{round}");
     let mut writes = vec![
         Write::ship(&name("ship")),
@@ -139,13 +145,18 @@ async fn writes(field: &Field, client: &Client, ledger: &Ledger, ship: &str, rou
         Write::refinement(ship, &name("refined")),
         Write::tag(ship, &name("tag")),
     ];
-    writes.extend((0..20).map(|more| Write::trial(ship, &name(&format!("trial-{more}")), 1000 * round + more)));
+    writes.extend(
+        (0..20)
+            .map(|more| Write::trial(ship, &name(&format!("trial-{more}")), 1000 * round + more)),
+    );
     for write in writes {
         let place = ledger.begin(&write);
         match write.send(client).await {
             Some(reply) if reply.ok() => ledger.acknowledge(place, &reply, &field.tally),
             Some(reply) if reply.status >= 500 => {}
-            Some(reply) => field.tally.wrong(format!("{:?} on a full disk: {}", write.kind, reply.status)),
+            Some(reply) => {
+                field.tally.wrong(format!("{:?} on a full disk: {}", write.kind, reply.status))
+            }
             None => field.tally.wrong(format!("{:?} on a full disk: no answer", write.kind)),
         }
     }
@@ -156,8 +167,11 @@ async fn writes(field: &Field, client: &Client, ledger: &Ledger, ship: &str, rou
 /// An upload for which there is no room.
 async fn large(field: &Field, client: &Client, ship: &str) {
     let rows: String = (0..200_000).map(|row| format!("{row},1.{row:06}\n")).collect();
-    let request = client.request(Method::POST, &format!("/v1/trials?ship={ship}&name=large.csv&diagnose=false"));
-    let reply = client.send(request.header("content-type", "text/csv").body(format!("t_s,u_m_s\n{rows}"))).await;
+    let request = client
+        .request(Method::POST, &format!("/v1/trials?ship={ship}&name=large.csv&diagnose=false"));
+    let reply = client
+        .send(request.header("content-type", "text/csv").body(format!("t_s,u_m_s\n{rows}")))
+        .await;
     match reply.map(|reply| reply.status) {
         Some(500..=599) => {}
         other => field.tally.wrong(format!("a large upload on a full disk: {other:?}, not 507")),
@@ -182,7 +196,13 @@ async fn reads(field: &Field, client: &Client, ship: &str, when: &str) {
 }
 
 /// With room again, what is sent is taken, and a key that was refused is free.
-async fn recovered(field: &Field, client: &Client, ledger: &Ledger, ship: &str, round: u64) -> Result<(), Failure> {
+async fn recovered(
+    field: &Field,
+    client: &Client,
+    ledger: &Ledger,
+    ship: &str,
+    round: u64,
+) -> Result<(), Failure> {
     let open: Vec<usize> = {
         let entries = ledger.entries();
         let open = |place: &usize| entries[*place].acknowledged.is_none();

@@ -71,7 +71,8 @@ async fn run(field: &Field) -> Result<(), Failure> {
     shared.ledger.check(&server.client, &field.tally).await;
     leftovers(&place, server).await?;
     place.check("after the kills").await?;
-    let acknowledged = shared.ledger.entries().iter().filter(|entry| entry.acknowledged.is_some()).count();
+    let acknowledged =
+        shared.ledger.entries().iter().filter(|entry| entry.acknowledged.is_some()).count();
     field.tally.remark(format!("{kills} kills, {acknowledged} writes acknowledged"));
     Ok(())
 }
@@ -116,7 +117,12 @@ async fn write(
 }
 
 /// Sends a write; where no answer came, waits for the server to be there again and repeats it.
-async fn until_known(ledger: &Ledger, place: usize, server: &mut watch::Receiver<Client>, tally: &Tally) {
+async fn until_known(
+    ledger: &Ledger,
+    place: usize,
+    server: &mut watch::Receiver<Client>,
+    tally: &Tally,
+) {
     let client = server.borrow_and_update().clone();
     let mut known = ledger.send(place, &client, tally).await;
     while known.is_none() {
@@ -150,7 +156,9 @@ async fn leftovers(place: &Place, server: Server) -> Result<(), Failure> {
     place.serve().await?.process.kill();
     let left: Vec<PathBuf> = place.uploads_under_way();
     if !left.is_empty() {
-        place.tally.wrong(format!("files of uploads that a kill has cut stay after two starts: {left:?}"));
+        place
+            .tally
+            .wrong(format!("files of uploads that a kill has cut stay after two starts: {left:?}"));
     }
     if received.is_empty() {
         place.tally.remark("no upload under way was seen in the data folder");

@@ -43,7 +43,8 @@ impl Attack for Memory {
 async fn run(field: &Field) -> Result<(), Failure> {
     let place = field.place().await?;
     let mut server = place.serve().await?;
-    let ship = server.client.request(Method::POST, "/v1/ships").header("content-type", "application/yaml");
+    let ship =
+        server.client.request(Method::POST, "/v1/ships").header("content-type", "application/yaml");
     server.client.try_send(ship.body(documents::ship(SHIP))).await?;
     let (mut rounds, mut said) = (0, Vec::new());
     while rounds == 0 || field.goes_on() {
@@ -78,7 +79,8 @@ fn documents_of_size(round: usize) -> Heavy {
         2 => "- {a: {b: {c: {d: e}}}}\n",
         _ => "- x\n",
     };
-    let text = format!("kind: law\nname: heavy\nvalues:\n{}", line.repeat(DOCUMENT_BYTES / line.len()));
+    let text =
+        format!("kind: law\nname: heavy\nvalues:\n{}", line.repeat(DOCUMENT_BYTES / line.len()));
     ("/v1/laws", "application/yaml", text.into_bytes(), DOCUMENTS)
 }
 
@@ -94,7 +96,9 @@ fn constants(kept: &OnceLock<Vec<u8>>, rows: usize) -> Result<Vec<u8>, Failure> 
         return Ok(bytes.clone());
     }
     let channels: BTreeMap<Channel, Vec<f64>> =
-        [Channel::U, Channel::V, Channel::R, Channel::Delta].map(|channel| (channel, vec![0.0; rows])).into();
+        [Channel::U, Channel::V, Channel::R, Channel::Delta]
+            .map(|channel| (channel, vec![0.0; rows]))
+            .into();
     let t_s = (0..rows).map(|row| row as f64).collect();
     let trial = Trial { name: "heavy".to_owned(), t_s, channels, ..Trial::default() };
     let bytes = to_parquet(&trial).map_err(|error| error.to_string())?;
@@ -105,7 +109,10 @@ fn constants(kept: &OnceLock<Vec<u8>>, rows: usize) -> Result<Vec<u8>, Failure> 
 async fn together(field: &Field, client: &Client, (path, media, body, count): &Heavy) -> String {
     let mut sending: JoinSet<Option<Reply>> = (0..*count)
         .map(|_| {
-            let request = client.request(Method::POST, path).header("content-type", *media).body(body.clone());
+            let request = client
+                .request(Method::POST, path)
+                .header("content-type", *media)
+                .body(body.clone());
             let (client, request) = (client.clone(), request.timeout(Duration::from_secs(120)));
             async move { client.send(request).await }
         })
@@ -113,7 +120,10 @@ async fn together(field: &Field, client: &Client, (path, media, body, count): &H
     let asked = Instant::now();
     let other = client.request(Method::GET, "/v1/ships").timeout(4 * MEANWHILE);
     if client.send(other).await.is_none() || asked.elapsed() > MEANWHILE {
-        field.tally.wrong(format!("/v1/ships waits {:.1} s beside {count} of {path}", asked.elapsed().as_secs_f64()));
+        field.tally.wrong(format!(
+            "/v1/ships waits {:.1} s beside {count} of {path}",
+            asked.elapsed().as_secs_f64()
+        ));
     }
     let mut statuses = BTreeMap::new();
     while let Some(reply) = sending.join_next().await {
@@ -132,9 +142,16 @@ async fn downloads(field: &Field, server: &Server, round: usize) -> Result<Strin
     static FILE: OnceLock<Vec<u8>> = OnceLock::new();
     let mut rows = KEPT_ROWS;
     let id = loop {
-        let body = if rows == KEPT_ROWS { constants(&FILE, rows)? } else { constants(&OnceLock::new(), rows)? };
+        let body = if rows == KEPT_ROWS {
+            constants(&FILE, rows)?
+        } else {
+            constants(&OnceLock::new(), rows)?
+        };
         let path = format!("/v1/trials?ship={SHIP}&name=long-{round}.parquet&diagnose=false");
-        let request = server.client.request(Method::POST, &path).header("content-type", "application/vnd.apache.parquet");
+        let request = server
+            .client
+            .request(Method::POST, &path)
+            .header("content-type", "application/vnd.apache.parquet");
         let reply = server.client.send(request.timeout(Duration::from_secs(120)).body(body)).await;
         match reply.map(|reply| reply.json()["trials"][0]["id"].as_str().map(str::to_owned)) {
             Some(Some(id)) => break id,
@@ -142,7 +159,9 @@ async fn downloads(field: &Field, server: &Server, round: usize) -> Result<Strin
             _ => return Err("no long trial is taken".into()),
         }
     };
-    let head = format!("GET /v1/trials/{id}/samples HTTP/1.1\r\nhost: localhost\r\naccept: text/csv\r\n\r\n");
+    let head = format!(
+        "GET /v1/trials/{id}/samples HTTP/1.1\r\nhost: localhost\r\naccept: text/csv\r\n\r\n"
+    );
     let mut held: Vec<TcpStream> = Vec::new();
     for _ in 0..DOWNLOADS {
         let socket = TcpSocket::new_v4()?;

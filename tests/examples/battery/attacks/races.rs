@@ -70,7 +70,10 @@ impl Race<'_> {
         self.gather(sent).await
     }
 
-    async fn gather(&self, sent: impl Iterator<Item = impl Future<Output = Option<Reply>> + Send + 'static>) -> Vec<Reply> {
+    async fn gather(
+        &self,
+        sent: impl Iterator<Item = impl Future<Output = Option<Reply>> + Send + 'static>,
+    ) -> Vec<Reply> {
         let mut racers: JoinSet<Option<Reply>> = sent.collect();
         let mut replies = Vec::new();
         while let Some(reply) = racers.join_next().await {
@@ -88,7 +91,8 @@ impl Race<'_> {
         let lost = replies.iter().filter(|reply| reply.status == others).count();
         if won != 1 || won + lost != replies.len() {
             let statuses: Vec<u16> = replies.iter().map(|reply| reply.status).collect();
-            self.tally.wrong(format!("{what}: one should win and the others get {others}: {statuses:?}"));
+            self.tally
+                .wrong(format!("{what}: one should win and the others get {others}: {statuses:?}"));
         }
     }
 
@@ -106,7 +110,11 @@ impl Race<'_> {
             match reply.ok() {
                 true => ledger.acknowledge(place, &reply, self.tally),
                 false if in_progress(&reply) => {}
-                false => self.tally.wrong(format!("the same key: {} {}", reply.status, reply.json()["detail"])),
+                false => self.tally.wrong(format!(
+                    "the same key: {} {}",
+                    reply.status,
+                    reply.json()["detail"]
+                )),
             }
         }
         ledger.repeat(place, &self.client, self.tally).await;
@@ -117,15 +125,22 @@ impl Race<'_> {
     /// Versions registered at once get numbers without a gap.
     async fn same_number(&self, ship: &str) -> Result<(), Failure> {
         let ledger = Ledger::default();
-        let writes: Vec<Write> =
-            (0..RACERS).map(|racer| Write::version(ship, &format!("racer {racer}"))).collect::<Result<_, _>>()?;
+        let writes: Vec<Write> = (0..RACERS)
+            .map(|racer| Write::version(ship, &format!("racer {racer}")))
+            .collect::<Result<_, _>>()?;
         let writes: Vec<Write> = writes.into_iter().map(Write::unkeyed).collect();
         let places: Vec<usize> = writes.iter().map(|write| ledger.begin(write)).collect();
         let replies = self.all(|racer| writes[racer].clone()).await;
         if replies.len() != RACERS || !replies.iter().all(Reply::ok) {
-            self.tally.wrong(format!("{RACERS} versions at once: {:?}", replies.iter().map(|r| r.status).collect::<Vec<_>>()));
+            self.tally.wrong(format!(
+                "{RACERS} versions at once: {:?}",
+                replies.iter().map(|r| r.status).collect::<Vec<_>>()
+            ));
         }
-        replies.iter().zip(places).for_each(|(reply, place)| ledger.acknowledge(place, reply, self.tally));
+        replies
+            .iter()
+            .zip(places)
+            .for_each(|(reply, place)| ledger.acknowledge(place, reply, self.tally));
         ledger.check(&self.client, self.tally).await;
         Ok(())
     }
@@ -134,9 +149,16 @@ impl Race<'_> {
     async fn same_alias(&self, ship: &str) {
         let made = self.all(|racer| Write::alias(ship, &format!("made by {racer}"), 1, None)).await;
         self.one_wins(&format!("creations of an alias of {ship}"), &made, 412);
-        let alias = self.client.send(self.client.request(Method::GET, &format!("/v1/models/{ship}/aliases/ledger"))).await;
+        let alias = self
+            .client
+            .send(self.client.request(Method::GET, &format!("/v1/models/{ship}/aliases/ledger")))
+            .await;
         let Some(alias) = alias else { return self.tally.wrong("an alias is not answered") };
-        let moved = self.all(|racer| Write::alias(ship, &format!("moved by {racer}"), 2, Some(alias.header("etag")))).await;
+        let moved = self
+            .all(|racer| {
+                Write::alias(ship, &format!("moved by {racer}"), 2, Some(alias.header("etag")))
+            })
+            .await;
         self.one_wins(&format!("moves of an alias of {ship}"), &moved, 412);
     }
 
@@ -158,9 +180,14 @@ impl Race<'_> {
             return self.tally.wrong("a ship is not answered");
         };
         let changes = (0..RACERS).map(|racer| {
-            let text = documents::ship(ship).replace("A ship of", &format!("Changed by {racer}, a ship of"));
-            let request = self.client.request(Method::PUT, &path).header("if-match", now.header("etag"));
-            let (client, request) = (self.client.clone(), request.header("content-type", "application/yaml").body(text));
+            let text = documents::ship(ship)
+                .replace("A ship of", &format!("Changed by {racer}, a ship of"));
+            let request =
+                self.client.request(Method::PUT, &path).header("if-match", now.header("etag"));
+            let (client, request) = (
+                self.client.clone(),
+                request.header("content-type", "application/yaml").body(text),
+            );
             async move { client.send(request).await }
         });
         let replies = self.gather(changes).await;
@@ -170,8 +197,12 @@ impl Race<'_> {
     /// A ship that is deleted while it gets trials and versions: each is taken or refused, and none is half there.
     async fn deletion_and_use(&self, ship: &str) -> Result<(), Failure> {
         let (client, path) = (self.client.clone(), format!("/v1/ships/{ship}"));
-        let etag = client.send(client.request(Method::GET, &path)).await.map(|reply| reply.header("etag").to_owned());
-        let deletion = client.request(Method::DELETE, &path).header("if-match", etag.unwrap_or_default());
+        let etag = client
+            .send(client.request(Method::GET, &path))
+            .await
+            .map(|reply| reply.header("etag").to_owned());
+        let deletion =
+            client.request(Method::DELETE, &path).header("if-match", etag.unwrap_or_default());
         let writes: Vec<Write> = (0..RACERS as u64)
             .map(|racer| match racer % 2 {
                 0 => Ok(Write::trial(ship, &format!("late-{racer}"), 900_000_000 + racer)),
@@ -186,8 +217,15 @@ impl Race<'_> {
         if !deleted.await?.is_some_and(|reply| reply.ok()) {
             self.tally.wrong(format!("{ship} is not deleted"));
         }
-        for reply in replies.iter().filter(|reply| !reply.ok() && ![404, 409, 410, 412, 422].contains(&reply.status)) {
-            self.tally.wrong(format!("use of a ship under deletion: {} {}", reply.status, reply.json()["detail"]));
+        for reply in replies
+            .iter()
+            .filter(|reply| !reply.ok() && ![404, 409, 410, 412, 422].contains(&reply.status))
+        {
+            self.tally.wrong(format!(
+                "use of a ship under deletion: {} {}",
+                reply.status,
+                reply.json()["detail"]
+            ));
         }
         let back = client.send(client.request(Method::POST, &format!("{path}/undelete"))).await;
         if !back.is_some_and(|reply| reply.ok()) {

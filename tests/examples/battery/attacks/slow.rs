@@ -44,7 +44,8 @@ enum Kind {
     Unread,
 }
 
-const KINDS: [Kind; 5] = [Kind::Idle, Kind::HalfHead, Kind::StalledBody, Kind::StalledUpload, Kind::Unread];
+const KINDS: [Kind; 5] =
+    [Kind::Idle, Kind::HalfHead, Kind::StalledBody, Kind::StalledUpload, Kind::Unread];
 
 async fn run(field: &Field) -> Result<(), Failure> {
     let place = field.place().await?;
@@ -62,7 +63,10 @@ async fn run(field: &Field) -> Result<(), Failure> {
     both.extend(crowd(Kind::Unread, server.client.address).await);
     worst.push(measured(field, &server, "StalledBody and Unread", each).await);
     if !server.process.terminate(STOPPING).await {
-        field.tally.wrong(format!("SIGTERM beside {} slow connections: no good end within {STOPPING:?}", both.len()));
+        field.tally.wrong(format!(
+            "SIGTERM beside {} slow connections: no good end within {STOPPING:?}",
+            both.len()
+        ));
     }
     let words: Vec<String> = worst.iter().map(|ms| format!("{ms:.0}")).collect();
     field.tally.remark(format!("p99 of a new connection {} ms", words.join("/")));
@@ -71,7 +75,8 @@ async fn run(field: &Field) -> Result<(), Failure> {
 
 /// Connections of one kind, all from another address than that of the measurements.
 async fn crowd(kind: Kind, address: SocketAddr) -> Vec<TcpStream> {
-    let mut opening: JoinSet<std::io::Result<TcpStream>> = (0..CROWD).map(|_| one(kind, address)).collect();
+    let mut opening: JoinSet<std::io::Result<TcpStream>> =
+        (0..CROWD).map(|_| one(kind, address)).collect();
     let mut crowd = Vec::new();
     while let Some(opened) = opening.join_next().await {
         if let Ok(Ok(stream)) = opened {
@@ -95,7 +100,9 @@ async fn one(kind: Kind, address: SocketAddr) -> std::io::Result<TcpStream> {
 
 fn words(kind: Kind) -> String {
     let body = |path: &str, media: &str| {
-        format!("POST {path} HTTP/1.1\r\nhost: localhost\r\ncontent-type: {media}\r\ncontent-length: 1000000\r\n\r\nt_s,u_m_s\n")
+        format!(
+            "POST {path} HTTP/1.1\r\nhost: localhost\r\ncontent-type: {media}\r\ncontent-length: 1000000\r\n\r\nt_s,u_m_s\n"
+        )
     };
     match kind {
         Kind::Idle => String::new(),
@@ -123,9 +130,14 @@ async fn measured(field: &Field, server: &Server, beside: &str, time: Duration) 
     waited.sort_by(f64::total_cmp);
     let p99 = waited[(waited.len() * 99).div_ceil(100) - 1];
     if shut_out > 0 {
-        field.tally.wrong(format!("beside {CROWD} connections ({beside}) {shut_out} of {} new ones were shut out", waited.len()));
+        field.tally.wrong(format!(
+            "beside {CROWD} connections ({beside}) {shut_out} of {} new ones were shut out",
+            waited.len()
+        ));
     } else if p99 > P99_MS {
-        field.tally.wrong(format!("beside {CROWD} connections ({beside}) a new one waits {p99:.0} ms (p99), not {P99_MS}"));
+        field.tally.wrong(format!(
+            "beside {CROWD} connections ({beside}) a new one waits {p99:.0} ms (p99), not {P99_MS}"
+        ));
     }
     p99
 }

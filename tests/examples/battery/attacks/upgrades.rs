@@ -40,7 +40,9 @@ async fn run(field: &Field) -> Result<(), Failure> {
         earlier.fill_from(&today.database).await;
         let place = Place::of(earlier, std::sync::Arc::clone(&field.tally));
         copy(&today.data, &place.data)?;
-        one(&place, &ledger, migration).await.map_err(|error| format!("from migration {migration}: {error}"))?;
+        one(&place, &ledger, migration)
+            .await
+            .map_err(|error| format!("from migration {migration}: {error}"))?;
     }
     field.tally.remark(format!("from migrations {migrations:?}"));
     Ok(())
@@ -49,7 +51,11 @@ async fn run(field: &Field) -> Result<(), Failure> {
 /// A store of today with something of every kind that the first migration knew.
 async fn filled(client: &Client, tally: &Tally) -> Result<Ledger, Failure> {
     let ledger = Ledger::default();
-    let mut writes = vec![Write::ship(SHIP), Write::version(SHIP, "the first")?, Write::law(SHIP, "upgraded-law")];
+    let mut writes = vec![
+        Write::ship(SHIP),
+        Write::version(SHIP, "the first")?,
+        Write::law(SHIP, "upgraded-law"),
+    ];
     writes.extend((0..5).map(|number| Write::trial(SHIP, &format!("trial-{number}"), number)));
     writes.extend([Write::alias(SHIP, "an alias", 1, None), Write::version(SHIP, "the second")?]);
     for write in &writes {
@@ -65,7 +71,9 @@ async fn one(place: &Place, ledger: &Ledger, migration: i64) -> Result<(), Failu
     let server = place.serve().await?;
     ledger.check(&server.client, &place.tally).await;
     let more = Ledger::default();
-    for write in [Write::tag(SHIP, "opened"), Write::trial(SHIP, "later", 100), Write::ship("later")] {
+    for write in
+        [Write::tag(SHIP, "opened"), Write::trial(SHIP, "later", 100), Write::ship("later")]
+    {
         if more.send(more.begin(&write), &server.client, &place.tally).await != Some(true) {
             place.tally.wrong(format!("from migration {migration}: {:?} is not taken", write.kind));
         }
@@ -73,7 +81,10 @@ async fn one(place: &Place, ledger: &Ledger, migration: i64) -> Result<(), Failu
     place.check(&format!("from migration {migration}, served")).await?;
     let verified = place.command(&["verify", &format!("{SHIP}/1")]).await?;
     if verified.json["identical"] != true {
-        place.tally.wrong(format!("from migration {migration}: verify: {} {}", verified.json, verified.errors));
+        place.tally.wrong(format!(
+            "from migration {migration}: verify: {} {}",
+            verified.json, verified.errors
+        ));
     }
     server.process.kill();
     place.check(&format!("from migration {migration}")).await

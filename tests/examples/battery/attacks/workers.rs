@@ -61,8 +61,11 @@ async fn prepare(client: &Client) -> Result<(), Failure> {
     let trials = documents::trials()?;
     let entry = |name: &String| json!({ "file": name });
     let entries: Vec<Value> = trials.iter().map(|(name, _)| entry(name)).collect();
-    let form = Form::new().text("manifest", json!({ "kind": "trials", "ship": SHIP, "trials": entries }).to_string());
-    let form = trials.into_iter().fold(form, |form, (name, csv)| form.part("file", Part::bytes(csv).file_name(name)));
+    let form = Form::new()
+        .text("manifest", json!({ "kind": "trials", "ship": SHIP, "trials": entries }).to_string());
+    let form = trials
+        .into_iter()
+        .fold(form, |form, (name, csv)| form.part("file", Part::bytes(csv).file_name(name)));
     let sent = client.try_send(client.request(Method::POST, "/v1/trials").multipart(form)).await?;
     match made.ok() && sent.ok() {
         true => Ok(()),
@@ -74,7 +77,8 @@ async fn prepare(client: &Client) -> Result<(), Failure> {
 async fn refine(client: &Client, more: &[(&str, &str)]) -> Result<String, Failure> {
     let mut body = json!({ "ship": SHIP, "source": documents::PATTERN });
     more.iter().for_each(|(field, value)| body[*field] = json!(value));
-    let reply = client.try_send(client.request(Method::POST, "/v1/refinements").json(&body)).await?;
+    let reply =
+        client.try_send(client.request(Method::POST, "/v1/refinements").json(&body)).await?;
     let said = reply.json();
     said["id"].as_str().map(str::to_owned).ok_or_else(|| format!("no job: {said}").into())
 }
@@ -186,7 +190,8 @@ async fn begun(client: &Client, path: &str, times: usize) -> Result<Value, Failu
 async fn too_deep(field: &Field, place: &Place, client: &Client) -> Result<(), Failure> {
     let terms = "sqrt(u_A^2 + v_A^2 + 1e-6)".to_owned() + &" + 0*u_A^2".repeat(3300);
     let law = documents::low_speed_law("very-long", &terms);
-    let request = client.request(Method::POST, "/v1/laws").header("content-type", "application/yaml");
+    let request =
+        client.request(Method::POST, "/v1/laws").header("content-type", "application/yaml");
     if !client.try_send(request.body(law)).await?.ok() {
         return Ok(());
     }

@@ -50,7 +50,8 @@ pub fn hidden(labels: &[&str], share: f64) -> Hidden {
     let blows = labels.contains(&"wind");
     Hidden {
         effects: labels.iter().map(|label| listed(label, share)).collect(),
-        wind: blows.then(|| Weather { speed_m_s: WIND_M_S * share, from_rad: WIND_FROM_DEG.to_radians() }),
+        wind: blows
+            .then(|| Weather { speed_m_s: WIND_M_S * share, from_rad: WIND_FROM_DEG.to_radians() }),
         no_wind_sensor: labels.contains(&"wind/constant"),
         unlisted: None,
     }
@@ -96,20 +97,26 @@ fn of_the_sea(name: &str, share: f64) -> AppliedEffect {
         "current" => effect(name, "constant", &steady(0.6, 45.0)),
         _ => {
             let (north, east) = components(0.008 * share, 120.0);
-            effect(name, "constant", &[("north", north), ("east", east), ("surge_share", 0.4), ("yaw_lever", 0.03)])
+            effect(
+                name,
+                "constant",
+                &[("north", north), ("east", east), ("surge_share", 0.4), ("yaw_lever", 0.03)],
+            )
         }
     }
 }
 
 /// Terms of the hull that are a fifth to a third of the linear ones in these trials.
 fn term(name: &str, share: f64) -> AppliedEffect {
-    let (parameter, full) = if name == "N_r|r|" { ("N_r_abs_r", -0.0022) } else { ("Y_v_abs_v", -0.022) };
+    let (parameter, full) =
+        if name == "N_r|r|" { ("N_r_abs_r", -0.0022) } else { ("Y_v_abs_v", -0.022) };
     effect("missing-term", name, &[(parameter, full * share)])
 }
 
 fn of_the_ship(name: &str, share: f64) -> AppliedEffect {
     let with = |form: &str, full: &[(&str, f64)]| {
-        let scaled: Vec<(&str, f64)> = full.iter().map(|&(name, value)| (name, share * value)).collect();
+        let scaled: Vec<(&str, f64)> =
+            full.iter().map(|&(name, value)| (name, share * value)).collect();
         effect(name, form, &scaled)
     };
     match name {
@@ -124,7 +131,9 @@ fn of_the_ship(name: &str, share: f64) -> AppliedEffect {
         "time-delay" => with("heading", &[("delay_s", 1.5)]),
         "lever-arm" => with("gnss", &[("forward_m", 40.0), ("starboard_m", 5.0)]),
         // As large again as what Son and Nomoto give.
-        "roll-coupling" => with("linear", &[("Y_phi", -6.3e-5), ("N_phi", -1.42e-4), ("N_p", 2.13e-4)]),
+        "roll-coupling" => {
+            with("linear", &[("Y_phi", -6.3e-5), ("N_phi", -1.42e-4), ("N_p", 2.13e-4)])
+        }
         _ => panic!("no case `{name}`"),
     }
 }

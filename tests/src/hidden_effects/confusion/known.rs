@@ -19,14 +19,28 @@ const OF_NOISE: f64 = 1.05;
 /// both are noise throughout.
 pub fn ratio(diagnosis: &Diagnosis, effects: &[AppliedEffect], trials: &[&Trial]) -> Option<f64> {
     let known = errors(effects, trials, diagnosis.settings.restart_s);
-    let both = |channel: &&str| Some((*diagnosis.after.get(*channel)?, *known.get(*channel)?, *diagnosis.noise.get(*channel)?));
+    let both = |channel: &&str| {
+        Some((
+            *diagnosis.after.get(*channel)?,
+            *known.get(*channel)?,
+            *diagnosis.noise.get(*channel)?,
+        ))
+    };
     let above = |&(after, known, noise): &(f64, f64, f64)| after.max(known) > OF_NOISE * noise;
-    let logs = CHANNELS.iter().filter_map(both).filter(above).map(|(after, known, _)| (after / known).ln());
+    let logs = CHANNELS
+        .iter()
+        .filter_map(both)
+        .filter(above)
+        .map(|(after, known, _)| (after / known).ln());
     let logs: Vec<f64> = logs.collect();
     (!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp())
 }
 
-fn errors(effects: &[AppliedEffect], trials: &[&Trial], restart_s: Option<f64>) -> BTreeMap<String, f64> {
+fn errors(
+    effects: &[AppliedEffect],
+    trials: &[&Trial],
+    restart_s: Option<f64>,
+) -> BTreeMap<String, f64> {
     let mut model = BASELINE.model.clone();
     model.effects = effects.to_vec();
     let ship = Ship::new(&model, &BASELINE.law).unwrap_or_else(|error| panic!("{error}"));

@@ -16,7 +16,13 @@ pub struct Estimate {
 
 impl Estimate {
     fn line(&self) -> String {
-        format!("{} {:.4e} for {:.4e} ({:+.1} se)", self.name, self.value.value, self.truth, self.off())
+        format!(
+            "{} {:.4e} for {:.4e} ({:+.1} se)",
+            self.name,
+            self.value.value,
+            self.truth,
+            self.off()
+        )
     }
 
     /// How many standard errors it is off.
@@ -47,7 +53,8 @@ impl Outcome {
     pub fn new(case: &Case, diagnosis: &Diagnosis, trials: &[&Trial], seconds: f64) -> Self {
         let effects = &case.hidden.effects;
         let hides = matches!(case.kind, Kind::Single(_) | Kind::Pair);
-        let evidence = |found: &Found| format!("{}/{} {:.0}", found.name, found.form, found.evidence);
+        let evidence =
+            |found: &Found| format!("{}/{} {:.0}", found.name, found.form, found.evidence);
         Self {
             label: case.label.clone(),
             kind: case.kind,
@@ -55,7 +62,10 @@ impl Outcome {
             named: diagnosis.effects.iter().map(|found| found.name.clone()).collect(),
             verdict: diagnosis.verdict,
             unexplained: diagnosis.unexplained.clone(),
-            parameters: effects.iter().flat_map(|effect| deviations(effect, &diagnosis.effects)).collect(),
+            parameters: effects
+                .iter()
+                .flat_map(|effect| deviations(effect, &diagnosis.effects))
+                .collect(),
             ratio: if hides { known::ratio(diagnosis, effects, trials) } else { None },
             seconds,
             seed: case.seed,
@@ -75,7 +85,8 @@ impl Outcome {
     /// Whether the strongest of what is unexplained is of the right channel, with its middle in the right time.
     pub fn is_right_place(&self) -> bool {
         let Kind::Unlisted(channel, from_s, to_s) = self.kind else { return false };
-        let strongest = self.unexplained.iter().max_by(|a, b| a.rms_over_noise.total_cmp(&b.rms_over_noise));
+        let strongest =
+            self.unexplained.iter().max_by(|a, b| a.rms_over_noise.total_cmp(&b.rms_over_noise));
         let holds = |found: &Unexplained| {
             let middle_s = 0.5 * (found.from_s + found.to_s);
             found.channel == channel && from_s <= middle_s && middle_s <= to_s
@@ -86,7 +97,9 @@ impl Outcome {
     /// The share of the strength, the pair, the unlisted effect.
     pub fn line(&self) -> String {
         let off: Vec<String> = self.parameters.iter().map(Estimate::line).collect();
-        let open = |u: &Unexplained| format!("{} {:.1} {:.0}-{:.0} s", u.channel, u.rms_over_noise, u.from_s, u.to_s);
+        let open = |u: &Unexplained| {
+            format!("{} {:.1} {:.0}-{:.0} s", u.channel, u.rms_over_noise, u.from_s, u.to_s)
+        };
         let open: Vec<String> = self.unexplained.iter().take(3).map(open).collect();
         format!(
             "{} {} {:?} seed {}: {:?} [{}] open [{}] ratio {:.2} {} {:.1} s",
@@ -106,11 +119,17 @@ impl Outcome {
 
 /// How far the parameters of an effect that was found in its true form are from the truth, in standard errors.
 fn deviations(effect: &AppliedEffect, found: &[Found]) -> Vec<Estimate> {
-    let Some(found) = found.iter().find(|found| found.name == effect.name && found.form == effect.form.name) else {
+    let Some(found) =
+        found.iter().find(|found| found.name == effect.name && found.form == effect.form.name)
+    else {
         return Vec::new();
     };
     let off = |(name, truth): (&String, &sistership_model::quantity::Quantity)| {
-        Some(Estimate { name: name.clone(), value: *found.parameters.get(name)?, truth: truth.value })
+        Some(Estimate {
+            name: name.clone(),
+            value: *found.parameters.get(name)?,
+            truth: truth.value,
+        })
     };
     effect.parameters.iter().filter_map(off).collect()
 }

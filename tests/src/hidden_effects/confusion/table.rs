@@ -17,7 +17,8 @@ pub fn print(outcomes: &[Outcome]) {
     for ((_, row), columns) in &rows {
         let mut columns: Vec<(&String, &usize)> = columns.iter().collect();
         columns.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
-        let counts: Vec<String> = columns.iter().map(|(name, count)| format!("{name} {count}")).collect();
+        let counts: Vec<String> =
+            columns.iter().map(|(name, count)| format!("{name} {count}")).collect();
         println!("{row:<40} {}", counts.join(", "));
     }
     let mut seconds: Vec<f64> = outcomes.iter().map(|outcome| outcome.seconds).collect();
@@ -48,7 +49,9 @@ fn column(outcome: &Outcome) -> String {
             named.sort();
             named.join("+")
         }
-        Kind::Single(_) | Kind::Pair => outcome.named.first().cloned().unwrap_or_else(|| nothing.into()),
+        Kind::Single(_) | Kind::Pair => {
+            outcome.named.first().cloned().unwrap_or_else(|| nothing.into())
+        }
         // Here it is the verdict that counts.
         Kind::Unlisted(..) | Kind::Clean => match outcome.named.first() {
             Some(name) => format!("{nothing} with {name}"),

@@ -43,7 +43,11 @@ fn against_example(hidden: &Hidden, file: &str, sailing: &Sailing) -> Option<f64
     let ship = TrueShip::new(hidden);
     let said = said(&ship, &ship.sail(sailing, &[]), &[]);
     let of = |&(channel, place, deviation): &(sistership_model::trial::Channel, usize, f64)| {
-        let name = channel.column().replace("_m_s", "_mps").replace("r_rad_s", "r_radps").replace("p_rad_s", "p_radps");
+        let name = channel
+            .column()
+            .replace("_m_s", "_mps")
+            .replace("r_rad_s", "r_radps")
+            .replace("p_rad_s", "p_radps");
         let measured = columns.get(&name).unwrap_or_else(|| panic!("no column {name}"));
         let square = |(state, measured): (&StateVector, &f64)| (state[place] - measured).powi(2);
         let mean = said.iter().zip(measured).map(square).sum::<f64>() / said.len() as f64;
@@ -59,8 +63,22 @@ fn the_examples_are_sailed_within_their_noise() {
     let hidden = |effects| Hidden { effects, ..Hidden::default() };
     let hides = [
         ("i_control", hidden(Vec::new())),
-        ("b_current06", hidden(vec![effect("current", "constant", &[("north_m_s", knots), ("east_m_s", knots)])])),
-        ("c_rudder_offset1p5", hidden(vec![effect("rudder-offset", "constant", &[("offset_rad", 1.5_f64.to_radians())])])),
+        (
+            "b_current06",
+            hidden(vec![effect(
+                "current",
+                "constant",
+                &[("north_m_s", knots), ("east_m_s", knots)],
+            )]),
+        ),
+        (
+            "c_rudder_offset1p5",
+            hidden(vec![effect(
+                "rudder-offset",
+                "constant",
+                &[("offset_rad", 1.5_f64.to_radians())],
+            )]),
+        ),
     ];
     // The turns only: when exactly a zigzag reverses is the bridge's business.
     for (kind, hidden) in &hides {
@@ -82,15 +100,18 @@ fn the_rudder_lags_and_the_compass_is_late() {
         (said(&ship, &track, &[]), track)
     };
     let clean = sailed(&Hidden::default());
-    let with =
-        |name, form, values: &[(&str, f64)]| sailed(&Hidden { effects: vec![effect(name, form, values)], ..Hidden::default() });
+    let with = |name, form, values: &[(&str, f64)]| {
+        sailed(&Hidden { effects: vec![effect(name, form, values)], ..Hidden::default() })
+    };
     let late = with("time-delay", "heading", &[("delay_s", 1.5)]);
     assert_eq!(late.1, clean.1);
     assert!((late.0[203][at::PSI] - clean.0[200][at::PSI]).abs() < 1e-9);
     assert!((late.0[203][at::U] - clean.0[203][at::U]).abs() < 1e-9);
     // A ramp and a constant order: the yaw comes one time constant later.
     let lagging = with("rudder-lag", "first-order", &[("time_constant_s", 3.0)]);
-    let reached = |track: &Trajectory| track.states.iter().position(|state| state[at::PSI] > 0.1).unwrap() as f64 * 0.1;
+    let reached = |track: &Trajectory| {
+        track.states.iter().position(|state| state[at::PSI] > 0.1).unwrap() as f64 * 0.1
+    };
     let behind = reached(&lagging.1) - reached(&clean.1);
     assert!((behind - 3.0).abs() < 0.3, "{behind} s");
 }

@@ -44,11 +44,14 @@ pub fn record(ship: &TrueShip, sailing: &Sailing, seed: u64) -> Trial {
         let noise = Normal::new(0.0, deviation).unwrap();
         values.into_iter().map(|value| value + noise.sample(&mut rng)).collect()
     };
-    let mut channels: BTreeMap<Channel, Vec<f64>> =
-        NOISE.iter().map(|&(channel, index, sd)| (channel, noisy(said.iter().map(|s| s[index]).collect(), sd))).collect();
+    let mut channels: BTreeMap<Channel, Vec<f64>> = NOISE
+        .iter()
+        .map(|&(channel, index, sd)| (channel, noisy(said.iter().map(|s| s[index]).collect(), sd)))
+        .collect();
     channels.insert(Channel::N, noisy(vec![N_RPS; said.len()], REVOLUTIONS_NOISE_RPS));
     if ship.has_wind_sensor {
-        let speed = (0..steps).step_by(STRIDE).map(|k| wind.get(k).copied().unwrap_or(0.0)).collect();
+        let speed =
+            (0..steps).step_by(STRIDE).map(|k| wind.get(k).copied().unwrap_or(0.0)).collect();
         let from_rad = ship.wind.map_or(0.0, |wind| wind.from_rad);
         channels.insert(Channel::WindSpeed, noisy(speed, WIND_SPEED_NOISE_M_S));
         channels.insert(Channel::WindFrom, noisy(vec![from_rad; said.len()], WIND_FROM_NOISE_RAD));

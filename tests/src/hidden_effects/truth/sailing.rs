@@ -62,7 +62,10 @@ struct Motion {
 
 impl Motion {
     fn plus(self, rate: Self, time_s: f64) -> Self {
-        Self { state: self.state + rate.state * time_s, rudder_rad: self.rudder_rad + rate.rudder_rad * time_s }
+        Self {
+            state: self.state + rate.state * time_s,
+            rudder_rad: self.rudder_rad + rate.rudder_rad * time_s,
+        }
     }
 }
 
@@ -76,7 +79,9 @@ impl TrueShip {
         let law = ZOO.law(&model.law).unwrap();
         let of = |effect: &str, name: &str| parameter(&hidden.effects, effect, name);
         // What is true beyond the first order is done by this ship itself.
-        let own = |effect: &&AppliedEffect| ["current", "rudder-lag", "time-delay"].contains(&effect.name.as_str());
+        let own = |effect: &&AppliedEffect| {
+            ["current", "rudder-lag", "time-delay"].contains(&effect.name.as_str())
+        };
         model.effects = hidden.effects.iter().filter(|effect| !own(effect)).cloned().collect();
         let ship = Ship::new(&model, law).unwrap_or_else(|error| panic!("{error}"));
         Self {
@@ -84,7 +89,9 @@ impl TrueShip {
             gear: Gear::new(&model.steering),
             lag_s: of("rudder-lag", "time_constant_s"),
             approach_m_s: N_RPS / ship.revolutions_at(1.0),
-            current_m_s: of("current", "north_m_s").zip(of("current", "east_m_s")).unwrap_or_default(),
+            current_m_s: of("current", "north_m_s")
+                .zip(of("current", "east_m_s"))
+                .unwrap_or_default(),
             delay_s: of("time-delay", "delay_s").unwrap_or(0.0),
             wind: hidden.wind,
             has_wind_sensor: !hidden.no_wind_sensor,
@@ -95,12 +102,16 @@ impl TrueShip {
 
     /// Sails a trial; `wind_m_s` is the speed of the wind at each step, empty where it is calm.
     pub fn sail(&self, sailing: &Sailing, wind_m_s: &[f64]) -> Trajectory {
-        let mut motion = Motion { state: self.start(sailing.heading_deg.to_radians()), rudder_rad: 0.0 };
+        let mut motion =
+            Motion { state: self.start(sailing.heading_deg.to_radians()), rudder_rad: 0.0 };
         let (mut track, mut work) = (Trajectory::default(), Work::default());
         let mut bridge = sailing.bridge();
         for k in 0..=(DURATION_S / STEP_S).round() as usize {
             let t_s = k as f64 * STEP_S;
-            self.ship.envelope().check(t_s, &motion.state).unwrap_or_else(|stopped| panic!("the true ship {stopped}"));
+            self.ship
+                .envelope()
+                .check(t_s, &motion.state)
+                .unwrap_or_else(|stopped| panic!("the true ship {stopped}"));
             track.push(t_s, self.over_ground(&motion.state), N_RPS);
             let order_rad = bridge(t_s, &motion.state);
             motion = self.step(t_s, motion, order_rad, wind_m_s.get(k).copied(), &mut work);
@@ -109,7 +120,13 @@ impl TrueShip {
     }
 
     /// What the instruments would say of a sample without noise and delay.
-    pub fn says(&self, t_s: f64, state: &StateVector, wind_m_s: Option<f64>, work: &mut Work) -> StateVector {
+    pub fn says(
+        &self,
+        t_s: f64,
+        state: &StateVector,
+        wind_m_s: Option<f64>,
+        work: &mut Work,
+    ) -> StateVector {
         let inputs = self.inputs(t_s, state[at::DELTA], wind_m_s);
         self.ship.says(sistership_model::manifest::VelocityFrame::Ground, state, &inputs, work)
     }
@@ -151,16 +168,34 @@ impl TrueShip {
         (speed_m_s * cos + self.current_m_s.0, speed_m_s * sin + self.current_m_s.1)
     }
 
-    fn step(&self, t_s: f64, motion: Motion, order_rad: f64, wind_m_s: Option<f64>, work: &mut Work) -> Motion {
-        let mut rate = |fraction: f64, m: Motion| self.rate(t_s + fraction * STEP_S, m, order_rad, wind_m_s, work);
+    fn step(
+        &self,
+        t_s: f64,
+        motion: Motion,
+        order_rad: f64,
+        wind_m_s: Option<f64>,
+        work: &mut Work,
+    ) -> Motion {
+        let mut rate = |fraction: f64, m: Motion| {
+            self.rate(t_s + fraction * STEP_S, m, order_rad, wind_m_s, work)
+        };
         let k1 = rate(0.0, motion);
         let k2 = rate(0.5, motion.plus(k1, 0.5 * STEP_S));
         let k3 = rate(0.5, motion.plus(k2, 0.5 * STEP_S));
         let k4 = rate(1.0, motion.plus(k3, STEP_S));
-        [(k1, 1.0), (k2, 2.0), (k3, 2.0), (k4, 1.0)].into_iter().fold(motion, |sum, (k, w)| sum.plus(k, w * STEP_S / 6.0))
+        [(k1, 1.0), (k2, 2.0), (k3, 2.0), (k4, 1.0)]
+            .into_iter()
+            .fold(motion, |sum, (k, w)| sum.plus(k, w * STEP_S / 6.0))
     }
 
-    fn rate(&self, t_s: f64, motion: Motion, order_rad: f64, wind_m_s: Option<f64>, work: &mut Work) -> Motion {
+    fn rate(
+        &self,
+        t_s: f64,
+        motion: Motion,
+        order_rad: f64,
+        wind_m_s: Option<f64>,
+        work: &mut Work,
+    ) -> Motion {
         let state = &motion.state;
         let rudder_rad = if self.lag_s.is_some() { motion.rudder_rad } else { state[at::DELTA] };
         let ship = self.later.as_ref().filter(|_| t_s >= 0.5 * DURATION_S).unwrap_or(&self.ship);
@@ -172,7 +207,9 @@ impl TrueShip {
             Some(Unlisted::OscillatingMoment { amplitude_rad_s2 }) => {
                 rate[at::R] += amplitude_rad_s2 * (std::f64::consts::TAU * t_s / 60.0).sin();
             }
-            Some(Unlisted::HeadingForce { amplitude_m_s2 }) => rate[at::V] += amplitude_m_s2 * (3.0 * state[at::PSI]).cos(),
+            Some(Unlisted::HeadingForce { amplitude_m_s2 }) => {
+                rate[at::V] += amplitude_m_s2 * (3.0 * state[at::PSI]).cos()
+            }
             Some(Unlisted::ThrustLoss { .. }) | None => {}
         }
         let lag = self.lag_s.map_or(0.0, |lag_s| (state[at::DELTA] - motion.rudder_rad) / lag_s);
@@ -194,7 +231,9 @@ impl Sailing {
     pub fn name(&self) -> String {
         match self.manoeuvre {
             Manoeuvre::Turn(rudder) => format!("turn {rudder:+} at {:03}", self.heading_deg),
-            Manoeuvre::Zigzag(rudder, switch) => format!("zigzag {rudder}/{switch} at {:03}", self.heading_deg),
+            Manoeuvre::Zigzag(rudder, switch) => {
+                format!("zigzag {rudder}/{switch} at {:03}", self.heading_deg)
+            }
         }
     }
 

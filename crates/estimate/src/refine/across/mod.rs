@@ -23,8 +23,15 @@ pub(super) fn begun(
     approach: Option<Approach>,
     trials: &[&Trial],
 ) -> Result<(Model, OperatingEnvelope), RefineError> {
-    let carried = if source.ship == target.name() { source.clone() } else { transfer(source, own, target, approach) };
-    let envelope = OperatingEnvelope { source: source.name.clone(), ..OperatingEnvelope::new(&carried, own, trials)? };
+    let carried = if source.ship == target.name() {
+        source.clone()
+    } else {
+        transfer(source, own, target, approach)
+    };
+    let envelope = OperatingEnvelope {
+        source: source.name.clone(),
+        ..OperatingEnvelope::new(&carried, own, trials)?
+    };
     let mut model = blank_of(law, target, &carried, approach)?;
     (model.speed_m_s, model.revolutions_rps) = (carried.speed_m_s, carried.revolutions_rps);
     model.steering = carried.steering;

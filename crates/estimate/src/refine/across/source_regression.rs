@@ -28,7 +28,11 @@ impl<'a> SourceRegression<'a> {
     ///
     /// # Errors
     /// The law takes something that the trials do not record.
-    pub fn new(envelope: &'a OperatingEnvelope, blocks: &Blocks, model: &Model) -> Result<Self, RefineError> {
+    pub fn new(
+        envelope: &'a OperatingEnvelope,
+        blocks: &Blocks,
+        model: &Model,
+    ) -> Result<Self, RefineError> {
         let moments = envelope.moments(blocks)?;
         let mut zero = model.clone();
         zero.coefficients.values_mut().for_each(|quantity| quantity.value = 0.0);
@@ -47,20 +51,35 @@ impl<'a> SourceRegression<'a> {
                 Some(Fold::new(blocks, &self.zero, &training, &left_out))
             })
             .collect();
-        let error =
-            |ridge: f64| folds.iter().map(|fold| fold.shares(ridge).iter().map(|(_, share)| share).sum::<f64>()).sum::<f64>();
-        SOURCE.ridges.into_iter().min_by(|a, b| error(*a).total_cmp(&error(*b))).unwrap_or(SOURCE.ridges[0])
+        let error = |ridge: f64| {
+            folds
+                .iter()
+                .map(|fold| fold.shares(ridge).iter().map(|(_, share)| share).sum::<f64>())
+                .sum::<f64>()
+        };
+        SOURCE
+            .ridges
+            .into_iter()
+            .min_by(|a, b| error(*a).total_cmp(&error(*b)))
+            .unwrap_or(SOURCE.ridges[0])
     }
 
     /// Sets a model's coefficients, with standard errors, to what the source says; none of an axis that it does not know.
     pub fn fill(&self, blocks: &Blocks, model: &mut Model) {
         let Some(all) = merged(&self.moments, |_| true) else { return };
         let fitted = fit(blocks, &all, &self.zero, &self.choices(blocks));
-        let known = blocks.blocks.iter().filter(|block| self.knows(block)).flat_map(|block| block.names.iter().flatten());
+        let known = blocks
+            .blocks
+            .iter()
+            .filter(|block| self.knows(block))
+            .flat_map(|block| block.names.iter().flatten());
         for name in known {
             let Some(fitted) = fitted.coefficients.get(name) else { continue };
             let source = format!("regressed on {}", self.envelope.source);
-            let quantity = Quantity { standard_error: Some(fitted.standard_error), ..Quantity::new(fitted.value, source) };
+            let quantity = Quantity {
+                standard_error: Some(fitted.standard_error),
+                ..Quantity::new(fitted.value, source)
+            };
             model.coefficients.insert(name.clone(), quantity);
         }
     }
@@ -79,7 +98,11 @@ impl<'a> SourceRegression<'a> {
         let samples: usize = self.envelope.groups.iter().map(|group| group.samples.len()).sum();
         let all = merged(&self.moments, |_| true).unwrap_or_default();
         let shares = Fold::new(blocks, &self.zero, &all, &all).shares(self.ridge);
-        let left = shares.iter().map(|(axis, share)| format!("{:.1} % ({axis})", 100.0 * share)).collect::<Vec<_>>().join(", ");
+        let left = shares
+            .iter()
+            .map(|(axis, share)| format!("{:.1} % ({axis})", 100.0 * share))
+            .collect::<Vec<_>>()
+            .join(", ");
         let (source, own) = (&self.envelope.source, &self.envelope.law);
         format!(
             "the source `{source}` is of law `{own}`: what it says in {samples} states of the trials and of its standard \
@@ -92,7 +115,11 @@ impl<'a> SourceRegression<'a> {
     }
 
     fn choices(&self, blocks: &Blocks) -> Choices {
-        blocks.blocks.iter().map(|block| vec![RidgeChoice { lambda: self.ridge, alpha: 0.0 }; block.axes.len()]).collect()
+        blocks
+            .blocks
+            .iter()
+            .map(|block| vec![RidgeChoice { lambda: self.ridge, alpha: 0.0 }; block.axes.len()])
+            .collect()
     }
 }
 
@@ -101,7 +128,8 @@ fn earned(block: &Block, source: &Moments, trials: &Moments) -> DMatrix<f64> {
     let p = block.regressors();
     let mut precision = source.raw_products().view((0, 0), (p, p)).into_owned();
     for j in 0..p {
-        precision[(j, j)] += SOURCE.ignorance * block.shrinkage[j] * source.variance(j).max(trials.variance(j));
+        precision[(j, j)] +=
+            SOURCE.ignorance * block.shrinkage[j] * source.variance(j).max(trials.variance(j));
     }
     precision
 }

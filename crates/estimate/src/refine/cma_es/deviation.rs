@@ -24,20 +24,38 @@ pub(super) struct DeviationPenalty {
 
 impl DeviationPenalty {
     /// From the extremes of trials; accelerations are means over `window_s`, for as long as which each combination is simulated.
-    pub fn new(system: &CandidateSystem, law: &Law, trials: &[&Trial], step_s: f64, window_s: f64) -> Self {
-        let starts = combinations(&RECORDED[..3].iter().map(|&(c, _)| three(trials, c, OBJECTIVE.beyond)).collect::<Vec<_>>());
-        let controls: Vec<Vec<f64>> = system.input_names().iter().map(|name| settings(name, law, trials)).collect();
-        let controls: Vec<Vec<f64>> = combinations(&controls).iter().map(|inputs| system.prepared(inputs)).collect();
-        let pairs: Vec<(StateVector, &Vec<f64>)> =
-            starts.iter().flat_map(|start| controls.iter().map(|inputs| (state(start), inputs))).collect();
+    pub fn new(
+        system: &CandidateSystem,
+        law: &Law,
+        trials: &[&Trial],
+        step_s: f64,
+        window_s: f64,
+    ) -> Self {
+        let starts = combinations(
+            &RECORDED[..3]
+                .iter()
+                .map(|&(c, _)| three(trials, c, OBJECTIVE.beyond))
+                .collect::<Vec<_>>(),
+        );
+        let controls: Vec<Vec<f64>> =
+            system.input_names().iter().map(|name| settings(name, law, trials)).collect();
+        let controls: Vec<Vec<f64>> =
+            combinations(&controls).iter().map(|inputs| system.prepared(inputs)).collect();
+        let pairs: Vec<(StateVector, &Vec<f64>)> = starts
+            .iter()
+            .flat_map(|start| controls.iter().map(|inputs| (state(start), inputs)))
+            .collect();
         let blocks = pairs.chunks(LANES).map(|chunk| {
             let starts = chunk.iter().map(|(start, _)| *start).collect();
             let width = chunk[0].1.len();
-            let lane = |input: usize| std::array::from_fn(|lane| chunk[lane.min(chunk.len() - 1)].1[input]);
+            let lane = |input: usize| {
+                std::array::from_fn(|lane| chunk[lane.min(chunk.len() - 1)].1[input])
+            };
             (starts, (0..width).map(lane).collect())
         });
         let blocks = blocks.collect();
-        let limits = [Channel::U, Channel::V, Channel::R].map(|channel| limit(trials, channel, window_s));
+        let limits =
+            [Channel::U, Channel::V, Channel::R].map(|channel| limit(trials, channel, window_s));
         let steps = (window_s / step_s).round().max(1.0) as usize;
         Self { blocks, limits, steps, step_s, count: pairs.len() as f64 }
     }
@@ -58,7 +76,13 @@ impl DeviationPenalty {
                     }
                 }
             }
-            let soon = |over: &usize| if *over < self.steps { 1.0 - (*over as f64 - 1.0) / self.steps as f64 } else { 0.0 };
+            let soon = |over: &usize| {
+                if *over < self.steps {
+                    1.0 - (*over as f64 - 1.0) / self.steps as f64
+                } else {
+                    0.0
+                }
+            };
             over[..starts.len()].iter().map(soon).sum::<f64>()
         };
         self.blocks.iter().map(one).sum::<f64>() / self.count.max(1.0)
@@ -68,7 +92,8 @@ impl DeviationPenalty {
 /// Low, middle (rest where that is between) and high of a channel; a single zero where no trial has it.
 fn three(trials: &[&Trial], channel: Channel, margin: f64) -> Vec<f64> {
     let values = trials.iter().filter_map(|trial| trial.channel(channel)).flatten();
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+    let (low, high) = values
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
     if low > high {
         return vec![0.0];
     }
@@ -94,9 +119,16 @@ fn combinations(choices: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut several = 0;
     for choice in choices {
         several += usize::from(choice.len() > 1);
-        let taken = if several > OBJECTIVE.controls { &choice[choice.len() / 2..=choice.len() / 2] } else { &choice[..] };
+        let taken = if several > OBJECTIVE.controls {
+            &choice[choice.len() / 2..=choice.len() / 2]
+        } else {
+            &choice[..]
+        };
         let longer = |before: &Vec<f64>| {
-            taken.iter().map(|value| before.iter().copied().chain([*value]).collect::<Vec<f64>>()).collect::<Vec<_>>()
+            taken
+                .iter()
+                .map(|value| before.iter().copied().chain([*value]).collect::<Vec<f64>>())
+                .collect::<Vec<_>>()
         };
         all = all.iter().flat_map(longer).collect();
     }
@@ -113,12 +145,16 @@ fn state(velocities: &[f64]) -> StateVector {
 fn limit(trials: &[&Trial], channel: Channel, window_s: f64) -> f64 {
     let mut sizes = Vec::new();
     for trial in trials {
-        let (Some(column), stride) = (trial.channel(channel), (window_s / trial.interval_s()).round().max(1.0) as usize) else {
+        let (Some(column), stride) =
+            (trial.channel(channel), (window_s / trial.interval_s()).round().max(1.0) as usize)
+        else {
             continue;
         };
         for part in trial.segments() {
             let within = part.start..part.end.saturating_sub(stride);
-            let rate = |k: usize| ((column[k + stride] - column[k]) / (trial.t_s[k + stride] - trial.t_s[k])).abs();
+            let rate = |k: usize| {
+                ((column[k + stride] - column[k]) / (trial.t_s[k + stride] - trial.t_s[k])).abs()
+            };
             sizes.extend(within.map(rate));
         }
     }

@@ -22,7 +22,9 @@ impl Estimator for CovarianceMatrixAdaptation {
         weak::resolve(settings, length_s, &[Family::Own]);
         settings.cma_es.get_or_insert_default();
         settings.step_s = settings.step_s.or(length_s.map(|s| s / OBJECTIVE.steps_a_length));
-        settings.segment_s = settings.segment_s.or(length_s.map(|s| (OBJECTIVE.segment * s).max(OBJECTIVE.least_segment_s)));
+        settings.segment_s = settings
+            .segment_s
+            .or(length_s.map(|s| (OBJECTIVE.segment * s).max(OBJECTIVE.least_segment_s)));
     }
 
     fn equations(&self, settings: &Settings) -> Equations {

@@ -54,7 +54,8 @@ impl Sequences {
     /// Of segments, those of a length together.
     pub fn new<'s>(objective: &Objective, segments: impl Iterator<Item = &'s Segment>) -> Self {
         let all: Vec<&Segment> = segments.collect();
-        let blocks: Vec<SequenceBlock> = all.chunks(LANES).map(|chunk| SequenceBlock::new(objective, chunk)).collect();
+        let blocks: Vec<SequenceBlock> =
+            all.chunks(LANES).map(|chunk| SequenceBlock::new(objective, chunk)).collect();
         let count = blocks.iter().flat_map(|block| block.compared).sum();
         Self { blocks, count }
     }
@@ -75,23 +76,41 @@ impl SequenceBlock {
                     system.prepared(&of(lane).inputs[at..at + width])
                 })
                 .collect();
-            inputs.extend((0..lanes[0].len()).map(|input| std::array::from_fn(|lane| lanes[lane][input])));
+            inputs.extend(
+                (0..lanes[0].len()).map(|input| std::array::from_fn(|lane| lanes[lane][input])),
+            );
         }
         let measured = |k: usize, channel: usize| -> Lanes<LANES> {
-            let own = |segment: &&Segment| segment.measured.get(k * plan.compared.len() + channel).copied();
+            let own = |segment: &&Segment| {
+                segment.measured.get(k * plan.compared.len() + channel).copied()
+            };
             std::array::from_fn(|lane| segments.get(lane).and_then(own).unwrap_or(f64::NAN))
         };
-        let measured: Vec<[Lanes<LANES>; 3]> =
-            (0..steps / plan.stride).map(|k| std::array::from_fn(|channel| measured(k, channel))).collect();
-        let compared = std::array::from_fn(|lane| measured.iter().filter(|m| m[0][lane].is_finite()).count() as f64);
-        Self { starts: (0..LANES).map(|lane| of(lane).start).collect(), inputs, steps, measured, compared }
+        let measured: Vec<[Lanes<LANES>; 3]> = (0..steps / plan.stride)
+            .map(|k| std::array::from_fn(|channel| measured(k, channel)))
+            .collect();
+        let compared = std::array::from_fn(|lane| {
+            measured.iter().filter(|m| m[0][lane].is_finite()).count() as f64
+        });
+        Self {
+            starts: (0..LANES).map(|lane| of(lane).start).collect(),
+            inputs,
+            steps,
+            measured,
+            compared,
+        }
     }
 }
 
 impl Objective {
     /// The coefficients that parameters stand for.
     pub fn coefficients(&self, parameters: &[f64]) -> Vec<f64> {
-        self.source.iter().zip(&self.sizes).zip(parameters).map(|((source, size), p)| source + size * p).collect()
+        self.source
+            .iter()
+            .zip(&self.sizes)
+            .zip(parameters)
+            .map(|((source, size), p)| source + size * p)
+            .collect()
     }
 
     /// The whole objective.
@@ -113,13 +132,20 @@ impl Objective {
     /// The first part: the standardised squared error of u, v and r together, in the mean over time.
     pub fn error(&self, sequences: &Sequences, coefficients: &[f64]) -> f64 {
         let mut run = CandidateRun::new(&self.system);
-        let sum: f64 = sequences.blocks.iter().map(|block| self.of_block(block, &mut run, coefficients)).sum();
+        let sum: f64 =
+            sequences.blocks.iter().map(|block| self.of_block(block, &mut run, coefficients)).sum();
         sum / sequences.count.max(1.0)
     }
 
-    fn of_block(&self, block: &SequenceBlock, run: &mut CandidateRun<'_, LANES>, coefficients: &[f64]) -> f64 {
+    fn of_block(
+        &self,
+        block: &SequenceBlock,
+        run: &mut CandidateRun<'_, LANES>,
+        coefficients: &[f64],
+    ) -> f64 {
         block.starts.iter().enumerate().for_each(|(lane, start)| run.start(lane, start));
-        let width = block.inputs.len() / if self.method == Method::Euler { block.steps + 1 } else { 2 * block.steps + 1 };
+        let width = block.inputs.len()
+            / if self.method == Method::Euler { block.steps + 1 } else { 2 * block.steps + 1 };
         let at = |k: usize| &block.inputs[k * width..(k + 1) * width];
         let (mut sums, mut left, mut lost) = ([0.0; LANES], block.compared, [false; LANES]);
         for k in 0..block.steps {
@@ -129,13 +155,22 @@ impl Objective {
             };
             run.step(self.method, self.plan.step_s, inputs, coefficients);
             if (k + 1) % self.plan.stride == 0 {
-                self.compare(run, &block.measured[(k + 1) / self.plan.stride - 1], &mut sums, &mut left, &mut lost);
+                self.compare(
+                    run,
+                    &block.measured[(k + 1) / self.plan.stride - 1],
+                    &mut sums,
+                    &mut left,
+                    &mut lost,
+                );
                 if lost.iter().all(|lost| *lost) {
                     break;
                 }
             }
         }
-        sums.iter().zip(&left).map(|(sum, left)| sum + 3.0 * OBJECTIVE.lost * OBJECTIVE.lost * left).sum()
+        sums.iter()
+            .zip(&left)
+            .map(|(sum, left)| sum + 3.0 * OBJECTIVE.lost * OBJECTIVE.lost * left)
+            .sum()
     }
 
     /// Adds a comparison to the lanes that have not left the physical range before; `left` are those that remain.
@@ -157,7 +192,8 @@ impl Objective {
         for lane in (0..LANES).filter(|lane| !lost[*lane] && measured[0][*lane].is_finite()) {
             left[lane] -= 1.0;
             for (channel, state) in states.iter().enumerate() {
-                let difference = (state[lane] - measured[channel][lane]) / self.plan.compared[channel].2;
+                let difference =
+                    (state[lane] - measured[channel][lane]) / self.plan.compared[channel].2;
                 sums[lane] += difference * difference;
             }
         }

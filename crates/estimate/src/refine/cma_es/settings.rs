@@ -90,7 +90,9 @@ impl CmaEs {
     pub(in super::super) fn check(&self) -> Result<(), CmaEsError> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         let limit = |value: Option<f64>| value.is_none_or(positive);
-        if !(4..=100_000).contains(&self.population) || !(self.population..=100_000).contains(&self.largest_population) {
+        if !(4..=100_000).contains(&self.population)
+            || !(self.population..=100_000).contains(&self.largest_population)
+        {
             return Err(CmaEsError::Population);
         }
         if self.evaluations == 0 || !limit(self.wall_s) || !limit(self.cpu_s) {
@@ -102,7 +104,10 @@ impl CmaEs {
         if !(0.0..=1.0).contains(&self.fold_share) {
             return Err(CmaEsError::FoldShare);
         }
-        if [self.deviation, self.absolute].iter().any(|weight| !(*weight >= 0.0 && weight.is_finite())) {
+        if [self.deviation, self.absolute]
+            .iter()
+            .any(|weight| !(*weight >= 0.0 && weight.is_finite()))
+        {
             return Err(CmaEsError::Weights);
         }
         Ok(())

@@ -9,17 +9,26 @@ use sistership_model::{Trial, Zoo};
 const CHANGED: [(&str, f64); 3] = [("Y_delta", 1.15), ("N_delta", 0.85), ("N_r", 1.2)];
 
 /// What the small law keeps: so little that zigzags tell all of it.
-const KEPT: [&str; 10] = ["X_u", "X_uu", "X_vv", "X_deltadelta", "Y_v", "Y_r", "Y_delta", "N_v", "N_r", "N_delta"];
+const KEPT: [&str; 10] =
+    ["X_u", "X_uu", "X_vv", "X_deltadelta", "Y_v", "Y_r", "Y_delta", "N_v", "N_r", "N_delta"];
 
 fn refined(evaluations: usize) -> Refinement {
     let (mut source, law) = mariner();
     source.coefficients.retain(|name, _| KEPT.contains(&name.as_str()));
     let zoo = Zoo::embedded().unwrap();
     let target = zoo.vessel("mariner").unwrap();
-    let factor = |name: &str| CHANGED.iter().find(|(changed, _)| *changed == name).map_or(1.0, |(_, factor)| *factor);
+    let factor = |name: &str| {
+        CHANGED.iter().find(|(changed, _)| *changed == name).map_or(1.0, |(_, factor)| *factor)
+    };
     let sailed = trials(&with(&source, factor), &law, 0.0);
     let trials: Vec<&Trial> = sailed.iter().collect();
-    let search = CmaEs { evaluations, population: 16, largest_population: 32, fold_share: 0.2, ..CmaEs::default() };
+    let search = CmaEs {
+        evaluations,
+        population: 16,
+        largest_population: 32,
+        fold_share: 0.2,
+        ..CmaEs::default()
+    };
     let search = CmaEs { integration: sistership_dynamics::Method::Rk4, ..search };
     let settings = Settings {
         method: Method::CmaEs,
@@ -30,21 +39,38 @@ fn refined(evaluations: usize) -> Refinement {
         bands: Sampling { samples: 0, ..Sampling::default() },
         ..Settings::default()
     };
-    refine(&Request { target, source: &source, source_law: None, law: &law, trials: &trials, settings: &settings }, &|_, _| true)
-        .unwrap()
+    refine(
+        &Request {
+            target,
+            source: &source,
+            source_law: None,
+            law: &law,
+            trials: &trials,
+            settings: &settings,
+        },
+        &|_, _| true,
+    )
+    .unwrap()
 }
 
 #[test]
 fn a_search_recovers_what_is_known_and_is_the_same_again() {
     let first = refined(6_000);
     let report = first.search.clone().unwrap();
-    assert!(report.evaluations >= 6_000 && report.fold_evaluations > 0 && report.error < 1e-3, "{report:?}");
+    assert!(
+        report.evaluations >= 6_000 && report.fold_evaluations > 0 && report.error < 1e-3,
+        "{report:?}"
+    );
     let taken = first.options.iter().find(|option| option.chosen).unwrap();
     assert_eq!(taken.step, "cma-es, own terms");
     for (name, factor) in CHANGED {
         let change = first.coefficients.iter().find(|change| change.name == name).unwrap();
         let wanted = change.source * factor;
-        assert!((change.refined - wanted).abs() < 0.05 * wanted.abs(), "{name}: {} instead of {wanted}", change.refined);
+        assert!(
+            (change.refined - wanted).abs() < 0.05 * wanted.abs(),
+            "{name}: {} instead of {wanted}",
+            change.refined
+        );
     }
     assert_eq!(first, refined(6_000));
 }
@@ -58,5 +84,8 @@ fn a_search_that_time_ends_records_what_gives_it_again() {
     assert_eq!(CmaEs::default().check(), Ok(()));
     let refinement = refined(300);
     let recorded = refinement.settings.cma_es.unwrap();
-    assert_eq!((recorded.evaluations, recorded.wall_s), (refinement.search.unwrap().evaluations, None));
+    assert_eq!(
+        (recorded.evaluations, recorded.wall_s),
+        (refinement.search.unwrap().evaluations, None)
+    );
 }

@@ -34,7 +34,12 @@ impl CoefficientLimits {
     ///
     /// # Errors
     /// Names the setting that asks for what the model does not have.
-    pub fn new(settings: &Constraints, model: &Model, law: &Law, speeds: [f64; 2]) -> Result<Self, LimitError> {
+    pub fn new(
+        settings: &Constraints,
+        model: &Model,
+        law: &Law,
+        speeds: [f64; 2],
+    ) -> Result<Self, LimitError> {
         let names: Vec<String> = model.coefficients.keys().cloned().collect();
         let mut fixed = Vec::new();
         if settings.physical_signs {
@@ -57,9 +62,17 @@ impl CoefficientLimits {
                 fixed.extend(bound.map(limit));
             }
         }
-        let straight = settings.straight_line.map(|line| Ok::<_, PlantError>((line, affine(model, law, &names, &sway_and_yaw)?)));
+        let straight = settings
+            .straight_line
+            .map(|line| Ok::<_, PlantError>((line, affine(model, law, &names, &sway_and_yaw)?)));
         let source = model.coefficients.values().map(|quantity| quantity.value).collect();
-        Ok(Self { names, source, fixed, trust_sd: settings.trust_sd, straight: straight.transpose()? })
+        Ok(Self {
+            names,
+            source,
+            fixed,
+            trust_sd: settings.trust_sd,
+            straight: straight.transpose()?,
+        })
     }
 
     /// The coefficients within the limits that are nearest to a solution. `curvature` is over `names`, `prior` how far the
@@ -78,7 +91,8 @@ impl CoefficientLimits {
         let places: Option<Vec<usize>> = self.names.iter().map(place).collect();
         let places = places.ok_or(LimitError::NotFitted)?;
         let curvature = curvature.select_rows(&places).select_columns(&places);
-        let centre: Vec<f64> = self.names.iter().map(|name| solution.get(name).copied().unwrap_or(0.0)).collect();
+        let centre: Vec<f64> =
+            self.names.iter().map(|name| solution.get(name).copied().unwrap_or(0.0)).collect();
         let nearest = NearestPointProblem { centre: &centre, curvature: &curvature };
         let mut common = self.fixed.clone();
         common.extend(self.trust(prior));
@@ -105,7 +119,9 @@ impl CoefficientLimits {
             return Err(LimitError::Broken(limit.name.clone()));
         }
         match &self.straight {
-            Some((line, functions)) if !holds(*line, &matrix(functions, &at)) => Err(LimitError::StraightLine(*line)),
+            Some((line, functions)) if !holds(*line, &matrix(functions, &at)) => {
+                Err(LimitError::StraightLine(*line))
+            }
             _ => Ok(()),
         }
     }
@@ -118,7 +134,9 @@ impl CoefficientLimits {
             [1.0, -1.0].map(|sign| {
                 let edge = self.source[place] - sign * reach;
                 let word = if sign > 0.0 { "below" } else { "above" };
-                let label = format!("trust region of {name}: at most {sd} standard deviations {word} the source");
+                let label = format!(
+                    "trust region of {name}: at most {sd} standard deviations {word} the source"
+                );
                 Limit::least(label, AffineFunction::of_one(self.names.len(), place, sign, edge))
             })
         };
@@ -130,7 +148,8 @@ impl CoefficientLimits {
     fn straight_line(&self, at: &[f64]) -> Option<Limit> {
         let (line, functions) = self.straight.as_ref()?;
         let (own, source) = (matrix(functions, at), matrix(functions, &self.source));
-        let towards = if *line == StraightLine::Stable { -CONSTRAINTS.shift } else { CONSTRAINTS.shift };
+        let towards =
+            if *line == StraightLine::Stable { -CONSTRAINTS.shift } else { CONSTRAINTS.shift };
         let shifted = own + Matrix2::identity() * (towards - fastest(&own));
         let candidates = [own, source, shifted].into_iter().filter(|matrix| holds(*line, matrix));
         candidates.filter_map(|reference| limit(*line, functions, &reference)).next()
@@ -158,13 +177,21 @@ fn signs(names: &[String], signs: &[(&str, f64)], what: &str) -> Vec<Limit> {
     let one = |&(name, sign): &(&str, f64)| {
         let place = names.iter().position(|own| own == name)?;
         let word = if sign > 0.0 { "at least" } else { "at most" };
-        Some(Limit::least(format!("{what}: {name} {word} 0"), AffineFunction::of_one(names.len(), place, sign, 0.0)))
+        Some(Limit::least(
+            format!("{what}: {name} {word} 0"),
+            AffineFunction::of_one(names.len(), place, sign, 0.0),
+        ))
     };
     signs.iter().filter_map(one).collect()
 }
 
 /// Surge acceleration that falls with speed, over the speeds ahead that the trials covered.
-fn damping(model: &Model, law: &Law, names: &[String], [low, high]: [f64; 2]) -> Result<Vec<Limit>, PlantError> {
+fn damping(
+    model: &Model,
+    law: &Law,
+    names: &[String],
+    [low, high]: [f64; 2],
+) -> Result<Vec<Limit>, PlantError> {
     let ahead = low.max(CONSTRAINTS.least_speed * high);
     let speeds: Vec<f64> = (0..CONSTRAINTS.speeds)
         .map(|k| ahead + (high - ahead) * k as f64 / (CONSTRAINTS.speeds - 1) as f64)
@@ -172,7 +199,10 @@ fn damping(model: &Model, law: &Law, names: &[String], [low, high]: [f64; 2]) ->
         .collect();
     let one = |speed: f64| {
         let [slope] = affine(model, law, names, &|ship| [surge(ship, speed)])?;
-        Ok(Limit::least(format!("dissipation: surge damping at {speed:.2} m/s"), slope.with(-1.0, &slope, 0.0)))
+        Ok(Limit::least(
+            format!("dissipation: surge damping at {speed:.2} m/s"),
+            slope.with(-1.0, &slope, 0.0),
+        ))
     };
     speeds.into_iter().map(one).collect()
 }

@@ -2,7 +2,8 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus, SupportedConeT,
+    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus,
+    SupportedConeT,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -36,16 +37,23 @@ impl NearestPointProblem<'_> {
     ///
     /// # Errors
     /// What the solver says, where it does not say `Solved`.
-    pub fn within(&self, limits: &[&Limit], steps: Overstepping) -> Result<NearestPoint, SolverStatus> {
-        let (size, extra) = (self.centre.len(), if steps == Overstepping::Elastic { limits.len() } else { 0 });
+    pub fn within(
+        &self,
+        limits: &[&Limit],
+        steps: Overstepping,
+    ) -> Result<NearestPoint, SolverStatus> {
+        let (size, extra) =
+            (self.centre.len(), if steps == Overstepping::Elastic { limits.len() } else { 0 });
         let scales = self.scales();
         let weight = if steps == Overstepping::Elastic { CONSTRAINTS.elastic_weight } else { 1.0 };
         let entry = |i: usize, j: usize| match i.max(j) < size {
             true => weight * self.curvature[(i, j)] * scales[i] * scales[j],
             false => 0.0,
         };
-        let quadratic = sparse(size + extra, size + extra, &|i, j| if i <= j { entry(i, j) } else { 0.0 });
-        let linear: Vec<f64> = (0..size + extra).map(|k| if k < size { 0.0 } else { 1.0 }).collect();
+        let quadratic =
+            sparse(size + extra, size + extra, &|i, j| if i <= j { entry(i, j) } else { 0.0 });
+        let linear: Vec<f64> =
+            (0..size + extra).map(|k| if k < size { 0.0 } else { 1.0 }).collect();
         let (rows, bounds, cones) = self.rows(limits, &scales, extra);
         let matrix = sparse(rows.len(), size + extra, &|i, j| rows[i][j]);
         let settings = DefaultSettings { verbose: false, ..DefaultSettings::default() };
@@ -76,8 +84,11 @@ impl NearestPointProblem<'_> {
         let (mut rows, mut bounds, mut cones) = (Vec::new(), Vec::new(), Vec::new());
         let size = self.centre.len();
         for (k, limit) in limits.iter().enumerate() {
-            let scaled: Vec<Vec<f64>> =
-                limit.cone.iter().map(|f| f.normal.iter().zip(scales).map(|(n, s)| n * s).collect()).collect();
+            let scaled: Vec<Vec<f64>> = limit
+                .cone
+                .iter()
+                .map(|f| f.normal.iter().zip(scales).map(|(n, s)| n * s).collect())
+                .collect();
             let length = scaled.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
             let by = if length > 0.0 { 1.0 / length } else { 1.0 };
             for (place, (normal, function)) in scaled.iter().zip(&limit.cone).enumerate() {
@@ -89,7 +100,11 @@ impl NearestPointProblem<'_> {
                 rows.push(row);
                 bounds.push(function.at(self.centre) * by);
             }
-            cones.push(if limit.cone.len() == 1 { NonnegativeConeT(1) } else { SecondOrderConeT(limit.cone.len()) });
+            cones.push(if limit.cone.len() == 1 {
+                NonnegativeConeT(1)
+            } else {
+                SecondOrderConeT(limit.cone.len())
+            });
         }
         for k in 0..extra {
             let mut row = vec![0.0; size + extra];
@@ -108,7 +123,9 @@ impl NearestPointProblem<'_> {
 fn sparse(rows: usize, columns: usize, entry: &dyn Fn(usize, usize) -> f64) -> CscMatrix<f64> {
     let (mut starts, mut places, mut values) = (vec![0], Vec::new(), Vec::new());
     for column in 0..columns {
-        for (row, value) in (0..rows).map(|row| (row, entry(row, column))).filter(|(_, value)| *value != 0.0) {
+        for (row, value) in
+            (0..rows).map(|row| (row, entry(row, column))).filter(|(_, value)| *value != 0.0)
+        {
             places.push(row);
             values.push(value);
         }

@@ -27,7 +27,12 @@ pub(super) fn sway_and_yaw(ship: &Ship) -> [f64; 4] {
     let time = length / speed;
     let by_sway = slope(ship, speed, at::V, CONSTRAINTS.disturbance * speed);
     let by_yaw = slope(ship, speed, at::R, CONSTRAINTS.disturbance * speed / length);
-    [by_sway[at::V] * time, by_yaw[at::V] / speed, by_sway[at::R] * length * time, by_yaw[at::R] * time]
+    [
+        by_sway[at::V] * time,
+        by_yaw[at::V] / speed,
+        by_sway[at::R] * length * time,
+        by_yaw[at::R] * time,
+    ]
 }
 
 /// How surge acceleration changes with speed.
@@ -76,20 +81,30 @@ fn sign(line: StraightLine) -> f64 {
 /// What is declared as a limit: `P A + A' P` is definite for the `P` with which it is so at a reference. By Lyapunov's theorems, negative
 /// definite with the `P` of a stable reference makes `A` stable, and positive definite with the `P` of an unstable one
 /// makes it unstable (Khalil 2002, Nonlinear systems, Theorems 4.3 and 4.6). None where the reference has no such `P`.
-pub(super) fn limit(line: StraightLine, functions: &[AffineFunction; 4], reference: &Matrix2<f64>) -> Option<Limit> {
+pub(super) fn limit(
+    line: StraightLine,
+    functions: &[AffineFunction; 4],
+    reference: &Matrix2<f64>,
+) -> Option<Limit> {
     let p = lyapunov(reference, sign(line))?;
     let [vv, vr, rv, rr] = functions;
-    let twice =
-        |a: &AffineFunction, pa: f64, b: &AffineFunction, pb: f64| a.with(2.0 * pa * sign(line), b, 2.0 * pb * sign(line));
+    let twice = |a: &AffineFunction, pa: f64, b: &AffineFunction, pb: f64| {
+        a.with(2.0 * pa * sign(line), b, 2.0 * pb * sign(line))
+    };
     let margin = |mut function: AffineFunction| {
         function.constant -= CONSTRAINTS.margin;
         function
     };
     let first = margin(twice(vv, p[(0, 0)], rv, p[(0, 1)]));
     let last = margin(twice(vr, p[(0, 1)], rr, p[(1, 1)]));
-    let cross = vr.with(p[(0, 0)], vv, p[(0, 1)]).with(1.0, &rr.with(p[(0, 1)], rv, p[(1, 1)]), 1.0);
+    let cross =
+        vr.with(p[(0, 0)], vv, p[(0, 1)]).with(1.0, &rr.with(p[(0, 1)], rv, p[(1, 1)]), 1.0);
     let cross = cross.with(sign(line), &cross, 0.0);
-    let name = if line == StraightLine::Stable { "straight-line stability" } else { "straight-line instability" };
+    let name = if line == StraightLine::Stable {
+        "straight-line stability"
+    } else {
+        "straight-line instability"
+    };
     Some(Limit::matrix(name.to_owned(), [&first, &cross, &last]))
 }
 

@@ -15,21 +15,37 @@ fn zoo(name: &str) -> (Model, std::sync::Arc<Law>) {
 }
 
 /// The coefficients within limits that are nearest to a solution, a change by its own size counting alike for each.
-fn nearest(settings: &Constraints, source: &Model, law: &Law, solution: &Model) -> Result<Model, LimitError> {
+fn nearest(
+    settings: &Constraints,
+    source: &Model,
+    law: &Law,
+    solution: &Model,
+) -> Result<Model, LimitError> {
     let limits = CoefficientLimits::new(settings, source, law, [2.0, 8.0])?;
     let names: Vec<String> = source.coefficients.keys().cloned().collect();
     let size = |name: &String| source.coefficient(name).abs().max(1e-6);
-    let curvature = DMatrix::from_fn(names.len(), names.len(), |i, j| if i == j { size(&names[i]).powi(-2) } else { 0.0 });
-    let values = solution.coefficients.iter().map(|(name, quantity)| (name.clone(), quantity.value)).collect();
-    let found = limits.nearest(&values, &names, &curvature, &|name| 0.1 * source.coefficient(name).abs())?;
+    let curvature = DMatrix::from_fn(names.len(), names.len(), |i, j| {
+        if i == j { size(&names[i]).powi(-2) } else { 0.0 }
+    });
+    let values = solution
+        .coefficients
+        .iter()
+        .map(|(name, quantity)| (name.clone(), quantity.value))
+        .collect();
+    let found = limits
+        .nearest(&values, &names, &curvature, &|name| 0.1 * source.coefficient(name).abs())?;
     let mut model = solution.clone();
-    found.into_iter().for_each(|(name, value)| model.coefficients.get_mut(&name).unwrap().value = value);
+    found
+        .into_iter()
+        .for_each(|(name, value)| model.coefficients.get_mut(&name).unwrap().value = value);
     Ok(model)
 }
 
 fn with(model: &Model, changes: &[(&str, f64)]) -> Model {
     let mut model = model.clone();
-    changes.iter().for_each(|(name, value)| model.coefficients.get_mut(*name).unwrap().value = *value);
+    changes
+        .iter()
+        .for_each(|(name, value)| model.coefficients.get_mut(*name).unwrap().value = *value);
     model
 }
 
@@ -41,7 +57,12 @@ fn growth(model: &Model, law: &Law) -> f64 {
 #[test]
 fn a_solution_within_the_limits_stays_where_it_is() {
     let (source, law) = zoo("mariner");
-    let settings = Constraints { physical_signs: true, dissipative: true, trust_sd: Some(2.0), ..Constraints::default() };
+    let settings = Constraints {
+        physical_signs: true,
+        dissipative: true,
+        trust_sd: Some(2.0),
+        ..Constraints::default()
+    };
     let solution = with(&source, &[("Y_v", 1.1 * source.coefficient("Y_v"))]);
     let found = nearest(&settings, &source, &law, &solution).unwrap();
     for (name, quantity) in &found.coefficients {
@@ -65,7 +86,11 @@ fn bounds_and_the_trust_region_hold() {
     let (source, law) = zoo("mariner");
     let own = source.coefficient("Y_v");
     let bound = Bound { min: Some(0.9 * own.min(0.0)), max: None };
-    let settings = Constraints { trust_sd: Some(2.0), bounds: [("N_v".to_owned(), bound)].into(), ..Constraints::default() };
+    let settings = Constraints {
+        trust_sd: Some(2.0),
+        bounds: [("N_v".to_owned(), bound)].into(),
+        ..Constraints::default()
+    };
     let solution = with(&source, &[("Y_v", 2.0 * own), ("N_v", 1.9 * own)]);
     let found = nearest(&settings, &source, &law, &solution);
     // 0.9 Y_v is far below what two deviations allow N_v.
@@ -92,7 +117,10 @@ fn a_ship_declared_stable_becomes_so_and_one_declared_unstable_too() {
     let (source, law) = zoo("mariner");
     assert!(growth(&source, &law) < 0.0, "the Mariner is stable");
     // Less yaw damping and more destabilising drift moment.
-    let unstable = with(&source, &[("N_r", 0.5 * source.coefficient("N_r")), ("N_v", 1.6 * source.coefficient("N_v"))]);
+    let unstable = with(
+        &source,
+        &[("N_r", 0.5 * source.coefficient("N_r")), ("N_v", 1.6 * source.coefficient("N_v"))],
+    );
     assert!(growth(&unstable, &law) > 0.0);
     let declared = |line| Constraints { straight_line: Some(line), ..Constraints::default() };
     let found = nearest(&declared(StraightLine::Stable), &source, &law, &unstable).unwrap();
@@ -108,10 +136,19 @@ fn a_ship_declared_stable_becomes_so_and_one_declared_unstable_too() {
 fn limits_that_cannot_be_kept_together_are_named_and_no_others() {
     let (source, law) = zoo("mariner");
     let bound = Bound { min: Some(1e-4), max: None };
-    let bounds = [("N_r".to_owned(), bound), ("X_u".to_owned(), Bound { min: None, max: Some(0.0) })].into();
-    let settings = Constraints { physical_signs: true, bounds, trust_sd: Some(1000.0), ..Constraints::default() };
+    let bounds =
+        [("N_r".to_owned(), bound), ("X_u".to_owned(), Bound { min: None, max: Some(0.0) })].into();
+    let settings = Constraints {
+        physical_signs: true,
+        bounds,
+        trust_sd: Some(1000.0),
+        ..Constraints::default()
+    };
     let refused = nearest(&settings, &source, &law, &source).unwrap_err().to_string();
-    assert_eq!(refused, "these constraints cannot be kept together: physical sign: N_r at most 0; bound of N_r: least 0.0001");
+    assert_eq!(
+        refused,
+        "these constraints cannot be kept together: physical sign: N_r at most 0; bound of N_r: least 0.0001"
+    );
 }
 
 #[test]
@@ -119,20 +156,38 @@ fn a_bound_of_what_the_model_lacks_is_refused() {
     let (source, law) = zoo("mariner");
     let bounds = [("Y_rrr".to_owned(), Bound { min: Some(0.0), max: None })].into();
     let settings = Constraints { bounds, ..Constraints::default() };
-    assert!(nearest(&settings, &source, &law, &source).unwrap_err().to_string().contains("bounds.Y_rrr"));
+    assert!(
+        nearest(&settings, &source, &law, &source)
+            .unwrap_err()
+            .to_string()
+            .contains("bounds.Y_rrr")
+    );
     assert!(Constraints { trust_sd: Some(-1.0), ..Constraints::default() }.check().is_err());
     let crossed = [("Y_v".to_owned(), Bound { min: Some(1.0), max: Some(0.0) })].into();
-    assert!(Constraints { bounds: crossed, ..Constraints::default() }.check().unwrap_err().to_string().contains("bounds.Y_v"));
+    assert!(
+        Constraints { bounds: crossed, ..Constraints::default() }
+            .check()
+            .unwrap_err()
+            .to_string()
+            .contains("bounds.Y_v")
+    );
 }
 
 #[test]
 fn the_ships_of_the_zoo_keep_signs_and_dissipation() {
     let zoo = Zoo::embedded().unwrap();
-    let settings = Constraints { physical_signs: true, dissipative: true, ..Constraints::default() };
+    let settings =
+        Constraints { physical_signs: true, dissipative: true, ..Constraints::default() };
     for name in ["mariner", "sr108", "kvlcc2", "kvlcc2-7m", "kcs", "esso-tanker"] {
         let model = zoo.model(name).unwrap();
         let speed = model.speed_m_s.unwrap_or(7.0);
-        let limits = CoefficientLimits::new(&settings, &model, zoo.law(&model.law).unwrap(), [0.4 * speed, speed]).unwrap();
+        let limits = CoefficientLimits::new(
+            &settings,
+            &model,
+            zoo.law(&model.law).unwrap(),
+            [0.4 * speed, speed],
+        )
+        .unwrap();
         assert_eq!(limits.check(&model), Ok(()), "{name}");
     }
 }

@@ -20,7 +20,9 @@ impl ResidualAutocovariance {
         let pair = |i: usize, j: usize| {
             // Bartlett's weights keep every variance made of them above zero (Newey and West 1987, Theorem 1).
             let weight = |lag: usize| 1.0 - lag as f64 / lags as f64;
-            (0..lags).map(|lag| weight(lag) * both_ways(&residuals[i], &residuals[j], lag)).collect()
+            (0..lags)
+                .map(|lag| weight(lag) * both_ways(&residuals[i], &residuals[j], lag))
+                .collect()
         };
         let pairs = (0..residuals.len()).flat_map(|i| (0..=i).map(move |j| (i, j)));
         Self { pairs: pairs.map(|(i, j)| pair(i, j)).collect() }
@@ -48,7 +50,9 @@ fn lasts(longest: usize, covariance: &dyn Fn(usize) -> f64) -> usize {
 /// Over all sequences, by the number of rows, so that covariances of all lags together are those of some process.
 fn covariance(one: &[DVector<f64>], other: &[DVector<f64>], lag: usize) -> f64 {
     let count: usize = one.iter().map(DVector::len).sum();
-    let product = |(a, b): (&DVector<f64>, &DVector<f64>)| a.iter().zip(b.iter().skip(lag)).map(|(x, y)| x * y).sum::<f64>();
+    let product = |(a, b): (&DVector<f64>, &DVector<f64>)| {
+        a.iter().zip(b.iter().skip(lag)).map(|(x, y)| x * y).sum::<f64>()
+    };
     one.iter().zip(other).map(product).sum::<f64>() / (count as f64).max(1.0)
 }
 

@@ -37,7 +37,9 @@ impl<'a> RidgeEquation<'a> {
     ) -> Option<Self> {
         let inverse = |lambda: f64| {
             let mut sum = products.clone();
-            (0..metric.size()).for_each(|j| sum[(j, j)] += if metric.is_still(j) { 1.0 } else { lambda.max(1e-12) });
+            (0..metric.size()).for_each(|j| {
+                sum[(j, j)] += if metric.is_still(j) { 1.0 } else { lambda.max(1e-12) }
+            });
             Some(sum.cholesky()?.inverse())
         };
         let data = metric.products_with_target(moments, target);
@@ -53,7 +55,9 @@ impl<'a> RidgeEquation<'a> {
     /// What the law leaves of its target, by sequence, where no source holds it: else the source's error would seem noise.
     pub fn residuals(&self, rows: &SequencedRows) -> Vec<DVector<f64>> {
         let coefficients = self.metric.back() * &self.free.1;
-        let of = |sequence: &RowSequence| sequence.target(self.target) - &sequence.regressors * &coefficients;
+        let of = |sequence: &RowSequence| {
+            sequence.target(self.target) - &sequence.regressors * &coefficients
+        };
         rows.blocks[self.block].iter().map(of).collect()
     }
 
@@ -69,7 +73,8 @@ impl RidgeEquation<'_> {
     pub fn taken_up(&self, scatter: &DMatrix<f64>, variance: f64, count: f64) -> f64 {
         let unit = scatter * (count / variance.max(f64::MIN_POSITIVE));
         let moved = &self.free.0 * unit;
-        let left = 1.0 - (2.0 * moved.trace() - (&moved * &self.free.0 * self.products).trace()) / count;
+        let left =
+            1.0 - (2.0 * moved.trace() - (&moved * &self.free.0 * self.products).trace()) / count;
         1.0 / left.clamp(POSTERIOR.least_left, 1.0)
     }
 }

@@ -36,18 +36,27 @@ pub(super) fn errors(
     model: &Model,
     choices: &Choices,
 ) -> Option<CoefficientErrors> {
-    let standard: Vec<(Metric, DMatrix<f64>)> = blocks.blocks.iter().zip(moments).map(standardised).collect();
+    let standard: Vec<(Metric, DMatrix<f64>)> =
+        blocks.blocks.iter().zip(moments).map(standardised).collect();
     let mut equations = Vec::new();
     for (b, block) in blocks.blocks.iter().enumerate() {
         let sources = mixed_source(block, model);
         for (target, source) in sources.iter().enumerate() {
-            equations.push(RidgeEquation::new((b, target), &moments[b], &standard[b], source, choices[b][target])?);
+            equations.push(RidgeEquation::new(
+                (b, target),
+                &moments[b],
+                &standard[b],
+                source,
+                choices[b][target],
+            )?);
         }
     }
-    let residuals: Vec<Vec<DVector<f64>>> = equations.iter().map(|equation| equation.residuals(rows)).collect();
+    let residuals: Vec<Vec<DVector<f64>>> =
+        equations.iter().map(|equation| equation.residuals(rows)).collect();
     let memory = ResidualAutocovariance::of(&residuals);
     let scatter = scatter(&equations, rows, &memory);
-    let spreads: Vec<DVector<f64>> = equations.iter().zip(&scatter.own).map(|(e, own)| spread(e, own)).collect();
+    let spreads: Vec<DVector<f64>> =
+        equations.iter().zip(&scatter.own).map(|(e, own)| spread(e, own)).collect();
     Some(gathered(blocks, &equations, &scatter.all, &spreads))
 }
 
@@ -66,7 +75,11 @@ struct ScoreCovariance {
     own: Vec<DMatrix<f64>>,
 }
 
-fn scatter(equations: &[RidgeEquation<'_>], rows: &SequencedRows, memory: &ResidualAutocovariance) -> ScoreCovariance {
+fn scatter(
+    equations: &[RidgeEquation<'_>],
+    rows: &SequencedRows,
+    memory: &ResidualAutocovariance,
+) -> ScoreCovariance {
     let starts = starts(equations);
     let total = starts.last().map_or(0, |start| start + equations[equations.len() - 1].size());
     let mut all = DMatrix::zeros(total, total);
@@ -79,14 +92,19 @@ fn scatter(equations: &[RidgeEquation<'_>], rows: &SequencedRows, memory: &Resid
                 factors.push(one.taken_up(&part, memory.variance(i), rows.count()).sqrt());
             }
             all.view_mut((starts[i], starts[j]), part.shape()).copy_from(&part);
-            all.view_mut((starts[j], starts[i]), (part.ncols(), part.nrows())).copy_from(&part.transpose());
+            all.view_mut((starts[j], starts[i]), (part.ncols(), part.nrows()))
+                .copy_from(&part.transpose());
         }
     }
     for (i, one) in equations.iter().enumerate() {
         all.rows_mut(starts[i], one.size()).scale_mut(factors[i]);
         all.columns_mut(starts[i], one.size()).scale_mut(factors[i]);
     }
-    let own = equations.iter().zip(&starts).map(|(e, &at)| all.view((at, at), (e.size(), e.size())).into_owned()).collect();
+    let own = equations
+        .iter()
+        .zip(&starts)
+        .map(|(e, &at)| all.view((at, at), (e.size(), e.size())).into_owned())
+        .collect();
     ScoreCovariance { all, own }
 }
 
@@ -122,7 +140,9 @@ fn gathered(
         });
     }
     for (b, block) in blocks.blocks.iter().enumerate() {
-        let Some(first) = equations.iter().position(|equation| equation.block == b) else { continue };
+        let Some(first) = equations.iter().position(|equation| equation.block == b) else {
+            continue;
+        };
         place(block, equations, &starts, first, &mut map);
         names.extend(block.names.iter().flatten().cloned());
     }
@@ -139,14 +159,26 @@ fn gathered(
 }
 
 /// Coefficients of a block's axes from its targets' standardised ones.
-fn place(block: &Block, equations: &[RidgeEquation<'_>], starts: &[usize], first: usize, map: &mut DMatrix<f64>) {
+fn place(
+    block: &Block,
+    equations: &[RidgeEquation<'_>],
+    starts: &[usize],
+    first: usize,
+    map: &mut DMatrix<f64>,
+) {
     let q = block.axes.len();
-    let unmixing = block.mixing.clone().lu().solve(&DMatrix::identity(q, q)).unwrap_or_else(|| DMatrix::identity(q, q));
+    let unmixing = block
+        .mixing
+        .clone()
+        .lu()
+        .solve(&DMatrix::identity(q, q))
+        .unwrap_or_else(|| DMatrix::identity(q, q));
     for axis in 0..q {
         for target in 0..q {
             let part = equations[first + target].metric.back() * unmixing[(axis, target)];
             let size = block.regressors();
-            map.view_mut((starts[first + axis], starts[first + target]), (size, size)).copy_from(&part);
+            map.view_mut((starts[first + axis], starts[first + target]), (size, size))
+                .copy_from(&part);
         }
     }
 }

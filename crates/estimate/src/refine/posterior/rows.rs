@@ -26,10 +26,19 @@ pub(in super::super) struct SequencedRows {
 
 /// Gathers tables, by sequence and regression. So many rows are merged into their mean where they follow each other closely;
 /// `centred` takes the mean of all rows off each column.
-pub(in super::super) fn rows(blocks: &Blocks, tables: &[Vec<Table>], merged: usize, centred: bool) -> SequencedRows {
+pub(in super::super) fn rows(
+    blocks: &Blocks,
+    tables: &[Vec<Table>],
+    merged: usize,
+    centred: bool,
+) -> SequencedRows {
     let of_block = |b: usize| {
         let p = blocks.blocks[b].regressors();
-        let offsets = if centred { means(tables, b) } else { vec![0.0; tables.first().map_or(0, |t| t[b].len())] };
+        let offsets = if centred {
+            means(tables, b)
+        } else {
+            vec![0.0; tables.first().map_or(0, |t| t[b].len())]
+        };
         tables.iter().map(|tables| sequence(&tables[b], p, merged.max(1), &offsets)).collect()
     };
     SequencedRows { blocks: (0..blocks.blocks.len()).map(of_block).collect() }
@@ -53,20 +62,25 @@ fn sequence(table: &Table, regressors: usize, merged: usize, offsets: &[f64]) ->
     };
     RowSequence {
         regressors: DMatrix::from_fn(count, regressors, entry),
-        targets: DMatrix::from_fn(count, table.len() - regressors, |row, target| entry(row, regressors + target)),
+        targets: DMatrix::from_fn(count, table.len() - regressors, |row, target| {
+            entry(row, regressors + target)
+        }),
     }
 }
 
 impl SequencedRows {
     /// Number of rows.
     pub fn count(&self) -> f64 {
-        self.blocks.first().map_or(0.0, |sequences| sequences.iter().map(|s| s.regressors.nrows() as f64).sum())
+        self.blocks
+            .first()
+            .map_or(0.0, |sequences| sequences.iter().map(|s| s.regressors.nrows() as f64).sum())
     }
 
     /// `sum_kl F_k G_l' kernel(|k - l|) / n^2` of the regressors of two regressions over rows of the same sequence.
     pub fn weighed(&self, one: usize, other: usize, kernel: &[f64]) -> DMatrix<f64> {
         let (first, second) = (&self.blocks[one], &self.blocks[other]);
-        let columns = |sequences: &[RowSequence]| sequences.first().map_or(0, |s| s.regressors.ncols());
+        let columns =
+            |sequences: &[RowSequence]| sequences.first().map_or(0, |s| s.regressors.ncols());
         let mut sum = DMatrix::zeros(columns(first), columns(second));
         for (left, right) in first.iter().zip(second) {
             sum.gemm_tr(1.0, &left.regressors, &smoothed(&right.regressors, kernel), 1.0);

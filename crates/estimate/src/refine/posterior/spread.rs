@@ -12,10 +12,16 @@ use super::thresholds::POSTERIOR;
 /// of the variances themselves are ruled by the far end of what cannot be excluded.
 pub(super) fn spread(equation: &RidgeEquation<'_>, scatter: &DMatrix<f64>) -> DVector<f64> {
     let (own, unit) = (equation.source.component_mul(&equation.source), equation.square);
-    let variances = |relative: f64, common: f64| (&own * relative.powi(2)).add_scalar(common.powi(2) * unit);
-    let Some(seen) = SpreadLikelihood::new(equation, scatter, &variances(1.0, 1.0)) else { return variances(1.0, 1.0) };
+    let variances =
+        |relative: f64, common: f64| (&own * relative.powi(2)).add_scalar(common.powi(2) * unit);
+    let Some(seen) = SpreadLikelihood::new(equation, scatter, &variances(1.0, 1.0)) else {
+        return variances(1.0, 1.0);
+    };
     let before = |x: f64| (x / (1.0 + x * x)).ln();
-    let pairs = POSTERIOR.relative.values().flat_map(|relative| POSTERIOR.common.values().map(move |common| (relative, common)));
+    let pairs = POSTERIOR
+        .relative
+        .values()
+        .flat_map(|relative| POSTERIOR.common.values().map(move |common| (relative, common)));
     let weighed: Vec<(DVector<f64>, f64)> = pairs
         .filter_map(|(relative, common)| {
             let variances = variances(relative, common);
@@ -28,7 +34,9 @@ pub(super) fn spread(equation: &RidgeEquation<'_>, scatter: &DMatrix<f64>) -> DV
     let all: f64 = weighed.iter().map(|(_, weight)| (weight - most).exp()).sum();
     let none = DVector::zeros(own.len());
     let deviations = |variances: &DVector<f64>| variances.map(f64::sqrt);
-    let mean = weighed.iter().fold(none, |sum, (variances, weight)| sum + deviations(variances) * ((weight - most).exp() / all));
+    let mean = weighed.iter().fold(none, |sum, (variances, weight)| {
+        sum + deviations(variances) * ((weight - most).exp() / all)
+    });
     mean.component_mul(&mean)
 }
 
@@ -41,10 +49,15 @@ struct SpreadLikelihood {
 }
 
 impl SpreadLikelihood {
-    fn new(equation: &RidgeEquation<'_>, scatter: &DMatrix<f64>, variances: &DVector<f64>) -> Option<Self> {
+    fn new(
+        equation: &RidgeEquation<'_>,
+        scatter: &DMatrix<f64>,
+        variances: &DVector<f64>,
+    ) -> Option<Self> {
         let basis = equation.products.clone().symmetric_eigen();
         let least = POSTERIOR.silent * basis.eigenvalues.max();
-        let kept: Vec<usize> = (0..basis.eigenvalues.len()).filter(|&k| basis.eigenvalues[k] > least).collect();
+        let kept: Vec<usize> =
+            (0..basis.eigenvalues.len()).filter(|&k| basis.eigenvalues[k] > least).collect();
         if kept.is_empty() {
             return None;
         }
@@ -66,7 +79,10 @@ impl SpreadLikelihood {
 
     fn log_likelihood(&self, variances: &DVector<f64>) -> Option<f64> {
         let mut covariance = &self.scatter + weighed(&self.response, variances);
-        covariance.iter_mut().step_by(self.surprise.len() + 1).for_each(|diagonal| *diagonal += POSTERIOR.ridge);
+        covariance
+            .iter_mut()
+            .step_by(self.surprise.len() + 1)
+            .for_each(|diagonal| *diagonal += POSTERIOR.ridge);
         let factor = covariance.cholesky()?;
         let width: f64 = factor.l_dirty().diagonal().iter().map(|d| d.ln()).sum();
         Some(-0.5 * self.surprise.dot(&factor.solve(&self.surprise)) - width)

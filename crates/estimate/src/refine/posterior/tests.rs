@@ -40,9 +40,12 @@ fn fitted(seed: u32, memory: f64) -> [(f64, f64); 2] {
     let tables: Vec<Vec<Table>> = vec![vec![vec![a, b, y]]];
     let moments = vec![Moments::about_zero(&tables[0][0], 2, 1.0)];
     let choices = vec![vec![RidgeChoice { lambda: 1e-9, alpha: 0.0 }]];
-    let errors = errors(&blocks, &moments, &rows(&blocks, &tables, 1, false), &model, &choices).unwrap();
-    let fit = super::super::ridge::fit(&blocks, &moments, &model, &choices).with_errors(Some(errors));
-    ["X_u", "X_vv"].map(|name| (fit.coefficients[name].value, fit.coefficients[name].standard_error))
+    let errors =
+        errors(&blocks, &moments, &rows(&blocks, &tables, 1, false), &model, &choices).unwrap();
+    let fit =
+        super::super::ridge::fit(&blocks, &moments, &model, &choices).with_errors(Some(errors));
+    ["X_u", "X_vv"]
+        .map(|name| (fit.coefficients[name].value, fit.coefficients[name].standard_error))
 }
 
 /// The root mean square of the errors by the standard errors that were given with them.
@@ -67,14 +70,20 @@ fn residuals_that_depend_on_each_other_widen_the_errors_as_much_as_they_should()
 fn a_strong_prior_does_not_make_a_wrong_source_sure() {
     let (blocks, mut model) = blocks();
     let (a, b) = (noise(600, 0.9, 1), noise(600, 0.9, 2));
-    let y: Vec<f64> = a.iter().zip(&b).zip(noise(600, 0.0, 3)).map(|((a, b), e)| 2.0 * a - 0.5 * b + 0.1 * e).collect();
+    let y: Vec<f64> = a
+        .iter()
+        .zip(&b)
+        .zip(noise(600, 0.0, 3))
+        .map(|((a, b), e)| 2.0 * a - 0.5 * b + 0.1 * e)
+        .collect();
     let tables: Vec<Vec<Table>> = vec![vec![vec![a, b, y]]];
     let moments = vec![Moments::about_zero(&tables[0][0], 2, 1.0)];
     let mut error = |source: f64| {
         model.coefficients.get_mut("X_u").unwrap().value = source;
         model.coefficients.get_mut("X_vv").unwrap().value = -0.5;
         let choices = vec![vec![RidgeChoice { lambda: 1e6, alpha: 0.0 }]];
-        let errors = errors(&blocks, &moments, &rows(&blocks, &tables, 1, false), &model, &choices).unwrap();
+        let errors =
+            errors(&blocks, &moments, &rows(&blocks, &tables, 1, false), &model, &choices).unwrap();
         errors.covariance[(0, 0)].sqrt()
     };
     let (wrong, right) = (error(1.0), error(2.0));
@@ -87,7 +96,12 @@ fn a_posterior_keeps_the_covariance() {
     let covariance = DMatrix::from_row_slice(2, 2, &[0.04, -0.006, -0.006, 0.01]);
     let names = vec!["X_u".to_owned(), "X_vv".to_owned()];
     let none = DMatrix::zeros(2, 2);
-    let errors = CoefficientErrors { names, covariance: covariance.clone(), source: none.clone(), cross: none };
+    let errors = CoefficientErrors {
+        names,
+        covariance: covariance.clone(),
+        source: none.clone(),
+        cross: none,
+    };
     let (_, model) = blocks();
     let root = errors.posterior(&model).unwrap().root().unwrap();
     let root = DMatrix::from_fn(2, 2, |i, j| root[i].get(j).copied().unwrap_or(0.0));

@@ -45,7 +45,8 @@ pub(super) struct LogGrid {
 impl LogGrid {
     /// The values, from the least on.
     pub fn values(&self) -> impl Iterator<Item = f64> {
-        let (low, step) = (self.least.ln(), (self.most / self.least).ln() / (self.count - 1) as f64);
+        let (low, step) =
+            (self.least.ln(), (self.most / self.least).ln() / (self.count - 1) as f64);
         (0..self.count).map(move |k| (low + k as f64 * step).exp())
     }
 }

@@ -37,8 +37,9 @@ impl Estimator for Published {
         candidates: &mut Vec<CandidateFit>,
         progress: Progress<'_>,
     ) -> Result<(), RefineError> {
-        let mut ranges =
-            |at: (usize, &Variant), folds: &[Fold<'_>], told: PartProgress<'_>| by_range(problem, at, folds, told, candidates);
+        let mut ranges = |at: (usize, &Variant), folds: &[Fold<'_>], told: PartProgress<'_>| {
+            by_range(problem, at, folds, told, candidates)
+        };
         each_variant(problem, variants, progress, &mut ranges)
     }
 }

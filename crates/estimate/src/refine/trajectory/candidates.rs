@@ -53,7 +53,9 @@ pub(super) fn from_weak_form(
     progress: Progress<'_>,
 ) -> Result<(), RefineError> {
     let first = || candidates.iter().position(|candidate| candidate.solution.ridge().is_some());
-    let Some(start) = best(candidates).or_else(first).map(|start| &candidates[start]) else { return Ok(()) };
+    let Some(start) = best(candidates).or_else(first).map(|start| &candidates[start]) else {
+        return Ok(());
+    };
     let Some((index, choices)) = start.solution.ridge() else { return Ok(()) };
     let (index, choices, error) = (index, choices.clone(), start.option.error);
     let variant = &variants[index];
@@ -71,9 +73,16 @@ pub(super) fn from_weak_form(
     let ship = ready(&model, problem.law, &problem.training)?;
     let thresholds = vec![f64::INFINITY; plan.compared.len()];
     let trials = problem.training.len();
-    let passing = SegmentPass { segments: &segments, plan: &plan, envelope: *ship.envelope(), thresholds, trials };
+    let passing = SegmentPass {
+        segments: &segments,
+        plan: &plan,
+        envelope: *ship.envelope(),
+        thresholds,
+        trials,
+    };
     let names = system.names().to_vec();
-    TrajectoryDescent { problem, variant, index, choices: &choices, passing, names }.candidates(error, candidates, progress)
+    TrajectoryDescent { problem, variant, index, choices: &choices, passing, names }
+        .candidates(error, candidates, progress)
 }
 
 fn cutting(problem: &Problem<'_>) -> SegmentLengths {
@@ -81,7 +90,11 @@ fn cutting(problem: &Problem<'_>) -> SegmentLengths {
     let interval = problem.interval_s();
     let step_s = interval * (given.step_s.unwrap_or(interval) / interval).round().max(1.0);
     let segment_s = given.segment_s.unwrap_or(TRAJECTORY.fallback_steps * step_s);
-    SegmentLengths { segment_s, residual_s: given.residual_s.unwrap_or(TRAJECTORY.fallback_stride * step_s).max(step_s), step_s }
+    SegmentLengths {
+        segment_s,
+        residual_s: given.residual_s.unwrap_or(TRAJECTORY.fallback_stride * step_s).max(step_s),
+        step_s,
+    }
 }
 
 /// The statistics of some trials, and the weak form's coefficients on them.
@@ -90,7 +103,8 @@ fn weak_form(
     choices: &Choices,
     keep: &dyn Fn(usize) -> bool,
 ) -> Result<(Vec<Moments>, BTreeMap<String, f64>), RefineError> {
-    let moments = merged(&variant.moments, keep).ok_or_else(|| RefineError::Data("a fold has no sample".into()))?;
+    let moments = merged(&variant.moments, keep)
+        .ok_or_else(|| RefineError::Data("a fold has no sample".into()))?;
     let solved = Fold::new(&variant.blocks, &variant.model, &moments, &[]).solve(choices);
     Ok((moments, solved.into_iter().map(|(name, fitted)| (name, fitted.value)).collect()))
 }
@@ -115,11 +129,21 @@ impl TrajectoryDescent<'_> {
             step(progress, 0.7, &label)?;
             reached = self.descend(&prior, pull, reached)?;
             step(progress, 0.7, &format!("{label}: simulating manoeuvres left out"))?;
-            let models: Vec<Model> =
-                priors.iter().enumerate().map(|(fold, prior)| self.left_out(fold, prior, pull, &reached)).collect();
-            let simulated = simulate_training(self.problem, &models, &|trial| self.problem.fold_of(trial))?;
+            let models: Vec<Model> = priors
+                .iter()
+                .enumerate()
+                .map(|(fold, prior)| self.left_out(fold, prior, pull, &reached))
+                .collect();
+            let simulated =
+                simulate_training(self.problem, &models, &|trial| self.problem.fold_of(trial))?;
             let fit = self.fit(&prior, pull, &reached);
-            let candidate = CandidateFit::new(self.problem, (label, Some(pull)), fit, self.names.len(), simulated);
+            let candidate = CandidateFit::new(
+                self.problem,
+                (label, Some(pull)),
+                fit,
+                self.names.len(),
+                simulated,
+            );
             errors.push(candidate.option.error.unwrap_or(f64::INFINITY));
             candidates.push(CandidateFit { left_out: models, ..candidate });
             if is_past_best(&errors) {
@@ -133,14 +157,27 @@ impl TrajectoryDescent<'_> {
     fn thresholds(&self, at: &DVector<f64>) -> Result<Vec<f64>, RefineError> {
         let model = self.variant.model_at(&self.values(at));
         let system = SensitiveSystem::new(&model, self.problem.law)?;
-        Ok(self.passing.sizes(&system, TRAJECTORY.median_stride).into_iter().map(threshold).collect())
+        Ok(self
+            .passing
+            .sizes(&system, TRAJECTORY.median_stride)
+            .into_iter()
+            .map(threshold)
+            .collect())
     }
 
     /// What the weak form says on some trials.
     fn prior(&self, keep: &dyn Fn(usize) -> bool) -> Result<WeakFormPrior, RefineError> {
         let (moments, values) = weak_form(self.variant, self.choices, keep)?;
-        let values = |name: &str| (values.get(name).copied().unwrap_or_default(), self.variant.model.coefficient(name));
-        let lambda = self.choices.iter().flatten().map(|choice| choice.lambda).fold(0.0, f64::max).min(TRAJECTORY.source_share);
+        let values = |name: &str| {
+            (values.get(name).copied().unwrap_or_default(), self.variant.model.coefficient(name))
+        };
+        let lambda = self
+            .choices
+            .iter()
+            .flatten()
+            .map(|choice| choice.lambda)
+            .fold(0.0, f64::max)
+            .min(TRAJECTORY.source_share);
         Ok(WeakFormPrior::new(&self.names, &self.variant.blocks, &moments, &values, lambda))
     }
 
@@ -159,15 +196,25 @@ impl TrajectoryDescent<'_> {
     }
 
     /// From coefficients to the least cost nearby.
-    fn descend(&self, prior: &WeakFormPrior, pull: f64, mut here: Linearisation) -> Result<Linearisation, RefineError> {
+    fn descend(
+        &self,
+        prior: &WeakFormPrior,
+        pull: f64,
+        mut here: Linearisation,
+    ) -> Result<Linearisation, RefineError> {
         let mut damping = TRAJECTORY.damping;
         let mut held = PenalisedEquations::new(&total(&here.pass, |_| true), prior, pull, &here.at);
         for _ in 0..TRAJECTORY.steps {
             let model = || self.variant.model_at(&self.values(&here.at));
             self.problem.show(&Iterate { evaluations: 0, objective: held.cost, model: &model });
-            let Some(step) = held.step(damping).filter(|step| held.foretold(step) > TRAJECTORY.least_gain) else { break };
+            let Some(step) =
+                held.step(damping).filter(|step| held.foretold(step) > TRAJECTORY.least_gain)
+            else {
+                break;
+            };
             let there = self.reached(&here.at + step)?;
-            let next = PenalisedEquations::new(&total(&there.pass, |_| true), prior, pull, &there.at);
+            let next =
+                PenalisedEquations::new(&total(&there.pass, |_| true), prior, pull, &there.at);
             if next.cost.is_finite() && next.cost < held.cost {
                 let gained = 1.0 - next.cost / held.cost;
                 (here, held) = (there, next);
@@ -186,15 +233,28 @@ impl TrajectoryDescent<'_> {
     }
 
     /// The model of a fold: one step from where all trials are fitted, on the trials inside it and their weak form.
-    fn left_out(&self, fold: usize, prior: &WeakFormPrior, pull: f64, reached: &Linearisation) -> Model {
+    fn left_out(
+        &self,
+        fold: usize,
+        prior: &WeakFormPrior,
+        pull: f64,
+        reached: &Linearisation,
+    ) -> Model {
         let normal = total(&reached.pass, |trial| self.problem.is_fitted(trial, fold));
         let held = PenalisedEquations::new(&normal, prior, pull, &reached.at);
-        let at = held.step(TRAJECTORY.fold_damping).map_or_else(|| reached.at.clone(), |step| &reached.at + step);
+        let at = held
+            .step(TRAJECTORY.fold_damping)
+            .map_or_else(|| reached.at.clone(), |step| &reached.at + step);
         self.variant.model_at(&self.values(&at))
     }
 
     /// The fit at coefficients.
-    fn fit(&self, prior: &WeakFormPrior, pull: f64, Linearisation { at, pass }: &Linearisation) -> TrajectoryFit {
+    fn fit(
+        &self,
+        prior: &WeakFormPrior,
+        pull: f64,
+        Linearisation { at, pass }: &Linearisation,
+    ) -> TrajectoryFit {
         let normal = total(pass, |_| true);
         TrajectoryFit {
             variant: self.index,
@@ -223,8 +283,13 @@ fn is_past_best(errors: &[f64]) -> bool {
 
 /// Sums over some trials.
 fn total(pass: &SegmentSums, keep: impl Fn(usize) -> bool) -> NormalEquations {
-    let mut all = NormalEquations::zeros(pass.trials.first().map_or(0, |normal| normal.gradient.len()));
-    pass.trials.iter().enumerate().filter(|(trial, _)| keep(*trial)).for_each(|(_, normal)| all.add(normal));
+    let mut all =
+        NormalEquations::zeros(pass.trials.first().map_or(0, |normal| normal.gradient.len()));
+    pass.trials
+        .iter()
+        .enumerate()
+        .filter(|(trial, _)| keep(*trial))
+        .for_each(|(_, normal)| all.add(normal));
     all
 }
 
@@ -243,12 +308,18 @@ mod tests {
     fn weaker_pulls_are_tried_until_they_are_worse() {
         // Of the weak form, then of pulls.
         assert!(!is_past_best(&[1.0]));
-        assert!(!is_past_best(&[1.0, 1.2]), "one that is worse than the weak form may be followed by better ones");
+        assert!(
+            !is_past_best(&[1.0, 1.2]),
+            "one that is worse than the weak form may be followed by better ones"
+        );
         assert!(is_past_best(&[1.0, 1.2, 1.1]));
         assert!(!is_past_best(&[1.0, 0.9, 0.91]), "hardly worse");
         assert!(is_past_best(&[1.0, 0.9, 0.91, 0.905]));
         assert!(is_past_best(&[1.0, 0.9, 0.95]));
-        assert!(!is_past_best(&[f64::INFINITY, f64::INFINITY, f64::INFINITY]), "nothing has sailed yet");
+        assert!(
+            !is_past_best(&[f64::INFINITY, f64::INFINITY, f64::INFINITY]),
+            "nothing has sailed yet"
+        );
         assert!(is_past_best(&[f64::INFINITY, 0.9, f64::INFINITY]));
     }
 }

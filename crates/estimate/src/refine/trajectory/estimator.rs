@@ -21,7 +21,8 @@ impl Estimator for TrajectoryForm {
         weak::resolve(settings, length_s, &Family::ALL);
         settings.step_s = settings.step_s.or(length_s.map(|s| s / TRAJECTORY.steps_a_length));
         settings.segment_s = settings.segment_s.or(length_s.map(|s| TRAJECTORY.segment * s));
-        settings.residual_s = settings.residual_s.or(length_s.map(|s| s / TRAJECTORY.residuals_a_length));
+        settings.residual_s =
+            settings.residual_s.or(length_s.map(|s| s / TRAJECTORY.residuals_a_length));
     }
 
     fn equations(&self, settings: &Settings) -> Equations {

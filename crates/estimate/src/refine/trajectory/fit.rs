@@ -38,7 +38,11 @@ impl Solution for TrajectoryFit {
         Ok(Some(self.coefficients()))
     }
 
-    fn errors(&self, problem: &Problem<'_>, variants: &[Variant]) -> Result<Option<CoefficientErrors>, RefineError> {
+    fn errors(
+        &self,
+        problem: &Problem<'_>,
+        variants: &[Variant],
+    ) -> Result<Option<CoefficientErrors>, RefineError> {
         let weak = variants[self.variant].errors(&problem.training, &self.choices)?;
         Ok(weak.and_then(|weak| self.joint_errors(&weak)))
     }
@@ -53,7 +57,12 @@ impl TrajectoryFit {
             (name.clone(), Fitted { value: self.at[k], standard_error: 0.0, prior_deviation })
         };
         let coefficients = self.names.iter().enumerate().map(one).collect();
-        Fit { coefficients, condition_number: self.held.condition_number(), collinear_groups: Vec::new(), errors: None }
+        Fit {
+            coefficients,
+            condition_number: self.held.condition_number(),
+            collinear_groups: Vec::new(),
+            errors: None,
+        }
     }
 
     /// Joint errors of the coefficients; `weak` are those of the weak form, in any order.
@@ -70,7 +79,12 @@ impl TrajectoryFit {
             + &both
             + both.transpose();
         let cross = &inverse * (&to_weak * &weak.cross + to_source * &weak.source);
-        Some(CoefficientErrors { names: names.clone(), covariance: &inverse * middle * &inverse, source: weak.source, cross })
+        Some(CoefficientErrors {
+            names: names.clone(),
+            covariance: &inverse * middle * &inverse,
+            source: weak.source,
+            cross,
+        })
     }
 }
 

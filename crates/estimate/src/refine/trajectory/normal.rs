@@ -39,7 +39,12 @@ pub(super) struct SegmentSums {
 
 impl NormalEquations {
     pub fn zeros(size: usize) -> Self {
-        Self { hessian: DMatrix::zeros(size, size), gradient: DVector::zeros(size), cost: 0.0, count: 0.0 }
+        Self {
+            hessian: DMatrix::zeros(size, size),
+            gradient: DVector::zeros(size),
+            cost: 0.0,
+            count: 0.0,
+        }
     }
 
     pub fn add(&mut self, other: &Self) {
@@ -64,22 +69,30 @@ impl SegmentPass<'_> {
     /// Simulates every segment. Sums are added in the segments' order, so that batches change nothing but the memory taken.
     pub fn pass(&self, system: &SensitiveSystem) -> SegmentSums {
         let size = system.names().len();
-        let mut pass = SegmentSums { trials: vec![NormalEquations::zeros(size); self.trials], gradients: Vec::new() };
+        let mut pass = SegmentSums {
+            trials: vec![NormalEquations::zeros(size); self.trials],
+            gradients: Vec::new(),
+        };
         for batch in self.segments.chunks(LANES * BLOCKS) {
-            let blocks: Vec<Vec<LaneSums>> = batch.par_chunks(LANES).map(|block| self.block(system, block)).collect();
+            let blocks: Vec<Vec<LaneSums>> =
+                batch.par_chunks(LANES).map(|block| self.block(system, block)).collect();
             for (segment, lane) in batch.iter().zip(blocks.into_iter().flatten()) {
                 pass.trials[segment.trial].add(&lane.normal);
                 pass.gradients.push(lane.normal.gradient);
             }
         }
-        pass.trials.iter_mut().for_each(|normal| normal.hessian.fill_upper_triangle_with_lower_triangle());
+        pass.trials
+            .iter_mut()
+            .for_each(|normal| normal.hessian.fill_upper_triangle_with_lower_triangle());
         pass
     }
 
     /// Absolute residuals by compared state, of every `some`th block of segments.
     pub fn sizes(&self, system: &SensitiveSystem, some: usize) -> Vec<Vec<f64>> {
         let blocks: Vec<&[Segment]> = self.segments.chunks(LANES).step_by(some).collect();
-        let of_block = |block: &[Segment]| self.block(system, block).into_iter().map(|lane| lane.sizes).collect();
+        let of_block = |block: &[Segment]| {
+            self.block(system, block).into_iter().map(|lane| lane.sizes).collect()
+        };
         let lanes: Vec<Vec<Vec<Vec<f64>>>> = blocks.into_par_iter().map(of_block).collect();
         let mut sizes = vec![Vec::new(); self.plan.compared.len()];
         for lane in lanes.into_iter().flatten() {
@@ -91,20 +104,28 @@ impl SegmentPass<'_> {
     fn block(&self, system: &SensitiveSystem, block: &[Segment]) -> Vec<LaneSums> {
         let size = system.names().len();
         let mut run = SensitiveRun::<LANES>::new(system);
-        let mut lanes: Vec<LaneSums> = block.iter().map(|_| LaneSums::new(size, self.plan.compared.len())).collect();
+        let mut lanes: Vec<LaneSums> =
+            block.iter().map(|_| LaneSums::new(size, self.plan.compared.len())).collect();
         block.iter().enumerate().for_each(|(lane, segment)| run.start(lane, &segment.start));
         // Lanes without a segment repeat the first.
         (block.len()..LANES).for_each(|lane| run.start(lane, &block[0].start));
         let width = system.input_names().len();
-        let mut inputs = [vec![[0.0; LANES]; width], vec![[0.0; LANES]; width], vec![[0.0; LANES]; width]];
+        let mut inputs =
+            [vec![[0.0; LANES]; width], vec![[0.0; LANES]; width], vec![[0.0; LANES]; width]];
         for k in 0..block[0].steps {
             for (half, given) in inputs.iter_mut().enumerate() {
                 load(block, 2 * k + half, width, given);
             }
             run.step(Method::Rk4, self.plan.step_s, [&inputs[0], &inputs[1], &inputs[2]]);
             if (k + 1) % self.plan.stride == 0 {
-                let due = lanes.iter_mut().zip(block).enumerate().filter(|(_, (_, segment))| k < segment.steps);
-                due.for_each(|(lane, (own, segment))| self.compare(&run, lane, own, segment, (k + 1) / self.plan.stride - 1));
+                let due = lanes
+                    .iter_mut()
+                    .zip(block)
+                    .enumerate()
+                    .filter(|(_, (_, segment))| k < segment.steps);
+                due.for_each(|(lane, (own, segment))| {
+                    self.compare(&run, lane, own, segment, (k + 1) / self.plan.stride - 1)
+                });
             }
         }
         lanes.iter_mut().for_each(LaneSums::flush);
@@ -112,13 +133,22 @@ impl SegmentPass<'_> {
     }
 
     /// Adds a lane's residuals at a time.
-    fn compare(&self, run: &SensitiveRun<'_, LANES>, lane: usize, own: &mut LaneSums, segment: &Segment, residual: usize) {
+    fn compare(
+        &self,
+        run: &SensitiveRun<'_, LANES>,
+        lane: usize,
+        own: &mut LaneSums,
+        segment: &Segment,
+        residual: usize,
+    ) {
         let state = run.state(lane);
         own.normal.count += 1.0;
         own.lost = own.lost || self.envelope.check(0.0, &state).is_err();
         let width = self.plan.compared.len();
         let measured = &segment.measured[residual * width..(residual + 1) * width];
-        for (index, (&(row, place, deviation), measured)) in self.plan.compared.iter().zip(measured).enumerate() {
+        for (index, (&(row, place, deviation), measured)) in
+            self.plan.compared.iter().zip(measured).enumerate()
+        {
             if !measured.is_finite() {
                 continue;
             }
@@ -128,7 +158,12 @@ impl SegmentPass<'_> {
             }
             let value = difference(place, state[place], *measured) / deviation;
             own.sizes[index].push(value.abs());
-            own.add(&run.sensitivity(lane, row)[..own.normal.gradient.len()], value, deviation, self.thresholds[index]);
+            own.add(
+                &run.sensitivity(lane, row)[..own.normal.gradient.len()],
+                value,
+                deviation,
+                self.thresholds[index],
+            );
         }
     }
 }
@@ -138,7 +173,9 @@ fn load(block: &[Segment], half_step: usize, width: usize, into: &mut [[f64; LAN
     for lane in 0..LANES {
         let segment = block.get(lane).unwrap_or(&block[0]);
         let at = half_step.min(2 * segment.steps) * width;
-        into.iter_mut().zip(&segment.inputs[at..at + width]).for_each(|(lanes, value)| lanes[lane] = *value);
+        into.iter_mut()
+            .zip(&segment.inputs[at..at + width])
+            .for_each(|(lanes, value)| lanes[lane] = *value);
     }
 }
 
@@ -154,13 +191,20 @@ struct LaneSums {
 impl LaneSums {
     fn new(size: usize, compared: usize) -> Self {
         let sizes = vec![Vec::new(); compared];
-        Self { normal: NormalEquations::zeros(size), rows: DMatrix::zeros(size, ROWS), waiting: 0, lost: false, sizes }
+        Self {
+            normal: NormalEquations::zeros(size),
+            rows: DMatrix::zeros(size, ROWS),
+            waiting: 0,
+            lost: false,
+            sizes,
+        }
     }
 
     fn add(&mut self, sensitivity: &[f64], value: f64, deviation: f64, threshold: f64) {
         let size = value.abs();
         let weight = if size <= threshold { 1.0 } else { threshold / size };
-        self.normal.cost += if size <= threshold { size * size } else { threshold * (2.0 * size - threshold) };
+        self.normal.cost +=
+            if size <= threshold { size * size } else { threshold * (2.0 * size - threshold) };
         let factor = weight.sqrt() / deviation;
         let mut row = self.rows.column_mut(self.waiting);
         row.iter_mut().zip(sensitivity).for_each(|(out, s)| *out = factor * s);

@@ -21,13 +21,22 @@ pub(in super::super) struct WeakFormPrior {
 impl WeakFormPrior {
     /// For coefficients in an order, of the weak form on statistics, held by the source with a strength; `values` has the weak
     /// form's coefficient and the source's.
-    pub fn new(names: &[String], blocks: &Blocks, moments: &[Moments], values: &dyn Fn(&str) -> (f64, f64), lambda: f64) -> Self {
-        let place: BTreeMap<&str, usize> = names.iter().enumerate().map(|(k, name)| (name.as_str(), k)).collect();
+    pub fn new(
+        names: &[String],
+        blocks: &Blocks,
+        moments: &[Moments],
+        values: &dyn Fn(&str) -> (f64, f64),
+        lambda: f64,
+    ) -> Self {
+        let place: BTreeMap<&str, usize> =
+            names.iter().enumerate().map(|(k, name)| (name.as_str(), k)).collect();
         let size = names.len();
         let (mut hessian, mut of_source) = (DMatrix::zeros(size, size), DMatrix::zeros(size, size));
         for (block, moments) in blocks.blocks.iter().zip(moments) {
             let raw = moments.raw_products();
-            let weights: Vec<f64> = (block.regressors()..raw.nrows()).map(|t| 1.0 / raw[(t, t)].max(f64::MIN_POSITIVE)).collect();
+            let weights: Vec<f64> = (block.regressors()..raw.nrows())
+                .map(|t| 1.0 / raw[(t, t)].max(f64::MIN_POSITIVE))
+                .collect();
             add_block(&mut hessian, block, (&raw, &weights), &place);
             if let Some(precision) = &block.precision {
                 add_block(&mut of_source, block, (precision, &weights), &place);
@@ -47,11 +56,18 @@ impl WeakFormPrior {
     /// What it costs at coefficients, where the weak form pulls with a strength.
     pub fn cost(&self, at: &DVector<f64>, pull: f64) -> f64 {
         let (weak, source) = (at - &self.weak, at - &self.source);
-        pull * weak.dot(&(&self.hessian * &weak)) + by_source(pull) * source.dot(&(&self.of_source * &source))
+        pull * weak.dot(&(&self.hessian * &weak))
+            + by_source(pull) * source.dot(&(&self.of_source * &source))
     }
 
     /// Adds that to normal equations.
-    pub fn add(&self, at: &DVector<f64>, pull: f64, hessian: &mut DMatrix<f64>, gradient: &mut DVector<f64>) {
+    pub fn add(
+        &self,
+        at: &DVector<f64>,
+        pull: f64,
+        hessian: &mut DMatrix<f64>,
+        gradient: &mut DVector<f64>,
+    ) {
         *hessian += &self.hessian * pull + &self.of_source * by_source(pull);
         gradient.gemv(pull, &self.hessian, &(at - &self.weak), 1.0);
         gradient.gemv(by_source(pull), &self.of_source, &(at - &self.source), 1.0);
@@ -60,10 +76,14 @@ impl WeakFormPrior {
     /// How far the source alone, within the weak form and beside it, lets each coefficient be, as if the motion were missed by its own size.
     pub fn deviations(&self, pull: f64) -> DVector<f64> {
         let scales = self.of_source.diagonal().map(|own| 1.0 / own.max(1e-300).sqrt());
-        let unit = DMatrix::from_fn(scales.len(), scales.len(), |i, j| self.of_source[(i, j)] * scales[i] * scales[j]);
+        let unit = DMatrix::from_fn(scales.len(), scales.len(), |i, j| {
+            self.of_source[(i, j)] * scales[i] * scales[j]
+        });
         let free = DMatrix::identity(scales.len(), scales.len());
         let inverse = unit.cholesky().map_or(free, |root| root.inverse());
-        DVector::from_fn(scales.len(), |k, _| inverse[(k, k)].sqrt() * scales[k] / (pull + by_source(pull)).sqrt())
+        DVector::from_fn(scales.len(), |k, _| {
+            inverse[(k, k)].sqrt() * scales[k] / (pull + by_source(pull)).sqrt()
+        })
     }
 }
 
@@ -75,7 +95,9 @@ pub(super) fn by_source(pull: f64) -> f64 {
 
 /// The coefficients of a block with how many times stronger the source pulls them than it pulls others.
 fn each(block: &Block) -> impl Iterator<Item = (&Block, &String, f64)> {
-    block.names.iter().flat_map(move |own| own.iter().zip(&block.shrinkage).map(move |(name, factor)| (block, name, *factor)))
+    block.names.iter().flat_map(move |own| {
+        own.iter().zip(&block.shrinkage).map(move |(name, factor)| (block, name, *factor))
+    })
 }
 
 /// Products of regressors by what each coefficient does to each acceleration.
@@ -85,11 +107,17 @@ fn add_block(
     (products, weights): (&DMatrix<f64>, &[f64]),
     place: &BTreeMap<&str, usize>,
 ) {
-    let placed = |names: &Vec<String>| names.iter().map(|name| place.get(name.as_str()).copied()).collect::<Vec<_>>();
+    let placed = |names: &Vec<String>| {
+        names.iter().map(|name| place.get(name.as_str()).copied()).collect::<Vec<_>>()
+    };
     let places: Vec<Vec<Option<usize>>> = block.names.iter().map(placed).collect();
     for (a, rows) in places.iter().enumerate() {
         for (b, columns) in places.iter().enumerate() {
-            let shared: f64 = weights.iter().enumerate().map(|(t, w)| w * block.mixing[(t, a)] * block.mixing[(t, b)]).sum();
+            let shared: f64 = weights
+                .iter()
+                .enumerate()
+                .map(|(t, w)| w * block.mixing[(t, a)] * block.mixing[(t, b)])
+                .sum();
             for (j, column) in columns.iter().enumerate() {
                 for (i, row) in rows.iter().enumerate() {
                     let (Some(row), Some(column)) = (row, column) else { continue };

@@ -66,7 +66,9 @@ pub(in super::super) fn cut(
         for part in trial.segments() {
             let (mut from, end) = (trial.t_s[part.start], trial.t_s[part.end - 1]);
             while end - from >= cut.segment_s / TRAJECTORY.least_part {
-                let steps = (cut.segment_s.min(end - from) / plan.step_s + 1e-9).floor() as usize / plan.stride * plan.stride;
+                let steps = (cut.segment_s.min(end - from) / plan.step_s + 1e-9).floor() as usize
+                    / plan.stride
+                    * plan.stride;
                 if steps > 0 {
                     segments.push(record.segment(index, part.clone(), from, steps));
                 }
@@ -93,20 +95,36 @@ enum SegmentInput<'a> {
 }
 
 impl<'a> SegmentRecord<'a> {
-    fn new(trial: &'a Trial, law: &Law, input_names: &[String], plan: &'a ComparisonPlan) -> Result<Self, RefineError> {
+    fn new(
+        trial: &'a Trial,
+        law: &Law,
+        input_names: &[String],
+        plan: &'a ComparisonPlan,
+    ) -> Result<Self, RefineError> {
         let input = |name: &String| {
             let channel = input_channel(name);
-            if let Some((channel, column)) = channel.and_then(|channel| Some((channel, trial.channel(channel)?))) {
+            if let Some((channel, column)) =
+                channel.and_then(|channel| Some((channel, trial.channel(channel)?)))
+            {
                 let cubic = MonotoneCubic::new(&trial.t_s, column);
-                return Ok(SegmentInput::Recorded { column, cubic, angle: channel == Channel::WindFrom });
+                return Ok(SegmentInput::Recorded {
+                    column,
+                    cubic,
+                    angle: channel == Channel::WindFrom,
+                });
             }
             let default = law.inputs.get(name.as_str()).and_then(|input| input.default);
-            let constant = if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
-            let missing = || RefineError::Channel { trial: trial.name.clone(), channel: channel.unwrap_or(Channel::Delta) };
+            let constant =
+                if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
+            let missing = || RefineError::Channel {
+                trial: trial.name.clone(),
+                channel: channel.unwrap_or(Channel::Delta),
+            };
             constant.map(SegmentInput::Constant).ok_or_else(missing)
         };
         let inputs = input_names.iter().map(input).collect::<Result<_, _>>()?;
-        let states: Vec<(usize, &[f64])> = RECORDED.iter().filter_map(|&(c, place)| Some((place, trial.channel(c)?))).collect();
+        let states: Vec<(usize, &[f64])> =
+            RECORDED.iter().filter_map(|&(c, place)| Some((place, trial.channel(c)?))).collect();
         Ok(Self { trial, plan, inputs, states })
     }
 
@@ -118,7 +136,9 @@ impl<'a> SegmentRecord<'a> {
             inputs.extend(self.inputs.iter().map(|input| self.input(input, &part, t, 0.5 * half)));
         }
         let mut start = StateVector::zeros();
-        self.states.iter().for_each(|(place, column)| start[*place] = self.value(column, &part, from));
+        self.states
+            .iter()
+            .for_each(|(place, column)| start[*place] = self.value(column, &part, from));
         let mut measured = Vec::new();
         for k in 1..=steps / self.plan.stride {
             let t = from + (k * self.plan.stride) as f64 * self.plan.step_s;
@@ -134,7 +154,8 @@ impl<'a> SegmentRecord<'a> {
     fn place(&self, part: &Range<usize>, t: f64) -> (usize, f64) {
         let t_s = &self.trial.t_s;
         let after = part.start + t_s[part.clone()].partition_point(|s| *s <= t + 1e-9);
-        let k = after.saturating_sub(1).clamp(part.start, part.end.saturating_sub(2).max(part.start));
+        let k =
+            after.saturating_sub(1).clamp(part.start, part.end.saturating_sub(2).max(part.start));
         let step = t_s.get(k + 1).map_or(1.0, |next| next - t_s[k]);
         (k, ((t - t_s[k]) / step).clamp(0.0, 1.0))
     }
@@ -154,13 +175,19 @@ impl<'a> SegmentRecord<'a> {
         };
         let (k, w) = self.place(part, t);
         let t_s = &self.trial.t_s[part.clone()];
-        let (low, high) = (t_s.partition_point(|s| *s < t - around), t_s.partition_point(|s| *s <= t + around));
+        let (low, high) =
+            (t_s.partition_point(|s| *s < t - around), t_s.partition_point(|s| *s <= t + around));
         let near = &column[part.start + low..part.start + high];
         let from = column[k];
         if *angle {
             let turned = |value: &f64| wrapped(value - from);
             let next = column.get(k + 1).map_or(0.0, turned);
-            return from + if near.len() < 3 { w * next } else { near.iter().map(turned).sum::<f64>() / near.len() as f64 };
+            return from
+                + if near.len() < 3 {
+                    w * next
+                } else {
+                    near.iter().map(turned).sum::<f64>() / near.len() as f64
+                };
         }
         if near.len() < 3 { cubic.at(k, w) } else { near.iter().sum::<f64>() / near.len() as f64 }
     }

@@ -15,7 +15,12 @@ pub(super) struct PenalisedEquations {
 
 impl PenalisedEquations {
     /// At coefficients.
-    pub fn new(normal: &NormalEquations, prior: &WeakFormPrior, pull: f64, at: &DVector<f64>) -> Self {
+    pub fn new(
+        normal: &NormalEquations,
+        prior: &WeakFormPrior,
+        pull: f64,
+        at: &DVector<f64>,
+    ) -> Self {
         let count = normal.count.max(1.0);
         let (mut hessian, mut gradient) = (&normal.hessian / count, &normal.gradient / count);
         prior.add(at, pull, &mut hessian, &mut gradient);
@@ -25,7 +30,10 @@ impl PenalisedEquations {
     /// The step with every curvature enlarged by a share; none where the equations cannot be solved.
     pub fn step(&self, damping: f64) -> Option<DVector<f64>> {
         let (mut scaled, scales) = self.scaled();
-        scaled.iter_mut().step_by(scales.len() + 1).for_each(|diagonal| *diagonal += damping + TRAJECTORY.ridge);
+        scaled
+            .iter_mut()
+            .step_by(scales.len() + 1)
+            .for_each(|diagonal| *diagonal += damping + TRAJECTORY.ridge);
         let right = self.gradient.component_mul(&scales);
         let step = scaled.cholesky()?.solve(&right);
         Some(-step.component_mul(&scales))
@@ -33,13 +41,16 @@ impl PenalisedEquations {
 
     /// The share of the cost that a step gains where everything is as linear as it seems.
     pub fn foretold(&self, step: &DVector<f64>) -> f64 {
-        -(2.0 * self.gradient.dot(step) + step.dot(&(&self.hessian * step))) / self.cost.max(f64::MIN_POSITIVE)
+        -(2.0 * self.gradient.dot(step) + step.dot(&(&self.hessian * step)))
+            / self.cost.max(f64::MIN_POSITIVE)
     }
 
     /// The Hessian with ones on its diagonal, and the scales that make it so.
     fn scaled(&self) -> (DMatrix<f64>, DVector<f64>) {
         let scales = self.hessian.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
-        let scaled = DMatrix::from_fn(scales.len(), scales.len(), |i, j| self.hessian[(i, j)] * scales[i] * scales[j]);
+        let scaled = DMatrix::from_fn(scales.len(), scales.len(), |i, j| {
+            self.hessian[(i, j)] * scales[i] * scales[j]
+        });
         (scaled, scales)
     }
 
@@ -53,8 +64,13 @@ impl PenalisedEquations {
     /// The inverse of the Hessian; none where it cannot be inverted.
     pub fn inverse(&self) -> Option<DMatrix<f64>> {
         let (mut scaled, scales) = self.scaled();
-        scaled.iter_mut().step_by(scales.len() + 1).for_each(|diagonal| *diagonal += TRAJECTORY.ridge);
+        scaled
+            .iter_mut()
+            .step_by(scales.len() + 1)
+            .for_each(|diagonal| *diagonal += TRAJECTORY.ridge);
         let inverse = scaled.cholesky()?.inverse();
-        Some(DMatrix::from_fn(scales.len(), scales.len(), |i, j| inverse[(i, j)] * scales[i] * scales[j]))
+        Some(DMatrix::from_fn(scales.len(), scales.len(), |i, j| {
+            inverse[(i, j)] * scales[i] * scales[j]
+        }))
     }
 }

@@ -29,7 +29,11 @@ impl Windows {
     pub(super) fn over(&self, trial: &Trial) -> Vec<BumpFunction> {
         let interval_s = trial.interval_s();
         let (length, hop) = (self.length(interval_s), self.hop_s.max(interval_s));
-        trial.segments().into_iter().flat_map(|segment| within(&trial.t_s, segment, length, hop)).collect()
+        trial
+            .segments()
+            .into_iter()
+            .flat_map(|segment| within(&trial.t_s, segment, length, hop))
+            .collect()
     }
 }
 
@@ -80,7 +84,8 @@ impl BumpFunction {
     /// velocity gives exactly zero. Mass is 1 where none is given.
     pub fn rate(&self, mass: Option<&[f64]>, velocity: &[f64]) -> f64 {
         let v = &velocity[self.samples.clone()];
-        let weighted = |k: usize| self.bump[k] * mass.map_or(1.0, |mass| mass[self.samples.start + k]);
+        let weighted =
+            |k: usize| self.bump[k] * mass.map_or(1.0, |mass| mass[self.samples.start + k]);
         let mut before = weighted(0);
         let mut sum = 0.0;
         for k in 1..v.len() {

@@ -33,15 +33,20 @@ impl Estimator for WeakForm {
         candidates: &mut Vec<CandidateFit>,
         progress: Progress<'_>,
     ) -> Result<(), RefineError> {
-        let mut strengths =
-            |at: (usize, &Variant), folds: &[Fold<'_>], told: PartProgress<'_>| by_strength(problem, at, folds, told, candidates);
+        let mut strengths = |at: (usize, &Variant), folds: &[Fold<'_>], told: PartProgress<'_>| {
+            by_strength(problem, at, folds, told, candidates)
+        };
         each_variant(problem, variants, progress, &mut strengths)
     }
 }
 
 /// Fills in windows, strengths and families, among these where the settings name none. Estimators that begin with the weak form do
 /// so too.
-pub(in super::super) fn resolve(settings: &mut Settings, length_s: Option<f64>, families: &[Family]) {
+pub(in super::super) fn resolve(
+    settings: &mut Settings,
+    length_s: Option<f64>,
+    families: &[Family],
+) {
     settings.window_s = settings.window_s.or(length_s);
     settings.hop_s = settings.hop_s.or(settings.window_s.map(|s| WEAK.hop * s));
     settings.fill_selection(families);
@@ -62,7 +67,11 @@ fn by_strength(
     candidates: &mut Vec<CandidateFit>,
 ) -> Result<(), RefineError> {
     let strengths = &problem.settings.strengths;
-    let allowed = if problem.training.len() == 1 { strengths.len().min(WEAK.strengths_of_one_trial) } else { strengths.len() };
+    let allowed = if problem.training.len() == 1 {
+        strengths.len().min(WEAK.strengths_of_one_trial)
+    } else {
+        strengths.len()
+    };
     for (k, &lambda) in strengths.iter().take(allowed).enumerate() {
         let name = format!("{}, lambda {lambda:.0e}", at.1.family.name());
         told(k as f64 / allowed as f64, &format!("{name}: simulating manoeuvres left out"))?;

@@ -26,10 +26,15 @@ use sistership_regression::Moments;
 ///
 /// # Errors
 /// Names the channel that the trial lacks.
-pub fn weak_moments(blocks: &Blocks, trial: &Trial, windows: Windows) -> Result<Vec<Moments>, RefineError> {
+pub fn weak_moments(
+    blocks: &Blocks,
+    trial: &Trial,
+    windows: Windows,
+) -> Result<Vec<Moments>, RefineError> {
     let tables = weak_tables(blocks, trial, windows)?;
     let share = windows.share(trial.interval_s());
-    let of = |(block, table): (&Block, &Table)| Moments::about_zero(table, block.regressors(), share);
+    let of =
+        |(block, table): (&Block, &Table)| Moments::about_zero(table, block.regressors(), share);
     Ok(blocks.blocks.iter().zip(&tables).map(of).collect())
 }
 
@@ -38,9 +43,14 @@ pub fn weak_moments(blocks: &Blocks, trial: &Trial, windows: Windows) -> Result<
 ///
 /// # Errors
 /// As [`weak_moments`].
-pub fn weak_tables(blocks: &Blocks, trial: &Trial, windows: Windows) -> Result<Vec<Table>, RefineError> {
+pub fn weak_tables(
+    blocks: &Blocks,
+    trial: &Trial,
+    windows: Windows,
+) -> Result<Vec<Table>, RefineError> {
     let sampled = columns(blocks, trial)?;
-    let mut tables: Vec<Table> = blocks.blocks.iter().map(|b| vec![Vec::new(); b.width()]).collect();
+    let mut tables: Vec<Table> =
+        blocks.blocks.iter().map(|b| vec![Vec::new(); b.width()]).collect();
     for bump in windows.over(trial) {
         sampled.iter().zip(&mut tables).for_each(|(columns, table)| append(columns, &bump, table));
     }
@@ -54,7 +64,11 @@ fn append(columns: &SampledRegression<'_>, bump: &BumpFunction, table: &mut Tabl
         out.push(bump.mean(column));
     }
     for (out, target) in targets.iter_mut().zip(&columns.targets) {
-        let momentum: f64 = target.inertia.iter().map(|(mass, velocity)| bump.rate(mass.as_deref(), velocity)).sum();
+        let momentum: f64 = target
+            .inertia
+            .iter()
+            .map(|(mass, velocity)| bump.rate(mass.as_deref(), velocity))
+            .sum();
         out.push(momentum - bump.mean(&target.rest));
     }
 }

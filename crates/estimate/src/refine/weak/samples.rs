@@ -30,10 +30,16 @@ pub(super) struct RegressionTarget<'a> {
 }
 
 /// The columns of every regression of a law over a trial.
-pub(super) fn columns<'a>(blocks: &Blocks, trial: &'a Trial) -> Result<Vec<SampledRegression<'a>>, RefineError> {
+pub(super) fn columns<'a>(
+    blocks: &Blocks,
+    trial: &'a Trial,
+) -> Result<Vec<SampledRegression<'a>>, RefineError> {
     let record = RegressionRecord::new(blocks, trial)?;
-    let mut all: Vec<SampledRegression<'a>> =
-        blocks.blocks.iter().map(|block| SampledRegression::new(block, &record, trial.len())).collect();
+    let mut all: Vec<SampledRegression<'a>> = blocks
+        .blocks
+        .iter()
+        .map(|block| SampledRegression::new(block, &record, trial.len()))
+        .collect();
     let mut lanes = vec![[0.0; LANES]; record.columns.len()];
     let mut work = Slots::default();
     let samples: Vec<(usize, usize)> = (0..trial.len()).map(|k| (k, k)).collect();
@@ -55,7 +61,8 @@ impl<'a> SampledRegression<'a> {
         let target = |own| RegressionTarget {
             inertia: match block.axes.len() {
                 1 => {
-                    let with_mass = block.mass[0].iter().zip(&block.columns).filter(|(mass, _)| mass.is_some());
+                    let with_mass =
+                        block.mass[0].iter().zip(&block.columns).filter(|(mass, _)| mass.is_some());
                     with_mass.map(|(_, &axis)| (Some(room()), velocity(axis))).collect()
                 }
                 _ => vec![(None, velocity(own))],
@@ -69,7 +76,11 @@ impl<'a> SampledRegression<'a> {
     /// Every lane, also of a chunk that has fewer samples.
     fn append(&mut self, blocks: &Blocks, block: &Block, work: &[Lanes<LANES>]) {
         let read = |output: usize| blocks.tape.read(output, work);
-        let own_mass = if block.is_force() || block.axes.len() > 1 { None } else { block.mass[0][0].map(read) };
+        let own_mass = if block.is_force() || block.axes.len() > 1 {
+            None
+        } else {
+            block.mass[0][0].map(read)
+        };
         let divided = |value: Lanes<LANES>| -> Lanes<LANES> {
             own_mass.map_or(value, |mass| std::array::from_fn(|lane| value[lane] / mass[lane]))
         };
@@ -94,20 +105,28 @@ impl<'a> SampledRegression<'a> {
         self.regressors.iter_mut().for_each(|column| column.truncate(samples));
         for target in &mut self.targets {
             target.rest.truncate(samples);
-            target.inertia.iter_mut().filter_map(|(mass, _)| mass.as_mut()).for_each(|mass| mass.truncate(samples));
+            target
+                .inertia
+                .iter_mut()
+                .filter_map(|(mass, _)| mass.as_mut())
+                .for_each(|mass| mass.truncate(samples));
         }
     }
 
     /// The accelerations that the rests of coupled axes cause.
     fn append_rests(&mut self, block: &Block, read: &dyn Fn(usize) -> Lanes<LANES>) {
-        let (scales, rests): (Vec<_>, Vec<_>) = block.scales.iter().zip(&block.rests).map(|(&s, &r)| (read(s), read(r))).unzip();
+        let (scales, rests): (Vec<_>, Vec<_>) =
+            block.scales.iter().zip(&block.rests).map(|(&s, &r)| (read(s), read(r))).unzip();
         for lane in 0..LANES {
             let unscaled = rests.iter().zip(&scales).map(|(rest, scale)| match rest[lane] {
                 0.0 => 0.0,
                 rest => rest * scales[0][lane] / scale[lane],
             });
             let caused = &block.mixing * DVector::from_iterator(rests.len(), unscaled);
-            self.targets.iter_mut().zip(caused.iter()).for_each(|(target, value)| target.rest.push(*value));
+            self.targets
+                .iter_mut()
+                .zip(caused.iter())
+                .for_each(|(target, value)| target.rest.push(*value));
         }
     }
 }

@@ -11,7 +11,8 @@ fn a_rate_by_parts_is_the_mean_rate_under_the_bump() {
     let trial = Trial { t_s: uneven(), ..Trial::default() };
     let column = |f: &dyn Fn(f64) -> f64| trial.t_s.iter().map(|t| f(*t)).collect::<Vec<f64>>();
     let (wave, slope) = (column(&|t| (0.5 * t).sin()), column(&|t| 0.5 * (0.5 * t).cos()));
-    let (mass, moving) = (column(&|t| 2.0 + 0.1 * t), column(&|t| (2.0 + 0.1 * t) * 0.5 * (0.5 * t).cos()));
+    let (mass, moving) =
+        (column(&|t| 2.0 + 0.1 * t), column(&|t| (2.0 + 0.1 * t) * 0.5 * (0.5 * t).cos()));
     for bump in (Windows { length_s: 10.0, hop_s: 1.0 }).over(&trial) {
         assert!((bump.rate(None, &wave) - bump.mean(&slope)).abs() < 2e-4);
         assert!((bump.rate(Some(&mass), &wave) - bump.mean(&moving)).abs() < 1e-3);
@@ -38,9 +39,12 @@ fn a_known_resistance_is_found_through_noise() {
     let model: Model = zoo.model("mariner").unwrap();
     let law: &Law = zoo.law(&model.law).unwrap();
     let blocks = Blocks::new(&model, law).unwrap();
-    let mut trial = Trial { t_s: (0..3000).map(|k| 0.1 * f64::from(k)).collect(), ..Trial::default() };
+    let mut trial =
+        Trial { t_s: (0..3000).map(|k| 0.1 * f64::from(k)).collect(), ..Trial::default() };
     let noise = |k: usize| 0.02 * (12.9898 * k as f64).sin();
-    trial.channels.insert(Channel::U, (0..3000).map(|k| 7.0 + (0.02 * k as f64).cos() + noise(k)).collect());
+    trial
+        .channels
+        .insert(Channel::U, (0..3000).map(|k| 7.0 + (0.02 * k as f64).cos() + noise(k)).collect());
     for channel in [Channel::V, Channel::R, Channel::Delta] {
         trial.channels.insert(channel, vec![0.0; 3000]);
     }
@@ -57,7 +61,9 @@ fn a_known_resistance_is_found_through_noise() {
 
 /// The mean of `cos(a s)` under `(1 - s^2)^3` on [-1, 1].
 fn mean_of_cosine(a: f64) -> f64 {
-    let sum = |f: &dyn Fn(f64) -> f64| (0..2000).map(|k| f(-1.0 + (f64::from(k) + 0.5) / 1000.0)).sum::<f64>();
+    let sum = |f: &dyn Fn(f64) -> f64| {
+        (0..2000).map(|k| f(-1.0 + (f64::from(k) + 0.5) / 1000.0)).sum::<f64>()
+    };
     let bump = |s: f64| (1.0 - s * s).powi(3);
     sum(&|s| bump(s) * (a * s).cos()) / sum(&bump)
 }

@@ -24,5 +24,9 @@ pub(super) struct WeakThresholds {
 }
 
 /// The values.
-pub(super) const WEAK: WeakThresholds =
-    WeakThresholds { hop: 0.1, strengths_of_one_trial: 3, least_intervals: 8.0, equivalent: 0.612_9 };
+pub(super) const WEAK: WeakThresholds = WeakThresholds {
+    hop: 0.1,
+    strengths_of_one_trial: 3,
+    least_intervals: 8.0,
+    equivalent: 0.612_9,
+};

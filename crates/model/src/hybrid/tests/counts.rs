@@ -29,7 +29,9 @@ fn the_counts_of_table_4() {
 /// modification B, as the text has it, drops: four terms on Y and on N.
 #[test]
 fn the_text_alone_gives_other_counts_at_third_order() {
-    for (scheme, described, printed) in [("ahead_astern", 397, 413), ("ahead_stalled_astern", 589, 613)] {
+    for (scheme, described, printed) in
+        [("ahead_astern", 397, 413), ("ahead_stalled_astern", 589, 613)]
+    {
         assert_eq!(count(3, scheme, "").unknowns, described);
         assert_eq!(count(3, scheme, PRINTED).unknowns, printed);
     }
@@ -42,7 +44,8 @@ fn the_count_is_the_sum_of_its_parts() {
     assert_eq!((unknowns.coefficient_sets, unknowns.coefficients), (3, 180));
     assert_eq!(unknowns.parameters, ["m_x", "m_y", "I_zz_plus_J_zz"]);
     assert_eq!(unknowns.effects.iter().map(|effect| effect.unknowns).collect::<Vec<_>>(), [10]);
-    let by_rule: Vec<[usize; 4]> = unknowns.rules.iter().map(|rule| [rule.x, rule.y, rule.n, rule.total]).collect();
+    let by_rule: Vec<[usize; 4]> =
+        unknowns.rules.iter().map(|rule| [rule.x, rule.y, rule.n, rule.total]).collect();
     assert_eq!(by_rule[0], [45, 45, 45, 135]);
     assert_eq!(by_rule[1], [44, 44, 44, 132]);
     assert_eq!(by_rule.last(), Some(&[20, 20, 20, 60]));
@@ -51,7 +54,8 @@ fn the_count_is_the_sum_of_its_parts() {
 #[test]
 fn an_effect_that_is_not_there_is_named() {
     let zoo = Zoo::embedded().unwrap();
-    let fault = |uses: &str| vectwin(1, &format!("effects: [{uses}]\n")).unknowns(&zoo).unwrap_err().1;
+    let fault =
+        |uses: &str| vectwin(1, &format!("effects: [{uses}]\n")).unknowns(&zoo).unwrap_err().1;
     assert!(fault("{ effect: wnd, form: measured }").contains("there are current"));
     assert!(fault("{ effect: wind, form: guessed }").contains("it has measured, constant"));
 }

@@ -43,10 +43,14 @@ fn spell(term: &str) -> String {
         }
     }
     factors.sort_unstable();
-    factors.iter().map(|&(_, bar, symbol)| if bar { format!("|{symbol}|") } else { symbol.to_owned() }).collect()
+    factors
+        .iter()
+        .map(|&(_, bar, symbol)| if bar { format!("|{symbol}|") } else { symbol.to_owned() })
+        .collect()
 }
 
-const SYMBOLS: [&str; 8] = ["u", "v", "r", "n", "sindelta_s", "cosdelta_s", "sindelta_p", "cosdelta_p"];
+const SYMBOLS: [&str; 8] =
+    ["u", "v", "r", "n", "sindelta_s", "cosdelta_s", "sindelta_p", "cosdelta_p"];
 
 #[test]
 fn the_second_order_is_that_of_the_equations() {
@@ -77,14 +81,26 @@ fn the_third_order_as_described_differs_from_the_equations_where_they_differ_fro
     let only_printed: BTreeSet<String> = printed.difference(&described).cloned().collect();
     let only_described: BTreeSet<String> = described.difference(&printed).cloned().collect();
     // Squares of the starboard cosine, which modification B drops, and x|x| on the other half of the squares.
-    assert_eq!(only_printed, spelled("vCC rCC SCC CCs v|v|r vr|r| v|v|S r|r|S v|v|s r|r|s uuv uur uuS uus vnn rnn Snn snn"));
-    assert_eq!(only_described, spelled("vvr vrr vvS rrS vvs rrs u|u|v u|u|r u|u|S u|u|s vn|n| rn|n| Sn|n| sn|n|"));
+    assert_eq!(
+        only_printed,
+        spelled(
+            "vCC rCC SCC CCs v|v|r vr|r| v|v|S r|r|S v|v|s r|r|s uuv uur uuS uus vnn rnn Snn snn"
+        )
+    );
+    assert_eq!(
+        only_described,
+        spelled("vvr vrr vvS rrS vvs rrs u|u|v u|u|r u|u|S u|u|s vn|n| rn|n| Sn|n| sn|n|")
+    );
 }
 
 #[test]
 fn the_factors_stand_for_the_variables_of_equation_6() {
     let law = vectwin(2, "").law_file;
-    let of = |symbol: &str| law.values.get(&law.factors[symbol]).unwrap_or(&law.factors[symbol]).clone();
+    let of =
+        |symbol: &str| law.values.get(&law.factors[symbol]).unwrap_or(&law.factors[symbol]).clone();
     let formulas: Vec<String> = SYMBOLS.iter().map(|symbol| of(symbol)).collect();
-    assert_eq!(formulas, ["u", "v", "r", "n", "sin(delta_s)", "cos(delta_s)", "sin(delta_p)", "cos(delta_p)"]);
+    assert_eq!(
+        formulas,
+        ["u", "v", "r", "n", "sin(delta_s)", "cos(delta_s)", "sin(delta_p)", "cos(delta_p)"]
+    );
 }

@@ -23,23 +23,59 @@ fn the_fault_is_named_with_its_place() {
         ("order: 2", "order: 9", "bad.yaml:4: order: must be from 1 to 4"),
         ("order: 2", "order: 2\nshrinkage: 0", "shrinkage: must be above 0"),
         ("n: { kind: propeller }", "n: { kind: rudder }", "the input `n` is in rps everywhere"),
-        ("n: { kind: propeller }", "u: { kind: propeller }", "bad.yaml:6: actuators.u: `u` means something else"),
-        ("n: { kind: propeller }", "draught_m: { kind: propeller }", "means something else in formulas"),
+        (
+            "n: { kind: propeller }",
+            "u: { kind: propeller }",
+            "bad.yaml:6: actuators.u: `u` means something else",
+        ),
+        (
+            "n: { kind: propeller }",
+            "draught_m: { kind: propeller }",
+            "means something else in formulas",
+        ),
         ("n: { kind: propeller }", "2n: { kind: propeller }", "letters, digits and underscores"),
         ("n: { kind: propeller }", "n: { kind: sail }", "unknown variant `sail`"),
-        ("n: { kind: propeller }", "n: { kind: propeller, angle: plain }", "actuators.n.angle: it has no angle"),
-        ("n: { kind: propeller }", "n: { kind: propeller, stall_deg: 30 }", "actuators.n.stall_deg: only rudders stall"),
-        ("stall_deg: 35", "stall_deg: 200", "actuators.delta.stall_deg: must be above 0 and below 180 deg"),
+        (
+            "n: { kind: propeller }",
+            "n: { kind: propeller, angle: plain }",
+            "actuators.n.angle: it has no angle",
+        ),
+        (
+            "n: { kind: propeller }",
+            "n: { kind: propeller, stall_deg: 30 }",
+            "actuators.n.stall_deg: only rudders stall",
+        ),
+        (
+            "stall_deg: 35",
+            "stall_deg: 200",
+            "actuators.delta.stall_deg: must be above 0 and below 180 deg",
+        ),
         (", stall_deg: 35", "", "submodels: this scheme tells rudders by their stall"),
         ("couples: none", "pair: true", "actuators.bow.pair"),
         ("axes: [Y, N]", "axes: [K]", "actuators.bow.axes: give some of X, Y and N"),
         ("axes: [Y, N]", "axes: []", "actuators.bow.axes"),
         ("symmetry: parity", "symmetry: mirror, zeroth_powers: true", "rules.zeroth_powers"),
         ("symmetry: parity", "symmetry: mirror, squares: as_printed", "rules.squares"),
-        ("symmetry: parity", "trigonometric_exceptions: [{ factor: cosgamma, axes: [Y] }]", "there are sindelta, cosdelta"),
-        ("ahead_stalled_astern", "{ astern: { when: [w < 0], meaning: astern } }", "submodels.astern: `w < 0` unknown name `w`"),
-        ("ahead_stalled_astern", "{ Astern: { when: [u < 0], meaning: astern } }", "submodels.Astern"),
-        ("ahead_stalled_astern", "{ port: { when: [v < 0], meaning: drifting } }", "submodels.port: breaks the port/starboard"),
+        (
+            "symmetry: parity",
+            "trigonometric_exceptions: [{ factor: cosgamma, axes: [Y] }]",
+            "there are sindelta, cosdelta",
+        ),
+        (
+            "ahead_stalled_astern",
+            "{ astern: { when: [w < 0], meaning: astern } }",
+            "submodels.astern: `w < 0` unknown name `w`",
+        ),
+        (
+            "ahead_stalled_astern",
+            "{ Astern: { when: [u < 0], meaning: astern } }",
+            "submodels.Astern",
+        ),
+        (
+            "ahead_stalled_astern",
+            "{ port: { when: [v < 0], meaning: drifting } }",
+            "submodels.port: breaks the port/starboard",
+        ),
         ("actuators:", "actors:", "unknown field `actors`"),
     ];
     for (from, to, message) in cases {
@@ -50,9 +86,13 @@ fn the_fault_is_named_with_its_place() {
 
 #[test]
 fn quadrants_need_one_propeller() {
-    let text = "order: 1\nactuators: { n: { kind: propeller, pair: true } }\nsubmodels: quadrants\n";
+    let text =
+        "order: 1\nactuators: { n: { kind: propeller, pair: true } }\nsubmodels: quadrants\n";
     let error = derive("bad.yaml", &with_head(text)).unwrap_err().to_string();
-    assert!(error.contains("bad.yaml:6: submodels: `quadrants` needs one single propeller"), "{error}");
+    assert!(
+        error.contains("bad.yaml:6: submodels: `quadrants` needs one single propeller"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -64,7 +104,8 @@ fn names_that_could_be_mistaken_are_refused() {
 
 #[test]
 fn an_expansion_without_end_is_refused() {
-    let azimuths: Vec<String> = (0..6).map(|k| format!("a{k}: {{ kind: azimuth, pair: true }}")).collect();
+    let azimuths: Vec<String> =
+        (0..6).map(|k| format!("a{k}: {{ kind: azimuth, pair: true }}")).collect();
     let text = format!("order: 4\nactuators: {{ {} }}\n", azimuths.join(", "));
     let error = derive("bad.yaml", &with_head(&text)).unwrap_err().to_string();
     assert!(error.contains("order: 39 variables to order 4"), "{error}");

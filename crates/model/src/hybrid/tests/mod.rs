@@ -36,6 +36,8 @@ rules:
 
 /// The terms of an axis by what their names spell.
 fn names(derivation: &Derivation, axis: Axis) -> BTreeSet<String> {
-    let spelled = |name: &String| name.split_once('_').map_or(name.clone(), |(_, factors)| factors.to_owned());
+    let spelled = |name: &String| {
+        name.split_once('_').map_or(name.clone(), |(_, factors)| factors.to_owned())
+    };
     derivation.law.axes[&axis].terms.keys().map(spelled).collect()
 }

@@ -6,7 +6,9 @@ use crate::coefficient::Axis;
 
 /// A single screw and rudder of second order.
 fn single(rules: &str) -> super::Derivation {
-    declared(&format!("order: 2\nactuators: {{ n: {{ kind: propeller }}, delta: {{ kind: rudder }} }}\nrules: {{ {rules} }}\n"))
+    declared(&format!(
+        "order: 2\nactuators: {{ n: {{ kind: propeller }}, delta: {{ kind: rudder }} }}\nrules: {{ {rules} }}\n"
+    ))
 }
 
 fn sizes(derivation: &super::Derivation) -> [usize; 3] {
@@ -17,7 +19,9 @@ fn sizes(derivation: &super::Derivation) -> [usize; 3] {
 fn without_any_rule_the_whole_expansion_stays() {
     let all = single("constant: true, symmetry: none, trigonometric_powers: keep, squares: plain");
     assert_eq!(sizes(&all), [28, 28, 28]);
-    assert!(names(&all, Axis::Y).contains("0") && names(&all, Axis::X).contains("sindeltasindelta"));
+    assert!(
+        names(&all, Axis::Y).contains("0") && names(&all, Axis::X).contains("sindeltasindelta")
+    );
 }
 
 #[test]
@@ -32,7 +36,11 @@ fn each_rule_takes_what_is_its_own() {
         ("signed_squares: true", Axis::Y, "v|v|"),
         ("signed_squares: true", Axis::N, "r|r|"),
         ("trigonometric_powers: keep", Axis::X, "sindeltasindelta"),
-        ("trigonometric_exceptions: [{ factor: cosdelta, axes: [X] }]", Axis::X, "cosdelta|cosdelta|"),
+        (
+            "trigonometric_exceptions: [{ factor: cosdelta, axes: [X] }]",
+            Axis::X,
+            "cosdelta|cosdelta|",
+        ),
         ("squares: plain", Axis::X, "uu"),
     ] {
         let here = if rules == "symmetry: none" && name == "uu" { "u|u|" } else { name };
@@ -74,7 +82,10 @@ fn every_kind_of_actuator_has_its_variables() {
     let factors: Vec<&str> = ship.law.factors.keys().map(String::as_str).collect();
     assert_eq!(
         factors,
-        ["u", "v", "r", "delta", "n_pod_s", "sinpod_s", "cospod_s", "n_pod_p", "sinpod_p", "cospod_p", "sinflap", "cosflap"]
+        [
+            "u", "v", "r", "delta", "n_pod_s", "sinpod_s", "cospod_s", "n_pod_p", "sinpod_p",
+            "cospod_p", "sinflap", "cosflap"
+        ]
     );
     assert_eq!(ship.law_file.values["cosflap"], "1 - cos(flap)");
     let inputs: Vec<&str> = ship.law.inputs.keys().map(String::as_str).collect();
@@ -84,19 +95,24 @@ fn every_kind_of_actuator_has_its_variables() {
 #[test]
 fn the_scaling_decides_whether_coefficients_carry_units() {
     let unit = |derivation: &super::Derivation| {
-        ["X_u|u|", "Y_vn", "N_rcosdelta_s"].map(|name| derivation.law.coefficient_dimension(name).unwrap().to_string())
+        ["X_u|u|", "Y_vn", "N_rcosdelta_s"]
+            .map(|name| derivation.law.coefficient_dimension(name).unwrap().to_string())
     };
     assert_eq!(unit(&vectwin(2, "")), ["kg m^-1", "kg", "kg m^2 s^-1"]);
-    let scaled = declared("order: 2\nactuators: { n: { kind: propeller }, delta: { kind: vectwin } }\n");
+    let scaled =
+        declared("order: 2\nactuators: { n: { kind: propeller }, delta: { kind: vectwin } }\n");
     assert_eq!(unit(&scaled), ["1", "1", "1"]);
 }
 
 #[test]
 fn the_rudder_turns_the_signs_of_its_sines() {
     let law = vectwin(3, "submodels: ahead_astern\n").law;
-    for (name, odd) in
-        [("Y_sindelta_s", true), ("Y_sindelta_p@astern", true), ("X_sindelta_ssindelta_p", false), ("X_ucosdelta_s", false)]
-    {
+    for (name, odd) in [
+        ("Y_sindelta_s", true),
+        ("Y_sindelta_p@astern", true),
+        ("X_sindelta_ssindelta_p", false),
+        ("X_ucosdelta_s", false),
+    ] {
         assert_eq!(law.is_odd_in_rudder(name), odd, "{name}");
     }
 }
@@ -105,16 +121,32 @@ fn the_rudder_turns_the_signs_of_its_sines() {
 fn submodels_are_those_of_the_algorithms() {
     let when = |scheme: &str| {
         let law = vectwin(1, &format!("submodels: {scheme}\n")).law_file;
-        law.submodels.into_iter().map(|(name, submodel)| format!("{name}: {}", submodel.when.join(" and "))).collect::<Vec<_>>()
+        law.submodels
+            .into_iter()
+            .map(|(name, submodel)| format!("{name}: {}", submodel.when.join(" and ")))
+            .collect::<Vec<_>>()
     };
     let stalled = "max(abs(delta_s) - 50*pi/180, abs(delta_p) - 55*pi/180)";
     assert_eq!(when("ahead_astern"), ["astern: u < 0"]);
-    assert_eq!(when("ahead_stalled_astern"), [format!("stalled: u >= 0 and {stalled} >= 0"), "astern: u < 0".into()]);
+    assert_eq!(
+        when("ahead_stalled_astern"),
+        [format!("stalled: u >= 0 and {stalled} >= 0"), "astern: u < 0".into()]
+    );
     let four = when("ahead_astern_stalled");
-    assert_eq!(four[1..], [format!("astern: u < 0 and {stalled} < 0"), format!("astern-stalled: u < 0 and {stalled} >= 0")]);
+    assert_eq!(
+        four[1..],
+        [
+            format!("astern: u < 0 and {stalled} < 0"),
+            format!("astern-stalled: u < 0 and {stalled} >= 0")
+        ]
+    );
     assert_eq!(
         when("quadrants"),
-        ["crash-astern: u >= 0 and n < 0", "backing: u < 0 and n < 0", "crash-ahead: u < 0 and n >= 0"]
+        [
+            "crash-astern: u >= 0 and n < 0",
+            "backing: u < 0 and n < 0",
+            "crash-ahead: u < 0 and n >= 0"
+        ]
     );
     assert!(when("one").is_empty());
 }
@@ -132,6 +164,13 @@ fn a_derived_law_is_a_file_like_any_other() {
     let again = Law::parse("again.yaml", &derived.text).unwrap();
     assert_eq!(again, derived.law);
     let file: crate::law::LawFile = serde_yaml::from_str(&derived.text).unwrap();
-    assert_eq!(serde_yaml::to_string(&file).unwrap(), serde_yaml::to_string(&derived.law_file).unwrap());
-    assert_eq!(vectwin(3, "submodels: ahead_astern_stalled\n").text, derived.text, "the same bytes every time");
+    assert_eq!(
+        serde_yaml::to_string(&file).unwrap(),
+        serde_yaml::to_string(&derived.law_file).unwrap()
+    );
+    assert_eq!(
+        vectwin(3, "submodels: ahead_astern_stalled\n").text,
+        derived.text,
+        "the same bytes every time"
+    );
 }

@@ -18,7 +18,8 @@ fn law(rest: &str, values: &str, terms: &str) -> String {
 fn read(text: String) -> Result<(), String> {
     let small = std::thread::Builder::new().stack_size(1 << 20);
     let began = Instant::now();
-    let read = small.spawn(move || Law::parse("law.yaml", &text).map(|_| ()).map_err(|e| e.to_string()));
+    let read =
+        small.spawn(move || Law::parse("law.yaml", &text).map(|_| ()).map_err(|e| e.to_string()));
     let read = read.unwrap().join().unwrap();
     assert!(began.elapsed() < Duration::from_secs(2), "{:?}: {read:?}", began.elapsed());
     read
@@ -39,7 +40,8 @@ fn chain(count: usize, operators: usize) -> String {
 #[test]
 fn laws_at_the_limits_are_read_and_beyond_refused() {
     assert_eq!(read(law("1", "", "X_u")), Ok(()));
-    let around = |open: &str, close: &str, n: usize| format!("{}1{}", open.repeat(n), close.repeat(n));
+    let around =
+        |open: &str, close: &str, n: usize| format!("{}1{}", open.repeat(n), close.repeat(n));
     for (open, close, most) in [
         ("(", ")", MAX_NESTING),
         ("-", "", MAX_NESTING),
@@ -50,7 +52,10 @@ fn laws_at_the_limits_are_read_and_beyond_refused() {
         assert_eq!(read(law(&around(open, close, most - 5), "", "X_u")), Ok(()), "{open}{close}");
         for n in [most + 1, 10 * most, 1_609, 3_355, 10_000] {
             let said = read(law(&around(open, close, n), "", "X_u")).unwrap_err();
-            assert!(said.contains("axes.X.rest") && said.contains("are the most"), "{open}{close}: {said}");
+            assert!(
+                said.contains("axes.X.rest") && said.contains("are the most"),
+                "{open}{close}: {said}"
+            );
         }
     }
     assert_eq!(read(law("a30", &twice(30), "X_u")), Ok(()));
@@ -59,11 +64,15 @@ fn laws_at_the_limits_are_read_and_beyond_refused() {
     assert_eq!(read(law("a2", &chain(2, 240), "X_u")), Ok(()));
     assert!(read(law("a20", &chain(20, 240), "X_u")).unwrap_err().contains("512 deep"));
     assert!(read(law("1", &twice(501), "X_u")).unwrap_err().contains("values: there are 503; 500"));
-    let names = |count: usize| -> String { (0..count).map(|n| format!("X_{}, ", name(n))).collect() };
+    let names =
+        |count: usize| -> String { (0..count).map(|n| format!("X_{}, ", name(n))).collect() };
     assert_eq!(read(law("1", "", &names(MAX_TERMS - 2))), Ok(()));
     for count in [MAX_TERMS + 1, 3_320, 10 * MAX_TERMS] {
         let said = read(law("1", "", &names(count))).unwrap_err();
-        assert!(said.contains("axes: terms: there are") && said.contains("1500 are the most"), "{said}");
+        assert!(
+            said.contains("axes: terms: there are") && said.contains("1500 are the most"),
+            "{said}"
+        );
     }
     let said = read(law("1", "", &format!("X_{}", "u".repeat(10_000)))).unwrap_err();
     assert!(said.contains("are the most"), "{said}");
@@ -74,14 +83,19 @@ fn laws_at_the_limits_are_read_and_beyond_refused() {
 
 /// Different products of two of the factors.
 fn name(number: usize) -> String {
-    let letters = |place: usize| [b'A' + (place / 8) as u8, b'a' + (place % 8) as u8].map(char::from);
+    let letters =
+        |place: usize| [b'A' + (place / 8) as u8, b'a' + (place % 8) as u8].map(char::from);
     let pairs = (0..64).flat_map(|a| (a..64).map(move |b| (a, b)));
     let (a, b) = pairs.clone().nth(number % 2080).unwrap();
-    [['F'].to_vec(), letters(a).to_vec(), ['F'].to_vec(), letters(b).to_vec()].concat().into_iter().collect()
+    [['F'].to_vec(), letters(a).to_vec(), ['F'].to_vec(), letters(b).to_vec()]
+        .concat()
+        .into_iter()
+        .collect()
 }
 
 fn factors() -> String {
-    let symbols: Vec<String> = (0..64).map(|n| name(pairs_of(n))).map(|pair| format!("{}: u", &pair[..3])).collect();
+    let symbols: Vec<String> =
+        (0..64).map(|n| name(pairs_of(n))).map(|pair| format!("{}: u", &pair[..3])).collect();
     symbols.join(", ")
 }
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use sistership_diagnose::{
-    Confounded, Diagnosis, DiscrepancyLevel, Found, Hypothesis, NextTrial, ResidualSeries, SailedManoeuvre, Settings,
-    TrialErrors, Unexplained, Value, Verdict,
+    Confounded, Diagnosis, DiscrepancyLevel, Found, Hypothesis, NextTrial, ResidualSeries,
+    SailedManoeuvre, Settings, TrialErrors, Unexplained, Value, Verdict,
 };
 use sistership_dynamics::metrics::{ManoeuvreMetrics, TurningMetrics};
 use sistership_model::effect::ActsOn;
@@ -34,23 +34,43 @@ impl Case {
 
     pub fn render(&self) -> Rendered {
         let trials: Vec<&Trial> = self.trials.iter().collect();
-        let label = |number| VersionLabel { ship: "mariner".into(), number, sha256: "ab".repeat(32) };
+        let label =
+            |number| VersionLabel { ship: "mariner".into(), number, sha256: "ab".repeat(32) };
         let law = self.zoo.law(&self.model.law).unwrap();
         let (of, made) = (Some(label(1)), Some(label(3)));
-        let input = DiagnosisInput { diagnosis: &self.diagnosis, model: &self.model, law, trials: &trials, of, made };
+        let input = DiagnosisInput {
+            diagnosis: &self.diagnosis,
+            model: &self.model,
+            law,
+            trials: &trials,
+            of,
+            made,
+        };
         render_diagnosis(&input).unwrap()
     }
 }
 
 /// Ten minutes of gentle turns by a formula.
 fn trial(name: &str, rudder: f64) -> Trial {
-    let mut trial = Trial { name: name.into(), manoeuvre: Some("zigzag 10/10".into()), ..Trial::default() };
+    let mut trial =
+        Trial { name: name.into(), manoeuvre: Some("zigzag 10/10".into()), ..Trial::default() };
     for k in 0..600 {
         let t = f64::from(k);
         let (r, psi) = (0.005 * (t / 40.0).sin(), 0.2 * (1.0 - (t / 40.0).cos()));
         let sample = [7.7, -20.0 * r, r, psi, 7.7 * t, 0.5 * t, rudder * (t / 40.0).sin()];
-        let channels = [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::X, Channel::Y, Channel::Delta];
-        channels.into_iter().zip(sample).for_each(|(channel, value)| trial.channels.entry(channel).or_default().push(value));
+        let channels = [
+            Channel::U,
+            Channel::V,
+            Channel::R,
+            Channel::Psi,
+            Channel::X,
+            Channel::Y,
+            Channel::Delta,
+        ];
+        channels
+            .into_iter()
+            .zip(sample)
+            .for_each(|(channel, value)| trial.channels.entry(channel).or_default().push(value));
         trial.t_s.push(t);
     }
     trial
@@ -85,14 +105,31 @@ fn current() -> Found {
 
 fn hypothesis(effects: &[&str], evidence: f64, taken: bool) -> Hypothesis {
     let effects = effects.iter().map(|&effect| effect.to_owned()).collect();
-    Hypothesis { effects, evidence, held_out: taken.then_some(30.5), parameters: current().parameters, taken }
+    Hypothesis {
+        effects,
+        evidence,
+        held_out: taken.then_some(30.5),
+        parameters: current().parameters,
+        taken,
+    }
 }
 
 /// One judged twice on the way, and so many others that the last are folded away.
 fn hypotheses() -> Vec<Hypothesis> {
-    let first = [("current/constant", 41.2, true), ("current/constant", 41.0, false), ("wind/constant", 40.0, false)];
-    let mut all: Vec<Hypothesis> = first.map(|(effect, evidence, taken)| hypothesis(&[effect], evidence, taken)).into();
-    all.extend((0..12).map(|k| hypothesis(&["wave-drift/towards", &format!("missing-term/Y_{k}")], 3.0 - f64::from(k), false)));
+    let first = [
+        ("current/constant", 41.2, true),
+        ("current/constant", 41.0, false),
+        ("wind/constant", 40.0, false),
+    ];
+    let mut all: Vec<Hypothesis> =
+        first.map(|(effect, evidence, taken)| hypothesis(&[effect], evidence, taken)).into();
+    all.extend((0..12).map(|k| {
+        hypothesis(
+            &["wave-drift/towards", &format!("missing-term/Y_{k}")],
+            3.0 - f64::from(k),
+            false,
+        )
+    }));
     all
 }
 
@@ -101,7 +138,16 @@ fn residual(trial: &str, channel: &str) -> ResidualSeries {
     let before: Vec<f64> = t_s.iter().map(|t| 0.002 * (t / 60.0).sin()).collect();
     let after = before.iter().map(|value| 0.1 * value).collect();
     let (band, variable) = (vec![0.0005; t_s.len()], t_s.iter().map(|t| t / 100.0).collect());
-    ResidualSeries { trial: trial.into(), channel: channel.into(), t_s, before, after, band, against: "psi".into(), variable }
+    ResidualSeries {
+        trial: trial.into(),
+        channel: channel.into(),
+        t_s,
+        before,
+        after,
+        band,
+        against: "psi".into(),
+        variable,
+    }
 }
 
 fn sailed() -> SailedManoeuvre {
@@ -117,15 +163,36 @@ fn sailed() -> SailedManoeuvre {
             speed_loss_m_s: 2.0,
         })
     };
-    SailedManoeuvre { trial: "turn".into(), measured: turn(600.0), before: Some(turn(540.0)), after: Some(turn(597.0)) }
+    SailedManoeuvre {
+        trial: "turn".into(),
+        measured: turn(600.0),
+        before: Some(turn(540.0)),
+        after: Some(turn(597.0)),
+    }
 }
 
 fn diagnosis(after: Model) -> Diagnosis {
-    let residuals = ["zz<1>", "turn"].into_iter().flat_map(|name| [residual(name, "u"), residual(name, "r")]).collect();
-    let stretch = Unexplained { channel: "r".into(), rms_over_noise: 3.1, trial: "turn".into(), from_s: 300.0, to_s: 500.0 };
-    let level = DiscrepancyLevel { channel: "r".into(), expected: Some(1e-5), before: 8e-5, after: 1.1e-5 };
+    let residuals = ["zz<1>", "turn"]
+        .into_iter()
+        .flat_map(|name| [residual(name, "u"), residual(name, "r")])
+        .collect();
+    let stretch = Unexplained {
+        channel: "r".into(),
+        rms_over_noise: 3.1,
+        trial: "turn".into(),
+        from_s: 300.0,
+        to_s: 500.0,
+    };
+    let level =
+        DiscrepancyLevel { channel: "r".into(), expected: Some(1e-5), before: 8e-5, after: 1.1e-5 };
     let separates = vec!["wind".to_owned(), "current".to_owned()];
-    let next = NextTrial { manoeuvre: "zigzag 10/10".into(), speed_m_s: 7.0, heading_deg: 90.0, separates, expected: 12.0 };
+    let next = NextTrial {
+        manoeuvre: "zigzag 10/10".into(),
+        speed_m_s: 7.0,
+        heading_deg: 90.0,
+        separates,
+        expected: 12.0,
+    };
     Diagnosis {
         verdict: Verdict::Effects,
         effects: vec![current()],

@@ -37,7 +37,13 @@ fn row(stated: &StatedQuantity<'_>, remarked: bool) -> Row {
         None => source,
     };
     let value = numbers::stated(stated.quantity.value, 5);
-    let mut cells = vec![Cell::code(stated.name), Cell::new(&stated.meaning), Cell::new(value), Cell::new(stated.unit), source];
+    let mut cells = vec![
+        Cell::code(stated.name),
+        Cell::new(&stated.meaning),
+        Cell::new(value),
+        Cell::new(stated.unit),
+        source,
+    ];
     cells.extend(remarked.then(|| Cell::new(stated.quantity.note.as_deref().unwrap_or(""))));
     Row::of(cells)
 }
@@ -48,14 +54,18 @@ const MEANINGS: [(&str, &str); 7] = [
     ("ranges", "tuning ranges, from the source outwards"),
     ("lambda_count", "values of λ tried in a range"),
     ("difference_s", "time over which accelerations are differenced, s"),
-    ("restart_s", "simulations of manoeuvres left out start anew from the measured state every so often, s"),
+    (
+        "restart_s",
+        "simulations of manoeuvres left out start anew from the measured state every so often, s",
+    ),
     ("folds", "most groups of manoeuvres that are left out in turn"),
     ("held_out", "trials kept out of fit and choice altogether"),
 ];
 
 /// Every setting with what it means.
 pub(crate) fn settings(settings: &Settings) -> Table {
-    let columns = vec![Column::text("setting", ""), Column::prose("value"), Column::prose("meaning")];
+    let columns =
+        vec![Column::text("setting", ""), Column::prose("value"), Column::prose("meaning")];
     let written = serde_json::to_value(settings).unwrap_or_default();
     let mut lines: Vec<(usize, Row)> = Vec::new();
     for (name, value) in written.as_object().into_iter().flatten() {
@@ -70,6 +80,8 @@ pub(crate) fn settings(settings: &Settings) -> Table {
 
 /// `7, least λ from 1 to 10⁻⁶`.
 fn ranges(ranges: &[Range]) -> String {
-    let least = |range: Option<&Range>| known(range.map(|range| range.lambda_min), |value| numbers::stated(value, 2));
+    let least = |range: Option<&Range>| {
+        known(range.map(|range| range.lambda_min), |value| numbers::stated(value, 2))
+    };
     format!("{}, least λ from {} to {}", ranges.len(), least(ranges.first()), least(ranges.last()))
 }

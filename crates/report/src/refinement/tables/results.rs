@@ -54,10 +54,17 @@ pub(crate) fn options(options: &StepOptions<'_>) -> Table {
 }
 
 fn option_row(step: &StepOption, width: usize) -> Row {
-    let name = if step.step == "source" { "source as it is".to_owned() } else { format!("range {}", step.step) };
-    let mut cells = vec![Cell::new(name), Cell::new(known(step.lambda_min, |value| significant(value, 2)))];
+    let name = if step.step == "source" {
+        "source as it is".to_owned()
+    } else {
+        format!("range {}", step.step)
+    };
+    let mut cells =
+        vec![Cell::new(name), Cell::new(known(step.lambda_min, |value| significant(value, 2)))];
     for (values, digits) in [(&step.lambda, 2), (&step.alpha, 2)] {
-        cells.extend((0..width).map(|index| Cell::new(known(values.get(index).copied(), |value| significant(value, digits)))));
+        cells.extend((0..width).map(|index| {
+            Cell::new(known(values.get(index).copied(), |value| significant(value, digits)))
+        }));
     }
     cells.push(Cell::new(known(step.error, |value| significant(value, 4))));
     cells.push(match (&step.reason, step.chosen) {
@@ -79,10 +86,14 @@ pub(crate) fn turns(comparison: &ManoeuvreComparison<'_>) -> Table {
         Column::number("change", "%"),
         Column::number("95 % band", "m"),
     ];
-    let lengths = |value: Option<f64>| known(value.zip(comparison.lpp_m).map(|(m, l)| m / l), |value| fixed(value, 2));
+    let lengths = |value: Option<f64>| {
+        known(value.zip(comparison.lpp_m).map(|(m, l)| m / l), |value| fixed(value, 2))
+    };
     let row = |figure: &ManoeuvreFigure| {
         let mut cells = pair_cells(figure, |value| significant(value, 4));
-        cells.extend([figure.pair.source, figure.pair.refined].map(|value| Cell::new(lengths(value))));
+        cells.extend(
+            [figure.pair.source, figure.pair.refined].map(|value| Cell::new(lengths(value))),
+        );
         cells.push(change_cell(figure));
         cells.push(band_cell(figure.band, |value| significant(value, 4)));
         Row::of(cells)
@@ -117,12 +128,18 @@ fn pair_cells(figure: &ManoeuvreFigure, format: impl Fn(f64) -> String) -> Vec<C
 
 /// From where to where 95 % of models drawn from the posterior are.
 fn band_cell(band: Option<[f64; 2]>, write: impl Fn(f64) -> String) -> Cell {
-    Cell::new(band.map_or_else(|| known(None, &write), |[low, high]| format!("{} to {}", write(low), write(high))))
+    Cell::new(band.map_or_else(
+        || known(None, &write),
+        |[low, high]| format!("{} to {}", write(low), write(high)),
+    ))
 }
 
 fn change_cell(figure: &ManoeuvreFigure) -> Cell {
     let both = figure.pair.source.zip(figure.pair.refined).filter(|(source, _)| *source != 0.0);
-    Cell::new(known(both.map(|(source, refined)| 100.0 * (refined - source) / source.abs()), |value| signed(value, 1)))
+    Cell::new(known(
+        both.map(|(source, refined)| 100.0 * (refined - source) / source.abs()),
+        |value| signed(value, 1),
+    ))
 }
 
 /// Rows under a heading for each manoeuvre.

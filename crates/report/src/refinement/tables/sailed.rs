@@ -31,7 +31,10 @@ fn row(figure: &Sailed) -> Row {
     let value = |value: Option<f64>| Cell::new(known(value, |value| significant(value, 4)));
     let off = |simulated: Option<f64>| {
         let both = simulated.zip(figure.measured).filter(|(_, measured)| *measured != 0.0);
-        Cell::new(known(both.map(|(simulated, measured)| 100.0 * (simulated / measured - 1.0)), |value| signed(value, 1)))
+        Cell::new(known(
+            both.map(|(simulated, measured)| 100.0 * (simulated / measured - 1.0)),
+            |value| signed(value, 1),
+        ))
     };
     let mut cells = vec![Cell::new(figure.figure), Cell::new(figure.unit)];
     cells.extend([figure.measured, figure.source, figure.refined].map(value));

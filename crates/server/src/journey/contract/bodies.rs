@@ -37,7 +37,12 @@ impl Field {
 }
 
 /// Sends every field of a body with what it may and may not be.
-pub(super) async fn walk(operation: &Operation, harness: &Harness, document: &Value, faults: &mut Faults) {
+pub(super) async fn walk(
+    operation: &Operation,
+    harness: &Harness,
+    document: &Value,
+    faults: &mut Faults,
+) {
     let schema = &operation.about["requestBody"]["content"]["application/json"]["schema"];
     if schema.is_null() {
         return;
@@ -45,11 +50,15 @@ pub(super) async fn walk(operation: &Operation, harness: &Harness, document: &Va
     let base = made(document, schema);
     let (top, _) = resolved(document, schema);
     let mut fields = Vec::new();
-    let file = FILES.iter().any(|file| schema["$ref"].as_str().is_some_and(|name| name.ends_with(file)));
+    let file =
+        FILES.iter().any(|file| schema["$ref"].as_str().is_some_and(|name| name.ends_with(file)));
     collect(document, &top, (&[], &[]), if file { 1 } else { DEPTH }, &mut fields);
-    let send = |body: Value| operation.request(harness, None, &[]).header("if-match", "*").json(&body);
+    let send =
+        |body: Value| operation.request(harness, None, &[]).header("if-match", "*").json(&body);
     if top["additionalProperties"] == false {
-        operation.refused(send(with(&base, &["nonsense".into()], json!(1))), &[422], "nonsense", faults).await;
+        operation
+            .refused(send(with(&base, &["nonsense".into()], json!(1))), &[422], "nonsense", faults)
+            .await;
     }
     for field in fields {
         let name = field.at.iter().rfind(|key| key.parse::<usize>().is_err()).unwrap().clone();
@@ -58,7 +67,9 @@ pub(super) async fn walk(operation: &Operation, harness: &Harness, document: &Va
             operation.refused(send(without(&base, &field.at)), &[422], &name, faults).await;
         }
         for wrong in wrong(&field) {
-            operation.refused(send(with(&base, &field.at, wrong)), &[422, 400], &name, faults).await;
+            operation
+                .refused(send(with(&base, &field.at, wrong)), &[422, 400], &name, faults)
+                .await;
         }
         for right in right(&field) {
             operation.taken(send(with(&base, &field.at, right)), &field.at.join("."), faults).await;
@@ -75,7 +86,8 @@ pub(super) async fn walk(operation: &Operation, harness: &Harness, document: &Va
 fn resolved(document: &Value, schema: &Value) -> (Value, bool) {
     if let Some(name) = schema["$ref"].as_str() {
         let pointer = name.trim_start_matches('#');
-        let found = document.pointer(pointer).unwrap_or_else(|| panic!("{name} is not in the document"));
+        let found =
+            document.pointer(pointer).unwrap_or_else(|| panic!("{name} is not in the document"));
         return resolved(document, found);
     }
     for of in ["oneOf", "anyOf"] {
@@ -100,13 +112,23 @@ fn resolved(document: &Value, schema: &Value) -> (Value, bool) {
     (schema, nullable)
 }
 
-fn collect(document: &Value, schema: &Value, (at, above): (&[String], &[Value]), depth: usize, fields: &mut Vec<Field>) {
+fn collect(
+    document: &Value,
+    schema: &Value,
+    (at, above): (&[String], &[Value]),
+    depth: usize,
+    fields: &mut Vec<Field>,
+) {
     let Some(properties) = schema["properties"].as_object().filter(|_| depth > 0) else { return };
-    let required = |name: &str| schema["required"].as_array().is_some_and(|all| all.iter().any(|known| known == name));
+    let required = |name: &str| {
+        schema["required"].as_array().is_some_and(|all| all.iter().any(|known| known == name))
+    };
     for (name, property) in properties {
         let (found, nullable) = resolved(document, property);
         let at: Vec<String> = at.iter().cloned().chain([name.clone()]).collect();
-        let file = FILES.iter().any(|file| property["$ref"].as_str().is_some_and(|name| name.ends_with(file)));
+        let file = FILES
+            .iter()
+            .any(|file| property["$ref"].as_str().is_some_and(|name| name.ends_with(file)));
         if !file {
             let below: Vec<Value> = above.iter().cloned().chain([made(document, &found)]).collect();
             collect(document, &found, (&at, &below), depth - 1, fields);
@@ -114,10 +136,22 @@ fn collect(document: &Value, schema: &Value, (at, above): (&[String], &[Value]),
             let (item, item_nullable) = resolved(document, &found["items"]);
             if found["type"] == "array" && !item["type"].is_null() && item["type"] != "object" {
                 let at = at.iter().cloned().chain(["0".to_owned()]).collect();
-                fields.push(Field { at, schema: item, required: false, nullable: item_nullable, above: above.to_vec() });
+                fields.push(Field {
+                    at,
+                    schema: item,
+                    required: false,
+                    nullable: item_nullable,
+                    above: above.to_vec(),
+                });
             }
         }
-        fields.push(Field { at, schema: found, required: required(name), nullable, above: above.to_vec() });
+        fields.push(Field {
+            at,
+            schema: found,
+            required: required(name),
+            nullable,
+            above: above.to_vec(),
+        });
     }
 }
 
@@ -126,8 +160,11 @@ fn made(document: &Value, schema: &Value) -> Value {
     let (schema, nullable) = resolved(document, schema);
     match schema["type"].as_str() {
         Some("object") => {
-            let required = schema["required"].as_array().into_iter().flatten().filter_map(Value::as_str);
-            required.map(|name| (name.to_owned(), made(document, &schema["properties"][name]))).collect()
+            let required =
+                schema["required"].as_array().into_iter().flatten().filter_map(Value::as_str);
+            required
+                .map(|name| (name.to_owned(), made(document, &schema["properties"][name])))
+                .collect()
         }
         Some("array") => {
             let least = schema["minItems"].as_u64().unwrap_or(0);
@@ -151,17 +188,30 @@ fn wrong(field: &Field) -> Vec<Value> {
         all.push(Value::Null);
     }
     match kind {
-        "string" => all.extend(unfit(schema).into_iter().filter(|text| !super::values::string(schema, text)).map(Value::from)),
+        "string" => all.extend(
+            unfit(schema)
+                .into_iter()
+                .filter(|text| !super::values::string(schema, text))
+                .map(Value::from),
+        ),
         "integer" | "number" => {
-            let limits = [schema["minimum"].as_f64().map(|n| n - 1.0), schema["maximum"].as_f64().map(|n| n + 1.0)];
+            let limits = [
+                schema["minimum"].as_f64().map(|n| n - 1.0),
+                schema["maximum"].as_f64().map(|n| n + 1.0),
+            ];
             let exclusive = schema["exclusiveMinimum"].as_f64();
-            let numbers = limits.into_iter().chain([exclusive, schema["not"]["const"].as_f64()]).flatten();
+            let numbers =
+                limits.into_iter().chain([exclusive, schema["not"]["const"].as_f64()]).flatten();
             all.extend(numbers.filter(|n| !within(schema, *n)).map(|n| number(kind, n)));
             all.extend((kind == "integer").then(|| json!(1.5)));
         }
         "array" => {
             all.extend(schema["minItems"].as_u64().filter(|least| *least > 0).map(|_| json!([])));
-            all.extend(schema["maxItems"].as_u64().and_then(|most| Some(vec![item(schema)?; most as usize + 1].into())));
+            all.extend(
+                schema["maxItems"]
+                    .as_u64()
+                    .and_then(|most| Some(vec![item(schema)?; most as usize + 1].into())),
+            );
         }
         _ => {}
     }
@@ -175,12 +225,25 @@ fn right(field: &Field) -> Vec<Value> {
         all.push(Value::Null);
     }
     match schema["type"].as_str() {
-        Some("string") => {
-            all.extend(fitting(schema).into_iter().filter(|text| super::values::string(schema, text)).map(Value::from))
-        }
+        Some("string") => all.extend(
+            fitting(schema)
+                .into_iter()
+                .filter(|text| super::values::string(schema, text))
+                .map(Value::from),
+        ),
         Some(kind @ ("integer" | "number")) => {
-            let limits = [schema["minimum"].as_f64(), schema["maximum"].as_f64().filter(|most| *most < 1e15), Some(1.0)];
-            all.extend(limits.into_iter().flatten().filter(|n| within(schema, *n)).map(|n| number(kind, n)));
+            let limits = [
+                schema["minimum"].as_f64(),
+                schema["maximum"].as_f64().filter(|most| *most < 1e15),
+                Some(1.0),
+            ];
+            all.extend(
+                limits
+                    .into_iter()
+                    .flatten()
+                    .filter(|n| within(schema, *n))
+                    .map(|n| number(kind, n)),
+            );
         }
         Some("boolean") => all.extend([json!(true), json!(false)]),
         _ => {}

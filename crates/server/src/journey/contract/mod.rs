@@ -44,7 +44,12 @@ impl Operation {
     }
 
     /// A request that is right as far as path, query and headers go; `changed` replaces a parameter of the path.
-    fn request(&self, harness: &Harness, changed: Option<(&str, &str)>, query: &[(&str, String)]) -> RequestBuilder {
+    fn request(
+        &self,
+        harness: &Harness,
+        changed: Option<(&str, &str)>,
+        query: &[(&str, String)],
+    ) -> RequestBuilder {
         let mut url = reqwest::Url::parse(&harness.server.url()).unwrap();
         for segment in self.path.split('/').skip(1) {
             let name = segment.strip_prefix('{').map(|name| name.trim_end_matches('}'));
@@ -55,8 +60,8 @@ impl Operation {
             };
             url.path_segments_mut().unwrap().push(value);
         }
-        let ship =
-            self.parameters("query").any(|known| known["name"] == "ship") && !query.iter().any(|(name, _)| *name == "ship");
+        let ship = self.parameters("query").any(|known| known["name"] == "ship")
+            && !query.iter().any(|(name, _)| *name == "ship");
         if ship {
             url.query_pairs_mut().append_pair("ship", "mariner");
         }
@@ -71,13 +76,27 @@ impl Operation {
     }
 
     /// Sends what must be refused with one of these statuses, for the reason that `field` is wrong.
-    async fn refused(&self, request: RequestBuilder, allowed: &[u16], field: &str, faults: &mut Faults) {
+    async fn refused(
+        &self,
+        request: RequestBuilder,
+        allowed: &[u16],
+        field: &str,
+        faults: &mut Faults,
+    ) {
         let shown = format!("{request:?}");
         let response = request.send().await.unwrap();
-        let media = response.headers().get("content-type").map(|media| media.to_str().unwrap().to_owned()).unwrap_or_default();
+        let media = response
+            .headers()
+            .get("content-type")
+            .map(|media| media.to_str().unwrap().to_owned())
+            .unwrap_or_default();
         let (status, problem) = read(response).await;
-        let named = |text: &Value| text.as_str().is_some_and(|text| text.to_lowercase().contains(&field.to_lowercase()));
-        let placed = problem["errors"].as_array().is_some_and(|errors| errors.iter().any(|error| named(&error["field"])));
+        let named = |text: &Value| {
+            text.as_str().is_some_and(|text| text.to_lowercase().contains(&field.to_lowercase()))
+        };
+        let placed = problem["errors"]
+            .as_array()
+            .is_some_and(|errors| errors.iter().any(|error| named(&error["field"])));
         let documented = self.about["responses"].get(status.as_str()).is_some();
         let right = allowed.contains(&status.as_u16()) && media == "application/problem+json";
         if !(right && documented && (placed || named(&problem["detail"]))) {
@@ -97,20 +116,33 @@ impl Operation {
         let blamed = status.is_client_error() && errors.any(|error| error["field"] == field);
         // What is named need not be there, and two fields may have a rule between them.
         let detail = problem["detail"].as_str().unwrap_or_default();
-        let missing = ["there is no", "has no trials", "nothing yet", "keeps her name", "give either"]
-            .iter()
-            .any(|words| detail.contains(words));
+        let missing =
+            ["there is no", "has no trials", "nothing yet", "keeps her name", "give either"]
+                .iter()
+                .any(|words| detail.contains(words));
         if (blamed && !missing) || status.is_server_error() {
             let short: String = shown.chars().take(300).collect();
-            faults.push(format!("{} {}: `{field}` should be taken: {status} {problem}\n    {short}", self.method, self.path));
+            faults.push(format!(
+                "{} {}: `{field}` should be taken: {status} {problem}\n    {short}",
+                self.method, self.path
+            ));
         }
     }
 
     async fn path(&self, harness: &Harness, faults: &mut Faults) {
         for known in self.parameters("path") {
             let name = known["name"].as_str().unwrap();
-            for wrong in unfit(&known["schema"]).into_iter().filter(|wrong| !wrong.is_empty() && !wrong.contains('/')) {
-                self.refused(self.request(harness, Some((name, &wrong)), &[]), &[404], name, faults).await;
+            for wrong in unfit(&known["schema"])
+                .into_iter()
+                .filter(|wrong| !wrong.is_empty() && !wrong.contains('/'))
+            {
+                self.refused(
+                    self.request(harness, Some((name, &wrong)), &[]),
+                    &[404],
+                    name,
+                    faults,
+                )
+                .await;
             }
         }
     }
@@ -119,11 +151,13 @@ impl Operation {
         for known in self.parameters("query") {
             let name = known["name"].as_str().unwrap();
             for wrong in unfit(&known["schema"]) {
-                self.refused(self.request(harness, None, &[(name, wrong)]), &[400], name, faults).await;
+                self.refused(self.request(harness, None, &[(name, wrong)]), &[400], name, faults)
+                    .await;
             }
             let most = known["schema"]["maxItems"].as_u64().unwrap_or(1);
             for right in fitting(&known["schema"]) {
-                self.taken(self.request(harness, None, &[(name, right.clone())]), name, faults).await;
+                self.taken(self.request(harness, None, &[(name, right.clone())]), name, faults)
+                    .await;
                 let many: Vec<_> = (0..=most).map(|_| (name, right.clone())).collect();
                 self.refused(self.request(harness, None, &many), &[400], name, faults).await;
             }
@@ -143,11 +177,20 @@ impl Operation {
             let name = known["name"].as_str().unwrap();
             let sendable = |value: &String| reqwest::header::HeaderValue::from_str(value).is_ok();
             for wrong in unfit(&known["schema"]).into_iter().filter(sendable) {
-                self.refused(self.request(harness, None, &[]).header(name, wrong), &[400], name, faults).await;
+                self.refused(
+                    self.request(harness, None, &[]).header(name, wrong),
+                    &[400],
+                    name,
+                    faults,
+                )
+                .await;
             }
             // The ship is needed by those that follow.
-            for right in fitting(&known["schema"]).into_iter().filter(|_| self.method != Method::DELETE) {
-                self.taken(self.request(harness, None, &[]).header(name, right), name, faults).await;
+            for right in
+                fitting(&known["schema"]).into_iter().filter(|_| self.method != Method::DELETE)
+            {
+                self.taken(self.request(harness, None, &[]).header(name, right), name, faults)
+                    .await;
             }
             if known["required"] == true {
                 self.refused(self.request(harness, None, &[]), &[400, 428], name, faults).await;
@@ -164,7 +207,13 @@ impl Operation {
         }
         if !media.contains(&"text/csv") {
             self.refused(fresh(), &[415], media[0], faults).await;
-            self.refused(fresh().header("content-type", "image/png").body("x"), &[415], media[0], faults).await;
+            self.refused(
+                fresh().header("content-type", "image/png").body("x"),
+                &[415],
+                media[0],
+                faults,
+            )
+            .await;
         }
         if media.contains(&"application/json") {
             for broken in ["", "{", "{} {}"] {

@@ -4,7 +4,8 @@ use regex::Regex;
 use serde_json::Value;
 
 /// Texts that some pattern takes.
-const SAMPLES: [&str; 8] = ["mariner", "walked", "*", "\"1\"", "lpp_m:1..2", "turn_35.advance_m:..9", "IjAi", "a"];
+const SAMPLES: [&str; 8] =
+    ["mariner", "walked", "*", "\"1\"", "lpp_m:1..2", "turn_35.advance_m:..9", "IjAi", "a"];
 /// Texts that most patterns refuse.
 const ODD: [&str; 9] = ["", " ", "a b", "-", "A", "\u{7}", "é", "a/b/c", "\"\""];
 
@@ -26,7 +27,14 @@ pub(super) fn fitting(schema: &Value) -> Vec<String> {
     all.extend(schema["minimum"].as_i64().map(|least| least.to_string()));
     all.extend(schema["maximum"].as_i64().map(|most| most.to_string()));
     all.extend(schema["maxLength"].as_u64().map(|most| "a".repeat(most as usize)));
-    all.extend(schema["enum"].as_array().into_iter().flatten().filter_map(Value::as_str).map(str::to_owned));
+    all.extend(
+        schema["enum"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .filter_map(Value::as_str)
+            .map(str::to_owned),
+    );
     // A cursor is what a page gave, and no other text of its form.
     all.retain(|text| fits(schema, text) && schema["maxLength"] != 4096);
     all
@@ -36,7 +44,9 @@ pub(super) fn fitting(schema: &Value) -> Vec<String> {
 pub(super) fn fits(schema: &Value, text: &str) -> bool {
     match schema["type"].as_str() {
         Some("integer") => text.parse::<i64>().is_ok_and(|value| within(schema, value as f64)),
-        Some("number") => text.parse::<f64>().is_ok_and(|value| value.is_finite() && within(schema, value)),
+        Some("number") => {
+            text.parse::<f64>().is_ok_and(|value| value.is_finite() && within(schema, value))
+        }
         Some("boolean") => ["true", "false"].contains(&text),
         Some("array") => fits(&schema["items"], text),
         _ => string(schema, text),
@@ -57,7 +67,9 @@ pub(super) fn string(schema: &Value, text: &str) -> bool {
     let length = text.chars().count() as u64;
     schema["minLength"].as_u64().is_none_or(|least| length >= least)
         && schema["maxLength"].as_u64().is_none_or(|most| length <= most)
-        && schema["pattern"].as_str().is_none_or(|pattern| Regex::new(pattern).unwrap().is_match(text))
+        && schema["pattern"]
+            .as_str()
+            .is_none_or(|pattern| Regex::new(pattern).unwrap().is_match(text))
         && schema["enum"].as_array().is_none_or(|known| known.iter().any(|known| known == text))
         && schema["const"].as_str().is_none_or(|known| known == text)
 }
@@ -65,5 +77,8 @@ pub(super) fn string(schema: &Value, text: &str) -> bool {
 /// A text that a schema takes.
 pub(super) fn sample(schema: &Value) -> String {
     let word = schema["enum"][0].as_str().or_else(|| schema["const"].as_str());
-    word.map_or_else(|| SAMPLES.into_iter().find(|text| string(schema, text)).unwrap_or_default().to_owned(), str::to_owned)
+    word.map_or_else(
+        || SAMPLES.into_iter().find(|text| string(schema, text)).unwrap_or_default().to_owned(),
+        str::to_owned,
+    )
 }

@@ -45,7 +45,12 @@ impl Row {
         let trials = member.drift.as_ref().map_or(&[][..], |drift| &drift.trials);
         let newest = trials.iter().rev().take(TRIALS).map(|trial| {
             let worst = trial.residual.values().copied().fold(0.0, f64::max);
-            format!("{}: {:.0} %{}", date(trial.at_us), 100.0 * worst, if trial.fitted { " (fitted)" } else { "" })
+            format!(
+                "{}: {:.0} %{}",
+                date(trial.at_us),
+                100.0 * worst,
+                if trial.fitted { " (fitted)" } else { "" }
+            )
         });
         let worst = member.drift.as_ref().and_then(|drift| drift.worst);
         Self {

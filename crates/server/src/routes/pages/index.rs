@@ -57,7 +57,15 @@ pub(super) async fn page(State(app): State<App>, Params(query): Params<Query>) -
     for ship in ships.items {
         rows.push(row(&app, ship).await?);
     }
-    let laws = app.store().laws().list(&Page::first(SHIPS)).await?.items.into_iter().map(|law| law.name).collect();
+    let laws = app
+        .store()
+        .laws()
+        .list(&Page::first(SHIPS))
+        .await?
+        .items
+        .into_iter()
+        .map(|law| law.name)
+        .collect();
     let jobs = app.store().jobs().list(&JobFilter::default(), &Page::first(JOBS)).await?;
     answer(&Index {
         ships: rows,
@@ -74,7 +82,8 @@ async fn row(app: &App, ship: FoundShip) -> Result<ShipRow> {
     };
     let trials = app.store().trials().list(&ship.name, &Page::first(COUNTED)).await?;
     let count = trials.items.len();
-    let trials = if trials.next.is_some() { format!("more than {count}") } else { count.to_string() };
+    let trials =
+        if trials.next.is_some() { format!("more than {count}") } else { count.to_string() };
     Ok(ShipRow { name: ship.name, title: ship.title, category: ship.category, champion, trials })
 }
 

@@ -35,10 +35,15 @@ fn outcome(job: &Job) -> Option<String> {
 /// What a diagnosis has found.
 fn found(verdict: &str, result: &Value) -> String {
     let diagnosed = result["diagnosed"].as_str().unwrap_or_default();
-    let effects: Vec<&str> = result["effects"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+    let effects: Vec<&str> =
+        result["effects"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
     match effects.as_slice() {
         [] => format!("{diagnosed} diagnosed: {verdict}"),
-        effects => format!("{diagnosed} diagnosed: lacks {}; version {}", effects.join(", "), result["version"]),
+        effects => format!(
+            "{diagnosed} diagnosed: lacks {}; version {}",
+            effects.join(", "),
+            result["version"]
+        ),
     }
 }
 
@@ -54,9 +59,18 @@ pub(super) struct TrialRow {
 
 impl TrialRow {
     pub fn of(trial: Trial) -> Self {
-        let warnings = serde_json::from_str::<Vec<Value>>(&trial.warnings).map_or(0, |warnings| warnings.len());
-        let (manoeuvre, duration) = (trial.manoeuvre.unwrap_or_default(), format!("{:.0} s", trial.duration_s));
-        Self { id: trial.id, name: trial.name, manoeuvre, rows: trial.sample_rows, duration, warnings }
+        let warnings = serde_json::from_str::<Vec<Value>>(&trial.warnings)
+            .map_or(0, |warnings| warnings.len());
+        let (manoeuvre, duration) =
+            (trial.manoeuvre.unwrap_or_default(), format!("{:.0} s", trial.duration_s));
+        Self {
+            id: trial.id,
+            name: trial.name,
+            manoeuvre,
+            rows: trial.sample_rows,
+            duration,
+            warnings,
+        }
     }
 }
 
@@ -66,10 +80,14 @@ pub(super) fn date(us: i64) -> String {
     let (days, second) = (seconds.div_euclid(86_400), seconds.rem_euclid(86_400));
     let shifted = days + 719_468;
     let (era, day_of_era) = (shifted.div_euclid(146_097), shifted.rem_euclid(146_097));
-    let year_of_era = (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
+    let year_of_era =
+        (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
     let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
     let from_march = (5 * day_of_year + 2) / 153;
-    let (day, month) = (day_of_year - (153 * from_march + 2) / 5 + 1, from_march + if from_march < 10 { 3 } else { -9 });
+    let (day, month) = (
+        day_of_year - (153 * from_march + 2) / 5 + 1,
+        from_march + if from_march < 10 { 3 } else { -9 },
+    );
     let year = year_of_era + era * 400 + i64::from(month <= 2);
     format!("{year:04}-{month:02}-{day:02} {:02}:{:02}", second / 3600, second / 60 % 60)
 }

@@ -49,7 +49,11 @@ pub(super) async fn page(State(app): State<App>, Place(name): Place<String>) -> 
         versions.push(row(&app, head, &aliases).await?);
     }
     let trials = app.store().trials().list(&name, &Page::first(LINES)).await?;
-    let jobs = app.store().jobs().list(&JobFilter { ship: Some(name.clone()), state: None }, &Page::first(LINES)).await?;
+    let jobs = app
+        .store()
+        .jobs()
+        .list(&JobFilter { ship: Some(name.clone()), state: None }, &Page::first(LINES))
+        .await?;
     let condition = Condition::of(app.store(), &name).await?;
     let particulars = vessel(&ship.name, &ship.document)?.particulars;
     answer(&ShipPage {
@@ -59,7 +63,10 @@ pub(super) async fn page(State(app): State<App>, Place(name): Place<String>) -> 
         revision: ship.revision,
         since: condition.since.as_ref().map(|since| date(since.at_us)),
         condition,
-        particulars: particulars.into_iter().map(|(name, quantity)| (name, quantity.value.to_string())).collect(),
+        particulars: particulars
+            .into_iter()
+            .map(|(name, quantity)| (name, quantity.value.to_string()))
+            .collect(),
         versions,
         trials: trials.items.into_iter().map(TrialRow::of).collect(),
         jobs: jobs.items.into_iter().map(JobRow::of).collect(),
@@ -67,10 +74,22 @@ pub(super) async fn page(State(app): State<App>, Place(name): Place<String>) -> 
 }
 
 async fn row(app: &App, head: VersionHead, aliases: &[Alias]) -> Result<VersionRow> {
-    let report = app.store().reports().by_version(&head.id, &Page::first(1)).await?.items.into_iter().next();
-    let names: Vec<&str> =
-        aliases.iter().filter(|alias| alias.version_number == head.number).map(|alias| alias.alias.as_str()).collect();
+    let report =
+        app.store().reports().by_version(&head.id, &Page::first(1)).await?.items.into_iter().next();
+    let names: Vec<&str> = aliases
+        .iter()
+        .filter(|alias| alias.version_number == head.number)
+        .map(|alias| alias.alias.as_str())
+        .collect();
     let VersionHead { number, law, method, sha256, created_us, .. } = head;
     let report = report.map(|report| report.id);
-    Ok(VersionRow { number, aliases: names.join(", "), law, method, sha256, created: date(created_us), report })
+    Ok(VersionRow {
+        number,
+        aliases: names.join(", "),
+        law,
+        method,
+        sha256,
+        created: date(created_us),
+        report,
+    })
 }

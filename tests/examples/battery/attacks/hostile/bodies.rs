@@ -81,7 +81,8 @@ impl Grammar {
 
     /// The beginning of something deep.
     fn deep(&mut self) -> String {
-        let part = self.pick(&["{a: ", "[", "- ", "(", "!!map {", "&a [*a, ", "\"", "? "]).to_owned();
+        let part =
+            self.pick(&["{a: ", "[", "- ", "(", "!!map {", "&a [*a, ", "\"", "? "]).to_owned();
         part.repeat(self.size(20_000))
     }
 
@@ -90,12 +91,14 @@ impl Grammar {
         let columns = HEADINGS.matches(',').count() + 1;
         let mut table = HEADINGS.to_owned();
         for row in 0..self.size(300) {
-            let mut cells: Vec<String> =
-                (0..columns).map(|column| format!("{}.{column}", row * usize::from(column == 0))).collect();
+            let mut cells: Vec<String> = (0..columns)
+                .map(|column| format!("{}.{column}", row * usize::from(column == 0)))
+                .collect();
             if self.chance(0.1) {
                 let place = self.rng.random_range(0..columns);
                 let odd = ["NaN", "inf", "-", "1,5", "", "1e999", "\"", "0x10", "\0", "7;8", "١"];
-                cells[place] = if self.chance(0.9) { self.pick(&odd).to_owned() } else { self.text() };
+                cells[place] =
+                    if self.chance(0.9) { self.pick(&odd).to_owned() } else { self.text() };
             }
             if self.chance(0.02) {
                 cells.truncate(self.rng.random_range(0..columns));
@@ -117,7 +120,9 @@ impl Grammar {
                 0 => self.table(),
                 1 => String::from_utf8_lossy(&self.yaml()).into_owned(),
                 2 => self.value().to_string(),
-                _ => r#"{"kind":"trials","ship":"target","trials":[{"file":"one.csv"}]}"#.to_owned(),
+                _ => {
+                    r#"{"kind":"trials","ship":"target","trials":[{"file":"one.csv"}]}"#.to_owned()
+                }
             };
             let name = self.pick(&["manifest", "file", "file", "ship", "other", ""]).to_owned();
             let file = if self.chance(0.5) {
@@ -125,7 +130,9 @@ impl Grammar {
             } else {
                 String::new()
             };
-            form += &format!("--{BOUNDARY}\r\nContent-Disposition: form-data; name=\"{name}\"{file}\r\n\r\n{text}\r\n");
+            form += &format!(
+                "--{BOUNDARY}\r\nContent-Disposition: form-data; name=\"{name}\"{file}\r\n\r\n{text}\r\n"
+            );
         }
         if self.chance(0.8) {
             form += &format!("--{BOUNDARY}--\r\n");

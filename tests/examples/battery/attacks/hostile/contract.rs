@@ -65,7 +65,11 @@ fn route(path: &str, method: &str, operation: &Value) -> Route {
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     let parameters = operation["parameters"].as_array().into_iter().flatten();
     let parameters = parameters
-        .map(|one| Parameter { name: text(&one["name"]), place: text(&one["in"]), schema: one["schema"].clone() })
+        .map(|one| Parameter {
+            name: text(&one["name"]),
+            place: text(&one["in"]),
+            schema: one["schema"].clone(),
+        })
         .collect();
     let bodies = operation["requestBody"]["content"].as_object().into_iter().flatten();
     let bodies = bodies.map(|(media, body)| (media.clone(), body["schema"].clone())).collect();

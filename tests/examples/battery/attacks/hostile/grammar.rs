@@ -12,7 +12,8 @@ use super::contract::Contract;
 /// How deep values of recursive schemas go.
 const DEPTH: usize = 8;
 /// Names that exist on the server.
-const NAMES: &[&str] = &["target", "mariner", "kvlcc2", "sr108", "polynomial", "champion", "latest", "1", "one.csv"];
+const NAMES: &[&str] =
+    &["target", "mariner", "kvlcc2", "sr108", "polynomial", "champion", "latest", "1", "one.csv"];
 
 /// A seeded source of requests.
 pub struct Grammar {
@@ -28,7 +29,10 @@ impl Grammar {
         let mut bytes = [0; 32];
         bytes[..8].copy_from_slice(&seed.to_le_bytes());
         let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
-        let runner = TestRunner::new_with_rng(Config { failure_persistence: None, ..Config::default() }, rng);
+        let runner = TestRunner::new_with_rng(
+            Config { failure_persistence: None, ..Config::default() },
+            rng,
+        );
         Self { contract, rng: ChaCha12Rng::seed_from_u64(seed), runner, values: values() }
     }
 
@@ -75,9 +79,9 @@ impl Grammar {
         };
         match kind.as_str() {
             Some("object") => self.object(&schema, depth),
-            Some("array") if depth < DEPTH => {
-                (0..self.rng.random_range(0..4)).map(|_| self.instance(&schema["items"], depth + 1)).collect()
-            }
+            Some("array") if depth < DEPTH => (0..self.rng.random_range(0..4))
+                .map(|_| self.instance(&schema["items"], depth + 1))
+                .collect(),
             Some("array") => json!([]),
             Some("integer") => json!(self.rng.random_range(-1..4)),
             Some("number") => json!(self.rng.random_range(-1.0..30.0)),
@@ -89,9 +93,12 @@ impl Grammar {
 
     fn object(&mut self, schema: &Value, depth: usize) -> Value {
         let mut object = serde_json::Map::new();
-        let Some(properties) = schema["properties"].as_object().filter(|_| depth < DEPTH) else { return self.value() };
+        let Some(properties) = schema["properties"].as_object().filter(|_| depth < DEPTH) else {
+            return self.value();
+        };
         for (name, property) in properties {
-            let required = schema["required"].as_array().is_some_and(|names| names.contains(&json!(name)));
+            let required =
+                schema["required"].as_array().is_some_and(|names| names.contains(&json!(name)));
             if required || self.chance(0.5) {
                 object.insert(name.clone(), self.instance(property, depth + 1));
             }
@@ -113,7 +120,9 @@ impl Grammar {
                     1 => {
                         object.insert(self.text(), more);
                     }
-                    _ => object.values_mut().nth(place).into_iter().for_each(|part| self.spoil(part)),
+                    _ => {
+                        object.values_mut().nth(place).into_iter().for_each(|part| self.spoil(part))
+                    }
                 }
             }
             Value::Array(items) if !items.is_empty() && self.chance(0.8) => {
@@ -153,14 +162,17 @@ fn values() -> BoxedStrategy<Value> {
         any::<i64>().prop_map(Value::from),
         any::<u64>().prop_map(Value::from),
         any::<f64>().prop_map(Value::from),
-        prop::sample::select(vec![0.0, -0.0, 1e308, -1e308, 5e-324, 1e-300, 9007199254740993.0]).prop_map(Value::from),
+        prop::sample::select(vec![0.0, -0.0, 1e308, -1e308, 5e-324, 1e-300, 9007199254740993.0])
+            .prop_map(Value::from),
         ".{0,40}".prop_map(Value::from),
-        prop::sample::select(vec!["NaN", "Infinity", "-1", "1e999", "\u{0}", "null", "2026-02-30"]).prop_map(Value::from),
+        prop::sample::select(vec!["NaN", "Infinity", "-1", "1e999", "\u{0}", "null", "2026-02-30"])
+            .prop_map(Value::from),
     ];
     let deeper = leaf.prop_recursive(6, 60, 6, |inner| {
         prop_oneof![
             prop::collection::vec(inner.clone(), 0..6).prop_map(Value::Array),
-            prop::collection::btree_map("[a-z_]{0,8}", inner, 0..6).prop_map(|map| Value::Object(map.into_iter().collect())),
+            prop::collection::btree_map("[a-z_]{0,8}", inner, 0..6)
+                .prop_map(|map| Value::Object(map.into_iter().collect())),
         ]
     });
     deeper.boxed()

@@ -26,9 +26,15 @@ pub fn all(address: SocketAddr) -> Vec<Known> {
     // Under another name each: a law never changes, and one of them may be there.
     let law = |what: &'static str, formula: String, statuses| {
         let text = documents::law_of(&format!("known-{}", formula.len()), &formula);
-        Known { what, raw: Raw::new("POST", "/v1/laws", address, "application/yaml", text), statuses }
+        Known {
+            what,
+            raw: Raw::new("POST", "/v1/laws", address, "application/yaml", text),
+            statuses,
+        }
     };
-    let nested = |open: &str, inner: &str, close: &str, depth: usize| open.repeat(depth) + inner + &close.repeat(depth);
+    let nested = |open: &str, inner: &str, close: &str, depth: usize| {
+        open.repeat(depth) + inner + &close.repeat(depth)
+    };
     let mut known = vec![
         law("a formula of 1,609 brackets", nested("(", "u", ")", 1609), BORNE),
         law("a formula of 10,000 brackets", nested("(", "u", ")", 10_000), REFUSED),
@@ -49,7 +55,11 @@ pub fn all(address: SocketAddr) -> Vec<Known> {
 fn vessels(address: SocketAddr) -> Vec<Known> {
     let ship = |what, value: String| {
         let text = documents::ship("known").replace("lpp_m: 175.0", &format!("lpp_m: \"{value}\""));
-        Known { what, raw: Raw::new("POST", "/v1/ships", address, "application/yaml", text), statuses: REFUSED }
+        Known {
+            what,
+            raw: Raw::new("POST", "/v1/ships", address, "application/yaml", text),
+            statuses: REFUSED,
+        }
     };
     vec![
         ship("a length of 10,000 brackets", "(".repeat(10_000) + "1" + &")".repeat(10_000)),
@@ -63,13 +73,34 @@ fn deep_documents(address: SocketAddr) -> Vec<Known> {
         let raw = Raw::new("POST", path, address, media, body);
         Known { what, raw, statuses: REFUSED }
     };
-    let bomb: String = (1..25)
-        .fold("a0: &a0 [x, x]\n".to_owned(), |text, level| text + &format!("a{level}: &a{level} [*a{0}, *a{0}]\n", level - 1));
+    let bomb: String = (1..25).fold("a0: &a0 [x, x]\n".to_owned(), |text, level| {
+        text + &format!("a{level}: &a{level} [*a{0}, *a{0}]\n", level - 1)
+    });
     vec![
-        post("YAML of 50,000 maps in each other", "/v1/laws", "application/yaml", "{a: ".repeat(50_000)),
-        post("YAML of 50,000 maps in a ship", "/v1/ships", "application/yaml", "{a: ".repeat(50_000)),
-        post("YAML of 50,000 lists in each other", "/v1/laws", "application/yaml", "[".repeat(50_000)),
-        post("YAML of 50,000 lists by dashes", "/v1/laws", "application/yaml", "- ".repeat(50_000) + "a"),
+        post(
+            "YAML of 50,000 maps in each other",
+            "/v1/laws",
+            "application/yaml",
+            "{a: ".repeat(50_000),
+        ),
+        post(
+            "YAML of 50,000 maps in a ship",
+            "/v1/ships",
+            "application/yaml",
+            "{a: ".repeat(50_000),
+        ),
+        post(
+            "YAML of 50,000 lists in each other",
+            "/v1/laws",
+            "application/yaml",
+            "[".repeat(50_000),
+        ),
+        post(
+            "YAML of 50,000 lists by dashes",
+            "/v1/laws",
+            "application/yaml",
+            "- ".repeat(50_000) + "a",
+        ),
         post("YAML whose aliases multiply", "/v1/laws", "application/yaml", bomb),
         post("JSON of 100,000 lists", "/v1/predictions", "application/json", "[".repeat(100_000)),
     ]
@@ -77,7 +108,11 @@ fn deep_documents(address: SocketAddr) -> Vec<Known> {
 
 /// Tables with rows that are shorter or longer than their heading.
 fn tables(address: SocketAddr) -> Vec<Known> {
-    let check = |what, body: &str, statuses| Known { what, raw: Raw::new("POST", CSV, address, "text/csv", body), statuses };
+    let check = |what, body: &str, statuses| Known {
+        what,
+        raw: Raw::new("POST", CSV, address, "text/csv", body),
+        statuses,
+    };
     // A check answers 200 with what is wrong; an upload refuses.
     let upload = |what, body: &str| {
         let path = "/v1/trials?ship=target&name=known.csv&diagnose=false";
@@ -95,9 +130,13 @@ fn tables(address: SocketAddr) -> Vec<Known> {
 
 /// Requests of a page of another site, and of no site at all.
 fn headers(address: SocketAddr) -> Vec<Known> {
-    let law = |name: &str| Raw::new("POST", "/v1/laws", address, "application/yaml", documents::law(name));
+    let law = |name: &str| {
+        Raw::new("POST", "/v1/laws", address, "application/yaml", documents::law(name))
+    };
     let without_host = |mut raw: Raw| {
-        raw.head = String::from_utf8_lossy(&raw.head).replace(&format!("host: {address}\r\n"), "").into_bytes();
+        raw.head = String::from_utf8_lossy(&raw.head)
+            .replace(&format!("host: {address}\r\n"), "")
+            .into_bytes();
         raw
     };
     let known = |what, raw| Known { what, raw, statuses: MISDIRECTED };
@@ -106,11 +145,19 @@ fn headers(address: SocketAddr) -> Vec<Known> {
         known("no Host header", without_host(law("known-2"))),
         known("the Host of another", {
             let mut raw = law("known-3");
-            raw.head = String::from_utf8_lossy(&raw.head).replace(&address.to_string(), "elsewhere.example").into_bytes();
+            raw.head = String::from_utf8_lossy(&raw.head)
+                .replace(&address.to_string(), "elsewhere.example")
+                .into_bytes();
             raw
         }),
-        known("Sec-Fetch-Site: cross-site without Origin", law("known-4").header("sec-fetch-site", "cross-site")),
-        known("the Origin https of the same host", law("known-5").header("origin", format!("https://{address}"))),
+        known(
+            "Sec-Fetch-Site: cross-site without Origin",
+            law("known-4").header("sec-fetch-site", "cross-site"),
+        ),
+        known(
+            "the Origin https of the same host",
+            law("known-5").header("origin", format!("https://{address}")),
+        ),
         known("the Origin of another", law("known-6").header("origin", "http://elsewhere.example")),
     ]
 }

@@ -44,7 +44,11 @@ impl Attack for Hostile {
 async fn run(field: &Field) -> Result<(), Failure> {
     let place = field.place().await?;
     let mut server = place.serve().await?;
-    for write in [Write::ship("target"), Write::version("target", "a target")?, Write::trial("target", "one", 1)] {
+    for write in [
+        Write::ship("target"),
+        Write::version("target", "a target")?,
+        Write::trial("target", "one", 1),
+    ] {
         write.send(&server.client).await.ok_or("no target")?;
     }
     for known in known::all(server.client.address) {
@@ -74,7 +78,12 @@ async fn run(field: &Field) -> Result<(), Failure> {
 }
 
 /// Sends one request and judges what can be judged of any; none where the server has ended.
-async fn attack(field: &Field, server: &mut Server, raw: &Raw, what: &str) -> Result<Option<Answer>, Failure> {
+async fn attack(
+    field: &Field,
+    server: &mut Server,
+    raw: &Raw,
+    what: &str,
+) -> Result<Option<Answer>, Failure> {
     field.tally.tried(1);
     let begun = Instant::now();
     let answer = raw.send(server.client.address, 3 * PATIENCE).await;
@@ -83,7 +92,9 @@ async fn attack(field: &Field, server: &mut Server, raw: &Raw, what: &str) -> Re
         return Ok(None);
     }
     match answer.status {
-        Some(status) => field.tally.status(status, || format!("{}: {}", said(), clipped(&answer.body))),
+        Some(status) => {
+            field.tally.status(status, || format!("{}: {}", said(), clipped(&answer.body)))
+        }
         // Who sends more than is taken may be cut off before he reads why.
         None if raw.may_be_cut() => {}
         None => field.tally.wrong(format!("{}: no answer: {}", said(), answer.body)),

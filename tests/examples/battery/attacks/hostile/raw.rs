@@ -37,7 +37,13 @@ pub struct Answer {
 
 impl Raw {
     /// A request with a body of a media type, as it should be written.
-    pub fn new(method: &str, path: &str, address: SocketAddr, media: &str, body: impl Into<Vec<u8>>) -> Self {
+    pub fn new(
+        method: &str,
+        path: &str,
+        address: SocketAddr,
+        media: &str,
+        body: impl Into<Vec<u8>>,
+    ) -> Self {
         let head = format!("{method} {path} HTTP/1.1\r\nhost: {address}\r\nconnection: close");
         let raw = Self { head: head.into_bytes(), body: body.into(), broken: false };
         if media.is_empty() { raw } else { raw.header("content-type", media) }
@@ -58,7 +64,8 @@ impl Raw {
     /// Its beginning, for a person.
     pub fn shown(&self) -> String {
         let line = self.head.split(|&byte| byte == b'\r').next().unwrap_or_default();
-        let text = |bytes: &[u8]| clipped(&String::from_utf8_lossy(bytes)).escape_debug().to_string();
+        let text =
+            |bytes: &[u8]| clipped(&String::from_utf8_lossy(bytes)).escape_debug().to_string();
         format!("{} with {} bytes: {}", text(line), self.body.len(), text(&self.body))
     }
 

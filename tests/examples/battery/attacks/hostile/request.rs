@@ -11,7 +11,15 @@ use super::grammar::Grammar;
 use super::raw::Raw;
 use crate::client::encoded;
 
-const MEDIA: &[&str] = &["application/json", "application/yaml", "text/csv", "multipart/form-data", "text/html", "*/*", ""];
+const MEDIA: &[&str] = &[
+    "application/json",
+    "application/yaml",
+    "text/csv",
+    "multipart/form-data",
+    "text/html",
+    "*/*",
+    "",
+];
 
 impl Grammar {
     /// The next request.
@@ -54,7 +62,9 @@ impl Grammar {
             let value = self.parameter(parameter);
             match parameter.place.as_str() {
                 "path" => path = path.replace(&format!("{{{}}}", parameter.name), &encoded(&value)),
-                "query" if self.chance(0.6) => query.push(format!("{}={}", parameter.name, encoded(&value))),
+                "query" if self.chance(0.6) => {
+                    query.push(format!("{}={}", parameter.name, encoded(&value)))
+                }
                 _ => {}
             }
         }
@@ -88,9 +98,14 @@ impl Grammar {
         }
         match self.rng.random_range(0..60) {
             0 => raw.header("x-long", "a".repeat(self.size(200_000))),
-            1 => (0..self.size(300)).fold(raw, |raw, number| raw.header(&format!("x-{number}"), "1")),
+            1 => {
+                (0..self.size(300)).fold(raw, |raw, number| raw.header(&format!("x-{number}"), "1"))
+            }
             2 => raw.header("content-type", "text/csv"),
-            3 => raw.header("accept", self.pick(&["text/html", "application/yaml", "x/y;q=9", ",,,", "*"])),
+            3 => raw.header(
+                "accept",
+                self.pick(&["text/html", "application/yaml", "x/y;q=9", ",,,", "*"]),
+            ),
             4 => raw.header("range", "bytes=5-1"),
             5 => raw.header("if-none-match", self.pick(&["*", "W/\"", "\"1\", \"2\"", "1"])),
             6 => raw.header("authorization", "Bearer x y z"),

@@ -21,7 +21,7 @@ const ADDRESSES: usize = 4096;
 
 /// Wrong keys by address, in a table that forgets.
 #[derive(Default)]
-pub(crate) struct Throttle(Mutex<HashMap<IpAddr, Mistakes>>);
+pub struct Throttle(Mutex<HashMap<IpAddr, Mistakes>>);
 
 #[derive(Debug, Clone, Copy)]
 struct Mistakes {
@@ -31,13 +31,15 @@ struct Mistakes {
 
 impl Mistakes {
     fn now(&self, now: Instant) -> f64 {
-        (self.count - now.saturating_duration_since(self.at).as_secs_f64() / FORGOTTEN.as_secs_f64()).max(0.0)
+        (self.count
+            - now.saturating_duration_since(self.at).as_secs_f64() / FORGOTTEN.as_secs_f64())
+        .max(0.0)
     }
 }
 
 impl Throttle {
     /// Counts a wrong key; gives how long further ones are refused, where there were too many.
-    pub(crate) fn wrong(&self, from: IpAddr) -> Option<Duration> {
+    pub fn wrong(&self, from: IpAddr) -> Option<Duration> {
         self.wrong_at(from, Instant::now())
     }
 
@@ -59,7 +61,8 @@ impl Throttle {
 /// Forgets what is forgotten anyway, and the address with the fewest mistakes.
 fn make_room(table: &mut HashMap<IpAddr, Mistakes>, now: Instant) {
     table.retain(|_, mistakes| mistakes.now(now) > 0.0);
-    let fewest = table.iter().min_by(|a, b| a.1.now(now).total_cmp(&b.1.now(now))).map(|(from, _)| *from);
+    let fewest =
+        table.iter().min_by(|a, b| a.1.now(now).total_cmp(&b.1.now(now))).map(|(from, _)| *from);
     if let Some(from) = fewest.filter(|_| table.len() >= ADDRESSES) {
         table.remove(&from);
     }
@@ -75,7 +78,10 @@ mod tests {
         let address: IpAddr = [10, 0, 0, 1].into();
         assert!((0..10).all(|_| throttle.wrong_at(address, start).is_none()));
         assert_eq!(throttle.wrong_at(address, start), Some(FORGOTTEN));
-        assert!(throttle.wrong_at([10, 0, 0, 2].into(), start).is_none(), "others are not concerned");
+        assert!(
+            throttle.wrong_at([10, 0, 0, 2].into(), start).is_none(),
+            "others are not concerned"
+        );
         assert!(throttle.wrong_at(address, start + FORGOTTEN * 3).is_none());
         for last in 0..2 * ADDRESSES as u32 {
             throttle.wrong_at(std::net::Ipv4Addr::from(last).into(), start);
