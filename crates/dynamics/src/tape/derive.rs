@@ -258,7 +258,7 @@ mod tests {
             parse(&text).ok().map(Binding::Formula)
         };
         let tried = small.spawn(move || {
-            let mut builder = TapeBuilder::new(&["u", "v"], &bind);
+            let mut builder = TapeBuilder::new(&["u", "v"], bind);
             builder.output(&parse(&format!("a{deepest}")).unwrap()).unwrap();
             builder.derivative(0, "u").unwrap();
             assert!(builder.finish().values(&[0.0, 0.0])[0] > 0.0);

@@ -33,10 +33,13 @@ fn sides(expr: &Expr) -> Option<(&Expr, &Expr, Make)> {
     }
 }
 
+/// What a name stands for that is no input.
+type Bind<'a> = dyn Fn(&str) -> Option<Binding> + 'a;
+
 /// Builds a tape from formulas.
 pub struct TapeBuilder<'a> {
     pub(super) inputs: Vec<String>,
-    bind: Box<dyn Fn(&str) -> Option<Binding> + 'a>,
+    bind: Box<Bind<'a>>,
     pub(super) ops: Vec<Op>,
     seen: HashMap<[u64; 6], Slot>,
     named: HashMap<String, Slot>,
