@@ -35,7 +35,7 @@ fn is_angle_by_sign_of_zero(expr: &Expr, lookup: &dyn Fn(&str) -> Option<f64>) -
 
 fn lowered(expr: &Expr, value: f64) {
     let bind = |_: &str| None::<Binding>;
-    let mut lowering = TapeBuilder::new(&INPUTS, &bind);
+    let mut lowering = TapeBuilder::new(&INPUTS, bind);
     if lowering.output(expr).is_err() {
         return;
     }
