@@ -5,13 +5,14 @@ use std::io::{Cursor, Read};
 use csv::{ByteRecord, ReaderBuilder};
 
 use crate::cells::{Cells, Counter};
+use crate::clock::Clock;
 use crate::findings::Findings;
 use crate::mapping::Mapping;
 use crate::metered::{Meter, Metered};
 use crate::number::{Fault, number};
 use crate::resolve::resolve;
 use crate::rows::Builder;
-use crate::table::Table;
+use crate::table::{Table, Target};
 
 /// Bytes that are asked for at once while the header is looked for.
 const CHUNK: u64 = 4096;
@@ -29,13 +30,16 @@ pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings)
     let headers = headers(&mut reader, mapping, findings)?;
     meter.reset();
     let columns = resolve(&headers, mapping, findings)?;
+    let mut clock = Clock::of(&columns);
     let mut counter = Counter::new(separator, headers.len());
     let mut builder =
         Builder::new(columns, mapping.conventions.missing, findings).with_room(mapping.room);
-    let stopped = rows(&mut reader, &meter, mapping.limits.rows, &mut counter, &mut builder);
+    let stopped =
+        rows(&mut reader, &meter, mapping.limits.rows, &mut counter, &mut clock, &mut builder);
     let drops = builder.drops();
-    let table = builder.finish();
+    let mut table = builder.finish();
     counter.tell(drops, findings);
+    clock.finish(&mut table, findings);
     if let Err((row, message)) = stopped {
         findings.error(Some(row), None, message);
     }
@@ -160,6 +164,7 @@ fn rows(
     meter: &Meter,
     most: usize,
     counter: &mut Counter,
+    clock: &mut Clock,
     builder: &mut Builder,
 ) -> Result<(), (usize, String)> {
     let mut record = ByteRecord::new();
@@ -182,8 +187,10 @@ fn rows(
         }
         meter.reset();
         match counter.row(row, &record) {
-            Cells::Fit => builder
-                .row(row, |_, column| record.get(column.index).map_or(Err(Fault::Absent), number)),
+            Cells::Fit => builder.row(row, |_, column| {
+                let cell = record.get(column.index).ok_or(Fault::Absent)?;
+                if column.target == Target::Time { clock.cell(row, cell) } else { number(cell) }
+            }),
             Cells::Few(_) => builder.short(row),
             Cells::Many => {}
         }

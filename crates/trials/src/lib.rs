@@ -4,8 +4,10 @@
 //! with findings that name row and column; [`check`] tells the same without the samples. [`load_path`] reads what a
 //! command line names: a manifest or a single file. [`samples`] keeps trials as Parquet and writes them as CSV.
 
+mod calendar;
 mod cells;
 mod checks;
+mod clock;
 mod convert;
 mod csv_file;
 mod demand;
@@ -17,6 +19,7 @@ mod mapping;
 mod metered;
 mod names;
 mod number;
+mod open_dates;
 mod outcome;
 mod pages;
 mod parquet_file;
@@ -27,6 +30,7 @@ mod rows;
 pub mod samples;
 pub mod smoothing;
 mod source;
+mod stamp;
 mod stats;
 mod table;
 #[cfg(test)]

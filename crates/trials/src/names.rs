@@ -9,6 +9,24 @@ use crate::units::Kind;
 const ALIASES: [(&str, Channel); 2] =
     [("wind_dir", Channel::WindFrom), ("apparent_wind_dir", Channel::ApparentWindFrom)];
 
+/// Headers of time in use, whose unit is learned from the cells.
+const TIMES: [&str; 9] = [
+    "time",
+    "timestamp",
+    "time_stamp",
+    "datetime",
+    "date_time",
+    "date/time",
+    "date time",
+    "utc",
+    "utc time",
+];
+
+/// Whether a header is one that time is commonly given.
+pub(crate) fn is_time(header: &str) -> bool {
+    TIMES.iter().any(|known| header.eq_ignore_ascii_case(known))
+}
+
 /// The target and unit that a header names, such as `r_radps` or `wind_speed_kn`; a channel's name followed by anything
 /// but a unit of its kind (`delta_ordered_rad`) is some other quantity.
 pub(crate) fn canonical(header: &str) -> Option<(Target, &'static str)> {

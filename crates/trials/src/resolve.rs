@@ -23,6 +23,7 @@ pub(crate) fn resolve(
     let mut resolver = Resolver { headers, mapping, columns: Vec::new(), findings };
     resolver.mapped();
     resolver.canonical();
+    resolver.timed();
     resolver.doubled();
     resolver.needed();
     resolver.ignored();
@@ -142,6 +143,19 @@ impl Resolver<'_> {
                 && !claimed.contains(&target)
             {
                 self.add(index, target, unit);
+            }
+        }
+    }
+
+    /// Where nothing else is time, the first column that has a common name of it.
+    fn timed(&mut self) {
+        let free = |index: usize| self.columns.iter().all(|column| column.index != index);
+        let claimed = self.mapping.columns.iter().any(|(name, _)| name == "t");
+        if !claimed && self.columns.iter().all(|column| column.target != Target::Time) {
+            let named =
+                (0..self.headers.len()).find(|&k| free(k) && names::is_time(&self.headers[k]));
+            if let Some(index) = named {
+                self.add(index, Target::Time, "auto");
             }
         }
     }

@@ -42,7 +42,11 @@ impl<'a> Builder<'a> {
     }
 
     /// One row of the file; `cell` gives the number in the n-th mapped column.
-    pub(crate) fn row(&mut self, row: usize, cell: impl Fn(usize, &Column) -> Result<f64, Fault>) {
+    pub(crate) fn row(
+        &mut self,
+        row: usize,
+        mut cell: impl FnMut(usize, &Column) -> Result<f64, Fault>,
+    ) {
         self.scratch.clear();
         for (position, column) in self.table.columns.iter().enumerate() {
             match cell(position, column) {

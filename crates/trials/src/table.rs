@@ -42,4 +42,6 @@ pub(crate) struct Table {
     pub rows: Vec<u32>,
     /// Of these, the ones before which rows have been left out.
     pub resumed: Vec<u32>,
+    /// What time zero is in the calendar, where the file says it.
+    pub start: Option<String>,
 }

@@ -47,6 +47,18 @@ const SUFFIXES: &[(&str, Kind, &str)] = &[
     ("rpm", Kind::Revolutions, "rpm"),
 ];
 
+/// How time may be written but as a duration, and the factor to seconds. `auto` is learned from the cells.
+const CALENDAR: [(&str, f64); 8] = [
+    ("auto", 1.0),
+    ("timestamp", 1.0),
+    ("day/month/year", 1.0),
+    ("month/day/year", 1.0),
+    ("hh:mm:ss", 1.0),
+    ("excel", 86_400.0),
+    ("matlab", 86_400.0),
+    ("unix", 1.0),
+];
+
 impl Kind {
     /// What the target's columns measure.
     pub(crate) fn of(target: Target) -> Self {
@@ -99,7 +111,13 @@ impl Kind {
 
     /// The factor to canonical units, or what would have been accepted.
     pub(crate) fn factor(self, unit: &str) -> Result<f64, String> {
-        let accepted = self.accepted();
+        let mut accepted = self.accepted();
+        if self == Self::Time {
+            if let Some(&(_, factor)) = CALENDAR.iter().find(|(known, _)| *known == unit.trim()) {
+                return Ok(factor);
+            }
+            accepted.extend(CALENDAR.map(|(known, _)| known));
+        }
         match Unit::parse(unit) {
             Ok(known) if accepted.contains(&unit.trim()) => Ok(known.to_si),
             _ => Err(format!("unit `{unit}` does not fit; use one of {}", accepted.join(", "))),
