@@ -6,7 +6,7 @@ use sistership_model::FileError;
 use sistership_model::manifest::Manifest;
 use sistership_model::trial::{Finding, Trial};
 
-use crate::manifest::read_manifest;
+use crate::manifest::read_manifest_file;
 use crate::mapping::Mapping;
 use crate::outcome::{CheckOutcome, Refusal};
 use crate::read::{check, read_trial};
@@ -70,14 +70,15 @@ fn each<T>(
         return Ok((None, vec![take(&shown, path, &Mapping::canonical())]));
     }
     let text = std::fs::read_to_string(path).map_err(|error| missing(&shown, &error))?;
-    let manifest = read_manifest(&shown, &text)?;
+    let written = read_manifest_file(&shown, &text)?;
+    let manifest = &written.manifest;
     let folder = path.parent().unwrap_or(Path::new(""));
     let taken = manifest
         .trials
         .iter()
-        .map(|trial| take(&trial.file, &folder.join(&trial.file), &Mapping::of(&manifest, trial)));
+        .map(|trial| take(&trial.file, &folder.join(&trial.file), &written.mapping(trial)));
     let taken = taken.collect();
-    Ok((Some(manifest), taken))
+    Ok((Some(written.manifest), taken))
 }
 
 fn is_manifest(path: &Path) -> bool {

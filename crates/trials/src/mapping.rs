@@ -2,6 +2,7 @@
 
 use sistership_model::manifest::{ColumnMapping, Manifest, ManifestTrial, TrialConventions};
 
+use crate::declarations::Declarations;
 use crate::limits::Limits;
 
 /// Which columns are which channels, in which signs, and how large the file may be.
@@ -17,6 +18,8 @@ pub struct Mapping {
     pub manoeuvre: Option<String>,
     /// Water depth where it is constant, m.
     pub depth_m: Option<f64>,
+    /// What else is declared of the file.
+    pub declared: Declarations,
     /// Bounds on the file.
     pub limits: Limits,
     /// Rows that room is made for before any is read, so that columns need not grow; see [`crate::demand`].
@@ -40,6 +43,7 @@ impl Mapping {
             conventions: manifest.conventions.clone(),
             manoeuvre: trial.manoeuvre.clone(),
             depth_m: trial.depth_m,
+            declared: Declarations::default(),
             limits: Limits::default(),
             room: 0,
         }

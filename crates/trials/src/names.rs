@@ -2,12 +2,15 @@
 
 use sistership_model::trial::Channel;
 
-use crate::table::Target;
+use crate::table::{Raw, Target};
 use crate::units::Kind;
 
 /// Other names in use for a channel; a wind direction without more is where the wind comes from.
 const ALIASES: [(&str, Channel); 2] =
     [("wind_dir", Channel::WindFrom), ("apparent_wind_dir", Channel::ApparentWindFrom)];
+
+const RAW_ALIASES: [(&str, Raw); 4] =
+    [("lat", Raw::Latitude), ("lon", Raw::Longitude), ("cog", Raw::Course), ("sog", Raw::Speed)];
 
 /// Headers of time in use, whose unit is learned from the cells.
 const TIMES: [&str; 9] = [
@@ -32,11 +35,19 @@ pub(crate) fn is_time(header: &str) -> bool {
 pub(crate) fn canonical(header: &str) -> Option<(Target, &'static str)> {
     let channels = Channel::all().map(|channel| (channel.name(), Target::Channel(channel)));
     let aliases = ALIASES.iter().map(|&(name, channel)| (name, Target::Channel(channel)));
-    let mut known = std::iter::once(("t", Target::Time)).chain(channels).chain(aliases);
+    let raw = Raw::all().map(|raw| (raw.name(), Target::Raw(raw)));
+    let raw = raw.chain(RAW_ALIASES.iter().map(|&(name, raw)| (name, Target::Raw(raw))));
+    let mut known = std::iter::once(("t", Target::Time)).chain(channels).chain(aliases).chain(raw);
     known.find_map(|(name, target)| {
         let suffix = header.strip_prefix(name)?.strip_prefix('_')?;
         Kind::of(target).suffix(suffix).map(|unit| (target, unit))
     })
+}
+
+/// The target that a bare name such as `psi` is, where the unit stands elsewhere and is one of its kind.
+pub(crate) fn with_unit(header: &str, unit: &str) -> Option<Target> {
+    let target = Target::by_name(header)?;
+    Kind::of(target).factor(unit).ok().map(|_| target)
 }
 
 #[cfg(test)]

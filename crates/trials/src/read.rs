@@ -10,7 +10,7 @@ use crate::outcome::{CheckOutcome, Refusal};
 use crate::recording::Recording;
 use crate::smoothing::smooth;
 use crate::source::{Content, Source};
-use crate::{csv_file, parquet_file};
+use crate::{csv_file, ground, parquet_file, position};
 
 /// Reads, converts, checks and, where the conventions ask for it, smooths a trial.
 ///
@@ -53,8 +53,19 @@ fn record(source: Source, mapping: &Mapping, findings: &mut Findings) -> Recordi
     };
     let Some(table) = table else { return Recording::default() };
     let mut recording = convert(&source.name, table, mapping, findings);
+    made(&mut recording, mapping, findings);
     checks::run(&mut recording, findings);
     recording
+}
+
+/// Channels that come of what instruments show.
+fn made(recording: &mut Recording, mapping: &Mapping, findings: &mut Findings) {
+    let antenna = mapping.declared.antenna;
+    position::local(recording, findings);
+    if let Some(antenna) = antenna {
+        position::to_midship(recording, antenna, findings);
+    }
+    ground::velocities(recording, antenna, findings);
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::ops::Range;
 use sistership_model::trial::{Channel, Trial};
 
 use crate::findings::Hits;
-use crate::table::{Column, Target};
+use crate::table::{Column, Raw, Target};
 use crate::units::Kind;
 
 /// Canonical samples and where they stand in the file.
@@ -19,6 +19,10 @@ pub(crate) struct Recording {
     /// Header of the time column.
     pub time: String,
     pub columns: BTreeMap<Channel, Column>,
+    /// What channels have yet to be made of.
+    pub raw: BTreeMap<Raw, Vec<f64>>,
+    /// What time zero is in the calendar, where the file says it.
+    pub start: Option<String>,
     /// Median time between samples, s; zero until time is known to be in order.
     pub interval_s: f64,
     /// Ranges without a gap; empty until time is known to be in order.
