@@ -14,7 +14,7 @@ use crate::metered::{Meter, Metered};
 use crate::number::{Fault, number};
 use crate::resolve::{Heading, resolve_heading};
 use crate::rows::Builder;
-use crate::table::{Table, Target};
+use crate::table::{Table, Target, width};
 
 /// Bytes that are asked for at once while the header is looked for.
 const CHUNK: u64 = 4096;
@@ -82,7 +82,8 @@ fn columns(start: &[u8], mapping: &Mapping) -> Option<usize> {
     let layout = layout::find(start, mapping);
     let mut reader = opened(&start[layout.offset..], layout.separator);
     let headers = headers(&mut reader, mapping, &mut findings)?;
-    Some(resolve_heading(heading(&headers, &layout), mapping, &mut findings)?.len())
+    let columns = resolve_heading(heading(&headers, &layout), mapping, &mut findings)?;
+    Some(width(&columns))
 }
 
 fn opened<R: Read>(input: R, separator: u8) -> csv::Reader<R> {

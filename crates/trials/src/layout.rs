@@ -58,6 +58,12 @@ pub(crate) fn find(start: &[u8], mapping: &Mapping) -> Layout {
     Layout { separator, offset, lines, units: units.unwrap_or_default() }
 }
 
+/// How many names of the header are known.
+pub(crate) fn known_names(start: &[u8], mapping: &Mapping) -> usize {
+    let offset = find(start, mapping).offset;
+    lines(&start[offset..]).next().map_or(0, |line| known(line.bytes, mapping))
+}
+
 /// Whether more of the file could not change what [`find`] says.
 pub(crate) fn is_settled(start: &[u8], mapping: &Mapping) -> bool {
     let complete = lines(start).filter(|line| line.complete).take(LINES);

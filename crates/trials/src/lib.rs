@@ -4,6 +4,7 @@
 //! with findings that name row and column; [`check`] tells the same without the samples. [`load_path`] reads what a
 //! command line names: a manifest or a single file. [`samples`] keeps trials as Parquet and writes them as CSV.
 
+mod archive;
 mod calendar;
 mod cells;
 mod checks;
@@ -13,11 +14,14 @@ mod csv_file;
 mod decimals;
 mod declarations;
 mod demand;
+mod derived;
+mod derived_channel;
 mod findings;
 mod ground;
 mod layout;
 mod limits;
 mod load;
+mod magic;
 mod manifest;
 mod manifest_file;
 mod mapping;
@@ -35,6 +39,7 @@ mod recording;
 mod resolve;
 mod rows;
 pub mod samples;
+mod smoother;
 pub mod smoothing;
 mod source;
 mod stamp;
@@ -43,14 +48,16 @@ mod table;
 #[cfg(test)]
 mod testing;
 mod units;
+mod workbook;
 
 pub use declarations::{Antenna, Declarations, Derivable, Maximum, North, SensorFile};
 pub use demand::{Demand, demand, measuring};
+pub use derived_channel::DerivedChannel;
 pub use limits::Limits;
 pub use load::{Loaded, check_path, load_path};
 pub use manifest::{read_manifest, read_manifest_file};
 pub use manifest_file::ManifestFile;
 pub use mapping::Mapping;
-pub use outcome::{CheckOutcome, Refusal};
-pub use read::{check, read_trial};
+pub use outcome::{CheckOutcome, Refusal, TrialReading};
+pub use read::{check, read_in_full, read_trial};
 pub use source::Source;

@@ -18,7 +18,7 @@ use crate::number::Fault;
 use crate::pages::{self, Held, held};
 use crate::resolve::resolve;
 use crate::rows::Builder;
-use crate::table::{Column, Table};
+use crate::table::{Column, Table, width};
 
 /// Reads the mapped columns; nothing after errors that leave nothing to check.
 ///
@@ -51,7 +51,7 @@ pub(crate) fn measure<R: ChunkReader + 'static>(
     mapping: &Mapping,
 ) -> Option<(usize, usize, u64)> {
     let mapped = mapped(input, mapping, &mut Findings::default())?;
-    Some((mapped.rows, mapped.columns.len(), mapped.holding))
+    Some((mapped.rows, width(&mapped.columns), mapped.holding))
 }
 
 /// What is read of a file.

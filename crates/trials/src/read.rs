@@ -6,21 +6,30 @@ use crate::checks;
 use crate::convert::convert;
 use crate::findings::Findings;
 use crate::mapping::Mapping;
-use crate::outcome::{CheckOutcome, Refusal};
+use crate::outcome::{CheckOutcome, Refusal, TrialReading};
 use crate::recording::Recording;
 use crate::smoothing::smooth;
 use crate::source::{Content, Source};
-use crate::{csv_file, ground, parquet_file, position};
+use crate::{csv_file, derived, ground, parquet_file, position, workbook};
 
 /// Reads, converts, checks and, where the conventions ask for it, smooths a trial.
 ///
 /// # Errors
 /// Every reason, with row and column, why the file is no trial.
 pub fn read_trial(source: Source, mapping: &Mapping) -> Result<Trial, Refusal> {
+    read_in_full(source, mapping).map(|reading| reading.trial)
+}
+
+/// As [`read_trial`], with what a trial has no place for.
+///
+/// # Errors
+/// As [`read_trial`].
+pub fn read_in_full(source: Source, mapping: &Mapping) -> Result<TrialReading, Refusal> {
     let file = source.name.clone();
-    let (trial, errors, warnings) = examine(source, mapping);
+    let (recording, errors, warnings) = examine(source, mapping);
     if errors.is_empty() {
-        Ok(Trial { warnings, ..trial })
+        let Recording { trial, start, derived, .. } = recording;
+        Ok(TrialReading { trial: Trial { warnings, ..trial }, start, derived })
     } else {
         Err(Refusal { file, findings: errors })
     }
@@ -29,11 +38,12 @@ pub fn read_trial(source: Source, mapping: &Mapping) -> Result<Trial, Refusal> {
 /// Runs the checks of [`read_trial`] and tells what they found.
 pub fn check(source: Source, mapping: &Mapping) -> CheckOutcome {
     let file = source.name.clone();
-    let (trial, errors, warnings) = examine(source, mapping);
+    let (recording, errors, warnings) = examine(source, mapping);
+    let trial = recording.trial;
     CheckOutcome { file, rows: trial.len(), duration_s: trial.duration_s(), errors, warnings }
 }
 
-fn examine(source: Source, mapping: &Mapping) -> (Trial, Vec<Finding>, Vec<Finding>) {
+fn examine(source: Source, mapping: &Mapping) -> (Recording, Vec<Finding>, Vec<Finding>) {
     let mut findings = Findings::default();
     let mut recording = record(source, mapping, &mut findings);
     if !findings.has_errors()
@@ -42,7 +52,7 @@ fn examine(source: Source, mapping: &Mapping) -> (Trial, Vec<Finding>, Vec<Findi
         smooth(&mut recording, smoothing, &mut findings);
     }
     let (errors, warnings) = findings.finish();
-    (recording.trial, errors, warnings)
+    (recording, errors, warnings)
 }
 
 fn record(source: Source, mapping: &Mapping, findings: &mut Findings) -> Recording {
@@ -50,6 +60,11 @@ fn record(source: Source, mapping: &Mapping, findings: &mut Findings) -> Recordi
         Content::Csv(reader) => csv_file::read(reader, mapping, findings),
         Content::ParquetBytes(bytes) => parquet_file::read(bytes, mapping, findings),
         Content::ParquetFile(file) => parquet_file::read(file, mapping, findings),
+        Content::Workbook(input) => workbook::read(input, mapping, findings),
+        Content::Other(what) => {
+            findings.error(None, None, format!("the file is {what}"));
+            None
+        }
     };
     let Some(table) = table else { return Recording::default() };
     let mut recording = convert(&source.name, table, mapping, findings);
@@ -65,7 +80,10 @@ fn made(recording: &mut Recording, mapping: &Mapping, findings: &mut Findings) {
     if let Some(antenna) = antenna {
         position::to_midship(recording, antenna, findings);
     }
+    let wanted = &mapping.declared.derive;
+    derived::yaw_rate(recording, wanted, findings);
     ground::velocities(recording, antenna, findings);
+    derived::velocities(recording, wanted, findings);
 }
 
 #[cfg(test)]

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use bytes::Bytes;
 
-/// The first bytes of every Parquet file.
-const PARQUET_MAGIC: &[u8] = b"PAR1";
+use crate::magic::{self, Kind, LOOKED_AT};
+use crate::workbook::ReadSeek;
 
 /// A file to read: its name, used in every message, and its bytes.
 pub struct Source<'a> {
@@ -19,6 +19,9 @@ pub(crate) enum Content<'a> {
     Csv(Box<dyn Read + 'a>),
     ParquetBytes(Bytes),
     ParquetFile(File),
+    Workbook(Box<dyn ReadSeek + 'a>),
+    /// What the file is, and what to do with it.
+    Other(&'static str),
 }
 
 impl<'a> Source<'a> {
@@ -32,28 +35,37 @@ impl<'a> Source<'a> {
         Self { name: name.into(), content: Content::ParquetBytes(bytes) }
     }
 
-    /// A file in memory; Parquet is told from CSV by its first bytes, whatever the name says.
+    /// A file in memory, told by its first bytes, whatever the name says.
     pub fn bytes(name: impl Into<String>, bytes: Bytes) -> Self {
-        if bytes.starts_with(PARQUET_MAGIC) {
-            Self::parquet(name, bytes)
-        } else {
-            Self::csv(name, io::Cursor::new(bytes))
+        match magic::kind(&bytes[..bytes.len().min(LOOKED_AT)]) {
+            Kind::Parquet => Self::parquet(name, bytes),
+            kind => Self::of(kind, name.into(), io::Cursor::new(bytes)),
         }
     }
 
-    /// A file on disk, streamed; Parquet is told from CSV by its first bytes.
+    fn of(kind: Kind, name: String, input: impl Read + Seek + 'a) -> Self {
+        let input = Box::new(input);
+        let content = match kind {
+            Kind::Workbook => Content::Workbook(input),
+            Kind::Other(what) => Content::Other(what),
+            _ => Content::Csv(input),
+        };
+        Self { name, content }
+    }
+
+    /// A file on disk, streamed and told by its first bytes.
     ///
     /// # Errors
     /// The file cannot be opened or read.
     pub fn open(name: impl Into<String>, path: &Path) -> io::Result<Self> {
         let mut file = File::open(path)?;
-        let mut magic = Vec::new();
-        file.by_ref().take(PARQUET_MAGIC.len() as u64).read_to_end(&mut magic)?;
+        let mut start = Vec::new();
+        file.by_ref().take(LOOKED_AT as u64).read_to_end(&mut start)?;
         file.seek(SeekFrom::Start(0))?;
         let name = name.into();
-        Ok(match magic == PARQUET_MAGIC {
-            true => Self { name, content: Content::ParquetFile(file) },
-            false => Self::csv(name, BufReader::new(file)),
+        Ok(match magic::kind(&start) {
+            Kind::Parquet => Self { name, content: Content::ParquetFile(file) },
+            kind => Self::of(kind, name, BufReader::new(file)),
         })
     }
 }

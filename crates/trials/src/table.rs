@@ -97,6 +97,12 @@ pub(crate) struct Column {
     pub to_si: f64,
 }
 
+/// Columns that are held at a time: those that are read, and what is made of raw ones.
+pub(crate) fn width(columns: &[Column]) -> usize {
+    let raw = columns.iter().filter(|column| matches!(column.target, Target::Raw(_)));
+    columns.len() + raw.count()
+}
+
 /// Numbers of the mapped columns, one vector per column, and the rows of the file that they stand in.
 #[derive(Debug, Default)]
 pub(crate) struct Table {
