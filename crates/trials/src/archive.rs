@@ -24,13 +24,14 @@ pub(crate) fn check(input: &mut (impl Read + Seek), most: u64) -> Result<(), Str
     if archive.len() > FILES {
         return Err(format!("an archive of {} files is no workbook", archive.len()));
     }
-    if !archive.file_names().any(|name| name.to_lowercase().contains("sheet")) {
+    let named = |name: &str| name.to_lowercase().contains("sheet");
+    if !archive.file_names().any(|name| name.is_ok_and(|name| named(&name))) {
         return Err("a ZIP archive that is no Excel workbook; unpack it".into());
     }
     let mut left = most;
     for index in 0..archive.len() {
         let mut file = archive.by_index(index).map_err(damaged)?;
-        let name = file.name().to_lowercase();
+        let name = file.name().map_err(damaged)?.to_lowercase();
         let of_styles = name.ends_with("styles.xml") || name.contains("theme");
         let bound = if of_styles { STYLES.min(left) } else { left };
         let is_text = name.ends_with(".xml") || name.ends_with(".rels");

@@ -182,7 +182,6 @@ fn text(value: &DataRef) -> String {
         Data::DateTime(instant) => date(&instant),
         Data::Error(error) => error.to_string(),
         Data::Empty => String::new(),
-        _ => String::new(),
     }
 }
 
