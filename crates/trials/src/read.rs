@@ -10,7 +10,7 @@ use crate::outcome::{CheckOutcome, Refusal, TrialReading};
 use crate::recording::Recording;
 use crate::smoothing::smooth;
 use crate::source::{Content, Source};
-use crate::{csv_file, derived, ground, parquet_file, position, workbook};
+use crate::{csv_file, derived, ground, mat_file, parquet_file, position, workbook};
 
 /// Reads, converts, checks and, where the conventions ask for it, smooths a trial.
 ///
@@ -61,6 +61,7 @@ fn record(source: Source, mapping: &Mapping, findings: &mut Findings) -> Recordi
         Content::ParquetBytes(bytes) => parquet_file::read(bytes, mapping, findings),
         Content::ParquetFile(file) => parquet_file::read(file, mapping, findings),
         Content::Workbook(input) => workbook::read(input, mapping, findings),
+        Content::Matlab(input) => mat_file::read(input, mapping, findings),
         Content::Other(what) => {
             findings.error(None, None, format!("the file is {what}"));
             None

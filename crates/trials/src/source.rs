@@ -20,6 +20,7 @@ pub(crate) enum Content<'a> {
     ParquetBytes(Bytes),
     ParquetFile(File),
     Workbook(Box<dyn ReadSeek + 'a>),
+    Matlab(Box<dyn ReadSeek + 'a>),
     /// What the file is, and what to do with it.
     Other(&'static str),
 }
@@ -47,6 +48,7 @@ impl<'a> Source<'a> {
         let input = Box::new(input);
         let content = match kind {
             Kind::Workbook => Content::Workbook(input),
+            Kind::Matlab => Content::Matlab(input),
             Kind::Other(what) => Content::Other(what),
             _ => Content::Csv(input),
         };
