@@ -5,7 +5,7 @@ use crate::findings::Findings;
 use crate::number::{Fault, number, shown};
 use crate::open_dates::OpenDates;
 use crate::stamp::{Date, Order, Stamp, stamp};
-use crate::table::{Column, Table, Target};
+use crate::table::{Column, Start, Table, Target};
 
 /// Hours that a time of day must fall by for it to be another day's; less is a row out of order.
 const MIDNIGHT: i64 = 12 * 3600 * SECOND;
@@ -110,7 +110,8 @@ impl Clock {
         }
         match self.read_as(&header, values) {
             Ok((form, start)) => {
-                let from = start.as_ref().map_or(String::new(), |start| format!(", {start}"));
+                let from =
+                    start.as_ref().map_or(String::new(), |start| format!(", {}", start.text));
                 let message = format!("is read as {form}, counted from its first row{from}");
                 findings.warning(None, Some(&header), message);
                 table.start = start;
@@ -124,7 +125,7 @@ impl Clock {
         &mut self,
         header: &str,
         values: &mut [f64],
-    ) -> Result<(&'static str, Option<String>), String> {
+    ) -> Result<(&'static str, Option<Start>), String> {
         match self.form.unwrap_or(Form::Number) {
             Form::Number => Ok(self.numbers(header, values)),
             Form::Dated { zoned } => {
@@ -139,7 +140,9 @@ impl Clock {
                 Ok((Self::dated(zoned), Some(start)))
             }
             Form::OfDay => {
-                let start = instant(0, values[0], false).split_off("1970-01-01T".len());
+                let mut start = instant(0, values[0], false);
+                start.text = start.text.split_off("1970-01-01T".len());
+                start.dated = false;
                 from_first(values, 1e9);
                 Ok(("time of day", Some(start)))
             }
@@ -150,7 +153,7 @@ impl Clock {
         if zoned { "date and time with a zone" } else { "date and time without a zone" }
     }
 
-    fn numbers(&self, header: &str, values: &mut [f64]) -> (&'static str, Option<String>) {
+    fn numbers(&self, header: &str, values: &mut [f64]) -> (&'static str, Option<Start>) {
         if self.unit == "auto" && !looks_serial(header, values) {
             return ("seconds, as no unit is declared", None);
         }
@@ -201,11 +204,12 @@ fn from_first(values: &mut [f64], parts: f64) {
     values.iter_mut().for_each(|value| *value = ((*value - first) * parts).round() / parts);
 }
 
-fn instant(day: i64, seconds: f64, zoned: bool) -> String {
+fn instant(day: i64, seconds: f64, zoned: bool) -> Start {
     let whole = seconds.floor();
     let fraction = ((seconds - whole) * 1e6).round() * 1e3;
     let nanoseconds = (whole as i64 + day * 86_400) * SECOND + fraction as i64;
-    format!("{}{}", iso(nanoseconds), if zoned { "Z" } else { "" })
+    let text = format!("{}{}", iso(nanoseconds), if zoned { "Z" } else { "" });
+    Start { text, at_s: day as f64 * DAY_S + seconds, dated: true }
 }
 
 #[cfg(test)]

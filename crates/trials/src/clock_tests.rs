@@ -17,7 +17,7 @@ fn read(header: &str, unit: &str, cells: &[&str]) -> (Vec<f64>, Option<String>, 
     let mut table = Table { columns: vec![column], values: vec![values], ..Table::default() };
     let mut findings = Findings::default();
     clock.finish(&mut table, &mut findings);
-    (table.values.remove(0), table.start, faults + &messages(findings))
+    (table.values.remove(0), table.start.map(|start| start.text), faults + &messages(findings))
 }
 
 fn seconds(unit: &str, cells: &[&str], wanted: &[f64], start: &str) {

@@ -7,6 +7,7 @@ use std::path::Path;
 use crate::csv_file;
 use crate::mapping::Mapping;
 use crate::mat_file;
+use crate::nmea_file;
 use crate::parquet_file;
 use crate::samples::GROUP_ROWS;
 use crate::source::{Content, Source};
@@ -61,6 +62,7 @@ pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
         Content::ParquetBytes(bytes) => of_parquet(&bytes, mapping),
         Content::Workbook(_) => (None, UNPACKED * mapping.limits.unpacked_bytes as u64),
         Content::Matlab(input) => (mat_file::measure(input, mapping), 0),
+        Content::Nmea(input) => (nmea_file::measure(input, mapping), 0),
         Content::Other(_) => (None, 0),
     };
     let (rows, columns) = size.unwrap_or_default();

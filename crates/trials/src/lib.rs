@@ -29,6 +29,8 @@ mod mat_elements;
 mod mat_file;
 mod metered;
 mod names;
+mod nmea_file;
+mod nmea_sentence;
 mod number;
 mod open_dates;
 mod outcome;

@@ -2,7 +2,7 @@
 
 use sistership_model::manifest::{ColumnMapping, Manifest, ManifestTrial, TrialConventions};
 
-use crate::declarations::Declarations;
+use crate::declarations::{Declarations, SensorFile};
 use crate::limits::Limits;
 
 /// Which columns are which channels, in which signs, and how large the file may be.
@@ -46,6 +46,16 @@ impl Mapping {
             declared: Declarations::default(),
             limits: Limits::default(),
             room: 0,
+        }
+    }
+
+    /// The mapping of a sensor's file that belongs to this one.
+    pub(crate) fn of_sensor(&self, sensor: &SensorFile) -> Self {
+        let columns = sensor.columns.iter();
+        Self {
+            columns: columns.map(|(name, column)| (name.clone(), column.clone())).collect(),
+            room: 0,
+            ..self.clone()
         }
     }
 }

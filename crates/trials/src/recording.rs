@@ -7,7 +7,7 @@ use sistership_model::trial::{Channel, Trial};
 
 use crate::derived_channel::DerivedChannel;
 use crate::findings::Hits;
-use crate::table::{Column, Raw, Target};
+use crate::table::{Column, Raw, Start, Target};
 use crate::units::Kind;
 
 /// Canonical samples and where they stand in the file.
@@ -25,7 +25,7 @@ pub(crate) struct Recording {
     /// Channels that were not measured.
     pub derived: Vec<DerivedChannel>,
     /// What time zero is in the calendar, where the file says it.
-    pub start: Option<String>,
+    pub start: Option<Start>,
     /// Median time between samples, s; zero until time is known to be in order.
     pub interval_s: f64,
     /// Ranges without a gap; empty until time is known to be in order.

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use sistership_model::trial::Channel;
 
 use crate::findings::Findings;
-use crate::table::{Column, Raw, Table, Target};
+use crate::table::{Column, Raw, Start, Table, Target};
 
 /// Readings further apart than so many of a sensor's median steps are not bridged: rows between them are left out.
 const BRIDGED: f64 = 2.5;
@@ -25,6 +25,41 @@ struct Sampled {
     lost: usize,
 }
 
+/// The columns of a sensor's file, at its times with an offset; those that go back are left for the check of time.
+pub(crate) fn series(table: Table, offset_s: f64) -> Vec<Series> {
+    let is_time = |column: &Column| column.target == Target::Time;
+    let Some(at) = table.columns.iter().position(is_time) else { return Vec::new() };
+    let t: Vec<f64> = table.values[at].iter().map(|t| t + offset_s).collect();
+    let others = table.columns.into_iter().zip(table.values).filter(|(column, _)| !is_time(column));
+    others.map(|(column, values)| Series { column, t: t.clone(), values }).collect()
+}
+
+/// What is to be added to a sensor's seconds to have those of the base.
+pub(crate) fn offset_s(
+    base: Option<&Start>,
+    sensor: Option<&Start>,
+    declared: Option<f64>,
+) -> Result<f64, String> {
+    let starts = match (base, sensor) {
+        (Some(base), Some(sensor)) if base.dated && sensor.dated => Some(sensor.at_s - base.at_s),
+        (Some(base), Some(sensor)) => {
+            // Of one of them only the time of day is known, so that they are less than half a day apart.
+            Some((sensor.at_s - base.at_s + 43_200.0).rem_euclid(86_400.0) - 43_200.0)
+        }
+        (None, None) => Some(0.0),
+        _ => None,
+    };
+    match (starts, declared) {
+        (Some(starts), declared) => Ok(starts + declared.unwrap_or(0.0)),
+        (None, Some(declared)) => Ok(declared),
+        (None, None) => {
+            Err("only one of the files has times of a calendar; declare `clock_offset_s`, which \
+                             is added to its seconds to have those of the first file"
+                .into())
+        }
+    }
+}
+
 /// Adds series to a table at the table's own times; rows where one has no reading nearby are left out.
 pub(crate) fn join(table: &mut Table, series: Vec<Series>, findings: &mut Findings) {
     let Some(at) = table.columns.iter().position(|column| column.target == Target::Time) else {
@@ -34,6 +69,11 @@ pub(crate) fn join(table: &mut Table, series: Vec<Series>, findings: &mut Findin
         if let Some(twice) = table.columns.iter().find(|known| known.target == column.target) {
             let message =
                 format!("gives {}, as `{}` does; keep one", column.target.name(), twice.header);
+            findings.error(None, Some(&column.header), message);
+            continue;
+        }
+        if t.windows(2).any(|pair| pair[0] >= pair[1]) {
+            let message = "its time does not increase throughout; sort its rows, each once";
             findings.error(None, Some(&column.header), message);
             continue;
         }
@@ -121,6 +161,17 @@ mod tests {
             to_si: 1.0,
         };
         Series { column, t: t.to_vec(), values: values.to_vec() }
+    }
+
+    #[test]
+    fn clocks_are_compared_where_both_are_known() {
+        let start = |at_s, dated| Start { text: String::new(), at_s, dated };
+        let (morning, day) = (start(10.0, false), start(19_844.0 * 86_400.0 + 86_399.0, true));
+        assert_eq!(offset_s(Some(&morning), Some(&day), None), Ok(-11.0));
+        assert_eq!(offset_s(Some(&day), Some(&start(day.at_s + 5.0, true)), Some(0.5)), Ok(5.5));
+        assert_eq!(offset_s(None, None, None), Ok(0.0));
+        assert_eq!(offset_s(None, Some(&day), Some(-3.0)), Ok(-3.0));
+        assert!(offset_s(None, Some(&day), None).is_err());
     }
 
     #[test]

@@ -103,6 +103,15 @@ pub(crate) fn width(columns: &[Column]) -> usize {
     columns.len() + raw.count()
 }
 
+/// What time zero is in the calendar.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Start {
+    pub text: String,
+    /// Seconds since 1970, or since midnight where no date is known.
+    pub at_s: f64,
+    pub dated: bool,
+}
+
 /// Numbers of the mapped columns, one vector per column, and the rows of the file that they stand in.
 #[derive(Debug, Default)]
 pub(crate) struct Table {
@@ -112,5 +121,5 @@ pub(crate) struct Table {
     /// Of these, the ones before which rows have been left out.
     pub resumed: Vec<u32>,
     /// What time zero is in the calendar, where the file says it.
-    pub start: Option<String>,
+    pub start: Option<Start>,
 }

@@ -55,7 +55,7 @@ fn the_sheet_with_the_table_is_read_with_excels_rows() {
     assert_eq!(table.rows, [4, 5]);
     let time = table.columns.iter().position(|column| column.header == "Date/Time").unwrap();
     assert_eq!(table.values[time], [0.0, 1.0]);
-    assert_eq!(table.start.as_deref(), Some("2024-05-01T12:00:00"));
+    assert_eq!(table.start.as_ref().unwrap().text, "2024-05-01T12:00:00");
     assert!(text.contains("the sheet `Data` is read") && text.contains("a 'note'"), "{text}");
 }
 
