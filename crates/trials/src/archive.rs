@@ -15,6 +15,16 @@ const ANNOUNCES: &[u8] = b"uniqueCount";
 /// Bytes that are unpacked at a time.
 const PIECE: usize = 64 << 10;
 
+/// Bytes that the archive says it holds when unpacked; more are refused by [`check`].
+pub(crate) fn claimed(input: &mut (impl Read + Seek)) -> Result<u64, String> {
+    let damaged = |error: zip::result::ZipError| format!("the archive is damaged: {error}");
+    let mut archive = ZipArchive::new(input).map_err(damaged)?;
+    let files = 0..archive.len().min(FILES);
+    let sizes: Result<Vec<u64>, _> =
+        files.map(|index| archive.by_index_raw(index).map(|file| file.size())).collect();
+    Ok(sizes.map_err(damaged)?.into_iter().fold(0, u64::saturating_add))
+}
+
 /// Unpacks every file of the archive without keeping it.
 ///
 /// What the archive says of sizes is not believed: bytes are counted as they come.

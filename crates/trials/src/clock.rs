@@ -96,7 +96,7 @@ impl Clock {
         if first {
             self.first_day = day;
         }
-        stamp.instant(day - self.first_day) as f64 / SECOND as f64
+        stamp.seconds(day - self.first_day)
     }
 
     /// Counts the table's time from its first row, and says what it was taken for.
@@ -166,8 +166,8 @@ impl Clock {
             _ => ("Excel's days", EXCEL),
         };
         let start = values[0] + epoch * DAY_S;
-        // Beyond the calendar's years nothing is said of it.
-        let known = (-6e10..2e11).contains(&start);
+        // Beyond the years that are read nothing is said of it.
+        let known = (-2.2e9..5.7e9).contains(&start);
         let start = known.then(|| instant(0, (start * 1e6).round() / 1e6, false));
         from_first(values, 1e6);
         (name, start)

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use crate::archive;
 use crate::csv_file;
 use crate::mapping::Mapping;
 use crate::mat_file;
@@ -60,7 +61,11 @@ pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
         }
         Content::ParquetFile(file) => of_parquet(&file, mapping),
         Content::ParquetBytes(bytes) => of_parquet(&bytes, mapping),
-        Content::Workbook(_) => (None, UNPACKED * mapping.limits.unpacked_bytes as u64),
+        Content::Workbook(mut input) => {
+            // What is damaged is refused before anything is unpacked.
+            let claimed = archive::claimed(&mut input).unwrap_or(0);
+            (None, UNPACKED * claimed.min(mapping.limits.unpacked_bytes as u64))
+        }
         Content::Matlab(input) => (mat_file::measure(input, mapping), 0),
         Content::Nmea(input) => (nmea_file::measure(input, mapping), 0),
         Content::Other(_) => (None, 0),

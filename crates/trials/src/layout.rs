@@ -2,6 +2,7 @@
 
 use csv::{ByteRecord, ReaderBuilder};
 
+use crate::decimals::Decimals;
 use crate::mapping::Mapping;
 use crate::names;
 use crate::number::number;
@@ -64,6 +65,42 @@ pub(crate) fn known_names(start: &[u8], mapping: &Mapping) -> usize {
     lines(&start[offset..]).next().map_or(0, |line| known(line.bytes, mapping))
 }
 
+/// Where a table most likely is, of which nothing is known: its header stands above the first line of values.
+pub(crate) fn guess(start: &[u8]) -> Layout {
+    let canonical = Mapping::canonical();
+    let lines: Vec<Line> = lines(start).collect();
+    let data = (1..lines.len()).find(|&at| is_data(lines[at].bytes));
+    let Some(data) = data.filter(|_| known_names(start, &canonical) < CERTAIN) else {
+        return find(start, &canonical);
+    };
+    let separator = likely_separator(lines[data].bytes);
+    let below = units(&cells(lines[data - 1].bytes, separator)).filter(|_| data > 1);
+    let header = lines[if below.is_some() { data - 2 } else { data - 1 }];
+    let units = below.unwrap_or_default();
+    Layout { separator, offset: header.offset, lines: header.before, units }
+}
+
+/// A comma may be a decimal one where something else separates.
+fn likely_separator(line: &[u8]) -> u8 {
+    [b'\t', b';'].into_iter().find(|byte| line.contains(byte)).unwrap_or(b',')
+}
+
+/// Whether most of a line's cells are numbers or times.
+fn is_data(line: &[u8]) -> bool {
+    let separator = likely_separator(line);
+    let cells = cells(line, separator);
+    let written = cells.iter().filter(|cell| !cell.is_empty()).count();
+    let values = cells.iter().filter(|cell| is_value(cell, separator)).count();
+    values >= 2 && 2 * values > written
+}
+
+fn is_value(cell: &str, separator: u8) -> bool {
+    let cell = Decimals::new(separator).point(0, cell.as_bytes()).into_owned();
+    let is_time =
+        || std::str::from_utf8(&cell).is_ok_and(|cell| stamp(cell, Order::Open).is_some());
+    number(&cell).is_ok() || is_time()
+}
+
 /// Whether more of the file could not change what [`find`] says.
 pub(crate) fn is_settled(start: &[u8], mapping: &Mapping) -> bool {
     let complete = lines(start).filter(|line| line.complete).take(LINES);
@@ -118,8 +155,11 @@ fn cells(line: &[u8], separator: u8) -> Vec<String> {
 
 /// A header's text; what is not UTF-8 is Latin-1, in which every byte is a character.
 pub(crate) fn name(cell: &[u8]) -> String {
-    let latin = || cell.iter().map(|&byte| char::from(byte)).collect();
-    std::str::from_utf8(cell).map_or_else(|_| latin(), str::to_owned).trim().to_owned()
+    std::str::from_utf8(cell).map_or_else(|_| latin_1(cell), str::to_owned).trim().to_owned()
+}
+
+pub(crate) fn latin_1(bytes: &[u8]) -> String {
+    bytes.iter().map(|&byte| char::from(byte)).collect()
 }
 
 /// How many names in the line are those of a column that would be read.
@@ -134,11 +174,9 @@ fn known(line: &[u8], mapping: &Mapping) -> usize {
 
 /// The units in a line that holds nothing else.
 fn units(cells: &[String]) -> Option<Vec<String>> {
-    let is_value =
-        |cell: &String| number(cell.as_bytes()).is_ok() || stamp(cell, Order::Open).is_some();
     let written: Vec<&String> = cells.iter().filter(|cell| !cell.is_empty()).collect();
     let named = written.iter().filter(|cell| is_unit(cell)).count();
-    let only = !written.iter().any(|cell| is_value(cell)) && 2 * named > written.len();
+    let only = !written.iter().any(|cell| is_value(cell, b',')) && 2 * named > written.len();
     only.then(|| cells.iter().map(|cell| plain_unit(cell).to_owned()).collect())
 }
 

@@ -4,6 +4,7 @@ use std::io::{self, Seek};
 
 use crate::clock::Clock;
 use crate::findings::Findings;
+use crate::limits::Limits;
 use crate::mapping::Mapping;
 use crate::mat_elements::{Array, visit};
 use crate::number::Fault;
@@ -54,11 +55,11 @@ pub(crate) fn read(
     let rows = data.iter().map(Vec::len).min().unwrap_or(0);
     let clock = Clock::of(&columns);
     let mut builder = Builder::new(columns, mapping.conventions.missing, findings).with_room(rows);
-    for k in 0..rows {
+    (0..rows).for_each(|k| {
         builder.row(k + 1, |position, _| {
             Some(data[position][k]).filter(|value| value.is_finite()).ok_or(Fault::NotANumber)
         });
-    }
+    });
     let mut table = builder.finish();
     clock.finish(&mut table, findings);
     Some(table)
@@ -69,7 +70,7 @@ pub(crate) fn measure(
     mut input: Box<dyn ReadSeek + '_>,
     mapping: &Mapping,
 ) -> Option<(usize, usize)> {
-    let offers = offers(&mut input, mapping).ok()?;
+    let offers = offers(&mut input, mapping.limits).ok()?;
     let columns = mapped(&mut input, mapping, &mut Findings::default())?;
     let rows = columns.iter().map(|column| offers[column.index].length).max()?;
     // As it is read, and as it is in the table.
@@ -82,7 +83,7 @@ fn mapped(
     mapping: &Mapping,
     findings: &mut Findings,
 ) -> Option<Vec<Column>> {
-    let offers = input.rewind().and_then(|()| offers(input, mapping));
+    let offers = input.rewind().and_then(|()| offers(input, mapping.limits));
     let offers = offers.map_err(|error| findings.error(None, None, damaged(&error))).ok()?;
     let names: Vec<String> = offers.iter().map(|offer| offer.name.clone()).collect();
     let columns = resolve(&names, mapping, findings)?;
@@ -104,10 +105,15 @@ fn mapped(
     (!findings.has_errors()).then_some(columns)
 }
 
-fn offers(input: &mut Box<dyn ReadSeek + '_>, mapping: &Mapping) -> io::Result<Vec<Offer>> {
+/// The names of the columns that a file has.
+pub(crate) fn names(mut input: Box<dyn ReadSeek + '_>, limits: Limits) -> io::Result<Vec<String>> {
+    Ok(offers(&mut input, limits)?.into_iter().map(|offer| offer.name).collect())
+}
+
+fn offers(input: &mut Box<dyn ReadSeek + '_>, limits: Limits) -> io::Result<Vec<Offer>> {
     let mut offers = Vec::new();
     input.rewind()?;
-    visit(input, mapping.limits.unpacked_bytes as u64, &mut |array| {
+    visit(input, limits.unpacked_bytes as u64, &mut |array| {
         let columns = offered(&array);
         for column in 0..columns {
             if offers.len() == OFFERED {

@@ -21,6 +21,8 @@ use crate::units::Kind;
 const LONGEST: i64 = 5 * SECOND;
 /// Half a day: what is earlier by more is on the next day.
 const MIDNIGHT: i64 = DAY / 2;
+/// Days that a log may go on; a clock that falls back more often is out of order.
+const DAYS: i64 = 1000;
 
 /// Reads every sentence that a trial can use.
 pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
@@ -171,7 +173,7 @@ impl Log {
     fn mark(&mut self, row: usize, of_day: i64, midnight: Option<i64>) {
         let mut now = of_day + self.days * DAY;
         if let Some((_, last)) = self.last {
-            if last - now > MIDNIGHT {
+            if last - now > MIDNIGHT && self.days < DAYS {
                 self.days += 1;
                 now += DAY;
             }

@@ -185,7 +185,7 @@ mod tests {
         let place = "GPGGA,120003.25,5130.00,N,00930.00,W,1,08,0.9,1.0,M,0.0,M,,";
         assert_eq!(readings(place, ground), [("latitude", 0.898845), ("longitude", -0.165806)]);
         assert!(readings(&place.replace("W,1", "W,0"), ground).is_empty());
-        assert_eq!(readings("HEHDT,90.0,T", ground), [("psi", 1.570796)]);
+        assert_eq!(readings("HEHDT,80.0,T", ground), [("psi", 1.396263)]);
         assert_eq!(readings("TIROT,-60.0,A", ground), [("r", -0.017453)]);
         assert_eq!(
             readings("AGRSA,10.0,A,-10.0,A", ground),
@@ -198,8 +198,8 @@ mod tests {
         assert_eq!(readings(vbw, ground), [("u", 4.63), ("v", 0.257222)]);
         assert_eq!(readings(vbw, VelocityFrame::Water), [("u", 5.144444), ("v", 0.514444)]);
         assert_eq!(
-            readings("WIMWV,45.0,R,10.0,N,A", ground),
-            [("apparent_wind_from", 0.785398), ("apparent_wind_speed", 5.144444)]
+            readings("WIMWV,40.0,R,10.0,N,A", ground),
+            [("apparent_wind_from", 0.698132), ("apparent_wind_speed", 5.144444)]
         );
         assert!(readings("WIMWV,45.0,T,10.0,N,A", ground).is_empty());
         assert_eq!(readings("GPVTG,90.0,T,,M,10.0,N,18.5,K", ground)[1], ("speed", 5.144444));

@@ -1,6 +1,6 @@
 //! The start of a file as a person would look at it: names, units and the first rows.
 
-use std::io::{self, Read, Seek};
+use std::io::{self, Read};
 use std::path::Path;
 
 use csv::{ByteRecord, ReaderBuilder};
@@ -83,10 +83,4 @@ fn of_text(start: &[u8]) -> Preview {
     let rows = rows.skip(usize::from(!layout.units.is_empty())).collect();
     let names = names.into_iter().map(|name| name.trim_start_matches('\u{feff}').to_owned());
     Preview { names: names.collect(), units: layout.units, rows, ..Preview::default() }
-}
-
-/// What can be sought in as well as read.
-pub(crate) fn rewound<R: Read + Seek>(mut input: R) -> io::Result<R> {
-    input.rewind()?;
-    Ok(input)
 }

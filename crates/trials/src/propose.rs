@@ -116,7 +116,8 @@ impl Seen {
         if let Some(first) = self.columns.get(name) {
             return nothing(format!("`{}` is taken for {name} already; left out", first.column));
         }
-        let cells: Vec<&str> = self.preview.rows.iter().filter_map(|row| row.get(index)).map(String::as_str).collect();
+        let cells: Vec<&str> =
+            self.preview.rows.iter().filter_map(|row| row.get(index)).map(String::as_str).collect();
         if !self.preview.rows.is_empty() && cells.iter().all(|cell| cell.is_empty()) {
             return nothing("empty in the first rows; left out".into());
         }

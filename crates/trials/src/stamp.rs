@@ -1,6 +1,6 @@
 //! Dates and times of day as people write them.
 
-use crate::calendar::{DAY, SECOND, day};
+use crate::calendar::{SECOND, day};
 use crate::open_dates::OpenDate;
 
 /// Which of two numbers before the year is the day, where the writing does not tell.
@@ -153,9 +153,10 @@ fn month(text: &str) -> Option<i64> {
 }
 
 impl Stamp {
-    /// Nanoseconds since 1970, or since midnight where no date is written.
-    pub(crate) fn instant(self, day: i64) -> i64 {
-        day * DAY + self.of_day - self.zone.unwrap_or(0)
+    /// Seconds of the day counted from a day before, or after, by so many.
+    pub(crate) fn seconds(self, days: i64) -> f64 {
+        let of_day = self.of_day - self.zone.unwrap_or(0);
+        days as f64 * 86_400.0 + of_day as f64 / SECOND as f64
     }
 }
 
@@ -168,8 +169,10 @@ mod tests {
     fn read(text: &str) -> String {
         let stamp = stamp(text, Order::Open).unwrap();
         match stamp.date {
-            Date::Known(day) => iso(stamp.instant(day)),
-            Date::Absent => iso(stamp.instant(0)).replace("1970-01-01", ""),
+            Date::Known(day) => iso((stamp.seconds(day) * 1e3).round() as i64 * 1_000_000),
+            Date::Absent => {
+                iso((stamp.seconds(0) * 1e3) as i64 * 1_000_000).replace("1970-01-01", "")
+            }
             Date::Either(date) => format!("{}|{}|{}", date.first, date.second, date.year),
         }
     }

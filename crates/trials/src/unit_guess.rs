@@ -15,12 +15,7 @@ pub(crate) struct UnitGuess {
 }
 
 /// The unit of a column of the target.
-pub(crate) fn unit(
-    target: Target,
-    header: &str,
-    below: Option<&str>,
-    cells: &[&str],
-) -> UnitGuess {
+pub(crate) fn unit(target: Target, header: &str, below: Option<&str>, cells: &[&str]) -> UnitGuess {
     let kind = Kind::of(target);
     let guess = |unit: &str, why: String, certain| UnitGuess { unit: unit.into(), why, certain };
     if target == Target::Time

@@ -42,8 +42,17 @@ const NAMES: &[(&str, &[&str])] = &[
 
 /// Words of what was wanted or computed, not measured.
 const OTHERS: [&str; 11] = [
-    "ordered", "order", "command", "commanded", "cmd", "setpoint", "target", "reference", "error",
-    "std", "desired",
+    "ordered",
+    "order",
+    "command",
+    "commanded",
+    "cmd",
+    "setpoint",
+    "target",
+    "reference",
+    "error",
+    "std",
+    "desired",
 ];
 
 /// What a header most likely is, and whether it is exactly a known name.
@@ -65,8 +74,10 @@ pub(crate) fn likely(header: &str) -> Option<Likely> {
             let of_name: Vec<&str> = name.split(' ').collect();
             let exact = words.iter().eq(of_name.iter());
             // A letter alone means nothing among other words.
-            let part = name.len() > 1 && of_name.iter().all(|one| words.iter().any(|word| word == one));
-            let better = best.is_none_or(|(most, known)| of_name.len() > most || (exact && !known.exact));
+            let part =
+                name.len() > 1 && of_name.iter().all(|one| words.iter().any(|word| word == one));
+            let better =
+                best.is_none_or(|(most, known)| of_name.len() >= most || (exact && !known.exact));
             if (exact || part) && better {
                 best = Some((of_name.len(), Likely { target, exact }));
             }

@@ -9,6 +9,7 @@ use crate::archive;
 use crate::csv_file;
 use crate::findings::Findings;
 use crate::layout;
+use crate::limits::Limits;
 use crate::mapping::Mapping;
 use crate::table::Table;
 
@@ -27,9 +28,7 @@ pub(crate) fn read(
     mapping: &Mapping,
     findings: &mut Findings,
 ) -> Option<Table> {
-    let checked = archive::check(&mut input, mapping.limits.unpacked_bytes as u64)
-        .and_then(|()| input.rewind().map_err(|error| error.to_string()));
-    if let Err(message) = checked {
+    if let Err(message) = checked(&mut input, mapping.limits) {
         findings.error(None, None, message);
         return None;
     }
@@ -56,6 +55,37 @@ pub(crate) fn read(
     }
 }
 
+fn checked(input: &mut Box<dyn ReadSeek + '_>, limits: Limits) -> Result<(), String> {
+    let claimed = archive::claimed(input)?;
+    archive::check(input, claimed.min(limits.unpacked_bytes as u64))?;
+    input.rewind().map_err(|error| error.to_string())
+}
+
+/// The first lines of each sheet.
+pub(crate) fn starts(
+    mut input: Box<dyn ReadSeek + '_>,
+    limits: Limits,
+) -> Result<Vec<(String, Vec<u8>)>, String> {
+    checked(&mut input, limits)?;
+    let mapping = Mapping { limits, ..Mapping::canonical() };
+    let read = catch_unwind(AssertUnwindSafe(|| {
+        let mut book = Xlsx::new(input).map_err(|error| error.to_string())?;
+        let names = book.sheet_names().into_iter().take(SHEETS);
+        Ok(names.map(|name| (name.clone(), start(&mut book, &name, &mapping))).collect())
+    }));
+    read.unwrap_or_else(|_| Err("the workbook contradicts itself".into()))
+}
+
+/// The first lines of a sheet; nothing of a chart, which is a sheet, too.
+fn start(book: &mut Book, sheet: &str, mapping: &Mapping) -> Vec<u8> {
+    let mut start = Vec::new();
+    if let Ok(lines) = Lines::of(book, sheet, mapping) {
+        // What is wrong with the sheet is told when it is read.
+        let _ = lines.take(START).read_to_end(&mut start);
+    }
+    start
+}
+
 type Book<'a> = Xlsx<Box<dyn ReadSeek + 'a>>;
 
 fn sheet(book: &mut Book, mapping: &Mapping) -> Result<String, String> {
@@ -67,11 +97,7 @@ fn sheet(book: &mut Book, mapping: &Mapping) -> Result<String, String> {
     }
     let mut best = (0, names.first().cloned().ok_or("it has no sheet")?);
     for name in names.into_iter().take(SHEETS) {
-        let mut start = Vec::new();
-        // A chart is a sheet, too, and has no lines.
-        if let Ok(lines) = Lines::of(book, &name, mapping) {
-            let _ = lines.take(START).read_to_end(&mut start);
-        }
+        let start = start(book, &name, mapping);
         let known = layout::known_names(&start, mapping);
         if known > best.0 {
             best = (known, name);
