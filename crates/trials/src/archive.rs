@@ -73,7 +73,8 @@ fn unpack(file: &mut impl Read, bound: u64, is_text: bool) -> Result<u64, String
     }
 }
 
-/// XML in UTF-8 (or another code that contains ASCII) has no such bytes; in others, what is looked for could hide.
+/// XML in UTF-8 (or another code that contains ASCII) has no such bytes; in others, what is looked
+/// for could hide.
 fn check_text(text: &[u8]) -> Result<(), String> {
     if text.iter().any(|&byte| byte < b' ' && !matches!(byte, b'\t' | b'\n' | b'\r')) {
         return Err("is not XML in UTF-8".into());

@@ -1,4 +1,5 @@
-//! The time column: seconds, serial days, or dates and times of day; all become seconds since the first row.
+//! The time column: seconds, serial days, or dates and times of day; all become seconds since the
+//! first row.
 
 use crate::calendar::{SECOND, iso};
 use crate::findings::Findings;
@@ -14,8 +15,8 @@ const DAY_S: f64 = 86_400.0;
 /// What Excel and MATLAB count days from, in days since 1970.
 const EXCEL: f64 = -25_569.0;
 const MATLAB: f64 = -719_529.0;
-/// Days between which a column is taken for Excel's (years 1954 to 2118), and its longest step on average, days: seconds since
-/// midnight are as large, but not as close.
+/// Days between which a column is taken for Excel's (years 1954 to 2118), and its longest step on
+/// average, days: seconds since midnight are as large, but not as close.
 const SERIAL: std::ops::Range<f64> = 20_000.0..80_000.0;
 const SERIAL_STEP: f64 = 0.002;
 
@@ -120,7 +121,8 @@ impl Clock {
         }
     }
 
-    /// Turns the numbers into seconds since the first; says what they were, and what the first is in the calendar.
+    /// Turns the numbers into seconds since the first; says what they were, and what the first is
+    /// in the calendar.
     fn read_as(
         &mut self,
         header: &str,
@@ -189,7 +191,8 @@ fn is_serial(unit: &str) -> bool {
     matches!(unit, "excel" | "matlab" | "unix")
 }
 
-/// Whether numbers without a unit can be nothing but Excel's days: header, size and distance all say so.
+/// Whether numbers without a unit can be nothing but Excel's days: header, size and distance all
+/// say so.
 fn looks_serial(header: &str, values: &[f64]) -> bool {
     let name = header.to_lowercase();
     let step = (values[values.len() - 1] - values[0]) / values.len() as f64;

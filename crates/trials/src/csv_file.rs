@@ -94,7 +94,8 @@ fn heading<'a>(names: &'a [String], layout: &'a Layout) -> Heading<'a> {
     Heading { names, units: &layout.units, row: layout.lines + 1 }
 }
 
-/// The file up to the line below the header at least, however small the pieces are in which it comes.
+/// The file up to the line below the header at least, however small the pieces are in which it
+/// comes.
 fn start(
     input: &mut impl Read,
     meter: &Meter,

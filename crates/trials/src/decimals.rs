@@ -41,7 +41,8 @@ impl Decimals {
         match (self.comma, self.point) {
             (Some(comma), Some(point)) => {
                 let message = format!(
-                    "row {comma} has a number with a comma, row {point} one with a point; write all \
+                    "row {comma} has a number with a comma, row {point} one with a point; write \
+                    all \
                      decimals with a point and leave out thousands separators"
                 );
                 findings.error(Some(comma.max(point)), None, message);

@@ -16,8 +16,9 @@ use crate::source::{Content, Source};
 /// Bytes that what a Parquet file says of itself takes in memory, by each that it has in the file: an assumption on the
 /// safe side, since numbers of a few bytes become fields of eight.
 const BY_FOOTER: u64 = 12;
-/// Bytes that a workbook takes, by each that it has when unpacked: shared strings of a few bytes take three times as many,
-/// and each number of twenty characters is one of eight bytes beside its row.
+/// Bytes that a workbook takes, by each that it has when unpacked: shared strings of a few bytes
+/// take three times as many, and each number of twenty characters is one of eight bytes beside its
+/// row.
 const UNPACKED: u64 = 3;
 /// What every file takes: buffers, findings, counts of digits.
 const EVERY: u64 = 1 << 20;
@@ -84,8 +85,8 @@ pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
     })
 }
 
-/// Bytes for each row that deriving channels takes: a state and its covariance, what is smoothed of three quantities, and
-/// values and variances of what comes of it.
+/// Bytes for each row that deriving channels takes: a state and its covariance, what is smoothed of
+/// three quantities, and values and variances of what comes of it.
 fn deriving(mapping: &Mapping) -> u64 {
     match mapping.declared.derive.len() as u64 {
         0 => 0,

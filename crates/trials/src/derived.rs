@@ -63,7 +63,8 @@ pub(crate) fn velocities(recording: &mut Recording, wanted: &[Derivable], findin
     }
 }
 
-/// A velocity along the heading or across it, and its variance: that of the track's rates, and that of the heading.
+/// A velocity along the heading or across it, and its variance: that of the track's rates, and that
+/// of the heading.
 fn component(along: bool, x: Smoothed, y: Smoothed, psi: Smoothed) -> (f64, f64) {
     let (sin, cos) = psi.value.sin_cos();
     let (ahead, starboard) = (x.rate * cos + y.rate * sin, y.rate * cos - x.rate * sin);
@@ -109,7 +110,8 @@ fn stretches(
     if lost > 0 && lost < recording.trial.len() {
         recording.leave_out(&segments.into_iter().filter(short).collect::<Vec<_>>());
         let message = format!(
-            "{lost} samples left out: between gaps there are fewer than {FEWEST}, of which no rate can be told"
+            "{lost} samples left out: between gaps there are fewer than {FEWEST}, of which no \
+            rate can be told"
         );
         findings.warning(None, None, message);
     }
@@ -153,8 +155,10 @@ fn insert(
     let sd = |share| quantile(variance.iter().map(|variance| variance.sqrt()), share);
     let message = format!(
         "derived of {of}, not measured: a Rauch-Tung-Striebel smoother with white noise of \
-         {process_noise:.3e} {unit}2/s5 on the third derivative and readings of {reading_sd:.3e} {unit}, \
-         the most probable for this record; its standard deviation is {:.2e} {} typically, {:.2e} at most",
+         {process_noise:.3e} {unit}2/s5 on the third derivative and \
+         readings of {reading_sd:.3e} {unit}, \
+         the most probable for this record; its standard deviation is {:.2e} {} typically, \
+         {:.2e} at most",
         sd(0.5),
         recording.canonical_unit(channel),
         sd(1.0),

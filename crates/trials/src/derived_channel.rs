@@ -9,7 +9,8 @@ pub struct DerivedChannel {
     pub channel: Channel,
     /// Variance of each sample, the square of the channel's unit.
     pub variance: Vec<f64>,
-    /// Density of the white noise that disturbs the second derivative of what was recorded, its unit squared by s^5.
+    /// Density of the white noise that disturbs the second derivative of what was recorded, its
+    /// unit squared by s^5.
     pub process_noise: f64,
     /// Standard deviation of a reading of what was recorded, m or rad.
     pub reading_sd: f64,

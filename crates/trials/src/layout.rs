@@ -1,4 +1,5 @@
-//! Where in a CSV file the table begins: lines above its header, the separator, a line of units below.
+//! Where in a CSV file the table begins: lines above its header, the separator, a line of units
+//! below.
 
 use csv::{ByteRecord, ReaderBuilder};
 
@@ -36,7 +37,8 @@ struct Line<'a> {
     complete: bool,
 }
 
-/// Finds the table; the header is the line with most names that are mapped or canonical, or else the first.
+/// Finds the table; the header is the line with most names that are mapped or canonical, or else
+/// the first.
 pub(crate) fn find(start: &[u8], mapping: &Mapping) -> Layout {
     let mut found = lines(start).enumerate().peekable();
     let Some(&(_, first)) = found.peek() else {
@@ -65,7 +67,8 @@ pub(crate) fn known_names(start: &[u8], mapping: &Mapping) -> usize {
     lines(&start[offset..]).next().map_or(0, |line| known(line.bytes, mapping))
 }
 
-/// Where a table most likely is, of which nothing is known: its header stands above the first line of values.
+/// Where a table most likely is, of which nothing is known: its header stands above the first line
+/// of values.
 pub(crate) fn guess(start: &[u8]) -> Layout {
     let canonical = Mapping::canonical();
     let lines: Vec<Line> = lines(start).collect();

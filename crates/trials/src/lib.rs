@@ -1,8 +1,12 @@
-//! Trial files in: CSV and Parquet, units and signs converted once at the door, checked, optionally smoothed.
+//! Trial files in: CSV, Parquet, Excel, MATLAB 5 and NMEA 0183; units and signs converted once at
+//! the door, checked, optionally smoothed.
 //!
-//! [`read_trial`] turns a [`Source`] into a [`Trial`](sistership_model::trial::Trial) in canonical units, or refuses it
-//! with findings that name row and column; [`check`] tells the same without the samples. [`load_path`] reads what a
-//! command line names: a manifest or a single file. [`samples`] keeps trials as Parquet and writes them as CSV.
+//! [`read_trial`] turns a [`Source`] into a [`Trial`](sistership_model::trial::Trial) in canonical
+//! units, or refuses it with findings that name row and column; [`read_in_full`] tells the variance
+//! of derived channels, too, and [`check`] the findings without the samples. [`load_path`] reads
+//! what a command line names: a manifest or a single file. [`propose`] writes a manifest for files,
+//! and [`lacking`] names what a law needs that a trial does not have. [`samples`] keeps trials as
+//! Parquet and writes them as CSV.
 
 mod archive;
 mod calendar;

@@ -154,7 +154,8 @@ mod tests {
     fn sensors_files_are_read_into_one_trial() {
         let folder = tempfile::tempdir().unwrap();
         let manifest = "kind: trials\nship: a\ntrials:\n  - file: a.csv\n    sensors:\n      \
-                        - { file: b.csv, columns: { psi: { column: hdg, unit: deg } }, clock_offset_s: 0.5 }\n";
+                        - { file: b.csv, columns: { psi: { column: hdg, unit: deg } }, \
+                        clock_offset_s: 0.5 }\n";
         std::fs::write(folder.path().join("m.yaml"), manifest).unwrap();
         std::fs::write(folder.path().join("a.csv"), "t_s,u_m_s\n1,1\n2,2\n3,3\n4,5\n").unwrap();
         let heading = "t_s,hdg,note\n0.5,350,a\n1.5,0,b\n2.5,10,c\n3.5,20,d\n";

@@ -59,7 +59,8 @@ pub(crate) fn kind(start: &[u8]) -> Kind {
     if is_nmea(start) { Kind::Nmea } else { Kind::Csv }
 }
 
-/// Whether one of the first lines has a sentence such as `$GPGGA,...*47`, perhaps after a logger's own time.
+/// Whether one of the first lines has a sentence such as `$GPGGA,...*47`, perhaps after a logger's
+/// own time.
 fn is_nmea(start: &[u8]) -> bool {
     start.split(|&byte| byte == b'\n').take(20).any(|line| {
         let Some(at) = line.iter().position(|&byte| byte == b'$') else { return false };

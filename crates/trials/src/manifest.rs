@@ -136,7 +136,8 @@ fn declarations(declared: &Declarations) -> Option<Problem> {
     let variation = declared.variation_deg;
     match (declared.heading, variation) {
         (North::Magnetic, None) => {
-            let message = "a magnetic heading needs the variation of the place; add `variation_deg`, \
+            let message = "a magnetic heading needs the variation of the place; add \
+            `variation_deg`, \
                            positive to the east";
             return Some(problem("heading", message.into()));
         }

@@ -21,7 +21,8 @@ pub struct ManifestFile {
     pub sensors: Vec<Vec<SensorFile>>,
 }
 
-/// The keys of the file. `Manifest` refuses what it does not know, so that its fields stand here once more.
+/// The keys of the file. `Manifest` refuses what it does not know, so that its fields stand here
+/// once more.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Written {

@@ -44,7 +44,8 @@ pub(crate) fn canonical(header: &str) -> Option<(Target, &'static str)> {
     })
 }
 
-/// The target that a bare name such as `psi` is, where the unit stands elsewhere and is one of its kind.
+/// The target that a bare name such as `psi` is, where the unit stands elsewhere and is one of its
+/// kind.
 pub(crate) fn with_unit(header: &str, unit: &str) -> Option<Target> {
     let target = Target::by_name(header)?;
     Kind::of(target).factor(unit).ok().map(|_| target)

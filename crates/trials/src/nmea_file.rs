@@ -1,7 +1,8 @@
 //! NMEA 0183 logs: sentences of several instruments become series, and these one table.
 //!
-//! Only some sentences tell the time. A line without it lies between two that have it, and is taken to have come when its
-//! place between their lines says; where the log has its own time before each sentence, that is taken instead.
+//! Only some sentences tell the time. A line without it lies between two that have it, and is taken
+//! to have come when its place between their lines says; where the log has its own time before each
+//! sentence, that is taken instead.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Read};
@@ -42,7 +43,8 @@ pub(crate) fn measure(input: impl Read, mapping: &Mapping) -> Option<(usize, usi
         Ok(())
     })
     .ok()?;
-    // Of a line at most four readings are kept, with their times, before they are put on one time base.
+    // Of a line at most four readings are kept, with their times, before they are put on one time
+    // base.
     Some((rows, 24))
 }
 
@@ -231,7 +233,8 @@ impl Log {
         self.timeless += self.pending.len();
         self.tell(findings);
         let mut chosen = self.chosen(findings);
-        // One rudder is reported as that to starboard, and the yaw rate is of the ship whatever reports it.
+        // One rudder is reported as that to starboard, and the yaw rate is of the ship whatever
+        // reports it.
         let base = base(&chosen)?;
         let times = chosen.get(&base)?;
         let mut table = Table { rows: times.1.rows.clone(), ..Table::default() };
@@ -265,7 +268,8 @@ impl Log {
         if self.series.is_empty() {
             let what = match self.last {
                 None => {
-                    "no sentence tells the time (GGA, RMC or ZDA), and neither does the log before it"
+                    "no sentence tells the time (GGA, RMC or ZDA), and neither does the log \
+                    before it"
                 }
                 Some(_) => "no sentence holds anything that a trial can use",
             };

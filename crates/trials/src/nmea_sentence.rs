@@ -148,7 +148,8 @@ impl Sentence<'_> {
         found.into_iter().flatten().collect()
     }
 
-    /// Shafts are numbered from 0, which is the only one or in the middle; odd ones are to starboard.
+    /// Shafts are numbered from 0, which is the only one or in the middle; odd ones are to
+    /// starboard.
     fn shaft(&self) -> Option<(Target, f64)> {
         let revolutions = self.number(3)? / 60.0;
         match self.number(2)? as i64 {

@@ -10,7 +10,8 @@ pub(crate) struct OpenDate {
     pub year: i64,
 }
 
-/// Days that a date is kept apart from the next by, so that a zone can move its hours beyond midnight.
+/// Days that a date is kept apart from the next by, so that a zone can move its hours beyond
+/// midnight.
 const APART: i64 = 4;
 const DAY_S: f64 = 86_400.0;
 
@@ -57,7 +58,8 @@ impl OpenDates {
                     .into())
             }
             (Some(one), Some(other)) => Err(format!(
-                "row {one} has the day before the month, row {other} has it after; write dates as 2024-05-31"
+                "row {one} has the day before the month, row {other} has it after; write dates \
+                as 2024-05-31"
             )),
         }
     }

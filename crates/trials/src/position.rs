@@ -1,4 +1,5 @@
-//! Positions by latitude and longitude become m north and east of the first fix; those of an antenna become midship's.
+//! Positions by latitude and longitude become m north and east of the first fix; those of an
+//! antenna become midship's.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -34,7 +35,8 @@ pub(crate) fn local(recording: &mut Recording, findings: &mut Findings) {
     project(recording, &latitude, &longitude, findings);
 }
 
-/// Distance and azimuth on the ellipsoid WGS 84 from the first fix, so that distances from there are true.
+/// Distance and azimuth on the ellipsoid WGS 84 from the first fix, so that distances from there
+/// are true.
 fn project(
     recording: &mut Recording,
     latitude: &[f64],

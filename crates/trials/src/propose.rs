@@ -41,8 +41,8 @@ pub struct Guess {
     pub certain: bool,
 }
 
-/// Proposes a manifest for files in one folder. Files with the columns of the first are trials of their own; files with others
-/// are taken for further sensors of the first trial.
+/// Proposes a manifest for files in one folder. Files with the columns of the first are trials of
+/// their own; files with others are taken for further sensors of the first trial.
 ///
 /// # Errors
 /// Every file that cannot be read, and why.
@@ -166,7 +166,8 @@ fn proposal(ship: &str, seen: Vec<Seen>) -> Proposal {
     Proposal { manifest: ManifestFile { manifest, declarations, sensors }, guesses }
 }
 
-/// Columns to pass over, and velocities to derive where positions and heading are there and they are not.
+/// Columns to pass over, and velocities to derive where positions and heading are there and they
+/// are not.
 fn declarations(seen: &[Seen]) -> Declarations {
     let has = |names: &[&str]| names.iter().all(|name| seen.iter().any(|one| one.has(&[name])));
     let logged = seen.iter().any(|one| one.preview.is_known);

@@ -3,7 +3,8 @@ use super::*;
 use crate::load::load_path;
 use crate::manifest::read_manifest_file;
 
-const LOG: &str = "Ship: A\nRun 3\n\nDate/Time;Latitude;Longitude;Heading;Rudder angle;Shaft RPM;Rudder order;Crew\n\
+const LOG: &str = "Ship: A\nRun 3\n\nDate/Time;Latitude;Longitude;Heading;Rudder angle;Shaft \
+ RPM;Rudder order;Crew\n\
                    ;deg;deg;deg;deg;rpm;deg;\n";
 
 /// Northwards at 5 m/s, a second apart.

@@ -184,7 +184,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// Target and unit that a header names, for a column that is free and a target that the manifest leaves open.
+    /// Target and unit that a header names, for a column that is free and a target that the
+    /// manifest leaves open.
     fn named(&self, index: usize) -> Option<(Target, String)> {
         let header = &self.headers[index];
         let below = self
@@ -297,7 +298,8 @@ pub(crate) fn factor(target: Target, unit: &str, declared: &Declarations) -> Res
     match full {
         Some(full) => Ok(full.value / 100.0 * Kind::of(target).factor(&full.unit)?),
         None => Err(format!(
-            "`%` needs what 100 % is; declare `maximum: {{ {of_pair}: {{ value: ..., unit: {} }} }}`",
+            "`%` needs what 100 % is; declare `maximum: {{ {of_pair}: {{ value: ..., unit: {} }} \
+            }}`",
             Kind::of(target).canonical()
         )),
     }

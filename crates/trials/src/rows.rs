@@ -81,7 +81,8 @@ impl<'a> Builder<'a> {
             .for_each(|(values, &value)| values.push(value));
     }
 
-    /// Learns that columns have numbers; rows that were kept although they had none there are faulty after all.
+    /// Learns that columns have numbers; rows that were kept although they had none there are
+    /// faulty after all.
     fn fill(&mut self) {
         for position in 0..self.scratch.len() {
             if !self.scratch[position].is_finite() {

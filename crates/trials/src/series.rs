@@ -7,7 +7,8 @@ use sistership_model::trial::Channel;
 use crate::findings::Findings;
 use crate::table::{Column, Raw, Start, Table, Target};
 
-/// Readings further apart than so many of a sensor's median steps are not bridged: rows between them are left out.
+/// Readings further apart than so many of a sensor's median steps are not bridged: rows between
+/// them are left out.
 const BRIDGED: f64 = 2.5;
 
 /// One sensor's readings in canonical units, in order of time.
@@ -25,7 +26,8 @@ struct Sampled {
     lost: usize,
 }
 
-/// The columns of a sensor's file, at its times with an offset; those that go back are left for the check of time.
+/// The columns of a sensor's file, at its times with an offset; those that go back are left for the
+/// check of time.
 pub(crate) fn series(table: Table, offset_s: f64) -> Vec<Series> {
     let is_time = |column: &Column| column.target == Target::Time;
     let Some(at) = table.columns.iter().position(is_time) else { return Vec::new() };
@@ -43,7 +45,8 @@ pub(crate) fn offset_s(
     let starts = match (base, sensor) {
         (Some(base), Some(sensor)) if base.dated && sensor.dated => Some(sensor.at_s - base.at_s),
         (Some(base), Some(sensor)) => {
-            // Of one of them only the time of day is known, so that they are less than half a day apart.
+            // Of one of them only the time of day is known, so that they are less than half a day
+            // apart.
             Some((sensor.at_s - base.at_s + 43_200.0).rem_euclid(86_400.0) - 43_200.0)
         }
         (None, None) => Some(0.0),
@@ -60,7 +63,8 @@ pub(crate) fn offset_s(
     }
 }
 
-/// Adds series to a table at the table's own times; rows where one has no reading nearby are left out.
+/// Adds series to a table at the table's own times; rows where one has no reading nearby are left
+/// out.
 pub(crate) fn join(table: &mut Table, series: Vec<Series>, findings: &mut Findings) {
     let Some(at) = table.columns.iter().position(|column| column.target == Target::Time) else {
         return;
@@ -80,7 +84,8 @@ pub(crate) fn join(table: &mut Table, series: Vec<Series>, findings: &mut Findin
         let sampled = sample(&table.values[at], &t, &values, is_angle(column.target));
         if sampled.lost > 0 {
             let message = format!(
-                "has no reading near {} of {} rows, which are left out; nothing is interpolated over a gap",
+                "has no reading near {} of {} rows, which are left out; nothing is interpolated \
+                over a gap",
                 sampled.lost,
                 table.rows.len()
             );
@@ -92,7 +97,8 @@ pub(crate) fn join(table: &mut Table, series: Vec<Series>, findings: &mut Findin
     leave_out(table);
 }
 
-/// Between the readings before and after each time, along the shorter way round for an angle; NaN in a gap.
+/// Between the readings before and after each time, along the shorter way round for an angle; NaN
+/// in a gap.
 fn sample(times: &[f64], t: &[f64], values: &[f64], is_angle: bool) -> Sampled {
     let longest = BRIDGED * median_step(t);
     let mut lost = 0;

@@ -1,9 +1,11 @@
-//! A fixed-interval Kalman smoother (Rauch, Tung and Striebel 1965) for one recorded quantity and its rates.
+//! A fixed-interval Kalman smoother (Rauch, Tung and Striebel 1965) for one recorded quantity and
+//! its rates.
 //!
-//! Between samples the quantity is a parabola whose second derivative is disturbed by white noise: value, rate and
-//! acceleration are the state, the density of the disturbance is the process noise. Two numbers decide how smooth the result
-//! is: the variance of a reading, and the process noise. Neither is known of a file, so both are those that make the readings
-//! most probable: their ratio is searched, and of each ratio the variance follows from the innovations.
+//! Between samples the quantity is a parabola whose second derivative is disturbed by white noise:
+//! value, rate and acceleration are the state, the density of the disturbance is the process noise.
+//! Two numbers decide how smooth the result is: the variance of a reading, and the process noise.
+//! Neither is known of a file, so both are those that make the readings most probable: their ratio
+//! is searched, and of each ratio the variance follows from the innovations.
 
 use std::ops::Range;
 
@@ -15,10 +17,12 @@ const CHOOSING: usize = 20_000;
 const LEARNING: usize = 3;
 /// Decimal logarithms between which the ratio is searched, in units of the median step.
 const RATIOS: Range<i32> = -14..5;
-/// Variance of the first rate and acceleration, by that of differences of readings: they are read again, so that their first
-/// use must count for little, but not so little that rounding shows in what is left of it.
+/// Variance of the first rate and acceleration, by that of differences of readings: they are read
+/// again, so that their first use must count for little, but not so little that rounding shows in
+/// what is left of it.
 const DIFFUSE: f64 = 100.0;
-/// The least variance of a reading by the square of the readings' range: what a simulation's rounding leaves.
+/// The least variance of a reading by the square of the readings' range: what a simulation's
+/// rounding leaves.
 const EXACT: f64 = 1e-24;
 
 /// What was found of the readings.
@@ -88,7 +92,8 @@ impl State {
     }
 }
 
-/// Sums over the innovations of one quantity: of squares by variance, of logarithms of the variance, and how many.
+/// Sums over the innovations of one quantity: of squares by variance, of logarithms of the
+/// variance, and how many.
 fn innovations(t: &[f64], values: &[f64], ratio: f64) -> (f64, f64, f64) {
     let mut state = State::first(t, values, ratio);
     let mut sums = (0.0, 0.0, 0.0);

@@ -71,8 +71,9 @@ impl<'a> Source<'a> {
         Self { name, content, sensors: Vec::new() }
     }
 
-    /// With a file of further channels, read by a mapping of its own. Its readings are put on this file's times; its clock is
-    /// this file's after the offset is added, and after dates and times of day are compared where both files have them.
+    /// With a file of further channels, read by a mapping of its own. Its readings are put on this
+    /// file's times; its clock is this file's after the offset is added, and after dates and times
+    /// of day are compared where both files have them.
     pub fn with_sensor(
         mut self,
         other: Self,

@@ -48,7 +48,8 @@ fn written_time(cells: &[&str]) -> Option<(&'static str, &'static str, bool)> {
         Date::Known(_) => ("timestamp", "its cells are dates with times of day", true),
         Date::Absent => ("hh:mm:ss", "its cells are times of day", true),
         Date::Either(_) => {
-            let why = "its cells are dates of which either number may be the month: `day/month/year` or \
+            let why = "its cells are dates of which either number may be the month: \
+            `day/month/year` or \
                        `month/day/year` says which";
             ("auto", why, false)
         }

@@ -47,7 +47,8 @@ const SUFFIXES: &[(&str, Kind, &str)] = &[
     ("rpm", Kind::Revolutions, "rpm"),
 ];
 
-/// How time may be written but as a duration, and the factor to seconds. `auto` is learned from the cells.
+/// How time may be written but as a duration, and the factor to seconds. `auto` is learned from the
+/// cells.
 const CALENDAR: [(&str, f64); 8] = [
     ("auto", 1.0),
     ("timestamp", 1.0),

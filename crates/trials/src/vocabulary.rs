@@ -1,6 +1,7 @@
 //! Names under which people record channels.
 
-/// A target's name in manifests, and headers in use for it; the more words of a header a name explains, the better.
+/// A target's name in manifests, and headers in use for it; the more words of a header a name
+/// explains, the better.
 const NAMES: &[(&str, &[&str])] = &[
     ("t", &["t", "time", "timestamp", "date time", "datetime", "utc", "elapsed time", "zeit"]),
     ("x", &["x", "x position", "x pos", "north", "northing"]),

@@ -106,7 +106,8 @@ fn sheet(book: &mut Book, mapping: &Mapping) -> Result<String, String> {
     Ok(best.1)
 }
 
-/// A sheet as text: cells apart by tabs, one line for each row, empty rows too, so that lines are Excel's rows.
+/// A sheet as text: cells apart by tabs, one line for each row, empty rows too, so that lines are
+/// Excel's rows.
 struct Lines<'a, 'b> {
     cells: XlsxCellReader<'a, Box<dyn ReadSeek + 'b>>,
     /// The cell that was read, but belongs to a row that is not begun.
