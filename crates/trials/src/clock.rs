@@ -109,7 +109,11 @@ impl Clock {
         if values.is_empty() || !(self.is_written() || is_serial(&self.unit)) {
             return;
         }
-        match self.read_as(&header, values) {
+        let read = self.read_as(&header, values).and_then(|read| {
+            let counted = values.iter().all(|value| value.is_finite());
+            counted.then_some(read).ok_or_else(|| "holds times too far apart to be counted".into())
+        });
+        match read {
             Ok((form, start)) => {
                 let from =
                     start.as_ref().map_or(String::new(), |start| format!(", {}", start.text));

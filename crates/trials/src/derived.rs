@@ -147,6 +147,10 @@ fn insert(
     noise: Noise,
     findings: &mut Findings,
 ) {
+    if !values.iter().chain(&variance).all(|value| value.is_finite()) {
+        let message = "cannot be derived: rows are too close in time, or values too large";
+        return findings.error(None, Some(channel.name()), message);
+    }
     let (reading_sd, process_noise) = (noise.reading.sqrt(), noise.ratio * noise.reading);
     let (of, unit) = match channel {
         Channel::R => ("the heading", "rad"),

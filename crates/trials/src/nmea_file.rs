@@ -4,7 +4,7 @@
 //! to have come when its place between their lines says; where the log has its own time before each
 //! sentence, that is taken instead.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead, BufReader, Read};
 
 use sistership_model::manifest::VelocityFrame;
@@ -33,6 +33,19 @@ pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings)
         return None;
     }
     log.table(findings)
+}
+
+/// Which sentences at the start of a log hold what, as `GPGGA` holds `latitude`.
+pub(crate) fn contents(start: &str) -> Vec<(String, Target)> {
+    let mut found = BTreeSet::new();
+    for text in start.lines() {
+        if let Line::Sentence(sentence) = line(text) {
+            let name = format!("{}{}", sentence.talker, sentence.kind);
+            let readings = sentence.readings(VelocityFrame::Ground).into_iter();
+            found.extend(readings.map(|(target, _)| (target, name.clone())));
+        }
+    }
+    found.into_iter().map(|(target, name)| (name, target)).collect()
 }
 
 /// Rows and columns at most.

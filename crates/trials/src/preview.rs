@@ -8,8 +8,10 @@ use csv::{ByteRecord, ReaderBuilder};
 use crate::layout;
 use crate::limits::Limits;
 use crate::mat_file;
+use crate::nmea_file;
 use crate::parquet_file;
 use crate::source::{Content, Source};
+use crate::table::Target;
 use crate::workbook;
 
 /// Bytes and rows that are looked at.
@@ -26,8 +28,8 @@ pub(crate) struct Preview {
     pub rows: Vec<Vec<String>>,
     /// The sheet, where a workbook has several.
     pub sheet: Option<String>,
-    /// Whether its columns have names that need no mapping: NMEA sentences.
-    pub is_known: bool,
+    /// NMEA sentences, which need no mapping, and what each holds.
+    pub sentences: Vec<(String, Target)>,
 }
 
 /// Looks at a file.
@@ -56,7 +58,12 @@ pub(crate) fn preview(name: &str, path: &Path) -> io::Result<Preview> {
             let reader = opened.map_err(|refused| io::Error::other(refused.to_string()))?;
             Ok(Preview { names: parquet_file::headers(&reader), ..Preview::default() })
         }
-        Content::Nmea(_) => Ok(Preview { is_known: true, ..Preview::default() }),
+        Content::Nmea(input) => {
+            let mut start = Vec::new();
+            input.take(START).read_to_end(&mut start)?;
+            let sentences = nmea_file::contents(&String::from_utf8_lossy(&start));
+            Ok(Preview { sentences, ..Preview::default() })
+        }
         Content::Other(what) => Err(io::Error::other(format!("the file is {what}"))),
         Content::ParquetBytes(_) => Err(io::Error::other("bytes are no file")),
     }

@@ -13,6 +13,7 @@ use crate::manifest_file::ManifestFile;
 use crate::preview::{Preview, preview};
 use crate::table::Target;
 use crate::unit_guess::{UnitGuess, unit};
+use crate::units::Kind;
 use crate::vocabulary::likely;
 
 /// A manifest and what it rests on.
@@ -82,6 +83,14 @@ struct Seen {
 impl Seen {
     fn of(file: String, preview: Preview) -> Self {
         let mut seen = Self { file, preview, columns: IndexMap::new(), guesses: Vec::new() };
+        seen.guesses.extend(seen.preview.sentences.iter().map(|(name, target)| Guess {
+            file: seen.file.clone(),
+            column: name.clone(),
+            channel: Some(target.name().to_owned()),
+            unit: Some(Kind::of(*target).canonical().to_owned()),
+            why: "NMEA 0183 says what the sentence holds; it needs no mapping".into(),
+            certain: true,
+        }));
         for index in 0..seen.preview.names.len() {
             let guess = seen.guess(index);
             if let (Some(channel), Some(unit)) = (&guess.channel, &guess.unit) {
@@ -135,7 +144,8 @@ impl Seen {
     }
 
     fn has(&self, names: &[&str]) -> bool {
-        names.iter().all(|name| self.columns.contains_key(*name))
+        let told = |name: &str| self.preview.sentences.iter().any(|(_, held)| held.name() == name);
+        names.iter().all(|name| self.columns.contains_key(*name) || told(name))
     }
 }
 
@@ -170,7 +180,6 @@ fn proposal(ship: &str, seen: Vec<Seen>) -> Proposal {
 /// are not.
 fn declarations(seen: &[Seen]) -> Declarations {
     let has = |names: &[&str]| names.iter().all(|name| seen.iter().any(|one| one.has(&[name])));
-    let logged = seen.iter().any(|one| one.preview.is_known);
     let track = has(&["psi"]) && (has(&["x", "y"]) || has(&["latitude", "longitude"]));
     let ground = has(&["course", "speed", "psi"]);
     let mut derive = Vec::new();
@@ -178,7 +187,7 @@ fn declarations(seen: &[Seen]) -> Declarations {
         let open = [("u", Derivable::U), ("v", Derivable::V)];
         derive.extend(open.into_iter().filter(|(name, _)| !has(&[name])).map(|(_, one)| one));
     }
-    if has(&["psi"]) && !has(&["r"]) && !logged {
+    if has(&["psi"]) && !has(&["r"]) {
         derive.push(Derivable::R);
     }
     let mut ignore: Vec<String> = seen

@@ -65,3 +65,18 @@ fn further_files_are_trials_or_sensors() {
     assert_eq!(errors.len(), 2);
     assert!(errors[0].to_string().contains("a picture"), "{}", errors[0]);
 }
+
+#[test]
+fn a_log_tells_itself_what_it_holds() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.nmea");
+    let summed =
+        |body: &str| format!("${body}*{:02X}\n", body.bytes().fold(0, |sum, byte| sum ^ byte));
+    let place = summed("GPGGA,120003,5130.000,N,00930.000,E,1,8,1,1,M,1,M,,");
+    std::fs::write(&path, place + &summed("HEHDT,10.0,T")).unwrap();
+    let proposal = propose("a", &[&path]).unwrap();
+    let channels = proposal.guesses.iter().filter_map(|guess| guess.channel.as_deref());
+    assert_eq!(channels.collect::<Vec<_>>(), ["psi", "latitude", "longitude"]);
+    assert_eq!(proposal.manifest.declarations.derive.len(), 3);
+    assert!(proposal.manifest.manifest.columns.is_empty());
+}

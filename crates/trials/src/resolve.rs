@@ -176,7 +176,7 @@ impl Resolver<'_> {
         let given: Vec<Target> = self.columns.iter().map(|column| column.target).collect();
         for index in 0..self.headers.len() {
             if let Some((Target::Raw(raw), unit)) = self.named(index)
-                && raw.gives().iter().any(|&channel| !given.contains(&Target::Channel(channel)))
+                && !raw.gives().iter().any(|&channel| given.contains(&Target::Channel(channel)))
             {
                 self.contradicted(index, Target::Raw(raw), &unit);
                 self.add(index, Target::Raw(raw), &unit);

@@ -53,8 +53,9 @@ impl<'a> Builder<'a> {
     ) {
         self.scratch.clear();
         for (position, column) in self.table.columns.iter().enumerate() {
-            match cell(position, column) {
-                Ok(value) => self.scratch.push(value * column.to_si),
+            let si = |value: f64| Some(value * column.to_si).filter(|value| value.is_finite());
+            match cell(position, column).and_then(|value| si(value).ok_or(Fault::NotANumber)) {
+                Ok(value) => self.scratch.push(value),
                 Err(fault @ (Fault::Empty | Fault::NotANumber))
                     if self.unfilled[position].is_some() && column.target != Target::Time =>
                 {

@@ -118,3 +118,24 @@ fn a_clock_that_alternates_ends() {
     let outcome = check(Source::csv("a", text.as_bytes()), &derived());
     assert_eq!(outcome.rows, 200_000);
 }
+
+#[test]
+fn numbers_beyond_all_bounds_are_refused() {
+    let mut mapping = derived();
+    let column = |column: &str, unit: &str| sistership_model::manifest::ColumnMapping {
+        column: column.into(),
+        unit: unit.into(),
+    };
+    mapping.columns = vec![("t".into(), column("day", "excel"))];
+    for (rows, count) in [("1e308", 20), ("1e300", 20), ("1e-320", 20)] {
+        let rows: String =
+            (0..count).map(|k| format!("{k}{rows},{k},1,0.1\n")).collect::<Vec<_>>().concat();
+        let text = format!("day,x_m,y_m,psi_rad\n{rows}");
+        assert!(read_trial(Source::csv("a", text.as_bytes()), &mapping).is_err());
+    }
+    let tiny: String = (0..20).map(|k| format!("{k}e-310,{k},1,0.1\n")).collect();
+    let text = format!("t_s,x_m,y_m,psi_rad\n{tiny}");
+    if let Ok(trial) = read_trial(Source::csv("a", text.as_bytes()), &derived()) {
+        assert!(trial.channels.values().flatten().all(|value| value.is_finite()));
+    }
+}
