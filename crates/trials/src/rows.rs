@@ -105,8 +105,9 @@ impl<'a> Builder<'a> {
         for &row in &rows {
             self.faulty(row as usize, header.clone(), fault.clone());
         }
-        if let (Some(run), Some(&first)) = (&mut self.run, rows.first()) {
-            run.first = run.first.min(first as usize);
+        let first = rows.first().map_or(usize::MAX, |&row| row as usize);
+        if let Some(run) = self.run.as_mut().filter(|run| first < run.first) {
+            (run.first, run.column, run.fault) = (first, header, fault.clone());
         }
     }
 
@@ -134,7 +135,7 @@ impl<'a> Builder<'a> {
             self.findings.error(Some(row), Some(&column), message);
         }
         match &mut self.run {
-            Some(run) => run.last = row,
+            Some(run) => run.last = run.last.max(row),
             None => self.run = Some(Run { first: row, last: row, column, fault }),
         }
     }
@@ -228,6 +229,10 @@ mod tests {
     }
 
     fn columns(missing: Missing, late: impl Fn(usize) -> bool) -> (Table, String) {
+        columns_with(missing, |row, position| position == 2 && !late(row))
+    }
+
+    fn columns_with(missing: Missing, empty: impl Fn(usize, usize) -> bool) -> (Table, String) {
         let column = |index: usize, header: &str, target| Column {
             index,
             header: header.into(),
@@ -244,11 +249,10 @@ mod tests {
         let mut findings = Findings::default();
         let mut builder = Builder::new(columns, missing, &mut findings);
         for row in 2..12 {
-            let empty = |position| position == 2 && !late(row);
             builder.row(
                 row,
                 |position, _| {
-                    if empty(position) { Err(Fault::Empty) } else { Ok(row as f64) }
+                    if empty(row, position) { Err(Fault::Empty) } else { Ok(row as f64) }
                 },
             );
         }
@@ -271,6 +275,18 @@ mod tests {
         let (_, text) = columns(Missing::Refuse, |row| row > 5);
         assert_eq!(text.lines().count(), 4, "{text}");
         assert!(text.contains("error Some(2) Some(\"v\") the cell is empty"), "{text}");
+    }
+
+    #[test]
+    fn rows_with_another_fault_stay_in_the_run() {
+        let (table, text) = columns_with(Missing::Drop, |row, position| match position {
+            1 => row == 4,
+            2 => row <= 4,
+            _ => false,
+        });
+        assert_eq!(table.rows[0], 5);
+        let told = "warning Some(2) Some(\"v\") rows 2 to 4 left out: the cell is empty";
+        assert!(text.starts_with(told), "{text}");
     }
 
     #[test]

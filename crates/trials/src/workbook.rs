@@ -20,7 +20,10 @@ impl<T: Read + Seek> ReadSeek for T {}
 /// Bytes of a sheet's start by which the one with the table is found.
 const START: u64 = 32 << 10;
 /// Sheets among which the table is looked for.
-const SHEETS: usize = 50;
+const SHEETS: usize = 20;
+/// Unpacked bytes of a workbook beyond which only the first sheet is looked at: many names may stand
+/// for one large sheet.
+const SEARCHED: u64 = 32 << 20;
 
 /// Reads the sheet that is declared, or the one in whose first lines most names are known.
 pub(crate) fn read(
@@ -28,14 +31,13 @@ pub(crate) fn read(
     mapping: &Mapping,
     findings: &mut Findings,
 ) -> Option<Table> {
-    if let Err(message) = checked(&mut input, mapping.limits) {
-        findings.error(None, None, message);
-        return None;
-    }
+    let unpacked = checked(&mut input, mapping.limits)
+        .map_err(|message| findings.error(None, None, message))
+        .ok()?;
     // The library asserts some of what a file says of itself.
     let read = catch_unwind(AssertUnwindSafe(|| {
         let mut book = Xlsx::new(input).map_err(|error| error.to_string())?;
-        let sheet = sheet(&mut book, mapping)?;
+        let sheet = sheet(&mut book, looked_at(unpacked), mapping)?;
         let others = book.sheet_names().len() - 1;
         let mut lines = Lines::of(&mut book, &sheet, mapping).map_err(|error| error.to_string())?;
         Ok::<_, String>((csv_file::read(&mut lines, mapping, findings), sheet, others))
@@ -43,7 +45,8 @@ pub(crate) fn read(
     match read.unwrap_or_else(|_| Err("it contradicts itself".into())) {
         Ok((table, sheet, others)) => {
             if others > 0 && mapping.declared.sheet.is_none() {
-                let message = format!("the sheet `{sheet}` is read, as none is declared");
+                let message =
+                    format!("the sheet `{sheet}` is read; declare `sheet` if another is meant");
                 findings.warning(None, None, message);
             }
             table
@@ -55,10 +58,15 @@ pub(crate) fn read(
     }
 }
 
-fn checked(input: &mut Box<dyn ReadSeek + '_>, limits: Limits) -> Result<(), String> {
+fn checked(input: &mut Box<dyn ReadSeek + '_>, limits: Limits) -> Result<u64, String> {
     let claimed = archive::claimed(input)?;
     archive::check(input, claimed.min(limits.unpacked_bytes as u64))?;
-    input.rewind().map_err(|error| error.to_string())
+    input.rewind().map_err(|error| error.to_string())?;
+    Ok(claimed)
+}
+
+fn looked_at(unpacked: u64) -> usize {
+    if unpacked > SEARCHED { 1 } else { SHEETS }
 }
 
 /// The first lines of each sheet.
@@ -66,11 +74,11 @@ pub(crate) fn starts(
     mut input: Box<dyn ReadSeek + '_>,
     limits: Limits,
 ) -> Result<Vec<(String, Vec<u8>)>, String> {
-    checked(&mut input, limits)?;
+    let unpacked = checked(&mut input, limits)?;
     let mapping = Mapping { limits, ..Mapping::canonical() };
     let read = catch_unwind(AssertUnwindSafe(|| {
         let mut book = Xlsx::new(input).map_err(|error| error.to_string())?;
-        let names = book.sheet_names().into_iter().take(SHEETS);
+        let names = book.sheet_names().into_iter().take(looked_at(unpacked));
         Ok(names.map(|name| (name.clone(), start(&mut book, &name, &mapping))).collect())
     }));
     read.unwrap_or_else(|_| Err("the workbook contradicts itself".into()))
@@ -88,7 +96,7 @@ fn start(book: &mut Book, sheet: &str, mapping: &Mapping) -> Vec<u8> {
 
 type Book<'a> = Xlsx<Box<dyn ReadSeek + 'a>>;
 
-fn sheet(book: &mut Book, mapping: &Mapping) -> Result<String, String> {
+fn sheet(book: &mut Book, looked_at: usize, mapping: &Mapping) -> Result<String, String> {
     let names = book.sheet_names();
     if let Some(wanted) = &mapping.declared.sheet {
         let listed = || names.iter().take(SHEETS).cloned().collect::<Vec<_>>().join(", ");
@@ -96,7 +104,7 @@ fn sheet(book: &mut Book, mapping: &Mapping) -> Result<String, String> {
         return names.iter().find(|name| *name == wanted).cloned().ok_or_else(missing);
     }
     let mut best = (0, names.first().cloned().ok_or("it has no sheet")?);
-    for name in names.into_iter().take(SHEETS) {
+    for name in names.into_iter().take(looked_at) {
         let start = start(book, &name, mapping);
         let known = layout::known_names(&start, mapping);
         if known > best.0 {
