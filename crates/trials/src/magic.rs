@@ -56,7 +56,19 @@ pub(crate) fn kind(start: &[u8]) -> Kind {
     if let Some((_, what)) = OTHERS.iter().find(|(magic, _)| start.starts_with(magic)) {
         return Kind::Other(what);
     }
+    if is_binary(start) {
+        return Kind::Other(
+            "binary, of a kind that is not known here; export it as CSV or Parquet",
+        );
+    }
     if is_nmea(start) { Kind::Nmea } else { Kind::Csv }
+}
+
+/// Whether one byte in sixteen is zero; text in UTF-16, which has more, begins with its mark.
+fn is_binary(start: &[u8]) -> bool {
+    let marked = start.starts_with(b"\xff\xfe") || start.starts_with(b"\xfe\xff");
+    let zeros = start.iter().filter(|byte| **byte == 0).count();
+    !marked && 16 * zeros > start.len()
 }
 
 /// Whether one of the first lines has a sentence such as `$GPGGA,...*47`, perhaps after a logger's
@@ -87,11 +99,13 @@ mod tests {
             (b"t_s,u_m_s\n0,1\n", Kind::Csv),
             (b"price $,u\n$1,2\n$12345,\n", Kind::Csv),
             (b"", Kind::Csv),
+            (b"\xff\xfet\0_\0s\0", Kind::Csv),
         ] {
             assert_eq!(kind(start), wanted, "{start:?}");
         }
         assert!(
             matches!(kind(b"\x89HDF\r\n\x1a\n..."), Kind::Other(what) if what.contains("HDF5"))
         );
+        assert!(matches!(kind(b"\x01\0\0\0abc"), Kind::Other(what) if what.contains("binary")));
     }
 }

@@ -254,6 +254,10 @@ impl Log {
         table.columns.push(column(Target::Time, "UTC"));
         table.values.push(times.1.t.clone());
         table.start = self.start();
+        if let Some(start) = &table.start {
+            let message = format!("time is counted from {}", start.text);
+            findings.warning(None, Some("UTC"), message);
+        }
         let (name, readings) = chosen.remove(&base)?;
         table.columns.push(column(base, &name));
         table.values.push(readings.values);
