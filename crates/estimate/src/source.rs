@@ -120,3 +120,17 @@ pub fn best_source_except(
     let reasons: Vec<String> = similarity.ranking.iter().map(why).collect();
     Err(SourceError::NotEligible { target: similarity.target.clone(), reasons: reasons.join("; ") })
 }
+
+/// The models of the eligible ships, most similar first, at most so many.
+///
+/// # Errors
+/// A model of the zoo does not read.
+pub fn eligible_sources(
+    zoo: &Zoo,
+    similarity: &Similarity,
+    most: usize,
+) -> Result<Vec<Model>, String> {
+    let eligible = similarity.ranking.iter().filter(|ranked| ranked.eligible);
+    let models = eligible.filter_map(|ranked| ranked.model.as_deref()).take(most);
+    models.map(|model| zoo.model(model).map_err(|error| error.to_string())).collect()
+}

@@ -1,0 +1,58 @@
+//! Candidates as they are weighed against those of other sources, laws and estimators.
+
+use std::collections::BTreeMap;
+
+use super::candidate::{CandidateFit, best};
+use super::problem::Problem;
+
+/// How much of a refinement is done before its candidates are weighed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// The source as carried over.
+    Source,
+    /// Everything that the estimator tries.
+    Estimator,
+}
+
+/// What a candidate gives on manoeuvres left out. The scales are the deviations of the measured channels over all trials
+/// fitted, so that candidates on the same trials can be compared whatever their source, law and estimator.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Weighed {
+    /// What it is, for people.
+    pub step: String,
+    /// Standardised mean squared error; none where a simulation diverged.
+    pub error: Option<f64>,
+    /// The same by trial.
+    pub each: BTreeMap<String, f64>,
+    /// Number of coefficients fitted; 0 of the source as carried over.
+    pub coefficients: usize,
+    /// Why it cannot be taken, if so.
+    pub reason: Option<String>,
+}
+
+/// The source, and the best of the others where there is one; where all of them diverge, the first.
+pub(super) fn weighed(problem: &Problem<'_>, candidates: &[CandidateFit]) -> Vec<Weighed> {
+    let Some((source, fits)) = candidates.split_first() else { return Vec::new() };
+    let fit = best(fits).and_then(|index| fits.get(index)).or_else(|| fits.first());
+    std::iter::once(source).chain(fit).map(|candidate| one(problem, candidate)).collect()
+}
+
+fn one(problem: &Problem<'_>, candidate: &CandidateFit) -> Weighed {
+    Weighed {
+        step: candidate.option.step.clone(),
+        error: candidate.option.error.filter(|error| error.is_finite()),
+        each: by_trial(problem, &candidate.each),
+        coefficients: candidate.size,
+        reason: candidate.option.reason.clone(),
+    }
+}
+
+/// Means by trial: parts of one count together, for they depend on each other.
+fn by_trial(problem: &Problem<'_>, each: &[f64]) -> BTreeMap<String, f64> {
+    let mut sums: BTreeMap<String, (f64, f64)> = BTreeMap::new();
+    for (trial, error) in problem.training.iter().zip(each) {
+        let sum = sums.entry(trial.name.clone()).or_default();
+        *sum = (sum.0 + error, sum.1 + 1.0);
+    }
+    sums.into_iter().map(|(name, (sum, count))| (name, sum / count)).collect()
+}
