@@ -180,7 +180,7 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
 }
 
 /// Whether neither source, law nor method is named, and nothing that only some methods keep.
-fn is_plain(arguments: &Refine, settings: &Settings) -> bool {
+fn is_plain(arguments: &RefineArguments, settings: &Settings) -> bool {
     let unnamed = arguments.source.is_none() && arguments.method.is_none();
     unnamed && arguments.settings.is_none() && settings.constraints.is_empty()
 }

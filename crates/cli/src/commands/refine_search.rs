@@ -1,19 +1,16 @@
 //! The source, law and method of a refinement that names none of them.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use sistership_estimate::auto::{Ladder, Search, entrants, search};
+use sistership_estimate::auto::{Asked, Ladder, best_start};
 use sistership_estimate::refine::Settings;
-use sistership_estimate::source::{Similarity, eligible_sources, similar};
-use sistership_model::trial::Trial;
+use sistership_estimate::source::Similarity;
 use sistership_model::{Law, Model, Vessel, Zoo};
 
 use crate::failure::Failure;
 use crate::output::note;
 use crate::trials::{self, ReadTrial};
-
-/// Most sources that enter, by rank of correlation.
-const SOURCES: usize = 5;
 
 /// Where a refinement starts, and how that was found.
 pub struct Start {
@@ -44,30 +41,22 @@ pub fn searched(
     settings: &Settings,
     read: &[ReadTrial],
 ) -> Result<(Start, Settings), Failure> {
-    let all = trials::trials(read).into_iter();
-    let fitted: Vec<&Trial> =
-        all.filter(|trial| !settings.held_out.contains(&trial.name)).collect();
-    let similarity = similar(zoo, target, None, &fitted);
-    let sources = eligible_sources(zoo, &similarity, SOURCES).map_err(Failure::Refused)?;
-    let entrants = entrants(zoo, target, &sources, &fitted);
-    let open = Settings { held_out: Vec::new(), ..settings.clone() };
-    let asked = Search { target, entrants: &entrants, trials: &fitted, settings: &open };
+    let trials = trials::trials(read);
+    let champions = BTreeMap::new();
+    let asked = Asked { zoo, target, champions: &champions, trials: &trials, settings };
     let told = |fraction: f64, what: &str| {
         note(&format!("search {:3.0} % {what}", 100.0 * fraction));
         true
     };
-    let winner = search(&asked, &told).map_err(|error| Failure::Refused(error.to_string()))?;
-    let entrant = &entrants[winner.entrant];
-    note(&format!(
-        "source: {}, law: {}",
-        entrant.source_name().unwrap_or("none"),
-        entrant.law.name
-    ));
+    let found = best_start(&asked, &told).map_err(|error| Failure::Refused(error.to_string()))?;
+    let (entrant, method) = (found.entrant, found.settings.method.name());
+    let source = entrant.source_name().unwrap_or("none").to_owned();
+    note(&format!("source: {source}, law: {}, method: {method}", entrant.law.name));
     let start = Start {
-        source: entrant.source.clone(),
-        law: Some(entrant.law.clone()),
-        similarity: Some(similarity),
-        ladder: Some(winner.ladder),
+        source: entrant.source,
+        law: Some(entrant.law),
+        similarity: Some(found.similarity),
+        ladder: Some(found.ladder),
     };
-    Ok((start, Settings { held_out: settings.held_out.clone(), ..winner.settings }))
+    Ok((start, found.settings))
 }

@@ -14,10 +14,16 @@ pub fn factor(count: usize) -> f64 {
     (2.0 * (count.max(1) as f64).ln()).sqrt().max(1.0)
 }
 
-/// Mean of paired differences (`old - new`) over the trials that both have, and its standard error; none below two.
+/// Below this an error is no error: the logarithm of less would decide alone.
+const LEAST: f64 = 1e-9;
+
+/// Mean of paired log ratios (`ln old - ln new`) over the trials that both have, and its standard
+/// error; none below two. Squared errors of trials differ by decades, and what is won in one is in
+/// proportion to it, so that their logarithms, not they themselves, scatter alike.
 fn gain(old: &BTreeMap<String, f64>, new: &BTreeMap<String, f64>) -> Option<(f64, f64)> {
-    let gains: Vec<f64> =
-        old.iter().filter_map(|(name, error)| Some(error - new.get(name)?)).collect();
+    let ratio =
+        |(name, error): (&String, &f64)| Some((error.max(LEAST) / new.get(name)?.max(LEAST)).ln());
+    let gains: Vec<f64> = old.iter().filter_map(ratio).collect();
     Some((gains.iter().sum::<f64>() / gains.len() as f64, of_mean(&gains)?))
 }
 
