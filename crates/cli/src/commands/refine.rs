@@ -144,7 +144,7 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     let files = WrittenFiles { out: arguments.out.as_deref(), report: arguments.report.as_deref() };
     guard(&files, &read)?;
     settings.held_out = held_out(&settings.held_out, &read)?;
-    let Start { source, law, similarity, ladder } = match (given, law) {
+    let Start { source, law, similarity, ladder, made } = match (given, law) {
         (Some(source), law) => Start::of(source, law),
         (None, None) if is_plain(arguments, &settings) => {
             let (start, explicit) = searched(zoo, &target, &settings, &read)?;
@@ -162,7 +162,11 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     let source_law = named::law_of(zoo, &source)?;
     let law = law.unwrap_or_else(|| source_law.clone());
     let laws = (&*source_law, &*law);
-    let refinement = refined(zoo, &target, &source, laws, &settings, &read)?;
+    let refinement = match made {
+        Some(made) => made,
+        None => refined(&target, &source, laws, &settings, &read)?,
+    };
+    let refinement = calibrated(zoo, refinement, &law, &read);
     if let Some(out) = out {
         let how = format!("method {}", refinement.method);
         out.write(model_file(zoo, &refinement.model, &how)?.as_bytes())?;
@@ -263,7 +267,6 @@ fn chosen(
 }
 
 fn refined(
-    zoo: &Zoo,
     target: &Vessel,
     source: &Model,
     (source_law, law): (&Law, &Law),
@@ -277,9 +280,11 @@ fn refined(
         note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true
     };
-    let refinement =
-        refine(&request, &told).map_err(|error| Failure::Refused(error.to_string()))?;
+    refine(&request, &told).map_err(|error| Failure::Refused(error.to_string()))
+}
+
+fn calibrated(zoo: &Zoo, refinement: Refinement, law: &Law, read: &[ReadTrial]) -> Refinement {
     note("learning what these trials leave open");
     let effects: Vec<_> = zoo.effects().cloned().collect();
-    Ok(with_uncertainty(refinement, law, &effects, &trials))
+    with_uncertainty(refinement, law, &effects, &trials::trials(read))
 }

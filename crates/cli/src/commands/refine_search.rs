@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use sistership_estimate::auto::{Asked, Ladder, best_start};
-use sistership_estimate::refine::Settings;
+use sistership_estimate::refine::{Refinement, Settings};
 use sistership_estimate::source::Similarity;
 use sistership_model::{Law, Model, Vessel, Zoo};
 
@@ -22,12 +22,14 @@ pub struct Start {
     pub similarity: Option<Similarity>,
     /// What was tried, where it was searched.
     pub ladder: Option<Ladder>,
+    /// The refinement, where the search has made it already.
+    pub made: Option<Refinement>,
 }
 
 impl Start {
     /// As a person named it.
     pub fn of(source: Model, law: Option<Arc<Law>>) -> Self {
-        Self { source, law, similarity: None, ladder: None }
+        Self { source, law, similarity: None, ladder: None, made: None }
     }
 }
 
@@ -57,6 +59,7 @@ pub fn searched(
         law: Some(entrant.law),
         similarity: Some(found.similarity),
         ladder: Some(found.ladder),
+        made: found.refinement,
     };
     Ok((start, found.settings))
 }

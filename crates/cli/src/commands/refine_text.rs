@@ -45,7 +45,7 @@ pub fn text(
 
 /// What was tried before the model was chosen.
 pub fn ladder(ladder: &Ladder) -> String {
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "source",
         "law",
         "taken to",

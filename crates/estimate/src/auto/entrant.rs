@@ -22,6 +22,12 @@ pub struct Entrant {
 }
 
 impl Entrant {
+    /// What it is, for people.
+    pub fn name(&self) -> String {
+        let source = self.source_name().unwrap_or("no source");
+        format!("{source}, {}", self.law.name)
+    }
+
     /// The source's name; none where the trials alone make the model.
     pub fn source_name(&self) -> Option<&str> {
         self.source_law.as_ref().map(|_| self.source.name.as_str())

@@ -10,8 +10,9 @@ mod entrant;
 mod ladder;
 mod search;
 mod start;
+mod thresholds;
 
-pub use choice::{chosen, factor, standard_error};
+pub use choice::{chosen, standard_error};
 pub use entrant::{Entrant, entrants};
 pub use ladder::{Ladder, Line, Rung};
 pub use search::{Search, Winner, search};

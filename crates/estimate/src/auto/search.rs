@@ -1,23 +1,22 @@
-//! Successive halving over entrants (Karnin, Koren, Somekh 2013, ICML, Algorithm 3; Jamieson and Talwalkar 2016, AISTATS,
-//! Algorithm 1): on each rung a share of them goes on to the next, costlier estimator.
+//! Successive halving over entrants (Karnin, Koren, Somekh 2013, ICML, Algorithm 3; Jamieson and
+//! Talwalkar 2016, AISTATS, Algorithm 1): on each rung a share of them goes on to the next, costlier
+//! estimator.
 
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 use sistership_model::Vessel;
 use sistership_model::trial::Trial;
 
-use super::choice::{chosen, factor, standard_error};
+use super::choice::{chosen, standard_error};
 use super::entrant::Entrant;
 use super::ladder::{Ladder, Line, Rung};
-use crate::refine::{Extent, Progress, RefineError, Request, Settings, Weighed, in_parts, weigh};
+use super::thresholds::SEARCH;
+use crate::refine::{
+    Extent, Family, Progress, RefineError, Refinement, Request, Settings, Weighed, in_parts,
+    refine_weighed, weigh,
+};
 use crate::transfer::approach_of;
-
-/// One in so many goes on to the next rung.
-const SHARE: usize = 3;
-/// Fewer trials are left out in parts.
-const FEW: usize = 3;
-/// Strength of a prior that keeps the source.
-const KEPT: f64 = 1e9;
 
 /// What is searched.
 #[derive(Debug, Clone, Copy)]
@@ -26,7 +25,7 @@ pub struct Search<'a> {
     pub target: &'a Vessel,
     /// What enters.
     pub entrants: &'a [Entrant],
-    /// Trials that may be fitted; none that is kept out.
+    /// Every trial; those that the settings keep out have no say.
     pub trials: &'a [&'a Trial],
     /// Settings but the method.
     pub settings: &'a Settings,
@@ -41,6 +40,8 @@ pub struct Winner {
     pub settings: Settings,
     /// What was tried.
     pub ladder: Ladder,
+    /// The refinement that naming all of it gives, where the search has made it already.
+    pub refinement: Option<Refinement>,
 }
 
 /// A candidate with where it came from.
@@ -48,6 +49,7 @@ struct Tried {
     entrant: usize,
     rung: Rung,
     weighed: Weighed,
+    refinement: Option<Refinement>,
     cost_s: f64,
 }
 
@@ -57,19 +59,27 @@ struct Tried {
 /// It was cancelled, a setting is refused, or nothing could be simulated to its end.
 pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
     let parts = few_in_parts(search);
-    let trials: Vec<&Trial> =
-        if parts.is_empty() { search.trials.to_vec() } else { parts.iter().collect() };
-    let search = Search { trials: &trials, ..*search };
+    if parts.is_empty() {
+        return climbed(search, progress);
+    }
+    let trials: Vec<&Trial> = parts.iter().collect();
+    let open = Settings { held_out: Vec::new(), ..search.settings.clone() };
+    let found = climbed(&Search { trials: &trials, settings: &open, ..*search }, progress)?;
+    let held_out = search.settings.held_out.clone();
+    let settings = Settings { held_out, ..found.settings };
+    Ok(Winner { settings, refinement: None, ..found })
+}
+
+fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
     let mut tried = Vec::new();
     let (known, alone): (Vec<usize>, Vec<usize>) = (0..search.entrants.len())
         .partition(|entrant| search.entrants[*entrant].source_law.is_some());
-    climb(&search, Rung::CarriedOver, &known, (0.0, 0.2), &mut tried, progress)?;
-    let mut next = leading(&tried, Rung::CarriedOver);
+    climb(search, Rung::CarriedOver, &known, (0.0, 0.1), &mut tried, progress)?;
+    let mut next = leading_by_law(search, &tried);
     next.extend(alone);
-    climb(&search, Rung::Weak, &next, (0.2, 0.3), &mut tried, progress)?;
-    let next = leading(&tried, Rung::Weak);
-    climb(&search, Rung::Trajectory, &next, (0.5, 0.5), &mut tried, progress)?;
-    taken(&search, &tried)
+    climb(search, Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
+    climb(search, Rung::Trajectory, &leading(&tried), (0.5, 0.5), &mut tried, progress)?;
+    taken(search, tried)
 }
 
 /// Weighs entrants on a rung, whose progress begins at a fraction of the whole and takes a span of it.
@@ -84,10 +94,14 @@ fn climb(
     let share = span / entrants.len().max(1) as f64;
     for (k, &entrant) in entrants.iter().enumerate() {
         let from = begin + share * k as f64;
-        let told = |fraction: f64, what: &str| progress(from + share * fraction, what);
+        let named = search.entrants[entrant].name();
+        let told = |fraction: f64, what: &str| {
+            progress(from + share * fraction, &format!("{named}: {what}"))
+        };
         let begun = Instant::now();
-        let weighed = on_rung(search, rung, &search.entrants[entrant], &told)?;
-        tried.push(Tried { entrant, rung, weighed, cost_s: begun.elapsed().as_secs_f64() });
+        let (weighed, refinement) = on_rung(search, rung, &search.entrants[entrant], &told)?;
+        let cost_s = begun.elapsed().as_secs_f64();
+        tried.push(Tried { entrant, rung, weighed, refinement, cost_s });
     }
     Ok(())
 }
@@ -98,7 +112,7 @@ fn on_rung(
     rung: Rung,
     entrant: &Entrant,
     progress: Progress<'_>,
-) -> Result<Weighed, RefineError> {
+) -> Result<(Weighed, Option<Refinement>), RefineError> {
     let settings = settings_on(search.settings, rung);
     let request = Request {
         target: search.target,
@@ -108,74 +122,103 @@ fn on_rung(
         trials: search.trials,
         settings: &settings,
     };
-    let extent = if rung == Rung::CarriedOver { Extent::Source } else { Extent::Estimator };
-    match weigh(&request, extent, progress) {
+    let (of_source, of_fit) = (0, 1);
+    let given = match rung {
+        Rung::CarriedOver => {
+            weigh(&request, Extent::Source, progress).map(|all| (all, of_source, None))
+        }
+        Rung::Weak => weigh(&request, Extent::Estimator, progress).map(|all| (all, of_fit, None)),
+        Rung::Trajectory => {
+            refine_weighed(&request, progress).map(|(all, made)| (all, of_fit, Some(made)))
+        }
+    };
+    match given {
         Err(error @ (RefineError::Cancelled | RefineError::Setting { .. })) => Err(error),
-        Err(error) => Ok(out(error.to_string())),
-        Ok(weighed) => {
-            let wanted = usize::from(rung != Rung::CarriedOver);
-            let one = weighed.into_iter().nth(wanted);
-            Ok(one.unwrap_or_else(|| out("the trials allow no fit".to_owned())))
+        Err(error) => Ok((Weighed::refused(error.to_string()), None)),
+        Ok((all, wanted, made)) => {
+            let one = all.into_iter().nth(wanted);
+            let no_fit = || Weighed::refused("the trials allow no fit".to_owned());
+            Ok((one.unwrap_or_else(no_fit), made))
         }
     }
-}
-
-fn out(reason: String) -> Weighed {
-    let step = String::new();
-    Weighed { step, error: None, each: Default::default(), coefficients: 0, reason: Some(reason) }
 }
 
 /// Settings by which an entrant is fitted on a rung; carried over, a prior so strong that the source stays.
 fn settings_on(settings: &Settings, rung: Rung) -> Settings {
     let mut settings = Settings { method: rung.method(), ..settings.clone() };
     if rung == Rung::CarriedOver {
-        settings.strengths = vec![KEPT];
-        settings.families = vec![crate::refine::Family::Own];
+        settings.strengths = vec![SEARCH.kept];
+        settings.families = vec![Family::Own];
     }
     settings
 }
 
-/// The entrants with the least errors on a rung, one in [`SHARE`].
-fn leading(tried: &[Tried], rung: Rung) -> Vec<usize> {
-    let finite = |one: &Tried| Some((one.entrant, one.weighed.error?));
-    let on_rung = tried.iter().filter(|one| one.rung == rung);
-    let mut order: Vec<(usize, f64)> = on_rung.filter_map(finite).collect();
+/// Entrants with their errors, the least first; those that did not sail are left out.
+fn ordered<'a>(tried: impl Iterator<Item = &'a Tried>) -> Vec<(usize, f64)> {
+    let mut order: Vec<(usize, f64)> =
+        tried.filter_map(|one| Some((one.entrant, one.weighed.error?))).collect();
     order.sort_by(|a, b| a.1.total_cmp(&b.1));
-    order.truncate(order.len().div_ceil(SHARE));
-    order.into_iter().map(|(entrant, _)| entrant).collect()
+    order
 }
 
-/// The trials in parts as long as simulations run between restarts, where there are few; else nothing.
+/// Of each law the sources that lead as carried over, one in [`SEARCH`]`.share`: how well a source
+/// is carried over says which source serves a law best, but not how well a law can be fitted.
+fn leading_by_law(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
+    let mut by_law: BTreeMap<&str, Vec<&Tried>> = BTreeMap::new();
+    for one in tried {
+        by_law.entry(&search.entrants[one.entrant].law.name).or_default().push(one);
+    }
+    let first = |of_law: &Vec<&Tried>| {
+        let order = ordered(of_law.iter().copied());
+        let count = order.len().div_ceil(SEARCH.share);
+        order.into_iter().take(count).map(|(entrant, _)| entrant).collect::<Vec<_>>()
+    };
+    by_law.values().flat_map(first).collect()
+}
+
+/// The entrants that lead in weak form: trajectories seldom gain more than
+/// [`SEARCH`]`.trajectory_gain`.
+fn leading(tried: &[Tried]) -> Vec<usize> {
+    let order = ordered(tried.iter().filter(|one| one.rung == Rung::Weak));
+    let least = order.first().map_or(0.0, |(_, error)| *error);
+    let near = order.into_iter().filter(|(_, error)| *error <= SEARCH.trajectory_gain * least);
+    near.take(SEARCH.trajectories).map(|(entrant, _)| entrant).collect()
+}
+
+/// The trials that may be fitted in parts as long as simulations run between restarts, where there
+/// are few; else nothing.
 fn few_in_parts(search: &Search<'_>) -> Vec<Trial> {
-    if search.trials.len() >= FEW {
+    let held_out = &search.settings.held_out;
+    let fitted: Vec<&Trial> =
+        search.trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
+    if fitted.len() >= SEARCH.few {
         return Vec::new();
     }
-    let lengths = search.target.particular("lpp_m").zip(approach_of(search.trials));
+    let lengths = search.target.particular("lpp_m").zip(approach_of(&fitted));
     let ten_lengths_s = lengths.map(|(l, approach)| 10.0 * l / approach.speed_m_s);
     let part_s = search.settings.restart_s.or(ten_lengths_s);
-    part_s.map_or_else(Vec::new, |part_s| in_parts(search.trials, part_s))
+    part_s.map_or_else(Vec::new, |part_s| in_parts(&fitted, part_s))
 }
 
-fn taken(search: &Search<'_>, tried: &[Tried]) -> Result<Winner, RefineError> {
-    let weighed: Vec<Weighed> = tried.iter().map(|one| one.weighed.clone()).collect();
+fn taken(search: &Search<'_>, mut tried: Vec<Tried>) -> Result<Winner, RefineError> {
+    let weighed: Vec<(Rung, &Weighed)> = tried.iter().map(|one| (one.rung, &one.weighed)).collect();
     let best = chosen(&weighed).ok_or_else(|| {
-        let reasons: Vec<String> = weighed.iter().filter_map(|one| one.reason.clone()).collect();
+        let reasons: Vec<String> =
+            tried.iter().filter_map(|one| one.weighed.reason.clone()).collect();
         RefineError::Diverged(reasons.join("; "))
     })?;
-    let count = weighed.iter().filter(|one| one.error.is_some()).count();
-    let line = |(place, one): (usize, &Tried)| line(search, one, place == best, count);
-    let ladder = Ladder { lines: tried.iter().enumerate().map(line).collect() };
-    let settings = settings_on(search.settings, tried[best].rung);
-    Ok(Winner { entrant: tried[best].entrant, settings, ladder })
+    let lines = tried.iter().enumerate();
+    let lines = lines.map(|(place, one)| line(search, one, place == best)).collect();
+    let Tried { entrant, rung, refinement, .. } = tried.swap_remove(best);
+    let settings = settings_on(search.settings, rung);
+    Ok(Winner { entrant, settings, ladder: Ladder { lines }, refinement })
 }
 
-fn line(search: &Search<'_>, tried: &Tried, chosen: bool, count: usize) -> Line {
+fn line(search: &Search<'_>, tried: &Tried, chosen: bool) -> Line {
     let entrant = &search.entrants[tried.entrant];
-    let factor = factor(count);
-    let outcome = if chosen {
-        format!("the simplest that none of {count} beats by {factor:.1} standard errors")
-    } else {
-        "not told apart from what is simpler, or worse".to_owned()
+    let outcome = match chosen {
+        true => "the simplest within one standard error of the best",
+        false => "worse, or not simpler where it is not told apart",
     };
     Line {
         source: entrant.source_name().map(str::to_owned),
@@ -186,6 +229,6 @@ fn line(search: &Search<'_>, tried: &Tried, chosen: bool, count: usize) -> Line 
         standard_error: standard_error(&tried.weighed),
         cost_s: tried.cost_s,
         chosen,
-        reason: tried.weighed.reason.clone().unwrap_or(outcome),
+        reason: tried.weighed.reason.clone().unwrap_or_else(|| outcome.to_owned()),
     }
 }

@@ -8,12 +8,9 @@ use sistership_model::{Model, Vessel, Zoo};
 use super::entrant::{Entrant, entrants};
 use super::ladder::Ladder;
 use super::search::{Search, search};
-use crate::refine::{Progress, RefineError, Settings};
+use super::thresholds::SEARCH;
+use crate::refine::{Progress, RefineError, Refinement, Settings};
 use crate::source::{Similarity, similar_with};
-
-/// Most sources that enter, by rank of correlation: each costs a fit for every law, and a ship that resembles the target less
-/// than five others seldom gives the better prior.
-const SOURCES: usize = 5;
 
 /// What is to be started.
 #[derive(Debug, Clone, Copy)]
@@ -41,6 +38,8 @@ pub struct Start {
     pub similarity: Similarity,
     /// What was tried.
     pub ladder: Ladder,
+    /// The refinement itself, where the search has made it already.
+    pub refinement: Option<Refinement>,
 }
 
 /// Finds the best start.
@@ -54,12 +53,9 @@ pub fn best_start(asked: &Asked<'_>, progress: Progress<'_>) -> Result<Start, Re
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
     let similarity = similar_with(zoo, target, None, &fitted, champions);
     let entrants = entrants(zoo, target, &sources(asked, &similarity), &fitted);
-    let open = Settings { held_out: Vec::new(), ..settings.clone() };
-    let asked = Search { target, entrants: &entrants, trials: &fitted, settings: &open };
-    let winner = search(&asked, progress)?;
-    let settings = Settings { held_out: held_out.clone(), ..winner.settings };
-    let entrant = entrants[winner.entrant].clone();
-    Ok(Start { entrant, settings, similarity, ladder: winner.ladder })
+    let winner = search(&Search { target, entrants: &entrants, trials, settings }, progress)?;
+    let (entrant, refinement) = (entrants[winner.entrant].clone(), winner.refinement);
+    Ok(Start { entrant, settings: winner.settings, similarity, ladder: winner.ladder, refinement })
 }
 
 /// The models of the first eligible ships; a file that does not read is no source.
@@ -70,5 +66,5 @@ fn sources(asked: &Asked<'_>, similarity: &Similarity) -> Vec<Model> {
     };
     let named =
         similarity.eligible().filter_map(|ranked| Some((&ranked.ship, ranked.model.as_ref()?)));
-    named.filter_map(|(ship, name)| model(ship, name)).take(SOURCES).collect()
+    named.filter_map(|(ship, name)| model(ship, name)).take(SEARCH.sources).collect()
 }

@@ -73,6 +73,21 @@ pub fn weigh(
     })
 }
 
+/// As [`refine`], with what [`weigh`] tells on the way.
+///
+/// # Errors
+/// As [`refine`].
+pub fn refine_weighed(
+    request: &Request<'_>,
+    progress: Progress<'_>,
+) -> Result<(Vec<Weighed>, Refinement), RefineError> {
+    let both =
+        |problem: &Problem<'_>, candidates: Vec<_>, variants: &[_], progress: Progress<'_>| {
+            Ok((weighed(problem, &candidates), finish(problem, candidates, variants, progress)?))
+        };
+    with_candidates(request, Extent::Estimator, progress, &|_| (), both)
+}
+
 /// Sets the problem up, gives its candidates to the extent asked for, and does with them what `then` does.
 fn with_candidates<T>(
     request: &Request<'_>,

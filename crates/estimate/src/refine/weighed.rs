@@ -30,6 +30,14 @@ pub struct Weighed {
     pub reason: Option<String>,
 }
 
+impl Weighed {
+    /// What cannot be fitted.
+    pub fn refused(reason: String) -> Self {
+        let each = BTreeMap::new();
+        Self { step: String::new(), error: None, each, coefficients: 0, reason: Some(reason) }
+    }
+}
+
 /// The source, and the best of the others where there is one; where all of them diverge, the first.
 pub(super) fn weighed(problem: &Problem<'_>, candidates: &[CandidateFit]) -> Vec<Weighed> {
     let Some((source, fits)) = candidates.split_first() else { return Vec::new() };
