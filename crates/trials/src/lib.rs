@@ -20,6 +20,7 @@ mod number;
 mod outcome;
 mod pages;
 mod parquet_file;
+mod parquet_format;
 mod read;
 mod recording;
 mod resolve;
