@@ -172,7 +172,8 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
         out.write(model_file(zoo, &refinement.model, &how)?.as_bytes())?;
     }
     if let Some(report) = report {
-        report.write(&report_html(zoo, &target, &refinement, similarity.as_ref(), &read)?)?;
+        let chosen = (similarity.as_ref(), ladder.as_ref());
+        report.write(&report_html(zoo, &target, &refinement, chosen, &read)?)?;
     }
     let ranking = similarity.as_ref().map(|similarity| similarity.ranking.as_slice());
     let document =
@@ -193,7 +194,7 @@ fn report_html(
     zoo: &Zoo,
     vessel: &Vessel,
     refinement: &Refinement,
-    similarity: Option<&Similarity>,
+    (similarity, ladder): (Option<&Similarity>, Option<&Ladder>),
     read: &[ReadTrial],
 ) -> Result<Vec<u8>, Failure> {
     let law = named::law_of(zoo, &refinement.model)?;
@@ -204,6 +205,7 @@ fn report_html(
         vessel,
         trials: &trials,
         similarity,
+        ladder,
         version: None,
     };
     let rendered = render_refinement(&input)

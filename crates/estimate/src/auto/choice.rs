@@ -131,7 +131,7 @@ mod tests {
     fn entry(coefficients: usize, errors: &[f64]) -> Weighed {
         let each = errors.iter().enumerate().map(|(k, error)| (k.to_string(), *error)).collect();
         let error = Some(errors.iter().sum::<f64>() / errors.len() as f64);
-        Weighed { step: String::new(), error, each, coefficients, reason: None }
+        Weighed { step: String::new(), error, each, coefficients, ridge: None, reason: None }
     }
 
     fn choice(tried: &[Weighed]) -> Option<usize> {

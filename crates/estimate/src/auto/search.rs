@@ -14,7 +14,7 @@ use super::ladder::{Ladder, Line, Rung};
 use super::thresholds::SEARCH;
 use crate::refine::{
     Extent, Family, Progress, RefineError, Refinement, Request, Settings, Weighed, in_parts,
-    refine_weighed, weigh,
+    refine_wanted, weigh,
 };
 use crate::transfer::approach_of;
 
@@ -78,7 +78,8 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     let mut next = leading_by_law(search, &tried);
     next.extend(alone);
     climb(search, Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
-    climb(search, Rung::Trajectory, &leading(&tried), (0.5, 0.5), &mut tried, progress)?;
+    let next = leading(&tried);
+    climb(search, Rung::Trajectory, &next, (0.5, 0.5), &mut tried, progress)?;
     taken(search, tried)
 }
 
@@ -99,7 +100,7 @@ fn climb(
             progress(from + share * fraction, &format!("{named}: {what}"))
         };
         let begun = Instant::now();
-        let (weighed, refinement) = on_rung(search, rung, &search.entrants[entrant], &told)?;
+        let (weighed, refinement) = on_rung(search, rung, entrant, tried, &told)?;
         let cost_s = begun.elapsed().as_secs_f64();
         tried.push(Tried { entrant, rung, weighed, refinement, cost_s });
     }
@@ -110,10 +111,17 @@ fn climb(
 fn on_rung(
     search: &Search<'_>,
     rung: Rung,
-    entrant: &Entrant,
+    place: usize,
+    tried: &[Tried],
     progress: Progress<'_>,
 ) -> Result<(Weighed, Option<Refinement>), RefineError> {
-    let settings = settings_on(search.settings, rung);
+    let entrant = &search.entrants[place];
+    let settings = settings_on(search.settings, rung, ridge_of(tried, place));
+    let least = |rung| ordered(tried.iter().filter(move |one| one.rung == rung)).first().copied();
+    let leads = |all: &[Weighed]| {
+        let error = all.get(1).and_then(|fit| fit.error);
+        error.is_some_and(|error| least(Rung::Trajectory).is_none_or(|(_, least)| error < least))
+    };
     let request = Request {
         target: search.target,
         source: &entrant.source,
@@ -129,7 +137,7 @@ fn on_rung(
         }
         Rung::Weak => weigh(&request, Extent::Estimator, progress).map(|all| (all, of_fit, None)),
         Rung::Trajectory => {
-            refine_weighed(&request, progress).map(|(all, made)| (all, of_fit, Some(made)))
+            refine_wanted(&request, &leads, progress).map(|(all, made)| (all, of_fit, made))
         }
     };
     match given {
@@ -143,12 +151,27 @@ fn on_rung(
     }
 }
 
-/// Settings by which an entrant is fitted on a rung; carried over, a prior so strong that the source stays.
-fn settings_on(settings: &Settings, rung: Rung) -> Settings {
+/// The weak form that an entrant had.
+fn ridge_of(tried: &[Tried], entrant: usize) -> Option<(Family, f64)> {
+    tried.iter().rev().find(|one| one.entrant == entrant)?.weighed.ridge
+}
+
+/// Settings by which an entrant is fitted on a rung. Carried over, the prior is so strong that the
+/// source stays; in weak form few strengths are tried; trajectories begin near the best of those.
+fn settings_on(settings: &Settings, rung: Rung, ridge: Option<(Family, f64)>) -> Settings {
     let mut settings = Settings { method: rung.method(), ..settings.clone() };
-    if rung == Rung::CarriedOver {
-        settings.strengths = vec![SEARCH.kept];
-        settings.families = vec![Family::Own];
+    let (families, strengths) = match (rung, ridge) {
+        (Rung::CarriedOver, _) => (vec![Family::Own], vec![SEARCH.kept]),
+        (Rung::Weak, _) | (Rung::Trajectory, None) => (Vec::new(), SEARCH.strengths.to_vec()),
+        (Rung::Trajectory, Some((family, lambda))) => {
+            (vec![family], SEARCH.near.map(|factor| factor * lambda).to_vec())
+        }
+    };
+    if settings.families.is_empty() {
+        settings.families = families;
+    }
+    if settings.strengths.is_empty() {
+        settings.strengths = strengths;
     }
     settings
 }
@@ -209,8 +232,10 @@ fn taken(search: &Search<'_>, mut tried: Vec<Tried>) -> Result<Winner, RefineErr
     })?;
     let lines = tried.iter().enumerate();
     let lines = lines.map(|(place, one)| line(search, one, place == best)).collect();
-    let Tried { entrant, rung, refinement, .. } = tried.swap_remove(best);
-    let settings = settings_on(search.settings, rung);
+    let entrant = tried[best].entrant;
+    let below = &tried[..tried.iter().position(|one| one.rung == tried[best].rung).unwrap_or(0)];
+    let settings = settings_on(search.settings, tried[best].rung, ridge_of(below, entrant));
+    let refinement = tried[best].refinement.take();
     Ok(Winner { entrant, settings, ladder: Ladder { lines }, refinement })
 }
 

@@ -14,6 +14,13 @@ pub(super) struct SearchThresholds {
     /// Fewer trials are left out in parts, a count. Source: derived: of two, each is fitted by the
     /// other alone, and a scatter has one degree of freedom.
     pub few: usize,
+    /// `lambda_k`: strengths of the prior that are tried in weak form, dimensionless. Source: derived:
+    /// every second to fourth of those that a named method tries; the next rung tries their
+    /// neighbours.
+    pub strengths: [f64; 8],
+    /// Strengths that trajectories begin with, by the best in weak form, dimensionless. Source:
+    /// derived: half a decade to either side.
+    pub near: [f64; 3],
     /// `lambda_h`: strength of a prior that keeps the source, dimensionless. Source: derived: what
     /// the trials say counts for less than the rounding of its coefficients.
     pub kept: f64,
@@ -28,6 +35,8 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     trajectory_gain: 3.0,
     trajectories: 2,
     few: 3,
+    strengths: [10.0, 1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8],
+    near: [3.16, 1.0, 0.316],
     kept: 1e9,
     sources: 5,
 };

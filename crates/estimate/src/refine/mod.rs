@@ -48,7 +48,7 @@ pub use parts::in_parts;
 pub use progress::{Iterate, Progress, Watch};
 pub use ridge::{Choices, Fit, Fitted, Fold, fit, tune};
 pub use rows::{Table, trial_moments, trial_tables};
-pub use selection::{Request, refine, refine_watched, refine_weighed, weigh};
+pub use selection::{Request, refine, refine_wanted, refine_watched, weigh};
 pub use settings::{Method, Range, Settings};
 pub use weak::{Windows, weak_moments, weak_tables};
 pub use weighed::{Extent, Weighed};

@@ -68,23 +68,31 @@ pub fn weigh(
     extent: Extent,
     progress: Progress<'_>,
 ) -> Result<Vec<Weighed>, RefineError> {
-    with_candidates(request, extent, progress, &|_| (), |problem, candidates, _, _| {
-        Ok(weighed(problem, &candidates))
+    with_candidates(request, extent, progress, &|_| (), |problem, candidates, variants, _| {
+        Ok(weighed(problem, &candidates, variants))
     })
 }
 
-/// As [`refine`], with what [`weigh`] tells on the way.
+/// As [`weigh`], and as [`refine`] where what it tells is wanted.
 ///
 /// # Errors
 /// As [`refine`].
-pub fn refine_weighed(
+pub fn refine_wanted(
     request: &Request<'_>,
+    wanted: &dyn Fn(&[Weighed]) -> bool,
     progress: Progress<'_>,
-) -> Result<(Vec<Weighed>, Refinement), RefineError> {
-    let both =
-        |problem: &Problem<'_>, candidates: Vec<_>, variants: &[_], progress: Progress<'_>| {
-            Ok((weighed(problem, &candidates), finish(problem, candidates, variants, progress)?))
+) -> Result<(Vec<Weighed>, Option<Refinement>), RefineError> {
+    let both = |problem: &Problem<'_>,
+                fits: Vec<CandidateFit>,
+                variants: &[Variant],
+                progress: Progress<'_>| {
+        let weighed = weighed(problem, &fits, variants);
+        let refinement = match wanted(&weighed) {
+            true => Some(finish(problem, fits, variants, progress)?),
+            false => None,
         };
+        Ok((weighed, refinement))
+    };
     with_candidates(request, Extent::Estimator, progress, &|_| (), both)
 }
 

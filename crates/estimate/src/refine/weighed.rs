@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::candidate::{CandidateFit, best};
+use super::family::Family;
 use super::problem::Problem;
+use super::variant::Variant;
 
 /// How much of a refinement is done before its candidates are weighed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +28,8 @@ pub struct Weighed {
     pub each: BTreeMap<String, f64>,
     /// Number of coefficients fitted; 0 of the source as carried over.
     pub coefficients: usize,
+    /// Of a ridge, its family of terms and the strength of its prior.
+    pub ridge: Option<(Family, f64)>,
     /// Why it cannot be taken, if so.
     pub reason: Option<String>,
 }
@@ -34,23 +38,31 @@ impl Weighed {
     /// What cannot be fitted.
     pub fn refused(reason: String) -> Self {
         let each = BTreeMap::new();
-        Self { step: String::new(), error: None, each, coefficients: 0, reason: Some(reason) }
+        let reason = Some(reason);
+        Self { step: String::new(), error: None, each, coefficients: 0, ridge: None, reason }
     }
 }
 
 /// The source, and the best of the others where there is one; where all of them diverge, the first.
-pub(super) fn weighed(problem: &Problem<'_>, candidates: &[CandidateFit]) -> Vec<Weighed> {
+pub(super) fn weighed(
+    problem: &Problem<'_>,
+    candidates: &[CandidateFit],
+    variants: &[Variant],
+) -> Vec<Weighed> {
     let Some((source, fits)) = candidates.split_first() else { return Vec::new() };
     let fit = best(fits).and_then(|index| fits.get(index)).or_else(|| fits.first());
-    std::iter::once(source).chain(fit).map(|candidate| one(problem, candidate)).collect()
+    std::iter::once(source).chain(fit).map(|candidate| one(problem, candidate, variants)).collect()
 }
 
-fn one(problem: &Problem<'_>, candidate: &CandidateFit) -> Weighed {
+fn one(problem: &Problem<'_>, candidate: &CandidateFit, variants: &[Variant]) -> Weighed {
+    let ridge =
+        |(place, _): (usize, _)| Some((variants.get(place)?.family, candidate.option.lambda_min?));
     Weighed {
         step: candidate.option.step.clone(),
         error: candidate.option.error.filter(|error| error.is_finite()),
         each: by_trial(problem, &candidate.each),
         coefficients: candidate.size,
+        ridge: candidate.solution.ridge().and_then(ridge),
         reason: candidate.option.reason.clone(),
     }
 }
