@@ -1,5 +1,6 @@
 //! From trials to models: similarity of ships, transfer of a model, and refinement of a source model by several estimators.
 
+pub mod auto;
 pub mod bands;
 pub mod refine;
 pub mod similarity;

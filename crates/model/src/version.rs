@@ -21,8 +21,12 @@ pub enum Recipe {
     },
     /// Refined from a source against trials.
     Refinement {
-        /// The version refined.
-        source: SourceVersion,
+        /// The version refined; none where the trials alone made the model.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        source: Option<SourceVersion>,
+        /// The law's name, where there is no source to tell it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        law: Option<String>,
         /// The target ship's document.
         ship_sha256: String,
         /// The law's file.

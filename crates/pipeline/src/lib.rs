@@ -4,6 +4,7 @@
 pub mod archive;
 pub mod budget;
 pub mod catalogue;
+pub mod champions;
 pub mod condition;
 pub mod derive;
 pub mod error;

@@ -42,6 +42,7 @@ mod outcome;
 mod pages;
 mod pairs;
 mod parquet_file;
+mod parquet_format;
 mod position;
 mod preview;
 mod propose;

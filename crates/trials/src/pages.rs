@@ -10,6 +10,8 @@ use parquet::basic::Compression;
 use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::file::reader::ChunkReader;
 
+use crate::parquet_format::{self, FieldKind, Format};
+
 /// Structures within structures of a page header; the format has two.
 const DEPTH: usize = 4;
 /// The same of what a file says of itself; the format has eight.
@@ -87,7 +89,8 @@ pub(crate) fn held<R: ChunkReader>(
 pub(crate) fn footer<R: ChunkReader>(input: &R, bytes: u64) -> io::Result<()> {
     let at = input.len().checked_sub(bytes + 8).ok_or_else(|| invalid("it is too short"))?;
     let reader = input.get_read(at).map_err(io::Error::other)?.take(bytes);
-    Thrift { reader, read: 0 }.structure(FOOTER_DEPTH, &mut |_, _| ())
+    let mut thrift = Thrift { reader, format: parquet_format::footer, read: 0 };
+    thrift.structure(FOOTER_DEPTH, &mut |_, _| ())
 }
 
 /// What is read of a page header.
@@ -105,7 +108,7 @@ struct Header {
 impl Header {
     fn read<R: ChunkReader>(input: &R, at: u64) -> io::Result<Self> {
         let reader = input.get_read(at).map_err(io::Error::other)?.take(HEADER_BYTES);
-        let mut thrift = Thrift { reader, read: 0 };
+        let mut thrift = Thrift { reader, format: parquet_format::page_header, read: 0 };
         let (mut header, mut wrong) = (Self::default(), false);
         thrift.structure(DEPTH, &mut |path: &[i16], value: i64| {
             let mut positive = || {
@@ -141,6 +144,7 @@ fn invalid(what: &str) -> io::Error {
 /// A reader of Thrift's compact protocol that keeps integers only.
 struct Thrift<R> {
     reader: R,
+    format: Format,
     read: u64,
 }
 
@@ -174,7 +178,25 @@ impl<R: Read> Thrift<R> {
         }
     }
 
+    /// A field's value, which is of the kind that the format says.
     fn value(
+        &mut self,
+        kind: u8,
+        path: &mut Vec<i16>,
+        depth: usize,
+        take: Take<'_>,
+    ) -> io::Result<()> {
+        let expected = (self.format)(path);
+        if expected.is_some_and(|expected| !expected.is(kind)) {
+            return Err(invalid("a field is of another kind than the format says"));
+        }
+        match kind {
+            9 => self.list(path, depth, expected, take),
+            _ => self.entry(kind, path, depth, take),
+        }
+    }
+
+    fn entry(
         &mut self,
         kind: u8,
         path: &mut Vec<i16>,
@@ -195,7 +217,7 @@ impl<R: Read> Thrift<R> {
                 let length = self.varint()?;
                 self.skip(length)
             }
-            9 | 10 => self.list(path, depth, take),
+            9 | 10 => self.list(path, depth, None, take),
             12 => self.fields(path, depth, take),
             _ => Err(invalid("it holds what no Parquet file holds")),
         }
@@ -203,14 +225,24 @@ impl<R: Read> Thrift<R> {
 
     /// Each entry takes a byte or more, so that what is not there ends it. Lists of truths are in neither a footer nor a page
     /// header, and the library passes over one without reading a byte of it, however long it says to be.
-    fn list(&mut self, path: &mut Vec<i16>, depth: usize, take: Take<'_>) -> io::Result<()> {
+    fn list(
+        &mut self,
+        path: &mut Vec<i16>,
+        depth: usize,
+        expected: Option<FieldKind>,
+        take: Take<'_>,
+    ) -> io::Result<()> {
         let deeper = depth.checked_sub(1).ok_or_else(|| invalid("it is nested too deeply"))?;
         let head = self.byte()?;
-        let count = if head >> 4 == 15 { self.varint()? } else { u64::from(head >> 4) };
+        let (entries, count) = (head & 15, u64::from(head >> 4));
+        let count = if count == 15 { self.varint()? } else { count };
+        if count > 0 && expected.is_some_and(|expected| !expected.holds(entries)) {
+            return Err(invalid("a list is of another kind than the format says"));
+        }
         for _ in 0..count {
-            match head & 15 {
+            match entries {
                 1 | 2 => return Err(invalid("it holds what no Parquet file holds")),
-                kind => self.value(kind, path, deeper, take)?,
+                kind => self.entry(kind, path, deeper, take)?,
             }
         }
         Ok(())

@@ -109,12 +109,13 @@ fn what_is_no_page_header_ends_in_an_error() {
     assert_eq!(read(&[0x15, 0, 0x15, 2, 0x15, 2, 0]).unwrap(), 7);
 }
 
-/// Found by the fuzz target: 47 and 108 bytes that kept the library busy for seconds.
+/// Found by the fuzz target: 47, 108 and 150 bytes that kept the library busy for seconds.
 #[test]
 fn lists_that_are_not_there_take_no_time() {
-    let lists: [&'static [u8]; 2] = [
+    let lists: [&'static [u8]; 3] = [
         include_bytes!("../../../tests/fuzz/corpus/parquet/list-that-is-not-there"),
         include_bytes!("../../../tests/fuzz/corpus/parquet/list-of-truths"),
+        include_bytes!("../../../tests/fuzz/corpus/parquet/field-of-another-kind"),
     ];
     for bytes in lists {
         let begun = std::time::Instant::now();

@@ -16,6 +16,7 @@ pub mod manoeuvre;
 mod manoeuvre_document;
 mod manoeuvre_text;
 pub mod refine;
+mod refine_search;
 mod refine_settings;
 pub(crate) mod refine_text;
 mod running;

@@ -26,6 +26,15 @@ pub(super) fn parts(
     training.iter().flat_map(|trial| cut(trial, part_s)).collect()
 }
 
+/// Trials in parts of about so many seconds, each under a name of its own: for comparisons where there are too few trials
+/// to leave whole ones out.
+pub fn in_parts(trials: &[&Trial], part_s: f64) -> Vec<Trial> {
+    let parts_of = |trial: &&Trial| cut(trial, part_s).into_iter().enumerate().collect::<Vec<_>>();
+    let named =
+        |(k, part): (usize, Trial)| Trial { name: format!("{} ({})", part.name, k + 1), ..part };
+    trials.iter().flat_map(parts_of).map(named).collect()
+}
+
 /// A trial in equal parts that neither overlap nor share a sample.
 fn cut(trial: &Trial, part_s: f64) -> Vec<Trial> {
     let count = ((trial.duration_s() / part_s).round() as usize).max(2);

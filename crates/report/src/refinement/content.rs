@@ -1,6 +1,7 @@
 //! Everything that the report of a refinement says, gathered once.
 
 use serde::Serialize;
+use sistership_estimate::auto::Ladder;
 use sistership_estimate::source::Similarity;
 
 use super::coefficients::Coefficients;
@@ -24,6 +25,8 @@ pub(crate) struct RefinementContent<'a> {
     pub manoeuvres: ManoeuvreComparison<'a>,
     pub sailed: Vec<Sailed>,
     pub similarity: Option<&'a Similarity>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ladder: Option<&'a Ladder>,
     pub provenance: Provenance<'a>,
 }
 
@@ -40,6 +43,7 @@ impl<'a> RefinementContent<'a> {
             manoeuvres: ManoeuvreComparison::of(input),
             sailed: sailed::figures(input),
             similarity: input.similarity,
+            ladder: input.ladder,
             provenance: Provenance::of(input),
         }
     }

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use serde_json::{Value, json};
+use sistership_estimate::auto::Ladder;
 use sistership_estimate::source::Similarity;
 use sistership_model::trial::Trial;
 use sistership_model::version::sha256;
 use sistership_store::{
-    Expect, Job, NewReport, NewVersion, Refinement, ReportHead, StoreError, VersionHead,
+    Expect, Job, NewReport, NewVersion, Refinement, ReportHead, StoreError, Version, VersionHead,
 };
 
 use super::outcome::{JobError, Result, failed};
@@ -22,6 +23,7 @@ struct Made {
     version: NewVersion,
     refined: Arc<Refined>,
     similarity: Option<Arc<Similarity>>,
+    ladder: Option<Arc<Ladder>>,
     result: Value,
 }
 
@@ -48,21 +50,26 @@ pub(super) async fn commit(
 impl Made {
     fn new(derived: Derived, prepared: Prepared) -> Result<Self> {
         let Derived { document, refined } = derived;
-        let source = format!("{}/{}", prepared.source.head.model, prepared.source.head.number);
+        let named = |source: &Version| format!("{}/{}", source.head.model, source.head.number);
+        let source = prepared.source.as_ref().map(named);
         let refined = refined.ok_or_else(|| failed("the recipe is not that of a refinement"))?;
         let version = NewVersion {
             model: document.ship.clone(),
-            parent: Some(prepared.source.head.id),
+            parent: prepared.source.map(|source| source.head.id),
             law: document.model.law.clone(),
             method: refined.refinement.method.clone(),
             document: document.canonical().map_err(failed)?,
         };
         let ranking = prepared.similarity.as_ref().map(|similarity| &similarity.ranking);
-        let result = json!({ "source": source, "held_out": refined.refinement.held_out, "ranking": ranking });
+        let mut result = json!({ "source": source, "held_out": refined.refinement.held_out, "ranking": ranking });
+        if let Some(ladder) = &prepared.ladder {
+            result["ladder"] = serde_json::to_value(ladder).map_err(failed)?;
+        }
         Ok(Self {
             version,
             refined: Arc::new(refined),
             similarity: prepared.similarity.map(Arc::new),
+            ladder: prepared.ladder.map(Arc::new),
             result,
         })
     }
@@ -71,8 +78,9 @@ impl Made {
         let sha256 = sha256(self.version.document.as_bytes());
         let label = VersionLabel { ship: self.version.model.clone(), number, sha256 };
         let (refined, similarity) = (Arc::clone(&self.refined), self.similarity.clone());
-        let rendered =
-            app.compute(move || render(&refined, similarity.as_deref(), label)).await??;
+        let ladder = self.ladder.clone();
+        let how = move || render(&refined, (similarity.as_deref(), ladder.as_deref()), label);
+        let rendered = app.compute(how).await??;
         let document = serde_json::to_string(&rendered.json).map_err(failed)?;
         Ok(NewReport {
             version_id: None,
@@ -92,7 +100,7 @@ impl Made {
     ) -> Result<()> {
         let reason = format!(
             "refined from {} in job {}",
-            self.result["source"].as_str().unwrap_or_default(),
+            self.result["source"].as_str().unwrap_or("no source"),
             job.id
         );
         let alias = if standing.champion { CANDIDATE } else { CHAMPION };
@@ -119,7 +127,7 @@ impl Made {
 
 fn render(
     refined: &Refined,
-    similarity: Option<&Similarity>,
+    (similarity, ladder): (Option<&Similarity>, Option<&Ladder>),
     version: VersionLabel,
 ) -> Result<Rendered> {
     let trials: Vec<&Trial> = refined.ingredients.trials.iter().collect();
@@ -129,6 +137,7 @@ fn render(
         vessel: &refined.ingredients.target,
         trials: &trials,
         similarity,
+        ladder,
         version: Some(version),
     };
     report::render_refinement(&input).map_err(failed)

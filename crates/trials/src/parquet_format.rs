@@ -1,0 +1,137 @@
+//! What kind of value each field of a Parquet footer and page header has (parquet-format 2.12,
+//! `parquet.thrift`).
+//!
+//! The library reads a field by its number and does not look at the kind that the file says it has.
+//! Where the two differ, it goes on from another byte than a reader by kinds does, so that what such
+//! a reader has found harmless says nothing. A file in which they differ is refused.
+
+/// Kinds of Thrift's compact protocol; a truth is 1 or 2.
+const TRUTH: u8 = 1;
+const BYTE: u8 = 3;
+const I16: u8 = 4;
+const I32: u8 = 5;
+const I64: u8 = 6;
+const BINARY: u8 = 8;
+const LIST: u8 = 9;
+const STRUCT: u8 = 12;
+
+/// The kind of a field, and of a list's entries.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct FieldKind {
+    kind: u8,
+    entries: u8,
+}
+
+impl FieldKind {
+    pub fn is(self, kind: u8) -> bool {
+        self.kind == if kind == 2 { TRUTH } else { kind }
+    }
+
+    pub fn holds(self, entries: u8) -> bool {
+        self.entries == entries
+    }
+}
+
+/// The kinds of fields by their path; none of those that the format does not know.
+pub(crate) type Format = fn(&[i16]) -> Option<FieldKind>;
+
+fn of(kind: u8) -> Option<FieldKind> {
+    Some(FieldKind { kind, entries: 0 })
+}
+
+fn list(entries: u8) -> Option<FieldKind> {
+    Some(FieldKind { kind: LIST, entries })
+}
+
+/// `FileMetaData`.
+pub(crate) fn footer(path: &[i16]) -> Option<FieldKind> {
+    match path {
+        [1] => of(I32),
+        [2 | 4 | 5 | 7] => list(STRUCT),
+        [3] => of(I64),
+        [6 | 9] => of(BINARY),
+        [8] | [7, _] => of(STRUCT),
+        [2, rest @ ..] => schema_element(rest),
+        [4, rest @ ..] => row_group(rest),
+        [5, rest @ ..] => key_value(rest),
+        _ => None,
+    }
+}
+
+fn key_value(path: &[i16]) -> Option<FieldKind> {
+    if matches!(path, [1 | 2]) { of(BINARY) } else { None }
+}
+
+/// `SchemaElement`, with its `LogicalType`.
+fn schema_element(path: &[i16]) -> Option<FieldKind> {
+    match path {
+        [1 | 2 | 3 | 5 | 6 | 7 | 8 | 9] => of(I32),
+        [4] | [10, 17 | 18, 1] => of(BINARY),
+        [10] | [10, _] | [10, 7 | 8, 2] | [10, 7 | 8, 2, _] => of(STRUCT),
+        [10, 5, 1 | 2] | [10, 18, 2] => of(I32),
+        [10, 7 | 8, 1] | [10, 10, 2] => of(TRUTH),
+        [10, 10 | 16, 1] => of(BYTE),
+        _ => None,
+    }
+}
+
+/// `RowGroup`, with its `SortingColumn`s and `ColumnChunk`s.
+fn row_group(path: &[i16]) -> Option<FieldKind> {
+    match path {
+        [1 | 4] => list(STRUCT),
+        [2 | 3 | 5 | 6] => of(I64),
+        [7] => of(I16),
+        [4, 1] => of(I32),
+        [4, 2 | 3] => of(TRUTH),
+        [1, rest @ ..] => column_chunk(rest),
+        _ => None,
+    }
+}
+
+fn column_chunk(path: &[i16]) -> Option<FieldKind> {
+    match path {
+        [1 | 9] => of(BINARY),
+        [2 | 4 | 6] => of(I64),
+        [3 | 8] => of(STRUCT),
+        [5 | 7] => of(I32),
+        [3, rest @ ..] => column_metadata(rest),
+        _ => None,
+    }
+}
+
+/// `ColumnMetaData`, with its statistics.
+fn column_metadata(path: &[i16]) -> Option<FieldKind> {
+    match path {
+        [1 | 4 | 15] => of(I32),
+        [2] => list(I32),
+        [3] => list(BINARY),
+        [5 | 6 | 7 | 9 | 10 | 11 | 14] | [16, 1] => of(I64),
+        [8 | 13] => list(STRUCT),
+        [12 | 16 | 17] => of(STRUCT),
+        [8, rest @ ..] => key_value(rest),
+        [12, rest @ ..] => statistics(rest),
+        [13, 1..=3] => of(I32),
+        [16, 2 | 3] => list(I64),
+        _ => None,
+    }
+}
+
+fn statistics(path: &[i16]) -> Option<FieldKind> {
+    match path {
+        [1 | 2 | 5 | 6] => of(BINARY),
+        [3 | 4 | 9] => of(I64),
+        [7 | 8] => of(TRUTH),
+        _ => None,
+    }
+}
+
+/// `PageHeader`.
+pub(crate) fn page_header(path: &[i16]) -> Option<FieldKind> {
+    match path {
+        [1..=4] | [5, 1..=4] | [7, 1 | 2] | [8, 1..=6] => of(I32),
+        [5..=8] | [5, 5] | [8, 8] => of(STRUCT),
+        [7, 3] | [8, 7] => of(TRUTH),
+        [5, 5, rest @ ..] | [8, 8, rest @ ..] => statistics(rest),
+        _ => None,
+    }
+}
