@@ -2,6 +2,7 @@
 
 pub mod auto;
 pub mod bands;
+mod estimated;
 pub mod refine;
 pub mod similarity;
 pub mod source;

@@ -14,6 +14,7 @@ pub mod inputs;
 pub mod library;
 pub mod line;
 pub mod memory;
+pub mod promotion;
 pub mod publish;
 pub mod recipe;
 pub mod schema;

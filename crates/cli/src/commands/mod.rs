@@ -10,6 +10,7 @@ mod diagnose_text;
 pub mod family;
 pub mod fsck;
 pub mod gc;
+pub mod import;
 mod log;
 mod log_format;
 pub mod manoeuvre;

@@ -17,9 +17,6 @@ pub enum Rung {
 }
 
 impl Rung {
-    /// In the order of their cost.
-    pub const ALL: [Self; 3] = [Self::CarriedOver, Self::Weak, Self::Trajectory];
-
     /// The estimator by which the entrant is weighed there.
     pub fn method(self) -> Method {
         match self {

@@ -224,7 +224,7 @@ fn few_in_parts(search: &Search<'_>) -> Vec<Trial> {
 }
 
 fn taken(search: &Search<'_>, mut tried: Vec<Tried>) -> Result<Winner, RefineError> {
-    let weighed: Vec<(Rung, &Weighed)> = tried.iter().map(|one| (one.rung, &one.weighed)).collect();
+    let weighed: Vec<&Weighed> = tried.iter().map(|one| &one.weighed).collect();
     let best = chosen(&weighed).ok_or_else(|| {
         let reasons: Vec<String> =
             tried.iter().filter_map(|one| one.weighed.reason.clone()).collect();

@@ -14,8 +14,10 @@ use sistership_store::{
 use super::outcome::{JobError, Result, failed};
 use super::prepared::Prepared;
 use crate::app::App;
+use sistership_pipeline::archive::document;
 use sistership_pipeline::derive::{Derived, Refined};
-use sistership_pipeline::line::{CANDIDATE, CHAMPION, Standing, step};
+use sistership_pipeline::line::{CANDIDATE, CHAMPION, Standing, alias, step};
+use sistership_pipeline::promotion::{Comparison, Contest, compared};
 use sistership_report::{self as report, Rendered, VersionLabel};
 
 /// A version that is to be kept, with what its report is made of.
@@ -24,6 +26,9 @@ struct Made {
     refined: Arc<Refined>,
     similarity: Option<Arc<Similarity>>,
     ladder: Option<Arc<Ladder>>,
+    comparison: Option<Comparison>,
+    /// Of the samples of its trials, in their order.
+    hashes: Vec<String>,
     result: Value,
 }
 
@@ -35,6 +40,8 @@ pub(super) async fn commit(
     prepared: Prepared,
 ) -> Result<()> {
     let made = Made::new(derived, prepared)?;
+    let comparison = against_champion(app, &made).await?;
+    let made = Made { comparison, ..made };
     for _ in 0..super::TRIES {
         let standing = Standing::of(app.store(), &made.version.model).await?;
         let report = made.report(app, standing.next).await?;
@@ -50,6 +57,7 @@ pub(super) async fn commit(
 impl Made {
     fn new(derived: Derived, prepared: Prepared) -> Result<Self> {
         let Derived { document, refined } = derived;
+        let hashes = document.recipe.trials().iter().map(|trial| trial.sha256.clone()).collect();
         let named = |source: &Version| format!("{}/{}", source.head.model, source.head.number);
         let source = prepared.source.as_ref().map(named);
         let refined = refined.ok_or_else(|| failed("the recipe is not that of a refinement"))?;
@@ -70,6 +78,8 @@ impl Made {
             refined: Arc::new(refined),
             similarity: prepared.similarity.map(Arc::new),
             ladder: prepared.ladder.map(Arc::new),
+            comparison: None,
+            hashes,
             result,
         })
     }
@@ -103,9 +113,14 @@ impl Made {
             self.result["source"].as_str().unwrap_or("no source"),
             job.id
         );
-        let alias = if standing.champion { CANDIDATE } else { CHAMPION };
-        let expect = if standing.champion { Expect::Any } else { Expect::Absent };
-        let moves = vec![step(alias, expect, &reason), standing.follow(&reason)];
+        let alias = match &self.comparison {
+            _ if !standing.champion => Some((CHAMPION, Expect::Absent)),
+            Some(comparison) if comparison.is_worse() => None,
+            _ => Some((CANDIDATE, Expect::Any)),
+        };
+        let own = alias.map(|(alias, expect)| step(alias, expect, &reason));
+        let moves = own.into_iter().chain([standing.follow(&reason)]).collect();
+        let alias = alias.map(|(alias, _)| alias);
         let refinement = Refinement { version: self.version.clone(), moves, report: Some(report) };
         let result = |version: &VersionHead, report: Option<&ReportHead>| {
             self.result(version, report, alias)
@@ -114,15 +129,43 @@ impl Made {
         Ok(())
     }
 
-    fn result(&self, version: &VersionHead, report: Option<&ReportHead>, alias: &str) -> String {
+    fn result(
+        &self,
+        version: &VersionHead,
+        report: Option<&ReportHead>,
+        alias: Option<&str>,
+    ) -> String {
         let mut result = self.result.clone();
         result["model"] = json!(version.model);
         result["version"] = json!(version.number);
         result["sha256"] = json!(version.sha256);
         result["alias"] = json!(alias);
+        result["comparison"] = json!(self.comparison.as_ref().map(Comparison::words));
         result["report"] = json!(report.map(|report| &report.id));
         result.to_string()
     }
+}
+
+/// How the version compares with the ship's champion, where it has one.
+async fn against_champion(app: &App, made: &Made) -> Result<Option<Comparison>> {
+    let ship = &made.version.model;
+    let Some(alias) = alias(app.store(), ship, CHAMPION).await? else { return Ok(None) };
+    let champion = document(&app.store().versions().get(ship, alias.version_number).await?)?;
+    let Some(law) = app.laws().await?.law(&champion.model.law).cloned() else { return Ok(None) };
+    let refined = Arc::clone(&made.refined);
+    let hashes = made.hashes.clone();
+    let compare = move || {
+        let trials: Vec<(&Trial, &str)> =
+            refined.ingredients.trials.iter().zip(hashes.iter().map(String::as_str)).collect();
+        compared(&Contest {
+            champion: &champion,
+            law: &law,
+            target: &refined.ingredients.target,
+            trials: &trials,
+            refinement: &refined.refinement,
+        })
+    };
+    Ok(app.compute(compare).await?)
 }
 
 fn render(
