@@ -75,7 +75,7 @@ impl<'a> LinearisedTrials<'a> {
         let mut records: Vec<TrialReadings<'a>> =
             trials.iter().map(|trial| TrialReadings::new(trial, least_step_s, settles_s)).collect();
         let every = sparseness(&records);
-        records.iter_mut().for_each(|record| record.read_every(every));
+        records.iter_mut().for_each(|record| record.every = every);
         let noise = noise(&records, lpp_m, speed_m_s, model.uncertainty.as_ref());
         let frame = trials.first().map(|trial| trial.velocity).unwrap_or_default();
         let system = ResidualSystem::new(model, law, columns, frame)?;

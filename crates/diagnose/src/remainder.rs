@@ -65,7 +65,7 @@ fn sums<'a>(
     let mut all = Vec::new();
     for part in &workspace.linear()[trial] {
         let interval = (part.t_s[part.t_s.len() - 1] - part.t_s[0]) / (part.t_s.len() - 1) as f64;
-        let size = (block_s / interval).round().max(1.0) as usize;
+        let size = (block_s / (interval * part.every as f64)).round().max(1.0) as usize;
         let (left, _) = errors(&part.along(parameters), &workspace.noise, discrepancies);
         let moved = responses(&part.along(effects), &workspace.noise, discrepancies);
         for (place, &(channel, _)) in part
@@ -120,7 +120,9 @@ impl BlockSums<'_> {
                 None => found.push((from, from + THRESHOLDS.remainder.blocks)),
             }
         }
-        let time = |block: usize| self.part.t_s[(block * self.size).min(self.part.t_s.len() - 1)];
+        let time = |block: usize| {
+            self.part.t_s[(block * self.size * self.part.every).min(self.part.t_s.len() - 1)]
+        };
         let stretch = |(from, to): (usize, usize)| Unexplained {
             channel: channel.name().to_owned(),
             rms_over_noise: rms(&self.sums[from..to]),

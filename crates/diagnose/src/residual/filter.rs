@@ -51,6 +51,9 @@ pub fn whitened(
         if k > 0 {
             state.predict(linear, k - 1, discrepancies);
         }
+        if !k.is_multiple_of(linear.every) {
+            continue;
+        }
         state.update(linear, k, noise, |error, variance| {
             let scale = variance.sqrt().recip();
             rows.push(error[0] * scale);

@@ -2,11 +2,11 @@
 
 use sistership_model::trial::Channel;
 
-/// One gap-free part of a trial: how deviations from the recorded path go from reading to reading, and how they are read.
-/// All matrices row by row, reading after reading.
+/// One gap-free part of a trial: how deviations from the recorded path go from sample to sample, and how they are read.
+/// All matrices row by row, sample after sample.
 #[derive(Debug, Clone)]
 pub struct Linearised {
-    /// Samples of the trial at which something is read.
+    /// Samples of the trial.
     pub samples: Vec<usize>,
     /// Time of each, s.
     pub t_s: Vec<f64>,
@@ -28,6 +28,8 @@ pub struct Linearised {
     pub measured: Vec<usize>,
     /// The recorded channels with their places among the states.
     pub channels: Vec<(Channel, usize)>,
+    /// Of samples, how many go with one reading.
+    pub every: usize,
 }
 
 /// How much of a linearisation is wanted.
@@ -80,6 +82,7 @@ impl Linearised {
             reading: self.reading.clone(),
             by_state: self.by_state.clone(),
             channels: self.channels.clone(),
+            every: self.every,
         }
     }
 }

@@ -28,12 +28,6 @@ impl<'a> TrialReadings<'a> {
         Self { trial, parts: parts.filter(|part| part.len() > 2).collect(), every: 1 }
     }
 
-    /// One reading goes with so many samples; parts with fewer than three readings are not used.
-    pub fn read_every(&mut self, every: usize) {
-        self.every = every;
-        self.parts.retain(|part| part.len() > 2 * every);
-    }
-
     /// How many samples are used.
     pub fn len(&self) -> usize {
         self.parts.iter().map(Vec::len).sum()

@@ -69,7 +69,9 @@ fn forward(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) ->
             state.predict(linear, k - 1, discrepancies);
         }
         let expected = belief(&state);
-        state.update(linear, k, noise, |_, _| {});
+        if k.is_multiple_of(linear.every) {
+            state.update(linear, k, noise, |_, _| {});
+        }
         let transition = DMatrix::from_row_slice(order, order, &state.transition);
         steps.push(FilterStep { known: belief(&state), expected, transition });
     }
