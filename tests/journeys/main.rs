@@ -10,6 +10,7 @@ mod diagnosis_over_http;
 mod families;
 mod fleet;
 mod full_disk;
+mod import;
 mod lacking;
 mod memory;
 mod operation;

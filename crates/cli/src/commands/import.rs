@@ -122,7 +122,7 @@ fn checked(zoo: &Zoo, manifest: PathBuf, guesses: Vec<GuessRow>) -> Result<Impor
         }
     }
     for warning in trials.iter().flat_map(|trial| {
-        trial.warnings.iter().map(move |warning| format!("{}: {warning}", trial.name))
+        trial.warnings.iter().map(move |warning| format!("{}: {}", trial.name, place(warning)))
     }) {
         note(&format!("note: {warning}"));
     }
