@@ -5,7 +5,7 @@ use std::path::Path;
 use indexmap::IndexMap;
 use sistership_model::FileError;
 use sistership_model::manifest::{
-    ColumnMapping, Manifest, ManifestTrial, TrialConventions, TrialsKind,
+    ColumnMapping, Manifest, ManifestTrial, Missing, TrialConventions, TrialsKind,
 };
 
 use crate::declarations::{Declarations, Derivable, SensorFile};
@@ -169,7 +169,8 @@ fn proposal(ship: &str, seen: Vec<Seen>) -> Proposal {
     let manifest = Manifest {
         kind: TrialsKind::Trials,
         ship: ship.to_owned(),
-        conventions: TrialConventions::default(),
+        // A row without time or state is no sample; that it was left out is said, and gaps stay gaps.
+        conventions: TrialConventions { missing: Missing::Drop, ..TrialConventions::default() },
         columns,
         trials,
     };

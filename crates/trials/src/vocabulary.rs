@@ -22,16 +22,23 @@ const NAMES: &[(&str, &[&str])] = &[
     ("n_p", &["rpm port", "propeller port", "shaft port"]),
     ("course", &["course", "cog", "course over ground"]),
     ("speed", &["speed", "sog", "speed over ground"]),
-    ("wind_speed", &["wind speed", "true wind speed", "tws"]),
-    ("wind_from", &["wind direction", "wind dir", "true wind direction", "twd"]),
+    ("wind_speed", &["wind speed", "true wind speed", "wind velo true", "tws"]),
+    ("wind_from", &["wind direction", "wind dir", "true wind direction", "wind dir true", "twd"]),
     (
         "apparent_wind_speed",
-        &["apparent wind speed", "relative wind speed", "wind speed relative", "aws"],
+        &[
+            "apparent wind speed",
+            "relative wind speed",
+            "wind speed relative",
+            "wind velo relative",
+            "aws",
+        ],
     ),
     (
         "apparent_wind_from",
         &[
             "apparent wind angle",
+            "wind dir relative",
             "apparent wind direction",
             "relative wind direction",
             "relative wind angle",
@@ -40,6 +47,11 @@ const NAMES: &[(&str, &[&str])] = &[
     ),
     ("depth", &["depth", "water depth"]),
 ];
+
+/// Letters that stand for a channel where a header begins with one and goes on in other words, as
+/// `u_velo` and `n_prop` do.
+const LETTERS: [(&str, &str); 7] =
+    [("u", "u"), ("v", "v"), ("vm", "v"), ("r", "r"), ("p", "p"), ("n", "n"), ("psi", "psi")];
 
 /// Words of what was wanted or computed, not measured.
 const OTHERS: [&str; 11] = [
@@ -84,7 +96,12 @@ pub(crate) fn likely(header: &str) -> Option<Likely> {
             }
         }
     }
-    best.map(|(_, likely)| likely)
+    best.map(|(_, likely)| likely).or_else(|| by_letter(words.first()?))
+}
+
+fn by_letter(first: &str) -> Option<Likely> {
+    let (_, target) = LETTERS.iter().find(|(letter, _)| *letter == first)?;
+    Some(Likely { target, exact: false })
 }
 
 /// Words of a header in lower case, without the unit in brackets.
@@ -111,6 +128,12 @@ mod tests {
             ("u [m/s]", "u"),
             ("Date/Time", "t"),
             ("Shaft RPM starboard", "n_s"),
+            ("u_velo [m/s]", "u"),
+            ("vm_velo [m/s]", "v"),
+            ("r_angvelo [rad/s]", "r"),
+            ("n_prop [rps]", "n"),
+            ("wind_dir_relative_mid [rad]", "apparent_wind_from"),
+            ("wind_velo_true [m/s]", "wind_speed"),
         ] {
             assert_eq!(likely(header).map(|likely| likely.target), Some(wanted), "{header}");
         }
