@@ -10,6 +10,8 @@ const JUDGEMENT: u64 = 1000;
 pub enum Part {
     /// The plain call against every explicit one.
     Choice,
+    /// Esso Osaka by the plain call alone, every file judged by a model made without it.
+    ByFile,
     /// Errors over the number of trials.
     Learning,
     /// Errors with random candidates added.
@@ -19,8 +21,9 @@ pub enum Part {
 }
 
 impl Part {
-    const ALL: [(&'static str, Self); 4] = [
+    const ALL: [(&'static str, Self); 5] = [
         ("choice", Self::Choice),
+        ("by-file", Self::ByFile),
         ("learning", Self::Learning),
         ("candidates", Self::Candidates),
         ("coverage", Self::Coverage),
@@ -40,6 +43,8 @@ pub struct Arguments {
     pub program: Option<PathBuf>,
     /// Calls at once, where no time is measured.
     pub jobs: usize,
+    /// Whether `learning` leaves the fixed choices out.
+    pub alone: bool,
     /// After which a call is given up, s.
     pub limit_s: f64,
 }
@@ -71,11 +76,12 @@ impl Arguments {
             "--ships" => self.ships = number() as u64,
             "--seed" => self.seed = number() as u64,
             "--jobs" => self.jobs = number() as usize,
+            "--calls" => self.alone = value == "plain",
             "--limit" => self.limit_s = number(),
             "--data" => self.data = Some(value),
             "--program" => self.program = Some(value.into()),
             _ => panic!(
-                "there are --ships, --seed, --data, --program, --jobs and --limit, not {flag}"
+                "there are --ships, --seed, --data, --calls, --program, --jobs and --limit, not {flag}"
             ),
         }
     }
@@ -112,6 +118,7 @@ impl Default for Arguments {
             data: None,
             program: None,
             jobs: 1,
+            alone: false,
             limit_s: 300.0,
         }
     }

@@ -41,9 +41,6 @@ pub fn run(program: &Program, arguments: &Arguments) {
             }
         }
     }
-    if arguments.data.as_deref().is_none_or(|only| only == "esso-osaka") {
-        by_file(program);
-    }
     println!();
 }
 
@@ -121,7 +118,7 @@ fn explicit(data: &DataSet) -> Vec<Call> {
 }
 
 /// Esso Osaka by the plain call alone: every file judged by a model that was made without it, and the time for all of them.
-fn by_file(program: &Program) {
+pub fn by_file(program: &Program) {
     let folds: Option<Vec<DataSet>> = (0..FOLDS).map(|fold| esso_osaka(Some(fold))).collect();
     let (Some(folds), Some(all)) = (folds, esso_osaka(None)) else { return };
     let whole = Call::default().refine(program, &all).0;

@@ -22,7 +22,7 @@ struct Outcome {
 
 /// Prints a row for each call.
 pub fn run(program: &Program, arguments: &Arguments) {
-    let calls = calls();
+    let calls = if arguments.alone { vec![Call::default()] } else { calls() };
     let ships = yard::each(arguments, |seed, ship| {
         COUNTS.map(|count| {
             let data = synthetic(ship, count, seed);

@@ -25,7 +25,7 @@ pub fn esso_osaka(fold: Option<usize>) -> Option<DataSet> {
     let (seen, unseen) = split(all, &kept_out);
     let files = written(&folder, &kept_out);
     let ship = "esso-osaka-3m".to_owned();
-    let mut data = DataSet::new("esso-osaka", ship, files, (seen, unseen), RESTART_S);
+    let mut data = DataSet::new(ship, files, (seen, unseen), RESTART_S);
     data.deviations = deviations;
     Some(data)
 }

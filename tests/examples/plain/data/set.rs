@@ -9,8 +9,6 @@ use sistership_model::trial::{Channel, Trial};
 
 /// A ship with trials in files for the calls, and others that no call sees.
 pub struct DataSet {
-    /// What it is called.
-    pub name: String,
     /// What `--ship` is given.
     pub ship: String,
     /// The manifest that `--trials` is given.
@@ -32,7 +30,6 @@ pub struct DataSet {
 impl DataSet {
     /// Judged by the deviations of the unseen trials.
     pub fn new(
-        name: &str,
         ship: String,
         (trials, folder): (PathBuf, tempfile::TempDir),
         (seen, unseen): (Vec<Trial>, Vec<Trial>),
@@ -40,8 +37,7 @@ impl DataSet {
     ) -> Self {
         let deviations = standard_deviations(&unseen.iter().collect::<Vec<_>>());
         let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-        let name = name.to_owned();
-        Self { name, ship, trials, seen, unseen, restart_s, deviations, zoo, folder }
+        Self { ship, trials, seen, unseen, restart_s, deviations, zoo, folder }
     }
 
     /// Where the files lie.

@@ -20,7 +20,7 @@ pub fn sr108() -> Option<DataSet> {
     let unseen = read(&reference, "turn_20.4kn");
     let folder = tempfile::tempdir().expect("a folder");
     let trials = write_trials(folder.path(), "sr108", &seen.iter().collect::<Vec<_>>());
-    Some(DataSet::new("sr108", "sr108".into(), (trials, folder), (seen, unseen), RESTART_S))
+    Some(DataSet::new("sr108".into(), (trials, folder), (seen, unseen), RESTART_S))
 }
 
 fn read(folder: &Path, prefix: &str) -> Vec<Trial> {

@@ -21,5 +21,5 @@ pub fn synthetic(ship: &dyn Truth, count: usize, seed: u64) -> DataSet {
     let vessel = write_vessel(folder.path(), size).display().to_string();
     let manifest = write_trials(folder.path(), &size.name, &seen.iter().collect::<Vec<_>>());
     let restart_s = RESTART_LENGTHS * size.length_time_s();
-    DataSet::new(&size.name, vessel, (manifest, folder), (seen, unseen), restart_s)
+    DataSet::new(vessel, (manifest, folder), (seen, unseen), restart_s)
 }
