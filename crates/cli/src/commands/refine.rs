@@ -180,7 +180,8 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
         RefineDocument { refinement: &refinement, ranking, ladder: ladder.as_ref(), files };
     output::print(arguments.json, &document, || {
         let tried = ladder.as_ref().map_or(String::new(), refine_text::ladder);
-        tried + &refine_text::text(&refinement, &source, ranking, &files)
+        let text = refine_text::text(&refinement, &source, ranking, &files);
+        refine_text::warning(&refinement) + &tried + &text
     })
 }
 

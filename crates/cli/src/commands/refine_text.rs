@@ -43,6 +43,12 @@ pub fn text(
     format!("{ranked}{head}{errors}{options}{coefficients}{manoeuvres}{}", end(refinement, files))
 }
 
+/// What stands in the first line where the trials leave much open.
+pub fn warning(refinement: &Refinement) -> String {
+    let wide = refinement.manoeuvres.wide_band();
+    wide.map_or_else(String::new, |wide| format!("WARNING: {wide}\n\n"))
+}
+
 /// What was tried before the model was chosen.
 pub fn ladder(ladder: &Ladder) -> String {
     let mut table = TextTable::new([

@@ -12,7 +12,7 @@ use sistership_model::trial::Channel;
 use super::cma_es::SearchReport;
 use super::constraints::LimitError;
 use super::settings::Settings;
-use crate::bands::Bands;
+use crate::bands::{Band, Bands};
 use crate::transfer::UnknownParameter;
 
 /// Why a refinement is refused.
@@ -95,6 +95,30 @@ pub struct StepOption {
     /// Why it could not be taken, if so.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+}
+
+impl Manoeuvres {
+    /// What to know first where the trials leave much open: the widest band of an advance, tactical
+    /// diameter or first overshoot, where it is wider than half the figure itself.
+    pub fn wide_band(&self) -> Option<String> {
+        const WIDE: f64 = 0.5;
+        const JUDGED: [&str; 3] = ["advance", "tactical diameter", "first overshoot"];
+        let bands = self.bands.as_ref()?;
+        let figures = self.refined.figures();
+        let judged = |name: &str| JUDGED.iter().any(|judged| name.ends_with(judged));
+        let width = |(name, value): (String, Option<f64>)| {
+            let band = bands.of(&name)?;
+            let width = (band.high - band.low) / value?.abs();
+            (width > WIDE).then_some((width, band))
+        };
+        let named = figures.into_iter().filter(|figure| judged(&figure.name));
+        let wide = named.filter_map(|figure| width((figure.name, figure.value)));
+        let (_, band) = wide.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let Band { figure, unit, low, high, .. } = band;
+        Some(format!(
+            "These trials leave much open: {figure} is between {low:.0} and {high:.0} {unit} (95 %)"
+        ))
+    }
 }
 
 /// Root mean square errors by channel (SI), on manoeuvres left out.

@@ -27,6 +27,8 @@ pub(crate) struct RefinementContent<'a> {
     pub similarity: Option<&'a Similarity>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ladder: Option<&'a Ladder>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wide: Option<String>,
     pub provenance: Provenance<'a>,
 }
 
@@ -44,6 +46,7 @@ impl<'a> RefinementContent<'a> {
             sailed: sailed::figures(input),
             similarity: input.similarity,
             ladder: input.ladder,
+            wide: input.refinement.manoeuvres.wide_band(),
             provenance: Provenance::of(input),
         }
     }

@@ -36,6 +36,8 @@ struct RefinementPage<'a> {
     sailed: Table,
     why: Option<SourceChoice>,
     ladder: Option<Table>,
+    /// What to know first where the trials leave much open.
+    wide: Option<String>,
     particulars: Table,
     parameters: Table,
     settings: Table,
@@ -93,6 +95,7 @@ pub(crate) fn page(
         sailed: tables::sailed(&content.sailed),
         why: why(content),
         ladder: content.ladder.map(ladder::table),
+        wide: content.wide.clone(),
         particulars: tables::particulars(&provenance.particulars),
         parameters: tables::parameters(&provenance.parameters),
         settings: tables::settings(provenance.settings),
