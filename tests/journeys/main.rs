@@ -16,5 +16,6 @@ mod memory;
 mod operation;
 mod over_http;
 mod sea_trials;
+mod sisters;
 mod stopping;
 mod upkeep;
