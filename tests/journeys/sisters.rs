@@ -3,12 +3,24 @@
 use reqwest::Method;
 use reqwest::multipart::{Form, Part};
 use serde_json::{Value, json};
+use sistership::sea_trials::TrialManoeuvre;
+use sistership_model::Trial;
 use sistership_tests::server::{TestServer, json as answer};
 
 use super::over_http::{create, upload};
-use super::sea_trials::{NAME, csv, ship, trials};
+use super::sea_trials::{NAME, csv, sailed, ship};
 
 const SISTER: &str = "younger-sister";
+
+/// None of what the elder sister sailed.
+fn trials() -> Vec<Trial> {
+    let programme = [
+        TrialManoeuvre::Zigzag(15.0, 15.0),
+        TrialManoeuvre::Turn(16.0),
+        TrialManoeuvre::Turn(-10.0),
+    ];
+    sailed(&programme, 11)
+}
 
 async fn create_sister(server: &TestServer) {
     let request = server
