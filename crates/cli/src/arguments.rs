@@ -17,7 +17,7 @@ Examples:
   sistership import log/*.csv --ship my-ship
   sistership similar kvlcc2
   sistership check trials.yaml
-  sistership refine --ship my-ship.yaml --source auto --trials trials.yaml --out my-model.yaml
+  sistership refine --ship my-ship.yaml --trials trials.yaml --out my-model.yaml
   sistership simulate --model my-model.yaml --trials trials.yaml
   sistership diagnose --model my-model.yaml --trials new-trials.yaml --report diagnosis.html
   sistership manoeuvre --model my-model.yaml --all

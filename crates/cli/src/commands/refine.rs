@@ -33,9 +33,10 @@ Examples:
   sistership refine --ship my-ship.yaml --source kvlcc2 --law low-speed --trials trials.yaml --method weak
   sistership refine --ship my-ship.yaml --source old-model.yaml --trials trials.yaml --held-out zigzag/last.csv
 
-Without --source, --law and --method, every eligible source is tried under every law that was measured, and laws without a
-source; the simplest that none beats clearly on manoeuvres left out is taken. The source's coefficients are the prior: ranges of tuning widen from the source outwards, and the option that is best on
-whole manoeuvres left out is taken. Give several manoeuvres; a single one allows the most conservative range only.";
+Without --source, --law and --method, every eligible source is tried under every law that was
+measured, and laws without a source; taken is the simplest within one standard error of the best on
+manoeuvres left out. The source's coefficients are the prior: with a method named, options go from
+the source outwards, and the best on whole manoeuvres left out is taken. Give several manoeuvres.";
 
 /// Refine a source model against a ship's trials.
 #[derive(Debug, Args)]
@@ -44,8 +45,9 @@ pub struct RefineArguments {
     /// The ship: a name in the zoo or a vessel file.
     #[arg(long)]
     ship: String,
-    /// The source: a model's name or file, or `auto` for the most similar eligible ship of the zoo. Without --source, --law,
-    /// --method, settings and constraints, the best of all eligible sources, of the laws measured and of none is searched.
+    /// The source: a model's name or file, or `auto`, which it is where absent. Without --law, --method, settings and
+    /// constraints, `auto` tries every eligible source, and none, under every law measured; with one of them, it is the most
+    /// similar eligible ship of the zoo.
     #[arg(long, value_name = "MODEL|auto")]
     source: Option<String>,
     /// The law to fit, such as `low-speed`. With a source of another law, what that says over the states of the trials and of
@@ -187,8 +189,11 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
 
 /// Whether neither source, law nor method is named, and nothing that only some methods keep.
 fn is_plain(arguments: &RefineArguments, settings: &Settings) -> bool {
-    let unnamed = arguments.source.is_none() && arguments.method.is_none();
-    unnamed && arguments.settings.is_none() && settings.constraints.is_empty()
+    let unnamed = arguments.source.as_deref().is_none_or(|source| source == "auto");
+    unnamed
+        && arguments.method.is_none()
+        && arguments.settings.is_none()
+        && settings.constraints.is_empty()
 }
 
 fn report_html(
