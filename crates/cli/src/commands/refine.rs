@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use sistership_estimate::auto::Ladder;
+use sistership_choice::Ladder;
 use sistership_estimate::refine::{
     Constraints, Method, Refinement, Request, Settings, StraightLine, refine,
 };

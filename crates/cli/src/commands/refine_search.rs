@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use sistership_estimate::auto::{Asked, Ladder, best_start};
+use sistership_choice::{Asked, Ladder, best_start};
 use sistership_estimate::refine::{Refinement, Settings};
 use sistership_estimate::source::Similarity;
 use sistership_model::{Law, Model, Vessel, Zoo};

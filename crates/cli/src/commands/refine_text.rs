@@ -1,7 +1,7 @@
 //! A refinement in words and tables.
 
+use sistership_choice::{Ladder, Rung};
 use sistership_dynamics::manoeuvre::Figure;
-use sistership_estimate::auto::{Ladder, Rung};
 use sistership_estimate::bands::Band;
 use sistership_estimate::refine::{CoefficientChange, HeldOut, Manoeuvres, Refinement, StepOption};
 use sistership_estimate::similarity::RankedSource;

@@ -1,7 +1,7 @@
 //! Everything that the report of a refinement says, gathered once.
 
 use serde::Serialize;
-use sistership_estimate::auto::Ladder;
+use sistership_choice::Ladder;
 use sistership_estimate::source::Similarity;
 
 use super::coefficients::Coefficients;

@@ -1,6 +1,6 @@
 //! What the report of a refinement is made of.
 
-use sistership_estimate::auto::Ladder;
+use sistership_choice::Ladder;
 use sistership_estimate::refine::Refinement;
 use sistership_estimate::source::Similarity;
 use sistership_model::trial::Trial;

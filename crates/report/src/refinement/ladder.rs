@@ -1,6 +1,6 @@
 //! What was tried before this model was taken.
 
-use sistership_estimate::auto::{Ladder, Line, Rung};
+use sistership_choice::{Ladder, Line, Rung};
 
 use crate::numbers::{known, significant};
 use crate::tables::{Cell, Column, Row, Table};

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use serde_json::{Value, json};
-use sistership_estimate::auto::Ladder;
+use sistership_choice::Ladder;
 use sistership_estimate::source::Similarity;
 use sistership_model::trial::Trial;
 use sistership_model::version::sha256;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sistership_estimate::auto::{Asked, Ladder, best_start};
+use sistership_choice::{Asked, Ladder, best_start};
 use sistership_estimate::refine::Settings;
 use sistership_estimate::source::{Similarity, best_source, similar};
 use sistership_model::trial::Trial as Recording;

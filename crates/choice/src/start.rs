@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel, Zoo};
 
-use super::entrant::{Entrant, entrants};
-use super::ladder::Ladder;
-use super::search::{Search, search};
-use super::thresholds::SEARCH;
-use crate::refine::{Progress, RefineError, Refinement, Settings};
-use crate::source::{Similarity, similar_with};
+use crate::entrant::{Entrant, entrants};
+use crate::ladder::Ladder;
+use crate::search::{Search, search};
+use crate::thresholds::SEARCH;
+use sistership_estimate::refine::{Progress, RefineError, Refinement, Settings};
+use sistership_estimate::source::{Similarity, similar_with};
 
 /// What is to be started.
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::refine::Method;
+use sistership_estimate::refine::Method;
 
 /// How far an entrant was taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

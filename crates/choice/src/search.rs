@@ -8,15 +8,15 @@ use std::time::Instant;
 use sistership_model::Vessel;
 use sistership_model::trial::Trial;
 
-use super::choice::{chosen, standard_error};
-use super::entrant::Entrant;
-use super::ladder::{Ladder, Line, Rung};
-use super::thresholds::SEARCH;
-use crate::refine::{
+use crate::choice::{chosen, standard_error};
+use crate::entrant::Entrant;
+use crate::ladder::{Ladder, Line, Rung};
+use crate::thresholds::SEARCH;
+use sistership_estimate::refine::{
     Extent, Family, Progress, RefineError, Refinement, Request, Settings, Weighed, in_parts,
     refine_wanted, weigh,
 };
-use crate::transfer::approach_of;
+use sistership_estimate::transfer::approach_of;
 
 /// What is searched.
 #[derive(Debug, Clone, Copy)]

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::refine::Weighed;
+use sistership_estimate::refine::Weighed;
 
 /// Below this an error is no error: the logarithm of less would decide alone.
 const LEAST: f64 = 1e-9;
