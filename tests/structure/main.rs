@@ -19,7 +19,10 @@ const ALLOWED: [(&str, &[&str]); 14] = [
     ("fleet", &["model", "dynamics", "regression", "estimate"]),
     ("store", &[]),
     ("report", &["model", "dynamics", "estimate", "choice", "diagnose"]),
-    ("pipeline", &["model", "dynamics", "trials", "estimate", "diagnose", "fleet", "store"]),
+    (
+        "pipeline",
+        &["model", "dynamics", "trials", "estimate", "choice", "diagnose", "fleet", "store"],
+    ),
     ("listen", &[]),
     (
         "server",

@@ -21,6 +21,7 @@ pub mod schema;
 pub mod search;
 pub mod seed;
 pub mod sorted;
+pub mod start;
 pub mod upkeep;
 pub mod verify;
 pub mod version;

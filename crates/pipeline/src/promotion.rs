@@ -1,10 +1,16 @@
 //! Whether a new version may become the candidate: only where it does better than the champion on
 //! the same trials left out. A worse one is kept, as every version is, and replaces nothing.
 
+use std::sync::Arc;
+
 use sistership_estimate::refine::{Extent, Family, Refinement, Request, Settings, weigh};
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model, Vessel};
 
+use crate::archive::{Archive, document};
+use crate::derive::Refined;
+use crate::error::DeriveError;
+use crate::line::{CHAMPION, alias};
 use crate::version::VersionDocument;
 
 /// Strength of a prior that keeps a source as it is.
@@ -44,23 +50,53 @@ impl Comparison {
     }
 }
 
+/// How a version that a refinement gave compares with the ship's champion, where it has one; `hashes`
+/// are those of its trials' samples, in their order.
+///
+/// # Errors
+/// The champion does not read.
+pub async fn against_champion(
+    archive: &Archive,
+    ship: &str,
+    refined: Arc<Refined>,
+    hashes: Vec<String>,
+) -> Result<Option<Comparison>, DeriveError> {
+    let Some(alias) = alias(&archive.store, ship, CHAMPION).await? else { return Ok(None) };
+    let version = archive.store.versions().get(ship, alias.version_number).await?;
+    let champion = document(&version)?;
+    let law = archive.law(&champion.model.law, champion.recipe.law_sha256()).await?;
+    let compare = move || {
+        let ingredients = &refined.ingredients;
+        let trials: Vec<(&Trial, &str)> =
+            ingredients.trials.iter().zip(hashes.iter().map(String::as_str)).collect();
+        compared(&Contest {
+            champion: &champion,
+            law: &law,
+            target: &ingredients.target,
+            trials: &trials,
+            refinement: &refined.refinement,
+        })
+    };
+    Ok(tokio::task::spawn_blocking(compare).await?)
+}
+
 /// What is compared.
 #[derive(Debug, Clone, Copy)]
-pub struct Contest<'a> {
+struct Contest<'a> {
     /// The champion as it is kept.
-    pub champion: &'a VersionDocument,
+    champion: &'a VersionDocument,
     /// Its law.
-    pub law: &'a Law,
+    law: &'a Law,
     /// The ship.
-    pub target: &'a Vessel,
+    target: &'a Vessel,
     /// Every trial of the new version, with the hashes of their samples.
-    pub trials: &'a [(&'a Trial, &'a str)],
+    trials: &'a [(&'a Trial, &'a str)],
     /// The new version's refinement.
-    pub refinement: &'a Refinement,
+    refinement: &'a Refinement,
 }
 
 /// Compares; none where the new version has no error, or the champion cannot be simulated there.
-pub fn compared(contest: &Contest<'_>) -> Option<Comparison> {
+fn compared(contest: &Contest<'_>) -> Option<Comparison> {
     let refinement = contest.refinement;
     let error = refinement.options.iter().find(|option| option.chosen)?.error?;
     let fitted: Vec<&(&Trial, &str)> = contest

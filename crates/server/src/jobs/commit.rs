@@ -14,10 +14,9 @@ use sistership_store::{
 use super::outcome::{JobError, Result, failed};
 use super::prepared::Prepared;
 use crate::app::App;
-use sistership_pipeline::archive::document;
 use sistership_pipeline::derive::{Derived, Refined};
-use sistership_pipeline::line::{CANDIDATE, CHAMPION, Standing, alias, step};
-use sistership_pipeline::promotion::{Comparison, Contest, compared};
+use sistership_pipeline::line::{CANDIDATE, CHAMPION, Standing, step};
+use sistership_pipeline::promotion::{Comparison, against_champion};
 use sistership_report::{self as report, Rendered, VersionLabel};
 
 /// A version that is to be kept, with what its report is made of.
@@ -27,8 +26,6 @@ struct Made {
     similarity: Option<Arc<Similarity>>,
     ladder: Option<Arc<Ladder>>,
     comparison: Option<Comparison>,
-    /// Of the samples of its trials, in their order.
-    hashes: Vec<String>,
     result: Value,
 }
 
@@ -39,8 +36,10 @@ pub(super) async fn commit(
     derived: Derived,
     prepared: Prepared,
 ) -> Result<()> {
+    let hashes = derived.document.recipe.trials().iter().map(|t| t.sha256.clone()).collect();
     let made = Made::new(derived, prepared)?;
-    let comparison = against_champion(app, &made).await?;
+    let refined = Arc::clone(&made.refined);
+    let comparison = against_champion(app.archive(), &made.version.model, refined, hashes).await?;
     let made = Made { comparison, ..made };
     for _ in 0..super::TRIES {
         let standing = Standing::of(app.store(), &made.version.model).await?;
@@ -57,29 +56,27 @@ pub(super) async fn commit(
 impl Made {
     fn new(derived: Derived, prepared: Prepared) -> Result<Self> {
         let Derived { document, refined } = derived;
-        let hashes = document.recipe.trials().iter().map(|trial| trial.sha256.clone()).collect();
         let named = |source: &Version| format!("{}/{}", source.head.model, source.head.number);
-        let source = prepared.source.as_ref().map(named);
+        let source = prepared.start.source.as_ref().map(named);
         let refined = refined.ok_or_else(|| failed("the recipe is not that of a refinement"))?;
         let version = NewVersion {
             model: document.ship.clone(),
-            parent: prepared.source.map(|source| source.head.id),
+            parent: prepared.start.source.map(|source| source.head.id),
             law: document.model.law.clone(),
             method: refined.refinement.method.clone(),
             document: document.canonical().map_err(failed)?,
         };
-        let ranking = prepared.similarity.as_ref().map(|similarity| &similarity.ranking);
+        let ranking = prepared.start.similarity.as_ref().map(|similarity| &similarity.ranking);
         let mut result = json!({ "source": source, "held_out": refined.refinement.held_out, "ranking": ranking });
-        if let Some(ladder) = &prepared.ladder {
+        if let Some(ladder) = &prepared.start.ladder {
             result["ladder"] = serde_json::to_value(ladder).map_err(failed)?;
         }
         Ok(Self {
             version,
             refined: Arc::new(refined),
-            similarity: prepared.similarity.map(Arc::new),
-            ladder: prepared.ladder.map(Arc::new),
+            similarity: prepared.start.similarity.map(Arc::new),
+            ladder: prepared.start.ladder.map(Arc::new),
             comparison: None,
-            hashes,
             result,
         })
     }
@@ -144,28 +141,6 @@ impl Made {
         result["report"] = json!(report.map(|report| &report.id));
         result.to_string()
     }
-}
-
-/// How the version compares with the ship's champion, where it has one.
-async fn against_champion(app: &App, made: &Made) -> Result<Option<Comparison>> {
-    let ship = &made.version.model;
-    let Some(alias) = alias(app.store(), ship, CHAMPION).await? else { return Ok(None) };
-    let champion = document(&app.store().versions().get(ship, alias.version_number).await?)?;
-    let Some(law) = app.laws().await?.law(&champion.model.law).cloned() else { return Ok(None) };
-    let refined = Arc::clone(&made.refined);
-    let hashes = made.hashes.clone();
-    let compare = move || {
-        let trials: Vec<(&Trial, &str)> =
-            refined.ingredients.trials.iter().zip(hashes.iter().map(String::as_str)).collect();
-        compared(&Contest {
-            champion: &champion,
-            law: &law,
-            target: &refined.ingredients.target,
-            trials: &trials,
-            refinement: &refined.refinement,
-        })
-    };
-    Ok(app.compute(compare).await?)
 }
 
 fn render(

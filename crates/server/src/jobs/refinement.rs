@@ -19,7 +19,7 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
     tell(&progress, 0.01, "reading the trials")?;
     let prepared = prepare(app, &asked, &progress).await?;
     let step = progress.clone();
-    let begun = if prepared.ladder.is_some() { SEARCHED } else { 0.1 };
+    let begun = if prepared.start.ladder.is_some() { SEARCHED } else { 0.1 };
     let scaled = move |done: f64, what: &str| step.tell(begun + (0.9 - begun) * done, what);
     let derived = derive(
         app.archive(),
