@@ -65,7 +65,7 @@ async fn a_refined_sister_is_the_source_that_is_taken() {
     let held_out: Vec<String> = trials()[1..].iter().map(|trial| trial.name.clone()).collect();
     let settings = json!({ "held_out": held_out });
     let plain = refined(&server, &json!({ "ship": SISTER, "settings": settings }), "plain").await;
-    let source = plain["source"].as_str().expect("a source");
+    let source = plain["source"].as_str().unwrap_or_else(|| panic!("{}", plain["ladder"]));
     assert!(source.starts_with(&format!("{NAME}/")), "{}", plain["ladder"]);
     let settings = json!({ "held_out": held_out, "method": "weak" });
     let body = json!({ "ship": SISTER, "source": "mariner", "settings": settings });

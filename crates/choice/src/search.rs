@@ -231,7 +231,8 @@ fn taken(search: &Search<'_>, mut tried: Vec<Tried>) -> Result<Winner, RefineErr
         RefineError::Diverged(reasons.join("; "))
     })?;
     let lines = tried.iter().enumerate();
-    let lines = lines.map(|(place, one)| line(search, one, place == best)).collect();
+    let least = tried.iter().filter_map(|one| one.weighed.error).fold(f64::INFINITY, f64::min);
+    let lines = lines.map(|(place, one)| line(search, one, least, place == best)).collect();
     let entrant = tried[best].entrant;
     let below = &tried[..tried.iter().position(|one| one.rung == tried[best].rung).unwrap_or(0)];
     let settings = settings_on(search.settings, tried[best].rung, ridge_of(below, entrant));
@@ -239,11 +240,12 @@ fn taken(search: &Search<'_>, mut tried: Vec<Tried>) -> Result<Winner, RefineErr
     Ok(Winner { entrant, settings, ladder: Ladder { lines }, refinement })
 }
 
-fn line(search: &Search<'_>, tried: &Tried, chosen: bool) -> Line {
+fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
     let entrant = &search.entrants[tried.entrant];
+    let ratio = tried.weighed.error.unwrap_or(f64::INFINITY) / least;
     let outcome = match chosen {
-        true => "the simplest within one standard error of the best",
-        false => "worse, or not simpler where it is not told apart",
+        true => "the simplest within one standard error of the least error".to_owned(),
+        false => format!("{ratio:.2} times the least error"),
     };
     Line {
         source: entrant.source_name().map(str::to_owned),
@@ -254,6 +256,6 @@ fn line(search: &Search<'_>, tried: &Tried, chosen: bool) -> Line {
         standard_error: standard_error(&tried.weighed),
         cost_s: tried.cost_s,
         chosen,
-        reason: tried.weighed.reason.clone().unwrap_or_else(|| outcome.to_owned()),
+        reason: tried.weighed.reason.clone().unwrap_or(outcome),
     }
 }

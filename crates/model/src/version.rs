@@ -9,6 +9,8 @@ pub const FORMAT: &str = "sistership-version/1";
 /// How a version is derived. Everything it starts from is named by the SHA-256 of its bytes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+// A handful of them is in memory at a time.
+#[allow(clippy::large_enum_variant)]
 pub enum Recipe {
     /// Taken from the ship's own file.
     Published {

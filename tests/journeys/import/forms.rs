@@ -6,11 +6,14 @@ use sistership_model::trial::Channel;
 use super::table::Table;
 use crate::sea_trials::csv;
 
+/// Files by their names.
+type Files = Vec<(String, Vec<u8>)>;
+
 /// A way to write a trial.
 pub struct Form {
     pub name: &'static str,
     /// The files of a trial and its number.
-    pub write: fn(&Trial, usize) -> Vec<(String, Vec<u8>)>,
+    pub write: fn(&Trial, usize) -> Files,
 }
 
 pub const FORMS: [Form; 21] = [
@@ -46,7 +49,7 @@ pub const FORMS: [Form; 21] = [
     Form { name: "CRLF and blanks in cells", write: padded },
 ];
 
-fn one(k: usize, ending: &str, bytes: Vec<u8>) -> Vec<(String, Vec<u8>)> {
+fn one(k: usize, ending: &str, bytes: Vec<u8>) -> Files {
     vec![(format!("trial_{k}.{ending}"), bytes)]
 }
 
@@ -63,12 +66,7 @@ fn joined(trial: &Trial, separator: &str) -> Vec<u8> {
 }
 
 /// Time by a function of seconds.
-fn timed(
-    trial: &Trial,
-    k: usize,
-    header: &str,
-    of: &dyn Fn(f64) -> String,
-) -> Vec<(String, Vec<u8>)> {
+fn timed(trial: &Trial, k: usize, header: &str, of: &dyn Fn(f64) -> String) -> Files {
     let table = Table::new().text(header, trial, |_, t| of(t)).motion(trial);
     one(k, "csv", table.csv())
 }
@@ -101,12 +99,12 @@ fn serial(t: f64) -> String {
     format!("{:.10}", 45_413.4 + t / 86_400.0)
 }
 
-fn above(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
+fn above(trial: &Trial, k: usize) -> Files {
     let text = format!("Logger 7\nVoyage,12\n\n{}\n", plain(trial).lines(",").join("\n"));
     one(k, "csv", text.into_bytes())
 }
 
-fn units_below(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
+fn units_below(trial: &Trial, k: usize) -> Files {
     let mut lines = plain(trial).lines(",");
     let header = lines.remove(0);
     let split = |cell: &str| {
@@ -118,30 +116,30 @@ fn units_below(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
     one(k, "csv", text.into_bytes())
 }
 
-fn decimal_commas(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
+fn decimal_commas(trial: &Trial, k: usize) -> Files {
     let lines = plain(trial).lines(";");
     let rows = lines[1..].iter().map(|line| line.replace('.', ","));
     let all: Vec<String> = std::iter::once(lines[0].clone()).chain(rows).collect();
     one(k, "csv", (all.join("\n") + "\n").into_bytes())
 }
 
-fn latin(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
+fn latin(trial: &Trial, k: usize) -> Files {
     let text = String::from_utf8(plain(trial).csv()).expect("text");
     let text = text.replace("[deg]", "[\u{b0}]").replace("[deg/s]", "[\u{b0}/s]");
     let bytes = text.chars().map(|c| u8::try_from(u32::from(c)).expect("Latin-1")).collect();
     one(k, "csv", bytes)
 }
 
-fn marked(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
+fn marked(trial: &Trial, k: usize) -> Files {
     one(k, "csv", [b"\xef\xbb\xbf".to_vec(), plain(trial).csv()].concat())
 }
 
-fn empty_column(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
+fn empty_column(trial: &Trial, k: usize) -> Files {
     let table = plain(trial).text("wind speed [m/s]", trial, |_, _| String::new());
     one(k, "csv", table.csv())
 }
 
-fn more_columns(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
+fn more_columns(trial: &Trial, k: usize) -> Files {
     let table = plain(trial).text("engine load [%]", trial, |k, _| (40 + k % 7).to_string()).text(
         "remark",
         trial,
@@ -150,7 +148,7 @@ fn more_columns(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
     one(k, "csv", table.csv())
 }
 
-fn knots(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
+fn knots(trial: &Trial, k: usize) -> Files {
     let to_knots = |speed: f64| speed / 0.514_444_444_444;
     let table = seconds("t [s]", trial)
         .channel("surge [kn]", trial, Channel::U, to_knots)
@@ -161,7 +159,7 @@ fn knots(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
     one(k, "csv", table.csv())
 }
 
-fn compass(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
+fn compass(trial: &Trial, k: usize) -> Files {
     let table = seconds("t [s]", trial)
         .velocities(trial)
         .channel("HDG [deg]", trial, Channel::Psi, |psi| psi.to_degrees().rem_euclid(360.0))
@@ -171,7 +169,7 @@ fn compass(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
     one(k, "csv", table.csv())
 }
 
-fn pair(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
+fn pair(trial: &Trial, k: usize) -> Files {
     let table = seconds("t [s]", trial)
         .velocities(trial)
         .channel("heading [deg]", trial, Channel::Psi, f64::to_degrees)
@@ -197,7 +195,7 @@ fn fixes(trial: &Trial, with_velocities: bool) -> Vec<u8> {
         .csv()
 }
 
-fn over_ground(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
+fn over_ground(trial: &Trial, k: usize) -> Files {
     let values = |channel| trial.channel(channel).expect("a velocity");
     let (u, v, psi) = (values(Channel::U), values(Channel::V), values(Channel::Psi));
     let course = |k: usize| (psi[k] + v[k].atan2(u[k])).to_degrees().rem_euclid(360.0);
@@ -210,7 +208,7 @@ fn over_ground(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
     one(k, "csv", table.csv())
 }
 
-fn padded(trial: &Trial, k: usize) -> Vec<(String, Vec<u8>)> {
+fn padded(trial: &Trial, k: usize) -> Files {
     let lines: Vec<String> =
         plain(trial).lines(",").iter().map(|line| line.replace(',', " , ")).collect();
     one(k, "csv", (lines.join("\r\n") + "\r\n").into_bytes())

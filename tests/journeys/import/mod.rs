@@ -47,7 +47,7 @@ fn refined(folder: &Path) -> f64 {
     let call =
         ["refine", "--ship", &ship, "--source", "mariner", "--method", "weak", "--trials", &trials];
     let answer = binary::json(&[&call[..], &["--json"]].concat(), 0);
-    answer["refinement"]["held_out"]["refined"]["psi"].as_f64().expect("an error")
+    answer["held_out"]["refined"]["psi"].as_f64().unwrap_or_else(|| panic!("{answer}"))
 }
 
 #[test]
