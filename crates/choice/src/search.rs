@@ -13,10 +13,9 @@ use crate::entrant::Entrant;
 use crate::ladder::{Ladder, Line, Rung};
 use crate::thresholds::SEARCH;
 use sistership_estimate::refine::{
-    Extent, Family, Progress, RefineError, Refinement, Request, Settings, Weighed, in_parts,
-    refine_wanted, weigh,
+    Extent, Family, Progress, RefineError, Refinement, Request, Settings, Weighed, refine_wanted,
+    weigh,
 };
-use sistership_estimate::transfer::approach_of;
 
 /// What is searched.
 #[derive(Debug, Clone, Copy)]
@@ -58,24 +57,23 @@ struct Tried {
 /// # Errors
 /// It was cancelled, a setting is refused, or nothing could be simulated to its end.
 pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
-    let parts = few_in_parts(search);
-    if parts.is_empty() {
-        return climbed(search, progress);
-    }
-    let trials: Vec<&Trial> = parts.iter().collect();
-    let open = Settings { held_out: Vec::new(), ..search.settings.clone() };
-    let found = climbed(&Search { trials: &trials, settings: &open, ..*search }, progress)?;
-    let held_out = search.settings.held_out.clone();
-    let settings = Settings { held_out, ..found.settings };
-    Ok(Winner { settings, refinement: None, ..found })
+    let held_out = &search.settings.held_out;
+    let fitted = search.trials.iter().filter(|trial| !held_out.contains(&trial.name)).count();
+    let in_parts = search.settings.in_parts || fitted < SEARCH.few;
+    let settings = Settings { in_parts, ..search.settings.clone() };
+    climbed(&Search { settings: &settings, ..*search }, progress)
 }
 
 fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
     let mut tried = Vec::new();
-    let (known, alone): (Vec<usize>, Vec<usize>) = (0..search.entrants.len())
+    let (known, mut alone): (Vec<usize>, Vec<usize>) = (0..search.entrants.len())
         .partition(|entrant| search.entrants[*entrant].source_law.is_some());
     climb(search, Rung::CarriedOver, &known, (0.0, 0.1), &mut tried, progress)?;
     let mut next = leading_by_law(search, &tried);
+    // Parts of one manoeuvre tell nothing of others, and without a source nothing else does.
+    if search.settings.in_parts && !next.is_empty() {
+        alone.clear();
+    }
     next.extend(alone);
     climb(search, Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
     let next = leading(&tried);
@@ -206,21 +204,6 @@ fn leading(tried: &[Tried]) -> Vec<usize> {
     let least = order.first().map_or(0.0, |(_, error)| *error);
     let near = order.into_iter().filter(|(_, error)| *error <= SEARCH.trajectory_gain * least);
     near.take(SEARCH.trajectories).map(|(entrant, _)| entrant).collect()
-}
-
-/// The trials that may be fitted in parts as long as simulations run between restarts, where there
-/// are few; else nothing.
-fn few_in_parts(search: &Search<'_>) -> Vec<Trial> {
-    let held_out = &search.settings.held_out;
-    let fitted: Vec<&Trial> =
-        search.trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
-    if fitted.len() >= SEARCH.few {
-        return Vec::new();
-    }
-    let lengths = search.target.particular("lpp_m").zip(approach_of(&fitted));
-    let ten_lengths_s = lengths.map(|(l, approach)| 10.0 * l / approach.speed_m_s);
-    let part_s = search.settings.restart_s.or(ten_lengths_s);
-    part_s.map_or_else(Vec::new, |part_s| in_parts(&fitted, part_s))
 }
 
 fn taken(search: &Search<'_>, mut tried: Vec<Tried>) -> Result<Winner, RefineError> {

@@ -197,7 +197,7 @@ fn is_serial(unit: &str) -> bool {
 
 /// Whether numbers without a unit can be nothing but Excel's days: header, size and distance all
 /// say so.
-fn looks_serial(header: &str, values: &[f64]) -> bool {
+pub(crate) fn looks_serial(header: &str, values: &[f64]) -> bool {
     let name = header.to_lowercase();
     let step = (values[values.len() - 1] - values[0]) / values.len() as f64;
     ["date", "time", "utc"].iter().any(|word| name.contains(word))

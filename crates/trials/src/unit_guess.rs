@@ -1,5 +1,6 @@
 //! The unit of a column: as it is written, or as its first values suggest.
 
+use crate::clock::looks_serial;
 use crate::decimals::Decimals;
 use crate::number::number;
 use crate::stamp::{Date, Order, stamp};
@@ -19,7 +20,7 @@ pub(crate) fn unit(target: Target, header: &str, below: Option<&str>, cells: &[&
     let kind = Kind::of(target);
     let guess = |unit: &str, why: String, certain| UnitGuess { unit: unit.into(), why, certain };
     if target == Target::Time
-        && let Some((unit, why, certain)) = written_time(cells)
+        && let Some((unit, why, certain)) = written_time(cells).or_else(|| serial(header, cells))
     {
         return guess(unit, why.into(), certain);
     }
@@ -56,10 +57,19 @@ fn written_time(cells: &[&str]) -> Option<(&'static str, &'static str, bool)> {
     })
 }
 
+fn serial(header: &str, cells: &[&str]) -> Option<(&'static str, &'static str, bool)> {
+    let values = numbers(cells);
+    let is_serial = !values.is_empty() && looks_serial(header, &values);
+    is_serial.then_some(("excel", "its numbers are the days of a sheet", true))
+}
+
 fn largest(cells: &[&str]) -> f64 {
+    numbers(cells).into_iter().map(f64::abs).fold(0.0, f64::max)
+}
+
+fn numbers(cells: &[&str]) -> Vec<f64> {
     let mut decimals = Decimals::new(b';');
-    let value = |cell: &&str| number(&decimals.point(0, cell.as_bytes())).unwrap_or(0.0).abs();
-    cells.iter().map(value).fold(0.0, f64::max)
+    cells.iter().filter_map(|cell| number(&decimals.point(0, cell.as_bytes())).ok()).collect()
 }
 
 fn by_size(target: Target, kind: Kind, largest: f64) -> (&'static str, &'static str) {

@@ -44,7 +44,6 @@ pub use family::Family;
 pub use outcome::{
     CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement, StepOption,
 };
-pub use parts::in_parts;
 pub use progress::{Iterate, Progress, Watch};
 pub use ridge::{Choices, Fit, Fitted, Fold, fit, tune};
 pub use rows::{Table, trial_moments, trial_tables};

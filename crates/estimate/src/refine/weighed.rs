@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use sistership_model::trial::Trial;
+
 use super::candidate::{CandidateFit, best};
 use super::family::Family;
 use super::problem::Problem;
@@ -67,8 +69,15 @@ fn one(problem: &Problem<'_>, candidate: &CandidateFit, variants: &[Variant]) ->
     }
 }
 
-/// Means by trial: parts of one count together, for they depend on each other.
+/// Means by trial: parts of one count together, for they depend on each other; of one or two trials
+/// there is nothing else to tell a scatter from.
 fn by_trial(problem: &Problem<'_>, each: &[f64]) -> BTreeMap<String, f64> {
+    if problem.settings.in_parts {
+        let named = |(k, (trial, error)): (usize, (&&Trial, &f64))| {
+            (format!("{} ({})", trial.name, k + 1), *error)
+        };
+        return problem.training.iter().zip(each).enumerate().map(named).collect();
+    }
     let mut sums: BTreeMap<String, (f64, f64)> = BTreeMap::new();
     for (trial, error) in problem.training.iter().zip(each) {
         let sum = sums.entry(trial.name.clone()).or_default();
