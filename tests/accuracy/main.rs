@@ -3,5 +3,6 @@
 mod esso_osaka;
 mod family;
 mod paper_v;
+mod plain;
 mod reference_tracks;
 mod similarity;

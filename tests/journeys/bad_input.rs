@@ -166,7 +166,7 @@ fn bad_trials() -> Vec<Case> {
         post("NaN", row("5.0,NaN,0.01,0.001,0.005,0.02"), &["12", "u_m_s"]),
         post("a row that is too short", row("5.0,7.0"), &["12"]),
         post("an impossible speed", row("5.0,700.0,0.01,0.001,0.005,0.02"), &["12", "u_m_s"]),
-        post("no time column", header("time,u_m_s,v_m_s,r_rad_s,psi_rad,delta_rad"), &["t_s"]),
+        post("no time column", header("instant,u_m_s,v_m_s,r_rad_s,psi_rad,delta_rad"), &["t_s"]),
         post(
             "two columns for one channel",
             header("t_s,u_m_s,u_kn,r_rad_s,psi_rad,delta_rad"),

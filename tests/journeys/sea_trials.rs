@@ -18,17 +18,22 @@ pub fn ship() -> String {
 
 /// Its trials, with the noise of real instruments.
 pub fn trials() -> Vec<Trial> {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-    let model = zoo.model("sr108").unwrap_or_else(|error| panic!("{error}"));
-    let ship = Ship::new(&model, zoo.law(&model.law).expect("the law of a zoo model"))
-        .expect("a ready ship");
     let programme = [
         TrialManoeuvre::Zigzag(10.0, 10.0),
         TrialManoeuvre::Zigzag(20.0, 20.0),
         TrialManoeuvre::Turn(12.0),
         TrialManoeuvre::Turn(-20.0),
     ];
-    record(&ship, 10.47, &programme, 3).unwrap_or_else(|stopped| panic!("{stopped}"))
+    sailed(&programme, 3)
+}
+
+/// Other trials of the same hull, as a sister would sail them.
+pub fn sailed(programme: &[TrialManoeuvre], seed: u64) -> Vec<Trial> {
+    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let model = zoo.model("sr108").unwrap_or_else(|error| panic!("{error}"));
+    let ship = Ship::new(&model, zoo.law(&model.law).expect("the law of a zoo model"))
+        .expect("a ready ship");
+    record(&ship, 10.47, programme, seed).unwrap_or_else(|stopped| panic!("{stopped}"))
 }
 
 /// A trial as a CSV file.

@@ -5,6 +5,7 @@ mod recovery;
 mod scaling;
 mod stopping;
 mod symmetry;
+mod truth;
 
 use std::sync::Arc;
 

@@ -9,4 +9,5 @@ pub mod server;
 pub mod shape;
 pub mod shared;
 pub mod synthetic;
+pub mod truth;
 pub mod worker;

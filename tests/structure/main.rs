@@ -8,30 +8,34 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crates that only some may name.
-const ALLOWED: [(&str, &[&str]); 13] = [
+const ALLOWED: [(&str, &[&str]); 14] = [
     ("model", &[]),
     ("dynamics", &["model"]),
     ("trials", &["model"]),
     ("regression", &[]),
     ("estimate", &["model", "dynamics", "regression"]),
+    ("choice", &["model", "estimate"]),
     ("diagnose", &["model", "dynamics", "regression", "estimate"]),
     ("fleet", &["model", "dynamics", "regression", "estimate"]),
     ("store", &[]),
-    ("report", &["model", "dynamics", "estimate", "diagnose"]),
-    ("pipeline", &["model", "dynamics", "trials", "estimate", "diagnose", "fleet", "store"]),
+    ("report", &["model", "dynamics", "estimate", "choice", "diagnose"]),
+    (
+        "pipeline",
+        &["model", "dynamics", "trials", "estimate", "choice", "diagnose", "fleet", "store"],
+    ),
     ("listen", &[]),
     (
         "server",
         &[
-            "model", "dynamics", "trials", "estimate", "diagnose", "fleet", "store", "report",
-            "pipeline", "listen",
+            "model", "dynamics", "trials", "estimate", "choice", "diagnose", "fleet", "store",
+            "report", "pipeline", "listen",
         ],
     ),
     (
         "cli",
         &[
-            "model", "dynamics", "trials", "estimate", "diagnose", "store", "report", "pipeline",
-            "server",
+            "model", "dynamics", "trials", "estimate", "choice", "diagnose", "store", "report",
+            "pipeline", "server",
         ],
     ),
 ];

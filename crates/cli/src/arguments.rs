@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 use crate::commands::{backup, family, fsck, gc, serve, ships, verify, work};
-use crate::commands::{check, derive, diagnose, manoeuvre, refine, similar, simulate};
+use crate::commands::{check, derive, diagnose, import, manoeuvre, refine, similar, simulate};
 use crate::demo::DemoArguments;
 
 const EXAMPLES: &str = "\
@@ -14,9 +14,10 @@ TRIALS is a trial manifest (YAML), or a CSV or Parquet file with canonical colum
 v_m_s, r_rad_s, delta_rad, n_rps, ...; other unit suffixes such as _deg, _rpm, _kn are converted).
 
 Examples:
+  sistership import log/*.csv --ship my-ship
   sistership similar kvlcc2
   sistership check trials.yaml
-  sistership refine --ship my-ship.yaml --source auto --trials trials.yaml --out my-model.yaml
+  sistership refine --ship my-ship.yaml --trials trials.yaml --out my-model.yaml
   sistership simulate --model my-model.yaml --trials trials.yaml
   sistership diagnose --model my-model.yaml --trials new-trials.yaml --report diagnosis.html
   sistership manoeuvre --model my-model.yaml --all
@@ -42,6 +43,8 @@ pub enum Command {
     Similar(similar::SimilarArguments),
     /// Check trial files: units, signs, gaps, jumps, time.
     Check(check::CheckArguments),
+    /// Look at trial files and write a manifest that reads them.
+    Import(import::ImportArguments),
     /// Refine a source model against a ship's trials.
     Refine(Box<refine::RefineArguments>),
     /// Simulate recorded trials with a model and measure its errors.

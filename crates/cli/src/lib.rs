@@ -48,6 +48,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Similar(similar) => commands::similar::run(&zoo()?, similar),
         Command::Check(check) => commands::check::run(check),
+        Command::Import(import) => commands::import::run(&zoo()?, import),
         Command::Refine(refine) => commands::refine::run(&zoo()?, refine),
         Command::Simulate(simulate) => commands::simulate::run(&zoo()?, simulate),
         Command::Diagnose(diagnose) => commands::diagnose::run(&zoo()?, diagnose),

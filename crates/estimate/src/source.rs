@@ -1,6 +1,9 @@
 //! Choosing the source of a refinement: `auto`, a ship, or one of her models.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
+use sistership_model::categories::{group_of, known_categories};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{FileError, Model, Vessel, Zoo};
 
@@ -15,12 +18,22 @@ use crate::trend::{TrendError, trend};
 pub struct Similarity {
     /// The target's name.
     pub target: String,
+    /// The target's category.
+    #[serde(skip)]
+    pub category: String,
     /// The definition of the vector.
     pub definition: Definition,
     /// The target's vector.
-    pub vector: std::collections::BTreeMap<String, f64>,
+    pub vector: BTreeMap<String, f64>,
     /// Candidates, most similar first.
     pub ranking: Vec<RankedSource>,
+}
+
+impl Similarity {
+    /// The ships that pass every step, most similar first.
+    pub fn eligible(&self) -> impl Iterator<Item = &RankedSource> {
+        self.ranking.iter().filter(|ranked| ranked.eligible)
+    }
 }
 
 /// Why there is no source.
@@ -53,9 +66,24 @@ pub fn similar(
     definition: Option<Definition>,
     trials: &[&Trial],
 ) -> Similarity {
+    similar_with(zoo, target, definition, trials, &BTreeMap::new())
+}
+
+/// As [`similar`], where some ships have a better model than their published one, by their names.
+pub fn similar_with(
+    zoo: &Zoo,
+    target: &Vessel,
+    definition: Option<Definition>,
+    trials: &[&Trial],
+    champions: &BTreeMap<String, Model>,
+) -> Similarity {
     let definition = definition.unwrap_or_else(|| definition_for(target));
+    let model = |vessel: &Vessel| match champions.get(vessel.name()) {
+        Some(champion) => Some(champion.clone()),
+        None => zoo.published(vessel, None).ok(),
+    };
     let models: Vec<(&Vessel, Option<Model>)> =
-        zoo.vessels().map(|vessel| (&**vessel, zoo.published(vessel, None).ok())).collect();
+        zoo.vessels().map(|vessel| (&**vessel, model(vessel))).collect();
     let candidates: Vec<SourceCandidate<'_>> = models
         .iter()
         .map(|(vessel, model)| SourceCandidate { vessel, model: model.as_ref() })
@@ -64,6 +92,7 @@ pub fn similar(
     let measured: Option<Trend<'_>> = if trials.is_empty() { None } else { Some(&measured) };
     Similarity {
         target: target.name().to_owned(),
+        category: target.file.category.clone(),
         definition,
         vector: CharacteristicVector::of(target, definition).values,
         ranking: rank(target, &candidates, definition, &EligibilityLimits::default(), measured),
@@ -109,8 +138,7 @@ pub fn best_source_except(
     similarity: &Similarity,
     exclude: &[String],
 ) -> Result<Model, SourceError> {
-    let eligible =
-        similarity.ranking.iter().find(|ranked| ranked.eligible && !exclude.contains(&ranked.ship));
+    let eligible = similarity.eligible().find(|ranked| !exclude.contains(&ranked.ship));
     if let Some(model) = eligible.and_then(|ranked| ranked.model.as_deref()) {
         return Ok(zoo.model(model)?);
     }
@@ -118,5 +146,15 @@ pub fn best_source_except(
         format!("{}: {}", ranked.ship, ranked.reasons.last().map_or("", String::as_str))
     };
     let reasons: Vec<String> = similarity.ranking.iter().map(why).collect();
-    Err(SourceError::NotEligible { target: similarity.target.clone(), reasons: reasons.join("; ") })
+    let reasons = reasons.join("; ") + &unknown_category(&similarity.category);
+    Err(SourceError::NotEligible { target: similarity.target.clone(), reasons })
+}
+
+/// What to know of a category that stands in no group.
+fn unknown_category(category: &str) -> String {
+    if group_of(category).is_some() {
+        return String::new();
+    }
+    let known = known_categories().join(", ");
+    format!("; the category `{category}` is compared with itself only, known are {known}")
 }

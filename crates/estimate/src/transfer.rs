@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use crate::estimated::estimated;
+
 use sistership_dynamics::{PlantError, Ship};
 use sistership_model::formula::Expr;
 use sistership_model::law::Law;
@@ -94,7 +96,14 @@ pub(crate) fn blank_of(
 ) -> Result<Model, UnknownParameter> {
     let mut target = target.clone();
     target.particulars = complete(source, law, &target, ratio(source, &target));
-    blank(law, &target, approach)
+    filled(law, &target, approach, &|name| same_parameter(law, name, source))
+}
+
+/// A source's parameter of the same name, where it has no unit and so belongs to no size.
+fn same_parameter(law: &Law, name: &str, source: &Model) -> Option<Quantity> {
+    let is_bare = law.parameters.get(name).is_some_and(|parameter| parameter.unit == "1");
+    let value = source.parameters.get(name).filter(|_| is_bare)?.value;
+    Some(Quantity::new(value, format!("as of {}", source.name)))
 }
 
 /// A model of a law for a ship of which nothing is known but her particulars: every coefficient that the law lists is zero, so
@@ -107,6 +116,16 @@ pub fn blank(
     target: &Vessel,
     approach: Option<Approach>,
 ) -> Result<Model, UnknownParameter> {
+    filled(law, target, approach, &|_| None)
+}
+
+/// As [`blank`]; what does not follow from the particulars is asked of the caller, then estimated.
+fn filled(
+    law: &Law,
+    target: &Vessel,
+    approach: Option<Approach>,
+    given: &dyn Fn(&str) -> Option<Quantity>,
+) -> Result<Model, UnknownParameter> {
     let zero = |name: &String| (name.clone(), Quantity::new(0.0, "nothing known"));
     let parameter = |name: &String| {
         let own = if law.approach_speed_parameter() == Some(name) {
@@ -114,13 +133,15 @@ pub fn blank(
         } else {
             None
         };
-        let value = own.or_else(|| law.derived_parameter(name, &target.particulars));
+        let derived = own.or_else(|| law.derived_parameter(name, &target.particulars));
+        let value = derived.map(|value| Quantity::new(value, DERIVED));
+        let value = value.or_else(|| given(name)).or_else(|| estimated(law, name, target));
         let unknown = || UnknownParameter {
             name: name.clone(),
             law: law.name.clone(),
             ship: target.name().to_owned(),
         };
-        Ok((name.clone(), Quantity::new(value.ok_or_else(unknown)?, DERIVED)))
+        Ok((name.clone(), value.ok_or_else(unknown)?))
     };
     Ok(Model {
         kind: ModelKind::Model,

@@ -9,6 +9,8 @@ pub const FORMAT: &str = "sistership-version/1";
 /// How a version is derived. Everything it starts from is named by the SHA-256 of its bytes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+// A handful of them is in memory at a time.
+#[allow(clippy::large_enum_variant)]
 pub enum Recipe {
     /// Taken from the ship's own file.
     Published {
@@ -21,8 +23,12 @@ pub enum Recipe {
     },
     /// Refined from a source against trials.
     Refinement {
-        /// The version refined.
-        source: SourceVersion,
+        /// The version refined; none where the trials alone made the model.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        source: Option<SourceVersion>,
+        /// The law's name, where there is no source to tell it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        law: Option<String>,
         /// The target ship's document.
         ship_sha256: String,
         /// The law's file.

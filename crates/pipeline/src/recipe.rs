@@ -169,7 +169,7 @@ impl Recipe {
     /// The version that it starts from; none for a published model.
     pub fn starts_from(&self) -> Option<&SourceVersion> {
         match self {
-            Self::Plain(version::Recipe::Refinement { source, .. }) => Some(source),
+            Self::Plain(version::Recipe::Refinement { source, .. }) => source.as_ref(),
             Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => None,
             Self::Family(recipe) => Some(&recipe.start),
             Self::Diagnosis(_) => self.diagnosed(),

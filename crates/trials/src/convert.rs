@@ -2,11 +2,13 @@
 
 use std::f64::consts::{PI, TAU};
 
-use sistership_model::manifest::{RudderSign, TrialConventions, VelocityFrame, WindDirection};
+use sistership_model::manifest::{RudderSign, VelocityFrame, WindDirection};
 use sistership_model::trial::{Channel, Trial};
 
+use crate::declarations::North;
 use crate::findings::Findings;
 use crate::mapping::Mapping;
+use crate::pairs::means;
 use crate::recording::Recording;
 use crate::table::{Table, Target};
 
@@ -24,8 +26,13 @@ pub(crate) fn convert(
         velocity: mapping.conventions.velocity,
         ..Trial::default()
     };
-    let mut recording =
-        Recording { trial, rows: table.rows, resumed: table.resumed, ..Recording::default() };
+    let mut recording = Recording {
+        trial,
+        rows: table.rows,
+        start: table.start,
+        resumed: table.resumed,
+        ..Recording::default()
+    };
     for (column, mut values) in table.columns.into_iter().zip(table.values) {
         match column.target {
             Target::Time => {
@@ -34,10 +41,17 @@ pub(crate) fn convert(
             }
             Target::Channel(channel) => {
                 recording.columns.insert(channel, column);
-                sign(channel, &mut values, &mapping.conventions, &recording, findings);
+                sign(channel, &mut values, mapping, &recording, findings);
                 recording.trial.channels.insert(channel, values);
             }
+            Target::Raw(raw) => {
+                recording.raw.insert(raw, values);
+            }
         }
+    }
+    for (channel, mut values) in means(&mut recording, findings) {
+        sign(channel, &mut values, mapping, &recording, findings);
+        recording.trial.channels.insert(channel, values);
     }
     tell_frame(&recording, findings);
     recording
@@ -46,16 +60,20 @@ pub(crate) fn convert(
 fn sign(
     channel: Channel,
     values: &mut [f64],
-    conventions: &TrialConventions,
+    mapping: &Mapping,
     recording: &Recording,
     findings: &mut Findings,
 ) {
+    let (conventions, declared) = (&mapping.conventions, &mapping.declared);
     match channel {
         Channel::Delta if conventions.rudder_positive == RudderSign::PortTurn => {
             values.iter_mut().for_each(|value| *value = -*value);
         }
         Channel::Psi => {
             degree_wrap(values, recording, findings);
+            if let (North::Magnetic, Some(variation)) = (declared.heading, declared.variation_deg) {
+                values.iter_mut().for_each(|value| *value += variation.to_radians());
+            }
             unwrap_heading(values);
         }
         Channel::WindFrom | Channel::ApparentWindFrom => {
@@ -125,6 +143,8 @@ fn tell_frame(recording: &Recording, findings: &mut Findings) {
 
 #[cfg(test)]
 mod tests {
+    use sistership_model::manifest::TrialConventions;
+
     use super::*;
     use crate::testing::{messages, table};
 
@@ -165,6 +185,16 @@ mod tests {
         assert!((psi[1] - (TAU - 3.1)).abs() < 1e-12 && psi[4] == 3.0);
         assert!(text.is_empty());
         assert!(run(Channel::Psi, &[358.0, 359.5, 1.0], |_| ()).1.contains("declare `deg`"));
+    }
+
+    #[test]
+    fn a_magnetic_heading_is_corrected_by_the_variation() {
+        let mut mapping = Mapping::canonical();
+        mapping.declared.heading = North::Magnetic;
+        mapping.declared.variation_deg = Some(-2.0);
+        let psi = table(&[(Channel::Psi, vec![0.5; 3])]);
+        let recording = convert("a", psi, &mapping, &mut Findings::default());
+        assert!((recording.trial.channels[&Channel::Psi][0] - 0.5 + PI / 90.0).abs() < 1e-12);
     }
 
     #[test]

@@ -5,13 +5,16 @@ use std::io::{Cursor, Read};
 use csv::{ByteRecord, ReaderBuilder};
 
 use crate::cells::{Cells, Counter};
+use crate::clock::Clock;
+use crate::decimals::Decimals;
 use crate::findings::Findings;
+use crate::layout::{self, Layout};
 use crate::mapping::Mapping;
 use crate::metered::{Meter, Metered};
 use crate::number::{Fault, number};
-use crate::resolve::resolve;
+use crate::resolve::{Heading, resolve_heading};
 use crate::rows::Builder;
-use crate::table::Table;
+use crate::table::{Table, Target, width};
 
 /// Bytes that are asked for at once while the header is looked for.
 const CHUNK: u64 = 4096;
@@ -22,20 +25,30 @@ const CHUNK: u64 = 4096;
 /// so do those within quoted cells.
 pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
     let (mut metered, meter) = Metered::new(input, mapping.limits.line_bytes);
-    let start = start(&mut metered, &meter, mapping.limits.line_bytes, findings)?;
-    let separator = separator(&start);
-    let whole = Cursor::new(start).chain(metered);
-    let mut reader = ReaderBuilder::new().delimiter(separator).flexible(true).from_reader(whole);
+    let start = start(&mut metered, &meter, mapping, findings)?;
+    let layout = layout::find(&start, mapping);
+    let whole = Cursor::new(start[layout.offset..].to_vec()).chain(metered);
+    drop(start);
+    let mut reader = opened(whole, layout.separator);
     let headers = headers(&mut reader, mapping, findings)?;
     meter.reset();
-    let columns = resolve(&headers, mapping, findings)?;
-    let mut counter = Counter::new(separator, headers.len());
+    let columns = resolve_heading(heading(&headers, &layout), mapping, findings)?;
+    let mut cells = Reading {
+        lines: layout.lines,
+        most: mapping.limits.rows,
+        units: !layout.units.is_empty(),
+        clock: Clock::of(&columns),
+        counter: Counter::new(layout.separator, headers.len()),
+        decimals: Decimals::new(layout.separator),
+    };
     let mut builder =
         Builder::new(columns, mapping.conventions.missing, findings).with_room(mapping.room);
-    let stopped = rows(&mut reader, &meter, mapping.limits.rows, &mut counter, &mut builder);
+    let stopped = cells.rows(&mut reader, &meter, &mut builder);
     let drops = builder.drops();
-    let table = builder.finish();
-    counter.tell(drops, findings);
+    let mut table = builder.finish();
+    cells.counter.tell(drops, findings);
+    cells.decimals.tell(findings);
+    cells.clock.finish(&mut table, findings);
     if let Err((row, message)) = stopped {
         findings.error(Some(row), None, message);
     }
@@ -66,17 +79,27 @@ pub(crate) fn measure(mut input: impl Read, mapping: &Mapping) -> Option<(usize,
 /// How many columns of the file that starts like this are read.
 fn columns(start: &[u8], mapping: &Mapping) -> Option<usize> {
     let mut findings = Findings::default();
-    let mut reader =
-        ReaderBuilder::new().delimiter(separator(start)).flexible(true).from_reader(start);
+    let layout = layout::find(start, mapping);
+    let mut reader = opened(&start[layout.offset..], layout.separator);
     let headers = headers(&mut reader, mapping, &mut findings)?;
-    Some(resolve(&headers, mapping, &mut findings)?.len())
+    let columns = resolve_heading(heading(&headers, &layout), mapping, &mut findings)?;
+    Some(width(&columns))
 }
 
-/// The file up to the end of the header's line at least, however small the pieces are in which it comes.
+fn opened<R: Read>(input: R, separator: u8) -> csv::Reader<R> {
+    ReaderBuilder::new().delimiter(separator).flexible(true).from_reader(input)
+}
+
+fn heading<'a>(names: &'a [String], layout: &'a Layout) -> Heading<'a> {
+    Heading { names, units: &layout.units, row: layout.lines + 1 }
+}
+
+/// The file up to the line below the header at least, however small the pieces are in which it
+/// comes.
 fn start(
     input: &mut impl Read,
     meter: &Meter,
-    most: usize,
+    mapping: &Mapping,
     findings: &mut Findings,
 ) -> Option<Vec<u8>> {
     let mut start = Vec::new();
@@ -92,41 +115,17 @@ fn start(
             findings.error(Some(1), None, "the file is UTF-16 text; save it as UTF-8");
             return None;
         }
-        let complete = header_line(&start)
-            .is_some_and(|line| line.len() < text(&start).trim_ascii_start().len());
-        if read == 0 || complete || start.len() > most {
+        if read == 0
+            || start.len() > mapping.limits.line_bytes
+            || layout::is_settled(&start, mapping)
+        {
             return Some(start);
         }
-        // Blank lines before the header are no row without an end.
-        if header_line(&start).is_none() {
+        // Lines before the header are no row without an end.
+        if start[start.len() - read..].contains(&b'\n') {
             meter.reset();
         }
     }
-}
-
-/// What follows the byte order mark, if there is one.
-fn text(start: &[u8]) -> &[u8] {
-    start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start)
-}
-
-/// The first line that is not blank, as far as it goes.
-fn header_line(start: &[u8]) -> Option<&[u8]> {
-    text(start).split(|&byte| byte == b'\n').find(|line| !line.trim_ascii().is_empty())
-}
-
-/// Comma, semicolon or tab: whichever the header line holds most of outside quotes.
-fn separator(start: &[u8]) -> u8 {
-    let header = header_line(start).unwrap_or_default();
-    let bare = |separator: u8| {
-        let mut quoted = false;
-        let counts = |&byte: &u8| {
-            quoted ^= byte == b'"';
-            byte == separator && !quoted
-        };
-        header.iter().copied().filter(counts).count()
-    };
-    // The last of equals wins, and a comma is the rule.
-    [b'\t', b';', b','].into_iter().max_by_key(|&separator| bare(separator)).unwrap_or(b',')
 }
 
 fn headers(
@@ -141,8 +140,7 @@ fn headers(
             return None;
         }
     };
-    let headers: Vec<String> =
-        record.iter().map(|name| String::from_utf8_lossy(name).trim().to_owned()).collect();
+    let headers: Vec<String> = record.iter().map(layout::name).collect();
     let problem = match headers.len() {
         0 => "the file is empty; it needs a header with column names".to_owned(),
         n if n > mapping.limits.columns => {
@@ -154,36 +152,62 @@ fn headers(
     None
 }
 
-/// Feeds every row to the builder; stops with row and reason at what cannot be read on.
-fn rows(
-    reader: &mut csv::Reader<impl Read>,
-    meter: &Meter,
+/// What is learned row by row.
+struct Reading {
+    /// Lines before those that are read.
+    lines: usize,
+    /// Rows that are read at most.
     most: usize,
-    counter: &mut Counter,
-    builder: &mut Builder,
-) -> Result<(), (usize, String)> {
-    let mut record = ByteRecord::new();
-    let mut count = 0;
-    loop {
-        let next = usize::try_from(reader.position().line()).unwrap_or(usize::MAX);
-        let more = reader
-            .read_byte_record(&mut record)
-            .map_err(|error| (next, format!("cannot be read on: {error}")))?;
-        if !more {
-            return Ok(());
+    /// Whether the first row is one of units.
+    units: bool,
+    clock: Clock,
+    counter: Counter,
+    decimals: Decimals,
+}
+
+impl Reading {
+    /// Feeds every row to the builder; stops with row and reason at what cannot be read on.
+    fn rows(
+        &mut self,
+        reader: &mut csv::Reader<impl Read>,
+        meter: &Meter,
+        builder: &mut Builder,
+    ) -> Result<(), (usize, String)> {
+        let mut record = ByteRecord::new();
+        let mut count = 0;
+        loop {
+            let next = usize::try_from(reader.position().line()).unwrap_or(usize::MAX) + self.lines;
+            let more = reader
+                .read_byte_record(&mut record)
+                .map_err(|error| (next, format!("cannot be read on: {error}")))?;
+            if !more {
+                return Ok(());
+            }
+            let row = line(reader, &record) + self.lines;
+            meter.reset();
+            if std::mem::take(&mut self.units) {
+                continue;
+            }
+            count += 1;
+            if count > self.most {
+                let most = self.most;
+                let why = format!("the file has more than the {most} rows that are read; split it");
+                return Err((row, why));
+            }
+            self.row(row, &record, builder);
         }
-        let row = line(reader, &record);
-        count += 1;
-        if count > most {
-            return Err((
-                row,
-                format!("the file has more than the {most} rows that are read; split it"),
-            ));
-        }
-        meter.reset();
-        match counter.row(row, &record) {
-            Cells::Fit => builder
-                .row(row, |_, column| record.get(column.index).map_or(Err(Fault::Absent), number)),
+    }
+
+    fn row(&mut self, row: usize, record: &ByteRecord, builder: &mut Builder) {
+        match self.counter.row(row, record) {
+            Cells::Fit => builder.row(row, |_, column| {
+                let cell = record.get(column.index).ok_or(Fault::Absent)?;
+                let cell = self.decimals.point(row, cell);
+                match column.target {
+                    Target::Time => self.clock.cell(row, &cell),
+                    _ => number(&cell),
+                }
+            }),
             Cells::Few(_) => builder.short(row),
             Cells::Many => {}
         }
@@ -229,7 +253,7 @@ mod tests {
         assert!(errors[0].starts_with("Some(3) the cell is empty"), "{errors:?}");
         assert!(errors[1].contains("not a finite number") && errors[2].contains("`abc`"));
         assert!(errors[3].contains("row 6 has 1 cell; the header has 2"), "{errors:?}");
-        let (_, errors) = run("t_s;u_m_s\n0;1,5\n", &Mapping::canonical());
+        let (_, errors) = run("t_s;u_m_s\n0;1,5\n1;1.5\n", &Mapping::canonical());
         assert!(errors[0].contains("with a point"));
     }
 

@@ -60,8 +60,7 @@ fn a_decimal_comma_is_recognised() {
         assert!(text.contains("row 2 has"), "{text}");
     }
     assert!(
-        said("t_s;u_m_s\n0;1,5\n1;1,6\n").contains("row")
-            || said("t_s;u_m_s\n0;1,5\n").contains("with a point")
+        said("t_s;u_m_s\n0;1,5\n1;1,6\n").contains("numbers have a decimal comma, from row 2 on")
     );
     assert!(said("t_s,u_m_s\n0,\"1,5\"\n").contains("with a point"));
 }
@@ -140,4 +139,50 @@ fn what_is_no_utf8_text_is_told() {
 fn a_file_of_a_header_alone_has_no_rows() {
     assert_eq!(accepted("t_s,u_m_s\n").rows.len(), 0);
     assert_eq!(accepted("t_s,u_m_s").rows.len(), 0);
+}
+
+#[test]
+fn lines_above_the_header_and_units_below_it_are_passed_over() {
+    let text = "Vessel;A\n;;\nStart;12:00\n\nt_s;psi;delta;Bemerkung\n[s];\u{b0};deg;\n0;1,5;2;a\n1;2,5;3;b\n";
+    let latin: Vec<u8> = text.chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
+    for bytes in [text.as_bytes(), &latin] {
+        let mut findings = Findings::default();
+        let table = read(bytes, &Mapping::canonical(), &mut findings).unwrap();
+        assert_eq!(table.rows, [7, 8]);
+        assert!((table.values[1][1] - 2.5_f64.to_radians()).abs() < 1e-12);
+        let text = messages(findings);
+        assert!(text.contains("warning Some(5) None columns not read: Bemerkung"), "{text}");
+        assert!(!text.contains("error"), "{text}");
+    }
+    let far = format!("{}t_s,u_m_s\n0,1\n1,x\n", "about the ship, and more\n".repeat(90));
+    assert!(said(&far).contains("error Some(93)"), "{}", said(&far));
+    let long = format!("{}t_s,u_m_s\n0,1\n", "lines of a text without an end, ".repeat(400));
+    assert!(said(&long).contains("error"));
+}
+
+#[test]
+fn ignored_columns_are_not_told_and_empty_ones_once() {
+    let mut mapping = Mapping::canonical();
+    mapping.declared.ignore = vec!["note".into(), "u_m_s".into()];
+    let (table, text) = run("t_s,u_m_s,v_m_s,r_rad_s,note\n0,1,1,,a\n1,1,1,,b\n", &mapping);
+    assert_eq!(table.unwrap().columns.len(), 2);
+    assert_eq!(text, "warning None Some(\"r_rad_s\") is empty throughout; taken as absent");
+}
+
+#[test]
+fn percentages_are_of_what_is_declared() {
+    let mut mapping = Mapping::canonical();
+    let column = |column: &str| sistership_model::manifest::ColumnMapping {
+        column: column.into(),
+        unit: "%".into(),
+    };
+    mapping.columns = vec![("n_s".into(), column("n port")), ("delta".into(), column("helm"))];
+    let full = |value, unit: &str| crate::declarations::Maximum { value, unit: unit.into() };
+    mapping.declared.maximum.insert("n".into(), full(120.0, "rpm"));
+    let text = "t_s,n port,helm\n0,50,100\n1,50,-100\n";
+    assert!(run(text, &mapping).1.contains("declare `maximum: { delta: { value: ..., unit: rad"));
+    mapping.declared.maximum.insert("delta".into(), full(35.0, "deg"));
+    let table = run(text, &mapping).0.unwrap();
+    assert!((table.values[0][0] - 1.0).abs() < 1e-12);
+    assert!((table.values[1][0] - 35.0_f64.to_radians()).abs() < 1e-12);
 }

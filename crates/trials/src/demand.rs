@@ -4,8 +4,11 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use crate::archive;
 use crate::csv_file;
 use crate::mapping::Mapping;
+use crate::mat_file;
+use crate::nmea_file;
 use crate::parquet_file;
 use crate::samples::GROUP_ROWS;
 use crate::source::{Content, Source};
@@ -13,6 +16,10 @@ use crate::source::{Content, Source};
 /// Bytes that what a Parquet file says of itself takes in memory, by each that it has in the file: an assumption on the
 /// safe side, since numbers of a few bytes become fields of eight.
 const BY_FOOTER: u64 = 12;
+/// Bytes that a workbook takes, by each that it has when unpacked: shared strings of a few bytes
+/// take three times as many, and each number of twenty characters is one of eight bytes beside its
+/// row.
+const UNPACKED: u64 = 3;
 /// What every file takes: buffers, findings, counts of digits.
 const EVERY: u64 = 1 << 20;
 
@@ -55,12 +62,20 @@ pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
         }
         Content::ParquetFile(file) => of_parquet(&file, mapping),
         Content::ParquetBytes(bytes) => of_parquet(&bytes, mapping),
+        Content::Workbook(mut input) => {
+            // What is damaged is refused before anything is unpacked.
+            let claimed = archive::claimed(&mut input).unwrap_or(0);
+            (None, UNPACKED * claimed.min(mapping.limits.unpacked_bytes as u64))
+        }
+        Content::Matlab(input) => (mat_file::measure(input, mapping), 0),
+        Content::Nmea(input) => (nmea_file::measure(input, mapping), 0),
+        Content::Other(_) => (None, 0),
     };
     let (rows, columns) = size.unwrap_or_default();
     let rows = rows.min(mapping.limits.rows);
     // Numbers, the row of each, whether the ship has way ahead, and one column more: the steps of time while their median is
     // found, later a smoothed column before it takes the other's place.
-    let row = 8 * columns as u64 + 5 + 8;
+    let row = 8 * columns as u64 + 5 + 8 + deriving(mapping);
     // A column as it is compressed.
     let writing = 8 * rows.min(GROUP_ROWS) as u64;
     Ok(Demand {
@@ -68,6 +83,15 @@ pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
         columns,
         bytes: EVERY + measuring(path)? + holding + rows as u64 * row + writing,
     })
+}
+
+/// Bytes for each row that deriving channels takes: a state and its covariance, what is smoothed of
+/// three quantities, and values and variances of what comes of it.
+fn deriving(mapping: &Mapping) -> u64 {
+    match mapping.declared.derive.len() as u64 {
+        0 => 0,
+        channels => 8 * (12 + 3 * 4 + 2 + 2 * channels),
+    }
 }
 
 fn of_parquet<R: parquet::file::reader::ChunkReader + 'static>(

@@ -105,6 +105,18 @@ impl Findings {
         }
     }
 
+    /// What was found in a further file, under its name.
+    pub(crate) fn absorb(&mut self, file: &str, other: Self) {
+        let (errors, warnings) = other.finish();
+        let errors = errors.into_iter().map(|finding| (Severity::Error, finding));
+        for (severity, finding) in
+            errors.chain(warnings.into_iter().map(|finding| (Severity::Warning, finding)))
+        {
+            let Finding { row, column, message } = finding;
+            self.add(severity, row, column.as_deref(), format!("{file}: {message}"));
+        }
+    }
+
     pub(crate) fn has_errors(&self) -> bool {
         !self.errors.is_empty()
     }

@@ -13,6 +13,8 @@ pub struct Limits {
     pub page_bytes: usize,
     /// Bytes of what a Parquet file says of itself at its end.
     pub footer_bytes: usize,
+    /// Bytes that a workbook or a MATLAB file may hold when it is unpacked.
+    pub unpacked_bytes: usize,
 }
 
 impl Default for Limits {
@@ -23,6 +25,7 @@ impl Default for Limits {
             line_bytes: 64 * 1024,
             page_bytes: 16 << 20,
             footer_bytes: 2 << 20,
+            unpacked_bytes: 256 << 20,
         }
     }
 }

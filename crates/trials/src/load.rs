@@ -1,12 +1,13 @@
 //! What a command line names: a manifest, or one file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sistership_model::FileError;
 use sistership_model::manifest::Manifest;
 use sistership_model::trial::{Finding, Trial};
 
-use crate::manifest::read_manifest;
+use crate::declarations::SensorFile;
+use crate::manifest::read_manifest_file;
 use crate::mapping::Mapping;
 use crate::outcome::{CheckOutcome, Refusal};
 use crate::read::{check, read_trial};
@@ -26,13 +27,10 @@ pub struct Loaded {
 /// # Errors
 /// The manifest is wrong, or the path cannot be read. A single trial that is refused is no error of the whole.
 pub fn load_path(path: &Path) -> Result<Loaded, FileError> {
-    let (manifest, mut trials) =
-        each(path, |name, file, mapping| match Source::open(name, file) {
-            Ok(source) => read_trial(source, mapping),
-            Err(error) => {
-                Err(Refusal { file: name.to_owned(), findings: vec![unreadable(&error)] })
-            }
-        })?;
+    let (manifest, mut trials) = each(path, |listed| match listed.open() {
+        Ok(source) => read_trial(source, &listed.mapping),
+        Err(error) => Err(Refusal { file: listed.name, findings: vec![unreadable(&error)] }),
+    })?;
     if manifest.is_none()
         && let (Some(Ok(trial)), Some(name)) = (trials.first_mut(), path.file_name())
     {
@@ -47,10 +45,10 @@ pub fn load_path(path: &Path) -> Result<Loaded, FileError> {
 /// # Errors
 /// As [`load_path`].
 pub fn check_path(path: &Path) -> Result<Vec<CheckOutcome>, FileError> {
-    let outcomes = each(path, |name, file, mapping| match Source::open(name, file) {
-        Ok(source) => check(source, mapping),
+    let outcomes = each(path, |listed| match listed.open() {
+        Ok(source) => check(source, &listed.mapping),
         Err(error) => CheckOutcome {
-            file: name.to_owned(),
+            file: listed.name,
             rows: 0,
             duration_s: 0.0,
             errors: vec![unreadable(&error)],
@@ -60,24 +58,50 @@ pub fn check_path(path: &Path) -> Result<Vec<CheckOutcome>, FileError> {
     Ok(outcomes.1)
 }
 
+/// A file that is to be read, and the sensors' that belong to it.
+struct Listed {
+    name: String,
+    path: PathBuf,
+    mapping: Mapping,
+    sensors: Vec<(SensorFile, PathBuf)>,
+}
+
+impl Listed {
+    fn open(&self) -> std::io::Result<Source<'static>> {
+        let mut source = Source::open(&self.name, &self.path)?;
+        for (sensor, path) in &self.sensors {
+            let named = |error| std::io::Error::other(format!("{}: {error}", sensor.file));
+            let other = Source::open(&sensor.file, path).map_err(named)?;
+            source =
+                source.with_sensor(other, self.mapping.of_sensor(sensor), sensor.clock_offset_s);
+        }
+        Ok(source)
+    }
+}
+
 fn each<T>(
     path: &Path,
-    mut take: impl FnMut(&str, &Path, &Mapping) -> T,
+    take: impl FnMut(Listed) -> T,
 ) -> Result<(Option<Manifest>, Vec<T>), FileError> {
     let shown = path.display().to_string();
     if !is_manifest(path) {
         std::fs::metadata(path).map_err(|error| missing(&shown, &error))?;
-        return Ok((None, vec![take(&shown, path, &Mapping::canonical())]));
+        let (mapping, sensors) = (Mapping::canonical(), Vec::new());
+        let alone = Listed { name: shown, path: path.to_owned(), mapping, sensors };
+        return Ok((None, [alone].map(take).into()));
     }
     let text = std::fs::read_to_string(path).map_err(|error| missing(&shown, &error))?;
-    let manifest = read_manifest(&shown, &text)?;
+    let written = read_manifest_file(&shown, &text)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let taken = manifest
-        .trials
-        .iter()
-        .map(|trial| take(&trial.file, &folder.join(&trial.file), &Mapping::of(&manifest, trial)));
-    let taken = taken.collect();
-    Ok((Some(manifest), taken))
+    let listed =
+        written.manifest.trials.iter().zip(&written.sensors).map(|(trial, sensors)| Listed {
+            name: trial.file.clone(),
+            path: folder.join(&trial.file),
+            mapping: written.mapping(trial),
+            sensors: sensors.iter().map(|one| (one.clone(), folder.join(&one.file))).collect(),
+        });
+    let taken = listed.map(take).collect();
+    Ok((Some(written.manifest), taken))
 }
 
 fn is_manifest(path: &Path) -> bool {
@@ -124,6 +148,23 @@ mod tests {
         );
         let outcomes = check_path(&folder.path().join("m.yaml")).unwrap();
         assert_eq!(outcomes.iter().map(CheckOutcome::accepted).collect::<Vec<_>>(), [true, false]);
+    }
+
+    #[test]
+    fn sensors_files_are_read_into_one_trial() {
+        let folder = tempfile::tempdir().unwrap();
+        let manifest = "kind: trials\nship: a\ntrials:\n  - file: a.csv\n    sensors:\n      \
+                        - { file: b.csv, columns: { psi: { column: hdg, unit: deg } }, \
+                        clock_offset_s: 0.5 }\n";
+        std::fs::write(folder.path().join("m.yaml"), manifest).unwrap();
+        std::fs::write(folder.path().join("a.csv"), "t_s,u_m_s\n1,1\n2,2\n3,3\n4,5\n").unwrap();
+        let heading = "t_s,hdg,note\n0.5,350,a\n1.5,0,b\n2.5,10,c\n3.5,20,d\n";
+        std::fs::write(folder.path().join("b.csv"), heading).unwrap();
+        let loaded = load_path(&folder.path().join("m.yaml")).unwrap();
+        let trial = loaded.trials[0].as_ref().unwrap();
+        let psi = trial.channel(sistership_model::trial::Channel::Psi).unwrap();
+        assert!((psi[3] - psi[0] - 30.0_f64.to_radians()).abs() < 1e-12, "{psi:?}");
+        assert!(trial.warnings.iter().any(|told| told.message == "b.csv: columns not read: note"));
     }
 
     #[test]

@@ -5,7 +5,9 @@ use std::path::{Component, Path};
 use sistership_model::FileError;
 use sistership_model::manifest::Manifest;
 
-use crate::resolve::channel_names;
+use crate::declarations::{Declarations, North, SensorFile};
+use crate::manifest_file::{ManifestFile, Written};
+use crate::resolve::{channel_names, factor};
 use crate::smoothing;
 use crate::table::Target;
 use crate::units::Kind;
@@ -16,12 +18,35 @@ use crate::units::Kind;
 /// Names line and field of what is wrong: the YAML, an unknown channel or unit, a path that leaves the folder, a file
 /// named twice, impossible smoothing.
 pub fn read_manifest(file_name: &str, text: &str) -> Result<Manifest, FileError> {
-    let manifest: Manifest =
+    let file = read_manifest_file(file_name, text)?;
+    if file.is_plain() {
+        return Ok(file.manifest);
+    }
+    let known = "kind, ship, conventions, columns and trials";
+    Err(FileError {
+        file: file_name.to_owned(),
+        line: None,
+        field: String::new(),
+        message: format!("only {known} are read here; read the files from their folder instead"),
+    })
+}
+
+/// Reads a manifest with everything that it declares; `file_name` is only for messages.
+///
+/// # Errors
+/// As [`read_manifest`], and what is wrong with the declarations.
+pub fn read_manifest_file(file_name: &str, text: &str) -> Result<ManifestFile, FileError> {
+    let written: Written =
         sistership_model::yaml::read(text).map_err(|error| FileError::of_yaml(file_name, error))?;
-    let problem =
-        columns(&manifest).or_else(|| trials(&manifest)).or_else(|| conventions(&manifest));
+    let file = ManifestFile::from(written);
+    let manifest = &file.manifest;
+    let problem = columns(&file)
+        .or_else(|| trials(manifest))
+        .or_else(|| sensors(&file))
+        .or_else(|| conventions(manifest))
+        .or_else(|| declarations(&file.declarations));
     match problem {
-        None => Ok(manifest),
+        None => Ok(file),
         Some(Problem { field, near, message }) => Err(FileError {
             file: file_name.to_owned(),
             line: line_of(text, &near),
@@ -38,8 +63,9 @@ struct Problem {
     message: String,
 }
 
-fn columns(manifest: &Manifest) -> Option<Problem> {
-    manifest.columns.iter().find_map(|(name, mapped)| {
+fn columns(file: &ManifestFile) -> Option<Problem> {
+    let sensors = file.sensors.iter().flatten().flat_map(|sensor| &sensor.columns);
+    file.manifest.columns.iter().chain(sensors).find_map(|(name, mapped)| {
         let problem = |message: String| Problem {
             field: format!("columns.{name}"),
             near: format!("{name}:"),
@@ -51,7 +77,7 @@ fn columns(manifest: &Manifest) -> Option<Problem> {
                 channel_names()
             )));
         };
-        Kind::of(target).factor(&mapped.unit).err().map(problem)
+        factor(target, &mapped.unit, &file.declarations).err().map(problem)
     })
 }
 
@@ -81,6 +107,63 @@ fn trials(manifest: &Manifest) -> Option<Problem> {
             near: trial.file.clone(),
             message: format!("`{}` {message}", trial.file),
         })
+    })
+}
+
+fn sensors(file: &ManifestFile) -> Option<Problem> {
+    let wrong = |sensor: &&SensorFile| {
+        !stays_inside(&sensor.file)
+            || sensor.clock_offset_s.is_some_and(|offset| !offset.is_finite())
+    };
+    let sensor = file.sensors.iter().flatten().find(wrong)?;
+    Some(Problem {
+        field: "trials.sensors".into(),
+        near: sensor.file.clone(),
+        message: format!(
+            "`{}` must be a path relative to the manifest that stays in its folder, and \
+             clock_offset_s a number",
+            sensor.file
+        ),
+    })
+}
+
+fn declarations(declared: &Declarations) -> Option<Problem> {
+    let problem = |field: &str, message: String| Problem {
+        field: field.into(),
+        near: format!("{}:", field.rsplit('.').next().unwrap_or(field)),
+        message,
+    };
+    let variation = declared.variation_deg;
+    match (declared.heading, variation) {
+        (North::Magnetic, None) => {
+            let message = "a magnetic heading needs the variation of the place; add \
+            `variation_deg`, \
+                           positive to the east";
+            return Some(problem("heading", message.into()));
+        }
+        (North::True, Some(_)) => {
+            let message = "is added to magnetic headings only; add `heading: magnetic`";
+            return Some(problem("variation_deg", message.into()));
+        }
+        _ => {}
+    }
+    if variation.is_some_and(|variation| !(-180.0..=180.0).contains(&variation)) {
+        return Some(problem("variation_deg", "must be between -180 and 180".into()));
+    }
+    if let Some(antenna) = declared.antenna
+        && !(antenna.x_m.abs() < 1000.0 && antenna.y_m.abs() < 1000.0)
+    {
+        return Some(problem("antenna", "must be on the ship, in m from midship".into()));
+    }
+    declared.maximum.iter().find_map(|(name, maximum)| {
+        let message = match Target::by_name(name) {
+            None => format!("`{name}` is not a channel; channels are {}", channel_names()),
+            Some(_) if !(maximum.value > 0.0 && maximum.value.is_finite()) => {
+                format!("must be positive, not {}", maximum.value)
+            }
+            Some(target) => Kind::of(target).factor(&maximum.unit).err()?,
+        };
+        Some(problem(&format!("maximum.{name}"), message))
     })
 }
 
@@ -182,6 +265,32 @@ trials:
                 .contains("twice")
             );
         }
+    }
+
+    #[test]
+    fn declarations_are_checked_and_written_back() {
+        let text = format!(
+            "{GOOD}heading: magnetic\nvariation_deg: -3.5\nantenna: {{ x_m: -20, y_m: 1 }}\n\
+             maximum:\n  n: {{ value: 120, unit: rpm }}\nignore: [note]\nderive: [u, v]\n"
+        );
+        let text = text.replace("unit: rad }", "unit: '%' }");
+        let refused = |from: &str, to: &str| {
+            read_manifest_file("m", &text.replace(from, to)).unwrap_err().to_string()
+        };
+        assert!(refused("delta:", "psi:").contains("maximum"));
+        let text = text.replace("  n:", "  delta:").replace("rpm", "deg");
+        let file = read_manifest_file("m.yaml", &text).unwrap();
+        assert_eq!(file.declarations.maximum["delta"].value, 120.0);
+        assert_eq!(read_manifest_file("m", &file.to_yaml().unwrap()).unwrap(), file);
+        assert!(read_manifest("m", &text).unwrap_err().to_string().contains("only kind, ship"));
+        let refused = |from: &str, to: &str| {
+            read_manifest_file("m", &text.replace(from, to)).unwrap_err().to_string()
+        };
+        assert!(refused("variation_deg: -3.5\n", "").contains("add `variation_deg`"));
+        assert!(refused("heading: magnetic\n", "").contains("add `heading: magnetic`"));
+        assert!(refused("-3.5", ".inf").contains("between"));
+        assert!(refused("-20", ".nan").contains("antenna"));
+        assert!(refused("value: 120", "value: 0").contains("positive"));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use sistership_model::manifest::{ColumnMapping, Manifest, ManifestTrial, TrialConventions};
 
+use crate::declarations::{Declarations, SensorFile};
 use crate::limits::Limits;
 
 /// Which columns are which channels, in which signs, and how large the file may be.
@@ -17,6 +18,8 @@ pub struct Mapping {
     pub manoeuvre: Option<String>,
     /// Water depth where it is constant, m.
     pub depth_m: Option<f64>,
+    /// What else is declared of the file.
+    pub declared: Declarations,
     /// Bounds on the file.
     pub limits: Limits,
     /// Rows that room is made for before any is read, so that columns need not grow; see [`crate::demand`].
@@ -40,8 +43,19 @@ impl Mapping {
             conventions: manifest.conventions.clone(),
             manoeuvre: trial.manoeuvre.clone(),
             depth_m: trial.depth_m,
+            declared: Declarations::default(),
             limits: Limits::default(),
             room: 0,
+        }
+    }
+
+    /// The mapping of a sensor's file that belongs to this one.
+    pub(crate) fn of_sensor(&self, sensor: &SensorFile) -> Self {
+        let columns = sensor.columns.iter();
+        Self {
+            columns: columns.map(|(name, column)| (name.clone(), column.clone())).collect(),
+            room: 0,
+            ..self.clone()
         }
     }
 }

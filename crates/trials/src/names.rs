@@ -2,23 +2,53 @@
 
 use sistership_model::trial::Channel;
 
-use crate::table::Target;
+use crate::table::{Raw, Target};
 use crate::units::Kind;
 
 /// Other names in use for a channel; a wind direction without more is where the wind comes from.
 const ALIASES: [(&str, Channel); 2] =
     [("wind_dir", Channel::WindFrom), ("apparent_wind_dir", Channel::ApparentWindFrom)];
 
+const RAW_ALIASES: [(&str, Raw); 4] =
+    [("lat", Raw::Latitude), ("lon", Raw::Longitude), ("cog", Raw::Course), ("sog", Raw::Speed)];
+
+/// Headers of time in use, whose unit is learned from the cells.
+const TIMES: [&str; 9] = [
+    "time",
+    "timestamp",
+    "time_stamp",
+    "datetime",
+    "date_time",
+    "date/time",
+    "date time",
+    "utc",
+    "utc time",
+];
+
+/// Whether a header is one that time is commonly given.
+pub(crate) fn is_time(header: &str) -> bool {
+    TIMES.iter().any(|known| header.eq_ignore_ascii_case(known))
+}
+
 /// The target and unit that a header names, such as `r_radps` or `wind_speed_kn`; a channel's name followed by anything
 /// but a unit of its kind (`delta_ordered_rad`) is some other quantity.
 pub(crate) fn canonical(header: &str) -> Option<(Target, &'static str)> {
     let channels = Channel::all().map(|channel| (channel.name(), Target::Channel(channel)));
     let aliases = ALIASES.iter().map(|&(name, channel)| (name, Target::Channel(channel)));
-    let mut known = std::iter::once(("t", Target::Time)).chain(channels).chain(aliases);
+    let raw = Raw::all().map(|raw| (raw.name(), Target::Raw(raw)));
+    let raw = raw.chain(RAW_ALIASES.iter().map(|&(name, raw)| (name, Target::Raw(raw))));
+    let mut known = std::iter::once(("t", Target::Time)).chain(channels).chain(aliases).chain(raw);
     known.find_map(|(name, target)| {
         let suffix = header.strip_prefix(name)?.strip_prefix('_')?;
         Kind::of(target).suffix(suffix).map(|unit| (target, unit))
     })
+}
+
+/// The target that a bare name such as `psi` is, where the unit stands elsewhere and is one of its
+/// kind.
+pub(crate) fn with_unit(header: &str, unit: &str) -> Option<Target> {
+    let target = Target::by_name(header)?;
+    Kind::of(target).factor(unit).ok().map(|_| target)
 }
 
 #[cfg(test)]

@@ -13,6 +13,9 @@ pub(crate) enum Fault {
     Empty,
     NotANumber,
     Text(String),
+    /// In a column of dates or times of day.
+    NoTime(String),
+    OtherTime(String),
 }
 
 impl fmt::Display for Fault {
@@ -22,6 +25,8 @@ impl fmt::Display for Fault {
             Self::Short => out.write_str("the row has fewer cells than the header"),
             Self::Empty => out.write_str("the cell is empty"),
             Self::NotANumber => out.write_str("the cell is not a finite number"),
+            Self::NoTime(text) => write!(out, "`{text}` is no date or time that can be read"),
+            Self::OtherTime(text) => write!(out, "`{text}` is not written as the times before it"),
             Self::Text(text) => write!(out, "`{text}` is not a number{}", remedy(text)),
         }
     }
@@ -37,10 +42,14 @@ pub(crate) fn number(cell: &[u8]) -> Result<f64, Fault> {
     match parsed {
         Some(value) if value.is_finite() => Ok(value),
         Some(_) => Err(Fault::NotANumber),
-        None => {
-            Err(Fault::Text(String::from_utf8_lossy(&text[..text.len().min(SHOWN)]).into_owned()))
-        }
+        None => Err(Fault::Text(shown(text))),
     }
+}
+
+/// A cell as it is shown in a message.
+pub(crate) fn shown(cell: &[u8]) -> String {
+    let text = cell.trim_ascii();
+    String::from_utf8_lossy(&text[..text.len().min(SHOWN)]).into_owned()
 }
 
 /// What to write instead, where the text shows what was meant.
@@ -56,7 +65,7 @@ fn remedy(text: &str) -> &'static str {
     } else if digits && text.contains(',') {
         "; write decimals with a point"
     } else if digits && text.contains(':') {
-        "; write time as seconds, such as 12.5"
+        "; write time as seconds, such as 12.5, or declare its unit `hh:mm:ss` or `timestamp`"
     } else if digits && text.contains(['\u{2212}', '\u{2013}', '\u{2014}']) {
         "; write the minus sign as `-`"
     } else if digits && text.contains(thousands) {

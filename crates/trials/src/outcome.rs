@@ -3,7 +3,9 @@
 use std::fmt;
 
 use serde::{Serialize, Serializer};
-use sistership_model::trial::Finding;
+use sistership_model::trial::{Finding, Trial};
+
+use crate::derived_channel::DerivedChannel;
 
 /// A trial that is not accepted, and everything that was found wrong with it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -29,6 +31,17 @@ impl fmt::Display for Refusal {
         }
         Ok(())
     }
+}
+
+/// A trial with what it has no place for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrialReading {
+    /// The trial.
+    pub trial: Trial,
+    /// What time zero is in the calendar, as `2024-05-01T12:00:03Z`, where the file says it.
+    pub start: Option<String>,
+    /// Channels that were not measured, with their variances.
+    pub derived: Vec<DerivedChannel>,
 }
 
 /// The outcome of checking one file; serialises as the `check` command prints it.

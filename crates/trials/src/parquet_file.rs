@@ -10,6 +10,7 @@ use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader, RowGroupMe
 use parquet::file::reader::{ChunkReader, FileReader, RowGroupReader, SerializedFileReader};
 use parquet::schema::types::{ColumnDescriptor, SchemaDescriptor};
 
+use crate::clock::Clock;
 use crate::findings::Findings;
 use crate::limits::Limits;
 use crate::mapping::Mapping;
@@ -17,7 +18,7 @@ use crate::number::Fault;
 use crate::pages::{self, Held, held};
 use crate::resolve::resolve;
 use crate::rows::Builder;
-use crate::table::{Column, Table};
+use crate::table::{Column, Table, width};
 
 /// Reads the mapped columns; nothing after errors that leave nothing to check.
 ///
@@ -36,10 +37,11 @@ pub(crate) fn read<R: ChunkReader + 'static>(
     let builder = Builder::new(columns.clone(), mapping.conventions.missing, findings);
     let mut builder = builder.with_room(usize::try_from(rows).unwrap_or(0));
     let outcome = guarded(|| groups(&reader, &columns, &mut builder));
-    let table = builder.finish();
+    let mut table = builder.finish();
     if let Err(error) = outcome {
         findings.error(None, None, format!("the file is damaged: {error}"));
     }
+    Clock::of(&columns).finish(&mut table, findings);
     Some(table)
 }
 
@@ -49,7 +51,7 @@ pub(crate) fn measure<R: ChunkReader + 'static>(
     mapping: &Mapping,
 ) -> Option<(usize, usize, u64)> {
     let mapped = mapped(input, mapping, &mut Findings::default())?;
-    Some((mapped.rows, mapped.columns.len(), mapped.holding))
+    Some((mapped.rows, width(&mapped.columns), mapped.holding))
 }
 
 /// What is read of a file.

@@ -6,21 +6,36 @@ use crate::checks;
 use crate::convert::convert;
 use crate::findings::Findings;
 use crate::mapping::Mapping;
-use crate::outcome::{CheckOutcome, Refusal};
+use crate::outcome::{CheckOutcome, Refusal, TrialReading};
 use crate::recording::Recording;
+use crate::series::{join, offset_s, series};
 use crate::smoothing::smooth;
-use crate::source::{Content, Source};
-use crate::{csv_file, parquet_file};
+use crate::source::{Content, Sensor, Source};
+use crate::table::Table;
+use crate::{csv_file, derived, ground, mat_file, nmea_file, parquet_file, position, workbook};
 
 /// Reads, converts, checks and, where the conventions ask for it, smooths a trial.
 ///
 /// # Errors
 /// Every reason, with row and column, why the file is no trial.
 pub fn read_trial(source: Source, mapping: &Mapping) -> Result<Trial, Refusal> {
+    read_in_full(source, mapping).map(|reading| reading.trial)
+}
+
+/// As [`read_trial`], with what a trial has no place for.
+///
+/// # Errors
+/// As [`read_trial`].
+pub fn read_in_full(source: Source, mapping: &Mapping) -> Result<TrialReading, Refusal> {
     let file = source.name.clone();
-    let (trial, errors, warnings) = examine(source, mapping);
+    let (recording, errors, warnings) = examine(source, mapping);
     if errors.is_empty() {
-        Ok(Trial { warnings, ..trial })
+        let Recording { trial, start, derived, .. } = recording;
+        Ok(TrialReading {
+            trial: Trial { warnings, ..trial },
+            start: start.map(|start| start.text),
+            derived,
+        })
     } else {
         Err(Refusal { file, findings: errors })
     }
@@ -29,11 +44,12 @@ pub fn read_trial(source: Source, mapping: &Mapping) -> Result<Trial, Refusal> {
 /// Runs the checks of [`read_trial`] and tells what they found.
 pub fn check(source: Source, mapping: &Mapping) -> CheckOutcome {
     let file = source.name.clone();
-    let (trial, errors, warnings) = examine(source, mapping);
+    let (recording, errors, warnings) = examine(source, mapping);
+    let trial = recording.trial;
     CheckOutcome { file, rows: trial.len(), duration_s: trial.duration_s(), errors, warnings }
 }
 
-fn examine(source: Source, mapping: &Mapping) -> (Trial, Vec<Finding>, Vec<Finding>) {
+fn examine(source: Source, mapping: &Mapping) -> (Recording, Vec<Finding>, Vec<Finding>) {
     let mut findings = Findings::default();
     let mut recording = record(source, mapping, &mut findings);
     if !findings.has_errors()
@@ -42,19 +58,66 @@ fn examine(source: Source, mapping: &Mapping) -> (Trial, Vec<Finding>, Vec<Findi
         smooth(&mut recording, smoothing, &mut findings);
     }
     let (errors, warnings) = findings.finish();
-    (recording.trial, errors, warnings)
+    (recording, errors, warnings)
 }
 
 fn record(source: Source, mapping: &Mapping, findings: &mut Findings) -> Recording {
-    let table = match source.content {
+    let table = content(source.content, mapping, findings);
+    let Some(mut table) = table else { return Recording::default() };
+    for sensor in source.sensors {
+        if let Some((other, offset_s)) = sensor_table(sensor, &table, findings) {
+            join(&mut table, series(other, offset_s), findings);
+        }
+    }
+    let mut recording = convert(&source.name, table, mapping, findings);
+    made(&mut recording, mapping, findings);
+    checks::run(&mut recording, findings);
+    recording
+}
+
+fn content(content: Content, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
+    match content {
         Content::Csv(reader) => csv_file::read(reader, mapping, findings),
         Content::ParquetBytes(bytes) => parquet_file::read(bytes, mapping, findings),
         Content::ParquetFile(file) => parquet_file::read(file, mapping, findings),
-    };
-    let Some(table) = table else { return Recording::default() };
-    let mut recording = convert(&source.name, table, mapping, findings);
-    checks::run(&mut recording, findings);
-    recording
+        Content::Workbook(input) => workbook::read(input, mapping, findings),
+        Content::Matlab(input) => mat_file::read(input, mapping, findings),
+        Content::Nmea(input) => nmea_file::read(input, mapping, findings),
+        Content::Other(what) => {
+            findings.error(None, None, format!("the file is {what}"));
+            None
+        }
+    }
+}
+
+/// What a sensor's file holds, and what is to be added to its time.
+fn sensor_table(sensor: Sensor, base: &Table, findings: &mut Findings) -> Option<(Table, f64)> {
+    let mut own = Findings::default();
+    let read =
+        content(sensor.content, &sensor.mapping, &mut own).and_then(|table| {
+            match offset_s(base.start.as_ref(), table.start.as_ref(), sensor.clock_offset_s) {
+                Ok(offset_s) => Some((table, offset_s)),
+                Err(message) => {
+                    own.error(None, None, message);
+                    None
+                }
+            }
+        });
+    findings.absorb(&sensor.name, own);
+    read
+}
+
+/// Channels that come of what instruments show.
+fn made(recording: &mut Recording, mapping: &Mapping, findings: &mut Findings) {
+    let antenna = mapping.declared.antenna;
+    position::local(recording, findings);
+    if let Some(antenna) = antenna {
+        position::to_midship(recording, antenna, findings);
+    }
+    let wanted = &mapping.declared.derive;
+    derived::yaw_rate(recording, wanted, findings);
+    ground::velocities(recording, antenna, findings);
+    derived::velocities(recording, wanted, findings);
 }
 
 #[cfg(test)]

@@ -5,8 +5,9 @@ use std::ops::Range;
 
 use sistership_model::trial::{Channel, Trial};
 
+use crate::derived_channel::DerivedChannel;
 use crate::findings::Hits;
-use crate::table::{Column, Target};
+use crate::table::{Column, Raw, Start, Target};
 use crate::units::Kind;
 
 /// Canonical samples and where they stand in the file.
@@ -19,6 +20,12 @@ pub(crate) struct Recording {
     /// Header of the time column.
     pub time: String,
     pub columns: BTreeMap<Channel, Column>,
+    /// What channels have yet to be made of.
+    pub raw: BTreeMap<Raw, Vec<f64>>,
+    /// Channels that were not measured.
+    pub derived: Vec<DerivedChannel>,
+    /// What time zero is in the calendar, where the file says it.
+    pub start: Option<Start>,
     /// Median time between samples, s; zero until time is known to be in order.
     pub interval_s: f64,
     /// Ranges without a gap; empty until time is known to be in order.
@@ -61,9 +68,36 @@ impl Recording {
         hits
     }
 
+    /// Takes ranges of samples, in order, out of every channel; the rows that follow them resume.
+    pub(crate) fn leave_out(&mut self, ranges: &[Range<usize>]) {
+        let resumed = ranges.iter().filter_map(|range| self.rows.get(range.end).copied());
+        self.resumed.extend(resumed.collect::<Vec<_>>());
+        self.resumed.sort_unstable();
+        self.resumed.dedup();
+        let channels = self.trial.channels.values_mut();
+        let variances = self.derived.iter_mut().map(|derived| &mut derived.variance);
+        let raw = self.raw.values_mut();
+        for values in channels.chain(variances).chain(raw).chain([&mut self.trial.t_s]) {
+            without(values, ranges);
+        }
+        without(&mut self.rows, ranges);
+        let rows = &self.rows;
+        self.resumed.retain(|row| rows.binary_search(row).is_ok());
+    }
+
     /// Learns interval and segments; time must be strictly increasing.
     pub(crate) fn settle_time(&mut self) {
         self.interval_s = self.trial.interval_s();
         self.segments = self.trial.segments();
     }
+}
+
+fn without<T>(values: &mut Vec<T>, ranges: &[Range<usize>]) {
+    let (mut at, mut next) = (0, ranges.iter().peekable());
+    values.retain(|_| {
+        while next.next_if(|range| range.end <= at).is_some() {}
+        let kept = next.peek().is_none_or(|range| at < range.start);
+        at += 1;
+        kept
+    });
 }

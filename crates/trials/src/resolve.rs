@@ -3,26 +3,49 @@
 use sistership_model::manifest::WindKind;
 use sistership_model::trial::Channel;
 
+use crate::declarations::Declarations;
 use crate::findings::Findings;
 use crate::mapping::Mapping;
 use crate::names;
-use crate::table::{Column, Target};
-use crate::units::Kind;
+use crate::table::{Column, Raw, Target};
+use crate::units::{Kind, plain_unit};
 
 /// How alike two names must be (Jaro-Winkler, 0 to 1) to be offered as a correction.
 const ALIKE: f64 = 0.8;
 /// Column names listed in a message.
 const LISTED: usize = 40;
 
-/// The columns to read, or nothing after errors.
+/// The columns to read of a file whose first row is its header, or nothing after errors.
 pub(crate) fn resolve(
     headers: &[String],
     mapping: &Mapping,
     findings: &mut Findings,
 ) -> Option<Vec<Column>> {
-    let mut resolver = Resolver { headers, mapping, columns: Vec::new(), findings };
+    resolve_heading(Heading { names: headers, units: &[], row: 1 }, mapping, findings)
+}
+
+/// What stands above the numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Heading<'a> {
+    pub names: &'a [String],
+    /// Units in a line of their own, or nothing.
+    pub units: &'a [String],
+    /// The row of the names.
+    pub row: usize,
+}
+
+/// The columns to read, or nothing after errors.
+pub(crate) fn resolve_heading(
+    heading: Heading,
+    mapping: &Mapping,
+    findings: &mut Findings,
+) -> Option<Vec<Column>> {
+    let Heading { names: headers, units, row } = heading;
+    let mut resolver = Resolver { headers, units, row, mapping, columns: Vec::new(), findings };
     resolver.mapped();
     resolver.canonical();
+    resolver.raw();
+    resolver.timed();
     resolver.doubled();
     resolver.needed();
     resolver.ignored();
@@ -32,6 +55,8 @@ pub(crate) fn resolve(
 
 struct Resolver<'a> {
     headers: &'a [String],
+    units: &'a [String],
+    row: usize,
     mapping: &'a Mapping,
     columns: Vec<Column>,
     findings: &'a mut Findings,
@@ -52,7 +77,7 @@ impl Resolver<'_> {
                     self.contradicted(index, target, &mapped.unit);
                     self.add(index, target, &mapped.unit);
                 }
-                Err(message) => self.findings.error(Some(1), Some(&mapped.column), message),
+                Err(message) => self.findings.error(Some(self.row), Some(&mapped.column), message),
             }
         }
     }
@@ -60,16 +85,18 @@ impl Resolver<'_> {
     /// A header that names one unit, where the manifest says another: one of the two is wrong.
     fn contradicted(&mut self, index: usize, target: Target, unit: &str) {
         let (kind, header) = (Kind::of(target), &self.headers[index]);
-        if let Some(named) = kind.named_in(header)
+        let below = self.units.get(index).filter(|unit| kind.factor(unit).is_ok());
+        if let Some(named) = kind.named_in(header).or(below.map(String::as_str))
             && let (Ok(one), Ok(other)) = (kind.factor(named), kind.factor(unit))
             && one != other
         {
+            let says = if self.is_mapped(target) { "the manifest says" } else { "its name says" };
             let message = format!(
-                "the header says `{named}`, the manifest says `{}`; correct the one that is wrong",
+                "the header says `{named}`, {says} `{}`; correct the one that is wrong",
                 unit.trim()
             );
             let header = header.clone();
-            self.findings.error(Some(1), Some(&header), message);
+            self.findings.error(Some(self.row), Some(&header), message);
         }
     }
 
@@ -105,12 +132,12 @@ impl Resolver<'_> {
 
     fn add(&mut self, index: usize, target: Target, unit: &str) {
         let header = self.headers[index].clone();
-        match Kind::of(target).factor(unit) {
+        match factor(target, unit, &self.mapping.declared) {
             Ok(to_si) => self.columns.push(Column {
                 index,
                 header,
                 target: self.redirect(target),
-                unit: unit.trim().into(),
+                unit: plain_unit(unit).into(),
                 to_si,
             }),
             Err(message) => {
@@ -134,14 +161,64 @@ impl Resolver<'_> {
 
     /// Columns that carry a canonical name, for channels that the manifest leaves open.
     fn canonical(&mut self) {
-        let claimed: Vec<Target> =
-            self.mapping.columns.iter().filter_map(|(name, _)| Target::by_name(name)).collect();
         for index in 0..self.headers.len() {
-            let taken = self.columns.iter().any(|column| column.index == index);
-            if let Some((target, unit)) = names::canonical(&self.headers[index]).filter(|_| !taken)
-                && !claimed.contains(&target)
+            if let Some((target, unit)) = self.named(index)
+                && !matches!(target, Target::Raw(_))
             {
-                self.add(index, target, unit);
+                self.contradicted(index, target, &unit);
+                self.add(index, target, &unit);
+            }
+        }
+    }
+
+    /// Canonical columns of which channels are made, where the channels themselves are not there.
+    fn raw(&mut self) {
+        let given: Vec<Target> = self.columns.iter().map(|column| column.target).collect();
+        for index in 0..self.headers.len() {
+            if let Some((Target::Raw(raw), unit)) = self.named(index)
+                && !raw.gives().iter().any(|&channel| given.contains(&Target::Channel(channel)))
+            {
+                self.contradicted(index, Target::Raw(raw), &unit);
+                self.add(index, Target::Raw(raw), &unit);
+            }
+        }
+    }
+
+    /// Target and unit that a header names, for a column that is free and a target that the
+    /// manifest leaves open.
+    fn named(&self, index: usize) -> Option<(Target, String)> {
+        let header = &self.headers[index];
+        let below = self
+            .units
+            .get(index)
+            .and_then(|unit| names::with_unit(header, unit).map(|target| (target, unit.clone())));
+        let named = names::canonical(header).map(|(target, unit)| (target, unit.to_owned()));
+        let free = self.is_free(index) && !self.is_ignored(header);
+        named.or(below).filter(|(target, _)| free && !self.is_mapped(*target))
+    }
+
+    fn is_free(&self, index: usize) -> bool {
+        self.columns.iter().all(|column| column.index != index)
+    }
+
+    fn is_mapped(&self, target: Target) -> bool {
+        self.mapping.columns.iter().any(|(name, _)| Target::by_name(name) == Some(target))
+    }
+
+    fn is_ignored(&self, header: &str) -> bool {
+        self.mapping.declared.ignore.iter().any(|ignored| ignored.trim() == header)
+    }
+
+    /// Where nothing else is time, the first column that has a common name of it.
+    fn timed(&mut self) {
+        let free = |index: usize| self.is_free(index) && !self.is_ignored(&self.headers[index]);
+        if !self.is_mapped(Target::Time)
+            && self.columns.iter().all(|column| column.target != Target::Time)
+        {
+            let named =
+                (0..self.headers.len()).find(|&k| free(k) && names::is_time(&self.headers[k]));
+            if let Some(index) = named {
+                self.add(index, Target::Time, "auto");
             }
         }
     }
@@ -167,7 +244,7 @@ impl Resolver<'_> {
             } else {
                 continue;
             };
-            self.findings.error(Some(1), Some(&column.header), message);
+            self.findings.error(Some(self.row), Some(&column.header), message);
         }
     }
 
@@ -181,14 +258,14 @@ impl Resolver<'_> {
                 self.suggestion("t_s"),
                 self.listed()
             );
-            self.findings.error(Some(1), None, message);
+            self.findings.error(Some(self.row), None, message);
         } else if self.columns.len() == 1 {
             let message = format!(
                 "no column for any channel; name them as {} or map them; the file has {}",
                 canonical_names(),
                 self.listed()
             );
-            self.findings.error(Some(1), None, message);
+            self.findings.error(Some(self.row), None, message);
         }
     }
 
@@ -198,12 +275,12 @@ impl Resolver<'_> {
             .headers
             .iter()
             .enumerate()
-            .filter(|(index, _)| !used(*index))
+            .filter(|(index, header)| !used(*index) && !self.is_ignored(header))
             .map(|(_, header)| header.as_str())
             .collect();
         if !ignored.is_empty() {
             self.findings.warning(
-                Some(1),
+                Some(self.row),
                 None,
                 format!("columns not read: {}", ignored.join(", ")),
             );
@@ -211,9 +288,27 @@ impl Resolver<'_> {
     }
 }
 
+/// The factor to canonical units; a percentage is one of what is declared to be full.
+pub(crate) fn factor(target: Target, unit: &str, declared: &Declarations) -> Result<f64, String> {
+    if plain_unit(unit) != "%" {
+        return Kind::of(target).factor(unit);
+    }
+    let of_pair = target.name().split('_').next().unwrap_or_default();
+    let full = declared.maximum.get(target.name()).or_else(|| declared.maximum.get(of_pair));
+    match full {
+        Some(full) => Ok(full.value / 100.0 * Kind::of(target).factor(&full.unit)?),
+        None => Err(format!(
+            "`%` needs what 100 % is; declare `maximum: {{ {of_pair}: {{ value: ..., unit: {} }} \
+            }}`",
+            Kind::of(target).canonical()
+        )),
+    }
+}
+
 /// Every channel name of a manifest.
 pub(crate) fn channel_names() -> String {
-    std::iter::once("t").chain(Channel::all().map(Channel::name)).collect::<Vec<_>>().join(", ")
+    let names = std::iter::once("t").chain(Channel::all().map(Channel::name));
+    names.chain(Raw::all().map(Raw::name)).collect::<Vec<_>>().join(", ")
 }
 
 fn canonical_names() -> String {

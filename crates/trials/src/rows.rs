@@ -4,7 +4,7 @@ use sistership_model::manifest::Missing;
 
 use crate::findings::Findings;
 use crate::number::Fault;
-use crate::table::{Column, Table};
+use crate::table::{Column, Table, Target};
 
 /// A run of rows that are left out.
 struct Run {
@@ -22,6 +22,8 @@ pub(crate) struct Builder<'a> {
     run: Option<Run>,
     faulty: usize,
     scratch: Vec<f64>,
+    /// For each column, what its first cell lacks while no cell has held a number.
+    unfilled: Vec<Option<Fault>>,
 }
 
 /// Faulty rows listed one by one before they are only counted.
@@ -30,8 +32,10 @@ const LISTED: usize = 5;
 impl<'a> Builder<'a> {
     pub(crate) fn new(columns: Vec<Column>, missing: Missing, findings: &'a mut Findings) -> Self {
         let values = vec![Vec::new(); columns.len()];
+        let unfilled = vec![Some(Fault::Empty); columns.len()];
         let table = Table { columns, values, ..Table::default() };
-        Self { table, missing, findings, run: None, faulty: 0, scratch: Vec::new() }
+        let scratch = Vec::new();
+        Self { table, missing, findings, run: None, faulty: 0, scratch, unfilled }
     }
 
     /// With room for so many rows: columns that grow take half as much again.
@@ -42,17 +46,29 @@ impl<'a> Builder<'a> {
     }
 
     /// One row of the file; `cell` gives the number in the n-th mapped column.
-    pub(crate) fn row(&mut self, row: usize, cell: impl Fn(usize, &Column) -> Result<f64, Fault>) {
+    pub(crate) fn row(
+        &mut self,
+        row: usize,
+        mut cell: impl FnMut(usize, &Column) -> Result<f64, Fault>,
+    ) {
         self.scratch.clear();
         for (position, column) in self.table.columns.iter().enumerate() {
-            match cell(position, column) {
-                Ok(value) => self.scratch.push(value * column.to_si),
+            let si = |value: f64| Some(value * column.to_si).filter(|value| value.is_finite());
+            match cell(position, column).and_then(|value| si(value).ok_or(Fault::NotANumber)) {
+                Ok(value) => self.scratch.push(value),
+                Err(fault @ (Fault::Empty | Fault::NotANumber))
+                    if self.unfilled[position].is_some() && column.target != Target::Time =>
+                {
+                    self.unfilled[position] = Some(fault);
+                    self.scratch.push(f64::NAN);
+                }
                 Err(fault) => {
                     let header = column.header.clone();
                     return self.faulty(row, header, fault);
                 }
             }
         }
+        self.fill();
         let row = u32::try_from(row).unwrap_or(u32::MAX);
         if self.run.is_some() {
             self.table.resumed.push(row);
@@ -64,6 +80,35 @@ impl<'a> Builder<'a> {
             .iter_mut()
             .zip(&self.scratch)
             .for_each(|(values, &value)| values.push(value));
+    }
+
+    /// Learns that columns have numbers; rows that were kept although they had none there are
+    /// faulty after all.
+    fn fill(&mut self) {
+        for position in 0..self.scratch.len() {
+            if !self.scratch[position].is_finite() {
+                continue;
+            }
+            if let Some(fault) = self.unfilled[position].take()
+                && !self.table.rows.is_empty()
+            {
+                self.retract(position, &fault);
+            }
+        }
+    }
+
+    fn retract(&mut self, position: usize, fault: &Fault) {
+        self.table.values.iter_mut().for_each(Vec::clear);
+        self.table.resumed.clear();
+        let header = self.table.columns[position].header.clone();
+        let rows = std::mem::take(&mut self.table.rows);
+        for &row in &rows {
+            self.faulty(row as usize, header.clone(), fault.clone());
+        }
+        let first = rows.first().map_or(usize::MAX, |&row| row as usize);
+        if let Some(run) = self.run.as_mut().filter(|run| first < run.first) {
+            (run.first, run.column, run.fault) = (first, header, fault.clone());
+        }
     }
 
     /// A row that ends before the header does: left out as one without a value, or told by whoever counts the cells.
@@ -90,7 +135,7 @@ impl<'a> Builder<'a> {
             self.findings.error(Some(row), Some(&column), message);
         }
         match &mut self.run {
-            Some(run) => run.last = row,
+            Some(run) => run.last = run.last.max(row),
             None => self.run = Some(Run { first: row, last: row, column, fault }),
         }
     }
@@ -109,6 +154,7 @@ impl<'a> Builder<'a> {
 
     /// The table, once every row has been seen.
     pub(crate) fn finish(mut self) -> Table {
+        self.absent();
         self.table.rows.shrink_to_fit();
         self.table.values.iter_mut().for_each(Vec::shrink_to_fit);
         let last = self.run.as_ref().map(|run| run.last);
@@ -124,6 +170,24 @@ impl<'a> Builder<'a> {
             );
         }
         self.table
+    }
+
+    /// Columns that are empty throughout are as good as not there.
+    fn absent(&mut self) {
+        if self.table.rows.is_empty() {
+            return;
+        }
+        for position in (0..self.unfilled.len()).rev() {
+            if self.unfilled[position].is_some() {
+                let column = self.table.columns.remove(position);
+                self.table.values.remove(position);
+                let message = "is empty throughout; taken as absent";
+                self.findings.warning(None, Some(&column.header), message);
+            }
+        }
+        if self.table.columns.iter().all(|column| column.target == Target::Time) {
+            self.findings.error(None, None, "no column of a channel holds any number");
+        }
     }
 }
 
@@ -162,6 +226,67 @@ mod tests {
         assert_eq!(table.values[0][0], 1.0);
         assert!(warnings[0].message.starts_with("rows 4 to 6 left out"), "{}", warnings[0].message);
         assert_eq!((warnings.len(), warnings[1].row), (2, Some(11)));
+    }
+
+    fn columns(missing: Missing, late: impl Fn(usize) -> bool) -> (Table, String) {
+        columns_with(missing, |row, position| position == 2 && !late(row))
+    }
+
+    fn columns_with(missing: Missing, empty: impl Fn(usize, usize) -> bool) -> (Table, String) {
+        let column = |index: usize, header: &str, target| Column {
+            index,
+            header: header.into(),
+            target,
+            unit: "1".into(),
+            to_si: 1.0,
+        };
+        let channel = Target::Channel;
+        let columns = vec![
+            column(0, "t", Target::Time),
+            column(1, "u", channel(Channel::U)),
+            column(2, "v", channel(Channel::V)),
+        ];
+        let mut findings = Findings::default();
+        let mut builder = Builder::new(columns, missing, &mut findings);
+        for row in 2..12 {
+            builder.row(
+                row,
+                |position, _| {
+                    if empty(row, position) { Err(Fault::Empty) } else { Ok(row as f64) }
+                },
+            );
+        }
+        let table = builder.finish();
+        (table, crate::testing::messages(findings))
+    }
+
+    #[test]
+    fn a_column_that_is_empty_throughout_is_absent() {
+        let (table, text) = columns(Missing::Refuse, |_| false);
+        assert_eq!((table.columns.len(), table.values.len(), table.rows.len()), (2, 2, 10));
+        assert_eq!(text, "warning None Some(\"v\") is empty throughout; taken as absent");
+    }
+
+    #[test]
+    fn a_column_that_begins_late_makes_the_rows_before_faulty() {
+        let (table, text) = columns(Missing::Drop, |row| row > 5);
+        assert_eq!((table.rows[0], table.values[2][0], table.resumed[0]), (6, 6.0, 6));
+        assert!(text.contains("rows 2 to 5 left out: the cell is empty"), "{text}");
+        let (_, text) = columns(Missing::Refuse, |row| row > 5);
+        assert_eq!(text.lines().count(), 4, "{text}");
+        assert!(text.contains("error Some(2) Some(\"v\") the cell is empty"), "{text}");
+    }
+
+    #[test]
+    fn rows_with_another_fault_stay_in_the_run() {
+        let (table, text) = columns_with(Missing::Drop, |row, position| match position {
+            1 => row == 4,
+            2 => row <= 4,
+            _ => false,
+        });
+        assert_eq!(table.rows[0], 5);
+        let told = "warning Some(2) Some(\"v\") rows 2 to 4 left out: the cell is empty";
+        assert!(text.starts_with(told), "{text}");
     }
 
     #[test]

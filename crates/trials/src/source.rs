@@ -6,54 +6,98 @@ use std::path::Path;
 
 use bytes::Bytes;
 
-/// The first bytes of every Parquet file.
-const PARQUET_MAGIC: &[u8] = b"PAR1";
+use crate::magic::{self, Kind, LOOKED_AT};
+use crate::mapping::Mapping;
+use crate::workbook::ReadSeek;
 
 /// A file to read: its name, used in every message, and its bytes.
 pub struct Source<'a> {
     pub(crate) name: String,
     pub(crate) content: Content<'a>,
+    pub(crate) sensors: Vec<Sensor<'a>>,
+}
+
+/// A file with further channels of the same trial.
+pub(crate) struct Sensor<'a> {
+    pub name: String,
+    pub content: Content<'a>,
+    pub mapping: Mapping,
+    pub clock_offset_s: Option<f64>,
 }
 
 pub(crate) enum Content<'a> {
     Csv(Box<dyn Read + 'a>),
     ParquetBytes(Bytes),
     ParquetFile(File),
+    Workbook(Box<dyn ReadSeek + 'a>),
+    Nmea(Box<dyn ReadSeek + 'a>),
+    Matlab(Box<dyn ReadSeek + 'a>),
+    /// What the file is, and what to do with it.
+    Other(&'static str),
 }
 
 impl<'a> Source<'a> {
     /// CSV from any reader, streamed row by row.
     pub fn csv(name: impl Into<String>, reader: impl Read + 'a) -> Self {
-        Self { name: name.into(), content: Content::Csv(Box::new(reader)) }
+        Self::whole(name.into(), Content::Csv(Box::new(reader)))
     }
 
     /// Parquet in memory.
     pub fn parquet(name: impl Into<String>, bytes: Bytes) -> Self {
-        Self { name: name.into(), content: Content::ParquetBytes(bytes) }
+        Self::whole(name.into(), Content::ParquetBytes(bytes))
     }
 
-    /// A file in memory; Parquet is told from CSV by its first bytes, whatever the name says.
+    /// A file in memory, told by its first bytes, whatever the name says.
     pub fn bytes(name: impl Into<String>, bytes: Bytes) -> Self {
-        if bytes.starts_with(PARQUET_MAGIC) {
-            Self::parquet(name, bytes)
-        } else {
-            Self::csv(name, io::Cursor::new(bytes))
+        match magic::kind(&bytes[..bytes.len().min(LOOKED_AT)]) {
+            Kind::Parquet => Self::parquet(name, bytes),
+            kind => Self::of(kind, name.into(), io::Cursor::new(bytes)),
         }
     }
 
-    /// A file on disk, streamed; Parquet is told from CSV by its first bytes.
+    fn of(kind: Kind, name: String, input: impl Read + Seek + 'a) -> Self {
+        let input = Box::new(input);
+        let content = match kind {
+            Kind::Workbook => Content::Workbook(input),
+            Kind::Matlab => Content::Matlab(input),
+            Kind::Nmea => Content::Nmea(input),
+            Kind::Other(what) => Content::Other(what),
+            _ => Content::Csv(input),
+        };
+        Self::whole(name, content)
+    }
+
+    fn whole(name: String, content: Content<'a>) -> Self {
+        Self { name, content, sensors: Vec::new() }
+    }
+
+    /// With a file of further channels, read by a mapping of its own. Its readings are put on this
+    /// file's times; its clock is this file's after the offset is added, and after dates and times
+    /// of day are compared where both files have them.
+    pub fn with_sensor(
+        mut self,
+        other: Self,
+        mapping: Mapping,
+        clock_offset_s: Option<f64>,
+    ) -> Self {
+        let Self { name, content, .. } = other;
+        self.sensors.push(Sensor { name, content, mapping, clock_offset_s });
+        self
+    }
+
+    /// A file on disk, streamed and told by its first bytes.
     ///
     /// # Errors
     /// The file cannot be opened or read.
     pub fn open(name: impl Into<String>, path: &Path) -> io::Result<Self> {
         let mut file = File::open(path)?;
-        let mut magic = Vec::new();
-        file.by_ref().take(PARQUET_MAGIC.len() as u64).read_to_end(&mut magic)?;
+        let mut start = Vec::new();
+        file.by_ref().take(LOOKED_AT as u64).read_to_end(&mut start)?;
         file.seek(SeekFrom::Start(0))?;
         let name = name.into();
-        Ok(match magic == PARQUET_MAGIC {
-            true => Self { name, content: Content::ParquetFile(file) },
-            false => Self::csv(name, BufReader::new(file)),
+        Ok(match magic::kind(&start) {
+            Kind::Parquet => Self::whole(name, Content::ParquetFile(file)),
+            kind => Self::of(kind, name, BufReader::new(file)),
         })
     }
 }

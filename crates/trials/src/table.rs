@@ -1,23 +1,86 @@
 //! The mapped columns of a file as numbers in SI units and radians, still in the file's own signs.
 
 use sistership_model::trial::Channel;
+use sistership_model::units::Dimension;
 
 /// What a column is read into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Target {
     Time,
     Channel(Channel),
+    /// What channels are made of.
+    Raw(Raw),
+}
+
+/// What instruments show, of which channels are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Raw {
+    /// North of the equator, rad.
+    Latitude,
+    /// East of Greenwich, rad.
+    Longitude,
+    /// Course over ground, rad clockwise from north.
+    Course,
+    /// Speed over ground, m/s.
+    Speed,
+    /// Rudders, rad: starboard and port.
+    DeltaS,
+    DeltaP,
+    /// Propellers, 1/s: starboard and port.
+    NS,
+    NP,
+}
+
+const RAW: [(Raw, &str, Dimension); 8] = [
+    (Raw::Latitude, "latitude", Dimension::NONE),
+    (Raw::Longitude, "longitude", Dimension::NONE),
+    (Raw::Course, "course", Dimension::NONE),
+    (Raw::Speed, "speed", Dimension::SPEED),
+    (Raw::DeltaS, "delta_s", Dimension::NONE),
+    (Raw::DeltaP, "delta_p", Dimension::NONE),
+    (Raw::NS, "n_s", Dimension::RATE),
+    (Raw::NP, "n_p", Dimension::RATE),
+];
+
+impl Raw {
+    pub(crate) fn all() -> impl Iterator<Item = Self> {
+        RAW.iter().map(|&(raw, ..)| raw)
+    }
+
+    pub(crate) fn name(self) -> &'static str {
+        RAW[self as usize].1
+    }
+
+    pub(crate) fn dimension(self) -> Dimension {
+        RAW[self as usize].2
+    }
+
+    /// The channels that it gives.
+    pub(crate) fn gives(self) -> &'static [Channel] {
+        match self {
+            Self::Latitude | Self::Longitude => &[Channel::X, Channel::Y],
+            Self::Course | Self::Speed => &[Channel::U, Channel::V],
+            Self::DeltaS | Self::DeltaP => &[Channel::Delta],
+            Self::NS | Self::NP => &[Channel::N],
+        }
+    }
 }
 
 impl Target {
     pub(crate) fn by_name(name: &str) -> Option<Self> {
-        if name == "t" { Some(Self::Time) } else { Channel::by_name(name).map(Self::Channel) }
+        let raw = || Raw::all().find(|raw| raw.name() == name).map(Self::Raw);
+        if name == "t" {
+            Some(Self::Time)
+        } else {
+            Channel::by_name(name).map(Self::Channel).or_else(raw)
+        }
     }
 
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Time => "t",
             Self::Channel(channel) => channel.name(),
+            Self::Raw(raw) => raw.name(),
         }
     }
 }
@@ -34,6 +97,21 @@ pub(crate) struct Column {
     pub to_si: f64,
 }
 
+/// Columns that are held at a time: those that are read, and what is made of raw ones.
+pub(crate) fn width(columns: &[Column]) -> usize {
+    let raw = columns.iter().filter(|column| matches!(column.target, Target::Raw(_)));
+    columns.len() + raw.count()
+}
+
+/// What time zero is in the calendar.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Start {
+    pub text: String,
+    /// Seconds since 1970, or since midnight where no date is known.
+    pub at_s: f64,
+    pub dated: bool,
+}
+
 /// Numbers of the mapped columns, one vector per column, and the rows of the file that they stand in.
 #[derive(Debug, Default)]
 pub(crate) struct Table {
@@ -42,4 +120,6 @@ pub(crate) struct Table {
     pub rows: Vec<u32>,
     /// Of these, the ones before which rows have been left out.
     pub resumed: Vec<u32>,
+    /// What time zero is in the calendar, where the file says it.
+    pub start: Option<Start>,
 }

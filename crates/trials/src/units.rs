@@ -3,7 +3,7 @@
 use sistership_model::trial::Channel;
 use sistership_model::units::{Dimension, Unit};
 
-use crate::table::Target;
+use crate::table::{Raw, Target};
 
 /// What a column measures. Dimensions alone do not tell a yaw rate from propeller revolutions: both are 1/s, but one
 /// counts radians and the other turns, and 80 rpm read as a yaw rate would be wrong by two pi.
@@ -47,16 +47,91 @@ const SUFFIXES: &[(&str, Kind, &str)] = &[
     ("rpm", Kind::Revolutions, "rpm"),
 ];
 
+/// How time may be written but as a duration, and the factor to seconds. `auto` is learned from the
+/// cells.
+const CALENDAR: [(&str, f64); 8] = [
+    ("auto", 1.0),
+    ("timestamp", 1.0),
+    ("day/month/year", 1.0),
+    ("month/day/year", 1.0),
+    ("hh:mm:ss", 1.0),
+    ("excel", 86_400.0),
+    ("matlab", 86_400.0),
+    ("unix", 1.0),
+];
+
+/// Other spellings in use of a unit that is accepted.
+const SPELLINGS: [(&str, &str); 32] = [
+    ("sec", "s"),
+    ("secs", "s"),
+    ("second", "s"),
+    ("seconds", "s"),
+    ("meter", "m"),
+    ("meters", "m"),
+    ("metre", "m"),
+    ("metres", "m"),
+    ("knots", "kn"),
+    ("knot", "kn"),
+    ("kt", "kn"),
+    ("kts", "kn"),
+    ("mps", "m/s"),
+    ("m s-1", "m/s"),
+    ("m_s", "m/s"),
+    ("kmh", "km/h"),
+    ("\u{b0}", "deg"),
+    ("degree", "deg"),
+    ("degrees", "deg"),
+    ("radians", "rad"),
+    ("\u{b0}/s", "deg/s"),
+    ("deg/sec", "deg/s"),
+    ("deg_s", "deg/s"),
+    ("\u{b0}/min", "deg/min"),
+    ("rad_s", "rad/s"),
+    ("1/min", "rpm"),
+    ("min-1", "rpm"),
+    ("r/min", "rpm"),
+    ("1/s", "rps"),
+    ("hz", "rps"),
+    ("percent", "%"),
+    ("pct", "%"),
+];
+
+/// The unit as it is declared, out of brackets and other spellings.
+pub(crate) fn plain_unit(written: &str) -> &str {
+    let inner = written.trim().trim_matches(['[', ']', '(', ')']).trim();
+    let same = |spelling: &str| spelling.eq_ignore_ascii_case(inner);
+    if let Some((_, unit)) = SPELLINGS.iter().find(|(spelling, _)| same(spelling)) {
+        return unit;
+    }
+    // `KN` and `Deg` are clear, `M` and `S` are not worth a refusal.
+    SUFFIXES.iter().map(|&(_, _, unit)| unit).find(|unit| same(unit)).unwrap_or(inner)
+}
+
+/// Whether a cell can be a unit and nothing else.
+pub(crate) fn is_unit(cell: &str) -> bool {
+    let unit = plain_unit(cell);
+    Unit::parse(unit).is_ok()
+        || matches!(unit, "%" | "-")
+        || CALENDAR.iter().any(|(known, _)| *known == unit)
+}
+
 impl Kind {
     /// What the target's columns measure.
     pub(crate) fn of(target: Target) -> Self {
         match target {
             Target::Time => Self::Time,
-            Target::Channel(Channel::N) => Self::Revolutions,
-            Target::Channel(channel) if channel.dimension() == Dimension::LENGTH => Self::Length,
-            Target::Channel(channel) if channel.dimension() == Dimension::SPEED => Self::Speed,
-            Target::Channel(channel) if channel.dimension() == Dimension::RATE => Self::Rate,
-            Target::Channel(_) => Self::Angle,
+            Target::Channel(Channel::N) | Target::Raw(Raw::NS | Raw::NP) => Self::Revolutions,
+            Target::Channel(channel) => Self::measuring(channel.dimension()),
+            Target::Raw(raw) => Self::measuring(raw.dimension()),
+        }
+    }
+
+    fn measuring(dimension: Dimension) -> Self {
+        match dimension {
+            Dimension::LENGTH => Self::Length,
+            Dimension::SPEED => Self::Speed,
+            Dimension::RATE => Self::Rate,
+            _ => Self::Angle,
         }
     }
 
@@ -75,7 +150,7 @@ impl Kind {
         };
         let written = bracket('[', ']').or_else(|| bracket('(', ')'));
         if let Some(written) = written {
-            return self.accepted().into_iter().find(|unit| *unit == written);
+            return self.accepted().into_iter().find(|unit| *unit == plain_unit(written));
         }
         // From the left, so that the longest suffix is found: `deg_s` before `s`.
         header.match_indices('_').find_map(|(at, _)| self.suffix(&header[at + 1..]))
@@ -99,9 +174,15 @@ impl Kind {
 
     /// The factor to canonical units, or what would have been accepted.
     pub(crate) fn factor(self, unit: &str) -> Result<f64, String> {
-        let accepted = self.accepted();
-        match Unit::parse(unit) {
-            Ok(known) if accepted.contains(&unit.trim()) => Ok(known.to_si),
+        let mut accepted = self.accepted();
+        if self == Self::Time {
+            if let Some(&(_, factor)) = CALENDAR.iter().find(|(known, _)| *known == unit.trim()) {
+                return Ok(factor);
+            }
+            accepted.extend(CALENDAR.map(|(known, _)| known));
+        }
+        match Unit::parse(plain_unit(unit)) {
+            Ok(known) if accepted.contains(&plain_unit(unit)) => Ok(known.to_si),
             _ => Err(format!("unit `{unit}` does not fit; use one of {}", accepted.join(", "))),
         }
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
+use sistership_choice::Ladder;
 use sistership_estimate::refine::{
     Constraints, Method, Refinement, Request, Settings, StraightLine, refine,
 };
@@ -15,6 +16,7 @@ use sistership_model::{Law, Model, Vessel, Zoo};
 use sistership_pipeline::derive::with_uncertainty;
 use sistership_report::{RefinementInput, render_refinement};
 
+use super::refine_search::{Start, searched};
 use super::refine_settings::{held_out, settings_file};
 use super::refine_text;
 use super::written::{WrittenFiles, guard, model_file, promised};
@@ -31,8 +33,10 @@ Examples:
   sistership refine --ship my-ship.yaml --source kvlcc2 --law low-speed --trials trials.yaml --method weak
   sistership refine --ship my-ship.yaml --source old-model.yaml --trials trials.yaml --held-out zigzag/last.csv
 
-The source's coefficients are the prior: ranges of tuning widen from the source outwards, and the option that is best on
-whole manoeuvres left out is taken. Give several manoeuvres; a single one allows the most conservative range only.";
+Without --source, --law and --method, every eligible source is tried under every law that was
+measured, and laws without a source; taken is the simplest within one standard error of the best on
+manoeuvres left out. The source's coefficients are the prior: with a method named, options go from
+the source outwards, and the best on whole manoeuvres left out is taken. Give several manoeuvres.";
 
 /// Refine a source model against a ship's trials.
 #[derive(Debug, Args)]
@@ -41,7 +45,9 @@ pub struct RefineArguments {
     /// The ship: a name in the zoo or a vessel file.
     #[arg(long)]
     ship: String,
-    /// The source: a model's name or file, or `auto` for the most similar eligible ship of the zoo [default: auto].
+    /// The source: a model's name or file, or `auto`, which it is where absent. Without --law, --method, settings and
+    /// constraints, `auto` tries every eligible source, and none, under every law measured; with one of them, it is the most
+    /// similar eligible ship of the zoo.
     #[arg(long, value_name = "MODEL|auto")]
     source: Option<String>,
     /// The law to fit, such as `low-speed`. With a source of another law, what that says over the states of the trials and of
@@ -115,6 +121,8 @@ struct RefineDocument<'a> {
     refinement: &'a Refinement,
     #[serde(skip_serializing_if = "Option::is_none")]
     ranking: Option<&'a [RankedSource]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ladder: Option<&'a Ladder>,
     #[serde(flatten)]
     files: WrittenFiles<'a>,
 }
@@ -138,37 +146,61 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     let files = WrittenFiles { out: arguments.out.as_deref(), report: arguments.report.as_deref() };
     guard(&files, &read)?;
     settings.held_out = held_out(&settings.held_out, &read)?;
-    let (source, similarity) = match (given, &law) {
-        (Some(model), _) => (model, None),
-        (None, Some(law)) if arguments.source.is_none() => {
-            (of_law(law, &target, &settings, &read)?, None)
+    let Start { source, law, similarity, ladder, made } = match (given, law) {
+        (Some(source), law) => Start::of(source, law),
+        (None, None) if is_plain(arguments, &settings) => {
+            let (start, explicit) = searched(zoo, &target, &settings, &read)?;
+            settings = explicit;
+            start
         }
-        (None, _) => chosen(zoo, &target, &settings, &read)
-            .map(|(model, similarity)| (model, Some(similarity)))?,
+        (None, Some(law)) if arguments.source.is_none() => {
+            Start::of(of_law(&law, &target, &settings, &read)?, Some(law))
+        }
+        (None, law) => {
+            let (source, similarity) = chosen(zoo, &target, &settings, &read)?;
+            Start { similarity: Some(similarity), ..Start::of(source, law) }
+        }
     };
     let source_law = named::law_of(zoo, &source)?;
     let law = law.unwrap_or_else(|| source_law.clone());
     let laws = (&*source_law, &*law);
-    let refinement = refined(zoo, &target, &source, laws, &settings, &read)?;
+    let refinement = match made {
+        Some(made) => made,
+        None => refined(&target, &source, laws, &settings, &read)?,
+    };
+    let refinement = calibrated(zoo, refinement, &law, &read);
     if let Some(out) = out {
         let how = format!("method {}", refinement.method);
         out.write(model_file(zoo, &refinement.model, &how)?.as_bytes())?;
     }
     if let Some(report) = report {
-        report.write(&report_html(zoo, &target, &refinement, similarity.as_ref(), &read)?)?;
+        let chosen = (similarity.as_ref(), ladder.as_ref());
+        report.write(&report_html(zoo, &target, &refinement, chosen, &read)?)?;
     }
     let ranking = similarity.as_ref().map(|similarity| similarity.ranking.as_slice());
-    let document = RefineDocument { refinement: &refinement, ranking, files };
+    let document =
+        RefineDocument { refinement: &refinement, ranking, ladder: ladder.as_ref(), files };
     output::print(arguments.json, &document, || {
-        refine_text::text(&refinement, &source, ranking, &files)
+        let tried = ladder.as_ref().map_or(String::new(), refine_text::ladder);
+        let text = refine_text::text(&refinement, &source, ranking, &files);
+        refine_text::warning(&refinement) + &tried + &text
     })
+}
+
+/// Whether neither source, law nor method is named, and nothing that only some methods keep.
+fn is_plain(arguments: &RefineArguments, settings: &Settings) -> bool {
+    let unnamed = arguments.source.as_deref().is_none_or(|source| source == "auto");
+    unnamed
+        && arguments.method.is_none()
+        && arguments.settings.is_none()
+        && settings.constraints.is_empty()
 }
 
 fn report_html(
     zoo: &Zoo,
     vessel: &Vessel,
     refinement: &Refinement,
-    similarity: Option<&Similarity>,
+    (similarity, ladder): (Option<&Similarity>, Option<&Ladder>),
     read: &[ReadTrial],
 ) -> Result<Vec<u8>, Failure> {
     let law = named::law_of(zoo, &refinement.model)?;
@@ -179,6 +211,7 @@ fn report_html(
         vessel,
         trials: &trials,
         similarity,
+        ladder,
         version: None,
     };
     let rendered = render_refinement(&input)
@@ -242,7 +275,6 @@ fn chosen(
 }
 
 fn refined(
-    zoo: &Zoo,
     target: &Vessel,
     source: &Model,
     (source_law, law): (&Law, &Law),
@@ -256,9 +288,11 @@ fn refined(
         note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true
     };
-    let refinement =
-        refine(&request, &told).map_err(|error| Failure::Refused(error.to_string()))?;
+    refine(&request, &told).map_err(|error| Failure::Refused(error.to_string()))
+}
+
+fn calibrated(zoo: &Zoo, refinement: Refinement, law: &Law, read: &[ReadTrial]) -> Refinement {
     note("learning what these trials leave open");
     let effects: Vec<_> = zoo.effects().cloned().collect();
-    Ok(with_uncertainty(refinement, law, &effects, &trials))
+    with_uncertainty(refinement, law, &effects, &trials::trials(read))
 }

@@ -1,5 +1,6 @@
 //! A refinement in words and tables.
 
+use sistership_choice::{Ladder, Rung};
 use sistership_dynamics::manoeuvre::Figure;
 use sistership_estimate::bands::Band;
 use sistership_estimate::refine::{CoefficientChange, HeldOut, Manoeuvres, Refinement, StepOption};
@@ -40,6 +41,41 @@ pub fn text(
     );
     let manoeuvres = format!("Standard manoeuvres\n{}\n", manoeuvres(&refinement.manoeuvres));
     format!("{ranked}{head}{errors}{options}{coefficients}{manoeuvres}{}", end(refinement, files))
+}
+
+/// What stands in the first line where the trials leave much open.
+pub fn warning(refinement: &Refinement) -> String {
+    let wide = refinement.manoeuvres.wide_band();
+    wide.map_or_else(String::new, |wide| format!("WARNING: {wide}\n\n"))
+}
+
+/// What was tried before the model was chosen.
+pub fn ladder(ladder: &Ladder) -> String {
+    let mut table = TextTable::new([
+        "source",
+        "law",
+        "taken to",
+        "fitted",
+        "error",
+        "std. error",
+        "s",
+        "taken",
+        "why",
+    ]);
+    for line in &ladder.lines {
+        let source = line.source.clone().unwrap_or_else(|| "none".to_owned());
+        let rung = match line.rung {
+            Rung::CarriedOver => "carried over",
+            Rung::Weak => "weak",
+            Rung::Trajectory => "trajectory",
+        };
+        let figures = [optional(line.error), optional(line.standard_error)];
+        let taken = if line.chosen { "yes" } else { "" };
+        let names = [source, line.law.clone(), rung.to_owned(), line.coefficients.to_string()];
+        let end = [format!("{:.1}", line.cost_s), taken.to_owned(), line.reason.clone()];
+        table.row(names.into_iter().chain(figures).chain(end));
+    }
+    format!("Tried: standardised squared errors on manoeuvres left out\n{table}\n")
 }
 
 /// A law without roll leaves roll where it was: its errors would say nothing.

@@ -61,6 +61,9 @@ pub(super) struct CandidateFit {
     pub errors: SquaredError,
     /// Standardised errors by trial.
     pub each: Vec<f64>,
+    /// Whether those are parts of so few trials that even the source gives way to what is clearly
+    /// better only.
+    pub few: bool,
     /// Number of coefficients that are fitted.
     pub size: usize,
     /// The model of each fold, which did not see it; none of the source.
@@ -97,6 +100,7 @@ impl CandidateFit {
             solution: Box::new(solution),
             errors,
             each,
+            few: problem.settings.in_parts,
             size,
             left_out: Vec::new(),
             search: None,
@@ -122,13 +126,11 @@ pub(super) fn best(options: &[CandidateFit]) -> Option<usize> {
     best.map(|(index, _)| index)
 }
 
-/// Whether an option may replace one that has fewer coefficients; the source has none of its own to count.
+/// Whether an option may replace one that has fewer coefficients; the source has none of its own to
+/// count, and gives way to any that is better where there are trials enough.
 fn clearly(new: &CandidateFit, old: &CandidateFit) -> bool {
-    if old.size == 0
-        || new.size <= old.size
-        || new.each.len() != old.each.len()
-        || new.each.len() < 2
-    {
+    let is_larger = old.size > 0 && new.size > old.size;
+    if !(new.few || is_larger) || new.each.len() != old.each.len() || new.each.len() < 2 {
         return true;
     }
     let gains: Vec<f64> = old.each.iter().zip(&new.each).map(|(old, new)| old - new).collect();

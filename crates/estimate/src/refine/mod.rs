@@ -34,6 +34,7 @@ mod thresholds;
 mod trajectory;
 mod variant;
 mod weak;
+mod weighed;
 
 pub use alternatives::{Alternative, alternatives};
 pub use blocks::{Block, Blocks};
@@ -46,6 +47,7 @@ pub use outcome::{
 pub use progress::{Iterate, Progress, Watch};
 pub use ridge::{Choices, Fit, Fitted, Fold, fit, tune};
 pub use rows::{Table, trial_moments, trial_tables};
-pub use selection::{Request, refine, refine_watched};
+pub use selection::{Request, refine, refine_wanted, refine_watched, weigh};
 pub use settings::{Method, Range, Settings};
 pub use weak::{Windows, weak_moments, weak_tables};
+pub use weighed::{Extent, Weighed};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use sistership_dynamics::PlantError;
-use sistership_dynamics::manoeuvre::StandardManoeuvres;
+use sistership_dynamics::manoeuvre::{Figure, StandardManoeuvres};
 use sistership_dynamics::metrics::ManoeuvreMetrics;
 use sistership_model::Model;
 use sistership_model::trial::Channel;
@@ -12,7 +12,7 @@ use sistership_model::trial::Channel;
 use super::cma_es::SearchReport;
 use super::constraints::LimitError;
 use super::settings::Settings;
-use crate::bands::Bands;
+use crate::bands::{Band, Bands};
 use crate::transfer::UnknownParameter;
 
 /// Why a refinement is refused.
@@ -95,6 +95,38 @@ pub struct StepOption {
     /// Why it could not be taken, if so.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+}
+
+impl Manoeuvres {
+    /// What to know first where the trials leave much open: the widest band of an advance or tactical
+    /// diameter that is wider than half the figure, or of a first overshoot that is wider than the
+    /// 10 deg between the least and the most that MSC.137(76) allows.
+    pub fn wide_band(&self) -> Option<String> {
+        let bands = self.bands.as_ref()?;
+        let width = |figure: &Figure| {
+            let allowed = allowed_width(figure)?;
+            let band = bands.of(&figure.name)?;
+            let width = (band.high - band.low) / allowed;
+            (width > 1.0).then_some((width, band.clone()))
+        };
+        let figures = self.refined.figures();
+        let wide = figures.iter().filter_map(width);
+        let (_, band) = wide.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let Band { figure, unit, low, high, .. } = band;
+        Some(format!(
+            "These trials leave much open: {figure} is between {low:.0} and {high:.0} {unit} (95 %)"
+        ))
+    }
+}
+
+/// How wide a figure's band may be before it is said first; none of figures that are not judged so.
+fn allowed_width(figure: &Figure) -> Option<f64> {
+    let is = |name: &str| figure.name.ends_with(name);
+    if is("first overshoot") {
+        return Some(10.0);
+    }
+    let turns = is("advance") || is("tactical diameter");
+    figure.value.filter(|_| turns).map(|value| 0.5 * value.abs())
 }
 
 /// Root mean square errors by channel (SI), on manoeuvres left out.

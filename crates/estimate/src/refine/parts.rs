@@ -11,8 +11,9 @@ use sistership_model::trial::Trial;
 use super::equations::Equations;
 use super::settings::Settings;
 
-/// The training trials in parts as long as simulations run between restarts, at least two of each, where a law rolls and there
-/// are fewer trials than folds; nothing where the trials stay whole.
+/// The training trials in parts as long as simulations run between restarts, at least two of each,
+/// where that is asked, or a law rolls and there are fewer trials than folds; nothing where the
+/// trials stay whole.
 pub(super) fn parts(
     training: &[&Trial],
     law: &Law,
@@ -20,7 +21,8 @@ pub(super) fn parts(
     settings: &Settings,
 ) -> Vec<Trial> {
     let Some(part_s) = settings.restart_s else { return Vec::new() };
-    if equations.are_differences() || !law.has_roll() || training.len() >= settings.folds {
+    let few_that_roll = law.has_roll() && training.len() < settings.folds;
+    if !settings.in_parts && (equations.are_differences() || !few_that_roll) {
         return Vec::new();
     }
     training.iter().flat_map(|trial| cut(trial, part_s)).collect()
@@ -87,5 +89,7 @@ mod tests {
         assert_eq!(count("abkowitz-roll", 8, windows), 0);
         assert_eq!(count("abkowitz", 3, windows), 0);
         assert_eq!(count("abkowitz-roll", 3, Equations::Differences(None)), 0);
+        let asked = Settings { in_parts: true, ..settings.clone() };
+        assert_eq!(parts(&[&one], zoo.law("abkowitz").unwrap(), windows, &asked).len(), 5);
     }
 }

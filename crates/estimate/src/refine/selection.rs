@@ -7,6 +7,7 @@ use sistership_model::{Model, Vessel};
 
 use super::across::{self, SourceRegression};
 use super::blocks::Blocks;
+use super::candidate::CandidateFit;
 use super::estimators::estimator;
 use super::finish::finish;
 use super::measure::PriorMeasure;
@@ -17,7 +18,8 @@ use super::progress::{MonotoneProgress, Progress, Watch, step};
 use super::ridge_candidates::source_candidate;
 use super::settings::Settings;
 use super::thresholds::SELECTION;
-use super::variant::variants;
+use super::variant::{Variant, variants};
+use super::weighed::{Extent, Weighed, weighed};
 use crate::transfer::{approach_of, transfer};
 
 /// What is to be refined, and against what.
@@ -54,6 +56,59 @@ pub fn refine_watched(
     progress: Progress<'_>,
     watch: Watch<'_>,
 ) -> Result<Refinement, RefineError> {
+    with_candidates(request, Extent::Estimator, progress, watch, finish)
+}
+
+/// What the source as it is, and the best fit to the extent asked for, give on manoeuvres left out. No model is made.
+///
+/// # Errors
+/// As [`refine`].
+pub fn weigh(
+    request: &Request<'_>,
+    extent: Extent,
+    progress: Progress<'_>,
+) -> Result<Vec<Weighed>, RefineError> {
+    with_candidates(request, extent, progress, &|_| (), |problem, candidates, variants, _| {
+        Ok(weighed(problem, &candidates, variants))
+    })
+}
+
+/// As [`weigh`], and as [`refine`] where what it tells is wanted.
+///
+/// # Errors
+/// As [`refine`].
+pub fn refine_wanted(
+    request: &Request<'_>,
+    wanted: &dyn Fn(&[Weighed]) -> bool,
+    progress: Progress<'_>,
+) -> Result<(Vec<Weighed>, Option<Refinement>), RefineError> {
+    let both = |problem: &Problem<'_>,
+                fits: Vec<CandidateFit>,
+                variants: &[Variant],
+                progress: Progress<'_>| {
+        let weighed = weighed(problem, &fits, variants);
+        let refinement = match wanted(&weighed) {
+            true => Some(finish(problem, fits, variants, progress)?),
+            false => None,
+        };
+        Ok((weighed, refinement))
+    };
+    with_candidates(request, Extent::Estimator, progress, &|_| (), both)
+}
+
+/// Sets the problem up, gives its candidates to the extent asked for, and does with them what `then` does.
+fn with_candidates<T>(
+    request: &Request<'_>,
+    extent: Extent,
+    progress: Progress<'_>,
+    watch: Watch<'_>,
+    then: impl FnOnce(
+        &Problem<'_>,
+        Vec<CandidateFit>,
+        &[Variant],
+        Progress<'_>,
+    ) -> Result<T, RefineError>,
+) -> Result<T, RefineError> {
     request.settings.check().map_err(|(field, message)| RefineError::Setting { field, message })?;
     let (judged, whole) = divided(request)?;
     let progress = MonotoneProgress::new(progress);
@@ -81,9 +136,11 @@ pub fn refine_watched(
     step(progress, 0.05, "sufficient statistics of each trial")?;
     let variants = variants(&problem, equations)?;
     let mut candidates = vec![source_candidate(&problem, &variants)?];
-    estimator.candidates(&problem, &variants, &mut candidates, progress)?;
+    if extent == Extent::Estimator {
+        estimator.candidates(&problem, &variants, &mut candidates, progress)?;
+    }
     step(progress, 0.8, "fitting all trials")?;
-    finish(&problem, candidates, &variants, progress)
+    then(&problem, candidates, &variants, progress)
 }
 
 /// What the prior is about: the source carried over, by its own law or as another law says what it says.

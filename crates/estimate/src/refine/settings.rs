@@ -123,6 +123,11 @@ pub struct Settings {
     /// Most folds; with more manoeuvres than that, several are left out together.
     #[schemars(range(min = 2, max = 100))]
     pub folds: usize,
+    /// Trials are left out part by part, each as long as simulations run between restarts, and what is
+    /// taken must be clearly better than the source: for one or two trials, where leaving one out
+    /// leaves too little. The default search sets it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub in_parts: bool,
     /// Names of trials that are kept out of fit and choice altogether, to be judged on.
     pub held_out: Vec<String>,
     /// What the refined model must keep to.
@@ -154,6 +159,7 @@ impl Default for Settings {
             strengths: Vec::new(),
             restart_s: None,
             folds: 8,
+            in_parts: false,
             held_out: Vec::new(),
             constraints: Constraints::default(),
             bands: Sampling::default(),

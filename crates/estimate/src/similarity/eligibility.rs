@@ -2,6 +2,7 @@
 //! section 5.1.2.
 
 use serde::Serialize;
+use sistership_model::categories::group_of;
 use sistership_model::{Model, Vessel};
 
 use super::{CharacteristicVector, Definition};
@@ -142,10 +143,12 @@ impl StepOutcome {
 fn same_category(target: &Vessel, source: &Vessel) -> StepOutcome {
     let (here, there) = (&target.file.category, &source.file.category);
     if here == there {
-        StepOutcome::passed(format!("same category: {here}"))
-    } else {
-        StepOutcome::failed(format!("another category: {there}, not {here}"))
+        return StepOutcome::passed(format!("same category: {here}"));
     }
+    if let Some(group) = group_of(here).filter(|group| group.categories.contains(there)) {
+        return StepOutcome::passed(format!("comparable category: {there}, also {}", group.name));
+    }
+    StepOutcome::failed(format!("another category: {there}, not {here}"))
 }
 
 fn similar_vector(target: &Vessel, source: &Vessel, limits: &EligibilityLimits) -> StepOutcome {

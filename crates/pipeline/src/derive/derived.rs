@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use sistership_estimate::refine::{Refinement, Settings};
 use sistership_model::trial::Trial;
-use sistership_model::version::{self, SourceVersion};
+use sistership_model::version;
 use sistership_model::{Law, Model, Vessel};
 
 use crate::error::DeriveError;
@@ -39,9 +39,7 @@ pub struct Refined {
 pub struct Ingredients {
     /// The ship.
     pub target: Vessel,
-    /// The version that is refined.
-    pub source: SourceVersion,
-    /// Its model.
+    /// The model that is refined; a law without coefficients where there is no source.
     pub model: Model,
     /// Its law, where it is another than what is fitted.
     pub source_law: Option<Law>,

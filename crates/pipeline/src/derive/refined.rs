@@ -2,8 +2,10 @@
 
 use serde_json::Value;
 use sistership_estimate::refine::{RefineError, Refinement, Request, Settings, refine};
+use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::trial::Trial;
 use sistership_model::version::{FORMAT, Recipe};
+use sistership_model::{Law, Model, Vessel};
 
 use super::calibrated::with_uncertainty;
 use super::derived::{Derived, Ingredients, Progress, Refined};
@@ -22,6 +24,7 @@ pub(super) async fn gather(
 ) -> Result<Ingredients, DeriveError> {
     let Recipe::Refinement {
         source,
+        law: named,
         ship_sha256,
         law_sha256,
         across,
@@ -33,19 +36,44 @@ pub(super) async fn gather(
     else {
         return Err(DeriveError::Lost("the recipe is not that of a refinement".into()));
     };
-    let model = inputs.source(source).await?;
-    let law =
-        inputs.law(across.as_ref().map_or(&model.law, |across| &across.law), law_sha256).await?;
-    let source_law = match across {
-        Some(across) => Some(inputs.law(&model.law, &across.source_law_sha256).await?),
-        None => None,
-    };
+    let settings: Settings = serde_json::from_value(recorded.clone())?;
     let target = inputs.ship(ship, ship_sha256).await?;
     let library = inputs.effects(effects_sha256.as_deref().unwrap_or(FIRST_SHA256)).await?;
     let trials = inputs.trials(trials).await?;
-    let settings: Settings = serde_json::from_value(recorded.clone())?;
-    let source = source.clone();
-    Ok(Ingredients { target, source, model, source_law, law, library, trials, settings })
+    let (model, law, source_law) = match source {
+        Some(source) => {
+            let model = inputs.source(source).await?;
+            let name = across.as_ref().map_or(&model.law, |across| &across.law);
+            let law = inputs.law(name, law_sha256).await?;
+            let source_law = match across {
+                Some(across) => Some(inputs.law(&model.law, &across.source_law_sha256).await?),
+                None => None,
+            };
+            (model, law, source_law)
+        }
+        None => {
+            let name = named.as_deref().ok_or_else(unnamed)?;
+            let law = inputs.law(name, law_sha256).await?;
+            (without_source(&law, &target, &trials, &settings)?, law, None)
+        }
+    };
+    Ok(Ingredients { target, model, source_law, law, library, trials, settings })
+}
+
+fn unnamed() -> DeriveError {
+    DeriveError::Lost("the recipe names neither a source nor a law".into())
+}
+
+/// A law without coefficients, for the approach of the trials that are fitted.
+fn without_source(
+    law: &Law,
+    target: &Vessel,
+    trials: &[Trial],
+    settings: &Settings,
+) -> Result<Model, DeriveError> {
+    let fitted = trials.iter().filter(|trial| !settings.held_out.contains(&trial.name));
+    let approach = approach_of(&fitted.collect::<Vec<_>>());
+    blank(law, target, approach).map_err(|error| DeriveError::Refine(error.into()))
 }
 
 pub(super) fn refined(

@@ -1,6 +1,7 @@
 //! Everything that the report of a refinement says, gathered once.
 
 use serde::Serialize;
+use sistership_choice::Ladder;
 use sistership_estimate::source::Similarity;
 
 use super::coefficients::Coefficients;
@@ -24,6 +25,10 @@ pub(crate) struct RefinementContent<'a> {
     pub manoeuvres: ManoeuvreComparison<'a>,
     pub sailed: Vec<Sailed>,
     pub similarity: Option<&'a Similarity>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ladder: Option<&'a Ladder>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wide: Option<String>,
     pub provenance: Provenance<'a>,
 }
 
@@ -40,6 +45,8 @@ impl<'a> RefinementContent<'a> {
             manoeuvres: ManoeuvreComparison::of(input),
             sailed: sailed::figures(input),
             similarity: input.similarity,
+            ladder: input.ladder,
+            wide: input.refinement.manoeuvres.wide_band(),
             provenance: Provenance::of(input),
         }
     }

@@ -7,7 +7,7 @@ use sistership_model::vessel::Status;
 use super::coefficients::Coefficients;
 use super::content::RefinementContent;
 use super::summary::method_text;
-use super::{moved, similarity, tables};
+use super::{ladder, moved, similarity, tables};
 use crate::numbers::{list, significant, stated};
 use crate::plots::{self, Plot};
 use crate::rendered::ReportError;
@@ -35,6 +35,9 @@ struct RefinementPage<'a> {
     imo: Table,
     sailed: Table,
     why: Option<SourceChoice>,
+    ladder: Option<Table>,
+    /// What to know first where the trials leave much open.
+    wide: Option<String>,
     particulars: Table,
     parameters: Table,
     settings: Table,
@@ -91,6 +94,8 @@ pub(crate) fn page(
         imo: tables::imo(&content.manoeuvres),
         sailed: tables::sailed(&content.sailed),
         why: why(content),
+        ladder: content.ladder.map(ladder::table),
+        wide: content.wide.clone(),
         particulars: tables::particulars(&provenance.particulars),
         parameters: tables::parameters(&provenance.parameters),
         settings: tables::settings(provenance.settings),
@@ -163,7 +168,10 @@ fn why(content: &RefinementContent<'_>) -> Option<SourceChoice> {
     content.similarity.map(|ranking| SourceChoice {
         definition: similarity::definition(ranking.definition),
         vector: similarity::vector(ranking),
-        remark: similarity::remark(ranking, content.headline.source),
+        remark: match content.ladder {
+            Some(_) => None,
+            None => similarity::remark(ranking, content.headline.source),
+        },
         table: similarity::table(ranking, content.headline.source),
     })
 }

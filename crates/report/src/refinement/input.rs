@@ -1,5 +1,6 @@
 //! What the report of a refinement is made of.
 
+use sistership_choice::Ladder;
 use sistership_estimate::refine::Refinement;
 use sistership_estimate::source::Similarity;
 use sistership_model::trial::Trial;
@@ -20,6 +21,8 @@ pub struct RefinementInput<'a> {
     pub trials: &'a [&'a Trial],
     /// How the source was found, where it was not named.
     pub similarity: Option<&'a Similarity>,
+    /// What was tried, where it was searched.
+    pub ladder: Option<&'a Ladder>,
     /// The version under which the model is kept, where it is kept.
     pub version: Option<VersionLabel>,
 }

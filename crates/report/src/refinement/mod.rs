@@ -7,6 +7,7 @@ mod coefficients;
 mod content;
 mod html;
 mod input;
+mod ladder;
 mod manoeuvres;
 mod moved;
 mod options;

@@ -89,6 +89,7 @@ impl Case {
             vessel: &self.vessel,
             trials: &trials,
             similarity,
+            ladder: None,
             version: Some(version),
         })
         .unwrap()

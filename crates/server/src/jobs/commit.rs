@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use serde_json::{Value, json};
+use sistership_choice::Ladder;
 use sistership_estimate::source::Similarity;
 use sistership_model::trial::Trial;
 use sistership_model::version::sha256;
 use sistership_store::{
-    Expect, Job, NewReport, NewVersion, Refinement, ReportHead, StoreError, VersionHead,
+    Expect, Job, NewReport, NewVersion, Refinement, ReportHead, StoreError, Version, VersionHead,
 };
 
 use super::outcome::{JobError, Result, failed};
@@ -15,6 +16,7 @@ use super::prepared::Prepared;
 use crate::app::App;
 use sistership_pipeline::derive::{Derived, Refined};
 use sistership_pipeline::line::{CANDIDATE, CHAMPION, Standing, step};
+use sistership_pipeline::promotion::{Comparison, against_champion};
 use sistership_report::{self as report, Rendered, VersionLabel};
 
 /// A version that is to be kept, with what its report is made of.
@@ -22,6 +24,8 @@ struct Made {
     version: NewVersion,
     refined: Arc<Refined>,
     similarity: Option<Arc<Similarity>>,
+    ladder: Option<Arc<Ladder>>,
+    comparison: Option<Comparison>,
     result: Value,
 }
 
@@ -32,7 +36,11 @@ pub(super) async fn commit(
     derived: Derived,
     prepared: Prepared,
 ) -> Result<()> {
+    let hashes = derived.document.recipe.trials().iter().map(|t| t.sha256.clone()).collect();
     let made = Made::new(derived, prepared)?;
+    let refined = Arc::clone(&made.refined);
+    let comparison = against_champion(app.archive(), &made.version.model, refined, hashes).await?;
+    let made = Made { comparison, ..made };
     for _ in 0..super::TRIES {
         let standing = Standing::of(app.store(), &made.version.model).await?;
         let report = made.report(app, standing.next).await?;
@@ -48,21 +56,27 @@ pub(super) async fn commit(
 impl Made {
     fn new(derived: Derived, prepared: Prepared) -> Result<Self> {
         let Derived { document, refined } = derived;
-        let source = format!("{}/{}", prepared.source.head.model, prepared.source.head.number);
+        let named = |source: &Version| format!("{}/{}", source.head.model, source.head.number);
+        let source = prepared.start.source.as_ref().map(named);
         let refined = refined.ok_or_else(|| failed("the recipe is not that of a refinement"))?;
         let version = NewVersion {
             model: document.ship.clone(),
-            parent: Some(prepared.source.head.id),
+            parent: prepared.start.source.map(|source| source.head.id),
             law: document.model.law.clone(),
             method: refined.refinement.method.clone(),
             document: document.canonical().map_err(failed)?,
         };
-        let ranking = prepared.similarity.as_ref().map(|similarity| &similarity.ranking);
-        let result = json!({ "source": source, "held_out": refined.refinement.held_out, "ranking": ranking });
+        let ranking = prepared.start.similarity.as_ref().map(|similarity| &similarity.ranking);
+        let mut result = json!({ "source": source, "held_out": refined.refinement.held_out, "ranking": ranking });
+        if let Some(ladder) = &prepared.start.ladder {
+            result["ladder"] = serde_json::to_value(ladder).map_err(failed)?;
+        }
         Ok(Self {
             version,
             refined: Arc::new(refined),
-            similarity: prepared.similarity.map(Arc::new),
+            similarity: prepared.start.similarity.map(Arc::new),
+            ladder: prepared.start.ladder.map(Arc::new),
+            comparison: None,
             result,
         })
     }
@@ -71,8 +85,9 @@ impl Made {
         let sha256 = sha256(self.version.document.as_bytes());
         let label = VersionLabel { ship: self.version.model.clone(), number, sha256 };
         let (refined, similarity) = (Arc::clone(&self.refined), self.similarity.clone());
-        let rendered =
-            app.compute(move || render(&refined, similarity.as_deref(), label)).await??;
+        let ladder = self.ladder.clone();
+        let how = move || render(&refined, (similarity.as_deref(), ladder.as_deref()), label);
+        let rendered = app.compute(how).await??;
         let document = serde_json::to_string(&rendered.json).map_err(failed)?;
         Ok(NewReport {
             version_id: None,
@@ -92,12 +107,17 @@ impl Made {
     ) -> Result<()> {
         let reason = format!(
             "refined from {} in job {}",
-            self.result["source"].as_str().unwrap_or_default(),
+            self.result["source"].as_str().unwrap_or("no source"),
             job.id
         );
-        let alias = if standing.champion { CANDIDATE } else { CHAMPION };
-        let expect = if standing.champion { Expect::Any } else { Expect::Absent };
-        let moves = vec![step(alias, expect, &reason), standing.follow(&reason)];
+        let alias = match &self.comparison {
+            _ if !standing.champion => Some((CHAMPION, Expect::Absent)),
+            Some(comparison) if comparison.is_worse() => None,
+            _ => Some((CANDIDATE, Expect::Any)),
+        };
+        let own = alias.map(|(alias, expect)| step(alias, expect, &reason));
+        let moves = own.into_iter().chain([standing.follow(&reason)]).collect();
+        let alias = alias.map(|(alias, _)| alias);
         let refinement = Refinement { version: self.version.clone(), moves, report: Some(report) };
         let result = |version: &VersionHead, report: Option<&ReportHead>| {
             self.result(version, report, alias)
@@ -106,12 +126,18 @@ impl Made {
         Ok(())
     }
 
-    fn result(&self, version: &VersionHead, report: Option<&ReportHead>, alias: &str) -> String {
+    fn result(
+        &self,
+        version: &VersionHead,
+        report: Option<&ReportHead>,
+        alias: Option<&str>,
+    ) -> String {
         let mut result = self.result.clone();
         result["model"] = json!(version.model);
         result["version"] = json!(version.number);
         result["sha256"] = json!(version.sha256);
         result["alias"] = json!(alias);
+        result["comparison"] = json!(self.comparison.as_ref().map(Comparison::words));
         result["report"] = json!(report.map(|report| &report.id));
         result.to_string()
     }
@@ -119,7 +145,7 @@ impl Made {
 
 fn render(
     refined: &Refined,
-    similarity: Option<&Similarity>,
+    (similarity, ladder): (Option<&Similarity>, Option<&Ladder>),
     version: VersionLabel,
 ) -> Result<Rendered> {
     let trials: Vec<&Trial> = refined.ingredients.trials.iter().collect();
@@ -129,6 +155,7 @@ fn render(
         vessel: &refined.ingredients.target,
         trials: &trials,
         similarity,
+        ladder,
         version: Some(version),
     };
     report::render_refinement(&input).map_err(failed)

@@ -7,7 +7,7 @@ use sistership_store::{Job, Version};
 
 use super::commit_diagnosis::commit;
 use super::outcome::{Result, failed};
-use super::prepared::{library_of, trials};
+use super::prepared::trials;
 use super::progress::Progress;
 use super::progress::tell;
 use super::request::DiagnosisJob;
@@ -16,6 +16,7 @@ use sistership_model::version::code_revision;
 use sistership_pipeline::derive::diagnosed;
 use sistership_pipeline::recipe::{DiagnosisKind, DiagnosisRecipe};
 use sistership_pipeline::sorted::sorted;
+use sistership_pipeline::start::library_of;
 
 /// Does a diagnosis.
 pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {
@@ -39,7 +40,7 @@ async fn recipe(app: &App, asked: &DiagnosisJob, version: &Version) -> Result<Di
         diagnosed: SourceVersion { ship, number, sha256 },
         law_sha256: law.sha256,
         trials: trials(app, &asked.trials).await?,
-        effects_sha256: library_of(app).await?.sha256.clone(),
+        effects_sha256: library_of(app.archive()).await?.sha256.clone(),
         settings: sorted(serde_json::to_value(&asked.settings).map_err(failed)?),
         code_revision: code_revision().to_owned(),
     })

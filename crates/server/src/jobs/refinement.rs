@@ -8,7 +8,7 @@ use sistership_store::Job;
 
 use super::commit::commit;
 use super::outcome::{Result, failed};
-use super::prepared::prepare;
+use super::prepared::{SEARCHED, prepare};
 use super::progress::{Progress, tell};
 use super::request::RefinementJob;
 use crate::app::App;
@@ -19,7 +19,8 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
     tell(&progress, 0.01, "reading the trials")?;
     let prepared = prepare(app, &asked, &progress).await?;
     let step = progress.clone();
-    let scaled = move |fraction: f64, what: &str| step.tell(0.1 + 0.8 * fraction, what);
+    let begun = if prepared.start.ladder.is_some() { SEARCHED } else { 0.1 };
+    let scaled = move |done: f64, what: &str| step.tell(begun + (0.9 - begun) * done, what);
     let derived = derive(
         app.archive(),
         &asked.ship,

@@ -17,6 +17,9 @@ pub(crate) struct RefinementJob {
     /// The law to fit; the source's where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub law: Option<String>,
+    /// Whether source, law and method are searched, since none of them was named.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub search: bool,
     /// The trials' ids.
     pub trials: Vec<String>,
     /// Every setting.

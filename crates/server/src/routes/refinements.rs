@@ -32,7 +32,9 @@ struct RefinementRequest {
     /// The ship to refine a model for.
     #[schema(inline)]
     ship: Name,
-    /// `auto`, which it is where absent, or a version to start from: `ship` (her champion), `ship/number`, `ship/alias`.
+    /// `auto`, which it is where absent, or a version to start from: `ship` (its champion), `ship/number`, `ship/alias`. Where
+    /// neither a source nor a law nor `settings.method` is named, all three are searched: the best model that the trials
+    /// allow, by its error on manoeuvres left out. With a law or method, `auto` is the most similar eligible ship.
     #[schema(inline)]
     source: Option<ModelName>,
     /// The law to fit, such as `low-speed`; the source's where absent. What a source of another law says over the states of the
@@ -48,7 +50,7 @@ struct RefinementRequest {
     settings: Settings,
 }
 
-/// The source that is the most similar ship.
+/// The source that is found.
 const AUTO: &str = "auto";
 
 /// Refine a model against trials
@@ -63,12 +65,29 @@ const AUTO: &str = "auto";
 )]
 async fn refine(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
     let request: RefinementRequest = payload.json()?;
-    key.once(&app, payload.bytes(), |app| async move { queued(&app, request).await }).await
+    let search = names_no_method(payload.bytes()) && request.is_open();
+    key.once(&app, payload.bytes(), move |app| async move { queued(&app, request, search).await })
+        .await
 }
 
-async fn queued(app: &App, request: RefinementRequest) -> Result<Reply> {
+impl RefinementRequest {
+    /// Whether neither source nor law is named, nor what only some methods keep.
+    fn is_open(&self) -> bool {
+        let source = self.source.as_deref().is_none_or(|source| source == AUTO);
+        source && self.law.is_none() && self.settings.constraints.is_empty()
+    }
+}
+
+/// Whether the settings leave the method open; a default says nothing of that.
+fn names_no_method(body: &[u8]) -> bool {
+    let asked: serde_json::Value = serde_json::from_slice(body).unwrap_or_default();
+    asked.pointer("/settings/method").is_none()
+}
+
+async fn queued(app: &App, request: RefinementRequest, search: bool) -> Result<Reply> {
     let ship = request.ship.to_string();
-    accepted(enqueue(app, REFINEMENT, &ship, &settled(app, request).await?).await?)
+    let job = RefinementJob { search, ..settled(app, request).await? };
+    accepted(enqueue(app, REFINEMENT, &ship, &job).await?)
 }
 
 /// The request with everything looked up, so that a job that is wrong is refused at once.
@@ -94,6 +113,7 @@ async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob>
         source,
         ship: ship.into_string(),
         law: law.map(Name::into_string),
+        search: false,
         trials,
         settings,
         key_sha256: None,

@@ -1,0 +1,57 @@
+//! What the search has tried, with error and cost.
+
+use serde::Serialize;
+
+use sistership_estimate::refine::Method;
+
+/// How far an entrant was taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rung {
+    /// The source as carried over.
+    CarriedOver,
+    /// The weak form.
+    Weak,
+    /// The trajectory form.
+    Trajectory,
+}
+
+impl Rung {
+    /// The estimator by which the entrant is weighed there.
+    pub fn method(self) -> Method {
+        match self {
+            Self::CarriedOver | Self::Weak => Method::Weak,
+            Self::Trajectory => Method::Trajectory,
+        }
+    }
+}
+
+/// One entrant on one rung.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Line {
+    /// The source; none where the trials alone make the model.
+    pub source: Option<String>,
+    /// The law.
+    pub law: String,
+    /// How far it was taken.
+    pub rung: Rung,
+    /// Coefficients fitted.
+    pub coefficients: usize,
+    /// Standardised mean squared error on manoeuvres left out; none where a simulation diverged.
+    pub error: Option<f64>,
+    /// Its standard error over the trials; none below two.
+    pub standard_error: Option<f64>,
+    /// Wall time, s.
+    pub cost_s: f64,
+    /// Whether it was taken.
+    pub chosen: bool,
+    /// Why it is out, or why it was taken.
+    pub reason: String,
+}
+
+/// Everything that was tried, in the order of the rungs.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Ladder {
+    /// The lines.
+    pub lines: Vec<Line>,
+}

@@ -1,0 +1,244 @@
+//! Successive halving over entrants (Karnin, Koren, Somekh 2013, ICML, Algorithm 3; Jamieson and
+//! Talwalkar 2016, AISTATS, Algorithm 1): on each rung a share of them goes on to the next, costlier
+//! estimator.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use sistership_model::Vessel;
+use sistership_model::trial::Trial;
+
+use crate::choice::{chosen, standard_error};
+use crate::entrant::Entrant;
+use crate::ladder::{Ladder, Line, Rung};
+use crate::thresholds::SEARCH;
+use sistership_estimate::refine::{
+    Extent, Family, Progress, RefineError, Refinement, Request, Settings, Weighed, refine_wanted,
+    weigh,
+};
+
+/// What is searched.
+#[derive(Debug, Clone, Copy)]
+pub struct Search<'a> {
+    /// The ship.
+    pub target: &'a Vessel,
+    /// What enters.
+    pub entrants: &'a [Entrant],
+    /// Every trial; those that the settings keep out have no say.
+    pub trials: &'a [&'a Trial],
+    /// Settings but the method.
+    pub settings: &'a Settings,
+}
+
+/// What was taken, and how it is refined explicitly.
+#[derive(Debug, Clone)]
+pub struct Winner {
+    /// Its place among the entrants.
+    pub entrant: usize,
+    /// Settings that name its method.
+    pub settings: Settings,
+    /// What was tried.
+    pub ladder: Ladder,
+    /// The refinement that naming all of it gives, where the search has made it already.
+    pub refinement: Option<Refinement>,
+}
+
+/// A candidate with where it came from.
+struct Tried {
+    entrant: usize,
+    rung: Rung,
+    weighed: Weighed,
+    refinement: Option<Refinement>,
+    cost_s: f64,
+}
+
+/// Searches the best entrant and estimator.
+///
+/// # Errors
+/// It was cancelled, a setting is refused, or nothing could be simulated to its end.
+pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
+    let held_out = &search.settings.held_out;
+    let fitted = search.trials.iter().filter(|trial| !held_out.contains(&trial.name)).count();
+    let in_parts = search.settings.in_parts || fitted < SEARCH.few;
+    let settings = Settings { in_parts, ..search.settings.clone() };
+    climbed(&Search { settings: &settings, ..*search }, progress)
+}
+
+fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
+    let mut tried = Vec::new();
+    let (known, mut alone): (Vec<usize>, Vec<usize>) = (0..search.entrants.len())
+        .partition(|entrant| search.entrants[*entrant].source_law.is_some());
+    climb(search, Rung::CarriedOver, &known, (0.0, 0.1), &mut tried, progress)?;
+    let mut next = leading_by_law(search, &tried);
+    // Parts of one manoeuvre tell nothing of others, and without a source nothing else does.
+    if search.settings.in_parts && !next.is_empty() {
+        alone.clear();
+    }
+    next.extend(alone);
+    climb(search, Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
+    let next = leading(&tried);
+    climb(search, Rung::Trajectory, &next, (0.5, 0.5), &mut tried, progress)?;
+    taken(search, tried)
+}
+
+/// Weighs entrants on a rung, whose progress begins at a fraction of the whole and takes a span of it.
+fn climb(
+    search: &Search<'_>,
+    rung: Rung,
+    entrants: &[usize],
+    (begin, span): (f64, f64),
+    tried: &mut Vec<Tried>,
+    progress: Progress<'_>,
+) -> Result<(), RefineError> {
+    let share = span / entrants.len().max(1) as f64;
+    for (k, &entrant) in entrants.iter().enumerate() {
+        let from = begin + share * k as f64;
+        let named = search.entrants[entrant].name();
+        let told = |fraction: f64, what: &str| {
+            progress(from + share * fraction, &format!("{named}: {what}"))
+        };
+        let begun = Instant::now();
+        let (weighed, refinement) = on_rung(search, rung, entrant, tried, &told)?;
+        let cost_s = begun.elapsed().as_secs_f64();
+        tried.push(Tried { entrant, rung, weighed, refinement, cost_s });
+    }
+    Ok(())
+}
+
+/// What an entrant gives on a rung; one that cannot be fitted is out with the reason.
+fn on_rung(
+    search: &Search<'_>,
+    rung: Rung,
+    place: usize,
+    tried: &[Tried],
+    progress: Progress<'_>,
+) -> Result<(Weighed, Option<Refinement>), RefineError> {
+    let entrant = &search.entrants[place];
+    let settings = settings_on(search.settings, rung, ridge_of(tried, place));
+    let least = |rung| ordered(tried.iter().filter(move |one| one.rung == rung)).first().copied();
+    let leads = |all: &[Weighed]| {
+        let error = all.get(1).and_then(|fit| fit.error);
+        error.is_some_and(|error| least(Rung::Trajectory).is_none_or(|(_, least)| error < least))
+    };
+    let request = Request {
+        target: search.target,
+        source: &entrant.source,
+        source_law: entrant.source_law.as_deref(),
+        law: &entrant.law,
+        trials: search.trials,
+        settings: &settings,
+    };
+    let (of_source, of_fit) = (0, 1);
+    let given = match rung {
+        Rung::CarriedOver => {
+            weigh(&request, Extent::Source, progress).map(|all| (all, of_source, None))
+        }
+        Rung::Weak => weigh(&request, Extent::Estimator, progress).map(|all| (all, of_fit, None)),
+        Rung::Trajectory => {
+            refine_wanted(&request, &leads, progress).map(|(all, made)| (all, of_fit, made))
+        }
+    };
+    match given {
+        Err(error @ (RefineError::Cancelled | RefineError::Setting { .. })) => Err(error),
+        Err(error) => Ok((Weighed::refused(error.to_string()), None)),
+        Ok((all, wanted, made)) => {
+            let one = all.into_iter().nth(wanted);
+            let no_fit = || Weighed::refused("the trials allow no fit".to_owned());
+            Ok((one.unwrap_or_else(no_fit), made))
+        }
+    }
+}
+
+/// The weak form that an entrant had.
+fn ridge_of(tried: &[Tried], entrant: usize) -> Option<(Family, f64)> {
+    tried.iter().rev().find(|one| one.entrant == entrant)?.weighed.ridge
+}
+
+/// Settings by which an entrant is fitted on a rung. Carried over, the prior is so strong that the
+/// source stays; in weak form few strengths are tried; trajectories begin near the best of those.
+fn settings_on(settings: &Settings, rung: Rung, ridge: Option<(Family, f64)>) -> Settings {
+    let mut settings = Settings { method: rung.method(), ..settings.clone() };
+    let (families, strengths) = match (rung, ridge) {
+        (Rung::CarriedOver, _) => (vec![Family::Own], vec![SEARCH.kept]),
+        (Rung::Weak, _) | (Rung::Trajectory, None) => (Vec::new(), SEARCH.strengths.to_vec()),
+        (Rung::Trajectory, Some((family, lambda))) => {
+            (vec![family], SEARCH.near.map(|factor| factor * lambda).to_vec())
+        }
+    };
+    if settings.families.is_empty() {
+        settings.families = families;
+    }
+    if settings.strengths.is_empty() {
+        settings.strengths = strengths;
+    }
+    settings
+}
+
+/// Entrants with their errors, the least first; those that did not sail are left out.
+fn ordered<'a>(tried: impl Iterator<Item = &'a Tried>) -> Vec<(usize, f64)> {
+    let mut order: Vec<(usize, f64)> =
+        tried.filter_map(|one| Some((one.entrant, one.weighed.error?))).collect();
+    order.sort_by(|a, b| a.1.total_cmp(&b.1));
+    order
+}
+
+/// Of each law the sources that lead as carried over, one in [`SEARCH`]`.share`: how well a source
+/// is carried over says which source serves a law best, but not how well a law can be fitted.
+fn leading_by_law(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
+    let mut by_law: BTreeMap<&str, Vec<&Tried>> = BTreeMap::new();
+    for one in tried {
+        by_law.entry(&search.entrants[one.entrant].law.name).or_default().push(one);
+    }
+    let first = |of_law: &Vec<&Tried>| {
+        let order = ordered(of_law.iter().copied());
+        let count = order.len().div_ceil(SEARCH.share);
+        order.into_iter().take(count).map(|(entrant, _)| entrant).collect::<Vec<_>>()
+    };
+    by_law.values().flat_map(first).collect()
+}
+
+/// The entrants that lead in weak form: trajectories seldom gain more than
+/// [`SEARCH`]`.trajectory_gain`.
+fn leading(tried: &[Tried]) -> Vec<usize> {
+    let order = ordered(tried.iter().filter(|one| one.rung == Rung::Weak));
+    let least = order.first().map_or(0.0, |(_, error)| *error);
+    let near = order.into_iter().filter(|(_, error)| *error <= SEARCH.trajectory_gain * least);
+    near.take(SEARCH.trajectories).map(|(entrant, _)| entrant).collect()
+}
+
+fn taken(search: &Search<'_>, mut tried: Vec<Tried>) -> Result<Winner, RefineError> {
+    let weighed: Vec<&Weighed> = tried.iter().map(|one| &one.weighed).collect();
+    let best = chosen(&weighed).ok_or_else(|| {
+        let reasons: Vec<String> =
+            tried.iter().filter_map(|one| one.weighed.reason.clone()).collect();
+        RefineError::Diverged(reasons.join("; "))
+    })?;
+    let lines = tried.iter().enumerate();
+    let least = tried.iter().filter_map(|one| one.weighed.error).fold(f64::INFINITY, f64::min);
+    let lines = lines.map(|(place, one)| line(search, one, least, place == best)).collect();
+    let entrant = tried[best].entrant;
+    let below = &tried[..tried.iter().position(|one| one.rung == tried[best].rung).unwrap_or(0)];
+    let settings = settings_on(search.settings, tried[best].rung, ridge_of(below, entrant));
+    let refinement = tried[best].refinement.take();
+    Ok(Winner { entrant, settings, ladder: Ladder { lines }, refinement })
+}
+
+fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
+    let entrant = &search.entrants[tried.entrant];
+    let ratio = tried.weighed.error.unwrap_or(f64::INFINITY) / least;
+    let outcome = match chosen {
+        true => "the simplest within one standard error of the least error".to_owned(),
+        false => format!("{ratio:.2} times the least error"),
+    };
+    Line {
+        source: entrant.source_name().map(str::to_owned),
+        law: entrant.law.name.clone(),
+        rung: tried.rung,
+        coefficients: tried.weighed.coefficients,
+        error: tried.weighed.error,
+        standard_error: standard_error(&tried.weighed),
+        cost_s: tried.cost_s,
+        chosen,
+        reason: tried.weighed.reason.clone().unwrap_or(outcome),
+    }
+}

@@ -1,0 +1,42 @@
+//! Constants of the search, with symbol, meaning, unit and source.
+
+/// How entrants go on, and when trials are cut.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SearchThresholds {
+    /// `1/eta`: of so many sources of a law one goes on, a count. Source: Jamieson and Talwalkar
+    /// 2016 and its successors halve or take a third; `docs/evidence/plain.md`.
+    pub share: usize,
+    /// `g_t`: error in weak form by the least of it up to which trajectories are fitted,
+    /// dimensionless. Source: `docs/evidence/plain.md`.
+    pub trajectory_gain: f64,
+    /// Most entrants of which trajectories are fitted, a count. Source: `docs/evidence/plain.md`.
+    pub trajectories: usize,
+    /// Fewer trials are left out in parts, a count. Source: derived: of two, each is fitted by the
+    /// other alone, and a scatter has one degree of freedom.
+    pub few: usize,
+    /// `lambda_k`: strengths of the prior that are tried in weak form, dimensionless. Source: derived:
+    /// every second to fourth of those that a named method tries; the next rung tries their
+    /// neighbours.
+    pub strengths: [f64; 8],
+    /// Strengths that trajectories begin with, by the best in weak form, dimensionless. Source:
+    /// derived: half a decade to either side.
+    pub near: [f64; 3],
+    /// `lambda_h`: strength of a prior that keeps the source, dimensionless. Source: derived: what
+    /// the trials say counts for less than the rounding of its coefficients.
+    pub kept: f64,
+    /// Most sources that enter, by rank of correlation, a count. Source: chosen; each costs a fit
+    /// for every law, and correlation has ranked them.
+    pub sources: usize,
+}
+
+/// The values.
+pub(super) const SEARCH: SearchThresholds = SearchThresholds {
+    share: 3,
+    trajectory_gain: 3.0,
+    trajectories: 2,
+    few: 3,
+    strengths: [10.0, 1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8],
+    near: [3.16, 1.0, 0.316],
+    kept: 1e9,
+    sources: 5,
+};

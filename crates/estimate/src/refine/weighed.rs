@@ -1,0 +1,87 @@
+//! Candidates as they are weighed against those of other sources, laws and estimators.
+
+use std::collections::BTreeMap;
+
+use sistership_model::trial::Trial;
+
+use super::candidate::{CandidateFit, best};
+use super::family::Family;
+use super::problem::Problem;
+use super::variant::Variant;
+
+/// How much of a refinement is done before its candidates are weighed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// The source as carried over.
+    Source,
+    /// Everything that the estimator tries.
+    Estimator,
+}
+
+/// What a candidate gives on manoeuvres left out. The scales are the deviations of the measured channels over all trials
+/// fitted, so that candidates on the same trials can be compared whatever their source, law and estimator.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Weighed {
+    /// What it is, for people.
+    pub step: String,
+    /// Standardised mean squared error; none where a simulation diverged.
+    pub error: Option<f64>,
+    /// The same by trial.
+    pub each: BTreeMap<String, f64>,
+    /// Number of coefficients fitted; 0 of the source as carried over.
+    pub coefficients: usize,
+    /// Of a ridge, its family of terms and the strength of its prior.
+    pub ridge: Option<(Family, f64)>,
+    /// Why it cannot be taken, if so.
+    pub reason: Option<String>,
+}
+
+impl Weighed {
+    /// What cannot be fitted.
+    pub fn refused(reason: String) -> Self {
+        let each = BTreeMap::new();
+        let reason = Some(reason);
+        Self { step: String::new(), error: None, each, coefficients: 0, ridge: None, reason }
+    }
+}
+
+/// The source, and the best of the others where there is one; where all of them diverge, the first.
+pub(super) fn weighed(
+    problem: &Problem<'_>,
+    candidates: &[CandidateFit],
+    variants: &[Variant],
+) -> Vec<Weighed> {
+    let Some((source, fits)) = candidates.split_first() else { return Vec::new() };
+    let fit = best(fits).and_then(|index| fits.get(index)).or_else(|| fits.first());
+    std::iter::once(source).chain(fit).map(|candidate| one(problem, candidate, variants)).collect()
+}
+
+fn one(problem: &Problem<'_>, candidate: &CandidateFit, variants: &[Variant]) -> Weighed {
+    let ridge =
+        |(place, _): (usize, _)| Some((variants.get(place)?.family, candidate.option.lambda_min?));
+    Weighed {
+        step: candidate.option.step.clone(),
+        error: candidate.option.error.filter(|error| error.is_finite()),
+        each: by_trial(problem, &candidate.each),
+        coefficients: candidate.size,
+        ridge: candidate.solution.ridge().and_then(ridge),
+        reason: candidate.option.reason.clone(),
+    }
+}
+
+/// Means by trial: parts of one count together, for they depend on each other; of one or two trials
+/// there is nothing else to tell a scatter from.
+fn by_trial(problem: &Problem<'_>, each: &[f64]) -> BTreeMap<String, f64> {
+    if problem.settings.in_parts {
+        let named = |(k, (trial, error)): (usize, (&&Trial, &f64))| {
+            (format!("{} ({})", trial.name, k + 1), *error)
+        };
+        return problem.training.iter().zip(each).enumerate().map(named).collect();
+    }
+    let mut sums: BTreeMap<String, (f64, f64)> = BTreeMap::new();
+    for (trial, error) in problem.training.iter().zip(each) {
+        let sum = sums.entry(trial.name.clone()).or_default();
+        *sum = (sum.0 + error, sum.1 + 1.0);
+    }
+    sums.into_iter().map(|(name, (sum, count))| (name, sum / count)).collect()
+}

@@ -1,0 +1,83 @@
+//! Days of the Gregorian calendar, counted from 1 January 1970.
+
+/// Days before each month of a year that is no leap year.
+const BEFORE: [i64; 12] = [0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334];
+/// Days from 1 January of the year 1 to 1 January 1970.
+const EPOCH: i64 = 719_162;
+
+/// Nanoseconds of a second and of a day.
+pub(crate) const SECOND: i64 = 1_000_000_000;
+pub(crate) const DAY: i64 = 86_400 * SECOND;
+
+fn is_leap(year: i64) -> bool {
+    year % 4 == 0 && (year % 100 != 0 || year % 400 == 0)
+}
+
+fn start_of(year: i64) -> i64 {
+    let past = year - 1;
+    365 * past + past / 4 - past / 100 + past / 400 - EPOCH
+}
+
+fn start_of_month(year: i64, month: i64) -> i64 {
+    let index = usize::try_from(month - 1).unwrap_or(0).min(11);
+    start_of(year) + BEFORE[index] + i64::from(month > 2 && is_leap(year))
+}
+
+/// Years that are read: nothing was recorded before, and nanoseconds between them can be counted.
+const YEARS: std::ops::RangeInclusive<i64> = 1900..=2150;
+
+/// The day of a date; none for a date that there is not, or of another age.
+pub(crate) fn day(year: i64, month: i64, of_month: i64) -> Option<i64> {
+    if !YEARS.contains(&year) || !(1..=12).contains(&month) || of_month < 1 {
+        return None;
+    }
+    let start = start_of_month(year, month);
+    let next = if month == 12 { start_of(year + 1) } else { start_of_month(year, month + 1) };
+    (of_month <= next - start).then_some(start + of_month - 1)
+}
+
+/// Year, month and day of the month.
+pub(crate) fn date(day: i64) -> (i64, i64, i64) {
+    let mut year = (day + EPOCH) / 366 + 1;
+    while start_of(year + 1) <= day {
+        year += 1;
+    }
+    let month = (1..=12).rev().find(|&month| start_of_month(year, month) <= day).unwrap_or(1);
+    (year, month, day - start_of_month(year, month) + 1)
+}
+
+/// `2024-05-01T12:00:03.25`, from nanoseconds since 1970.
+pub(crate) fn iso(instant: i64) -> String {
+    let ((year, month, of_month), rest) = (date(instant.div_euclid(DAY)), instant.rem_euclid(DAY));
+    let seconds = rest / SECOND;
+    let fraction = format!("{:09}", rest % SECOND);
+    let fraction = fraction.trim_end_matches('0');
+    let point = if fraction.is_empty() { "" } else { "." };
+    let (hour, minute, second) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
+    format!("{year:04}-{month:02}-{of_month:02}T{hour:02}:{minute:02}:{second:02}{point}{fraction}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn days_and_dates_are_each_others_inverse() {
+        assert_eq!(day(1970, 1, 1), Some(0));
+        assert_eq!(day(2024, 5, 1), Some(19_844));
+        assert_eq!((day(1900, 1, 1), day(1899, 12, 30)), (Some(-25_567), None));
+        assert_eq!((day(2023, 2, 29), day(2024, 2, 30), day(2024, 13, 1)), (None, None, None));
+        for at in (-25_567..65_000).step_by(17) {
+            let (year, month, of_month) = date(at);
+            assert_eq!(day(year, month, of_month), Some(at));
+        }
+    }
+
+    #[test]
+    fn instants_are_written_as_iso_8601() {
+        let noon = 19_844 * DAY + (12 * 3600 + 3) * SECOND;
+        assert_eq!(iso(noon), "2024-05-01T12:00:03");
+        assert_eq!(iso(noon + SECOND / 4), "2024-05-01T12:00:03.25");
+        assert_eq!(iso(-SECOND), "1969-12-31T23:59:59");
+    }
+}

@@ -1,0 +1,224 @@
+//! The time column: seconds, serial days, or dates and times of day; all become seconds since the
+//! first row.
+
+use crate::calendar::{SECOND, iso};
+use crate::findings::Findings;
+use crate::number::{Fault, number, shown};
+use crate::open_dates::OpenDates;
+use crate::stamp::{Date, Order, Stamp, stamp};
+use crate::table::{Column, Start, Table, Target};
+
+/// Hours that a time of day must fall by for it to be another day's; less is a row out of order.
+const MIDNIGHT: i64 = 12 * 3600 * SECOND;
+/// Seconds of a day.
+const DAY_S: f64 = 86_400.0;
+/// What Excel and MATLAB count days from, in days since 1970.
+const EXCEL: f64 = -25_569.0;
+const MATLAB: f64 = -719_529.0;
+/// Days between which a column is taken for Excel's (years 1954 to 2118), and its longest step on
+/// average, days: seconds since midnight are as large, but not as close.
+const SERIAL: std::ops::Range<f64> = 20_000.0..80_000.0;
+const SERIAL_STEP: f64 = 0.002;
+
+/// Units of a time column that are written as text, in a column declared so or found so.
+const WRITTEN: [&str; 5] = ["auto", "timestamp", "day/month/year", "month/day/year", "hh:mm:ss"];
+
+/// Reads the cells of the time column, in the order of the file.
+#[derive(Debug, Default)]
+pub(crate) struct Clock {
+    unit: String,
+    /// What the first cell was.
+    form: Option<Form>,
+    /// The first day, which others are counted from to keep the numbers small.
+    first_day: i64,
+    /// Time of day of the row before, and midnights since the first.
+    before: i64,
+    midnights: i64,
+    open: OpenDates,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    Number,
+    Dated { zoned: bool },
+    OpenDate { zoned: bool },
+    OfDay,
+}
+
+impl Clock {
+    /// For the columns of a file, one of which is time.
+    pub(crate) fn of(columns: &[Column]) -> Self {
+        let time = columns.iter().find(|column| column.target == Target::Time);
+        Self { unit: time.map_or(String::new(), |column| column.unit.clone()), ..Self::default() }
+    }
+
+    fn is_written(&self) -> bool {
+        WRITTEN.contains(&self.unit.as_str())
+    }
+
+    /// The number that stands for a cell: as written, or seconds since the first row's midnight.
+    pub(crate) fn cell(&mut self, row: usize, cell: &[u8]) -> Result<f64, Fault> {
+        let plain = number(cell);
+        if !self.is_written() || matches!(plain, Err(Fault::Empty | Fault::NotANumber)) {
+            return plain;
+        }
+        let stamp = std::str::from_utf8(cell).ok().and_then(|text| stamp(text, self.order()));
+        let form = match (&plain, stamp) {
+            (Ok(_), _) if self.unit == "auto" => Form::Number,
+            (_, Some(stamp)) => Form::of(stamp),
+            _ => return Err(Fault::NoTime(shown(cell))),
+        };
+        let first = self.form.is_none();
+        let fits = form == *self.form.get_or_insert(form);
+        if !fits || (self.unit == "hh:mm:ss" && form != Form::OfDay) {
+            return Err(Fault::OtherTime(shown(cell)));
+        }
+        stamp.map_or(plain, |stamp| Ok(self.seconds(row, stamp, first)))
+    }
+
+    fn order(&self) -> Order {
+        match self.unit.as_str() {
+            "day/month/year" => Order::DayFirst,
+            "month/day/year" => Order::MonthFirst,
+            _ => Order::Open,
+        }
+    }
+
+    fn seconds(&mut self, row: usize, stamp: Stamp, first: bool) -> f64 {
+        let day = match stamp.date {
+            Date::Known(day) => day,
+            Date::Either(date) => self.open.slot(row, date),
+            Date::Absent => {
+                self.midnights += i64::from(!first && self.before - stamp.of_day > MIDNIGHT);
+                self.before = stamp.of_day;
+                self.midnights
+            }
+        };
+        if first {
+            self.first_day = day;
+        }
+        stamp.seconds(day - self.first_day)
+    }
+
+    /// Counts the table's time from its first row, and says what it was taken for.
+    pub(crate) fn finish(mut self, table: &mut Table, findings: &mut Findings) {
+        let Some(at) = table.columns.iter().position(|column| column.target == Target::Time) else {
+            return;
+        };
+        let (header, values) = (table.columns[at].header.clone(), &mut table.values[at]);
+        if values.is_empty() || !(self.is_written() || is_serial(&self.unit)) {
+            return;
+        }
+        let read = self.read_as(&header, values).and_then(|read| {
+            let counted = values.iter().all(|value| value.is_finite());
+            counted.then_some(read).ok_or_else(|| "holds times too far apart to be counted".into())
+        });
+        match read {
+            Ok((form, start)) => {
+                let from =
+                    start.as_ref().map_or(String::new(), |start| format!(", {}", start.text));
+                let message = format!("is read as {form}, counted from its first row{from}");
+                findings.warning(None, Some(&header), message);
+                table.start = start;
+            }
+            Err(message) => findings.error(None, Some(&header), message),
+        }
+    }
+
+    /// Turns the numbers into seconds since the first; says what they were, and what the first is
+    /// in the calendar.
+    fn read_as(
+        &mut self,
+        header: &str,
+        values: &mut [f64],
+    ) -> Result<(&'static str, Option<Start>), String> {
+        match self.form.unwrap_or(Form::Number) {
+            Form::Number => Ok(self.numbers(header, values)),
+            Form::Dated { zoned } => {
+                let start = instant(self.first_day, values[0], zoned);
+                from_first(values, 1e9);
+                Ok((Self::dated(zoned), Some(start)))
+            }
+            Form::OpenDate { zoned } => {
+                let first_day = self.open.days(self.first_day, values)?;
+                let start = instant(first_day, values[0], zoned);
+                from_first(values, 1e6);
+                Ok((Self::dated(zoned), Some(start)))
+            }
+            Form::OfDay => {
+                let mut start = instant(0, values[0], false);
+                start.text = start.text.split_off("1970-01-01T".len());
+                start.dated = false;
+                from_first(values, 1e9);
+                Ok(("time of day", Some(start)))
+            }
+        }
+    }
+
+    fn dated(zoned: bool) -> &'static str {
+        if zoned { "date and time with a zone" } else { "date and time without a zone" }
+    }
+
+    fn numbers(&self, header: &str, values: &mut [f64]) -> (&'static str, Option<Start>) {
+        if self.unit == "auto" && !looks_serial(header, values) {
+            return ("seconds, as no unit is declared", None);
+        }
+        if self.unit == "auto" {
+            values.iter_mut().for_each(|value| *value *= DAY_S);
+        }
+        let (name, epoch) = match self.unit.as_str() {
+            "matlab" => ("MATLAB's days", MATLAB),
+            "unix" => ("seconds since 1970", 0.0),
+            _ => ("Excel's days", EXCEL),
+        };
+        let start = values[0] + epoch * DAY_S;
+        // Beyond the years that are read nothing is said of it.
+        let known = (-2.2e9..5.7e9).contains(&start);
+        let start = known.then(|| instant(0, (start * 1e6).round() / 1e6, false));
+        from_first(values, 1e6);
+        (name, start)
+    }
+}
+
+impl Form {
+    fn of(stamp: Stamp) -> Self {
+        let zoned = stamp.zone.is_some();
+        match stamp.date {
+            Date::Known(_) => Self::Dated { zoned },
+            Date::Either(_) => Self::OpenDate { zoned },
+            Date::Absent => Self::OfDay,
+        }
+    }
+}
+
+fn is_serial(unit: &str) -> bool {
+    matches!(unit, "excel" | "matlab" | "unix")
+}
+
+/// Whether numbers without a unit can be nothing but Excel's days: header, size and distance all
+/// say so.
+pub(crate) fn looks_serial(header: &str, values: &[f64]) -> bool {
+    let name = header.to_lowercase();
+    let step = (values[values.len() - 1] - values[0]) / values.len() as f64;
+    ["date", "time", "utc"].iter().any(|word| name.contains(word))
+        && values.iter().all(|value| SERIAL.contains(value))
+        && step < SERIAL_STEP
+}
+
+/// Seconds since the first, to so many parts of a second: what the form can tell apart.
+fn from_first(values: &mut [f64], parts: f64) {
+    let first = values[0];
+    values.iter_mut().for_each(|value| *value = ((*value - first) * parts).round() / parts);
+}
+
+fn instant(day: i64, seconds: f64, zoned: bool) -> Start {
+    let whole = seconds.floor();
+    let fraction = ((seconds - whole) * 1e6).round() * 1e3;
+    let nanoseconds = (whole as i64 + day * 86_400) * SECOND + fraction as i64;
+    let text = format!("{}{}", iso(nanoseconds), if zoned { "Z" } else { "" });
+    Start { text, at_s: day as f64 * DAY_S + seconds, dated: true }
+}
+
+#[cfg(test)]
+#[path = "clock_tests.rs"]
+mod tests;

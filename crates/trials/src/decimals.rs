@@ -1,0 +1,87 @@
+//! Numbers with a decimal comma, in files whose cells a comma does not separate.
+
+use std::borrow::Cow;
+
+use crate::findings::Findings;
+
+/// Which of the two marks a file has used so far, with the row of the first.
+#[derive(Debug, Default)]
+pub(crate) struct Decimals {
+    commas: bool,
+    comma: Option<usize>,
+    point: Option<usize>,
+}
+
+impl Decimals {
+    pub(crate) fn new(separator: u8) -> Self {
+        Self { commas: separator != b',', ..Self::default() }
+    }
+
+    /// The cell with a point, where a comma can only be a decimal one.
+    pub(crate) fn point<'a>(&mut self, row: usize, cell: &'a [u8]) -> Cow<'a, [u8]> {
+        if !self.commas || !is_plain(cell) {
+            return Cow::Borrowed(cell);
+        }
+        if cell.contains(&b'.') {
+            self.point.get_or_insert(row);
+        }
+        match cell.iter().position(|&byte| byte == b',') {
+            Some(at) => {
+                self.comma.get_or_insert(row);
+                let mut cell = cell.to_vec();
+                cell[at] = b'.';
+                Cow::Owned(cell)
+            }
+            None => Cow::Borrowed(cell),
+        }
+    }
+
+    /// Says that commas were read as decimal ones, or that the file has points, too.
+    pub(crate) fn tell(&self, findings: &mut Findings) {
+        match (self.comma, self.point) {
+            (Some(comma), Some(point)) => {
+                let message = format!(
+                    "row {comma} has a number with a comma, row {point} one with a point; write \
+                    all \
+                     decimals with a point and leave out thousands separators"
+                );
+                findings.error(Some(comma.max(point)), None, message);
+            }
+            (Some(comma), None) => {
+                let message = format!("numbers have a decimal comma, from row {comma} on");
+                findings.warning(Some(comma), None, message);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// A number with one mark at most, and no two different ones: `1.234,5` stays what it is.
+fn is_plain(cell: &[u8]) -> bool {
+    let cell = cell.trim_ascii();
+    let part = |byte: &u8| matches!(byte, b'0'..=b'9' | b'+' | b'-' | b'e' | b'E' | b',' | b'.');
+    let marks = cell.iter().filter(|byte| matches!(byte, b',' | b'.')).count();
+    marks == 1 && cell.iter().all(part)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::messages;
+
+    #[test]
+    fn a_comma_is_a_point_where_it_separates_nothing() {
+        let mut decimals = Decimals::new(b';');
+        assert_eq!(*decimals.point(2, b" -1,5e3"), *b" -1.5e3");
+        for cell in [&b"1.234,5"[..], b"1,2,3", b"12:00:03,25", b"12", b""] {
+            assert_eq!(*decimals.point(3, cell), *cell);
+        }
+        assert_eq!(*Decimals::new(b',').point(2, b"1,5"), *b"1,5");
+        let mut findings = Findings::default();
+        decimals.tell(&mut findings);
+        decimals.point(9, b"1.5");
+        decimals.tell(&mut findings);
+        let text = messages(findings);
+        assert!(text.contains("warning Some(2)") && text.contains("error Some(9)"), "{text}");
+    }
+}

@@ -1,0 +1,236 @@
+//! Surge, sway and yaw rate where they were not measured: rates of positions and heading.
+
+use std::ops::Range;
+
+use sistership_model::manifest::VelocityFrame;
+use sistership_model::trial::Channel;
+
+use crate::declarations::Derivable;
+use crate::derived_channel::DerivedChannel;
+use crate::findings::Findings;
+use crate::recording::Recording;
+use crate::smoother::{Noise, Smoothed, choose, smooth};
+use crate::stats::quantile;
+
+/// Samples below which a stretch without a gap tells no rate.
+const FEWEST: usize = 8;
+
+/// Derives what is declared and was not measured.
+pub(crate) fn yaw_rate(recording: &mut Recording, wanted: &[Derivable], findings: &mut Findings) {
+    if !wanted.contains(&Derivable::R) || measured(recording, Channel::R, findings) {
+        return;
+    }
+    let Some(segments) = stretches(recording, &[Channel::Psi], findings) else { return };
+    let Some((noise, smoothed)) = smoothed(recording, &[Channel::Psi], &segments, findings) else {
+        return;
+    };
+    let rates = smoothed[0].iter().map(|smoothed| (smoothed.rate, smoothed.rate_variance));
+    insert(recording, Channel::R, rates.unzip(), noise, findings);
+}
+
+/// Derives `u` and `v` of the track, turned by the heading.
+pub(crate) fn velocities(recording: &mut Recording, wanted: &[Derivable], findings: &mut Findings) {
+    let pairs = [(Derivable::U, Channel::U), (Derivable::V, Channel::V)];
+    let open: Vec<Channel> = pairs
+        .into_iter()
+        .filter(|&(name, channel)| {
+            wanted.contains(&name) && !measured(recording, channel, findings)
+        })
+        .map(|(_, channel)| channel)
+        .collect();
+    if open.is_empty() {
+        return;
+    }
+    if recording.trial.velocity == VelocityFrame::Water {
+        let message =
+            "velocities derived of positions are over ground, but `velocity: water` is declared";
+        return findings.error(None, None, message);
+    }
+    let needed = [Channel::X, Channel::Y, Channel::Psi];
+    let Some(segments) = stretches(recording, &needed, findings) else { return };
+    let Some((noise, track)) = smoothed(recording, &needed[..2], &segments, findings) else {
+        return;
+    };
+    let Some((_, heading)) = smoothed(recording, &needed[2..], &segments, findings) else {
+        return;
+    };
+    for channel in open {
+        let along = channel == Channel::U;
+        let samples = (0..heading[0].len())
+            .map(|k| component(along, track[0][k], track[1][k], heading[0][k]));
+        let samples = samples.unzip();
+        insert(recording, channel, samples, noise, findings);
+    }
+}
+
+/// A velocity along the heading or across it, and its variance: that of the track's rates, and that
+/// of the heading.
+fn component(along: bool, x: Smoothed, y: Smoothed, psi: Smoothed) -> (f64, f64) {
+    let (sin, cos) = psi.value.sin_cos();
+    let (ahead, starboard) = (x.rate * cos + y.rate * sin, y.rate * cos - x.rate * sin);
+    let (value, other, north, east) =
+        if along { (ahead, starboard, cos, sin) } else { (starboard, ahead, sin, cos) };
+    let track = north * north * x.rate_variance + east * east * y.rate_variance;
+    (value, track + other * other * psi.value_variance)
+}
+
+fn measured(recording: &Recording, channel: Channel, findings: &mut Findings) -> bool {
+    let is_measured = recording.channel(channel).is_some();
+    if is_measured {
+        let header = recording.header(channel).to_owned();
+        findings.warning(None, Some(&header), format!("{channel} was measured and is not derived"));
+    }
+    is_measured
+}
+
+/// Ranges without a gap that are long enough; samples outside are left out of the recording.
+fn stretches(
+    recording: &mut Recording,
+    needed: &[Channel],
+    findings: &mut Findings,
+) -> Option<Vec<Range<usize>>> {
+    let missing: Vec<&str> = needed
+        .iter()
+        .filter(|&&channel| recording.channel(channel).is_none())
+        .map(|channel| channel.name())
+        .collect();
+    if !missing.is_empty() {
+        let message = format!("nothing can be derived without {}; map it", missing.join(", "));
+        findings.error(None, None, message);
+        return None;
+    }
+    // Time out of order is told by its own check.
+    if recording.time().windows(2).any(|pair| pair[0] >= pair[1]) {
+        return None;
+    }
+    let short = |range: &Range<usize>| range.len() < FEWEST;
+    let segments = recording.trial.segments();
+    let lost: usize =
+        segments.iter().filter(|range| short(range)).map(ExactSizeIterator::len).sum();
+    if lost > 0 && lost < recording.trial.len() {
+        recording.leave_out(&segments.into_iter().filter(short).collect::<Vec<_>>());
+        let message = format!(
+            "{lost} samples left out: between gaps there are fewer than {FEWEST}, of which no \
+            rate can be told"
+        );
+        findings.warning(None, None, message);
+    }
+    Some(recording.trial.segments().into_iter().filter(|range| !short(range)).collect())
+}
+
+fn smoothed(
+    recording: &Recording,
+    channels: &[Channel],
+    segments: &[Range<usize>],
+    findings: &mut Findings,
+) -> Option<(Noise, Vec<Vec<Smoothed>>)> {
+    let t = recording.time();
+    let values: Vec<&[f64]> =
+        channels.iter().filter_map(|&channel| recording.channel(channel)).collect();
+    let Some(noise) = choose(t, &values, segments) else {
+        let message =
+            format!("no stretch without a gap has {FEWEST} samples; nothing can be derived");
+        findings.error(None, None, message);
+        return None;
+    };
+    let whole = |values: &&[f64]| {
+        let parts = segments.iter().map(|range| (&t[range.clone()], &values[range.clone()]));
+        parts.flat_map(|(t, values)| smooth(t, values, noise)).collect()
+    };
+    Some((noise, values.iter().map(whole).collect()))
+}
+
+fn insert(
+    recording: &mut Recording,
+    channel: Channel,
+    (values, variance): (Vec<f64>, Vec<f64>),
+    noise: Noise,
+    findings: &mut Findings,
+) {
+    if !values.iter().chain(&variance).all(|value| value.is_finite()) {
+        let message = "cannot be derived: rows are too close in time, or values too large";
+        return findings.error(None, Some(channel.name()), message);
+    }
+    let (reading_sd, process_noise) = (noise.reading.sqrt(), noise.ratio * noise.reading);
+    let (of, unit) = match channel {
+        Channel::R => ("the heading", "rad"),
+        _ => ("positions and heading", "m"),
+    };
+    let sd = |share| quantile(variance.iter().map(|variance| variance.sqrt()), share);
+    let message = format!(
+        "derived of {of}, not measured: a Rauch-Tung-Striebel smoother with white noise of \
+         {process_noise:.3e} {unit}2/s5 on the third derivative and \
+         readings of {reading_sd:.3e} {unit}, \
+         the most probable for this record; its standard deviation is {:.2e} {} typically, \
+         {:.2e} at most",
+        sd(0.5),
+        recording.canonical_unit(channel),
+        sd(1.0),
+    );
+    findings.warning(None, Some(channel.name()), message);
+    recording.trial.channels.insert(channel, values);
+    recording.derived.push(DerivedChannel { channel, variance, process_noise, reading_sd });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{messages, recording, zigzag};
+
+    const ALL: [Derivable; 3] = [Derivable::U, Derivable::V, Derivable::R];
+
+    fn without(channels: &[Channel]) -> Recording {
+        let mut kept = zigzag();
+        kept.retain(|(channel, _)| !channels.contains(channel));
+        recording(&kept)
+    }
+
+    fn derive(recording: &mut Recording) -> String {
+        let mut findings = Findings::default();
+        yaw_rate(recording, &ALL, &mut findings);
+        velocities(recording, &ALL, &mut findings);
+        messages(findings)
+    }
+
+    #[test]
+    fn velocities_of_a_zigzag_come_back() {
+        let mut ship = without(&[Channel::U, Channel::V, Channel::R]);
+        let text = derive(&mut ship);
+        assert!(text.contains("Some(\"v\") derived of positions and heading"), "{text}");
+        for (channel, truth) in zigzag() {
+            if [Channel::U, Channel::V, Channel::R].contains(&channel) {
+                let found = &ship.trial.channels[&channel];
+                let errors = found.iter().zip(&truth).map(|(a, b)| (a - b).abs());
+                let most = errors.fold(0.0, f64::max);
+                let limit = if channel == Channel::R { 1e-3 } else { 0.05 };
+                assert!(most < limit, "{channel} {most}");
+            }
+        }
+        let variance = &ship.derived[1].variance;
+        assert!(variance.len() == ship.trial.len() && variance.iter().all(|value| *value >= 0.0));
+    }
+
+    #[test]
+    fn what_was_measured_stays_and_what_is_missing_is_told() {
+        let mut ship = without(&[Channel::V]);
+        assert!(derive(&mut ship).contains("r was measured and is not derived"));
+        assert_eq!(ship.derived.len(), 1);
+        let mut ship = without(&[Channel::V, Channel::X, Channel::Psi]);
+        assert!(derive(&mut ship).contains("without x, psi"));
+        let mut ship = without(&[Channel::U]);
+        ship.trial.velocity = VelocityFrame::Water;
+        assert!(derive(&mut ship).contains("over ground"));
+    }
+
+    #[test]
+    fn short_stretches_between_gaps_are_left_out() {
+        let mut ship = without(&[Channel::R]);
+        ship.trial.t_s.iter_mut().skip(300).for_each(|t| *t += 10.0);
+        ship.trial.t_s.iter_mut().skip(303).for_each(|t| *t += 10.0);
+        let text = derive(&mut ship);
+        assert!(text.contains("3 samples left out"), "{text}");
+        assert_eq!((ship.trial.len(), ship.rows.len()), (597, 597));
+        assert!(ship.trial.channels.values().all(|values| values.len() == 597));
+        assert_eq!(ship.resumed, [ship.rows[300]]);
+    }
+}

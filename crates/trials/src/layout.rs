@@ -1,0 +1,225 @@
+//! Where in a CSV file the table begins: lines above its header, the separator, a line of units
+//! below.
+
+use csv::{ByteRecord, ReaderBuilder};
+
+use crate::decimals::Decimals;
+use crate::mapping::Mapping;
+use crate::names;
+use crate::number::number;
+use crate::stamp::{Order, stamp};
+use crate::units::{is_unit, plain_unit};
+
+/// Lines among which the header is looked for.
+const LINES: usize = 100;
+/// Known names that make a first line the header without a look at the others.
+const CERTAIN: usize = 2;
+
+/// Where the table is.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct Layout {
+    pub separator: u8,
+    /// Bytes before the header's line.
+    pub offset: usize,
+    /// Lines before it that are not blank throughout.
+    pub lines: usize,
+    /// What stands below the header, where that is units.
+    pub units: Vec<String>,
+}
+
+/// A line that is not blank.
+#[derive(Clone, Copy)]
+struct Line<'a> {
+    offset: usize,
+    /// Lines before it, blank ones too.
+    before: usize,
+    bytes: &'a [u8],
+    complete: bool,
+}
+
+/// Finds the table; the header is the line with most names that are mapped or canonical, or else
+/// the first.
+pub(crate) fn find(start: &[u8], mapping: &Mapping) -> Layout {
+    let mut found = lines(start).enumerate().peekable();
+    let Some(&(_, first)) = found.peek() else {
+        return Layout { separator: b',', ..Layout::default() };
+    };
+    let (mut best, mut most) = ((0, first), known(first.bytes, mapping));
+    if most < CERTAIN {
+        for (at, line) in found.skip(1) {
+            let names = known(line.bytes, mapping);
+            if names > most {
+                (best, most) = ((at, line), names);
+            }
+        }
+    }
+    let (at, line) = best;
+    let separator = separator(line.bytes);
+    let below = lines(start).nth(at + 1).filter(|below| below.complete);
+    let units = below.and_then(|below| units(&cells(below.bytes, separator)));
+    let (offset, lines) = if at == 0 { (0, 0) } else { (line.offset, line.before) };
+    Layout { separator, offset, lines, units: units.unwrap_or_default() }
+}
+
+/// How many names of the header are known.
+pub(crate) fn known_names(start: &[u8], mapping: &Mapping) -> usize {
+    let offset = find(start, mapping).offset;
+    lines(&start[offset..]).next().map_or(0, |line| known(line.bytes, mapping))
+}
+
+/// Where a table most likely is, of which nothing is known: its header stands above the first line
+/// of values.
+pub(crate) fn guess(start: &[u8]) -> Layout {
+    let canonical = Mapping::canonical();
+    let lines: Vec<Line> = lines(start).collect();
+    let data = (1..lines.len()).find(|&at| is_data(lines[at].bytes));
+    let Some(data) = data.filter(|_| known_names(start, &canonical) < CERTAIN) else {
+        return find(start, &canonical);
+    };
+    let separator = likely_separator(lines[data].bytes);
+    let below = units(&cells(lines[data - 1].bytes, separator)).filter(|_| data > 1);
+    let header = lines[if below.is_some() { data - 2 } else { data - 1 }];
+    let units = below.unwrap_or_default();
+    Layout { separator, offset: header.offset, lines: header.before, units }
+}
+
+/// A comma may be a decimal one where something else separates.
+fn likely_separator(line: &[u8]) -> u8 {
+    [b'\t', b';'].into_iter().find(|byte| line.contains(byte)).unwrap_or(b',')
+}
+
+/// Whether most of a line's cells are numbers or times.
+fn is_data(line: &[u8]) -> bool {
+    let separator = likely_separator(line);
+    let cells = cells(line, separator);
+    let written = cells.iter().filter(|cell| !cell.is_empty()).count();
+    let values = cells.iter().filter(|cell| is_value(cell, separator)).count();
+    values >= 2 && 2 * values > written
+}
+
+fn is_value(cell: &str, separator: u8) -> bool {
+    let cell = Decimals::new(separator).point(0, cell.as_bytes()).into_owned();
+    let is_time =
+        || std::str::from_utf8(&cell).is_ok_and(|cell| stamp(cell, Order::Open).is_some());
+    number(&cell).is_ok() || is_time()
+}
+
+/// Whether more of the file could not change what [`find`] says.
+pub(crate) fn is_settled(start: &[u8], mapping: &Mapping) -> bool {
+    let complete = lines(start).filter(|line| line.complete).take(LINES);
+    let Some(first) = complete.clone().next() else { return false };
+    let count = complete.count();
+    count >= LINES || (count >= 2 && known(first.bytes, mapping) >= CERTAIN)
+}
+
+/// What follows the byte order mark, if there is one.
+fn text(start: &[u8]) -> &[u8] {
+    start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start)
+}
+
+fn lines(start: &[u8]) -> impl Iterator<Item = Line<'_>> + Clone {
+    let text = text(start);
+    let mut offset = start.len() - text.len();
+    let lines =
+        text.split_inclusive(|&byte| byte == b'\n').enumerate().map(move |(before, line)| {
+            offset += line.len();
+            let complete = line.ends_with(b"\n");
+            Line { offset: offset - line.len(), before, bytes: unended(line), complete }
+        });
+    lines.filter(|line| !line.bytes.trim_ascii().is_empty()).take(LINES)
+}
+
+fn unended(line: &[u8]) -> &[u8] {
+    let line = line.strip_suffix(b"\n").unwrap_or(line);
+    line.strip_suffix(b"\r").unwrap_or(line)
+}
+
+/// Comma, semicolon or tab: whichever the line holds most of outside quotes.
+fn separator(line: &[u8]) -> u8 {
+    let bare = |separator: u8| {
+        let mut quoted = false;
+        let counts = |&byte: &u8| {
+            quoted ^= byte == b'"';
+            byte == separator && !quoted
+        };
+        line.iter().copied().filter(counts).count()
+    };
+    // The last of equals wins, and a comma is the rule.
+    [b'\t', b';', b','].into_iter().max_by_key(|&separator| bare(separator)).unwrap_or(b',')
+}
+
+fn cells(line: &[u8], separator: u8) -> Vec<String> {
+    let mut reader = ReaderBuilder::new().delimiter(separator).has_headers(false).from_reader(line);
+    let mut record = ByteRecord::new();
+    // A line that cannot be split has no name in it.
+    let _ = reader.read_byte_record(&mut record);
+    record.iter().map(name).collect()
+}
+
+/// A header's text; what is not UTF-8 is Latin-1, in which every byte is a character.
+pub(crate) fn name(cell: &[u8]) -> String {
+    std::str::from_utf8(cell).map_or_else(|_| latin_1(cell), str::to_owned).trim().to_owned()
+}
+
+pub(crate) fn latin_1(bytes: &[u8]) -> String {
+    bytes.iter().map(|&byte| char::from(byte)).collect()
+}
+
+/// How many names in the line are those of a column that would be read.
+fn known(line: &[u8], mapping: &Mapping) -> usize {
+    let is_known = |cell: &String| {
+        names::canonical(cell).is_some()
+            || names::is_time(cell)
+            || mapping.columns.iter().any(|(_, mapped)| mapped.column.trim() == cell)
+    };
+    cells(line, separator(line)).iter().filter(|cell| is_known(cell)).count()
+}
+
+/// The units in a line that holds nothing else.
+fn units(cells: &[String]) -> Option<Vec<String>> {
+    let written: Vec<&String> = cells.iter().filter(|cell| !cell.is_empty()).collect();
+    let named = written.iter().filter(|cell| is_unit(cell)).count();
+    let only = !written.iter().any(|cell| is_value(cell, b',')) && 2 * named > written.len();
+    only.then(|| cells.iter().map(|cell| plain_unit(cell).to_owned()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Layout {
+        find(text.as_bytes(), &Mapping::canonical())
+    }
+
+    #[test]
+    fn the_header_may_stand_below_other_lines() {
+        let text = "Ship: A\nDate;2024-05-01\n\nt_s;u_kn;note\n0;1;a\n";
+        let wanted = Layout { separator: b';', offset: 25, lines: 3, units: Vec::new() };
+        assert_eq!(of(text), wanted);
+        assert_eq!(of("a,b\n1,2\n").offset, 0);
+        assert_eq!(of("").separator, b',');
+    }
+
+    #[test]
+    fn units_below_the_header_are_found() {
+        assert_eq!(of("t_s\tu\tx\n[s]\t(knots)\t\n0\t1\t2\n").units, ["s", "kn", ""]);
+        assert!(of("t_s,u_m_s\n0,1\n").units.is_empty());
+        assert!(of("t_s,u_m_s\nabc,def\n").units.is_empty());
+    }
+
+    #[test]
+    fn latin_1_is_told_from_utf_8() {
+        assert_eq!(name(b"\xb0C"), "\u{b0}C");
+        assert_eq!(name(" \u{b0}".as_bytes()), "\u{b0}");
+    }
+
+    #[test]
+    fn more_is_asked_for_only_where_it_could_matter() {
+        let mapping = Mapping::canonical();
+        assert!(is_settled(b"t_s,u_m_s\n0,1\n", &mapping));
+        for text in [&b"t_s,u_m_s\n"[..], b"a\nb\n", b"", b"\n\n"] {
+            assert!(!is_settled(text, &mapping));
+        }
+        assert!(is_settled("a\n".repeat(LINES).as_bytes(), &mapping));
+    }
+}

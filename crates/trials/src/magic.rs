@@ -1,0 +1,111 @@
+//! What a file is by its first bytes, whatever its name says.
+
+/// How a file is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Csv,
+    Parquet,
+    Workbook,
+    Matlab,
+    Nmea,
+    /// Something that holds no table that is read here: what it is, and what to do.
+    Other(&'static str),
+}
+
+/// Bytes that are looked at.
+pub(crate) const LOOKED_AT: usize = 4096;
+
+const OTHERS: [(&[u8], &str); 18] = [
+    (b"\x89HDF\r\n\x1a\n", "HDF5; write the table as CSV, Parquet or Excel"),
+    (
+        b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",
+        "an Excel workbook of before 2007 (.xls); save it as .xlsx",
+    ),
+    (b"CDF\x01", "NetCDF; write the table as CSV, Parquet or Excel"),
+    (b"CDF\x02", "NetCDF; write the table as CSV, Parquet or Excel"),
+    (b"%PDF", "a PDF; export the numbers that it was made of"),
+    (b"\x89PNG", "a picture (PNG); export the numbers that it was made of"),
+    (b"\xff\xd8\xff", "a picture (JPEG); export the numbers that it was made of"),
+    (b"GIF8", "a picture (GIF); export the numbers that it was made of"),
+    (b"\x1f\x8b", "packed by gzip; unpack it"),
+    (b"BZh", "packed by bzip2; unpack it"),
+    (b"\xfd7zXZ\x00", "packed by xz; unpack it"),
+    (b"7z\xbc\xaf\x27\x1c", "a 7-Zip archive; unpack it"),
+    (b"\x28\xb5\x2f\xfd", "packed by zstd; unpack it"),
+    (b"SQLite format 3\0", "an SQLite database; export the table as CSV"),
+    (b"#ROSBAG V", "a ROS bag; export its topics as CSV"),
+    (b"\x89MCAP0", "an MCAP log; export its topics as CSV"),
+    (b"MDF     ", "an ASAM MDF measurement; export it as CSV or Parquet"),
+    (b"TDSm", "a LabVIEW TDMS file; export it as CSV or Parquet"),
+];
+
+/// Tells a file by its start.
+pub(crate) fn kind(start: &[u8]) -> Kind {
+    if start.starts_with(b"PAR1") {
+        return Kind::Parquet;
+    }
+    if start.starts_with(b"PK\x03\x04") {
+        return Kind::Workbook;
+    }
+    if start.starts_with(b"MATLAB 5.0") {
+        return Kind::Matlab;
+    }
+    if start.starts_with(b"MATLAB 7.3") {
+        return Kind::Other("a MATLAB 7.3 file, which is HDF5; save it by `save(..., '-v7')`");
+    }
+    if let Some((_, what)) = OTHERS.iter().find(|(magic, _)| start.starts_with(magic)) {
+        return Kind::Other(what);
+    }
+    if is_binary(start) {
+        return Kind::Other(
+            "binary, of a kind that is not known here; export it as CSV or Parquet",
+        );
+    }
+    if is_nmea(start) { Kind::Nmea } else { Kind::Csv }
+}
+
+/// Whether one byte in sixteen is zero; text in UTF-16, which has more, begins with its mark.
+fn is_binary(start: &[u8]) -> bool {
+    let marked = start.starts_with(b"\xff\xfe") || start.starts_with(b"\xfe\xff");
+    let zeros = start.iter().filter(|byte| **byte == 0).count();
+    !marked && 16 * zeros > start.len()
+}
+
+/// Whether one of the first lines has a sentence such as `$GPGGA,...*47`, perhaps after a logger's
+/// own time.
+fn is_nmea(start: &[u8]) -> bool {
+    start.split(|&byte| byte == b'\n').take(20).any(|line| {
+        let Some(at) = line.iter().position(|&byte| byte == b'$') else { return false };
+        let sentence = line[at + 1..].trim_ascii_end();
+        let Some((address, rest)) = sentence.split_at_checked(5) else { return false };
+        let upper = address.iter().all(|byte| byte.is_ascii_uppercase() || byte.is_ascii_digit());
+        let sum = sentence.len().checked_sub(3).map(|end| sentence[end]);
+        upper && rest.first() == Some(&b',') && sum == Some(b'*')
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_told_by_their_first_bytes() {
+        for (start, wanted) in [
+            (&b"PAR1"[..], Kind::Parquet),
+            (b"PK\x03\x04", Kind::Workbook),
+            (b"MATLAB 5.0 MAT-file, Platform: GLNXA64", Kind::Matlab),
+            (b"$GPHDT,274.1,T*33\r\n", Kind::Nmea),
+            (b"12:00:01 $GPHDT,274.1,T*33\n", Kind::Nmea),
+            (b"t_s,u_m_s\n0,1\n", Kind::Csv),
+            (b"price $,u\n$1,2\n$12345,\n", Kind::Csv),
+            (b"", Kind::Csv),
+            (b"\xff\xfet\0_\0s\0", Kind::Csv),
+        ] {
+            assert_eq!(kind(start), wanted, "{start:?}");
+        }
+        assert!(
+            matches!(kind(b"\x89HDF\r\n\x1a\n..."), Kind::Other(what) if what.contains("HDF5"))
+        );
+        assert!(matches!(kind(b"\x01\0\0\0abc"), Kind::Other(what) if what.contains("binary")));
+    }
+}

@@ -1,0 +1,251 @@
+//! MATLAB 5 files (`save -v7`, `-v6`): data elements one within the other, read as a stream.
+
+use std::io::{self, Read};
+
+use flate2::read::ZlibDecoder;
+
+/// Bytes before the first element.
+const HEADER: usize = 128;
+/// Elements of a file, and structures within each other.
+const ELEMENTS: usize = 10_000;
+const DEPTH: usize = 4;
+/// Bytes of names and dimensions.
+const SMALL: u64 = 64 << 10;
+
+const COMPRESSED: u32 = 15;
+const MATRIX: u32 = 14;
+const STRUCTURE: u8 = 2;
+const NUMERIC: std::ops::RangeInclusive<u8> = 6..=15;
+const COMPLEX: u8 = 0x08;
+
+/// An array of real numbers: its name and size, and its numbers, column by column.
+pub(crate) struct Array<'a> {
+    pub name: String,
+    pub rows: usize,
+    pub columns: usize,
+    kind: u32,
+    big: bool,
+    input: &'a mut dyn Read,
+}
+
+impl Array<'_> {
+    /// The next so many numbers.
+    pub(crate) fn numbers(&mut self, count: usize) -> io::Result<Vec<f64>> {
+        let width = width(self.kind).ok_or_else(|| invalid("numbers of an unknown type"))?;
+        let mut numbers = Vec::new();
+        let mut bytes = [0; 8];
+        for _ in 0..count {
+            self.input.read_exact(&mut bytes[..width])?;
+            numbers.push(number(self.kind, self.big, &bytes[..width]));
+        }
+        Ok(numbers)
+    }
+
+    /// Passes over so many numbers.
+    pub(crate) fn skip(&mut self, count: usize) -> io::Result<()> {
+        let width = width(self.kind).ok_or_else(|| invalid("numbers of an unknown type"))?;
+        skip(&mut (&mut *self.input).take((count as u64).saturating_mul(width as u64)))
+    }
+}
+
+fn width(kind: u32) -> Option<usize> {
+    match kind {
+        1 | 2 => Some(1),
+        3 | 4 => Some(2),
+        5..=7 => Some(4),
+        9 | 12 | 13 => Some(8),
+        _ => None,
+    }
+}
+
+/// A number by the type of MATLAB's table; what an f64 does not hold exactly is rounded.
+fn number(kind: u32, big: bool, bytes: &[u8]) -> f64 {
+    let mut low = [0; 8];
+    let whole = &mut low[..bytes.len()];
+    whole.copy_from_slice(bytes);
+    if big {
+        whole.reverse();
+    }
+    let bits = u64::from_le_bytes(low);
+    match kind {
+        1 => f64::from(bits as u8 as i8),
+        3 => f64::from(bits as u16 as i16),
+        5 => f64::from(bits as u32 as i32),
+        7 => f64::from(f32::from_bits(bits as u32)),
+        9 => f64::from_bits(bits),
+        12 => bits as i64 as f64,
+        _ => bits as f64,
+    }
+}
+
+/// Shows every real array of the file to the visitor, those within structures as `structure.field`.
+pub(crate) fn visit(
+    input: &mut dyn Read,
+    most: u64,
+    visitor: &mut dyn FnMut(Array) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut header = [0; HEADER];
+    input.read_exact(&mut header)?;
+    let big = match &header[HEADER - 2..] {
+        b"IM" => false,
+        b"MI" => true,
+        _ => return Err(invalid("it does not say in which order its bytes are")),
+    };
+    let mut parser = Parser { big, left: most, visitor };
+    for _ in 0..ELEMENTS {
+        match parser.tag(input) {
+            Ok(tag) => parser.top(input, tag)?,
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(()),
+            Err(error) => return Err(error),
+        }
+    }
+    Err(invalid("more variables than are read"))
+}
+
+struct Parser<'a> {
+    big: bool,
+    /// Unpacked bytes that may still be read.
+    left: u64,
+    visitor: &'a mut dyn FnMut(Array) -> io::Result<()>,
+}
+
+/// Type, size in bytes, and the data themselves where the tag holds them.
+struct Tag {
+    kind: u32,
+    size: u64,
+    inside: Option<[u8; 4]>,
+}
+
+impl Parser<'_> {
+    fn word(&self, bytes: [u8; 4]) -> u32 {
+        if self.big { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) }
+    }
+
+    fn tag(&mut self, input: &mut dyn Read) -> io::Result<Tag> {
+        let mut bytes = [0; 4];
+        input.read_exact(&mut bytes)?;
+        let first = self.word(bytes);
+        input.read_exact(&mut bytes)?;
+        if first >> 16 != 0 {
+            let size = u64::from(first >> 16).min(4);
+            return Ok(Tag { kind: first & 0xffff, size, inside: Some(bytes) });
+        }
+        Ok(Tag { kind: first, size: u64::from(self.word(bytes)), inside: None })
+    }
+
+    fn top(&mut self, input: &mut dyn Read, tag: Tag) -> io::Result<()> {
+        if tag.inside.is_some() {
+            return Ok(());
+        }
+        let mut part = input.take(tag.size);
+        match tag.kind {
+            COMPRESSED => {
+                let mut unpacked = ZlibDecoder::new(&mut part);
+                let inner = self.tag(&mut unpacked)?;
+                if inner.kind == MATRIX && inner.inside.is_none() {
+                    self.matrix(&mut unpacked, inner.size, "", 0)?;
+                }
+            }
+            MATRIX => self.matrix(&mut part, tag.size, "", 0)?,
+            _ => {}
+        }
+        skip(&mut part)
+    }
+
+    /// Counts bytes before they are read.
+    fn count(&mut self, bytes: u64) -> io::Result<()> {
+        self.left = self
+            .left
+            .checked_sub(bytes)
+            .ok_or_else(|| invalid("it holds more bytes than are read when unpacked"))?;
+        Ok(())
+    }
+
+    /// The bytes of a small element.
+    fn small(&mut self, input: &mut dyn Read) -> io::Result<Vec<u8>> {
+        let tag = self.tag(input)?;
+        if let Some(inside) = tag.inside {
+            return Ok(inside[..usize::try_from(tag.size).unwrap_or(0)].to_vec());
+        }
+        if tag.size > SMALL {
+            return Err(invalid("a name or a size is too long"));
+        }
+        let mut bytes = Vec::new();
+        input.take(tag.size).read_to_end(&mut bytes)?;
+        skip(&mut input.take(padding(tag.size)))?;
+        Ok(bytes)
+    }
+
+    fn matrix(
+        &mut self,
+        input: &mut dyn Read,
+        size: u64,
+        outer: &str,
+        depth: usize,
+    ) -> io::Result<()> {
+        self.count(size)?;
+        let mut input = input.take(size);
+        // An empty field has no content at all.
+        if size > 0 {
+            self.content(&mut input, outer, depth)?;
+        }
+        skip(&mut input)
+    }
+
+    fn content(&mut self, input: &mut dyn Read, outer: &str, depth: usize) -> io::Result<()> {
+        let flags = self.small(input)?;
+        let flags = flags.first_chunk().map_or(0, |bytes| self.word(*bytes));
+        let (class, flags) = (flags as u8, (flags >> 8) as u8);
+        let dimensions = self.small(input)?;
+        let dimensions = dimensions.as_chunks::<4>().0.iter();
+        let dimensions: Vec<usize> = dimensions.map(|bytes| self.word(*bytes) as usize).collect();
+        let name = String::from_utf8_lossy(&self.small(input)?).into_owned();
+        let name = if depth == 0 { name } else { outer.to_owned() };
+        let &[rows, columns] = dimensions.as_slice() else { return Ok(()) };
+        match class {
+            STRUCTURE if (rows, columns) == (1, 1) && depth < DEPTH => {
+                self.structure(input, &name, depth)
+            }
+            class if NUMERIC.contains(&class) && flags & COMPLEX == 0 => {
+                let tag = self.tag(input)?;
+                let big = self.big;
+                let inside = tag.inside.unwrap_or_default();
+                let mut inside = &inside[..];
+                let mut part = input.take(tag.size);
+                let input: &mut dyn Read =
+                    if tag.inside.is_some() { &mut inside } else { &mut part };
+                (self.visitor)(Array { name, rows, columns, kind: tag.kind, big, input })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn structure(&mut self, input: &mut dyn Read, name: &str, depth: usize) -> io::Result<()> {
+        let length = self.small(input)?;
+        let length = length.first_chunk().map_or(0, |bytes| self.word(*bytes) as usize);
+        let names = self.small(input)?;
+        for field in names.chunks(length.max(1)) {
+            let field: Vec<u8> = field.iter().copied().take_while(|byte| *byte != 0).collect();
+            let field = format!("{name}.{}", String::from_utf8_lossy(&field));
+            let tag = self.tag(input)?;
+            if tag.kind != MATRIX || tag.inside.is_some() {
+                return Err(invalid("a field is no array"));
+            }
+            self.matrix(input, tag.size, &field, depth + 1)?;
+        }
+        Ok(())
+    }
+}
+
+/// Bytes after an element up to the next multiple of eight.
+fn padding(size: u64) -> u64 {
+    size.next_multiple_of(8) - size
+}
+
+fn skip(input: &mut dyn Read) -> io::Result<()> {
+    io::copy(input, &mut io::sink()).map(|_| ())
+}
+
+fn invalid(message: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, message)
+}

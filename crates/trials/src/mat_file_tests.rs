@@ -1,0 +1,124 @@
+#![allow(clippy::unwrap_used)]
+use std::io::{Cursor, Write};
+
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+
+use super::*;
+use crate::testing::messages;
+
+fn element(kind: u32, data: &[u8]) -> Vec<u8> {
+    let mut bytes = kind.to_le_bytes().to_vec();
+    bytes.extend(u32::try_from(data.len()).unwrap().to_le_bytes());
+    bytes.extend(data);
+    bytes.resize(bytes.len().next_multiple_of(8), 0);
+    bytes
+}
+
+fn matrix(name: &str, class: u32, rows: i32, columns: i32, content: &[u8]) -> Vec<u8> {
+    let mut data = element(6, &[class.to_le_bytes(), [0; 4]].concat());
+    data.extend(element(5, &[rows.to_le_bytes(), columns.to_le_bytes()].concat()));
+    data.extend(element(1, name.as_bytes()));
+    data.extend(content);
+    element(14, &data)
+}
+
+fn doubles(values: &[f64]) -> Vec<u8> {
+    element(9, &values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<_>>())
+}
+
+fn packed(element: &[u8]) -> Vec<u8> {
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
+    encoder.write_all(element).unwrap();
+    let data = encoder.finish().unwrap();
+    let mut bytes = 15_u32.to_le_bytes().to_vec();
+    bytes.extend(u32::try_from(data.len()).unwrap().to_le_bytes());
+    bytes.extend(data);
+    bytes
+}
+
+fn file(elements: &[Vec<u8>]) -> Vec<u8> {
+    let mut bytes = format!("{:<124}", "MATLAB 5.0 MAT-file").into_bytes();
+    bytes.extend([0, 1, b'I', b'M']);
+    bytes.extend(elements.concat());
+    bytes
+}
+
+/// `t_s` plain, `u_kn` of 16-bit integers, a matrix, and a structure with `psi`, packed.
+fn example() -> Vec<u8> {
+    let shorts: Vec<u8> = [10_i16, -11, 12].iter().flat_map(|value| value.to_le_bytes()).collect();
+    let names = [&b"psi\0\0\0\0\0"[..], b"note\0\0\0\0"].concat();
+    let mut fields = 5_u32.to_le_bytes().to_vec();
+    fields[2] = 4;
+    fields.extend(8_i32.to_le_bytes());
+    fields.extend(element(1, &names));
+    fields.extend(matrix("", 6, 1, 3, &doubles(&[0.1, 0.2, 0.3])));
+    fields.extend(matrix("", 4, 1, 1, &element(4, &[65, 0])));
+    file(&[
+        matrix("t_s", 6, 3, 1, &doubles(&[0.0, 1.0, 2.0])),
+        matrix("u_kn", 10, 3, 1, &element(3, &shorts)),
+        packed(&matrix("track", 6, 3, 2, &doubles(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]))),
+        packed(&matrix("log", 2, 1, 1, &fields)),
+    ])
+}
+
+fn mapping() -> Mapping {
+    let mut mapping = Mapping::canonical();
+    let column = |column: &str, unit: &str| sistership_model::manifest::ColumnMapping {
+        column: column.into(),
+        unit: unit.into(),
+    };
+    mapping.columns =
+        vec![("y".into(), column("track(:,2)", "m")), ("psi".into(), column("log.psi", "rad"))];
+    mapping
+}
+
+fn run(bytes: Vec<u8>, mapping: &Mapping) -> (Option<Table>, String) {
+    let mut findings = Findings::default();
+    let table = read(Box::new(Cursor::new(bytes)), mapping, &mut findings);
+    (table, messages(findings))
+}
+
+#[test]
+fn vectors_matrices_and_fields_are_columns() {
+    let (table, text) = run(example(), &mapping());
+    let table = table.unwrap();
+    let of = |header: &str| {
+        let at = table.columns.iter().position(|column| column.header == header).unwrap();
+        &table.values[at]
+    };
+    assert_eq!(of("t_s"), &[0.0, 1.0, 2.0], "{text}");
+    assert_eq!(of("track(:,2)"), &[4.0, 5.0, 6.0]);
+    assert_eq!(of("log.psi"), &[0.1, 0.2, 0.3]);
+    assert!((of("u_kn")[1] + 11.0 * 0.514_444).abs() < 1e-4);
+    assert!(text.contains("columns not read: track(:,1)"), "{text}");
+    let measured = measure(Box::new(Cursor::new(example())), &mapping()).unwrap();
+    assert_eq!(measured, (3, 8));
+}
+
+#[test]
+fn columns_on_different_time_bases_and_bombs_are_refused() {
+    let mut uneven = example();
+    uneven.extend(matrix("v_m_s", 6, 2, 1, &doubles(&[1.0, 2.0])));
+    assert!(run(uneven, &mapping()).1.contains("has 2 values, time has 3"));
+    let mut bomb = mapping();
+    bomb.limits.unpacked_bytes = 1000;
+    let zeros = packed(&matrix("zeros", 6, 1000, 1, &doubles(&[0.0; 1000])));
+    assert!(run(file(&[zeros]), &bomb).1.contains("more bytes than are read"));
+    bomb = mapping();
+    bomb.limits.rows = 2;
+    assert!(run(example(), &bomb).1.contains("3 values are more than the 2"));
+}
+
+#[test]
+fn damaged_files_are_errors_at_worst() {
+    let bytes = example();
+    for at in 0..bytes.len() {
+        for change in [0x01, 0x80, 0xff] {
+            let mut damaged = bytes.clone();
+            damaged[at] ^= change;
+            let _ = run(damaged, &mapping());
+        }
+        let _ = run(bytes[..at].to_vec(), &mapping());
+    }
+}

@@ -1,0 +1,109 @@
+//! What a law needs of a trial that a file does not have, all of it at once.
+
+use std::fmt;
+
+use sistership_model::coefficient::Axis;
+use sistership_model::effect::{TIME, input_channel};
+use sistership_model::law::Law;
+use sistership_model::trial::{Channel, Trial};
+
+/// A channel that is missing.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Lack {
+    /// Its name in manifests, or that of an input which no channel holds.
+    pub name: String,
+    /// What the law needs it for.
+    pub why: &'static str,
+    /// What can be done.
+    pub remedy: String,
+}
+
+impl fmt::Display for Lack {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "`{}` is missing: {}; {}", self.name, self.why, self.remedy)
+    }
+}
+
+/// Everything that the law needs and the trial does not have.
+pub fn lacking(law: &Law, trial: &Trial) -> Vec<Lack> {
+    let state = "it is part of the state that a simulation starts from";
+    let mut needed: Vec<(Channel, &'static str)> =
+        vec![(Channel::U, state), (Channel::V, state), (Channel::R, state)];
+    needed.push((Channel::Delta, "it is what steers"));
+    if law.axes.contains_key(&Axis::K) {
+        let rolls = "the law has roll";
+        needed.extend([(Channel::Phi, rolls), (Channel::P, rolls)]);
+    }
+    let mut lacks = Vec::new();
+    for (name, input) in law.inputs.iter().filter(|(name, _)| name.as_str() != TIME) {
+        match input_channel(name) {
+            Some(channel) => needed.extend(given_by(trial, channel, input.default)),
+            None if input.default.is_none() => lacks.push(Lack {
+                name: name.clone(),
+                why: "it is an input of the law",
+                remedy: "no channel of a trial holds it; choose another law".into(),
+            }),
+            None => {}
+        }
+    }
+    for (at, &(channel, why)) in needed.iter().enumerate() {
+        let named_before = needed[..at].iter().any(|&(before, _)| before == channel);
+        if !named_before && trial.channel(channel).is_none() {
+            lacks.push(Lack { name: channel.name().into(), why, remedy: remedy(trial, channel) });
+        }
+    }
+    lacks
+}
+
+/// An input that must be recorded: it has no default, and is no constant of the trial.
+fn given_by(
+    trial: &Trial,
+    channel: Channel,
+    default: Option<f64>,
+) -> Option<(Channel, &'static str)> {
+    let constant = channel == Channel::Depth && trial.depth_m.is_some();
+    (default.is_none() && !constant).then_some((channel, "it is an input of the law"))
+}
+
+fn remedy(trial: &Trial, channel: Channel) -> String {
+    let has = |channels: &[Channel]| channels.iter().all(|&one| trial.channel(one).is_some());
+    let derived = match channel {
+        Channel::U | Channel::V => has(&[Channel::X, Channel::Y, Channel::Psi]),
+        Channel::R => has(&[Channel::Psi]),
+        _ => false,
+    };
+    match channel {
+        _ if derived => format!("map its column, or declare `derive: [{channel}]`"),
+        Channel::Depth => "map its column, or give `depth_m` of the trial".into(),
+        Channel::U | Channel::V => {
+            format!("map its column, or position and heading and declare `derive: [{channel}]`")
+        }
+        _ => "map its column".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_model::Zoo;
+
+    use super::*;
+
+    #[test]
+    fn everything_that_is_missing_is_named_at_once() {
+        let zoo = Zoo::embedded().unwrap();
+        let law = zoo.law("abkowitz").unwrap();
+        let mut trial = Trial { t_s: vec![0.0; 3], ..Trial::default() };
+        for channel in [Channel::X, Channel::Y, Channel::Psi] {
+            trial.channels.insert(channel, vec![0.0; 3]);
+        }
+        let names: Vec<String> = lacking(law, &trial).into_iter().map(|lack| lack.name).collect();
+        assert_eq!(names[..4], ["u", "v", "r", "delta"]);
+        let text = lacking(law, &trial)[2].to_string();
+        assert!(text.contains("derive: [r]"), "{text}");
+        for channel in Channel::all() {
+            trial.channels.insert(channel, vec![0.0; 3]);
+        }
+        assert_eq!(lacking(law, &trial), []);
+    }
+}

@@ -1,0 +1,338 @@
+//! NMEA 0183 logs: sentences of several instruments become series, and these one table.
+//!
+//! Only some sentences tell the time. A line without it lies between two that have it, and is taken
+//! to have come when its place between their lines says; where the log has its own time before each
+//! sentence, that is taken instead.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::{BufRead, BufReader, Read};
+
+use sistership_model::manifest::VelocityFrame;
+
+use crate::calendar::{DAY, SECOND, iso};
+use crate::findings::Findings;
+use crate::mapping::Mapping;
+use crate::nmea_sentence::{Line, Sentence, line};
+use crate::series::{Series, join};
+use crate::stamp::{Date, Order, stamp};
+use crate::table::{Column, Raw, Start, Table, Target};
+use crate::units::Kind;
+
+/// Time between two marks beyond which lines between them have no time, ns.
+const LONGEST: i64 = 5 * SECOND;
+/// Half a day: what is earlier by more is on the next day.
+const MIDNIGHT: i64 = DAY / 2;
+/// Days that a log may go on; a clock that falls back more often is out of order.
+const DAYS: i64 = 1000;
+
+/// Reads every sentence that a trial can use.
+pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
+    let mut log = Log::new(mapping);
+    if let Err(message) = lines(input, mapping, |row, text| log.line(row, text)) {
+        findings.error(None, None, message);
+        return None;
+    }
+    log.table(findings)
+}
+
+/// Which sentences at the start of a log hold what, as `GPGGA` holds `latitude`.
+pub(crate) fn contents(start: &str) -> Vec<(String, Target)> {
+    let mut found = BTreeSet::new();
+    for text in start.lines() {
+        if let Line::Sentence(sentence) = line(text) {
+            let name = format!("{}{}", sentence.talker, sentence.kind);
+            let readings = sentence.readings(VelocityFrame::Ground).into_iter();
+            found.extend(readings.map(|(target, _)| (target, name.clone())));
+        }
+    }
+    found.into_iter().map(|(target, name)| (name, target)).collect()
+}
+
+/// Rows and columns at most.
+pub(crate) fn measure(input: impl Read, mapping: &Mapping) -> Option<(usize, usize)> {
+    let mut rows = 0;
+    lines(input, mapping, |row, _| {
+        rows = row;
+        Ok(())
+    })
+    .ok()?;
+    // Of a line at most four readings are kept, with their times, before they are put on one time
+    // base.
+    Some((rows, 24))
+}
+
+fn lines(
+    input: impl Read,
+    mapping: &Mapping,
+    mut each: impl FnMut(usize, &str) -> Result<(), String>,
+) -> Result<(), String> {
+    let (mut input, mut bytes) = (BufReader::new(input), Vec::new());
+    for row in 1.. {
+        bytes.clear();
+        let most = mapping.limits.line_bytes as u64;
+        let read = input.by_ref().take(most).read_until(b'\n', &mut bytes);
+        let read = read.map_err(|error| format!("cannot be read: {error}"))?;
+        if read == 0 {
+            return Ok(());
+        }
+        if read as u64 == most {
+            return Err(format!("line {row} is longer than {most} bytes"));
+        }
+        if row > mapping.limits.rows {
+            return Err(format!("the log has more than {} lines; split it", mapping.limits.rows));
+        }
+        each(row, &String::from_utf8_lossy(&bytes))?;
+    }
+    Ok(())
+}
+
+/// What a series is made of: sentences of one kind from one talker, such as `HEHDT`.
+type Origin = (Target, [u8; 5]);
+
+/// Lines that wait for the next mark at most.
+const PENDING: usize = 10_000;
+
+#[derive(Default)]
+struct Readings {
+    t: Vec<f64>,
+    values: Vec<f64>,
+    rows: Vec<u32>,
+}
+
+/// A line whose time is known once the next mark is.
+struct Pending {
+    row: usize,
+    readings: Vec<(Origin, f64)>,
+}
+
+struct Log {
+    frame: VelocityFrame,
+    /// The first mark, which time is counted from, and the last: line and ns, over midnights.
+    first: Option<i64>,
+    last: Option<(usize, i64)>,
+    /// ns of the first mark's midnight since 1970.
+    midnight: Option<i64>,
+    days: i64,
+    /// Whether lines have a time of their own.
+    own: bool,
+    pending: Vec<Pending>,
+    series: BTreeMap<Origin, Readings>,
+    damaged: (usize, usize),
+    timeless: usize,
+}
+
+impl Log {
+    fn new(mapping: &Mapping) -> Self {
+        Self {
+            frame: mapping.conventions.velocity,
+            first: None,
+            last: None,
+            midnight: None,
+            days: 0,
+            own: false,
+            pending: Vec::new(),
+            series: BTreeMap::new(),
+            damaged: (0, 0),
+            timeless: 0,
+        }
+    }
+
+    fn line(&mut self, row: usize, text: &str) -> Result<(), String> {
+        match line(text) {
+            Line::Sentence(sentence) => self.sentence(row, sentence),
+            Line::Damaged => {
+                self.damaged =
+                    (self.damaged.0 + 1, if self.damaged.0 == 0 { row } else { self.damaged.1 });
+            }
+            Line::Other => {}
+        }
+        Ok(())
+    }
+
+    fn sentence(&mut self, row: usize, sentence: Sentence) {
+        let own = stamp(sentence.before.trim().trim_end_matches([',', ';', ':']), Order::Open);
+        let own = own.filter(|_| self.own || self.last.is_none());
+        self.own = self.own || own.is_some();
+        let of_day = match own {
+            Some(stamp) => Some(stamp.of_day),
+            None if self.own => None,
+            None => sentence.of_day(),
+        };
+        if let Some(of_day) = of_day {
+            let midnight = own.and_then(|stamp| match stamp.date {
+                Date::Known(day) => Some(day * DAY),
+                _ => None,
+            });
+            self.mark(row, of_day, midnight);
+        }
+        if let (None, false, Some(midnight)) = (self.midnight, self.own, sentence.midnight()) {
+            self.midnight = Some(midnight - self.days * DAY);
+        }
+        let mut talker = [0; 5];
+        talker[..2].copy_from_slice(sentence.talker.as_bytes());
+        talker[2..].copy_from_slice(sentence.kind.as_bytes());
+        let readings = sentence.readings(self.frame).into_iter();
+        let readings: Vec<(Origin, f64)> =
+            readings.map(|(target, value)| ((target, talker), value)).collect();
+        match self.last {
+            _ if readings.is_empty() => {}
+            // Without a mark before it, a line has no time.
+            None => self.timeless += 1,
+            Some((_, now)) if of_day.is_some() => self.keep(row, now, readings),
+            Some(_) if self.pending.len() == PENDING => self.timeless += 1,
+            Some(_) => self.pending.push(Pending { row, readings }),
+        }
+    }
+
+    /// A line whose time is known; those since the mark before get theirs.
+    fn mark(&mut self, row: usize, of_day: i64, midnight: Option<i64>) {
+        let mut now = of_day + self.days * DAY;
+        if let Some((_, last)) = self.last {
+            if last - now > MIDNIGHT && self.days < DAYS {
+                self.days += 1;
+                now += DAY;
+            }
+            // Sentences of one fix tell the same time.
+            if now <= last {
+                return;
+            }
+        } else {
+            self.midnight = midnight;
+        }
+        self.first.get_or_insert(now);
+        let pending = std::mem::take(&mut self.pending);
+        if let Some((line, last)) = self.last {
+            if now - last > LONGEST {
+                self.timeless += pending.len();
+            } else {
+                for Pending { row: at, readings } in pending {
+                    let share = (at - line) as f64 / (row - line) as f64;
+                    self.keep(at, last + (share * (now - last) as f64) as i64, readings);
+                }
+            }
+        }
+        self.last = Some((row, now));
+    }
+
+    fn keep(&mut self, row: usize, at: i64, readings: Vec<(Origin, f64)>) {
+        let t = (at - self.first.unwrap_or(at)) as f64 / SECOND as f64;
+        for (origin, value) in readings {
+            let series = self.series.entry(origin).or_default();
+            if series.t.last().is_none_or(|&last| last < t) {
+                series.t.push(t);
+                series.values.push(value);
+                series.rows.push(u32::try_from(row).unwrap_or(u32::MAX));
+            }
+        }
+    }
+
+    /// One series for each target: of the origin with most readings.
+    fn chosen(&mut self, findings: &mut Findings) -> BTreeMap<Target, (String, Readings)> {
+        let mut chosen: BTreeMap<Target, (String, Readings)> = BTreeMap::new();
+        for ((target, origin), readings) in std::mem::take(&mut self.series) {
+            let origin = String::from_utf8_lossy(&origin).into_owned();
+            let most = chosen.get(&target).map_or(0, |(_, other)| other.t.len());
+            if readings.t.len() > most
+                && let Some((other, _)) = chosen.insert(target, (origin.clone(), readings))
+            {
+                let message = format!("{} is read from {origin}, not from {other}", target.name());
+                findings.warning(None, Some(&origin), message);
+            }
+        }
+        chosen
+    }
+
+    fn table(mut self, findings: &mut Findings) -> Option<Table> {
+        self.timeless += self.pending.len();
+        self.tell(findings);
+        let mut chosen = self.chosen(findings);
+        // One rudder is reported as that to starboard, and the yaw rate is of the ship whatever
+        // reports it.
+        let base = base(&chosen)?;
+        let times = chosen.get(&base)?;
+        let mut table = Table { rows: times.1.rows.clone(), ..Table::default() };
+        table.columns.push(column(Target::Time, "UTC"));
+        table.values.push(times.1.t.clone());
+        table.start = self.start();
+        if let Some(start) = &table.start {
+            let message = format!("time is counted from {}", start.text);
+            findings.warning(None, Some("UTC"), message);
+        }
+        let (name, readings) = chosen.remove(&base)?;
+        table.columns.push(column(base, &name));
+        table.values.push(readings.values);
+        let others = chosen.into_iter().map(|(target, (name, readings))| Series {
+            column: column(target, &name),
+            t: readings.t,
+            values: readings.values,
+        });
+        join(&mut table, others.collect(), findings);
+        Some(table)
+    }
+
+    fn start(&self) -> Option<Start> {
+        let first = self.first?;
+        let at = self.midnight.unwrap_or(0) + first;
+        let text = match self.midnight {
+            Some(_) if self.own => iso(at),
+            Some(_) => format!("{}Z", iso(at)),
+            None => iso(at).split_off("1970-01-01T".len()),
+        };
+        Some(Start { text, at_s: at as f64 / SECOND as f64, dated: self.midnight.is_some() })
+    }
+
+    fn tell(&self, findings: &mut Findings) {
+        if self.series.is_empty() {
+            let what = match self.last {
+                None => {
+                    "no sentence tells the time (GGA, RMC or ZDA), and neither does the log \
+                    before it"
+                }
+                Some(_) => "no sentence holds anything that a trial can use",
+            };
+            findings.error(None, None, what);
+        }
+        let (damaged, first) = self.damaged;
+        if damaged > 0 {
+            let message =
+                format!("{damaged} sentences left out: their checksum is wrong or missing");
+            findings.warning(Some(first), None, message);
+        }
+        if self.timeless > 0 {
+            let message = format!("{} sentences left out: their time is not known", self.timeless);
+            findings.warning(None, None, message);
+        }
+        let how = match self.own {
+            true => "times are those that the log has before each sentence",
+            false => {
+                "sentences without a time are placed between those that have one by their lines; \
+                 their order is known, their delay is not"
+            }
+        };
+        findings.warning(None, None, how);
+    }
+}
+
+/// The series whose times the table has: positions, or what was read most often.
+fn base(chosen: &BTreeMap<Target, (String, Readings)>) -> Option<Target> {
+    let latitude = Target::Raw(Raw::Latitude);
+    if chosen.contains_key(&latitude) {
+        return Some(latitude);
+    }
+    let most = chosen.iter().max_by_key(|(_, (_, readings))| readings.t.len());
+    most.map(|(&target, _)| target)
+}
+
+fn column(target: Target, name: &str) -> Column {
+    Column {
+        index: 0,
+        header: name.to_owned(),
+        target,
+        unit: Kind::of(target).canonical().into(),
+        to_si: 1.0,
+    }
+}
+
+#[cfg(test)]
+#[path = "nmea_file_tests.rs"]
+mod tests;

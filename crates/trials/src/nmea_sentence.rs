@@ -1,0 +1,230 @@
+//! NMEA 0183: what the sentences say that a trial can use, in canonical units.
+
+use std::f64::consts::PI;
+
+use sistership_model::manifest::VelocityFrame;
+use sistership_model::trial::Channel;
+
+use crate::calendar::{DAY, SECOND, day};
+use crate::table::{Raw, Target};
+
+const KNOT: f64 = 1852.0 / 3600.0;
+const DEG: f64 = PI / 180.0;
+
+/// A sentence whose checksum is right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Sentence<'a> {
+    pub talker: &'a str,
+    pub kind: &'a str,
+    fields: &'a str,
+    /// What stands before the sentence: the logger's own time, perhaps.
+    pub before: &'a str,
+}
+
+/// What a line of a log is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Line<'a> {
+    Sentence(Sentence<'a>),
+    /// A sentence whose checksum is wrong or missing.
+    Damaged,
+    /// Something else.
+    Other,
+}
+
+/// Reads a line.
+pub(crate) fn line(text: &str) -> Line<'_> {
+    let Some((before, sentence)) = text.split_once('$') else { return Line::Other };
+    let Some((body, sum)) = sentence.rsplit_once('*') else { return Line::Damaged };
+    let wanted = sum.trim().get(..2).and_then(|sum| u8::from_str_radix(sum, 16).ok());
+    if wanted != Some(body.bytes().fold(0, |sum, byte| sum ^ byte)) {
+        return Line::Damaged;
+    }
+    let (address, fields) = body.split_once(',').unwrap_or((body, ""));
+    match (address.get(..2), address.get(2..)) {
+        (Some(talker), Some(kind)) if kind.len() == 3 && !talker.starts_with('P') => {
+            Line::Sentence(Sentence { talker, kind, fields, before })
+        }
+        _ => Line::Other,
+    }
+}
+
+impl Sentence<'_> {
+    /// A field by its number, from 1; empty where it is missing.
+    fn field(&self, number: usize) -> &str {
+        self.fields.split(',').nth(number - 1).unwrap_or_default().trim()
+    }
+
+    fn number(&self, number: usize) -> Option<f64> {
+        self.field(number).parse().ok().filter(|value: &f64| value.is_finite())
+    }
+
+    fn is(&self, number: usize, wanted: &str) -> bool {
+        self.field(number) == wanted
+    }
+
+    /// Nanoseconds since midnight UTC, where the sentence says it.
+    pub(crate) fn of_day(&self) -> Option<i64> {
+        let text = match self.kind {
+            "GGA" | "RMC" | "ZDA" => self.field(1),
+            _ => return None,
+        };
+        let digits = text.get(..6).filter(|digits| digits.bytes().all(|b| b.is_ascii_digit()))?;
+        let part = |from: usize| digits[from..from + 2].parse::<i64>().ok();
+        let fraction: f64 = format!("0{}", &text[6..]).parse().ok()?;
+        let (hours, minutes, seconds) = (part(0)?, part(2)?, part(4)?);
+        let fits = hours < 24 && minutes < 60 && seconds < 61 && (0.0..1.0).contains(&fraction);
+        let fraction = (fraction * 1e6).round() as i64 * 1000;
+        fits.then_some(((hours * 60 + minutes) * 60 + seconds) * SECOND + fraction)
+    }
+
+    /// Nanoseconds of the day's midnight since 1970, where the sentence says it.
+    pub(crate) fn midnight(&self) -> Option<i64> {
+        let whole = |text: &str| text.parse::<i64>().ok();
+        let day = match self.kind {
+            "RMC" => {
+                let date = self.field(9);
+                let part = |from: usize| date.get(from..from + 2).and_then(whole);
+                day(2000 + part(4)?, part(2)?, part(0)?)
+            }
+            "ZDA" => day(whole(self.field(4))?, whole(self.field(3))?, whole(self.field(2))?),
+            _ => None,
+        };
+        day.map(|day| day * DAY)
+    }
+
+    /// Degrees and minutes with their hemisphere, rad.
+    fn angle(&self, number: usize, negative: &str) -> Option<f64> {
+        let value = self.number(number).filter(|value| *value >= 0.0)?;
+        let degrees = (value / 100.0).floor();
+        let angle = (degrees + (value - 100.0 * degrees) / 60.0) * DEG;
+        Some(if self.is(number + 1, negative) { -angle } else { angle })
+    }
+
+    /// What a trial can use of it; nothing where it says that it is not valid.
+    pub(crate) fn readings(&self, frame: VelocityFrame) -> Vec<(Target, f64)> {
+        let channel = |channel, value: Option<f64>| value.map(|v| (Target::Channel(channel), v));
+        let raw = |raw, value: Option<f64>| value.map(|v| (Target::Raw(raw), v));
+        let number = |number, scale: f64| self.number(number).map(|value| value * scale);
+        let position = |at: usize, holds: bool| {
+            let place = (self.angle(at, "S"), self.angle(at + 2, "W"));
+            let (Some(latitude), Some(longitude), true) = (place.0, place.1, holds) else {
+                return [None, None];
+            };
+            [raw(Raw::Latitude, Some(latitude)), raw(Raw::Longitude, Some(longitude))]
+        };
+        let found: Vec<Option<(Target, f64)>> = match self.kind {
+            "GGA" => position(2, !matches!(self.field(6), "" | "0")).into(),
+            "RMC" if self.is(2, "A") => {
+                let ground = [raw(Raw::Speed, number(7, KNOT)), raw(Raw::Course, number(8, DEG))];
+                position(3, true).into_iter().chain(ground).collect()
+            }
+            "VTG" => vec![raw(Raw::Course, number(1, DEG)), raw(Raw::Speed, number(5, KNOT))],
+            "HDT" => vec![channel(Channel::Psi, number(1, DEG))],
+            "ROT" if self.is(2, "A") => vec![channel(Channel::R, number(1, DEG / 60.0))],
+            "RSA" => {
+                let side = |at, side| raw(side, number(at, DEG).filter(|_| self.is(at + 1, "A")));
+                vec![side(1, Raw::DeltaS), side(3, Raw::DeltaP)]
+            }
+            "RPM" if self.is(1, "S") && self.is(5, "A") => vec![self.shaft()],
+            "MWV" if self.is(2, "R") && self.is(5, "A") => {
+                let scale = match self.field(4) {
+                    "N" => KNOT,
+                    "K" => 1.0 / 3.6,
+                    _ => 1.0,
+                };
+                vec![
+                    channel(Channel::ApparentWindFrom, number(1, DEG)),
+                    channel(Channel::ApparentWindSpeed, number(3, scale)),
+                ]
+            }
+            "VBW" => {
+                let first = if frame == VelocityFrame::Water { 1 } else { 4 };
+                let holds = self.is(first + 2, "A");
+                let speed = |at| number(at, KNOT).filter(|_| holds);
+                vec![channel(Channel::U, speed(first)), channel(Channel::V, speed(first + 1))]
+            }
+            _ => Vec::new(),
+        };
+        found.into_iter().flatten().collect()
+    }
+
+    /// Shafts are numbered from 0, which is the only one or in the middle; odd ones are to
+    /// starboard.
+    fn shaft(&self) -> Option<(Target, f64)> {
+        let revolutions = self.number(3)? / 60.0;
+        match self.number(2)? as i64 {
+            0 => Some((Target::Channel(Channel::N), revolutions)),
+            1 => Some((Target::Raw(Raw::NS), revolutions)),
+            2 => Some((Target::Raw(Raw::NP), revolutions)),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    pub(crate) fn summed(body: &str) -> String {
+        format!("${body}*{:02X}", body.bytes().fold(0, |sum, byte| sum ^ byte))
+    }
+
+    fn readings(body: &str, frame: VelocityFrame) -> Vec<(&'static str, f64)> {
+        match line(&summed(body)) {
+            Line::Sentence(sentence) => sentence
+                .readings(frame)
+                .into_iter()
+                .map(|(target, value)| (target.name(), (value * 1e6).round() / 1e6))
+                .collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    #[test]
+    fn sentences_give_canonical_values() {
+        let ground = VelocityFrame::Ground;
+        let place = "GPGGA,120003.25,5130.00,N,00930.00,W,1,08,0.9,1.0,M,0.0,M,,";
+        assert_eq!(readings(place, ground), [("latitude", 0.898845), ("longitude", -0.165806)]);
+        assert!(readings(&place.replace("W,1", "W,0"), ground).is_empty());
+        assert_eq!(readings("HEHDT,80.0,T", ground), [("psi", 1.396263)]);
+        assert_eq!(readings("TIROT,-60.0,A", ground), [("r", -0.017453)]);
+        assert_eq!(
+            readings("AGRSA,10.0,A,-10.0,A", ground),
+            [("delta_s", 0.174533), ("delta_p", -0.174533)]
+        );
+        assert_eq!(readings("AGRSA,10.0,A,,V", ground), [("delta_s", 0.174533)]);
+        assert_eq!(readings("RCRPM,S,0,120.0,,A", ground), [("n", 2.0)]);
+        assert!(readings("RCRPM,E,0,120.0,,A", ground).is_empty());
+        let vbw = "VDVBW,10.0,1.0,A,9.0,0.5,A";
+        assert_eq!(readings(vbw, ground), [("u", 4.63), ("v", 0.257222)]);
+        assert_eq!(readings(vbw, VelocityFrame::Water), [("u", 5.144444), ("v", 0.514444)]);
+        assert_eq!(
+            readings("WIMWV,40.0,R,10.0,N,A", ground),
+            [("apparent_wind_from", 0.698132), ("apparent_wind_speed", 5.144444)]
+        );
+        assert!(readings("WIMWV,45.0,T,10.0,N,A", ground).is_empty());
+        assert_eq!(readings("GPVTG,90.0,T,,M,10.0,N,18.5,K", ground)[1], ("speed", 5.144444));
+    }
+
+    #[test]
+    fn checksums_decide() {
+        assert_eq!(line("$HEHDT,90.0,T*00"), Line::Damaged);
+        assert_eq!(line("$HEHDT,90.0,T"), Line::Damaged);
+        assert_eq!(line("# a remark"), Line::Other);
+        assert_eq!(line(&summed("PSIMSNS,1")), Line::Other);
+        for text in ["$*", "$,*2C", "$\u{e9}\u{e9}\u{e9},*00", "$GPGGA*56", "$*00"] {
+            if let Line::Sentence(sentence) = line(text) {
+                let _ = (sentence.readings(VelocityFrame::Ground), sentence.of_day());
+            }
+        }
+    }
+
+    #[test]
+    fn time_and_date_are_read() {
+        let rmc = summed("GPRMC,120003.250,A,5130.00,N,00930.00,W,10.0,90.0,010524,,,A");
+        let Line::Sentence(sentence) = line(&rmc) else { unreachable!("it is summed") };
+        assert_eq!(sentence.of_day(), Some(12 * 3600 * SECOND + 3_250_000_000));
+        assert_eq!(sentence.midnight(), Some(19_844 * DAY));
+        assert_eq!(sentence.readings(VelocityFrame::Ground).len(), 4);
+    }
+}

@@ -1,0 +1,78 @@
+//! Rudders and propellers of which a ship has two: a trial holds one, their mean.
+
+use sistership_model::trial::Channel;
+
+use crate::findings::Findings;
+use crate::recording::Recording;
+use crate::table::Raw;
+
+const PAIRS: [(Channel, Raw, Raw); 2] =
+    [(Channel::Delta, Raw::DeltaS, Raw::DeltaP), (Channel::N, Raw::NS, Raw::NP)];
+
+/// The mean of each pair, in the file's own signs; says how far its sides were apart.
+pub(crate) fn means(
+    recording: &mut Recording,
+    findings: &mut Findings,
+) -> Vec<(Channel, Vec<f64>)> {
+    PAIRS.iter().filter_map(|&pair| mean(pair, recording, findings)).collect()
+}
+
+fn mean(
+    (channel, starboard, port): (Channel, Raw, Raw),
+    recording: &mut Recording,
+    findings: &mut Findings,
+) -> Option<(Channel, Vec<f64>)> {
+    let sides = (recording.raw.remove(&starboard), recording.raw.remove(&port));
+    let (message, values) = match sides {
+        (Some(starboard), Some(port)) => {
+            let apart = largest(&starboard, &port);
+            let mean = starboard.iter().zip(&port).map(|(one, other)| 0.5 * (one + other));
+            let unit = recording.canonical_unit(channel);
+            let message = format!(
+                "is the mean of starboard and port, which are up to {apart:.4} {unit} apart"
+            );
+            (message, mean.collect())
+        }
+        (Some(values), None) => ("is that of the starboard side alone".to_owned(), values),
+        (None, Some(values)) => ("is that of the port side alone".to_owned(), values),
+        (None, None) => return None,
+    };
+    if recording.channel(channel).is_some() {
+        let message = "its own column is read; those of starboard and port are not";
+        findings.warning(None, Some(channel.name()), message);
+        return None;
+    }
+    findings.warning(None, Some(channel.name()), message);
+    Some((channel, values))
+}
+
+fn largest(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).fold(0.0, |most, (one, other)| (one - other).abs().max(most))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{messages, recording};
+
+    #[test]
+    fn a_pair_gives_its_mean_and_one_side_itself() {
+        let mut ship = recording(&[(Channel::U, vec![1.0; 3])]);
+        ship.raw.insert(Raw::DeltaS, vec![0.1, 0.2, 0.3]);
+        ship.raw.insert(Raw::DeltaP, vec![0.3, 0.2, 0.1]);
+        ship.raw.insert(Raw::NP, vec![2.0; 3]);
+        let mut findings = Findings::default();
+        let means = means(&mut ship, &mut findings);
+        assert_eq!(means[1], (Channel::N, vec![2.0; 3]));
+        assert!(means[0].1.iter().all(|value| (value - 0.2).abs() < 1e-12));
+        let text = messages(findings);
+        assert!(text.contains("up to 0.2000 rad apart") && text.contains("port side alone"));
+    }
+
+    #[test]
+    fn a_channel_of_its_own_goes_before_the_pair() {
+        let mut ship = recording(&[(Channel::Delta, vec![0.1; 3])]);
+        ship.raw.insert(Raw::DeltaS, vec![0.2; 3]);
+        assert!(means(&mut ship, &mut Findings::default()).is_empty());
+    }
+}

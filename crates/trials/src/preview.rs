@@ -1,0 +1,93 @@
+//! The start of a file as a person would look at it: names, units and the first rows.
+
+use std::io::{self, Read};
+use std::path::Path;
+
+use csv::{ByteRecord, ReaderBuilder};
+
+use crate::layout;
+use crate::limits::Limits;
+use crate::mat_file;
+use crate::nmea_file;
+use crate::parquet_file;
+use crate::source::{Content, Source};
+use crate::table::Target;
+use crate::workbook;
+
+/// Bytes and rows that are looked at.
+const START: u64 = 64 << 10;
+const ROWS: usize = 200;
+
+/// What is seen of a file.
+#[derive(Debug, Default)]
+pub(crate) struct Preview {
+    pub names: Vec<String>,
+    /// Units in a line of their own, or nothing.
+    pub units: Vec<String>,
+    /// Cells of the first rows; nothing of files that hold no text.
+    pub rows: Vec<Vec<String>>,
+    /// The sheet, where a workbook has several.
+    pub sheet: Option<String>,
+    /// NMEA sentences, which need no mapping, and what each holds.
+    pub sentences: Vec<(String, Target)>,
+}
+
+/// Looks at a file.
+pub(crate) fn preview(name: &str, path: &Path) -> io::Result<Preview> {
+    let limits = Limits::default();
+    match Source::open(name, path)?.content {
+        Content::Csv(input) => {
+            let mut start = Vec::new();
+            input.take(START).read_to_end(&mut start)?;
+            Ok(of_text(&line_ends(start)))
+        }
+        Content::Workbook(input) => {
+            let sheets = workbook::starts(input, limits).map_err(io::Error::other)?;
+            let several = sheets.len() > 1;
+            let seen = sheets.into_iter().map(|(sheet, start)| (sheet, of_text(&start)));
+            // Of equals the first.
+            let best = seen.rev().max_by_key(|(_, preview)| preview.rows.len());
+            let (sheet, preview) = best.ok_or_else(|| io::Error::other("it has no sheet"))?;
+            Ok(Preview { sheet: several.then_some(sheet), ..preview })
+        }
+        Content::Matlab(input) => {
+            Ok(Preview { names: mat_file::names(input, limits)?, ..Preview::default() })
+        }
+        Content::ParquetFile(file) => {
+            let opened = parquet_file::open(file, limits);
+            let reader = opened.map_err(|refused| io::Error::other(refused.to_string()))?;
+            Ok(Preview { names: parquet_file::headers(&reader), ..Preview::default() })
+        }
+        Content::Nmea(input) => {
+            let mut start = Vec::new();
+            input.take(START).read_to_end(&mut start)?;
+            let sentences = nmea_file::contents(&String::from_utf8_lossy(&start));
+            Ok(Preview { sentences, ..Preview::default() })
+        }
+        Content::Other(what) => Err(io::Error::other(format!("the file is {what}"))),
+        Content::ParquetBytes(_) => Err(io::Error::other("bytes are no file")),
+    }
+}
+
+fn line_ends(text: Vec<u8>) -> Vec<u8> {
+    let text = String::from_utf8(text).unwrap_or_else(|error| layout::latin_1(error.as_bytes()));
+    text.replace("\r\n", "\n").replace('\r', "\n").into_bytes()
+}
+
+fn of_text(start: &[u8]) -> Preview {
+    let layout = layout::guess(start);
+    let mut reader = ReaderBuilder::new()
+        .delimiter(layout.separator)
+        .flexible(true)
+        .has_headers(false)
+        .from_reader(&start[layout.offset..]);
+    let (mut record, mut rows) = (ByteRecord::new(), Vec::new());
+    while rows.len() < ROWS && reader.read_byte_record(&mut record).unwrap_or(false) {
+        rows.push(record.iter().map(layout::name).collect());
+    }
+    let mut rows = rows.into_iter();
+    let names: Vec<String> = rows.next().unwrap_or_default();
+    let rows = rows.skip(usize::from(!layout.units.is_empty())).collect();
+    let names = names.into_iter().map(|name| name.trim_start_matches('\u{feff}').to_owned());
+    Preview { names: names.collect(), units: layout.units, rows, ..Preview::default() }
+}

@@ -1,0 +1,196 @@
+//! Readings of several sensors, each at its own rate, on one time base.
+
+use std::f64::consts::{PI, TAU};
+
+use sistership_model::trial::Channel;
+
+use crate::findings::Findings;
+use crate::table::{Column, Raw, Start, Table, Target};
+
+/// Readings further apart than so many of a sensor's median steps are not bridged: rows between
+/// them are left out.
+const BRIDGED: f64 = 2.5;
+
+/// One sensor's readings in canonical units, in order of time.
+#[derive(Debug, Clone)]
+pub(crate) struct Series {
+    pub column: Column,
+    pub t: Vec<f64>,
+    pub values: Vec<f64>,
+}
+
+/// What is told of one series at the times of the base.
+struct Sampled {
+    values: Vec<f64>,
+    /// Rows that lie in a gap.
+    lost: usize,
+}
+
+/// The columns of a sensor's file, at its times with an offset; those that go back are left for the
+/// check of time.
+pub(crate) fn series(table: Table, offset_s: f64) -> Vec<Series> {
+    let is_time = |column: &Column| column.target == Target::Time;
+    let Some(at) = table.columns.iter().position(is_time) else { return Vec::new() };
+    let t: Vec<f64> = table.values[at].iter().map(|t| t + offset_s).collect();
+    let others = table.columns.into_iter().zip(table.values).filter(|(column, _)| !is_time(column));
+    others.map(|(column, values)| Series { column, t: t.clone(), values }).collect()
+}
+
+/// What is to be added to a sensor's seconds to have those of the base.
+pub(crate) fn offset_s(
+    base: Option<&Start>,
+    sensor: Option<&Start>,
+    declared: Option<f64>,
+) -> Result<f64, String> {
+    let starts = match (base, sensor) {
+        (Some(base), Some(sensor)) if base.dated && sensor.dated => Some(sensor.at_s - base.at_s),
+        (Some(base), Some(sensor)) => {
+            // Of one of them only the time of day is known, so that they are less than half a day
+            // apart.
+            Some((sensor.at_s - base.at_s + 43_200.0).rem_euclid(86_400.0) - 43_200.0)
+        }
+        (None, None) => Some(0.0),
+        _ => None,
+    };
+    match (starts, declared) {
+        (Some(starts), declared) => Ok(starts + declared.unwrap_or(0.0)),
+        (None, Some(declared)) => Ok(declared),
+        (None, None) => {
+            Err("only one of the files has times of a calendar; declare `clock_offset_s`, which \
+                             is added to its seconds to have those of the first file"
+                .into())
+        }
+    }
+}
+
+/// Adds series to a table at the table's own times; rows where one has no reading nearby are left
+/// out.
+pub(crate) fn join(table: &mut Table, series: Vec<Series>, findings: &mut Findings) {
+    let Some(at) = table.columns.iter().position(|column| column.target == Target::Time) else {
+        return;
+    };
+    for Series { column, t, values } in series {
+        if let Some(twice) = table.columns.iter().find(|known| known.target == column.target) {
+            let message =
+                format!("gives {}, as `{}` does; keep one", column.target.name(), twice.header);
+            findings.error(None, Some(&column.header), message);
+            continue;
+        }
+        if t.windows(2).any(|pair| pair[0] >= pair[1]) {
+            let message = "its time does not increase throughout; sort its rows, each once";
+            findings.error(None, Some(&column.header), message);
+            continue;
+        }
+        let sampled = sample(&table.values[at], &t, &values, is_angle(column.target));
+        if sampled.lost > 0 {
+            let message = format!(
+                "has no reading near {} of {} rows, which are left out; nothing is interpolated \
+                over a gap",
+                sampled.lost,
+                table.rows.len()
+            );
+            findings.warning(None, Some(&column.header), message);
+        }
+        table.columns.push(column);
+        table.values.push(sampled.values);
+    }
+    leave_out(table);
+}
+
+/// Between the readings before and after each time, along the shorter way round for an angle; NaN
+/// in a gap.
+fn sample(times: &[f64], t: &[f64], values: &[f64], is_angle: bool) -> Sampled {
+    let longest = BRIDGED * median_step(t);
+    let mut lost = 0;
+    let values = times.iter().map(|&time| {
+        let after = t.partition_point(|&other| other < time);
+        let value = match (after.checked_sub(1), t.get(after)) {
+            (_, Some(&exact)) if exact == time => values[after],
+            (Some(before), Some(&next)) if next - t[before] <= longest => {
+                let share = (time - t[before]) / (next - t[before]);
+                let change = values[after] - values[before];
+                let turns = if is_angle { ((change + PI) / TAU).floor() * TAU } else { 0.0 };
+                values[before] + share * (change - turns)
+            }
+            _ => f64::NAN,
+        };
+        lost += usize::from(value.is_nan());
+        value
+    });
+    Sampled { values: values.collect(), lost }
+}
+
+fn median_step(t: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
+fn is_angle(target: Target) -> bool {
+    matches!(
+        target,
+        Target::Channel(Channel::Psi | Channel::WindFrom | Channel::ApparentWindFrom)
+            | Target::Raw(Raw::Course | Raw::Longitude)
+    )
+}
+
+/// Takes rows with a gap out of every column; those that follow them resume.
+fn leave_out(table: &mut Table) {
+    let whole: Vec<bool> = (0..table.rows.len())
+        .map(|k| table.values.iter().all(|values| values[k].is_finite()))
+        .collect();
+    let resumes = (1..whole.len()).filter(|&k| whole[k] && !whole[k - 1]).map(|k| table.rows[k]);
+    let resumes: Vec<u32> = resumes.collect();
+    table.resumed.extend(resumes);
+    table.resumed.sort_unstable();
+    table.resumed.dedup();
+    keep(&mut table.rows, &whole);
+    table.values.iter_mut().for_each(|values| keep(values, &whole));
+}
+
+fn keep<T>(values: &mut Vec<T>, kept: &[bool]) {
+    let mut flags = kept.iter();
+    values.retain(|_| flags.next().copied().unwrap_or(false));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{messages, table};
+
+    fn series(channel: Channel, t: &[f64], values: &[f64]) -> Series {
+        let column = Column {
+            index: 0,
+            header: channel.name().into(),
+            target: Target::Channel(channel),
+            unit: String::new(),
+            to_si: 1.0,
+        };
+        Series { column, t: t.to_vec(), values: values.to_vec() }
+    }
+
+    #[test]
+    fn clocks_are_compared_where_both_are_known() {
+        let start = |at_s, dated| Start { text: String::new(), at_s, dated };
+        let (morning, day) = (start(10.0, false), start(19_844.0 * 86_400.0 + 86_399.0, true));
+        assert_eq!(offset_s(Some(&morning), Some(&day), None), Ok(-11.0));
+        assert_eq!(offset_s(Some(&day), Some(&start(day.at_s + 5.0, true)), Some(0.5)), Ok(5.5));
+        assert_eq!(offset_s(None, None, None), Ok(0.0));
+        assert_eq!(offset_s(None, Some(&day), Some(-3.0)), Ok(-3.0));
+        assert!(offset_s(None, Some(&day), None).is_err());
+    }
+
+    #[test]
+    fn a_slower_sensor_is_read_between_its_readings_and_gaps_stay_gaps() {
+        // The base is at 0, 0.5, ... 4.5 s.
+        let mut base = table(&[(Channel::U, vec![1.0; 10])]);
+        let psi = series(Channel::Psi, &[0.0, 1.0, 3.9, 4.9], &[6.2, 0.1, 0.2, 0.3]);
+        let mut findings = Findings::default();
+        join(&mut base, vec![psi, series(Channel::U, &[0.0], &[1.0])], &mut findings);
+        assert_eq!(base.values[0], [0.0, 0.5, 1.0, 4.0, 4.5]);
+        assert!((base.values[2][1] - (6.2 + 0.5 * (TAU + 0.1 - 6.2))).abs() < 1e-12);
+        assert_eq!((base.rows[3], base.resumed.as_slice()), (10, &[10][..]));
+        let text = messages(findings);
+        assert!(text.contains("near 5 of 10 rows") && text.contains("gives u, as"), "{text}");
+    }
+}

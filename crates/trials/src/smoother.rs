@@ -1,0 +1,239 @@
+//! A fixed-interval Kalman smoother (Rauch, Tung and Striebel 1965) for one recorded quantity and
+//! its rates.
+//!
+//! Between samples the quantity is a parabola whose second derivative is disturbed by white noise:
+//! value, rate and acceleration are the state, the density of the disturbance is the process noise.
+//! Two numbers decide how smooth the result is: the variance of a reading, and the process noise.
+//! Neither is known of a file, so both are those that make the readings most probable: their ratio
+//! is searched, and of each ratio the variance follows from the innovations.
+
+use std::ops::Range;
+
+use nalgebra::{Matrix3, Vector3};
+
+/// Samples of the longest stretch by which the ratio is chosen; more would not move it by much.
+const CHOOSING: usize = 20_000;
+/// Innovations passed over at the start of a stretch, where they only tell the first state.
+const LEARNING: usize = 3;
+/// Decimal logarithms between which the ratio is searched, in units of the median step.
+const RATIOS: Range<i32> = -14..5;
+/// Variance of the first rate and acceleration, by that of differences of readings: they are read
+/// again, so that their first use must count for little, but not so little that rounding shows in
+/// what is left of it.
+const DIFFUSE: f64 = 100.0;
+/// The least variance of a reading by the square of the readings' range: what a simulation's
+/// rounding leaves.
+const EXACT: f64 = 1e-24;
+
+/// What was found of the readings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Noise {
+    /// Variance of a reading.
+    pub reading: f64,
+    /// Density of what disturbs the acceleration, by the variance of a reading, 1/s^5.
+    pub ratio: f64,
+}
+
+/// Smoothed value and rate with their variances.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Smoothed {
+    pub value: f64,
+    pub rate: f64,
+    pub value_variance: f64,
+    pub rate_variance: f64,
+}
+
+#[derive(Clone, Copy)]
+struct State {
+    mean: Vector3<f64>,
+    covariance: Matrix3<f64>,
+}
+
+fn transition(step: f64) -> Matrix3<f64> {
+    Matrix3::new(1.0, step, 0.5 * step * step, 0.0, 1.0, step, 0.0, 0.0, 1.0)
+}
+
+fn disturbance(step: f64, ratio: f64) -> Matrix3<f64> {
+    let [two, three, four, five] = [2, 3, 4, 5].map(|power| step.powi(power));
+    let (a, b, c) = (five / 20.0, four / 8.0, three / 6.0);
+    ratio * Matrix3::new(a, b, c, b, three / 3.0, 0.5 * two, c, 0.5 * two, step)
+}
+
+impl State {
+    /// At the first sample, in units in which a reading has variance 1.
+    fn first(t: &[f64], values: &[f64], ratio: f64) -> Self {
+        let step = t[1] - t[0];
+        let rate = (values[1] - values[0]) / step;
+        let next = (values[2] - values[1]) / (t[2] - t[1]);
+        let acceleration = (next - rate) / (0.5 * (t[2] - t[0]));
+        let mean = Vector3::new(values[0], rate - 0.5 * step * acceleration, acceleration);
+        let variance = DIFFUSE
+            * Vector3::new(
+                1.0,
+                6.0 / step.powi(2) + ratio * step.powi(3),
+                6.0 / step.powi(4) + ratio * step,
+            );
+        Self { mean, covariance: Matrix3::from_diagonal(&variance) }
+    }
+
+    fn predicted(&self, step: f64, ratio: f64) -> Self {
+        let f = transition(step);
+        let covariance = f * self.covariance * f.transpose() + disturbance(step, ratio);
+        Self { mean: f * self.mean, covariance }
+    }
+
+    /// With a reading; the innovation and its variance.
+    fn updated(&self, value: f64) -> (Self, f64, f64) {
+        let (innovation, variance) = (value - self.mean[0], self.covariance[(0, 0)] + 1.0);
+        let gain = self.covariance.column(0) / variance;
+        let covariance = self.covariance - gain * gain.transpose() * variance;
+        let covariance = 0.5 * (covariance + covariance.transpose());
+        (Self { mean: self.mean + gain * innovation, covariance }, innovation, variance)
+    }
+}
+
+/// Sums over the innovations of one quantity: of squares by variance, of logarithms of the
+/// variance, and how many.
+fn innovations(t: &[f64], values: &[f64], ratio: f64) -> (f64, f64, f64) {
+    let mut state = State::first(t, values, ratio);
+    let mut sums = (0.0, 0.0, 0.0);
+    for k in 1..t.len() {
+        let (next, innovation, variance) =
+            state.predicted(t[k] - t[k - 1], ratio).updated(values[k]);
+        state = next;
+        if k > LEARNING {
+            sums.0 += innovation * innovation / variance;
+            sums.1 += variance.ln();
+            sums.2 += 1.0;
+        }
+    }
+    sums
+}
+
+/// The most probable noise of quantities that are read alike, by the longest stretch without a gap.
+pub(crate) fn choose(t: &[f64], quantities: &[&[f64]], segments: &[Range<usize>]) -> Option<Noise> {
+    let longest = segments.iter().max_by_key(|range| range.len())?;
+    let range = longest.start..longest.end.min(longest.start + CHOOSING);
+    let (t, count) = (&t[range.clone()], range.len());
+    if count < 2 + 2 * LEARNING {
+        return None;
+    }
+    let step = (t[count - 1] - t[0]) / (count - 1) as f64;
+    let least = quantities.iter().map(|values| EXACT * spread(&values[range.clone()]).powi(2));
+    let least = least.fold(f64::MIN_POSITIVE, f64::max);
+    let noise = |exponent: f64| {
+        let ratio = 10_f64.powf(exponent) / step.powi(5);
+        let sums = quantities.iter().map(|values| innovations(t, &values[range.clone()], ratio));
+        let (squares, logarithms, count) =
+            sums.fold((0.0, 0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1, a.2 + b.2));
+        let reading = (squares / count).max(least);
+        (Noise { reading, ratio }, count * reading.ln() + logarithms)
+    };
+    let (mut centre, mut width) = (best(RATIOS.map(f64::from), &noise), 0.5);
+    for _ in 0..4 {
+        centre = best([centre - width, centre, centre + width].into_iter(), &noise);
+        width *= 0.5;
+    }
+    Some(noise(centre).0)
+}
+
+fn best(exponents: impl Iterator<Item = f64>, noise: &impl Fn(f64) -> (Noise, f64)) -> f64 {
+    let judged = exponents.map(|exponent| (exponent, noise(exponent).1));
+    judged.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |(exponent, _)| exponent)
+}
+
+fn spread(values: &[f64]) -> f64 {
+    let (least, most) = values.iter().fold((f64::MAX, f64::MIN), |(a, b), &v| (a.min(v), b.max(v)));
+    most - least
+}
+
+/// Smooths a stretch without a gap, of three samples at least.
+pub(crate) fn smooth(t: &[f64], values: &[f64], noise: Noise) -> Vec<Smoothed> {
+    let mut states = Vec::with_capacity(t.len());
+    states.push(State::first(t, values, noise.ratio));
+    for k in 1..t.len() {
+        let before: State = states[k - 1];
+        states.push(before.predicted(t[k] - t[k - 1], noise.ratio).updated(values[k]).0);
+    }
+    for k in (0..t.len() - 1).rev() {
+        let (after, filtered) = (states[k + 1], states[k]);
+        let step = t[k + 1] - t[k];
+        let predicted = filtered.predicted(step, noise.ratio);
+        let Some(inverse) = predicted.covariance.try_inverse() else { continue };
+        let gain = filtered.covariance * transition(step).transpose() * inverse;
+        let change = gain * (after.covariance - predicted.covariance) * gain.transpose();
+        let covariance = filtered.covariance + 0.5 * (change + change.transpose());
+        states[k] =
+            State { mean: filtered.mean + gain * (after.mean - predicted.mean), covariance };
+    }
+    states.iter().map(|state| Smoothed::of(state, noise.reading)).collect()
+}
+
+impl Smoothed {
+    fn of(state: &State, reading: f64) -> Self {
+        let variance = |k: usize| reading * state.covariance[(k, k)].max(0.0);
+        Self {
+            value: state.mean[0],
+            rate: state.mean[1],
+            value_variance: variance(0),
+            rate_variance: variance(1),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::single_range_in_vec_init)]
+    use super::*;
+
+    /// Nearly normal numbers of variance 1: the sum of twelve even ones.
+    fn noise(count: usize) -> Vec<f64> {
+        let mut seed = 7_u64;
+        let mut even = move || {
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..count).map(|_| (0..12).map(|_| even()).sum::<f64>() - 6.0).collect()
+    }
+
+    #[test]
+    fn rates_of_a_noisy_sine_come_back_within_their_standard_deviations() {
+        let t: Vec<f64> = (0..3000).map(|k| 0.1 * f64::from(k)).collect();
+        let errors = noise(t.len());
+        let values: Vec<f64> =
+            t.iter().zip(&errors).map(|(t, e)| 10.0 * (0.1 * t).sin() + 0.05 * e).collect();
+        let found = choose(&t, &[&values], &[0..t.len()]).unwrap();
+        assert!((found.reading.sqrt() - 0.05).abs() < 0.005, "{found:?}");
+        let smoothed = smooth(&t, &values, found);
+        let within = t.iter().zip(&smoothed).filter(|(t, smoothed)| {
+            (smoothed.rate - (0.1 * **t).cos()).abs() < 2.0 * smoothed.rate_variance.sqrt()
+        });
+        let share = within.count() as f64 / t.len() as f64;
+        assert!(share > 0.85, "{share}");
+        let middle = smoothed[1500];
+        assert!((middle.rate - 15.0_f64.cos()).abs() < 0.03, "{middle:?}");
+        let first = smoothed[0].rate_variance;
+        assert!(first > 4.0 * middle.rate_variance, "{first} {middle:?}");
+    }
+
+    #[test]
+    fn exact_readings_give_exact_rates_at_uneven_steps() {
+        let t: Vec<f64> = (0..200).map(|k| 0.5 * f64::from(k) + 0.1 * f64::from(k % 3)).collect();
+        let values: Vec<f64> = t.iter().map(|t| 3.0 + 2.0 * t - 0.01 * t * t).collect();
+        let found = choose(&t, &[&values], &[0..t.len()]).unwrap();
+        for (t, smoothed) in t.iter().zip(smooth(&t, &values, found)) {
+            assert!((smoothed.rate - 2.0 + 0.02 * t).abs() < 1e-4, "{smoothed:?}");
+        }
+    }
+
+    #[test]
+    fn constant_and_short_records_end() {
+        let t: Vec<f64> = (0..50).map(f64::from).collect();
+        let found = choose(&t, &[&[1.0; 50]], &[0..50]).unwrap();
+        assert!(smooth(&t, &[1.0; 50], found).iter().all(|smoothed| smoothed.rate.abs() < 1e-9));
+        assert_eq!(choose(&t, &[&[1.0; 50]], &[0..5, 5..9]), None);
+        assert_eq!(smooth(&t[..3], &[1.0, 2.0, 3.0], found).len(), 3);
+    }
+}

@@ -1,0 +1,225 @@
+//! Dates and times of day as people write them.
+
+use crate::calendar::{SECOND, day};
+use crate::open_dates::OpenDate;
+
+/// Which of two numbers before the year is the day, where the writing does not tell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Order {
+    DayFirst,
+    MonthFirst,
+    /// To be learned from the whole column.
+    Open,
+}
+
+/// Where the date of a cell stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Date {
+    /// Days since 1970.
+    Known(i64),
+    /// Two numbers of which one is the month, and the year.
+    Either(OpenDate),
+    /// Only the time of day is written.
+    Absent,
+}
+
+/// What a cell of a time column says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Stamp {
+    pub date: Date,
+    /// Nanoseconds since midnight, as written.
+    pub of_day: i64,
+    /// Nanoseconds that the zone is ahead of UTC, if one is written.
+    pub zone: Option<i64>,
+}
+
+const MONTHS: [&str; 12] =
+    ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
+
+/// Reads a date with time of day, or a time of day.
+pub(crate) fn stamp(text: &str, order: Order) -> Option<Stamp> {
+    let text = text.trim();
+    // Nothing that is a time is longer, and slices below are of ASCII only.
+    if text.len() > 48 || !text.is_ascii() {
+        return None;
+    }
+    let (date, time) = split(text);
+    let (time, zone) = zone(time)?;
+    let (time, half) = half(time.trim());
+    let of_day = of_day(time, half)?;
+    let date = if date.is_empty() { Date::Absent } else { self::date(date, order)? };
+    Some(Stamp { date, of_day, zone })
+}
+
+/// Date and time of day; they are apart by `T`, by blanks or by a comma.
+fn split(text: &str) -> (&str, &str) {
+    let colon = text.find(':').unwrap_or(text.len());
+    match text[..colon].rfind([' ', 'T', 't', ',', '_']) {
+        Some(at) => (text[..at].trim_matches([' ', ',']), &text[at + 1..]),
+        None => ("", text),
+    }
+}
+
+/// The time without its zone, and the zone: `Z`, `UTC`, `GMT`, `+02:00`, `-0330` or `+02`.
+fn zone(time: &str) -> Option<(&str, Option<i64>)> {
+    for name in ["Z", "z", "UTC", "GMT"] {
+        if let Some(rest) = time.strip_suffix(name) {
+            return Some((rest, Some(0)));
+        }
+    }
+    let Some(at) = time.find(['+', '-']) else { return Some((time, None)) };
+    let digits: String = time[at + 1..].chars().filter(|&c| c != ':').collect();
+    let (hours, minutes) = match digits.len() {
+        2 => (whole(&digits)?, 0),
+        4 => (whole(&digits[..2])?, whole(&digits[2..])?),
+        _ => return None,
+    };
+    let sign = if time.as_bytes()[at] == b'-' { -1 } else { 1 };
+    let fits = hours <= 15 && minutes < 60;
+    fits.then(|| (&time[..at], Some(sign * (hours * 60 + minutes) * 60 * SECOND)))
+}
+
+/// The time without `AM` or `PM`, and whether it is after noon if that is said.
+fn half(time: &str) -> (&str, Option<bool>) {
+    let cut = |name: &str| {
+        let at = time.len().checked_sub(name.len())?;
+        time[at..].eq_ignore_ascii_case(name).then(|| time[..at].trim_end())
+    };
+    match (cut("am"), cut("pm")) {
+        (Some(rest), _) => (rest, Some(false)),
+        (_, Some(rest)) => (rest, Some(true)),
+        _ => (time, None),
+    }
+}
+
+/// Nanoseconds since midnight of `hh:mm`, `hh:mm:ss`, `hh:mm:ss.sss` or `hh:mm:ss,sss`.
+fn of_day(time: &str, half: Option<bool>) -> Option<i64> {
+    let mut parts = time.split(':');
+    let (hour, minute) = (whole(parts.next()?)?, whole(parts.next()?)?);
+    let seconds = parts.next().map_or(Some(0), nanoseconds)?;
+    let hour = match half {
+        None => hour,
+        Some(_) if !(1..=12).contains(&hour) => return None,
+        Some(after) => hour % 12 + if after { 12 } else { 0 },
+    };
+    // A leap second is the sixtieth.
+    let fits = parts.next().is_none() && hour < 24 && minute < 60 && seconds < 61 * SECOND;
+    fits.then_some((hour * 60 + minute) * 60 * SECOND + seconds)
+}
+
+fn nanoseconds(text: &str) -> Option<i64> {
+    let (seconds, fraction) = text.split_once(['.', ',']).unwrap_or((text, ""));
+    if !fraction.bytes().all(|byte| byte.is_ascii_digit()) {
+        return None;
+    }
+    let digits = format!("{:0<9.9}", fraction);
+    Some(whole(seconds)? * SECOND + digits.parse::<i64>().ok()?)
+}
+
+/// Digits and nothing else, of which there are at most four.
+fn whole(text: &str) -> Option<i64> {
+    let digits = (1..=4).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit());
+    if digits { text.parse().ok() } else { None }
+}
+
+fn date(text: &str, order: Order) -> Option<Date> {
+    let mark = text.chars().find(|c| matches!(c, '-' | '/' | '.' | ' '))?;
+    let parts: Vec<&str> = text.split(mark).collect();
+    let &[one, two, three] = parts.as_slice() else { return None };
+    if one.len() == 4 {
+        return Some(Date::Known(day(whole(one)?, month(two)?, whole(three)?)?));
+    }
+    if three.len() != 4 {
+        return None;
+    }
+    let (year, first) = (whole(three)?, whole(one)?);
+    let (Some(second), true) = (whole(two), matches!(mark, '/' | '-')) else {
+        // Points and names of months follow the day wherever they are in use.
+        return Some(Date::Known(day(year, month(two)?, first)?));
+    };
+    match order {
+        Order::DayFirst => Some(Date::Known(day(year, second, first)?)),
+        Order::MonthFirst => Some(Date::Known(day(year, first, second)?)),
+        Order::Open => {
+            let fits = day(year, second, first).or_else(|| day(year, first, second)).is_some();
+            fits.then_some(Date::Either(OpenDate { first, second, year }))
+        }
+    }
+}
+
+fn month(text: &str) -> Option<i64> {
+    let named = MONTHS.iter().zip(1..).find(|(name, _)| text.eq_ignore_ascii_case(name));
+    named.map_or_else(|| whole(text), |(_, number)| Some(number))
+}
+
+impl Stamp {
+    /// Seconds of the day counted from a day before, or after, by so many.
+    pub(crate) fn seconds(self, days: i64) -> f64 {
+        let of_day = self.of_day - self.zone.unwrap_or(0);
+        days as f64 * 86_400.0 + of_day as f64 / SECOND as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::calendar::iso;
+
+    fn read(text: &str) -> String {
+        let stamp = stamp(text, Order::Open).unwrap();
+        match stamp.date {
+            Date::Known(day) => iso((stamp.seconds(day) * 1e3).round() as i64 * 1_000_000),
+            Date::Absent => {
+                iso((stamp.seconds(0) * 1e3) as i64 * 1_000_000).replace("1970-01-01", "")
+            }
+            Date::Either(date) => format!("{}|{}|{}", date.first, date.second, date.year),
+        }
+    }
+
+    #[test]
+    fn common_forms_are_read() {
+        for (text, wanted) in [
+            ("2024-05-01T12:00:03.250Z", "2024-05-01T12:00:03.25"),
+            ("2024-05-01 12:00:03,25", "2024-05-01T12:00:03.25"),
+            ("2024-05-01T12:00:03+02:00", "2024-05-01T10:00:03"),
+            ("2024-05-01T01:00:03+0230", "2024-04-30T22:30:03"),
+            ("01.05.2024 12:00:03", "2024-05-01T12:00:03"),
+            ("2024/05/01 12:00", "2024-05-01T12:00:00"),
+            ("01-May-2024 12:00:03", "2024-05-01T12:00:03"),
+            ("05/01/2024 12:00:03 PM", "5|1|2024"),
+            ("12:00:03.5", "T12:00:03.5"),
+            ("12:00:03 AM", "T00:00:03"),
+            ("23:59:60", "1970-01-02T00:00:00"),
+        ] {
+            assert_eq!(read(text), wanted, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_time_is_none() {
+        for text in [
+            "",
+            "12",
+            "12:",
+            ":",
+            "12:61",
+            "25:00",
+            "2024-02-30 12:00",
+            "2024-05-01",
+            "1:2:3:4",
+            "13/13/2024 12:00",
+            "01.05.24 12:00",
+            "13:00 PM",
+            "12:00:0x",
+            "T",
+            "+",
+            "12:00+99",
+            "1\u{e9}:00",
+            "99999:00",
+            "12:00:00.1.2",
+        ] {
+            assert_eq!(stamp(text, Order::Open), None, "{text}");
+        }
+    }
+}

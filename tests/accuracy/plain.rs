@@ -1,0 +1,71 @@
+//! The plain call on a ship whose law the zoo does not have: not worse than the source that it started from.
+
+use sistership_dynamics::Ship;
+use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
+use sistership_dynamics::recorded::{ReplaySettings, replay};
+use sistership_estimate::source::{best_source, similar};
+use sistership_estimate::transfer::{approach_of, transfer};
+use sistership_model::{Model, Trial, Vessel, Zoo};
+use sistership_tests::binary;
+use sistership_tests::truth::ferry::ferry;
+use sistership_tests::truth::files::{vessel, write_trials, write_vessel};
+use sistership_tests::truth::instruments::Instruments;
+use sistership_tests::truth::manoeuvre::{PROGRAMME, UNSEEN};
+use sistership_tests::truth::motion::Truth;
+use sistership_tests::truth::trials;
+
+/// Trials of the call, and of its judgement.
+const TRIALS: usize = 4;
+const JUDGED: usize = 3;
+/// The model may be worse than the source by so much.
+const SLACK: f64 = 1.05;
+
+/// The mean over u, v, r, psi, x, y of the standardised squared error; simulations start anew every ten lengths.
+fn error(zoo: &Zoo, model: &Model, unseen: &[Trial]) -> f64 {
+    let law = zoo.law(&model.law).expect("a law of the zoo");
+    let mut ship = Ship::new(model, law).unwrap_or_else(|error| panic!("{error}"));
+    let size = ferry().dimensions().clone();
+    ship.set_envelope_speed(size.speed_m_s);
+    let restart_s = Some(10.0 * size.length_time_s());
+    let settings = ReplaySettings { restart_s, ..ReplaySettings::default() };
+    let mut sum = SquaredError::default();
+    for trial in unseen {
+        let run = replay(&ship, trial, &settings).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(run.stopped, None, "{} by {}", trial.name, model.name);
+        sum.add(&SquaredError::of(trial, &run));
+    }
+    standardised_mse(&sum, &standard_deviations(&unseen.iter().collect::<Vec<_>>())) / 6.0
+}
+
+/// The source that the ranking has first, put on the ship's particulars.
+fn unrefined(zoo: &Zoo, seen: &[&Trial]) -> Model {
+    let target = Vessel::parse("ferry.yaml", &vessel(ferry().dimensions()));
+    let target = target.unwrap_or_else(|error| panic!("{error}"));
+    let source = best_source(zoo, &similar(zoo, &target, None, seen));
+    let source = source.unwrap_or_else(|reason| panic!("{reason}"));
+    let law = zoo.law(&source.law).expect("the law of a zoo model");
+    transfer(&source, law, &target, approach_of(seen))
+}
+
+#[test]
+fn the_plain_call_on_a_ferry_is_not_worse_than_its_source() {
+    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let ship = ferry();
+    let instruments = Instruments::of(&ship);
+    let seen = trials(&ship, &PROGRAMME[..TRIALS], &instruments, 1);
+    let unseen = trials(&ship, &UNSEEN[..JUDGED], &instruments.without_noise(), 1);
+    let folder = tempfile::tempdir().expect("a folder");
+    let seen: Vec<&Trial> = seen.iter().collect();
+    let vessel = write_vessel(folder.path(), ship.dimensions()).display().to_string();
+    let manifest = write_trials(folder.path(), &ship.dimensions().name, &seen);
+    let manifest = manifest.display().to_string();
+    let out = folder.path().join("model.yaml").display().to_string();
+    binary::json(&["refine", "--ship", &vessel, "--trials", &manifest, "--out", &out, "--json"], 0);
+    let text = std::fs::read_to_string(&out).expect("a model");
+    let model = Model::parse("model.yaml", &text, &|law| zoo.law(law).map(|law| (**law).clone()));
+    let model = model.unwrap_or_else(|error| panic!("{error}"));
+    let (before, after) =
+        (error(&zoo, &unrefined(&zoo, &seen), &unseen), error(&zoo, &model, &unseen));
+    println!("unrefined {before:.4}, plain {after:.4} by {} ({})", model.name, model.law);
+    assert!(after <= SLACK * before, "{after} against {before}");
+}

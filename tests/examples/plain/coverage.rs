@@ -1,0 +1,90 @@
+//! Whether the bands of a refined model hold the truth.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+use sistership_tests::truth::manoeuvre::figures;
+
+use crate::arguments::Arguments;
+use crate::call::{Call, MODEL};
+use crate::data::synthetic::synthetic;
+use crate::program::Program;
+use crate::statistics::median;
+use crate::yard;
+
+/// Trials that a call gets.
+const TRIALS: usize = 6;
+/// Models drawn for the bands.
+const DRAWS: usize = 200;
+/// What 95 % bands should hold.
+const AIM: std::ops::RangeInclusive<f64> = 0.90..=0.98;
+
+/// A true figure and its band.
+struct Held {
+    /// Which: `tactical diameter`, `advance`, `first overshoot`, `second overshoot`.
+    kind: String,
+    truth: f64,
+    /// Absent where the model gives none.
+    band: Option<[f64; 2]>,
+}
+
+impl Held {
+    fn inside(&self) -> bool {
+        self.band.is_some_and(|[low, high]| (low..=high).contains(&self.truth))
+    }
+}
+
+/// Prints the share of true figures inside their bands.
+pub fn run(program: &Program, arguments: &Arguments) {
+    let ships = yard::each(arguments, |seed, ship| {
+        let data = synthetic(ship, TRIALS, seed);
+        let (made, folder) = Call::default().refine(program, &data);
+        let answer = made.judged.and_then(|_| bands(program, folder.path()));
+        answer.map(|bands| held(&figures(ship), &bands))
+    });
+    let without = ships.iter().filter(|ship| ship.is_err()).count();
+    let all: Vec<&Held> = ships.iter().flatten().flatten().collect();
+    println!("## Coverage: 95 % bands of {} ships, {TRIALS} trials each\n", ships.len());
+    println!("{without} ships have no model or no bands and are left out.\n");
+    if let Some(reason) = ships.iter().find_map(|ship| ship.as_ref().err()) {
+        println!("The first of them: {reason}\n");
+    }
+    println!(
+        "| figure | number | inside | without a band | median width by truth | 90 to 98 % |\n| --- | --: | --: | --: | --: | --- |"
+    );
+    for kind in ["tactical diameter", "advance", "first overshoot", "second overshoot"] {
+        row(kind, &all.iter().copied().filter(|held| held.kind == kind).collect::<Vec<_>>());
+    }
+    row("all", &all);
+    println!();
+}
+
+fn row(name: &str, all: &[&Held]) {
+    let share = all.iter().filter(|held| held.inside()).count() as f64 / all.len() as f64;
+    let none = all.iter().filter(|held| held.band.is_none()).count();
+    let width = |held: &&&Held| held.band.map(|[low, high]| (high - low) / held.truth.abs());
+    let widths: Vec<f64> = all.iter().filter_map(|held| width(&held)).collect();
+    let good = if AIM.contains(&share) { "yes" } else { "no" };
+    let middle = median(&widths);
+    println!("| {name} | {} | {:.1} % | {none} | {middle:.2} | {good} |", all.len(), 100.0 * share);
+}
+
+/// The bands of the model in a folder.
+fn bands(program: &Program, folder: &std::path::Path) -> Result<Value, String> {
+    let model = folder.join(MODEL).display().to_string();
+    let draws = DRAWS.to_string();
+    let words = ["manoeuvre", "--model", &model, "--all", "--bands", &draws, "--json"];
+    let answer = program.run(&words.map(str::to_owned), folder).answer?;
+    Ok(answer["bands"]["figures"].clone())
+}
+
+fn held(truth: &BTreeMap<String, f64>, bands: &Value) -> Vec<Held> {
+    let one = |(name, truth): (&String, &f64)| {
+        let named = |band: &&Value| band["figure"] == name.as_str();
+        let band = bands.as_array().and_then(|all| all.iter().find(named));
+        let limits = band.and_then(|band| Some([band["low"].as_f64()?, band["high"].as_f64()?]));
+        let kind = name.split(": ").last().unwrap_or_default().to_owned();
+        Held { kind, truth: *truth, band: limits }
+    };
+    truth.iter().map(one).collect()
+}

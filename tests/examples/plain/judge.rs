@@ -1,0 +1,59 @@
+//! How a model does on trials that no call saw.
+
+use sistership_dynamics::error::{SquaredError, standardised_mse};
+use sistership_dynamics::recorded::{ReplaySettings, replay};
+use sistership_dynamics::{Ship, StateVector};
+use sistership_model::Model;
+use sistership_model::trial::{Channel, Trial};
+
+use crate::data::DataSet;
+
+/// Channels whose errors are standardised and averaged: u, v, r, heading, position.
+const CHANNELS: f64 = 6.0;
+
+/// Errors over all unseen trials.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Judged {
+    /// Standardised mean squared error, mean over u, v, r, psi, x, y.
+    pub error: f64,
+    /// Root mean square of the heading, deg.
+    pub heading_deg: f64,
+}
+
+/// Errors of a model.
+///
+/// # Errors
+/// It cannot sail: the reason.
+pub fn judge(model: &Model, data: &DataSet) -> Result<Judged, String> {
+    let sum = errors(model, data)?;
+    let error = standardised_mse(&sum, &data.deviations) / CHANNELS;
+    let heading = sum.channel_rmse(Channel::Psi).unwrap_or(f64::NAN);
+    Ok(Judged { error, heading_deg: heading.to_degrees() })
+}
+
+/// Sums of squares over the unseen trials.
+///
+/// # Errors
+/// As [`judge`].
+pub fn errors(model: &Model, data: &DataSet) -> Result<SquaredError, String> {
+    let law = data.zoo.law(&model.law).ok_or_else(|| format!("no law `{}`", model.law))?;
+    let mut ship = Ship::new(model, law).map_err(|error| error.to_string())?;
+    ship.set_envelope_speed(data.unseen.iter().map(fastest).fold(0.0, f64::max));
+    let settings = ReplaySettings { restart_s: Some(data.restart_s), ..ReplaySettings::default() };
+    let mut sum = SquaredError::default();
+    for trial in &data.unseen {
+        let run = replay(&ship, trial, &settings).map_err(|error| error.to_string())?;
+        if let Some(stopped) = run.stopped {
+            return Err(format!("{}: {stopped}", trial.name));
+        }
+        if !run.track.states.iter().all(|state: &StateVector| state.iter().all(|x| x.is_finite())) {
+            return Err(format!("{}: not a number", trial.name));
+        }
+        sum.add(&SquaredError::of(trial, &run));
+    }
+    Ok(sum)
+}
+
+fn fastest(trial: &Trial) -> f64 {
+    trial.channel(Channel::U).into_iter().flatten().fold(0.0, |most: f64, u| most.max(u.abs()))
+}

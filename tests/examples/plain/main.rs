@@ -1,0 +1,40 @@
+//! What `sistership refine` makes when it is asked plainly, against the best that its flags can get, on trials that no call saw.
+//!
+//! `cargo run --release -p sistership-tests --example plain -- choice` (or `by-file`, `learning`, `candidates`, `coverage`, `all`);
+//! `--ships 50`, `--seed 1000` (below 1000 is for work, from 1000 on for judgement), `--data tanker` for one
+//! data set of `choice`, `--calls plain` for the plain call alone in `learning`,
+//! `--program FILE` for another program than this tree's, `--jobs 2` for calls at once where no time is measured,
+//! `--limit 300` seconds after which a call is given up. `docs/evidence/plain.md` has the results and what they mean.
+
+mod arguments;
+mod call;
+mod candidates;
+mod choice;
+mod coverage;
+mod data;
+mod judge;
+mod learning;
+mod program;
+mod sources;
+mod statistics;
+mod yard;
+
+use arguments::{Arguments, Part};
+use program::Program;
+
+fn main() {
+    let arguments = Arguments::given();
+    let program = Program::new(&arguments);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs).build();
+    let pool = pool.expect("threads");
+    println!("{}\n", arguments.said());
+    for part in arguments.parts() {
+        pool.install(|| match part {
+            Part::Choice => choice::run(&program, &arguments),
+            Part::ByFile => choice::by_file(&program),
+            Part::Learning => learning::run(&program, &arguments),
+            Part::Candidates => candidates::run(&program, &arguments),
+            Part::Coverage => coverage::run(&program, &arguments),
+        });
+    }
+}
