@@ -19,7 +19,7 @@ pub mod ship;
 pub mod state;
 pub mod tape;
 pub mod validity;
-mod wide;
+pub mod wide;
 
 pub use envelope::{Envelope, Stopped};
 pub use equations::PlantError;

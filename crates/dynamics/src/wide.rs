@@ -5,7 +5,7 @@
 //! the last bit.
 
 /// What is worth compiling for each width.
-pub(crate) trait Wide {
+pub trait Wide {
     /// Does it; to be `#[inline(always)]`, and so all that it calls in its loops.
     fn go(self);
 }
@@ -13,7 +13,7 @@ pub(crate) trait Wide {
 /// Does it with the widest instructions that the processor has.
 #[inline]
 #[allow(unsafe_code)]
-pub(crate) fn widest(work: impl Wide) {
+pub fn widest(work: impl Wide) {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx512f") {
         // SAFETY: the processor has just been found to have AVX-512.

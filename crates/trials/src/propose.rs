@@ -43,7 +43,8 @@ pub struct Guess {
 }
 
 /// Proposes a manifest for files in one folder. Files with the columns of the first are trials of
-/// their own; files with others are taken for further sensors of the first trial.
+/// their own; files with others are taken for further sensors of the trial that shares most parts of
+/// their name, as `rudder_2.csv` does with `motion_2.csv`, else of the first.
 ///
 /// # Errors
 /// Every file that cannot be read, and why.
@@ -150,7 +151,7 @@ impl Seen {
 }
 
 fn proposal(ship: &str, seen: Vec<Seen>) -> Proposal {
-    let (mut trials, mut sensors, mut guesses) = (Vec::new(), vec![Vec::new()], Vec::new());
+    let (mut trials, mut further, mut guesses) = (Vec::new(), Vec::new(), Vec::new());
     let (columns, mut declarations) = match seen.first() {
         Some(first) => (first.columns.clone(), declarations(&seen)),
         None => Default::default(),
@@ -160,12 +161,15 @@ fn proposal(ship: &str, seen: Vec<Seen>) -> Proposal {
             trials.push(ManifestTrial { file: one.file, manoeuvre: None, depth_m: None });
         } else {
             let columns = one.columns.into_iter().collect();
-            sensors[0].push(SensorFile { file: one.file, columns, clock_offset_s: None });
+            further.push(SensorFile { file: one.file, columns, clock_offset_s: None });
         }
         declarations.sheet = declarations.sheet.or(one.preview.sheet);
         guesses.extend(one.guesses);
     }
-    sensors.resize(trials.len().max(1), Vec::new());
+    let mut sensors = vec![Vec::new(); trials.len().max(1)];
+    for sensor in further {
+        sensors[trial_of(&sensor.file, &trials)].push(sensor);
+    }
     let manifest = Manifest {
         kind: TrialsKind::Trials,
         ship: ship.to_owned(),
@@ -175,6 +179,33 @@ fn proposal(ship: &str, seen: Vec<Seen>) -> Proposal {
         trials,
     };
     Proposal { manifest: ManifestFile { manifest, declarations, sensors }, guesses }
+}
+
+/// The place of the trial whose file shares most parts of its name with a sensor's.
+fn trial_of(sensor: &str, trials: &[ManifestTrial]) -> usize {
+    let parts = name_parts(sensor);
+    let shared = |trial: &ManifestTrial| {
+        name_parts(&trial.file).iter().filter(|part| parts.contains(part)).count()
+    };
+    let places = trials.iter().enumerate().map(|(place, trial)| (place, shared(trial)));
+    places.rev().max_by_key(|(_, count)| *count).map_or(0, |(place, _)| place)
+}
+
+/// Runs of letters and of digits of a file's name without its ending.
+fn name_parts(file: &str) -> Vec<String> {
+    let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
+    let mut parts: Vec<String> = Vec::new();
+    let mut last = None;
+    for letter in stem.chars() {
+        let kind = letter.is_alphanumeric().then(|| letter.is_numeric());
+        match (kind == last, kind) {
+            (true, Some(_)) => parts.last_mut().into_iter().for_each(|part| part.push(letter)),
+            (false, Some(_)) => parts.push(letter.to_string()),
+            (_, None) => {}
+        }
+        last = kind;
+    }
+    parts
 }
 
 /// Columns to pass over, and velocities to derive where positions and heading are there and they

@@ -57,6 +57,9 @@ fn further_files_are_trials_or_sensors() {
     let ManifestFile { manifest, sensors, .. } = &proposal.manifest;
     assert_eq!(manifest.trials.len(), 2);
     assert_eq!((sensors[0][0].file.as_str(), sensors[1].len()), ("rudder.csv", 0));
+    let second = write("two_rudder.csv", "t_s,rudder port %\n0,50\n1,60\n");
+    let proposal = propose("a", &[&one, &two, &second]).unwrap();
+    assert_eq!(proposal.manifest.sensors[1][0].file, "two_rudder.csv");
     assert!(proposal.guesses[5].why.contains("`maximum` of delta_p"), "{:?}", proposal.guesses);
     let picture = write("scan.png", "");
     std::fs::write(&picture, b"\x89PNG\r\n\x1a\n").unwrap();

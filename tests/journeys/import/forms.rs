@@ -3,11 +3,12 @@
 use sistership_model::Trial;
 use sistership_model::trial::Channel;
 
+use super::containers;
 use super::table::Table;
 use crate::sea_trials::csv;
 
 /// Files by their names.
-type Files = Vec<(String, Vec<u8>)>;
+pub type Files = Vec<(String, Vec<u8>)>;
 
 /// A way to write a trial.
 pub struct Form {
@@ -16,7 +17,7 @@ pub struct Form {
     pub write: fn(&Trial, usize) -> Files,
 }
 
-pub const FORMS: [Form; 21] = [
+pub const FORMS: [Form; 26] = [
     Form { name: "canonical", write: |trial, k| one(k, "csv", csv(trial)) },
     Form { name: "ISO 8601 in UTC", write: |trial, k| timed(trial, k, "time", &iso) },
     Form {
@@ -47,17 +48,22 @@ pub const FORMS: [Form; 21] = [
     },
     Form { name: "course and speed over ground", write: over_ground },
     Form { name: "CRLF and blanks in cells", write: padded },
+    Form { name: "Parquet", write: containers::parquet },
+    Form { name: "an Excel sheet", write: containers::workbook },
+    Form { name: "a MATLAB file", write: containers::matlab },
+    Form { name: "an NMEA 0183 log", write: containers::nmea },
+    Form { name: "a file for each sensor, at its own rate", write: containers::sensors },
 ];
 
-fn one(k: usize, ending: &str, bytes: Vec<u8>) -> Files {
+pub fn one(k: usize, ending: &str, bytes: Vec<u8>) -> Files {
     vec![(format!("trial_{k}.{ending}"), bytes)]
 }
 
-fn seconds(header: &str, trial: &Trial) -> Table {
+pub fn seconds(header: &str, trial: &Trial) -> Table {
     Table::new().text(header, trial, |_, t| format!("{t:.3}"))
 }
 
-fn plain(trial: &Trial) -> Table {
+pub fn plain(trial: &Trial) -> Table {
     seconds("time [s]", trial).motion(trial)
 }
 

@@ -1,6 +1,7 @@
 //! Files as people have them: imported without editing, and refined as well as canonical files.
 
 mod broken;
+mod containers;
 mod forms;
 mod table;
 

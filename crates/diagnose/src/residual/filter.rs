@@ -10,6 +10,7 @@ use super::gram::Gram;
 use super::linearised::Linearised;
 use super::noise::Noise;
 use super::thresholds::RESIDUAL;
+use sistership_dynamics::wide::{Wide, widest};
 
 /// The discrepancy of each acceleration, in the order of the filter's axes.
 pub type Discrepancies = Vec<Discrepancy>;
@@ -44,25 +45,47 @@ pub fn whitened(
     discrepancies: &Discrepancies,
 ) -> (Vec<f64>, f64) {
     let width = 1 + linear.sizes.columns;
-    let mut rows = Vec::with_capacity(linear.reading.len() * width);
-    let mut log_variance = 0.0;
-    let mut state = FilterState::start(linear, noise, discrepancies, width);
-    for k in 0..linear.samples.len() {
-        if k > 0 {
-            state.predict(linear, k - 1, discrepancies);
+    let mut white = Whitened { rows: Vec::new(), log_variance: 0.0 };
+    white.rows.reserve_exact(linear.reading.len() * width);
+    widest(Whitening { linear, noise, discrepancies, width, white: &mut white });
+    (white.rows, white.log_variance)
+}
+
+struct Whitened {
+    rows: Vec<f64>,
+    log_variance: f64,
+}
+
+/// A part of a trial to be whitened.
+struct Whitening<'a> {
+    linear: &'a Linearised,
+    noise: &'a Noise,
+    discrepancies: &'a Discrepancies,
+    width: usize,
+    white: &'a mut Whitened,
+}
+
+impl Wide for Whitening<'_> {
+    #[inline(always)]
+    fn go(self) {
+        let Self { linear, noise, discrepancies, width, white } = self;
+        let mut state = FilterState::start(linear, noise, discrepancies, width);
+        for k in 0..linear.samples.len() {
+            if k > 0 {
+                state.predict(linear, k - 1, discrepancies);
+            }
+            if !k.is_multiple_of(linear.every) {
+                continue;
+            }
+            state.update(linear, k, noise, |error, variance| {
+                let scale = variance.sqrt().recip();
+                white.rows.push(error[0] * scale);
+                // An error that a column makes is what its parameter takes away.
+                white.rows.extend(error[1..].iter().map(|e| -e * scale));
+                white.log_variance += variance.ln();
+            });
         }
-        if !k.is_multiple_of(linear.every) {
-            continue;
-        }
-        state.update(linear, k, noise, |error, variance| {
-            let scale = variance.sqrt().recip();
-            rows.push(error[0] * scale);
-            // An error that a column makes is what its parameter takes away.
-            rows.extend(error[1..].iter().map(|e| -e * scale));
-            log_variance += variance.ln();
-        });
     }
-    (rows, log_variance)
 }
 
 /// Deviation from the path with all its columns, and its covariance.
@@ -76,6 +99,11 @@ pub(super) struct FilterState {
     pub covariance: Vec<f64>,
     drift: Vec<f64>,
     pub transition: Vec<f64>,
+    /// Its transpose, along whose rows products with it are summed in wide instructions.
+    transposed: Vec<f64>,
+    /// `dt (I + A dt/2)` on the accelerations: states by axes.
+    half: Vec<f64>,
+    square: Vec<f64>,
     room: Vec<f64>,
     error: Vec<f64>,
     gain: Vec<f64>,
@@ -116,21 +144,25 @@ impl FilterState {
             covariance,
             drift,
             transition: vec![0.0; order * order],
+            transposed: vec![0.0; order * order],
+            half: vec![0.0; states * linear.sizes.axes],
+            square: Vec::new(),
             room: Vec::new(),
             error: Vec::new(),
             gain: Vec::new(),
         }
     }
 
+    #[inline(always)]
     pub fn predict(&mut self, linear: &Linearised, k: usize, discrepancies: &Discrepancies) {
         let dt = linear.t_s[k + 1] - linear.t_s[k];
-        let half = self.transit(linear, k, dt, discrepancies);
+        self.transit(linear, k, dt, discrepancies);
         let Self { order, width, .. } = *self;
         multiply(&self.transition, &self.deviations, order, order, width, &mut self.room);
-        self.force(linear, k, dt, &half);
+        self.force(linear, k, dt);
         std::mem::swap(&mut self.deviations, &mut self.room);
         multiply(&self.transition, &self.covariance, order, order, order, &mut self.room);
-        multiply_transposed(&self.room, &self.transition, order, &mut self.covariance);
+        multiply_symmetric(&self.room, &self.transposed, order, &mut self.covariance);
         for (state, drift) in self.drift.iter().enumerate() {
             self.covariance[state * (order + 1)] += drift * dt;
         }
@@ -142,19 +174,13 @@ impl FilterState {
         }
     }
 
-    /// Fills the transition matrix to second order in the step; gives `dt (I + A dt/2)` on the accelerations.
-    fn transit(
-        &mut self,
-        linear: &Linearised,
-        k: usize,
-        dt: f64,
-        discrepancies: &Discrepancies,
-    ) -> Vec<f64> {
+    /// Fills the transition matrix to second order in the step, and `half`.
+    #[inline(always)]
+    fn transit(&mut self, linear: &Linearised, k: usize, dt: f64, discrepancies: &Discrepancies) {
         let (n, axes, order) = (linear.sizes.states, linear.sizes.axes, self.order);
         let a = &linear.jacobian[k * n * n..(k + 1) * n * n];
-        let mut square = Vec::new();
-        multiply(a, a, n, n, n, &mut square);
-        let mut half = vec![0.0; n * axes];
+        let (square, half) = (&mut self.square, &mut self.half);
+        multiply(a, a, n, n, n, square);
         self.transition.fill(0.0);
         for row in 0..n {
             for column in 0..n {
@@ -171,11 +197,16 @@ impl FilterState {
         for (axis, discrepancy) in discrepancies.iter().enumerate() {
             self.transition[(n + axis) * (order + 1)] = (-dt / discrepancy.time_s).exp();
         }
-        half
+        for row in 0..order {
+            for column in 0..order {
+                self.transposed[column * order + row] = self.transition[row * order + column];
+            }
+        }
     }
 
     /// Adds to the predicted deviations (in `room`) what the model moves more than the path, and what columns move.
-    fn force(&mut self, linear: &Linearised, k: usize, dt: f64, half: &[f64]) {
+    #[inline(always)]
+    fn force(&mut self, linear: &Linearised, k: usize, dt: f64) {
         let (n, axes, columns) = (linear.sizes.states, linear.sizes.axes, linear.sizes.columns);
         let g = &linear.accelerations[k * axes * columns..(k + 1) * axes * columns];
         debug_assert!(dt > 0.0);
@@ -186,7 +217,7 @@ impl FilterState {
                 continue;
             }
             for axis in 0..axes {
-                let weight = half[row * axes + axis];
+                let weight = self.half[row * axes + axis];
                 if weight != 0.0 {
                     axpy(weight, &g[axis * columns..(axis + 1) * columns], &mut target[1..]);
                 }
@@ -196,6 +227,7 @@ impl FilterState {
 
     /// Takes the readings of a sample; `take` is given each prediction error (the residual's, then minus each column's) and
     /// its variance.
+    #[inline(always)]
     pub fn update(
         &mut self,
         linear: &Linearised,
@@ -245,6 +277,7 @@ impl FilterState {
     }
 
     /// What columns make the instruments say more counts against the prediction error.
+    #[inline(always)]
     fn by_columns(&mut self, linear: &Linearised, k: usize, channel: usize) {
         if self.width == 1 || linear.measured.is_empty() {
             return;
@@ -257,6 +290,7 @@ impl FilterState {
     }
 }
 
+#[inline(always)]
 fn axpy(weight: f64, from: &[f64], to: &mut [f64]) {
     for (to, from) in to.iter_mut().zip(from) {
         *to += weight * from;
@@ -264,6 +298,7 @@ fn axpy(weight: f64, from: &[f64], to: &mut [f64]) {
 }
 
 /// `left (rows x inner) right (inner x columns)`, row by row.
+#[inline(always)]
 fn multiply(
     left: &[f64],
     right: &[f64],
@@ -285,17 +320,20 @@ fn multiply(
     }
 }
 
-/// `left right'` of square matrices, made exactly symmetric.
-fn multiply_transposed(left: &[f64], right: &[f64], order: usize, out: &mut [f64]) {
+/// `left right'` of square matrices, made exactly symmetric; `transposed` is `right'`.
+#[inline(always)]
+fn multiply_symmetric(left: &[f64], transposed: &[f64], order: usize, out: &mut [f64]) {
     for row in 0..order {
-        for column in 0..=row {
-            let (a, b) = (
-                &left[row * order..(row + 1) * order],
-                &right[column * order..(column + 1) * order],
-            );
-            let sum: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
-            out[row * order + column] = sum;
-            out[column * order + row] = sum;
+        let target = &mut out[row * order..][..row + 1];
+        // What sums of floating-point numbers begin with: it leaves the sign of the first.
+        target.fill(-0.0);
+        for i in 0..order {
+            axpy(left[row * order + i], &transposed[i * order..][..row + 1], target);
+        }
+    }
+    for row in 0..order {
+        for column in 0..row {
+            out[column * order + row] = out[row * order + column];
         }
     }
 }
