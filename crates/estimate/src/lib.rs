@@ -2,6 +2,7 @@
 
 pub mod bands;
 mod estimated;
+pub mod next_trial;
 pub mod refine;
 pub mod similarity;
 pub mod source;
