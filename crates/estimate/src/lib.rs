@@ -6,6 +6,7 @@ pub mod next_trial;
 pub mod refine;
 pub mod similarity;
 pub mod source;
+mod steering;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;
 pub mod transfer;
