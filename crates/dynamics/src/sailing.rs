@@ -7,13 +7,23 @@ use crate::plant::{Inputs, Work};
 use crate::ship::{Order, Run, Ship};
 use crate::state::{StateVector, Trajectory};
 
-/// A run to be sailed; `bridge` gives the order at each step, which is held over it, or `None` to end the run.
+/// An order, and how long it is held: at most to the end of the step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HeldOrder {
+    pub order: Order,
+    pub lasts_s: f64,
+}
+
+/// A run to be sailed; `bridge` gives the order at each step, which is held over it, or `None` to end
+/// the run. A step in which the order ends early is sailed in two.
 pub(crate) struct Sailing<'a, B> {
     run: Run,
     coefficients: &'a [f64],
     bridge: B,
-    order: Order,
+    held: HeldOrder,
     step: usize,
+    /// How much of the step is sailed, s.
+    within_s: f64,
     sailed: Sailed,
 }
 
@@ -24,11 +34,12 @@ pub(crate) struct Sailed {
     pub stopped: Option<Stopped>,
 }
 
-impl<'a, B: FnMut(f64, &StateVector) -> Option<Order>> Sailing<'a, B> {
+impl<'a, B: FnMut(f64, &StateVector) -> Option<HeldOrder>> Sailing<'a, B> {
     /// `coefficients` are the ship's own among sisters, and none for a ship with hers.
     pub fn new(run: Run, coefficients: &'a [f64], bridge: B) -> Self {
-        let order = Order { delta_rad: 0.0, n_rps: 0.0 };
-        Self { run, coefficients, bridge, order, step: 0, sailed: Sailed::default() }
+        let held = HeldOrder { order: Order { delta_rad: 0.0, n_rps: 0.0 }, lasts_s: run.step_s };
+        let sailed = Sailed::default();
+        Self { run, coefficients, bridge, held, step: 0, within_s: 0.0, sailed }
     }
 }
 
@@ -41,9 +52,12 @@ impl Ship {
         &self,
         run: Run,
         track: &mut Trajectory,
-        bridge: impl FnMut(f64, &StateVector) -> Option<Order>,
+        mut bridge: impl FnMut(f64, &StateVector) -> Option<Order>,
     ) -> Result<(), Stopped> {
-        let sailed = sail_all(self, run.method, vec![Sailing::new(run, &[], bridge)]).remove(0);
+        let held = |t_s: f64, state: &StateVector| {
+            Some(HeldOrder { order: bridge(t_s, state)?, lasts_s: run.step_s })
+        };
+        let sailed = sail_all(self, run.method, vec![Sailing::new(run, &[], held)]).remove(0);
         track.append(sailed.track);
         sailed.stopped.map_or(Ok(()), Err)
     }
@@ -56,13 +70,13 @@ pub(crate) fn sail_all<'a, B>(
     mut sailings: Vec<Sailing<'a, B>>,
 ) -> Vec<Sailed>
 where
-    B: FnMut(f64, &StateVector) -> Option<Order>,
+    B: FnMut(f64, &StateVector) -> Option<HeldOrder>,
 {
     lockstep::sail(ship, method, &mut sailings);
     sailings.into_iter().map(|sailing| sailing.sailed).collect()
 }
 
-impl<B: FnMut(f64, &StateVector) -> Option<Order>> Passage for Sailing<'_, B> {
+impl<B: FnMut(f64, &StateVector) -> Option<HeldOrder>> Passage for Sailing<'_, B> {
     fn coefficients(&self) -> &[f64] {
         self.coefficients
     }
@@ -72,23 +86,31 @@ impl<B: FnMut(f64, &StateVector) -> Option<Order>> Passage for Sailing<'_, B> {
     }
 
     fn arrive(&mut self, ship: &Ship, state: &mut StateVector, _: &mut Work) -> Option<f64> {
-        let t_s = self.step as f64 * self.run.step_s;
+        let t_s = self.step as f64 * self.run.step_s + self.within_s;
         if let Err(stopped) = ship.envelope().check(t_s, state) {
             self.sailed.stopped = Some(stopped);
             return None;
         }
-        self.order = (self.bridge)(t_s, state)?;
-        self.sailed.track.push(t_s, *state, self.order.n_rps);
+        self.held = (self.bridge)(t_s, state)?;
+        if self.within_s == 0.0 {
+            self.sailed.track.push(t_s, *state, self.held.order.n_rps);
+        }
+        let left_s = self.run.step_s - self.within_s;
+        if self.held.lasts_s < left_s {
+            self.within_s += self.held.lasts_s;
+            return Some(self.held.lasts_s);
+        }
+        (self.held.lasts_s, self.within_s) = (left_s, 0.0);
         let last = (self.run.duration_s / self.run.step_s).round() as usize;
         self.step += 1;
-        (self.step <= last).then_some(self.run.step_s)
+        (self.step <= last).then_some(left_s)
     }
 
     fn inputs(&self, ship: &Ship, _: Stage, rudder_rad: f64) -> Inputs {
-        ship.inputs(rudder_rad, self.order.n_rps)
+        ship.inputs(rudder_rad, self.held.order.n_rps)
     }
 
     fn rudder_rate(&self, ship: &Ship, rudder_rad: f64) -> f64 {
-        ship.rudder_rate(self.order.delta_rad, rudder_rad, self.run.step_s)
+        ship.rudder_rate(self.held.order.delta_rad, rudder_rad, self.held.lasts_s)
     }
 }

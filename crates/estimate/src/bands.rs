@@ -12,6 +12,8 @@ use sistership_dynamics::manoeuvre::{Figure, ManoeuvreSettings, standard_of_sist
 use sistership_model::Model;
 use sistership_model::law::Law;
 
+use crate::next_trial::{Drawn, NextTrial, next_trial};
+
 /// Draws that sail in lockstep.
 const TOGETHER: usize = 10;
 /// Most models that are drawn.
@@ -58,6 +60,9 @@ pub struct Bands {
     pub failed: usize,
     /// By figure.
     pub figures: Vec<Band>,
+    /// The trial that would narrow them most.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next_trial: Option<NextTrial>,
 }
 
 impl Bands {
@@ -131,25 +136,54 @@ pub fn bands(
     ship.forget_validity();
     depth_m.into_iter().for_each(|depth_m| ship.set_depth(depth_m));
     let coarse = 0.02 * ship.lpp_m() / speed_m_s;
-    let settings = ManoeuvreSettings { step_s: settings.step_s.or(Some(coarse)), ..*settings };
+    let fast = ManoeuvreSettings {
+        step_s: settings.step_s.or(Some(coarse)),
+        reversals_within_steps: true,
+        ..*settings
+    };
     let sisters: Vec<Vec<f64>> =
         draws.iter().map(|draw| ship.sister(draw)).collect::<Option<_>>()?;
     let together = |sisters: &[Vec<f64>]| {
         let sisters: Vec<&[f64]> = sisters.iter().map(Vec::as_slice).collect();
-        standard_of_sisters(&ship, &sisters, &settings)
+        standard_of_sisters(&ship, &sisters, &fast)
     };
     let sailed: Vec<_> = sisters.par_chunks(TOGETHER).flat_map_iter(together).collect();
     let failed = sailed.iter().filter(|sailed| !sailed.failures.is_empty()).count();
+    let by_step = errors_by_step(&ship, &ship.sister(model)?, settings, &fast);
     let mut figures: BTreeMap<String, Vec<Figure>> = BTreeMap::new();
     let mut order = Vec::new();
-    for figure in sailed.into_iter().flat_map(|sailed| sailed.figures()) {
-        if !figures.contains_key(&figure.name) {
-            order.push(figure.name.clone());
+    let mut drawn = vec![Drawn::new(); sailed.len()];
+    for (draw, sailed) in sailed.into_iter().enumerate() {
+        for mut figure in sailed.figures() {
+            let by_step = by_step.get(&figure.name).copied().unwrap_or(0.0);
+            figure.value.iter_mut().for_each(|value| *value -= by_step);
+            drawn[draw].extend(figure.value.map(|value| (figure.name.clone(), value)));
+            if !figures.contains_key(&figure.name) {
+                order.push(figure.name.clone());
+            }
+            figures.entry(figure.name.clone()).or_default().push(figure);
         }
-        figures.entry(figure.name.clone()).or_default().push(figure);
     }
     let figures = order.iter().filter_map(|name| band(&figures[name], draws.len())).collect();
-    Some(Bands { sampling, failed, figures })
+    Some(Bands { sampling, failed, figures, next_trial: next_trial(&drawn) })
+}
+
+/// What the draws' coarse step adds to each figure, told by the estimate itself.
+fn errors_by_step(
+    ship: &Ship,
+    estimate: &[f64],
+    settings: &ManoeuvreSettings,
+    fast: &ManoeuvreSettings,
+) -> BTreeMap<String, f64> {
+    let figures = |settings: &ManoeuvreSettings| {
+        let sailed = standard_of_sisters(ship, &[estimate], settings).into_iter();
+        sailed.flat_map(|sailed| sailed.figures()).collect::<Vec<_>>()
+    };
+    let fine: BTreeMap<String, f64> =
+        figures(settings).into_iter().filter_map(|fine| Some((fine.name, fine.value?))).collect();
+    let of = |fast: Figure| Some((fine.get(&fast.name)?, fast.value?, fast.name));
+    let fast = figures(fast).into_iter().filter_map(of);
+    fast.map(|(fine, fast, name)| (name, fast - fine)).collect()
 }
 
 /// The band of a figure over draws.
@@ -241,6 +275,23 @@ mod tests {
         assert_eq!(width(0.05, 1), width(0.05, 1));
         assert_ne!(width(0.05, 1), width(0.05, 2));
         assert!(width(0.1, 1) > 1.7 * width(0.05, 1));
+    }
+
+    #[test]
+    fn narrow_bands_hold_the_estimate_s_figures() {
+        let (model, law) = mariner(1e-3);
+        let settings = ManoeuvreSettings::default();
+        let sampling = Sampling { samples: 40, seed: 2 };
+        let bands = bands(&model, &law, &settings, None, sampling).unwrap();
+        let ship = Ship::sisters(&model, &law).unwrap();
+        let own = ship.sister(&model).unwrap();
+        for figure in standard_of_sisters(&ship, &[&own], &settings)[0].figures() {
+            let (band, value) = (bands.of(&figure.name).unwrap(), figure.value.unwrap());
+            let slack = 1e-3 * (band.high - band.low);
+            let inside = (band.low - slack..=band.high + slack).contains(&value);
+            assert!(inside, "{}: {value} in {band:?}", figure.name);
+        }
+        assert!(bands.next_trial.is_some());
     }
 
     #[test]

@@ -2,9 +2,11 @@
 
 pub mod bands;
 mod estimated;
+pub mod next_trial;
 pub mod refine;
 pub mod similarity;
 pub mod source;
+mod steering;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;
 pub mod transfer;

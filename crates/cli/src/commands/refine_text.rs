@@ -178,6 +178,8 @@ fn end(refinement: &Refinement, files: &WrittenFiles<'_>) -> String {
             format!("remark: the refined model fails a standard manoeuvre: {failure}")
         }),
     );
+    let bands = refinement.manoeuvres.bands.as_ref();
+    lines.extend(bands.and_then(|bands| Some(bands.next_trial.as_ref()?.words())));
     let outside = refinement.manoeuvres.refined.outside.iter();
     lines.extend(outside.map(|(name, how)| format!("OUTSIDE: {name}: {}", how.words())));
     lines.extend(refinement.remarks.iter().map(|remark| format!("remark: {remark}")));

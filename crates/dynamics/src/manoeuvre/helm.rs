@@ -2,7 +2,7 @@
 
 use super::ManoeuvreSettings;
 use crate::envelope::Stopped;
-use crate::sailing::{Sailing, sail_all};
+use crate::sailing::{HeldOrder, Sailing, sail_all};
 use crate::ship::{Order, Ship};
 use crate::state::{StateVector, Trajectory, at, straight};
 
@@ -69,6 +69,11 @@ pub fn sail_together(
     helms.into_iter().zip(sailed).map(one).collect()
 }
 
+/// The heading is reached within this, deg: a hundredth of what overshoots are read to.
+const HEADING_DEG: f64 = 1e-3;
+/// Least part of a step that is sailed alone: it ends the approach to a heading.
+const LEAST_OF_STEP: f64 = 1e-3;
+
 /// Carries out a manoeuvre.
 struct Helm {
     manoeuvre: Manoeuvre,
@@ -76,6 +81,9 @@ struct Helm {
     run_in_s: f64,
     /// Whether it goes on when all is seen.
     goes_on: bool,
+    /// Whether the rudder is reversed at the heading, not at the end of the step.
+    at_heading: bool,
+    step_s: f64,
     reversals_s: Vec<f64>,
 }
 
@@ -87,29 +95,56 @@ impl Helm {
             n_rps,
             run_in_s,
             goes_on: settings.duration_s.is_some(),
+            at_heading: settings.reversals_within_steps,
+            step_s: settings.step(ship),
             reversals_s: Vec::new(),
         }
     }
 
     /// The order at a time; none when all is seen.
-    fn order(&mut self, t_s: f64, state: &StateVector) -> Option<Order> {
+    fn order(&mut self, t_s: f64, state: &StateVector) -> Option<HeldOrder> {
         let since_s = t_s - self.run_in_s;
         let rudder_deg = if since_s < -1e-9 { 0.0 } else { self.rudder_deg(since_s, state) };
         let order = Order { delta_rad: rudder_deg.to_radians(), n_rps: self.n_rps };
-        (self.goes_on || !self.is_done(state)).then_some(order)
+        let held = HeldOrder { order, lasts_s: self.lasts_s(state) };
+        (self.goes_on || !self.is_done(state)).then_some(held)
     }
 
     /// A zigzag reverses the rudder at the first step at which the heading has reached the switching angle.
     fn rudder_deg(&mut self, since_s: f64, state: &StateVector) -> f64 {
-        let (rudder, switch) = match self.manoeuvre {
+        let rudder = match self.manoeuvre {
             Manoeuvre::Turn { rudder } => return rudder,
-            Manoeuvre::Zigzag { rudder, switch } => (rudder, switch),
+            Manoeuvre::Zigzag { rudder, .. } => rudder,
         };
-        let sign = |reversals: usize| if reversals.is_multiple_of(2) { 1.0 } else { -1.0 };
-        if sign(self.reversals_s.len()) * rudder.signum() * state[at::PSI].to_degrees() >= switch {
+        let tolerance = if self.at_heading { HEADING_DEG } else { 0.0 };
+        if self.to_go_deg(state).is_some_and(|(to_go, _)| to_go <= tolerance) {
             self.reversals_s.push(since_s);
         }
-        sign(self.reversals_s.len()) * rudder
+        self.swing() * rudder
+    }
+
+    /// 1 before the first reversal, -1 before the second, and so on.
+    fn swing(&self) -> f64 {
+        if self.reversals_s.len().is_multiple_of(2) { 1.0 } else { -1.0 }
+    }
+
+    /// What is missing from the next switching angle, deg, and how fast it grows less, deg/s.
+    fn to_go_deg(&self, state: &StateVector) -> Option<(f64, f64)> {
+        let Manoeuvre::Zigzag { rudder, switch } = self.manoeuvre else { return None };
+        let side = self.swing() * rudder.signum();
+        let to_go = switch - side * state[at::PSI].to_degrees();
+        Some((to_go, side * state[at::R].to_degrees()))
+    }
+
+    /// How long an order is held: to the heading at which the rudder is reversed, where that comes
+    /// within the step.
+    fn lasts_s(&self, state: &StateVector) -> f64 {
+        match self.to_go_deg(state).filter(|_| self.at_heading) {
+            Some((to_go, rate)) if rate * self.step_s > to_go => {
+                (to_go / rate).max(LEAST_OF_STEP * self.step_s)
+            }
+            _ => self.step_s,
+        }
     }
 
     fn is_done(&self, state: &StateVector) -> bool {
@@ -128,4 +163,31 @@ fn after(track: &Trajectory, from_s: f64) -> Trajectory {
         result.push(track.t_s[k] - from_s, track.states[k], track.n_rps[k]);
     }
     result
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_model::Zoo;
+
+    use super::super::zigzag;
+    use super::*;
+
+    #[test]
+    fn reversals_within_steps_make_coarse_steps_as_good_as_fine_ones() {
+        let zoo = Zoo::embedded().unwrap();
+        let model = zoo.model("mariner").unwrap();
+        let ship = Ship::new(&model, zoo.law(&model.law).unwrap()).unwrap();
+        let overshoot = |step_s: f64, reversals_within_steps: bool| {
+            let step_s = Some(step_s);
+            let settings =
+                ManoeuvreSettings { step_s, reversals_within_steps, ..Default::default() };
+            zigzag(&ship, 20.0, 20.0, &settings).unwrap().metrics.first_overshoot_deg.unwrap()
+        };
+        let exact = overshoot(0.005, false);
+        let error =
+            |within: bool| [0.3, 0.4, 0.5].map(|step| (overshoot(step, within) - exact).abs());
+        assert!(error(true).iter().all(|error| *error < 0.02), "{:?}", error(true));
+        assert!(error(false).iter().any(|error| *error > 0.05), "{:?}", error(false));
+    }
 }

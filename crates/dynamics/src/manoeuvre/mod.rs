@@ -30,6 +30,9 @@ pub struct ManoeuvreSettings {
     pub method: Method,
     /// Run straight for this long before the rudder is executed, s.
     pub run_in_s: f64,
+    /// Whether a zigzag's rudder is reversed when the heading is reached within a step, and not at the
+    /// step's end: what coarse steps need for overshoots that differ little.
+    pub reversals_within_steps: bool,
 }
 
 impl Default for ManoeuvreSettings {
@@ -41,6 +44,7 @@ impl Default for ManoeuvreSettings {
             step_s: None,
             method: Method::Rk4,
             run_in_s: 0.0,
+            reversals_within_steps: false,
         }
     }
 }
@@ -59,14 +63,14 @@ impl ManoeuvreSettings {
         self.duration_s.unwrap_or_else(|| 60.0 * ship.lpp_m() / self.speed(ship)) + self.run_in_s
     }
 
-    fn run(&self, ship: &Ship, start: StateVector) -> Run {
+    fn step(&self, ship: &Ship) -> f64 {
         let default = 0.1_f64.min(0.02 * ship.lpp_m() / self.speed(ship));
-        Run {
-            start,
-            duration_s: self.duration(ship),
-            step_s: self.step_s.unwrap_or(default),
-            method: self.method,
-        }
+        self.step_s.unwrap_or(default)
+    }
+
+    fn run(&self, ship: &Ship, start: StateVector) -> Run {
+        let (duration_s, step_s) = (self.duration(ship), self.step(ship));
+        Run { start, duration_s, step_s, method: self.method }
     }
 }
 

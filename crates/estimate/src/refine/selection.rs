@@ -20,6 +20,7 @@ use super::settings::Settings;
 use super::thresholds::SELECTION;
 use super::variant::{Variant, variants};
 use super::weighed::{Extent, Weighed, weighed};
+use crate::steering::measured_rate;
 use crate::transfer::{approach_of, transfer};
 
 /// What is to be refined, and against what.
@@ -117,7 +118,10 @@ fn with_candidates<T>(
     let estimator = estimator(settings.method);
     let equations = estimator.equations(&settings);
     let parts = parts(&whole, request.law, equations, &settings);
-    let (transferred, measure) = starting(request, &whole, !parts.is_empty())?;
+    let (mut transferred, measure) = starting(request, &whole, !parts.is_empty())?;
+    if settings.steering_from_trials {
+        steer_as_recorded(&mut transferred, request.target, &whole);
+    }
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
     let (law, source, watch) = (request.law, request.source.name.as_str(), Some(watch));
     let thinned = for_simulation(request.target.particular("lpp_m"), &training);
@@ -161,6 +165,16 @@ fn starting(
     let blocks = Blocks::new(&model, law)?;
     SourceRegression::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);
     Ok((model, PriorMeasure::Source(envelope)))
+}
+
+/// Gives a model the gear that the trials' rudders show.
+fn steer_as_recorded(model: &mut Model, target: &Vessel, trials: &[&Trial]) {
+    let length_s = target.particular("lpp_m").zip(approach_of(trials));
+    let rate = length_s.and_then(|(l, approach)| measured_rate(trials, l / approach.speed_m_s));
+    if let Some(rate) = rate {
+        model.steering.rate_deg_s = rate.to_degrees();
+        model.steering.source = Some("the rudder's movements in the trials".to_owned());
+    }
 }
 
 /// The trials that are kept out of fit and choice, and the others.

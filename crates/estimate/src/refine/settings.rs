@@ -128,6 +128,10 @@ pub struct Settings {
     /// leaves too little. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub in_parts: bool,
+    /// The steering gear's rate is read from the rudder's movements in the trials, where these show
+    /// it; else it is the source's, scaled. The default search sets it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub steering_from_trials: bool,
     /// Names of trials that are kept out of fit and choice altogether, to be judged on.
     pub held_out: Vec<String>,
     /// What the refined model must keep to.
@@ -160,6 +164,7 @@ impl Default for Settings {
             restart_s: None,
             folds: 8,
             in_parts: false,
+            steering_from_trials: false,
             held_out: Vec::new(),
             constraints: Constraints::default(),
             bands: Sampling::default(),

@@ -57,6 +57,8 @@ pub(crate) struct ManoeuvreComparison<'a> {
     pub refined_failures: &'a [String],
     /// Manoeuvres in which the refined model leaves what its trials covered.
     pub outside: &'a BTreeMap<String, Excursion>,
+    /// The trial that would help most.
+    pub next_trial: Option<String>,
 }
 
 impl<'a> ManoeuvreComparison<'a> {
@@ -72,6 +74,7 @@ impl<'a> ManoeuvreComparison<'a> {
             source_failures: &source.failures,
             refined_failures: &refined.failures,
             outside: &refined.outside,
+            next_trial: bands.and_then(|bands| Some(bands.next_trial.as_ref()?.words())),
         }
     }
 }

@@ -1,0 +1,150 @@
+//! The trial that would narrow the bands most.
+//!
+//! A manoeuvre that is sailed tells its own figures. With the draws of the posterior taken for normal,
+//! what then remains of the variance of another figure is `S_kk - S_kf S_ff^-1 S_fk`, `S` being the
+//! covariance of the figures over the draws and `f` those that were told: the residual of the
+//! figure's regression on them.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+/// Singular values below this share of the largest are none: mirrored manoeuvres tell the same.
+const LEAST_SINGULAR: f64 = 1e-6;
+
+/// A scatter below this share of the mean is rounding.
+const LEAST_SCATTER: f64 = 1e-9;
+
+/// A manoeuvre by what sailing it would tell.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NextTrial {
+    /// The manoeuvre, such as `turn 35 deg`.
+    pub manoeuvre: String,
+    /// By what share of their width the bands of all standard manoeuvres would be narrower in the
+    /// mean, wide ones counting for more.
+    pub narrower: f64,
+}
+
+impl NextTrial {
+    /// The advice as a sentence.
+    pub fn words(&self) -> String {
+        let Self { manoeuvre, narrower } = self;
+        let percent = 100.0 * narrower;
+        format!(
+            "the trial that would help most: {manoeuvre}; the bands of the standard manoeuvres would \
+             be {percent:.0} % narrower in the mean"
+        )
+    }
+}
+
+/// Figures of a draw by name.
+pub(crate) type Drawn = BTreeMap<String, f64>;
+
+/// The manoeuvre that tells most; none where fewer draws than twice the figures reached all of them,
+/// or none differs.
+pub(crate) fn next_trial(draws: &[Drawn]) -> Option<NextTrial> {
+    let most = draws.iter().max_by_key(|draw| draw.len())?;
+    let mut names: Vec<&String> = most.keys().filter(|name| manoeuvre(name).is_some()).collect();
+    let complete: Vec<&Drawn> =
+        draws.iter().filter(|draw| names.iter().all(|name| draw.contains_key(*name))).collect();
+    if complete.len() < 2 * names.len().max(1) {
+        return None;
+    }
+    names.retain(|name| relative_scatter(&complete, name) > LEAST_SCATTER);
+    let columns: Vec<DVector<f64>> = names.iter().map(|name| centred(&complete, name)).collect();
+    let weights: Vec<f64> = names.iter().map(|name| relative_scatter(&complete, name)).collect();
+    let told = |of: &str| {
+        let own: Vec<&DVector<f64>> = (names.iter().zip(&columns))
+            .filter_map(|(name, column)| (manoeuvre(name) == Some(of)).then_some(column))
+            .collect();
+        Some(NextTrial { manoeuvre: of.to_owned(), narrower: narrower(&own, &columns, &weights)? })
+    };
+    let mut manoeuvres: Vec<&str> = names.iter().filter_map(|name| manoeuvre(name)).collect();
+    manoeuvres.dedup();
+    let tried = manoeuvres.into_iter().filter_map(told).filter(|one| one.narrower > 0.0);
+    tried.max_by(|a, b| a.narrower.total_cmp(&b.narrower))
+}
+
+/// The manoeuvre of a figure; none of criteria.
+fn manoeuvre(figure: &str) -> Option<&str> {
+    let (manoeuvre, _) = figure.split_once(": ")?;
+    (manoeuvre != "IMO").then_some(manoeuvre)
+}
+
+fn mean(draws: &[&Drawn], name: &str) -> f64 {
+    draws.iter().map(|draw| draw[name]).sum::<f64>() / draws.len() as f64
+}
+
+/// A figure over draws, less its mean.
+fn centred(draws: &[&Drawn], name: &str) -> DVector<f64> {
+    let mean = mean(draws, name);
+    DVector::from_iterator(draws.len(), draws.iter().map(|draw| draw[name] - mean))
+}
+
+/// Deviation by mean, so that metres, degrees and seconds can be added.
+fn relative_scatter(draws: &[&Drawn], name: &str) -> f64 {
+    let scatter = (centred(draws, name).norm_squared() / draws.len() as f64).sqrt();
+    scatter / mean(draws, name).abs().max(f64::MIN_POSITIVE)
+}
+
+/// By what share figures are narrower, in the weighted mean, once some are told.
+fn narrower(told: &[&DVector<f64>], figures: &[DVector<f64>], weights: &[f64]) -> Option<f64> {
+    let scaled: Vec<DVector<f64>> = told.iter().map(|column| column.normalize()).collect();
+    let svd = DMatrix::from_columns(&scaled).svd(true, false);
+    let largest = svd.singular_values.max();
+    let axes = svd.u?;
+    let known = |figure: &DVector<f64>| {
+        let singular = svd.singular_values.iter().enumerate();
+        let kept = singular.filter(|(_, value)| **value > LEAST_SINGULAR * largest);
+        kept.map(|(axis, _)| axes.column(axis).dot(figure).powi(2)).sum::<f64>()
+    };
+    let share = |figure: &DVector<f64>| {
+        let all = figure.norm_squared();
+        if all > 0.0 { 1.0 - (1.0 - known(figure) / all).max(0.0).sqrt() } else { 0.0 }
+    };
+    let sum: f64 = weights.iter().sum();
+    let gained: f64 = figures.iter().zip(weights).map(|(figure, w)| w * share(figure)).sum();
+    (sum > 0.0).then(|| gained / sum)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha12Rng;
+    use rand_distr::StandardNormal;
+
+    use super::*;
+
+    /// `a` is wide and follows `b` but for a share; `c` is narrow.
+    fn draws(share: f64) -> Vec<Drawn> {
+        let mut rng = ChaCha12Rng::seed_from_u64(4);
+        let mut one = |_| {
+            let [x, y, z]: [f64; 3] = std::array::from_fn(|_| rng.sample(StandardNormal));
+            let a = (1.0 - share * share).sqrt() * x + share * y;
+            [("a: advance", 500.0 + 50.0 * a), ("b: advance", 400.0 + 20.0 * x)]
+                .into_iter()
+                .chain([("c: period", 90.0 + 0.1 * z), ("IMO: advance", 3.0 + a)])
+                .map(|(name, value)| (name.to_owned(), value))
+                .collect()
+        };
+        (0..400).map(&mut one).collect()
+    }
+
+    #[test]
+    fn the_widest_figure_is_told_by_its_own_manoeuvre() {
+        let next = next_trial(&draws(0.6)).unwrap();
+        assert_eq!(next.manoeuvre, "a");
+        // Its own band goes, and of the other remains 0.6; weights are as 0.1 to 0.05 to 0.001.
+        let expected = (0.1 + 0.05 * 0.4) / 0.151;
+        assert!((next.narrower - expected).abs() < 0.03, "{next:?}");
+    }
+
+    #[test]
+    fn nothing_is_said_where_nothing_scatters() {
+        let same: Vec<Drawn> = vec![draws(0.5)[0].clone(); 50];
+        assert_eq!(next_trial(&same), None);
+        assert_eq!(next_trial(&draws(0.5)[..4]), None);
+    }
+}

@@ -1,0 +1,98 @@
+//! The steering gear as the rudder's recorded movements show it.
+//!
+//! Standard manoeuvres order the rudder; trials record where it was. Between them stands the gear's
+//! rate, which another ship's tells nothing of.
+
+use sistership_model::trial::{Channel, Trial};
+
+/// How a gear's rate is read from a rudder's angle.
+#[derive(Debug, Clone, Copy)]
+struct SteeringThresholds {
+    /// `w/(L/U)`: time over which the rate is taken by the time of sailing a length, dimensionless.
+    /// Source: derived: 35 deg at the least rate of SOLAS II-1/29 take 15 s, half the time in which a
+    /// ship of 250 m sails its length at 16 kn; a tenth of that is inside the movement.
+    window: f64,
+    /// `s`: share of the largest rate from which a window counts as inside a movement, dimensionless.
+    /// Source: derived: windows that begin or end outside by more than a fifth of their length do not.
+    inside: f64,
+    /// Angle that a movement at that rate must cover, rad. Source: derived: a rudder that follows small
+    /// orders does not show how fast its gear can be; the least order of ITTC 7.5-04-02-01's zigzags
+    /// is 10 deg, which from amidships is this twice.
+    least_rad: f64,
+}
+
+const STEERING: SteeringThresholds =
+    SteeringThresholds { window: 0.05, inside: 0.8, least_rad: 0.0873 };
+
+/// The gear's rate, rad/s, by the fastest movements of the rudder in trials; none where no movement is
+/// long enough to show it. `length_s` is the time in which the ship sails its length.
+pub(crate) fn measured_rate(trials: &[&Trial], length_s: f64) -> Option<f64> {
+    let each: Vec<Vec<(f64, f64)>> =
+        trials.iter().map(|trial| rates(trial, STEERING.window * length_s)).collect();
+    let largest = each.iter().flatten().map(|(rate, _)| *rate).fold(0.0, f64::max);
+    let is_inside = |(rate, _): &(f64, f64)| largest > 0.0 && *rate >= STEERING.inside * largest;
+    let movements =
+        each.iter().flat_map(|rates| rates.chunk_by(|a, b| is_inside(a) == is_inside(b)));
+    let covered = |movement: &&[(f64, f64)]| {
+        movement.iter().map(|(rate, step_s)| rate * step_s).sum::<f64>() >= STEERING.least_rad
+    };
+    let long = movements.filter(|movement| movement.first().is_some_and(is_inside)).filter(covered);
+    let mut inside: Vec<f64> = long.flatten().map(|(rate, _)| *rate).collect();
+    inside.sort_by(f64::total_cmp);
+    inside.get(inside.len() / 2).copied()
+}
+
+/// Rates of the rudder over windows that begin at each sample, each with the time to the next sample.
+fn rates(trial: &Trial, window_s: f64) -> Vec<(f64, f64)> {
+    let Some(angle) = trial.channel(Channel::Delta) else { return Vec::new() };
+    let step_s = trial.interval_s();
+    let count = ((window_s / step_s).round() as usize).max(1);
+    let pairs = (count..angle.len()).map(|end| (end - count, end));
+    let rate = |(from, to): (usize, usize)| {
+        let time_s = trial.t_s[to] - trial.t_s[from];
+        // Across a gap nothing is known of the movement.
+        let whole = time_s < 1.5 * count as f64 * step_s;
+        whole.then(|| ((angle[to] - angle[from]).abs() / time_s, step_s))
+    };
+    pairs.filter_map(rate).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha12Rng;
+    use rand_distr::StandardNormal;
+
+    use super::*;
+
+    /// A rudder that goes to 20 deg and over to the other side, read with noise.
+    fn zigzag(rate_deg_s: f64, noise_deg: f64, orders: &[f64]) -> Trial {
+        let mut rng = ChaCha12Rng::seed_from_u64(5);
+        let (mut angle, mut t_s, mut read) = (0.0_f64, Vec::new(), Vec::new());
+        for k in 0..400 {
+            let order = orders[k / 100 % orders.len()];
+            let noise: f64 = rng.sample(StandardNormal);
+            t_s.push(0.5 * k as f64);
+            read.push((angle + noise_deg * noise).to_radians());
+            angle += (order - angle).clamp(-0.5 * rate_deg_s, 0.5 * rate_deg_s);
+        }
+        Trial { channels: [(Channel::Delta, read)].into(), t_s, ..Trial::default() }
+    }
+
+    #[test]
+    fn the_rate_is_that_of_the_gear_whatever_the_noise() {
+        for (rate, noise) in [(2.32, 0.0), (2.32, 0.1), (4.0, 0.1), (5.0, 0.3)] {
+            let trial = zigzag(rate, noise, &[20.0, -20.0]);
+            let measured = measured_rate(&[&trial], 30.0).unwrap().to_degrees();
+            assert!((measured / rate - 1.0).abs() < 0.1, "{rate} deg/s read as {measured}");
+        }
+    }
+
+    #[test]
+    fn a_rudder_that_hardly_moves_shows_no_rate() {
+        let trial = zigzag(5.0, 0.05, &[1.0, -1.0]);
+        assert_eq!(measured_rate(&[&trial], 30.0), None);
+        assert_eq!(measured_rate(&[&Trial::default()], 30.0), None);
+    }
+}
