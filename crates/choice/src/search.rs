@@ -60,7 +60,12 @@ pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Ref
     let held_out = &search.settings.held_out;
     let fitted = search.trials.iter().filter(|trial| !held_out.contains(&trial.name)).count();
     let in_parts = search.settings.in_parts || fitted < SEARCH.few;
-    let settings = Settings { in_parts, steering_from_trials: true, ..search.settings.clone() };
+    let settings = Settings {
+        in_parts,
+        steering_from_trials: true,
+        posterior_by_folds: true,
+        ..search.settings.clone()
+    };
     climbed(&Search { settings: &settings, ..*search }, progress)
 }
 

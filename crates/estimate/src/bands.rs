@@ -8,7 +8,9 @@ use rand_distr::StandardNormal;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use sistership_dynamics::Ship;
-use sistership_dynamics::manoeuvre::{Figure, ManoeuvreSettings, standard_of_sisters};
+use sistership_dynamics::manoeuvre::{
+    Figure, ManoeuvreSettings, StandardManoeuvres, standard_of_sisters,
+};
 use sistership_model::Model;
 use sistership_model::law::Law;
 
@@ -130,24 +132,8 @@ pub fn bands(
     sampling: Sampling,
 ) -> Option<Bands> {
     let draws = draws(model, sampling)?;
-    let mut ship = Ship::sisters(model, law).ok()?;
-    let speed_m_s = settings.speed_m_s.unwrap_or(ship.approach_speed_m_s());
-    ship.set_envelope_speed(speed_m_s);
-    ship.forget_validity();
-    depth_m.into_iter().for_each(|depth_m| ship.set_depth(depth_m));
-    let coarse = 0.02 * ship.lpp_m() / speed_m_s;
-    let fast = ManoeuvreSettings {
-        step_s: settings.step_s.or(Some(coarse)),
-        reversals_within_steps: true,
-        ..*settings
-    };
-    let sisters: Vec<Vec<f64>> =
-        draws.iter().map(|draw| ship.sister(draw)).collect::<Option<_>>()?;
-    let together = |sisters: &[Vec<f64>]| {
-        let sisters: Vec<&[f64]> = sisters.iter().map(Vec::as_slice).collect();
-        standard_of_sisters(&ship, &sisters, &fast)
-    };
-    let sailed: Vec<_> = sisters.par_chunks(TOGETHER).flat_map_iter(together).collect();
+    let (ship, fast) = prepared(model, law, settings, depth_m)?;
+    let sailed = sailed(&ship, &draws, &fast)?;
     let failed = sailed.iter().filter(|sailed| !sailed.failures.is_empty()).count();
     let by_step = errors_by_step(&ship, &ship.sister(model)?, settings, &fast);
     let mut figures: BTreeMap<String, Vec<Figure>> = BTreeMap::new();
@@ -166,6 +152,47 @@ pub fn bands(
     }
     let figures = order.iter().filter_map(|name| band(&figures[name], draws.len())).collect();
     Some(Bands { sampling, failed, figures, next_trial: next_trial(&drawn) })
+}
+
+/// The ship that draws are sisters of, and how they sail: at a coarse step.
+fn prepared(
+    model: &Model,
+    law: &Law,
+    settings: &ManoeuvreSettings,
+    depth_m: Option<f64>,
+) -> Option<(Ship, ManoeuvreSettings)> {
+    let mut ship = Ship::sisters(model, law).ok()?;
+    let speed_m_s = settings.speed_m_s.unwrap_or(ship.approach_speed_m_s());
+    ship.set_envelope_speed(speed_m_s);
+    ship.forget_validity();
+    depth_m.into_iter().for_each(|depth_m| ship.set_depth(depth_m));
+    let coarse = 0.02 * ship.lpp_m() / speed_m_s;
+    let step_s = settings.step_s.or(Some(coarse));
+    Some((ship, ManoeuvreSettings { step_s, reversals_within_steps: true, ..*settings }))
+}
+
+fn sailed(
+    ship: &Ship,
+    models: &[Model],
+    settings: &ManoeuvreSettings,
+) -> Option<Vec<StandardManoeuvres>> {
+    let sisters: Vec<Vec<f64>> =
+        models.iter().map(|model| ship.sister(model)).collect::<Option<_>>()?;
+    let together = |sisters: &[Vec<f64>]| {
+        let sisters: Vec<&[f64]> = sisters.iter().map(Vec::as_slice).collect();
+        standard_of_sisters(ship, &sisters, settings)
+    };
+    Some(sisters.par_chunks(TOGETHER).flat_map_iter(together).collect())
+}
+
+/// Figures of the standard manoeuvres by models that have a model's law and particulars.
+pub(crate) fn figures(model: &Model, law: &Law, models: &[Model]) -> Option<Vec<Drawn>> {
+    let (ship, fast) = prepared(model, law, &ManoeuvreSettings::default(), None)?;
+    let named = |sailed: StandardManoeuvres| {
+        let figures = sailed.figures().into_iter();
+        figures.filter_map(|figure| Some((figure.name, figure.value?))).collect()
+    };
+    Some(sailed(&ship, models, &fast)?.into_iter().map(named).collect())
 }
 
 /// What the draws' coarse step adds to each figure, told by the estimate itself.

@@ -2,6 +2,7 @@
 
 pub mod bands;
 mod estimated;
+mod fold_scatter;
 pub mod next_trial;
 pub mod refine;
 pub mod similarity;

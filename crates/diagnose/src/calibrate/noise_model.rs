@@ -9,7 +9,7 @@ use super::super::evidence::not_positive;
 use super::super::linearised_trials::LinearisedTrials;
 use super::super::thresholds::THRESHOLDS;
 use super::trial_information::TrialInformation;
-use crate::residual::{Discrepancies, Linearised, Noise, errors};
+use crate::residual::{Discrepancies, Linearised, Noise, deviances};
 use sistership_estimate::refine::RefineError;
 
 /// What readings scatter by beside the model.
@@ -133,13 +133,11 @@ fn along(workspace: &LinearisedTrials<'_>, parameters: &[Vec<f64>]) -> Linearise
 
 /// Minus twice the logarithm of the likelihood.
 fn deviance(parts: &LinearisedParts, scatter: &NoiseModel) -> f64 {
-    let one = |part: &Linearised| {
-        let (errors, log_variance) = errors(part, &scatter.noise, &scatter.discrepancies);
-        errors.iter().map(|error| error * error).sum::<f64>() + log_variance
-    };
+    let all: Vec<&Linearised> = parts.iter().flatten().collect();
+    let mut each = deviances(&all, &scatter.noise, &scatter.discrepancies).into_iter();
     // Summed in order: the same on any number of threads.
-    let trials: Vec<f64> = parts.par_iter().map(|parts| parts.iter().map(one).sum()).collect();
-    trials.iter().sum()
+    let trials = parts.iter().map(|parts| each.by_ref().take(parts.len()).sum::<f64>());
+    trials.collect::<Vec<_>>().iter().sum()
 }
 
 /// Each number alone, as far as it helps.

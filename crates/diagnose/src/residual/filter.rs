@@ -97,7 +97,8 @@ pub(super) struct FilterState {
     pub deviations: Vec<f64>,
     /// `order` by `order`.
     pub covariance: Vec<f64>,
-    drift: Vec<f64>,
+    /// What each state drifts, by its variance in a second.
+    pub drift: Vec<f64>,
     pub transition: Vec<f64>,
     /// Its transpose, along whose rows products with it are summed in wide instructions.
     transposed: Vec<f64>,

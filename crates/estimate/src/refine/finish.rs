@@ -18,6 +18,7 @@ use super::ridge::{Choices, Fit};
 use super::thresholds::SELECTION;
 use super::variant::Variant;
 use crate::bands::bands;
+use crate::fold_scatter::fold_factor;
 use sistership_regression::RidgeChoice;
 
 /// Why a candidate may not be taken.
@@ -113,15 +114,29 @@ fn take(
 ) -> Result<Refinement, RefineError> {
     candidates[best].option.chosen = true;
     let errors = candidates[best].solution.errors(problem, variants)?;
-    let fitted = fitted.map(|fit| fit.with_errors(errors));
+    let mut fitted = fitted.map(|fit| fit.with_errors(errors));
     let mut model = model_of(problem, fitted.as_ref());
     model.posterior = posterior(problem, &model, fitted.as_ref(), variants)?;
+    if problem.settings.posterior_by_folds {
+        let factor = fold_factor(&model, problem.law, &candidates[best].left_out);
+        widen(&mut model, fitted.as_mut(), factor);
+    }
     let measured = measured_manoeuvres(problem, &model);
     step(progress, 0.93, "confidence bands")?;
     let bands =
         bands(&model, problem.law, &ManoeuvreSettings::default(), None, problem.settings.bands);
     let manoeuvres = Manoeuvres { source: before, refined: after, bands, measured };
     refinement(problem, ChosenCandidate { candidates, best, model, fitted }, manoeuvres)
+}
+
+/// Makes every standard error so many times as large.
+fn widen(model: &mut Model, fitted: Option<&mut Fit>, factor: f64) {
+    let of_fit = fitted.into_iter().flat_map(|fit| fit.coefficients.values_mut());
+    of_fit.for_each(|coefficient| coefficient.standard_error *= factor);
+    let own = model.coefficients.values_mut().filter_map(|one| one.standard_error.as_mut());
+    own.for_each(|error| *error *= factor);
+    let posterior = model.posterior.iter_mut().flat_map(|all| all.deviations.iter_mut());
+    posterior.for_each(|deviation| *deviation *= factor);
 }
 
 /// How far the model's coefficients may be from the truth. Those of a source that is kept are as far as the trials say

@@ -132,6 +132,10 @@ pub struct Settings {
     /// it; else it is the source's, scaled. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub steering_from_trials: bool,
+    /// The posterior is as wide as models are apart that each missed some of the trials, where that is
+    /// wider than the noise of the readings makes it. The default search sets it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub posterior_by_folds: bool,
     /// Names of trials that are kept out of fit and choice altogether, to be judged on.
     pub held_out: Vec<String>,
     /// What the refined model must keep to.
@@ -165,6 +169,7 @@ impl Default for Settings {
             folds: 8,
             in_parts: false,
             steering_from_trials: false,
+            posterior_by_folds: false,
             held_out: Vec::new(),
             constraints: Constraints::default(),
             bands: Sampling::default(),

@@ -1,0 +1,81 @@
+//! How much wider a posterior should be, by what its folds disagree.
+//!
+//! A posterior by the noise of the readings alone takes the law for true. Models that each missed some
+//! of the trials differ by what the law cannot follow, too: their scatter is the jackknife's estimate
+//! of a figure's variance, `(g - 1) / g sum (f_i - mean f)^2` over `g` folds (Efron and Tibshirani
+//! 1993, An introduction to the bootstrap, Eq. 11.5), beside which stands that of the posterior.
+
+use sistership_model::Model;
+use sistership_model::law::Law;
+
+use crate::bands::{Sampling, draws, figures};
+use crate::next_trial::Drawn;
+
+/// Draws that tell the posterior's own scatter.
+const DRAWS: usize = 40;
+
+/// The root of the jackknife's variance by the posterior's, in the mean over the figures of the
+/// standard manoeuvres; at least one, and one where fewer than three folds sail them.
+pub(crate) fn fold_factor(model: &Model, law: &Law, folds: &[Model]) -> f64 {
+    let sampling = Sampling { samples: DRAWS, seed: 1 };
+    let drawn = draws(model, sampling).and_then(|draws| figures(model, law, &draws));
+    let left_out = figures(model, law, folds).filter(|left_out| left_out.len() > 2);
+    let (Some(drawn), Some(left_out)) = (drawn, left_out) else { return 1.0 };
+    let ratios: Vec<f64> = left_out[0]
+        .keys()
+        .filter(|name| !name.starts_with("IMO"))
+        .filter_map(|name| {
+            let count = left_out.len() as f64;
+            let jackknife = (count - 1.0) / count * squares(&left_out, name)?;
+            let own = squares(&drawn, name)? / drawn.len() as f64;
+            (own > 0.0).then(|| jackknife / own)
+        })
+        .collect();
+    let mean = ratios.iter().sum::<f64>() / ratios.len().max(1) as f64;
+    mean.sqrt().max(1.0)
+}
+
+/// Sum of squares about the mean; none where a figure is not reached by all.
+fn squares(figures: &[Drawn], name: &str) -> Option<f64> {
+    let values: Vec<f64> =
+        figures.iter().map(|one| one.get(name).copied()).collect::<Option<_>>()?;
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    Some(values.iter().map(|value| (value - mean).powi(2)).sum())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_model::Zoo;
+    use sistership_model::posterior::Posterior;
+
+    use super::*;
+
+    /// Folds whose rudder coefficients lie so many deviations to either side.
+    fn factor(apart: f64) -> f64 {
+        let zoo = Zoo::embedded().unwrap();
+        let mut model = zoo.model("mariner").unwrap();
+        let names = vec!["N_delta".to_owned()];
+        let value = model.coefficient("N_delta");
+        let deviations = vec![0.02 * value.abs()];
+        let root_correlation = Posterior::rows(1, &|_, _| 1.0);
+        let values = vec![value];
+        model.posterior = Some(Posterior { names, values, deviations, root_correlation });
+        let fold = |side: f64| {
+            let mut fold = Model { posterior: None, ..model.clone() };
+            let by = 1.0 + 0.02 * apart * side;
+            fold.coefficients.get_mut("N_delta").unwrap().value *= by;
+            fold
+        };
+        let law = zoo.law("abkowitz").unwrap();
+        fold_factor(&model, law, &[-1.0, -1.0, 1.0, 1.0].map(fold))
+    }
+
+    #[test]
+    fn folds_that_lie_wider_than_the_posterior_widen_it() {
+        // Of four folds at one deviation, the jackknife's variance is three times the posterior's.
+        assert!((factor(1.0) / 3.0_f64.sqrt() - 1.0).abs() < 0.25, "{}", factor(1.0));
+        assert!((factor(2.0) / factor(1.0) - 2.0).abs() < 0.1);
+        assert_eq!(factor(0.1), 1.0);
+    }
+}
