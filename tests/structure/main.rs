@@ -8,9 +8,10 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crates that only some may name.
-const ALLOWED: [(&str, &[&str]); 14] = [
+const ALLOWED: [(&str, &[&str]); 15] = [
     ("model", &[]),
     ("dynamics", &["model"]),
+    ("stretches", &[]),
     ("trials", &["model"]),
     ("regression", &[]),
     ("estimate", &["model", "dynamics", "regression"]),
@@ -34,8 +35,8 @@ const ALLOWED: [(&str, &[&str]); 14] = [
     (
         "cli",
         &[
-            "model", "dynamics", "trials", "estimate", "choice", "diagnose", "store", "report",
-            "pipeline", "server",
+            "model", "dynamics", "stretches", "trials", "estimate", "choice", "diagnose", "store",
+            "report", "pipeline", "server",
         ],
     ),
 ];
