@@ -35,8 +35,17 @@ const ALLOWED: [(&str, &[&str]); 15] = [
     (
         "cli",
         &[
-            "model", "dynamics", "stretches", "trials", "estimate", "choice", "diagnose", "store",
-            "report", "pipeline", "server",
+            "model",
+            "dynamics",
+            "stretches",
+            "trials",
+            "estimate",
+            "choice",
+            "diagnose",
+            "store",
+            "report",
+            "pipeline",
+            "server",
         ],
     ),
 ];

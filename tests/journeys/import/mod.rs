@@ -2,6 +2,7 @@
 
 mod broken;
 mod forms;
+mod long_log;
 mod table;
 
 use std::path::{Path, PathBuf};
