@@ -8,11 +8,12 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crates that only some may name.
-const ALLOWED: [(&str, &[&str]); 15] = [
+const ALLOWED: [(&str, &[&str]); 16] = [
     ("model", &[]),
     ("dynamics", &["model"]),
     ("stretches", &[]),
-    ("trials", &["model"]),
+    ("containers", &[]),
+    ("trials", &["model", "containers"]),
     ("regression", &[]),
     ("estimate", &["model", "dynamics", "regression"]),
     ("choice", &["model", "estimate"]),

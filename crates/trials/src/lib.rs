@@ -8,7 +8,6 @@
 //! and [`lacking`] names what a law needs that a trial does not have. [`samples`] keeps trials as
 //! Parquet and writes them as CSV.
 
-mod archive;
 mod calendar;
 mod cells;
 mod checks;
@@ -29,7 +28,6 @@ mod magic;
 mod manifest;
 mod manifest_file;
 mod mapping;
-mod mat_elements;
 mod mat_file;
 mod metered;
 mod names;
@@ -39,10 +37,8 @@ mod nmea_sentence;
 mod number;
 mod open_dates;
 mod outcome;
-mod pages;
 mod pairs;
 mod parquet_file;
-mod parquet_format;
 mod parts;
 mod position;
 mod preview;

@@ -6,7 +6,7 @@ use crate::clock::Clock;
 use crate::findings::Findings;
 use crate::limits::Limits;
 use crate::mapping::Mapping;
-use crate::mat_elements::{Array, visit};
+use sistership_containers::mat_elements::{Array, visit};
 use crate::number::Fault;
 use crate::resolve::resolve;
 use crate::rows::Builder;

@@ -16,7 +16,7 @@ use crate::findings::Findings;
 use crate::limits::{Limits, too_many};
 use crate::mapping::Mapping;
 use crate::number::Fault;
-use crate::pages::{self, Held, held};
+use sistership_containers::pages::{self, Held, held};
 use crate::resolve::resolve;
 use crate::stream;
 use crate::table::{Column, Table, width};
@@ -410,3 +410,7 @@ fn batch<T: DataType>(
 #[cfg(test)]
 #[path = "parquet_file_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "pages_tests.rs"]
+mod pages_tests;

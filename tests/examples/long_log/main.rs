@@ -12,7 +12,7 @@ mod measured;
 use std::path::Path;
 use std::time::Instant;
 
-use measured::{Measured, run};
+use measured::{Measured, run, thread_s};
 use serde_json::Value;
 use sistership_model::Trial;
 use sistership_stretches::{Finder, Sample};
@@ -111,8 +111,7 @@ fn separate(folder: &Path, name: &str, orders: &[Order]) -> Vec<String> {
 fn in_process(path: &Path) {
     let mapping = mapping(path);
     let mut kept = Vec::new();
-    let began = Instant::now();
-    let mut count = 0_u64;
+    let (mut count, began) = (0_u64, thread_s());
     let read = scan(path, &mapping, |steering: &Steering| {
         count += 1;
         if kept.len() < 1_000_000 {
@@ -120,13 +119,12 @@ fn in_process(path: &Path) {
         }
     });
     read.expect("the log is read");
-    let rate = |rows: f64, began: Instant| rows / began.elapsed().as_secs_f64() / 1e6;
-    println!("reading alone: {:.2} million rows a second", rate(count as f64, began));
-    let mut finder = Finder::new(Some(175.0));
-    let began = Instant::now();
+    let rate = |rows: f64, began: f64| rows / (thread_s() - began) / 1e6;
+    println!("reading alone: {:.2} million rows a second and core", rate(count as f64, began));
+    let (mut finder, began) = (Finder::new(Some(175.0)), thread_s());
     kept.iter().for_each(|sample| finder.push(sample));
-    println!("finding alone: {:.1} million rows a second", rate(kept.len() as f64, began));
-    drop(finder);
+    println!("finding alone: {:.1} million rows a second and core", rate(kept.len() as f64, began));
+    assert!(finder.finish().is_ok_and(|found| found.rows == kept.len() as u64));
 }
 
 /// The columns of the log as `import` proposes them.
@@ -150,12 +148,11 @@ fn import(folder: &Path, file: &str, rows: usize) -> Value {
     let (log, out) = (folder.join(file), folder.join("trials.yaml"));
     let (log, out) = (log.display().to_string(), out.display().to_string());
     let call = ["import", &log, "--ship", "voyager", "--length", "175", "--out", &out, "--json"];
-    let Measured { answer, seconds, peak_mb } = run(&call);
-    let rate = rows as f64 / seconds / 1e6;
+    let Measured { answer, seconds, processor_s, peak_mb } = run(&call);
     println!(
-        "import (search and cut, two passes): {seconds:.1} s, {rate:.2} million rows a second, \
-         {:.2} a pass, peak {peak_mb} MB",
-        2.0 * rate
+        "import (search and cut, two passes): {seconds:.1} s, {processor_s:.1} s of a core, \
+         {:.2} million rows a second, core and pass, peak {peak_mb} MB",
+        2.0 * rows as f64 / processor_s / 1e6
     );
     answer
 }
@@ -199,7 +196,7 @@ fn refine(folder: &Path, what: &str, trials: &[String], unseen: &[String]) {
     call.extend(unseen.iter().map(String::as_str));
     call.push("--trials");
     call.extend(trials.iter().chain(unseen).map(String::as_str));
-    let Measured { answer, seconds, peak_mb } = run(&call);
+    let Measured { answer, seconds, peak_mb, .. } = run(&call);
     let errors = |model: &str| {
         let of = |channel: &str| answer["held_out"][model][channel].as_f64().unwrap_or(f64::NAN);
         format!(
