@@ -31,6 +31,7 @@ pub(crate) fn convert(
         rows: table.rows,
         start: table.start,
         resumed: table.resumed,
+        is_stretch: mapping.stretch.is_some(),
         ..Recording::default()
     };
     for (column, mut values) in table.columns.into_iter().zip(table.values) {

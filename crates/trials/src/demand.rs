@@ -4,7 +4,8 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use crate::archive;
+use sistership_containers::archive;
+
 use crate::csv_file;
 use crate::mapping::Mapping;
 use crate::mat_file;

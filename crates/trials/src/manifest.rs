@@ -9,6 +9,7 @@ use crate::declarations::{Declarations, North, SensorFile};
 use crate::manifest_file::{ManifestFile, Written};
 use crate::resolve::{channel_names, factor};
 use crate::smoothing;
+use crate::stretches::{self, same_file};
 use crate::table::Target;
 use crate::units::Kind;
 
@@ -22,7 +23,7 @@ pub fn read_manifest(file_name: &str, text: &str) -> Result<Manifest, FileError>
     if file.is_plain() {
         return Ok(file.manifest);
     }
-    let known = "kind, ship, conventions, columns and trials";
+    let known = "kind, ship, conventions, columns and trials of whole files";
     Err(FileError {
         file: file_name.to_owned(),
         line: None,
@@ -90,8 +91,14 @@ fn trials(manifest: &Manifest) -> Option<Problem> {
         });
     }
     manifest.trials.iter().enumerate().find_map(|(index, trial)| {
-        let twice =
-            manifest.trials[..index].iter().any(|other| same_file(&other.file, &trial.file));
+        let earlier = &manifest.trials[..index];
+        if let Some((field, message)) = stretches::problem(trial, earlier) {
+            let (field, near) = (format!("trials[{index}].{field}"), trial.file.clone());
+            return Some(Problem { field, near, message });
+        }
+        let twice = earlier.iter().any(|other| {
+            same_file(&other.file, &trial.file) && !(other.is_stretch() && trial.is_stretch())
+        });
         let message = match trial.depth_m {
             _ if !stays_inside(&trial.file) => {
                 "must be a path relative to the manifest that stays in its folder".to_owned()
@@ -165,14 +172,6 @@ fn declarations(declared: &Declarations) -> Option<Problem> {
         };
         Some(problem(&format!("maximum.{name}"), message))
     })
-}
-
-/// Whether two paths name the same file: `a.csv` is `./a.csv`.
-fn same_file(one: &str, other: &str) -> bool {
-    let plain = |path| {
-        Path::new(path).components().filter(|part| *part != Component::CurDir).collect::<Vec<_>>()
-    };
-    plain(one) == plain(other)
 }
 
 /// Whether a path names something below the folder on any system: a backslash or colon would mean more on Windows.

@@ -158,7 +158,7 @@ fn proposal(ship: &str, seen: Vec<Seen>) -> Proposal {
     };
     for (at, one) in seen.into_iter().enumerate() {
         if at == 0 || one.columns == columns {
-            trials.push(ManifestTrial { file: one.file, manoeuvre: None, depth_m: None });
+            trials.push(ManifestTrial::of(one.file));
         } else {
             let columns = one.columns.into_iter().collect();
             further.push(SensorFile { file: one.file, columns, clock_offset_s: None });

@@ -14,6 +14,8 @@ use crate::units::Kind;
 #[derive(Debug, Default)]
 pub(crate) struct Recording {
     pub trial: Trial,
+    /// Whether it is a stretch of a file, which starts when it does.
+    pub is_stretch: bool,
     pub rows: Vec<u32>,
     /// Rows before which others have been left out.
     pub resumed: Vec<u32>,

@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use calamine::{Data, DataRef, ExcelDateTime, Reader, Xlsx, XlsxCellReader, XlsxError};
 
-use crate::archive;
+use sistership_containers::archive;
 use crate::csv_file;
 use crate::findings::Findings;
 use crate::layout;

@@ -135,8 +135,7 @@ impl Parts {
         if self.files.is_empty() {
             return Err(Problem::invalid("file", "send at least one part with a filename"));
         }
-        let trial =
-            |part: &Part| ManifestTrial { file: part.name.clone(), manoeuvre: None, depth_m: None };
+        let trial = |part: &Part| ManifestTrial::of(part.name.clone());
         let manifest = canonical(ship, self.files.iter().map(trial).collect())?;
         Ok(Upload {
             manifest,

@@ -44,7 +44,10 @@ pub(super) async fn receive(mut request: Request, app: &App) -> Result<Upload> {
     let RawQuery { ship, name, manoeuvre, depth_m, diagnose } = query;
     let file = name.map_or_else(|| UNNAMED.to_owned(), FileName::into_string);
     let (manoeuvre, depth_m) = (manoeuvre.map(Remark::into_string), depth_m.map(Positive::get));
-    let manifest = canonical(ship.into_string(), vec![ManifestTrial { file, manoeuvre, depth_m }])?;
+    let manifest = canonical(
+        ship.into_string(),
+        vec![ManifestTrial { manoeuvre, depth_m, ..ManifestTrial::of(file) }],
+    )?;
     let stream = request.with_limited_body().into_body().into_data_stream().map_err(interrupted);
     Ok(Upload {
         manifest,
