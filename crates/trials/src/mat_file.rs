@@ -6,13 +6,13 @@ use crate::clock::Clock;
 use crate::findings::Findings;
 use crate::limits::Limits;
 use crate::mapping::Mapping;
-use sistership_containers::mat_elements::{Array, visit};
 use crate::number::Fault;
 use crate::resolve::resolve;
 use crate::rows::Builder;
 use crate::table::{Column, Table, Target, width};
 use crate::taker::Taker;
 use crate::workbook::ReadSeek;
+use sistership_containers::mat_elements::{Array, visit};
 
 /// Columns of a matrix, and columns in all, that are offered.
 const WIDE: usize = 200;

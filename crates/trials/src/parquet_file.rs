@@ -16,11 +16,11 @@ use crate::findings::Findings;
 use crate::limits::{Limits, too_many};
 use crate::mapping::Mapping;
 use crate::number::Fault;
-use sistership_containers::pages::{self, Held, held};
 use crate::resolve::resolve;
 use crate::stream;
 use crate::table::{Column, Table, width};
 use crate::taker::{RowsFile, Taker, time_at};
+use sistership_containers::pages::{self, Held, held};
 
 /// Reads the mapped columns; nothing after errors that leave nothing to check.
 ///

@@ -5,13 +5,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use calamine::{Data, DataRef, ExcelDateTime, Reader, Xlsx, XlsxCellReader, XlsxError};
 
-use sistership_containers::archive;
 use crate::csv_file;
 use crate::findings::Findings;
 use crate::layout;
 use crate::limits::Limits;
 use crate::mapping::Mapping;
 use crate::table::Table;
+use sistership_containers::archive;
 
 /// What files are read from that are not read from start to end.
 pub(crate) trait ReadSeek: Read + Seek {}
