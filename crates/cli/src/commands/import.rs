@@ -120,7 +120,8 @@ fn folder(files: &[PathBuf]) -> &Path {
 
 /// The ship's length: as given, or of the ship of that name in the zoo.
 fn length(zoo: &Zoo, arguments: &ImportArguments) -> Option<f64> {
-    let known = || zoo.vessel(&arguments.ship)?.particulars.get("lpp_m").map(|quantity| quantity.value);
+    let known =
+        || zoo.vessel(&arguments.ship)?.particulars.get("lpp_m").map(|quantity| quantity.value);
     arguments.length.or_else(known)
 }
 
