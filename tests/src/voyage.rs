@@ -30,7 +30,7 @@ pub enum Order {
     Zigzag(f64, f64),
     /// Rudder, and for how long.
     Turn(f64, f64),
-    /// Rudder for so long, then amidships for as long.
+    /// Rudder for so long, then amidships for a third of it, until the ship keeps straight.
     PullOut(f64, f64),
 }
 
@@ -166,7 +166,7 @@ impl Pilot {
             }
             Order::Turn(rudder, for_s) => (rudder, t_s - since_s > for_s),
             Order::PullOut(rudder, for_s) if t_s - since_s < for_s => (rudder, false),
-            Order::PullOut(_, for_s) => (0.0, t_s - since_s > 2.0 * for_s),
+            Order::PullOut(_, for_s) => (0.0, t_s - since_s > 4.0 / 3.0 * for_s),
         };
         if !is_over {
             return rudder_deg.to_radians();

@@ -15,12 +15,12 @@ pub(crate) struct Asked<'a> {
     pub mapping: &'a Mapping,
 }
 
-/// Reads stretches; what was found of the header, each is told.
+/// Reads stretches; what was found of the header, each is told. One that is not there has no table.
 pub(crate) fn read(
     mut file: impl RowsFile,
     asked: &[Asked],
     header: &Findings,
-) -> Vec<(Table, Findings)> {
+) -> Vec<(Option<Table>, Findings)> {
     let mut findings = vec![header.clone(); asked.len()];
     let columns = file.columns().to_vec();
     let builder = |(asked, findings)| Builder::new(columns.clone(), missing(asked), findings);
@@ -39,10 +39,11 @@ pub(crate) fn read(
         let open = is_open.then_some(StretchFault::Open);
         let empty = window.filter(|_| table.rows.is_empty() && !findings.has_errors());
         let empty = empty.map(|Window { from_s, to_s }| StretchFault::NoRow { from_s, to_s });
-        if let Some(fault) = open.or(faults[at].clone()).or(outside).or(empty) {
+        let fault = open.or(faults[at].clone()).or(outside).or(empty);
+        if let Some(fault) = &fault {
             findings.error(None, None, fault.to_string());
         }
-        read.push((table, findings));
+        read.push((fault.is_none().then_some(table), findings));
     }
     read
 }

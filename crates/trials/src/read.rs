@@ -103,10 +103,7 @@ pub(crate) fn stretches(input: Content, requests: Vec<StretchRequest>) -> Vec<Ex
         each_row(input, first.mapping, &mut header, visit)
     });
     let nothing = || parts.iter().map(|_| (None, header.clone())).collect();
-    let tables: Vec<(Option<Table>, Findings)> = match tables {
-        Some(read) => read.into_iter().map(|(table, found)| (Some(table), found)).collect(),
-        None => nothing(),
-    };
+    let tables: Vec<(Option<Table>, Findings)> = tables.unwrap_or_else(nothing);
     let each = requests.into_iter().zip(tables);
     each.map(|(StretchRequest { name, mapping, sensors }, (table, findings))| {
         finish(name, table, sensors, mapping, findings)
@@ -123,7 +120,7 @@ pub(crate) trait Visit {
 struct PartsVisit<'a>(&'a [Asked<'a>]);
 
 impl Visit for PartsVisit<'_> {
-    type Output = Vec<(Table, Findings)>;
+    type Output = Vec<(Option<Table>, Findings)>;
 
     fn visit(self, file: impl RowsFile, header: &Findings) -> Self::Output {
         parts::read(file, self.0, header)

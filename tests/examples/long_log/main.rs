@@ -169,16 +169,17 @@ fn compare(answer: &Value, manoeuvres: &[(Order, f64, f64)]) {
         log["rudder_scatter_deg"]
     );
     for &(order, from_s, to_s) in manoeuvres {
-        let holds = |one: &&Value| number(&one["from_s"]) <= from_s && to_s <= number(&one["to_s"]);
-        match stretches.iter().find(holds) {
+        let meets = |one: &&Value| number(&one["from_s"]) <= to_s && from_s <= number(&one["to_s"]);
+        let sailed = format!("  {order:<22} {from_s:>9.1} to {to_s:>9.1} s:");
+        match stretches.iter().find(meets) {
             Some(one) => println!(
-                "  {order:<22} {from_s:>9.1} to {to_s:>9.1} s: begins {:>5.1} s before, ends {:>6.1} s after: {} ({})",
+                "{sailed} begins {:>5.1} s before, ends {:>6.1} s after: {} ({})",
                 from_s - number(&one["from_s"]),
                 number(&one["to_s"]) - to_s,
                 one["kind"].as_str().unwrap_or("?"),
                 one["why"].as_str().unwrap_or("?"),
             ),
-            None => println!("  {order:<22} {from_s:>9.1} to {to_s:>9.1} s: NOT FOUND WHOLE"),
+            None => println!("{sailed} NOT FOUND"),
         }
     }
     let steady = log["steady"].as_array().cloned().unwrap_or_default();

@@ -67,8 +67,8 @@ fn refined(folder: &Path, manifest: &Path) {
     let ship = folder.join("ship.yaml");
     let file = std::fs::read_to_string(manifest).expect("a manifest");
     let line = |key: &str| {
-        let found = file.lines().filter_map(|line| line.trim().strip_prefix(key));
-        found.last().expect("a stretch").trim().to_owned()
+        let mut found = file.lines().filter_map(|line| line.trim().strip_prefix(key));
+        found.next_back().expect("a stretch").trim().to_owned()
     };
     let last = |text: String| text.trim_end_matches(".0").to_owned();
     let name = format!("log.csv#t={},{}", last(line("from:")), last(line("to:")));
