@@ -1,4 +1,5 @@
-//! A batch of jobs, four worker processes on one database, and one of them killed every few seconds in the middle of a job.
+//! A batch of jobs, four worker processes on one database, and one of them killed every few seconds
+//! in the middle of a job.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -50,7 +51,8 @@ impl Fleet {
         self.workers.push(TestWorker::start(&self.server, LEASE_S));
     }
 
-    /// Kills a worker that holds a job which has not lost one yet (two losses would be the job's own fault).
+    /// Kills a worker that holds a job which has not lost one yet (two losses would be the job's
+    /// own fault).
     async fn kill_one(&mut self) {
         loop {
             assert!(

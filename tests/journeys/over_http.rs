@@ -79,7 +79,8 @@ async fn journey(server: TestServer) {
     ]);
 }
 
-/// What scripts depend on: the paths and types of the answers, held by snapshots (`INSTA_UPDATE=always` rewrites them).
+/// What scripts depend on: the paths and types of the answers, held by snapshots
+/// (`INSTA_UPDATE=always` rewrites them).
 pub fn shapes(answers: &[(&str, &Value)]) {
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path("../snapshots");

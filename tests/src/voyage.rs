@@ -20,7 +20,8 @@ const STEP_S: f64 = 0.5;
 const NOISE: [f64; 9] = [3e-3, 3e-3, 5e-5, 2e-4, 5e-4, 5e-4, 0.3, 0.3, 5e-4];
 /// Yaw acceleration by waves, rad/s2, and its frequency, rad/s.
 const WAVES: (f64, f64) = (1.5e-3, 0.75);
-/// Standard deviation of the accelerations by gusts, m/s2, and of yaw, rad/s2; how long they last, s.
+/// Standard deviation of the accelerations by gusts, m/s2, and of yaw, rad/s2; how long they last,
+/// s.
 const GUSTS: ([f64; 3], f64) = ([2e-3, 2e-3, 1e-5], 30.0);
 
 /// Angles in deg, times in s.

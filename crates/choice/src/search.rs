@@ -1,6 +1,6 @@
 //! Successive halving over entrants (Karnin, Koren, Somekh 2013, ICML, Algorithm 3; Jamieson and
-//! Talwalkar 2016, AISTATS, Algorithm 1): on each rung a share of them goes on to the next, costlier
-//! estimator.
+//! Talwalkar 2016, AISTATS, Algorithm 1): on each rung a share of them goes on to the next,
+//! costlier estimator.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -86,7 +86,8 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     taken(search, tried)
 }
 
-/// Weighs entrants on a rung, whose progress begins at a fraction of the whole and takes a span of it.
+/// Weighs entrants on a rung, whose progress begins at a fraction of the whole and takes a span of
+/// it.
 fn climb(
     search: &Search<'_>,
     rung: Rung,

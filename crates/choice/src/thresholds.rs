@@ -14,9 +14,9 @@ pub(super) struct SearchThresholds {
     /// Fewer trials are left out in parts, a count. Source: derived: of two, each is fitted by the
     /// other alone, and a scatter has one degree of freedom.
     pub few: usize,
-    /// `lambda_k`: strengths of the prior that are tried in weak form, dimensionless. Source: derived:
-    /// every second to fourth of those that a named method tries; the next rung tries their
-    /// neighbours.
+    /// `lambda_k`: strengths of the prior that are tried in weak form, dimensionless. Source:
+    /// derived: every second to fourth of those that a named method tries; the next rung tries
+    /// their neighbours.
     pub strengths: [f64; 8],
     /// Strengths that trajectories begin with, by the best in weak form, dimensionless. Source:
     /// derived: half a decade to either side.

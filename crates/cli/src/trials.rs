@@ -100,7 +100,8 @@ pub fn place(finding: &Finding) -> String {
     format!("{row}{column}{}", finding.message)
 }
 
-/// Trials of the same file name are told apart by their folder's; the same file twice would count twice.
+/// Trials of the same file name are told apart by their folder's; the same file twice would count
+/// twice.
 fn name_apart(read: &mut [ReadTrial]) -> Result<(), Failure> {
     for index in 1..read.len() {
         let (earlier, rest) = read.split_at_mut(index);

@@ -1,7 +1,9 @@
-//! The pages of a Parquet file's columns, measured by their headers before anything is decompressed.
+//! The pages of a Parquet file's columns, measured by their headers before anything is
+//! decompressed.
 //!
-//! The library allocates what a page's header declares, and gives gzip whatever it grows to: headers are read here first, by
-//! Thrift's compact protocol, and gzip is let run to its end without keeping any of it.
+//! The library allocates what a page's header declares, and gives gzip whatever it grows to:
+//! headers are read here first, by Thrift's compact protocol, and gzip is let run to its end
+//! without keeping any of it.
 
 use std::io::{self, Read};
 
@@ -19,7 +21,8 @@ const FOOTER_DEPTH: usize = 16;
 /// Bytes of a page header, its statistics included.
 const HEADER_BYTES: u64 = 64 << 10;
 
-/// What reading a column holds at a time, bytes: its dictionary, and a page as it lies in the file and as it is in memory.
+/// What reading a column holds at a time, bytes: its dictionary, and a page as it lies in the file
+/// and as it is in memory.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Held {
     dictionary: u64,
@@ -83,8 +86,9 @@ pub fn held<R: ChunkReader>(
     Ok(held)
 }
 
-/// Goes through what a file says of itself: `bytes` of Thrift before the last eight. The library believes the length of each
-/// list, and goes on for seconds over one that is said to have two thousand million entries in a file of fifty bytes.
+/// Goes through what a file says of itself: `bytes` of Thrift before the last eight. The library
+/// believes the length of each list, and goes on for seconds over one that is said to have two
+/// thousand million entries in a file of fifty bytes.
 ///
 /// # Errors
 /// It holds less than it says, or is nested too deeply.
@@ -225,8 +229,9 @@ impl<R: Read> Thrift<R> {
         }
     }
 
-    /// Each entry takes a byte or more, so that what is not there ends it. Lists of truths are in neither a footer nor a page
-    /// header, and the library passes over one without reading a byte of it, however long it says to be.
+    /// Each entry takes a byte or more, so that what is not there ends it. Lists of truths are in
+    /// neither a footer nor a page header, and the library passes over one without reading a byte
+    /// of it, however long it says to be.
     fn list(
         &mut self,
         path: &mut Vec<i16>,

@@ -92,8 +92,8 @@ pub struct Band {
     pub pass: Option<f64>,
 }
 
-/// Models drawn from the posterior of one; none where it has none, or none of its present coefficients, or where no sample is
-/// asked for.
+/// Models drawn from the posterior of one; none where it has none, or none of its present
+/// coefficients, or where no sample is asked for.
 pub fn draws(model: &Model, sampling: Sampling) -> Option<Vec<Model>> {
     let posterior = model.posterior().filter(|_| sampling.samples > 0)?;
     let root = posterior.root().ok()?;
@@ -122,8 +122,9 @@ fn shifted(model: &Model, names: &[String], moved: &[f64], side: f64) -> Model {
     model
 }
 
-/// The bands of the standard manoeuvres; none where the model has no posterior of its present coefficients. Where no step is
-/// given, a fiftieth of the time in which the ship sails her length. `depth_m` is for laws that know it.
+/// The bands of the standard manoeuvres; none where the model has no posterior of its present
+/// coefficients. Where no step is given, a fiftieth of the time in which the ship sails her length.
+/// `depth_m` is for laws that know it.
 pub fn bands(
     model: &Model,
     law: &Law,
@@ -231,8 +232,9 @@ fn band(figures: &[Figure], draws: usize) -> Option<Band> {
     })
 }
 
-/// A quantile of sorted values, straight between them (Hyndman and Fan 1996, The American Statistician 50, 361-365,
-/// definition 6: without the shrinking of the tails that definition 7 has).
+/// A quantile of sorted values, straight between them (Hyndman and Fan 1996, The American
+/// Statistician 50, 361-365, definition 6: without the shrinking of the tails that definition 7
+/// has).
 fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let last = sorted.len().checked_sub(1)?;
     let place = (share * (sorted.len() + 1) as f64 - 1.0).clamp(0.0, last as f64);

@@ -1,10 +1,11 @@
 //! How much wider a posterior should be, by what its folds disagree.
 //!
-//! A posterior by the noise of the readings alone takes the law for true. Models that each missed some
-//! of the trials differ by what the law cannot follow, too: their scatter is the jackknife's estimate
-//! of a figure's variance, `(g - 1) / g sum (f_i - mean f)^2` over `g` folds (Efron and Tibshirani
-//! 1993, An introduction to the bootstrap, Eq. 11.5), beside which stands that of the posterior. Few
-//! folds tell a variance badly, so that what holds 95 % is Student's, not the normal's.
+//! A posterior by the noise of the readings alone takes the law for true. Models that each missed
+//! some of the trials differ by what the law cannot follow, too: their scatter is the jackknife's
+//! estimate of a figure's variance, `(g - 1) / g sum (f_i - mean f)^2` over `g` folds (Efron and
+//! Tibshirani 1993, An introduction to the bootstrap, Eq. 11.5), beside which stands that of the
+//! posterior. Few folds tell a variance badly, so that what holds 95 % is Student's, not the
+//! normal's.
 
 use sistership_model::Model;
 use sistership_model::law::Law;
@@ -19,8 +20,8 @@ const DRAWS: usize = 40;
 const NORMAL: f64 = 1.959_964;
 
 /// The root of the jackknife's variance by the posterior's, in the mean over the figures of the
-/// standard manoeuvres, by Student's quantile to the normal's; at least one, and one where fewer than
-/// three folds sail them.
+/// standard manoeuvres, by Student's quantile to the normal's; at least one, and one where fewer
+/// than three folds sail them.
 pub(crate) fn fold_factor(model: &Model, law: &Law, folds: &[Model]) -> f64 {
     let sampling = Sampling { samples: DRAWS, seed: 1 };
     let drawn = draws(model, sampling).and_then(|draws| figures(model, law, &draws));
@@ -40,8 +41,8 @@ pub(crate) fn fold_factor(model: &Model, law: &Law, folds: &[Model]) -> f64 {
     (student(left_out.len() - 1) / NORMAL * mean.sqrt()).max(1.0)
 }
 
-/// Student's quantile of 97.5 % for some degrees of freedom (Abramowitz and Stegun 1964, Handbook of
-/// mathematical functions, Eq. 26.7.5, two terms: 4 % low for three degrees, 1 % for five).
+/// Student's quantile of 97.5 % for some degrees of freedom (Abramowitz and Stegun 1964, Handbook
+/// of mathematical functions, Eq. 26.7.5, two terms: 4 % low for three degrees, 1 % for five).
 fn student(degrees: usize) -> f64 {
     let (x, degrees) = (NORMAL, degrees as f64);
     let first = (x.powi(3) + x) / 4.0;

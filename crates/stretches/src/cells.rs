@@ -1,4 +1,5 @@
-//! The intervals that a log is judged by: about half of the time in which the ship sails her length.
+//! The intervals that a log is judged by: about half of the time in which the ship sails her
+//! length.
 
 use crate::blocks::{Blocks, joined};
 use crate::thresholds::StretchThresholds;

@@ -10,9 +10,9 @@ pub(crate) struct StretchThresholds {
     /// Source: merchant ships in service have 0.15 to 0.25 (Molland, Turnock and Hudson, Ship
     /// Resistance and Propulsion, 2011).
     pub froude: f64,
-    /// `t_c`: time over which rudder, revolutions and yaw are averaged, by `T`. Source: derived: longer
-    /// than the period of waves met (6 to 12 s, where `T` is 15 to 40 s), shorter than a zigzag
-    /// holds its rudder (2 to 4 `T`).
+    /// `t_c`: time over which rudder, revolutions and yaw are averaged, by `T`. Source: derived:
+    /// longer than the period of waves met (6 to 12 s, where `T` is 15 to 40 s), shorter than a
+    /// zigzag holds its rudder (2 to 4 `T`).
     pub cell: f64,
     /// `t_w`: time over which the steady level and scatter are taken, by `T`. Source: the test
     /// table; at 10 knots and 150 m about two hours, in which weather and load hardly change.
@@ -25,8 +25,9 @@ pub(crate) struct StretchThresholds {
     /// `z_q`: that quantile of the absolute value of a standard normal variable. Source: derived
     /// from `q`.
     pub normal: f64,
-    /// `k`: scatters beyond which a control moves, dimensionless. Source: derived: a normal variable
-    /// is beyond six once in 5e8; a month has 1e5 to 1e6 intervals. The test table has half and double.
+    /// `k`: scatters beyond which a control moves, dimensionless. Source: derived: a normal
+    /// variable is beyond six once in 5e8; a month has 1e5 to 1e6 intervals. The test table has
+    /// half and double.
     pub controls: f64,
     /// `delta_0`: least movement of the rudder, rad. Source: derived: half of the 5 deg of the
     /// smallest zigzag that is sailed as a standard.
@@ -55,13 +56,14 @@ pub(crate) struct StretchThresholds {
     /// `t_s`: time after the last answer, by `T`. Source: as `t_l`.
     pub settle: f64,
     /// `t_log`: records longer than this are logs, by `T`. Source: derived: three full circles and
-    /// a zigzag of five reversals are sailed within 100; a programme of a whole afternoon within 400.
+    /// a zigzag of five reversals are sailed within 100; a programme of a whole afternoon within
+    /// 400.
     pub log: f64,
     /// Share of a log that its stretches are at most, dimensionless. Source: derived from `q`:
     /// beyond, what is steady is not known well.
     pub most: f64,
-    /// `t_d`: steady spans shorter than this are not listed, by `T`. Source: derived: a drift of the
-    /// model shows over many lengths sailed, and a list is to be read.
+    /// `t_d`: steady spans shorter than this are not listed, by `T`. Source: derived: a drift of
+    /// the model shows over many lengths sailed, and a list is to be read.
     pub steady: f64,
 }
 
@@ -90,17 +92,17 @@ pub(crate) const THRESHOLDS: StretchThresholds = StretchThresholds {
 /// How manoeuvres are named.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct KindThresholds {
-    /// Part of the largest rudder angle that counts as holding it, dimensionless. Source: derived: a
-    /// helmsman who meets a turn uses less than he turned with, a zigzag the same angle.
+    /// Part of the largest rudder angle that counts as holding it, dimensionless. Source: derived:
+    /// a helmsman who meets a turn uses less than he turned with, a zigzag the same angle.
     pub hold: f64,
-    /// Holds of alternating sides that are a zigzag, a count. Source: ITTC 7.5-04-02-01: one execute
-    /// and two reversals give the first two overshoots.
+    /// Holds of alternating sides that are a zigzag, a count. Source: ITTC 7.5-04-02-01: one
+    /// execute and two reversals give the first two overshoots.
     pub zigzag: usize,
     /// Change of heading from which a turn is one, rad. Source: ITTC 7.5-04-02-01: the tactical
     /// diameter is taken at half a turn.
     pub turn_rad: f64,
-    /// Change of heading that is a course change, rad. Source: as `turn_rad`: figures of the initial
-    /// turn are taken from 10 deg; half of it.
+    /// Change of heading that is a course change, rad. Source: as `turn_rad`: figures of the
+    /// initial turn are taken from 10 deg; half of it.
     pub course_rad: f64,
     /// Time that the rudder is amidships while the ship turns on, for a pull-out, by `T`. Source:
     /// derived: longer than the rudder passes amidships when a turn is met.

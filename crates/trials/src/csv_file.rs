@@ -23,8 +23,8 @@ const CHUNK: u64 = 4096;
 
 /// Reads the mapped columns; nothing after errors that leave nothing to check.
 ///
-/// A row's number is that of the line in which it starts, as an editor shows it: the first line is 1, blank lines count, and
-/// so do those within quoted cells.
+/// A row's number is that of the line in which it starts, as an editor shows it: the first line is
+/// 1, blank lines count, and so do those within quoted cells.
 pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
     stream::whole(CsvRows::open(input, mapping, findings)?, mapping, findings)
 }
@@ -87,7 +87,8 @@ impl<R: Read> RowsFile for CsvRows<R> {
     }
 }
 
-/// The most rows that there can be, and the columns that are read; none where the header is no good.
+/// The most rows that there can be, and the columns that are read; none where the header is no
+/// good.
 pub(crate) fn measure(mut input: impl Read, mapping: &Mapping) -> Option<(usize, usize)> {
     let (mut rows, mut before, mut start) = (1, 0, Vec::new());
     input.by_ref().take(mapping.limits.line_bytes as u64).read_to_end(&mut start).ok()?;
@@ -270,7 +271,8 @@ impl Reading {
     }
 }
 
-/// The line in which the record that was just read starts. Its end is known: one line end after it, and those inside.
+/// The line in which the record that was just read starts. Its end is known: one line end after it,
+/// and those inside.
 fn line(reader: &csv::Reader<impl Read>, record: &ByteRecord) -> usize {
     let inside = record.as_slice().iter().filter(|&&byte| byte == b'\n').count();
     usize::try_from(reader.position().line()).unwrap_or(usize::MAX).saturating_sub(1 + inside)

@@ -23,10 +23,12 @@ pub struct Loaded {
     pub trials: Vec<Result<Trial, Refusal>>,
 }
 
-/// Reads a manifest (`.yaml`, `.yml`) with all its files, or a CSV or Parquet file with canonical column names.
+/// Reads a manifest (`.yaml`, `.yml`) with all its files, or a CSV or Parquet file with canonical
+/// column names.
 ///
 /// # Errors
-/// The manifest is wrong, or the path cannot be read. A single trial that is refused is no error of the whole.
+/// The manifest is wrong, or the path cannot be read. A single trial that is refused is no error of
+/// the whole.
 pub fn load_path(path: &Path) -> Result<Loaded, FileError> {
     let (manifest, mut trials) = each(path, |name, examined| match examined {
         Ok(examined) => examined.trial(name),

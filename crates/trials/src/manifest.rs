@@ -16,8 +16,8 @@ use crate::units::Kind;
 /// Reads a manifest; `file_name` is only for messages.
 ///
 /// # Errors
-/// Names line and field of what is wrong: the YAML, an unknown channel or unit, a path that leaves the folder, a file
-/// named twice, impossible smoothing.
+/// Names line and field of what is wrong: the YAML, an unknown channel or unit, a path that leaves
+/// the folder, a file named twice, impossible smoothing.
 pub fn read_manifest(file_name: &str, text: &str) -> Result<Manifest, FileError> {
     let file = read_manifest_file(file_name, text)?;
     if file.is_plain() {
@@ -174,7 +174,8 @@ fn declarations(declared: &Declarations) -> Option<Problem> {
     })
 }
 
-/// Whether a path names something below the folder on any system: a backslash or colon would mean more on Windows.
+/// Whether a path names something below the folder on any system: a backslash or colon would mean
+/// more on Windows.
 fn stays_inside(path: &str) -> bool {
     let plain = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
     !path.is_empty() && !path.contains(['\\', ':', '\0']) && Path::new(path).components().all(plain)

@@ -25,12 +25,14 @@ pub struct Mapping {
     pub stretch: Option<Stretch>,
     /// Bounds on the file.
     pub limits: Limits,
-    /// Rows that room is made for before any is read, so that columns need not grow; see [`crate::demand`].
+    /// Rows that room is made for before any is read, so that columns need not grow; see
+    /// [`crate::demand`].
     pub room: usize,
 }
 
 impl Mapping {
-    /// The mapping of a file whose columns have canonical names and whose signs are the canonical ones.
+    /// The mapping of a file whose columns have canonical names and whose signs are the canonical
+    /// ones.
     pub fn canonical() -> Self {
         Self::default()
     }

@@ -64,7 +64,8 @@ fn pages_are_measured_without_being_read() {
 
 #[test]
 fn a_header_that_lies_is_found_out_before_its_page_is_unpacked() {
-    // Eight million bytes of one number take a few thousand in gzip; the header is made to say that they are fewer.
+    // Eight million bytes of one number take a few thousand in gzip; the header is made to say that
+    // they are fewer.
     for version in [WriterVersion::PARQUET_1_0, WriterVersion::PARQUET_2_0] {
         let bytes = file(1_000_000, one_page(Compression::GZIP(GzipLevel::default()), version));
         let reader = SerializedFileReader::new(bytes.clone()).unwrap();

@@ -51,7 +51,8 @@ pub(crate) struct ParquetRows<R: ChunkReader + 'static> {
 }
 
 impl<R: ChunkReader + 'static> ParquetRows<R> {
-    /// Reads what the file says of itself; nothing after errors. Rows are counted by who holds them.
+    /// Reads what the file says of itself; nothing after errors. Rows are counted by who holds
+    /// them.
     pub(crate) fn open(input: R, mapping: &Mapping, findings: &mut Findings) -> Option<Self> {
         let limits = Limits { rows: usize::MAX, ..mapping.limits };
         let Mapped { columns, rows, .. } = mapped(&input, mapping, limits, findings)?;
@@ -105,7 +106,8 @@ impl<R: ChunkReader + 'static> RowsFile for ParquetRows<R> {
     }
 }
 
-/// Rows, columns that are read, and bytes that pages take at a time; nothing of a file that will be refused.
+/// Rows, columns that are read, and bytes that pages take at a time; nothing of a file that will be
+/// refused.
 pub(crate) fn measure<R: ChunkReader + 'static>(
     input: &R,
     mapping: &Mapping,
@@ -149,7 +151,8 @@ fn mapped<R: ChunkReader + 'static>(
     (!findings.has_errors()).then_some(Mapped { columns, rows, holding })
 }
 
-/// The library asserts some of what a file says of itself; on a file that lies, such a panic becomes an error.
+/// The library asserts some of what a file says of itself; on a file that lies, such a panic
+/// becomes an error.
 pub(crate) fn guarded<T>(work: impl FnOnce() -> ParquetResult<T>) -> ParquetResult<T> {
     let contradiction = |_| Err(ParquetError::General("it contradicts itself".into()));
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(contradiction)
@@ -255,7 +258,8 @@ fn check_types(schema: &SchemaDescriptor, columns: &[Column], findings: &mut Fin
     }
 }
 
-/// Dates, times and decimals are integers too, but not of the column's unit: what is not known to be a number is refused.
+/// Dates, times and decimals are integers too, but not of the column's unit: what is not known to
+/// be a number is refused.
 fn is_number(column: &ColumnDescriptor) -> bool {
     use ConvertedType as C;
     let plain = matches!(column.logical_type_ref(), None | Some(LogicalType::Integer { .. }))
@@ -327,8 +331,8 @@ fn group_rows(group: &dyn RowGroupReader) -> ParquetResult<usize> {
         .map_err(|_| ParquetError::General("a row group has a negative number of rows".into()))
 }
 
-/// A column of a row group as f64, decoded some rows at a time; a null becomes NaN, and so does an integer beyond 2^53, which no
-/// f64 holds exactly.
+/// A column of a row group as f64, decoded some rows at a time; a null becomes NaN, and so does an
+/// integer beyond 2^53, which no f64 holds exactly.
 pub(crate) struct Cells {
     reader: ColumnReader,
     full: i16,

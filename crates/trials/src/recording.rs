@@ -1,4 +1,5 @@
-//! A trial on its way through the checks: canonical samples, and the row and column that each came from.
+//! A trial on its way through the checks: canonical samples, and the row and column that each came
+//! from.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

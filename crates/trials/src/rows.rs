@@ -179,7 +179,8 @@ impl Taker for Builder<'_> {
             .for_each(|(values, &value)| values.push(value));
     }
 
-    /// A row that ends before the header does: left out as one without a value, or told by whoever counts the cells.
+    /// A row that ends before the header does: left out as one without a value, or told by whoever
+    /// counts the cells.
     fn short(&mut self, row: usize) {
         if self.drops()
             && let Some(column) = self.table.columns.last()

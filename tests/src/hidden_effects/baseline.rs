@@ -14,7 +14,8 @@ pub struct Baseline {
     pub law: Arc<Law>,
 }
 
-/// The fitted model of the benchmark; `DIAGNOSIS_SOURCE` names another source ship than the Mariner.
+/// The fitted model of the benchmark; `DIAGNOSIS_SOURCE` names another source ship than the
+/// Mariner.
 pub static BASELINE: LazyLock<Baseline> = LazyLock::new(|| {
     let source = std::env::var("DIAGNOSIS_SOURCE").unwrap_or_else(|_| "mariner".into());
     let trials = trials(&Hidden::default(), &programme(), 0);

@@ -43,8 +43,8 @@ pub struct ImportArguments {
     /// Where the manifest goes; `trials.yaml` beside the files where absent.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// The ship's length between perpendiculars: stretches of a long log are told by lengths sailed. Where absent, that of
-    /// the zoo's ship of this name, or else one that suits the speed.
+    /// The ship's length between perpendiculars: stretches of a long log are told by lengths
+    /// sailed. Where absent, that of the zoo's ship of this name, or else one that suits the speed.
     #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
     length: Option<f64>,
     /// Print one JSON document.

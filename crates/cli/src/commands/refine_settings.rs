@@ -30,7 +30,8 @@ pub fn settings_file(path: &Path) -> Result<Settings, Failure> {
     Ok(settings)
 }
 
-/// The trials to be kept out by their names: each may be given as the trial is called or as its file is written.
+/// The trials to be kept out by their names: each may be given as the trial is called or as its
+/// file is written.
 ///
 /// # Errors
 /// Lists the trials there are.

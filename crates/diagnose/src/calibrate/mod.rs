@@ -27,9 +27,10 @@ use super::thresholds::THRESHOLDS;
 use crate::residual::{Columns, Discrepancies, EffectCandidate, Instrument, Noise, Nuisance};
 use sistership_estimate::refine::RefineError;
 
-/// What the trials that a model was fitted on leave open, to be kept with it. Terms of the library's grammar that the model
-/// lacks are learned too, as far as those trials show them; and what effects would explain of these trials, which do not
-/// have them, is kept to judge them by later.
+/// What the trials that a model was fitted on leave open, to be kept with it. Terms of the
+/// library's grammar that the model lacks are learned too, as far as those trials show them; and
+/// what effects would explain of these trials, which do not have them, is kept to judge them by
+/// later.
 ///
 /// # Errors
 /// Names the channel that a trial lacks, or says that the information is not positive.
@@ -96,7 +97,8 @@ fn by_instruments(
     })
 }
 
-/// What the trials teach by one linearisation about the model as it is, and the discrepancies by that.
+/// What the trials teach by one linearisation about the model as it is, and the discrepancies by
+/// that.
 fn first_shift(
     model: &Model,
     law: &Law,

@@ -1,5 +1,5 @@
-//! What instruments do wrong on the trials that a model was fitted on. Later trials are read by the same ones: an error that
-//! was there before is not new, and left alone it would hide what is.
+//! What instruments do wrong on the trials that a model was fitted on. Later trials are read by the
+//! same ones: an error that was there before is not new, and left alone it would hide what is.
 
 use std::sync::Arc;
 

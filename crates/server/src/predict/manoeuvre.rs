@@ -97,7 +97,8 @@ impl ManoeuvreRequest {
         }
     }
 
-    /// The settings; they are refused where the run, of 60 lengths at most, would be out of all proportion.
+    /// The settings; they are refused where the run, of 60 lengths at most, would be out of all
+    /// proportion.
     fn settings(&self, ship: &mut Ship, most: usize) -> Result<ManoeuvreSettings> {
         let speed = positive(
             "manoeuvre.speed_m_s",

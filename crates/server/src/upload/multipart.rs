@@ -106,7 +106,8 @@ impl Parts {
         }
     }
 
-    /// By its whole path; else by its name alone, where only one has it: many programs send no more than that.
+    /// By its whole path; else by its name alone, where only one has it: many programs send no more
+    /// than that.
     fn find(&self, path: &str) -> Option<usize> {
         let exact = self.files.iter().position(|part| part.name == path || part.field == path);
         let base = |path: &str| path.rsplit('/').next().map(str::to_owned);

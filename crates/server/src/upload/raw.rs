@@ -35,7 +35,8 @@ pub(crate) struct RawQuery {
     /// Water depth, m; absent for deep water.
     #[param(inline)]
     pub depth_m: Option<Positive>,
-    /// `false` where the ship's champion is not to be diagnosed on these trials; read for every form of upload.
+    /// `false` where the ship's champion is not to be diagnosed on these trials; read for every
+    /// form of upload.
     pub diagnose: Option<bool>,
 }
 
