@@ -12,6 +12,7 @@ use crate::choice::{chosen, standard_error};
 use crate::entrant::Entrant;
 use crate::ladder::{Ladder, Line, Rung};
 use crate::thresholds::SEARCH;
+use sistership_estimate::bands::Sampling;
 use sistership_estimate::refine::{
     Extent, Family, Progress, RefineError, Refinement, Request, Settings, Weighed, refine_wanted,
     weigh,
@@ -64,6 +65,7 @@ pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Ref
         in_parts,
         steering_from_trials: true,
         posterior_by_folds: true,
+        bands: Sampling { within_steps: true, ..search.settings.bands },
         ..search.settings.clone()
     };
     climbed(&Search { settings: &settings, ..*search }, progress)

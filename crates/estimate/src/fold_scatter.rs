@@ -23,7 +23,7 @@ const NORMAL: f64 = 1.959_964;
 /// standard manoeuvres, by Student's quantile to the normal's; at least one, and one where fewer
 /// than three folds sail them.
 pub(crate) fn fold_factor(model: &Model, law: &Law, folds: &[Model]) -> f64 {
-    let sampling = Sampling { samples: DRAWS, seed: 1 };
+    let sampling = Sampling { samples: DRAWS, ..Sampling::default() };
     let drawn = draws(model, sampling).and_then(|draws| figures(model, law, &draws));
     let left_out = figures(model, law, folds).filter(|left_out| left_out.len() > 2);
     let (Some(drawn), Some(left_out)) = (drawn, left_out) else { return 1.0 };
