@@ -82,7 +82,8 @@ fn rate(count: usize, elapsed: Duration) -> String {
     format!("{:.0}", count as f64 / elapsed.as_secs_f64())
 }
 
-/// Does `count` pieces of work over some clients, each of which takes the next piece as soon as it is done with one.
+/// Does `count` pieces of work over some clients, each of which takes the next piece as soon as it
+/// is done with one.
 async fn over<F>(
     clients: usize,
     count: usize,
@@ -161,7 +162,8 @@ async fn read(registry: &Registry, sizes: &Sizes, pace: Option<usize>) -> Result
     }
 }
 
-/// Each connection asks at its own even beat; a late answer delays the next question, and that delay counts as its time.
+/// Each connection asks at its own even beat; a late answer delays the next question, and that
+/// delay counts as its time.
 async fn paced(
     registry: &Registry,
     models: usize,

@@ -1,10 +1,13 @@
-//! The same requests against registries of models, one after the other, and a table of what came of them.
+//! The same requests against registries of models, one after the other, and a table of what came of
+//! them.
 //!
-//! `cargo run --release -p sistership-tests --example registry -- --sistership http://127.0.0.1:8080 --mlflow http://127.0.0.1:5000`
+//! `cargo run --release -p sistership-tests --example registry -- --sistership
+//! http://127.0.0.1:8080 --mlflow http://127.0.0.1:5000`
 //!
-//! Each must be empty of models called `bench-...`; what is made stays. `--models`, `--versions`, `--reads`, `--creations` and
-//! `--moves` set how many; by default 100 models of 100 versions, 20000 reads, 2000 concurrent creations, 500 concurrent moves.
-//! An API key is read from `SISTERSHIP_API_KEY`.
+//! Each must be empty of models called `bench-...`; what is made stays. `--models`, `--versions`,
+//! `--reads`, `--creations` and `--moves` set how many; by default 100 models of 100 versions,
+//! 20000 reads, 2000 concurrent creations, 500 concurrent moves. An API key is read from
+//! `SISTERSHIP_API_KEY`.
 
 mod drive;
 mod mlflow;

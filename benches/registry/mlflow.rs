@@ -1,5 +1,6 @@
-//! An MLflow tracking server, by its REST API (<https://mlflow.org/docs/latest/rest-api.html>). A version of its registry is a
-//! reference to files that are kept elsewhere; the reference alone is made and read here.
+//! An MLflow tracking server, by its REST API (<https://mlflow.org/docs/latest/rest-api.html>). A
+//! version of its registry is a reference to files that are kept elsewhere; the reference alone is
+//! made and read here.
 
 use reqwest::{Client, RequestBuilder};
 use serde_json::{Value, json};

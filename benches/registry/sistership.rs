@@ -64,8 +64,8 @@ pub async fn create(client: &Client, url: &str, model: &str) -> Result<u64, Fail
     made["number"].as_u64().ok_or_else(|| format!("no number in {made}").into())
 }
 
-/// Waits until the ships are found by the metrics of their champions: the server sails manoeuvres for that in the background,
-/// which would otherwise be measured with whatever comes next.
+/// Waits until the ships are found by the metrics of their champions: the server sails manoeuvres
+/// for that in the background, which would otherwise be measured with whatever comes next.
 pub async fn settle(client: &Client, url: &str, models: usize) -> Result<(), Failure> {
     let place =
         format!("{url}/v1/ships?category=bench&metric=turn_35.tactical_diameter_m:..&limit=1000");

@@ -1,4 +1,5 @@
-//! Leave-one-ship-out: a ship with little data, held by what its family teaches, or by the nearest ship's model.
+//! Leave-one-ship-out: a ship with little data, held by what its family teaches, or by the nearest
+//! ship's model.
 
 mod regressions;
 mod ships;
@@ -24,7 +25,8 @@ const MEMBERS: [(Sailed, f64); 4] = [
     (Sailed::Turn(-20.0), 20.0),
 ];
 const NEW: [(Sailed, f64); 2] = [(Sailed::Zigzag(10.0), 20.0), (Sailed::Zigzag(-10.0), 20.0)];
-/// The weakest prior: of the whole path, and of its most conservative range, which may suit the nearest ship better.
+/// The weakest prior: of the whole path, and of its most conservative range, which may suit the
+/// nearest ship better.
 const PATH: f64 = 1e-6;
 const HELD: f64 = 1.0;
 /// What it is judged by, none of which it has sailed.
@@ -79,7 +81,8 @@ fn nearest<'a>(of: &Known, others: &[&'a Known]) -> &'a Known {
     others.iter().min_by(|a, b| far(a).total_cmp(&far(b))).expect("another ship")
 }
 
-/// Root mean square of the error in yaw rate by that of the yaw rate, over manoeuvres it has not sailed; none where it diverges.
+/// Root mean square of the error in yaw rate by that of the yaw rate, over manoeuvres it has not
+/// sailed; none where it diverges.
 fn error(model: &Model, truth: &Model, law: &Law) -> Option<f64> {
     let (mut wrong, mut whole) = (0.0_f64, 0.0);
     for (what, lengths) in JUDGED {

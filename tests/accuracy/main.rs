@@ -1,4 +1,5 @@
-//! Accuracy against published tables and independent reference data. Figures are printed; `--nocapture` shows them.
+//! Accuracy against published tables and independent reference data. Figures are printed;
+//! `--nocapture` shows them.
 
 mod esso_osaka;
 mod family;

@@ -1,11 +1,15 @@
-//! The case study of Kanazawa's Paper V: the Mariner's coefficients refined into a model of SR108, Table 5.
+//! The case study of Kanazawa's Paper V: the Mariner's coefficients refined into a model of SR108,
+//! Table 5.
 //!
-//! What the paper leaves open is set as the README of `shared/data/sr108` says, and two things that it does not say:
-//! - Distances are counted from where a prediction starts, 6 s after the execution, across as well as along the course.
-//!   Counted from the first course, transfer at 120 rpm is 0.14 m short of the paper's.
-//! - The printed true radii carry measurement noise. The true turns to both sides mirror each other, the printed radii
-//!   do not; all six come out within 0.3 m with one error of -0.0023 deg/s in the last yaw rate, at 650 s. Against the
-//!   printed truth, SP's errors in the radius come out within 0.1 points too.
+//! What the paper leaves open is set as the README of `shared/data/sr108` says, and two things that
+//! it does not say:
+//! - Distances are counted from where a prediction starts, 6 s after the execution, across as well
+//!   as along the course. Counted from the first course, transfer at 120 rpm is 0.14 m short of the
+//!   paper's.
+//! - The printed true radii carry measurement noise. The true turns to both sides mirror each
+//!   other, the printed radii do not; all six come out within 0.3 m with one error of -0.0023 deg/s
+//!   in the last yaw rate, at 650 s. Against the printed truth, SP's errors in the radius come out
+//!   within 0.1 points too.
 
 mod published;
 mod refined;
@@ -86,7 +90,8 @@ fn the_weak_form_beats_the_published_refinement_on_paper_v() {
     assert!(roll <= 1.9, "{roll}");
 }
 
-/// The same on turns that are in no table, with other noise: what was settled with the table in sight is judged here.
+/// The same on turns that are in no table, with other noise: what was settled with the table in
+/// sight is judged here.
 #[test]
 #[ignore = "half a minute; for people"]
 fn the_weak_form_on_turns_of_5_and_10_degrees() {
@@ -106,7 +111,8 @@ fn mean_of(errors: &[Metrics]) -> f64 {
     errors.iter().flat_map(|metrics| metrics.0).sum::<f64>() / (NAMES.len() * errors.len()) as f64
 }
 
-/// Errors of each block of the table by the weak form, the mean over the data sets; the noise is one stream.
+/// Errors of each block of the table by the weak form, the mean over the data sets; the noise is
+/// one stream.
 fn by_weak(zoo: &Zoo, law: &str, sets: &[Vec<(f64, f64)>]) -> Vec<Metrics> {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let speeds = TABLE_5.chunks(2).flat_map(|blocks| {
@@ -133,7 +139,8 @@ fn by_weak_on(
     rudders_deg.iter().map(|&rudder_deg| judged(&models, law, &truth.turn(rudder_deg))).collect()
 }
 
-/// Mean errors of models on a turn; they are of continuous time, and so is the method that simulates them.
+/// Mean errors of models on a turn; they are of continuous time, and so is the method that
+/// simulates them.
 fn judged(models: &[Model], law: &Law, track: &Trajectory) -> Metrics {
     let actual = Metrics::of(&track.states[PREDICTED]);
     let errors: Vec<Metrics> = models
@@ -175,14 +182,16 @@ fn case(zoo: &Zoo, blocks: &'static [Block], rng: &mut ChaCha8Rng) -> Vec<Row> {
     blocks.iter().map(row).collect()
 }
 
-/// The source parameters: the Mariner's coefficients on SR108's length, with SR108's own mass and added mass.
+/// The source parameters: the Mariner's coefficients on SR108's length, with SR108's own mass and
+/// added mass.
 fn source(zoo: &Zoo, law: &Law, truth: &Truth) -> Model {
     let mariner = zoo.model("mariner").unwrap_or_else(|error| panic!("{error}"));
     let sr108 = zoo.vessel("sr108").expect("a ship of the zoo");
     let mut model =
         transfer(&mariner, law, sr108, Some(Approach { speed_m_s: truth.speed_m_s, n_rps: None }));
     let own = |name: &str| truth.model.parameters[name].value;
-    // Son and Nomoto's matrix has m_y alpha_y off its diagonal, where the Abkowitz law has m x_G less the derivative.
+    // Son and Nomoto's matrix has m_y alpha_y off its diagonal, where the Abkowitz law has m x_G
+    // less the derivative.
     let coupling = -own("m_y") * own("alpha_y");
     let masses = [
         ("m", own("m")),

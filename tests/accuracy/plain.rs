@@ -1,4 +1,5 @@
-//! The plain call on a ship whose law the zoo does not have: not worse than the source that it started from.
+//! The plain call on a ship whose law the zoo does not have: not worse than the source that it
+//! started from.
 
 use sistership_dynamics::Ship;
 use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
@@ -20,7 +21,8 @@ const JUDGED: usize = 3;
 /// The model may be worse than the source by so much.
 const SLACK: f64 = 1.05;
 
-/// The mean over u, v, r, psi, x, y of the standardised squared error; simulations start anew every ten lengths.
+/// The mean over u, v, r, psi, x, y of the standardised squared error; simulations start anew every
+/// ten lengths.
 fn error(zoo: &Zoo, model: &Model, unseen: &[Trial]) -> f64 {
     let law = zoo.law(&model.law).expect("a law of the zoo");
     let mut ship = Ship::new(model, law).unwrap_or_else(|error| panic!("{error}"));

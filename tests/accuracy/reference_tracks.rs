@@ -1,4 +1,5 @@
-//! Our ships against another group's implementations of the same laws, and against published turning circles.
+//! Our ships against another group's implementations of the same laws, and against published
+//! turning circles.
 
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn};
 use sistership_dynamics::state::{at, straight};
@@ -64,7 +65,8 @@ fn turn_at(execute_s: f64, rudder_deg: f64) -> impl Fn(f64, &[f64; 9]) -> f64 {
     move |t_s, _| if t_s >= execute_s - 1e-9 { rudder_deg.to_radians() } else { 0.0 }
 }
 
-/// Ordered rudder of a zigzag executed at a time: reversed at the first step at which the heading has arrived.
+/// Ordered rudder of a zigzag executed at a time: reversed at the first step at which the heading
+/// has arrived.
 fn zigzag_at(execute_s: f64, angle_deg: f64) -> impl Fn(f64, &[f64; 9]) -> f64 {
     let side = std::cell::Cell::new(1.0);
     move |t_s, state| {
@@ -135,7 +137,8 @@ fn esso_tanker_follows_the_reference_deep_and_shallow() {
     check("zigzag_10_10_depth_1p5T.csv", 27.69, &zigzag_at(10.0, 10.0));
 }
 
-/// The predictions quoted as EFD-NMRI in Mei 2019, Table 10: advance 3.31 L, tactical diameter 3.36 L.
+/// The predictions quoted as EFD-NMRI in Mei 2019, Table 10: advance 3.31 L, tactical diameter 3.36
+/// L.
 #[test]
 fn kvlcc2_turns_as_published() {
     for name in ["kvlcc2-7m", "kvlcc2"] {

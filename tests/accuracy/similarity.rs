@@ -1,4 +1,5 @@
-//! Mei et al. 2019, Tables 5 and 6, from Table 4; and SR108's sources by the three steps of Kanazawa 2023, 5.1.2.
+//! Mei et al. 2019, Tables 5 and 6, from Table 4; and SR108's sources by the three steps of
+//! Kanazawa 2023, 5.1.2.
 
 use sistership_estimate::similarity::{CharacteristicVector, Definition};
 use sistership_estimate::source::similar;

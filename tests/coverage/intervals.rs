@@ -13,7 +13,8 @@ use sistership_tests::synthetic::{Orders, Trouble, relative, replica, trial};
 use super::diameters::{band, diameter};
 use super::setting;
 
-/// What one replica says: by figure, whether the interval held the truth, and its half width by the source's own figure.
+/// What one replica says: by figure, whether the interval held the truth, and its half width by the
+/// source's own figure.
 type Held = BTreeMap<String, (bool, f64)>;
 
 const DIAMETER: &str = "tactical diameter, 35 deg";
@@ -119,14 +120,15 @@ fn coverage(ship: &str, method: Method, replicas: usize) -> (f64, f64) {
     (mean, diameter)
 }
 
-/// By default as many replicas as take seconds; `COVERAGE_REPLICAS=200` is the whole table (decision 12), `COVERAGE_SHIP`,
-/// `COVERAGE_METHOD` and `COVERAGE_SEED` choose another.
+/// By default as many replicas as take seconds; `COVERAGE_REPLICAS=200` is the whole table
+/// (decision 12), `COVERAGE_SHIP`, `COVERAGE_METHOD` and `COVERAGE_SEED` choose another.
 #[test]
 fn intervals_of_95_per_cent_cover_90_to_98() {
     let replicas: usize = setting("COVERAGE_REPLICAS", "16").parse().expect("a number");
     let method = Method::by_name(&setting("COVERAGE_METHOD", "weak")).expect("an estimator");
     let (coefficients, diameter) = coverage(&setting("COVERAGE_SHIP", "mariner"), method, replicas);
-    // Chance: two standard errors of a share over so few replicas. Coefficients of one replica depend on each other.
+    // Chance: two standard errors of a share over so few replicas. Coefficients of one replica
+    // depend on each other.
     let chance = if replicas < 200 { 2.0 * (0.95 * 0.05 / replicas as f64).sqrt() } else { 0.0 };
     let promised = 0.90 - chance..=0.98 + chance;
     assert!(promised.contains(&coefficients), "coefficients: {coefficients}");

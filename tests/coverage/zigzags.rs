@@ -1,4 +1,5 @@
-//! A refinement on zigzags may know no more of a hard turn than its source; it may not know less than it says.
+//! A refinement on zigzags may know no more of a hard turn than its source; it may not know less
+//! than it says.
 
 use rayon::prelude::*;
 use sistership_dynamics::Ship;
@@ -14,7 +15,8 @@ use super::setting;
 const SHIPS: [&str; 5] = ["mariner", "kvlcc2", "kcs", "kvlcc2-7m", "esso-tanker"];
 const ORDERS: [(f64, f64); 4] = [(10.0, 10.0), (-20.0, 20.0), (20.0, 20.0), (-10.0, 10.0)];
 
-/// Tactical diameters at 35 deg in lengths: the truth, the source's, the refined model's and its band.
+/// Tactical diameters at 35 deg in lengths: the truth, the source's, the refined model's and its
+/// band.
 struct Turned {
     ship: &'static str,
     truth: f64,
@@ -24,7 +26,8 @@ struct Turned {
 }
 
 impl Turned {
-    /// How much worse the refined model is than the source, and the width of the band on the side of the truth.
+    /// How much worse the refined model is than the source, and the width of the band on the side
+    /// of the truth.
     fn worse(&self) -> (f64, f64) {
         let worse = (self.refined - self.truth).abs() - (self.source - self.truth).abs();
         let side = if self.truth < self.refined {
@@ -88,8 +91,8 @@ fn of(
     }
 }
 
-/// By default a few ships; `ZIGZAG_SHIPS=200` is the whole property (decision 12), `ZIGZAG_METHOD` another
-/// estimator, `ZIGZAG_SEED` other ships.
+/// By default a few ships; `ZIGZAG_SHIPS=200` is the whole property (decision 12), `ZIGZAG_METHOD`
+/// another estimator, `ZIGZAG_SEED` other ships.
 #[test]
 fn zigzags_never_spoil_the_turn_by_more_than_the_band() {
     let count: usize = setting("ZIGZAG_SHIPS", "10").parse().expect("a number");

@@ -18,8 +18,8 @@ const SHIP: &str = "esso-osaka-3m";
 /// Simulations start anew as for the score of Wakita et al. 2022.
 const RESTART_S: f64 = 100.0;
 
-/// The calmer half of the turns and zigzags, and the windier: a model that was fitted in as much wind as it is judged in has
-/// taken it into its coefficients.
+/// The calmer half of the turns and zigzags, and the windier: a model that was fitted in as much
+/// wind as it is judged in has taken it into its coefficients.
 fn halves() -> Option<(Vec<Trial>, Vec<Trial>)> {
     let folder = shared::data("esso-osaka")?;
     let mut calm = esso_osaka::trials(&folder, &["turning/turn_1", "zigzag/"]);
@@ -68,8 +68,8 @@ fn baseline(trials: &[Trial]) -> Baseline {
     baseline::by(&source, &law, SHIP, &trials, &by_trajectories())
 }
 
-/// The same law without wind fitted again to trials, each simulated by a fit on the others: what a refinement makes of them that
-/// knows of no effect.
+/// The same law without wind fitted again to trials, each simulated by a fit on the others: what a
+/// refinement makes of them that knows of no effect.
 fn refined_without_wind(baseline: &Baseline, trials: &[Trial]) -> BTreeMap<String, f64> {
     let trials: Vec<&Trial> = trials.iter().collect();
     let settings = refine::Settings { folds: trials.len(), ..by_trajectories() };
@@ -158,7 +158,8 @@ fn the_wind_is_named_and_the_placebo_is_not() {
     }
 }
 
-/// A record that differs from another by a hundred-thousandth of each value, which nobody can measure.
+/// A record that differs from another by a hundred-thousandth of each value, which nobody can
+/// measure.
 fn with_other_last_digits(trial: &Trial) -> Trial {
     let mut trial = trial.clone();
     for (k, value) in trial.channels.values_mut().flatten().enumerate() {
@@ -167,7 +168,8 @@ fn with_other_last_digits(trial: &Trial) -> Trial {
     trial
 }
 
-/// Which effect comes first among those that explain nearly as much may turn on the last digits; what is said in the end may not.
+/// Which effect comes first among those that explain nearly as much may turn on the last digits;
+/// what is said in the end may not.
 #[test]
 fn last_digits_change_neither_that_the_wind_is_named_nor_what_it_is_worth() {
     let Some(halves) = halves() else { return };

@@ -1,5 +1,5 @@
-//! Accuracy of the diagnosis: hidden effects are named, on simulated and on measured trials. Figures are printed; `--nocapture`
-//! shows them. The whole table is `--example hidden_effects`.
+//! Accuracy of the diagnosis: hidden effects are named, on simulated and on measured trials.
+//! Figures are printed; `--nocapture` shows them. The whole table is `--example hidden_effects`.
 #![allow(clippy::unwrap_used)]
 
 mod confusion;

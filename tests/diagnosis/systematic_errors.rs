@@ -1,4 +1,5 @@
-//! An instrument that erred when the model was fitted errs later, too: that is not new, and what is new is found beside it.
+//! An instrument that erred when the model was fitted errs later, too: that is not new, and what is
+//! new is found beside it.
 
 use sistership_diagnose::{Diagnosis, Request, Settings, diagnose};
 use sistership_model::Trial;

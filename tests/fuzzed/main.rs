@@ -1,5 +1,5 @@
-//! What the fuzz targets hold of any input (`tests/fuzz`), on their corpora and on seeded mutations of them: no nightly compiler is
-//! needed, and a defect that was found once stays found.
+//! What the fuzz targets hold of any input (`tests/fuzz`), on their corpora and on seeded mutations
+//! of them: no nightly compiler is needed, and a defect that was found once stays found.
 
 use std::path::Path;
 

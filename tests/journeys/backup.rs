@@ -1,5 +1,5 @@
-//! A backup taken while a writer keeps writing, restored in an empty place: it holds what was acknowledged before it began,
-//! nothing that was begun after it ended, and no gap in between.
+//! A backup taken while a writer keeps writing, restored in an empty place: it holds what was
+//! acknowledged before it began, nothing that was begun after it ended, and no gap in between.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -135,7 +135,8 @@ fn same(original: &[Value], restored: &[Value], trials: usize) {
     assert_eq!(original[1..], restored[1..]);
 }
 
-/// A server on what a backup gives; its store is clean, and a second restoration into it is refused.
+/// A server on what a backup gives; its store is clean, and a second restoration into it is
+/// refused.
 async fn restored(folder: &Path, empty: TestDatabase, bucket: Option<&Bucket>) -> TestServer {
     let data = empty.folder.path().join("data");
     let store = [
@@ -180,7 +181,8 @@ async fn backed_up_on_postgres() {
     }
 }
 
-/// Samples in one bucket, restored into another; on two threads, because the S3 server is in this process.
+/// Samples in one bucket, restored into another; on two threads, because the S3 server is in this
+/// process.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn backed_up_from_a_bucket_into_another() {
     let s3 = TestS3::start().await;

@@ -1,4 +1,5 @@
-//! Bad input of every kind, each answered by a message that a person can act on: one table, sent to a real server.
+//! Bad input of every kind, each answered by a message that a person can act on: one table, sent to
+//! a real server.
 
 use serde_json::{Value, json};
 use sistership_tests::server::TestServer;

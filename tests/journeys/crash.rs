@@ -1,4 +1,5 @@
-//! The server is killed in the middle of a refinement: what was acknowledged is there, and the job goes on or says why not.
+//! The server is killed in the middle of a refinement: what was acknowledged is there, and the job
+//! goes on or says why not.
 
 use std::time::Duration;
 
@@ -63,7 +64,8 @@ async fn running(server: &TestServer, job: &str, attempt: i64) {
     panic!("job {job} is not begun {attempt} times");
 }
 
-/// A job during which its worker's process ends twice is set aside, other jobs go on, and a person may have it done again.
+/// A job during which its worker's process ends twice is set aside, other jobs go on, and a person
+/// may have it done again.
 async fn set_aside(database: TestDatabase) {
     let server = TestServer::on(database, &["--no-worker"]).await;
     create(&server).await;

@@ -79,7 +79,8 @@ async fn crowded(key: Option<&str>, authorised: bool) {
         held.push(connected(&address, &body).await);
         held.push(connected(&address, &unread).await);
     }
-    // Who comes in the same half second as all of these from the same address may be told to come again.
+    // Who comes in the same half second as all of these from the same address may be told to come
+    // again.
     tokio::time::sleep(Duration::from_secs(1)).await;
     let mut alone = Vec::new();
     for _ in 0..TIMED {

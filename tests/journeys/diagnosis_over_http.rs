@@ -1,5 +1,5 @@
-//! New trials say that a champion no longer holds: diagnosed by themselves, reported, verified, promoted; the same on both
-//! databases.
+//! New trials say that a champion no longer holds: diagnosed by themselves, reported, verified,
+//! promoted; the same on both databases.
 
 use reqwest::Method;
 use reqwest::multipart::{Form, Part};
@@ -137,7 +137,8 @@ async fn reported(server: &TestServer, id: &str) {
     assert!(!page.contains("<script") && !page.contains("src="));
 }
 
-/// The new version has its parent, is the candidate, and derives again byte for byte; the champion stays.
+/// The new version has its parent, is the candidate, and derives again byte for byte; the champion
+/// stays.
 async fn versions(server: &TestServer) {
     let versions = server.get(&format!("/v1/models/{NAME}/versions")).await;
     let of = |number: i64| {
@@ -198,7 +199,8 @@ async fn ship_tag(server: &TestServer) -> String {
     response.headers()["etag"].to_str().expect("text").to_owned()
 }
 
-/// A diagnosis that is asked for: of the champion on trials it has not seen, under a key, with settings.
+/// A diagnosis that is asked for: of the champion on trials it has not seen, under a key, with
+/// settings.
 async fn asked_for(server: &TestServer) {
     let uploaded = upload(server, &further(), "?diagnose=false").await;
     assert_eq!(

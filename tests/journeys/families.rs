@@ -1,4 +1,5 @@
-//! A family of ships: what it teaches, the refinement of all of it by several workers, and a person's word at the end.
+//! A family of ships: what it teaches, the refinement of all of it by several workers, and a
+//! person's word at the end.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -19,7 +20,8 @@ const KILLED: usize = 3;
 const LEASE_S: &str = "2";
 const PATIENCE: Duration = Duration::from_secs(300);
 
-/// A server without workers, with a family of `ships` that have sailed `trials` each, and the store as an onlooker sees it.
+/// A server without workers, with a family of `ships` that have sailed `trials` each, and the store
+/// as an onlooker sees it.
 async fn family(database: TestDatabase, ships: usize, trials: usize) -> (TestServer, Store) {
     let server = TestServer::on(database, &["--no-worker"]).await;
     let store =
@@ -104,7 +106,8 @@ fn verified(server: &TestServer, version: &str) {
     assert_eq!(verified.status.code(), Some(0), "{}", String::from_utf8_lossy(&verified.stdout));
 }
 
-/// From ships that nobody has refined to champions: the small version of `cargo run --release --example fleet`.
+/// From ships that nobody has refined to champions: the small version of `cargo run --release
+/// --example fleet`.
 async fn a_family_is_learned_from_and_refined(database: TestDatabase) {
     const SHIPS: usize = 24;
     let (server, store) = family(database, SHIPS, 3).await;
@@ -134,7 +137,8 @@ async fn a_family_is_learned_from_and_refined(database: TestDatabase) {
         axis["mean"][place].as_f64().expect("a mean"),
         axis["deviation"][place].as_f64().expect("one"),
     );
-    // Differences over a tenth of a length put the mean off by a fifth; by how much ships differ, a twentieth, comes out.
+    // Differences over a tenth of a length put the mean off by a fifth; by how much ships differ, a
+    // twentieth, comes out.
     assert!(
         (mean / -166e-5 - 1.0).abs() < 0.3 && (0.02..0.1).contains(&(deviation / mean.abs())),
         "{mean} {deviation}"
@@ -170,7 +174,8 @@ async fn a_family_is_learned_from_and_refined(database: TestDatabase) {
 
     drift_is_seen(&server, &store).await;
 
-    // New trials for none: the champions stand where they are, and the next refinement starts at them.
+    // New trials for none: the champions stand where they are, and the next refinement starts at
+    // them.
     let (_, again) = server
         .send(
             Method::POST,
@@ -188,7 +193,8 @@ async fn a_family_is_learned_from_and_refined(database: TestDatabase) {
     fsck(&server);
 }
 
-/// A new trial of another ship's, under one's own name: its model no longer holds on it, and it is listed first.
+/// A new trial of another ship's, under one's own name: its model no longer holds on it, and it is
+/// listed first.
 async fn drift_is_seen(server: &TestServer, store: &Store) {
     let strange =
         store.trials().list(&name(7), &Page::first(1)).await.expect("trials").items.remove(0);

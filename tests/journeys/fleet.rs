@@ -1,4 +1,5 @@
-//! A batch of jobs, four worker processes on one database, and one of them killed every few seconds in the middle of a job.
+//! A batch of jobs, four worker processes on one database, and one of them killed every few seconds
+//! in the middle of a job.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -11,7 +12,7 @@ use sistership_tests::binary;
 use sistership_tests::server::TestServer;
 use sistership_tests::worker::TestWorker;
 
-use super::over_http::{create, refine, upload, verified};
+use super::over_http::{create, refine_weakly, upload, verified};
 use super::sea_trials::NAME;
 
 const JOBS: usize = 16;
@@ -50,7 +51,8 @@ impl Fleet {
         self.workers.push(TestWorker::start(&self.server, LEASE_S));
     }
 
-    /// Kills a worker that holds a job which has not lost one yet (two losses would be the job's own fault).
+    /// Kills a worker that holds a job which has not lost one yet (two losses would be the job's
+    /// own fault).
     async fn kill_one(&mut self) {
         loop {
             assert!(
@@ -91,7 +93,7 @@ async fn every_job_is_done_once(database: TestDatabase) {
     create(&fleet.server).await;
     upload(&fleet.server).await;
     for number in 0..JOBS {
-        refine(&fleet.server, &format!("job-{number}")).await;
+        refine_weakly(&fleet.server, &format!("job-{number}")).await;
     }
     assert!(
         fleet.jobs().await.iter().all(|job| job.state == JobState::Queued),

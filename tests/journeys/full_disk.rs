@@ -1,4 +1,5 @@
-//! A disk that is full: what is to be kept gets 507, reading goes on, also after a restart, and writing once there is room.
+//! A disk that is full: what is to be kept gets 507, reading goes on, also after a restart, and
+//! writing once there is room.
 
 use std::fs::{self, File};
 use std::io::Write as _;
@@ -80,7 +81,8 @@ async fn only_reads(server: &TestServer) {
         (507, &"urn:sistership:problem:no-room".into()),
         "{refused}"
     );
-    // Many of them: whatever pages are still free are used up, and nothing else than 507 may come of it.
+    // Many of them: whatever pages are still free are used up, and nothing else than 507 may come
+    // of it.
     let mut refused = 0;
     for number in 0..200 {
         let tag = format!("/v1/ships/{NAME}/tags/a-tag-that-takes-some-room-{number}");

@@ -1,4 +1,5 @@
-//! A ship with a published model, and trials that it sails with its rudder 4 degrees off what its indicator says.
+//! A ship with a published model, and trials that it sails with its rudder 4 degrees off what its
+//! indicator says.
 
 use std::collections::BTreeMap;
 

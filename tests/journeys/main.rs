@@ -1,4 +1,5 @@
-//! Journeys through the real server process, over HTTP and the command line, on SQLite and on PostgreSQL.
+//! Journeys through the real server process, over HTTP and the command line, on SQLite and on
+//! PostgreSQL.
 
 mod backup;
 mod bad_input;

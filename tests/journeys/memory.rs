@@ -1,4 +1,5 @@
-//! Memory is bounded by what is admitted: the built server's own peak, under requests that each ask for more than there is.
+//! Memory is bounded by what is admitted: the built server's own peak, under requests that each ask
+//! for more than there is.
 
 use std::io::Write as _;
 use std::net::TcpStream;
@@ -156,7 +157,8 @@ async fn downloads_that_nobody_reads() {
 /// The most that the command below may have resident, MB.
 const REFINEMENT: u64 = 1024;
 
-/// `cargo test --release -p sistership-tests --test journeys refinement_of_many_trials -- --ignored --nocapture`
+/// `cargo test --release -p sistership-tests --test journeys refinement_of_many_trials -- --ignored
+/// --nocapture`
 #[test]
 #[ignore = "takes a minute by itself on an optimised build"]
 fn refinement_of_many_trials() {

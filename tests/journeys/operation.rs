@@ -14,7 +14,8 @@ use sistership_tests::worker::TestWorker;
 use super::over_http::{create, refine, upload};
 use super::sea_trials::NAME;
 
-/// A job under way, a server that is told to stop, and the job afterwards: its state and how often it was begun.
+/// A job under way, a server that is told to stop, and the job afterwards: its state and how often
+/// it was begun.
 async fn stopped(drain_s: &str) -> (JobState, i64) {
     let mut server = TestServer::on(TestDatabase::sqlite(), &["--drain-s", drain_s]).await;
     create(&server).await;
@@ -40,7 +41,8 @@ async fn a_server_without_time_gives_its_job_back() {
     assert_eq!(stopped("0").await, (JobState::Queued, 0), "no attempt is counted");
 }
 
-/// Processes that find an empty database at the same moment: one brings the schema in, the others wait for it.
+/// Processes that find an empty database at the same moment: one brings the schema in, the others
+/// wait for it.
 async fn begun_at_once(database: TestDatabase) {
     let data = database.folder.path().join("data").display().to_string();
     let store = ["--database-url".to_owned(), database.url.clone(), "--data-dir".to_owned(), data];

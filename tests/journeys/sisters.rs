@@ -1,4 +1,5 @@
-//! A refined sister is the best source there is: a refinement that names nothing takes its champion.
+//! A refined sister is the best source there is: a refinement that names nothing takes its
+//! champion.
 
 use reqwest::Method;
 use reqwest::multipart::{Form, Part};

@@ -1,4 +1,5 @@
-//! A source of one law as the prior of another: what the trials do not tell stays as the source says.
+//! A source of one law as the prior of another: what the trials do not tell stays as the source
+//! says.
 
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
 use sistership_dynamics::state::{RECORDED, at};

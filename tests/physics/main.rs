@@ -1,4 +1,5 @@
-//! Properties that hold whatever the numbers: symmetry, the prime system, coefficients recovered, runs that stop.
+//! Properties that hold whatever the numbers: symmetry, the prime system, coefficients recovered,
+//! runs that stop.
 
 mod across_laws;
 mod recovery;

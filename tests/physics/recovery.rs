@@ -1,4 +1,5 @@
-//! Known coefficients come back: trials made with a law, refined with the same law from a wrong source.
+//! Known coefficients come back: trials made with a law, refined with the same law from a wrong
+//! source.
 
 use rand::{RngExt, SeedableRng};
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};

@@ -39,7 +39,8 @@ fn a_scaled_ship_turns_the_same_circle_in_lengths() {
             [metrics.advance_m, metrics.tactical_diameter_m, metrics.steady_radius_m]
                 .map(|m| m.expect("a full turn") / ship.lpp_m())
         };
-        // The approach speed of the copy is that of its scaled service speed, so the original is given its own as well.
+        // The approach speed of the copy is that of its scaled service speed, so the original is
+        // given its own as well.
         let mut original = source.clone();
         if let Some(speed) = vessel.particular("service_speed_m_s") {
             original.revolutions_rps =

@@ -1,4 +1,5 @@
-//! Port and starboard: a mirrored motion has mirrored accelerations, for every ship without its declared asymmetries.
+//! Port and starboard: a mirrored motion has mirrored accelerations, for every ship without its
+//! declared asymmetries.
 
 use proptest::prelude::*;
 use sistership_dynamics::StateVector;
@@ -9,7 +10,8 @@ use sistership_model::{Law, Model};
 
 use super::{SHIPS, model, ready};
 
-/// Drops the biases a single screw gives and sets paired parameters equal, which is what makes a ship symmetric.
+/// Drops the biases a single screw gives and sets paired parameters equal, which is what makes a
+/// ship symmetric.
 fn symmetric(mut model: Model, law: &Law) -> Model {
     let odd = |name: &CoefficientName| {
         name.factors

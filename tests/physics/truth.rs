@@ -1,4 +1,5 @@
-//! The ships of the truth, by which the program is judged: symmetric, stable or unstable as they are named, of bounded energy.
+//! The ships of the truth, by which the program is judged: symmetric, stable or unstable as they
+//! are named, of bounded energy.
 
 use proptest::prelude::*;
 use sistership_dynamics::StateVector;
@@ -62,7 +63,8 @@ fn the_approach_is_steady() {
     }
 }
 
-/// The propeller gives no more than it gave on the approach, so no manoeuvre has more energy than that; without it, ever less.
+/// The propeller gives no more than it gave on the approach, so no manoeuvre has more energy than
+/// that; without it, ever less.
 #[test]
 fn energy_stays_bounded() {
     for ship in ships() {

@@ -13,8 +13,9 @@ pub fn path() -> &'static PathBuf {
     PATH.get_or_init(build)
 }
 
-/// Cargo does not build another package's program for a test, so it is asked to build a test of that package, which brings the
-/// program. Asked for the whole workspace it takes the features that the tests were built with, and has nothing left to do.
+/// Cargo does not build another package's program for a test, so it is asked to build a test of
+/// that package, which brings the program. Asked for the whole workspace it takes the features that
+/// the tests were built with, and has nothing left to do.
 fn build() -> PathBuf {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
@@ -30,7 +31,8 @@ fn build() -> PathBuf {
     if !cfg!(debug_assertions) {
         command.arg("--release");
     }
-    // Build scripts watch what cargo tells a test about its own package, and would run again because of it.
+    // Build scripts watch what cargo tells a test about its own package, and would run again
+    // because of it.
     let of_this_test =
         |name: &str| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_");
     for (name, _) in std::env::vars().filter(|(name, _)| of_this_test(name)) {
@@ -70,7 +72,8 @@ pub fn run_with(arguments: &[&str], environment: &[(&str, &str)]) -> Output {
     command.output().expect("the program runs")
 }
 
-/// Runs it with `--json` in mind: asserts the exit status and reads standard output as one JSON document.
+/// Runs it with `--json` in mind: asserts the exit status and reads standard output as one JSON
+/// document.
 ///
 /// # Panics
 /// Where the exit status is another, or the output is not one JSON document.

@@ -1,4 +1,5 @@
-//! Made-up fleets: ships like the Mariner in size and law, each with coefficients of its own, and trials that they have sailed.
+//! Made-up fleets: ships like the Mariner in size and law, each with coefficients of its own, and
+//! trials that they have sailed.
 
 use std::sync::Arc;
 

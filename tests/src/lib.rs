@@ -10,4 +10,5 @@ pub mod shape;
 pub mod shared;
 pub mod synthetic;
 pub mod truth;
+pub mod voyage;
 pub mod worker;

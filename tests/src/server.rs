@@ -224,7 +224,8 @@ impl Drop for TestServer {
     }
 }
 
-/// The most memory that a process has had resident, and what it has now, MB, as Linux counts it; nothing where it has ended.
+/// The most memory that a process has had resident, and what it has now, MB, as Linux counts it;
+/// nothing where it has ended.
 pub fn memory_mb(process: u32) -> (u64, u64) {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     let of = |name: &str| {
@@ -277,8 +278,8 @@ fn start(
     (process, url)
 }
 
-/// A client that opens a connection for every request: while a test waits for a command, the server may close an idle one, which the
-/// next request would meet half way.
+/// A client that opens a connection for every request: while a test waits for a command, the server
+/// may close an idle one, which the next request would meet half way.
 fn client() -> Client {
     sistership_store::provide_cryptography();
     Client::builder().pool_max_idle_per_host(0).build().unwrap_or_default()

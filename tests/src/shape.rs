@@ -1,4 +1,5 @@
-//! The shape of a JSON document: its paths and types without its values, which differ from machine to machine.
+//! The shape of a JSON document: its paths and types without its values, which differ from machine
+//! to machine.
 
 use std::collections::BTreeSet;
 

@@ -32,7 +32,8 @@ pub struct Trouble {
 }
 
 impl Default for Trouble {
-    /// Gusts that move a ship of 160 m at 15 knots by some centimetres a second, and instruments that err as much.
+    /// Gusts that move a ship of 160 m at 15 knots by some centimetres a second, and instruments
+    /// that err as much.
     fn default() -> Self {
         Self { gusts: 0.003, gust_time: 0.5, scatter: 0.005, angles_deg: 0.1 }
     }
@@ -135,8 +136,8 @@ impl Pilot {
     }
 }
 
-/// A ship like another: every coefficient times a normal number of mean 1, so drawn that it sails the standard
-/// manoeuvres.
+/// A ship like another: every coefficient times a normal number of mean 1, so drawn that it sails
+/// the standard manoeuvres.
 pub fn relative(model: &Model, law: &Law, deviation: f64, rng: &mut ChaCha12Rng) -> Model {
     loop {
         let mut other = model.clone();

@@ -1,5 +1,5 @@
-//! Modules that refer to each other in a circle: the strongly connected components of the references (Tarjan 1972, SIAM J
-//! Comput 1, 146-160).
+//! Modules that refer to each other in a circle: the strongly connected components of the
+//! references (Tarjan 1972, SIAM J Comput 1, 146-160).
 
 use std::collections::BTreeMap;
 

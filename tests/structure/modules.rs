@@ -1,6 +1,6 @@
-//! Which module of a crate refers to which, read from its source: `use` lines and paths in code alike. A name that a module
-//! only hands on (`pub use child::Name`) counts for the module that defines it, so a folder's `mod.rs` may show what its
-//! files hold without a circle.
+//! Which module of a crate refers to which, read from its source: `use` lines and paths in code
+//! alike. A name that a module only hands on (`pub use child::Name`) counts for the module that
+//! defines it, so a folder's `mod.rs` may show what its files hold without a circle.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -66,7 +66,8 @@ fn definition(
     Some(at)
 }
 
-/// Where a path begins: `crate`, `super`, `self` or a module declared here; nothing for other crates and local names.
+/// Where a path begins: `crate`, `super`, `self` or a module declared here; nothing for other
+/// crates and local names.
 fn begin<'a>(
     sources: &BTreeMap<Module, Source>,
     module: &Module,

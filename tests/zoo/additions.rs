@@ -68,7 +68,8 @@ models:
       values: { X_u: -184.0e-5, Y_v: -1160.0e-5, Y_r: -499.0e-5, N_v: -264.0e-5, N_r: -166.0e-5, Y_delta: 278.0e-5, N_delta: -139.0e-5, N_v|v|: -100.0e-5 }
 ";
 
-/// A ship on the general polynomial: powers, absolute values, sine and cosine of the rudder, terms that nobody listed.
+/// A ship on the general polynomial: powers, absolute values, sine and cosine of the rudder, terms
+/// that nobody listed.
 const POLYNOMIAL: &str = "
 kind: vessel
 name: polynomial-ship

@@ -108,7 +108,8 @@ fn a_deviation_acts_in_its_quadrant_alone() {
         state[at::U] = u;
         ship.rate_at(&state, 0.0, n, &mut Work::default())[at::U]
     };
-    // Bis system: forces by m g, velocities by sqrt(g L), revolutions by sqrt(g/L); m (1 + m_x) is moved.
+    // Bis system: forces by m g, velocities by sqrt(g L), revolutions by sqrt(g/L); m (1 + m_x) is
+    // moved.
     let (g, lpp) = (9.806_65, 3.0);
     let force = |u: f64, n: f64, x_uu: f64, x_nn: f64| {
         let (u, n) = (u / f64::sqrt(g * lpp), n * f64::sqrt(lpp / g));

@@ -42,8 +42,8 @@ pub fn standard_error(weighed: &Weighed) -> Option<f64> {
     Some(relative * weighed.error?)
 }
 
-/// The place of what is taken: of all that is within one standard error of the least error, that with
-/// the fewest coefficients fitted, and among equals the lesser error (Breiman et al. 1984,
+/// The place of what is taken: of all that is within one standard error of the least error, that
+/// with the fewest coefficients fitted, and among equals the lesser error (Breiman et al. 1984,
 /// Classification and regression trees, section 3.4.3). `None` where every simulation diverged.
 pub fn chosen(tried: &[&Weighed]) -> Option<usize> {
     let sails = |place: &usize| tried[*place].error.is_some_and(f64::is_finite);

@@ -2,8 +2,8 @@
 //!
 //! Every entrant (a source, or none, and the law to be fitted) is weighed by one error on the same
 //! manoeuvres left out. Entrants climb by successive halving ([`search`]); [`chosen`] takes the
-//! simplest from which none is told apart. The winner is refined as if a person had named its source,
-//! law and method.
+//! simplest from which none is told apart. The winner is refined as if a person had named its
+//! source, law and method.
 
 mod choice;
 mod entrant;

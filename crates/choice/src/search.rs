@@ -1,6 +1,6 @@
 //! Successive halving over entrants (Karnin, Koren, Somekh 2013, ICML, Algorithm 3; Jamieson and
-//! Talwalkar 2016, AISTATS, Algorithm 1): on each rung a share of them goes on to the next, costlier
-//! estimator.
+//! Talwalkar 2016, AISTATS, Algorithm 1): on each rung a share of them goes on to the next,
+//! costlier estimator.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -12,6 +12,7 @@ use crate::choice::{chosen, standard_error};
 use crate::entrant::Entrant;
 use crate::ladder::{Ladder, Line, Rung};
 use crate::thresholds::SEARCH;
+use sistership_estimate::bands::Sampling;
 use sistership_estimate::refine::{
     Extent, Family, Progress, RefineError, Refinement, Request, Settings, Weighed, refine_wanted,
     weigh,
@@ -64,6 +65,8 @@ pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Ref
         in_parts,
         steering_from_trials: true,
         posterior_by_folds: true,
+        calibration_step: Some(SEARCH.calibration_step),
+        bands: Sampling { within_steps: true, ..search.settings.bands },
         ..search.settings.clone()
     };
     climbed(&Search { settings: &settings, ..*search }, progress)
@@ -86,7 +89,8 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     taken(search, tried)
 }
 
-/// Weighs entrants on a rung, whose progress begins at a fraction of the whole and takes a span of it.
+/// Weighs entrants on a rung, whose progress begins at a fraction of the whole and takes a span of
+/// it.
 fn climb(
     search: &Search<'_>,
     rung: Rung,

@@ -14,9 +14,9 @@ pub(super) struct SearchThresholds {
     /// Fewer trials are left out in parts, a count. Source: derived: of two, each is fitted by the
     /// other alone, and a scatter has one degree of freedom.
     pub few: usize,
-    /// `lambda_k`: strengths of the prior that are tried in weak form, dimensionless. Source: derived:
-    /// every second to fourth of those that a named method tries; the next rung tries their
-    /// neighbours.
+    /// `lambda_k`: strengths of the prior that are tried in weak form, dimensionless. Source:
+    /// derived: every second to fourth of those that a named method tries; the next rung tries
+    /// their neighbours.
     pub strengths: [f64; 8],
     /// Strengths that trajectories begin with, by the best in weak form, dimensionless. Source:
     /// derived: half a decade to either side.
@@ -27,6 +27,9 @@ pub(super) struct SearchThresholds {
     /// Most sources that enter, by rank of correlation, a count. Source: chosen; each costs a fit
     /// for every law, and correlation has ranked them.
     pub sources: usize,
+    /// `T_c`: shortest interval between samples by which what the trials leave open is learned, by
+    /// `L/U`, dimensionless. Source: `docs/evidence/plain.md`, "Steps of the calibration".
+    pub calibration_step: f64,
 }
 
 /// The values.
@@ -39,4 +42,5 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     near: [3.16, 1.0, 0.316],
     kept: 1e9,
     sources: 5,
+    calibration_step: 0.08,
 };

@@ -28,7 +28,8 @@ Exit status: 0 done, 1 the data or the model says no, 2 the call is wrong.";
 #[derive(Debug, Parser)]
 #[command(name = "sistership", version, after_help = EXAMPLES, arg_required_else_help = true)]
 pub struct Arguments {
-    /// Add laws/*.yaml, effects/*.yaml and vessels/*.yaml of a folder to the zoo; repeatable. SISTERSHIP_ZOO holds further ones.
+    /// Add laws/*.yaml, effects/*.yaml and vessels/*.yaml of a folder to the zoo; repeatable.
+    /// SISTERSHIP_ZOO holds further ones.
     #[arg(long, value_name = "DIR", global = true)]
     pub zoo: Vec<PathBuf>,
     /// What to do.
@@ -55,7 +56,8 @@ pub enum Command {
     Manoeuvre(manoeuvre::ManoeuvreArguments),
     /// Derive a law of motion from a list of actuators.
     Derive(derive::DeriveArguments),
-    /// Show the whole loop through the real server: ship, trials, source, refinement, champion, report.
+    /// Show the whole loop through the real server: ship, trials, source, refinement, champion,
+    /// report.
     Demo(DemoArguments),
     /// Run the REST server.
     Serve(serve::ServeArguments),

@@ -18,7 +18,8 @@ impl PromisedFile {
     /// Makes sure that a file can be written, without touching what is there.
     ///
     /// # Errors
-    /// Says why the file could not be written, or that it is one of `inputs`, which must not be overwritten.
+    /// Says why the file could not be written, or that it is one of `inputs`, which must not be
+    /// overwritten.
     pub fn new(path: &Path, inputs: &[PathBuf]) -> Result<Self, Failure> {
         let place = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
         if inputs.iter().filter_map(|input| input.canonicalize().ok()).any(|input| input == place) {

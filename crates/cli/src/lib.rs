@@ -1,7 +1,8 @@
 //! The command line of Sistership: the work of the server, on files.
 //!
-//! Exit status: 0 done, 1 the data or the model says no (with the reason), 2 the call is wrong. With `--json` one JSON
-//! document goes to standard output and nothing else; progress, warnings and errors go to standard error.
+//! Exit status: 0 done, 1 the data or the model says no (with the reason), 2 the call is wrong.
+//! With `--json` one JSON document goes to standard output and nothing else; progress, warnings and
+//! errors go to standard error.
 
 mod allocator;
 mod arguments;

@@ -20,6 +20,8 @@ pub struct ReadTrial {
     pub file: String,
     /// The file's path.
     pub path: PathBuf,
+    /// Whether it is a stretch of its file.
+    pub is_stretch: bool,
     /// The ship that the manifest names.
     pub ship: Option<String>,
 }
@@ -34,9 +36,11 @@ pub fn read(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
         let loaded = load_path(path)?;
         let files = files_of(path, &loaded);
         let ship = loaded.manifest.map(|manifest| manifest.ship);
-        for (result, (file, path)) in loaded.trials.into_iter().zip(files) {
+        for (result, (file, path, is_stretch)) in loaded.trials.into_iter().zip(files) {
             match result {
-                Ok(trial) => read.push(ReadTrial { trial, file, path, ship: ship.clone() }),
+                Ok(trial) => {
+                    read.push(ReadTrial { trial, file, path, is_stretch, ship: ship.clone() });
+                }
                 Err(refusal) => refused.push(refusal),
             }
         }
@@ -49,15 +53,15 @@ pub fn read(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
     Ok(read)
 }
 
-fn files_of(path: &Path, loaded: &Loaded) -> Vec<(String, PathBuf)> {
+fn files_of(path: &Path, loaded: &Loaded) -> Vec<(String, PathBuf, bool)> {
     let folder = path.parent().unwrap_or(Path::new(""));
     match &loaded.manifest {
         Some(manifest) => manifest
             .trials
             .iter()
-            .map(|trial| (trial.file.clone(), folder.join(&trial.file)))
+            .map(|trial| (trial.label(), folder.join(&trial.file), trial.is_stretch()))
             .collect(),
-        None => vec![(path.display().to_string(), path.to_path_buf())],
+        None => vec![(path.display().to_string(), path.to_path_buf(), false)],
     }
 }
 
@@ -96,13 +100,19 @@ pub fn place(finding: &Finding) -> String {
     format!("{row}{column}{}", finding.message)
 }
 
-/// Trials of the same file name are told apart by their folder's; the same file twice would count twice.
+/// Trials of the same file name are told apart by their folder's; the same file twice would count
+/// twice.
 fn name_apart(read: &mut [ReadTrial]) -> Result<(), Failure> {
     for index in 1..read.len() {
         let (earlier, rest) = read.split_at_mut(index);
         let this = &mut rest[0];
         let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
-        if earlier.iter().any(|other| real(&other.path) == real(&this.path)) {
+        // Of stretches of one file the reader has seen that they do not overlap.
+        let is_apart = |other: &ReadTrial| {
+            other.is_stretch && this.is_stretch && other.trial.name != this.trial.name
+        };
+        let is_same = |other: &ReadTrial| real(&other.path) == real(&this.path);
+        if earlier.iter().any(|other| is_same(other) && !is_apart(other)) {
             return Err(Failure::Refused(format!(
                 "{}: is given twice; the same data would count twice",
                 this.file

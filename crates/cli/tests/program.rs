@@ -1,5 +1,5 @@
-//! The program starts. That this test asks for it also has cargo build it beside the tests, with their features, for those
-//! of the workspace that run it.
+//! The program starts. That this test asks for it also has cargo build it beside the tests, with
+//! their features, for those of the workspace that run it.
 
 use std::process::Command;
 

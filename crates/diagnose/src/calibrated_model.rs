@@ -1,7 +1,7 @@
 //! A calibrated model: its coefficients moved, and the terms that it lacks added to its law.
 //!
-//! Residuals are linearised about this one. The columns of coefficients alone would not do: how a lacked term answers to
-//! a sensor that errs would be left out.
+//! Residuals are linearised about this one. The columns of coefficients alone would not do: how a
+//! lacked term answers to a sensor that errs would be left out.
 
 use sistership_model::Model;
 use sistership_model::formula::Expr;
@@ -19,7 +19,8 @@ pub struct CalibratedModel {
 }
 
 impl CalibratedModel {
-    /// A model with coefficients moved by `shift`, by column, read by instruments that err as they did on its own trials.
+    /// A model with coefficients moved by `shift`, by column, read by instruments that err as they
+    /// did on its own trials.
     ///
     /// # Errors
     /// Names the field of an effect that the model carries.

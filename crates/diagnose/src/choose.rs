@@ -35,7 +35,8 @@ pub(super) struct ConvergedChoice<'a> {
     pub best: JudgedHypothesis,
 }
 
-/// Judges single effects, then what stands together with the best, exchanging each of a set for every other.
+/// Judges single effects, then what stands together with the best, exchanging each of a set for
+/// every other.
 ///
 /// # Errors
 /// Names what a trial lacks.
@@ -86,8 +87,8 @@ fn companions(
     likely.par_iter().map(|likely| search.judge(base, &likely.candidate, likely.level)).collect()
 }
 
-/// The most probable, those that are believed most after their false-alarm levels, and whatever follows a record from outside: its
-/// sensor is there to be asked.
+/// The most probable, those that are believed most after their false-alarm levels, and whatever
+/// follows a record from outside: its sensor is there to be asked.
 fn likely(screened: Vec<ScreenedEffect>, count: usize) -> Vec<ScreenedEffect> {
     let mut by_discounted = screened.clone();
     by_discounted.sort_by(|a, b| b.discounted.total_cmp(&a.discounted));
@@ -116,7 +117,8 @@ impl EffectChoice {
         self.tried.extend(found);
     }
 
-    /// What is taken judged anew by the filter of a base that stands where it does: what is tried beside it passes the same.
+    /// What is taken judged anew by the filter of a base that stands where it does: what is tried
+    /// beside it passes the same.
     fn seen_from(
         &mut self,
         search: &HypothesisSearch<'_>,
@@ -139,7 +141,8 @@ impl EffectChoice {
         let found = companions(search, base, count)?;
         let mut accepted: Vec<usize> =
             (0..found.len()).filter(|&at| self.accepts(search, &found[at], settings)).collect();
-        // What is believed decides, not what fits: an instrument that always erred would stand before what is new.
+        // What is believed decides, not what fits: an instrument that always erred would stand
+        // before what is new.
         let belief = |place: &usize| last_evidence(search, &found[*place]);
         accepted.sort_by(|a, b| belief(b).total_cmp(&belief(a)));
         let mut better = None;
@@ -153,8 +156,9 @@ impl EffectChoice {
         Ok(better.is_some())
     }
 
-    /// Undoes a wrong step: each of those taken together but the last is exchanged for whatever is more probable in its
-    /// place. What goes with the others than the last has been tried just before.
+    /// Undoes a wrong step: each of those taken together but the last is exchanged for whatever is
+    /// more probable in its place. What goes with the others than the last has been tried just
+    /// before.
     fn exchange(
         &mut self,
         search: &HypothesisSearch<'_>,
@@ -180,7 +184,8 @@ impl EffectChoice {
         Ok(())
     }
 
-    /// Effects fitted together with the coefficients until both stay, without what the others then make needless.
+    /// Effects fitted together with the coefficients until both stay, without what the others then
+    /// make needless.
     ///
     /// # Errors
     /// Names what a trial lacks.
@@ -237,7 +242,8 @@ impl EffectChoice {
         self.taken.map_or(&self.alone, |taken| &self.tried[taken])
     }
 
-    /// A hypothesis is taken where it is more probable by enough, also on trials that its fit has not seen.
+    /// A hypothesis is taken where it is more probable by enough, also on trials that its fit has
+    /// not seen.
     fn accepts(
         &self,
         search: &HypothesisSearch<'_>,
@@ -250,7 +256,8 @@ impl EffectChoice {
     }
 }
 
-/// Whether the evidence for the effect that came last is enough, and more than a shadow of the others'.
+/// Whether the evidence for the effect that came last is enough, and more than a shadow of the
+/// others'.
 fn stands(search: &HypothesisSearch<'_>, found: &JudgedHypothesis, settings: &Settings) -> bool {
     let last = found.candidates.len() - 1;
     let evidence = |place: usize| search.evidence(found, place).unwrap_or(f64::NEG_INFINITY);

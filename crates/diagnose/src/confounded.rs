@@ -70,8 +70,8 @@ impl<'a> Responses<'a> {
         named.filter_map(|other| Some(self.angle(found, other)?.1)).min_by(f64::total_cmp)
     }
 
-    /// The angle between the response of an effect found and the nearest that another could give, deg; and the evidence
-    /// that this other would be behind.
+    /// The angle between the response of an effect found and the nearest that another could give,
+    /// deg; and the evidence that this other would be behind.
     fn angle(&self, found: usize, other: usize) -> Option<(f64, f64)> {
         let change = DVector::from_vec(self.found[found].change());
         let (own, other) = (&self.places[found], &self.places[self.found.len() + other]);
@@ -83,7 +83,8 @@ impl<'a> Responses<'a> {
         let response = change.dot(&(part(own, own) * &change));
         let seen = part(other, own) * &change;
         let mut information = part(other, other);
-        // A ridge far below what matters: some parameters of an effect may say the same on these trials.
+        // A ridge far below what matters: some parameters of an effect may say the same on these
+        // trials.
         let ridge = THRESHOLDS.confounding.ridge * information.diagonal().max();
         (0..other.len()).for_each(|i| information[(i, i)] += ridge);
         let followed = seen.dot(&Cholesky::new(information)?.solve(&seen));

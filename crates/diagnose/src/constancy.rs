@@ -1,5 +1,6 @@
-//! Whether an effect is the same at all times. What only resembles something else is needed in one size here and in another
-//! there: the pieces of the trials, each by itself, ask for more than what all together gave.
+//! Whether an effect is the same at all times. What only resembles something else is needed in one
+//! size here and in another there: the pieces of the trials, each by itself, ask for more than what
+//! all together gave.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -14,8 +15,8 @@ use super::thresholds::THRESHOLDS;
 use crate::residual::Gram;
 use sistership_estimate::refine::RefineError;
 
-/// The effects that are not. One that follows a record from outside may vary where records of other times explain the
-/// trials less ([`follow_records`]): what is unknown does not follow that record.
+/// The effects that are not. One that follows a record from outside may vary where records of other
+/// times explain the trials less ([`follow_records`]): what is unknown does not follow that record.
 ///
 /// # Errors
 /// Names what a trial lacks.

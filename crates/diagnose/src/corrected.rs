@@ -1,4 +1,5 @@
-//! Trials as instruments would have shown them that do not err: what a regression takes for the ship's motion.
+//! Trials as instruments would have shown them that do not err: what a regression takes for the
+//! ship's motion.
 
 use std::borrow::Cow;
 
@@ -12,8 +13,8 @@ use sistership_estimate::transfer::ready;
 pub(super) struct CorrectedRecords<'a>(Vec<Cow<'a, Trial>>);
 
 impl<'a> CorrectedRecords<'a> {
-    /// The trials of a request without the errors of a model's instruments; none where the model has no effect on the ship, or one
-    /// that changes with time, which a regression does not know.
+    /// The trials of a request without the errors of a model's instruments; none where the model
+    /// has no effect on the ship, or one that changes with time, which a regression does not know.
     pub fn new(request: &Request<'a>, model: &Model) -> Option<Self> {
         let (ship, instruments) = split(model);
         let law = request.law.with_effects(&ship).ok()?;

@@ -9,8 +9,9 @@ use super::thresholds::THRESHOLDS;
 use super::values::{acts_on, own_covariance};
 use crate::residual::{Gram, Nuisance, NuisanceKind};
 
-/// The covariance of an effect's parameters, with its false-alarm level on clean trials, what its own law is uncertain
-/// by, and what the virtual masses leave open. `discount` is what the information on the effect is divided by.
+/// The covariance of an effect's parameters, with its false-alarm level on clean trials, what its
+/// own law is uncertain by, and what the virtual masses leave open. `discount` is what the
+/// information on the effect is divided by.
 pub(super) fn covariance(
     judged: &JudgedHypothesis,
     place: usize,
@@ -32,8 +33,8 @@ pub(super) fn covariance(
     covariance
 }
 
-/// How an effect's parameters answer to each virtual mass, the coefficients giving way by all that is known of them: a
-/// consider analysis (Schmidt 1966, Adv Control Syst 3, 293-340).
+/// How an effect's parameters answer to each virtual mass, the coefficients giving way by all that
+/// is known of them: a consider analysis (Schmidt 1966, Adv Control Syst 3, 293-340).
 fn answers_to_masses(
     judged: &JudgedHypothesis,
     place: usize,

@@ -1,4 +1,5 @@
-//! How much less than they seem to say trials say of an effect, by what it explained of clean trials.
+//! How much less than they seem to say trials say of an effect, by what it explained of clean
+//! trials.
 
 use sistership_model::trial::Channel;
 use sistership_model::uncertainty::{FalseAlarmLevel, Uncertainty};
@@ -19,8 +20,8 @@ pub(super) fn discount(
             1.0 + (level.together - 1.0) * trials as f64 / known.trials.len().max(1) as f64;
         level.each.max(together).max(1.0)
     };
-    // What comes from outside was there on clean trials too where it is recorded at all: it is judged by records of other
-    // times instead.
+    // What comes from outside was there on clean trials too where it is recorded at all: it is
+    // judged by records of other times instead.
     let own = known
         .false_alarm_levels
         .get(&candidate.key())

@@ -1,8 +1,10 @@
-//! The evidence for hypotheses: how much more probable they make the readings than the model alone does.
+//! The evidence for hypotheses: how much more probable they make the readings than the model alone
+//! does.
 //!
-//! The coefficients are left the slack of their prior and integrated out, and so are the parameters of an effect under
-//! theirs: the logarithm of the likelihood ratio that remains has paid for every parameter (Kass and Raftery 1995, J Am
-//! Stat Assoc 90, 773-795). The autocorrelation of what no coefficient explains is in the filter's discrepancy.
+//! The coefficients are left the slack of their prior and integrated out, and so are the parameters
+//! of an effect under theirs: the logarithm of the likelihood ratio that remains has paid for every
+//! parameter (Kass and Raftery 1995, J Am Stat Assoc 90, 773-795). The autocorrelation of what no
+//! coefficient explains is in the filter's discrepancy.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -13,7 +15,8 @@ use sistership_estimate::refine::RefineError;
 /// The columns of effects with the coefficients integrated out.
 #[derive(Debug, Clone)]
 pub struct MarginalInformation {
-    /// Minus twice the logarithm of the likelihood of the model without any effect, less a constant.
+    /// Minus twice the logarithm of the likelihood of the model without any effect, less a
+    /// constant.
     pub deviance: f64,
     /// Information of the effects' columns.
     pub information: DMatrix<f64>,
@@ -55,7 +58,8 @@ pub struct DiscrepancyFactor {
 }
 
 impl MarginalInformation {
-    /// Integrates the first `coefficients` columns out; `None` where the information is not positive.
+    /// Integrates the first `coefficients` columns out; `None` where the information is not
+    /// positive.
     pub fn new(gram: &Gram, fixed: &CoefficientPrior) -> Option<Self> {
         let c = fixed.weighted_mean.len();
         let e = gram.products.nrows() - 1 - c;
@@ -105,7 +109,8 @@ impl MarginalInformation {
         self
     }
 
-    /// Logarithm of the likelihood at a distance from where the columns are tangents, by that at no distance.
+    /// Logarithm of the likelihood at a distance from where the columns are tangents, by that at no
+    /// distance.
     pub fn at(&self, distance: &DVector<f64>) -> f64 {
         self.right.dot(distance) - 0.5 * distance.dot(&(&self.information * distance))
     }
@@ -117,8 +122,8 @@ impl MarginalInformation {
         self
     }
 
-    /// What some columns explain (in squared deviations), and what chance lets them explain: of a right model without an
-    /// effect, the first is a chi-square whose mean is the second.
+    /// What some columns explain (in squared deviations), and what chance lets them explain: of a
+    /// right model without an effect, the first is a chi-square whose mean is the second.
     pub fn explained(&self, columns: &[usize], priors: &[NormalPrior]) -> Option<(f64, f64)> {
         let free: Vec<NormalPrior> =
             priors.iter().map(|prior| NormalPrior { mean: 0.0, ..*prior }).collect();

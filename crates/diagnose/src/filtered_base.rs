@@ -1,5 +1,6 @@
-//! A linearisation with everything that may show, filtered at each level of the discrepancy. A hypothesis near it is then
-//! judged by what it moves alone: its own columns pass the same filter, the coefficients' are there already.
+//! A linearisation with everything that may show, filtered at each level of the discrepancy. A
+//! hypothesis near it is then judged by what it moves alone: its own columns pass the same filter,
+//! the coefficients' are there already.
 
 use std::ops::AddAssign;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -31,7 +32,8 @@ pub(super) struct FilteredLevel {
     discrepancies: Discrepancies,
     /// Products of all columns, by trial.
     grams: Vec<Gram>,
-    /// Made when a hypothesis is first judged at this level: they are many times as large as the trials.
+    /// Made when a hypothesis is first judged at this level: they are many times as large as the
+    /// trials.
     coefficients: Mutex<Option<WhitenedCoefficients>>,
 }
 
@@ -75,8 +77,8 @@ impl<'a> FilteredBase<'a> {
         self.levels[level].grams.iter().map(|gram| gram.select(&columns)).collect()
     }
 
-    /// The whitened columns of the coefficients at a level. Those of levels that are not its neighbours are let go: hypotheses are
-    /// judged at a level and the one below.
+    /// The whitened columns of the coefficients at a level. Those of levels that are not its
+    /// neighbours are let go: hypotheses are judged at a level and the one below.
     fn coefficients(&self, level: usize) -> WhitenedCoefficients {
         for (_, far) in
             self.levels.iter().enumerate().filter(|(other, _)| other.abs_diff(level) > 1)

@@ -28,8 +28,9 @@ pub(super) struct SimulatedErrors {
 /// Errors of each trial; none where the simulation stopped.
 type Each = Vec<Option<SquaredError>>;
 
-/// Simulates each trial by the model as it is, and by a model fitted on the others in the way that does best on the others.
-/// A fit by trajectories leaves a trial out by one step from where all of them were fitted.
+/// Simulates each trial by the model as it is, and by a model fitted on the others in the way that
+/// does best on the others. A fit by trajectories leaves a trial out by one step from where all of
+/// them were fitted.
 pub(super) fn errors(request: &Request<'_>, refits: &[Refit], restart_s: f64) -> SimulatedErrors {
     let count = request.trials.len();
     let before = simulated(request, &vec![request.model; count], restart_s);
@@ -81,7 +82,8 @@ fn total(each: &Each, keep: &dyn Fn(usize) -> bool) -> BTreeMap<String, f64> {
     sum.rmse()
 }
 
-/// Mean over channels of the logarithm of the ratio over some trials; infinite where a simulation stops that did not before.
+/// Mean over channels of the logarithm of the ratio over some trials; infinite where a simulation
+/// stops that did not before.
 fn change(before: &Each, after: &Each, keep: &dyn Fn(usize) -> bool) -> f64 {
     let stops = |trial: usize| keep(trial) && before[trial].is_some() && after[trial].is_none();
     if (0..before.len()).any(stops) {

@@ -1,5 +1,6 @@
-//! The trial that would tell apart what these cannot: each of a set of manoeuvres is sailed with the model and what was
-//! found, and what it would add to the evidence is computed before anybody sails it.
+//! The trial that would tell apart what these cannot: each of a set of manoeuvres is sailed with
+//! the model and what was found, and what it would add to the evidence is computed before anybody
+//! sails it.
 
 use rayon::prelude::*;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
@@ -25,7 +26,8 @@ struct PlannedManoeuvre {
     heading_deg: f64,
 }
 
-/// The trial that separates an effect found from those beside it best; none where nothing is to be separated.
+/// The trial that separates an effect found from those beside it best; none where nothing is to be
+/// separated.
 pub(super) fn next_trial(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
@@ -111,7 +113,8 @@ fn sailed(base: &FilteredBase<'_>, ship: &Ship, planned: &PlannedManoeuvre) -> O
     Some(recorded(&track, model, planned.heading_deg.to_radians()))
 }
 
-/// With the channels and the interval of a trial that was sailed; the wind and the like as they were in its middle.
+/// With the channels and the interval of a trial that was sailed; the wind and the like as they
+/// were in its middle.
 fn recorded(track: &Trajectory, like: &Trial, heading_rad: f64) -> Trial {
     let step_s = track.t_s.get(1).copied().unwrap_or(1.0);
     let stride = (like.interval_s() / step_s).round().max(1.0) as usize;

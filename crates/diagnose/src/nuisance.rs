@@ -41,8 +41,9 @@ pub fn lacked(
     effects.iter().flat_map(of).collect()
 }
 
-/// Terms that are learned together with the coefficients: all that the grammars spell, and a constant on each axis. They
-/// take up what the law's own form cannot follow on clean trials, so that it is not taken for an effect later.
+/// Terms that are learned together with the coefficients: all that the grammars spell, and a
+/// constant on each axis. They take up what the law's own form cannot follow on clean trials, so
+/// that it is not taken for an effect later.
 pub fn learned(model: &Model, law: &Law, effects: &[Arc<Effect>], trials: &[&Trial]) -> Terms {
     let axes: Vec<Axis> = law.axes.keys().copied().collect();
     let known = |name: &str| model.coefficients.contains_key(name);
@@ -69,10 +70,11 @@ pub fn regressor(model: &Model, form: &Form) -> Option<(Axis, Expr)> {
     Some((*axis, force.renamed(&plain)))
 }
 
-/// What is known of the coefficients before any trial: the model's own within a share of each, or of the deviation that the
-/// grammar gives a term of its axis; terms that it lacks within the grammar's deviation. Virtual masses
-/// are held: trials would seem to tell them, but what they tell is how far the law is from the truth. What is not known of them goes
-/// into standard errors (`covariance`).
+/// What is known of the coefficients before any trial: the model's own within a share of each, or
+/// of the deviation that the grammar gives a term of its axis; terms that it lacks within the
+/// grammar's deviation. Virtual masses are held: trials would seem to tell them, but what they tell
+/// is how far the law is from the truth. What is not known of them goes into standard errors
+/// (`covariance`).
 pub fn prior(model: &Model, columns: &[Nuisance], terms: &Terms, slack: f64) -> CoefficientPrior {
     let of_axis = |axis: Axis| {
         let of = terms.values().find(|form| form.forces.contains_key(&axis));
@@ -119,7 +121,8 @@ pub fn learned_prior(uncertainty: &Uncertainty) -> Result<CoefficientPrior, Refi
     })
 }
 
-/// The columns of a model that knows its uncertainty: those it names; otherwise its own coefficients.
+/// The columns of a model that knows its uncertainty: those it names; otherwise its own
+/// coefficients.
 pub fn columns(model: &Model, law: &Law) -> Vec<Nuisance> {
     let own = Columns::nuisance(model, law, &[]);
     let Some(uncertainty) = &model.uncertainty else { return own };

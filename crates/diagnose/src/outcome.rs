@@ -15,13 +15,15 @@ use super::settings::Settings;
 pub enum Verdict {
     /// The residual is what the noise predicts.
     Complete,
-    /// Named effects are missing from the model, and with them the residual is what the noise predicts.
+    /// Named effects are missing from the model, and with them the residual is what the noise
+    /// predicts.
     Effects,
     /// Something is missing that no effect of the library explains.
     Unexplained,
 }
 
-/// The result of a diagnosis. Errors are root mean squares by channel in SI, on trials that the fit has not seen.
+/// The result of a diagnosis. Errors are root mean squares by channel in SI, on trials that the fit
+/// has not seen.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Diagnosis {
     /// The answer.
@@ -30,8 +32,8 @@ pub struct Diagnosis {
     pub effects: Vec<Found>,
     /// What no effect explains.
     pub unexplained: Vec<Unexplained>,
-    /// The trial that would tell the effects found from those that they are confounded with; absent where nothing is to be
-    /// told apart.
+    /// The trial that would tell the effects found from those that they are confounded with; absent
+    /// where nothing is to be told apart.
     pub next_trial: Option<NextTrial>,
     /// Errors of the model as it is.
     pub before: BTreeMap<String, f64>,
@@ -83,11 +85,13 @@ pub struct Found {
     pub acts_on: ActsOn,
     /// Its parameters and what follows from them.
     pub parameters: BTreeMap<String, Value>,
-    /// Its parameters in the model that is given, where they were fitted together with the coefficients.
+    /// Its parameters in the model that is given, where they were fitted together with the
+    /// coefficients.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub in_model: BTreeMap<String, Value>,
-    /// Natural logarithm of how much more probable the trials are with it than without, the other effects found being there:
-    /// after what the number of hypotheses tried costs, and discounted by what the effect explains of clean trials.
+    /// Natural logarithm of how much more probable the trials are with it than without, the other
+    /// effects found being there: after what the number of hypotheses tried costs, and discounted
+    /// by what the effect explains of clean trials.
     pub evidence: f64,
     /// Effects that these trials cannot tell it from, or hardly.
     pub confounded_with: Vec<Confounded>,
@@ -98,7 +102,8 @@ pub struct Found {
 pub struct Confounded {
     /// Its name.
     pub name: String,
-    /// The angle between what was found and the nearest that this effect could do, deg: 0 the same, 90 nothing in common.
+    /// The angle between what was found and the nearest that this effect could do, deg: 0 the same,
+    /// 90 nothing in common.
     pub angle_deg: f64,
     /// How much less evidence there is for it, natural logarithm.
     pub behind: f64,
@@ -139,11 +144,11 @@ pub struct NextTrial {
 pub struct Hypothesis {
     /// Its effects, as `name/form`.
     pub effects: Vec<String>,
-    /// Evidence of all its effects together against the model alone, not discounted by what they explain of clean trials:
-    /// a hypothesis with more of it than the one taken is not believed.
+    /// Evidence of all its effects together against the model alone, not discounted by what they
+    /// explain of clean trials: a hypothesis with more of it than the one taken is not believed.
     pub evidence: f64,
-    /// How much more probable trials became by it that its fit had not seen, natural logarithm; absent where it was not
-    /// judged so.
+    /// How much more probable trials became by it that its fit had not seen, natural logarithm;
+    /// absent where it was not judged so.
     pub held_out: Option<f64>,
     /// Parameters.
     pub parameters: BTreeMap<String, Value>,
@@ -175,8 +180,8 @@ pub struct SailedManoeuvre {
     pub after: Option<ManoeuvreMetrics>,
 }
 
-/// The residual of an acceleration over a trial: what must be added to what the model gives, as the filter's smoother
-/// finds it.
+/// The residual of an acceleration over a trial: what must be added to what the model gives, as the
+/// filter's smoother finds it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ResidualSeries {
     /// The trial.
@@ -191,7 +196,8 @@ pub struct ResidualSeries {
     pub after: Vec<f64>,
     /// Two standard deviations of what noise alone would show.
     pub band: Vec<f64>,
-    /// The recorded variable that explains most of `before`, such as `psi` or `delta`, and its values.
+    /// The recorded variable that explains most of `before`, such as `psi` or `delta`, and its
+    /// values.
     pub against: String,
     /// Its values, SI.
     pub variable: Vec<f64>,
@@ -202,8 +208,8 @@ pub struct ResidualSeries {
 pub struct DiscrepancyLevel {
     /// `u`, `v`, `r` or `p`.
     pub channel: String,
-    /// Standard deviation that the model brings with it from the trials it was fitted on, m/s2 or rad/s2; absent where it
-    /// says nothing of it.
+    /// Standard deviation that the model brings with it from the trials it was fitted on, m/s2 or
+    /// rad/s2; absent where it says nothing of it.
     pub expected: Option<f64>,
     /// On these trials, of the model as it is.
     pub before: f64,

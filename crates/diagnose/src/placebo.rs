@@ -1,4 +1,5 @@
-//! Whether an effect that follows a record follows it: the record of another time must not do as well.
+//! Whether an effect that follows a record follows it: the record of another time must not do as
+//! well.
 
 use sistership_model::Trial;
 
@@ -9,8 +10,8 @@ use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
 use sistership_estimate::refine::RefineError;
 
-/// Whether the effect that came last follows a record from outside, and records of another time explain the trials
-/// better.
+/// Whether the effect that came last follows a record from outside, and records of another time
+/// explain the trials better.
 ///
 /// # Errors
 /// Names what a trial lacks.
@@ -29,7 +30,8 @@ pub(super) fn is_placebo(
     exceeds(search, judged.log_evidence, &again)
 }
 
-/// Whether effects explain the trials better, by a margin, than with records from outside of any other time.
+/// Whether effects explain the trials better, by a margin, than with records from outside of any
+/// other time.
 ///
 /// # Errors
 /// Names what a trial lacks.

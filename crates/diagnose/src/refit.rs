@@ -1,4 +1,5 @@
-//! The coefficients once more, with the effects in place: what they had taken over from what was missing they give back.
+//! The coefficients once more, with the effects in place: what they had taken over from what was
+//! missing they give back.
 
 use sistership_dynamics::equations::EquationsOfMotion;
 use sistership_model::effect::{AppliedEffect, AsTerms};
@@ -23,8 +24,9 @@ pub(super) struct Refit {
     pub without: Vec<Model>,
 }
 
-/// What is weighed: the coefficients as they are; fitted with the effects as they were found; and, where the effects on the ship
-/// are linear, fitted together with them. Regressions read the trials as instruments would have shown them that do not err.
+/// What is weighed: the coefficients as they are; fitted with the effects as they were found; and,
+/// where the effects on the ship are linear, fitted together with them. Regressions read the trials
+/// as instruments would have shown them that do not err.
 pub(super) fn refits(
     request: &Request<'_>,
     search: &HypothesisSearch<'_>,
@@ -87,9 +89,10 @@ fn ridge(request: &Request<'_>, found: &Refit, lambda: f64) -> Option<Refit> {
     })
 }
 
-/// Coefficients and effects on the ship fitted together, by the weak form and by trajectories. Of these effects nothing is taken
-/// from the diagnosis but which they are. A trial left out has a part in the point about which trajectories are linearised, in the
-/// strength of the weak form that they start from, and in how records are put right, but in no residual.
+/// Coefficients and effects on the ship fitted together, by the weak form and by trajectories. Of
+/// these effects nothing is taken from the diagnosis but which they are. A trial left out has a
+/// part in the point about which trajectories are linearised, in the strength of the weak form that
+/// they start from, and in how records are put right, but in no residual.
 fn jointly(request: &Request<'_>, found: &Refit, restart_s: f64) -> Vec<Refit> {
     let (ship, instruments) = split(&found.all);
     let Ok(Some(terms)) = AsTerms::new(&ship, request.law) else { return Vec::new() };

@@ -1,4 +1,5 @@
-//! What a hypothesis leaves: stretches of a trial in which the prediction errors are larger or steadier than noise.
+//! What a hypothesis leaves: stretches of a trial in which the prediction errors are larger or
+//! steadier than noise.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +10,8 @@ use super::outcome::Unexplained;
 use super::thresholds::THRESHOLDS;
 use crate::residual::{Discrepancies, Linearised, errors, responses};
 
-/// Stretches that the columns at `parameters` leave unexplained, under the discrepancy that is expected; the largest first.
+/// Stretches that the columns at `parameters` leave unexplained, under the discrepancy that is
+/// expected; the largest first.
 pub(super) fn unexplained(
     workspace: &LinearisedTrials<'_>,
     discrepancies: &Discrepancies,

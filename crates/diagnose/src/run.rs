@@ -103,8 +103,8 @@ struct SelectedEffects<'a> {
     refused: Vec<String>,
 }
 
-/// The effects taken, as far as each is the same at all times where something remains unexplained. Where one is not, the
-/// choice is made again without it: it may have stood before another.
+/// The effects taken, as far as each is the same at all times where something remains unexplained.
+/// Where one is not, the choice is made again without it: it may have stood before another.
 fn believed<'a>(
     request: &Request<'_>,
     search: &HypothesisSearch<'a>,
@@ -148,7 +148,8 @@ fn remaining(
     if clean.is_none() || found.is_empty() {
         return Ok(found);
     }
-    // Coefficients that gave way to what is missing have spread it over the trial: it is dated by those of clean trials.
+    // Coefficients that gave way to what is missing have spread it over the trial: it is dated by
+    // those of clean trials.
     let given_way = search.given_way().into_iter().map(|change| -change);
     let as_calibrated: Vec<f64> =
         given_way.chain(parameters.iter().copied().skip(best.shift.len())).collect();

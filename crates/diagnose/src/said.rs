@@ -1,4 +1,5 @@
-//! What a diagnosis says: of the effects found, of everything that was tried, and of how it came about.
+//! What a diagnosis says: of the effects found, of everything that was tried, and of how it came
+//! about.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +17,8 @@ use super::search::HypothesisSearch;
 use super::values::{acts_on, own_covariance, values};
 use sistership_estimate::refine::RefineError;
 
-/// The effects found with those they are confounded with, the strongest first, and the trial that would separate them.
+/// The effects found with those they are confounded with, the strongest first, and the trial that
+/// would separate them.
 pub(super) fn apart(
     request: &Request<'_>,
     search: &HypothesisSearch<'_>,
@@ -41,7 +43,8 @@ pub(super) fn apart(
     Ok((all, next))
 }
 
-/// `of_all` is the evidence of all effects together where the model alone may have any discrepancy: none has more.
+/// `of_all` is the evidence of all effects together where the model alone may have any discrepancy:
+/// none has more.
 fn found(
     request: &Request<'_>,
     search: &HypothesisSearch<'_>,

@@ -120,8 +120,8 @@ impl<'a> HypothesisSearch<'a> {
         self.listed.iter().chain(&self.freed).filter(is_other).collect()
     }
 
-    /// The evidence for one of the effects judged together, given the others: discounted by its false-alarm level on clean trials,
-    /// after what the number of hypotheses costs.
+    /// The evidence for one of the effects judged together, given the others: discounted by its
+    /// false-alarm level on clean trials, after what the number of hypotheses costs.
     pub fn evidence(&self, judged: &JudgedHypothesis, place: usize) -> Option<f64> {
         let candidate = &judged.candidates[place];
         let sizes: Vec<usize> =
@@ -176,9 +176,10 @@ impl<'a> HypothesisSearch<'a> {
         best.ok_or_else(not_positive)
     }
 
-    /// A hypothesis beside the effects of a base, linearised anew where it stands until it stays there. What one linearisation
-    /// promises of a step is not believed before it has been seen from where the step leads: an instrument's error multiplies the
-    /// motion, so that promises are many times too high, or of the wrong sign.
+    /// A hypothesis beside the effects of a base, linearised anew where it stands until it stays
+    /// there. What one linearisation promises of a step is not believed before it has been seen
+    /// from where the step leads: an instrument's error multiplies the motion, so that promises are
+    /// many times too high, or of the wrong sign.
     ///
     /// # Errors
     /// Names what a trial lacks.

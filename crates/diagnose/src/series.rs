@@ -1,4 +1,5 @@
-//! The residual over time, for plots: before and after, against the variable that explains most of it.
+//! The residual over time, for plots: before and after, against the variable that explains most of
+//! it.
 
 use sistership_model::Trial;
 use sistership_model::trial::Channel;

@@ -8,19 +8,20 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 #[schemars(rename = "DiagnosisSettings")]
 pub struct Settings {
-    /// Simulations that judge start anew every so often, s. Where absent, ten times the time in which the ship sails her
-    /// length.
+    /// Simulations that judge start anew every so often, s. Where absent, ten times the time in
+    /// which the ship sails her length.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub restart_s: Option<f64>,
-    /// Shortest interval between samples that are used, s. Where absent, a fiftieth of the time in which the ship sails her
-    /// length.
+    /// Shortest interval between samples that are used, s. Where absent, a fiftieth of the time in
+    /// which the ship sails her length.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub least_step_s: Option<f64>,
-    /// How far a published coefficient may be from the truth, as a share of its value, where the model does not say what
-    /// its own trials leave open.
+    /// How far a published coefficient may be from the truth, as a share of its value, where the
+    /// model does not say what its own trials leave open.
     #[schemars(range(max = 1), extend("exclusiveMinimum" = 0))]
     pub slack: f64,
-    /// Least evidence (natural logarithm, after what the number of hypotheses costs) for an effect to be named.
+    /// Least evidence (natural logarithm, after what the number of hypotheses costs) for an effect
+    /// to be named.
     #[schemars(range(min = 0))]
     pub least_evidence: f64,
     /// Most effects that are named together.

@@ -1,4 +1,5 @@
-//! From a request to a search: which forms are tried, what the coefficients are left, which discrepancy is expected.
+//! From a request to a search: which forms are tried, what the coefficients are left, which
+//! discrepancy is expected.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,8 +18,8 @@ use super::thresholds::THRESHOLDS;
 use crate::residual::{Columns, Discrepancies, EffectCandidate};
 use sistership_estimate::refine::RefineError;
 
-/// The forms that can be tried on trials: those whose channels every trial has, of effects that the model does not carry,
-/// but for what its instruments are known to do.
+/// The forms that can be tried on trials: those whose channels every trial has, of effects that the
+/// model does not carry, but for what its instruments are known to do.
 pub(super) fn listed(
     model: &Model,
     law: &Law,

@@ -11,7 +11,8 @@ use super::outcome::Value;
 use super::thresholds::THRESHOLDS;
 use crate::residual::EffectCandidate;
 
-/// The parameters of a candidate and what follows from them, by the delta method; `covariance` is of its parameters.
+/// The parameters of a candidate and what follows from them, by the delta method; `covariance` is
+/// of its parameters.
 pub(super) fn values(
     candidate: &EffectCandidate,
     covariance: &DMatrix<f64>,
@@ -58,8 +59,8 @@ pub(super) fn own_covariance(
     covariance.view((start, start), (size, size)).into_owned()
 }
 
-/// A model with effects. Its coefficients stay: what the new trials move them by is fitted together with terms that
-/// the model does not have, and would be wrong without these.
+/// A model with effects. Its coefficients stay: what the new trials move them by is fitted together
+/// with terms that the model does not have, and would be wrong without these.
 pub(super) fn model_with(
     model: &Model,
     candidates: &[EffectCandidate],

@@ -1,5 +1,5 @@
-//! Law evaluations: from states, rudder and revolutions to accelerations and rates, one state at a time and in blocks of lanes, on
-//! one core.
+//! Law evaluations: from states, rudder and revolutions to accelerations and rates, one state at a
+//! time and in blocks of lanes, on one core.
 #![allow(missing_docs)]
 
 use std::hint::black_box;

@@ -1,9 +1,11 @@
-//! Many sets of coefficients for one law, simulated without sensitivities: the tape holds regressors, coefficients are data.
+//! Many sets of coefficients for one law, simulated without sensitivities: the tape holds
+//! regressors, coefficients are data.
 //!
-//! A search by populations evaluates thousands of sets. Lowering each to a tape of its own takes longer than to simulate it, so
-//! that here the tape ends at the terms of the law, and forces are sums of them. Terms of a submodel share one condition, and
-//! what depends on recorded inputs alone is calculated once for all sets ([`CandidateSystem::prepared`]). Only what forces
-//! depend on is simulated: velocities, heading and roll, not the track.
+//! A search by populations evaluates thousands of sets. Lowering each to a tape of its own takes
+//! longer than to simulate it, so that here the tape ends at the terms of the law, and forces are
+//! sums of them. Terms of a submodel share one condition, and what depends on recorded inputs alone
+//! is calculated once for all sets ([`CandidateSystem::prepared`]). Only what forces depend on is
+//! simulated: velocities, heading and roll, not the track.
 
 use std::collections::BTreeMap;
 
@@ -26,7 +28,8 @@ const ROLL: [usize; 6] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI];
 /// Where the tape takes each state.
 const TAPE_ORDER: [usize; 6] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI];
 
-/// A law for a model's particulars and parameters, ready for any coefficients of the names that the model has.
+/// A law for a model's particulars and parameters, ready for any coefficients of the names that the
+/// model has.
 #[derive(Debug, Clone)]
 pub struct CandidateSystem {
     front: Tape,
@@ -94,7 +97,8 @@ impl CandidateSystem {
         &self.input_names
     }
 
-    /// What a step takes for the inputs of the law at an instant: these, and what follows from them alone.
+    /// What a step takes for the inputs of the law at an instant: these, and what follows from them
+    /// alone.
     pub fn prepared(&self, inputs: &[f64]) -> Vec<f64> {
         // The front depends on no state: any will do.
         let point: Vec<f64> =
@@ -207,7 +211,8 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
             .for_each(|(lanes, &place)| lanes[lane] = state[place]);
     }
 
-    /// A simulated state in every lane, counted as [`CandidateSystem::states`] does: u, v and r come first.
+    /// A simulated state in every lane, counted as [`CandidateSystem::states`] does: u, v and r
+    /// come first.
     pub fn state(&self, row: usize) -> &Lanes<L> {
         &self.states[row]
     }
@@ -217,8 +222,8 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
         &self.rates[0][row]
     }
 
-    /// One step of every lane; `inputs` are [prepared](CandidateSystem::prepared) ones at its start, middle and end, of which
-    /// Euler's method reads the first only.
+    /// One step of every lane; `inputs` are [prepared](CandidateSystem::prepared) ones at its
+    /// start, middle and end, of which Euler's method reads the first only.
     pub fn step(
         &mut self,
         method: Method,

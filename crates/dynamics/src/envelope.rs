@@ -1,4 +1,5 @@
-//! The range in which a simulation is believed: outside it a run stops with a reason, never with infinities.
+//! The range in which a simulation is believed: outside it a run stops with a reason, never with
+//! infinities.
 
 use crate::state::{StateVector, at, speed};
 
@@ -21,8 +22,9 @@ pub struct Stopped {
 }
 
 impl Envelope {
-    /// For a ship of a length that approaches at a speed: three times that speed (at least a Froude number of 0.1), a
-    /// yaw rate of one length in a sixth of the time she takes to sail it, 80 degrees of roll.
+    /// For a ship of a length that approaches at a speed: three times that speed (at least a Froude
+    /// number of 0.1), a yaw rate of one length in a sixth of the time she takes to sail it, 80
+    /// degrees of roll.
     pub fn new(lpp_m: f64, approach_speed_m_s: f64) -> Self {
         let reference = approach_speed_m_s.abs().max(0.1 * (9.806_65 * lpp_m).sqrt());
         Self {

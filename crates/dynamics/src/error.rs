@@ -14,7 +14,8 @@ pub struct SquaredError {
 }
 
 impl SquaredError {
-    /// The differences of one simulated trial; the heading's is wrapped to half a turn. Roll counts for ships that roll.
+    /// The differences of one simulated trial; the heading's is wrapped to half a turn. Roll counts
+    /// for ships that roll.
     pub fn of(trial: &Trial, replay: &Replay) -> Self {
         let mut error = Self::default();
         let compared = RECORDED.iter().filter(|(channel, _)| {
@@ -80,8 +81,9 @@ pub fn standard_deviations(trials: &[&Trial]) -> BTreeMap<Channel, f64> {
     RECORDED.iter().filter_map(|&(channel, _)| Some((channel, of(channel)?))).collect()
 }
 
-/// The standardised mean squared error of Wakita et al. 2022, Eq. 26: the mean over samples of the squared differences
-/// of `u, v, r, psi, x, y`, each divided by its standard deviation, summed over the channels that the trial has.
+/// The standardised mean squared error of Wakita et al. 2022, Eq. 26: the mean over samples of the
+/// squared differences of `u, v, r, psi, x, y`, each divided by its standard deviation, summed over
+/// the channels that the trial has.
 pub fn standardised_mse(error: &SquaredError, deviations: &BTreeMap<Channel, f64>) -> f64 {
     let term = |&(channel, _): &(Channel, usize)| {
         let (rmse, deviation) = (error.channel_rmse(channel)?, deviations.get(&channel)?);

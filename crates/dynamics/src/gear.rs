@@ -25,8 +25,8 @@ impl Gear {
         Self { time_constant_s: self.time_constant_s + lag_s, ..self }
     }
 
-    /// The rudder rate, rad/s. A gear without a time constant would chatter about its order: within what it covers in
-    /// one step of `step_s` it goes straight there.
+    /// The rudder rate, rad/s. A gear without a time constant would chatter about its order: within
+    /// what it covers in one step of `step_s` it goes straight there.
     pub fn rate(&self, order_rad: f64, angle_rad: f64, step_s: f64) -> f64 {
         let order = order_rad.clamp(-self.limit_rad, self.limit_rad);
         let time = self.time_constant_s.max(step_s);

@@ -8,7 +8,8 @@ use crate::equations::{EquationsOfMotion, Lowering, PlantError};
 use crate::state::{RECORDED, StateVector, at};
 use crate::tape::{Lanes, Slots, Tape};
 
-/// The names that the formula of an instrument may use, with their places: states, then their rates.
+/// The names that the formula of an instrument may use, with their places: states, then their
+/// rates.
 const STATES: [(&str, usize); 8] = [
     ("u", at::U),
     ("v", at::V),
@@ -36,7 +37,8 @@ pub struct Room {
 }
 
 impl Instruments {
-    /// The instruments of trials whose velocities are of a frame; `None` where every one says the truth.
+    /// The instruments of trials whose velocities are of a frame; `None` where every one says the
+    /// truth.
     ///
     /// # Errors
     /// Names what the model does not give.
@@ -83,7 +85,8 @@ pub fn input_names(law: &Law) -> Vec<String> {
     states.chain(rates).chain(law.inputs.keys().cloned()).collect()
 }
 
-/// What each channel says, where it is not the truth: a log that measures through the water says what the hull sees.
+/// What each channel says, where it is not the truth: a log that measures through the water says
+/// what the hull sees.
 pub fn readings(
     law: &Law,
     frame: VelocityFrame,
@@ -108,7 +111,8 @@ pub fn readings(
     readings
 }
 
-/// Rounds in which a true state is sought: few, so that it stays near what is said where an error is too large for the search.
+/// Rounds in which a true state is sought: few, so that it stays near what is said where an error
+/// is too large for the search.
 const ROUNDS: usize = 16;
 /// Where the search ends, in any state.
 const FOUND: f64 = 1e-9;

@@ -20,7 +20,8 @@ pub enum Method {
 }
 
 impl Method {
-    /// The state one step later; `rate(fraction, state)` is the rate of change at that fraction of the step.
+    /// The state one step later; `rate(fraction, state)` is the rate of change at that fraction of
+    /// the step.
     pub fn step(
         self,
         state: &StateVector,

@@ -1,8 +1,9 @@
 //! Between samples: a cubic that never leaves the range of its two neighbours.
 //!
-//! A rudder moves smoothly between the samples of a slow recorder; a straight line cuts its corners, and half a degree for a
-//! second is a metre of track. Noise is not amplified, since the cubic has no overshoot (Fritsch and Carlson 1980, SIAM
-//! J Numer Anal 17, 238-246, with the harmonic mean of Fritsch and Butland 1984).
+//! A rudder moves smoothly between the samples of a slow recorder; a straight line cuts its
+//! corners, and half a degree for a second is a metre of track. Noise is not amplified, since the
+//! cubic has no overshoot (Fritsch and Carlson 1980, SIAM J Numer Anal 17, 238-246, with the
+//! harmonic mean of Fritsch and Butland 1984).
 
 use std::borrow::Cow;
 
@@ -34,7 +35,8 @@ impl<'a> MonotoneCubic<'a> {
         Self { t, values, slopes }
     }
 
-    /// The value at a fraction `w` of the way from sample `k` to the next; at the last sample, its own.
+    /// The value at a fraction `w` of the way from sample `k` to the next; at the last sample, its
+    /// own.
     pub fn at(&self, k: usize, w: f64) -> f64 {
         if k + 1 < self.values.len() { self.between(k, w) } else { self.values[k] }
     }
@@ -49,7 +51,8 @@ impl<'a> MonotoneCubic<'a> {
     }
 }
 
-/// What comes out of a first-order lag into which samples go, straight between them; it starts settled.
+/// What comes out of a first-order lag into which samples go, straight between them; it starts
+/// settled.
 pub fn lagged(t: &[f64], values: &[f64], time_constant_s: f64) -> Vec<f64> {
     let mut out = values.to_vec();
     for k in 1..values.len() {

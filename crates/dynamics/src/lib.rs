@@ -1,4 +1,5 @@
-//! Forward: from a model and what is done to the ship to her motion, and to the figures by which she is judged.
+//! Forward: from a model and what is done to the ship to her motion, and to the figures by which
+//! she is judged.
 
 pub mod candidates;
 pub mod envelope;

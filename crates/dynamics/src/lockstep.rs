@@ -1,4 +1,5 @@
-//! Ships in lockstep: passages taken lane by lane, each lane with the next one as soon as its own has ended.
+//! Ships in lockstep: passages taken lane by lane, each lane with the next one as soon as its own
+//! has ended.
 //!
 //! Every lane is calculated by itself, so that what comes out does not depend on who sails beside.
 
@@ -16,7 +17,8 @@ pub(crate) trait Passage {
     /// The state at the beginning.
     fn start(&mut self, ship: &Ship, work: &mut Work) -> StateVector;
 
-    /// Takes note of a state, at the beginning and after each step; answers the length of the next step, s, or that it is over.
+    /// Takes note of a state, at the beginning and after each step; answers the length of the next
+    /// step, s, or that it is over.
     fn arrive(&mut self, ship: &Ship, state: &mut StateVector, work: &mut Work) -> Option<f64>;
 
     /// The inputs of the law at a stage of the step, the rudder being where it is.

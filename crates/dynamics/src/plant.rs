@@ -55,7 +55,8 @@ impl Plant {
         Self::of(&EquationsOfMotion::new(model, law)?, Coefficients::Values)
     }
 
-    /// As [`Plant::new`], for any values of the coefficients that the model has: its own are not read.
+    /// As [`Plant::new`], for any values of the coefficients that the model has: its own are not
+    /// read.
     ///
     /// # Errors
     /// As [`Plant::new`].

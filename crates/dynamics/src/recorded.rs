@@ -1,4 +1,5 @@
-//! Simulation of a recorded trial: the recorded rudder and revolutions drive the model, and the motion is compared.
+//! Simulation of a recorded trial: the recorded rudder and revolutions drive the model, and the
+//! motion is compared.
 
 mod part;
 mod record;
@@ -19,7 +20,8 @@ pub use truth::as_true_instruments_say;
 /// How a trial is simulated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReplaySettings {
-    /// Start anew from the recorded state every so often, s; `None` runs each gap-free part to its end.
+    /// Start anew from the recorded state every so often, s; `None` runs each gap-free part to its
+    /// end.
     pub restart_s: Option<f64>,
     /// Integration method.
     pub method: Method,
@@ -38,14 +40,16 @@ impl Default for ReplaySettings {
 pub struct Recorded<'a> {
     /// The trial.
     pub trial: &'a Trial,
-    /// The ship's coefficients, in the order of [`Ship::open_coefficients`]; none for a ship with her own.
+    /// The ship's coefficients, in the order of [`Ship::open_coefficients`]; none for a ship with
+    /// her own.
     pub coefficients: &'a [f64],
 }
 
 /// Simulates a trial with its recorded inputs.
 ///
 /// # Errors
-/// Names the channel that the trial lacks: velocities, rudder, or another input of the law that has no default.
+/// Names the channel that the trial lacks: velocities, rudder, or another input of the law that has
+/// no default.
 pub fn replay(
     ship: &Ship,
     trial: &Trial,

@@ -14,8 +14,8 @@ pub(crate) struct HeldOrder {
     pub lasts_s: f64,
 }
 
-/// A run to be sailed; `bridge` gives the order at each step, which is held over it, or `None` to end
-/// the run. A step in which the order ends early is sailed in two.
+/// A run to be sailed; `bridge` gives the order at each step, which is held over it, or `None` to
+/// end the run. A step in which the order ends early is sailed in two.
 pub(crate) struct Sailing<'a, B> {
     run: Run,
     coefficients: &'a [f64],
@@ -44,10 +44,12 @@ impl<'a, B: FnMut(f64, &StateVector) -> Option<HeldOrder>> Sailing<'a, B> {
 }
 
 impl Ship {
-    /// Sails for a time; `bridge` gives the order at each step, which is held over it, or `None` to end the run.
+    /// Sails for a time; `bridge` gives the order at each step, which is held over it, or `None` to
+    /// end the run.
     ///
     /// # Errors
-    /// Says when and why the motion left the physical range; what was sailed until then is in `track`.
+    /// Says when and why the motion left the physical range; what was sailed until then is in
+    /// `track`.
     pub fn sail(
         &self,
         run: Run,

@@ -58,7 +58,8 @@ impl Ship {
         Self::of(&EquationsOfMotion::new(model, law)?, Coefficients::Values)
     }
 
-    /// As [`Ship::new`], for sisters whose coefficients are given with each passage: those of the model are not read.
+    /// As [`Ship::new`], for sisters whose coefficients are given with each passage: those of the
+    /// model are not read.
     ///
     /// # Errors
     /// As [`Ship::new`].
@@ -152,7 +153,8 @@ impl Ship {
             .zip(self.plant.input_defaults().iter().copied())
     }
 
-    /// A sister's coefficients as passages take them; none where hers are not those of the others by name.
+    /// A sister's coefficients as passages take them; none where hers are not those of the others
+    /// by name.
     pub fn sister(&self, model: &Model) -> Option<Vec<f64>> {
         let names = self.plant.open_coefficients();
         let same = model.coefficients.len() == names.len()
@@ -207,7 +209,8 @@ impl Ship {
         truth(said, |state| self.says(frame, state, inputs, work))
     }
 
-    /// How a motion leaves what the model's trials covered; none where it stays inside, or where nobody knows what they did.
+    /// How a motion leaves what the model's trials covered; none where it stays inside, or where
+    /// nobody knows what they did.
     pub fn leaves(&self, track: &Trajectory) -> Option<Excursion> {
         leaves(self.validity.as_ref()?, track)
     }
@@ -262,7 +265,8 @@ impl Ship {
         self.plant.rate(state, &self.inputs(delta_rad, n_rps), work)
     }
 
-    /// The rate of change of the state with every input of the law given, in the order of [`Ship::law_inputs`].
+    /// The rate of change of the state with every input of the law given, in the order of
+    /// [`Ship::law_inputs`].
     pub fn rate_with(&self, state: &StateVector, inputs: &Inputs, work: &mut Work) -> StateVector {
         self.plant.rate(state, inputs, work)
     }

@@ -5,7 +5,8 @@ use sistership_model::trial::Channel;
 
 use crate::tape::Lanes;
 
-/// The state vector: `u, v, r, p, phi, psi, x, y, delta` in SI and radians; `delta` is the actual rudder angle.
+/// The state vector: `u, v, r, p, phi, psi, x, y, delta` in SI and radians; `delta` is the actual
+/// rudder angle.
 pub type StateVector = SVector<f64, 9>;
 
 /// States of ships in lockstep: by component, by ship.
@@ -43,7 +44,8 @@ pub mod at {
     pub const DELTA: usize = 8;
 }
 
-/// The channels of a trial that record the state, with their places in it: velocities, heading, position, then roll.
+/// The channels of a trial that record the state, with their places in it: velocities, heading,
+/// position, then roll.
 pub const RECORDED: [(Channel, usize); 8] = [
     (Channel::U, at::U),
     (Channel::V, at::V),

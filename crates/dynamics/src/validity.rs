@@ -17,8 +17,8 @@ const BOUNDED: [(Channel, Option<usize>); 5] = [
     (Channel::N, None),
 ];
 
-/// The region of `u, v, r, delta` and, where the law takes revolutions, `n` that trials covered; channels that one of them
-/// lacks are left out.
+/// The region of `u, v, r, delta` and, where the law takes revolutions, `n` that trials covered;
+/// channels that one of them lacks are left out.
 pub fn covered(trials: &[&Trial], law: &Law) -> Option<Region> {
     let bounds =
         |channel: Channel| channel != Channel::N || law.inputs.contains_key(channel.name());

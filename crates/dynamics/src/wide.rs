@@ -1,8 +1,8 @@
 //! Wide vector instructions where the processor has them.
 //!
-//! The same code is compiled three times, with AVX-512, with AVX2 and plainly, and the processor is asked which to run. Nothing
-//! else differs: without fused multiplication every lane is rounded as it is in the plain code, so that results are the same to
-//! the last bit.
+//! The same code is compiled three times, with AVX-512, with AVX2 and plainly, and the processor is
+//! asked which to run. Nothing else differs: without fused multiplication every lane is rounded as
+//! it is in the plain code, so that results are the same to the last bit.
 
 /// What is worth compiling for each width.
 pub trait Wide {

@@ -30,11 +30,16 @@ pub struct Sampling {
     pub samples: usize,
     /// What the draws follow from.
     pub seed: u64,
+    /// Draws reverse the rudder within a step, are held against the estimate at a fine one, and tell
+    /// the trial that would help most. The default search sets it; versions made by explicit calls
+    /// keep the bands that they have.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub within_steps: bool,
 }
 
 impl Default for Sampling {
     fn default() -> Self {
-        Self { samples: 100, seed: 1 }
+        Self { samples: 100, seed: 1, within_steps: false }
     }
 }
 
@@ -92,8 +97,8 @@ pub struct Band {
     pub pass: Option<f64>,
 }
 
-/// Models drawn from the posterior of one; none where it has none, or none of its present coefficients, or where no sample is
-/// asked for.
+/// Models drawn from the posterior of one; none where it has none, or none of its present
+/// coefficients, or where no sample is asked for.
 pub fn draws(model: &Model, sampling: Sampling) -> Option<Vec<Model>> {
     let posterior = model.posterior().filter(|_| sampling.samples > 0)?;
     let root = posterior.root().ok()?;
@@ -122,8 +127,9 @@ fn shifted(model: &Model, names: &[String], moved: &[f64], side: f64) -> Model {
     model
 }
 
-/// The bands of the standard manoeuvres; none where the model has no posterior of its present coefficients. Where no step is
-/// given, a fiftieth of the time in which the ship sails her length. `depth_m` is for laws that know it.
+/// The bands of the standard manoeuvres; none where the model has no posterior of its present
+/// coefficients. Where no step is given, a fiftieth of the time in which the ship sails her length.
+/// `depth_m` is for laws that know it.
 pub fn bands(
     model: &Model,
     law: &Law,
@@ -132,10 +138,14 @@ pub fn bands(
     sampling: Sampling,
 ) -> Option<Bands> {
     let draws = draws(model, sampling)?;
-    let (ship, fast) = prepared(model, law, settings, depth_m)?;
+    let within_steps = sampling.within_steps;
+    let (ship, fast) = prepared(model, law, settings, depth_m, within_steps)?;
     let sailed = sailed(&ship, &draws, &fast)?;
     let failed = sailed.iter().filter(|sailed| !sailed.failures.is_empty()).count();
-    let by_step = errors_by_step(&ship, &ship.sister(model)?, settings, &fast);
+    let by_step = match within_steps {
+        true => errors_by_step(&ship, &ship.sister(model)?, settings, &fast),
+        false => BTreeMap::new(),
+    };
     let mut figures: BTreeMap<String, Vec<Figure>> = BTreeMap::new();
     let mut order = Vec::new();
     let mut drawn = vec![Drawn::new(); sailed.len()];
@@ -151,7 +161,8 @@ pub fn bands(
         }
     }
     let figures = order.iter().filter_map(|name| band(&figures[name], draws.len())).collect();
-    Some(Bands { sampling, failed, figures, next_trial: next_trial(&drawn) })
+    let next_trial = next_trial(&drawn).filter(|_| within_steps);
+    Some(Bands { sampling, failed, figures, next_trial })
 }
 
 /// The ship that draws are sisters of, and how they sail: at a coarse step.
@@ -160,6 +171,7 @@ fn prepared(
     law: &Law,
     settings: &ManoeuvreSettings,
     depth_m: Option<f64>,
+    reversals_within_steps: bool,
 ) -> Option<(Ship, ManoeuvreSettings)> {
     let mut ship = Ship::sisters(model, law).ok()?;
     let speed_m_s = settings.speed_m_s.unwrap_or(ship.approach_speed_m_s());
@@ -168,7 +180,7 @@ fn prepared(
     depth_m.into_iter().for_each(|depth_m| ship.set_depth(depth_m));
     let coarse = 0.02 * ship.lpp_m() / speed_m_s;
     let step_s = settings.step_s.or(Some(coarse));
-    Some((ship, ManoeuvreSettings { step_s, reversals_within_steps: true, ..*settings }))
+    Some((ship, ManoeuvreSettings { step_s, reversals_within_steps, ..*settings }))
 }
 
 fn sailed(
@@ -187,7 +199,7 @@ fn sailed(
 
 /// Figures of the standard manoeuvres by models that have a model's law and particulars.
 pub(crate) fn figures(model: &Model, law: &Law, models: &[Model]) -> Option<Vec<Drawn>> {
-    let (ship, fast) = prepared(model, law, &ManoeuvreSettings::default(), None)?;
+    let (ship, fast) = prepared(model, law, &ManoeuvreSettings::default(), None, true)?;
     let named = |sailed: StandardManoeuvres| {
         let figures = sailed.figures().into_iter();
         figures.filter_map(|figure| Some((figure.name, figure.value?))).collect()
@@ -231,8 +243,9 @@ fn band(figures: &[Figure], draws: usize) -> Option<Band> {
     })
 }
 
-/// A quantile of sorted values, straight between them (Hyndman and Fan 1996, The American Statistician 50, 361-365,
-/// definition 6: without the shrinking of the tails that definition 7 has).
+/// A quantile of sorted values, straight between them (Hyndman and Fan 1996, The American
+/// Statistician 50, 361-365, definition 6: without the shrinking of the tails that definition 7
+/// has).
 fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let last = sorted.len().checked_sub(1)?;
     let place = (share * (sorted.len() + 1) as f64 - 1.0).clamp(0.0, last as f64);
@@ -261,7 +274,8 @@ mod tests {
     #[test]
     fn draws_have_the_posterior_s_covariance_and_the_estimate_in_their_midst() {
         let (model, _) = mariner(0.1);
-        let draws = draws(&model, Sampling { samples: 4000, seed: 3 }).unwrap();
+        let draws =
+            draws(&model, Sampling { samples: 4000, seed: 3, ..Sampling::default() }).unwrap();
         let moved = |name: &str| {
             draws
                 .iter()
@@ -287,7 +301,7 @@ mod tests {
                 &law,
                 &ManoeuvreSettings::default(),
                 None,
-                Sampling { samples: 20, seed },
+                Sampling { samples: 20, seed, within_steps: false },
             )
             .unwrap();
             let band = bands
@@ -308,7 +322,7 @@ mod tests {
     fn narrow_bands_hold_the_estimate_s_figures() {
         let (model, law) = mariner(1e-3);
         let settings = ManoeuvreSettings::default();
-        let sampling = Sampling { samples: 40, seed: 2 };
+        let sampling = Sampling { samples: 40, seed: 2, within_steps: true };
         let bands = bands(&model, &law, &settings, None, sampling).unwrap();
         let ship = Ship::sisters(&model, &law).unwrap();
         let own = ship.sister(&model).unwrap();

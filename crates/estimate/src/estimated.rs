@@ -2,8 +2,8 @@
 //!
 //! The law `low-speed` has formulas for mass, inertia and added masses of any ship: a radius of
 //! gyration of a quarter of the length, a twentieth of the mass added in surge, and Clarke, Gedling
-//! and Hine (1983) for sway and yaw. A parameter of another law that has its name and meaning follows
-//! from the same.
+//! and Hine (1983) for sway and yaw. A parameter of another law that has its name and meaning
+//! follows from the same.
 
 use std::sync::LazyLock;
 

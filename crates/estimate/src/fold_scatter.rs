@@ -1,9 +1,11 @@
 //! How much wider a posterior should be, by what its folds disagree.
 //!
-//! A posterior by the noise of the readings alone takes the law for true. Models that each missed some
-//! of the trials differ by what the law cannot follow, too: their scatter is the jackknife's estimate
-//! of a figure's variance, `(g - 1) / g sum (f_i - mean f)^2` over `g` folds (Efron and Tibshirani
-//! 1993, An introduction to the bootstrap, Eq. 11.5), beside which stands that of the posterior.
+//! A posterior by the noise of the readings alone takes the law for true. Models that each missed
+//! some of the trials differ by what the law cannot follow, too: their scatter is the jackknife's
+//! estimate of a figure's variance, `(g - 1) / g sum (f_i - mean f)^2` over `g` folds (Efron and
+//! Tibshirani 1993, An introduction to the bootstrap, Eq. 11.5), beside which stands that of the
+//! posterior. Few folds tell a variance badly, so that what holds 95 % is Student's, not the
+//! normal's.
 
 use sistership_model::Model;
 use sistership_model::law::Law;
@@ -14,10 +16,14 @@ use crate::next_trial::Drawn;
 /// Draws that tell the posterior's own scatter.
 const DRAWS: usize = 40;
 
+/// The normal's quantile of 97.5 %.
+const NORMAL: f64 = 1.959_964;
+
 /// The root of the jackknife's variance by the posterior's, in the mean over the figures of the
-/// standard manoeuvres; at least one, and one where fewer than three folds sail them.
+/// standard manoeuvres, by Student's quantile to the normal's; at least one, and one where fewer
+/// than three folds sail them.
 pub(crate) fn fold_factor(model: &Model, law: &Law, folds: &[Model]) -> f64 {
-    let sampling = Sampling { samples: DRAWS, seed: 1 };
+    let sampling = Sampling { samples: DRAWS, ..Sampling::default() };
     let drawn = draws(model, sampling).and_then(|draws| figures(model, law, &draws));
     let left_out = figures(model, law, folds).filter(|left_out| left_out.len() > 2);
     let (Some(drawn), Some(left_out)) = (drawn, left_out) else { return 1.0 };
@@ -32,7 +38,16 @@ pub(crate) fn fold_factor(model: &Model, law: &Law, folds: &[Model]) -> f64 {
         })
         .collect();
     let mean = ratios.iter().sum::<f64>() / ratios.len().max(1) as f64;
-    mean.sqrt().max(1.0)
+    (student(left_out.len() - 1) / NORMAL * mean.sqrt()).max(1.0)
+}
+
+/// Student's quantile of 97.5 % for some degrees of freedom (Abramowitz and Stegun 1964, Handbook
+/// of mathematical functions, Eq. 26.7.5, two terms: 4 % low for three degrees, 1 % for five).
+fn student(degrees: usize) -> f64 {
+    let (x, degrees) = (NORMAL, degrees as f64);
+    let first = (x.powi(3) + x) / 4.0;
+    let second = (5.0 * x.powi(5) + 16.0 * x.powi(3) + 3.0 * x) / 96.0;
+    x + first / degrees + second / degrees.powi(2)
 }
 
 /// Sum of squares about the mean; none where a figure is not reached by all.
@@ -74,8 +89,16 @@ mod tests {
     #[test]
     fn folds_that_lie_wider_than_the_posterior_widen_it() {
         // Of four folds at one deviation, the jackknife's variance is three times the posterior's.
-        assert!((factor(1.0) / 3.0_f64.sqrt() - 1.0).abs() < 0.25, "{}", factor(1.0));
+        let expected = student(3) / NORMAL * 3.0_f64.sqrt();
+        assert!((factor(1.0) / expected - 1.0).abs() < 0.25, "{} by {expected}", factor(1.0));
         assert!((factor(2.0) / factor(1.0) - 2.0).abs() < 0.1);
         assert_eq!(factor(0.1), 1.0);
+    }
+
+    #[test]
+    fn students_quantile_is_the_tables() {
+        for (degrees, table) in [(3, 3.182), (5, 2.571), (10, 2.228), (30, 2.042)] {
+            assert!((student(degrees) / table - 1.0).abs() < 0.04, "{degrees}");
+        }
     }
 }

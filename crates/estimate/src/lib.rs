@@ -1,4 +1,5 @@
-//! From trials to models: similarity of ships, transfer of a model, and refinement of a source model by several estimators.
+//! From trials to models: similarity of ships, transfer of a model, and refinement of a source
+//! model by several estimators.
 
 pub mod bands;
 mod estimated;

@@ -1,9 +1,9 @@
 //! The trial that would narrow the bands most.
 //!
-//! A manoeuvre that is sailed tells its own figures. With the draws of the posterior taken for normal,
-//! what then remains of the variance of another figure is `S_kk - S_kf S_ff^-1 S_fk`, `S` being the
-//! covariance of the figures over the draws and `f` those that were told: the residual of the
-//! figure's regression on them.
+//! A manoeuvre that is sailed tells its own figures. With the draws of the posterior taken for
+//! normal, what then remains of the variance of another figure is `S_kk - S_kf S_ff^-1 S_fk`, `S`
+//! being the covariance of the figures over the draws and `f` those that were told: the residual of
+//! the figure's regression on them.
 
 use std::collections::BTreeMap;
 
@@ -41,8 +41,8 @@ impl NextTrial {
 /// Figures of a draw by name.
 pub(crate) type Drawn = BTreeMap<String, f64>;
 
-/// The manoeuvre that tells most; none where fewer draws than twice the figures reached all of them,
-/// or none differs.
+/// The manoeuvre that tells most; none where fewer draws than twice the figures reached all of
+/// them, or none differs.
 pub(crate) fn next_trial(draws: &[Drawn]) -> Option<NextTrial> {
     let most = draws.iter().max_by_key(|draw| draw.len())?;
     let mut names: Vec<&String> = most.keys().filter(|name| manoeuvre(name).is_some()).collect();

@@ -52,7 +52,8 @@ pub enum SourceError {
     Zoo(#[from] FileError),
 }
 
-/// The definition by which ships are compared with a target: Mei's where she has every component of it, else Kanazawa's.
+/// The definition by which ships are compared with a target: Mei's where she has every component of
+/// it, else Kanazawa's.
 pub fn definition_for(target: &Vessel) -> Definition {
     let complete = CharacteristicVector::of(target, Definition::Mei2019).missing().is_empty();
     if complete { Definition::Mei2019 } else { Definition::Kanazawa2023 }
@@ -99,7 +100,8 @@ pub fn similar_with(
     }
 }
 
-/// The trend of a source on the target's trials, started anew each time she has sailed 20 of her lengths.
+/// The trend of a source on the target's trials, started anew each time she has sailed 20 of her
+/// lengths.
 fn trend_on(
     zoo: &Zoo,
     target: &Vessel,

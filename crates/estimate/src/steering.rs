@@ -9,23 +9,24 @@ use sistership_model::trial::{Channel, Trial};
 #[derive(Debug, Clone, Copy)]
 struct SteeringThresholds {
     /// `w/(L/U)`: time over which the rate is taken by the time of sailing a length, dimensionless.
-    /// Source: derived: 35 deg at the least rate of SOLAS II-1/29 take 15 s, half the time in which a
-    /// ship of 250 m sails its length at 16 kn; a tenth of that is inside the movement.
+    /// Source: derived: 35 deg at the least rate of SOLAS II-1/29 take 15 s, half the time in which
+    /// a ship of 250 m sails its length at 16 kn; a tenth of that is inside the movement.
     window: f64,
-    /// `s`: share of the largest rate from which a window counts as inside a movement, dimensionless.
-    /// Source: derived: windows that begin or end outside by more than a fifth of their length do not.
+    /// `s`: share of the largest rate from which a window counts as inside a movement,
+    /// dimensionless. Source: derived: windows that begin or end outside by more than a fifth of
+    /// their length do not.
     inside: f64,
-    /// Angle that a movement at that rate must cover, rad. Source: derived: a rudder that follows small
-    /// orders does not show how fast its gear can be; the least order of ITTC 7.5-04-02-01's zigzags
-    /// is 10 deg, which from amidships is this twice.
+    /// Angle that a movement at that rate must cover, rad. Source: derived: a rudder that follows
+    /// small orders does not show how fast its gear can be; the least order of ITTC 7.5-04-02-01's
+    /// zigzags is 10 deg, which from amidships is this twice.
     least_rad: f64,
 }
 
 const STEERING: SteeringThresholds =
     SteeringThresholds { window: 0.05, inside: 0.8, least_rad: 0.0873 };
 
-/// The gear's rate, rad/s, by the fastest movements of the rudder in trials; none where no movement is
-/// long enough to show it. `length_s` is the time in which the ship sails its length.
+/// The gear's rate, rad/s, by the fastest movements of the rudder in trials; none where no movement
+/// is long enough to show it. `length_s` is the time in which the ship sails its length.
 pub(crate) fn measured_rate(trials: &[&Trial], length_s: f64) -> Option<f64> {
     let each: Vec<Vec<(f64, f64)>> =
         trials.iter().map(|trial| rates(trial, STEERING.window * length_s)).collect();
@@ -42,7 +43,8 @@ pub(crate) fn measured_rate(trials: &[&Trial], length_s: f64) -> Option<f64> {
     inside.get(inside.len() / 2).copied()
 }
 
-/// Rates of the rudder over windows that begin at each sample, each with the time to the next sample.
+/// Rates of the rudder over windows that begin at each sample, each with the time to the next
+/// sample.
 fn rates(trial: &Trial, window_s: f64) -> Vec<(f64, f64)> {
     let Some(angle) = trial.channel(Channel::Delta) else { return Vec::new() };
     let step_s = trial.interval_s();

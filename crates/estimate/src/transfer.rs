@@ -23,8 +23,8 @@ pub struct Approach {
     pub n_rps: Option<f64>,
 }
 
-/// The approach of a set of trials: the median speed at their first samples; where they start from rest, the median
-/// speed under way. `None` without velocities.
+/// The approach of a set of trials: the median speed at their first samples; where they start from
+/// rest, the median speed under way. `None` without velocities.
 pub fn approach_of(trials: &[&Trial]) -> Option<Approach> {
     let first = |trial: &&Trial| {
         Some(trial.channel(Channel::U)?.first()?.hypot(*trial.channel(Channel::V)?.first()?))
@@ -47,8 +47,9 @@ fn median(values: &mut [f64]) -> Option<f64> {
     values.get(values.len() / 2).copied()
 }
 
-/// A source model on the target's particulars. What the law needs and the target does not state is scaled from the source
-/// by Froude's law and marked so; the steering gear's rate is scaled likewise.
+/// A source model on the target's particulars. What the law needs and the target does not state is
+/// scaled from the source by Froude's law and marked so; the steering gear's rate is scaled
+/// likewise.
 pub fn transfer(source: &Model, law: &Law, target: &Vessel, approach: Option<Approach>) -> Model {
     let ratio = ratio(source, target);
     let particulars = complete(source, law, target, ratio);
@@ -106,8 +107,9 @@ fn same_parameter(law: &Law, name: &str, source: &Model) -> Option<Quantity> {
     Some(Quantity::new(value, format!("as of {}", source.name)))
 }
 
-/// A model of a law for a ship of which nothing is known but her particulars: every coefficient that the law lists is zero, so
-/// that a prior which pulls to it is a plain ridge. Only trials make it a model.
+/// A model of a law for a ship of which nothing is known but her particulars: every coefficient
+/// that the law lists is zero, so that a prior which pulls to it is a plain ridge. Only trials make
+/// it a model.
 ///
 /// # Errors
 /// Names a parameter of the law that does not follow from her particulars.

@@ -1,4 +1,5 @@
-//! Refinements from stored statistics: three axes of 22 coefficients, four trials left out in turn, 100 strengths of the prior.
+//! Refinements from stored statistics: three axes of 22 coefficients, four trials left out in turn,
+//! 100 strengths of the prior.
 #![allow(missing_docs)]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};

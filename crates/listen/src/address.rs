@@ -5,7 +5,8 @@ use std::net::{IpAddr, Ipv6Addr};
 /// The bits of an IPv6 address that one customer of a network holds.
 const NETWORK: u128 = !0 << 64;
 
-/// An IPv4 address; of IPv6 the network of 64 bits, within which whoever has one address has all of them.
+/// An IPv4 address; of IPv6 the network of 64 bits, within which whoever has one address has all of
+/// them.
 pub fn party(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(v6) if !v6.is_loopback() => Ipv6Addr::from_bits(v6.to_bits() & NETWORK).into(),

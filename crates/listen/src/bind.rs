@@ -6,8 +6,8 @@ use tokio::net::{TcpListener, TcpSocket};
 
 /// Connections that the system holds until they are taken.
 const BACKLOG: u32 = 1024;
-/// What the system keeps of an answer that is not read. It also is how finely reading is seen: the system tells of room only
-/// when a third of this has been read.
+/// What the system keeps of an answer that is not read. It also is how finely reading is seen: the
+/// system tells of room only when a third of this has been read.
 const SEND_BUFFER: u32 = 128 << 10;
 
 /// Takes an address.

@@ -14,9 +14,10 @@ use tokio::time::{Instant, Sleep, sleep_until};
 
 use crate::pace::Pace;
 
-/// Bytes, and time, for the rest of a body that is refused before its end. Whoever still sends it would find the connection
-/// reset, not the answer that waits behind: RFC 9112, section 9.6. Four times the largest document; beyond it, as after two
-/// seconds, the connection is closed all the same.
+/// Bytes, and time, for the rest of a body that is refused before its end. Whoever still sends it
+/// would find the connection reset, not the answer that waits behind: RFC 9112, section 9.6. Four
+/// times the largest document; beyond it, as after two seconds, the connection is closed all the
+/// same.
 const REST_BYTES: usize = 16 << 20;
 const REST_TIME: Duration = Duration::from_secs(2);
 

@@ -9,7 +9,8 @@ const OTHER_DESCRIPTORS: usize = 128;
 /// The least that a server is of use with.
 const FEWEST: usize = 16;
 
-/// The limits that the system has descriptors for. The process' own bound is raised as far as it may be.
+/// The limits that the system has descriptors for. The process' own bound is raised as far as it
+/// may be.
 pub fn suited(limits: Limits) -> Limits {
     let Some(have) = raised(needed_by(&limits)) else { return limits };
     let fit = fitting(limits, have);

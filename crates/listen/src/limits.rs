@@ -11,10 +11,11 @@ pub struct Limits {
     pub connections: usize,
     /// Connections of one address at a time (of IPv6: of a network of 64 bits).
     pub connections_per_address: usize,
-    /// Bytes a second, on average, that a request's body must bring and a reader of an answer must take. Long below any
-    /// link in use: a satellite terminal for ships has 2400 bit/s and more.
+    /// Bytes a second, on average, that a request's body must bring and a reader of an answer must
+    /// take. Long below any link in use: a satellite terminal for ships has 2400 bit/s and more.
     pub least_rate: usize,
-    /// Without a byte of a body until it is given up; what comes faster than it must earns more, up to a minute.
+    /// Without a byte of a body until it is given up; what comes faster than it must earns more, up
+    /// to a minute.
     pub body_grace: Duration,
     /// The same for answers. Longer, as the system tells of reading by tens of kilobytes.
     pub answer_grace: Duration,

@@ -44,7 +44,8 @@ impl Credit {
         }
     }
 
-    /// How long it waits, or has waited before for no more than a few bytes; none while it does not.
+    /// How long it waits, or has waited before for no more than a few bytes; none while it does
+    /// not.
     fn waited(&self, now: Instant) -> Option<Duration> {
         let waited = now.saturating_duration_since(self.since?);
         Some(waited.max((self.grace + waited).saturating_sub(self.left)))
@@ -140,7 +141,8 @@ impl Pace {
         }
     }
 
-    /// How long the connection has waited for its other end; none while the server has something to do for it.
+    /// How long the connection has waited for its other end; none while the server has something to
+    /// do for it.
     pub(super) fn stuck(&self, now: Instant) -> Option<Duration> {
         let state = self.state();
         let head = || state.head.map(|since| now.saturating_duration_since(since));

@@ -1,7 +1,9 @@
-//! Who has a connection: bounded in all and for each address, with a reserve in which whoever finds no seat is told so.
+//! Who has a connection: bounded in all and for each address, with a reserve in which whoever finds
+//! no seat is told so.
 //!
-//! Nobody who waits for the server is sent away. Where seats run out, the connection whose other end has let the server
-//! wait longest gives way: a body that does not come, an answer that is not read, a request that is not made.
+//! Nobody who waits for the server is sent away. Where seats run out, the connection whose other
+//! end has let the server wait longest gives way: a body that does not come, an answer that is not
+//! read, a request that is not made.
 
 use std::collections::HashMap;
 use std::net::IpAddr;
@@ -16,7 +18,8 @@ use crate::pace::Pace;
 
 /// Connections beyond the seats: they get health and refusals.
 pub(super) const RESERVE: usize = 128;
-/// How long an other end may take its time before it gives way to others: some round trips around the world.
+/// How long an other end may take its time before it gives way to others: some round trips around
+/// the world.
 const PATIENCE: Duration = Duration::from_millis(500);
 /// How long a request waits for a seat before it is refused.
 const WAIT: Duration = Duration::from_secs(1);
@@ -62,7 +65,8 @@ impl Seats {
         self.table.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A place for a new connection: a seat, else one in the reserve; none where all of that waits for the server.
+    /// A place for a new connection: a seat, else one in the reserve; none where all of that waits
+    /// for the server.
     pub(super) fn admit(self: &Arc<Self>, party: IpAddr, pace: &Arc<Pace>) -> Option<Seat> {
         let mut table = self.table();
         let seated = self.room(&mut table, party);
@@ -124,7 +128,8 @@ impl Table {
         }
     }
 
-    /// Cuts, of some connections, the one whose other end has been awaited longest; says whether there was one.
+    /// Cuts, of some connections, the one whose other end has been awaited longest; says whether
+    /// there was one.
     fn evict(&mut self, patience: Duration, of: impl Fn(&Entry) -> bool) -> bool {
         let now = Instant::now();
         let waited = self.entries.iter().filter(|(_, entry)| of(entry));

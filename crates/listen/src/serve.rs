@@ -14,8 +14,9 @@ use crate::limits::Limits;
 use crate::seats::Seats;
 use crate::stopping::Stopping;
 
-/// What the system takes of an answer beyond what is on its way to a reader. Answers that nobody reads are made no further
-/// than that: 600 connections with 400 requests each would have had the work of ten times as many done for nothing.
+/// What the system takes of an answer beyond what is on its way to a reader. Answers that nobody
+/// reads are made no further than that: 600 connections with 400 requests each would have had the
+/// work of ten times as many done for nothing.
 #[cfg(any(target_os = "linux", target_os = "android"))]
 const NOT_SENT: u32 = 16 << 10;
 /// A pause when the system has no more sockets.

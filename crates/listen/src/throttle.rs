@@ -1,7 +1,8 @@
 //! Who has presented wrong keys of late: some mistakes are free, then further ones wait.
 //!
-//! The right key is never refused, else one program on an address could shut out the others behind it. So this does not make a
-//! short key safe: it bounds what guessing costs the server, and tells of it in the log.
+//! The right key is never refused, else one program on an address could shut out the others behind
+//! it. So this does not make a short key safe: it bounds what guessing costs the server, and tells
+//! of it in the log.
 
 use std::collections::HashMap;
 use std::net::IpAddr;

@@ -1,8 +1,9 @@
 //! The names of coefficients: `Axis_factors`, spelled one way.
 //!
-//! Factors stand in the order u, v, r, phi, p, delta, n, then those a law adds; a factor to a power is repeated, an
-//! absolute value is written `|v|` and follows the plain factor: `X_uu`, `Y_vvr`, `N_v|v|`, `X_udeltadelta`, `Y_0`. What a
-//! coefficient deviates by under a submodel's conditions is named after it: `X_uu@astern`.
+//! Factors stand in the order u, v, r, phi, p, delta, n, then those a law adds; a factor to a power
+//! is repeated, an absolute value is written `|v|` and follows the plain factor: `X_uu`, `Y_vvr`,
+//! `N_v|v|`, `X_udeltadelta`, `Y_0`. What a coefficient deviates by under a submodel's conditions
+//! is named after it: `X_uu@astern`.
 
 use std::fmt;
 
@@ -80,7 +81,8 @@ pub struct CoefficientName {
     pub axis: Axis,
     /// The factors that multiply it, in canonical order; none for a constant such as `Y_0`.
     pub factors: Vec<Factor>,
-    /// The submodel under whose conditions it is added to the coefficient of the same factors, if any.
+    /// The submodel under whose conditions it is added to the coefficient of the same factors, if
+    /// any.
     pub submodel: Option<String>,
 }
 

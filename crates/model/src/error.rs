@@ -57,7 +57,8 @@ impl<'a> Blame<'a> {
         crate::yaml::read(self.text).map_err(|error| FileError::of_yaml(self.file, error))
     }
 
-    /// An error at a dotted field; the line is that of the path's keys, each looked for below the one before.
+    /// An error at a dotted field; the line is that of the path's keys, each looked for below the
+    /// one before.
     pub(crate) fn at(&self, field: &str, message: impl ToString) -> FileError {
         FileError {
             file: self.file.to_owned(),
@@ -81,7 +82,8 @@ impl<'a> Blame<'a> {
     }
 }
 
-/// Whether the line has `key:` as a whole word (quoted or not), or lists it as `- key` or in brackets.
+/// Whether the line has `key:` as a whole word (quoted or not), or lists it as `- key` or in
+/// brackets.
 fn names_key(line: &str, key: &str) -> bool {
     line.match_indices(key).any(|(at, _)| {
         let before = line[..at].chars().next_back();

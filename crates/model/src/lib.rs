@@ -1,6 +1,7 @@
 //! The vocabulary: ships, particulars, laws and their formulas, coefficients, trials, versions.
 //!
-//! No I/O and no async: text goes in, checked values come out, and every refusal names file, line and field.
+//! No I/O and no async: text goes in, checked values come out, and every refusal names file, line
+//! and field.
 
 pub mod categories;
 pub mod coefficient;

@@ -1,6 +1,7 @@
 //! The manifest that maps a file to trials: columns, units, signs and frames.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -43,18 +44,65 @@ pub struct ColumnMapping {
     pub unit: String,
 }
 
-/// One file of a manifest.
+/// One file of a manifest, or a stretch of one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ManifestTrial {
     /// Path, relative to the manifest.
     pub file: String,
+    /// Where the stretch begins that is read; absent for the file's first row.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<FileTime>,
+    /// Where it ends; absent for the last row.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<FileTime>,
     /// What was sailed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub manoeuvre: Option<String>,
     /// Water depth, m; absent for deep water.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub depth_m: Option<f64>,
+}
+
+impl ManifestTrial {
+    /// A file by its name alone.
+    pub fn of(file: impl Into<String>) -> Self {
+        Self { file: file.into(), from: None, to: None, manoeuvre: None, depth_m: None }
+    }
+
+    /// Whether only a part of the file is read.
+    pub fn is_stretch(&self) -> bool {
+        self.from.is_some() || self.to.is_some()
+    }
+
+    /// What the trial is called: its file, with the times of a stretch as media fragments have them
+    /// (W3C 2012), `log.csv#t=3600,5400`.
+    pub fn label(&self) -> String {
+        let text = |time: &Option<FileTime>| time.as_ref().map_or(String::new(), |t| t.to_string());
+        match self.is_stretch() {
+            true => format!("{}#t={},{}", self.file, text(&self.from), text(&self.to)),
+            false => self.file.clone(),
+        }
+    }
+}
+
+/// A time of a file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum FileTime {
+    /// As in its column of seconds; where that has dates or times of day, s since its first row.
+    Seconds(f64),
+    /// As a clock says it, such as `2024-05-01T09:30:00Z` or `09:30:00`.
+    Clock(String),
+}
+
+impl fmt::Display for FileTime {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Seconds(seconds) => write!(out, "{seconds}"),
+            Self::Clock(text) => out.write_str(text),
+        }
+    }
 }
 
 /// Signs and frames of a file; the defaults are the canonical ones.

@@ -1,4 +1,5 @@
-//! A model: a law with coefficients for one ship, in canonical signs, as it is stored, exchanged and simulated.
+//! A model: a law with coefficients for one ship, in canonical signs, as it is stored, exchanged
+//! and simulated.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +19,8 @@ use crate::uncertainty::Uncertainty;
 use crate::validity::Region;
 use crate::vessel::{PublishedModelFile, Status, Steering, Vessel};
 
-/// A model document. Positive rudder turns the ship to starboard; parameters and coefficients are in the law's units.
+/// A model document. Positive rudder turns the ship to starboard; parameters and coefficients are
+/// in the law's units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Model {
@@ -98,7 +100,8 @@ impl Model {
         Ok(model)
     }
 
-    /// A published model of a vessel, converted to canonical signs; the first one where no name is given.
+    /// A published model of a vessel, converted to canonical signs; the first one where no name is
+    /// given.
     ///
     /// # Errors
     /// Says which model, parameter or coefficient is missing or unknown.
@@ -141,9 +144,10 @@ impl Model {
         Ok(model)
     }
 
-    /// This model carried over to another ship: the same coefficients in the law's own scaling, her particulars, and
-    /// every parameter that the law derives from particulars recomputed for her. `approach_speed_m_s` replaces the speed
-    /// about which the law is expanded, which belongs to the trials.
+    /// This model carried over to another ship: the same coefficients in the law's own scaling, her
+    /// particulars, and every parameter that the law derives from particulars recomputed for her.
+    /// `approach_speed_m_s` replaces the speed about which the law is expanded, which belongs to
+    /// the trials.
     pub fn transferred(
         &self,
         law: &Law,
@@ -184,7 +188,8 @@ impl Model {
         self.coefficients.get(name).map_or(0.0, |quantity| quantity.value)
     }
 
-    /// How far its coefficients may be from the truth; none where they are no longer those that were estimated.
+    /// How far its coefficients may be from the truth; none where they are no longer those that
+    /// were estimated.
     pub fn posterior(&self) -> Option<&Posterior> {
         self.posterior.as_ref().filter(|p| {
             p.is_about(|name| self.coefficients.get(name).map(|quantity| quantity.value))

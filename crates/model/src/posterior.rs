@@ -7,19 +7,21 @@ use serde::{Deserialize, Serialize};
 
 use crate::triangle::{self, TriangleError};
 
-/// The errors of estimated coefficients as a normal distribution about the estimate: variances of the estimator through
-/// the scatter of the trials, and of what the prior adds where it holds. docs/decisions/0012 says what an interval means.
+/// The errors of estimated coefficients as a normal distribution about the estimate: variances of
+/// the estimator through the scatter of the trials, and of what the prior adds where it holds.
+/// docs/decisions/0012 says what an interval means.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Posterior {
     /// Names of the coefficients.
     pub names: Vec<String>,
-    /// The estimates that it is about, in the units of the coefficients; a model that has others has lost its posterior.
+    /// The estimates that it is about, in the units of the coefficients; a model that has others
+    /// has lost its posterior.
     pub values: Vec<f64>,
     /// Standard deviations, in the units of the coefficients.
     pub deviations: Vec<f64>,
-    /// The lower triangle of the Cholesky root of the correlations, a row in a line: numbers up to the diagonal,
-    /// separated by spaces.
+    /// The lower triangle of the Cholesky root of the correlations, a row in a line: numbers up to
+    /// the diagonal, separated by spaces.
     pub root_correlation: Vec<String>,
 }
 

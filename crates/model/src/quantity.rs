@@ -79,7 +79,8 @@ impl Section {
     /// The values with their sources filled in; `sources` are the keys that exist.
     ///
     /// # Errors
-    /// Names the value that is not a finite number, has no source, or cites one that the file does not list.
+    /// Names the value that is not a finite number, has no source, or cites one that the file does
+    /// not list.
     pub fn resolve(
         &self,
         sources: &[&str],

@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 use crate::manifest::VelocityFrame;
 use crate::units::Dimension;
 
-/// What a trial may record besides time. Ship-fixed velocities are of midship, over the ground unless the trial says
-/// through the water; positive `Delta` turns the ship to starboard; angles in radians, revolutions per second.
+/// What a trial may record besides time. Ship-fixed velocities are of midship, over the ground
+/// unless the trial says through the water; positive `Delta` turns the ship to starboard; angles in
+/// radians, revolutions per second.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
 )]
@@ -177,7 +178,8 @@ impl Trial {
 /// Something a check found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Finding {
-    /// Row of the file, counted from 1 with the header as row 1; absent where the whole column is meant.
+    /// Row of the file, counted from 1 with the header as row 1; absent where the whole column is
+    /// meant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub row: Option<usize>,
     /// Column as the file names it.

@@ -1,5 +1,5 @@
-//! What the trials that a model was fitted on leave open: the coefficients' information, and the discrepancy that no
-//! coefficient explains.
+//! What the trials that a model was fitted on leave open: the coefficients' information, and the
+//! discrepancy that no coefficient explains.
 
 use std::collections::BTreeMap;
 
@@ -10,12 +10,14 @@ use crate::coefficient::Axis;
 use crate::effect::AppliedEffect;
 use crate::triangle::{self, TriangleError};
 
-/// What a fit leaves open. With `d` the change of the listed coefficients, each divided by its scale, the trials that
-/// were fitted say `|R d - z|^2` (minus twice the logarithm of their likelihood, less a constant).
+/// What a fit leaves open. With `d` the change of the listed coefficients, each divided by its
+/// scale, the trials that were fitted say `|R d - z|^2` (minus twice the logarithm of their
+/// likelihood, less a constant).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Uncertainty {
-    /// Names of the coefficients, and of terms that the model does not have (its value for them is zero).
+    /// Names of the coefficients, and of terms that the model does not have (its value for them is
+    /// zero).
     pub names: Vec<String>,
     /// What each change is divided by, in the unit of the coefficient.
     pub scales: Vec<f64>,
@@ -28,11 +30,13 @@ pub struct Uncertainty {
     /// What the instruments did beside the scatter that their readings show, by channel.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub instruments: BTreeMap<String, InstrumentFit>,
-    /// Systematic errors of instruments: those that these trials show, one size for all; later trials are read with them, too. Versions
-    /// are their bytes, so that documents keep the name under which the first were written.
+    /// Systematic errors of instruments: those that these trials show, one size for all; later
+    /// trials are read with them, too. Versions are their bytes, so that documents keep the name
+    /// under which the first were written.
     #[serde(rename = "habits", default, skip_serializing_if = "Vec::is_empty")]
     pub systematic_errors: Vec<AppliedEffect>,
-    /// How much each form of an effect explained of these trials, which do not have it: by `effect/form`.
+    /// How much each form of an effect explained of these trials, which do not have it: by
+    /// `effect/form`.
     #[serde(rename = "feigned", default, skip_serializing_if = "BTreeMap::is_empty")]
     pub false_alarm_levels: BTreeMap<String, FalseAlarmLevel>,
     /// The largest that any stretch of these trials left unexplained, in deviations, by channel.
@@ -46,14 +50,16 @@ pub struct Uncertainty {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InstrumentFit {
-    /// Deviation of its error by the scatter from sample to sample: more than one where readings were smoothed.
+    /// Deviation of its error by the scatter from sample to sample: more than one where readings
+    /// were smoothed.
     pub deviation_by_scatter: f64,
-    /// Root of the density of what its rate and the velocities disagree by, SI by the root of a second.
+    /// Root of the density of what its rate and the velocities disagree by, SI by the root of a
+    /// second.
     pub drift: f64,
 }
 
-/// What an effect explained of trials that do not have it, by what chance would let it explain: one where the model is
-/// right. Each trial is judged by coefficients fitted on the others.
+/// What an effect explained of trials that do not have it, by what chance would let it explain: one
+/// where the model is right. Each trial is judged by coefficients fitted on the others.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FalseAlarmLevel {

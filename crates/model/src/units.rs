@@ -1,6 +1,7 @@
 //! Physical dimensions and the units that files may name.
 //!
-//! Angles count as dimensionless: a radian is a ratio of lengths, and the prime system treats it so.
+//! Angles count as dimensionless: a radian is a ratio of lengths, and the prime system treats it
+//! so.
 
 use std::fmt;
 use std::ops::{Add, Sub};

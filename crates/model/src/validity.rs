@@ -1,8 +1,9 @@
 //! The motion that a model's trials covered, and how far another motion leaves it.
 //!
-//! The region is the octagon of Miné 2006 (Higher-Order and Symbolic Computation 19, 31-100): the hull of what was seen,
-//! bounded along every channel and along every sum and difference of two, each scaled to its own range. It is convex, holds
-//! the convex hull, and needs two numbers for each of n^2 directions.
+//! The region is the octagon of Miné 2006 (Higher-Order and Symbolic Computation 19, 31-100): the
+//! hull of what was seen, bounded along every channel and along every sum and difference of two,
+//! each scaled to its own range. It is convex, holds the convex hull, and needs two numbers for
+//! each of n^2 directions.
 
 use std::collections::BTreeMap;
 
@@ -15,8 +16,8 @@ use serde::{Deserialize, Serialize};
 pub struct Region {
     /// Least and greatest value by channel (`u`, `v`, `r`, `delta`, `n`), SI and radians.
     pub ranges: BTreeMap<String, [f64; 2]>,
-    /// Least and greatest sum and difference of two channels, each scaled to -1 at its least and 1 at its greatest value:
-    /// `v+r`, `v-r`.
+    /// Least and greatest sum and difference of two channels, each scaled to -1 at its least and 1
+    /// at its greatest value: `v+r`, `v-r`.
     pub pairs: BTreeMap<String, [f64; 2]>,
 }
 
@@ -61,8 +62,8 @@ impl Region {
         Some(Self { ranges, pairs })
     }
 
-    /// How far a point is outside, by half ranges, and along what; none where it is inside. Channels that the point lacks do
-    /// not count.
+    /// How far a point is outside, by half ranges, and along what; none where it is inside.
+    /// Channels that the point lacks do not count.
     pub fn beyond(&self, value: &dyn Fn(&str) -> Option<f64>) -> Option<(String, f64)> {
         let scaled = |name: &String| Some(scale(value(name)?, self.ranges[name]));
         let single = self
@@ -88,7 +89,8 @@ impl Region {
         })
     }
 
-    /// How a motion leaves it; none where it stays inside. `value(k, name)` is a channel at sample `k`.
+    /// How a motion leaves it; none where it stays inside. `value(k, name)` is a channel at sample
+    /// `k`.
     pub fn excursion(
         &self,
         t_s: &[f64],
@@ -151,7 +153,8 @@ impl Excursion {
     }
 }
 
-/// What is no excursion, by half ranges: a hard turn at 35 deg where the rudder was recorded at 34.9.
+/// What is no excursion, by half ranges: a hard turn at 35 deg where the rudder was recorded at
+/// 34.9.
 const SLACK: f64 = 0.005;
 /// The half range of a channel that did not vary, by its size: a speed that was held to a per cent.
 const STILL: f64 = 0.01;

@@ -1,4 +1,5 @@
-//! What it takes to derive a version again. The server has the document that holds it with the model.
+//! What it takes to derive a version again. The server has the document that holds it with the
+//! model.
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -36,7 +37,8 @@ pub enum Recipe {
         /// Where the source is of another law.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         across: Option<AcrossLaws>,
-        /// The library of effects that its calibration was learned with; absent in recipes of releases that had one only.
+        /// The library of effects that its calibration was learned with; absent in recipes of
+        /// releases that had one only.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         effects_sha256: Option<String>,
         /// The trials, in the order in which they were given.

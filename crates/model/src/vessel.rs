@@ -1,4 +1,5 @@
-//! A vessel of the zoo: particulars, conventions, and the published coefficients of her models, with sources.
+//! A vessel of the zoo: particulars, conventions, and the published coefficients of her models,
+//! with sources.
 
 use std::collections::BTreeMap;
 

@@ -1,8 +1,10 @@
-//! The one door for YAML: what the parser would take unbounded time or memory for is refused before it sees it.
+//! The one door for YAML: what the parser would take unbounded time or memory for is refused before
+//! it sees it.
 //!
-//! The parser (libyaml) looks through every open `[` and `{` at each token, so that time grows with the square of how deep they
-//! nest, and its limit of depth is only checked after that; it looks through every `%TAG` at each tag; and an alias is read as
-//! often as it stands there, so that a megabyte named a thousand times is a gigabyte.
+//! The parser (libyaml) looks through every open `[` and `{` at each token, so that time grows with
+//! the square of how deep they nest, and its limit of depth is only checked after that; it looks
+//! through every `%TAG` at each tag; and an alias is read as often as it stands there, so that a
+//! megabyte named a thousand times is a gigabyte.
 
 mod aliases;
 mod brackets;
@@ -15,7 +17,8 @@ use serde::de::DeserializeOwned;
 /// Bytes of one document.
 pub const MAX_BYTES: usize = 8 << 20;
 
-/// Commas, brackets, colons, dashes and question marks that may each begin an item of a document, whichever of them do.
+/// Commas, brackets, colons, dashes and question marks that may each begin an item of a document,
+/// whichever of them do.
 pub const MAX_ITEMS: usize = 400_000;
 
 /// What is wrong with a text.

@@ -63,7 +63,8 @@ impl Zoo {
         Ok(effect)
     }
 
-    /// Adds a vessel, or replaces the one of the same name; each of her models is checked against its law.
+    /// Adds a vessel, or replaces the one of the same name; each of her models is checked against
+    /// its law.
     ///
     /// # Errors
     /// As [`Vessel::parse`] and [`Model::published`].

@@ -125,8 +125,8 @@ impl Archive {
         Ok(serde_json::from_str(&row.document)?)
     }
 
-    /// Trials with their samples, in their order. Each is read before the next is fetched, so that no more than one lies in
-    /// memory as it is stored.
+    /// Trials with their samples, in their order. Each is read before the next is fetched, so that
+    /// no more than one lies in memory as it is stored.
     pub async fn trials(&self, trials: &[RecipeTrial]) -> Result<Vec<Trial>> {
         let mut read = Vec::with_capacity(trials.len());
         for trial in trials {
@@ -144,7 +144,8 @@ pub fn vessel(name: &str, document: &str) -> Result<Vessel> {
     Ok(Vessel::from_file(name, file)?)
 }
 
-/// Whether a document is the one that is asked for, by its bytes and not by what is recorded of them.
+/// Whether a document is the one that is asked for, by its bytes and not by what is recorded of
+/// them.
 fn same_hash(what: &str, document: &str, hash: &str) -> Result<()> {
     match sha256(document.as_bytes()) {
         actual if actual == hash => Ok(()),

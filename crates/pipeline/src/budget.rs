@@ -1,7 +1,9 @@
-//! Memory that requests and jobs may take together: who needs more than a little takes a share of a budget before allocating it.
+//! Memory that requests and jobs may take together: who needs more than a little takes a share of a
+//! budget before allocating it.
 //!
-//! What does not fit at the moment waits a while for others to end; what can never fit is refused at once. A request's shares
-//! are kept for as long as anything works for it, also where its caller has hung up.
+//! What does not fit at the moment waits a while for others to end; what can never fit is refused
+//! at once. A request's shares are kept for as long as anything works for it, also where its caller
+//! has hung up.
 
 use std::future::Future;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -99,7 +101,8 @@ impl Budget {
         Ok(Share { permit: Some(permit), given_back: Arc::clone(given_back) })
     }
 
-    /// A share, as soon as it is free. Nobody waits behind another: what is small goes on while something large waits.
+    /// A share, as soon as it is free. Nobody waits behind another: what is small goes on while
+    /// something large waits.
     ///
     /// # Errors
     /// There is not so much, or not soon.
@@ -133,7 +136,8 @@ impl Drop for Share {
     }
 }
 
-/// What a request has taken. A clone is another handle on the same: all is given back with the last.
+/// What a request has taken. A clone is another handle on the same: all is given back with the
+/// last.
 #[derive(Debug, Clone)]
 pub struct Held(Arc<Holding>);
 

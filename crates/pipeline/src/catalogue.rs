@@ -1,7 +1,8 @@
 //! The laws and ships of the database in memory, read and checked once.
 //!
-//! Other processes may change the database, so that whoever needs the zoo asks for it anew; only what has changed is
-//! read again. A zoo holds a bounded number of ships, however many the database has.
+//! Other processes may change the database, so that whoever needs the zoo asks for it anew; only
+//! what has changed is read again. A zoo holds a bounded number of ships, however many the database
+//! has.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, PoisonError, RwLock};
@@ -208,7 +209,8 @@ mod tests {
         assert!(catalogue.around(&archive, target).await.unwrap().vessel("mariner").is_none());
     }
 
-    /// Beyond [`MOST`] ships, those of the target's category that resemble her; others of hers stay out.
+    /// Beyond [`MOST`] ships, those of the target's category that resemble her; others of hers stay
+    /// out.
     #[tokio::test]
     async fn of_many_ships_the_most_similar_are_taken() {
         let store = Store::connect("sqlite::memory:", Arc::new(sistership_store::SystemClock))

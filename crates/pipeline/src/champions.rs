@@ -1,4 +1,5 @@
-//! Refined models of similar ships, which may serve as sources: a refined sister is the best there is.
+//! Refined models of similar ships, which may serve as sources: a refined sister is the best there
+//! is.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,5 @@
-//! Whether the model of a ship still holds: what the newest diagnosis that concerns her present champion found.
+//! Whether the model of a ship still holds: what the newest diagnosis that concerns her present
+//! champion found.
 
 use serde::Serialize;
 use sistership_store::{Diagnosed, MAX_LIMIT, Page, Store, StoreError, VersionHead};
@@ -6,7 +7,8 @@ use utoipa::ToSchema;
 
 use crate::line::{CHAMPION, alias};
 
-/// Whether the champion of a ship still holds, by the newest diagnosis of it, or by the one that it came of.
+/// Whether the champion of a ship still holds, by the newest diagnosis of it, or by the one that it
+/// came of.
 #[derive(Debug, Clone, Default, Serialize, ToSchema)]
 pub struct Condition {
     /// `holds`, `does_not_hold`, or `unknown` where her champion was never diagnosed.
@@ -146,7 +148,8 @@ impl Condition {
     }
 }
 
-/// What a diagnosis says of a version: of the one that came of it, what remained with the effects in place.
+/// What a diagnosis says of a version: of the one that came of it, what remained with the effects
+/// in place.
 fn of_version<'a>(version: &VersionHead, diagnosed: &'a Diagnosed) -> (&'a str, &'a str) {
     match (diagnosed.version_id == version.id, diagnosed.verdict.as_str()) {
         (true, verdict) => (verdict, &diagnosed.effects),

@@ -1,5 +1,5 @@
-//! What a derivation may read: documents by their hashes, and nothing else. What was read is noted, so that a recipe which
-//! does not name all of it is refused as it is made.
+//! What a derivation may read: documents by their hashes, and nothing else. What was read is noted,
+//! so that a recipe which does not name all of it is refused as it is made.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -80,7 +80,8 @@ impl<'a> Inputs<'a> {
     /// Whether the recipe names what was read, and all that it names was read.
     ///
     /// # Errors
-    /// Names each input of which that is not so: a defect of the program, which must not make a version.
+    /// Names each input of which that is not so: a defect of the program, which must not make a
+    /// version.
     pub fn check(&self, recipe: &Recipe) -> Result<()> {
         let (read, named) =
             (self.read.lock().unwrap_or_else(PoisonError::into_inner), recipe.inputs());

@@ -1,5 +1,5 @@
-//! What a job does, by recipe: derive, verify, calibrate; find ships; look after an archive. Servers, workers and the command line
-//! alike come here.
+//! What a job does, by recipe: derive, verify, calibrate; find ships; look after an archive.
+//! Servers, workers and the command line alike come here.
 
 pub mod archive;
 pub mod budget;

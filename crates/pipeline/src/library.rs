@@ -1,5 +1,6 @@
-//! Libraries of effects: what a diagnosis knows, and what a calibration is learned with. Each is a document under its hash, the
-//! files of its effects one after another, which the store keeps beside those of earlier releases.
+//! Libraries of effects: what a diagnosis knows, and what a calibration is learned with. Each is a
+//! document under its hash, the files of its effects one after another, which the store keeps
+//! beside those of earlier releases.
 
 use std::sync::{Arc, OnceLock};
 
@@ -7,7 +8,8 @@ use sistership_model::version::sha256;
 use sistership_model::{Effect, FileError, Zoo};
 use sistership_store::{Store, StoreError};
 
-/// The library that recipes mean which do not name one: that of the releases that made them. It never changes.
+/// The library that recipes mean which do not name one: that of the releases that made them. It
+/// never changes.
 pub const FIRST_SHA256: &str = "4ffa596faa665cb151e92fab50bfd47e95ca36c187ac9218ee4a6d1a04b0e769";
 const FIRST: &str = include_str!("../../../models/libraries/first.yaml");
 /// The line that the file of each effect begins with.

@@ -8,8 +8,8 @@ type Result<T> = std::result::Result<T, StoreError>;
 pub const CHAMPION: &str = "champion";
 /// The alias of the last refinement that is not the champion.
 pub const CANDIDATE: &str = "candidate";
-/// The alias of the last version. Everyone who makes a version moves it, so that the number that a version is going to
-/// have is known beforehand.
+/// The alias of the last version. Everyone who makes a version moves it, so that the number that a
+/// version is going to have is known beforehand.
 pub const LATEST: &str = "latest";
 const PUBLISHED: &str = "published-";
 

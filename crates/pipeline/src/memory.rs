@@ -2,9 +2,10 @@
 
 use sistership_model::Law;
 
-/// Bytes of a refinement or diagnosis for each sample of its trials: the linearised model, its columns and their products, most of
-/// it while learning what the trials leave open. Measured with the zoo's largest law: 944 MB above the program's own for the 135,120
-/// samples of 34 trials of the Esso Osaka (`--law low-speed --method trajectory`, decision 17).
+/// Bytes of a refinement or diagnosis for each sample of its trials: the linearised model, its
+/// columns and their products, most of it while learning what the trials leave open. Measured with
+/// the zoo's largest law: 944 MB above the program's own for the 135,120 samples of 34 trials of
+/// the Esso Osaka (`--law low-speed --method trajectory`, decision 17).
 pub const DERIVING: u64 = 7 << 10;
 /// Terms of that law; what is held grows with their number.
 const TERMS: u64 = 189;

@@ -50,8 +50,8 @@ impl Comparison {
     }
 }
 
-/// How a version that a refinement gave compares with the ship's champion, where it has one; `hashes`
-/// are those of its trials' samples, in their order.
+/// How a version that a refinement gave compares with the ship's champion, where it has one;
+/// `hashes` are those of its trials' samples, in their order.
 ///
 /// # Errors
 /// The champion does not read.

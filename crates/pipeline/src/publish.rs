@@ -18,7 +18,8 @@ const REASON: &str = "published with the ship's document";
 /// How often another process may get in between.
 const TRIES: usize = 5;
 
-/// Makes a version of each published model that is new or has changed; the first becomes champion where there is none.
+/// Makes a version of each published model that is new or has changed; the first becomes champion
+/// where there is none.
 pub async fn publish(store: &Store, zoo: &Zoo, vessel: &Vessel, ship_document: &str) -> Result<()> {
     for file in &vessel.file.models {
         let no_law = || DeriveError::Unexpected(format!("there is no law `{}`", file.law));

@@ -1,5 +1,5 @@
-//! How versions are derived: the recipes that [`sistership_model::version`] knows, that of a diagnosis, of a member of a family, and
-//! of a model that was made elsewhere.
+//! How versions are derived: the recipes that [`sistership_model::version`] knows, that of a
+//! diagnosis, of a member of a family, and of a model that was made elsewhere.
 
 use std::collections::BTreeSet;
 
@@ -74,7 +74,8 @@ pub enum DiagnosisKind {
     Diagnosis,
 }
 
-/// How the model of a member is derived from statistics. Everything it starts from is named by the SHA-256 of its bytes.
+/// How the model of a member is derived from statistics. Everything it starts from is named by the
+/// SHA-256 of its bytes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FamilyRecipe {
@@ -176,7 +177,8 @@ impl Recipe {
         }
     }
 
-    /// The hash of the library of effects; of a refinement that does not name one, that of the releases which made such.
+    /// The hash of the library of effects; of a refinement that does not name one, that of the
+    /// releases which made such.
     pub fn effects_sha256(&self) -> Option<&str> {
         match self {
             Self::Diagnosis(recipe) => Some(&recipe.effects_sha256),

@@ -20,8 +20,8 @@ pub enum SeedError {
     Zoo(#[from] FileError),
 }
 
-/// Puts in what is missing; several processes may do so at once, and one that was killed half-way is continued. Where there is
-/// no room for it, the next start puts it in.
+/// Puts in what is missing; several processes may do so at once, and one that was killed half-way
+/// is continued. Where there is no room for it, the next start puts it in.
 pub async fn seed(store: &Store, catalogue: &Catalogue) -> Result<(), SeedError> {
     match put_in(store, catalogue).await {
         Err(SeedError::Store(error)) if error.is_out_of_space() => {
@@ -45,8 +45,8 @@ async fn put_in(store: &Store, catalogue: &Catalogue) -> Result<(), SeedError> {
     Ok(())
 }
 
-/// Makes the versions of a ship of the program's own, unless she was deleted. Those of other ships are looked after by
-/// [`crate::search`].
+/// Makes the versions of a ship of the program's own, unless she was deleted. Those of other ships
+/// are looked after by [`crate::search`].
 async fn publish_one(store: &Store, zoo: &Zoo, name: &str) -> Result<(), SeedError> {
     let ship = match store.ships().get(name).await {
         Err(StoreError::NotFound { .. }) => return Ok(()),

@@ -1,5 +1,5 @@
-//! Where a refinement starts: at a version, at the most similar ship, or at what a search finds; and
-//! the recipe that follows from it.
+//! Where a refinement starts: at a version, at the most similar ship, or at what a search finds;
+//! and the recipe that follows from it.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -74,7 +74,8 @@ impl Start {
         })
     }
 
-    /// The name of the law where no source tells it, the law that is fitted, and both where they differ.
+    /// The name of the law where no source tells it, the law that is fitted, and both where they
+    /// differ.
     async fn laws(&self, archive: &Archive) -> Result<(Option<String>, Law, Option<AcrossLaws>)> {
         let laws = archive.store.laws();
         let Some(source) = &self.source else {

@@ -104,7 +104,8 @@ pub async fn verify_with(
     })
 }
 
-/// A model that was made elsewhere comes of nothing but itself: it is written again, and checked against its law.
+/// A model that was made elsewhere comes of nothing but itself: it is written again, and checked
+/// against its law.
 async fn checked(
     archive: &Archive,
     stored: &VersionDocument,

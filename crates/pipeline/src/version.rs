@@ -23,7 +23,8 @@ pub struct VersionDocument {
 }
 
 impl VersionDocument {
-    /// The bytes that are stored and hashed: JSON with fields in the order of this type and maps in order of their keys.
+    /// The bytes that are stored and hashed: JSON with fields in the order of this type and maps in
+    /// order of their keys.
     ///
     /// # Errors
     /// Where a number is not finite, which no checked model has.

@@ -1,4 +1,5 @@
-//! One refinement: three axes, 22 regressors, 5000 samples, 100 values of lambda, five folds, on one core.
+//! One refinement: three axes, 22 regressors, 5000 samples, 100 values of lambda, five folds, on
+//! one core.
 #![allow(missing_docs)]
 
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -17,7 +18,8 @@ fn columns(rng: &mut impl RngExt, targets: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// From samples to coefficients: statistics of each fold, the whole path on the others, and the fit on all.
+/// From samples to coefficients: statistics of each fold, the whole path on the others, and the fit
+/// on all.
 fn refine(columns: &[Vec<f64>], source: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let size = SAMPLES / FOLDS;
     let slice = |fold: usize| {

@@ -1,4 +1,5 @@
-//! Linear regression with a prior: sufficient statistics, and the whole path of ridge solutions from one decomposition.
+//! Linear regression with a prior: sufficient statistics, and the whole path of ridge solutions
+//! from one decomposition.
 
 pub mod cma_es;
 mod metric;

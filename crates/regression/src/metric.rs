@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::Moments;
 
-/// A root of a prior's precision at strength 1: in the coordinates `z = root b` of coefficients `b`, the prior holds every
-/// direction alike.
+/// A root of a prior's precision at strength 1: in the coordinates `z = root b` of coefficients
+/// `b`, the prior holds every direction alike.
 #[derive(Debug, Clone)]
 pub struct Metric {
     root: DMatrix<f64>,
@@ -16,8 +16,9 @@ pub struct Metric {
 }
 
 impl Metric {
-    /// Each coefficient by the standard deviation of its regressor times the root of `shrinkage`, which is how many times the
-    /// precision of its prior is the common one (Kanazawa 2023, Eq. 5.11, with every shrinkage 1).
+    /// Each coefficient by the standard deviation of its regressor times the root of `shrinkage`,
+    /// which is how many times the precision of its prior is the common one (Kanazawa 2023, Eq.
+    /// 5.11, with every shrinkage 1).
     pub fn of_regressors(moments: &Moments, shrinkage: &[f64]) -> Self {
         let p = moments.regressors();
         let deviation = |j: usize| moments.variance(j).sqrt();
@@ -34,7 +35,8 @@ impl Metric {
         }
     }
 
-    /// All coefficients jointly by a precision; one that has none is still. None where it is not positive definite.
+    /// All coefficients jointly by a precision; one that has none is still. None where it is not
+    /// positive definite.
     pub fn of_precision(precision: &DMatrix<f64>) -> Option<Self> {
         let p = precision.nrows();
         let still: Vec<bool> = precision.diagonal().iter().map(|own| *own == 0.0).collect();

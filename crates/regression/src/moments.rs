@@ -1,4 +1,5 @@
-//! Sufficient statistics of a linear regression: counts, means and centred products, which merge without the samples.
+//! Sufficient statistics of a linear regression: counts, means and centred products, which merge
+//! without the samples.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -42,8 +43,8 @@ impl Moments {
         all
     }
 
-    /// Of samples given by column, about zero instead of their means, for models without intercept; each sample counts as
-    /// the share `weight` of an independent one.
+    /// Of samples given by column, about zero instead of their means, for models without intercept;
+    /// each sample counts as the share `weight` of an independent one.
     pub fn about_zero(columns: &[Vec<f64>], regressors: usize, weight: f64) -> Self {
         let size = columns.len();
         let rows = columns.first().map_or(0, Vec::len);
@@ -79,7 +80,8 @@ impl Moments {
         Self { count, mean, products, regressors }
     }
 
-    /// Adds the statistics of other samples (Chan, Golub and LeVeque 1979, Eq. 2.1: nothing is lost to cancellation).
+    /// Adds the statistics of other samples (Chan, Golub and LeVeque 1979, Eq. 2.1: nothing is lost
+    /// to cancellation).
     pub fn merge(&mut self, other: &Self) {
         let total = self.count + other.count;
         if other.count == 0.0 {
@@ -101,8 +103,9 @@ impl Moments {
         Some(all)
     }
 
-    /// The statistics with each set of samples left out in turn, and those of all. Sums from both ends meet in the gap: nothing
-    /// is subtracted, so that a regressor which only the set left out excites is exactly still.
+    /// The statistics with each set of samples left out in turn, and those of all. Sums from both
+    /// ends meet in the gap: nothing is subtracted, so that a regressor which only the set left out
+    /// excites is exactly still.
     pub fn leave_one_out(parts: &[Self]) -> Option<(Vec<Self>, Self)> {
         let first = parts.first()?;
         let none = || Self::empty(first.regressors, first.targets());
@@ -122,8 +125,9 @@ impl Moments {
         Some((without, after.swap_remove(parts.len())))
     }
 
-    /// The statistics of `map' z` where these are those of the samples `z`, regressors then targets; the first `regressors`
-    /// columns of the map give the new regressors. Maps and merges may change places.
+    /// The statistics of `map' z` where these are those of the samples `z`, regressors then
+    /// targets; the first `regressors` columns of the map give the new regressors. Maps and merges
+    /// may change places.
     pub fn mapped(&self, map: &DMatrix<f64>, regressors: usize) -> Self {
         let transposed = map.transpose();
         Self {
@@ -145,7 +149,8 @@ impl Moments {
         }
     }
 
-    /// The same with the upper triangle of the products below as well: sums leave the two apart by a rounding.
+    /// The same with the upper triangle of the products below as well: sums leave the two apart by
+    /// a rounding.
     pub fn symmetric(mut self) -> Self {
         self.products.fill_lower_triangle_with_upper_triangle();
         self
@@ -159,7 +164,8 @@ impl Moments {
         std::iter::once(self.count).chain(self.mean.iter().copied()).chain(triangle).collect()
     }
 
-    /// From [`numbers`](Self::numbers); none where they are not as many as these regressors and targets need, or not finite.
+    /// From [`numbers`](Self::numbers); none where they are not as many as these regressors and
+    /// targets need, or not finite.
     pub fn from_numbers(numbers: &[f64], regressors: usize, targets: usize) -> Option<Self> {
         let size = regressors + targets;
         if numbers.len() != 1 + size + size * (size + 1) / 2
@@ -192,8 +198,8 @@ impl Moments {
         self.mean.len() - self.regressors
     }
 
-    /// The sum over the samples of regressors times residuals of the first target at `coefficients`, both about the means of
-    /// `all`, of which these samples are a part.
+    /// The sum over the samples of regressors times residuals of the first target at
+    /// `coefficients`, both about the means of `all`, of which these samples are a part.
     pub fn score(&self, all: &Self, coefficients: &DVector<f64>) -> DVector<f64> {
         let p = self.regressors;
         let mut weights = DVector::zeros(self.mean.len());
@@ -239,7 +245,8 @@ impl Moments {
         )
     }
 
-    /// Mean products without centring: `E[x x']`, as the error of a model without intercept needs them; zero of no samples.
+    /// Mean products without centring: `E[x x']`, as the error of a model without intercept needs
+    /// them; zero of no samples.
     pub fn raw_products(&self) -> DMatrix<f64> {
         let mut raw = &self.products / self.count.max(f64::MIN_POSITIVE);
         raw.ger(1.0, &self.mean, &self.mean, 1.0);

@@ -1,8 +1,8 @@
 //! The ridge with the source's coefficients as l2 prior: Kanazawa 2023, Eqs. 5.11-5.17.
 //!
-//! With z-scored regressors, `C` their correlation matrix and `b` the mean products with the target,
-//! `beta' = (C + lambda I)^-1 (b + lambda (1 - alpha) beta'_source)`. One symmetric eigendecomposition of `C` gives
-//! every (lambda, alpha); nothing is inverted.
+//! With z-scored regressors, `C` their correlation matrix and `b` the mean products with the
+//! target, `beta' = (C + lambda I)^-1 (b + lambda (1 - alpha) beta'_source)`. One symmetric
+//! eigendecomposition of `C` gives every (lambda, alpha); nothing is inverted.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -31,14 +31,15 @@ pub struct RidgeChoice {
 }
 
 impl RidgePath {
-    /// Decomposes the statistics once; `source[t]` are the prior coefficients for target `t`, in the units of the
-    /// regressors. A regressor that does not vary keeps its source value.
+    /// Decomposes the statistics once; `source[t]` are the prior coefficients for target `t`, in
+    /// the units of the regressors. A regressor that does not vary keeps its source value.
     pub fn new(moments: &Moments, source: &[Vec<f64>]) -> Self {
         Self::shrunken(moments, source, &vec![1.0; moments.regressors()])
     }
 
-    /// The same with a prior whose precision is `shrinkage[j]` times the common one for regressor `j`: each is measured
-    /// not by its standard deviation but by that times the root of its shrinkage.
+    /// The same with a prior whose precision is `shrinkage[j]` times the common one for regressor
+    /// `j`: each is measured not by its standard deviation but by that times the root of its
+    /// shrinkage.
     pub fn shrunken(moments: &Moments, source: &[Vec<f64>], shrinkage: &[f64]) -> Self {
         Self::measured(moments, source, Metric::of_regressors(moments, shrinkage))
     }
@@ -75,7 +76,8 @@ impl RidgePath {
         self.unscaled(&(from_data + from_source * (1.0 - choice.alpha)), source)
     }
 
-    /// The two vectors of which every solution at `lambda` is `data + (1 - alpha) source`, standardised.
+    /// The two vectors of which every solution at `lambda` is `data + (1 - alpha) source`,
+    /// standardised.
     fn parts(&self, target: usize, lambda: f64) -> (DVector<f64>, DVector<f64>) {
         let divide = |v: &DVector<f64>, by: f64| {
             v.zip_map(&self.eigenvalues, |x, d| by * x / (d + lambda).max(1e-300))
@@ -93,8 +95,9 @@ impl RidgePath {
         source.iter().enumerate().map(one).collect()
     }
 
-    /// The alpha within a range that is best at `lambda` on other samples, and the mean squared error there; the error is
-    /// that of the model without intercept, and quadratic in alpha, so that its minimum is at hand.
+    /// The alpha within a range that is best at `lambda` on other samples, and the mean squared
+    /// error there; the error is that of the model without intercept, and quadratic in alpha, so
+    /// that its minimum is at hand.
     pub fn best_alpha(
         &self,
         target: usize,
@@ -113,7 +116,8 @@ impl RidgePath {
         (1.0 - weight, constant + linear * weight + square * weight * weight)
     }
 
-    /// Residual variance of a target at a solution, from the statistics alone; degrees of freedom as the ridge uses them.
+    /// Residual variance of a target at a solution, from the statistics alone; degrees of freedom
+    /// as the ridge uses them.
     pub fn residual_variance(&self, target: usize, choice: RidgeChoice) -> f64 {
         let solution = |i: usize| {
             let pull = choice.lambda * (1.0 - choice.alpha) * self.source[target][i];
@@ -133,10 +137,12 @@ impl RidgePath {
         self.target_variance[target]
     }
 
-    /// How badly a strength of the prior explains a target: twice the negative logarithm of the marginal likelihood by the number
-    /// of samples, with the residual variance at its best and without what does not depend on lambda. Where the prior has the
-    /// variance `s^2/(n lambda)` about the source, the samples less what the source explains are normal with eigenvalues
-    /// `s^2 (d + lambda)/lambda` in the eigenbasis (MacKay 1992, Neural Computation 4, 415-447, section 3).
+    /// How badly a strength of the prior explains a target: twice the negative logarithm of the
+    /// marginal likelihood by the number of samples, with the residual variance at its best and
+    /// without what does not depend on lambda. Where the prior has the variance `s^2/(n lambda)`
+    /// about the source, the samples less what the source explains are normal with eigenvalues `s^2
+    /// (d + lambda)/lambda` in the eigenbasis (MacKay 1992, Neural Computation 4, 415-447, section
+    /// 3).
     pub fn misfit(&self, target: usize, lambda: f64) -> f64 {
         let (data, source, d) = (&self.data[target], &self.source[target], &self.eigenvalues);
         let terms = || data.iter().zip(source).zip(d).map(|((z, s), d)| (*z, *s, *d));
@@ -147,8 +153,8 @@ impl RidgePath {
         (unexplained - gained).max(1e-300).ln() + width / self.count.max(1.0)
     }
 
-    /// Posterior standard deviations of the coefficients at residual variance 1, and the prior's, both in the units of
-    /// the regressors.
+    /// Posterior standard deviations of the coefficients at residual variance 1, and the prior's,
+    /// both in the units of the regressors.
     pub fn deviations(&self, lambda: f64) -> Vec<(f64, f64)> {
         let weights = self.eigenvalues.map(|d| 1.0 / (self.count * (d + lambda).max(1e-300)));
         let directions = self.metric.back() * &self.eigenvectors;
@@ -160,8 +166,9 @@ impl RidgePath {
         (0..self.metric.size()).map(|j| (posterior(j).sqrt(), held(j).sqrt())).collect()
     }
 
-    /// Half the second derivative of what a solution at `lambda` makes least, the sum of squares and of the prior's pull, in the
-    /// units of the regressors; 1 for a regressor that does not vary.
+    /// Half the second derivative of what a solution at `lambda` makes least, the sum of squares
+    /// and of the prior's pull, in the units of the regressors; 1 for a regressor that does not
+    /// vary.
     pub fn curvature(&self, lambda: f64) -> DMatrix<f64> {
         let weights = self.eigenvalues.map(|d| self.count * (d + lambda));
         let standard =
@@ -176,7 +183,8 @@ impl RidgePath {
         })
     }
 
-    /// Largest eigenvalue of the correlation matrix over the smallest of those that belong to varying regressors.
+    /// Largest eigenvalue of the correlation matrix over the smallest of those that belong to
+    /// varying regressors.
     pub fn condition_number(&self) -> f64 {
         let still = (0..self.metric.size()).filter(|j| self.metric.is_still(*j)).count();
         let mut values: Vec<f64> = self.eigenvalues.iter().copied().collect();
@@ -185,8 +193,8 @@ impl RidgePath {
         values.last().map_or(1.0, |largest| largest / smallest.max(largest * f64::EPSILON))
     }
 
-    /// Groups of regressors that the samples cannot tell apart: those that share an eigenvector whose eigenvalue is below
-    /// `tolerance` of the largest.
+    /// Groups of regressors that the samples cannot tell apart: those that share an eigenvector
+    /// whose eigenvalue is below `tolerance` of the largest.
     pub fn collinear_groups(&self, tolerance: f64) -> Vec<Vec<usize>> {
         let largest = self.eigenvalues.max();
         let small =
@@ -310,7 +318,8 @@ mod tests {
         );
     }
 
-    /// Against the density of the samples themselves, a normal distribution of as many dimensions as there are samples.
+    /// Against the density of the samples themselves, a normal distribution of as many dimensions
+    /// as there are samples.
     #[test]
     fn the_misfit_is_that_of_the_marginal_likelihood() {
         let mut columns: Vec<Vec<f64>> =

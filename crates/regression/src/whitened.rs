@@ -1,5 +1,6 @@
-//! The path of ridge solutions about zero in coordinates where the prior is white, with its errors on samples left out: all of
-//! it matrix products after one eigendecomposition, for thousands of ships a second.
+//! The path of ridge solutions about zero in coordinates where the prior is white, with its errors
+//! on samples left out: all of it matrix products after one eigendecomposition, for thousands of
+//! ships a second.
 
 use nalgebra::{DMatrix, DVector, DVectorView, SymmetricEigen};
 
@@ -68,7 +69,8 @@ impl Whitened {
             / (self.count - freedom - 1.0).max(1.0)
     }
 
-    /// Mean squared errors of the solutions for each target at each lambda on other samples, as of a model without intercept.
+    /// Mean squared errors of the solutions for each target at each lambda on other samples, as of
+    /// a model without intercept.
     pub fn errors(&self, lambdas: &[f64], left_out: &Moments) -> Vec<Vec<f64>> {
         let raw = left_out.raw_products();
         let p = self.eigenvalues.len();

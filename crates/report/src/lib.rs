@@ -1,5 +1,5 @@
-//! The reports of a refinement ([`render_refinement`]) and of a diagnosis ([`render_diagnosis`]): one HTML page that a stranger
-//! can read and print, and the same content as JSON.
+//! The reports of a refinement ([`render_refinement`]) and of a diagnosis ([`render_diagnosis`]):
+//! one HTML page that a stranger can read and print, and the same content as JSON.
 //!
 //! Both are made of the same tables and plots. Nothing depends on the clock.
 

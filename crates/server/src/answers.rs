@@ -1,4 +1,5 @@
-//! Champions as they were answered before: a version never changes, so that its answer does not either.
+//! Champions as they were answered before: a version never changes, so that its answer does not
+//! either.
 
 use axum::http::HeaderValue;
 use bytes::Bytes;

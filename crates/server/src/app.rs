@@ -113,7 +113,8 @@ impl App {
         &self.0.no_room
     }
 
-    /// What a worker holds while it has a job: for itself alone where a process has ended during the job before.
+    /// What a worker holds while it has a job: for itself alone where a process has ended during
+    /// the job before.
     pub(crate) fn turns(&self) -> &Arc<RwLock<()>> {
         &self.0.turns
     }
@@ -158,8 +159,8 @@ impl App {
         self.0.catalogue.laws(self.store()).await
     }
 
-    /// The laws of the database, with the ships that a ship is compared with: all of them where they are few, else those of
-    /// her category that are most similar to her.
+    /// The laws of the database, with the ships that a ship is compared with: all of them where
+    /// they are few, else those of her category that are most similar to her.
     pub(crate) async fn zoo_around(&self, target: &Vessel) -> Result<Arc<Zoo>> {
         Ok(self.0.catalogue.around(self.archive(), target).await?)
     }

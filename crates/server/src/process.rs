@@ -1,5 +1,5 @@
-//! What a process of Sistership consists of, whether it answers requests or only works: the shared state, its workers, and
-//! the word that stops them.
+//! What a process of Sistership consists of, whether it answers requests or only works: the shared
+//! state, its workers, and the word that stops them.
 
 use std::time::Duration;
 
@@ -27,7 +27,8 @@ pub(crate) struct Process {
 }
 
 impl Process {
-    /// Opens the store, brings the zoo in, and sets the workers to work; keeps up what ships are found by, if it `indexes`.
+    /// Opens the store, brings the zoo in, and sets the workers to work; keeps up what ships are
+    /// found by, if it `indexes`.
     pub(crate) async fn start(config: &Config, indexes: bool) -> Result<(Self, App), StartError> {
         let archive = Archive::open_at(&config.database_url, &config.objects).await?;
         let catalogue = Catalogue::default();

@@ -1,5 +1,6 @@
-//! What a process does beside its work, at its start and from time to time: it removes what ended processes have left, forgets old
-//! keys, and looks whether there is room to write. Where there is none, reading goes on, and this tells when there is some again.
+//! What a process does beside its work, at its start and from time to time: it removes what ended
+//! processes have left, forgets old keys, and looks whether there is room to write. Where there is
+//! none, reading goes on, and this tells when there is some again.
 
 use std::sync::atomic::Ordering;
 use std::time::Duration;

@@ -10,7 +10,8 @@ use sistership_pipeline::archive::Archive;
 pub struct Workers(Process);
 
 impl Workers {
-    /// Opens the store, brings the zoo in, and works on the jobs that it finds, [`Config::workers`] at a time.
+    /// Opens the store, brings the zoo in, and works on the jobs that it finds, [`Config::workers`]
+    /// at a time.
     ///
     /// # Errors
     /// Says what is wrong with the configuration, or what cannot be opened.
@@ -26,7 +27,8 @@ impl Workers {
         &self.0.archive
     }
 
-    /// Stops: no further jobs, and those under way get [`crate::Leases::drain`] to end and then go back to the queue.
+    /// Stops: no further jobs, and those under way get [`crate::Leases::drain`] to end and then go
+    /// back to the queue.
     pub async fn stop(self) {
         self.0.stop().await;
     }

@@ -1,4 +1,5 @@
-//! The contract of the server is the file `api/openapi.json`: whoever changes an endpoint changes it there too.
+//! The contract of the server is the file `api/openapi.json`: whoever changes an endpoint changes
+//! it there too.
 
 #![allow(clippy::unwrap_used, missing_docs)]
 

@@ -12,8 +12,8 @@ use crate::store::Store;
 use crate::version;
 
 statements! {
-    // Moves within one model wait for each other, so that the history tells where an alias came from. SQLite's writers
-    // wait for each other anyway.
+    // Moves within one model wait for each other, so that the history tells where an alias came
+    // from. SQLite's writers wait for each other anyway.
     LOCK = pair("SELECT name FROM models WHERE name = $1", "SELECT name FROM models WHERE name = $1 FOR UPDATE");
     PUT = same("INSERT INTO aliases (model, alias, version_number, revision) VALUES ($1, $2, $3, 1) \
         ON CONFLICT (model, alias) DO UPDATE SET version_number = excluded.version_number, revision = aliases.revision + 1 \

@@ -129,8 +129,8 @@ impl Store {
 }
 
 impl Bulks<'_> {
-    /// Queues a refinement with its chunks, all or nothing. `chunk` writes the request of a chunk from the id of the refinement
-    /// and the ships of the chunk.
+    /// Queues a refinement with its chunks, all or nothing. `chunk` writes the request of a chunk
+    /// from the id of the refinement and the ships of the chunk.
     pub async fn create(
         &self,
         family: &str,
@@ -182,7 +182,8 @@ impl Bulks<'_> {
         self.all(CANCEL, &[("bulk", id.into()), ("finished_us", self.0.now_us().into())]).await
     }
 
-    /// Puts the chunks that failed or were cancelled back in the queue; ships that have an outcome keep it.
+    /// Puts the chunks that failed or were cancelled back in the queue; ships that have an outcome
+    /// keep it.
     pub async fn retry(&self, id: &str) -> Result<u64> {
         self.all(RETRY, &[("bulk", id.into())]).await
     }
@@ -235,8 +236,9 @@ impl Bulks<'_> {
         tx.commit().await
     }
 
-    /// Keeps what a worker has made of a chunk and ends its job, all or nothing: a worker that has lost the job to another (an
-    /// older `fence`) leaves nothing behind, and no ship gets two outcomes.
+    /// Keeps what a worker has made of a chunk and ends its job, all or nothing: a worker that has
+    /// lost the job to another (an older `fence`) leaves nothing behind, and no ship gets two
+    /// outcomes.
     pub async fn commit(
         &self,
         bulk: &str,

@@ -9,7 +9,8 @@ pub const MAX_TEXT_BYTES: usize = 16 << 20;
 /// The longest name of a ship, law, model, alias or kind.
 pub const MAX_NAME_CHARS: usize = 200;
 
-/// A name that can stand in a URL path: not empty, not long, no white space, control character or slash.
+/// A name that can stand in a URL path: not empty, not long, no white space, control character or
+/// slash.
 pub(crate) fn name(field: &'static str, value: &str) -> Result<()> {
     if value.is_empty() {
         return Err(StoreError::invalid(field, "must not be empty"));

@@ -1,4 +1,5 @@
-//! The one transaction that ends a refinement: its version, the aliases that move to it, its report, and its job.
+//! The one transaction that ends a refinement: its version, the aliases that move to it, its
+//! report, and its job.
 
 use crate::aliases::AliasMove;
 use crate::error::Result;
@@ -32,8 +33,9 @@ pub struct Committed {
 }
 
 impl Store {
-    /// Keeps what a refinement brings and ends its job, all or nothing: a worker that has lost the job to another (an older
-    /// `fence`) leaves nothing behind. `result` writes the job's result, JSON, from what was kept.
+    /// Keeps what a refinement brings and ends its job, all or nothing: a worker that has lost the
+    /// job to another (an older `fence`) leaves nothing behind. `result` writes the job's result,
+    /// JSON, from what was kept.
     pub async fn commit_refinement<F>(
         &self,
         job: &str,

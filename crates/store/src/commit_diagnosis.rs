@@ -1,4 +1,5 @@
-//! The one transaction that ends a diagnosis: its report, what was found, the version that came of it, and its job.
+//! The one transaction that ends a diagnosis: its report, what was found, the version that came of
+//! it, and its job.
 
 use crate::aliases::AliasMove;
 use crate::diagnoses::{self, Diagnosed, NewDiagnosed};
@@ -35,8 +36,9 @@ pub struct CommittedDiagnosis {
 }
 
 impl Store {
-    /// Keeps what a diagnosis brings and ends its job, all or nothing: a worker that has lost the job to another (an older
-    /// `fence`) leaves nothing behind. `result` writes the job's result, JSON, from what was kept.
+    /// Keeps what a diagnosis brings and ends its job, all or nothing: a worker that has lost the
+    /// job to another (an older `fence`) leaves nothing behind. `result` writes the job's result,
+    /// JSON, from what was kept.
     pub async fn commit_diagnosis<F>(
         &self,
         job: &str,

@@ -70,8 +70,8 @@ async fn file(url: &str) -> Result<Database> {
     })
 }
 
-/// The one connection that writes. Turning on the write-ahead log needs the file for itself and does not wait for it, so
-/// that two processes which open a new file at once have to try again.
+/// The one connection that writes. Turning on the write-ahead log needs the file for itself and
+/// does not wait for it, so that two processes which open a new file at once have to try again.
 async fn writer(options: SqliteConnectOptions) -> Result<SqlitePool> {
     let mut tries = 100;
     loop {
@@ -96,7 +96,8 @@ async fn postgres(url: &str) -> Result<Database> {
     let options = PgConnectOptions::from_str(url)?.application_name("sistership");
     let pool =
         PgPoolOptions::new().max_connections(POSTGRES_CONNECTIONS).test_before_acquire(false);
-    // A connection that was used a moment ago is there; asking each time would cost as much as the query.
+    // A connection that was used a moment ago is there; asking each time would cost as much as the
+    // query.
     let pool = pool.before_acquire(|connection, about| {
         Box::pin(async move {
             match about.idle_for > RESTED {

@@ -1,5 +1,5 @@
-//! The connections of the two databases behind one set of operations. Every operation is written once and expanded for both by
-//! [`on!`] and [`within!`].
+//! The connections of the two databases behind one set of operations. Every operation is written
+//! once and expanded for both by [`on!`] and [`within!`].
 
 use std::time::Duration;
 
@@ -35,7 +35,8 @@ pub(crate) enum DatabaseTransaction {
     Postgres(sqlx::Transaction<'static, Postgres>),
 }
 
-/// A connection that one reader keeps while there is more to ask: giving it back costs a round trip.
+/// A connection that one reader keeps while there is more to ask: giving it back costs a round
+/// trip.
 pub(crate) enum Reader {
     Sqlite(PoolConnection<Sqlite>),
     Postgres(PoolConnection<Postgres>),
@@ -114,7 +115,8 @@ impl Pool {
 }
 
 impl Writer {
-    /// Begins to write. On SQLite the lock is taken at once, so that what is read stays true until the commit.
+    /// Begins to write. On SQLite the lock is taken at once, so that what is read stays true until
+    /// the commit.
     pub(crate) async fn begin(&self) -> Result<DatabaseTransaction> {
         Ok(match self {
             Self::Sqlite(group) => DatabaseTransaction::Sqlite(group.begin().await?),

@@ -1,7 +1,8 @@
-//! What aliases stand for, asked by many at once: those who come while others are being answered share the next statement.
+//! What aliases stand for, asked by many at once: those who come while others are being answered
+//! share the next statement.
 //!
-//! Nobody gets an answer that is older than the question: a statement begins after all have come who share it. Alone, one is
-//! asked for at once.
+//! Nobody gets an answer that is older than the question: a statement begins after all have come
+//! who share it. Alone, one is asked for at once.
 
 use tokio::sync::oneshot;
 
@@ -52,7 +53,8 @@ impl Store {
         }
         match answered.await {
             Ok(found) => Ok(found),
-            // Those who shared a statement that failed ask for themselves: each has a reason of their own to tell.
+            // Those who shared a statement that failed ask for themselves: each has a reason of
+            // their own to tell.
             Err(_) => self.database().optional(CURRENT, args![alias: alias, ship: ship]).await,
         }
     }

@@ -1,4 +1,5 @@
-//! A database as repositories see it: read, or begin to write, alone or as a step of a unit of work.
+//! A database as repositories see it: read, or begin to write, alone or as a step of a unit of
+//! work.
 
 use crate::arguments::{Args, check};
 use crate::connections::{DatabaseTransaction, Pool, Reader, Writer};
@@ -7,7 +8,8 @@ use crate::record::Record;
 use crate::statements::Statement;
 use crate::unit::{Unit, UnitStep};
 
-/// The connections of one database, to read and to write; the same ones but for SQLite, where one connection writes.
+/// The connections of one database, to read and to write; the same ones but for SQLite, where one
+/// connection writes.
 #[derive(Debug, Clone)]
 pub(crate) struct Database {
     pub(crate) read: Pool,

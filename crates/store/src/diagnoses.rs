@@ -1,4 +1,5 @@
-//! Diagnoses of versions: what was found, and where it is reported. They are made by [`Store::commit_diagnosis`] only.
+//! Diagnoses of versions: what was found, and where it is reported. They are made by
+//! [`Store::commit_diagnosis`] only.
 
 use crate::arguments::args;
 use crate::checks;
@@ -74,7 +75,8 @@ impl Diagnoses<'_> {
         Ok(page.of(diagnoses, |diagnosis: &Diagnosed| diagnosis.id.clone()))
     }
 
-    /// The diagnoses that say something of a version, the latest first: those of it, and the one that it came of.
+    /// The diagnoses that say something of a version, the latest first: those of it, and the one
+    /// that it came of.
     pub async fn by_version(&self, version_id: &str, page: &Page) -> Result<List<Diagnosed>> {
         let values = args![version_id: version_id, after: &page.after, limit: page.fetch()?];
         let diagnoses = self.0.database().all(BY_VERSION, values).await?;

@@ -38,8 +38,8 @@ impl Store {
 }
 
 impl EffectLibraries<'_> {
-    /// Puts a library in, beside those that are there, and answers its hash. One that is there is not written again, so that
-    /// this costs a look where nothing is new.
+    /// Puts a library in, beside those that are there, and answers its hash. One that is there is
+    /// not written again, so that this costs a look where nothing is new.
     pub async fn keep(&self, document: &str) -> Result<String> {
         let sha256 = sha256_hex(document.as_bytes());
         if self.find(&sha256).await?.is_none() {

@@ -1,4 +1,5 @@
-//! One error for everything the store refuses or cannot do; each variant maps to one kind of HTTP problem.
+//! One error for everything the store refuses or cannot do; each variant maps to one kind of HTTP
+//! problem.
 
 use std::error::Error;
 use std::io::{self, ErrorKind};
@@ -71,8 +72,8 @@ fn at(current: Option<i64>) -> String {
 }
 
 impl StoreError {
-    /// Whether it failed for want of space where database or objects are kept: reading goes on, and so does writing once there
-    /// is room.
+    /// Whether it failed for want of space where database or objects are kept: reading goes on, and
+    /// so does writing once there is room.
     pub fn is_out_of_space(&self) -> bool {
         match self {
             Self::Database(error) => is_full(error),
@@ -108,8 +109,8 @@ impl StoreError {
     }
 }
 
-/// SQLite's codes for a disk that takes no more: `SQLITE_FULL`, and writes, flushes and memory maps that fail, which is how it tells
-/// of a quota or of the largest file that there may be.
+/// SQLite's codes for a disk that takes no more: `SQLITE_FULL`, and writes, flushes and memory maps
+/// that fail, which is how it tells of a quota or of the largest file that there may be.
 const SQLITE_FULL: [&str; 6] = ["13", "778", "1034", "1546", "4874", "8458"];
 /// PostgreSQL's code for the same, `disk_full`.
 const POSTGRES_FULL: &str = "53100";
@@ -133,7 +134,8 @@ pub(crate) fn is_full(error: &sqlx::Error) -> bool {
     }
 }
 
-/// Whether the system has no room for what was to be written: the disk, the owner's share of it, or the longest file.
+/// Whether the system has no room for what was to be written: the disk, the owner's share of it, or
+/// the longest file.
 pub fn is_out_of_space(error: &io::Error) -> bool {
     matches!(
         error.kind(),

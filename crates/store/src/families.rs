@@ -223,7 +223,8 @@ async fn exists(tx: &mut Transaction, family: &str) -> Result<()> {
 }
 
 impl Families<'_> {
-    /// Keeps what a family has taught and ends the job that learned it, all or nothing. `result` writes the job's result, JSON.
+    /// Keeps what a family has taught and ends the job that learned it, all or nothing. `result`
+    /// writes the job's result, JSON.
     pub async fn commit(
         &self,
         family: &str,

@@ -1,4 +1,5 @@
-//! Objects that no row refers to: what is left of uploads that were refused or broke off between object and row.
+//! Objects that no row refers to: what is left of uploads that were refused or broke off between
+//! object and row.
 
 use futures::stream::{self, StreamExt as _, TryStreamExt as _};
 
@@ -24,9 +25,9 @@ impl Store {
         unreferred(&mut tx, keys).await
     }
 
-    /// Removes the objects of those keys that no trial refers to, and returns these keys. No trial is put in meanwhile, and
-    /// [`crate::Trials::insert_all_and_enqueue`] looks for its objects after it has waited for this: neither order of the two
-    /// leaves a trial without samples.
+    /// Removes the objects of those keys that no trial refers to, and returns these keys. No trial
+    /// is put in meanwhile, and [`crate::Trials::insert_all_and_enqueue`] looks for its objects
+    /// after it has waited for this: neither order of the two leaves a trial without samples.
     pub async fn remove_unreferred(
         &self,
         objects: &Objects,

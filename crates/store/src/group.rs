@@ -1,9 +1,10 @@
-//! Group commit: SQLite has one writer, and what makes its commits durable is the disk's word, for which each would wait
-//! alone. Here those who write in turn, each within a savepoint of its own, share one transaction, and all of them wait for
-//! its one commit. Nobody is told that something is kept before that commit has returned.
+//! Group commit: SQLite has one writer, and what makes its commits durable is the disk's word, for
+//! which each would wait alone. Here those who write in turn, each within a savepoint of its own,
+//! share one transaction, and all of them wait for its one commit. Nobody is told that something is
+//! kept before that commit has returned.
 //!
-//! The turns are those of a fair lock. Who has written queues for it once more behind those who wait to write; whose turn
-//! comes first after that commits for all. Alone, one commits at once.
+//! The turns are those of a fair lock. Who has written queues for it once more behind those who
+//! wait to write; whose turn comes first after that commits for all. Alone, one commits at once.
 
 use std::io;
 use std::sync::{Arc, OnceLock};
@@ -42,7 +43,8 @@ struct SharedTransaction {
     awaited: bool,
 }
 
-/// One writer's part of the transaction, in its turn; undone unless [committed](Self::commit). The turn leaves it as it ends.
+/// One writer's part of the transaction, in its turn; undone unless [committed](Self::commit). The
+/// turn leaves it as it ends.
 pub(crate) struct TransactionPart(Option<WriterTurn>);
 
 struct WriterTurn {
@@ -61,7 +63,8 @@ impl WriterGroup {
         &self.pool
     }
 
-    /// Waits for the turn to write. Nobody else writes until the part ends, in this process and in others.
+    /// Waits for the turn to write. Nobody else writes until the part ends, in this process and in
+    /// others.
     pub(crate) async fn begin(&self) -> sqlx::Result<TransactionPart> {
         let Self { pool, shared } = self.clone();
         uninterrupted(async move {
@@ -170,7 +173,8 @@ impl SharedTransaction {
         }
     }
 
-    /// Ends the transaction for all of its parts, together with a connection whose state is not known.
+    /// Ends the transaction for all of its parts, together with a connection whose state is not
+    /// known.
     fn give_up(self, error: sqlx::Error) -> sqlx::Error {
         let text = error.to_string();
         // Where the disk is full, the database takes the whole transaction back by itself.
@@ -195,7 +199,8 @@ fn not_kept(reason: &str) -> sqlx::Error {
     sqlx::Error::Protocol(format!("the transaction was not kept: {reason}"))
 }
 
-/// Does work to its end even if nobody waits for it any more: half a transaction must not be left behind.
+/// Does work to its end even if nobody waits for it any more: half a transaction must not be left
+/// behind.
 async fn uninterrupted<T: Send + 'static>(
     work: impl Future<Output = sqlx::Result<T>> + Send + 'static,
 ) -> sqlx::Result<T> {

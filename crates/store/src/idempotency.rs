@@ -57,7 +57,8 @@ pub struct Ticket {
 /// What to do with a request that carries a key.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Begun {
-    /// Carry it out in a [unit of work](crate::UnitOfWork::keep) that keeps the answer, or [abandon](Idempotency::abandon) it.
+    /// Carry it out in a [unit of work](crate::UnitOfWork::keep) that keeps the answer, or
+    /// [abandon](Idempotency::abandon) it.
     New(Ticket),
     /// Another is carrying it out right now.
     InProgress,
@@ -99,8 +100,8 @@ impl Idempotency<'_> {
         Ok(begun)
     }
 
-    /// Tells that a request is still being carried out, so that nobody takes it over for [`TAKE_OVER_AFTER`] from now. A
-    /// conflict when somebody has.
+    /// Tells that a request is still being carried out, so that nobody takes it over for
+    /// [`TAKE_OVER_AFTER`] from now. A conflict when somebody has.
     pub async fn prolong(&self, ticket: &Ticket) -> Result<()> {
         let Ticket { scope, key, began_us } = ticket;
         let values =

@@ -1,5 +1,5 @@
-//! What must be true of the rows of every store, asked of the database itself. Each question is one statement, so that its
-//! answer holds at one moment, also while others write.
+//! What must be true of the rows of every store, asked of the database itself. Each question is one
+//! statement, so that its answer holds at one moment, also while others write.
 
 use serde::Serialize;
 
@@ -9,7 +9,8 @@ use crate::statements::{Statement, pair, same, statements};
 use crate::store::Store;
 
 statements! {
-    // PostgreSQL checks its pages itself where the cluster has checksums; it has no statement for it.
+    // PostgreSQL checks its pages itself where the cluster has checksums; it has no statement for
+    // it.
     DATABASE = pair(
         "SELECT 'database' AS place, integrity_check AS message FROM pragma_integrity_check WHERE integrity_check <> 'ok'",
         "SELECT 'database' AS place, '' AS message WHERE FALSE",

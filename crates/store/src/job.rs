@@ -115,7 +115,8 @@ record! {
         pub finished_us: Option<i64>,
         /// Whether its worker is asked to stop.
         pub cancel_requested: bool,
-        /// How many of its workers have let their lease run out without a word, as a process does that has ended.
+        /// How many of its workers have let their lease run out without a word, as a process does
+        /// that has ended.
         pub lost_workers: i64,
     }
 }

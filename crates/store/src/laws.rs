@@ -41,7 +41,8 @@ impl Store {
 }
 
 impl Laws<'_> {
-    /// Puts a law in. The same text again changes nothing; another text under the same name is a conflict.
+    /// Puts a law in. The same text again changes nothing; another text under the same name is a
+    /// conflict.
     pub async fn insert(&self, name: &str, document: &str) -> Result<Law> {
         checks::name("name", name)?;
         let sha256 = sha256_hex(document.as_bytes());

@@ -1,4 +1,5 @@
-//! The schema, embedded in the binary, brought up to date when a store is opened, by one process at a time.
+//! The schema, embedded in the binary, brought up to date when a store is opened, by one process at
+//! a time.
 
 use sqlx::migrate::{Migration, MigrationType, Migrator};
 use sqlx::{PgConnection, PgPool, SqlSafeStr as _, SqlitePool};
@@ -32,7 +33,8 @@ fn migrator(sources: &'static [MigrationSource]) -> Migrator {
     Migrator::with_migrations(sources.iter().map(migration).collect())
 }
 
-/// All of it in one immediate transaction: the database's write lock keeps other processes out, and sqlx has no other lock.
+/// All of it in one immediate transaction: the database's write lock keeps other processes out, and
+/// sqlx has no other lock.
 pub(crate) async fn sqlite(pool: &SqlitePool) -> Result<()> {
     let mut tx = pool.begin_with("BEGIN IMMEDIATE").await?;
     migrator(SQLITE).run_direct(None, &mut *tx, false).await.map_err(sqlx::Error::from)?;

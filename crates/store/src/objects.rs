@@ -1,8 +1,8 @@
-//! Objects: bytes named by their SHA-256, in a local folder or in a bucket of an S3-compatible store, see
-//! [`crate::ObjectsPlace`].
+//! Objects: bytes named by their SHA-256, in a local folder or in a bucket of an S3-compatible
+//! store, see [`crate::ObjectsPlace`].
 //!
-//! What [`Objects::put`] has acknowledged is durable, so that a row may refer to it: on the disk, folder entries included, or
-//! by the word of the bucket's server.
+//! What [`Objects::put`] has acknowledged is durable, so that a row may refer to it: on the disk,
+//! folder entries included, or by the word of the bucket's server.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -48,8 +48,8 @@ impl Objects {
         Self { store, folder: None }
     }
 
-    /// Leaves the mark that [`health`](Self::health) looks for, where it is not there yet: a folder that is no longer mounted
-    /// does not have it.
+    /// Leaves the mark that [`health`](Self::health) looks for, where it is not there yet: a folder
+    /// that is no longer mounted does not have it.
     pub async fn mark(&self) -> Result<()> {
         if self.store.head(&ObjectPath::from(MARK)).await.is_ok() {
             return Ok(());
@@ -68,8 +68,9 @@ impl Objects {
         looked.map_err(ObjectsError::from)?.map(drop).map_err(|error| failure(MARK, error))
     }
 
-    /// Keeps the bytes and returns their key, once they are durable. They are written even when the key is there: another
-    /// writer may not have made them durable yet, and a damaged object is healed.
+    /// Keeps the bytes and returns their key, once they are durable. They are written even when the
+    /// key is there: another writer may not have made them durable yet, and a damaged object is
+    /// healed.
     pub async fn put(&self, bytes: Bytes) -> Result<String> {
         let key = hash(bytes.clone()).await?;
         let _held = self.putting().await?;
@@ -88,7 +89,8 @@ impl Objects {
         }
     }
 
-    /// The bytes of this key as they come, not yet verified: whoever reads them to the end compares their hash.
+    /// The bytes of this key as they come, not yet verified: whoever reads them to the end compares
+    /// their hash.
     ///
     /// # Errors
     /// There is no such object, or the store fails.
@@ -98,8 +100,8 @@ impl Objects {
         Ok((size, found.into_stream().map_err(move |error| failure(&key, error)).boxed()))
     }
 
-    /// Removes the object of this key, if it is there. Only who knows that no row refers to it may do so, see
-    /// [`crate::Store::remove_unreferred`].
+    /// Removes the object of this key, if it is there. Only who knows that no row refers to it may
+    /// do so, see [`crate::Store::remove_unreferred`].
     pub(crate) async fn remove(&self, key: String) -> Result<()> {
         match self.store.delete(&path(&key)?).await {
             Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),

@@ -31,8 +31,9 @@ pub enum ObjectsPlace {
     S3(S3Place),
 }
 
-/// A bucket of an S3-compatible store. Its credentials come from the environment (`AWS_ACCESS_KEY_ID`,
-/// `AWS_SECRET_ACCESS_KEY`, `AWS_SESSION_TOKEN`), from the machine's or the container's role, never from here.
+/// A bucket of an S3-compatible store. Its credentials come from the environment
+/// (`AWS_ACCESS_KEY_ID`, `AWS_SECRET_ACCESS_KEY`, `AWS_SESSION_TOKEN`), from the machine's or the
+/// container's role, never from here.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct S3Place {
     /// The bucket.
@@ -136,7 +137,8 @@ pub(crate) fn builder(place: &S3Place) -> AmazonS3Builder {
         .with_region(place.region.clone().or_else(environment).unwrap_or_else(|| REGION.to_owned()))
 }
 
-/// Gives the process the cryptography of TLS, once: no HTTP client can be made without it, not even for plain HTTP.
+/// Gives the process the cryptography of TLS, once: no HTTP client can be made without it, not even
+/// for plain HTTP.
 pub fn provide_cryptography() {
     // Whoever comes second finds it installed.
     let _ = rustls::crypto::ring::default_provider().install_default();

@@ -1,5 +1,5 @@
-//! Lists, a page at a time: each page starts after the last key of the one before, so that it costs the same however far
-//! in, and neither repeats nor skips a row when others are added.
+//! Lists, a page at a time: each page starts after the last key of the one before, so that it costs
+//! the same however far in, and neither repeats nor skips a row when others are added.
 
 use crate::error::{Result, StoreError};
 
@@ -45,7 +45,8 @@ impl<K> Page<K> {
         }
     }
 
-    /// The page made of items that come after [`Page::after`], of which there may be more than one page.
+    /// The page made of items that come after [`Page::after`], of which there may be more than one
+    /// page.
     pub fn of<T>(&self, mut items: Vec<T>, key: impl Fn(&T) -> K) -> List<T, K> {
         let limit = usize::try_from(self.limit).unwrap_or(0);
         let more = items.len() > limit;

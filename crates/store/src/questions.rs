@@ -14,7 +14,8 @@ pub(crate) const AT_ONCE: usize = 16;
 const ROUNDS: usize = 2;
 
 record! {
-    /// The version that an alias of a ship stands for; [`crate::Versions::by_id`] has the rest of it, which never changes.
+    /// The version that an alias of a ship stands for; [`crate::Versions::by_id`] has the rest of
+    /// it, which never changes.
     pub struct CurrentVersion {
         /// The model (the ship's name).
         pub model: String,
@@ -35,8 +36,8 @@ pub(crate) struct Questions(Mutex<OpenQuestions>);
 struct OpenQuestions {
     waiting: Vec<Question>,
     rounds: usize,
-    /// Connections of rounds that have ended, and when: the next goes on with one, which a pool would have asked twice whether it
-    /// is still there.
+    /// Connections of rounds that have ended, and when: the next goes on with one, which a pool
+    /// would have asked twice whether it is still there.
     kept: Vec<(Reader, Instant)>,
     /// Nothing is kept any more.
     closed: bool,
@@ -63,21 +64,24 @@ impl Questions {
         begins
     }
 
-    /// A connection that was used a moment ago, if there is one; what has rested longer goes back to its pool.
+    /// A connection that was used a moment ago, if there is one; what has rested longer goes back
+    /// to its pool.
     pub(crate) fn kept(&self) -> Option<Reader> {
         let kept = &mut self.open().kept;
         kept.retain(|(_, since)| since.elapsed() < RESTED);
         kept.pop().map(|(reader, _)| reader)
     }
 
-    /// SQLite's goes back at once: it is given out again without a question, and may be the only one.
+    /// SQLite's goes back at once: it is given out again without a question, and may be the only
+    /// one.
     pub(crate) fn keep(&self, reader: Option<Reader>) {
         let mut open = self.open();
         let reader = reader.filter(|reader| matches!(reader, Reader::Postgres(_)) && !open.closed);
         open.kept.extend(reader.map(|reader| (reader, Instant::now())));
     }
 
-    /// Gives connections back to their pool, which ends only then, also those of rounds that still end.
+    /// Gives connections back to their pool, which ends only then, also those of rounds that still
+    /// end.
     pub(crate) fn close(&self) {
         let mut open = self.open();
         open.closed = true;

@@ -45,8 +45,8 @@ impl StoredColumn for bool {
     }
 }
 
-/// Declares a struct and how to read it from a row of either database: each field from the column of its name, `flatten`
-/// from the same row.
+/// Declares a struct and how to read it from a row of either database: each field from the column
+/// of its name, `flatten` from the same row.
 macro_rules! record {
     ($(#[$meta:meta])* pub struct $name:ident {
         $(flatten $head:ident: $head_type:ty,)?

@@ -1,5 +1,6 @@
-//! Room for the start of a process on a full disk: SQLite cannot even read without a few pages for the index of its log. A file
-//! beside the database keeps them, goes where the database could not be opened without, and is made again once there is room.
+//! Room for the start of a process on a full disk: SQLite cannot even read without a few pages for
+//! the index of its log. A file beside the database keeps them, goes where the database could not
+//! be opened without, and is made again once there is room.
 
 use std::fs::{self, File};
 use std::io::{self, Write as _};

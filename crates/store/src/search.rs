@@ -1,8 +1,9 @@
 //! Which ships there are: by category, tag and ranges of what is known of them.
 //!
-//! Each way of asking starts at the index that its order follows, and tests the other conditions row by row: a page costs
-//! the same however many ships there are, as long as most of what it passes is what is wanted. Where only few ships meet one of
-//! the other conditions, those are taken and put in order instead.
+//! Each way of asking starts at the index that its order follows, and tests the other conditions
+//! row by row: a page costs the same however many ships there are, as long as most of what it
+//! passes is what is wanted. Where only few ships meet one of the other conditions, those are taken
+//! and put in order instead.
 
 use crate::arguments::{Arg, Args, args};
 use crate::checks;
@@ -17,8 +18,8 @@ pub const MAX_RANGES: usize = 4;
 /// So many ships are few: looking at all of them costs no more than what a page may pass over.
 const FEW: i64 = 2000;
 
-/// One text: what is found, and the conditions `$1` (category), `$2` (tag), `$3` to `$14` (four times fact, least, most),
-/// each of which may be absent.
+/// One text: what is found, and the conditions `$1` (category), `$2` (tag), `$3` to `$14` (four
+/// times fact, least, most), each of which may be absent.
 macro_rules! search {
     ($columns:literal, $from:literal, $order:literal) => {
         search!("", $columns, $from, $order)
@@ -45,7 +46,8 @@ macro_rules! search {
     };
 }
 
-/// Ships of a list of few, by the value of the first range. It is read first, whatever a planner thinks of it.
+/// Ships of a list of few, by the value of the first range. It is read first, whatever a planner
+/// thinks of it.
 macro_rules! of_few {
     ($few:literal) => {
         search!(
@@ -129,7 +131,8 @@ pub struct FactRange {
     pub max: f64,
 }
 
-/// Where a page of ships ends: the value of the first range's fact where there is one, and the name.
+/// Where a page of ships ends: the value of the first range's fact where there is one, and the
+/// name.
 pub type ShipKey = (Option<f64>, String);
 
 /// A condition beside the range that orders.
@@ -162,7 +165,8 @@ impl ShipSearch {
             .chain(ranges)
     }
 
-    /// The text whose index has the order: of the first range where there is one, else of the names.
+    /// The text whose index has the order: of the first range where there is one, else of the
+    /// names.
     fn statement(&self) -> Statement {
         match self {
             Self { ranges, .. } if !ranges.is_empty() => BY_VALUE,
@@ -203,7 +207,8 @@ impl ShipSearch {
 }
 
 impl Ships<'_> {
-    /// Ships that a search finds, by the value of its first range's fact where it has one, else by name.
+    /// Ships that a search finds, by the value of its first range's fact where it has one, else by
+    /// name.
     pub async fn search(
         &self,
         search: &ShipSearch,

@@ -1,7 +1,7 @@
 //! What ships are found by, kept up with them.
 //!
-//! Whatever changes what is known of a ship puts it in a queue, in the same transaction. Somebody who can read documents
-//! takes it out again and writes down its facts.
+//! Whatever changes what is known of a ship puts it in a queue, in the same transaction. Somebody
+//! who can read documents takes it out again and writes down its facts.
 
 use crate::arguments::args;
 use crate::checks;
@@ -67,13 +67,14 @@ impl Store {
 }
 
 impl SearchIndex<'_> {
-    /// Ships that have changed since their facts were written, by name, at most `limit` of those after `after`.
+    /// Ships that have changed since their facts were written, by name, at most `limit` of those
+    /// after `after`.
     pub async fn waiting(&self, after: &str, limit: i64) -> Result<Vec<Waiting>> {
         self.0.database().all(WAITING, args![after: after, limit: limit]).await
     }
 
-    /// Writes the facts of ships, all at once, and returns of how many. Of one that has changed again in the meantime nothing
-    /// is written: it waits on.
+    /// Writes the facts of ships, all at once, and returns of how many. Of one that has changed
+    /// again in the meantime nothing is written: it waits on.
     pub async fn write(&self, all: &[ShipFacts]) -> Result<usize> {
         let mut tx = self.0.begin().await?;
         let mut written = 0;

@@ -143,7 +143,8 @@ impl Ships<'_> {
         Ok(ship)
     }
 
-    /// Deletes the ship, if it is still at `revision` (any when none is given); [`undelete`](Self::undelete) undoes it.
+    /// Deletes the ship, if it is still at `revision` (any when none is given);
+    /// [`undelete`](Self::undelete) undoes it.
     pub async fn delete(&self, name: &str, revision: Option<i64>) -> Result<Ship> {
         let mut tx = self.0.begin().await?;
         let values = args![name: name, revision: revision, deleted_us: self.0.now_us()];

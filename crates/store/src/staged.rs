@@ -1,6 +1,6 @@
-//! What a process that was killed in the middle of a put leaves in a local folder: the bytes so far, in a file beside the
-//! object's name with `#` and a number behind it, which the object store itself does not show. A put into a bucket is one
-//! request and leaves nothing.
+//! What a process that was killed in the middle of a put leaves in a local folder: the bytes so
+//! far, in a file beside the object's name with `#` and a number behind it, which the object store
+//! itself does not show. A put into a bucket is one request and leaves nothing.
 
 use std::fs;
 use std::io;
@@ -33,7 +33,8 @@ impl Objects {
         blocking(move || find(&root)).await
     }
 
-    /// Holds off [`clear_staged`](Self::clear_staged) while something is put; nothing where the file system knows no locks.
+    /// Holds off [`clear_staged`](Self::clear_staged) while something is put; nothing where the
+    /// file system knows no locks.
     pub(crate) async fn putting(&self) -> Result<Option<fs::File>> {
         let Some(root) = self.folder.clone() else { return Ok(None) };
         blocking(move || {
@@ -42,8 +43,9 @@ impl Objects {
         .await
     }
 
-    /// Removes what puts have left whose processes have ended: nobody puts anything while this holds the folder, and what was
-    /// written a moment ago stays for the sake of earlier programs, which do not hold it. Returns how many there were.
+    /// Removes what puts have left whose processes have ended: nobody puts anything while this
+    /// holds the folder, and what was written a moment ago stays for the sake of earlier programs,
+    /// which do not hold it. Returns how many there were.
     pub async fn clear_staged(&self) -> Result<usize> {
         let Some(root) = self.folder.clone() else { return Ok(0) };
         blocking(move || {
@@ -63,7 +65,8 @@ impl Objects {
         .await
     }
 
-    /// Removes what a put has left that never ended. Only who knows that it is not under way may do so.
+    /// Removes what a put has left that never ended. Only who knows that it is not under way may do
+    /// so.
     pub async fn remove_staged(&self, staged: &Staged) -> Result<()> {
         let Some(root) = self.folder.clone() else { return Ok(()) };
         let path = root.join(&staged.path);

@@ -1,5 +1,6 @@
-//! SQL texts: one per operation, the same for both databases but where it cannot be. Each repository declares its own
-//! with [`statements!`], which also lists them, so that one test prepares every text on both databases.
+//! SQL texts: one per operation, the same for both databases but where it cannot be. Each
+//! repository declares its own with [`statements!`], which also lists them, so that one test
+//! prepares every text on both databases.
 
 /// The text of an operation.
 #[derive(Debug, Clone, Copy)]

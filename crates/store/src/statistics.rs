@@ -1,5 +1,5 @@
-//! Sufficient statistics of trials, under the hash of everything that shapes them. They can be made again from the samples, so
-//! that whoever comes first keeps them and nobody minds who.
+//! Sufficient statistics of trials, under the hash of everything that shapes them. They can be made
+//! again from the samples, so that whoever comes first keeps them and nobody minds who.
 
 use crate::arguments::args;
 use crate::checks;

@@ -1,5 +1,5 @@
-//! The store: one database, a clock and a maker of ids. Each repository is reached from it by a method that stands in the
-//! repository's own file.
+//! The store: one database, a clock and a maker of ids. Each repository is reached from it by a
+//! method that stands in the repository's own file.
 
 use std::fmt;
 use std::sync::Arc;
@@ -49,8 +49,8 @@ impl fmt::Debug for Store {
 }
 
 impl Store {
-    /// Opens `sqlite://path/file.db`, `sqlite::memory:` or `postgres://...` and brings its schema up to date; several
-    /// processes may do so at once.
+    /// Opens `sqlite://path/file.db`, `sqlite::memory:` or `postgres://...` and brings its schema
+    /// up to date; several processes may do so at once.
     pub async fn connect(url: &str, clock: Arc<dyn Clock>) -> Result<Self> {
         Self::connect_with(url, clock, Arc::new(UuidIds::default())).await
     }
@@ -92,7 +92,8 @@ impl Store {
         })
     }
 
-    /// The next unit of work goes no further than this moment, as if its process had ended: for tests.
+    /// The next unit of work goes no further than this moment, as if its process had ended: for
+    /// tests.
     #[cfg(feature = "testing")]
     pub fn end_at(&self, moment: crate::unit::Moment) {
         *self.0.ending.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(moment);

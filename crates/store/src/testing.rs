@@ -1,4 +1,5 @@
-//! Databases for tests: a temporary SQLite file, and a fresh database on a private PostgreSQL server.
+//! Databases for tests: a temporary SQLite file, and a fresh database on a private PostgreSQL
+//! server.
 
 use std::str::FromStr as _;
 use std::sync::Arc;
@@ -37,8 +38,9 @@ impl TestDatabase {
         Self { url: format!("sqlite://{}", folder.path().join("store.db").display()), folder }
     }
 
-    /// A new database on the private PostgreSQL server of this process. Without PostgreSQL's programs on this machine it says
-    /// so and returns none, unless `SISTERSHIP_REQUIRE_POSTGRES=1`, which makes it a failure.
+    /// A new database on the private PostgreSQL server of this process. Without PostgreSQL's
+    /// programs on this machine it says so and returns none, unless
+    /// `SISTERSHIP_REQUIRE_POSTGRES=1`, which makes it a failure.
     pub async fn postgres() -> Option<Self> {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let server = server::shared()?;
@@ -93,7 +95,8 @@ impl TestDatabase {
     }
 }
 
-/// A database that sorts as people do, where the server can (from PostgreSQL 15): keys must not depend on that.
+/// A database that sorts as people do, where the server can (from PostgreSQL 15): keys must not
+/// depend on that.
 async fn create(connection: &mut PgConnection, name: &str) -> sqlx::Result<()> {
     let plain = format!("CREATE DATABASE {name} TEMPLATE template0");
     let sorted = format!("{plain} LOCALE_PROVIDER icu ICU_LOCALE 'en'");

@@ -125,7 +125,8 @@ impl Store {
 }
 
 impl Trials<'_> {
-    /// Puts a trial in. The same samples of the same ship again give the trial that is there, brought back if it was deleted.
+    /// Puts a trial in. The same samples of the same ship again give the trial that is there,
+    /// brought back if it was deleted.
     pub async fn insert(&self, new: &NewTrial) -> Result<Inserted<Trial>> {
         let mut inserted = self.insert_all(std::slice::from_ref(new)).await?;
         inserted.pop().ok_or_else(|| StoreError::missing("trial", &new.name))
@@ -136,9 +137,10 @@ impl Trials<'_> {
         self.write(all, None, |_| None).await.map(|(inserted, _)| inserted)
     }
 
-    /// The same with a job that is to follow, if `job` asks for one: whoever sees the trials finds the job too. Where an
-    /// object of theirs is no longer in `objects`, because [`Store::remove_unreferred`] was faster, that object is not found
-    /// and nothing is put in; put it there again and come back.
+    /// The same with a job that is to follow, if `job` asks for one: whoever sees the trials finds
+    /// the job too. Where an object of theirs is no longer in `objects`, because
+    /// [`Store::remove_unreferred`] was faster, that object is not found and nothing is put in; put
+    /// it there again and come back.
     pub async fn insert_all_and_enqueue<F>(
         &self,
         all: &[NewTrial],
@@ -220,7 +222,8 @@ impl Trials<'_> {
         Ok(page.of(trials, |trial: &Trial| trial.id.clone()))
     }
 
-    /// Deletes a trial; [`undelete`](Self::undelete) undoes it. Its samples stay: versions name them by their hash.
+    /// Deletes a trial; [`undelete`](Self::undelete) undoes it. Its samples stay: versions name
+    /// them by their hash.
     pub async fn delete(&self, id: &str) -> Result<Trial> {
         let mut tx = self.0.begin().await?;
         let trial = tx.optional(DELETE, args![id: id, deleted_us: self.0.now_us()]).await?;

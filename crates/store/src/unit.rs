@@ -1,5 +1,6 @@
-//! The transaction of a unit of work. It begins with the first write, so that what comes before it holds nobody up, and reads
-//! through the handle see it. Each repository's own transaction becomes a step of it, undone by itself where it fails.
+//! The transaction of a unit of work. It begins with the first write, so that what comes before it
+//! holds nobody up, and reads through the handle see it. Each repository's own transaction becomes
+//! a step of it, undone by itself where it fails.
 
 use std::fmt;
 use std::sync::Arc;

@@ -1,5 +1,5 @@
-//! A unit of work: whatever is written through one handle of the store, in one transaction, with the outcome of the request
-//! that asked for it.
+//! A unit of work: whatever is written through one handle of the store, in one transaction, with
+//! the outcome of the request that asked for it.
 
 use crate::error::Result;
 use crate::idempotency::{self, Ticket};
@@ -8,7 +8,8 @@ use crate::store::Store;
 use crate::unit::Moment;
 use crate::unit::Unit;
 
-/// Work of which all is kept or nothing, see [`Store::unit`]. It is undone when this and the handles of it are dropped.
+/// Work of which all is kept or nothing, see [`Store::unit`]. It is undone when this and the
+/// handles of it are dropped.
 #[derive(Debug)]
 pub struct UnitOfWork {
     store: Store,
@@ -29,8 +30,8 @@ impl UnitOfWork {
         &self.store
     }
 
-    /// Keeps the work, and in the same transaction the answer to the request that asked for it. A conflict, which undoes the
-    /// work, where that request has been taken over meanwhile.
+    /// Keeps the work, and in the same transaction the answer to the request that asked for it. A
+    /// conflict, which undoes the work, where that request has been taken over meanwhile.
     pub async fn keep(self, answer: Option<(&Ticket, i64, &str)>) -> Result<()> {
         if let Some((ticket, status, body)) = answer {
             let mut tx = self.store.begin().await?;

@@ -44,7 +44,8 @@ record! {
     }
 }
 
-/// What a version is made of. The document holds neither the number nor the time: the same recipe gives the same bytes.
+/// What a version is made of. The document holds neither the number nor the time: the same recipe
+/// gives the same bytes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewVersion {
     /// The model (the ship's name).

@@ -13,7 +13,8 @@ use crate::store::Store;
 use crate::version::{NewVersion, Version, VersionHead, check_id, missing};
 
 statements! {
-    // The row of the model stays locked until the commit, and an undone transaction gives its number back: no gaps.
+    // The row of the model stays locked until the commit, and an undone transaction gives its
+    // number back: no gaps.
     NUMBER = same("INSERT INTO models (name, next_number) VALUES ($1, 2) \
         ON CONFLICT (name) DO UPDATE SET next_number = models.next_number + 1 RETURNING next_number - 1 AS number");
     INSERT = same("INSERT INTO versions (id, model, number, parent, law, method, document, sha256, created_us) \

@@ -1,5 +1,5 @@
-//! Long work: what workers do. A worker claims a job under a lease, and each claim raises the job's fence; whoever holds an
-//! older fence has lost the job and can no longer change it.
+//! Long work: what workers do. A worker claims a job under a lease, and each claim raises the job's
+//! fence; whoever holds an older fence has lost the job and can no longer change it.
 
 use std::time::Duration;
 
@@ -12,7 +12,8 @@ use crate::job::{Job, JobState, job};
 use crate::jobs::{Jobs, find};
 use crate::statements::{Statement, pair, same, statements};
 
-/// A job that has lost this many workers is taken for one that ends their processes, and is not begun again by itself.
+/// A job that has lost this many workers is taken for one that ends their processes, and is not
+/// begun again by itself.
 pub const MAX_LOST_WORKERS: i64 = 2;
 
 statements! {
@@ -42,8 +43,8 @@ statements! {
 pub enum Claimed {
     /// This job, which is the worker's now.
     Job(Box<Job>),
-    /// A job during which a process has ended: to be claimed by a process that does nothing else meanwhile, so that no other
-    /// job is taken for the cause if it happens again.
+    /// A job during which a process has ended: to be claimed by a process that does nothing else
+    /// meanwhile, so that no other job is taken for the cause if it happens again.
     Alone,
     /// Nothing.
     Nothing,
@@ -57,9 +58,10 @@ enum JobEnd<'a> {
 }
 
 impl Jobs<'_> {
-    /// Takes the oldest job that waits, or whose worker has let its lease run out. One that has lost [`MAX_LOST_WORKERS`]
-    /// workers is set aside as failed; one that was to be cancelled when its worker died is cancelled. `alone` says that the
-    /// worker's process does nothing else until the job ends.
+    /// Takes the oldest job that waits, or whose worker has let its lease run out. One that has
+    /// lost [`MAX_LOST_WORKERS`] workers is set aside as failed; one that was to be cancelled when
+    /// its worker died is cancelled. `alone` says that the worker's process does nothing else until
+    /// the job ends.
     pub async fn claim(&self, worker: &str, lease: Duration, alone: bool) -> Result<Claimed> {
         let mut tx = self.0.begin().await?;
         let now = self.0.now_us();
@@ -81,7 +83,8 @@ impl Jobs<'_> {
         Ok(claimed)
     }
 
-    /// Tells that the worker which held a job under `fence` has lost it by coming late, not by its end.
+    /// Tells that the worker which held a job under `fence` has lost it by coming late, not by its
+    /// end.
     pub async fn lives(&self, id: &str, fence: i64) -> Result<()> {
         let mut tx = self.0.begin().await?;
         tx.execute(LIVES, args![id: id, fence: fence]).await?;
@@ -102,7 +105,8 @@ impl Jobs<'_> {
         self.held(HEARTBEAT, id, fence, values).await.map(|job| job.cancel_requested)
     }
 
-    /// Ends a job with what came of it, JSON. Where a version comes of it, see [`crate::Store::commit_refinement`].
+    /// Ends a job with what came of it, JSON. Where a version comes of it, see
+    /// [`crate::Store::commit_refinement`].
     pub async fn complete(&self, id: &str, fence: i64, result: &str) -> Result<Job> {
         self.end(id, fence, JobEnd::Succeeded { result }).await
     }
@@ -117,7 +121,8 @@ impl Jobs<'_> {
         self.end(id, fence, JobEnd::Cancelled).await
     }
 
-    /// Gives a job back to the queue, as a worker does that is told to leave; it does not count as an attempt.
+    /// Gives a job back to the queue, as a worker does that is told to leave; it does not count as
+    /// an attempt.
     pub async fn release(&self, id: &str, fence: i64) -> Result<Job> {
         self.held(RELEASE, id, fence, args![id: id, fence: fence]).await
     }

@@ -1,9 +1,10 @@
 //! Whether every row of a CSV file has as many cells as its header.
 //!
-//! A row with another count is an error: its numbers may stand under the wrong headings. There are two exceptions in which
-//! none can. One more empty cell at the end of *every* row (a separator that closes each line, the header's left out) is
-//! passed over, unless a decimal comma could explain it: that is where commas separate and no number has a point. And a row
-//! with too few cells is left out, with a warning, where the manifest says `missing: drop`.
+//! A row with another count is an error: its numbers may stand under the wrong headings. There are
+//! two exceptions in which none can. One more empty cell at the end of *every* row (a separator
+//! that closes each line, the header's left out) is passed over, unless a decimal comma could
+//! explain it: that is where commas separate and no number has a point. And a row with too few
+//! cells is left out, with a warning, where the manifest says `missing: drop`.
 
 use csv::ByteRecord;
 
@@ -114,7 +115,8 @@ impl Counter {
         Cells::Many
     }
 
-    /// Tells every row whose count is wrong; those with too few cells only where they are not left out.
+    /// Tells every row whose count is wrong; those with too few cells only where they are not left
+    /// out.
     pub(crate) fn tell(&self, drops: bool, findings: &mut Findings) {
         if self.many.count > 0 {
             let what = match self.decimal_commas {
@@ -159,7 +161,8 @@ impl Counter {
     }
 }
 
-/// Whether as many pairs of neighbours as there are cells too many are the halves of a decimal number.
+/// Whether as many pairs of neighbours as there are cells too many are the halves of a decimal
+/// number.
 fn is_decimal_comma(record: &ByteRecord, width: usize) -> bool {
     let digits = |cell: &[u8]| !cell.is_empty() && cell.iter().all(u8::is_ascii_digit);
     let whole =

@@ -35,6 +35,10 @@ pub(crate) struct Clock {
     before: i64,
     midnights: i64,
     open: OpenDates,
+    /// The first row's number in SI units, where rows are told one by one.
+    origin: Option<f64>,
+    /// Of a table whose time has been counted.
+    counted: Option<Start>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,6 +54,11 @@ impl Clock {
     pub(crate) fn of(columns: &[Column]) -> Self {
         let time = columns.iter().find(|column| column.target == Target::Time);
         Self { unit: time.map_or(String::new(), |column| column.unit.clone()), ..Self::default() }
+    }
+
+    /// Of a table whose time has been counted.
+    pub(crate) fn counted(start: Option<Start>) -> Self {
+        Self { counted: start, ..Self::default() }
     }
 
     fn is_written(&self) -> bool {
@@ -100,8 +109,51 @@ impl Clock {
         stamp.seconds(day - self.first_day)
     }
 
-    /// Counts the table's time from its first row, and says what it was taken for.
-    pub(crate) fn finish(mut self, table: &mut Table, findings: &mut Findings) {
+    /// Seconds as the table will have them, of a number in SI units; nothing where only the whole
+    /// column tells. Called for every row from the first on.
+    pub(crate) fn since_start(&mut self, value: f64) -> Option<f64> {
+        let origin = *self.origin.get_or_insert(value);
+        match self.form.unwrap_or(Form::Number) {
+            Form::OpenDate { .. } => None,
+            Form::Number if self.unit == "auto" => (!SERIAL.contains(&origin)).then_some(value),
+            Form::Number if !is_serial(&self.unit) => Some(value),
+            _ => Some(value - origin),
+        }
+    }
+
+    /// Whether only the whole column tells what its times are.
+    pub(crate) fn is_open(&self) -> bool {
+        match self.form {
+            Some(Form::OpenDate { .. }) => true,
+            Some(Form::Number) | None => {
+                let is_day = |origin: f64| SERIAL.contains(&origin);
+                self.unit == "auto" && self.origin.is_some_and(is_day)
+            }
+            _ => false,
+        }
+    }
+
+    /// What time zero is in the calendar, once the first row was told.
+    pub(crate) fn start(&self) -> Option<Start> {
+        self.counted.clone().or_else(|| self.calendar(self.origin?))
+    }
+
+    fn calendar(&self, first: f64) -> Option<Start> {
+        match self.form.unwrap_or(Form::Number) {
+            Form::Dated { zoned } => Some(instant(self.first_day, first, zoned)),
+            Form::OfDay => {
+                let mut start = instant(0, first, false);
+                start.text = start.text.split_off("1970-01-01T".len());
+                start.dated = false;
+                Some(start)
+            }
+            Form::Number if is_serial(&self.unit) => self.days(first).1,
+            _ => None,
+        }
+    }
+
+    /// Counts the table's time from the first row, and says what it was taken for.
+    pub(crate) fn finish(&mut self, table: &mut Table, findings: &mut Findings) {
         let Some(at) = table.columns.iter().position(|column| column.target == Target::Time) else {
             return;
         };
@@ -132,25 +184,24 @@ impl Clock {
         header: &str,
         values: &mut [f64],
     ) -> Result<(&'static str, Option<Start>), String> {
+        let first = self.origin.unwrap_or(values[0]);
+        let start = self.calendar(first);
         match self.form.unwrap_or(Form::Number) {
-            Form::Number => Ok(self.numbers(header, values)),
+            Form::Number => Ok(self.numbers(header, values, first)),
             Form::Dated { zoned } => {
-                let start = instant(self.first_day, values[0], zoned);
-                from_first(values, 1e9);
-                Ok((Self::dated(zoned), Some(start)))
+                from(values, first, 1e9);
+                Ok((Self::dated(zoned), start))
             }
             Form::OpenDate { zoned } => {
                 let first_day = self.open.days(self.first_day, values)?;
                 let start = instant(first_day, values[0], zoned);
-                from_first(values, 1e6);
+                let first = values[0];
+                from(values, first, 1e6);
                 Ok((Self::dated(zoned), Some(start)))
             }
             Form::OfDay => {
-                let mut start = instant(0, values[0], false);
-                start.text = start.text.split_off("1970-01-01T".len());
-                start.dated = false;
-                from_first(values, 1e9);
-                Ok(("time of day", Some(start)))
+                from(values, first, 1e9);
+                Ok(("time of day", start))
             }
         }
     }
@@ -159,23 +210,36 @@ impl Clock {
         if zoned { "date and time with a zone" } else { "date and time without a zone" }
     }
 
-    fn numbers(&self, header: &str, values: &mut [f64]) -> (&'static str, Option<Start>) {
-        if self.unit == "auto" && !looks_serial(header, values) {
+    fn numbers(
+        &self,
+        header: &str,
+        values: &mut [f64],
+        mut first: f64,
+    ) -> (&'static str, Option<Start>) {
+        let is_auto = self.unit == "auto";
+        // Rows that were told one by one are seconds.
+        if is_auto && (self.origin.is_some() || !looks_serial(header, values)) {
             return ("seconds, as no unit is declared", None);
         }
-        if self.unit == "auto" {
+        if is_auto {
             values.iter_mut().for_each(|value| *value *= DAY_S);
+            first *= DAY_S;
         }
+        from(values, first, 1e6);
+        self.days(first)
+    }
+
+    /// What days or seconds of another calendar are, and the first of them.
+    fn days(&self, first: f64) -> (&'static str, Option<Start>) {
         let (name, epoch) = match self.unit.as_str() {
             "matlab" => ("MATLAB's days", MATLAB),
             "unix" => ("seconds since 1970", 0.0),
             _ => ("Excel's days", EXCEL),
         };
-        let start = values[0] + epoch * DAY_S;
+        let start = first + epoch * DAY_S;
         // Beyond the years that are read nothing is said of it.
         let known = (-2.2e9..5.7e9).contains(&start);
         let start = known.then(|| instant(0, (start * 1e6).round() / 1e6, false));
-        from_first(values, 1e6);
         (name, start)
     }
 }
@@ -205,9 +269,8 @@ pub(crate) fn looks_serial(header: &str, values: &[f64]) -> bool {
         && step < SERIAL_STEP
 }
 
-/// Seconds since the first, to so many parts of a second: what the form can tell apart.
-fn from_first(values: &mut [f64], parts: f64) {
-    let first = values[0];
+/// Seconds since a first, to so many parts of a second: what the form can tell apart.
+fn from(values: &mut [f64], first: f64, parts: f64) {
     values.iter_mut().for_each(|value| *value = ((*value - first) * parts).round() / parts);
 }
 

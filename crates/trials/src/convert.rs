@@ -31,6 +31,7 @@ pub(crate) fn convert(
         rows: table.rows,
         start: table.start,
         resumed: table.resumed,
+        is_stretch: mapping.stretch.is_some(),
         ..Recording::default()
     };
     for (column, mut values) in table.columns.into_iter().zip(table.values) {
@@ -85,7 +86,8 @@ fn sign(
     }
 }
 
-/// Removes jumps of more than half a turn. The first value stays, and so does a heading that is already continuous.
+/// Removes jumps of more than half a turn. The first value stays, and so does a heading that is
+/// already continuous.
 fn unwrap_heading(values: &mut [f64]) {
     let mut turns = 0.0;
     let mut before = values.first().copied().unwrap_or(0.0);

@@ -1,6 +1,6 @@
 //! CSV, streamed row by row.
 
-use std::io::{Cursor, Read};
+use std::io::{Chain, Cursor, Read};
 
 use csv::{ByteRecord, ReaderBuilder};
 
@@ -9,53 +9,86 @@ use crate::clock::Clock;
 use crate::decimals::Decimals;
 use crate::findings::Findings;
 use crate::layout::{self, Layout};
+use crate::limits::too_many;
 use crate::mapping::Mapping;
 use crate::metered::{Meter, Metered};
 use crate::number::{Fault, number};
 use crate::resolve::{Heading, resolve_heading};
-use crate::rows::Builder;
-use crate::table::{Table, Target, width};
+use crate::stream;
+use crate::table::{Column, Table, Target, width};
+use crate::taker::{RowsFile, Taker, time_at};
 
 /// Bytes that are asked for at once while the header is looked for.
 const CHUNK: u64 = 4096;
 
 /// Reads the mapped columns; nothing after errors that leave nothing to check.
 ///
-/// A row's number is that of the line in which it starts, as an editor shows it: the first line is 1, blank lines count, and
-/// so do those within quoted cells.
+/// A row's number is that of the line in which it starts, as an editor shows it: the first line is
+/// 1, blank lines count, and so do those within quoted cells.
 pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
-    let (mut metered, meter) = Metered::new(input, mapping.limits.line_bytes);
-    let start = start(&mut metered, &meter, mapping, findings)?;
-    let layout = layout::find(&start, mapping);
-    let whole = Cursor::new(start[layout.offset..].to_vec()).chain(metered);
-    drop(start);
-    let mut reader = opened(whole, layout.separator);
-    let headers = headers(&mut reader, mapping, findings)?;
-    meter.reset();
-    let columns = resolve_heading(heading(&headers, &layout), mapping, findings)?;
-    let mut cells = Reading {
-        lines: layout.lines,
-        most: mapping.limits.rows,
-        units: !layout.units.is_empty(),
-        clock: Clock::of(&columns),
-        counter: Counter::new(layout.separator, headers.len()),
-        decimals: Decimals::new(layout.separator),
-    };
-    let mut builder =
-        Builder::new(columns, mapping.conventions.missing, findings).with_room(mapping.room);
-    let stopped = cells.rows(&mut reader, &meter, &mut builder);
-    let drops = builder.drops();
-    let mut table = builder.finish();
-    cells.counter.tell(drops, findings);
-    cells.decimals.tell(findings);
-    cells.clock.finish(&mut table, findings);
-    if let Err((row, message)) = stopped {
-        findings.error(Some(row), None, message);
-    }
-    Some(table)
+    stream::whole(CsvRows::open(input, mapping, findings)?, mapping, findings)
 }
 
-/// The most rows that there can be, and the columns that are read; none where the header is no good.
+/// The rows of a CSV file whose header has been read.
+pub(crate) struct CsvRows<R> {
+    reader: csv::Reader<Chain<Cursor<Vec<u8>>, Metered<R>>>,
+    meter: Meter,
+    columns: Vec<Column>,
+    room: usize,
+    cells: Reading,
+    /// Where and why it cannot be read on.
+    stopped: Option<(usize, String)>,
+}
+
+impl<R: Read> CsvRows<R> {
+    /// Reads the header; nothing after errors.
+    pub(crate) fn open(input: R, mapping: &Mapping, findings: &mut Findings) -> Option<Self> {
+        let (mut metered, meter) = Metered::new(input, mapping.limits.line_bytes);
+        let start = start(&mut metered, &meter, mapping, findings)?;
+        let layout = layout::find(&start, mapping);
+        let whole = Cursor::new(start[layout.offset..].to_vec()).chain(metered);
+        let mut reader = opened(whole, layout.separator);
+        let headers = headers(&mut reader, mapping, findings)?;
+        meter.reset();
+        let columns = resolve_heading(heading(&headers, &layout), mapping, findings)?;
+        let cells = Reading {
+            lines: layout.lines,
+            most: mapping.limits.rows,
+            units: !layout.units.is_empty(),
+            time: time_at(&columns).map(|at| columns[at].clone()),
+            clock: Clock::of(&columns),
+            counter: Counter::new(layout.separator, headers.len()),
+            decimals: Decimals::new(layout.separator),
+        };
+        Some(Self { reader, meter, columns, room: mapping.room, cells, stopped: None })
+    }
+}
+
+impl<R: Read> RowsFile for CsvRows<R> {
+    fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    fn room(&self) -> usize {
+        self.room
+    }
+
+    fn each(&mut self, taker: &mut impl Taker) {
+        self.stopped = self.cells.rows(&mut self.reader, &self.meter, taker).err();
+    }
+
+    fn finish(&mut self, drops: bool, table: &mut Table, findings: &mut Findings) {
+        self.cells.counter.tell(drops, findings);
+        self.cells.decimals.tell(findings);
+        self.cells.clock.finish(table, findings);
+        if let Some((row, message)) = &self.stopped {
+            findings.error(Some(*row), None, message.clone());
+        }
+    }
+}
+
+/// The most rows that there can be, and the columns that are read; none where the header is no
+/// good.
 pub(crate) fn measure(mut input: impl Read, mapping: &Mapping) -> Option<(usize, usize)> {
     let (mut rows, mut before, mut start) = (1, 0, Vec::new());
     input.by_ref().take(mapping.limits.line_bytes as u64).read_to_end(&mut start).ok()?;
@@ -160,21 +193,22 @@ struct Reading {
     most: usize,
     /// Whether the first row is one of units.
     units: bool,
+    /// The column of time.
+    time: Option<Column>,
     clock: Clock,
     counter: Counter,
     decimals: Decimals,
 }
 
 impl Reading {
-    /// Feeds every row to the builder; stops with row and reason at what cannot be read on.
+    /// Gives every row away; stops with row and reason at what cannot be read on.
     fn rows(
         &mut self,
         reader: &mut csv::Reader<impl Read>,
         meter: &Meter,
-        builder: &mut Builder,
+        taker: &mut impl Taker,
     ) -> Result<(), (usize, String)> {
         let mut record = ByteRecord::new();
-        let mut count = 0;
         loop {
             let next = usize::try_from(reader.position().line()).unwrap_or(usize::MAX) + self.lines;
             let more = reader
@@ -188,33 +222,57 @@ impl Reading {
             if std::mem::take(&mut self.units) {
                 continue;
             }
-            count += 1;
-            if count > self.most {
-                let most = self.most;
-                let why = format!("the file has more than the {most} rows that are read; split it");
-                return Err((row, why));
+            if !self.row(row, &record, taker) {
+                return Err((row, too_many(self.most)));
             }
-            self.row(row, &record, builder);
         }
     }
 
-    fn row(&mut self, row: usize, record: &ByteRecord, builder: &mut Builder) {
+    /// Gives a row away; false where that would be one too many.
+    fn row<T: Taker>(&mut self, row: usize, record: &ByteRecord, taker: &mut T) -> bool {
         match self.counter.row(row, record) {
-            Cells::Fit => builder.row(row, |_, column| {
-                let cell = record.get(column.index).ok_or(Fault::Absent)?;
-                let cell = self.decimals.point(row, cell);
-                match column.target {
-                    Target::Time => self.clock.cell(row, &cell),
-                    _ => number(&cell),
-                }
-            }),
-            Cells::Few(_) => builder.short(row),
+            Cells::Fit if T::TIMED => return self.timed(row, record, taker),
+            Cells::Fit if taker.held() >= self.most => return false,
+            Cells::Fit => taker.row(row, |_, column| self.cell(row, record, column)),
+            Cells::Few(_) => taker.short(row),
             Cells::Many => {}
+        }
+        true
+    }
+
+    /// Tells the time of a row, and gives it where it is wanted.
+    fn timed(&mut self, row: usize, record: &ByteRecord, taker: &mut impl Taker) -> bool {
+        let Some(column) = self.time.take() else { return true };
+        let time = self.cell(row, record, &column);
+        let si = time.as_ref().ok().map(|time| time * column.to_si);
+        self.time = Some(column);
+        let t_s = si.and_then(|si| self.clock.since_start(si));
+        if !taker.wants(row, t_s, &self.clock) {
+            return true;
+        }
+        if taker.held() >= self.most {
+            return false;
+        }
+        taker.row(row, |_, column| match column.target {
+            Target::Time => time.clone(),
+            _ => self.cell(row, record, column),
+        });
+        true
+    }
+
+    #[inline]
+    fn cell(&mut self, row: usize, record: &ByteRecord, column: &Column) -> Result<f64, Fault> {
+        let cell = record.get(column.index).ok_or(Fault::Absent)?;
+        let cell = self.decimals.point(row, cell);
+        match column.target {
+            Target::Time => self.clock.cell(row, &cell),
+            _ => number(&cell),
         }
     }
 }
 
-/// The line in which the record that was just read starts. Its end is known: one line end after it, and those inside.
+/// The line in which the record that was just read starts. Its end is known: one line end after it,
+/// and those inside.
 fn line(reader: &csv::Reader<impl Read>, record: &ByteRecord) -> usize {
     let inside = record.as_slice().iter().filter(|&&byte| byte == b'\n').count();
     usize::try_from(reader.position().line()).unwrap_or(usize::MAX).saturating_sub(1 + inside)

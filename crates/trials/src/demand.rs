@@ -4,7 +4,8 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use crate::archive;
+use sistership_containers::archive;
+
 use crate::csv_file;
 use crate::mapping::Mapping;
 use crate::mat_file;
@@ -13,8 +14,8 @@ use crate::parquet_file;
 use crate::samples::GROUP_ROWS;
 use crate::source::{Content, Source};
 
-/// Bytes that what a Parquet file says of itself takes in memory, by each that it has in the file: an assumption on the
-/// safe side, since numbers of a few bytes become fields of eight.
+/// Bytes that what a Parquet file says of itself takes in memory, by each that it has in the file:
+/// an assumption on the safe side, since numbers of a few bytes become fields of eight.
 const BY_FOOTER: u64 = 12;
 /// Bytes that a workbook takes, by each that it has when unpacked: shared strings of a few bytes
 /// take three times as many, and each number of twenty characters is one of eight bytes beside its
@@ -50,8 +51,8 @@ pub fn measuring(path: &Path) -> io::Result<u64> {
     Ok(EVERY / 4 + BY_FOOTER * footer.min(crate::Limits::default().footer_bytes as u64))
 }
 
-/// What [`crate::read_trial`] takes of a file, and then [`crate::samples::write_parquet`]. Of a file that will be refused it says
-/// what finding this out takes.
+/// What [`crate::read_trial`] takes of a file, and then [`crate::samples::write_parquet`]. Of a
+/// file that will be refused it says what finding this out takes.
 ///
 /// # Errors
 /// The file cannot be read.
@@ -73,8 +74,8 @@ pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
     };
     let (rows, columns) = size.unwrap_or_default();
     let rows = rows.min(mapping.limits.rows);
-    // Numbers, the row of each, whether the ship has way ahead, and one column more: the steps of time while their median is
-    // found, later a smoothed column before it takes the other's place.
+    // Numbers, the row of each, whether the ship has way ahead, and one column more: the steps of
+    // time while their median is found, later a smoothed column before it takes the other's place.
     let row = 8 * columns as u64 + 5 + 8 + deriving(mapping);
     // A column as it is compressed.
     let writing = 8 * rows.min(GROUP_ROWS) as u64;

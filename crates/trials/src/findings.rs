@@ -39,7 +39,7 @@ impl Hits {
 }
 
 /// Everything found in one file so far.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Findings {
     errors: Vec<Finding>,
     warnings: Vec<Finding>,

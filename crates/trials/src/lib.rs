@@ -8,7 +8,6 @@
 //! and [`lacking`] names what a law needs that a trial does not have. [`samples`] keeps trials as
 //! Parquet and writes them as CSV.
 
-mod archive;
 mod calendar;
 mod cells;
 mod checks;
@@ -29,7 +28,6 @@ mod magic;
 mod manifest;
 mod manifest_file;
 mod mapping;
-mod mat_elements;
 mod mat_file;
 mod metered;
 mod names;
@@ -39,10 +37,9 @@ mod nmea_sentence;
 mod number;
 mod open_dates;
 mod outcome;
-mod pages;
 mod pairs;
 mod parquet_file;
-mod parquet_format;
+mod parts;
 mod position;
 mod preview;
 mod propose;
@@ -51,13 +48,17 @@ mod recording;
 mod resolve;
 mod rows;
 pub mod samples;
+mod scan;
 mod series;
 mod smoother;
 pub mod smoothing;
 mod source;
 mod stamp;
 mod stats;
+mod stream;
+mod stretches;
 mod table;
+mod taker;
 #[cfg(test)]
 mod testing;
 mod unit_guess;
@@ -77,4 +78,6 @@ pub use needs::{Lack, lacking};
 pub use outcome::{CheckOutcome, Refusal, TrialReading};
 pub use propose::{Guess, Proposal, propose};
 pub use read::{check, read_in_full, read_trial};
+pub use scan::{Steering, scan};
 pub use source::Source;
+pub use stretches::Stretch;

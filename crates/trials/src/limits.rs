@@ -3,7 +3,7 @@
 /// Bounds that keep a file from filling the memory of whoever reads it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
-    /// Rows of data.
+    /// Rows of data that are held at a time; a file of which stretches are read may have more.
     pub rows: usize,
     /// Columns, mapped or not.
     pub columns: usize,
@@ -15,6 +15,14 @@ pub struct Limits {
     pub footer_bytes: usize,
     /// Bytes that a workbook or a MATLAB file may hold when it is unpacked.
     pub unpacked_bytes: usize,
+}
+
+/// What is said of a file with more rows than are held.
+pub(crate) fn too_many(most: usize) -> String {
+    format!(
+        "the file has more than the {most} rows that are read; split it, or let `sistership import` \
+         find the stretches of it that matter"
+    )
 }
 
 impl Default for Limits {

@@ -1,5 +1,6 @@
 //! What a command line names: a manifest, or one file.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use sistership_model::FileError;
@@ -10,7 +11,7 @@ use crate::declarations::SensorFile;
 use crate::manifest::read_manifest_file;
 use crate::mapping::Mapping;
 use crate::outcome::{CheckOutcome, Refusal};
-use crate::read::{check, read_trial};
+use crate::read::{Examined, StretchRequest, examine, stretches};
 use crate::source::Source;
 
 /// Trials read from a path.
@@ -22,14 +23,16 @@ pub struct Loaded {
     pub trials: Vec<Result<Trial, Refusal>>,
 }
 
-/// Reads a manifest (`.yaml`, `.yml`) with all its files, or a CSV or Parquet file with canonical column names.
+/// Reads a manifest (`.yaml`, `.yml`) with all its files, or a CSV or Parquet file with canonical
+/// column names.
 ///
 /// # Errors
-/// The manifest is wrong, or the path cannot be read. A single trial that is refused is no error of the whole.
+/// The manifest is wrong, or the path cannot be read. A single trial that is refused is no error of
+/// the whole.
 pub fn load_path(path: &Path) -> Result<Loaded, FileError> {
-    let (manifest, mut trials) = each(path, |listed| match listed.open() {
-        Ok(source) => read_trial(source, &listed.mapping),
-        Err(error) => Err(Refusal { file: listed.name, findings: vec![unreadable(&error)] }),
+    let (manifest, mut trials) = each(path, |name, examined| match examined {
+        Ok(examined) => examined.trial(name),
+        Err(error) => Err(Refusal { file: name, findings: vec![unreadable(&error)] }),
     })?;
     if manifest.is_none()
         && let (Some(Ok(trial)), Some(name)) = (trials.first_mut(), path.file_name())
@@ -45,10 +48,10 @@ pub fn load_path(path: &Path) -> Result<Loaded, FileError> {
 /// # Errors
 /// As [`load_path`].
 pub fn check_path(path: &Path) -> Result<Vec<CheckOutcome>, FileError> {
-    let outcomes = each(path, |listed| match listed.open() {
-        Ok(source) => check(source, &listed.mapping),
+    let outcomes = each(path, |name, examined| match examined {
+        Ok(examined) => examined.outcome(name),
         Err(error) => CheckOutcome {
-            file: listed.name,
+            file: name,
             rows: 0,
             duration_s: 0.0,
             errors: vec![unreadable(&error)],
@@ -67,41 +70,89 @@ struct Listed {
 }
 
 impl Listed {
-    fn open(&self) -> std::io::Result<Source<'static>> {
+    fn open(&self) -> io::Result<Source<'static>> {
         let mut source = Source::open(&self.name, &self.path)?;
         for (sensor, path) in &self.sensors {
-            let named = |error| std::io::Error::other(format!("{}: {error}", sensor.file));
+            let named = |error| io::Error::other(format!("{}: {error}", sensor.file));
             let other = Source::open(&sensor.file, path).map_err(named)?;
             source =
                 source.with_sensor(other, self.mapping.of_sensor(sensor), sensor.clock_offset_s);
         }
         Ok(source)
     }
+
+    /// Whether both are stretches of one file, which is then read once.
+    fn shares_file(&self, other: &Self) -> bool {
+        let both = self.mapping.stretch.is_some() && other.mapping.stretch.is_some();
+        both && self.path.components().eq(other.path.components())
+    }
 }
 
+/// What `take` makes of each trial of a path, in the manifest's order.
 fn each<T>(
     path: &Path,
-    take: impl FnMut(Listed) -> T,
+    mut take: impl FnMut(String, io::Result<Examined>) -> T,
 ) -> Result<(Option<Manifest>, Vec<T>), FileError> {
+    let (manifest, listed) = listed(path)?;
+    let mut taken: Vec<Option<T>> = listed.iter().map(|_| None).collect();
+    for at in 0..listed.len() {
+        if taken[at].is_none() {
+            let same =
+                (at..listed.len()).filter(|&k| k == at || listed[k].shares_file(&listed[at]));
+            let same: Vec<usize> = same.collect();
+            let group: Vec<&Listed> = same.iter().map(|&k| &listed[k]).collect();
+            for (k, examined) in same.into_iter().zip(examined(&group)) {
+                taken[k] = Some(take(listed[k].name.clone(), examined));
+            }
+        }
+    }
+    Ok((manifest, taken.into_iter().flatten().collect()))
+}
+
+/// One file, or several stretches of one, which are read in one pass.
+fn examined(group: &[&Listed]) -> Vec<io::Result<Examined>> {
+    if let [alone] = group {
+        return vec![alone.open().map(|source| examine(source, &alone.mapping))];
+    }
+    let sources: io::Result<Vec<Source>> = group.iter().map(|listed| listed.open()).collect();
+    let mut sources = match sources {
+        Ok(sources) => sources.into_iter(),
+        Err(error) => {
+            let told = |_: &&Listed| Err(io::Error::new(error.kind(), error.to_string()));
+            return group.iter().map(told).collect();
+        }
+    };
+    let Some(Source { content, sensors, .. }) = sources.next() else { return Vec::new() };
+    let sensors = std::iter::once(sensors).chain(sources.map(|source| source.sensors));
+    let requests = group.iter().zip(sensors).map(|(listed, sensors)| StretchRequest {
+        name: &listed.name,
+        mapping: &listed.mapping,
+        sensors,
+    });
+    stretches(content, requests.collect()).into_iter().map(Ok).collect()
+}
+
+/// What a path names: the files of a manifest, or one file.
+fn listed(path: &Path) -> Result<(Option<Manifest>, Vec<Listed>), FileError> {
     let shown = path.display().to_string();
     if !is_manifest(path) {
         std::fs::metadata(path).map_err(|error| missing(&shown, &error))?;
         let (mapping, sensors) = (Mapping::canonical(), Vec::new());
         let alone = Listed { name: shown, path: path.to_owned(), mapping, sensors };
-        return Ok((None, [alone].map(take).into()));
+        return Ok((None, vec![alone]));
     }
     let text = std::fs::read_to_string(path).map_err(|error| missing(&shown, &error))?;
     let written = read_manifest_file(&shown, &text)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let listed =
         written.manifest.trials.iter().zip(&written.sensors).map(|(trial, sensors)| Listed {
-            name: trial.file.clone(),
+            name: trial.label(),
             path: folder.join(&trial.file),
             mapping: written.mapping(trial),
             sensors: sensors.iter().map(|one| (one.clone(), folder.join(&one.file))).collect(),
         });
-    let taken = listed.map(take).collect();
-    Ok((Some(written.manifest), taken))
+    let listed = listed.collect();
+    Ok((Some(written.manifest), listed))
 }
 
 fn is_manifest(path: &Path) -> bool {
@@ -110,7 +161,7 @@ fn is_manifest(path: &Path) -> bool {
     })
 }
 
-fn missing(file: &str, error: &std::io::Error) -> FileError {
+fn missing(file: &str, error: &io::Error) -> FileError {
     FileError {
         file: file.to_owned(),
         line: None,
@@ -119,7 +170,7 @@ fn missing(file: &str, error: &std::io::Error) -> FileError {
     }
 }
 
-fn unreadable(error: &std::io::Error) -> Finding {
+fn unreadable(error: &io::Error) -> Finding {
     Finding { row: None, column: None, message: format!("cannot be read: {error}") }
 }
 

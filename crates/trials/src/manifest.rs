@@ -9,20 +9,21 @@ use crate::declarations::{Declarations, North, SensorFile};
 use crate::manifest_file::{ManifestFile, Written};
 use crate::resolve::{channel_names, factor};
 use crate::smoothing;
+use crate::stretches::{self, same_file};
 use crate::table::Target;
 use crate::units::Kind;
 
 /// Reads a manifest; `file_name` is only for messages.
 ///
 /// # Errors
-/// Names line and field of what is wrong: the YAML, an unknown channel or unit, a path that leaves the folder, a file
-/// named twice, impossible smoothing.
+/// Names line and field of what is wrong: the YAML, an unknown channel or unit, a path that leaves
+/// the folder, a file named twice, impossible smoothing.
 pub fn read_manifest(file_name: &str, text: &str) -> Result<Manifest, FileError> {
     let file = read_manifest_file(file_name, text)?;
     if file.is_plain() {
         return Ok(file.manifest);
     }
-    let known = "kind, ship, conventions, columns and trials";
+    let known = "kind, ship, conventions, columns and trials of whole files";
     Err(FileError {
         file: file_name.to_owned(),
         line: None,
@@ -90,8 +91,14 @@ fn trials(manifest: &Manifest) -> Option<Problem> {
         });
     }
     manifest.trials.iter().enumerate().find_map(|(index, trial)| {
-        let twice =
-            manifest.trials[..index].iter().any(|other| same_file(&other.file, &trial.file));
+        let earlier = &manifest.trials[..index];
+        if let Some((field, message)) = stretches::problem(trial, earlier) {
+            let (field, near) = (format!("trials[{index}].{field}"), trial.file.clone());
+            return Some(Problem { field, near, message });
+        }
+        let twice = earlier.iter().any(|other| {
+            same_file(&other.file, &trial.file) && !(other.is_stretch() && trial.is_stretch())
+        });
         let message = match trial.depth_m {
             _ if !stays_inside(&trial.file) => {
                 "must be a path relative to the manifest that stays in its folder".to_owned()
@@ -167,15 +174,8 @@ fn declarations(declared: &Declarations) -> Option<Problem> {
     })
 }
 
-/// Whether two paths name the same file: `a.csv` is `./a.csv`.
-fn same_file(one: &str, other: &str) -> bool {
-    let plain = |path| {
-        Path::new(path).components().filter(|part| *part != Component::CurDir).collect::<Vec<_>>()
-    };
-    plain(one) == plain(other)
-}
-
-/// Whether a path names something below the folder on any system: a backslash or colon would mean more on Windows.
+/// Whether a path names something below the folder on any system: a backslash or colon would mean
+/// more on Windows.
 fn stays_inside(path: &str) -> bool {
     let plain = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
     !path.is_empty() && !path.contains(['\\', ':', '\0']) && Path::new(path).components().all(plain)

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use sistership_model::manifest::{
-    ColumnMapping, Manifest, ManifestTrial, TrialConventions, TrialsKind,
+    ColumnMapping, FileTime, Manifest, ManifestTrial, TrialConventions, TrialsKind,
 };
 
 use crate::declarations::{Antenna, Declarations, Derivable, Maximum, North, SensorFile};
@@ -54,6 +54,10 @@ pub(crate) struct Written {
 struct WrittenTrial {
     file: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    from: Option<FileTime>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    to: Option<FileTime>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     manoeuvre: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     depth_m: Option<f64>,
@@ -73,7 +77,9 @@ impl ManifestFile {
 
     /// Whether it says no more than the model's type holds.
     pub(crate) fn is_plain(&self) -> bool {
-        self.declarations == Declarations::default() && self.sensors.iter().all(Vec::is_empty)
+        self.declarations == Declarations::default()
+            && self.sensors.iter().all(Vec::is_empty)
+            && !self.manifest.trials.iter().any(ManifestTrial::is_stretch)
     }
 
     /// The text of the file.
@@ -90,6 +96,8 @@ impl From<Written> for ManifestFile {
         let sensors = written.trials.iter().map(|trial| trial.sensors.clone()).collect();
         let trials = written.trials.into_iter().map(|trial| ManifestTrial {
             file: trial.file,
+            from: trial.from,
+            to: trial.to,
             manoeuvre: trial.manoeuvre,
             depth_m: trial.depth_m,
         });
@@ -118,8 +126,8 @@ impl From<ManifestFile> for Written {
         let ManifestFile { manifest, declarations, sensors } = file;
         let sensors = sensors.into_iter().chain(std::iter::repeat(Vec::new()));
         let trials = manifest.trials.into_iter().zip(sensors).map(|(trial, sensors)| {
-            let ManifestTrial { file, manoeuvre, depth_m } = trial;
-            WrittenTrial { file, manoeuvre, depth_m, sensors }
+            let ManifestTrial { file, from, to, manoeuvre, depth_m } = trial;
+            WrittenTrial { file, from, to, manoeuvre, depth_m, sensors }
         });
         Self {
             kind: manifest.kind,

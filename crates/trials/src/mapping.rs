@@ -4,6 +4,7 @@ use sistership_model::manifest::{ColumnMapping, Manifest, ManifestTrial, TrialCo
 
 use crate::declarations::{Declarations, SensorFile};
 use crate::limits::Limits;
+use crate::stretches::Stretch;
 
 /// Which columns are which channels, in which signs, and how large the file may be.
 ///
@@ -20,14 +21,18 @@ pub struct Mapping {
     pub depth_m: Option<f64>,
     /// What else is declared of the file.
     pub declared: Declarations,
+    /// The stretch of the file that is read; absent for the whole.
+    pub stretch: Option<Stretch>,
     /// Bounds on the file.
     pub limits: Limits,
-    /// Rows that room is made for before any is read, so that columns need not grow; see [`crate::demand`].
+    /// Rows that room is made for before any is read, so that columns need not grow; see
+    /// [`crate::demand`].
     pub room: usize,
 }
 
 impl Mapping {
-    /// The mapping of a file whose columns have canonical names and whose signs are the canonical ones.
+    /// The mapping of a file whose columns have canonical names and whose signs are the canonical
+    /// ones.
     pub fn canonical() -> Self {
         Self::default()
     }
@@ -44,6 +49,7 @@ impl Mapping {
             manoeuvre: trial.manoeuvre.clone(),
             depth_m: trial.depth_m,
             declared: Declarations::default(),
+            stretch: Stretch::of(trial),
             limits: Limits::default(),
             room: 0,
         }
@@ -55,6 +61,7 @@ impl Mapping {
         Self {
             columns: columns.map(|(name, column)| (name.clone(), column.clone())).collect(),
             room: 0,
+            stretch: None,
             ..self.clone()
         }
     }

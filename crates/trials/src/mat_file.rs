@@ -6,12 +6,13 @@ use crate::clock::Clock;
 use crate::findings::Findings;
 use crate::limits::Limits;
 use crate::mapping::Mapping;
-use crate::mat_elements::{Array, visit};
 use crate::number::Fault;
 use crate::resolve::resolve;
 use crate::rows::Builder;
 use crate::table::{Column, Table, Target, width};
+use crate::taker::Taker;
 use crate::workbook::ReadSeek;
+use sistership_containers::mat_elements::{Array, visit};
 
 /// Columns of a matrix, and columns in all, that are offered.
 const WIDE: usize = 200;
@@ -53,7 +54,7 @@ pub(crate) fn read(
     }
     let data: Vec<Vec<f64>> = data.into_iter().map(Option::unwrap_or_default).collect();
     let rows = data.iter().map(Vec::len).min().unwrap_or(0);
-    let clock = Clock::of(&columns);
+    let mut clock = Clock::of(&columns);
     let mut builder = Builder::new(columns, mapping.conventions.missing, findings).with_room(rows);
     (0..rows).for_each(|k| {
         builder.row(k + 1, |position, _| {

@@ -17,9 +17,9 @@ impl Meter {
 
 /// Passes bytes on until more than the limit (and one read) have gone by without a complete row.
 ///
-/// The limit is on what the CSV parser must hold in memory: a physical line, or a quoted cell whose quote never closes.
-/// Every line end (`\r\n`, `\r`, `\n`, also mixed) comes out as `\n`, and the last line has one, so that the parser's
-/// lines are the lines that a person counts.
+/// The limit is on what the CSV parser must hold in memory: a physical line, or a quoted cell whose
+/// quote never closes. Every line end (`\r\n`, `\r`, `\n`, also mixed) comes out as `\n`, and the
+/// last line has one, so that the parser's lines are the lines that a person counts.
 pub(crate) struct Metered<R> {
     inner: R,
     meter: Meter,

@@ -30,8 +30,8 @@ pub(crate) fn is_time(header: &str) -> bool {
     TIMES.iter().any(|known| header.eq_ignore_ascii_case(known))
 }
 
-/// The target and unit that a header names, such as `r_radps` or `wind_speed_kn`; a channel's name followed by anything
-/// but a unit of its kind (`delta_ordered_rad`) is some other quantity.
+/// The target and unit that a header names, such as `r_radps` or `wind_speed_kn`; a channel's name
+/// followed by anything but a unit of its kind (`delta_ordered_rad`) is some other quantity.
 pub(crate) fn canonical(header: &str) -> Option<(Target, &'static str)> {
     let channels = Channel::all().map(|channel| (channel.name(), Target::Channel(channel)));
     let aliases = ALIASES.iter().map(|&(name, channel)| (name, Target::Channel(channel)));

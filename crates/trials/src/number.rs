@@ -38,12 +38,48 @@ pub(crate) fn number(cell: &[u8]) -> Result<f64, Fault> {
     if text.is_empty() {
         return Err(Fault::Empty);
     }
+    if let Some(value) = plain(text) {
+        return Ok(value);
+    }
     let parsed = std::str::from_utf8(text).ok().and_then(|text| text.parse::<f64>().ok());
     match parsed {
         Some(value) if value.is_finite() => Ok(value),
         Some(_) => Err(Fault::NotANumber),
         None => Err(Fault::Text(shown(text))),
     }
+}
+
+/// Digits that an f64 holds exactly, whatever they are.
+const EXACT: usize = 15;
+const TENS: [f64; EXACT + 1] =
+    [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
+
+/// A short number without exponent: its digits and the power of ten are exact, so that their
+/// quotient is rounded once and is what the standard library gives (Clinger 1990, doi
+/// 10.1145/93542.93557). Most cells of a log are such.
+#[inline]
+fn plain(text: &[u8]) -> Option<f64> {
+    let digits = text.strip_prefix(b"-").unwrap_or(text);
+    // With a point there may be one byte more.
+    if digits.len() > EXACT + 1 {
+        return None;
+    }
+    let (mut whole, mut count, mut point) = (0_u64, 0, None);
+    for (at, &byte) in digits.iter().enumerate() {
+        match byte {
+            b'0'..=b'9' => {
+                whole = 10 * whole + u64::from(byte - b'0');
+                count += 1;
+            }
+            b'.' if point.is_none() => point = Some(digits.len() - 1 - at),
+            _ => return None,
+        }
+    }
+    if count == 0 || count > EXACT {
+        return None;
+    }
+    let value = whole as f64 / TENS[point.unwrap_or(0)];
+    Some(if digits.len() < text.len() { -value } else { value })
 }
 
 /// A cell as it is shown in a message.
@@ -97,6 +133,28 @@ mod tests {
         }
         for text in ["nan", "NaN", "inf", "-Infinity", "1e400"] {
             assert_eq!(number(text.as_bytes()), Err(Fault::NotANumber), "{text}");
+        }
+    }
+
+    #[test]
+    fn short_numbers_are_those_of_the_standard_library() {
+        let mut word = 1_u64;
+        for _ in 0..200_000 {
+            word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            let digits = (word >> 20) % 10_u64.pow(1 + (word % 15) as u32);
+            let text = format!("{digits}");
+            let at = (word >> 7) as usize % (text.len() + 1);
+            let text = format!("{}{}.{}", ["", "-"][at % 2], &text[..at], &text[at..]);
+            let wanted: Option<f64> = text.parse().ok();
+            assert_eq!(
+                plain(text.as_bytes()).map(f64::to_bits),
+                wanted.map(f64::to_bits),
+                "{text}"
+            );
+        }
+        assert_eq!(plain(b"-0.0").map(f64::to_bits), Some((-0.0_f64).to_bits()));
+        for text in [&b"."[..], b"-", b"", b"1.2.3", b"1e3", b"+1", b"1234567890123456", b"1_0"] {
+            assert_eq!(plain(text), None);
         }
     }
 

@@ -1,5 +1,6 @@
 //! Parquet, by the low-level column readers: no Arrow.
 
+use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use parquet::basic::{ConvertedType, LogicalType, Type};
@@ -12,13 +13,14 @@ use parquet::schema::types::{ColumnDescriptor, SchemaDescriptor};
 
 use crate::clock::Clock;
 use crate::findings::Findings;
-use crate::limits::Limits;
+use crate::limits::{Limits, too_many};
 use crate::mapping::Mapping;
 use crate::number::Fault;
-use crate::pages::{self, Held, held};
 use crate::resolve::resolve;
-use crate::rows::Builder;
+use crate::stream;
 use crate::table::{Column, Table, width};
+use crate::taker::{RowsFile, Taker, time_at};
+use sistership_containers::pages::{self, Held, held};
 
 /// Reads the mapped columns; nothing after errors that leave nothing to check.
 ///
@@ -28,29 +30,89 @@ pub(crate) fn read<R: ChunkReader + 'static>(
     mapping: &Mapping,
     findings: &mut Findings,
 ) -> Option<Table> {
-    let columns = mapped(&input, mapping, findings)?.columns;
-    let opened = guarded(|| SerializedFileReader::new(input));
-    let reader = opened
-        .map_err(|error| findings.error(None, None, FileRefusal::unreadable(error).to_string()));
-    let reader = reader.ok()?;
-    let rows = reader.metadata().row_groups().iter().map(|group| group.num_rows()).sum::<i64>();
-    let builder = Builder::new(columns.clone(), mapping.conventions.missing, findings);
-    let mut builder = builder.with_room(usize::try_from(rows).unwrap_or(0));
-    let outcome = guarded(|| groups(&reader, &columns, &mut builder));
-    let mut table = builder.finish();
-    if let Err(error) = outcome {
-        findings.error(None, None, format!("the file is damaged: {error}"));
+    let file = ParquetRows::open(input, mapping, findings)?;
+    if file.rows > mapping.limits.rows {
+        let refused = FileRefusal::Rows { found: file.rows, most: mapping.limits.rows };
+        findings.error(None, None, refused.to_string());
+        return None;
     }
-    Clock::of(&columns).finish(&mut table, findings);
-    Some(table)
+    stream::whole(file, mapping, findings)
 }
 
-/// Rows, columns that are read, and bytes that pages take at a time; nothing of a file that will be refused.
+/// The rows of a Parquet file.
+pub(crate) struct ParquetRows<R: ChunkReader + 'static> {
+    reader: SerializedFileReader<R>,
+    columns: Vec<Column>,
+    clock: Clock,
+    rows: usize,
+    most: usize,
+    /// Why it cannot be read on.
+    stopped: Option<String>,
+}
+
+impl<R: ChunkReader + 'static> ParquetRows<R> {
+    /// Reads what the file says of itself; nothing after errors. Rows are counted by who holds
+    /// them.
+    pub(crate) fn open(input: R, mapping: &Mapping, findings: &mut Findings) -> Option<Self> {
+        let limits = Limits { rows: usize::MAX, ..mapping.limits };
+        let Mapped { columns, rows, .. } = mapped(&input, mapping, limits, findings)?;
+        let opened = guarded(|| SerializedFileReader::new(input)).map_err(|error| {
+            findings.error(None, None, FileRefusal::unreadable(error).to_string());
+        });
+        let (reader, clock) = (opened.ok()?, Clock::of(&columns));
+        Some(Self { reader, columns, clock, rows, most: mapping.limits.rows, stopped: None })
+    }
+
+    fn groups(&mut self, taker: &mut impl Taker) -> ParquetResult<()> {
+        let mut row = 1;
+        for index in 0..self.reader.num_row_groups() {
+            let group = self.reader.get_row_group(index)?;
+            let cells = self.columns.iter().map(|column| Cells::new(&*group, column.index));
+            let mut cells: Vec<Cells> = cells.collect::<Result<_, _>>()?;
+            let rows = group_rows(&*group)?;
+            for start in (0..rows).step_by(BATCH) {
+                let count = BATCH.min(rows - start);
+                cells.iter_mut().try_for_each(|cells| cells.next(count))?;
+                batch_rows(&self.columns, &mut self.clock, row..row + count, &cells, taker);
+                row += count;
+                if taker.held() > self.most {
+                    return Err(ParquetError::General(too_many(self.most)));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<R: ChunkReader + 'static> RowsFile for ParquetRows<R> {
+    fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    fn room(&self) -> usize {
+        self.rows
+    }
+
+    fn each(&mut self, taker: &mut impl Taker) {
+        let outcome = guarded(|| self.groups(taker));
+        self.stopped = outcome.err().map(|error| format!("the file is damaged: {error}"));
+    }
+
+    fn finish(&mut self, _: bool, table: &mut Table, findings: &mut Findings) {
+        if let Some(message) = &self.stopped {
+            findings.error(None, None, message.clone());
+        }
+        self.clock.finish(table, findings);
+    }
+}
+
+/// Rows, columns that are read, and bytes that pages take at a time; nothing of a file that will be
+/// refused.
 pub(crate) fn measure<R: ChunkReader + 'static>(
     input: &R,
     mapping: &Mapping,
 ) -> Option<(usize, usize, u64)> {
-    let mapped = mapped(input, mapping, &mut Findings::default())?;
+    let mapped = mapped(input, mapping, mapping.limits, &mut Findings::default())?;
     Some((mapped.rows, width(&mapped.columns), mapped.holding))
 }
 
@@ -66,10 +128,11 @@ struct Mapped {
 fn mapped<R: ChunkReader + 'static>(
     input: &R,
     mapping: &Mapping,
+    limits: Limits,
     findings: &mut Findings,
 ) -> Option<Mapped> {
-    let opened = metadata(input, mapping.limits)
-        .map_err(|refused| findings.error(None, None, refused.to_string()));
+    let opened =
+        metadata(input, limits).map_err(|refused| findings.error(None, None, refused.to_string()));
     let (meta, rows) = opened.ok()?;
     let schema = meta.file_metadata().schema_descr();
     let columns = resolve(&names(schema), mapping, findings)?;
@@ -88,7 +151,8 @@ fn mapped<R: ChunkReader + 'static>(
     (!findings.has_errors()).then_some(Mapped { columns, rows, holding })
 }
 
-/// The library asserts some of what a file says of itself; on a file that lies, such a panic becomes an error.
+/// The library asserts some of what a file says of itself; on a file that lies, such a panic
+/// becomes an error.
 pub(crate) fn guarded<T>(work: impl FnOnce() -> ParquetResult<T>) -> ParquetResult<T> {
     let contradiction = |_| Err(ParquetError::General("it contradicts itself".into()));
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(contradiction)
@@ -101,7 +165,10 @@ pub(crate) enum FileRefusal {
     Unreadable(String),
     #[error("{found} bytes about the file at its end are more than the {most} that are read")]
     Footer { found: u64, most: usize },
-    #[error("{found} rows are more than the {most} that are read; split the file")]
+    #[error(
+        "{found} rows are more than the {most} that are read; split the file, or let `sistership import` \
+             find the stretches of it that matter"
+    )]
     Rows { found: usize, most: usize },
     #[error("{found} columns are more than the {most} that are read")]
     Columns { found: usize, most: usize },
@@ -191,7 +258,8 @@ fn check_types(schema: &SchemaDescriptor, columns: &[Column], findings: &mut Fin
     }
 }
 
-/// Dates, times and decimals are integers too, but not of the column's unit: what is not known to be a number is refused.
+/// Dates, times and decimals are integers too, but not of the column's unit: what is not known to
+/// be a number is refused.
 fn is_number(column: &ColumnDescriptor) -> bool {
     use ConvertedType as C;
     let plain = matches!(column.logical_type_ref(), None | Some(LogicalType::Integer { .. }))
@@ -234,32 +302,28 @@ fn type_name(column: &ColumnDescriptor) -> String {
 /// Rows that are decoded at a time.
 pub(crate) const BATCH: usize = 8192;
 
-fn groups<R: ChunkReader + 'static>(
-    reader: &SerializedFileReader<R>,
+/// Gives rows that have been decoded, by the numbers of those before them.
+fn batch_rows<T: Taker>(
     columns: &[Column],
-    builder: &mut Builder,
-) -> ParquetResult<()> {
-    let mut row = 1;
-    for index in 0..reader.num_row_groups() {
-        let group = reader.get_row_group(index)?;
-        let mut cells: Vec<Cells> = columns
-            .iter()
-            .map(|column| Cells::new(&*group, column.index))
-            .collect::<Result<_, _>>()?;
-        let rows = group_rows(&*group)?;
-        for start in (0..rows).step_by(BATCH) {
-            let count = BATCH.min(rows - start);
-            cells.iter_mut().try_for_each(|cells| cells.next(count))?;
-            let number = |k: usize, at: usize| {
-                cells[at].values.get(k).copied().filter(|value| value.is_finite())
-            };
-            for k in 0..count {
-                row += 1;
-                builder.row(row, |position, _| number(k, position).ok_or(Fault::NotANumber));
+    clock: &mut Clock,
+    before: Range<usize>,
+    cells: &[Cells],
+    taker: &mut T,
+) {
+    let time = time_at(columns).filter(|_| T::TIMED);
+    let number =
+        |k: usize, at: usize| cells[at].values.get(k).copied().filter(|value| value.is_finite());
+    for (k, before) in before.enumerate() {
+        let row = before + 1;
+        if let Some(at) = time {
+            let si = number(k, at).map(|time| time * columns[at].to_si);
+            let t_s = si.and_then(|si| clock.since_start(si));
+            if !taker.wants(row, t_s, clock) {
+                continue;
             }
         }
+        taker.row(row, |position, _| number(k, position).ok_or(Fault::NotANumber));
     }
-    Ok(())
 }
 
 fn group_rows(group: &dyn RowGroupReader) -> ParquetResult<usize> {
@@ -267,8 +331,8 @@ fn group_rows(group: &dyn RowGroupReader) -> ParquetResult<usize> {
         .map_err(|_| ParquetError::General("a row group has a negative number of rows".into()))
 }
 
-/// A column of a row group as f64, decoded some rows at a time; a null becomes NaN, and so does an integer beyond 2^53, which no
-/// f64 holds exactly.
+/// A column of a row group as f64, decoded some rows at a time; a null becomes NaN, and so does an
+/// integer beyond 2^53, which no f64 holds exactly.
 pub(crate) struct Cells {
     reader: ColumnReader,
     full: i16,
@@ -350,3 +414,7 @@ fn batch<T: DataType>(
 #[cfg(test)]
 #[path = "parquet_file_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "pages_tests.rs"]
+mod pages_tests;

@@ -54,7 +54,8 @@ pub(crate) fn preview(name: &str, path: &Path) -> io::Result<Preview> {
             Ok(Preview { names: mat_file::names(input, limits)?, ..Preview::default() })
         }
         Content::ParquetFile(file) => {
-            let opened = parquet_file::open(file, limits);
+            // Of a long log stretches are read, so that it may have any number of rows.
+            let opened = parquet_file::open(file, Limits { rows: usize::MAX, ..limits });
             let reader = opened.map_err(|refused| io::Error::other(refused.to_string()))?;
             Ok(Preview { names: parquet_file::headers(&reader), ..Preview::default() })
         }

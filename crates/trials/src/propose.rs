@@ -43,8 +43,8 @@ pub struct Guess {
 }
 
 /// Proposes a manifest for files in one folder. Files with the columns of the first are trials of
-/// their own; files with others are taken for further sensors of the trial that shares most parts of
-/// their name, as `rudder_2.csv` does with `motion_2.csv`, else of the first.
+/// their own; files with others are taken for further sensors of the trial that shares most parts
+/// of their name, as `rudder_2.csv` does with `motion_2.csv`, else of the first.
 ///
 /// # Errors
 /// Every file that cannot be read, and why.
@@ -158,7 +158,7 @@ fn proposal(ship: &str, seen: Vec<Seen>) -> Proposal {
     };
     for (at, one) in seen.into_iter().enumerate() {
         if at == 0 || one.columns == columns {
-            trials.push(ManifestTrial { file: one.file, manoeuvre: None, depth_m: None });
+            trials.push(ManifestTrial::of(one.file));
         } else {
             let columns = one.columns.into_iter().collect();
             further.push(SensorFile { file: one.file, columns, clock_offset_s: None });
@@ -173,7 +173,8 @@ fn proposal(ship: &str, seen: Vec<Seen>) -> Proposal {
     let manifest = Manifest {
         kind: TrialsKind::Trials,
         ship: ship.to_owned(),
-        // A row without time or state is no sample; that it was left out is said, and gaps stay gaps.
+        // A row without time or state is no sample; that it was left out is said, and gaps stay
+        // gaps.
         conventions: TrialConventions { missing: Missing::Drop, ..TrialConventions::default() },
         columns,
         trials,

@@ -4,14 +4,19 @@ use sistership_model::trial::{Finding, Trial};
 
 use crate::checks;
 use crate::convert::convert;
+use crate::csv_file::CsvRows;
 use crate::findings::Findings;
 use crate::mapping::Mapping;
 use crate::outcome::{CheckOutcome, Refusal, TrialReading};
+use crate::parquet_file::ParquetRows;
+use crate::parts::{self, Asked};
 use crate::recording::Recording;
 use crate::series::{join, offset_s, series};
 use crate::smoothing::smooth;
 use crate::source::{Content, Sensor, Source};
+use crate::stream::TableRows;
 use crate::table::Table;
+use crate::taker::RowsFile;
 use crate::{csv_file, derived, ground, mat_file, nmea_file, parquet_file, position, workbook};
 
 /// Reads, converts, checks and, where the conventions ask for it, smooths a trial.
@@ -28,48 +33,161 @@ pub fn read_trial(source: Source, mapping: &Mapping) -> Result<Trial, Refusal> {
 /// As [`read_trial`].
 pub fn read_in_full(source: Source, mapping: &Mapping) -> Result<TrialReading, Refusal> {
     let file = source.name.clone();
-    let (recording, errors, warnings) = examine(source, mapping);
-    if errors.is_empty() {
-        let Recording { trial, start, derived, .. } = recording;
-        Ok(TrialReading {
-            trial: Trial { warnings, ..trial },
-            start: start.map(|start| start.text),
-            derived,
-        })
-    } else {
-        Err(Refusal { file, findings: errors })
-    }
+    examine(source, mapping).reading(file)
 }
 
 /// Runs the checks of [`read_trial`] and tells what they found.
 pub fn check(source: Source, mapping: &Mapping) -> CheckOutcome {
     let file = source.name.clone();
-    let (recording, errors, warnings) = examine(source, mapping);
-    let trial = recording.trial;
-    CheckOutcome { file, rows: trial.len(), duration_s: trial.duration_s(), errors, warnings }
+    examine(source, mapping).outcome(file)
 }
 
-fn examine(source: Source, mapping: &Mapping) -> (Recording, Vec<Finding>, Vec<Finding>) {
+/// A recording with everything that was found.
+pub(crate) struct Examined {
+    recording: Recording,
+    errors: Vec<Finding>,
+    warnings: Vec<Finding>,
+}
+
+impl Examined {
+    fn reading(self, file: String) -> Result<TrialReading, Refusal> {
+        if !self.errors.is_empty() {
+            return Err(Refusal { file, findings: self.errors });
+        }
+        let Recording { trial, start, derived, .. } = self.recording;
+        Ok(TrialReading {
+            trial: Trial { warnings: self.warnings, ..trial },
+            start: start.map(|start| start.text),
+            derived,
+        })
+    }
+
+    pub(crate) fn trial(self, file: String) -> Result<Trial, Refusal> {
+        self.reading(file).map(|reading| reading.trial)
+    }
+
+    pub(crate) fn outcome(self, file: String) -> CheckOutcome {
+        let Self { recording: Recording { trial, .. }, errors, warnings } = self;
+        CheckOutcome { file, rows: trial.len(), duration_s: trial.duration_s(), errors, warnings }
+    }
+}
+
+pub(crate) fn examine(source: Source, mapping: &Mapping) -> Examined {
+    let Source { name, content: input, sensors } = source;
+    if mapping.stretch.is_some() {
+        let asked = vec![StretchRequest { name: &name, mapping, sensors }];
+        let mut read = stretches(input, asked);
+        return read.remove(0);
+    }
     let mut findings = Findings::default();
-    let mut recording = record(source, mapping, &mut findings);
+    let table = content(input, mapping, &mut findings);
+    finish(&name, table, sensors, mapping, findings)
+}
+
+/// A stretch of a file, by its name and its mapping, and the sensors' files that belong to it.
+pub(crate) struct StretchRequest<'a> {
+    pub name: &'a str,
+    pub mapping: &'a Mapping,
+    pub sensors: Vec<Sensor<'a>>,
+}
+
+/// Reads stretches of one file in one pass.
+pub(crate) fn stretches(input: Content, requests: Vec<StretchRequest>) -> Vec<Examined> {
+    let mut header = Findings::default();
+    let parts: Vec<Asked> = requests
+        .iter()
+        .map(|request| Asked { label: request.name, mapping: request.mapping })
+        .collect();
+    let tables = parts.first().and_then(|first| {
+        let visit = PartsVisit(&parts);
+        each_row(input, first.mapping, &mut header, visit)
+    });
+    let nothing = || parts.iter().map(|_| (None, header.clone())).collect();
+    let tables: Vec<(Option<Table>, Findings)> = tables.unwrap_or_else(nothing);
+    let each = requests.into_iter().zip(tables);
+    each.map(|(StretchRequest { name, mapping, sensors }, (table, findings))| {
+        finish(name, table, sensors, mapping, findings)
+    })
+    .collect()
+}
+
+/// What is done with the rows of a file, whatever its format.
+pub(crate) trait Visit {
+    type Output;
+    fn visit(self, file: impl RowsFile, header: &Findings) -> Self::Output;
+}
+
+struct PartsVisit<'a>(&'a [Asked<'a>]);
+
+impl Visit for PartsVisit<'_> {
+    type Output = Vec<(Option<Table>, Findings)>;
+
+    fn visit(self, file: impl RowsFile, header: &Findings) -> Self::Output {
+        parts::read(file, self.0, header)
+    }
+}
+
+/// Opens a file of which not all rows are kept, and visits its rows; nothing after errors.
+pub(crate) fn each_row<V: Visit>(
+    input: Content,
+    mapping: &Mapping,
+    findings: &mut Findings,
+    visit: V,
+) -> Option<V::Output> {
+    match input {
+        Content::Csv(reader) => {
+            let file = CsvRows::open(reader, mapping, findings)?;
+            Some(visit.visit(file, findings))
+        }
+        Content::ParquetFile(file) => {
+            let file = ParquetRows::open(file, mapping, findings)?;
+            Some(visit.visit(file, findings))
+        }
+        Content::ParquetBytes(bytes) => {
+            let file = ParquetRows::open(bytes, mapping, findings)?;
+            Some(visit.visit(file, findings))
+        }
+        other => {
+            let table = content(other, mapping, findings)?;
+            Some(visit.visit(TableRows::new(table), findings))
+        }
+    }
+}
+
+/// From a table to a checked, smoothed recording.
+fn finish(
+    name: &str,
+    table: Option<Table>,
+    sensors: Vec<Sensor>,
+    mapping: &Mapping,
+    mut findings: Findings,
+) -> Examined {
+    let mut recording = match table {
+        Some(table) => record(name, table, sensors, mapping, &mut findings),
+        None => Recording::default(),
+    };
     if !findings.has_errors()
         && let Some(smoothing) = mapping.conventions.smoothing
     {
         smooth(&mut recording, smoothing, &mut findings);
     }
     let (errors, warnings) = findings.finish();
-    (recording, errors, warnings)
+    Examined { recording, errors, warnings }
 }
 
-fn record(source: Source, mapping: &Mapping, findings: &mut Findings) -> Recording {
-    let table = content(source.content, mapping, findings);
-    let Some(mut table) = table else { return Recording::default() };
-    for sensor in source.sensors {
+fn record(
+    name: &str,
+    mut table: Table,
+    sensors: Vec<Sensor>,
+    mapping: &Mapping,
+    findings: &mut Findings,
+) -> Recording {
+    for sensor in sensors {
         if let Some((other, offset_s)) = sensor_table(sensor, &table, findings) {
             join(&mut table, series(other, offset_s), findings);
         }
     }
-    let mut recording = convert(&source.name, table, mapping, findings);
+    let mut recording = convert(name, table, mapping, findings);
     made(&mut recording, mapping, findings);
     checks::run(&mut recording, findings);
     recording

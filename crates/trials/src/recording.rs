@@ -1,4 +1,5 @@
-//! A trial on its way through the checks: canonical samples, and the row and column that each came from.
+//! A trial on its way through the checks: canonical samples, and the row and column that each came
+//! from.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -14,6 +15,8 @@ use crate::units::Kind;
 #[derive(Debug, Default)]
 pub(crate) struct Recording {
     pub trial: Trial,
+    /// Whether it is a stretch of a file, which starts when it does.
+    pub is_stretch: bool,
     pub rows: Vec<u32>,
     /// Rows before which others have been left out.
     pub resumed: Vec<u32>,

@@ -146,7 +146,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// Apparent wind goes to its own channels, so that nothing downstream can take it for the true one.
+    /// Apparent wind goes to its own channels, so that nothing downstream can take it for the true
+    /// one.
     fn redirect(&self, target: Target) -> Target {
         match (self.mapping.conventions.wind.kind, target) {
             (WindKind::Apparent, Target::Channel(Channel::WindSpeed)) => {

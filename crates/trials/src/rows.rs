@@ -5,6 +5,7 @@ use sistership_model::manifest::Missing;
 use crate::findings::Findings;
 use crate::number::Fault;
 use crate::table::{Column, Table, Target};
+use crate::taker::Taker;
 
 /// A run of rows that are left out.
 struct Run {
@@ -45,41 +46,9 @@ impl<'a> Builder<'a> {
         self
     }
 
-    /// One row of the file; `cell` gives the number in the n-th mapped column.
-    pub(crate) fn row(
-        &mut self,
-        row: usize,
-        mut cell: impl FnMut(usize, &Column) -> Result<f64, Fault>,
-    ) {
-        self.scratch.clear();
-        for (position, column) in self.table.columns.iter().enumerate() {
-            let si = |value: f64| Some(value * column.to_si).filter(|value| value.is_finite());
-            match cell(position, column).and_then(|value| si(value).ok_or(Fault::NotANumber)) {
-                Ok(value) => self.scratch.push(value),
-                Err(fault @ (Fault::Empty | Fault::NotANumber))
-                    if self.unfilled[position].is_some() && column.target != Target::Time =>
-                {
-                    self.unfilled[position] = Some(fault);
-                    self.scratch.push(f64::NAN);
-                }
-                Err(fault) => {
-                    let header = column.header.clone();
-                    return self.faulty(row, header, fault);
-                }
-            }
-        }
-        self.fill();
-        let row = u32::try_from(row).unwrap_or(u32::MAX);
-        if self.run.is_some() {
-            self.table.resumed.push(row);
-        }
-        self.end_run();
-        self.table.rows.push(row);
-        self.table
-            .values
-            .iter_mut()
-            .zip(&self.scratch)
-            .for_each(|(values, &value)| values.push(value));
+    /// Whether rows without a value are left out.
+    pub(crate) fn drops(&self) -> bool {
+        self.missing == Missing::Drop
     }
 
     /// Learns that columns have numbers; rows that were kept although they had none there are
@@ -109,21 +78,6 @@ impl<'a> Builder<'a> {
         if let Some(run) = self.run.as_mut().filter(|run| first < run.first) {
             (run.first, run.column, run.fault) = (first, header, fault.clone());
         }
-    }
-
-    /// A row that ends before the header does: left out as one without a value, or told by whoever counts the cells.
-    pub(crate) fn short(&mut self, row: usize) {
-        if self.drops()
-            && let Some(column) = self.table.columns.last()
-        {
-            let header = column.header.clone();
-            self.faulty(row, header, Fault::Short);
-        }
-    }
-
-    /// Whether rows without a value are left out.
-    pub(crate) fn drops(&self) -> bool {
-        self.missing == Missing::Drop
     }
 
     fn faulty(&mut self, row: usize, column: String, fault: Fault) {
@@ -191,12 +145,61 @@ impl<'a> Builder<'a> {
     }
 }
 
+impl Taker for Builder<'_> {
+    /// One row of the file; `cell` gives the number in the n-th mapped column.
+    fn row(&mut self, row: usize, mut cell: impl FnMut(usize, &Column) -> Result<f64, Fault>) {
+        self.scratch.clear();
+        for (position, column) in self.table.columns.iter().enumerate() {
+            let si = |value: f64| Some(value * column.to_si).filter(|value| value.is_finite());
+            match cell(position, column).and_then(|value| si(value).ok_or(Fault::NotANumber)) {
+                Ok(value) => self.scratch.push(value),
+                Err(fault @ (Fault::Empty | Fault::NotANumber))
+                    if self.unfilled[position].is_some() && column.target != Target::Time =>
+                {
+                    self.unfilled[position] = Some(fault);
+                    self.scratch.push(f64::NAN);
+                }
+                Err(fault) => {
+                    let header = column.header.clone();
+                    return self.faulty(row, header, fault);
+                }
+            }
+        }
+        self.fill();
+        let row = u32::try_from(row).unwrap_or(u32::MAX);
+        if self.run.is_some() {
+            self.table.resumed.push(row);
+        }
+        self.end_run();
+        self.table.rows.push(row);
+        self.table
+            .values
+            .iter_mut()
+            .zip(&self.scratch)
+            .for_each(|(values, &value)| values.push(value));
+    }
+
+    /// A row that ends before the header does: left out as one without a value, or told by whoever
+    /// counts the cells.
+    fn short(&mut self, row: usize) {
+        if self.drops()
+            && let Some(column) = self.table.columns.last()
+        {
+            let header = column.header.clone();
+            self.faulty(row, header, Fault::Short);
+        }
+    }
+
+    fn held(&self) -> usize {
+        self.table.rows.len()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use sistership_model::trial::Channel;
 
     use super::*;
-    use crate::table::Target;
 
     fn fill(missing: Missing) -> (Table, Findings) {
         let column = Column {

@@ -1,9 +1,10 @@
 //! Trials in canonical form: Parquet to keep them, CSV to look at them.
 //!
-//! The Parquet file has one DOUBLE column per channel under its canonical name, `t_s` first, and no nulls. What else
-//! a trial is (name, manoeuvre, depth, velocity frame, warnings) is one JSON text in the file's key-value metadata, so
-//! that reading back gives the same trial. The same trial gives the same bytes: there is no time stamp, the writer's
-//! name is fixed, and compression runs on one thread.
+//! The Parquet file has one DOUBLE column per channel under its canonical name, `t_s` first, and no
+//! nulls. What else a trial is (name, manoeuvre, depth, velocity frame, warnings) is one JSON text
+//! in the file's key-value metadata, so that reading back gives the same trial. The same trial
+//! gives the same bytes: there is no time stamp, the writer's name is fixed, and compression runs
+//! on one thread.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -108,7 +109,8 @@ pub fn from_parquet(bytes: Bytes) -> Result<Trial, SamplesError> {
     Ok(trial)
 }
 
-/// The trial as CSV: canonical names, every number in the shortest form that reads back to the same value.
+/// The trial as CSV: canonical names, every number in the shortest form that reads back to the same
+/// value.
 ///
 /// # Errors
 /// A channel is not as long as time, or the writer fails.
@@ -164,7 +166,8 @@ fn properties(trial: &Trial) -> Result<WriterProperties, SamplesError> {
     Ok(WriterProperties::builder()
         .set_created_by("sistership".into())
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
-        // Neighbouring samples share sign, exponent and leading digits: split by byte they compress well.
+        // Neighbouring samples share sign, exponent and leading digits: split by byte they compress
+        // well.
         .set_encoding(Encoding::BYTE_STREAM_SPLIT)
         .set_dictionary_enabled(false)
         .set_statistics_enabled(EnabledStatistics::None)

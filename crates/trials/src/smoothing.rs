@@ -1,7 +1,7 @@
 //! Savitzky-Golay smoothing: a polynomial fitted by least squares to a moving window.
 //!
-//! Savitzky and Golay 1964 (doi 10.1021/ac60214a047). The ends are read off the polynomials fitted to the first and the
-//! last window, as SciPy's `savgol_filter` does with `mode="interp"`.
+//! Savitzky and Golay 1964 (doi 10.1021/ac60214a047). The ends are read off the polynomials fitted
+//! to the first and the last window, as SciPy's `savgol_filter` does with `mode="interp"`.
 
 use nalgebra::DMatrix;
 use sistership_model::manifest::Smoothing;
@@ -16,8 +16,8 @@ const MAX_DEGREE: usize = 15;
 /// A step may differ from the median by this part of it; the filter assumes equal steps.
 const UNEVEN: f64 = 0.1;
 
-/// The measured motions. Rudder and revolutions are commands with edges that a smoother would blur ahead of time, and
-/// wind directions wrap: these stay as recorded.
+/// The measured motions. Rudder and revolutions are commands with edges that a smoother would blur
+/// ahead of time, and wind directions wrap: these stay as recorded.
 const SMOOTHED: [Channel; 8] = [
     Channel::X,
     Channel::Y,
@@ -58,8 +58,8 @@ pub enum SmoothingError {
 
 /// Smooths equally spaced values.
 ///
-/// `window` is an odd number of samples, at most 9999 and at most as many as there are; `degree` is less than the
-/// window and at most 15.
+/// `window` is an odd number of samples, at most 9999 and at most as many as there are; `degree` is
+/// less than the window and at most 15.
 ///
 /// # Errors
 /// Says which of these does not hold.
@@ -97,7 +97,8 @@ pub(crate) fn check(window: usize, degree: usize) -> Result<(), SmoothingError> 
     }
 }
 
-/// Orthonormal polynomials on the window, one per column; on [-1, 1], where powers stay well conditioned.
+/// Orthonormal polynomials on the window, one per column; on [-1, 1], where powers stay well
+/// conditioned.
 fn basis(window: usize, degree: usize) -> DMatrix<f64> {
     let half = (window / 2).max(1) as f64;
     let at = |row: usize| (row as f64 - (window / 2) as f64) / half;

@@ -1,6 +1,7 @@
 //! Sums over blocks of samples, on which the physical checks stand.
 //!
-//! Integrating over a block rather than differentiating samples keeps measurement noise out of the comparison.
+//! Integrating over a block rather than differentiating samples keeps measurement noise out of the
+//! comparison.
 
 use crate::recording::Recording;
 
@@ -42,7 +43,8 @@ impl Block {
     }
 }
 
-/// How one series follows another without an offset: `b = slope a`, and the correlation of the two about zero.
+/// How one series follows another without an offset: `b = slope a`, and the correlation of the two
+/// about zero.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Proportion {
     pub slope: f64,
@@ -86,8 +88,8 @@ pub(crate) fn spread(values: impl Iterator<Item = f64>) -> f64 {
 /// Bits of a number that are told apart in one pass over the values.
 const DIGIT: u32 = 16;
 
-/// The value below which the fraction of values lies; zero for none. Found digit by digit, in four passes: a copy of a column
-/// to be sorted would be as large as the column.
+/// The value below which the fraction of values lies; zero for none. Found digit by digit, in four
+/// passes: a copy of a column to be sorted would be as large as the column.
 pub(crate) fn quantile(values: impl Iterator<Item = f64> + Clone, fraction: f64) -> f64 {
     let last = values.clone().count().saturating_sub(1);
     let mut rank = ((last as f64 * fraction).round() as usize).min(last);

@@ -112,7 +112,8 @@ pub(crate) struct Start {
     pub dated: bool,
 }
 
-/// Numbers of the mapped columns, one vector per column, and the rows of the file that they stand in.
+/// Numbers of the mapped columns, one vector per column, and the rows of the file that they stand
+/// in.
 #[derive(Debug, Default)]
 pub(crate) struct Table {
     pub columns: Vec<Column>,

@@ -5,8 +5,9 @@ use sistership_model::units::{Dimension, Unit};
 
 use crate::table::{Raw, Target};
 
-/// What a column measures. Dimensions alone do not tell a yaw rate from propeller revolutions: both are 1/s, but one
-/// counts radians and the other turns, and 80 rpm read as a yaw rate would be wrong by two pi.
+/// What a column measures. Dimensions alone do not tell a yaw rate from propeller revolutions: both
+/// are 1/s, but one counts radians and the other turns, and 80 rpm read as a yaw rate would be
+/// wrong by two pi.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Time,
@@ -17,7 +18,8 @@ pub(crate) enum Kind {
     Revolutions,
 }
 
-/// Header suffix, kind, unit. The suffix `ms` is a millisecond for time and a metre per second for a speed.
+/// Header suffix, kind, unit. The suffix `ms` is a millisecond for time and a metre per second for
+/// a speed.
 const SUFFIXES: &[(&str, Kind, &str)] = &[
     ("s", Kind::Time, "s"),
     ("sec", Kind::Time, "s"),

@@ -5,13 +5,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use calamine::{Data, DataRef, ExcelDateTime, Reader, Xlsx, XlsxCellReader, XlsxError};
 
-use crate::archive;
 use crate::csv_file;
 use crate::findings::Findings;
 use crate::layout;
 use crate::limits::Limits;
 use crate::mapping::Mapping;
 use crate::table::Table;
+use sistership_containers::archive;
 
 /// What files are read from that are not read from start to end.
 pub(crate) trait ReadSeek: Read + Seek {}
@@ -21,8 +21,8 @@ impl<T: Read + Seek> ReadSeek for T {}
 const START: u64 = 32 << 10;
 /// Sheets among which the table is looked for.
 const SHEETS: usize = 20;
-/// Unpacked bytes of a workbook beyond which only the first sheet is looked at: many names may stand
-/// for one large sheet.
+/// Unpacked bytes of a workbook beyond which only the first sheet is looked at: many names may
+/// stand for one large sheet.
 const SEARCHED: u64 = 32 << 20;
 
 /// Reads the sheet that is declared, or the one in whose first lines most names are known.

@@ -1,7 +1,7 @@
 //! Every measured and reference file that the project is given reads without an error.
 //!
-//! The files lie beside the project, not in it. Where they are missing the tests say so and pass, unless
-//! `SISTERSHIP_REQUIRE_SHARED=1` asks for them.
+//! The files lie beside the project, not in it. Where they are missing the tests say so and pass,
+//! unless `SISTERSHIP_REQUIRE_SHARED=1` asks for them.
 #![allow(clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};

@@ -12,7 +12,8 @@ use super::score::{KINDS, RESTART_S, by_source, of_kind, over_all, over_each, si
 /// The estimators that take seconds.
 const QUICK: [Method; 3] = [Method::Published, Method::Weak, Method::Trajectory];
 
-/// Every trial simulated by a model that was fitted without it, in four folds; the parts of a trial stay together.
+/// Every trial simulated by a model that was fitted without it, in four folds; the parts of a trial
+/// stay together.
 fn left_out(trials: &[Trial], settings: &Settings) -> Vec<(String, SquaredError)> {
     let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
     let target = zoo.vessel("esso-osaka-3m").expect("the ship is in the zoo");
@@ -42,9 +43,10 @@ fn left_out(trials: &[Trial], settings: &Settings) -> Vec<(String, SquaredError)
     errors
 }
 
-/// Every file, from rest to full speed: the estimators on one law without a source, each cross-validated by file. Wakita's score
-/// is a sum over six states; here it is their mean, first by the variances over all files, then, as for files judged each
-/// on its own, by those within each, where a zigzag hardly moves across and little is much.
+/// Every file, from rest to full speed: the estimators on one law without a source, each
+/// cross-validated by file. Wakita's score is a sum over six states; here it is their mean, first
+/// by the variances over all files, then, as for files judged each on its own, by those within
+/// each, where a zigzag hardly moves across and little is much.
 #[test]
 fn estimators_on_every_trial_of_esso_osaka() {
     let Some(folder) = shared::data("esso-osaka") else { return };
@@ -85,8 +87,9 @@ fn estimators_on_every_trial_of_esso_osaka() {
     assert!(totals[2] < 0.030, "{totals:?}");
 }
 
-/// The search given ten times the time that `trajectory` takes, on the same folds; its fits with trials left out, by which it is
-/// weighed, take almost half of that. Run with `--release -- --ignored --nocapture`.
+/// The search given ten times the time that `trajectory` takes, on the same folds; its fits with
+/// trials left out, by which it is weighed, take almost half of that. Run with `--release --
+/// --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn the_search_given_ten_times_the_time() {

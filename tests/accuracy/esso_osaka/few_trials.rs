@@ -11,8 +11,9 @@ use super::score::{KINDS, by_source, over_all, simulated};
 /// How many files, and the first of them; they are evenly spread over the kinds.
 const FEW: [(usize, usize); 6] = [(2, 0), (2, 5), (4, 1), (4, 7), (8, 2), (8, 3)];
 
-/// What the KVLCC2's MMG model says, as the prior of a polynomial fitted on few files, against the same fit without a source. With two
-/// files nothing but a source makes a model of so many coefficients.
+/// What the KVLCC2's MMG model says, as the prior of a polynomial fitted on few files, against the
+/// same fit without a source. With two files nothing but a source makes a model of so many
+/// coefficients.
 #[test]
 fn a_source_of_another_law_helps_where_trials_are_few() {
     let Some(folder) = shared::data("esso-osaka") else { return };

@@ -39,7 +39,8 @@ fn refined(trials: &[Trial], held_out: Vec<String>) -> Refinement {
     refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Prints the errors before and after, and asserts that every velocity and the heading have improved.
+/// Prints the errors before and after, and asserts that every velocity and the heading have
+/// improved.
 fn judge(refinement: &Refinement) {
     println!("source {}; {}", refinement.source, refinement.held_out.how);
     for channel in ["u", "v", "r", "psi", "x", "y"] {

@@ -10,7 +10,8 @@ use sistership_estimate::refine::{Family, Method, Settings};
 
 use score::RESTART_S;
 
-/// The estimators that are compared: the weak and the trajectory form among few strengths, which is enough and quicker.
+/// The estimators that are compared: the weak and the trajectory form among few strengths, which is
+/// enough and quicker.
 fn compared(method: Method) -> Settings {
     let strengths = if method == Method::Published { Vec::new() } else { vec![1e-1, 1e-2, 1e-3] };
     Settings {

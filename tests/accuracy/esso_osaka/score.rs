@@ -23,8 +23,8 @@ pub fn simulated(model: &Model, law: &Law, trials: &[&Trial]) -> Vec<(String, Sq
     trials.iter().map(one).collect()
 }
 
-/// Every trial simulated by a source ship's model, scaled to this one and not refined; those that leave the physical range have
-/// no error.
+/// Every trial simulated by a source ship's model, scaled to this one and not refined; those that
+/// leave the physical range have no error.
 pub fn by_source(trials: &[Trial], name: &str) -> Vec<(String, SquaredError)> {
     let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
     let target = zoo.vessel("esso-osaka-3m").expect("the ship is in the zoo");

@@ -20,8 +20,9 @@ const TZRB: [&str; 8] = [
     "berthing_12-Nov-2020_13_37_05",
 ];
 
-/// How long a refinement takes on one core, with the options among which it chooses by trials left out: until the fit is chosen, and
-/// with errors, standard manoeuvres and their bands. Run with `--release -- --ignored --nocapture`; it judges nothing.
+/// How long a refinement takes on one core, with the options among which it chooses by trials left
+/// out: until the fit is chosen, and with errors, standard manoeuvres and their bands. Run with
+/// `--release -- --ignored --nocapture`; it judges nothing.
 #[test]
 #[ignore = "prints times"]
 fn the_time_of_a_fit_on_one_core() {

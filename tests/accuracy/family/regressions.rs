@@ -1,7 +1,9 @@
-//! Hull derivatives by regression on the particulars: Yoshimura and Masumoto (2012), Hydrodynamic database and manoeuvring
-//! prediction method with medium high-speed merchant ships and fishing vessels, MARSIM. The paper was not at hand; these are the
-//! formulas that public implementations carry under its name (github.com/nikpau/mmgdynamics, `dynamics.py`, whose equations of
-//! motion are those of the law `mmg`, and two collections of regressions in Matlab, which agree but for the added masses).
+//! Hull derivatives by regression on the particulars: Yoshimura and Masumoto (2012), Hydrodynamic
+//! database and manoeuvring prediction method with medium high-speed merchant ships and fishing
+//! vessels, MARSIM. The paper was not at hand; these are the formulas that public implementations
+//! carry under its name (github.com/nikpau/mmgdynamics, `dynamics.py`, whose equations of motion
+//! are those of the law `mmg`, and two collections of regressions in Matlab, which agree but for
+//! the added masses).
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -15,7 +17,8 @@ pub struct Hull {
     pub block_coefficient: f64,
 }
 
-/// The hull derivatives by name; `m_x` and `m_y` are the added masses, which the regressions of `X_vr` and `Y_r` hold.
+/// The hull derivatives by name; `m_x` and `m_y` are the added masses, which the regressions of
+/// `X_vr` and `Y_r` hold.
 pub fn derivatives(hull: Hull, m_x: f64, m_y: f64) -> BTreeMap<&'static str, f64> {
     let Hull { lpp_m, beam_m, draught_m, block_coefficient: c_b } = hull;
     let (slender, full) = (lpp_m / beam_m, c_b * beam_m / lpp_m);

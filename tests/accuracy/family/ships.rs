@@ -1,5 +1,6 @@
-//! Ships of a made-up family: hulls between a container ship and a tanker, derivatives by regression with scatter of their own,
-//! and interaction coefficients that differ from those which every fitted model has.
+//! Ships of a made-up family: hulls between a container ship and a tanker, derivatives by
+//! regression with scatter of their own, and interaction coefficients that differ from those which
+//! every fitted model has.
 
 use std::sync::Arc;
 

@@ -1,5 +1,6 @@
-//! The columns `True`, `SP` and `MR` of Table 5 of Paper V (Kanazawa et al. 2023, doi 10.1016/j.oceaneng.2023.114874), as
-//! bound into Kanazawa's thesis (NTNU 2023:247). The table's other printing, 5.2 of the thesis, lacks cells.
+//! The columns `True`, `SP` and `MR` of Table 5 of Paper V (Kanazawa et al. 2023, doi
+//! 10.1016/j.oceaneng.2023.114874), as bound into Kanazawa's thesis (NTNU 2023:247). The table's
+//! other printing, 5.2 of the thesis, lacks cells.
 
 use super::turn::Metrics;
 

@@ -20,7 +20,8 @@ pub const ZIGZAGS: [(f64, f64); 5] =
     [(10.0, 10.0), (10.0, 5.0), (12.5, 10.0), (5.0, 5.0), (12.5, 15.0)];
 /// Rudder of the turns that are in every data set, deg.
 pub const TURNS: [f64; 2] = [12.5, -12.5];
-/// Standard deviations of the noise, m/s and rad/s: amplitude, reduction by channel and general reduction of Eq. 22.
+/// Standard deviations of the noise, m/s and rad/s: amplitude, reduction by channel and general
+/// reduction of Eq. 22.
 pub const NOISE: [(Channel, usize, f64); 3] = [
     (Channel::U, at::U, 8.0 * 0.1 * 0.003),
     (Channel::V, at::V, 1.0 * 0.003),
@@ -28,7 +29,8 @@ pub const NOISE: [(Channel, usize, f64); 3] = [
 ];
 /// Window and degree of the Savitzky-Golay filter; the paper gives none.
 const SMOOTHING: (usize, usize) = (21, 3);
-/// Where lambda and alpha are tuned; the paper prints 10 for the least lambda, its results say 10^0.
+/// Where lambda and alpha are tuned; the paper prints 10 for the least lambda, its results say
+/// 10^0.
 const RANGE: Range = Range { lambda_min: 1.0, lambda_max: 1e10, alpha_max: 0.1 };
 /// Values of lambda tried.
 const LAMBDAS: usize = 100;
@@ -65,7 +67,8 @@ fn refined(source: &Model, blocks: &Blocks, trials: &[Trial], rng: &mut ChaCha8R
     model
 }
 
-/// What is recorded with noise and smoothed before the straight run is cut off; the rudder is recorded as it is.
+/// What is recorded with noise and smoothed before the straight run is cut off; the rudder is
+/// recorded as it is.
 fn measured(track: &Trajectory, rng: &mut ChaCha8Rng) -> Trial {
     let mut trial = recorded(track, FITTED);
     for (channel, index, deviation) in NOISE {

@@ -15,8 +15,9 @@ pub const RADIUS: usize = 0;
 pub const SPEED_LOSS: usize = 3;
 
 impl Metrics {
-    /// Of a turn from the start of its prediction. Distances are counted from there but along the first course, which is
-    /// what reproduces the paper's; the product's metrics, as the ITTC's, start at the execution of the rudder.
+    /// Of a turn from the start of its prediction. Distances are counted from there but along the
+    /// first course, which is what reproduces the paper's; the product's metrics, as the ITTC's,
+    /// start at the execution of the rudder.
     pub fn of(states: &[StateVector]) -> Self {
         let (first, last) = (&states[0], &states[states.len() - 1]);
         let farthest = |index: usize| {

@@ -1,6 +1,6 @@
-//! The weak form on the same manoeuvres: velocities with the paper's noise and nothing else of the plane, roll with a like
-//! noise where it is used. Terms and strength of the prior are chosen by manoeuvres left out, the turns of the table never
-//! seen.
+//! The weak form on the same manoeuvres: velocities with the paper's noise and nothing else of the
+//! plane, roll with a like noise where it is used. Terms and strength of the prior are chosen by
+//! manoeuvres left out, the turns of the table never seen.
 
 use rand_chacha::ChaCha8Rng;
 use sistership_dynamics::state::at;
@@ -66,8 +66,8 @@ fn measured(track: &sistership_dynamics::Trajectory, rng: &mut ChaCha8Rng) -> Tr
 /// Share of the critical damping that roll starts with; a judgement that the trials correct.
 const DAMPING: f64 = 0.1;
 
-/// The source in the plane, carried over to the law with roll: the true ship's inertia and hydrostatic stiffness, a usual
-/// damping, and no other coefficient of roll.
+/// The source in the plane, carried over to the law with roll: the true ship's inertia and
+/// hydrostatic stiffness, a usual damping, and no other coefficient of roll.
 pub fn with_roll(source: &Model, law: &Law, truth: &Truth) -> Model {
     let own = |name: &str| truth.model.parameters[name].value;
     let coupling = own("m_y") * own("l_y");

@@ -12,7 +12,8 @@ use crate::faults::Faults;
 use crate::place::{Database, Place};
 use crate::tally::Tally;
 
-/// Why an attack could not go on. It counts as wrong: what should have been found was not looked for.
+/// Why an attack could not go on. It counts as wrong: what should have been found was not looked
+/// for.
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 /// An attack under way.

@@ -1,4 +1,5 @@
-//! Faults injected into processes by a small library that is built here and loaded before libc: `faults.c` has its words.
+//! Faults injected into processes by a small library that is built here and loaded before libc:
+//! `faults.c` has its words.
 
 use std::fs::{File, OpenOptions};
 use std::io;

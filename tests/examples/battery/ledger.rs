@@ -47,7 +47,8 @@ impl Ledger {
         }
     }
 
-    /// Sends a write and keeps what came of it: `Some(true)` where it was acknowledged, none where nobody knows.
+    /// Sends a write and keeps what came of it: `Some(true)` where it was acknowledged, none where
+    /// nobody knows.
     pub async fn send(&self, place: usize, client: &Client, tally: &Tally) -> Option<bool> {
         let write = self.entries()[place].write.clone();
         let reply = write.send(client).await?;
@@ -58,7 +59,8 @@ impl Ledger {
         Some(reply.ok())
     }
 
-    /// Sends a write of which nobody knows what came, under its key: the answer must be that of the first time.
+    /// Sends a write of which nobody knows what came, under its key: the answer must be that of the
+    /// first time.
     pub async fn repeat(&self, place: usize, client: &Client, tally: &Tally) -> Option<bool> {
         let keyed = self.entries()[place].write.key.is_some()
             || self.entries()[place].write.kind == Kind::Tag;
@@ -70,7 +72,8 @@ impl Ledger {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What is written is right: a refusal is wrong, unless the server says that it cannot now, or that a key is taken.
+    /// What is written is right: a refusal is wrong, unless the server says that it cannot now, or
+    /// that a key is taken.
     fn refused(&self, write: &Write, reply: &Reply, tally: &Tally) {
         if reply.status < 500 && reply.status != 429 && !in_progress(reply) {
             let detail = &reply.json()["detail"];
@@ -81,7 +84,8 @@ impl Ledger {
         }
     }
 
-    /// Looks for every write on a server: what was acknowledged is there, once and unchanged, and nothing is there twice.
+    /// Looks for every write on a server: what was acknowledged is there, once and unchanged, and
+    /// nothing is there twice.
     pub async fn check(&self, client: &Client, tally: &Tally) {
         let entries = self.entries().clone();
         // Of a ship of which nothing was acknowledged, nothing need be there.

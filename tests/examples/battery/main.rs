@@ -1,9 +1,11 @@
-//! The battery: attacks on the built program, over HTTP and by signals, and one table of what they found.
+//! The battery: attacks on the built program, over HTTP and by signals, and one table of what they
+//! found.
 //!
 //! `cargo run --release -p sistership-tests --example battery -- --minutes 20`
 //!
-//! `docs/reliability.md` says what is attacked and what the columns mean. The exit status is 1 where anything was lost, wrong or
-//! aborted, answered with 5xx other than 503 and 507, or took more memory than it may.
+//! `docs/reliability.md` says what is attacked and what the columns mean. The exit status is 1
+//! where anything was lost, wrong or aborted, answered with 5xx other than 503 and 507, or took
+//! more memory than it may.
 
 mod arguments;
 mod attack;

@@ -131,7 +131,8 @@ impl Place {
         Ok(Outcome { status: output.status.code(), json, errors })
     }
 
-    /// Counts every fault that `fsck` finds as wrong. Leftovers of kills, of which it says that `gc` removes them, are none.
+    /// Counts every fault that `fsck` finds as wrong. Leftovers of kills, of which it says that
+    /// `gc` removes them, are none.
     ///
     /// # Errors
     /// It cannot be started.

@@ -99,7 +99,8 @@ impl Tally {
         self.remarks.lock().unwrap_or_else(PoisonError::into_inner).join("; ")
     }
 
-    /// A finding is said at once, so that it is not lost with the battery; of those that begin alike, the first few.
+    /// A finding is said at once, so that it is not lost with the battery; of those that begin
+    /// alike, the first few.
     fn find(&self, kind: &'static str, what: String) {
         let mut said = self.said.lock().unwrap_or_else(PoisonError::into_inner);
         let times = said.entry((kind, what.chars().take(ALIKE).collect())).or_insert(0);

@@ -1,4 +1,5 @@
-//! Writes that a ledger keeps: each is unlike every other, so that it can be found again, and found twice.
+//! Writes that a ledger keeps: each is unlike every other, so that it can be found again, and found
+//! twice.
 
 use rand::RngExt as _;
 use rand_chacha::ChaCha12Rng;
@@ -59,7 +60,8 @@ pub struct Write {
     conditions: Vec<(&'static str, String)>,
 }
 
-/// Writes for one ship before the next one: a ship has at most 100 tags, and a refinement at most 1000 trials.
+/// Writes for one ship before the next one: a ship has at most 100 tags, and a refinement at most
+/// 1000 trials.
 pub const FOR_ONE_SHIP: u64 = 300;
 
 impl Write {

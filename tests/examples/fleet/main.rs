@@ -1,8 +1,10 @@
-//! A whole fleet in one bulk refinement: ships with trials are loaded, listed, searched, learned from and refined.
+//! A whole fleet in one bulk refinement: ships with trials are loaded, listed, searched, learned
+//! from and refined.
 //!
-//! `cargo run --release -p sistership-tests --example fleet -- 10000 10` (in ten families, one by default, each refined by one bulk
-//! job; four trials a ship; SQLite in a temporary folder, or `SISTERSHIP_DATABASE_URL`). Prints ships a second for each step, so
-//! that the cost a ship can be compared between sizes, and the times of searches. Of several families the last is told about.
+//! `cargo run --release -p sistership-tests --example fleet -- 10000 10` (in ten families, one by
+//! default, each refined by one bulk job; four trials a ship; SQLite in a temporary folder, or
+//! `SISTERSHIP_DATABASE_URL`). Prints ships a second for each step, so that the cost a ship can be
+//! compared between sizes, and the times of searches. Of several families the last is told about.
 
 mod search;
 
@@ -30,7 +32,8 @@ async fn main() {
         config.database_url = url;
     }
     config.workers = WORKERS;
-    // A worker with nothing to do looks for work twice a second, which is most of what a small fleet takes; not measured here.
+    // A worker with nothing to do looks for work twice a second, which is most of what a small
+    // fleet takes; not measured here.
     config.leases.poll = POLL;
     let begun = Workers::start(Config { workers: 0, ..config.clone() }).await.expect("the zoo");
     let (archive, store) = (begun.archive().clone(), begun.archive().store.clone());

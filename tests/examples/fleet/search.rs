@@ -1,4 +1,5 @@
-//! Searches of a fleet as its users make them: over HTTP, page by page, and how long each answer takes.
+//! Searches of a fleet as its users make them: over HTTP, page by page, and how long each answer
+//! takes.
 
 use std::time::{Duration, Instant};
 
@@ -47,7 +48,8 @@ pub async fn search(config: &Config, ships: usize) {
     server.stop().await;
 }
 
-/// Asks again and again, and prints how long it took. A search whose words are always the same turns the page.
+/// Asks again and again, and prints how long it took. A search whose words are always the same
+/// turns the page.
 async fn print(what: &str, ask: impl AsyncFn(usize, Option<String>) -> (usize, Option<String>)) {
     let (mut times, mut found, mut next) = (Vec::new(), 0, None);
     for turn in 0..TIMES {

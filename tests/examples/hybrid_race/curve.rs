@@ -40,7 +40,8 @@ pub struct Curve {
     file: std::fs::File,
 }
 
-/// The standardised mean squared error of u, v and r together; infinite where a simulation leaves the physical range.
+/// The standardised mean squared error of u, v and r together; infinite where a simulation leaves
+/// the physical range.
 pub fn held_out_error(
     model: &Model,
     law: &Law,

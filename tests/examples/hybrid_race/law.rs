@@ -1,11 +1,12 @@
-//! The law that is fitted: Abkowitz-MMG of third order for one screw and one rudder, in four submodels.
+//! The law that is fitted: Abkowitz-MMG of third order for one screw and one rudder, in four
+//! submodels.
 
 use sistership_model::hybrid::derive;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Law, Model};
 
-/// As in `models/hybrids`, of third order, with submodels that a ship meets which goes ahead all the time: the rudder stalled, the
-/// propeller loaded more or less than in steady motion.
+/// As in `models/hybrids`, of third order, with submodels that a ship meets which goes ahead all
+/// the time: the rudder stalled, the propeller loaded more or less than in steady motion.
 const DECLARATION: &str = "
 kind: hybrid
 name: hybrid-race

@@ -1,11 +1,14 @@
-//! `trajectory` against `cma-es`: hundreds of coefficients of an Abkowitz-MMG hybrid from two hours of random manoeuvres.
+//! `trajectory` against `cma-es`: hundreds of coefficients of an Abkowitz-MMG hybrid from two hours
+//! of random manoeuvres.
 //!
-//! `cargo run --release -p sistership-tests --example hybrid_race -- --minutes 60 --out race` makes the trials of a modular MMG model,
-//! refines the derived law of third order without a source by either method, and keeps what each passes by: seconds, evaluations, its own
-//! objective, and the error of simulations of manoeuvres that neither has seen (standardised mean squared error of u, v and r
-//! together, started anew every 100 s). The curves in the folder are complete whenever it is stopped.
-//! On a machine that others use, `--minutes 300 --cpu-minutes 120` gives the search an hour of two cores.
-//! `--method trajectory` or `cma-es` runs one of them; `--spread`, `--seed` and `--rk4` change the search.
+//! `cargo run --release -p sistership-tests --example hybrid_race -- --minutes 60 --out race` makes
+//! the trials of a modular MMG model, refines the derived law of third order without a source by
+//! either method, and keeps what each passes by: seconds, evaluations, its own objective, and the
+//! error of simulations of manoeuvres that neither has seen (standardised mean squared error of u,
+//! v and r together, started anew every 100 s). The curves in the folder are complete whenever it
+//! is stopped. On a machine that others use, `--minutes 300 --cpu-minutes 120` gives the search an
+//! hour of two cores. `--method trajectory` or `cma-es` runs one of them; `--spread`, `--seed` and
+//! `--rk4` change the search.
 
 mod curve;
 mod law;
@@ -144,7 +147,8 @@ impl Race {
                 &error,
             );
         };
-        // The race ends with the fit on all trials: fits with trials left out, with which a search is weighed, are not part of it.
+        // The race ends with the fit on all trials: fits with trials left out, with which a search
+        // is weighed, are not part of it.
         let over = AtomicBool::new(false);
         let progress = |_: f64, what: &str| {
             eprintln!("\r{} {what}        ", method.name());

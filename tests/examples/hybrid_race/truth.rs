@@ -12,7 +12,8 @@ use sistership_model::{Law, Model};
 use sistership_tests::synthetic::replica;
 
 const STEP_S: f64 = 0.1;
-/// Rudder, deg, and revolutions by those of the approach; reversed ones would stop it, where the MMG's primes end.
+/// Rudder, deg, and revolutions by those of the approach; reversed ones would stop it, where the
+/// MMG's primes end.
 const RUDDER_DEG: f64 = 35.0;
 const REVOLUTIONS: [f64; 2] = [0.3, 1.3];
 /// Noise: velocities m/s, yaw rate rad/s, heading rad, position m.

@@ -23,7 +23,8 @@ use crate::yard;
 const CANDIDATES: usize = 200;
 /// Trials that a call gets.
 const TRIALS: usize = 6;
-/// Standard deviation of their coefficients by those of the zoo's models, and of their particulars by the ship's.
+/// Standard deviation of their coefficients by those of the zoo's models, and of their particulars
+/// by the ship's.
 const SCATTER: [f64; 2] = [0.3, 0.06];
 /// The mean error may rise by so much.
 const RISE: f64 = 1.03;

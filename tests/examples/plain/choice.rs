@@ -99,7 +99,8 @@ fn number(value: Option<f64>) -> String {
     value.map_or_else(|| "-".into(), |value| format!("{value:.4}"))
 }
 
-/// Every source with its own law and with every other, and none with every law, by every method that takes seconds.
+/// Every source with its own law and with every other, and none with every law, by every method
+/// that takes seconds.
 fn explicit(data: &DataSet) -> Vec<Call> {
     let laws: Vec<String> = data.zoo.laws().map(|law| law.name.clone()).collect();
     let mut calls = Vec::new();
@@ -117,7 +118,8 @@ fn explicit(data: &DataSet) -> Vec<Call> {
     calls
 }
 
-/// Esso Osaka by the plain call alone: every file judged by a model that was made without it, and the time for all of them.
+/// Esso Osaka by the plain call alone: every file judged by a model that was made without it, and
+/// the time for all of them.
 pub fn by_file(program: &Program) {
     let folds: Option<Vec<DataSet>> = (0..FOLDS).map(|fold| esso_osaka(Some(fold))).collect();
     let (Some(folds), Some(all)) = (folds, esso_osaka(None)) else { return };

@@ -48,7 +48,8 @@ pub fn run(program: &Program, arguments: &Arguments) {
     against_the_source(&ships);
 }
 
-/// The plain one, and every fixed choice: the source that the program takes, or none, under its own law or a general one.
+/// The plain one, and every fixed choice: the source that the program takes, or none, under its own
+/// law or a general one.
 fn calls() -> Vec<Call> {
     let mut calls = vec![Call::default()];
     let auto = Some("auto".to_owned());

@@ -1,6 +1,7 @@
 //! Figures over many ships.
 
-/// What a call's error counts as where it made no model, or one that leaves the physical range; larger ones count as this.
+/// What a call's error counts as where it made no model, or one that leaves the physical range;
+/// larger ones count as this.
 pub const WORST: f64 = 10.0;
 
 /// An error for averages.

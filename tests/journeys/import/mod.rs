@@ -3,6 +3,7 @@
 mod broken;
 mod containers;
 mod forms;
+mod long_log;
 mod table;
 
 use std::path::{Path, PathBuf};

@@ -13,8 +13,8 @@ pub fn run(data: &[u8]) {
         return;
     }
     let lookup = |name: &str| INPUTS.iter().position(|known| *known == name).map(|k| VALUES[k]);
-    // Where some part of it is infinite, zero times it is anything: the tape leaves such products out, and with them the sign of
-    // zero, by which alone an angle may turn about.
+    // Where some part of it is infinite, zero times it is anything: the tape leaves such products
+    // out, and with them the sign of zero, by which alone an angle may turn about.
     if is_determined(&expr, &lookup) {
         lowered(&expr, expr.value(&lookup).expect("every name is known"));
     }

@@ -1,4 +1,5 @@
-//! What must hold of anything that is read, whatever the bytes: one body for each fuzz target (`tests/fuzz`).
+//! What must hold of anything that is read, whatever the bytes: one body for each fuzz target
+//! (`tests/fuzz`).
 //!
 //! A body returns where the input is refused, and panics where what was accepted does not hold.
 
@@ -27,8 +28,8 @@ fn small() -> Mapping {
     }
 }
 
-/// What holds of every trial that is accepted: as many samples in each channel as in time, all finite, time increasing,
-/// and the canonical file reads back to the same trial.
+/// What holds of every trial that is accepted: as many samples in each channel as in time, all
+/// finite, time increasing, and the canonical file reads back to the same trial.
 fn holds(trial: &Trial) {
     assert!(trial.t_s.windows(2).all(|pair| pair[0] < pair[1]), "time does not increase");
     for (channel, values) in &trial.channels {

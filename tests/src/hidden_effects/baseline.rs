@@ -14,7 +14,8 @@ pub struct Baseline {
     pub law: Arc<Law>,
 }
 
-/// The fitted model of the benchmark; `DIAGNOSIS_SOURCE` names another source ship than the Mariner.
+/// The fitted model of the benchmark; `DIAGNOSIS_SOURCE` names another source ship than the
+/// Mariner.
 pub static BASELINE: LazyLock<Baseline> = LazyLock::new(|| {
     let source = std::env::var("DIAGNOSIS_SOURCE").unwrap_or_else(|_| "mariner".into());
     let trials = trials(&Hidden::default(), &programme(), 0);
@@ -56,7 +57,7 @@ pub fn by(
     }
     let mut model = refinement.model;
     let uncertainty =
-        calibrate(&model, law, &library(), trials).unwrap_or_else(|error| panic!("{error}"));
+        calibrate(&model, law, &library(), trials, None).unwrap_or_else(|error| panic!("{error}"));
     println!("discrepancy {:?}", uncertainty.discrepancy);
     model.uncertainty = Some(uncertainty);
     Baseline { model, law: law.clone() }

@@ -40,7 +40,8 @@ pub struct Part {
     pub is_judged: bool,
 }
 
-/// Strengths and seeds where nothing else is said: the weakest, once. The whole table takes an hour.
+/// Strengths and seeds where nothing else is said: the weakest, once. The whole table takes an
+/// hour.
 const DEFAULT_STRENGTHS: [f64; 1] = [0.3];
 const DEFAULT_SEEDS: u64 = 1;
 const ALL_SEEDS: u64 = 3;

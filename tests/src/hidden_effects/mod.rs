@@ -1,4 +1,5 @@
-//! The benchmark of the diagnosis: a true ship that nobody fitted hides an effect, and the diagnosis must name it.
+//! The benchmark of the diagnosis: a true ship that nobody fitted hides an effect, and the
+//! diagnosis must name it.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 pub mod baseline;

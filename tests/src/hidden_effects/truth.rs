@@ -1,4 +1,5 @@
-//! The true ship: SR108 by the law of Son and Nomoto, with something hidden that no model of it has been told.
+//! The true ship: SR108 by the law of Son and Nomoto, with something hidden that no model of it has
+//! been told.
 
 #[cfg(test)]
 mod checks;
@@ -37,7 +38,8 @@ pub struct Hidden {
 pub enum Unlisted {
     /// From half time on the propeller gives less thrust by this share; the rudder's inflow stays.
     ThrustLoss { share: f64 },
-    /// A yaw moment that oscillates with a period of 60 s, as the angular acceleration it gives, rad/s2.
+    /// A yaw moment that oscillates with a period of 60 s, as the angular acceleration it gives,
+    /// rad/s2.
     OscillatingMoment { amplitude_rad_s2: f64 },
     /// A sway force by the cosine of three times the heading, as the acceleration it gives, m/s2.
     HeadingForce { amplitude_m_s2: f64 },

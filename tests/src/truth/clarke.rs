@@ -1,5 +1,5 @@
-//! Linear derivatives by regression: Clarke, Gedling and Hine (1983), The application of manoeuvring criteria in hull
-//! design using linear theory, Transactions RINA 125, 45-68.
+//! Linear derivatives by regression: Clarke, Gedling and Hine (1983), The application of
+//! manoeuvring criteria in hull design using linear theory, Transactions RINA 125, 45-68.
 
 use super::dimensions::Dimensions;
 

@@ -7,7 +7,8 @@ use super::resistance::Resistance;
 use super::rudder::Rudder;
 use super::single_screw::{Form, Heeling, SingleScrew};
 
-/// The ship. Main dimensions chosen between those of the SR108 and the KCS, with little stability in roll.
+/// The ship. Main dimensions chosen between those of the SR108 and the KCS, with little stability
+/// in roll.
 pub fn container() -> SingleScrew {
     let dimensions = Dimensions {
         name: "cross-flow-container".into(),
@@ -28,7 +29,8 @@ pub fn container() -> SingleScrew {
     SingleScrew::new(dimensions, form())
 }
 
-/// Chosen for a fine form; roll damping of the order of Ikeda's at speed, heel forces of the order of the SR108's.
+/// Chosen for a fine form; roll damping of the order of Ikeda's at speed, heel forces of the order
+/// of the SR108's.
 fn form() -> Form {
     Form {
         scatter: [1.0, 1.0, 0.95, 1.05],

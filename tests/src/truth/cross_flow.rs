@@ -1,6 +1,6 @@
-//! Drag of the flow across the hull, strip by strip: Faltinsen (1990), Sea Loads on Ships and Offshore Structures,
-//! chapter 6; its distribution over the length after Hooft (1994), The cross-flow drag on a manoeuvring ship, Ocean
-//! Engineering 21, 329-342.
+//! Drag of the flow across the hull, strip by strip: Faltinsen (1990), Sea Loads on Ships and
+//! Offshore Structures, chapter 6; its distribution over the length after Hooft (1994), The
+//! cross-flow drag on a manoeuvring ship, Ocean Engineering 21, 329-342.
 
 use super::dimensions::Dimensions;
 

@@ -34,8 +34,9 @@ pub fn ship(seed: u64) -> SingleScrew {
     }
 }
 
-/// Particulars in the ranges of merchant ships; speed by a Froude number that falls with fullness, from 0.26 to 0.14; rudder area
-/// by the rule `L T / 100 (1 + 25 (B/L)^2)` of Det Norske Veritas, 0.9 to 1.3 times.
+/// Particulars in the ranges of merchant ships; speed by a Froude number that falls with fullness,
+/// from 0.26 to 0.14; rudder area by the rule `L T / 100 (1 + 25 (B/L)^2)` of Det Norske Veritas,
+/// 0.9 to 1.3 times.
 fn dimensions(seed: u64, rng: &mut ChaCha12Rng) -> Dimensions {
     let lpp_m: f64 = rng.random_range(100.0..320.0);
     let beam_m: f64 = lpp_m / rng.random_range(5.6..7.4);
@@ -64,7 +65,8 @@ fn dimensions(seed: u64, rng: &mut ChaCha12Rng) -> Dimensions {
     }
 }
 
-/// The form: the regression's scatter about measured derivatives is some 15 to 25 % (Clarke 1983), drag 0.55 to 1.
+/// The form: the regression's scatter about measured derivatives is some 15 to 25 % (Clarke 1983),
+/// drag 0.55 to 1.
 fn form(ship: &Dimensions, rng: &mut ChaCha12Rng) -> Form {
     let scatter = [0.12, 0.15, 0.12, 0.12]
         .map(|deviation: f64| 1.0 + deviation * rng.sample::<f64, _>(StandardNormal));

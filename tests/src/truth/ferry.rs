@@ -1,4 +1,5 @@
-//! A ferry with two propellers and two rudders, whose flow differs from side to side as soon as it drifts.
+//! A ferry with two propellers and two rudders, whose flow differs from side to side as soon as it
+//! drifts.
 
 use std::f64::consts::PI;
 
@@ -23,7 +24,8 @@ const SURGE_BY_TURNING: f64 = 0.5;
 const SECTION: f64 = 0.85;
 /// The same at the trailing edge, with skegs and shaft brackets, chosen.
 const TRAILING_EDGE: f64 = 0.90;
-/// Share of the wake that goes on the side from which the water comes, and comes on the other, chosen.
+/// Share of the wake that goes on the side from which the water comes, and comes on the other,
+/// chosen.
 const WAKE_SHELTER: f64 = 0.35;
 /// Share of the straightening of the flow that the hull adds on the sheltered side, chosen.
 const RUDDER_SHELTER: f64 = 0.25;
@@ -42,7 +44,8 @@ pub struct Ferry {
     revolutions_rps: f64,
 }
 
-/// The ship. Main dimensions chosen as those of a day ferry; drag and propellers chosen for a fine form with open shafts.
+/// The ship. Main dimensions chosen as those of a day ferry; drag and propellers chosen for a fine
+/// form with open shafts.
 pub fn ferry() -> Ferry {
     let dimensions = Dimensions {
         name: "twin-screw-ferry".into(),
@@ -140,8 +143,9 @@ impl Ferry {
         [ahead, y, n - side * SHAFT_M * ahead]
     }
 
-    /// Slender-body theory with a trailing edge at the stern (Newman 1977, Marine Hydrodynamics, chapter 7): with `a` the added
-    /// mass of a section, `Y = -u a_T (v + x_T r)`, `N = x_T Y - u v A`, `A` its integral over the length; and the strips.
+    /// Slender-body theory with a trailing edge at the stern (Newman 1977, Marine Hydrodynamics,
+    /// chapter 7): with `a` the added mass of a section, `Y = -u a_T (v + x_T r)`, `N = x_T Y - u v
+    /// A`, `A` its integral over the length; and the strips.
     fn hull(&self, [u, v, r]: [f64; 3]) -> [f64; 3] {
         let ship = &self.dimensions;
         let plate = section(ship);
@@ -155,7 +159,8 @@ impl Ferry {
     }
 }
 
-/// Added mass of a plate of the draught by length, kg/m: half of `pi rho T^2`, as the surface is a mirror.
+/// Added mass of a plate of the draught by length, kg/m: half of `pi rho T^2`, as the surface is a
+/// mirror.
 fn section(ship: &Dimensions) -> f64 {
     0.5 * PI * ship.density_kg_m3 * ship.draught_m.powi(2)
 }

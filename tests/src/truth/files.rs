@@ -56,7 +56,8 @@ pub fn particulars(ship: &Dimensions) -> Vec<(&'static str, f64)> {
     all
 }
 
-/// Writes trials as CSV files with canonical columns, and a manifest that lists them, whose path is returned.
+/// Writes trials as CSV files with canonical columns, and a manifest that lists them, whose path is
+/// returned.
 ///
 /// # Panics
 /// Where a file cannot be written.

@@ -30,7 +30,8 @@ pub struct Instruments {
 }
 
 impl Instruments {
-    /// Of a sea trial: differential GNSS, a gyro compass, a rate gyro, the rudder's feedback; two samples a second.
+    /// Of a sea trial: differential GNSS, a gyro compass, a rate gyro, the rudder's feedback; two
+    /// samples a second.
     pub const SEA_TRIAL: Self = Self {
         interval_s: 0.5,
         position_m: 0.5,
@@ -41,7 +42,8 @@ impl Instruments {
         revolutions: 1e-3,
     };
 
-    /// Of a free-running model of some metres: optical or RTK positions, a fibre-optic gyro; ten samples a second.
+    /// Of a free-running model of some metres: optical or RTK positions, a fibre-optic gyro; ten
+    /// samples a second.
     pub const MODEL: Self = Self {
         interval_s: 0.1,
         position_m: 0.02,

@@ -119,12 +119,13 @@ fn random_orders(rudder_deg: f64, seed: u64) -> Vec<(f64, f64)> {
     orders
 }
 
-/// The rudder angles, deg, of the turns whose figures are compared, and of the zigzags with their change of heading.
+/// The rudder angles, deg, of the turns whose figures are compared, and of the zigzags with their
+/// change of heading.
 const TURNS: [f64; 2] = [35.0, -35.0];
 const ZIGZAGS: [(f64, f64); 4] = [(10.0, 10.0), (-10.0, 10.0), (20.0, 20.0), (-20.0, 20.0)];
 
-/// Tactical diameter, advance (m) and overshoots (deg) by the names that `sistership manoeuvre` gives
-/// them; absent where the ship did not get so far.
+/// Tactical diameter, advance (m) and overshoots (deg) by the names that `sistership manoeuvre`
+/// gives them; absent where the ship did not get so far.
 pub fn figures(ship: &dyn Truth) -> BTreeMap<String, f64> {
     let mut all = BTreeMap::new();
     for rudder in TURNS {
@@ -163,7 +164,8 @@ fn snapped(t_s: f64) -> f64 {
     (t_s / STEP_S).round() * STEP_S
 }
 
-/// The trials of a learning curve, in the order in which they are added: first what a yard sails first.
+/// The trials of a learning curve, in the order in which they are added: first what a yard sails
+/// first.
 pub const PROGRAMME: [Manoeuvre; 12] = [
     Manoeuvre::Zigzag(20.0, 20.0),
     Manoeuvre::Turn(35.0),

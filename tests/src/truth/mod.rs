@@ -1,8 +1,10 @@
-//! Ships whose laws no law of the zoo contains, with trials that they sailed and files as people have them.
+//! Ships whose laws no law of the zoo contains, with trials that they sailed and files as people
+//! have them.
 //!
-//! Each ship is an ordinary differential equation of this crate, integrated with Runge-Kutta at 0.1 s; nothing of it is lowered
-//! from a law file. The hull is linear (regression, or slender-body theory) with a strip-wise cross-flow drag, the rudder a wing
-//! with lift and drag in a slipstream, and the resistance that of the ITTC friction line.
+//! Each ship is an ordinary differential equation of this crate, integrated with Runge-Kutta at 0.1
+//! s; nothing of it is lowered from a law file. The hull is linear (regression, or slender-body
+//! theory) with a strip-wise cross-flow drag, the rudder a wing with lift and drag in a slipstream,
+//! and the resistance that of the ITTC friction line.
 
 pub mod clarke;
 pub mod container;

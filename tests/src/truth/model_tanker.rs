@@ -28,7 +28,8 @@ pub fn model_tanker() -> SingleScrew {
     SingleScrew::new(dimensions, form())
 }
 
-/// Chosen for model scale: more wake and friction, a higher load and so a faster slipstream than at full scale.
+/// Chosen for model scale: more wake and friction, a higher load and so a faster slipstream than at
+/// full scale.
 fn form() -> Form {
     Form {
         scatter: [1.05, 0.95, 1.0, 1.1],

@@ -14,7 +14,8 @@ const STOP_RAD: f64 = 35.0 * std::f64::consts::PI / 180.0;
 pub trait Truth: Sync {
     /// Its size.
     fn dimensions(&self) -> &Dimensions;
-    /// Accelerations of surge, sway (m/s2), yaw and roll (rad/s2) at a state, whose rudder angle is the actual one.
+    /// Accelerations of surge, sway (m/s2), yaw and roll (rad/s2) at a state, whose rudder angle is
+    /// the actual one.
     fn accelerations(&self, state: &StateVector, n_rps: f64) -> [f64; 4];
     /// Revolutions that keep the approach speed, 1/s.
     fn revolutions_rps(&self) -> f64;
@@ -42,7 +43,8 @@ pub struct Inertia {
 }
 
 impl Inertia {
-    /// Accelerations under forces of surge, sway (N) and yaw (N m) on a body that moves at `u, v, r`.
+    /// Accelerations under forces of surge, sway (N) and yaw (N m) on a body that moves at `u, v,
+    /// r`.
     pub fn accelerations(&self, [x, y, n]: [f64; 3], [u, v, r]: [f64; 3]) -> [f64; 3] {
         let surge = x + self.mass_kg * v * r + self.moment_kg_m * r * r;
         let sway = y - self.mass_kg * u * r;
@@ -85,7 +87,8 @@ pub fn step(ship: &dyn Truth, state: &StateVector, order_rad: f64, n_rps: f64) -
     Method::Rk4.step(state, STEP_S, |_, at| rate(ship, at, order_rad, n_rps))
 }
 
-/// Sails from straight running at the approach speed: one sample a step; `order` gives the rudder, rad, at a time and state.
+/// Sails from straight running at the approach speed: one sample a step; `order` gives the rudder,
+/// rad, at a time and state.
 pub fn sail(
     ship: &dyn Truth,
     duration_s: f64,

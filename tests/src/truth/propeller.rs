@@ -9,7 +9,8 @@ pub struct Propeller {
     pub thrust: [f64; 3],
     /// Wake fraction ahead.
     pub wake: f64,
-    /// How fast it goes with the drift at the propeller: `w = wake exp(-c beta_P^2)`, 4 in Hirano (1980).
+    /// How fast it goes with the drift at the propeller: `w = wake exp(-c beta_P^2)`, 4 in Hirano
+    /// (1980).
     pub wake_by_drift: f64,
     /// Thrust deduction fraction.
     pub deduction: f64,
@@ -32,7 +33,8 @@ impl Propeller {
         density * n_rps.powi(2) * self.diameter_m.powi(4) * (k0 + k1 * j + k2 * j * j)
     }
 
-    /// Speed far behind the disc, m/s, by momentum theory; that of advance where there is no thrust.
+    /// Speed far behind the disc, m/s, by momentum theory; that of advance where there is no
+    /// thrust.
     pub fn slipstream_m_s(&self, density: f64, advance_m_s: f64, thrust_n: f64) -> f64 {
         let disc = 0.25 * std::f64::consts::PI * self.diameter_m.powi(2);
         let square = advance_m_s * advance_m_s.abs() + 2.0 * thrust_n.max(0.0) / (density * disc);

@@ -1,4 +1,5 @@
-//! A rudder as a wing of small aspect ratio: Soeding (1982), as in Bertram (2012), Practical Ship Hydrodynamics, chapter 6.
+//! A rudder as a wing of small aspect ratio: Soeding (1982), as in Bertram (2012), Practical Ship
+//! Hydrodynamics, chapter 6.
 
 /// Coefficient of the resistance across the blade in Soeding's formula.
 const ACROSS: f64 = 1.0;
@@ -39,7 +40,8 @@ impl Rudder {
         mean.max(0.0).sqrt()
     }
 
-    /// Forces at an angle (rad, positive turns to starboard), an axial speed, and the sway velocity at the rudder.
+    /// Forces at an angle (rad, positive turns to starboard), an axial speed, and the sway velocity
+    /// at the rudder.
     pub fn forces(&self, density: f64, delta: f64, axial_m_s: f64, across_m_s: f64) -> Forces {
         let across = self.straightening * across_m_s;
         let inflow = across.atan2(axial_m_s.max(1e-6));
@@ -52,7 +54,8 @@ impl Rudder {
         [surge, (1.0 + self.hull_force) * sway, lever * sway]
     }
 
-    /// `C_L = 2 pi A (A + 0.7) / (A + 1.7)^2 sin a + C_Q sin a |sin a| cos a`, `C_D = C_L^2 / (pi A) + C_Q |sin a|^3 + C_D0`.
+    /// `C_L = 2 pi A (A + 0.7) / (A + 1.7)^2 sin a + C_Q sin a |sin a| cos a`, `C_D = C_L^2 / (pi
+    /// A) + C_Q |sin a|^3 + C_D0`.
     fn coefficients(&self, angle: f64) -> (f64, f64) {
         let (a, sin) = (self.aspect_ratio, angle.sin());
         let slope = std::f64::consts::TAU * a * (a + 0.7) / (a + 1.7).powi(2);

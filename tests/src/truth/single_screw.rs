@@ -1,4 +1,5 @@
-//! A ship with one propeller and one rudder: regression for the linear forces, strips for the cross-flow.
+//! A ship with one propeller and one rudder: regression for the linear forces, strips for the
+//! cross-flow.
 
 use sistership_dynamics::state::{StateVector, at};
 

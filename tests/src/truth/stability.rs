@@ -9,7 +9,8 @@ const DISTURBANCE: f64 = 1e-7;
 /// How long the ship is sailed, in lengths; the first part is left to what dies away.
 const LENGTHS: [f64; 2] = [15.0, 30.0];
 
-/// Growth rate of a small yaw rate with the rudder held amidships, by `U/L`: negative for a ship that is straight-line stable.
+/// Growth rate of a small yaw rate with the rudder held amidships, by `U/L`: negative for a ship
+/// that is straight-line stable.
 pub fn growth_rate(ship: &dyn Truth) -> f64 {
     let (size, n_rps) = (ship.dimensions(), ship.revolutions_rps());
     let mut state = straight(size.speed_m_s);

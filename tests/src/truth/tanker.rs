@@ -7,7 +7,8 @@ use super::resistance::Resistance;
 use super::rudder::Rudder;
 use super::single_screw::{Form, SingleScrew};
 
-/// The ship. Main dimensions chosen as those of a Suezmax tanker; the full form makes Clarke's regression unstable.
+/// The ship. Main dimensions chosen as those of a Suezmax tanker; the full form makes Clarke's
+/// regression unstable.
 pub fn tanker() -> SingleScrew {
     let dimensions = Dimensions {
         name: "cross-flow-tanker".into(),
@@ -28,7 +29,8 @@ pub fn tanker() -> SingleScrew {
     SingleScrew::new(dimensions, form())
 }
 
-/// Chosen for a full form: high wake, drag across the ends, a rudder area of 1/58.6 of the lateral area.
+/// Chosen for a full form: high wake, drag across the ends, a rudder area of 1/58.6 of the lateral
+/// area.
 fn form() -> Form {
     Form {
         scatter: [1.0, 1.0, 1.05, 1.0],

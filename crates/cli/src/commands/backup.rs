@@ -56,7 +56,8 @@ pub struct RestoreArguments {
 /// Runs `sistership backup`.
 ///
 /// # Errors
-/// The store is not there, the folder is not empty, something cannot be read or written, or samples are lost.
+/// The store is not there, the folder is not empty, something cannot be read or written, or samples
+/// are lost.
 pub fn backup(backup: &BackupArguments) -> Result<(), Failure> {
     let manifest =
         with_archive(&backup.store, async |archive| upkeep::backup(archive, &backup.folder).await)?;
@@ -67,7 +68,8 @@ pub fn backup(backup: &BackupArguments) -> Result<(), Failure> {
 /// Runs `sistership restore`.
 ///
 /// # Errors
-/// The place is not empty, the backup is damaged or of another kind of database, or something cannot be written.
+/// The place is not empty, the backup is damaged or of another kind of database, or something
+/// cannot be written.
 pub fn restore(restore: &RestoreArguments) -> Result<(), Failure> {
     let RestoreArguments { folder, store, json } = restore;
     let place = store.place(&store.file()?)?;

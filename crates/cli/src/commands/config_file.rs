@@ -1,4 +1,5 @@
-//! The configuration file: what the flags of `serve`, `work` and the commands on a store may be instead of flags.
+//! The configuration file: what the flags of `serve`, `work` and the commands on a store may be
+//! instead of flags.
 
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};

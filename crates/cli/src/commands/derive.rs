@@ -22,7 +22,8 @@ Examples:
 
 A declaration is of `kind: hybrid`; models/hybrids/README.md has one with every field.";
 
-/// Derive the Abkowitz-MMG hybrid of a ship from its actuators, and count its unknowns rule by rule.
+/// Derive the Abkowitz-MMG hybrid of a ship from its actuators, and count its unknowns rule by
+/// rule.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct DeriveArguments {

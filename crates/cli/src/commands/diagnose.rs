@@ -38,13 +38,16 @@ pub struct DiagnoseArguments {
     /// Trial manifests, CSV or Parquet files.
     #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
     trials: Vec<PathBuf>,
-    /// Start simulations that judge anew every so often; where absent, every ten ship lengths sailed.
+    /// Start simulations that judge anew every so often; where absent, every ten ship lengths
+    /// sailed.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     restart_s: Option<f64>,
-    /// Shortest interval between samples that are used; where absent, that of sailing a fiftieth of its length.
+    /// Shortest interval between samples that are used; where absent, that of sailing a fiftieth of
+    /// its length.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     least_step_s: Option<f64>,
-    /// How far a coefficient may be from the truth, as a share of its value, where the model does not say itself.
+    /// How far a coefficient may be from the truth, as a share of its value, where the model does
+    /// not say itself.
     #[arg(long, value_name = "SHARE", value_parser = positive, allow_negative_numbers = true)]
     slack: Option<f64>,
     /// Least evidence (natural logarithm) for an effect to be named.
@@ -160,7 +163,8 @@ fn report_html(
     Ok(rendered.html.into_bytes())
 }
 
-/// The diagnosis without the model, which `--out` writes, and without the series that only plots need.
+/// The diagnosis without the model, which `--out` writes, and without the series that only plots
+/// need.
 fn printed(diagnosis: &Diagnosis) -> Result<Value, Failure> {
     let document = serde_json::to_value(diagnosis);
     let mut document = document

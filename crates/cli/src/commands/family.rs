@@ -1,4 +1,5 @@
-//! `sistership family`: ships whose models share a foundation. What takes long is queued, and workers do it.
+//! `sistership family`: ships whose models share a foundation. What takes long is queued, and
+//! workers do it.
 
 use clap::{Args, Subcommand, ValueEnum};
 use serde_json::{Value, json};
@@ -71,7 +72,8 @@ enum FamilyAction {
         /// What holds the coefficients.
         #[arg(long, value_enum, default_value_t = PriorArgument::Family)]
         prior: PriorArgument,
-        /// A refined model becomes champion where no axis' error grows by more than this share; without it, none does by itself.
+        /// A refined model becomes champion where no axis' error grows by more than this share;
+        /// without it, none does by itself.
         #[arg(long, value_name = "SHARE")]
         no_worse_than: Option<f64>,
     },

@@ -8,19 +8,25 @@ use sistership_model::trial::Trial;
 use sistership_model::{FileError, Zoo};
 use sistership_trials::{Guess, Loaded, lacking, load_path, propose};
 
+use super::import_log::{SearchedLog, searched};
 use crate::failure::{Failure, about_file};
 use crate::files::PromisedFile;
 use crate::output::{self, count, note};
 use crate::table::TextTable;
 use crate::trials::place;
+use crate::values::positive;
 
 const EXAMPLES: &str = "\
 Examples:
   sistership import log/*.csv --ship my-ship
   sistership import voyage.nmea --ship my-ship --out trials.yaml
+  sistership import month.parquet --ship mariner --out trials.yaml
 
 Every guess is shown with its reason; those marked `look` are to be read over. The manifest is then
 used in place of the files: sistership refine --trials trials.yaml
+
+Of a log of many hours the stretches in which rudder or propeller move beyond course keeping become
+trials, each with the reason; the table also says what is left, steady course keeping.
 
 Exit status 1 when a file cannot be read, or is refused by the manifest that was written.";
 
@@ -37,6 +43,10 @@ pub struct ImportArguments {
     /// Where the manifest goes; `trials.yaml` beside the files where absent.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// The ship's length between perpendiculars: stretches of a long log are told by lengths
+    /// sailed. Where absent, that of the zoo's ship of this name, or else one that suits the speed.
+    #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
+    length: Option<f64>,
     /// Print one JSON document.
     #[arg(long)]
     json: bool,
@@ -47,6 +57,9 @@ pub struct ImportArguments {
 struct Import {
     manifest: PathBuf,
     guesses: Vec<GuessRow>,
+    /// Files of which stretches were taken.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    logs: Vec<SearchedLog>,
     trials: Vec<String>,
     errors: Vec<String>,
     /// By law, what the trials do not have; laws for which nothing is missing are empty.
@@ -87,18 +100,29 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
     }
     let promised = PromisedFile::new(&out, &arguments.files)?;
     let files: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
-    let proposal = propose(&arguments.ship, &files).map_err(all)?;
+    let mut proposal = propose(&arguments.ship, &files).map_err(all)?;
+    let logs = searched(&mut proposal.manifest, folder(&arguments.files), length(zoo, arguments));
     let text = proposal.manifest.to_yaml().map_err(|error| about_file(&out, error))?;
     promised.write(text.as_bytes())?;
     let guesses = proposal.guesses.into_iter().map(GuessRow::from).collect();
-    let import = checked(zoo, out, guesses)?;
+    let import = Import { logs, ..checked(zoo, out, guesses)? };
     output::print(arguments.json, &import, || text_of(&import))?;
     if import.errors.is_empty() { Ok(()) } else { Err(Failure::Told) }
 }
 
 fn beside(files: &[PathBuf]) -> PathBuf {
-    let folder = files.first().and_then(|file| file.parent()).unwrap_or_else(|| Path::new(""));
-    folder.join("trials.yaml")
+    folder(files).join("trials.yaml")
+}
+
+fn folder(files: &[PathBuf]) -> &Path {
+    files.first().and_then(|file| file.parent()).unwrap_or_else(|| Path::new(""))
+}
+
+/// The ship's length: as given, or of the ship of that name in the zoo.
+fn length(zoo: &Zoo, arguments: &ImportArguments) -> Option<f64> {
+    let known =
+        || zoo.vessel(&arguments.ship)?.particulars.get("lpp_m").map(|quantity| quantity.value);
+    arguments.length.or_else(known)
 }
 
 fn all(errors: Vec<FileError>) -> Failure {
@@ -128,7 +152,7 @@ fn checked(zoo: &Zoo, manifest: PathBuf, guesses: Vec<GuessRow>) -> Result<Impor
     }
     let needs = trials.first().map_or_else(Vec::new, |trial| needs(zoo, trial));
     let names = trials.into_iter().map(|trial| trial.name).collect();
-    Ok(Import { manifest, guesses, trials: names, errors, lacking: needs })
+    Ok(Import { manifest, guesses, logs: Vec::new(), trials: names, errors, lacking: needs })
 }
 
 fn needs(zoo: &Zoo, trial: &Trial) -> Vec<LawNeeds> {
@@ -149,10 +173,11 @@ fn text_of(import: &Import) -> String {
         let cells = cells.into_iter().cloned();
         table.row(cells.chain([look.to_owned(), guess.why.clone()]));
     }
+    let logs: String = import.logs.iter().map(ToString::to_string).collect();
     let errors: String = import.errors.iter().map(|error| format!("error: {error}\n")).collect();
     let trials = count(import.trials.len(), "trial");
     format!(
-        "{table}\n{errors}{}\n{}: {trials} read\n",
+        "{table}\n{logs}{errors}{}\n{}: {trials} read\n",
         laws(&import.lacking),
         import.manifest.display()
     )

@@ -38,7 +38,8 @@ pub struct ManoeuvreArguments {
     /// A zigzag: rudder and change of heading, such as 20/20; repeatable.
     #[arg(long, value_name = "DEG/DEG", value_parser = zigzag_deg, allow_hyphen_values = true, conflicts_with = "all")]
     zigzag: Vec<(f64, f64)>,
-    /// Turns at 35 deg, zigzags 10/10 and 20/20 to both sides, initial turning, IMO criteria: the default.
+    /// Turns at 35 deg, zigzags 10/10 and 20/20 to both sides, initial turning, IMO criteria: the
+    /// default.
     #[arg(long)]
     all: bool,
     /// Approach speed; the model's own where absent.
@@ -59,7 +60,8 @@ pub struct ManoeuvreArguments {
     /// Integration method.
     #[arg(long, value_enum, default_value_t)]
     method: Integration,
-    /// Draw so many models from the posterior of a refined one, for confidence bands of the standard manoeuvres.
+    /// Draw so many models from the posterior of a refined one, for confidence bands of the
+    /// standard manoeuvres.
     #[arg(long, value_name = "SAMPLES", conflicts_with_all = ["turn", "zigzag"])]
     bands: Option<usize>,
     /// What these draws follow from.
@@ -163,7 +165,7 @@ fn drawn(
     law: &Law,
 ) -> Result<Option<Bands>, Failure> {
     let Some(samples) = manoeuvre.bands else { return Ok(None) };
-    let sampling = Sampling { samples, seed: manoeuvre.seed };
+    let sampling = Sampling { samples, seed: manoeuvre.seed, within_steps: true };
     sampling.check().map_err(|message| Failure::Call(format!("--bands: {message}")))?;
     let none = || {
         let why = "only a refined model whose coefficients are those that were estimated has one";

@@ -45,20 +45,21 @@ pub struct RefineArguments {
     /// The ship: a name in the zoo or a vessel file.
     #[arg(long)]
     ship: String,
-    /// The source: a model's name or file, or `auto`, which it is where absent. Without --law, --method, settings and
-    /// constraints, `auto` tries every eligible source, and none, under every law measured; with one of them, it is the most
-    /// similar eligible ship of the zoo.
+    /// The source: a model's name or file, or `auto`, which it is where absent. Without --law,
+    /// --method, settings and constraints, `auto` tries every eligible source, and none, under
+    /// every law measured; with one of them, it is the most similar eligible ship of the zoo.
     #[arg(long, value_name = "MODEL|auto")]
     source: Option<String>,
-    /// The law to fit, such as `low-speed`. With a source of another law, what that says over the states of the trials and of
-    /// its standard manoeuvres becomes the prior; without --source, the trials alone make the model.
+    /// The law to fit, such as `low-speed`. With a source of another law, what that says over the
+    /// states of the trials and of its standard manoeuvres becomes the prior; without --source, the
+    /// trials alone make the model.
     #[arg(long, value_name = "LAW")]
     law: Option<String>,
     /// Trial manifests, CSV or Parquet files.
     #[arg(long, value_name = "TRIALS", num_args = 1.., required = true)]
     trials: Vec<PathBuf>,
-    /// The estimator: `published` (one-step differences), `weak` (integrated over windows), `trajectory` (simulated
-    /// segments) or `cma-es` (simulated segments by a random search, slow).
+    /// The estimator: `published` (one-step differences), `weak` (integrated over windows),
+    /// `trajectory` (simulated segments) or `cma-es` (simulated segments by a random search, slow).
     #[arg(long, value_name = "NAME", value_parser = method)]
     method: Option<Method>,
     /// Settings of the refinement (YAML); the flags below win over it.
@@ -67,10 +68,12 @@ pub struct RefineArguments {
     /// Trials kept out of fit and choice altogether, to be judged on.
     #[arg(long, value_name = "NAME", num_args = 1..)]
     held_out: Vec<String>,
-    /// Start simulations of manoeuvres left out anew every so often; where absent, every ten ship lengths sailed.
+    /// Start simulations of manoeuvres left out anew every so often; where absent, every ten ship
+    /// lengths sailed.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     restart_s: Option<f64>,
-    /// Time over which accelerations are differenced; where absent, that of sailing a tenth of its length.
+    /// Time over which accelerations are differenced; where absent, that of sailing a tenth of its
+    /// length.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     difference_s: Option<f64>,
     /// What the refined model must keep to; bounds of single coefficients go into the settings.

@@ -30,7 +30,8 @@ pub fn settings_file(path: &Path) -> Result<Settings, Failure> {
     Ok(settings)
 }
 
-/// The trials to be kept out by their names: each may be given as the trial is called or as its file is written.
+/// The trials to be kept out by their names: each may be given as the trial is called or as its
+/// file is written.
 ///
 /// # Errors
 /// Lists the trials there are.
@@ -76,8 +77,13 @@ mod tests {
     #[test]
     fn trials_kept_out_are_known_by_name_and_file() {
         let trial = sistership_model::trial::Trial { name: "b.csv".into(), ..Default::default() };
-        let read =
-            [ReadTrial { trial, file: "a/b.csv".into(), path: "a/b.csv".into(), ship: None }];
+        let read = [ReadTrial {
+            trial,
+            file: "a/b.csv".into(),
+            path: "a/b.csv".into(),
+            is_stretch: false,
+            ship: None,
+        }];
         let found = |name: &str| held_out(&[name.to_owned()], &read);
         assert_eq!(found("b.csv").unwrap(), ["b.csv"]);
         assert_eq!(found("a/b.csv").unwrap(), ["b.csv"]);

@@ -1,4 +1,5 @@
-//! What the commands that run until they are told to stop have in common: how they hold their jobs, and how they stop.
+//! What the commands that run until they are told to stop have in common: how they hold their jobs,
+//! and how they stop.
 
 use std::time::Duration;
 
@@ -22,10 +23,12 @@ const MOST_MEMORY_MB: u64 = 1 << 20;
 /// How workers hold their jobs.
 #[derive(Debug, Args)]
 pub struct LeaseArguments {
-    /// Seconds without a sign of life after which a job goes to another worker, 0.5 to 3600 [default: 15].
+    /// Seconds without a sign of life after which a job goes to another worker, 0.5 to 3600
+    /// [default: 15].
     #[arg(long, value_name = "SECONDS", env = "SISTERSHIP_LEASE_S")]
     lease_s: Option<f64>,
-    /// Seconds for which a job under way goes on when the process is told to stop, 0 to 86400 [default: 20].
+    /// Seconds for which a job under way goes on when the process is told to stop, 0 to 86400
+    /// [default: 20].
     #[arg(long, value_name = "SECONDS", env = "SISTERSHIP_DRAIN_S")]
     drain_s: Option<f64>,
 }
@@ -90,11 +93,12 @@ pub fn workers(given: Option<u16>, file: &ConfigFile, least: u16) -> Result<usiz
     }
 }
 
-/// Runs something until a signal tells it to stop, then `stop`s it; has ended within `bound` after the signal.
+/// Runs something until a signal tells it to stop, then `stop`s it; has ended within `bound` after
+/// the signal.
 ///
-/// The signal is heard on a thread of its own, and that thread ends the process (exit status 1) when `bound` has passed or a
-/// second signal comes: whatever holds the other threads holds neither. Computations that nothing waits for any more end
-/// with the process.
+/// The signal is heard on a thread of its own, and that thread ends the process (exit status 1)
+/// when `bound` has passed or a second signal comes: whatever holds the other threads holds
+/// neither. Computations that nothing waits for any more end with the process.
 ///
 /// # Errors
 /// What `start` says, or that signals cannot be heard.

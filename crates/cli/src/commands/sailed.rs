@@ -5,7 +5,8 @@ use sistership_dynamics::manoeuvre::{
 };
 use sistership_dynamics::{Ship, Trajectory};
 
-/// Sails the turns and zigzags asked for, or the standard set where none is; what diverges is a failure in the result.
+/// Sails the turns and zigzags asked for, or the standard set where none is; what diverges is a
+/// failure in the result.
 pub fn sail(
     ship: &Ship,
     turns: &[f64],

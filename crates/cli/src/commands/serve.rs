@@ -40,13 +40,15 @@ pub struct ServeArguments {
     /// File that holds the API key; wins over SISTERSHIP_API_KEY.
     #[arg(long, value_name = "FILE", env = "SISTERSHIP_API_KEY_FILE")]
     api_key_file: Option<PathBuf>,
-    /// Jobs worked on at a time, 0 to 64; 0 leaves them to other processes on the same database (`sistership work`) [default: 1].
+    /// Jobs worked on at a time, 0 to 64; 0 leaves them to other processes on the same database
+    /// (`sistership work`) [default: 1].
     #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS")]
     workers: Option<u16>,
     /// Work on no jobs, whatever --workers says.
     #[arg(long)]
     no_worker: bool,
-    /// Memory that requests may take together, MB, 32 or more; what does not fit waits or is refused [default: 256].
+    /// Memory that requests may take together, MB, 32 or more; what does not fit waits or is
+    /// refused [default: 256].
     #[arg(long, value_name = "MB", env = "SISTERSHIP_REQUEST_MEMORY_MB")]
     request_memory_mb: Option<u64>,
     /// Memory that jobs may take together, MB, 32 or more [default: 1024].
@@ -55,7 +57,8 @@ pub struct ServeArguments {
     /// Connections at a time, 16 to 65536 [default: 1024].
     #[arg(long, value_name = "N", env = "SISTERSHIP_CONNECTIONS")]
     connections: Option<u32>,
-    /// Connections of one address at a time; all of them where the clients are behind a proxy [default: half of the connections].
+    /// Connections of one address at a time; all of them where the clients are behind a proxy
+    /// [default: half of the connections].
     #[arg(long, value_name = "N", env = "SISTERSHIP_CONNECTIONS_PER_ADDRESS")]
     connections_per_address: Option<u32>,
     #[command(flatten)]
@@ -129,7 +132,8 @@ fn limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, Failure> 
     Ok(limits)
 }
 
-/// The key from the flag's file, from the environment, or from the file that the configuration names.
+/// The key from the flag's file, from the environment, or from the file that the configuration
+/// names.
 fn api_key(serve: &ServeArguments, file: &ConfigFile) -> Result<Option<String>, Failure> {
     if let Some(path) = &serve.api_key_file {
         return key_of(path).map(Some);

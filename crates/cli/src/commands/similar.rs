@@ -18,7 +18,8 @@ Examples:
   sistership similar my-ship.yaml --vector kanazawa-2023 --json
   sistership similar esso-osaka-3m --trials zigzags.yaml";
 
-/// Rank the ships of the zoo by similarity to a ship, and say which may be the source of a refinement.
+/// Rank the ships of the zoo by similarity to a ship, and say which may be the source of a
+/// refinement.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct SimilarArguments {

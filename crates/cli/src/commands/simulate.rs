@@ -64,7 +64,8 @@ struct SimulateDocument<'a> {
 /// Runs the command.
 ///
 /// # Errors
-/// The model or a trial is refused, a channel is missing, or a simulation leaves the physical range.
+/// The model or a trial is refused, a channel is missing, or a simulation leaves the physical
+/// range.
 pub fn run(zoo: &Zoo, simulate: &SimulateArguments) -> Result<(), Failure> {
     let (model, law) = named::model(zoo, &simulate.model)?;
     let read = trials::read(&simulate.trials)?;

@@ -27,7 +27,8 @@ pub struct SimulatedTrial {
     pub file: String,
     /// From the first to the last sample, s.
     pub duration_s: f64,
-    /// Root mean square errors by channel, SI; null where the trial lacks the channel or the simulation diverged.
+    /// Root mean square errors by channel, SI; null where the trial lacks the channel or the
+    /// simulation diverged.
     pub rmse: BTreeMap<&'static str, Option<f64>>,
     /// Standardised mean squared error; null where the simulation diverged.
     pub standardised_mse: Option<f64>,
@@ -72,7 +73,8 @@ impl TrialSimulator<'_> {
         Ok((self.errors(&read.file, &read.trial, &run), run))
     }
 
-    /// The ship with a range that covers the speeds of a trial; its water depth is an input that the replay reads.
+    /// The ship with a range that covers the speeds of a trial; its water depth is an input that
+    /// the replay reads.
     fn ship(&self, trial: &Trial) -> Result<Ship, Failure> {
         let mut ship = commands::ready(self.model, self.law)?;
         let speeds = trial.channel(Channel::U).into_iter().flatten();

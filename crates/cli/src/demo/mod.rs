@@ -1,4 +1,5 @@
-//! `sistership demo`: the whole loop through the real server, on an embedded database, ending in a report.
+//! `sistership demo`: the whole loop through the real server, on an embedded database, ending in a
+//! report.
 
 mod client;
 pub mod sea_trials;
@@ -24,7 +25,8 @@ use crate::output;
 /// The ship of the demonstration: particulars only, nobody has a model of it.
 const SHIP: &str = include_str!("ship.yaml");
 const NAME: &str = "northern-star";
-/// Who sails the trials: a ship with roll, propeller and rudder of their own, by a law that no other ship of the zoo has.
+/// Who sails the trials: a ship with roll, propeller and rudder of their own, by a law that no
+/// other ship of the zoo has.
 const TRUTH: &str = "sr108";
 const SPEED_M_S: f64 = 10.47;
 const SEED: u64 = 1;

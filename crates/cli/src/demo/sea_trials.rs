@@ -1,4 +1,5 @@
-//! Sea trials of a ship that only the sea knows: sailed by its own law, recorded with the noise of real instruments.
+//! Sea trials of a ship that only the sea knows: sailed by its own law, recorded with the noise of
+//! real instruments.
 
 use std::collections::BTreeMap;
 
@@ -47,7 +48,8 @@ const EXECUTE_S: f64 = 60.0;
 /// One sample of so many steps of 0.1 s: 2 Hz.
 const STRIDE: usize = 5;
 
-/// What is recorded, and the standard deviation of its instrument: differential GNSS, Doppler log, gyros, feedback units.
+/// What is recorded, and the standard deviation of its instrument: differential GNSS, Doppler log,
+/// gyros, feedback units.
 const INSTRUMENTS: [(Channel, usize, f64); 9] = [
     (Channel::X, at::X, 0.3),
     (Channel::Y, at::Y, 0.3),

@@ -1,7 +1,8 @@
 //! What effects would explain of trials that do not have them.
 //!
-//! The discrepancy is a random motion; what a law cannot follow is not, and an effect that resembles it would be believed.
-//! How often that is so is measured: on each clean trial, under coefficients fitted on the others, and on all together.
+//! The discrepancy is a random motion; what a law cannot follow is not, and an effect that
+//! resembles it would be believed. How often that is so is measured: on each clean trial, under
+//! coefficients fitted on the others, and on all together.
 
 use std::collections::BTreeMap;
 

@@ -19,17 +19,20 @@ use trial_information::TrialInformation;
 use super::calibrated_model::CalibratedModel;
 use super::coefficient_prior::CoefficientPrior;
 use super::evidence::not_positive;
-use super::linearised_trials::LinearisedTrials;
+use super::linearised_trials::{LinearisedTrials, length_time_s};
 use super::nuisance::{Terms, lacked, learned, prior, regressor};
 use super::remainder::largest;
 use super::setup::listed;
 use super::thresholds::THRESHOLDS;
+use super::{Request, Settings};
 use crate::residual::{Columns, Discrepancies, EffectCandidate, Instrument, Noise, Nuisance};
 use sistership_estimate::refine::RefineError;
 
-/// What the trials that a model was fitted on leave open, to be kept with it. Terms of the library's grammar that the model
-/// lacks are learned too, as far as those trials show them; and what effects would explain of these trials, which do not
-/// have them, is kept to judge them by later.
+/// What the trials that a model was fitted on leave open, to be kept with it. Terms of the
+/// library's grammar that the model lacks are learned too, as far as those trials show them; and
+/// what effects would explain of these trials, which do not have them, is kept to judge them by
+/// later. No two samples that are used are closer than `least_step` times `L/U`, or the diagnosis'
+/// own.
 ///
 /// # Errors
 /// Names the channel that a trial lacks, or says that the information is not positive.
@@ -38,24 +41,29 @@ pub fn calibrate(
     law: &Law,
     effects: &[Arc<Effect>],
     trials: &[&Trial],
+    least_step: Option<f64>,
 ) -> Result<Uncertainty, RefineError> {
     let model = &Model { uncertainty: None, ..model.clone() };
-    let first = by_instruments(model, law, effects, trials)?;
-    let systematic_errors = systematic_errors::of(model, &first, law, effects, trials)?;
+    let seconds = |step: f64| Ok::<f64, RefineError>(step * length_time_s(model, trials)?);
+    let settings = Settings {
+        least_step_s: least_step.map(seconds).transpose()?,
+        least_evidence: THRESHOLDS.calibration.systematic_error_evidence,
+        ..Settings::default()
+    };
+    let request = Request { model, law, effects, trials, settings: &settings };
+    let first = by_instruments(&request)?;
+    let systematic_errors = systematic_errors::of(&request, &first)?;
     if systematic_errors.is_empty() {
         return Ok(first);
     }
     let erring = Uncertainty { systematic_errors, instruments: BTreeMap::new(), ..first };
-    by_instruments(&Model { uncertainty: Some(erring), ..model.clone() }, law, effects, trials)
+    let model = &Model { uncertainty: Some(erring), ..model.clone() };
+    by_instruments(&Request { model, ..request })
 }
 
 /// What the trials leave open where instruments err as the model's uncertainty says, or not at all.
-fn by_instruments(
-    model: &Model,
-    law: &Law,
-    effects: &[Arc<Effect>],
-    trials: &[&Trial],
-) -> Result<Uncertainty, RefineError> {
+fn by_instruments(request: &Request<'_>) -> Result<Uncertainty, RefineError> {
+    let Request { model, law, effects, trials, settings } = *request;
     let terms = learned(model, law, effects, trials);
     let extra: Vec<_> = terms
         .iter()
@@ -63,14 +71,14 @@ fn by_instruments(
         .collect();
     let nuisance = Columns::nuisance(model, law, &extra);
     let prior = prior(model, &nuisance, &terms, THRESHOLDS.calibration.prior_share);
-    let (shift, rough) = first_shift(model, law, &terms, &nuisance, &prior, trials)?;
+    let (shift, rough) = first_shift(request, &terms, &nuisance, &prior)?;
     let candidates = listed(model, law, effects, trials);
     let columns = Columns { nuisance: nuisance.clone(), candidates: candidates.clone() };
     let mut workspace = LinearisedTrials::new(
         &CalibratedModel::new(model, law, &terms, &nuisance, &shift)?,
         columns,
         trials,
-        None,
+        settings.least_step_s,
     )?;
     let fixed = prior.from(&shift);
     let scatter = workspace.noise.clone();
@@ -96,18 +104,18 @@ fn by_instruments(
     })
 }
 
-/// What the trials teach by one linearisation about the model as it is, and the discrepancies by that.
+/// What the trials teach by one linearisation about the model as it is, and the discrepancies by
+/// that.
 fn first_shift(
-    model: &Model,
-    law: &Law,
+    request: &Request<'_>,
     terms: &Terms,
     nuisance: &[Nuisance],
     prior: &CoefficientPrior,
-    trials: &[&Trial],
 ) -> Result<(Vec<f64>, NoiseModel), RefineError> {
+    let Request { model, law, trials, settings, .. } = *request;
     let columns = Columns { nuisance: nuisance.to_vec(), candidates: Vec::new() };
     let as_it_is = CalibratedModel::new(model, law, terms, nuisance, &vec![0.0; nuisance.len()])?;
-    let mut workspace = LinearisedTrials::new(&as_it_is, columns, trials, None)?;
+    let mut workspace = LinearisedTrials::new(&as_it_is, columns, trials, settings.least_step_s)?;
     let scatter = noise_model::most_probable(&workspace, prior, None)?;
     workspace.noise.clone_from(&scatter.noise);
     let grams = workspace.each(&scatter.discrepancies);

@@ -66,8 +66,9 @@ impl NoiseModel {
     }
 }
 
-/// The most probable scatter, coefficients and scatter being fitted in turn. Each trial is judged by coefficients fitted on
-/// the others, so that what these have followed by chance is not taken for knowledge.
+/// The most probable scatter, coefficients and scatter being fitted in turn. Each trial is judged
+/// by coefficients fitted on the others, so that what these have followed by chance is not taken
+/// for knowledge.
 ///
 /// # Errors
 /// Says that the information is not positive.

@@ -25,8 +25,8 @@ impl TrialInformation<'_> {
         known
     }
 
-    /// What coefficients fitted on the others leave of each trial and its own would explain, by what chance would: one where
-    /// the law is right, more where it only seems to be known so well.
+    /// What coefficients fitted on the others leave of each trial and its own would explain, by
+    /// what chance would: one where the law is right, more where it only seems to be known so well.
     pub fn scatter(&self) -> f64 {
         let size = self.fixed.weighted_mean.len();
         let mut sum = (0.0, 0.0);

@@ -1,4 +1,5 @@
-//! What the columns stand for: coefficients that may move, and parameters of effects that may be missing.
+//! What the columns stand for: coefficients that may move, and parameters of effects that may be
+//! missing.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -24,8 +25,9 @@ pub enum NuisanceKind {
     Own(Axis),
     /// A term that the model lacks, on its axis: its coefficient may differ from zero.
     Lacked(Axis),
-    /// An entry of the virtual mass matrix, by the root of the product of its diagonal entries. Only trials without an
-    /// effect whose size is known could tell mass and forces apart: what they leave open is the size of every force.
+    /// An entry of the virtual mass matrix, by the root of the product of its diagonal entries.
+    /// Only trials without an effect whose size is known could tell mass and forces apart: what
+    /// they leave open is the size of every force.
     Mass(Axis, Axis),
 }
 
@@ -105,7 +107,8 @@ impl Columns {
         start..start + self.candidates[candidate].at.len()
     }
 
-    /// The places of the columns in which a candidate shows: its own, or that of the coefficient which it frees.
+    /// The places of the columns in which a candidate shows: its own, or that of the coefficient
+    /// which it frees.
     pub fn showing(&self, candidate: &EffectCandidate) -> Vec<usize> {
         let own = self.candidates.iter().position(|known| known.key() == candidate.key());
         let freed =
@@ -113,7 +116,8 @@ impl Columns {
         own.map_or_else(|| freed().into_iter().collect(), |own| self.places(own).collect())
     }
 
-    /// The coefficients that a model has, terms of a grammar that it lacks, and the virtual masses of its law.
+    /// The coefficients that a model has, terms of a grammar that it lacks, and the virtual masses
+    /// of its law.
     pub fn nuisance(model: &Model, law: &Law, extra: &[(String, Axis)]) -> Vec<Nuisance> {
         let axis = |name: &str| law.term(name).ok().map(|(axis, _)| axis);
         let own = model

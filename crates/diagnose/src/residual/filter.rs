@@ -1,8 +1,8 @@
 //! The Kalman filter along a linearised trial, with every column in lockstep.
 //!
-//! Readings are taken one channel after the other (their noises are independent), so that each prediction error is
-//! divided by its own predicted deviation and nothing is inverted: Maybeck 1979, Stochastic models, estimation and
-//! control, vol. 1, section 7.
+//! Readings are taken one channel after the other (their noises are independent), so that each
+//! prediction error is divided by its own predicted deviation and nothing is inverted: Maybeck
+//! 1979, Stochastic models, estimation and control, vol. 1, section 7.
 
 use sistership_model::uncertainty::Discrepancy;
 
@@ -21,8 +21,9 @@ pub fn filter(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies)
     Gram::of_rows(rows, 1 + linear.sizes.columns, log_variance)
 }
 
-/// Prediction errors of parts with all columns in one ([`Linearised::along`]), divided by the predicted deviation, sample
-/// after sample and in each by recorded channel; and the sum of the logarithms of the predicted variances.
+/// Prediction errors of parts with all columns in one ([`Linearised::along`]), divided by the
+/// predicted deviation, sample after sample and in each by recorded channel; and the sum of the
+/// logarithms of the predicted variances.
 pub fn errors(
     linear: &Linearised,
     noise: &Noise,
@@ -32,13 +33,15 @@ pub fn errors(
     (rows.chunks_exact(2).map(|row| row[0] - row[1]).collect(), log_variance)
 }
 
-/// What the one column of [`Linearised::along`] takes from the prediction errors, in the same order.
+/// What the one column of [`Linearised::along`] takes from the prediction errors, in the same
+/// order.
 pub fn responses(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) -> Vec<f64> {
     whitened(linear, noise, discrepancies).0.chunks_exact(2).map(|row| row[1]).collect()
 }
 
-/// Prediction errors and what each column adds to them, divided by the predicted deviation: for each sample and recorded
-/// channel a row, the residual first; and the sum of the logarithms of the predicted variances.
+/// Prediction errors and what each column adds to them, divided by the predicted deviation: for
+/// each sample and recorded channel a row, the residual first; and the sum of the logarithms of the
+/// predicted variances.
 pub fn whitened(
     linear: &Linearised,
     noise: &Noise,
@@ -205,7 +208,8 @@ impl FilterState {
         }
     }
 
-    /// Adds to the predicted deviations (in `room`) what the model moves more than the path, and what columns move.
+    /// Adds to the predicted deviations (in `room`) what the model moves more than the path, and
+    /// what columns move.
     #[inline(always)]
     fn force(&mut self, linear: &Linearised, k: usize, dt: f64) {
         let (n, axes, columns) = (linear.sizes.states, linear.sizes.axes, linear.sizes.columns);
@@ -226,8 +230,8 @@ impl FilterState {
         }
     }
 
-    /// Takes the readings of a sample; `take` is given each prediction error (the residual's, then minus each column's) and
-    /// its variance.
+    /// Takes the readings of a sample; `take` is given each prediction error (the residual's, then
+    /// minus each column's) and its variance.
     #[inline(always)]
     pub fn update(
         &mut self,

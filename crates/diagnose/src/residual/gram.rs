@@ -1,8 +1,10 @@
-//! Sums over samples of the products of whitened columns: all that fitting and comparing hypotheses need.
+//! Sums over samples of the products of whitened columns: all that fitting and comparing hypotheses
+//! need.
 
 use nalgebra::DMatrix;
 
-/// Products of whitened residual (place 0) and columns (from 1), with what the likelihood needs besides.
+/// Products of whitened residual (place 0) and columns (from 1), with what the likelihood needs
+/// besides.
 #[derive(Debug, Clone)]
 pub struct Gram {
     /// Symmetric; place 0 is the residual.
@@ -24,7 +26,8 @@ impl Gram {
         Self::of_columns(&DMatrix::from_vec(width, count, rows), log_variance)
     }
 
-    /// Of whitened readings as columns, the residual first in each. Only one triangle is computed, in blocks.
+    /// Of whitened readings as columns, the residual first in each. Only one triangle is computed,
+    /// in blocks.
     pub fn of_columns(readings: &DMatrix<f64>, log_variance: f64) -> Self {
         let (width, count) = readings.shape();
         let mut products = DMatrix::zeros(width, width);
@@ -43,7 +46,8 @@ impl Gram {
         Self { products: DMatrix::zeros(width, width), log_variance: 0.0, count: 0 }
     }
 
-    /// Some of the columns (the residual first, then these places of columns), perhaps one more than once.
+    /// Some of the columns (the residual first, then these places of columns), perhaps one more
+    /// than once.
     pub fn select(&self, columns: &[usize]) -> Self {
         let place = |i: usize| if i == 0 { 0 } else { 1 + columns[i - 1] };
         let size = 1 + columns.len();

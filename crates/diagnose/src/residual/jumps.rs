@@ -1,5 +1,6 @@
-//! Where a recording jumps: a position or a heading steps although the velocities do not. No ship did that. A receiver changed
-//! its satellites, or a compass was disturbed, and velocities that were derived from it are wrong nearby.
+//! Where a recording jumps: a position or a heading steps although the velocities do not. No ship
+//! did that. A receiver changed its satellites, or a compass was disturbed, and velocities that
+//! were derived from it are wrong nearby.
 
 use std::ops::Range;
 

@@ -1,7 +1,8 @@
 //! How improbable parts of trials are, several of them in lockstep.
 //!
-//! The same filter as [`super::filter`] with one column, a part in each lane: the numbers are those of
-//! one part after the other to the last bit, for every lane does the same operations in the same order.
+//! The same filter as [`super::filter`] with one column, a part in each lane: the numbers are those
+//! of one part after the other to the last bit, for every lane does the same operations in the same
+//! order.
 
 use rayon::prelude::*;
 use sistership_dynamics::wide::{Wide, widest};
@@ -15,8 +16,8 @@ const LANES: usize = 8;
 
 type Lane = [f64; LANES];
 
-/// Minus twice the logarithm of the likelihood of each part, less a constant; parts have all columns in
-/// one ([`Linearised::along`]).
+/// Minus twice the logarithm of the likelihood of each part, less a constant; parts have all
+/// columns in one ([`Linearised::along`]).
 pub fn deviances(parts: &[&Linearised], noise: &Noise, discrepancies: &Discrepancies) -> Vec<f64> {
     let mut order: Vec<usize> = (0..parts.len()).collect();
     // Parts of one shape go together, those of like length first.

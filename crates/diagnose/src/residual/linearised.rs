@@ -2,8 +2,8 @@
 
 use sistership_model::trial::Channel;
 
-/// One gap-free part of a trial: how deviations from the recorded path go from sample to sample, and how they are read.
-/// All matrices row by row, sample after sample.
+/// One gap-free part of a trial: how deviations from the recorded path go from sample to sample,
+/// and how they are read. All matrices row by row, sample after sample.
 #[derive(Debug, Clone)]
 pub struct Linearised {
     /// Samples of the trial.
@@ -20,7 +20,8 @@ pub struct Linearised {
     pub defect: Vec<f64>,
     /// Readings less what instruments would say on the path, by recorded channel.
     pub reading: Vec<f64>,
-    /// What instruments say more by deviations: channels by states; absent where they say the state itself.
+    /// What instruments say more by deviations: channels by states; absent where they say the state
+    /// itself.
     pub by_state: Option<Vec<f64>>,
     /// What instruments say more by those columns that act on them: channels by `measured` columns.
     pub by_column: Vec<f64>,
@@ -54,7 +55,8 @@ pub struct Sizes {
 }
 
 impl Linearised {
-    /// This one's path and columns through the filter of another: how deviations go on and are read is the other's.
+    /// This one's path and columns through the filter of another: how deviations go on and are read
+    /// is the other's.
     pub fn by_filter_of(self, other: &Self) -> Self {
         Self { jacobian: other.jacobian.clone(), by_state: other.by_state.clone(), ..self }
     }

@@ -275,7 +275,8 @@ impl<'a> PathLineariser<'a> {
         }
     }
 
-    /// Parameters whose derivative at their absence says nothing, and lags: what they change at a distance, by it.
+    /// Parameters whose derivative at their absence says nothing, and lags: what they change at a
+    /// distance, by it.
     fn secants(&mut self, k: usize, inverse: &DMatrix<f64>, instant: &mut SampleLinearisation) {
         let first = STATES.len() + self.system.inputs.len();
         let parameters = self

@@ -1,14 +1,16 @@
-//! The residual of a model on trials: what her instruments say, less what the model and all earlier readings predict.
+//! The residual of a model on trials: what her instruments say, less what the model and all earlier
+//! readings predict.
 //!
-//! A Kalman filter runs along each trial. Its state is the ship's (velocities, heading, position, roll), each of whose
-//! accelerations also carries a random discrepancy of exponential autocorrelation; the instruments read it with white
-//! noise. The one-step prediction errors, divided by their predicted scatter, are white where the model holds. Nothing is
-//! differentiated, equations of motion and kinematic identities count by what they really say, whatever a trial does not
-//! record is left out, and a sensor that disagrees with the others is seen as one.
+//! A Kalman filter runs along each trial. Its state is the ship's (velocities, heading, position,
+//! roll), each of whose accelerations also carries a random discrepancy of exponential
+//! autocorrelation; the instruments read it with white noise. The one-step prediction errors,
+//! divided by their predicted scatter, are white where the model holds. Nothing is differentiated,
+//! equations of motion and kinematic identities count by what they really say, whatever a trial
+//! does not record is left out, and a sensor that disagrees with the others is seen as one.
 //!
-//! The model is linearised along the recorded motion, so that every coefficient and every parameter of an effect is one
-//! more column that passes the same filter ([`Columns`]): sums over samples of their products ([`Gram`]) are all that
-//! fitting, evidence and comparison need.
+//! The model is linearised along the recorded motion, so that every coefficient and every parameter
+//! of an effect is one more column that passes the same filter ([`Columns`]): sums over samples of
+//! their products ([`Gram`]) are all that fitting, evidence and comparison need.
 
 mod columns;
 mod filter;

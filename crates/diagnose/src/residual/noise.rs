@@ -12,13 +12,14 @@ use super::thresholds::RESIDUAL;
 pub struct Instrument {
     /// Standard deviation of the noise of its readings, SI.
     pub deviation: f64,
-    /// Root of the density of what its rate and the velocities disagree by, by the root of a second: headings and positions
-    /// do not quite follow from velocities.
+    /// Root of the density of what its rate and the velocities disagree by, by the root of a
+    /// second: headings and positions do not quite follow from velocities.
     pub drift: f64,
 }
 
 impl Instrument {
-    /// One of which nothing is known but its scatter: the drift keeps a filter from trusting arithmetic.
+    /// One of which nothing is known but its scatter: the drift keeps a filter from trusting
+    /// arithmetic.
     pub fn of_scatter(deviation: f64) -> Self {
         Self { deviation, drift: RESIDUAL.drift * deviation }
     }
@@ -27,12 +28,13 @@ impl Instrument {
 /// Instruments by channel.
 pub type Noise = BTreeMap<Channel, Instrument>;
 
-/// The binomial coefficients of sixth differences; the variance of white noise grows by the sum of their squares.
+/// The binomial coefficients of sixth differences; the variance of white noise grows by the sum of
+/// their squares.
 const SIXTH: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
 const GAIN: f64 = 924.0;
 
-/// What sixth differences leave of a ship's motion is far below the noise of any instrument; their median is not moved
-/// by the few samples at which something jumps.
+/// What sixth differences leave of a ship's motion is far below the noise of any instrument; their
+/// median is not moved by the few samples at which something jumps.
 pub fn scatter(records: &[TrialReadings<'_>], channel: Channel, every: usize) -> Option<f64> {
     let mut magnitudes: Vec<f64> =
         records.iter().flat_map(|record| differences(record, channel, every)).collect();
@@ -45,8 +47,9 @@ pub fn scatter(records: &[TrialReadings<'_>], channel: Channel, every: usize) ->
     Some(*median / 0.6745 / GAIN.sqrt())
 }
 
-/// Of samples, how many go with one reading: noise must be new in each. Where readings were smoothed, or waves move the
-/// ship, velocities wander from sample to sample, and what is smooth would be taken for an acceleration.
+/// Of samples, how many go with one reading: noise must be new in each. Where readings were
+/// smoothed, or waves move the ship, velocities wander from sample to sample, and what is smooth
+/// would be taken for an acceleration.
 pub fn sparseness(records: &[TrialReadings<'_>]) -> usize {
     let grows = |channel: Channel| {
         let pair = scatter(records, channel, 1).zip(scatter(records, channel, RESIDUAL.sparse));
@@ -66,8 +69,8 @@ fn differences(record: &TrialReadings<'_>, channel: Channel, every: usize) -> Ve
     record.parts.iter().flat_map(of).collect()
 }
 
-/// The least noise that is believed of an instrument: noise-free simulations are trials too. By the length of the ship
-/// and her speed.
+/// The least noise that is believed of an instrument: noise-free simulations are trials too. By the
+/// length of the ship and her speed.
 pub fn floor(channel: Channel, lpp_m: f64, speed_m_s: f64) -> f64 {
     let rate = speed_m_s / lpp_m;
     match channel {

@@ -18,7 +18,8 @@ pub(super) struct RecordedPath<'a> {
     /// What the instruments said, by channel of the system; absent where nothing was recorded.
     pub said: Vec<Option<&'a [f64]>>,
     pub inputs: Vec<Vec<f64>>,
-    /// For each parameter that acts through a lag: the delayed input with a slightly (or first) longer lag, and by how much.
+    /// For each parameter that acts through a lag: the delayed input with a slightly (or first)
+    /// longer lag, and by how much.
     pub delayed: Vec<Option<(Vec<f64>, f64)>>,
 }
 
@@ -52,7 +53,8 @@ impl<'a> RecordedPath<'a> {
         Ok(path)
     }
 
-    /// Takes from the path what instruments say beside it: the model is linearised along where the ship was.
+    /// Takes from the path what instruments say beside it: the model is linearised along where the
+    /// ship was.
     fn correct(&mut self, system: &ResidualSystem) {
         if system.says.is_empty() {
             return;

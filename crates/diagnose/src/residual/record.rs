@@ -18,8 +18,8 @@ pub struct TrialReadings<'a> {
 }
 
 impl<'a> TrialReadings<'a> {
-    /// Of every so many samples one is used, such that no interval is shorter than `least_step_s`; none within `settles_s` of
-    /// a jump.
+    /// Of every so many samples one is used, such that no interval is shorter than `least_step_s`;
+    /// none within `settles_s` of a jump.
     pub fn new(trial: &'a Trial, least_step_s: f64, settles_s: f64) -> Self {
         let stride = (least_step_s / trial.interval_s().max(1e-9) + 1e-9).floor().max(1.0) as usize;
         let parts = undisturbed(trial, settles_s)
@@ -76,8 +76,8 @@ impl<'a> TrialReadings<'a> {
     }
 }
 
-/// A parabola through each five samples, read in their middle: white noise loses half its variance, a motion of more than
-/// some ten samples nothing. The model is linearised along it.
+/// A parabola through each five samples, read in their middle: white noise loses half its variance,
+/// a motion of more than some ten samples nothing. The model is linearised along it.
 pub fn smoothed(values: &[f64]) -> Vec<f64> {
     let fitted = |w: &[f64]| (17.0 * w[2] + 12.0 * (w[1] + w[3]) - 3.0 * (w[0] + w[4])) / 35.0;
     let mut out = values.to_vec();

@@ -1,5 +1,5 @@
-//! What must be added to the accelerations, as all readings together say: the discrepancy by a fixed-interval smoother
-//! (Rauch, Tung and Striebel 1965, AIAA J 3, 1445-1450).
+//! What must be added to the accelerations, as all readings together say: the discrepancy by a
+//! fixed-interval smoother (Rauch, Tung and Striebel 1965, AIAA J 3, 1445-1450).
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 

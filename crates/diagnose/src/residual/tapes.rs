@@ -40,7 +40,8 @@ pub struct ResidualSystem {
     pub(super) lagged: Vec<Option<usize>>,
 }
 
-/// Forces, masses and kinematics; after states and inputs the tape takes the parameters of the candidates.
+/// Forces, masses and kinematics; after states and inputs the tape takes the parameters of the
+/// candidates.
 #[derive(Debug, Clone)]
 pub(super) struct Motion {
     pub tape: Tape,
@@ -53,8 +54,9 @@ pub(super) struct Motion {
 }
 
 impl ResidualSystem {
-    /// For trials whose velocities are of a frame. The law is in the dress of the effects that the model carries, and keeps
-    /// the regressors of nuisance terms that the model lacks ([`lacked_name`]), in N (N m) per unit.
+    /// For trials whose velocities are of a frame. The law is in the dress of the effects that the
+    /// model carries, and keeps the regressors of nuisance terms that the model lacks
+    /// ([`lacked_name`]), in N (N m) per unit.
     ///
     /// # Errors
     /// Names what the model does not give.
@@ -166,7 +168,8 @@ impl SystemBuilder<'_> {
         Ok((lowering.finish(), says))
     }
 
-    /// A parameter acts through a lag where its form delays an input by a time constant that is that parameter.
+    /// A parameter acts through a lag where its form delays an input by a time constant that is
+    /// that parameter.
     fn lagged(&self) -> Vec<Option<usize>> {
         let mut lagged = Vec::new();
         for candidate in &self.columns.candidates {

@@ -78,7 +78,8 @@ pub(crate) struct SeriesThresholds {
     /// `z_b`: half width of the band by the smoother's standard deviation, dimensionless. Source:
     /// derived: 95 % of a normal distribution.
     pub band: f64,
-    /// The variables that are asked. Source: chosen, the recorded channels that a residual may follow.
+    /// The variables that are asked. Source: chosen, the recorded channels that a residual may
+    /// follow.
     pub variables: [Channel; 8],
 }
 

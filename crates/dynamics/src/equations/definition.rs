@@ -95,8 +95,8 @@ impl<'a> EquationsOfMotion<'a> {
         if self.law.has_roll() { &AXES } else { &AXES[..3] }
     }
 
-    /// Places in the state vector of the states that move: velocities in the order of the axes, then
-    /// attitude and position.
+    /// Places in the state vector of the states that move: velocities in the order of the axes,
+    /// then attitude and position.
     pub fn states(&self) -> &'static [usize] {
         if self.law.has_roll() { &ROLL } else { &PLANE }
     }

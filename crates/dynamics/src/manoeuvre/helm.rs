@@ -43,7 +43,8 @@ pub struct Sailed {
     pub reversals_s: Vec<f64>,
 }
 
-/// Sails manoeuvres in lockstep, each by a sister with her own coefficients ([`Ship::sister`]); none for a ship with hers.
+/// Sails manoeuvres in lockstep, each by a sister with her own coefficients ([`Ship::sister`]);
+/// none for a ship with hers.
 ///
 /// Each fails by itself where the motion leaves the physical range, and says when and why.
 pub fn sail_together(
@@ -110,7 +111,8 @@ impl Helm {
         (self.goes_on || !self.is_done(state)).then_some(held)
     }
 
-    /// A zigzag reverses the rudder at the first step at which the heading has reached the switching angle.
+    /// A zigzag reverses the rudder at the first step at which the heading has reached the
+    /// switching angle.
     fn rudder_deg(&mut self, since_s: f64, state: &StateVector) -> f64 {
         let rudder = match self.manoeuvre {
             Manoeuvre::Turn { rudder } => return rudder,

@@ -24,14 +24,15 @@ pub struct ManoeuvreSettings {
     pub n_rps: Option<f64>,
     /// Longest duration, s; enough for a turn of three times round where absent.
     pub duration_s: Option<f64>,
-    /// Step, s; where absent 0.1 s, or a fiftieth of the time in which a small ship sails her length.
+    /// Step, s; where absent 0.1 s, or a fiftieth of the time in which a small ship sails her
+    /// length.
     pub step_s: Option<f64>,
     /// Integration method.
     pub method: Method,
     /// Run straight for this long before the rudder is executed, s.
     pub run_in_s: f64,
-    /// Whether a zigzag's rudder is reversed when the heading is reached within a step, and not at the
-    /// step's end: what coarse steps need for overshoots that differ little.
+    /// Whether a zigzag's rudder is reversed when the heading is reached within a step, and not at
+    /// the step's end: what coarse steps need for overshoots that differ little.
     pub reversals_within_steps: bool,
 }
 

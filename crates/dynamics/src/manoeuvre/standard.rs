@@ -39,7 +39,8 @@ pub struct StandardManoeuvres {
     pub turns: Vec<TurningMetrics>,
     /// Zigzags 10/10 and 20/20 to both sides.
     pub zigzags: Vec<ZigzagMetrics>,
-    /// Distance sailed until the heading has changed by 10 deg with 10 deg of rudder, the worse side, m.
+    /// Distance sailed until the heading has changed by 10 deg with 10 deg of rudder, the worse
+    /// side, m.
     pub initial_turning_m: Option<f64>,
     /// IMO criteria.
     pub imo: Vec<Criterion>,
@@ -84,7 +85,8 @@ fn nothing_sailed() -> Stopped {
     Stopped { t_s: 0.0, reason: "nothing was sailed".into() }
 }
 
-/// What the standard manoeuvres are: hard turns, zigzags, and turns that begin with 10 deg of rudder.
+/// What the standard manoeuvres are: hard turns, zigzags, and turns that begin with 10 deg of
+/// rudder.
 pub const STANDARD: [Manoeuvre; 8] = [
     Manoeuvre::Turn { rudder: 35.0 },
     Manoeuvre::Turn { rudder: -35.0 },
@@ -104,7 +106,8 @@ pub fn standard(ship: &Ship, settings: &ManoeuvreSettings) -> StandardManoeuvres
     standard_of_sisters(ship, &[&[]], settings).remove(0)
 }
 
-/// Sails the standard manoeuvres with every sister in lockstep, each given by her coefficients, as [`standard`] would.
+/// Sails the standard manoeuvres with every sister in lockstep, each given by her coefficients, as
+/// [`standard`] would.
 pub fn standard_of_sisters(
     ship: &Ship,
     sisters: &[&[f64]],

@@ -26,8 +26,9 @@ impl Criterion {
     }
 }
 
-/// The criteria: turning at the largest rudder (35 deg), initial turning at 10 deg, zigzags 10/10 and 20/20. Where both
-/// sides were sailed the worse counts. `speed_m_s` is the test speed, `lpp_m` the length.
+/// The criteria: turning at the largest rudder (35 deg), initial turning at 10 deg, zigzags 10/10
+/// and 20/20. Where both sides were sailed the worse counts. `speed_m_s` is the test speed, `lpp_m`
+/// the length.
 pub fn criteria(
     lpp_m: f64,
     speed_m_s: f64,
@@ -80,7 +81,8 @@ fn worst(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     values?.into_iter().reduce(f64::max)
 }
 
-/// First overshoot of the 10/10 zigzag: 10 deg below L/V = 10 s, 20 deg from 30 s, 5 + (L/V)/2 between.
+/// First overshoot of the 10/10 zigzag: 10 deg below L/V = 10 s, 20 deg from 30 s, 5 + (L/V)/2
+/// between.
 fn first_limit(time_s: f64) -> f64 {
     if time_s < 10.0 {
         10.0
@@ -91,7 +93,8 @@ fn first_limit(time_s: f64) -> f64 {
     }
 }
 
-/// Second overshoot of the 10/10 zigzag: 25 deg below L/V = 10 s, 40 deg from 30 s, 17.5 + 0.75 (L/V) between.
+/// Second overshoot of the 10/10 zigzag: 25 deg below L/V = 10 s, 40 deg from 30 s, 17.5 + 0.75
+/// (L/V) between.
 fn second_limit(time_s: f64) -> f64 {
     if time_s < 10.0 {
         25.0

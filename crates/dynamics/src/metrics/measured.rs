@@ -1,4 +1,5 @@
-//! The same figures from a recorded trial: what was sailed is told by its name, when the rudder moved by its record.
+//! The same figures from a recorded trial: what was sailed is told by its name, when the rudder
+//! moved by its record.
 
 use serde::{Deserialize, Serialize};
 use sistership_model::trial::{Channel, Trial};
@@ -31,7 +32,8 @@ enum Kind {
 }
 
 impl Recognised {
-    /// Reads `turn ...` or `zigzag R/H` in the trial's manoeuvre; `None` for anything else, or where the rudder never moves.
+    /// Reads `turn ...` or `zigzag R/H` in the trial's manoeuvre; `None` for anything else, or
+    /// where the rudder never moves.
     pub fn of(trial: &Trial) -> Option<Self> {
         let name = trial.manoeuvre.as_deref()?.to_lowercase();
         let delta = trial.channel(Channel::Delta)?;
@@ -91,7 +93,8 @@ pub fn recorded_track(trial: &Trial) -> Option<Trajectory> {
     Some(track)
 }
 
-/// The sample at which the rudder leaves its first angle by a tenth of its range and by more than half a degree.
+/// The sample at which the rudder leaves its first angle by a tenth of its range and by more than
+/// half a degree.
 fn execution(delta: &[f64]) -> Option<usize> {
     let rest = *delta.first()?;
     let range = delta.iter().map(|value| (value - rest).abs()).fold(0.0, f64::max);

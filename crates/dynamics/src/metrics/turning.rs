@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::state::{StateVector, Trajectory, at, speed};
 
-/// A turning circle, measured from the execution of the rudder. Lengths are positive towards the side of the turn.
+/// A turning circle, measured from the execution of the rudder. Lengths are positive towards the
+/// side of the turn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TurningMetrics {
     /// Ordered rudder angle, deg, positive to starboard.
@@ -49,8 +50,8 @@ impl TurningMetrics {
     }
 }
 
-/// The distance sailed until the heading has changed by `change_deg`, m; with 10 deg of rudder and of change, IMO's
-/// initial turning ability.
+/// The distance sailed until the heading has changed by `change_deg`, m; with 10 deg of rudder and
+/// of change, IMO's initial turning ability.
 pub fn initial_turning_distance(
     track: &Trajectory,
     rudder_deg: f64,
@@ -93,7 +94,8 @@ impl View {
         self.side * (y * cos - x * sin)
     }
 
-    /// The sample after which the heading has changed by an angle, and how far between the two samples.
+    /// The sample after which the heading has changed by an angle, and how far between the two
+    /// samples.
     fn crossing(&self, track: &Trajectory, change_deg: f64) -> Option<(usize, f64)> {
         let turned = |state: &StateVector| {
             self.side * (state[at::PSI] - self.origin[at::PSI]) - change_deg.to_radians()

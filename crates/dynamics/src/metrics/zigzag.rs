@@ -41,7 +41,8 @@ impl ZigzagMetrics {
             let swing: Vec<f64> =
                 window.map(|(_, state)| side * (state[at::PSI] - start).to_degrees()).collect();
             let peak = swing.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            // The peak must lie inside: a heading still growing at the end of the record has no overshoot yet.
+            // The peak must lie inside: a heading still growing at the end of the record has no
+            // overshoot yet.
             (swing.len() > 2 && swing.last().is_some_and(|last| *last < peak))
                 .then_some(peak - switch_deg)
         };

@@ -52,15 +52,16 @@ impl<const N: usize> Work<N> {
 }
 
 impl Plant {
-    /// The rate of change of the state; that of the rudder is left at zero, the steering gear's business.
+    /// The rate of change of the state; that of the rudder is left at zero, the steering gear's
+    /// business.
     pub fn rate(&self, state: &StateVector, inputs: &Inputs, work: &mut Work) -> StateVector {
         let states = std::array::from_fn(|place| [state[place]]);
         let inputs = inputs.map(|value| [value]);
         lane_of(&self.rates(&states, &inputs, work), 0)
     }
 
-    /// The rates of change of the states of several ships, each with her own inputs and open coefficients. `inputs` has at
-    /// least as many as the law takes.
+    /// The rates of change of the states of several ships, each with her own inputs and open
+    /// coefficients. `inputs` has at least as many as the law takes.
     pub fn rates<const N: usize>(
         &self,
         states: &States<N>,

@@ -35,7 +35,8 @@ impl<'a> Record<'a> {
                 .channel(channel)
                 .ok_or_else(|| MissingChannel { trial: trial.name.clone(), channel })
         };
-        // Velocities must be known at the start of a part; heading and position start at zero where they are not.
+        // Velocities must be known at the start of a part; heading and position start at zero where
+        // they are not.
         for (channel, _) in &RECORDED[..3] {
             need(*channel)?;
         }
@@ -76,7 +77,8 @@ impl<'a> Record<'a> {
     }
 }
 
-/// An input of the law on a trial: time, its channel, the trial's constant depth, or the law's default.
+/// An input of the law on a trial: time, its channel, the trial's constant depth, or the law's
+/// default.
 fn input<'a>(
     trial: &'a Trial,
     name: &str,

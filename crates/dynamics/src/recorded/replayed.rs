@@ -8,7 +8,8 @@ use crate::state::Trajectory;
 /// A simulated trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replay {
-    /// Simulated states at the recorded times, as the instruments would say them; after a divergence, until then only.
+    /// Simulated states at the recorded times, as the instruments would say them; after a
+    /// divergence, until then only.
     pub track: Trajectory,
     /// Sample of the trial to which each state belongs.
     pub samples: Vec<usize>,

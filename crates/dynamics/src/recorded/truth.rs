@@ -7,8 +7,9 @@ use crate::plant::Work;
 use crate::ship::Ship;
 use crate::state::RECORDED;
 
-/// A trial with the errors undone that a ship's instruments are known to have. Rates of change, which a late instrument needs,
-/// are those of the ship at the recorded state: they are not rougher than the record.
+/// A trial with the errors undone that a ship's instruments are known to have. Rates of change,
+/// which a late instrument needs, are those of the ship at the recorded state: they are not rougher
+/// than the record.
 ///
 /// # Errors
 /// As [`replay`](super::replay).

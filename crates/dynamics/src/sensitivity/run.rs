@@ -13,7 +13,8 @@ use crate::wide::{Wide, widest};
 pub struct SensitiveRun<'a, const L: usize> {
     system: &'a SensitiveSystem,
     states: Vec<Lanes<L>>,
-    /// By lane, state and column: coefficients, then the starting state; after them room to read on.
+    /// By lane, state and column: coefficients, then the starting state; after them room to read
+    /// on.
     sensitivities: Vec<f64>,
     columns: usize,
     stages: [Stage<L>; 4],
@@ -75,7 +76,8 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         }
     }
 
-    /// Starts a lane anew at a state: sensitivities to coefficients are zero, those to the starting state one.
+    /// Starts a lane anew at a state: sensitivities to coefficients are zero, those to the starting
+    /// state one.
     pub fn start(&mut self, lane: usize, state: &StateVector) {
         let order = self.states.len();
         for (row, &place) in self.system.states.iter().enumerate() {
@@ -99,8 +101,8 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         state
     }
 
-    /// The sensitivities of one state of a lane: to each coefficient, then to each state at the start. `row` counts as
-    /// [`SensitiveSystem::states`] does.
+    /// The sensitivities of one state of a lane: to each coefficient, then to each state at the
+    /// start. `row` counts as [`SensitiveSystem::states`] does.
     pub fn sensitivity(&self, lane: usize, row: usize) -> &[f64] {
         let start = (lane * self.states.len() + row) * self.columns;
         &self.sensitivities[start..start + self.columns]

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-/// Columns that are done at once: what is replaced, and what is added, must be so many longer than it is.
+/// Columns that are done at once: what is replaced, and what is added, must be so many longer than
+/// it is.
 pub(super) const WIDE: usize = 16;
 /// Most rows that are replaced: eight states move.
 const ROWS: usize = 8;
@@ -31,7 +32,8 @@ impl Sums {
         }
     }
 
-    /// Replaces some columns of rows that lie one after the other, `stride` apart, by the sums of them and of `others`.
+    /// Replaces some columns of rows that lie one after the other, `stride` apart, by the sums of
+    /// them and of `others`.
     #[inline(always)]
     pub fn replace(
         &self,
@@ -53,7 +55,8 @@ impl Sums {
             for row in 0..self.rows {
                 let mut sum = self.sum(row, &block);
                 for k in 0..WIDE {
-                    // What stands beyond the columns is written as it was: that is faster than to write less.
+                    // What stands beyond the columns is written as it was: that is faster than to
+                    // write less.
                     sum[k] = if k < width { sum[k] } else { block[row][k] };
                 }
                 own[row * stride + from..][..WIDE].copy_from_slice(&sum);

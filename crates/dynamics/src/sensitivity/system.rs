@@ -48,7 +48,8 @@ impl SensitiveSystem {
     /// For every coefficient that a model has.
     ///
     /// # Errors
-    /// Names what the model does not give; refuses masses that change with the motion, and effects on instruments or lags.
+    /// Names what the model does not give; refuses masses that change with the motion, and effects
+    /// on instruments or lags.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
         let equations = EquationsOfMotion::new(model, law)?;
         check_inputs(equations.law())?;
@@ -72,7 +73,8 @@ impl SensitiveSystem {
         &self.input_names
     }
 
-    /// Accelerations per force on each axis, row by row over the axes, for a lane of an evaluated tape.
+    /// Accelerations per force on each axis, row by row over the axes, for a lane of an evaluated
+    /// tape.
     pub(super) fn mobility<const L: usize>(&self, work: &[Lanes<L>], out: &mut [Lanes<L>]) {
         if let Some(constant) = &self.constant {
             out.iter_mut().zip(constant).for_each(|(out, value)| *out = [*value; L]);

@@ -16,7 +16,8 @@ fn ready(name: &str) -> (Model, Law) {
     (model, (**law).clone())
 }
 
-/// The inputs of a law while the rudder swings; other inputs at their defaults, revolutions those of the approach.
+/// The inputs of a law while the rudder swings; other inputs at their defaults, revolutions those
+/// of the approach.
 fn inputs(names: &[String], law: &Law, model: &Model, t_s: f64) -> Vec<f64> {
     let value = |name: &String| match name.as_str() {
         "delta" => 0.2 * (0.05 * t_s).sin(),

@@ -1,13 +1,13 @@
-//! Derivatives as further operations on the same tape: what they share with the values is computed once, and all of it
-//! runs for a block of lanes.
+//! Derivatives as further operations on the same tape: what they share with the values is computed
+//! once, and all of it runs for a block of lanes.
 
 use sistership_model::formula::{Comparison, Function};
 
 use super::{Op, Slot, TapeBuilder};
 
 impl TapeBuilder<'_> {
-    /// Adds the derivative of an output by an input; `None` where it is zero whatever the inputs are. At a kink, the
-    /// derivative towards larger arguments.
+    /// Adds the derivative of an output by an input; `None` where it is zero whatever the inputs
+    /// are. At a kink, the derivative towards larger arguments.
     pub fn derivative(&mut self, output: usize, input: &str) -> Option<usize> {
         let input = self.inputs.iter().position(|known| known == input)? as u32;
         let slot = self.slope_of(self.outputs[output], input);
@@ -18,8 +18,8 @@ impl TapeBuilder<'_> {
         Some(self.outputs.len() - 1)
     }
 
-    /// The slot of a slot's derivative. A sum of thousands of terms is as deep: those of the operands are made before, in the
-    /// order in which recursion would make them.
+    /// The slot of a slot's derivative. A sum of thousands of terms is as deep: those of the
+    /// operands are made before, in the order in which recursion would make them.
     fn slope_of(&mut self, slot: Slot, input: u32) -> Slot {
         if let Some(&known) = self.slopes.get(&(slot, input)) {
             return known;
@@ -220,7 +220,8 @@ mod tests {
         }
     }
 
-    /// The force of an axis with as many terms as a model may have coefficients, and more, on half of what a thread has.
+    /// The force of an axis with as many terms as a model may have coefficients, and more, on half
+    /// of what a thread has.
     #[test]
     fn a_long_sum_is_lowered_and_differentiated_on_a_small_stack() {
         use sistership_model::formula::Expr;

@@ -6,8 +6,8 @@ use super::{Instruction, Lanes, Op, Slot, Slots, Tape};
 use crate::wide::{Wide, widest};
 
 impl Tape {
-    /// Evaluates every operation; `work` is reused from call to call and holds the results afterwards.
-    /// `inputs[i]` are the lanes of input `i`.
+    /// Evaluates every operation; `work` is reused from call to call and holds the results
+    /// afterwards. `inputs[i]` are the lanes of input `i`.
     pub fn run<const N: usize>(&self, inputs: &[Lanes<N>], work: &mut Slots<N>) {
         work.resize(self.len());
         widest(Evaluation { tape: self, inputs, work });
@@ -109,7 +109,8 @@ pub(super) fn zip<const N: usize>(
     out
 }
 
-/// A loop, since `map` on arrays is not always inlined, and a call a lane costs more than what it calculates.
+/// A loop, since `map` on arrays is not always inlined, and a call a lane costs more than what it
+/// calculates.
 #[inline(always)]
 pub(super) fn each<const N: usize>(a: &Lanes<N>, f: impl Fn(f64) -> f64) -> Lanes<N> {
     let mut out = [0.0; N];
@@ -119,7 +120,8 @@ pub(super) fn each<const N: usize>(a: &Lanes<N>, f: impl Fn(f64) -> f64) -> Lane
     out
 }
 
-/// The cheap functions are spelled out, so that their loops over the lanes become vector instructions.
+/// The cheap functions are spelled out, so that their loops over the lanes become vector
+/// instructions.
 #[inline(always)]
 fn call<const N: usize>(function: Function, a: &Lanes<N>) -> Lanes<N> {
     match function {

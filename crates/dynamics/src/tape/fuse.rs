@@ -1,5 +1,5 @@
-//! Sums of products as single instructions: a polynomial's are most of what a law calculates, and one after the other they
-//! wait for each other's results.
+//! Sums of products as single instructions: a polynomial's are most of what a law calculates, and
+//! one after the other they wait for each other's results.
 
 use super::instruction::{Instruction, Tape};
 use super::listing::Listing;
@@ -59,7 +59,8 @@ impl<'a> Fusing<'a> {
         }
     }
 
-    /// A product that an addition reads, and nothing else, becomes a term; so does the sum before it.
+    /// A product that an addition reads, and nothing else, becomes a term; so does the sum before
+    /// it.
     fn look(&mut self, index: usize) {
         let Op::Add(a, b) = self.ops[index] else { return };
         let Some((before, product, factors)) = self.product(a, b).or_else(|| self.product(b, a))

@@ -1,11 +1,13 @@
-//! What depends on some inputs alone, taken out of a listing: a sine of a recorded rudder is the same for every model.
+//! What depends on some inputs alone, taken out of a listing: a sine of a recorded rudder is the
+//! same for every model.
 
 use super::listing::Listing;
 use super::{Op, Slot};
 
 impl Listing {
-    /// Splits off what calls functions or divides and depends on no input before `from`: the first calculates that from all
-    /// inputs, and the second, whose outputs are those of this one, takes the results after its inputs.
+    /// Splits off what calls functions or divides and depends on no input before `from`: the first
+    /// calculates that from all inputs, and the second, whose outputs are those of this one, takes
+    /// the results after its inputs.
     pub fn hoisted(mut self, from: usize) -> (Self, Self) {
         let ahead = self.ahead(from);
         let front = Self { outputs: ahead.clone(), ..self.clone() }.needed();

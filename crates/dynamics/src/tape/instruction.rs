@@ -7,7 +7,8 @@ use super::{Op, Slot};
 pub(crate) enum Instruction {
     /// One operation.
     Op(Op),
-    /// A result, and added to it one after the other the products of the [terms](Tape) from a place to another.
+    /// A result, and added to it one after the other the products of the [terms](Tape) from a place
+    /// to another.
     Products { first: Slot, from: u32, to: u32 },
 }
 

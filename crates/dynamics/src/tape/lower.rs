@@ -89,8 +89,8 @@ impl<'a> TapeBuilder<'a> {
         self.listing().needed().fused()
     }
 
-    /// In two parts: what calls functions or divides and depends on no input before `from`, and the rest, which takes the results
-    /// of the first after its inputs.
+    /// In two parts: what calls functions or divides and depends on no input before `from`, and the
+    /// rest, which takes the results of the first after its inputs.
     pub fn finish_hoisted(self, from: usize) -> (Tape, Tape) {
         let (front, rest) = self.listing().needed().hoisted(from);
         (front.fused(), rest.fused())
@@ -100,7 +100,8 @@ impl<'a> TapeBuilder<'a> {
         Listing { inputs: self.inputs, ops: self.ops, outputs: self.outputs }
     }
 
-    /// Sums lean to the left, that of an axis by thousands of terms: they are followed in a loop, all else by recursion.
+    /// Sums lean to the left, that of an axis by thousands of terms: they are followed in a loop,
+    /// all else by recursion.
     fn lower(&mut self, expr: &Expr) -> Result<Slot, Unbound> {
         let (mut first, mut after) = (expr, Vec::new());
         while let Some((a, b, make)) = sides(first) {

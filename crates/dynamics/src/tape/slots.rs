@@ -8,8 +8,9 @@ const LINE: usize = 64;
 /// Values of one quantity in every lane.
 pub type Lanes<const N: usize> = [f64; N];
 
-/// The result of each operation of a tape in every lane, kept from one evaluation to the next. They begin where a line of the
-/// cache does: an operation that reads what one just before it wrote over the end of a line waits many times as long.
+/// The result of each operation of a tape in every lane, kept from one evaluation to the next. They
+/// begin where a line of the cache does: an operation that reads what one just before it wrote over
+/// the end of a line waits many times as long.
 #[derive(Debug, Clone, Default)]
 pub struct Slots<const N: usize> {
     room: Vec<f64>,

@@ -6,8 +6,8 @@ use super::eval::{each, zip};
 use super::{Instruction, Lanes, Op, Slot, Slots, Tape};
 
 impl Tape {
-    /// Directional derivatives at the point that `primal` holds after a [`Tape::run`] of one lane: lane `k` of
-    /// `seeds[i]` is the change of input `i` in direction `k`.
+    /// Directional derivatives at the point that `primal` holds after a [`Tape::run`] of one lane:
+    /// lane `k` of `seeds[i]` is the change of input `i` in direction `k`.
     pub fn tangents<const N: usize>(
         &self,
         primal: &[Lanes<1>],
@@ -38,8 +38,8 @@ impl Tape {
         (0..self.len()).filter(|&index| depends[index]).map(|index| index as Slot).collect()
     }
 
-    /// As [`Tape::tangents`], where nothing but what [`depends`](Tape::depending_on) on the seeded inputs is visited; `work`
-    /// is kept from call to call for the same inputs, empty at first.
+    /// As [`Tape::tangents`], where nothing but what [`depends`](Tape::depending_on) on the seeded
+    /// inputs is visited; `work` is kept from call to call for the same inputs, empty at first.
     pub fn tangents_among<const N: usize>(
         &self,
         depending: &[Slot],
@@ -141,7 +141,8 @@ fn tangent<const N: usize>(
     }
 }
 
-/// The derivative of a function of one argument; at a kink, that of the side towards larger arguments.
+/// The derivative of a function of one argument; at a kink, that of the side towards larger
+/// arguments.
 fn slope(function: Function, x: f64) -> f64 {
     match function {
         Function::Sin => x.cos(),

@@ -1,4 +1,5 @@
-//! All fits of a model's coefficients that are worth weighing, each with what it gives where a trial is left out.
+//! All fits of a model's coefficients that are worth weighing, each with what it gives where a
+//! trial is left out.
 
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
@@ -26,7 +27,8 @@ pub struct Alternative {
     pub without: Vec<Model>,
 }
 
-/// The fits of a model's coefficients, with its own as the source, whose simulations of trials left out do not stop.
+/// The fits of a model's coefficients, with its own as the source, whose simulations of trials left
+/// out do not stop.
 ///
 /// # Errors
 /// Says which trial or channel is at fault.

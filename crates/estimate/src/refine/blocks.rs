@@ -1,9 +1,11 @@
-//! How a law becomes linear regressions: groups of axes that the mass matrix couples, and what each regression solves.
+//! How a law becomes linear regressions: groups of axes that the mass matrix couples, and what each
+//! regression solves.
 //!
-//! As published, accelerations are regressed: `acceleration = M^-1 (scale sum(c_i phi_i) + rest)`. Axes that the mass
-//! matrix couples have their coefficients mixed by `M^-1`; where they have the same terms, one common set of regressors
-//! serves all of them and the coefficients are unmixed afterwards (Kanazawa 2023, Eqs. 5.9-5.10). Where their terms
-//! differ, the force on each axis is regressed instead.
+//! As published, accelerations are regressed: `acceleration = M^-1 (scale sum(c_i phi_i) + rest)`.
+//! Axes that the mass matrix couples have their coefficients mixed by `M^-1`; where they have the
+//! same terms, one common set of regressors serves all of them and the coefficients are unmixed
+//! afterwards (Kanazawa 2023, Eqs. 5.9-5.10). Where their terms differ, the force on each axis is
+//! regressed instead.
 
 use std::borrow::Cow;
 
@@ -26,9 +28,11 @@ pub struct Block {
     pub names: Vec<Vec<String>>,
     /// Regressors without scale, in the order of the names.
     pub(crate) terms: Vec<usize>,
-    /// How many times the precision of each one's prior is the common one: more than 1 for deviations of submodels.
+    /// How many times the precision of each one's prior is the common one: more than 1 for
+    /// deviations of submodels.
     pub shrinkage: Vec<f64>,
-    /// Joint precision of the prior at strength 1, in the units of the regressors, where a source has earned one.
+    /// Joint precision of the prior at strength 1, in the units of the regressors, where a source
+    /// has earned one.
     pub(crate) precision: Option<DMatrix<f64>>,
     /// Scale by axis.
     pub(crate) scales: Vec<usize>,
@@ -62,7 +66,8 @@ impl Blocks {
         if let Some(blocks) = Self::build(&equations, true)? {
             return Ok(blocks);
         }
-        // Mass or scales change during a run: there is no constant mixture to undo, so forces are regressed.
+        // Mass or scales change during a run: there is no constant mixture to undo, so forces are
+        // regressed.
         let forces = Self::build(&equations, false)?;
         forces.ok_or_else(|| RefineError::Law(format!("law `{}` cannot be regressed", law.name)))
     }
@@ -189,7 +194,8 @@ impl Block {
     }
 }
 
-/// `M^-1 diag(scale_k / scale_0)`; the scale of the first axis stays in the regressors. `None` where it is not constant.
+/// `M^-1 diag(scale_k / scale_0)`; the scale of the first axis stays in the regressors. `None`
+/// where it is not constant.
 fn mixing(block: &Block, tape: &Tape, inputs: usize) -> Option<DMatrix<f64>> {
     let q = block.axes.len();
     if q == 1 {

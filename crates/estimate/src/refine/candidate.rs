@@ -73,7 +73,8 @@ pub(super) struct CandidateFit {
 }
 
 impl CandidateFit {
-    /// Of a solution whose trials left out were simulated; `size` is the number of its coefficients.
+    /// Of a solution whose trials left out were simulated; `size` is the number of its
+    /// coefficients.
     pub fn new(
         problem: &Problem<'_>,
         (step, lambda_min): (String, Option<f64>),
@@ -108,9 +109,10 @@ impl CandidateFit {
     }
 }
 
-/// The option with the least error; an earlier one wins unless a later one is better by more than one per cent, and against
-/// one with fewer coefficients by more than two standard errors of the difference over the trials (Breiman et al. 1984,
-/// Classification and regression trees, section 3.4.3).
+/// The option with the least error; an earlier one wins unless a later one is better by more than
+/// one per cent, and against one with fewer coefficients by more than two standard errors of the
+/// difference over the trials (Breiman et al. 1984, Classification and regression trees, section
+/// 3.4.3).
 pub(super) fn best(options: &[CandidateFit]) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
     for (index, error) in

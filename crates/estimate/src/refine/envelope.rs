@@ -1,5 +1,5 @@
-//! Where a model will be used, and what its source says there: the states of the trials, and those of the source's own
-//! standard manoeuvres.
+//! Where a model will be used, and what its source says there: the states of the trials, and those
+//! of the source's own standard manoeuvres.
 
 use std::collections::BTreeMap;
 
@@ -60,7 +60,8 @@ impl SampleGroup {
 }
 
 impl OperatingEnvelope {
-    /// Of a source that is carried over to the ship, by its own law. The trials together weigh as much as the manoeuvres.
+    /// Of a source that is carried over to the ship, by its own law. The trials together weigh as
+    /// much as the manoeuvres.
     ///
     /// # Errors
     /// The source cannot sail, or the trials are nowhere that it knows.
@@ -95,7 +96,8 @@ impl OperatingEnvelope {
         })
     }
 
-    /// The statistics of what the source says, as a law's regressions see it: by group and regression.
+    /// The statistics of what the source says, as a law's regressions see it: by group and
+    /// regression.
     ///
     /// # Errors
     /// The law takes something that the trials do not record.
@@ -224,7 +226,8 @@ impl<'a> SourceResponse<'a> {
     }
 }
 
-/// Speed and direction of a wind that the ship does not feel: of the air's forces the source is not asked. Heading is north.
+/// Speed and direction of a wind that the ship does not feel: of the air's forces the source is not
+/// asked. Heading is north.
 fn calm(state: &StateVector) -> (f64, f64) {
     let (u, v) = (state[at::U], state[at::V]);
     (u.hypot(v), (-v).atan2(-u))

@@ -35,7 +35,8 @@ impl Equations {
         }
     }
 
-    /// Whether a row is a difference of samples; then the mean of all rows says nothing of the coefficients.
+    /// Whether a row is a difference of samples; then the mean of all rows says nothing of the
+    /// coefficients.
     pub fn are_differences(self) -> bool {
         matches!(self, Self::Differences(_))
     }
@@ -48,7 +49,8 @@ impl Equations {
         }
     }
 
-    /// The fewest samples for so many coefficients an axis. Windows are far less dependent than differences a sample.
+    /// The fewest samples for so many coefficients an axis. Windows are far less dependent than
+    /// differences a sample.
     pub fn least_samples(self, widest: f64) -> f64 {
         if self.are_differences() { SELECTION.samples_a_coefficient * widest } else { widest }
     }

@@ -14,16 +14,19 @@ use sistership_model::quantity::Quantity;
 pub enum Family {
     /// The source's own.
     Own,
-    /// The source's own without those that break the symmetry of port and starboard, such as `Y_0` or `N_uu`.
+    /// The source's own without those that break the symmetry of port and starboard, such as `Y_0`
+    /// or `N_uu`.
     Symmetric,
-    /// Symmetric, and every product of up to three of `u`, `v`, `r`, `phi` and `delta` that the law's factors can spell and
-    /// that has the symmetry of its axis; roll rate and the moment of heel linearly.
+    /// Symmetric, and every product of up to three of `u`, `v`, `r`, `phi` and `delta` that the
+    /// law's factors can spell and that has the symmetry of its axis; roll rate and the moment of
+    /// heel linearly.
     ThirdOrder,
 }
 
 /// Factors that may enter powers and products on an axis.
 const PRODUCTS: [&str; 4] = ["v", "r", "phi", "delta"];
-/// Factors that enter linearly only, where the law has them: they say the same as `phi` does, or too little.
+/// Factors that enter linearly only, where the law has them: they say the same as `phi` does, or
+/// too little.
 const LINEAR: [&str; 2] = ["p", "heel"];
 
 impl Family {
@@ -39,7 +42,8 @@ impl Family {
         }
     }
 
-    /// A model with these terms; what it did not have starts at zero. `None` where that changes nothing.
+    /// A model with these terms; what it did not have starts at zero. `None` where that changes
+    /// nothing.
     pub fn of(self, model: &Model, law: &Law) -> Option<Model> {
         let mut changed = model.clone();
         if self != Self::Own {
@@ -58,7 +62,8 @@ fn added() -> Quantity {
     Quantity::new(0.0, "term added")
 }
 
-/// Whether mirrored motion would not give mirrored forces: the count of odd factors does not fit the axis.
+/// Whether mirrored motion would not give mirrored forces: the count of odd factors does not fit
+/// the axis.
 fn breaks_symmetry(name: &str, law: &Law) -> bool {
     let Ok(parsed) = CoefficientName::parse(name, &law.extra_factors()) else { return false };
     let odd = |symbol: &str| !matches!(symbol, "u" | "n" | "cosdelta");

@@ -1,4 +1,5 @@
-//! The end of a refinement: the best candidate whose model also sails the standard manoeuvres is taken.
+//! The end of a refinement: the best candidate whose model also sails the standard manoeuvres is
+//! taken.
 
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres};
 use sistership_dynamics::validity::covered;
@@ -33,7 +34,8 @@ enum CandidateRefusal {
 /// What a candidate gives with its standard manoeuvres, or why it may not be taken.
 type Accepted = Result<(Option<Fit>, StandardManoeuvres), CandidateRefusal>;
 
-/// Takes the best candidate whose model, fitted on all trials, also sails the standard manoeuvres that the source sails.
+/// Takes the best candidate whose model, fitted on all trials, also sails the standard manoeuvres
+/// that the source sails.
 ///
 /// # Errors
 /// No candidate's simulations go on to their end, or it was cancelled.
@@ -74,7 +76,8 @@ pub(super) fn finish(
     }
 }
 
-/// What a candidate gives on all trials, where it keeps the constraints and sails what the source sails; else the reason.
+/// What a candidate gives on all trials, where it keeps the constraints and sails what the source
+/// sails; else the reason.
 fn accepted(
     problem: &Problem<'_>,
     solution: &dyn Solution,
@@ -139,8 +142,8 @@ fn widen(model: &mut Model, fitted: Option<&mut Fit>, factor: f64) {
     posterior.for_each(|deviation| *deviation *= factor);
 }
 
-/// How far the model's coefficients may be from the truth. Those of a source that is kept are as far as the trials say
-/// that they are.
+/// How far the model's coefficients may be from the truth. Those of a source that is kept are as
+/// far as the trials say that they are.
 fn posterior(
     problem: &Problem<'_>,
     model: &Model,

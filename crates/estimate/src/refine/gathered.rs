@@ -61,7 +61,8 @@ pub(super) fn refinement(
     })
 }
 
-/// The settings that give the same again: a search that time has ended has its evaluations for a budget.
+/// The settings that give the same again: a search that time has ended has its evaluations for a
+/// budget.
 fn recorded(settings: &Settings, search: Option<&SearchReport>) -> Settings {
     let mut settings = settings.clone();
     if let (Some(given), Some(search)) = (&mut settings.cma_es, search) {

@@ -12,7 +12,8 @@ use super::outcome::MeasuredManoeuvre;
 use super::problem::Problem;
 use crate::transfer::ready;
 
-/// The turning circles and zigzags among the trials, beside what both models make of the recorded rudder.
+/// The turning circles and zigzags among the trials, beside what both models make of the recorded
+/// rudder.
 pub(super) fn measured_manoeuvres(
     problem: &Problem<'_>,
     refined: &Model,

@@ -16,9 +16,10 @@ use sistership_regression::Moments;
 pub(super) enum PriorMeasure {
     /// The trials (Kanazawa 2023, Eq. 5.11).
     Trials,
-    /// The trials and the source's standard manoeuvres, where trials are left out part by part. Such parts resemble what is
-    /// fitted, so that errors on them do not tell a cubic term that is wrong beyond the trials: in the sizes of the envelope it
-    /// takes more to move it than a linear one. docs/decisions/0006 has the evidence.
+    /// The trials and the source's standard manoeuvres, where trials are left out part by part.
+    /// Such parts resemble what is fitted, so that errors on them do not tell a cubic term that is
+    /// wrong beyond the trials: in the sizes of the envelope it takes more to move it than a linear
+    /// one. docs/decisions/0006 has the evidence.
     Envelope(OperatingEnvelope),
     /// What a source of another law says over the envelope, jointly.
     Source(OperatingEnvelope),
@@ -75,7 +76,8 @@ impl PriorMeasure {
     }
 }
 
-/// Measures each coefficient by its regressor's deviation over the envelope, or over the trials where that is more.
+/// Measures each coefficient by its regressor's deviation over the envelope, or over the trials
+/// where that is more.
 fn sized(blocks: &mut Blocks, envelope: &[Vec<Moments>], trials: &[Moments]) {
     let Some(all) = merged(envelope, |_| true) else { return };
     for ((block, envelope), trials) in blocks.blocks.iter_mut().zip(&all).zip(trials) {

@@ -88,7 +88,8 @@ pub struct StepOption {
     pub lambda: Vec<f64>,
     /// Chosen alpha likewise.
     pub alpha: Vec<f64>,
-    /// Standardised mean squared error of simulated manoeuvres left out; none where a simulation diverged.
+    /// Standardised mean squared error of simulated manoeuvres left out; none where a simulation
+    /// diverged.
     pub error: Option<f64>,
     /// Whether this option was taken.
     pub chosen: bool,
@@ -98,9 +99,9 @@ pub struct StepOption {
 }
 
 impl Manoeuvres {
-    /// What to know first where the trials leave much open: the widest band of an advance or tactical
-    /// diameter that is wider than half the figure, or of a first overshoot that is wider than the
-    /// 10 deg between the least and the most that MSC.137(76) allows.
+    /// What to know first where the trials leave much open: the widest band of an advance or
+    /// tactical diameter that is wider than half the figure, or of a first overshoot that is wider
+    /// than the 10 deg between the least and the most that MSC.137(76) allows.
     pub fn wide_band(&self) -> Option<String> {
         let bands = self.bands.as_ref()?;
         let width = |figure: &Figure| {
@@ -184,7 +185,8 @@ pub struct Manoeuvres {
     /// Confidence bands of the refined model's figures.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bands: Option<Bands>,
-    /// Turning circles and zigzags among the trials, measured and simulated with the recorded rudder from their start.
+    /// Turning circles and zigzags among the trials, measured and simulated with the recorded
+    /// rudder from their start.
     pub measured: Vec<MeasuredManoeuvre>,
 }
 

@@ -1,7 +1,8 @@
 //! Trials in parts, where whole ones cannot be left out.
 //!
-//! Of roll a source of the plane says nothing, and one zigzag may be all that excites it. Where that is left out whole, the
-//! strength of the prior is chosen by models that know nothing of roll; left out part by part, what remains of it informs them.
+//! Of roll a source of the plane says nothing, and one zigzag may be all that excites it. Where
+//! that is left out whole, the strength of the prior is chosen by models that know nothing of roll;
+//! left out part by part, what remains of it informs them.
 
 use std::ops::Range;
 

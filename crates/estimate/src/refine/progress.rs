@@ -22,7 +22,8 @@ pub(super) fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<
 
 /// An iterate of the fit on all trials: for learning curves.
 pub struct Iterate<'a> {
-    /// Simulations of all trials so far, by a search; 0 for the trajectory form, which does not count them.
+    /// Simulations of all trials so far, by a search; 0 for the trajectory form, which does not
+    /// count them.
     pub evaluations: usize,
     /// What the estimator makes least, so far; each estimator has its own.
     pub objective: f64,

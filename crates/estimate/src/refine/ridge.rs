@@ -1,4 +1,5 @@
-//! The published estimator: every regression at its (lambda, alpha), and the way back to the law's coefficients.
+//! The published estimator: every regression at its (lambda, alpha), and the way back to the law's
+//! coefficients.
 
 use std::collections::BTreeMap;
 
@@ -19,8 +20,8 @@ pub struct Fitted {
     pub value: f64,
     /// Posterior standard error.
     pub standard_error: f64,
-    /// How far the prior lets the coefficient be from the source: the root of its variance and of the square of the share
-    /// that alpha pulls towards zero.
+    /// How far the prior lets the coefficient be from the source: the root of its variance and of
+    /// the square of the share that alpha pulls towards zero.
     pub prior_deviation: f64,
 }
 
@@ -96,8 +97,8 @@ impl<'a> Fold<'a> {
 }
 
 impl Fold<'_> {
-    /// Names of the coefficients, and half the second derivative by them of what [`Fold::solve`] makes least, each acceleration
-    /// by its residual variance.
+    /// Names of the coefficients, and half the second derivative by them of what [`Fold::solve`]
+    /// makes least, each acceleration by its residual variance.
     pub(super) fn curvature(&self, choices: &Choices) -> (Vec<String>, DMatrix<f64>) {
         let sizes = self.prepared.iter().map(|p| p.block.axes.len() * p.block.regressors()).sum();
         let (mut names, mut all) = (Vec::new(), DMatrix::zeros(sizes, sizes));
@@ -111,7 +112,8 @@ impl Fold<'_> {
 }
 
 impl Fold<'_> {
-    /// The share of the mean square of each acceleration that a strength about the source leaves on the left-out samples.
+    /// The share of the mean square of each acceleration that a strength about the source leaves on
+    /// the left-out samples.
     pub(super) fn shares(&self, lambda: f64) -> Vec<(Axis, f64)> {
         let of_block = |(prepared, validation): (&PreparedRegression<'_>, &Validation)| {
             let one = |(target, axis): (usize, &Axis)| {
@@ -145,7 +147,8 @@ impl PreparedRegression<'_> {
     }
 }
 
-/// The best choices of a range by one-step error on left-out samples, for each target of each regression.
+/// The best choices of a range by one-step error on left-out samples, for each target of each
+/// regression.
 pub fn tune(folds: &[Fold<'_>], range: &Range, count: usize) -> Choices {
     let Some(first) = folds.first() else { return Choices::new() };
     let of_block = |b: usize| {
@@ -188,7 +191,8 @@ fn tune_target(
     best.1
 }
 
-/// The strengths with the greatest marginal likelihood, for each target of each regression, on the given statistics.
+/// The strengths with the greatest marginal likelihood, for each target of each regression, on the
+/// given statistics.
 pub(super) fn most_likely(
     blocks: &Blocks,
     moments: &[Moments],

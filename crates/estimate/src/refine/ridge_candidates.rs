@@ -119,7 +119,8 @@ pub(super) fn each_variant(
     Ok(())
 }
 
-/// How far a refinement is where so much of a variant is done: candidates are seven tenths of the work.
+/// How far a refinement is where so much of a variant is done: candidates are seven tenths of the
+/// work.
 pub(super) fn share(index: usize, done: f64, variants: usize) -> f64 {
     0.1 + 0.7 / variants as f64 * (index as f64 + done)
 }

@@ -1,4 +1,5 @@
-//! From a trial to the sufficient statistics of each regression: one-step differences against regressors.
+//! From a trial to the sufficient statistics of each regression: one-step differences against
+//! regressors.
 
 use sistership_dynamics::tape::{Lanes, Slots};
 use sistership_model::coefficient::Axis;
@@ -12,8 +13,8 @@ use sistership_regression::Moments;
 /// Samples evaluated at a time.
 pub(super) const LANES: usize = 8;
 
-/// The statistics of one trial, one set for each regression. Accelerations are forward differences over `difference_s`
-/// (one sampling interval where absent); no difference reaches over a gap.
+/// The statistics of one trial, one set for each regression. Accelerations are forward differences
+/// over `difference_s` (one sampling interval where absent); no difference reaches over a gap.
 ///
 /// # Errors
 /// Names the channel that the trial lacks.
@@ -48,7 +49,8 @@ pub fn trial_tables(
     Ok(tables(blocks, &record, &pairs(trial, difference_s), &difference))
 }
 
-/// The columns of each regression over the samples of a trial where the accelerations are known; `known` has those of an axis.
+/// The columns of each regression over the samples of a trial where the accelerations are known;
+/// `known` has those of an axis.
 ///
 /// # Errors
 /// As [`trial_moments`].
@@ -188,8 +190,8 @@ fn append(
     }
 }
 
-/// What the regressors must explain at a sample: mass times acceleration less the rest, for coupled axes solved for the
-/// accelerations.
+/// What the regressors must explain at a sample: mass times acceleration less the rest, for coupled
+/// axes solved for the accelerations.
 fn target(
     blocks: &Blocks,
     block: &Block,

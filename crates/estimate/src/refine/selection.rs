@@ -1,5 +1,5 @@
-//! The whole refinement: an estimator gives candidates from the source outwards, and the one whose simulations of manoeuvres left
-//! out are best is taken.
+//! The whole refinement: an estimator gives candidates from the source outwards, and the one whose
+//! simulations of manoeuvres left out are best is taken.
 
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
@@ -60,7 +60,8 @@ pub fn refine_watched(
     with_candidates(request, Extent::Estimator, progress, watch, finish)
 }
 
-/// What the source as it is, and the best fit to the extent asked for, give on manoeuvres left out. No model is made.
+/// What the source as it is, and the best fit to the extent asked for, give on manoeuvres left out.
+/// No model is made.
 ///
 /// # Errors
 /// As [`refine`].
@@ -97,7 +98,8 @@ pub fn refine_wanted(
     with_candidates(request, Extent::Estimator, progress, &|_| (), both)
 }
 
-/// Sets the problem up, gives its candidates to the extent asked for, and does with them what `then` does.
+/// Sets the problem up, gives its candidates to the extent asked for, and does with them what
+/// `then` does.
 fn with_candidates<T>(
     request: &Request<'_>,
     extent: Extent,
@@ -147,7 +149,8 @@ fn with_candidates<T>(
     then(&problem, candidates, &variants, progress)
 }
 
-/// What the prior is about: the source carried over, by its own law or as another law says what it says.
+/// What the prior is about: the source carried over, by its own law or as another law says what it
+/// says.
 fn starting(
     request: &Request<'_>,
     whole: &[&Trial],
@@ -194,7 +197,8 @@ fn divided<'a>(request: &'a Request<'a>) -> Result<(Vec<&'a Trial>, Vec<&'a Tria
     Ok((judged, whole))
 }
 
-/// The settings with the times that depend on the ship filled in, so that a version records what was used.
+/// The settings with the times that depend on the ship filled in, so that a version records what
+/// was used.
 pub(super) fn resolved(settings: &Settings, lpp_m: Option<f64>, training: &[&Trial]) -> Settings {
     let length_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s);
     let mut settings = settings.clone();

@@ -13,14 +13,18 @@ use crate::bands::Sampling;
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "Estimator")]
 pub enum Method {
-    /// One-step differences and the ridge with the source as l2 prior: Kanazawa 2023, Eqs. 5.4-5.17.
+    /// One-step differences and the ridge with the source as l2 prior: Kanazawa 2023, Eqs.
+    /// 5.4-5.17.
     #[default]
     Published,
-    /// The equations of motion integrated over windows with smooth bumps, nothing differentiated; the same ridge.
+    /// The equations of motion integrated over windows with smooth bumps, nothing differentiated;
+    /// the same ridge.
     Weak,
-    /// Simulated segments against the trials by forward sensitivities, started from the weak form and held by it.
+    /// Simulated segments against the trials by forward sensitivities, started from the weak form
+    /// and held by it.
     Trajectory,
-    /// Simulated subsequences against the trials by a random search with a covariance that adapts: Miyauchi 2024, Eqs. 19-33.
+    /// Simulated subsequences against the trials by a random search with a covariance that adapts:
+    /// Miyauchi 2024, Eqs. 19-33.
     #[serde(rename = "cma-es")]
     CmaEs,
 }
@@ -44,7 +48,8 @@ impl Method {
         }
     }
 
-    /// Whether it keeps constraints: of linear regressions the nearest point within them is at hand.
+    /// Whether it keeps constraints: of linear regressions the nearest point within them is at
+    /// hand.
     fn keeps_constraints(self) -> bool {
         matches!(self, Self::Published | Self::Weak)
     }
@@ -79,11 +84,13 @@ pub struct Settings {
     /// Values of lambda tried in a range, evenly spaced in their logarithm.
     #[schemars(range(min = 2, max = 1000))]
     pub lambda_count: usize,
-    /// Time over which accelerations are differenced, s, at least one sampling interval. Where absent, a tenth of the
-    /// time in which the ship sails her length: what the instruments add at a shorter one drowns the acceleration.
+    /// Time over which accelerations are differenced, s, at least one sampling interval. Where
+    /// absent, a tenth of the time in which the ship sails her length: what the instruments add at
+    /// a shorter one drowns the acceleration.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub difference_s: Option<f64>,
-    /// Length of the weak form's windows, s. Where absent, the time in which the ship sails her length.
+    /// Length of the weak form's windows, s. Where absent, the time in which the ship sails her
+    /// length.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub window_s: Option<f64>,
@@ -91,57 +98,66 @@ pub struct Settings {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub hop_s: Option<f64>,
-    /// Length of the trajectory form's segments, s. Where absent, five times the time in which the ship sails her length;
-    /// for the search ten times, and at least 100 s.
+    /// Length of the trajectory form's segments, s. Where absent, five times the time in which the
+    /// ship sails her length; for the search ten times, and at least 100 s.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub segment_s: Option<f64>,
-    /// From one residual of the trajectory form to the next, s. Where absent, a 7.5th of the time in which
-    /// she sails her length; for the search one sampling interval.
+    /// From one residual of the trajectory form to the next, s. Where absent, a 7.5th of the time
+    /// in which she sails her length; for the search one sampling interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub residual_s: Option<f64>,
     /// Integration step of the trajectory form, s, rounded to sampling intervals. Where absent, a
-    /// thirtieth of the time in which she sails her length; for the search a 75th, whole or in whole parts of an interval.
+    /// thirtieth of the time in which she sails her length; for the search a 75th, whole or in
+    /// whole parts of an interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub step_s: Option<f64>,
     /// Of the search; absent for other methods.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cma_es: Option<CmaEs>,
-    /// Families of terms among which the weak and the trajectory form choose. Where empty, all of them.
+    /// Families of terms among which the weak and the trajectory form choose. Where empty, all of
+    /// them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub families: Vec<Family>,
-    /// Strengths of the prior among which they choose, from the source outwards. Where empty, half decades from 10 to 1e-8.
+    /// Strengths of the prior among which they choose, from the source outwards. Where empty, half
+    /// decades from 10 to 1e-8.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 100), extend("items" = { "type": "number", "format": "double", "exclusiveMinimum": 0 }))]
     pub strengths: Vec<f64>,
-    /// Simulations of manoeuvres left out start anew every so often, s. Where absent, ten times the time in which the
-    /// ship sails her length; longer than a trial runs it whole.
+    /// Simulations of manoeuvres left out start anew every so often, s. Where absent, ten times the
+    /// time in which the ship sails her length; longer than a trial runs it whole.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub restart_s: Option<f64>,
     /// Most folds; with more manoeuvres than that, several are left out together.
     #[schemars(range(min = 2, max = 100))]
     pub folds: usize,
-    /// Trials are left out part by part, each as long as simulations run between restarts, and what is
-    /// taken must be clearly better than the source: for one or two trials, where leaving one out
-    /// leaves too little. The default search sets it.
+    /// Trials are left out part by part, each as long as simulations run between restarts, and what
+    /// is taken must be clearly better than the source: for one or two trials, where leaving one
+    /// out leaves too little. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub in_parts: bool,
     /// The steering gear's rate is read from the rudder's movements in the trials, where these show
     /// it; else it is the source's, scaled. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub steering_from_trials: bool,
-    /// The posterior is as wide as models are apart that each missed some of the trials, where that is
-    /// wider than the noise of the readings makes it. The default search sets it.
+    /// The posterior is as wide as models are apart that each missed some of the trials, where that
+    /// is wider than the noise of the readings makes it. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub posterior_by_folds: bool,
+    /// Shortest interval between the samples by which what the trials leave open is learned, by the
+    /// time in which the ship sails its length; the diagnosis' own where absent. The default search
+    /// sets it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calibration_step: Option<f64>,
     /// Names of trials that are kept out of fit and choice altogether, to be judged on.
     pub held_out: Vec<String>,
     /// What the refined model must keep to.
     #[serde(skip_serializing_if = "Constraints::is_empty")]
     pub constraints: Constraints,
-    /// How the posterior is sampled for the bands of the standard manoeuvres; no samples leave them out.
+    /// How the posterior is sampled for the bands of the standard manoeuvres; no samples leave them
+    /// out.
     pub bands: Sampling,
 }
 
@@ -170,6 +186,7 @@ impl Default for Settings {
             in_parts: false,
             steering_from_trials: false,
             posterior_by_folds: false,
+            calibration_step: None,
             held_out: Vec::new(),
             constraints: Constraints::default(),
             bands: Sampling::default(),

@@ -2,8 +2,9 @@
 
 use sistership_model::trial::Trial;
 
-/// Every so many samples of a trial, so that they are as far apart as a simulation may step and no further; none between gaps is
-/// joined to another. The trial itself where that would leave gaps out, or nothing.
+/// Every so many samples of a trial, so that they are as far apart as a simulation may step and no
+/// further; none between gaps is joined to another. The trial itself where that would leave gaps
+/// out, or nothing.
 pub(super) fn thinned(trial: &Trial, step_s: Option<f64>) -> Trial {
     let interval_s = trial.interval_s();
     let every = step_s

@@ -44,7 +44,8 @@ impl Variant {
     /// A family's, for a model with its terms.
     ///
     /// # Errors
-    /// The trials lack a channel or have too few samples, or the constraints name what the model lacks.
+    /// The trials lack a channel or have too few samples, or the constraints name what the model
+    /// lacks.
     fn new(
         problem: &Problem<'_>,
         equations: Equations,
@@ -109,8 +110,8 @@ impl Variant {
         Ok(errors(&self.blocks, &all, &self.rows(training)?, &self.model, choices))
     }
 
-    /// The rows behind the statistics. Differences of neighbouring samples share most of what they say: they are merged
-    /// over the time of a difference.
+    /// The rows behind the statistics. Differences of neighbouring samples share most of what they
+    /// say: they are merged over the time of a difference.
     fn rows(&self, training: &[&Trial]) -> Result<SequencedRows, RefineError> {
         let parts = |trial: &&Trial| {
             trial.segments().into_iter().map(|part| slice(trial, part)).collect::<Vec<_>>()
@@ -139,9 +140,10 @@ impl Variant {
         (0..problem.fold_count()).map(one).collect()
     }
 
-    /// The same strength for every acceleration but roll's: of roll a source of the plane says nothing, so that its strength
-    /// is the one with the greatest marginal likelihood on all training samples. Windows left out would do only where
-    /// every fold keeps something that excites roll.
+    /// The same strength for every acceleration but roll's: of roll a source of the plane says
+    /// nothing, so that its strength is the one with the greatest marginal likelihood on all
+    /// training samples. Windows left out would do only where every fold keeps something that
+    /// excites roll.
     pub fn common_choices(&self, lambda: f64) -> Result<Choices, RefineError> {
         let blocks = &self.blocks.blocks;
         let [lambda_min, lambda_max] = SELECTION.roll_strengths;
@@ -167,8 +169,8 @@ impl Variant {
     }
 }
 
-/// The families that the settings name and that differ from each other; one that has too few samples is left out, unless it is the
-/// first.
+/// The families that the settings name and that differ from each other; one that has too few
+/// samples is left out, unless it is the first.
 ///
 /// # Errors
 /// As of the first family.

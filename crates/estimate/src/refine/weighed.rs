@@ -18,8 +18,9 @@ pub enum Extent {
     Estimator,
 }
 
-/// What a candidate gives on manoeuvres left out. The scales are the deviations of the measured channels over all trials
-/// fitted, so that candidates on the same trials can be compared whatever their source, law and estimator.
+/// What a candidate gives on manoeuvres left out. The scales are the deviations of the measured
+/// channels over all trials fitted, so that candidates on the same trials can be compared whatever
+/// their source, law and estimator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Weighed {
     /// What it is, for people.

@@ -20,8 +20,8 @@ pub enum Definition {
 /// A component: its name, and the norm by which it is divided before ships are correlated.
 type Component = (&'static str, f64);
 
-/// Norms of the rows of Mei's Table 4 (Eq. 4). They stay those of her five ships: were they taken over the ships
-/// compared, adding a ship to the zoo would change the correlation of two others.
+/// Norms of the rows of Mei's Table 4 (Eq. 4). They stay those of her five ships: were they taken
+/// over the ships compared, adding a ship to the zoo would change the correlation of two others.
 const MEI_2019: [Component; 5] = [
     ("C_b", 1.567_947),
     ("L/B", 14.082_16),
@@ -30,7 +30,8 @@ const MEI_2019: [Component; 5] = [
     ("Ar/(LT)", 0.044_075_1),
 ];
 
-/// Norms over the five full-scale ships of the zoo that have every component, for the same reason held fixed.
+/// Norms over the five full-scale ships of the zoo that have every component, for the same reason
+/// held fixed.
 const KANAZAWA_2023: [Component; 6] = [
     ("C_b", 1.56),
     ("L/B", 14.79),
@@ -75,7 +76,8 @@ pub struct CharacteristicVector {
 }
 
 impl CharacteristicVector {
-    /// A vessel's vector: as a publication prints it where her file quotes it, else from her particulars.
+    /// A vessel's vector: as a publication prints it where her file quotes it, else from her
+    /// particulars.
     pub fn of(vessel: &Vessel, definition: Definition) -> Self {
         let quoted = vessel.quoted_vectors.get(definition.name());
         let computed = |name: &str| component(vessel, name);
@@ -104,7 +106,8 @@ impl CharacteristicVector {
             .collect()
     }
 
-    /// Pearson's correlation of the normalised components that both have (Mei 2019, Eq. 5); `None` below four.
+    /// Pearson's correlation of the normalised components that both have (Mei 2019, Eq. 5); `None`
+    /// below four.
     pub fn correlation(&self, other: &Self) -> Option<f64> {
         let (here, there) = (self.normalised(), other.normalised());
         let pairs: Vec<(f64, f64)> =
@@ -140,7 +143,8 @@ fn component(vessel: &Vessel, name: &str) -> Option<f64> {
         "C_b" => of("block_coefficient"),
         "L/B" => Some(l? / b?),
         "B/T" => Some(b? / t?),
-        // A time: a model's is that of her full-scale ship by Froude's law, or models would resemble nothing but models.
+        // A time: a model's is that of her full-scale ship by Froude's law, or models would
+        // resemble nothing but models.
         "L/V0" => Some(l? / of("service_speed_m_s")? * vessel.file.scale.unwrap_or(1.0).sqrt()),
         "L/volume^(1/3)" => Some(l? / of("displacement_m3")?.cbrt()),
         "Ar/(LT)" => Some(of("rudder_area_m2")? / (l? * t?)),

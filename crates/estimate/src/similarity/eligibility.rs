@@ -111,7 +111,8 @@ fn judge(
     ];
     match candidate.model {
         None => steps.push(StepOutcome::failed("no model: known by particulars only".into())),
-        // A simulation costs more than a comparison of numbers: it is run for those that passed them.
+        // A simulation costs more than a comparison of numbers: it is run for those that passed
+        // them.
         Some(model) if steps.iter().all(|step| step.passed) => match trend {
             Some(trend) => steps.push(captures_trend(trend(model), limits)),
             None => steps.push(StepOutcome::passed(

@@ -1,9 +1,10 @@
 //! Which strength of the prior an axis takes.
 
-/// The strongest prior whose errors on trials left out exceed those of the best by no more, in the mean, than one standard error
-/// of that difference over the trials (after Breiman et al. 1984, Classification and regression trees, section 3.4.3): one-step
-/// errors alone would always take the weakest prior. `errors[fold][k]` at the k-th strength, from the weakest on; `untold` is
-/// taken where nothing can be left out.
+/// The strongest prior whose errors on trials left out exceed those of the best by no more, in the
+/// mean, than one standard error of that difference over the trials (after Breiman et al. 1984,
+/// Classification and regression trees, section 3.4.3): one-step errors alone would always take the
+/// weakest prior. `errors[fold][k]` at the k-th strength, from the weakest on; `untold` is taken
+/// where nothing can be left out.
 pub(super) fn strongest_within_one_error(
     errors: &[&[f64]],
     strengths: usize,

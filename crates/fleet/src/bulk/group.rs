@@ -26,8 +26,8 @@ pub(super) struct AxisGroup {
 }
 
 impl AxisGroup {
-    /// The lambda at which the prior is taken at its word: of a family's, where it is the residual variance by the number of
-    /// samples; a source has no word but its lambda.
+    /// The lambda at which the prior is taken at its word: of a family's, where it is the residual
+    /// variance by the number of samples; a source has no word but its lambda.
     pub fn unit(&self, prior: Prior<'_>) -> f64 {
         let all = &self.whole;
         match prior {
@@ -38,7 +38,8 @@ impl AxisGroup {
         }
     }
 
-    /// Errors on each trial by the solutions of the others, by fold, axis, strength; a single trial is judged on itself.
+    /// Errors on each trial by the solutions of the others, by fold, axis, strength; a single trial
+    /// is judged on itself.
     pub fn errors(&self, lambdas: &[f64]) -> Vec<Vec<Vec<f64>>> {
         if self.parts.len() == 1 {
             return vec![self.whole.errors(lambdas, &self.parts[0])];
@@ -73,7 +74,8 @@ impl AxisGroup {
     }
 }
 
-/// The groups of a ship: those of her regressions where one root serves all axes, else one for each axis.
+/// The groups of a ship: those of her regressions where one root serves all axes, else one for each
+/// axis.
 pub(super) fn groups(
     trials: &[TrialStatistics],
     prior: Prior<'_>,
@@ -127,7 +129,8 @@ fn group(
     let mut parts: Vec<Moments> =
         parts.iter().map(|part| part.mapped(&map, root.ncols())).collect();
     if matches!(prior, Prior::Family { .. }) {
-        // As it was learned: a model has no intercept, and what is nearly constant must not be told by its small changes alone.
+        // As it was learned: a model has no intercept, and what is nearly constant must not be told
+        // by its small changes alone.
         parts.iter_mut().for_each(|part| *part = part.about_origin());
     }
     let (without, all) = Moments::leave_one_out(&parts).ok_or_else(unknown)?;
@@ -142,7 +145,8 @@ fn group(
     })
 }
 
-/// What makes regressors and targets of what was kept: regressors times the root; targets of each axis less what the mean gives.
+/// What makes regressors and targets of what was kept: regressors times the root; targets of each
+/// axis less what the mean gives.
 fn map(
     root: &DMatrix<f64>,
     means: &[Vec<f64>],
@@ -159,8 +163,8 @@ fn map(
     map
 }
 
-/// By how much a coefficient may move: the inverse of its regressor's deviation, by the root of its shrinkage; not at all where
-/// the regressor does not vary.
+/// By how much a coefficient may move: the inverse of its regressor's deviation, by the root of its
+/// shrinkage; not at all where the regressor does not vary.
 fn inverse_deviations(
     regression: &Regression,
     parts: &[&Moments],

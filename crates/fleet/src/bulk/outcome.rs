@@ -12,7 +12,8 @@ pub struct BulkRefinement {
     pub coefficients: Vec<Coefficient>,
     /// Every axis.
     pub axes: Vec<AxisOutcome>,
-    /// How many decades stronger than chosen the prior had to be for the model to sail what the one before sails.
+    /// How many decades stronger than chosen the prior had to be for the model to sail what the one
+    /// before sails.
     pub pulled: usize,
     /// Manoeuvres of the model before.
     pub before: SailedFigures,
@@ -44,7 +45,8 @@ pub struct Coefficient {
 pub struct AxisOutcome {
     /// The axis.
     pub axis: Axis,
-    /// Strength of the prior: lambda for a source; for a family's prior how many times tighter than learned.
+    /// Strength of the prior: lambda for a source; for a family's prior how many times tighter than
+    /// learned.
     pub strength: f64,
     /// Of the model before, on all trials.
     pub before: f64,
@@ -55,7 +57,8 @@ pub struct AxisOutcome {
 }
 
 impl BulkRefinement {
-    /// By how much the worst axis is worse than before, by its error before; below zero where every axis is better.
+    /// By how much the worst axis is worse than before, by its error before; below zero where every
+    /// axis is better.
     pub fn worst_change(&self) -> f64 {
         let change = |axis: &AxisOutcome| axis.after / axis.before.max(f64::MIN_POSITIVE) - 1.0;
         self.axes.iter().map(change).fold(f64::NEG_INFINITY, f64::max)

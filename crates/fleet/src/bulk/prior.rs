@@ -9,7 +9,8 @@ use super::settings::BulkSettings;
 /// A prior of every axis.
 #[derive(Debug, Clone, Copy)]
 pub enum Prior<'a> {
-    /// One source's coefficients, each held in standard deviations of its regressor (Kanazawa 2023, Eq. 5.11).
+    /// One source's coefficients, each held in standard deviations of its regressor (Kanazawa 2023,
+    /// Eq. 5.11).
     Source(&'a BTreeMap<String, f64>),
     /// A mean and a covariance for each axis, as learned over a family.
     Family {
@@ -50,8 +51,8 @@ impl Prior<'_> {
         }
     }
 
-    /// A learned covariance is an upper limit: trials that resemble each other would always take a weaker prior, since leaving
-    /// one out asks nothing that the others do not tell.
+    /// A learned covariance is an upper limit: trials that resemble each other would always take a
+    /// weaker prior, since leaving one out asks nothing that the others do not tell.
     pub(super) fn allows(&self, settings: &BulkSettings) -> BulkSettings {
         match self {
             Self::Source(_) => *settings,

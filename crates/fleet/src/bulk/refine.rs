@@ -13,7 +13,8 @@ use super::sails::sail;
 use super::solved::solve;
 use sistership_estimate::refine::{Fitted, RefineError};
 
-/// Refines, and pulls the model towards the prior, a decade at a time, until it sails what the model before sails.
+/// Refines, and pulls the model towards the prior, a decade at a time, until it sails what the
+/// model before sails.
 ///
 /// # Errors
 /// As [`solve`]; and where not even the prior's mean sails, which is then no prior for this ship.

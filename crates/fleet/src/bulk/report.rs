@@ -74,7 +74,8 @@ fn axes(
     Ok(places.enumerate().map(one).collect())
 }
 
-/// Mean squares of what coefficients leave and of the targets, by axis, in the mean over the trials.
+/// Mean squares of what coefficients leave and of the targets, by axis, in the mean over the
+/// trials.
 fn left(
     trials: &[TrialStatistics],
     coefficients: &BTreeMap<String, f64>,

@@ -1,5 +1,5 @@
-//! Whether a model sails, at little cost: one hard turn and one zigzag in coarse steps. What diverges in the standard manoeuvres
-//! diverges in these, and thousands of ships can be asked.
+//! Whether a model sails, at little cost: one hard turn and one zigzag in coarse steps. What
+//! diverges in the standard manoeuvres diverges in these, and thousands of ships can be asked.
 
 use serde::{Deserialize, Serialize};
 use sistership_dynamics::manoeuvre::{
@@ -28,8 +28,8 @@ pub struct SailedFigures {
 }
 
 impl SailedFigures {
-    /// Whether it does everything that `before` does: nothing more leaves the physical range, and a turn that came round, or a
-    /// zigzag that answered, still does.
+    /// Whether it does everything that `before` does: nothing more leaves the physical range, and a
+    /// turn that came round, or a zigzag that answered, still does.
     pub fn as_well_as(&self, before: &Self) -> bool {
         let kept = |was: Option<f64>, is: Option<f64>| was.is_none() || is.is_some();
         let metrics = [
@@ -46,7 +46,8 @@ impl SailedFigures {
 const SAILED: [Manoeuvre; 2] =
     [Manoeuvre::Turn { rudder: 35.0 }, Manoeuvre::Zigzag { rudder: 20.0, switch: 20.0 }];
 
-/// Sails both manoeuvres with each model of a ship; those that differ in the values of their coefficients alone sail in lockstep.
+/// Sails both manoeuvres with each model of a ship; those that differ in the values of their
+/// coefficients alone sail in lockstep.
 pub fn sail(models: &[&Model], law: &Law) -> Vec<SailedFigures> {
     let alone = || {
         models

@@ -59,14 +59,16 @@ fn mean(folds: &[&[f64]]) -> Vec<f64> {
 }
 
 impl SolvedPath {
-    /// Where an axis stands when the prior is so many decades stronger than chosen; none where nothing but the prior is left.
+    /// Where an axis stands when the prior is so many decades stronger than chosen; none where
+    /// nothing but the prior is left.
     fn at(&self, group: usize, axis: usize, pulled: usize) -> Option<usize> {
         let index =
             self.chosen[group][axis] + (pulled as f64 * self.settings.decade()).round() as usize;
         (pulled == 0 || index < self.settings.lambda_count).then_some(index)
     }
 
-    /// The coefficients with a prior so many decades stronger than chosen, and whether anything but the prior is left.
+    /// The coefficients with a prior so many decades stronger than chosen, and whether anything but
+    /// the prior is left.
     pub fn coefficients(&self, pulled: usize) -> (BTreeMap<String, Fitted>, bool) {
         let mut all = BTreeMap::new();
         let mut moved = false;

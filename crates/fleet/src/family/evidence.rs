@@ -1,5 +1,5 @@
-//! What a member's trials say of the coefficients of an axis: a precision and what it is about, in units in which coefficients
-//! are alike in size.
+//! What a member's trials say of the coefficients of an axis: a precision and what it is about, in
+//! units in which coefficients are alike in size.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -12,7 +12,8 @@ use sistership_regression::{Moments, Whitened};
 pub(super) struct MemberEvidence {
     pub precision: DMatrix<f64>,
     pub information: DVector<f64>,
-    /// How much more the trials of the member scatter than their samples would if each spoke for itself; none of one trial.
+    /// How much more the trials of the member scatter than their samples would if each spoke for
+    /// itself; none of one trial.
     pub design_effect: Option<f64>,
 }
 
@@ -63,8 +64,9 @@ impl AxisPlace {
     }
 }
 
-/// The variance of a residual by which the trials' scores scatter (a sandwich estimate with whole trials as its units: Liang and
-/// Zeger 1986, Biometrika 73, 13-22, Eq. 8), in the mean over the directions that the trials tell.
+/// The variance of a residual by which the trials' scores scatter (a sandwich estimate with whole
+/// trials as its units: Liang and Zeger 1986, Biometrika 73, 13-22, Eq. 8), in the mean over the
+/// directions that the trials tell.
 fn scatter(parts: &[Moments], all: &Moments, whitened: &Whitened, least: &DVector<f64>) -> f64 {
     let variances = whitened.variances(0.0);
     let best = variances.min();

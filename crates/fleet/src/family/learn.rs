@@ -106,7 +106,8 @@ fn places(members: &[&Member<'_>]) -> Vec<AxisPlace> {
     .collect()
 }
 
-/// Medians over the members of target deviation by regressor deviation, which a few odd ships do not move.
+/// Medians over the members of target deviation by regressor deviation, which a few odd ships do
+/// not move.
 fn units(members: &[&Member<'_>], regression: usize, axis: usize) -> Vec<f64> {
     let p = members[0].trials[0].regressions[regression].moments.regressors();
     let of_member = |member: &&Member<'_>| -> Option<Vec<f64>> {
@@ -229,8 +230,8 @@ impl FamilyEstimate {
         Ok(())
     }
 
-    /// In the law's units, for a ship that was not among the members: their mean is known no better than from so many, which
-    /// also makes the greatest likelihood's variances too small.
+    /// In the law's units, for a ship that was not among the members: their mean is known no better
+    /// than from so many, which also makes the greatest likelihood's variances too small.
     fn axis(
         &self,
         axis: sistership_model::coefficient::Axis,

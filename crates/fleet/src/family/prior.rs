@@ -17,7 +17,8 @@ pub struct FamilyPrior {
     pub format: String,
     /// The members whose trials it was learned from, in order.
     pub members: Vec<String>,
-    /// How many samples count as one, since neighbours say the same: from the scatter between the trials of a ship.
+    /// How many samples count as one, since neighbours say the same: from the scatter between the
+    /// trials of a ship.
     pub design_effect: f64,
     /// How much of the correlations between coefficients is kept: few members cannot tell them.
     pub correlations_kept: f64,
@@ -41,8 +42,8 @@ pub struct FamilyAxis {
     pub deviation: Vec<f64>,
     /// How the differences of two coefficients go together, by row.
     pub correlation: Vec<Vec<f64>>,
-    /// How much of a member's own difference her trials tell, in the mean over the members: 0 where the family decides alone, 1
-    /// where her trials do.
+    /// How much of a member's own difference her trials tell, in the mean over the members: 0 where
+    /// the family decides alone, 1 where her trials do.
     pub told_by_trials: Vec<f64>,
 }
 

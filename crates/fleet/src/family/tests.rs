@@ -8,7 +8,8 @@ use super::*;
 use crate::statistics::{self, Regression, TrialStatistics};
 use sistership_regression::Moments;
 
-/// Members with two coefficients that go together, `(1, -2)` in the mean, deviations 0.3 and 0.6, correlation 0.8.
+/// Members with two coefficients that go together, `(1, -2)` in the mean, deviations 0.3 and 0.6,
+/// correlation 0.8.
 fn draw(rng: &mut ChaCha12Rng) -> [f64; 2] {
     let normal: [f64; 2] = std::array::from_fn(|_| StandardNormal.sample(rng));
     [1.0 + 0.3 * normal[0], -2.0 + 0.6 * (0.8 * normal[0] + 0.6 * normal[1])]

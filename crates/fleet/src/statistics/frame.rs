@@ -11,7 +11,8 @@ use sistership_estimate::refine::{Blocks, RefineError};
 /// The format of [`TrialStatistics`](super::TrialStatistics).
 pub const FORMAT: &str = "sistership-statistics/1";
 
-/// The regressions of a model, without the values of its coefficients: two models that differ in those only have one frame.
+/// The regressions of a model, without the values of its coefficients: two models that differ in
+/// those only have one frame.
 #[derive(Debug, Clone)]
 pub struct Frame {
     /// Time over which accelerations are differenced, s.
@@ -22,11 +23,12 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Of a model by the law whose file has the hash `law_sha256`. Without `difference_s`, a tenth of the time in which the ship
-    /// sails her length.
+    /// Of a model by the law whose file has the hash `law_sha256`. Without `difference_s`, a tenth
+    /// of the time in which the ship sails her length.
     ///
     /// # Errors
-    /// Names what the model does not give. A model with effects is refused: what acted on its own trials acts on no others.
+    /// Names what the model does not give. A model with effects is refused: what acted on its own
+    /// trials acts on no others.
     pub fn new(
         model: &Model,
         law: &Law,

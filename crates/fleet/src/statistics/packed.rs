@@ -1,4 +1,5 @@
-//! Statistics in a document: their shape in words, their numbers as the base64 of their bytes, so that none is rounded.
+//! Statistics in a document: their shape in words, their numbers as the base64 of their bytes, so
+//! that none is rounded.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;

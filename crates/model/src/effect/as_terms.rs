@@ -1,4 +1,5 @@
-//! Effects whose forces are affine in their parameters, as terms of the law: what fits coefficients then fits them too.
+//! Effects whose forces are affine in their parameters, as terms of the law: what fits coefficients
+//! then fits them too.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -28,8 +29,9 @@ pub struct AsTerms {
 }
 
 impl AsTerms {
-    /// A model whose effects do nothing but add forces, affine in parameters that each act on one axis; none where an effect
-    /// does otherwise, or where there is none. Each parameter is at the mean of its prior, which is its source.
+    /// A model whose effects do nothing but add forces, affine in parameters that each act on one
+    /// axis; none where an effect does otherwise, or where there is none. Each parameter is at the
+    /// mean of its prior, which is its source.
     ///
     /// # Errors
     /// As [`Law::with_effects`].
@@ -86,7 +88,8 @@ impl AsTerms {
     }
 }
 
-/// Most numbers, names and operators of what is added to an axis, with the values that mention the effect written out.
+/// Most numbers, names and operators of what is added to an axis, with the values that mention the
+/// effect written out.
 const MAX_SIZE: usize = 20_000;
 
 /// An effect in a dressed law.
@@ -134,7 +137,8 @@ impl<'a> Affine<'a> {
         size
     }
 
-    /// The parameters that act on each axis; none where one acts on several, elsewhere, or not in proportion.
+    /// The parameters that act on each axis; none where one acts on several, elsewhere, or not in
+    /// proportion.
     fn by_axis(&self) -> Option<Vec<(Axis, Vec<String>)>> {
         let mut sizes = HashMap::new();
         if self.law.axes.values().any(|axis| self.written_out(&axis.rest, &mut sizes) > MAX_SIZE) {
@@ -170,7 +174,8 @@ impl<'a> Affine<'a> {
         qualified(&self.effect.name, &self.effect.form.name, parameter)
     }
 
-    /// Whether a formula mentions a parameter by its whole name, itself or through values, each looked at once.
+    /// Whether a formula mentions a parameter by its whole name, itself or through values, each
+    /// looked at once.
     fn depends_given(&self, expr: &Expr, wanted: &str, known: &mut HashMap<&'a str, bool>) -> bool {
         let Expr::Name(name) = expr else {
             return expr
@@ -230,7 +235,8 @@ impl<'a> Affine<'a> {
         })
     }
 
-    /// Whether what is added to an axis is its value without the effect and a multiple of each parameter, at a few points.
+    /// Whether what is added to an axis is its value without the effect and a multiple of each
+    /// parameter, at a few points.
     fn is_affine(&self, axis: Axis, parameters: &[String]) -> bool {
         let none = IndexMap::new();
         SEEDS.iter().all(|&seed| {

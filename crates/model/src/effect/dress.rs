@@ -1,4 +1,5 @@
-//! A law as effects change it: the same kind of thing, so that whatever takes a law takes a dressed one.
+//! A law as effects change it: the same kind of thing, so that whatever takes a law takes a dressed
+//! one.
 
 use super::form::Form;
 use crate::formula::Expr;
@@ -21,8 +22,8 @@ pub fn input_channel(input: &str) -> Option<Channel> {
     Channel::by_name(input.strip_prefix("recorded.").unwrap_or(input))
 }
 
-/// The input of a dressed law that is the time since the start of the trial, s; effects call it `t`, which laws may use
-/// for the thrust deduction.
+/// The input of a dressed law that is the time since the start of the trial, s; effects call it
+/// `t`, which laws may use for the thrust deduction.
 pub const TIME: &str = "recorded.t";
 
 /// A law with forms of effects, each at its absence, for a ship of these particulars; the speed is
@@ -34,7 +35,8 @@ pub fn dress(
     forms: &[(&str, &Form)],
 ) -> Law {
     let mut dressed = law.clone();
-    // What the law sees is changed before forces are added: an added force sees the ship as she moves over the ground.
+    // What the law sees is changed before forces are added: an added force sees the ship as she
+    // moves over the ground.
     let (inflow, others): (Vec<_>, Vec<_>) =
         forms.iter().partition(|(_, form)| !form.sees.is_empty());
     for (effect, form) in inflow.into_iter().chain(others) {
@@ -104,8 +106,8 @@ impl Dresser<'_> {
         }
     }
 
-    /// Channels that the law does not take yet become inputs; where nobody records them they are still: no wind, no roll,
-    /// deep water.
+    /// Channels that the law does not take yet become inputs; where nobody records them they are
+    /// still: no wind, no roll, deep water.
     fn inputs(&self, law: &mut Law) {
         let mentioned = self
             .form
@@ -158,7 +160,8 @@ impl Dresser<'_> {
 }
 
 impl Law {
-    /// Replaces a state or an input by another name in everything that makes forces; kinematics stay.
+    /// Replaces a state or an input by another name in everything that makes forces; kinematics
+    /// stay.
     fn rename_in_forces(&mut self, name: &str, by: &str) {
         let rename = |expr: &mut Expr| {
             *expr = expr.renamed(&|found| (found == name).then(|| Expr::Name(by.to_owned())))

@@ -94,7 +94,8 @@ pub struct FormFile {
     /// What is added to the accelerations that the law gives, m/s2 or rad/s2.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub accelerates: BTreeMap<Axis, String>,
-    /// Factors on coefficients of the law, by name; coefficients that the law does not have are passed over.
+    /// Factors on coefficients of the law, by name; coefficients that the law does not have are
+    /// passed over.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub coefficients: IndexMap<String, String>,
@@ -157,7 +158,8 @@ pub enum Mirror {
     Opposite,
 }
 
-/// Terms that are searched for one by one: products of factors, each one a form with a single parameter.
+/// Terms that are searched for one by one: products of factors, each one a form with a single
+/// parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GrammarFile {

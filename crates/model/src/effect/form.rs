@@ -10,8 +10,8 @@ use crate::formula::Expr;
 use crate::trial::Channel;
 use crate::units::Dimension;
 
-/// One form of an effect, read and checked. Formulas mention states, inputs, particulars, the form's parameters and
-/// values by their plain names.
+/// One form of an effect, read and checked. Formulas mention states, inputs, particulars, the
+/// form's parameters and values by their plain names.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Form {
     /// As the file writes it: what a model that carries the effect keeps.
@@ -81,7 +81,8 @@ impl Form {
             .chain(self.measures.values())
     }
 
-    /// A figure that follows from the parameters, in the unit of its name; `None` without a finite value.
+    /// A figure that follows from the parameters, in the unit of its name; `None` without a finite
+    /// value.
     pub fn report(&self, name: &str, lookup: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
         let report = self.reports.get(name)?;
         report

@@ -14,7 +14,8 @@ use crate::particulars;
 use crate::trial::Channel;
 use crate::units::{Dimension, Unit};
 
-/// Endings of reported names: dimension of the formula, and what converts its value from SI and radians.
+/// Endings of reported names: dimension of the formula, and what converts its value from SI and
+/// radians.
 const REPORTED: [(&str, Dimension, f64); 8] = [
     ("_deg_s", Dimension::RATE, 180.0 / std::f64::consts::PI),
     ("_deg", Dimension::NONE, 180.0 / std::f64::consts::PI),
@@ -30,8 +31,8 @@ impl Form {
     /// Reads and checks a form.
     ///
     /// # Errors
-    /// The dotted field below the form that is wrong, and why: syntax, an unknown name, a unit, a channel that `needs` lacks,
-    /// a symmetry, or an effect that does not vanish at its absence.
+    /// The dotted field below the form that is wrong, and why: syntax, an unknown name, a unit, a
+    /// channel that `needs` lacks, a symmetry, or an effect that does not vanish at its absence.
     pub fn read(acts_on: ActsOn, file: &FormFile) -> Result<Self, (String, String)> {
         check_actions(acts_on, file)?;
         check_counts(file)?;

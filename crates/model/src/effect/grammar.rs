@@ -51,8 +51,9 @@ impl Grammar {
         Ok(grammar)
     }
 
-    /// Every term that fits an axis: products of factors of which the parity is the axis', named like coefficients, without
-    /// those whose name is `known` and those that need a channel which nobody `has`.
+    /// Every term that fits an axis: products of factors of which the parity is the axis', named
+    /// like coefficients, without those whose name is `known` and those that need a channel which
+    /// nobody `has`.
     pub fn forms(
         &self,
         axes: &[Axis],
@@ -73,7 +74,8 @@ impl Grammar {
         wanted.filter_map(|form| Form::read(ActsOn::Force, &form).ok()).map(Arc::new).collect()
     }
 
-    /// The constant of each axis, such as `Y_0`: what a ship that is not quite symmetric has. None of those `known`.
+    /// The constant of each axis, such as `Y_0`: what a ship that is not quite symmetric has. None
+    /// of those `known`.
     pub fn constants(&self, axes: &[Axis], known: &dyn Fn(&str) -> bool) -> Vec<Arc<Form>> {
         let constant = Term { factors: Vec::new(), bars: false };
         let axes = axes.iter().copied().filter(|axis| self.scales.contains_key(axis));
@@ -147,7 +149,8 @@ fn ordered(file: &GrammarFile, formulas: &IndexMap<String, Expr>) -> Result<Vec<
         let (text, absolute) = (file.factors[symbol].clone(), file.absolute.contains(symbol));
         factors.push(Factor { symbol: symbol.clone(), text, odd: is(true), absolute });
     }
-    // A stable sort: factors that coefficients do not know of stay in the order of the file, behind.
+    // A stable sort: factors that coefficients do not know of stay in the order of the file,
+    // behind.
     let rank = |symbol: &str| {
         STANDARD_FACTORS.iter().position(|known| *known == symbol).unwrap_or(STANDARD_FACTORS.len())
     };

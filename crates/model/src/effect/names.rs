@@ -9,13 +9,16 @@ use crate::units::Dimension;
 /// The speed at which the model's trials approach, which belongs to the model and not to the ship.
 pub const APPROACH_SPEED: &str = "approach_speed_m_s";
 
-/// The time since the start of the trial, s; a dressed law may call it otherwise, as laws have parameters of that name.
+/// The time since the start of the trial, s; a dressed law may call it otherwise, as laws have
+/// parameters of that name.
 const TIME: &str = "t";
 
-/// What the simulation itself always has; every other channel must be recorded and is listed in `needs`.
+/// What the simulation itself always has; every other channel must be recorded and is listed in
+/// `needs`.
 const GIVEN: [&str; 7] = ["u", "v", "r", "psi", "delta", "x", "y"];
 
-/// The dimension of a name that every effect may use; `measuring` adds positions and rates of change.
+/// The dimension of a name that every effect may use; `measuring` adds positions and rates of
+/// change.
 pub fn dimension(name: &str, measuring: bool) -> Option<Dimension> {
     let further = || if measuring { position_or_rate(name) } else { None };
     seen(name)
@@ -26,7 +29,8 @@ pub fn dimension(name: &str, measuring: bool) -> Option<Dimension> {
         .or_else(further)
 }
 
-/// The dimension of a name that reports and stand-ins for particulars may use: what does not change during a trial.
+/// The dimension of a name that reports and stand-ins for particulars may use: what does not change
+/// during a trial.
 pub fn constant(name: &str) -> Option<Dimension> {
     formula::builtin(name).map(|(_, dimension)| dimension).or_else(|| particulars::dimension(name))
 }

@@ -1,4 +1,5 @@
-//! Formulas at a few ordinary points: any numbers will do, as long as different names have different ones.
+//! Formulas at a few ordinary points: any numbers will do, as long as different names have
+//! different ones.
 
 use std::cell::RefCell;
 use std::collections::HashMap;

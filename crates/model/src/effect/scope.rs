@@ -61,7 +61,8 @@ impl Scope {
         Ok(values)
     }
 
-    /// A section of formulas, each of the dimension that `wanted` says; `constant` ones know particulars only.
+    /// A section of formulas, each of the dimension that `wanted` says; `constant` ones know
+    /// particulars only.
     pub fn formulas<'a, K, M>(
         &self,
         section: &str,
@@ -95,7 +96,8 @@ impl Scope {
         })
     }
 
-    /// Channels that formulas use must be listed, so that the form is tried only where they were recorded.
+    /// Channels that formulas use must be listed, so that the form is tried only where they were
+    /// recorded.
     pub fn check_needs(&self, listed: &[Channel]) -> Result<(), Refusal> {
         match self.needed.borrow().iter().find(|(channel, _)| !listed.contains(channel)) {
             Some((channel, field)) => {

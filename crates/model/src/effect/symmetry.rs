@@ -8,7 +8,8 @@ use super::form::{EffectParameter, Form};
 use super::probe::{Probe, SEEDS, is_odd};
 use crate::formula::Expr;
 
-/// A formula that acts: its field, whether it is odd in the mirror, and what it is while the effect is absent.
+/// A formula that acts: its field, whether it is odd in the mirror, and what it is while the effect
+/// is absent.
 struct Action<'a> {
     field: String,
     formula: &'a Expr,
@@ -16,7 +17,8 @@ struct Action<'a> {
     absent: Expr,
 }
 
-/// Mirrored motion with mirrored parameters must give mirrored results, and an absent effect must do nothing.
+/// Mirrored motion with mirrored parameters must give mirrored results, and an absent effect must
+/// do nothing.
 pub fn check(form: &Form) -> Result<(), (String, String)> {
     for action in actions(form) {
         let Action { field, formula, .. } = &action;

@@ -34,7 +34,8 @@ impl Term<'_> {
         ((odd - in_bars) % 2 == 1) == axis.is_odd()
     }
 
-    /// Like a coefficient; formulas cannot mention bars, so that the parameter has another mark in their place.
+    /// Like a coefficient; formulas cannot mention bars, so that the parameter has another mark in
+    /// their place.
     fn name(&self, axis: Axis, bar: &str) -> String {
         let Some(last) = self.factors.len().checked_sub(1) else { return format!("{axis}_0") };
         let symbol = |(place, factor): (usize, &&Factor)| {

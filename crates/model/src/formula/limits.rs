@@ -1,7 +1,9 @@
-//! How long and how deep a formula may be: whatever walks one must not run out of stack, nor out of time.
+//! How long and how deep a formula may be: whatever walks one must not run out of stack, nor out of
+//! time.
 //!
-//! Parsing recurses where a formula nests, so that the text is measured before it is parsed; every walk over the tree that
-//! comes out recurses at most as deep as there are operators. The largest formula of the zoo has 22 operators, and none nests more than 5 deep.
+//! Parsing recurses where a formula nests, so that the text is measured before it is parsed; every
+//! walk over the tree that comes out recurses at most as deep as there are operators. The largest
+//! formula of the zoo has 22 operators, and none nests more than 5 deep.
 
 use super::error::FormulaError;
 
@@ -50,7 +52,8 @@ struct Measure {
 impl Measure {
     fn of(text: &[u8]) -> Self {
         let mut found = Self::default();
-        // By open parenthesis, the signs and powers that are still waiting for their operand; together, how deep it is here.
+        // By open parenthesis, the signs and powers that are still waiting for their operand;
+        // together, how deep it is here.
         let (mut waiting, mut depth) = (vec![0_usize], 0_usize);
         let mut before = None;
         for (at, &byte) in text.iter().enumerate().filter(|(_, byte)| !byte.is_ascii_whitespace()) {

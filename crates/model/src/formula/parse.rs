@@ -17,8 +17,9 @@ type Result<T> = winnow::Result<T, ErrMode<ContextError>>;
 /// Parses one formula.
 ///
 /// # Errors
-/// Says at which character the formula stops making sense, and what was expected there; or that it is longer or deeper than
-/// [`super::MAX_LENGTH`], [`super::MAX_NESTING`] and [`super::MAX_OPERATORS`] allow.
+/// Says at which character the formula stops making sense, and what was expected there; or that it
+/// is longer or deeper than [`super::MAX_LENGTH`], [`super::MAX_NESTING`] and
+/// [`super::MAX_OPERATORS`] allow.
 pub fn parse(text: &str) -> std::result::Result<Expr, FormulaError> {
     super::limits::check(text)?;
     let parsed = delimited(multispace0, sum, multispace0).parse(text);
@@ -32,7 +33,8 @@ pub fn parse(text: &str) -> std::result::Result<Expr, FormulaError> {
     })
 }
 
-/// Parses a comparison such as `u < 0` to a formula that is 1 where it holds and 0 elsewhere. Its derivative is zero.
+/// Parses a comparison such as `u < 0` to a formula that is 1 where it holds and 0 elsewhere. Its
+/// derivative is zero.
 ///
 /// # Errors
 /// As [`parse`]; also where there is no comparison.
@@ -51,7 +53,8 @@ fn boxed(a: Expr, b: Expr, make: fn(Box<Expr>, Box<Expr>) -> Expr) -> Expr {
     make(Box::new(a), Box::new(b))
 }
 
-/// Binding powers: sums 1, products 3, unary minus 5, powers 7 (to the right), so `-u^2` is `-(u^2)`.
+/// Binding powers: sums 1, products 3, unary minus 5, powers 7 (to the right), so `-u^2` is
+/// `-(u^2)`.
 fn sum(input: &mut &str) -> Result<Expr> {
     expression(delimited(multispace0, operand, multispace0))
         .prefix(preceded(
@@ -88,7 +91,8 @@ fn expected(what: &'static str) -> StrContext {
 }
 
 fn number(input: &mut &str) -> Result<Expr> {
-    // `float` would also take a sign, `inf` and `nan`: a sign is an operator here, the others are names.
+    // `float` would also take a sign, `inf` and `nan`: a sign is an operator here, the others are
+    // names.
     preceded(peek(one_of(('0'..='9', '.'))), float).map(Expr::Number).parse_next(input)
 }
 

@@ -174,7 +174,8 @@ impl Expr {
         }
     }
 
-    /// The operand on the left, leaving a number in its place; none where there are no operands further down.
+    /// The operand on the left, leaving a number in its place; none where there are no operands
+    /// further down.
     fn take_left(&mut self) -> Option<Expr> {
         let left = match self {
             Self::Number(_) | Self::Name(_) | Self::Call(..) | Self::If(..) => return None,
@@ -196,8 +197,8 @@ impl Expr {
         1 + self.children().into_iter().map(Expr::size).sum::<usize>()
     }
 
-    /// How many operators are within each other, where `of_name` says how many a name stands for; none where there are more
-    /// than `most`, which is told without going further down.
+    /// How many operators are within each other, where `of_name` says how many a name stands for;
+    /// none where there are more than `most`, which is told without going further down.
     pub fn depth(
         &self,
         most: usize,
@@ -248,7 +249,8 @@ impl Expr {
     }
 }
 
-/// A sum of thousands of terms, as the force of an axis, leans to the left: it is taken apart in a loop, not by recursion.
+/// A sum of thousands of terms, as the force of an axis, leans to the left: it is taken apart in a
+/// loop, not by recursion.
 impl Drop for Expr {
     fn drop(&mut self) {
         let mut left = self.take_left();
@@ -267,7 +269,8 @@ pub fn builtin(name: &str) -> Option<(f64, Dimension)> {
     }
 }
 
-/// `a ^ b`, by repeated multiplication where the exponent is whole, as every other evaluator here does.
+/// `a ^ b`, by repeated multiplication where the exponent is whole, as every other evaluator here
+/// does.
 fn power(a: f64, b: f64) -> f64 {
     if b.fract() == 0.0 && b.abs() <= 16.0 { a.powi(b as i32) } else { a.powf(b) }
 }

@@ -1,4 +1,5 @@
-//! From actuators to the inputs of the law and the variables of the expansion: Miyauchi 2024, Eqs. 5 and 6.
+//! From actuators to the inputs of the law and the variables of the expansion: Miyauchi 2024, Eqs.
+//! 5 and 6.
 
 use super::file::{ActuatorFile, ActuatorKind, AngleFeature, Coupling, HybridFile, Symmetry};
 use crate::coefficient::{Axis, STANDARD_FACTORS};

@@ -96,7 +96,8 @@ fn check_actuator(actuator: &ActuatorFile) -> Result<(), (&'static str, String)>
     }
 }
 
-/// No two actuators may have an input in common, and a name that every law knows must mean what it does there.
+/// No two actuators may have an input in common, and a name that every law knows must mean what it
+/// does there.
 fn check_inputs(inputs: &[ActuatorInput]) -> Result<(), Fault> {
     for (place, input) in inputs.iter().enumerate() {
         let field = || "actuators".to_owned();

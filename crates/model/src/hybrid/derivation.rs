@@ -24,7 +24,8 @@ pub struct Derivation {
     pub law: Law,
 }
 
-/// Derives the law that a declaration asks for; `file` is the name that errors give the declaration.
+/// Derives the law that a declaration asks for; `file` is the name that errors give the
+/// declaration.
 ///
 /// # Errors
 /// Names file, line and field of the first thing that is wrong.
@@ -48,7 +49,8 @@ pub fn derive(file: &str, text: &str) -> Result<Derivation, FileError> {
     };
     let law_file = writer.law();
     let text = write(&law_file).map_err(|e| blame.at("", e))?;
-    // What the reader of laws refuses, it refuses for something that the declaration says under the same field.
+    // What the reader of laws refuses, it refuses for something that the declaration says under the
+    // same field.
     let law = Law::parse(file, &text).map_err(|error| blame.at(&error.field, error.message))?;
     Ok(Derivation { file: declared, steps, law_file, text, law })
 }
@@ -60,7 +62,8 @@ fn write(law: &LawFile) -> Result<String, String> {
     ))
 }
 
-/// Names must be read factor by factor as they were spelled: with `n` and `nn`, what would `X_nn` be?
+/// Names must be read factor by factor as they were spelled: with `n` and `nn`, what would `X_nn`
+/// be?
 fn check_names(terms: &[Vec<Term>; 3], variables: &[Variable]) -> Result<(), String> {
     let symbols: Vec<&str> = variables.iter().map(|variable| variable.symbol.as_str()).collect();
     let extra: Vec<&str> =

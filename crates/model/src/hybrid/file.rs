@@ -63,7 +63,8 @@ pub enum HybridKind {
 pub enum Scaling {
     /// Forces in N of velocities in SI, as Miyauchi 2024, Idea 6: coefficients belong to one ship.
     Dimensional,
-    /// The bis system: mass, Lpp and g as units, so that coefficients carry over by Froude's law and rest divides by nothing.
+    /// The bis system: mass, Lpp and g as units, so that coefficients carry over by Froude's law
+    /// and rest divides by nothing.
     #[default]
     Bis,
 }
@@ -156,7 +157,8 @@ pub struct Rules {
     pub constant: bool,
     /// Modification A: selection by port/starboard symmetry.
     pub symmetry: Symmetry,
-    /// Keep in Y and N what has no factor that is odd in the mirror, such as `Y_n`: the bias of a single screw.
+    /// Keep in Y and N what has no factor that is odd in the mirror, such as `Y_n`: the bias of a
+    /// single screw.
     pub zeroth_powers: bool,
     /// Bring `v|v|` back where modification A has taken `v^2`: cross-flow drag.
     pub signed_squares: bool,
@@ -173,10 +175,12 @@ pub struct Rules {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Symmetry {
-    /// As published: X is even, Y and N are odd in sway, yaw and every sine of an angle, each side of a pair by itself.
+    /// As published: X is even, Y and N are odd in sway, yaw and every sine of an angle, each side
+    /// of a pair by itself.
     #[default]
     Parity,
-    /// The mirror also exchanges the sides of a pair: they share coefficients, and what only differs between them stays.
+    /// The mirror also exchanges the sides of a pair: they share coefficients, and what only
+    /// differs between them stays.
     Mirror,
     /// No selection.
     None,
@@ -210,8 +214,8 @@ pub enum Squares {
     /// As the text says: squares of what is even in the mirror become `x|x|`, on every axis.
     #[default]
     AsDescribed,
-    /// As Eqs. 14 to 16 print: in Y and N it is the squares of what is odd in the mirror that become `x|x|`, which makes
-    /// `v|v|r` and its like biases.
+    /// As Eqs. 14 to 16 print: in Y and N it is the squares of what is odd in the mirror that
+    /// become `x|x|`, which makes `v|v|r` and its like biases.
     AsPrinted,
     /// Squares stay squares.
     Plain,

@@ -1,5 +1,5 @@
-//! The derived law as a file like any other: forces from the terms, the rest from the equations of motion (Miyauchi 2024,
-//! Eq. 1).
+//! The derived law as a file like any other: forces from the terms, the rest from the equations of
+//! motion (Miyauchi 2024, Eq. 1).
 
 use std::collections::BTreeMap;
 

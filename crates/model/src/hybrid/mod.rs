@@ -1,8 +1,9 @@
-//! The Abkowitz-MMG hybrid as a law that the program derives: Miyauchi, Akimoto and Maki (2024), sec. 2.2.
+//! The Abkowitz-MMG hybrid as a law that the program derives: Miyauchi, Akimoto and Maki (2024),
+//! sec. 2.2.
 //!
-//! A declaration names the actuators, the order, the rules and the submodels; from it follow the variables (Eqs. 5 and 6), the
-//! Taylor expansion (Eqs. 7 to 11), the selection (modifications A to C), the conditions (Algorithms 1 to 3) and a law's file
-//! that reads like one written by hand.
+//! A declaration names the actuators, the order, the rules and the submodels; from it follow the
+//! variables (Eqs. 5 and 6), the Taylor expansion (Eqs. 7 to 11), the selection (modifications A to
+//! C), the conditions (Algorithms 1 to 3) and a law's file that reads like one written by hand.
 
 mod actuators;
 mod check;

@@ -1,4 +1,5 @@
-//! Which terms of the expansion stay and how they are written: Miyauchi 2024, sec. 2.2.2, each rule by itself.
+//! Which terms of the expansion stay and how they are written: Miyauchi 2024, sec. 2.2.2, each rule
+//! by itself.
 
 use super::actuators::Variable;
 use super::file::{Coupling, Rules, Squares, Symmetry, TrigonometricPowers};
@@ -28,7 +29,8 @@ pub struct Step {
 /// The axes of the hybrid.
 pub const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::N];
 
-/// Applies the rules one after another; returns the terms by axis, as [`AXES`], and what each rule left.
+/// Applies the rules one after another; returns the terms by axis, as [`AXES`], and what each rule
+/// left.
 pub fn select(
     all: &[Monomial],
     rules: &Rules,

@@ -1,4 +1,5 @@
-//! Published conditions: Miyauchi 2024, Algorithms 1 to 3, and the quadrants of Miyauchi 2021 (as told there).
+//! Published conditions: Miyauchi 2024, Algorithms 1 to 3, and the quadrants of Miyauchi 2021 (as
+//! told there).
 //!
 //! The first set of each algorithm, ahead with unstalled rudders, is the shared one.
 
@@ -67,8 +68,9 @@ fn propeller(file: &HybridFile) -> Result<String, String> {
     }
 }
 
-/// `max(|delta_s| - stall_s, |delta_p| - stall_p) >= 0`: some rudder is beyond its stall angle. The paper's Algorithms 2
-/// and 3 print the starboard rudder in both comparisons; the port one is meant in the second.
+/// `max(|delta_s| - stall_s, |delta_p| - stall_p) >= 0`: some rudder is beyond its stall angle. The
+/// paper's Algorithms 2 and 3 print the starboard rudder in both comparisons; the port one is meant
+/// in the second.
 fn stalled(file: &HybridFile, comparison: &str) -> Result<String, String> {
     let beyond = |(name, angle): (String, f64)| format!("abs({name}) - {angle}*pi/180");
     let excess = stall_angles(file).into_iter().map(beyond).reduce(|a, b| format!("max({a}, {b})"));

@@ -59,7 +59,8 @@ impl Derivation {
     /// Counts the unknowns; `zoo` knows the effects.
     ///
     /// # Errors
-    /// The field of the declaration that names an effect or form that is not in the zoo, and what is.
+    /// The field of the declaration that names an effect or form that is not in the zoo, and what
+    /// is.
     pub fn unknowns(&self, zoo: &Zoo) -> Result<Unknowns, (String, String)> {
         let effects = self.effects(zoo)?;
         let parameters: Vec<String> = self

@@ -1,4 +1,5 @@
-//! A law of motion: formulas over states, inputs, particulars and parameters, linear in its coefficients.
+//! A law of motion: formulas over states, inputs, particulars and parameters, linear in its
+//! coefficients.
 
 use std::collections::BTreeMap;
 
@@ -29,19 +30,23 @@ pub struct Law {
     pub parameters: IndexMap<String, Parameter>,
     /// Intermediate values, in an order in which each needs only earlier ones.
     pub values: IndexMap<String, Expr>,
-    /// Their dimensions, each found once: found anew, that of a value named twice in the next would be found twice.
+    /// Their dimensions, each found once: found anew, that of a value named twice in the next would
+    /// be found twice.
     pub value_dimensions: BTreeMap<String, Dimension>,
     /// What a factor of a coefficient's name stands for in a regressor.
     pub factors: IndexMap<String, Expr>,
-    /// Submodels by name, the first whose conditions hold applies; each one's indicator is the value [`indicator`].
+    /// Submodels by name, the first whose conditions hold applies; each one's indicator is the
+    /// value [`indicator`].
     pub submodels: IndexMap<String, Submodel>,
     /// The right-hand sides.
     pub axes: BTreeMap<Axis, AxisLaw>,
-    /// The mass matrix, by axis and the axis whose acceleration it multiplies; what is absent is zero.
+    /// The mass matrix, by axis and the axis whose acceleration it multiplies; what is absent is
+    /// zero.
     pub mass: BTreeMap<(Axis, Axis), Expr>,
     /// Rates of x, y, psi and phi, where they differ from those of motion in the horizontal plane.
     pub kinematics: BTreeMap<String, Expr>,
-    /// What parameters and inputs become when the ship is mirrored port to starboard: another one, or `-name` for the opposite.
+    /// What parameters and inputs become when the ship is mirrored port to starboard: another one,
+    /// or `-name` for the opposite.
     pub mirrors: BTreeMap<String, String>,
     /// What effects add; nothing in a law as its file writes it.
     pub dressing: Dressing,
@@ -65,22 +70,27 @@ pub struct Parameter {
     pub unit: String,
     /// What it means.
     pub meaning: String,
-    /// How it follows from particulars; used where a vessel does not state it, and when a model moves to another ship.
+    /// How it follows from particulars; used where a vessel does not state it, and when a model
+    /// moves to another ship.
     pub from: Option<Expr>,
-    /// Whether it is the speed about which the law is expanded, which belongs to the trials and not to the ship.
+    /// Whether it is the speed about which the law is expanded, which belongs to the trials and not
+    /// to the ship.
     pub is_approach_speed: bool,
 }
 
-/// Conditions under which coefficients deviate from the shared ones: while they hold, `X_u@name` is added to `X_u`.
+/// Conditions under which coefficients deviate from the shared ones: while they hold, `X_u@name` is
+/// added to `X_u`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Submodel {
     /// What it stands for.
     pub meaning: String,
-    /// How many times the precision of a deviation's prior, which pulls it to zero, is that of the shared coefficient's.
+    /// How many times the precision of a deviation's prior, which pulls it to zero, is that of the
+    /// shared coefficient's.
     pub shrinkage: f64,
 }
 
-/// The name of the value that is 1 while a submodel applies and 0 elsewhere; no formula of a file can spell it.
+/// The name of the value that is 1 while a submodel applies and 0 elsewhere; no formula of a file
+/// can spell it.
 pub fn indicator(submodel: &str) -> String {
     format!("@{submodel}")
 }
@@ -128,7 +138,8 @@ impl Law {
             .collect()
     }
 
-    /// The regressor of a coefficient with its axis' scale: the force in N (or N m) per unit of the coefficient.
+    /// The regressor of a coefficient with its axis' scale: the force in N (or N m) per unit of the
+    /// coefficient.
     ///
     /// # Errors
     /// Says why the law has no such coefficient.
@@ -219,7 +230,8 @@ impl Law {
         self.values.insert(name, expr);
     }
 
-    /// The value of a parameter for a ship: how it follows from her particulars, where the law says so and they suffice.
+    /// The value of a parameter for a ship: how it follows from her particulars, where the law says
+    /// so and they suffice.
     pub fn derived_parameter(&self, name: &str, ship: &BTreeMap<String, Quantity>) -> Option<f64> {
         let from = self.parameters.get(name)?.from.as_ref()?;
         from.value(&|particular| particulars::value(ship, particular))

@@ -37,7 +37,8 @@ pub struct LawFile {
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub factors: IndexMap<String, String>,
-    /// Conditions under which every coefficient deviates: the first whose comparisons all hold applies.
+    /// Conditions under which every coefficient deviates: the first whose comparisons all hold
+    /// applies.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, SubmodelFile>")]
     pub submodels: IndexMap<String, SubmodelFile>,
@@ -48,7 +49,8 @@ pub struct LawFile {
     /// Rates of `x`, `y`, `psi`, `phi` where they are not those of motion in the horizontal plane.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub kinematics: BTreeMap<String, String>,
-    /// What parameters and inputs become when the ship is mirrored: another one, or `-name` for the opposite.
+    /// What parameters and inputs become when the ship is mirrored: another one, or `-name` for the
+    /// opposite.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub mirrors: BTreeMap<String, String>,
 }
@@ -96,7 +98,8 @@ pub enum ParameterRole {
     ApproachSpeed,
 }
 
-/// A submodel as its file writes it: the coefficient `X_u@name` is added to `X_u` while its comparisons hold.
+/// A submodel as its file writes it: the coefficient `X_u@name` is added to `X_u` while its
+/// comparisons hold.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SubmodelFile {
@@ -104,8 +107,8 @@ pub struct SubmodelFile {
     pub when: Vec<String>,
     /// What it stands for.
     pub meaning: String,
-    /// How many times the precision (the inverse variance) of the prior that pulls a deviation to zero is that of the shared
-    /// coefficient's prior.
+    /// How many times the precision (the inverse variance) of the prior that pulls a deviation to
+    /// zero is that of the shared coefficient's prior.
     #[serde(default = "no_shrinkage")]
     pub shrinkage: f64,
 }
@@ -121,7 +124,8 @@ pub struct AxisFile {
     /// Multiplies every term.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<String>,
-    /// Coefficients: a name alone stands for the product of its factors, `{name: formula}` for that formula.
+    /// Coefficients: a name alone stands for the product of its factors, `{name: formula}` for that
+    /// formula.
     #[serde(default)]
     pub terms: Vec<TermFile>,
     /// What is added as it is.

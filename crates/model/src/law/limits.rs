@@ -1,4 +1,5 @@
-//! How large a law may be, so that it can be read, simulated, refined and diagnosed in bounded time and stack.
+//! How large a law may be, so that it can be read, simulated, refined and diagnosed in bounded time
+//! and stack.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -7,7 +8,8 @@ use super::definition::Law;
 use super::file::LawFile;
 use crate::formula::{Expr, MAX_DEPTH};
 
-/// Terms of all axes; with the deviations of submodels, see [`MAX_COEFFICIENTS`]. The largest law of the zoo has 189, and none more than 189 coefficients.
+/// Terms of all axes; with the deviations of submodels, see [`MAX_COEFFICIENTS`]. The largest law
+/// of the zoo has 189, and none more than 189 coefficients.
 pub const MAX_TERMS: usize = 1500;
 
 /// Coefficients of a law, shared ones and deviations, or of a model.

@@ -21,7 +21,8 @@ impl Law {
     /// Reads and checks a law; `file` is the name that errors give it.
     ///
     /// # Errors
-    /// Names file, line and field of the first thing that is wrong: syntax, an unknown name, a unit, a symmetry.
+    /// Names file, line and field of the first thing that is wrong: syntax, an unknown name, a
+    /// unit, a symmetry.
     pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
         read(file, text)
     }

@@ -1,8 +1,9 @@
 //! Submodels: conditions under which the coefficients of a law deviate from the shared ones.
 //!
-//! Miyauchi et al. (2024, sec. 2.2.3) give every condition a set of coefficients of its own. Here the first set is shared by
-//! all and the others are written as deviations from it, `X^(i) = X + X@i`: the same functions with as many numbers, but a
-//! prior can pull what the trials do not tell apart to zero.
+//! Miyauchi et al. (2024, sec. 2.2.3) give every condition a set of coefficients of its own. Here
+//! the first set is shared by all and the others are written as deviations from it, `X^(i) = X +
+//! X@i`: the same functions with as many numbers, but a prior can pull what the trials do not tell
+//! apart to zero.
 
 use indexmap::IndexMap;
 
@@ -51,13 +52,15 @@ fn applies(law: &Law, file: &SubmodelFile) -> Result<Expr, String> {
 }
 
 impl Law {
-    /// The submodel whose deviation a coefficient is; `None` for a shared one. An estimator pulls deviations to zero with a
-    /// prior whose precision is [`Submodel::shrinkage`] times that of the shared coefficient.
+    /// The submodel whose deviation a coefficient is; `None` for a shared one. An estimator pulls
+    /// deviations to zero with a prior whose precision is [`Submodel::shrinkage`] times that of the
+    /// shared coefficient.
     pub fn deviation(&self, coefficient: &str) -> Option<&Submodel> {
         self.submodels.get(split_submodel(coefficient).1?)
     }
 
-    /// Every coefficient that the law lists: by axis the shared ones, then the deviations of each submodel.
+    /// Every coefficient that the law lists: by axis the shared ones, then the deviations of each
+    /// submodel.
     pub fn coefficient_names(&self) -> Vec<String> {
         let of_axis = |axis: &AxisLaw| -> Vec<String> {
             let shared = axis.terms.keys().cloned();

@@ -52,8 +52,9 @@ pub fn check(law: &Law) -> Result<(), (String, String)> {
     Ok(())
 }
 
-/// Whether the factors that a name spells make an odd product in the mirror. Where one of them is neither odd nor even, as
-/// the angle of one rudder of a pair, the name cannot spell a bias and the axis decides.
+/// Whether the factors that a name spells make an odd product in the mirror. Where one of them is
+/// neither odd nor even, as the angle of one rudder of a pair, the name cannot spell a bias and the
+/// axis decides.
 fn spelled_parity(
     law: &Law,
     factors: &BTreeMap<&str, Option<bool>>,
@@ -110,8 +111,8 @@ fn is_odd(places: &Places<'_>, expr: &Expr) -> Option<bool> {
 }
 
 impl Law {
-    /// Whether a coefficient's regressor changes sign with the rudder: by `delta`, or by a factor of the law that does, such
-    /// as a sine of it.
+    /// Whether a coefficient's regressor changes sign with the rudder: by `delta`, or by a factor
+    /// of the law that does, such as a sine of it.
     pub fn is_odd_in_rudder(&self, coefficient: &str) -> bool {
         let odd: BTreeSet<&str> = self.odd_in_rudder().collect();
         self.is_odd_in(coefficient, &odd)
@@ -137,7 +138,8 @@ impl Law {
     }
 }
 
-/// Whether a formula changes sign with every rudder angle, `delta` or one of a pair, all else as it is.
+/// Whether a formula changes sign with every rudder angle, `delta` or one of a pair, all else as it
+/// is.
 fn is_odd_in_rudder(law: &Law, expr: &Expr) -> bool {
     let rudders =
         || law.inputs.keys().filter(|name| *name == "delta" || name.starts_with("delta_"));
@@ -154,7 +156,8 @@ fn is_odd_in_rudder(law: &Law, expr: &Expr) -> bool {
     })
 }
 
-/// The ship in one of the points, or its mirror image, with the values that were needed there so far: each is found once.
+/// The ship in one of the points, or its mirror image, with the values that were needed there so
+/// far: each is found once.
 struct Place<'a> {
     law: &'a Law,
     known: BTreeMap<&'a str, f64>,
@@ -205,7 +208,8 @@ impl<'a> Places<'a> {
     }
 }
 
-/// Any number will do for particulars and parameters, as long as different names have different ones.
+/// Any number will do for particulars and parameters, as long as different names have different
+/// ones.
 fn stand_in(law: &Law, name: &str, mirrored: bool) -> f64 {
     if let Some((value, _)) = crate::formula::builtin(name) {
         return value;
@@ -218,8 +222,8 @@ fn stand_in(law: &Law, name: &str, mirrored: bool) -> f64 {
     sign * (0.2 + f64::from(hash % 997) / 997.0)
 }
 
-/// What a parameter or input becomes in the mirror, with its sign: another one (`gamma_R_minus`), its own opposite
-/// (`-c_Pr`), or the opposite of another (`-delta_p`).
+/// What a parameter or input becomes in the mirror, with its sign: another one (`gamma_R_minus`),
+/// its own opposite (`-c_Pr`), or the opposite of another (`-delta_p`).
 fn twin<'a>(law: &'a Law, name: &str) -> Option<(f64, &'a str)> {
     law.mirrors.iter().find_map(|(a, b)| {
         let (sign, b) = b.strip_prefix('-').map_or((1.0, b.as_str()), |positive| (-1.0, positive));

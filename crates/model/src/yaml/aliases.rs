@@ -30,7 +30,8 @@ fn name(bytes: &[u8], at: usize) -> Option<&[u8]> {
     (length > 0).then(|| &rest[..length])
 }
 
-/// Whether a token may begin at a place, by what stands before it; bytes above ASCII may be a line break or a mark of order.
+/// Whether a token may begin at a place, by what stands before it; bytes above ASCII may be a line
+/// break or a mark of order.
 fn may_begin(bytes: &[u8], at: usize) -> bool {
     let before = at.checked_sub(1).map(|place| bytes[place]);
     before.is_none_or(|b| b.is_ascii_whitespace() || !b.is_ascii() || b"[]{},:?\"'".contains(&b))

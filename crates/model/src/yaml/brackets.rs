@@ -1,18 +1,22 @@
-//! How deep brackets and braces nest, told without knowing where strings, comments and block scalars begin and end.
+//! How deep brackets and braces nest, told without knowing where strings, comments and block
+//! scalars begin and end.
 //!
-//! Outside brackets, what a byte means depends on the indentation of everything before it; inside, on few rules. So each bracket is
-//! taken for the outermost one, and what follows is read by the rules for what is inside. For the brackets that are, that is how
-//! the parser reads it; for those that stand in some text it is read in vain, and seldom deep.
+//! Outside brackets, what a byte means depends on the indentation of everything before it; inside,
+//! on few rules. So each bracket is taken for the outermost one, and what follows is read by the
+//! rules for what is inside. For the brackets that are, that is how the parser reads it; for those
+//! that stand in some text it is read in vain, and seldom deep.
 
 use super::line_break::break_at;
 
 /// Brackets and braces within each other.
 pub const MAX_DEPTH: usize = 64;
 
-/// How often a document may be read over: as often as its brackets nest, and once for each that is never closed.
+/// How often a document may be read over: as often as its brackets nest, and once for each that is
+/// never closed.
 const MAX_PASSES: usize = 16;
 
-/// A document that counts as this long at least, bytes: short ones may have more brackets that are never closed.
+/// A document that counts as this long at least, bytes: short ones may have more brackets that are
+/// never closed.
 const SHORT: usize = 256 << 10;
 
 /// Refuses brackets that nest deeper than [`MAX_DEPTH`], at a byte.
@@ -103,7 +107,8 @@ impl Inside<'_> {
         self.at = self.bytes.len();
     }
 
-    /// A doubled quote reads as the end of one string and the beginning of the next, to the same end.
+    /// A doubled quote reads as the end of one string and the beginning of the next, to the same
+    /// end.
     fn single_quoted(&mut self) {
         self.at += 1;
         self.skip_while(|byte| byte != b'\'');

@@ -1,6 +1,7 @@
 //! Line breaks as libyaml knows them.
 
-/// Bytes of the line break that begins at a place, none where none does: also NEL, LS and PS, which libyaml takes for one.
+/// Bytes of the line break that begins at a place, none where none does: also NEL, LS and PS, which
+/// libyaml takes for one.
 pub fn break_at(bytes: &[u8], at: usize) -> Option<usize> {
     match bytes[at] {
         b'\n' | b'\r' => Some(1),

@@ -1,5 +1,5 @@
-//! What the trials of a refinement leave open, kept with its model. The command line and the server both come here, so that
-//! a version verifies whoever made it.
+//! What the trials of a refinement leave open, kept with its model. The command line and the server
+//! both come here, so that a version verifies whoever made it.
 
 use std::sync::Arc;
 
@@ -8,8 +8,8 @@ use sistership_estimate::refine::Refinement;
 use sistership_model::trial::Trial;
 use sistership_model::{Effect, Law};
 
-/// Learns what the fitted trials leave open of a refined model; where that fails, the model goes without and a remark says
-/// why.
+/// Learns what the fitted trials leave open of a refined model; where that fails, the model goes
+/// without and a remark says why.
 pub fn with_uncertainty(
     mut refinement: Refinement,
     law: &Law,
@@ -19,7 +19,8 @@ pub fn with_uncertainty(
     let held_out = &refinement.settings.held_out;
     let fitted: Vec<&Trial> =
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
-    match calibrate(&refinement.model, law, effects, &fitted) {
+    let step = refinement.settings.calibration_step;
+    match calibrate(&refinement.model, law, effects, &fitted, step) {
         Ok(uncertainty) => refinement.model.uncertainty = Some(uncertainty),
         Err(error) => refinement
             .remarks

@@ -54,8 +54,9 @@ pub struct Ingredients {
 }
 
 impl Derived {
-    /// The same with every setting that was used spelled out in the recipe of a refinement, so that no later default speaks for
-    /// it. Evaluations stay as they were asked for: they are a limit, and not what was spent.
+    /// The same with every setting that was used spelled out in the recipe of a refinement, so that
+    /// no later default speaks for it. Evaluations stay as they were asked for: they are a limit,
+    /// and not what was spent.
     ///
     /// # Errors
     /// A setting is not finite.

@@ -1,4 +1,5 @@
-//! Deriving a diagnosis, and the version with the effects that it finds: a function of what its recipe names by hash.
+//! Deriving a diagnosis, and the version with the effects that it finds: a function of what its
+//! recipe names by hash.
 
 use serde_json::Value;
 use sistership_diagnose::{Diagnosis, Request, Settings, diagnose};
@@ -93,7 +94,8 @@ impl Diagnosed {
     }
 }
 
-/// What a diagnosis reported, without the model that the version holds anyway and the series that only plots need.
+/// What a diagnosis reported, without the model that the version holds anyway and the series that
+/// only plots need.
 fn report(diagnosis: &Diagnosis) -> Result<Value, serde_json::Error> {
     let mut report = serde_json::to_value(diagnosis)?;
     if let Some(fields) = report.as_object_mut() {

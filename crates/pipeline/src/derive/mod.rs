@@ -1,5 +1,5 @@
-//! From a recipe to the version that it describes. Jobs and [`verify`](mod@crate::verify) both go this way, so that they
-//! cannot differ.
+//! From a recipe to the version that it describes. Jobs and [`verify`](mod@crate::verify) both go
+//! this way, so that they cannot differ.
 
 mod calibrated;
 mod derived;

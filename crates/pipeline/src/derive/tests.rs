@@ -1,5 +1,6 @@
-//! Versions of the tree before recipes named their library of effects (`tests/data/recipes`, see the README there), in stores of
-//! this one: each verifies, each reads what its recipe names and nothing else, and what is lost or damaged is named.
+//! Versions of the tree before recipes named their library of effects (`tests/data/recipes`, see
+//! the README there), in stores of this one: each verifies, each reads what its recipe names and
+//! nothing else, and what is lost or damaged is named.
 
 #![allow(clippy::unwrap_used)]
 
@@ -48,7 +49,8 @@ fn version_of(row: &Value) -> NewVersion {
     }
 }
 
-/// An archive that holds the versions and their inputs, and of the program's own nothing but libraries of effects.
+/// An archive that holds the versions and their inputs, and of the program's own nothing but
+/// libraries of effects.
 async fn archive(database: &TestDatabase) -> Archive {
     let archive = Archive::open(&database.url, database.folder.path()).await.unwrap();
     let kept = kept();
@@ -152,8 +154,8 @@ async fn another_library_gives_another_calibration_by_its_own_hash() {
     assert!(findings.faults.iter().any(|fault| fault.check == "version-effects"), "{findings:?}");
 }
 
-/// What each kind of version reads is what its recipe names: the loader refuses it otherwise, which is shown here by recipes
-/// from which, and to which, an input was taken and added.
+/// What each kind of version reads is what its recipe names: the loader refuses it otherwise, which
+/// is shown here by recipes from which, and to which, an input was taken and added.
 #[tokio::test(flavor = "multi_thread")]
 async fn every_kind_of_version_reads_what_its_recipe_names() {
     let database = TestDatabase::sqlite();
@@ -243,7 +245,8 @@ async fn samples_that_are_lost_are_named() {
     }
 }
 
-/// A later release adds its library beside the older ones, on both databases; a backup has all of them.
+/// A later release adds its library beside the older ones, on both databases; a backup has all of
+/// them.
 #[tokio::test(flavor = "multi_thread")]
 async fn libraries_stay_beside_each_other_and_are_backed_up() {
     for database in
@@ -283,7 +286,8 @@ async fn libraries_stay_beside_each_other_and_are_backed_up() {
     );
 }
 
-/// Every setting that was used is in the recipe of a new version, and the spelled out recipe gives the same model.
+/// Every setting that was used is in the recipe of a new version, and the spelled out recipe gives
+/// the same model.
 #[tokio::test(flavor = "multi_thread")]
 async fn new_recipes_spell_out_every_setting() {
     let database = TestDatabase::sqlite();
@@ -316,8 +320,9 @@ async fn new_recipes_spell_out_every_setting() {
     }
 }
 
-/// What numerics are not given as arguments they do not know: no zoo of the program's, no file, no environment, no calendar, no
-/// count of cores. The clock of a search's budget is refused where versions are made.
+/// What numerics are not given as arguments they do not know: no zoo of the program's, no file, no
+/// environment, no calendar, no count of cores. The clock of a search's budget is refused where
+/// versions are made.
 #[test]
 fn numerics_read_nothing_but_their_arguments() {
     let crates = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));

@@ -12,7 +12,8 @@ use super::order::{BULK, Chunk, Order};
 use crate::recipe::PriorName;
 use crate::schema::described;
 
-/// Most ships in a chunk, and how many there are where nobody says: few enough that a worker which dies loses little.
+/// Most ships in a chunk, and how many there are where nobody says: few enough that a worker which
+/// dies loses little.
 const MOST: usize = 500;
 const CHUNK: usize = 50;
 

@@ -29,7 +29,7 @@ pub enum PriorChoice {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rule {
-    /// A refined model becomes champion where no axis' error, on trials left out, exceeds the one before by more than this share.
-    /// Where absent, a person's word only.
+    /// A refined model becomes champion where no axis' error, on trials left out, exceeds the one
+    /// before by more than this share. Where absent, a person's word only.
     pub no_worse_than: Option<f64>,
 }

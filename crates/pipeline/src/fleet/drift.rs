@@ -21,8 +21,8 @@ pub struct Drift {
     pub ship: String,
     /// The number of her champion.
     pub version: i64,
-    /// What is left of new trials by what is left of those that the champion was fitted on, by axis: 1 where it holds as well as
-    /// on those. Empty where there are none of either.
+    /// What is left of new trials by what is left of those that the champion was fitted on, by
+    /// axis: 1 where it holds as well as on those. Empty where there are none of either.
     pub ratio: BTreeMap<String, f64>,
     /// The largest of them.
     pub worst: Option<f64>,

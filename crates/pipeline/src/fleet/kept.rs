@@ -32,7 +32,8 @@ pub async fn statistics_of(
     Ok(all)
 }
 
-/// What statistics are kept under: another release makes its own, since versions that it makes are to be derived again by it.
+/// What statistics are kept under: another release makes its own, since versions that it makes are
+/// to be derived again by it.
 fn key(frame: &Frame, trial_sha256: &str, revision: &str) -> String {
     sha256(format!("{revision}\n{}", frame.key(trial_sha256)).as_bytes())
 }

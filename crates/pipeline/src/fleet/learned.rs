@@ -25,7 +25,8 @@ pub struct LearnJob {
     pub family: String,
 }
 
-/// Learns mean and covariance over the members that have trials; `told` hears how far it is and may stop it.
+/// Learns mean and covariance over the members that have trials; `told` hears how far it is and may
+/// stop it.
 ///
 /// # Errors
 /// Why nothing can be learned.
@@ -64,7 +65,8 @@ pub async fn learn(
     learned.await?.map_err(|error| DeriveError::Lost(error.to_string()))
 }
 
-/// The statistics of a member; none of one without trials, or whose model is not of this family's kind.
+/// The statistics of a member; none of one without trials, or whose model is not of this family's
+/// kind.
 async fn of_member(
     frames: &Frames<'_>,
     ship: &str,

@@ -1,4 +1,5 @@
-//! Families of ships: what their members are refined from, what they teach, and the refinement of all of them.
+//! Families of ships: what their members are refined from, what they teach, and the refinement of
+//! all of them.
 
 mod asked;
 mod choices;

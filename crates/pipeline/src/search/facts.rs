@@ -1,4 +1,5 @@
-//! What is known of a ship: her particulars, the vectors by which ships are similar, and the metrics of her champion.
+//! What is known of a ship: her particulars, the vectors by which ships are similar, and the
+//! metrics of her champion.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -47,7 +48,8 @@ pub(super) async fn of_ships(
     Ok(known.await.map_err(sistership_store::ObjectsError::from)?)
 }
 
-/// Reads a ship; nothing where she is deleted. What does not read is told and left out: it must not keep others waiting.
+/// Reads a ship; nothing where she is deleted. What does not read is told and left out: it must not
+/// keep others waiting.
 async fn read(archive: &Archive, laws: &Zoo, waiting: Waiting) -> Result<Read, StoreError> {
     let nothing = |waiting: Waiting, category: String| Read {
         waiting,
@@ -125,7 +127,8 @@ fn vectors(vessel: &Vessel) -> String {
         .unwrap_or_else(|_| "{}".to_owned())
 }
 
-/// The vector of one definition among those that are stored. The others are passed over: ships are compared by thousands.
+/// The vector of one definition among those that are stored. The others are passed over: ships are
+/// compared by thousands.
 pub(super) fn vector(stored: &str, definition: &str) -> Option<BTreeMap<String, f64>> {
     Only(definition).deserialize(&mut serde_json::Deserializer::from_str(stored)).ok()?
 }

@@ -23,7 +23,8 @@ pub async fn catch_up(archive: &Archive) -> Result<(), StoreError> {
     write_facts(archive, &laws).await
 }
 
-/// Writes the facts of every ship that has changed, again where one has changed meanwhile: the first time that her models are published makes her a champion.
+/// Writes the facts of every ship that has changed, again where one has changed meanwhile: the
+/// first time that her models are published makes her a champion.
 ///
 /// # Errors
 /// The database does not answer.

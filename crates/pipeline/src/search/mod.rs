@@ -16,7 +16,8 @@ use sistership_store::{List, ShipKey};
 use crate::archive::Archive;
 use crate::error::DeriveError;
 
-/// The ships that a search finds. With `similar_to` their `value` is the correlation of the vectors.
+/// The ships that a search finds. With `similar_to` their `value` is the correlation of the
+/// vectors.
 ///
 /// # Errors
 /// There is no such ship to be similar to, or the store does not answer.

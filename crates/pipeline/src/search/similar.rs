@@ -1,4 +1,5 @@
-//! Ships by their similarity to a ship: the correlation of characteristic vectors, within a category.
+//! Ships by their similarity to a ship: the correlation of characteristic vectors, within a
+//! category.
 
 use std::cmp::Ordering;
 
@@ -31,7 +32,8 @@ pub(super) async fn ships(
     Ok(page.of(found, key))
 }
 
-/// The names of the ships of a ship's category that are most similar to her, the most similar first.
+/// The names of the ships of a ship's category that are most similar to her, the most similar
+/// first.
 pub async fn nearest(
     archive: &Archive,
     target: &Vessel,

@@ -17,7 +17,8 @@ pub async fn backup(archive: &Archive, folder: &Path) -> Result<BackupManifest> 
 /// Makes an archive of a backup, in an empty place, see [`Store::restore`].
 ///
 /// # Errors
-/// The place is not empty, the backup is damaged or of another kind of database, or something cannot be written.
+/// The place is not empty, the backup is damaged or of another kind of database, or something
+/// cannot be written.
 pub async fn restore(
     folder: &Path,
     database_url: &str,

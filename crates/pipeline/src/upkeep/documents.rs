@@ -62,8 +62,8 @@ async fn version(archive: &Archive, version: &Version, findings: &mut Findings) 
     }
 }
 
-/// Everything that a recipe names must be there with the hash that it names, but for trials, whose objects are looked at
-/// where all objects are.
+/// Everything that a recipe names must be there with the hash that it names, but for trials, whose
+/// objects are looked at where all objects are.
 async fn recipe(
     archive: &Archive,
     version: &Version,

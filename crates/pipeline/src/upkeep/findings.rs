@@ -42,7 +42,8 @@ pub struct Findings {
     pub checked: Checked,
     /// Objects that no trial refers to. They are no fault: `gc` removes them.
     pub unreferred: Unreferred,
-    /// Puts that are under way or never ended. They are no fault either: `gc` removes them once they are old.
+    /// Puts that are under way or never ended. They are no fault either: `gc` removes them once
+    /// they are old.
     pub unfinished: Unreferred,
 }
 

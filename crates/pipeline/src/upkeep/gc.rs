@@ -30,8 +30,8 @@ pub struct Collected {
     pub objects: usize,
 }
 
-/// Removes the objects that no trial and no version refers to and that were put longer than `grace` ago. Others may write
-/// meanwhile.
+/// Removes the objects that no trial and no version refers to and that were put longer than `grace`
+/// ago. Others may write meanwhile.
 ///
 /// # Errors
 /// The database or the object store does not answer; what has been removed by then is gone.
@@ -78,7 +78,8 @@ async fn unfinished(archive: &Archive, before_us: i64, collected: &mut Collected
     Ok(())
 }
 
-/// Key and size of an object that is old enough and that no version names. What is not named by a hash is not ours.
+/// Key and size of an object that is old enough and that no version names. What is not named by a
+/// hash is not ours.
 fn candidate(head: ObjectHead, before_us: i64, named: &HashSet<String>) -> Option<(String, u64)> {
     match head.name {
         ObjectName::Key(key) if head.modified_us < before_us && !named.contains(&key) => {
@@ -88,7 +89,8 @@ fn candidate(head: ObjectHead, before_us: i64, named: &HashSet<String>) -> Optio
     }
 }
 
-/// The samples that versions name. Trials have rows for them; where such a row is lost, its samples must not go as well.
+/// The samples that versions name. Trials have rows for them; where such a row is lost, its samples
+/// must not go as well.
 async fn named(archive: &Archive) -> Result<HashSet<String>> {
     let (mut named, mut page) = (HashSet::new(), Page::first(ROWS));
     loop {

@@ -9,8 +9,8 @@ use super::findings::{Findings, Unreferred};
 use super::reading::{ROWS, store_fault, there};
 use crate::archive::Archive;
 
-/// Reads every object, then looks for the object of every trial. Objects come before rows, so that a trial which is put in
-/// meanwhile has its object, though perhaps not among those read.
+/// Reads every object, then looks for the object of every trial. Objects come before rows, so that
+/// a trial which is put in meanwhile has its object, though perhaps not among those read.
 pub(super) async fn check(archive: &Archive, findings: &mut Findings) -> Result<()> {
     let mut objects = HashMap::new();
     let mut all = archive.objects.list();
@@ -44,7 +44,8 @@ async fn object(
             Ok(None)
         }
         ObjectName::Key(key) => {
-            // One that is gone by now was removed as garbage; where a trial needs it, that is told with the trial.
+            // One that is gone by now was removed as garbage; where a trial needs it, that is told
+            // with the trial.
             match archive.objects.get(key).await {
                 Ok(_) | Err(sistership_store::StoreError::NotFound { .. }) => {}
                 Err(error) => {

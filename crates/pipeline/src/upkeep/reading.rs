@@ -15,7 +15,8 @@ pub(super) async fn there(objects: &Objects, key: &str) -> Result<bool, StoreErr
     }
 }
 
-/// What is wrong with something that was looked for, as words; where the store itself did not answer, that is the error.
+/// What is wrong with something that was looked for, as words; where the store itself did not
+/// answer, that is the error.
 pub(super) fn fault(error: DeriveError) -> Result<String, StoreError> {
     match error {
         DeriveError::Store(error) => store_fault(error),

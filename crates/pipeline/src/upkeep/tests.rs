@@ -374,7 +374,8 @@ async fn samples_of_deleted_trials_and_of_versions_stay() {
     assert!(found(&archive).await.clean);
 }
 
-/// Uploads of the same bytes against a collector that takes everything that nobody refers to: no trial loses its samples.
+/// Uploads of the same bytes against a collector that takes everything that nobody refers to: no
+/// trial loses its samples.
 #[tokio::test(flavor = "multi_thread")]
 async fn an_upload_and_the_collector_do_not_miss_each_other() {
     for Place { archive, .. } in &places().await {

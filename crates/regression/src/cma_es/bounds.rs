@@ -39,7 +39,8 @@ impl Bounds {
             / point.len() as f64
     }
 
-    /// Adapts the weights to how the costs of a generation (without penalty) spread and to how far the mean is outside.
+    /// Adapts the weights to how the costs of a generation (without penalty) spread and to how far
+    /// the mean is outside.
     pub fn adapt(&mut self, strategy: &Strategy, costs: &[f64]) {
         let variances = strategy.variances();
         let n = variances.len() as f64;

@@ -2,14 +2,16 @@
 
 use std::time::Instant;
 
-/// Limits of a search; the first that is reached ends it after the generation in which that happens.
+/// Limits of a search; the first that is reached ends it after the generation in which that
+/// happens.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Budget {
     /// Evaluations.
     pub evaluations: usize,
     /// Time on the wall, s.
     pub wall_s: Option<f64>,
-    /// Time of this process on all cores, s, whatever else the process does meanwhile; not kept where the system does not say.
+    /// Time of this process on all cores, s, whatever else the process does meanwhile; not kept
+    /// where the system does not say.
     pub cpu_s: Option<f64>,
 }
 

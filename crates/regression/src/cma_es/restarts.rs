@@ -63,7 +63,8 @@ pub struct SearchOutcome {
 }
 
 impl CmaEsSearch {
-    /// Searches for the least cost; `cost` must be a function of the point alone, `told` answers `false` to stop.
+    /// Searches for the least cost; `cost` must be a function of the point alone, `told` answers
+    /// `false` to stop.
     ///
     /// # Errors
     /// The caller asked to stop.
@@ -124,7 +125,8 @@ impl CmaEsSearch {
         )
     }
 
-    /// One run until it has converged or the budget is used up; says whether it found something better.
+    /// One run until it has converged or the budget is used up; says whether it found something
+    /// better.
     fn run(
         &self,
         strategy: &mut Strategy,
@@ -139,7 +141,8 @@ impl CmaEsSearch {
             let candidates = strategy.ask();
             let (mut points, mut costs) = evaluated(&bounds, &candidates, strategy.mean(), cost);
             outcome.spent.evaluations += costs.len();
-            // Among hundreds of coordinates the mean is better than most of what is drawn about it: it is evaluated too.
+            // Among hundreds of coordinates the mean is better than most of what is drawn about it:
+            // it is evaluated too.
             let of_mean = costs.pop().zip(points.pop());
             let penalised: Vec<f64> = candidates
                 .column_iter()
@@ -192,7 +195,8 @@ fn evaluated(
     (points, costs)
 }
 
-/// Whether the best of a generation has not changed for long: Auger and Hansen 2005, with a tolerance by its own size.
+/// Whether the best of a generation has not changed for long: Auger and Hansen 2005, with a
+/// tolerance by its own size.
 fn converged(recent: &VecDeque<f64>, patience: usize) -> bool {
     let (low, high) = recent
         .iter()

@@ -29,7 +29,8 @@ pub struct Strategy {
 }
 
 impl Strategy {
-    /// About a point, with one standard deviation for every coordinate. A population below 4 is taken as 4.
+    /// About a point, with one standard deviation for every coordinate. A population below 4 is
+    /// taken as 4.
     pub fn new(start: &[f64], sigma: f64, population: usize, seed: u64) -> Self {
         let (n, population) = (start.len(), population.max(4));
         let identity = || DMatrix::identity(n, n);
@@ -51,8 +52,9 @@ impl Strategy {
         }
     }
 
-    /// The same shape about another mean with other random numbers, its paths forgotten; with at least a standard deviation in the
-    /// mean over the coordinates, so that what has converged moves again.
+    /// The same shape about another mean with other random numbers, its paths forgotten; with at
+    /// least a standard deviation in the mean over the coordinates, so that what has converged
+    /// moves again.
     #[must_use]
     pub fn renewed(&self, mean: &[f64], deviation: f64, seed: u64) -> Self {
         let mut renewed = self.clone();
@@ -174,7 +176,8 @@ impl Strategy {
         self.weights.mass
     }
 
-    /// Whether no axis can move the mean any more, or the covariance has become as good as singular (Auger and Hansen 2005).
+    /// Whether no axis can move the mean any more, or the covariance has become as good as singular
+    /// (Auger and Hansen 2005).
     pub(super) fn exhausted(&self) -> bool {
         let (low, high) = (self.roots.min(), self.roots.max());
         let still =

@@ -57,7 +57,8 @@ impl Weights {
         }
     }
 
-    /// Generations in which the covariance changes too little for its decomposition to be worth repeating.
+    /// Generations in which the covariance changes too little for its decomposition to be worth
+    /// repeating.
     pub fn patience(&self, dimension: usize) -> usize {
         (0.5 / (dimension as f64 * (self.rank_one_rate + self.rank_mu_rate))).floor().max(1.0)
             as usize

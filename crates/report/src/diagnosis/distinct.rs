@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use sistership_diagnose::Hypothesis;
 
-/// Each set of effects once, in the order given: judged several times on the way, it stands where it was taken, or else
-/// where it was most probable.
+/// Each set of effects once, in the order given: judged several times on the way, it stands where
+/// it was taken, or else where it was most probable.
 pub fn distinct(all: &[Hypothesis]) -> Vec<&Hypothesis> {
     let taken: Vec<Vec<&str>> =
         all.iter().filter(|hypothesis| hypothesis.taken).map(effects).collect();

@@ -99,7 +99,8 @@ fn parameter_list(parameters: &BTreeMap<String, Value>) -> String {
     texts.join("; ")
 }
 
-/// The parameters of an effect that was found, and what they are in the new version where they were fitted there once more.
+/// The parameters of an effect that was found, and what they are in the new version where they were
+/// fitted there once more.
 pub(crate) fn parameters(found: &Found) -> Table {
     let mut columns = vec![
         Column::text("parameter", ""),

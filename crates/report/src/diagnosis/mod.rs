@@ -1,8 +1,9 @@
-//! The report of a diagnosis: one HTML page that a stranger can read and print, and the diagnosis as JSON.
+//! The report of a diagnosis: one HTML page that a stranger can read and print, and the diagnosis
+//! as JSON.
 //!
-//! [`render_diagnosis`] says in one sentence what was found (`sentence`), puts the figures into tables (`evidence`, `errors`,
-//! `remaining`, `provenance`) and simulates the trials with the model before and after (`replays`) for the plots. Nothing depends on the
-//! clock.
+//! [`render_diagnosis`] says in one sentence what was found (`sentence`), puts the figures into
+//! tables (`evidence`, `errors`, `remaining`, `provenance`) and simulates the trials with the model
+//! before and after (`replays`) for the plots. Nothing depends on the clock.
 
 mod distinct;
 mod errors;

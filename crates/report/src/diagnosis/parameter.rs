@@ -1,4 +1,5 @@
-//! Parameters of effects as people read them: words, value and unit from a name that carries its unit.
+//! Parameters of effects as people read them: words, value and unit from a name that carries its
+//! unit.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,5 @@
-//! What remains: stretches that nothing explains, the level of the discrepancy, and how the coefficients moved.
+//! What remains: stretches that nothing explains, the level of the discrepancy, and how the
+//! coefficients moved.
 
 use sistership_diagnose::{DiscrepancyLevel, Settings, Unexplained};
 use sistership_model::Model;

@@ -13,8 +13,8 @@ use crate::replayed::{ReplaySummary, ReplayedTrial};
 /// Most trials that are plotted.
 const MOST: usize = 4;
 
-/// Simulates the trials on which the model is most off; those that lack a channel are left out. What is called source and
-/// refined there is the model before and after here.
+/// Simulates the trials on which the model is most off; those that lack a channel are left out.
+/// What is called source and refined there is the model before and after here.
 pub(crate) fn replay_chosen<'a>(
     input: &DiagnosisInput<'a>,
 ) -> Result<Vec<ReplayedTrial<'a>>, PlantError> {

@@ -1,5 +1,6 @@
 #![allow(clippy::unwrap_used)]
-//! The report of a diagnosis made by hand: what it says, that nothing leaks out of its text, that it says it the same twice.
+//! The report of a diagnosis made by hand: what it says, that nothing leaks out of its text, that
+//! it says it the same twice.
 
 mod made_up;
 

@@ -57,7 +57,8 @@ pub(crate) fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     })
 }
 
-/// The range shown: that of the measured values, widened for the others by at most its own size on each side.
+/// The range shown: that of the measured values, widened for the others by at most its own size on
+/// each side.
 pub(crate) fn shown(measured: Option<(f64, f64)>, others: Option<(f64, f64)>) -> (f64, f64) {
     match (measured, others) {
         (Some((low, high)), Some((from, to))) => {

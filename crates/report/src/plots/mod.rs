@@ -15,7 +15,8 @@ pub(crate) use scatter::scatters;
 pub(crate) use series::series;
 pub(crate) use trajectory::{mark_interval_s, trajectory};
 
-/// Width of every plot in its own units, near that of a phone's screen, so that text stays legible there.
+/// Width of every plot in its own units, near that of a phone's screen, so that text stays legible
+/// there.
 const WIDTH: f64 = 420.0;
 
 /// A plot.

@@ -1,4 +1,5 @@
-//! The residual of each acceleration over time, before and after, with the band of what noise alone would show.
+//! The residual of each acceleration over time, before and after, with the band of what noise alone
+//! would show.
 
 use sistership_diagnose::{ResidualSeries, Unexplained};
 

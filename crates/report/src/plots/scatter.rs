@@ -1,4 +1,5 @@
-//! The residual of an acceleration against the variable that explains most of it, before and after, all trials together.
+//! The residual of an acceleration against the variable that explains most of it, before and after,
+//! all trials together.
 
 use std::collections::BTreeMap;
 

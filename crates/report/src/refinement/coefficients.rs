@@ -26,7 +26,8 @@ pub(crate) struct AxisChanges<'a> {
 pub(crate) struct ChangedCoefficient<'a> {
     #[serde(flatten)]
     pub change: &'a CoefficientChange,
-    /// ChangedCoefficient over the size of the source's value, in per cent; none where the source has none.
+    /// ChangedCoefficient over the size of the source's value, in per cent; none where the source
+    /// has none.
     pub moved_percent: Option<f64>,
     /// Number of its collinear group, from 1.
     pub collinear_group: Option<usize>,
@@ -58,7 +59,8 @@ impl<'a> Coefficients<'a> {
         self.axes.iter().flat_map(|axis| &axis.coefficients)
     }
 
-    /// The power of ten in which the values read best: that of prime systems where all are small numbers without unit.
+    /// The power of ten in which the values read best: that of prime systems where all are small
+    /// numbers without unit.
     pub fn exponent(&self) -> i32 {
         let mut sizes: Vec<f64> =
             self.all().map(|c| c.change.source.abs()).filter(|size| *size > 0.0).collect();

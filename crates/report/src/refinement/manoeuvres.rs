@@ -79,7 +79,8 @@ impl<'a> ManoeuvreComparison<'a> {
     }
 }
 
-/// The values of one key from both sides, in the order of the first; what only one side sailed is kept.
+/// The values of one key from both sides, in the order of the first; what only one side sailed is
+/// kept.
 fn matched<'t, T>(
     source: &'t [T],
     refined: &'t [T],

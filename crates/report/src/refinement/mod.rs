@@ -1,7 +1,9 @@
-//! The report of a refinement: one HTML page that a stranger can read and print, and the same content as JSON.
+//! The report of a refinement: one HTML page that a stranger can read and print, and the same
+//! content as JSON.
 //!
-//! [`render_refinement`] gathers the content once (`summary`, `coefficients`, `options`, `manoeuvres`, `sailed`, `similarity`,
-//! `provenance`, `replays`); JSON is that content, the page shows it with tables and plots. Nothing depends on the clock.
+//! [`render_refinement`] gathers the content once (`summary`, `coefficients`, `options`,
+//! `manoeuvres`, `sailed`, `similarity`, `provenance`, `replays`); JSON is that content, the page
+//! shows it with tables and plots. Nothing depends on the clock.
 
 mod coefficients;
 mod content;

@@ -105,7 +105,8 @@ pub(crate) fn is_estimated(source: &str) -> bool {
     source.to_lowercase().contains("estimat")
 }
 
-/// The status of the source model, where the documents at hand tell: a model of the ship itself, or one not carried over.
+/// The status of the source model, where the documents at hand tell: a model of the ship itself, or
+/// one not carried over.
 pub(crate) fn source_status(input: &RefinementInput<'_>) -> Option<Status> {
     let refinement = input.refinement;
     if refinement.transferred.status != Status::Transferred {

@@ -61,8 +61,8 @@ fn ready(model: &Model, input: &RefinementInput<'_>) -> Result<Ship, PlantError>
     Ok(ship)
 }
 
-/// The trials in the order of interest: kinds of manoeuvre in turn, held out before fitted, and within a kind first one
-/// from each half of the list, where names that sort alike stand together.
+/// The trials in the order of interest: kinds of manoeuvre in turn, held out before fitted, and
+/// within a kind first one from each half of the list, where names that sort alike stand together.
 fn ranked<'a>(input: &RefinementInput<'a>) -> Vec<&'a Trial> {
     let mut kinds: BTreeMap<(bool, ManoeuvreKind), Vec<&Trial>> = BTreeMap::new();
     for trial in input.trials {

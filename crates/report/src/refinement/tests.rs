@@ -1,5 +1,6 @@
 #![allow(clippy::unwrap_used)]
-//! A report of made-up trials: what it says, that it says it the same way twice, and that nothing leaks out of its text.
+//! A report of made-up trials: what it says, that it says it the same way twice, and that nothing
+//! leaks out of its text.
 
 use sistership_estimate::refine::{Refinement, Request, Settings, refine};
 use sistership_estimate::source::similar;

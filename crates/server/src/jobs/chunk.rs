@@ -1,4 +1,5 @@
-//! A chunk of a bulk refinement: its ships are gathered, refined on all cores, and kept together with the end of the job.
+//! A chunk of a bulk refinement: its ships are gathered, refined on all cores, and kept together
+//! with the end of the job.
 
 use rayon::prelude::*;
 use serde_json::json;

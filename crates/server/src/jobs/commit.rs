@@ -1,4 +1,5 @@
-//! The end of a refinement: its report, and the one transaction that keeps version, aliases, report and job.
+//! The end of a refinement: its report, and the one transaction that keeps version, aliases, report
+//! and job.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! The end of a diagnosis: its report, and the one transaction that keeps what was found, the version that comes of it, and
-//! the job. The champion never moves by itself.
+//! The end of a diagnosis: its report, and the one transaction that keeps what was found, the
+//! version that comes of it, and the job. The champion never moves by itself.
 
 use std::sync::Arc;
 

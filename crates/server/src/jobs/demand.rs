@@ -14,7 +14,8 @@ use sistership_pipeline::budget::{Share, Shortage};
 /// How often a job that waits for memory looks whether it shall stop.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// Takes what a job needs, as soon as others have given it back: it waits in its worker, and smaller jobs of other workers pass.
+/// Takes what a job needs, as soon as others have given it back: it waits in its worker, and
+/// smaller jobs of other workers pass.
 pub(super) async fn taken(app: &App, job: &Job, progress: &Progress) -> Result<Share> {
     let bytes = demand(app, job).await?;
     loop {

@@ -16,6 +16,6 @@ mod worker;
 pub(crate) use request::{DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob, SourceChoice};
 pub(crate) use worker::Worker;
 
-/// How often another version of the same ship may come in between while one is kept. Each time another job has come to its
-/// end, so that only a fleet of workers on one ship gets anywhere near.
+/// How often another version of the same ship may come in between while one is kept. Each time
+/// another job has come to its end, so that only a fleet of workers on one ship gets anywhere near.
 const TRIES: usize = 100;

@@ -30,8 +30,8 @@ impl Progress {
         (Self { stop: Arc::default(), told: Arc::new(told) }, seen)
     }
 
-    /// Tells how far it is; false when it shall stop. It never runs backwards: work that begins anew, as others came in between, is
-    /// as far as it was.
+    /// Tells how far it is; false when it shall stop. It never runs backwards: work that begins
+    /// anew, as others came in between, is as far as it was.
     pub(super) fn tell(&self, fraction: f64, what: &str) -> bool {
         self.told.send_modify(|(so_far, doing)| {
             *so_far = so_far.max(fraction);

@@ -6,7 +6,8 @@ use sistership_estimate::refine::Settings;
 /// The kind of refinement jobs.
 pub(crate) const REFINEMENT: &str = "refinement";
 
-/// A refinement to be done. Everything but the choice of an `auto` source is settled when it is asked for.
+/// A refinement to be done. Everything but the choice of an `auto` source is settled when it is
+/// asked for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RefinementJob {
@@ -24,7 +25,8 @@ pub(crate) struct RefinementJob {
     pub trials: Vec<String>,
     /// Every setting.
     pub settings: Settings,
-    /// The hash of the request's idempotency key, as earlier programs wrote it; now the key is kept with the job.
+    /// The hash of the request's idempotency key, as earlier programs wrote it; now the key is kept
+    /// with the job.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key_sha256: Option<String>,
 }
@@ -44,7 +46,8 @@ pub(crate) struct DiagnosisJob {
     pub trials: Vec<String>,
     /// Every setting.
     pub settings: sistership_diagnose::Settings,
-    /// The hash of the request's idempotency key, as earlier programs wrote it; now the key is kept with the job.
+    /// The hash of the request's idempotency key, as earlier programs wrote it; now the key is kept
+    /// with the job.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key_sha256: Option<String>,
 }

@@ -1,4 +1,5 @@
-//! A worker: claims jobs under a lease, tells how far they are, and ends them in one way or another.
+//! A worker: claims jobs under a lease, tells how far they are, and ends them in one way or
+//! another.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -30,7 +31,8 @@ pub(crate) struct Worker {
     stopping: Stopping,
 }
 
-/// The right of a worker to its job: beside those of the other workers of the process, or instead of them.
+/// The right of a worker to its job: beside those of the other workers of the process, or instead
+/// of them.
 enum Turn<'a> {
     Shared { _held: RwLockReadGuard<'a, ()> },
     Alone { held: RwLockWriteGuard<'a, ()> },
@@ -87,7 +89,8 @@ impl Worker {
         }
     }
 
-    /// Waits for the right to claim a job, while others work or alone; none when the server is told to stop.
+    /// Waits for the right to claim a job, while others work or alone; none when the server is told
+    /// to stop.
     async fn turn<'a>(&mut self, turns: &'a RwLock<()>, alone: bool) -> Option<Turn<'a>> {
         tokio::select! {
             () = self.stopping.wait() => None,
@@ -118,8 +121,8 @@ impl Worker {
         }
     }
 
-    /// Gives a job back whose end could not be written, as soon as the database can be written again: this process has not ended,
-    /// and must not be counted as lost.
+    /// Gives a job back whose end could not be written, as soon as the database can be written
+    /// again: this process has not ended, and must not be counted as lost.
     async fn give_back(&mut self, job: &Job, mut error: StoreError) {
         while !self.stopping.now() {
             self.rest(if error.is_out_of_space() { NO_ROOM } else { BREATH }).await;
@@ -137,7 +140,8 @@ impl Worker {
         }
     }
 
-    /// Keeps the lease while the work runs; gives its outcome, or none when it did not stop in time.
+    /// Keeps the lease while the work runs; gives its outcome, or none when it did not stop in
+    /// time.
     async fn accompany(
         &mut self,
         job: &Job,

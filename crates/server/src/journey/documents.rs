@@ -1,4 +1,5 @@
-//! Documents that are too deep or too large are refused with field and limit, and the server goes on.
+//! Documents that are too deep or too large are refused with field and limit, and the server goes
+//! on.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -1,4 +1,5 @@
-//! Every route that takes an `Idempotency-Key`, when its process ends before and after what it does is kept.
+//! Every route that takes an `Idempotency-Key`, when its process ends before and after what it does
+//! is kept.
 
 use std::time::Duration;
 

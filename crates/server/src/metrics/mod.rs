@@ -74,7 +74,8 @@ fn histogram() -> Histogram {
 }
 
 impl Metrics {
-    /// Counts an answer. `route` is the path as the router knows it, so that ids do not make labels without end.
+    /// Counts an answer. `route` is the path as the router knows it, so that ids do not make labels
+    /// without end.
     pub(crate) fn answered(
         &self,
         method: &Method,

@@ -97,7 +97,8 @@ impl ManoeuvreRequest {
         }
     }
 
-    /// The settings; they are refused where the run, of 60 lengths at most, would be out of all proportion.
+    /// The settings; they are refused where the run, of 60 lengths at most, would be out of all
+    /// proportion.
     fn settings(&self, ship: &mut Ship, most: usize) -> Result<ManoeuvreSettings> {
         let speed = positive(
             "manoeuvre.speed_m_s",
@@ -129,7 +130,8 @@ impl BandsRequest {
         let default = Sampling::default();
         let samples =
             usize::try_from(self.samples.unwrap_or_default().get()).unwrap_or(default.samples);
-        let sampling = Sampling { samples, seed: self.seed.unwrap_or(default.seed) };
+        let sampling =
+            Sampling { samples, seed: self.seed.unwrap_or(default.seed), within_steps: true };
         let none = || {
             let why = "only a refined one whose coefficients are those that were estimated has one";
             Problem::invalid(

@@ -15,8 +15,8 @@ pub(super) fn positive(field: &str, value: f64) -> Result<f64> {
     }
 }
 
-/// Memory that a sample of a track takes until it is answered: 15 numbers simulated, 11 as JSON values of 32 bytes, and their
-/// text of some 20 bytes each.
+/// Memory that a sample of a track takes until it is answered: 15 numbers simulated, 11 as JSON
+/// values of 32 bytes, and their text of some 20 bytes each.
 const SAMPLE_BYTES: u64 = 15 * 8 + 11 * (32 + 20);
 
 /// Takes the memory of a simulation; refuses a simulation of more steps than are allowed.

@@ -124,7 +124,8 @@ impl From<QueryRejection> for Problem {
     }
 }
 
-/// The parameter that a message is about: `limit: invalid digit`, or "unknown field `limt`, expected ...".
+/// The parameter that a message is about: `limit: invalid digit`, or "unknown field `limt`,
+/// expected ...".
 fn parameter(message: &str) -> &str {
     let quoted = message.split('`').nth(1);
     let before = message.split_once(": ").map(|(name, _)| name).filter(|name| !name.contains(' '));

@@ -49,7 +49,8 @@ struct OutcomeView {
     outcome: String,
     /// The version that came of it.
     version: Option<i64>,
-    /// By how much her worst axis is worse than before, as a share; below zero where all are better.
+    /// By how much her worst axis is worse than before, as a share; below zero where all are
+    /// better.
     worst_change: Option<f64>,
     /// Errors by axis and manoeuvres before and after, or the reason why not.
     #[schema(value_type = Object)]
@@ -153,8 +154,8 @@ impl OutcomeView {
 
 /// Refine every member of a family from the statistics of her trials
 ///
-/// The ships are shared out among all workers in chunks, each a job. Nothing becomes champion but by the rule given here, or by
-/// a person's word afterwards.
+/// The ships are shared out among all workers in chunks, each a job. Nothing becomes champion but
+/// by the rule given here, or by a person's word afterwards.
 #[utoipa::path(
     post, path = "/v1/families/{family}/refinements", tag = "families",
     params(("family" = inline(Word), Path), ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),

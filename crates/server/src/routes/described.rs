@@ -1,4 +1,5 @@
-//! Types of other crates in the OpenAPI document, by the JSON Schemas that they are described with everywhere.
+//! Types of other crates in the OpenAPI document, by the JSON Schemas that they are described with
+//! everywhere.
 
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value};

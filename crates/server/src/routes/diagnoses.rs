@@ -33,7 +33,8 @@ struct DiagnosisRequest {
     /// The version to diagnose: `ship` (her champion), `ship/number`, `ship/alias`.
     #[schema(inline)]
     model: ModelName,
-    /// Ids of trials of the ship; where absent, those that the version was not made of, or all where none are left.
+    /// Ids of trials of the ship; where absent, those that the version was not made of, or all
+    /// where none are left.
     #[schema(inline, min_items = 1)]
     trials: Option<Vec<Id>>,
     /// Settings of the diagnosis; each has a default, and all are kept with the report.
@@ -44,8 +45,9 @@ struct DiagnosisRequest {
 
 /// Find what a model lacks
 ///
-/// The work is a job: follow the `Location`, or its `/events`. It ends in a report. Where effects are found missing, the
-/// model with them becomes a version of the ship's line, `candidate`, whose parent is the version diagnosed.
+/// The work is a job: follow the `Location`, or its `/events`. It ends in a report. Where effects
+/// are found missing, the model with them becomes a version of the ship's line, `candidate`, whose
+/// parent is the version diagnosed.
 #[utoipa::path(
     post, path = "/v1/diagnoses", tag = "diagnoses",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
@@ -90,7 +92,8 @@ async fn unseen(app: &App, version: &Version) -> Result<Vec<String>> {
     }
 }
 
-/// The hashes of the trials that a version was made of, and of those that went into the versions that were diagnosed for it.
+/// The hashes of the trials that a version was made of, and of those that went into the versions
+/// that were diagnosed for it.
 async fn seen(app: &App, version: &Version) -> Result<Vec<String>> {
     let mut recipe = document(version)?.recipe;
     let mut seen = Vec::new();

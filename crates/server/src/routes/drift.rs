@@ -23,7 +23,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct Query {
-    /// How many members are looked at; those whose diagnosis says that their model does not hold come first.
+    /// How many members are looked at; those whose diagnosis says that their model does not hold
+    /// come first.
     #[param(inline)]
     limit: Option<MemberLimit>,
 }
@@ -63,7 +64,8 @@ async fn of_ship(State(app): State<App>, Place(ship): Place<Name>) -> Result<Jso
     })
 }
 
-/// Ships of a family whose model no longer holds, the worst first, with the effects that their diagnosis names
+/// Ships of a family whose model no longer holds, the worst first, with the effects that their
+/// diagnosis names
 #[utoipa::path(
     get, path = "/v1/families/{family}/drift", tag = "families", params(("family" = inline(Word), Path), Query),
     responses((status = 200, body = FamilyDrift))
@@ -78,7 +80,8 @@ async fn of_family(
 }
 
 impl FamilyDrift {
-    /// Of the members whose diagnosis says that they do not hold, and of the first others up to `limit`.
+    /// Of the members whose diagnosis says that they do not hold, and of the first others up to
+    /// `limit`.
     pub(super) async fn of(app: &App, name: &str, limit: i64) -> Result<Self> {
         let families = app.store().families();
         let family = families.get(name).await?;
@@ -101,7 +104,8 @@ impl FamilyDrift {
 }
 
 impl MemberDrift {
-    /// Whether the diagnosis says that her model does not hold, and how much more it leaves of what is new.
+    /// Whether the diagnosis says that her model does not hold, and how much more it leaves of what
+    /// is new.
     fn worse(&self) -> (bool, f64) {
         let worst = self.drift.as_ref().and_then(|drift| drift.worst);
         (

@@ -44,7 +44,8 @@ async fn list(
     Ok(Json(Listing::of(libraries, EffectLibraryHead::of)))
 }
 
-/// A library of effects: the YAML files of its effects one after another, byte for byte as they were hashed
+/// A library of effects: the YAML files of its effects one after another, byte for byte as they
+/// were hashed
 #[utoipa::path(
     get, path = "/v1/effects/{sha256}", tag = "effects", params(("sha256" = String, Path)),
     responses((status = 200, content((String = "application/yaml"))))

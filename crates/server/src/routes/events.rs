@@ -24,8 +24,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 
 /// Follow a job until its end
 ///
-/// Each event is called `job` and holds the job as JSON; there is one at once and one with each change. The stream ends
-/// when the job is at its end, or when the server stops.
+/// Each event is called `job` and holds the job as JSON; there is one at once and one with each
+/// change. The stream ends when the job is at its end, or when the server stops.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/events", tag = "jobs", params(("id" = inline(Id), Path)),
     responses((status = 200, body = JobView, content_type = "text/event-stream"))

@@ -66,7 +66,8 @@ pub(super) struct PriorView {
     /// The hash of the document.
     pub sha256: String,
     pub created_us: i64,
-    /// Means, deviations and correlations of the coefficients by axis, and what they were learned from.
+    /// Means, deviations and correlations of the coefficients by axis, and what they were learned
+    /// from.
     #[schema(value_type = Object)]
     pub document: Value,
 }
@@ -81,7 +82,8 @@ struct NewFamily {
     /// What people call it; the name where absent.
     #[schema(inline)]
     title: Option<Remark>,
-    /// The version that the members' models are founded on: `ship` (her champion), `ship/number`, `ship/alias`.
+    /// The version that the members' models are founded on: `ship` (her champion), `ship/number`,
+    /// `ship/alias`.
     #[schema(inline)]
     foundation: ModelName,
     /// Its first members.

@@ -26,7 +26,8 @@ struct Health {
     status: &'static str,
     /// The program's revision.
     revision: &'static str,
-    /// `no space` where nothing can be kept at the moment: reading goes on, writes get 507. Only `/readyz` says so.
+    /// `no space` where nothing can be kept at the moment: reading goes on, writes get 507. Only
+    /// `/readyz` says so.
     #[serde(skip_serializing_if = "Option::is_none")]
     writes: Option<&'static str>,
 }

@@ -34,9 +34,9 @@ pub(super) struct JobView {
     /// What was asked.
     #[schema(value_type = Object)]
     pub request: Value,
-    /// What came of it: `model`, `version`, `sha256`, `alias` (of a diagnosis only where it found effects) and `report`; of a
-    /// refinement `source`, `held_out`, `ranking`; of a diagnosis `diagnosed`, `verdict`, `effects`, `before`, `after`,
-    /// `next_trial`.
+    /// What came of it: `model`, `version`, `sha256`, `alias` (of a diagnosis only where it found
+    /// effects) and `report`; of a refinement `source`, `held_out`, `ranking`; of a diagnosis
+    /// `diagnosed`, `verdict`, `effects`, `before`, `after`, `next_trial`.
     #[schema(value_type = Option<Object>)]
     pub result: Option<Value>,
     /// Why it failed.

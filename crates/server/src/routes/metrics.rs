@@ -14,7 +14,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(metrics))
 }
 
-/// Requests by route and status, their duration, jobs by kind and state, the queue's age, the object store's size
+/// Requests by route and status, their duration, jobs by kind and state, the queue's age, the
+/// object store's size
 #[utoipa::path(
     get, path = "/metrics", tag = "health",
     responses((status = 200, body = String, content_type = "application/openmetrics-text"))

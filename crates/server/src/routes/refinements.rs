@@ -32,13 +32,14 @@ struct RefinementRequest {
     /// The ship to refine a model for.
     #[schema(inline)]
     ship: Name,
-    /// `auto`, which it is where absent, or a version to start from: `ship` (its champion), `ship/number`, `ship/alias`. Where
-    /// neither a source nor a law nor `settings.method` is named, all three are searched: the best model that the trials
-    /// allow, by its error on manoeuvres left out. With a law or method, `auto` is the most similar eligible ship.
+    /// `auto`, which it is where absent, or a version to start from: `ship` (its champion),
+    /// `ship/number`, `ship/alias`. Where neither a source nor a law nor `settings.method` is
+    /// named, all three are searched: the best model that the trials allow, by its error on
+    /// manoeuvres left out. With a law or method, `auto` is the most similar eligible ship.
     #[schema(inline)]
     source: Option<ModelName>,
-    /// The law to fit, such as `low-speed`; the source's where absent. What a source of another law says over the states of the
-    /// trials and of its standard manoeuvres becomes the prior.
+    /// The law to fit, such as `low-speed`; the source's where absent. What a source of another law
+    /// says over the states of the trials and of its standard manoeuvres becomes the prior.
     #[schema(inline)]
     law: Option<Name>,
     /// Ids of the trials; all of the ship's where absent.
@@ -55,8 +56,8 @@ const AUTO: &str = "auto";
 
 /// Refine a model against trials
 ///
-/// The work is a job: follow the `Location`, or its `/events`. What comes of it is a version of the ship's line, champion
-/// where she has none and else `candidate`, with a report.
+/// The work is a job: follow the `Location`, or its `/events`. What comes of it is a version of the
+/// ship's line, champion where she has none and else `candidate`, with a report.
 #[utoipa::path(
     post, path = "/v1/refinements", tag = "refinements",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),

@@ -32,7 +32,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct RegisterRequest {
-    /// The model, as `models/schema/model.json` describes it and `GET /v1/ships/{ship}/model` answers.
+    /// The model, as `models/schema/model.json` describes it and `GET /v1/ships/{ship}/model`
+    /// answers.
     #[schema(schema_with = described::<Model>)]
     model: Value,
     /// Who made it, with what; kept in its recipe.
@@ -89,7 +90,8 @@ async fn registered(app: &App, ship: String, request: RegisterRequest) -> Result
         document: document(&ship, model, law_sha256, origin.into_string())?,
         model: ship,
     };
-    // Nothing of the document depends on the number, so that it does not matter who else makes versions.
+    // Nothing of the document depends on the number, so that it does not matter who else makes
+    // versions.
     let follow = step(LATEST, Expect::Any, METHOD);
     let version = app.store().versions().create(&new, &[follow]).await?;
     let location = format!("/v1/models/{}/versions/{}", version.model, version.number);

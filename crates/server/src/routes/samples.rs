@@ -25,7 +25,8 @@ use sistership_pipeline::budget::{self, Share};
 
 const CSV: &str = "text/csv";
 const PARQUET: &str = "application/vnd.apache.parquet";
-/// What a CSV file holds of its samples while it is sent, bytes: a page of each column, as it is stored and as it is in memory.
+/// What a CSV file holds of its samples while it is sent, bytes: a page of each column, as it is
+/// stored and as it is in memory.
 const DECODING: u64 = 4 << 20;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -53,7 +54,8 @@ async fn samples(
     Ok((types, [(header::CONTENT_LENGTH, size)], body).into_response())
 }
 
-/// The bytes as they come; where their hash is another than it was, the answer breaks off before its end.
+/// The bytes as they come; where their hash is another than it was, the answer breaks off before
+/// its end.
 fn verified(
     key: String,
     mut bytes: Bytestream,
@@ -83,7 +85,8 @@ fn damaged(key: &str, actual: &str) -> std::result::Result<(), BoxError> {
     }
 }
 
-/// CSV as it is read, some rows at a time, from the samples on disk: nothing waits in memory for a caller who does not read.
+/// CSV as it is read, some rows at a time, from the samples on disk: nothing waits in memory for a
+/// caller who does not read.
 async fn csv(app: &App, key: &str, bytes: Bytestream) -> Result<Body> {
     let share = budget::share(DECODING).await?;
     let spooled = spool(app.spool(), bytes).await?;

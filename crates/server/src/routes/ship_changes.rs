@@ -39,8 +39,9 @@ async fn vessel(app: &App, payload: &Payload) -> Result<Vessel> {
 
 /// Create a ship
 ///
-/// The body is a vessel document, YAML or JSON (`models/schema/vessel.json`). Each model that it publishes becomes
-/// a version; the first becomes champion. A ship known by particulars only gets her first model from a refinement.
+/// The body is a vessel document, YAML or JSON (`models/schema/vessel.json`). Each model that it
+/// publishes becomes a version; the first becomes champion. A ship known by particulars only gets
+/// her first model from a refinement.
 #[utoipa::path(
     post, path = "/v1/ships", tag = "ships",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),

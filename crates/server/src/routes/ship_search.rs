@@ -31,12 +31,14 @@ pub(super) struct Query {
     /// With this tag only.
     #[param(inline)]
     tag: Option<Word>,
-    /// Ranges of particulars in SI, such as `lpp_m:100..200`, `beam_m:..32`; with those of metrics at most four.
+    /// Ranges of particulars in SI, such as `lpp_m:100..200`, `beam_m:..32`; with those of metrics
+    /// at most four.
     #[param(style = Form, explode, schema_with = particulars)]
     particular: Option<Vec<String>>,
-    /// Ranges of the champion's metrics, such as `turn_35.tactical_diameter_m:..900`: `turn_35.` with `advance_m`,
-    /// `transfer_m`, `tactical_diameter_m`, `steady_radius_m`; `zigzag_10.` and `zigzag_20.` with `first_overshoot_deg`,
-    /// `second_overshoot_deg`, `period_s`; `initial_turning_m`. The greater of both sides counts.
+    /// Ranges of the champion's metrics, such as `turn_35.tactical_diameter_m:..900`: `turn_35.`
+    /// with `advance_m`, `transfer_m`, `tactical_diameter_m`, `steady_radius_m`; `zigzag_10.` and
+    /// `zigzag_20.` with `first_overshoot_deg`, `second_overshoot_deg`, `period_s`;
+    /// `initial_turning_m`. The greater of both sides counts.
     #[param(style = Form, explode, schema_with = metrics)]
     metric: Option<Vec<String>>,
     /// Ships of this ship's category, the most similar first.

@@ -37,7 +37,8 @@ pub(super) struct ShipHead {
     pub revision: i64,
     pub created_us: i64,
     pub updated_us: i64,
-    /// The correlation with `similar_to`, else the value of the first particular or metric that was asked for.
+    /// The correlation with `similar_to`, else the value of the first particular or metric that was
+    /// asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
 }
@@ -76,7 +77,8 @@ impl ShipDetail {
         Ok(Self { name, title, category, revision, created_us, updated_us, condition, document })
     }
 
-    /// Her revision, and what her condition comes from: either changes what is shown, the first alone what may be changed.
+    /// Her revision, and what her condition comes from: either changes what is shown, the first
+    /// alone what may be changed.
     pub(super) fn etag(&self) -> String {
         tag(format!("{}{}", self.revision, self.condition.tag()))
     }
@@ -88,8 +90,8 @@ impl ShipDetail {
 
 /// Find ships: by category, tag, particulars, metrics of the champion, and similarity
 ///
-/// By name; with ranges by the first of them, rising; with `similar_to` the most similar first. Particulars and metrics follow
-/// a change of ship or champion within a second or so.
+/// By name; with ranges by the first of them, rising; with `similar_to` the most similar first.
+/// Particulars and metrics follow a change of ship or champion within a second or so.
 #[utoipa::path(get, path = "/v1/ships", tag = "ships", params(Query), responses((status = 200, body = Listing<ShipHead>)))]
 async fn list(
     State(app): State<App>,

@@ -28,7 +28,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct Query {
-    /// `mei-2019` or `kanazawa-2023`; Mei's where the ship has every component of it, else Kanazawa's.
+    /// `mei-2019` or `kanazawa-2023`; Mei's where the ship has every component of it, else
+    /// Kanazawa's.
     #[param(schema_with = vectors)]
     vector: Option<Definition>,
     /// Whether eligible ships are measured on the ship's trials, where she has any.
@@ -42,8 +43,8 @@ fn yes() -> bool {
 
 /// Rank the zoo for a ship, and say which ships may be her source
 ///
-/// Of a zoo of more than 250 ships only the 250 of her category that are most similar to her are ranked;
-/// `GET /v1/ships?similar_to=` has all of them.
+/// Of a zoo of more than 250 ships only the 250 of her category that are most similar to her are
+/// ranked; `GET /v1/ships?similar_to=` has all of them.
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/similar", tag = "ships", params(("ship" = inline(Name), Path), Query),
     responses((status = 200, body = Object, description = "`target`, `definition`, `vector` and `ranking`, as `sistership similar --json`"))

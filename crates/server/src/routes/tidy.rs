@@ -20,7 +20,8 @@ pub(super) fn tidy(document: &mut Value) {
     }
 }
 
-/// A schema and what is said of the field that has it are one schema, not two that both must hold: the second would be an object.
+/// A schema and what is said of the field that has it are one schema, not two that both must hold:
+/// the second would be an object.
 fn described(object: &mut Map<String, Value>) {
     let Some([Value::Object(schema), Value::Object(about)]) =
         object.get("allOf").and_then(Value::as_array).map(Vec::as_slice)

@@ -26,7 +26,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[derive(Debug, Serialize, ToSchema)]
 struct Uploaded {
     ship: String,
-    /// The trials, in the manifest's order; samples that were there already give the trial that is there.
+    /// The trials, in the manifest's order; samples that were there already give the trial that is
+    /// there.
     trials: Vec<TrialView>,
     /// How many of them are new.
     new: usize,
@@ -49,9 +50,10 @@ struct Form {
 
 /// Upload trials, all together or none
 ///
-/// A form with a manifest and its files, or one CSV or Parquet file with canonical columns. Units and signs are
-/// converted once, here; what the checks refuse is told with file, row and column. Where the ship has a champion, a job
-/// follows that diagnoses it on the new trials, unless `diagnose=false`.
+/// A form with a manifest and its files, or one CSV or Parquet file with canonical columns. Units
+/// and signs are converted once, here; what the checks refuse is told with file, row and column.
+/// Where the ship has a champion, a job follows that diagnoses it on the new trials, unless
+/// `diagnose=false`.
 #[utoipa::path(
     post, path = "/v1/trials", tag = "trials",
     params(RawQuery, ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
@@ -82,7 +84,8 @@ async fn kept(app: &App, upload: Upload) -> Result<Reply> {
 
 /// Check trials without keeping them
 ///
-/// The same body as for an upload; the ship need not exist. The answer is that of `sistership check --json`.
+/// The same body as for an upload; the ship need not exist. The answer is that of `sistership check
+/// --json`.
 #[utoipa::path(
     post, path = "/v1/trials/check", tag = "trials", params(RawQuery),
     request_body(content((Form = "multipart/form-data"), (String = "text/csv"), (Binary = "application/vnd.apache.parquet"))),

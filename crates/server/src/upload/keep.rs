@@ -33,8 +33,8 @@ struct Accepted {
     samples: NamedTempFile,
 }
 
-/// Keeps the trials of an upload: all of them, or none where one is refused. The job that diagnoses the ship's champion on
-/// the new ones is queued with them.
+/// Keeps the trials of an upload: all of them, or none where one is refused. The job that diagnoses
+/// the ship's champion on the new ones is queued with them.
 pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option<Job>)> {
     let (ship, diagnose) = (upload.manifest.ship.clone(), upload.diagnose);
     match app.store().ships().get(&ship).await {

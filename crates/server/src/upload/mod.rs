@@ -1,4 +1,5 @@
-//! Uploads of trials: streamed to files, read and checked there, and kept all together or not at all.
+//! Uploads of trials: streamed to files, read and checked there, and kept all together or not at
+//! all.
 
 mod keep;
 mod multipart;

@@ -106,7 +106,8 @@ impl Parts {
         }
     }
 
-    /// By its whole path; else by its name alone, where only one has it: many programs send no more than that.
+    /// By its whole path; else by its name alone, where only one has it: many programs send no more
+    /// than that.
     fn find(&self, path: &str) -> Option<usize> {
         let exact = self.files.iter().position(|part| part.name == path || part.field == path);
         let base = |path: &str| path.rsplit('/').next().map(str::to_owned);
@@ -135,8 +136,7 @@ impl Parts {
         if self.files.is_empty() {
             return Err(Problem::invalid("file", "send at least one part with a filename"));
         }
-        let trial =
-            |part: &Part| ManifestTrial { file: part.name.clone(), manoeuvre: None, depth_m: None };
+        let trial = |part: &Part| ManifestTrial::of(part.name.clone());
         let manifest = canonical(ship, self.files.iter().map(trial).collect())?;
         Ok(Upload {
             manifest,

@@ -35,7 +35,8 @@ pub(crate) struct RawQuery {
     /// Water depth, m; absent for deep water.
     #[param(inline)]
     pub depth_m: Option<Positive>,
-    /// `false` where the ship's champion is not to be diagnosed on these trials; read for every form of upload.
+    /// `false` where the ship's champion is not to be diagnosed on these trials; read for every
+    /// form of upload.
     pub diagnose: Option<bool>,
 }
 
@@ -44,7 +45,10 @@ pub(super) async fn receive(mut request: Request, app: &App) -> Result<Upload> {
     let RawQuery { ship, name, manoeuvre, depth_m, diagnose } = query;
     let file = name.map_or_else(|| UNNAMED.to_owned(), FileName::into_string);
     let (manoeuvre, depth_m) = (manoeuvre.map(Remark::into_string), depth_m.map(Positive::get));
-    let manifest = canonical(ship.into_string(), vec![ManifestTrial { file, manoeuvre, depth_m }])?;
+    let manifest = canonical(
+        ship.into_string(),
+        vec![ManifestTrial { manoeuvre, depth_m, ..ManifestTrial::of(file) }],
+    )?;
     let stream = request.with_limited_body().into_body().into_data_stream().map_err(interrupted);
     Ok(Upload {
         manifest,

@@ -8,7 +8,8 @@ use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
 use sistership_pipeline::budget::{self, Share, Shortage};
 
-/// Takes what a file needs from its reading to its samples being kept; gives the mapping room for its rows.
+/// Takes what a file needs from its reading to its samples being kept; gives the mapping room for
+/// its rows.
 ///
 /// # Errors
 /// There is not so much memory, or not soon; the file is named.
@@ -22,7 +23,8 @@ pub(super) async fn room(
     let share = budget::share(measuring).await.map_err(|shortage| named(name, None, shortage))?;
     let (at, asked) = (path.to_path_buf(), mapping.clone());
     let measured = app.compute(move || demand(&at, &asked)).await?.map_err(Problem::internal)?;
-    // Given back before more is asked for: nobody holds some of the memory while waiting for the rest.
+    // Given back before more is asked for: nobody holds some of the memory while waiting for the
+    // rest.
     drop(share);
     mapping.room = measured.rows;
     budget::share(measured.bytes).await.map_err(|shortage| named(name, Some(measured), shortage))

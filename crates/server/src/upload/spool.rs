@@ -17,12 +17,14 @@ use uuid::Uuid;
 
 use crate::problem::{Problem, Result};
 
-/// Files that earlier programs left beside the folders, and that are older than this, belong to a process that was killed.
+/// Files that earlier programs left beside the folders, and that are older than this, belong to a
+/// process that was killed.
 const STALE: Duration = Duration::from_secs(3600);
 const PREFIX: &str = "upload-";
 const FOLDER: &str = "process-";
 
-/// The files of this process: a folder that it holds a lock on, which the system takes back when the process ends.
+/// The files of this process: a folder that it holds a lock on, which the system takes back when
+/// the process ends.
 #[derive(Debug)]
 pub(crate) struct Spool {
     root: PathBuf,
@@ -46,7 +48,8 @@ pub(crate) struct Spooled {
 }
 
 impl Spool {
-    /// The files of this process below a folder that processes share; nothing is made before the first of them.
+    /// The files of this process below a folder that processes share; nothing is made before the
+    /// first of them.
     pub(crate) fn below(root: PathBuf) -> Self {
         Self { root, held: Mutex::default() }
     }
@@ -114,7 +117,8 @@ impl Held {
     }
 }
 
-/// The lock on a folder; none where the file system knows no locks, and then no process gets one to clear it by either.
+/// The lock on a folder; none where the file system knows no locks, and then no process gets one to
+/// clear it by either.
 fn locked(folder: &Path) -> Option<fs::File> {
     let file = fs::File::open(folder).ok()?;
     file.lock().ok().map(|()| file)
@@ -187,7 +191,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    /// A process that was killed holds no lock any more; one that lives keeps its files, however old they are.
+    /// A process that was killed holds no lock any more; one that lives keeps its files, however
+    /// old they are.
     #[tokio::test]
     async fn what_no_living_process_holds_is_removed() {
         let root = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-//! `ETag`, `If-Match` and `If-None-Match`: nothing is changed by someone who has not seen its present state.
+//! `ETag`, `If-Match` and `If-None-Match`: nothing is changed by someone who has not seen its
+//! present state.
 
 use axum::extract::FromRequestParts;
 use axum::http::request::Parts;

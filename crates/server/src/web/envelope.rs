@@ -1,4 +1,5 @@
-//! What wraps every request: an id, a line in the log, and problem details for errors that no handler made.
+//! What wraps every request: an id, a line in the log, and problem details for errors that no
+//! handler made.
 
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -15,7 +16,8 @@ use crate::problem::{MEDIA, Problem};
 use crate::web::large::counted;
 use sistership_listen::Peer;
 
-/// Gives the request an id, logs and counts it, and sees to it that an error is a problem with that id.
+/// Gives the request an id, logs and counts it, and sees to it that an error is a problem with that
+/// id.
 pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Next) -> Response {
     let id = Uuid::now_v7();
     let (method, route) = (request.method().clone(), route(&request));
@@ -58,7 +60,8 @@ fn finish(response: Response, id: Uuid) -> Response {
     response
 }
 
-/// The answer to a request whose body did not come in time, whatever the handler has made of the half that did.
+/// The answer to a request whose body did not come in time, whatever the handler has made of the
+/// half that did.
 fn too_slow() -> Response {
     let why = "the body came too slowly, or not at all; send it at once, or over a faster link";
     Problem::new(StatusCode::REQUEST_TIMEOUT, why).into_response()

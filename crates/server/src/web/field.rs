@@ -1,6 +1,6 @@
-//! Fields of requests that are checked as they are read, and described by the same figures: whatever the document says of
-//! a name, a text, a count or a number is what [`Deserialize`](serde::Deserialize) checks, so that neither drifts from
-//! the other.
+//! Fields of requests that are checked as they are read, and described by the same figures:
+//! whatever the document says of a name, a text, a count or a number is what
+//! [`Deserialize`](serde::Deserialize) checks, so that neither drifts from the other.
 
 use std::marker::PhantomData;
 use std::str::FromStr;
@@ -155,8 +155,8 @@ impl<T: FromStr<Err = String>> serde::de::Visitor<'_> for Written<T> {
     }
 }
 
-/// A whole number with a least and a greatest value; `deserialize_str` reads it from a path or a query,
-/// `deserialize_i64` from a body.
+/// A whole number with a least and a greatest value; `deserialize_str` reads it from a path or a
+/// query, `deserialize_i64` from a body.
 macro_rules! whole {
     ($(#[$about:meta])* $name:ident: $min:expr, $max:expr, $read:ident $(, default $default:expr)?) => {
         $(#[$about])*
@@ -230,7 +230,8 @@ whole! {
     VersionNumber: 1, MAX_WHOLE, deserialize_i64
 }
 
-/// Reads a number as JSON, a path or a query writes it: 3 and 3.0 are one number to a reader of JSON Schema.
+/// Reads a number as JSON, a path or a query writes it: 3 and 3.0 are one number to a reader of
+/// JSON Schema.
 struct Whole<T>(fn(Option<i64>) -> Result<T, String>);
 
 impl<T> serde::de::Visitor<'_> for Whole<T> {
@@ -302,7 +303,8 @@ number! {
         |number| number.minimum(Some(-90)).maximum(Some(90)).extensions(not_zero())
 }
 
-/// What a schema adds to say that 0 is refused; the extension is taken for the keyword `not`, see `routes::document`.
+/// What a schema adds to say that 0 is refused; the extension is taken for the keyword `not`, see
+/// `routes::document`.
 fn not_zero() -> Option<utoipa::openapi::extensions::Extensions> {
     Some([("x-not".to_owned(), serde_json::json!({ "const": 0 }))].into_iter().collect())
 }

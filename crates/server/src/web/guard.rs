@@ -1,4 +1,5 @@
-//! Who may ask: the API key, or, on a machine's own interface without a key, programs of that machine.
+//! Who may ask: the API key, or, on a machine's own interface without a key, programs of that
+//! machine.
 
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
@@ -89,7 +90,8 @@ fn authorised(
     let (scheme, rest) = value.split_once(' ').ok_or_else(needed)?;
     let presented = match scheme.to_ascii_lowercase().as_str() {
         "bearer" => rest.trim().to_owned(),
-        // Browsers send this by themselves, also on behalf of other sites: good enough to look, not to change.
+        // Browsers send this by themselves, also on behalf of other sites: good enough to look, not
+        // to change.
         "basic" if method.is_safe() => password(rest.trim()).ok_or_else(needed)?,
         _ => return Err(needed().into()),
     };

@@ -10,8 +10,8 @@ use crate::problem::{Problem, Result};
 
 const SEC_FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
 
-/// The authority that a request is addressed to: exactly one (RFC 9112, 3.2). HTTP/1.0 knows no `Host`, and no browser
-/// speaks it: there it may be missing.
+/// The authority that a request is addressed to: exactly one (RFC 9112, 3.2). HTTP/1.0 knows no
+/// `Host`, and no browser speaks it: there it may be missing.
 pub(super) fn addressed(request: &Request) -> Result<Option<Authority>> {
     let host = single(request.headers(), &header::HOST)?;
     let host = host.map(|host| host.parse::<Authority>().map_err(|_| wrong_host())).transpose()?;
@@ -56,8 +56,9 @@ pub(super) fn single<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Op
     first.map(text).transpose()
 }
 
-/// Without a key, web pages of others that a browser on this machine shows must not reach the server: neither by a name
-/// that they let point here (`Host`), nor by sending forms (`Origin`, `Sec-Fetch-Site`).
+/// Without a key, web pages of others that a browser on this machine shows must not reach the
+/// server: neither by a name that they let point here (`Host`), nor by sending forms (`Origin`,
+/// `Sec-Fetch-Site`).
 pub(super) fn from_this_machine(
     method: &Method,
     headers: &HeaderMap,
@@ -90,8 +91,8 @@ fn refused(detail: String) -> Problem {
     Problem::new(StatusCode::FORBIDDEN, detail)
 }
 
-/// Whether an origin is this server: scheme, name and port (RFC 6454). The server itself speaks http; one that is reached
-/// by https is behind a proxy, and has a key.
+/// Whether an origin is this server: scheme, name and port (RFC 6454). The server itself speaks
+/// http; one that is reached by https is behind a proxy, and has a key.
 fn is_own(origin: &str, host: Option<&Authority>) -> bool {
     let Some((scheme, authority)) = origin.split_once("://") else { return false };
     let (Ok(authority), Some(host)) = (authority.parse::<Authority>(), host) else { return false };

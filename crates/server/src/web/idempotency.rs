@@ -1,4 +1,5 @@
-//! `Idempotency-Key`: a request that is repeated is carried out once, and answered as it was the first time.
+//! `Idempotency-Key`: a request that is repeated is carried out once, and answered as it was the
+//! first time.
 
 use std::future::Future;
 
@@ -45,8 +46,9 @@ fn check(value: &HeaderValue) -> Result<String> {
 }
 
 impl Key {
-    /// Carries a request out, once for each key. The work gets a handle of the server whose store keeps all that is written
-    /// together with the answer, or nothing of it. It runs to its end even when the caller hangs up.
+    /// Carries a request out, once for each key. The work gets a handle of the server whose store
+    /// keeps all that is written together with the answer, or nothing of it. It runs to its end
+    /// even when the caller hangs up.
     pub(crate) async fn once<W, F>(self, app: &App, body: &[u8], work: W) -> Result<Response>
     where
         W: FnOnce(App) -> F + Send + 'static,
@@ -75,7 +77,8 @@ async fn finished<T: Send + 'static>(
     tokio::spawn(work.in_current_span()).await.map_err(Problem::internal)?
 }
 
-/// Keeps the work with its answer; a request that came to nothing is forgotten, so that it can be tried again.
+/// Keeps the work with its answer; a request that came to nothing is forgotten, so that it can be
+/// tried again.
 async fn carried_out<W, F>(app: App, ticket: Option<Ticket>, work: W) -> Result<Reply>
 where
     W: FnOnce(App) -> F,

@@ -1,4 +1,5 @@
-//! Answers that are large in memory: they take their share until their last byte is on its way, since nobody may read it.
+//! Answers that are large in memory: they take their share until their last byte is on its way,
+//! since nobody may read it.
 
 use std::pin::Pin;
 use std::task::{Context, Poll, ready};
@@ -11,8 +12,8 @@ use hyper::body::{Frame, SizeHint};
 use crate::problem::Problem;
 use sistership_pipeline::budget::{self, Share};
 
-/// Answers up to this size are not counted, bytes; larger ones are handed out in pieces of it, so that what has been handed
-/// out and is not yet on its way is no more.
+/// Answers up to this size are not counted, bytes; larger ones are handed out in pieces of it, so
+/// that what has been handed out and is not yet on its way is no more.
 const PIECE: usize = 64 << 10;
 
 /// A body with the share that it takes.

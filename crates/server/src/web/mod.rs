@@ -1,4 +1,5 @@
-//! What every endpoint needs of HTTP: bodies, parameters, conditions, negotiation, answers, and what wraps them.
+//! What every endpoint needs of HTTP: bodies, parameters, conditions, negotiation, answers, and
+//! what wraps them.
 
 pub(crate) mod accept;
 pub(crate) mod api_key;

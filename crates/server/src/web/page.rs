@@ -34,8 +34,8 @@ impl Paged {
 pub(crate) struct Listing<T> {
     /// The items, in the list's order.
     pub items: Vec<T>,
-    /// What to give as `after` for the next page, as it is; null on the last one. It stands for the last item of this page:
-    /// the next one goes on behind it, whatever is added meanwhile.
+    /// What to give as `after` for the next page, as it is; null on the last one. It stands for the
+    /// last item of this page: the next one goes on behind it, whatever is added meanwhile.
     pub next: Option<String>,
 }
 

@@ -11,9 +11,10 @@ use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
 use sistership_pipeline::budget;
 
-/// Memory that reading a document takes, by its bytes: the most that documents of one MiB made the server grow by, measured at
-/// its `VmHWM` with one document for each server. YAML: a list of one letter each 93, of empty lists 83, a list one a line 67, a map
-/// 60, a law written out many times 26. JSON: a list of empty texts 17, of numbers 13.
+/// Memory that reading a document takes, by its bytes: the most that documents of one MiB made the
+/// server grow by, measured at its `VmHWM` with one document for each server. YAML: a list of one
+/// letter each 93, of empty lists 83, a list one a line 67, a map 60, a law written out many times
+/// 26. JSON: a list of empty texts 17, of numbers 13.
 const YAML_FACTOR: u64 = 96;
 const JSON_FACTOR: u64 = 20;
 

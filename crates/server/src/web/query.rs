@@ -1,4 +1,5 @@
-//! Parameters of the query that an operation does not have are refused: one that is misspelt would silently do nothing.
+//! Parameters of the query that an operation does not have are refused: one that is misspelt would
+//! silently do nothing.
 
 use std::collections::HashMap;
 use std::sync::Arc;

@@ -1,7 +1,8 @@
 //! A copy of a store, taken while others write, and a store made of it again.
 //!
-//! The database is copied as it was at one moment; then the objects that its rows refer to, which were durable before those
-//! rows were written. A folder is a backup once its manifest is there, which is written last.
+//! The database is copied as it was at one moment; then the objects that its rows refer to, which
+//! were durable before those rows were written. A folder is a backup once its manifest is there,
+//! which is written last.
 
 mod content;
 mod files;
@@ -25,8 +26,9 @@ use crate::objects::Objects;
 use crate::store::Store;
 
 impl Store {
-    /// Copies this store, with those of the objects that it refers to, into `folder`, which must be empty or not be there.
-    /// Objects that are missing or damaged are left out and told in the manifest.
+    /// Copies this store, with those of the objects that it refers to, into `folder`, which must be
+    /// empty or not be there. Objects that are missing or damaged are left out and told in the
+    /// manifest.
     pub async fn backup(&self, objects: &Objects, folder: &Path) -> Result<BackupManifest> {
         files::claim(folder)?;
         let created_us = self.now_us();
@@ -40,7 +42,8 @@ impl Store {
         Ok(manifest)
     }
 
-    /// Makes a store of a backup: `url` must name a database of the same kind without tables, `objects` must be empty.
+    /// Makes a store of a backup: `url` must name a database of the same kind without tables,
+    /// `objects` must be empty.
     pub async fn restore(folder: &Path, url: &str, objects: &Objects) -> Result<BackupManifest> {
         let manifest = BackupManifest::read(folder)?;
         manifest.check(folder, url).await?;

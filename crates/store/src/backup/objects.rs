@@ -69,8 +69,8 @@ pub(crate) async fn must_be_empty(objects: &Objects) -> Result<()> {
     }
 }
 
-/// Puts the objects of a backup where they belong. One that is missing or damaged is an error: a backup that was whole when
-/// it was made must be so now: `expected` of them.
+/// Puts the objects of a backup where they belong. One that is missing or damaged is an error: a
+/// backup that was whole when it was made must be so now: `expected` of them.
 pub(crate) async fn put(folder: &Path, expected: usize, to: &Objects) -> Result<()> {
     let from = Objects::local(folder)?;
     let (mut count, mut all) = (0, from.list());

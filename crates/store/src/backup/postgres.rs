@@ -1,5 +1,6 @@
-//! A copy of a PostgreSQL database: every table by `COPY` within one repeatable-read transaction, which sees one moment and
-//! holds no writer up. Unlike `pg_dump` it needs no programs of the server's version on this machine.
+//! A copy of a PostgreSQL database: every table by `COPY` within one repeatable-read transaction,
+//! which sees one moment and holds no writer up. Unlike `pg_dump` it needs no programs of the
+//! server's version on this machine.
 
 use std::path::Path;
 

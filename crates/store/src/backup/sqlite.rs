@@ -1,5 +1,5 @@
-//! A copy of an SQLite database by `VACUUM INTO`: one read transaction of SQLite's own, beside which writers go on; what comes
-//! out is one compact file without a log beside it.
+//! A copy of an SQLite database by `VACUUM INTO`: one read transaction of SQLite's own, beside
+//! which writers go on; what comes out is one compact file without a log beside it.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr as _;

@@ -34,7 +34,8 @@ impl TestDatabase {
         self
     }
 
-    /// Takes the rows of another database, of its tables and columns, without triggers and foreign keys.
+    /// Takes the rows of another database, of its tables and columns, without triggers and foreign
+    /// keys.
     pub async fn fill_from(&self, other: &Self) {
         match self.url.starts_with("sqlite") {
             true => self.fill_sqlite(other).await,

@@ -23,7 +23,8 @@ const FEW: &str = "SCAN few";
 const SHORT: &str = "jobs_to_claim";
 
 impl Store {
-    /// Every statement whose plan reads all rows of a table, with the step that does, where no such statement is expected to.
+    /// Every statement whose plan reads all rows of a table, with the step that does, where no such
+    /// statement is expected to.
     pub async fn full_scans(&self) -> Result<Vec<String>> {
         let mut found = Vec::new();
         for (table, statements) in ALL {

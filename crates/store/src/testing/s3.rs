@@ -1,4 +1,5 @@
-//! An S3-compatible server within the test's process: s3s, on a temporary folder, behind real HTTP and real signatures.
+//! An S3-compatible server within the test's process: s3s, on a temporary folder, behind real HTTP
+//! and real signatures.
 
 use std::net::SocketAddr;
 
@@ -41,7 +42,8 @@ impl TestS3 {
         Self { address, folder, serving: tokio::spawn(serve(listener, service.build())) }
     }
 
-    /// The settings of a store in it, as the command line takes them: the URL of the objects and the endpoint.
+    /// The settings of a store in it, as the command line takes them: the URL of the objects and
+    /// the endpoint.
     pub fn settings(&self, prefix: &str) -> [(&'static str, String); 2] {
         [
             ("--objects-url", format!("s3://{BUCKET}/{prefix}")),

@@ -1,7 +1,7 @@
 //! A private PostgreSQL server, one per test process.
 //!
-//! It runs below a shell that reads a pipe from the test process. When that process ends, however it ends, the pipe closes,
-//! and the shell stops the server and removes its folder.
+//! It runs below a shell that reads a pipe from the test process. When that process ends, however
+//! it ends, the pipe closes, and the shell stops the server and removes its folder.
 
 use std::fs;
 use std::os::unix::fs::{MetadataExt as _, chown};
@@ -15,7 +15,8 @@ use sqlx::postgres::PgConnectOptions;
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// `$1` the program, `$2` the folder. Nothing is synced to disk: the data need not outlive the process.
+/// `$1` the program, `$2` the folder. Nothing is synced to disk: the data need not outlive the
+/// process.
 const KEEPER: &str = r#"
 "$1" -D "$2/data" -k "$2" -c listen_addresses= -c max_connections=300 -c shared_buffers=32MB \
     -c fsync=off -c synchronous_commit=off -c full_page_writes=off >"$2/log" 2>&1 </dev/null &

@@ -94,7 +94,8 @@ async fn only_the_end_of_a_process_counts(on: &TestStore) {
     }
     for _ in 0..5 {
         let late = claim(on, "late").await.unwrap();
-        // As where the database was away: the lease runs out, another takes the job, and the first comes back.
+        // As where the database was away: the lease runs out, another takes the job, and the first
+        // comes back.
         let_the_lease_run_out(on).await;
         let fence = claim(on, "other").await.unwrap().fence;
         assert_eq!(jobs.get(&id).await.unwrap().lost_workers, 1);

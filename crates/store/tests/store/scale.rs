@@ -1,8 +1,9 @@
 //! A hundred thousand ships and a million versions feel like ten.
 //!
-//! `cargo test --release -p sistership-store --test store -- --ignored --nocapture scale` prints the times of each list and look-up
-//! with few rows and with many. `SCALE_SHIPS=10000` is a smaller one. Documents are as long as real ones, and do not compress:
-//! a look-up that came across them would read gigabytes.
+//! `cargo test --release -p sistership-store --test store -- --ignored --nocapture scale` prints
+//! the times of each list and look-up with few rows and with many. `SCALE_SHIPS=10000` is a smaller
+//! one. Documents are as long as real ones, and do not compress: a look-up that came across them
+//! would read gigabytes.
 
 use std::time::{Duration, Instant};
 
@@ -39,7 +40,8 @@ async fn unpacked(on: &TestStore) {
     }
 }
 
-/// Fills the tables as a large fleet would: ten categories, four facts, ten versions and two jobs a ship, each hundredth tagged.
+/// Fills the tables as a large fleet would: ten categories, four facts, ten versions and two jobs a
+/// ship, each hundredth tagged.
 async fn fill(on: &TestStore, ships: usize) {
     let n = numbers(ships);
     let ten = numbers(10);

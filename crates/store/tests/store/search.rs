@@ -4,7 +4,8 @@ use sistership_store::{
 
 use crate::support::*;
 
-/// Ships `s-00`, `s-01`, ... as long as their number in tens of metres, every third one a tanker and every fourth tagged.
+/// Ships `s-00`, `s-01`, ... as long as their number in tens of metres, every third one a tanker
+/// and every fourth tagged.
 async fn fleet(on: &TestStore, count: usize) {
     for number in 0..count {
         let name = format!("s-{number:02}");
@@ -172,7 +173,8 @@ async fn what_changes_is_written_anew(on: &TestStore) {
     on.store.versions().create(&version("no-ship"), &[champion(Expect::Any)]).await.unwrap();
     let waiting = on.store.search_index().waiting("", 10).await.unwrap();
     assert_eq!(waiting.iter().map(|ship| ship.ship.as_str()).collect::<Vec<_>>(), ["s-00", "s-01"]);
-    // Changed again before the facts of the first change are written: they are not, and it waits on.
+    // Changed again before the facts of the first change are written: they are not, and it waits
+    // on.
     on.store.ships().update(&ship("s-00"), 2).await.unwrap();
     let [old, same] = &waiting[..] else { panic!() };
     let facts = |waiting: &sistership_store::Waiting, value| {

@@ -8,8 +8,8 @@ use crate::findings::Findings;
 use crate::recording::Recording;
 use crate::stats::{blocks, range};
 
-/// Agreement of heading and course (1: the same throughout) below which the declared unit is doubted, and above which
-/// degrees are believed.
+/// Agreement of heading and course (1: the same throughout) below which the declared unit is
+/// doubted, and above which degrees are believed.
 const DOUBTED: f64 = 0.5;
 const BELIEVED: f64 = 0.9;
 /// rad; a course that hardly turns agrees with anything.

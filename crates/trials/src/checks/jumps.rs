@@ -12,7 +12,8 @@ use crate::stats::quantile;
 const MAX_SPEED: f64 = 40.0;
 /// m; what a satellite fix may step on its own account.
 const FIX_STEP: f64 = 10.0;
-/// rad; a heading step in one sample, and the rate (rad/s) that widens it when samples are far apart.
+/// rad; a heading step in one sample, and the rate (rad/s) that widens it when samples are far
+/// apart.
 const HEADING_STEP: f64 = PI / 3.0;
 const HEADING_RATE: f64 = 0.1;
 /// m/s and m/s2; a step of a speed sensor, and an acceleration beyond any ship's.

@@ -10,8 +10,9 @@ use crate::stats::quantile;
 
 /// Channel, largest magnitude, what to do about more.
 ///
-/// The limits hold for a one-metre model as for a tanker: 40 m/s is beyond any displacement ship, 1.5 rad/s (86 deg/s)
-/// beyond a free-running model at full rudder, 200 turns per second beyond a model's propeller.
+/// The limits hold for a one-metre model as for a tanker: 40 m/s is beyond any displacement ship,
+/// 1.5 rad/s (86 deg/s) beyond a free-running model at full rudder, 200 turns per second beyond a
+/// model's propeller.
 const LIMITS: [(Channel, f64, &str); 9] = [
     (Channel::U, 40.0, "no ship is that fast; check the column and its unit"),
     (Channel::V, 40.0, "no ship is that fast; check the column and its unit"),

@@ -1,9 +1,10 @@
 //! Positive rudder turns the ship to starboard.
 //!
-//! Two witnesses are heard. The yaw rate some moments later correlates with the rudder; and in Nomoto's first-order
-//! model, dr/dt = a r + b delta + c, fitted over blocks, b has the rudder's sign. Either alone errs at times: the first
-//! when the ship swings slowly, the second when a turn is so tight that the model does not fit. A trial is refused
-//! when both agree that the sign is wrong.
+//! Two witnesses are heard. The yaw rate some moments later correlates with the rudder; and in
+//! Nomoto's first-order model, dr/dt = a r + b delta + c, fitted over blocks, b has the rudder's
+//! sign. Either alone errs at times: the first when the ship swings slowly, the second when a turn
+//! is so tight that the model does not fit. A trial is refused when both agree that the sign is
+//! wrong.
 
 use nalgebra::{Matrix3, Vector3};
 use sistership_model::trial::Channel;
@@ -12,7 +13,8 @@ use crate::findings::Findings;
 use crate::recording::Recording;
 use crate::stats::{Block, blocks, correlation, quantile, spread};
 
-/// rad; less rudder or less swing than this is course keeping, in which the rudder follows the yaw rate.
+/// rad; less rudder or less swing than this is course keeping, in which the rudder follows the yaw
+/// rate.
 const RUDDER: f64 = 0.05;
 const SWING: f64 = 0.25;
 /// Blocks with speed ahead that are needed.
@@ -75,7 +77,8 @@ fn lagged(r: &[f64], delta: &[f64], ahead: &[bool]) -> f64 {
     LAGS.iter().map(at).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
 }
 
-/// The partial correlation of rudder and yaw acceleration: b of Nomoto's model over its standard error, brought to -1 to 1.
+/// The partial correlation of rudder and yaw acceleration: b of Nomoto's model over its standard
+/// error, brought to -1 to 1.
 fn fitted(recording: &Recording, blocks: &[Block], r: &[f64], delta: &[f64]) -> f64 {
     let t = recording.time();
     let row = |block: &Block| {
@@ -89,7 +92,8 @@ fn fitted(recording: &Recording, blocks: &[Block], r: &[f64], delta: &[f64]) -> 
     let found = inverse * moment;
     let squares: f64 = rows.iter().map(|(row, change)| (change - row.dot(&found)).powi(2)).sum();
     let freedom = (rows.len() - 3) as f64;
-    // b^2 / (b^2 + its variance times the degrees of freedom) needs no division by a variance of zero.
+    // b^2 / (b^2 + its variance times the degrees of freedom) needs no division by a variance of
+    // zero.
     let partial = found[1] / (found[1].powi(2) + squares * inverse[(1, 1)]).sqrt();
     if partial.is_finite() && freedom > 0.0 { partial } else { 0.0 }
 }

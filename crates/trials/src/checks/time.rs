@@ -34,7 +34,7 @@ pub(crate) fn gaps(recording: &Recording, findings: &mut Findings) {
             recording.interval_s
         )
     });
-    if let Some(&start) = t.first().filter(|start| start.abs() > 1e-9) {
+    if let Some(&start) = t.first().filter(|start| start.abs() > 1e-9 && !recording.is_stretch) {
         findings.warning(
             Some(recording.row(0)),
             Some(&recording.time),

@@ -18,7 +18,8 @@ const UNSTEADY: f64 = 0.25;
 /// A block's displacement north and east, m.
 type Step = (f64, f64);
 
-/// What the axes might be instead of the declared ones: velocity north and east from u, v, cos psi and sin psi.
+/// What the axes might be instead of the declared ones: velocity north and east from u, v, cos psi
+/// and sin psi.
 type Axes = fn(f64, f64, f64, f64) -> Step;
 
 const DECLARED: Axes = |u, v, c, s| (u * c - v * s, u * s + v * c);

@@ -1,4 +1,5 @@
-//! `backups`: backups while writers write, restored into an empty place, and compared with the ledger at the time.
+//! `backups`: backups while writers write, restored into an empty place, and compared with the
+//! ledger at the time.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -78,7 +79,8 @@ async fn write(
     Ok(())
 }
 
-/// A backup, restored: it has all that was acknowledged before it began, and nothing begun after it ended.
+/// A backup, restored: it has all that was acknowledged before it began, and nothing begun after it
+/// ended.
 async fn one(field: &Field, place: &Place, ledger: &Ledger, number: usize) -> Result<(), Failure> {
     let folder = place.folder().join(format!("backup-{number}"));
     let folder = folder.display().to_string();

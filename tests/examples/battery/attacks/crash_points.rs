@@ -1,4 +1,5 @@
-//! `crash points`: the same requests again and again, while the k-th operation on a file or a socket kills the server, or fails.
+//! `crash points`: the same requests again and again, while the k-th operation on a file or a
+//! socket kills the server, or fails.
 
 use rand::seq::SliceRandom as _;
 
@@ -129,7 +130,8 @@ impl Points<'_> {
         Ok(ledger)
     }
 
-    /// One point: the fault, a restart, the same requests under the same keys, and a look at all of it.
+    /// One point: the fault, a restart, the same requests under the same keys, and a look at all of
+    /// it.
     async fn crash(&mut self, at: i64, strike: Strike) -> Result<(), Failure> {
         let client = self.client().await?;
         self.control.arm(strike, at)?;
@@ -167,7 +169,8 @@ impl Points<'_> {
         false
     }
 
-    /// Kills first starts on empty databases at their k-th operation: the next start brings the store up.
+    /// Kills first starts on empty databases at their k-th operation: the next start brings the
+    /// store up.
     async fn starts(&mut self) -> Result<usize, Failure> {
         let (mut done, mut at) = (0, 1);
         while done < 3 || self.field.goes_on() {

@@ -1,5 +1,5 @@
-//! `full disk`: the data folder is a small file system that fills up. Writes are refused with 507, reads go on, a start is possible,
-//! and when there is room again everything is as before.
+//! `full disk`: the data folder is a small file system that fills up. Writes are refused with 507,
+//! reads go on, a start is possible, and when there is room again everything is as before.
 
 use std::fs::File;
 use std::io::Write as _;
@@ -209,7 +209,8 @@ async fn recovered(
         (0..entries.len()).filter(open).collect()
     };
     for place in open {
-        // A process that ended before it could say that a request has failed holds its key for a minute.
+        // A process that ended before it could say that a request has failed holds its key for a
+        // minute.
         let until = Instant::now() + HELD;
         let mut taken = ledger.repeat(place, client, &field.tally).await;
         while taken == Some(false) && Instant::now() < until {

@@ -1,4 +1,5 @@
-//! `ledger`: writers keep a ledger while the server is killed at random moments, and ask again under the same keys.
+//! `ledger`: writers keep a ledger while the server is killed at random moments, and ask again
+//! under the same keys.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -134,7 +135,8 @@ async fn until_known(
     }
 }
 
-/// A last kill in the middle of an upload: the next start, or the one after it, removes what was received.
+/// A last kill in the middle of an upload: the next start, or the one after it, removes what was
+/// received.
 async fn leftovers(place: &Place, server: Server) -> Result<(), Failure> {
     let mut stream = tokio::net::TcpStream::connect(server.client.address).await?;
     let head = "POST /v1/trials?ship=writer-0-0&name=cut.csv HTTP/1.1\r\nhost: localhost\r\ncontent-type: text/csv\r\n\

@@ -1,4 +1,5 @@
-//! `memory`: requests that are small to send and large to hold, many at once, and downloads that nobody reads.
+//! `memory`: requests that are small to send and large to hold, many at once, and downloads that
+//! nobody reads.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -105,7 +106,8 @@ fn constants(kept: &OnceLock<Vec<u8>>, rows: usize) -> Result<Vec<u8>, Failure> 
     Ok(kept.get_or_init(|| bytes).clone())
 }
 
-/// Sends the same so many times at once, and looks whether others are answered meanwhile; gives the statuses.
+/// Sends the same so many times at once, and looks whether others are answered meanwhile; gives the
+/// statuses.
 async fn together(field: &Field, client: &Client, (path, media, body, count): &Heavy) -> String {
     let mut sending: JoinSet<Option<Reply>> = (0..*count)
         .map(|_| {

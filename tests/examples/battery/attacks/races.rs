@@ -1,4 +1,5 @@
-//! `races`: the same key, alias, number, upload and ship from many tasks at once. One wins, and numbers have no gap.
+//! `races`: the same key, alias, number, upload and ship from many tasks at once. One wins, and
+//! numbers have no gap.
 
 use std::future::Future;
 
@@ -194,7 +195,8 @@ impl Race<'_> {
         self.one_wins(&format!("changes of {ship}"), &replies, 412);
     }
 
-    /// A ship that is deleted while it gets trials and versions: each is taken or refused, and none is half there.
+    /// A ship that is deleted while it gets trials and versions: each is taken or refused, and none
+    /// is half there.
     async fn deletion_and_use(&self, ship: &str) -> Result<(), Failure> {
         let (client, path) = (self.client.clone(), format!("/v1/ships/{ship}"));
         let etag = client

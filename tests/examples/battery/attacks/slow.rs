@@ -1,5 +1,5 @@
-//! `slow`: connections that send a head, a body or nothing at all by the drop, and such that never read their answers. Beside
-//! them, how long a new connection waits for `/v1/ships`.
+//! `slow`: connections that send a head, a body or nothing at all by the drop, and such that never
+//! read their answers. Beside them, how long a new connection waits for `/v1/ships`.
 
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
@@ -14,7 +14,8 @@ use crate::process::Server;
 
 /// Connections of each kind.
 const CROWD: usize = 600;
-/// What a new connection may wait, 99 of 100 times. A build without optimisation gets ten times as much.
+/// What a new connection may wait, 99 of 100 times. A build without optimisation gets ten times as
+/// much.
 const P99_MS: f64 = if cfg!(debug_assertions) { 500.0 } else { 50.0 };
 /// A new connection that waits longer is shut out.
 const SHUT_OUT: Duration = Duration::from_secs(5);

@@ -1,4 +1,5 @@
-//! `upgrades`: stores as each earlier migration left them, with rows, are opened by the program of today.
+//! `upgrades`: stores as each earlier migration left them, with rows, are opened by the program of
+//! today.
 
 use std::path::Path;
 

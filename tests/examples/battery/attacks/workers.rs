@@ -1,4 +1,5 @@
-//! `workers`: worker processes are killed in the middle of jobs, and a job that kills every worker is set aside.
+//! `workers`: worker processes are killed in the middle of jobs, and a job that kills every worker
+//! is set aside.
 
 use std::time::{Duration, Instant};
 

@@ -14,8 +14,9 @@ pub const FOLDS: usize = 4;
 const RESTART_S: f64 = 100.0;
 const KINDS: [&str; 4] = ["random", "turning", "zigzag", "berthing"];
 
-/// The data with every fourth file kept out, from the file with the number `fold` on; all of them given to the calls, and
-/// judged by none, where `fold` is absent. Deviations are those over all files, as in the paper.
+/// The data with every fourth file kept out, from the file with the number `fold` on; all of them
+/// given to the calls, and judged by none, where `fold` is absent. Deviations are those over all
+/// files, as in the paper.
 pub fn esso_osaka(fold: Option<usize>) -> Option<DataSet> {
     let folder = shared::data("esso-osaka")?;
     let all = esso_osaka::trials(&folder, &KINDS);

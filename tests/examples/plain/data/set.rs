@@ -45,10 +45,12 @@ impl DataSet {
         self.folder.path()
     }
 
-    /// Whether a model's name, or a line that begins with it, is of the very ship that the data are of.
+    /// Whether a model's name, or a line that begins with it, is of the very ship that the data are
+    /// of.
     pub fn is_own(&self, model: &str) -> bool {
         let name = model.split(' ').next().unwrap_or_default();
-        // A law without coefficients has the ship's name, too, where the trials alone make the model.
+        // A law without coefficients has the ship's name, too, where the trials alone make the
+        // model.
         name.split('/').next() == Some(self.ship.as_str()) && self.zoo.model(name).is_ok()
     }
 }

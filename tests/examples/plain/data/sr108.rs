@@ -12,8 +12,8 @@ use sistership_tests::truth::files::write_trials;
 /// Ten of its lengths at 20.4 knots.
 const RESTART_S: f64 = 167.0;
 
-/// Six trials with noise at 20.4 knots (zigzags 10/10 and 12/5, turns at 12 deg) for the calls; turns
-/// at 7.5 deg to both sides at the same speed, without noise, for judgement.
+/// Six trials with noise at 20.4 knots (zigzags 10/10 and 12/5, turns at 12 deg) for the calls;
+/// turns at 7.5 deg to both sides at the same speed, without noise, for judgement.
 pub fn sr108() -> Option<DataSet> {
     let (examples, reference) = (shared::data("sr108/examples")?, shared::data("sr108/reference")?);
     let seen = read(&examples, "i_control");

@@ -11,7 +11,8 @@ use super::DataSet;
 /// Simulations start anew after so many lengths.
 const RESTART_LENGTHS: f64 = 10.0;
 
-/// The first trials of the programme as the instruments record them; others, without noise, for judgement.
+/// The first trials of the programme as the instruments record them; others, without noise, for
+/// judgement.
 pub fn synthetic(ship: &dyn Truth, count: usize, seed: u64) -> DataSet {
     let size = ship.dimensions();
     let instruments = Instruments::of(ship);

@@ -1,4 +1,5 @@
-//! What a person would get who knows the effect: the fitted model with the effect at its true parameters.
+//! What a person would get who knows the effect: the fitted model with the effect at its true
+//! parameters.
 
 use std::collections::BTreeMap;
 
@@ -15,8 +16,8 @@ const CHANNELS: [&str; 6] = ["u", "v", "r", "psi", "x", "y"];
 /// Errors so near to the noise that their ratio is one of noise.
 const OF_NOISE: f64 = 1.05;
 
-/// The errors of the diagnosed model by those of one that knows the effects: the geometric mean over channels. `None` where
-/// both are noise throughout.
+/// The errors of the diagnosed model by those of one that knows the effects: the geometric mean
+/// over channels. `None` where both are noise throughout.
 pub fn ratio(diagnosis: &Diagnosis, effects: &[AppliedEffect], trials: &[&Trial]) -> Option<f64> {
     let known = errors(effects, trials, diagnosis.settings.restart_s);
     let both = |channel: &&str| {

@@ -82,7 +82,8 @@ impl Outcome {
         }
     }
 
-    /// Whether the strongest of what is unexplained is of the right channel, with its middle in the right time.
+    /// Whether the strongest of what is unexplained is of the right channel, with its middle in the
+    /// right time.
     pub fn is_right_place(&self) -> bool {
         let Kind::Unlisted(channel, from_s, to_s) = self.kind else { return false };
         let strongest =
@@ -117,7 +118,8 @@ impl Outcome {
     }
 }
 
-/// How far the parameters of an effect that was found in its true form are from the truth, in standard errors.
+/// How far the parameters of an effect that was found in its true form are from the truth, in
+/// standard errors.
 fn deviations(effect: &AppliedEffect, found: &[Found]) -> Vec<Estimate> {
     let Some(found) =
         found.iter().find(|found| found.name == effect.name && found.form == effect.form.name)

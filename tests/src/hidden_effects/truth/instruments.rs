@@ -17,7 +17,8 @@ use super::sailing::{N_RPS, STEP_S, Sailing, TrueShip};
 /// One sample of so many steps: 2 Hz.
 pub const STRIDE: usize = 5;
 
-/// What is recorded of the state, and the standard deviation of its noise, SI: as in `../shared/data/sr108/examples`.
+/// What is recorded of the state, and the standard deviation of its noise, SI: as in
+/// `../shared/data/sr108/examples`.
 pub const NOISE: [(Channel, usize, f64); 9] = [
     (Channel::X, at::X, 0.3),
     (Channel::Y, at::Y, 0.3),

@@ -22,7 +22,8 @@ pub const N_RPS: f64 = 100.0 / 60.0;
 pub enum Manoeuvre {
     /// A turning circle with a rudder angle, deg.
     Turn(f64),
-    /// A zigzag with a rudder angle, of which the sign is that of the first execution, and a change of heading, deg.
+    /// A zigzag with a rudder angle, of which the sign is that of the first execution, and a change
+    /// of heading, deg.
     Zigzag(f64, f64),
 }
 
@@ -52,8 +53,8 @@ pub struct TrueShip {
     unlisted: Option<Unlisted>,
 }
 
-/// The state, its velocities through the water, and the angle of the rudder itself where it lags behind the one that is
-/// recorded.
+/// The state, its velocities through the water, and the angle of the rudder itself where it lags
+/// behind the one that is recorded.
 #[derive(Debug, Clone, Copy)]
 struct Motion {
     state: StateVector,
@@ -138,8 +139,9 @@ impl TrueShip {
         state
     }
 
-    /// The same motion with velocities over the ground. In moving water it sails as in still water and is carried along;
-    /// the library adds the current to a law in the ship's axes, which is the same but for the cosine of the roll.
+    /// The same motion with velocities over the ground. In moving water it sails as in still water
+    /// and is carried along; the library adds the current to a law in the ship's axes, which is the
+    /// same but for the cosine of the roll.
     fn over_ground(&self, state: &StateVector) -> StateVector {
         let ((sin, cos), (north, east)) = (state[at::PSI].sin_cos(), self.current_m_s);
         let mut state = *state;
@@ -162,7 +164,8 @@ impl TrueShip {
         inputs
     }
 
-    /// The wind that blows over the water, as components of where it comes from: that over the ground, and the current's own.
+    /// The wind that blows over the water, as components of where it comes from: that over the
+    /// ground, and the current's own.
     fn wind_over_water(&self, speed_m_s: f64) -> (f64, f64) {
         let (sin, cos) = self.wind.map_or(0.0, |wind| wind.from_rad).sin_cos();
         (speed_m_s * cos + self.current_m_s.0, speed_m_s * sin + self.current_m_s.1)

@@ -1,8 +1,9 @@
 //! A source of one law as the prior of another.
 //!
-//! What a source says of a ship is not its coefficients but her accelerations. Where they are to hold another law, they are
-//! regressed on its terms over the envelope in which the model will be used ([`OperatingEnvelope`]): mean and covariance of that
-//! regression are the prior ([`SourceRegression`]). docs/decisions/0015 has the reasons.
+//! What a source says of a ship is not its coefficients but her accelerations. Where they are to
+//! hold another law, they are regressed on its terms over the envelope in which the model will be
+//! used ([`OperatingEnvelope`]): mean and covariance of that regression are the prior
+//! ([`SourceRegression`]). docs/decisions/0015 has the reasons.
 
 mod source_regression;
 
@@ -15,7 +16,8 @@ use super::outcome::RefineError;
 use crate::transfer::{Approach, blank_of, transfer};
 pub(super) use source_regression::SourceRegression;
 
-/// A source carried over to the target by its own law, and a model of the law to be fitted that knows nothing yet.
+/// A source carried over to the target by its own law, and a model of the law to be fitted that
+/// knows nothing yet.
 pub(super) fn begun(
     (source, own): (&Model, &Law),
     law: &Law,

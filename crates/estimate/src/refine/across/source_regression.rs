@@ -1,4 +1,5 @@
-//! A law's coefficients from what a source of another law says, with the covariance that this earns.
+//! A law's coefficients from what a source of another law says, with the covariance that this
+//! earns.
 
 use nalgebra::DMatrix;
 use sistership_model::Model;
@@ -64,7 +65,8 @@ impl<'a> SourceRegression<'a> {
             .unwrap_or(SOURCE.ridges[0])
     }
 
-    /// Sets a model's coefficients, with standard errors, to what the source says; none of an axis that it does not know.
+    /// Sets a model's coefficients, with standard errors, to what the source says; none of an axis
+    /// that it does not know.
     pub fn fill(&self, blocks: &Blocks, model: &mut Model) {
         let Some(all) = merged(&self.moments, |_| true) else { return };
         let fitted = fit(blocks, &all, &self.zero, &self.choices(blocks));
@@ -84,8 +86,8 @@ impl<'a> SourceRegression<'a> {
         }
     }
 
-    /// Gives the regressions the precision that this one earns. What the source does not know is held to where
-    /// it is, in the deviations of its regressors.
+    /// Gives the regressions the precision that this one earns. What the source does not know is
+    /// held to where it is, in the deviations of its regressors.
     pub fn hold(&self, blocks: &mut Blocks, trials: &[Moments]) {
         let Some(all) = merged(&self.moments, |_| true) else { return };
         for ((block, source), trials) in blocks.blocks.iter_mut().zip(&all).zip(trials) {
@@ -123,7 +125,8 @@ impl<'a> SourceRegression<'a> {
     }
 }
 
-/// What the source says at every state, and a share (`ignorance`) of what would be needed to say as much of each coefficient alone.
+/// What the source says at every state, and a share (`ignorance`) of what would be needed to say as
+/// much of each coefficient alone.
 fn earned(block: &Block, source: &Moments, trials: &Moments) -> DMatrix<f64> {
     let p = block.regressors();
     let mut precision = source.raw_products().view((0, 0), (p, p)).into_owned();

@@ -292,7 +292,8 @@ fn plan(
     Ok(ComparisonPlan { compared: velocities, stride, step_s: cutting.step_s })
 }
 
-/// The change of each coefficient that changes an acceleration by the acceleration's own size; zero where the trials say nothing of it.
+/// The change of each coefficient that changes an acceleration by the acceleration's own size; zero
+/// where the trials say nothing of it.
 fn natural_sizes(variant: &Variant, names: &[String]) -> Result<Vec<f64>, RefineError> {
     let all = variant.together(|_| true)?;
     let prior = WeakFormPrior::new(names, &variant.blocks, &all, &|_| (0.0, 0.0), 0.0);

@@ -23,7 +23,8 @@ pub(super) struct DeviationPenalty {
 }
 
 impl DeviationPenalty {
-    /// From the extremes of trials; accelerations are means over `window_s`, for as long as which each combination is simulated.
+    /// From the extremes of trials; accelerations are means over `window_s`, for as long as which
+    /// each combination is simulated.
     pub fn new(
         system: &CandidateSystem,
         law: &Law,
@@ -60,7 +61,8 @@ impl DeviationPenalty {
         Self { blocks, limits, steps, step_s, count: pairs.len() as f64 }
     }
 
-    /// The mean penalty over the combinations, Eq. 29 by their number: 0 where none leaves the limits, about 1 where all do at once.
+    /// The mean penalty over the combinations, Eq. 29 by their number: 0 where none leaves the
+    /// limits, about 1 where all do at once.
     pub fn penalty(&self, system: &CandidateSystem, method: Method, coefficients: &[f64]) -> f64 {
         let mut run = CandidateRun::<LANES>::new(system);
         let one = |(starts, inputs): &(Vec<StateVector>, Vec<Lanes<LANES>>)| {
@@ -89,7 +91,8 @@ impl DeviationPenalty {
     }
 }
 
-/// Low, middle (rest where that is between) and high of a channel; a single zero where no trial has it.
+/// Low, middle (rest where that is between) and high of a channel; a single zero where no trial has
+/// it.
 fn three(trials: &[&Trial], channel: Channel, margin: f64) -> Vec<f64> {
     let values = trials.iter().filter_map(|trial| trial.channel(channel)).flatten();
     let (low, high) = values
@@ -103,7 +106,8 @@ fn three(trials: &[&Trial], channel: Channel, margin: f64) -> Vec<f64> {
     if low < high { vec![low, middle, high] } else { vec![low] }
 }
 
-/// What an input is set to: extremes of a control, no wind, and of anything else what it is where nobody says.
+/// What an input is set to: extremes of a control, no wind, and of anything else what it is where
+/// nobody says.
 fn settings(name: &str, law: &Law, trials: &[&Trial]) -> Vec<f64> {
     let default = law.inputs.get(name).and_then(|input| input.default);
     match (default, input_channel(name)) {
@@ -113,7 +117,8 @@ fn settings(name: &str, law: &Law, trials: &[&Trial]) -> Vec<f64> {
     }
 }
 
-/// Every combination of one value from each; beyond the first few that have several, their middle alone.
+/// Every combination of one value from each; beyond the first few that have several, their middle
+/// alone.
 fn combinations(choices: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut all = vec![Vec::new()];
     let mut several = 0;

@@ -129,7 +129,8 @@ impl Objective {
         self.deviation.penalty(&self.system, self.method, coefficients)
     }
 
-    /// The first part: the standardised squared error of u, v and r together, in the mean over time.
+    /// The first part: the standardised squared error of u, v and r together, in the mean over
+    /// time.
     pub fn error(&self, sequences: &Sequences, coefficients: &[f64]) -> f64 {
         let mut run = CandidateRun::new(&self.system);
         let sum: f64 =
@@ -173,7 +174,8 @@ impl Objective {
             .sum()
     }
 
-    /// Adds a comparison to the lanes that have not left the physical range before; `left` are those that remain.
+    /// Adds a comparison to the lanes that have not left the physical range before; `left` are
+    /// those that remain.
     fn compare(
         &self,
         run: &CandidateRun<'_, LANES>,

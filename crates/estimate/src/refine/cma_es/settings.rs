@@ -16,8 +16,8 @@ pub struct CmaEs {
     /// Largest population of a restart, each of which has twice that of the run before.
     #[schemars(range(min = 4, max = 100_000))]
     pub largest_population: usize,
-    /// Most evaluations of the fit on all trials. What was really evaluated is what a version records, so that it can be
-    /// derived again.
+    /// Most evaluations of the fit on all trials. What was really evaluated is what a version
+    /// records, so that it can be derived again.
     #[schemars(range(min = 1))]
     pub evaluations: usize,
     /// Most time of the fit on all trials, s on the wall.
@@ -28,7 +28,8 @@ pub struct CmaEs {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub cpu_s: Option<f64>,
-    /// Evaluations of each fit with trials left out, by those of the fit on all, at whose optimum it starts.
+    /// Evaluations of each fit with trials left out, by those of the fit on all, at whose optimum
+    /// it starts.
     #[schemars(range(min = 0, max = 1))]
     pub fold_share: f64,
     /// Half width of the box by the natural size of a coefficient.
@@ -48,7 +49,8 @@ pub struct CmaEs {
 }
 
 impl Default for CmaEs {
-    /// The paper's populations, box and Euler's method, and `alpha` of 1e2 s over its 7,407 s; `lambda` of zero, which did best there.
+    /// The paper's populations, box and Euler's method, and `alpha` of 1e2 s over its 7,407 s;
+    /// `lambda` of zero, which did best there.
     fn default() -> Self {
         Self {
             seed: 1,
@@ -131,6 +133,7 @@ pub struct SearchReport {
     pub objective: f64,
     /// Its first part: the standardised squared error of u, v and r by time.
     pub error: f64,
-    /// The share of the extreme states and controls whose accelerations are beyond what was measured, weighed by how soon.
+    /// The share of the extreme states and controls whose accelerations are beyond what was
+    /// measured, weighed by how soon.
     pub deviation: f64,
 }

@@ -4,8 +4,9 @@ use super::limit::Limit;
 use super::programme::{NearestPointProblem, Overstepping};
 use super::thresholds::CONSTRAINTS;
 
-/// A set of limits that cannot be kept together, none of which can be left out of it (the deletion filter of Chinneck and
-/// Dravnieks 1991, ORSA Journal on Computing 3, 157-168), by name; none where all can be kept.
+/// A set of limits that cannot be kept together, none of which can be left out of it (the deletion
+/// filter of Chinneck and Dravnieks 1991, ORSA Journal on Computing 3, 157-168), by name; none
+/// where all can be kept.
 pub(super) fn conflict(
     nearest: &NearestPointProblem<'_>,
     limits: &[&Limit],

@@ -30,7 +30,8 @@ impl AffineFunction {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Limit {
     pub name: String,
-    /// One function that is at least 0; or several, the first of which is at least the length of the others.
+    /// One function that is at least 0; or several, the first of which is at least the length of
+    /// the others.
     pub cone: Vec<AffineFunction>,
 }
 
@@ -39,8 +40,9 @@ impl Limit {
         Self { name, cone: vec![function] }
     }
 
-    /// A symmetric matrix of two rows without negative eigenvalues: `a + c >= |(a - c, 2 b)|` (Alizadeh and Goldfarb 2003,
-    /// Mathematical Programming 95, 3-51, section 2.3: such a matrix is a cone of second order in three dimensions).
+    /// A symmetric matrix of two rows without negative eigenvalues: `a + c >= |(a - c, 2 b)|`
+    /// (Alizadeh and Goldfarb 2003, Mathematical Programming 95, 3-51, section 2.3: such a matrix
+    /// is a cone of second order in three dimensions).
     pub fn matrix(name: String, [a, b, c]: [&AffineFunction; 3]) -> Self {
         Self { name, cone: vec![a.with(1.0, c, 1.0), a.with(1.0, c, -1.0), b.with(2.0, b, 0.0)] }
     }

@@ -30,7 +30,8 @@ pub(in super::super) struct CoefficientLimits {
 }
 
 impl CoefficientLimits {
-    /// For the coefficients that a model has; `speeds` are the least and the greatest that the trials covered, m/s.
+    /// For the coefficients that a model has; `speeds` are the least and the greatest that the
+    /// trials covered, m/s.
     ///
     /// # Errors
     /// Names the setting that asks for what the model does not have.
@@ -75,8 +76,8 @@ impl CoefficientLimits {
         })
     }
 
-    /// The coefficients within the limits that are nearest to a solution. `curvature` is over `names`, `prior` how far the
-    /// prior lets each be from the source.
+    /// The coefficients within the limits that are nearest to a solution. `curvature` is over
+    /// `names`, `prior` how far the prior lets each be from the source.
     ///
     /// # Errors
     /// Names the limits that cannot be kept together, or says why no solution was found.
@@ -143,8 +144,8 @@ impl CoefficientLimits {
         self.names.iter().enumerate().flat_map(one).collect()
     }
 
-    /// The limit of the straight course by a reference that has what is declared: the solution, the source, or the
-    /// solution with all eigenvalues shifted.
+    /// The limit of the straight course by a reference that has what is declared: the solution, the
+    /// source, or the solution with all eigenvalues shifted.
     fn straight_line(&self, at: &[f64]) -> Option<Limit> {
         let (line, functions) = self.straight.as_ref()?;
         let (own, source) = (matrix(functions, at), matrix(functions, &self.source));

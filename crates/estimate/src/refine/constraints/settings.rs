@@ -8,13 +8,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Constraints {
-    /// Signs that physics fixes, of those that the model has: drift and yaw are damped (`Y_v`, `N_r` at most 0), the rudder
-    /// turns the ship to its side and pushes the stern the other way (`N_delta` at least, `Y_delta` at most 0).
+    /// Signs that physics fixes, of those that the model has: drift and yaw are damped (`Y_v`,
+    /// `N_r` at most 0), the rudder turns the ship to its side and pushes the stern the other way
+    /// (`N_delta` at least, `Y_delta` at most 0).
     pub physical_signs: bool,
-    /// Surge terms take energy from the motion: ahead, surge acceleration falls with speed over the speeds that the trials
-    /// covered, and the rudder brakes (`X_deltadelta` at most 0).
+    /// Surge terms take energy from the motion: ahead, surge acceleration falls with speed over the
+    /// speeds that the trials covered, and the rudder brakes (`X_deltadelta` at most 0).
     pub dissipative: bool,
-    /// No coefficient is further from the source than so many standard deviations of its prior (`moved_sd`).
+    /// No coefficient is further from the source than so many standard deviations of its prior
+    /// (`moved_sd`).
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub trust_sd: Option<f64>,

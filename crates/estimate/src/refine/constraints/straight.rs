@@ -1,4 +1,5 @@
-//! How a ship answers to small disturbances of a straight course, as an affine function of her coefficients.
+//! How a ship answers to small disturbances of a straight course, as an affine function of her
+//! coefficients.
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use sistership_dynamics::plant::Work;
@@ -11,7 +12,8 @@ use super::limit::{AffineFunction, Limit};
 use super::settings::StraightLine;
 use super::thresholds::CONSTRAINTS;
 
-/// Rates of change of the velocities at a straight course disturbed in one of them, by central differences.
+/// Rates of change of the velocities at a straight course disturbed in one of them, by central
+/// differences.
 fn slope(ship: &Ship, speed_m_s: f64, place: usize, size: f64) -> StateVector {
     let rate = |by: f64| {
         let mut state = straight(speed_m_s);
@@ -78,9 +80,10 @@ fn sign(line: StraightLine) -> f64 {
     if line == StraightLine::Stable { -1.0 } else { 1.0 }
 }
 
-/// What is declared as a limit: `P A + A' P` is definite for the `P` with which it is so at a reference. By Lyapunov's theorems, negative
-/// definite with the `P` of a stable reference makes `A` stable, and positive definite with the `P` of an unstable one
-/// makes it unstable (Khalil 2002, Nonlinear systems, Theorems 4.3 and 4.6). None where the reference has no such `P`.
+/// What is declared as a limit: `P A + A' P` is definite for the `P` with which it is so at a
+/// reference. By Lyapunov's theorems, negative definite with the `P` of a stable reference makes
+/// `A` stable, and positive definite with the `P` of an unstable one makes it unstable (Khalil
+/// 2002, Nonlinear systems, Theorems 4.3 and 4.6). None where the reference has no such `P`.
 pub(super) fn limit(
     line: StraightLine,
     functions: &[AffineFunction; 4],

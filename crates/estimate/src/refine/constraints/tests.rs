@@ -14,7 +14,8 @@ fn zoo(name: &str) -> (Model, std::sync::Arc<Law>) {
     (model, law)
 }
 
-/// The coefficients within limits that are nearest to a solution, a change by its own size counting alike for each.
+/// The coefficients within limits that are nearest to a solution, a change by its own size counting
+/// alike for each.
 fn nearest(
     settings: &Constraints,
     source: &Model,

@@ -18,7 +18,8 @@ impl ResidualAutocovariance {
         let last = residuals.iter().map(own).max().unwrap_or(0);
         let lags = (POSTERIOR.bandwidth * (last + 1)).min(longest.max(1));
         let pair = |i: usize, j: usize| {
-            // Bartlett's weights keep every variance made of them above zero (Newey and West 1987, Theorem 1).
+            // Bartlett's weights keep every variance made of them above zero (Newey and West 1987,
+            // Theorem 1).
             let weight = |lag: usize| 1.0 - lag as f64 / lags as f64;
             (0..lags)
                 .map(|lag| weight(lag) * both_ways(&residuals[i], &residuals[j], lag))
@@ -39,15 +40,16 @@ impl ResidualAutocovariance {
     }
 }
 
-/// The lag until which sums of two neighbouring autocovariances stay above zero (Geyer 1992, Statistical Science 7,
-/// 473-483, section 3.3).
+/// The lag until which sums of two neighbouring autocovariances stay above zero (Geyer 1992,
+/// Statistical Science 7, 473-483, section 3.3).
 fn lasts(longest: usize, covariance: &dyn Fn(usize) -> f64) -> usize {
     let most = longest / 3;
     let pair = |m: usize| covariance(2 * m) + covariance(2 * m + 1);
     2 * (1..=most / 2).find(|&m| pair(m) <= 0.0).unwrap_or(most / 2)
 }
 
-/// Over all sequences, by the number of rows, so that covariances of all lags together are those of some process.
+/// Over all sequences, by the number of rows, so that covariances of all lags together are those of
+/// some process.
 fn covariance(one: &[DVector<f64>], other: &[DVector<f64>], lag: usize) -> f64 {
     let count: usize = one.iter().map(DVector::len).sum();
     let product = |(a, b): (&DVector<f64>, &DVector<f64>)| {

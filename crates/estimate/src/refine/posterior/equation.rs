@@ -23,7 +23,8 @@ pub(super) struct RidgeEquation<'a> {
     pub source: DVector<f64>,
     /// `S^-1`.
     pub inverse: DMatrix<f64>,
-    /// The same at a strength that holds nothing which the trials can tell, and the solution there, standardised.
+    /// The same at a strength that holds nothing which the trials can tell, and the solution there,
+    /// standardised.
     pub free: (DMatrix<f64>, DVector<f64>),
 }
 
@@ -52,7 +53,8 @@ impl<'a> RidgeEquation<'a> {
         Some(Self { block, target, choice, metric, products, data, square, source, inverse, free })
     }
 
-    /// What the law leaves of its target, by sequence, where no source holds it: else the source's error would seem noise.
+    /// What the law leaves of its target, by sequence, where no source holds it: else the source's
+    /// error would seem noise.
     pub fn residuals(&self, rows: &SequencedRows) -> Vec<DVector<f64>> {
         let coefficients = self.metric.back() * &self.free.1;
         let of = |sequence: &RowSequence| {
@@ -68,8 +70,9 @@ impl<'a> RidgeEquation<'a> {
 }
 
 impl RidgeEquation<'_> {
-    /// By how much the residuals' variance is more than it seems, for the coefficients have taken up a part of it: with the
-    /// hat matrix `A` and correlations `R`, the sum of squares is expected to be `tr (I - A) R (I - A)` of the variance.
+    /// By how much the residuals' variance is more than it seems, for the coefficients have taken
+    /// up a part of it: with the hat matrix `A` and correlations `R`, the sum of squares is
+    /// expected to be `tr (I - A) R (I - A)` of the variance.
     pub fn taken_up(&self, scatter: &DMatrix<f64>, variance: f64, count: f64) -> f64 {
         let unit = scatter * (count / variance.max(f64::MIN_POSITIVE));
         let moved = &self.free.0 * unit;

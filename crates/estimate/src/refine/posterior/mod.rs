@@ -1,13 +1,15 @@
 //! How far a ridge's coefficients may be from the truth, jointly over the axes.
 //!
 //! With standardised regressors `F`, `C = F'F/n` and `S = C + lambda I`, the error of the ridge is
-//! `S^-1 (F'e/n + lambda d)`, where `e` is what the law leaves of the accelerations and `d` how far the pull's target is
-//! from the truth. Its covariance is `S^-1 (M + lambda^2 D) S^-1` whatever strength was chosen, and by whatever rule.
+//! `S^-1 (F'e/n + lambda d)`, where `e` is what the law leaves of the accelerations and `d` how far
+//! the pull's target is from the truth. Its covariance is `S^-1 (M + lambda^2 D) S^-1` whatever
+//! strength was chosen, and by whatever rule.
 //!
-//! `M` is the covariance of `F'e/n` for residuals that depend on each other (White 1980, Econometrica 48, 817-838; Newey
-//! and West 1987, Econometrica 55, 703-708): [`ResidualAutocovariance`] has their autocovariance, within and between the axes. `D` is not
-//! what `lambda` would make of it, for that was chosen by simulation: [`spread`] learns from the trials how far the source
-//! is off.
+//! `M` is the covariance of `F'e/n` for residuals that depend on each other (White 1980,
+//! Econometrica 48, 817-838; Newey and West 1987, Econometrica 55, 703-708):
+//! [`ResidualAutocovariance`] has their autocovariance, within and between the axes. `D` is not
+//! what `lambda` would make of it, for that was chosen by simulation: [`spread`] learns from the
+//! trials how far the source is off.
 
 mod autocovariance;
 mod equation;
@@ -27,8 +29,8 @@ pub(super) use rows::{SequencedRows, rows};
 use sistership_regression::{Metric, Moments, RidgeChoice};
 use spread::spread;
 
-/// The errors of the ridge at its choices; `rows` are those behind `moments`, `model` is the source. None where the
-/// equations cannot be solved.
+/// The errors of the ridge at its choices; `rows` are those behind `moments`, `model` is the
+/// source. None where the equations cannot be solved.
 pub(super) fn errors(
     blocks: &Blocks,
     moments: &[Moments],
@@ -60,7 +62,8 @@ pub(super) fn errors(
     Some(gathered(blocks, &equations, &scatter.all, &spreads))
 }
 
-/// What standardises a block's coefficients, and the mean products of its regressors so standardised.
+/// What standardises a block's coefficients, and the mean products of its regressors so
+/// standardised.
 fn standardised((block, moments): (&Block, &Moments)) -> (Metric, DMatrix<f64>) {
     let metric = block.metric(moments);
     let products = metric.products(moments);

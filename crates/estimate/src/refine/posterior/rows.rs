@@ -24,8 +24,8 @@ pub(in super::super) struct SequencedRows {
     pub blocks: Vec<Vec<RowSequence>>,
 }
 
-/// Gathers tables, by sequence and regression. So many rows are merged into their mean where they follow each other closely;
-/// `centred` takes the mean of all rows off each column.
+/// Gathers tables, by sequence and regression. So many rows are merged into their mean where they
+/// follow each other closely; `centred` takes the mean of all rows off each column.
 pub(in super::super) fn rows(
     blocks: &Blocks,
     tables: &[Vec<Table>],
@@ -76,7 +76,8 @@ impl SequencedRows {
             .map_or(0.0, |sequences| sequences.iter().map(|s| s.regressors.nrows() as f64).sum())
     }
 
-    /// `sum_kl F_k G_l' kernel(|k - l|) / n^2` of the regressors of two regressions over rows of the same sequence.
+    /// `sum_kl F_k G_l' kernel(|k - l|) / n^2` of the regressors of two regressions over rows of
+    /// the same sequence.
     pub fn weighed(&self, one: usize, other: usize, kernel: &[f64]) -> DMatrix<f64> {
         let (first, second) = (&self.blocks[one], &self.blocks[other]);
         let columns =

@@ -5,11 +5,12 @@ use nalgebra::{DMatrix, DVector};
 use super::equation::RidgeEquation;
 use super::thresholds::POSTERIOR;
 
-/// The variances of the source's standardised coefficients about the true ones: a share of their squares, and a common part,
-/// without which a term that the source does not have would be known to be none. `F'y/n` less what the source makes of it is
-/// `C d + F'e/n`, normal with `C D C + M`; these are the squares of the mean deviations over both parts' distribution given
-/// the trials, with `1/(1 + x^2)` before them for deviations by their unit (Gelman 2006, Bayesian Analysis 1, 515-533). Means
-/// of the variances themselves are ruled by the far end of what cannot be excluded.
+/// The variances of the source's standardised coefficients about the true ones: a share of their
+/// squares, and a common part, without which a term that the source does not have would be known to
+/// be none. `F'y/n` less what the source makes of it is `C d + F'e/n`, normal with `C D C + M`;
+/// these are the squares of the mean deviations over both parts' distribution given the trials,
+/// with `1/(1 + x^2)` before them for deviations by their unit (Gelman 2006, Bayesian Analysis 1,
+/// 515-533). Means of the variances themselves are ruled by the far end of what cannot be excluded.
 pub(super) fn spread(equation: &RidgeEquation<'_>, scatter: &DMatrix<f64>) -> DVector<f64> {
     let (own, unit) = (equation.source.component_mul(&equation.source), equation.square);
     let variances =

@@ -41,8 +41,8 @@ struct Linearisation {
     pass: SegmentSums,
 }
 
-/// Adds candidates of the trajectory form, started from the best of the weak form; where every one stops while manoeuvres
-/// are simulated, from the first, which the source holds most.
+/// Adds candidates of the trajectory form, started from the best of the weak form; where every one
+/// stops while manoeuvres are simulated, from the first, which the source holds most.
 ///
 /// # Errors
 /// A trial lacks a channel, or it was cancelled.
@@ -232,7 +232,8 @@ impl TrajectoryDescent<'_> {
         Ok(here)
     }
 
-    /// The model of a fold: one step from where all trials are fitted, on the trials inside it and their weak form.
+    /// The model of a fold: one step from where all trials are fitted, on the trials inside it and
+    /// their weak form.
     fn left_out(
         &self,
         fold: usize,
@@ -271,8 +272,8 @@ impl TrajectoryDescent<'_> {
     }
 }
 
-/// Whether weaker pulls would be worse still: after the weak form, whose error is the first, the last two were no better than one
-/// before them, or the last is clearly worse than another pull.
+/// Whether weaker pulls would be worse still: after the weak form, whose error is the first, the
+/// last two were no better than one before them, or the last is clearly worse than another pull.
 fn is_past_best(errors: &[f64]) -> bool {
     let best = |errors: &[f64]| errors.iter().copied().fold(f64::INFINITY, f64::min);
     let [weak, .., before, last] = *errors else { return false };

@@ -1,8 +1,9 @@
 //! A fit by the trajectory form, and how far its coefficients may be from the truth.
 //!
-//! With `H` the Hessian, `g` the gradient of the residuals, and `W` and `L` as in [the form](super), the error is
-//! `H^-1 (g + mu W (c_weak - c) + mu/(1 + mu) L (c_source - c))`: the scatter of the segments' gradients, within which residuals may depend
-//! on each other (Huber 1967, Proc. Fifth Berkeley Symposium 1, 221-233), and the errors of what pulls.
+//! With `H` the Hessian, `g` the gradient of the residuals, and `W` and `L` as in [the
+//! form](super), the error is `H^-1 (g + mu W (c_weak - c) + mu/(1 + mu) L (c_source - c))`: the
+//! scatter of the segments' gradients, within which residuals may depend on each other (Huber 1967,
+//! Proc. Fifth Berkeley Symposium 1, 221-233), and the errors of what pulls.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -88,7 +89,8 @@ impl TrajectoryFit {
     }
 }
 
-/// Covariance of the mean gradient from that of the segments', which have one direction less than there are segments.
+/// Covariance of the mean gradient from that of the segments', which have one direction less than
+/// there are segments.
 fn scatter(gradients: &[DVector<f64>], count: f64, size: usize) -> DMatrix<f64> {
     let segments = gradients.len() as f64;
     let mut sum = DMatrix::zeros(size, size);

@@ -14,8 +14,9 @@ const LANES: usize = 8;
 const ROWS: usize = 96;
 /// Columns of the Hessian that are multiplied together.
 const COLUMNS: usize = 48;
-/// Blocks of lanes that are simulated before their sums are added: a lane holds a Hessian until then. More threads than
-/// this have nothing to do; it is not their number, so that the memory of a fit does not depend on the machine.
+/// Blocks of lanes that are simulated before their sums are added: a lane holds a Hessian until
+/// then. More threads than this have nothing to do; it is not their number, so that the memory of a
+/// fit does not depend on the machine.
 const BLOCKS: usize = 16;
 
 /// Sums over the residuals of some segments.
@@ -66,7 +67,8 @@ pub(super) struct SegmentPass<'a> {
 }
 
 impl SegmentPass<'_> {
-    /// Simulates every segment. Sums are added in the segments' order, so that batches change nothing but the memory taken.
+    /// Simulates every segment. Sums are added in the segments' order, so that batches change
+    /// nothing but the memory taken.
     pub fn pass(&self, system: &SensitiveSystem) -> SegmentSums {
         let size = system.names().len();
         let mut pass = SegmentSums {

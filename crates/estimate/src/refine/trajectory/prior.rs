@@ -7,10 +7,12 @@ use nalgebra::{DMatrix, DVector};
 use super::super::blocks::{Block, Blocks};
 use sistership_regression::Moments;
 
-/// What holds the coefficients: the weak form, by where its cost is least and how it rises from there, and the source.
+/// What holds the coefficients: the weak form, by where its cost is least and how it rises from
+/// there, and the source.
 #[derive(Debug, Clone)]
 pub(in super::super) struct WeakFormPrior {
-    /// Half the second derivative of the weak form's cost, each acceleration by its mean square; the source's share is in it.
+    /// Half the second derivative of the weak form's cost, each acceleration by its mean square;
+    /// the source's share is in it.
     pub hessian: DMatrix<f64>,
     pub weak: DVector<f64>,
     /// The source's share alone.
@@ -19,8 +21,8 @@ pub(in super::super) struct WeakFormPrior {
 }
 
 impl WeakFormPrior {
-    /// For coefficients in an order, of the weak form on statistics, held by the source with a strength; `values` has the weak
-    /// form's coefficient and the source's.
+    /// For coefficients in an order, of the weak form on statistics, held by the source with a
+    /// strength; `values` has the weak form's coefficient and the source's.
     pub fn new(
         names: &[String],
         blocks: &Blocks,
@@ -73,7 +75,8 @@ impl WeakFormPrior {
         gradient.gemv(by_source(pull), &self.of_source, &(at - &self.source), 1.0);
     }
 
-    /// How far the source alone, within the weak form and beside it, lets each coefficient be, as if the motion were missed by its own size.
+    /// How far the source alone, within the weak form and beside it, lets each coefficient be, as
+    /// if the motion were missed by its own size.
     pub fn deviations(&self, pull: f64) -> DVector<f64> {
         let scales = self.of_source.diagonal().map(|own| 1.0 / own.max(1e-300).sqrt());
         let unit = DMatrix::from_fn(scales.len(), scales.len(), |i, j| {
@@ -87,13 +90,14 @@ impl WeakFormPrior {
     }
 }
 
-/// How strongly the source pulls by how it holds the weak form, where that pulls with a strength: no more than so, and less where
-/// the weak form pulls little.
+/// How strongly the source pulls by how it holds the weak form, where that pulls with a strength:
+/// no more than so, and less where the weak form pulls little.
 pub(super) fn by_source(pull: f64) -> f64 {
     pull / (1.0 + pull)
 }
 
-/// The coefficients of a block with how many times stronger the source pulls them than it pulls others.
+/// The coefficients of a block with how many times stronger the source pulls them than it pulls
+/// others.
 fn each(block: &Block) -> impl Iterator<Item = (&Block, &String, f64)> {
     block.names.iter().flat_map(move |own| {
         own.iter().zip(&block.shrinkage).map(move |(name, factor)| (block, name, *factor))

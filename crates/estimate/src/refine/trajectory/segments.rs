@@ -166,8 +166,8 @@ impl<'a> SegmentRecord<'a> {
         if k + 1 < part.end { column[k] + w * (column[k + 1] - column[k]) } else { column[k] }
     }
 
-    /// An input at a time: the mean over a quarter step to both sides where there are as many as three samples in it, else
-    /// as in a simulation.
+    /// An input at a time: the mean over a quarter step to both sides where there are as many as
+    /// three samples in it, else as in a simulation.
     fn input(&self, input: &SegmentInput<'_>, part: &Range<usize>, t: f64, around: f64) -> f64 {
         let SegmentInput::Recorded { column, cubic, angle } = input else {
             let SegmentInput::Constant(value) = input else { return 0.0 };
@@ -193,7 +193,8 @@ impl<'a> SegmentRecord<'a> {
     }
 }
 
-/// The states that are compared: all that some trial records, by their standard deviation over the trials.
+/// The states that are compared: all that some trial records, by their standard deviation over the
+/// trials.
 pub(in super::super) fn compared(
     states: &[usize],
     deviations: &std::collections::BTreeMap<Channel, f64>,

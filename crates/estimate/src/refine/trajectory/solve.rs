@@ -27,7 +27,8 @@ impl PenalisedEquations {
         Self { hessian, gradient, cost: normal.cost / count + prior.cost(at, pull) }
     }
 
-    /// The step with every curvature enlarged by a share; none where the equations cannot be solved.
+    /// The step with every curvature enlarged by a share; none where the equations cannot be
+    /// solved.
     pub fn step(&self, damping: f64) -> Option<DVector<f64>> {
         let (mut scaled, scales) = self.scaled();
         scaled

@@ -52,7 +52,8 @@ fn within(t_s: &[f64], segment: Range<usize>, length: f64, hop: f64) -> Vec<Bump
     (0..count).map(&mut one).collect()
 }
 
-/// A bump over the samples of a window: what integrates a column with it, and what integrates a rate of change by parts.
+/// A bump over the samples of a window: what integrates a column with it, and what integrates a
+/// rate of change by parts.
 #[derive(Debug, Clone)]
 pub(super) struct BumpFunction {
     samples: Range<usize>,
@@ -80,8 +81,8 @@ impl BumpFunction {
         product(&self.weights, &column[self.samples.clone()])
     }
 
-    /// The weighted mean of mass times a velocity's rate of change, by parts: `-int v d(b m)`, summed so that a constant
-    /// velocity gives exactly zero. Mass is 1 where none is given.
+    /// The weighted mean of mass times a velocity's rate of change, by parts: `-int v d(b m)`,
+    /// summed so that a constant velocity gives exactly zero. Mass is 1 where none is given.
     pub fn rate(&self, mass: Option<&[f64]>, velocity: &[f64]) -> f64 {
         let v = &velocity[self.samples.clone()];
         let weighted =

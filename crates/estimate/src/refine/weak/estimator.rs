@@ -40,8 +40,8 @@ impl Estimator for WeakForm {
     }
 }
 
-/// Fills in windows, strengths and families, among these where the settings name none. Estimators that begin with the weak form do
-/// so too.
+/// Fills in windows, strengths and families, among these where the settings name none. Estimators
+/// that begin with the weak form do so too.
 pub(in super::super) fn resolve(
     settings: &mut Settings,
     length_s: Option<f64>,

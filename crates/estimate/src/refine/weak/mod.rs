@@ -1,8 +1,10 @@
-//! The weak form: the equations of motion multiplied by a smooth bump and integrated by parts, so that no error of a
-//! measurement is ever differentiated (Messenger and Bortz 2021, Multiscale Model Simul 19, 1474-1497, Eqs. 2.4-2.6).
+//! The weak form: the equations of motion multiplied by a smooth bump and integrated by parts, so
+//! that no error of a measurement is ever differentiated (Messenger and Bortz 2021, Multiscale
+//! Model Simul 19, 1474-1497, Eqs. 2.4-2.6).
 //!
-//! With a bump `b(t)` that vanishes with its slope at both ends of a window, `M dv/dt = sum c_i phi_i + rest` becomes
-//! `-int v d(b M)/dt dt = sum c_i int b phi_i dt + int b rest dt`: a linear regression with one row a window.
+//! With a bump `b(t)` that vanishes with its slope at both ends of a window, `M dv/dt = sum c_i
+//! phi_i + rest` becomes `-int v d(b M)/dt dt = sum c_i int b phi_i dt + int b rest dt`: a linear
+//! regression with one row a window.
 
 mod bump;
 mod estimator;
@@ -21,8 +23,8 @@ use bump::BumpFunction;
 use samples::{SampledRegression, columns};
 use sistership_regression::Moments;
 
-/// The statistics of one trial in weak form about zero, one set for each regression; no window reaches over a gap.
-/// Windows overlap, so that each counts as the share of time that is its own.
+/// The statistics of one trial in weak form about zero, one set for each regression; no window
+/// reaches over a gap. Windows overlap, so that each counts as the share of time that is its own.
 ///
 /// # Errors
 /// Names the channel that the trial lacks.
@@ -38,8 +40,8 @@ pub fn weak_moments(
     Ok(blocks.blocks.iter().zip(&tables).map(of).collect())
 }
 
-/// The rows behind [`weak_moments`]: for each regression its columns over the windows, regressors then targets, in the
-/// mean over the bump.
+/// The rows behind [`weak_moments`]: for each regression its columns over the windows, regressors
+/// then targets, in the mean over the bump.
 ///
 /// # Errors
 /// As [`weak_moments`].

@@ -1,4 +1,5 @@
-//! What a regression is made of at every sample of a trial: regressors, masses with the velocities they multiply, rests.
+//! What a regression is made of at every sample of a trial: regressors, masses with the velocities
+//! they multiply, rests.
 
 use std::borrow::Cow;
 

@@ -25,8 +25,8 @@ fn the_counts_of_table_4() {
     }
 }
 
-/// At third order the counts of Table 4 need the squares of the starboard cosine that Eqs. 15 and 16 print and that
-/// modification B, as the text has it, drops: four terms on Y and on N.
+/// At third order the counts of Table 4 need the squares of the starboard cosine that Eqs. 15 and
+/// 16 print and that modification B, as the text has it, drops: four terms on Y and on N.
 #[test]
 fn the_text_alone_gives_other_counts_at_third_order() {
     for (scheme, described, printed) in

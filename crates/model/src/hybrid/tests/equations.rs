@@ -1,13 +1,15 @@
-//! Term by term against Miyauchi 2024, Eqs. 13 to 16. Eq. 13 lists the coefficients of the regressors of Eq. 14, and Eq. 16
-//! the regressors of the coefficients of Eq. 15; those for N are said to be as those for Y. Transcribed are Eqs. 14 and 15:
-//! of the other two our copy shows too little. Three terms of Eq. 15 are told by their neighbours (decision 6).
+//! Term by term against Miyauchi 2024, Eqs. 13 to 16. Eq. 13 lists the coefficients of the
+//! regressors of Eq. 14, and Eq. 16 the regressors of the coefficients of Eq. 15; those for N are
+//! said to be as those for Y. Transcribed are Eqs. 14 and 15: of the other two our copy shows too
+//! little. Three terms of Eq. 15 are told by their neighbours (decision 6).
 
 use std::collections::BTreeSet;
 
 use super::{PRINTED, names, vectwin};
 use crate::coefficient::Axis;
 
-/// Eqs. 13 and 14 up to the second order, with S, C for sine and cosine of the starboard rudder and s, c of the port one.
+/// Eqs. 13 and 14 up to the second order, with S, C for sine and cosine of the starboard rudder and
+/// s, c of the port one.
 const EVEN_2: &str = "u C c n u|u| uC uc un vv vr vS vs rr rS rs Ss Cc Cn cn n|n|";
 
 /// The third order of Eqs. 13 and 14, in their order.
@@ -80,7 +82,8 @@ fn the_third_order_as_described_differs_from_the_equations_where_they_differ_fro
     let (printed, described) = (spelled(&format!("{ODD_2} {ODD_3}")), names(&derived, Axis::Y));
     let only_printed: BTreeSet<String> = printed.difference(&described).cloned().collect();
     let only_described: BTreeSet<String> = described.difference(&printed).cloned().collect();
-    // Squares of the starboard cosine, which modification B drops, and x|x| on the other half of the squares.
+    // Squares of the starboard cosine, which modification B drops, and x|x| on the other half of
+    // the squares.
     assert_eq!(
         only_printed,
         spelled(

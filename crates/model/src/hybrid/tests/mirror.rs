@@ -26,7 +26,8 @@ impl Numbers {
 
 type Point = BTreeMap<String, f64>;
 
-/// States and inputs of the mirror image: sway and yaw reversed, and what the ship's actuators become.
+/// States and inputs of the mirror image: sway and yaw reversed, and what the ship's actuators
+/// become.
 fn mirrored(point: &Point) -> Point {
     let sides = |name: &str| match name.strip_suffix("_s") {
         Some(stem) => format!("{stem}_p"),
@@ -61,7 +62,8 @@ fn of(derivation: &Derivation, name: &str, point: &Point) -> Option<f64> {
     known.or_else(|| derivation.law.values.get(name)?.value(&|n| of(derivation, n, point)))
 }
 
-/// The largest difference between the forces of mirrored motions and the mirrored forces, and the largest force.
+/// The largest difference between the forces of mirrored motions and the mirrored forces, and the
+/// largest force.
 fn asymmetry(derivation: &Derivation) -> (f64, f64) {
     let mut numbers = Numbers(7);
     let coefficients =

@@ -48,7 +48,8 @@ fn row(stated: &StatedQuantity<'_>, remarked: bool) -> Row {
     Row::of(cells)
 }
 
-/// What the settings mean, in the order in which they are shown; one that is not listed comes after these.
+/// What the settings mean, in the order in which they are shown; one that is not listed comes after
+/// these.
 const MEANINGS: [(&str, &str); 7] = [
     ("method", "the estimator"),
     ("ranges", "tuning ranges, from the source outwards"),

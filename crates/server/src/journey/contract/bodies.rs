@@ -6,7 +6,8 @@ use super::values::{fitting, sample, unfit, within};
 use super::{Faults, Operation};
 use crate::journey::harness::Harness;
 
-/// How deep the fields of a type are walked; of files of the zoo only the first level, which other tests read in full.
+/// How deep the fields of a type are walked; of files of the zoo only the first level, which other
+/// tests read in full.
 const DEPTH: usize = 4;
 const FILES: [&str; 2] = ["VesselFile", "Model"];
 

@@ -1,5 +1,5 @@
-//! The server checks what its document says: each parameter and field of each operation is sent with values on both sides
-//! of every limit that the document has.
+//! The server checks what its document says: each parameter and field of each operation is sent
+//! with values on both sides of every limit that the document has.
 
 mod bodies;
 mod values;
@@ -43,7 +43,8 @@ impl Operation {
         content.map(|content| content.keys().map(String::as_str).collect()).unwrap_or_default()
     }
 
-    /// A request that is right as far as path, query and headers go; `changed` replaces a parameter of the path.
+    /// A request that is right as far as path, query and headers go; `changed` replaces a parameter
+    /// of the path.
     fn request(
         &self,
         harness: &Harness,

@@ -1,4 +1,5 @@
-//! Pages for people: what there is, at a glance. They stand alone: no script, nothing from elsewhere.
+//! Pages for people: what there is, at a glance. They stand alone: no script, nothing from
+//! elsewhere.
 
 mod answer;
 mod family;

@@ -154,7 +154,8 @@ impl Grammar {
     }
 }
 
-/// Values of JSON as proptest makes them: numbers of every size, texts of every character, some depth.
+/// Values of JSON as proptest makes them: numbers of every size, texts of every character, some
+/// depth.
 fn values() -> BoxedStrategy<Value> {
     let leaf = prop_oneof![
         Just(Value::Null),

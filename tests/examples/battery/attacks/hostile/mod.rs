@@ -1,5 +1,6 @@
-//! `hostile`: requests that nobody should send. First those that once did harm, each judged by what it must answer; then requests
-//! from a seeded grammar to every route of `api/openapi.json`, judged by their status and by whether the server lives.
+//! `hostile`: requests that nobody should send. First those that once did harm, each judged by what
+//! it must answer; then requests from a seeded grammar to every route of `api/openapi.json`, judged
+//! by their status and by whether the server lives.
 
 mod bodies;
 mod contract;

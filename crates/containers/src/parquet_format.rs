@@ -2,8 +2,8 @@
 //! `parquet.thrift`).
 //!
 //! The library reads a field by its number and does not look at the kind that the file says it has.
-//! Where the two differ, it goes on from another byte than a reader by kinds does, so that what such
-//! a reader has found harmless says nothing. A file in which they differ is refused.
+//! Where the two differ, it goes on from another byte than a reader by kinds does, so that what
+//! such a reader has found harmless says nothing. A file in which they differ is refused.
 
 /// Kinds of Thrift's compact protocol; a truth is 1 or 2.
 const TRUTH: u8 = 1;

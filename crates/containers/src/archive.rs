@@ -16,7 +16,7 @@ const ANNOUNCES: &[u8] = b"uniqueCount";
 const PIECE: usize = 64 << 10;
 
 /// Bytes that the archive says it holds when unpacked; more are refused by [`check`].
-pub(crate) fn claimed(input: &mut (impl Read + Seek)) -> Result<u64, String> {
+pub fn claimed(input: &mut (impl Read + Seek)) -> Result<u64, String> {
     let damaged = |error: zip::result::ZipError| format!("the archive is damaged: {error}");
     let mut archive = ZipArchive::new(input).map_err(damaged)?;
     let files = 0..archive.len().min(FILES);
@@ -28,7 +28,7 @@ pub(crate) fn claimed(input: &mut (impl Read + Seek)) -> Result<u64, String> {
 /// Unpacks every file of the archive without keeping it.
 ///
 /// What the archive says of sizes is not believed: bytes are counted as they come.
-pub(crate) fn check(input: &mut (impl Read + Seek), most: u64) -> Result<(), String> {
+pub fn check(input: &mut (impl Read + Seek), most: u64) -> Result<(), String> {
     let damaged = |error: zip::result::ZipError| format!("the archive is damaged: {error}");
     let mut archive = ZipArchive::new(input).map_err(damaged)?;
     if archive.len() > FILES {

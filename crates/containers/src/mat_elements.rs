@@ -19,9 +19,12 @@ const NUMERIC: std::ops::RangeInclusive<u8> = 6..=15;
 const COMPLEX: u8 = 0x08;
 
 /// An array of real numbers: its name and size, and its numbers, column by column.
-pub(crate) struct Array<'a> {
+pub struct Array<'a> {
+    /// Its name.
     pub name: String,
+    /// Its rows.
     pub rows: usize,
+    /// Its columns.
     pub columns: usize,
     kind: u32,
     big: bool,
@@ -30,7 +33,7 @@ pub(crate) struct Array<'a> {
 
 impl Array<'_> {
     /// The next so many numbers.
-    pub(crate) fn numbers(&mut self, count: usize) -> io::Result<Vec<f64>> {
+    pub fn numbers(&mut self, count: usize) -> io::Result<Vec<f64>> {
         let width = width(self.kind).ok_or_else(|| invalid("numbers of an unknown type"))?;
         let mut numbers = Vec::new();
         let mut bytes = [0; 8];
@@ -42,7 +45,7 @@ impl Array<'_> {
     }
 
     /// Passes over so many numbers.
-    pub(crate) fn skip(&mut self, count: usize) -> io::Result<()> {
+    pub fn skip(&mut self, count: usize) -> io::Result<()> {
         let width = width(self.kind).ok_or_else(|| invalid("numbers of an unknown type"))?;
         skip(&mut (&mut *self.input).take((count as u64).saturating_mul(width as u64)))
     }
@@ -79,7 +82,7 @@ fn number(kind: u32, big: bool, bytes: &[u8]) -> f64 {
 }
 
 /// Shows every real array of the file to the visitor, those within structures as `structure.field`.
-pub(crate) fn visit(
+pub fn visit(
     input: &mut dyn Read,
     most: u64,
     visitor: &mut dyn FnMut(Array) -> io::Result<()>,

@@ -1,7 +1,9 @@
-//! The pages of a Parquet file's columns, measured by their headers before anything is decompressed.
+//! The pages of a Parquet file's columns, measured by their headers before anything is
+//! decompressed.
 //!
-//! The library allocates what a page's header declares, and gives gzip whatever it grows to: headers are read here first, by
-//! Thrift's compact protocol, and gzip is let run to its end without keeping any of it.
+//! The library allocates what a page's header declares, and gives gzip whatever it grows to:
+//! headers are read here first, by Thrift's compact protocol, and gzip is let run to its end
+//! without keeping any of it.
 
 use std::io::{self, Read};
 
@@ -19,19 +21,22 @@ const FOOTER_DEPTH: usize = 16;
 /// Bytes of a page header, its statistics included.
 const HEADER_BYTES: u64 = 64 << 10;
 
-/// What reading a column holds at a time, bytes: its dictionary, and a page as it lies in the file and as it is in memory.
+/// What reading a column holds at a time, bytes: its dictionary, and a page as it lies in the file
+/// and as it is in memory.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) struct Held {
+pub struct Held {
     dictionary: u64,
     page: u64,
 }
 
 impl Held {
-    pub(crate) fn bytes(self) -> u64 {
+    /// Bytes in all.
+    pub fn bytes(self) -> u64 {
         self.dictionary + self.page
     }
 
-    pub(crate) fn max(self, other: Self) -> Self {
+    /// The larger of each.
+    pub fn max(self, other: Self) -> Self {
         Self { dictionary: self.dictionary.max(other.dictionary), page: self.page.max(other.page) }
     }
 }
@@ -40,7 +45,7 @@ impl Held {
 ///
 /// # Errors
 /// A page is larger than `most` bytes, or not what its header says.
-pub(crate) fn held<R: ChunkReader>(
+pub fn held<R: ChunkReader>(
     input: &R,
     chunk: &ColumnChunkMetaData,
     most: usize,
@@ -81,12 +86,13 @@ pub(crate) fn held<R: ChunkReader>(
     Ok(held)
 }
 
-/// Goes through what a file says of itself: `bytes` of Thrift before the last eight. The library believes the length of each
-/// list, and goes on for seconds over one that is said to have two thousand million entries in a file of fifty bytes.
+/// Goes through what a file says of itself: `bytes` of Thrift before the last eight. The library
+/// believes the length of each list, and goes on for seconds over one that is said to have two
+/// thousand million entries in a file of fifty bytes.
 ///
 /// # Errors
 /// It holds less than it says, or is nested too deeply.
-pub(crate) fn footer<R: ChunkReader>(input: &R, bytes: u64) -> io::Result<()> {
+pub fn footer<R: ChunkReader>(input: &R, bytes: u64) -> io::Result<()> {
     let at = input.len().checked_sub(bytes + 8).ok_or_else(|| invalid("it is too short"))?;
     let reader = input.get_read(at).map_err(io::Error::other)?.take(bytes);
     let mut thrift = Thrift { reader, format: parquet_format::footer, read: 0 };
@@ -223,8 +229,9 @@ impl<R: Read> Thrift<R> {
         }
     }
 
-    /// Each entry takes a byte or more, so that what is not there ends it. Lists of truths are in neither a footer nor a page
-    /// header, and the library passes over one without reading a byte of it, however long it says to be.
+    /// Each entry takes a byte or more, so that what is not there ends it. Lists of truths are in
+    /// neither a footer nor a page header, and the library passes over one without reading a byte
+    /// of it, however long it says to be.
     fn list(
         &mut self,
         path: &mut Vec<i16>,
@@ -281,5 +288,26 @@ impl<R: Read> Thrift<R> {
 }
 
 #[cfg(test)]
-#[path = "pages_tests.rs"]
-mod tests;
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use bytes::Bytes;
+
+    use super::*;
+
+    #[test]
+    fn what_is_no_page_header_ends_in_an_error() {
+        let read = |bytes: &'static [u8]| {
+            Header::read(&Bytes::from_static(bytes), 0).map(|header| header.length)
+        };
+        assert!(read(b"").is_err() && read(&[0x15]).is_err() && read(&[0x15, 0xff, 0xff]).is_err());
+        // Structures within structures without an end, a list, a binary longer than there is.
+        assert!(
+            read(&[0x1c; 4096]).is_err()
+                && read(&[0x19, 0xff]).is_err()
+                && read(&[0x18, 0xff, 0x7f]).is_err()
+        );
+        // A negative size.
+        assert!(read(&[0x15, 0, 0x15, 0x01, 0]).is_err());
+        assert_eq!(read(&[0x15, 0, 0x15, 2, 0x15, 2, 0]).unwrap(), 7);
+    }
+}

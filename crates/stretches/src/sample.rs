@@ -1,0 +1,18 @@
+//! One row of a log.
+
+/// What a row says, in SI units and radians; NaN for what it does not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Time, s.
+    pub t_s: f64,
+    /// Rudder angle, rad.
+    pub rudder_rad: f64,
+    /// Propeller revolutions, 1/s.
+    pub revolutions_rps: f64,
+    /// Yaw rate, rad/s; the heading is taken where it is not measured.
+    pub yaw_rate_rad_s: f64,
+    /// Heading, rad, continuous or not.
+    pub heading_rad: f64,
+    /// Speed, m/s.
+    pub speed_m_s: f64,
+}

@@ -1,0 +1,201 @@
+//! Stretches of a file that manifests name by their times.
+
+use std::path::{Component, Path};
+
+use sistership_model::manifest::{FileTime, ManifestTrial};
+
+use crate::stamp::{Date, Order, stamp};
+use crate::table::Start;
+
+/// Seconds of a day.
+const DAY_S: f64 = 86_400.0;
+
+/// From when to when a file is read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stretch {
+    /// The first time; absent for the file's first row.
+    pub from: Option<FileTime>,
+    /// The last; absent for the last row.
+    pub to: Option<FileTime>,
+}
+
+/// The same in seconds of the file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Window {
+    pub from_s: f64,
+    pub to_s: f64,
+}
+
+/// What is wrong with a stretch.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum StretchFault {
+    #[error("`{field}` must be a number of seconds that is finite")]
+    NotFinite { field: &'static str },
+    #[error("`from` ({from}) must be before `to` ({to})")]
+    Empty { from: FileTime, to: FileTime },
+    #[error(
+        "`{field}`: `{text}` is no date with a time of day, nor a time of day; write it as \
+             2024-05-01T09:30:00Z, 09:30:00, or in seconds"
+    )]
+    NoTime { field: &'static str, text: String },
+    #[error(
+        "`{field}`: `{text}` is a time of a clock, but the file's times are seconds; give seconds"
+    )]
+    NoClock { field: &'static str, text: String },
+    #[error(
+        "`{field}`: `{text}` has a date, but the file has times of day only; leave the date out"
+    )]
+    NoDate { field: &'static str, text: String },
+    #[error("`from`: {from_s} s lies after the last row of the file, at {last_s} s")]
+    After { from_s: f64, last_s: f64 },
+    #[error("`to`: {to_s} s lies before the first row of the file, at {first_s} s")]
+    Before { to_s: f64, first_s: f64 },
+    #[error(
+        "`from`: {from_s} s lies before the first row of the file, at {first_s} s; leave it \
+             out to read from there"
+    )]
+    Early { from_s: f64, first_s: f64 },
+    #[error(
+        "`to`: {to_s} s lies after the last row of the file, at {last_s} s; leave it out to \
+             read up to there"
+    )]
+    Late { to_s: f64, last_s: f64 },
+    #[error("overlaps with `{other}`; the same data would count twice")]
+    Overlap { other: String },
+    #[error("no row of the file lies between {from_s} s and {to_s} s")]
+    NoRow { from_s: f64, to_s: f64 },
+    #[error(
+        "only the whole column tells what the file's times are; declare the unit of `t` (`s`, \
+             `excel`, `day/month/year`, `month/day/year`), so that a stretch can be found"
+    )]
+    Open,
+}
+
+impl StretchFault {
+    /// The field at fault; where both are, the first.
+    fn field(&self) -> &'static str {
+        match self {
+            Self::NotFinite { field } | Self::NoTime { field, .. } => field,
+            _ => "from",
+        }
+    }
+}
+
+impl Stretch {
+    /// Of an entry; nothing where that is a whole file.
+    pub(crate) fn of(trial: &ManifestTrial) -> Option<Self> {
+        let (from, to) = (trial.from.clone(), trial.to.clone());
+        trial.is_stretch().then_some(Self { from, to })
+    }
+
+    /// In seconds of a file that starts so in the calendar.
+    pub(crate) fn window(&self, start: Option<&Start>) -> Result<Window, StretchFault> {
+        let told = |time: &Option<FileTime>, field, after_s: f64| match time {
+            Some(time) => seconds(time, field, start, after_s).map(Some),
+            None => Ok(None),
+        };
+        let from_s = told(&self.from, "from", 0.0)?;
+        let to_s = told(&self.to, "to", from_s.unwrap_or(0.0))?;
+        if let (Some(from), Some(to)) = (&self.from, &self.to)
+            && from_s >= to_s
+        {
+            return Err(StretchFault::Empty { from: from.clone(), to: to.clone() });
+        }
+        let (from_s, to_s) = (from_s.unwrap_or(f64::NEG_INFINITY), to_s.unwrap_or(f64::INFINITY));
+        Ok(Window { from_s, to_s })
+    }
+}
+
+/// A time of day is the first after a time.
+fn seconds(
+    time: &FileTime,
+    field: &'static str,
+    start: Option<&Start>,
+    after_s: f64,
+) -> Result<f64, StretchFault> {
+    let text = match time {
+        FileTime::Seconds(seconds) if seconds.is_finite() => return Ok(*seconds),
+        FileTime::Seconds(_) => return Err(StretchFault::NotFinite { field }),
+        FileTime::Clock(text) => text.clone(),
+    };
+    let Some(stamp) = stamp(&text, Order::Open) else {
+        return Err(StretchFault::NoTime { field, text });
+    };
+    let Some(start) = start else { return Err(StretchFault::NoClock { field, text }) };
+    match stamp.date {
+        Date::Known(_) if !start.dated => Err(StretchFault::NoDate { field, text }),
+        Date::Known(day) => Ok(stamp.seconds(day) - start.at_s),
+        Date::Either(_) => Err(StretchFault::NoTime { field, text }),
+        Date::Absent => {
+            let since = stamp.seconds(0) - (start.at_s + after_s);
+            Ok(after_s + since.rem_euclid(DAY_S))
+        }
+    }
+}
+
+impl Window {
+    /// Holds it against the first and the last time of the file.
+    pub(crate) fn fault(&self, first_s: f64, last_s: f64) -> Option<StretchFault> {
+        let Self { from_s, to_s } = *self;
+        if from_s > last_s {
+            Some(StretchFault::After { from_s, last_s })
+        } else if to_s < first_s {
+            Some(StretchFault::Before { to_s, first_s })
+        } else if from_s.is_finite() && from_s < first_s {
+            Some(StretchFault::Early { from_s, first_s })
+        } else if to_s.is_finite() && to_s > last_s {
+            Some(StretchFault::Late { to_s, last_s })
+        } else {
+            None
+        }
+    }
+}
+
+/// What can be told of an entry without its file: the field, and the message.
+pub(crate) fn problem(
+    trial: &ManifestTrial,
+    earlier: &[ManifestTrial],
+) -> Option<(String, String)> {
+    let stretch = Stretch::of(trial)?;
+    // Any clock will do to hold two times against each other.
+    let clock = |dated| Start { text: String::new(), at_s: 0.0, dated };
+    let window = match stretch.window(Some(&clock(true))) {
+        Ok(window) => window,
+        // A clock and seconds can be held against each other by the file only.
+        Err(StretchFault::Empty { .. }) if !stretch.is_of_one_kind() => return None,
+        Err(fault) => return Some((fault.field().to_owned(), fault.to_string())),
+    };
+    let overlaps = |other: &&ManifestTrial| {
+        let others = Stretch::of(other).filter(|_| same_file(&other.file, &trial.file));
+        let others = others.filter(|others| others.is_comparable(&stretch));
+        let others = others.and_then(|others| others.window(Some(&clock(true))).ok());
+        others.is_some_and(|others| others.from_s < window.to_s && window.from_s < others.to_s)
+    };
+    let other = earlier.iter().find(overlaps)?.label();
+    Some(("from".into(), StretchFault::Overlap { other }.to_string()))
+}
+
+impl Stretch {
+    fn is_of_one_kind(&self) -> bool {
+        let is_clock = |time: &FileTime| matches!(time, FileTime::Clock(_));
+        self.from.as_ref().map(is_clock) == self.to.as_ref().map(is_clock)
+    }
+
+    /// Whether two are told in seconds.
+    fn is_comparable(&self, other: &Self) -> bool {
+        let mut times = [&self.from, &self.to, &other.from, &other.to].into_iter().flatten();
+        times.all(|time| matches!(time, FileTime::Seconds(_)))
+    }
+}
+
+/// Whether two paths name the same file: `a.csv` is `./a.csv`.
+pub(crate) fn same_file(one: &str, other: &str) -> bool {
+    let plain = |path| {
+        Path::new(path).components().filter(|part| *part != Component::CurDir).collect::<Vec<_>>()
+    };
+    plain(one) == plain(other)
+}
+
+#[cfg(test)]
+#[path = "stretches_tests.rs"]
+mod tests;
