@@ -8,19 +8,20 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crates that only some may name.
-const ALLOWED: [(&str, &[&str]); 16] = [
+const ALLOWED: [(&str, &[&str]); 17] = [
     ("model", &[]),
     ("dynamics", &["model"]),
     ("stretches", &[]),
     ("containers", &[]),
     ("trials", &["model", "containers"]),
     ("regression", &[]),
-    ("estimate", &["model", "dynamics", "regression"]),
-    ("choice", &["model", "estimate"]),
+    ("bands", &["model", "dynamics"]),
+    ("estimate", &["model", "dynamics", "bands", "regression"]),
+    ("choice", &["model", "bands", "estimate"]),
     ("diagnose", &["model", "dynamics", "regression", "estimate"]),
     ("fleet", &["model", "dynamics", "regression", "estimate"]),
     ("store", &[]),
-    ("report", &["model", "dynamics", "estimate", "choice", "diagnose"]),
+    ("report", &["model", "dynamics", "bands", "estimate", "choice", "diagnose"]),
     (
         "pipeline",
         &["model", "dynamics", "trials", "estimate", "choice", "diagnose", "fleet", "store"],
@@ -29,8 +30,8 @@ const ALLOWED: [(&str, &[&str]); 16] = [
     (
         "server",
         &[
-            "model", "dynamics", "trials", "estimate", "choice", "diagnose", "fleet", "store",
-            "report", "pipeline", "listen",
+            "model", "dynamics", "trials", "bands", "estimate", "choice", "diagnose", "fleet",
+            "store", "report", "pipeline", "listen",
         ],
     ),
     (
@@ -40,6 +41,7 @@ const ALLOWED: [(&str, &[&str]); 16] = [
             "dynamics",
             "stretches",
             "trials",
+            "bands",
             "estimate",
             "choice",
             "diagnose",

@@ -83,7 +83,7 @@ fn by_instruments(request: &Request<'_>) -> Result<Uncertainty, RefineError> {
     let fixed = prior.from(&shift);
     let scatter = workspace.noise.clone();
     let NoiseModel { discrepancies, noise } =
-        noise_model::most_probable(&workspace, &fixed, Some(rough))?;
+        noise_model::most_probable(&workspace, &fixed, Some(rough), span_s(request)?)?;
     workspace.noise = noise;
     let grams = workspace.each(&discrepancies);
     let freed = lacked(model, law, effects, trials);
@@ -104,6 +104,13 @@ fn by_instruments(request: &Request<'_>) -> Result<Uncertainty, RefineError> {
     })
 }
 
+/// How long a record scatter is learned from; all of it where every sample is used.
+fn span_s(request: &Request<'_>) -> Result<Option<f64>, RefineError> {
+    let lengths = request.settings.least_step_s.map(|_| THRESHOLDS.calibration.noise_lengths);
+    let span = |lengths| Ok(lengths * length_time_s(request.model, request.trials)?);
+    lengths.map(span).transpose()
+}
+
 /// What the trials teach by one linearisation about the model as it is, and the discrepancies by
 /// that.
 fn first_shift(
@@ -116,7 +123,7 @@ fn first_shift(
     let columns = Columns { nuisance: nuisance.to_vec(), candidates: Vec::new() };
     let as_it_is = CalibratedModel::new(model, law, terms, nuisance, &vec![0.0; nuisance.len()])?;
     let mut workspace = LinearisedTrials::new(&as_it_is, columns, trials, settings.least_step_s)?;
-    let scatter = noise_model::most_probable(&workspace, prior, None)?;
+    let scatter = noise_model::most_probable(&workspace, prior, None, span_s(request)?)?;
     workspace.noise.clone_from(&scatter.noise);
     let grams = workspace.each(&scatter.discrepancies);
     let shift = TrialInformation { fixed: prior, grams: &grams, scatter: 1.0 }

@@ -5,7 +5,7 @@ use std::io::BufWriter;
 use bytes::Bytes;
 use sistership_model::manifest::Manifest;
 use sistership_store::{
-    Alias, Inserted, Job, NewJob, NewTrial, Objects, StoreError, Trial, is_out_of_space,
+    Alias, Inserted, Job, NewJob, NewTrial, Objects, Spool, StoreError, Trial, is_out_of_space,
 };
 use sistership_trials::samples::{self, SamplesError};
 use sistership_trials::{Mapping, Refusal, Source, read_trial};
@@ -13,7 +13,7 @@ use tempfile::NamedTempFile;
 
 use super::received::{Upload, lost};
 use super::room::room;
-use super::spool::{Spool, Spooled, temporary};
+use super::spool::{Spooled, temporary};
 use crate::app::App;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::problem::{Problem, Result};
