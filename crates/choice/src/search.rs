@@ -65,7 +65,7 @@ pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Ref
         in_parts,
         steering_from_trials: true,
         posterior_by_folds: true,
-        calibration_step: Some(SEARCH.calibration_step),
+        thrifty_calibration: true,
         bands: Sampling { within_steps: true, ..search.settings.bands },
         ..search.settings.clone()
     };

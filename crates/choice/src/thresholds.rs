@@ -27,9 +27,6 @@ pub(super) struct SearchThresholds {
     /// Most sources that enter, by rank of correlation, a count. Source: chosen; each costs a fit
     /// for every law, and correlation has ranked them.
     pub sources: usize,
-    /// `T_c`: shortest interval between samples by which what the trials leave open is learned, by
-    /// `L/U`, dimensionless. Source: `docs/evidence/plain.md`, "Steps of the calibration".
-    pub calibration_step: f64,
 }
 
 /// The values.
@@ -42,5 +39,4 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     near: [3.16, 1.0, 0.316],
     kept: 1e9,
     sources: 5,
-    calibration_step: 0.08,
 };

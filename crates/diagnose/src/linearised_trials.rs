@@ -27,6 +27,15 @@ pub struct LinearisedTrials<'a> {
     linear: Vec<Vec<Linearised>>,
 }
 
+/// How samples of trials are taken.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Steps {
+    /// Shortest interval between them, s; a fiftieth of the time of sailing a length where absent.
+    pub least_s: Option<f64>,
+    /// Whether what lies between two readings is one step.
+    pub by_reading: bool,
+}
+
 /// What is typical of a ship.
 #[derive(Debug, Clone)]
 pub struct MotionScales {
@@ -59,16 +68,17 @@ impl<'a> LinearisedTrials<'a> {
         learned: &CalibratedModel,
         columns: Columns,
         trials: &'a [&'a Trial],
-        least_step_s: Option<f64>,
+        steps: Steps,
     ) -> Result<Self, RefineError> {
         let CalibratedModel { model, law } = learned;
         let (lpp_m, speed_m_s) = length_and_speed(model, trials)?;
-        let least_step_s = least_step_s.unwrap_or(THRESHOLDS.trials.least_step * lpp_m / speed_m_s);
+        let least_step_s =
+            steps.least_s.unwrap_or(THRESHOLDS.trials.least_step * lpp_m / speed_m_s);
         let settles_s = THRESHOLDS.trials.settles * lpp_m / speed_m_s;
         let mut records: Vec<TrialReadings<'a>> =
             trials.iter().map(|trial| TrialReadings::new(trial, least_step_s, settles_s)).collect();
         let every = sparseness(&records);
-        records.iter_mut().for_each(|record| record.every = every);
+        records.iter_mut().for_each(|record| record.read_every(every, steps.by_reading));
         let noise = noise(&records, lpp_m, speed_m_s, model.uncertainty.as_ref());
         let frame = trials.first().map(|trial| trial.velocity).unwrap_or_default();
         let system = ResidualSystem::new(model, law, columns, frame)?;

@@ -163,7 +163,7 @@ fn filtered(
         &search.calibrated_model,
         columns,
         &trials,
-        search.least_step_s,
+        search.steps,
     )
     .ok()?;
     let discrepancies = base.levels[judged.level.min(base.levels.len() - 1)].discrepancies();

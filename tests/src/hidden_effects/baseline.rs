@@ -56,17 +56,12 @@ pub fn by(
         println!("{channel:>6} {:10.5} -> {:10.5}", before[channel], after[channel]);
     }
     let mut model = refinement.model;
-    let uncertainty = calibrate(&model, law, &library(), trials, step())
+    let is_thrifty = settings.thrifty_calibration || std::env::var("DIAGNOSIS_THRIFTY").is_ok();
+    let uncertainty = calibrate(&model, law, &library(), trials, is_thrifty)
         .unwrap_or_else(|error| panic!("{error}"));
     println!("discrepancy {:?}", uncertainty.discrepancy);
     model.uncertainty = Some(uncertainty);
     Baseline { model, law: law.clone() }
-}
-
-/// Shortest interval between the samples that calibrate, by `L/U`: `DIAGNOSIS_CALIBRATION_STEP`.
-fn step() -> Option<f64> {
-    let given = std::env::var("DIAGNOSIS_CALIBRATION_STEP").ok()?;
-    Some(given.parse().unwrap_or_else(|error| panic!("DIAGNOSIS_CALIBRATION_STEP: {error}")))
 }
 
 /// Twelve clean trials: six zigzags that start to either side, and turns of three angles to both.

@@ -31,8 +31,8 @@ use sistership_estimate::refine::RefineError;
 /// What the trials that a model was fitted on leave open, to be kept with it. Terms of the
 /// library's grammar that the model lacks are learned too, as far as those trials show them; and
 /// what effects would explain of these trials, which do not have them, is kept to judge them by
-/// later. No two samples that are used are closer than `least_step` times `L/U`, or the diagnosis'
-/// own.
+/// later. Where this is to cost little, what lies between two readings is one step, and scatter is
+/// learned from a part of the trials.
 ///
 /// # Errors
 /// Names the channel that a trial lacks, or says that the information is not positive.
@@ -41,12 +41,11 @@ pub fn calibrate(
     law: &Law,
     effects: &[Arc<Effect>],
     trials: &[&Trial],
-    least_step: Option<f64>,
+    is_thrifty: bool,
 ) -> Result<Uncertainty, RefineError> {
     let model = &Model { uncertainty: None, ..model.clone() };
-    let seconds = |step: f64| Ok::<f64, RefineError>(step * length_time_s(model, trials)?);
     let settings = Settings {
-        least_step_s: least_step.map(seconds).transpose()?,
+        steps_by_reading: is_thrifty,
         least_evidence: THRESHOLDS.calibration.systematic_error_evidence,
         ..Settings::default()
     };
@@ -78,7 +77,7 @@ fn by_instruments(request: &Request<'_>) -> Result<Uncertainty, RefineError> {
         &CalibratedModel::new(model, law, &terms, &nuisance, &shift)?,
         columns,
         trials,
-        settings.least_step_s,
+        settings.steps(),
     )?;
     let fixed = prior.from(&shift);
     let scatter = workspace.noise.clone();
@@ -104,11 +103,14 @@ fn by_instruments(request: &Request<'_>) -> Result<Uncertainty, RefineError> {
     })
 }
 
-/// How long a record scatter is learned from; all of it where every sample is used.
+/// How long a record scatter is learned from; all of it where that may cost what it will.
 fn span_s(request: &Request<'_>) -> Result<Option<f64>, RefineError> {
-    let lengths = request.settings.least_step_s.map(|_| THRESHOLDS.calibration.noise_lengths);
-    let span = |lengths| Ok(lengths * length_time_s(request.model, request.trials)?);
-    lengths.map(span).transpose()
+    let is_thrifty = request.settings.steps_by_reading;
+    let span_s = || {
+        length_time_s(request.model, request.trials)
+            .map(|s| THRESHOLDS.calibration.noise_lengths * s)
+    };
+    is_thrifty.then(span_s).transpose()
 }
 
 /// What the trials teach by one linearisation about the model as it is, and the discrepancies by
@@ -122,7 +124,7 @@ fn first_shift(
     let Request { model, law, trials, settings, .. } = *request;
     let columns = Columns { nuisance: nuisance.to_vec(), candidates: Vec::new() };
     let as_it_is = CalibratedModel::new(model, law, terms, nuisance, &vec![0.0; nuisance.len()])?;
-    let mut workspace = LinearisedTrials::new(&as_it_is, columns, trials, settings.least_step_s)?;
+    let mut workspace = LinearisedTrials::new(&as_it_is, columns, trials, settings.steps())?;
     let scatter = noise_model::most_probable(&workspace, prior, None, span_s(request)?)?;
     workspace.noise.clone_from(&scatter.noise);
     let grams = workspace.each(&scatter.discrepancies);

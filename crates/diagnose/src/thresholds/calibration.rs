@@ -3,8 +3,8 @@
 /// Calibration on the trials that a model was fitted on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CalibrationThresholds {
-    /// `T_n`: how long a record scatter is learned from where samples are far apart, by `L/U`,
-    /// dimensionless. Source: derived: the discrepancy is correlated over one length, so that its
+    /// `T_n`: how long a record scatter is learned from where calibration is to cost little, by
+    /// `L/U`, dimensionless. Source: derived: the discrepancy is correlated over one length, so that its
     /// deviation has a standard error of `1/sqrt(2 T_n)` = 2.9 %, a seventh of the last step of
     /// [`Self::factors`].
     pub noise_lengths: f64,

@@ -146,11 +146,10 @@ pub struct Settings {
     /// is wider than the noise of the readings makes it. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub posterior_by_folds: bool,
-    /// Shortest interval between the samples by which what the trials leave open is learned, by the
-    /// time in which the ship sails its length; the diagnosis' own where absent. The default search
-    /// sets it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub calibration_step: Option<f64>,
+    /// What the trials leave open is learned at little cost: what lies between two readings is one
+    /// step, and scatter is learned from a part of long trials. The default search sets it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub thrifty_calibration: bool,
     /// Names of trials that are kept out of fit and choice altogether, to be judged on.
     pub held_out: Vec<String>,
     /// What the refined model must keep to.
@@ -186,7 +185,7 @@ impl Default for Settings {
             in_parts: false,
             steering_from_trials: false,
             posterior_by_folds: false,
-            calibration_step: None,
+            thrifty_calibration: false,
             held_out: Vec::new(),
             constraints: Constraints::default(),
             bands: Sampling::default(),

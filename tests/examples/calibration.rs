@@ -1,21 +1,20 @@
-//! What calibration learns from samples at several distances: time, discrepancies, instruments,
-//! systematic errors and remainders, each by those of every sample.
+//! What the plain call's calibration learns, against that of every sample: time, discrepancies,
+//! instruments, systematic errors and remainders.
 //!
-//! `cargo run --release -p sistership-tests --example calibration_steps -- MODEL.yaml TRIALS.yaml`,
-//! where the model was refined on the trials. `docs/evidence/plain.md` has a table.
+//! `cargo run --release -p sistership-tests --example calibration -- MODEL.yaml TRIALS.yaml`, where
+//! the model was refined on the trials. `docs/evidence/plain.md` has the figures.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Instant;
 
 use sistership_diagnose::calibrate;
+use sistership_model::effect::AppliedEffect;
+use sistership_model::quantity::Quantity;
 use sistership_model::uncertainty::Uncertainty;
 use sistership_model::{Model, Trial, Zoo};
 use sistership_tests::hidden_effects::baseline::library;
 use sistership_trials::load_path;
-
-/// Shortest intervals between samples, by the time in which the ship sails its length.
-const STEPS: [f64; 4] = [0.02, 0.04, 0.08, 0.16];
 
 fn main() {
     let given: Vec<PathBuf> = std::env::args().skip(1).map(PathBuf::from).collect();
@@ -28,23 +27,25 @@ fn main() {
     let loaded = load_path(trials).expect("the manifest");
     let trials: Vec<Trial> = loaded.trials.into_iter().map(|trial| trial.expect("read")).collect();
     let trials: Vec<&Trial> = trials.iter().collect();
-    let learned = |step: Option<f64>| {
+    let learned = |is_thrifty: bool| {
         let begun = Instant::now();
-        let learned = calibrate(&model, law, &library(), &trials, step).expect("calibrated");
+        let learned = calibrate(&model, law, &library(), &trials, is_thrifty).expect("calibrated");
         (begun.elapsed().as_secs_f64(), learned)
     };
-    let (seconds, every) = learned(None);
-    println!("every sample: {seconds:.1} s; {}", errors_of(&every));
-    println!("{:>5} {:>6}  all else by that of every sample", "step", "s");
-    for step in STEPS {
-        let (seconds, coarse) = learned(Some(step));
-        println!("{step:5.2} {seconds:6.1}  {}", compared(&coarse, &every));
-    }
+    let (whole, thrifty) = (learned(false), learned(true));
+    println!("whole:   {:.1} s; {}", whole.0, errors_of(&whole.1));
+    println!("thrifty: {:.1} s; {}", thrifty.0, errors_of(&thrifty.1));
+    println!("thrifty by whole: {}", compared(&thrifty.1, &whole.1));
 }
 
 fn errors_of(learned: &Uncertainty) -> String {
-    let named = learned.systematic_errors.iter().map(|one| format!("{one:?}"));
-    format!("systematic errors: {}", named.collect::<Vec<_>>().join("; "))
+    let value = |(name, quantity): (&String, &Quantity)| format!("{name} {:.3}", quantity.value);
+    let one = |error: &AppliedEffect| {
+        let values: Vec<String> = error.parameters.iter().map(value).collect();
+        format!("{} {}", error.name, values.join(" "))
+    };
+    let named: Vec<String> = learned.systematic_errors.iter().map(one).collect();
+    format!("systematic errors: {}", named.join("; "))
 }
 
 fn compared(one: &Uncertainty, other: &Uncertainty) -> String {
@@ -60,5 +61,5 @@ fn compared(one: &Uncertainty, other: &Uncertainty) -> String {
     let ratios = one_of.iter().filter_map(|(name, value)| {
         Some(format!("{name} {:.2}", value / other_of.get(name).filter(|v| **v > 0.0)?))
     });
-    format!("{}; {}", ratios.collect::<Vec<_>>().join(", "), errors_of(one))
+    ratios.collect::<Vec<_>>().join(", ")
 }
