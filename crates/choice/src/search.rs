@@ -65,7 +65,6 @@ pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Ref
         in_parts,
         steering_from_trials: true,
         posterior_by_folds: true,
-        thrifty_calibration: true,
         bands: Sampling { within_steps: true, ..search.settings.bands },
         ..search.settings.clone()
     };

@@ -5,7 +5,7 @@ use sistership_model::coefficient::Axis;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
 use sistership_model::uncertainty::{Discrepancy, InstrumentFit, Uncertainty};
-use sistership_model::{Model, Trial, particulars};
+use sistership_model::{Trial, particulars};
 
 use super::calibrated_model::CalibratedModel;
 use super::thresholds::THRESHOLDS;
@@ -25,15 +25,6 @@ pub struct LinearisedTrials<'a> {
     system: ResidualSystem,
     records: Vec<TrialReadings<'a>>,
     linear: Vec<Vec<Linearised>>,
-}
-
-/// How samples of trials are taken.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Steps {
-    /// Shortest interval between them, s; a fiftieth of the time of sailing a length where absent.
-    pub least_s: Option<f64>,
-    /// Whether what lies between two readings is one step.
-    pub by_reading: bool,
 }
 
 /// What is typical of a ship.
@@ -68,17 +59,23 @@ impl<'a> LinearisedTrials<'a> {
         learned: &CalibratedModel,
         columns: Columns,
         trials: &'a [&'a Trial],
-        steps: Steps,
+        least_step_s: Option<f64>,
     ) -> Result<Self, RefineError> {
         let CalibratedModel { model, law } = learned;
-        let (lpp_m, speed_m_s) = length_and_speed(model, trials)?;
-        let least_step_s =
-            steps.least_s.unwrap_or(THRESHOLDS.trials.least_step * lpp_m / speed_m_s);
+        let lpp_m = particulars::value(&model.particulars, "lpp_m");
+        let lpp_m = lpp_m.ok_or_else(|| {
+            RefineError::Law(format!("the model `{}` does not give `lpp_m`", model.name))
+        })?;
+        let approach = approach_of(trials).map(|approach| approach.speed_m_s);
+        let speed_m_s = approach
+            .or(model.speed_m_s)
+            .ok_or_else(|| RefineError::Data("the trials have no speed".into()))?;
+        let least_step_s = least_step_s.unwrap_or(THRESHOLDS.trials.least_step * lpp_m / speed_m_s);
         let settles_s = THRESHOLDS.trials.settles * lpp_m / speed_m_s;
         let mut records: Vec<TrialReadings<'a>> =
             trials.iter().map(|trial| TrialReadings::new(trial, least_step_s, settles_s)).collect();
         let every = sparseness(&records);
-        records.iter_mut().for_each(|record| record.read_every(every, steps.by_reading));
+        records.iter_mut().for_each(|record| record.every = every);
         let noise = noise(&records, lpp_m, speed_m_s, model.uncertainty.as_ref());
         let frame = trials.first().map(|trial| trial.velocity).unwrap_or_default();
         let system = ResidualSystem::new(model, law, columns, frame)?;
@@ -132,25 +129,6 @@ impl<'a> LinearisedTrials<'a> {
         };
         self.linear.par_iter().map(of_trial).collect()
     }
-}
-
-/// Time in which a ship sails its length, s.
-///
-/// # Errors
-/// Neither trials nor model give a speed, or the model no length.
-pub fn length_time_s(model: &Model, trials: &[&Trial]) -> Result<f64, RefineError> {
-    length_and_speed(model, trials).map(|(lpp_m, speed_m_s)| lpp_m / speed_m_s)
-}
-
-fn length_and_speed(model: &Model, trials: &[&Trial]) -> Result<(f64, f64), RefineError> {
-    let lpp_m = particulars::value(&model.particulars, "lpp_m").ok_or_else(|| {
-        RefineError::Law(format!("the model `{}` does not give `lpp_m`", model.name))
-    })?;
-    let approach = approach_of(trials).map(|approach| approach.speed_m_s);
-    let speed_m_s = approach
-        .or(model.speed_m_s)
-        .ok_or_else(|| RefineError::Data("the trials have no speed".into()))?;
-    Ok((lpp_m, speed_m_s))
 }
 
 /// Each instrument over all trials: its scatter, and what is known of it beside.

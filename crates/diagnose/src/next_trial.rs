@@ -163,7 +163,7 @@ fn filtered(
         &search.calibrated_model,
         columns,
         &trials,
-        search.steps,
+        search.least_step_s,
     )
     .ok()?;
     let discrepancies = base.levels[judged.level.min(base.levels.len() - 1)].discrepancies();

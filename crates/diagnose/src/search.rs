@@ -11,7 +11,7 @@ use super::discount::discount;
 use super::evidence::{DiscrepancyFactor, MarginalInformation, NormalPrior, not_positive};
 use super::filtered_base::FilteredBase;
 use super::hypothesis::{JudgedHypothesis, halfway, placed, priors};
-use super::linearised_trials::{LinearisedTrials, Steps};
+use super::linearised_trials::LinearisedTrials;
 use super::nuisance::Terms;
 use super::thresholds::THRESHOLDS;
 use crate::residual::{Columns, Discrepancies, EffectCandidate, Gram, Nuisance};
@@ -35,7 +35,7 @@ pub(super) struct HypothesisSearch<'a> {
     pub expected: Discrepancies,
     /// Levels of the discrepancy that are weighed.
     pub levels: Vec<DiscrepancyFactor>,
-    pub steps: Steps,
+    pub least_step_s: Option<f64>,
     /// Forms of the library's effects that can be tried.
     pub listed: Vec<EffectCandidate>,
     /// Terms that the model lacks.
@@ -63,7 +63,7 @@ impl<'a> HypothesisSearch<'a> {
         candidates: Vec<EffectCandidate>,
     ) -> Result<LinearisedTrials<'a>, RefineError> {
         let columns = Columns { nuisance: self.nuisance.clone(), candidates };
-        LinearisedTrials::new(&self.calibrated_model, columns, self.trials, self.steps)
+        LinearisedTrials::new(&self.calibrated_model, columns, self.trials, self.least_step_s)
     }
 
     /// Effects that are taken with all others beside them, at some of the levels.

@@ -25,11 +25,15 @@ pub(super) fn residuals(
         &search.calibrated_model,
         Columns::default(),
         search.trials,
-        search.steps,
+        search.least_step_s,
     )?;
     let columns = Columns { nuisance: Vec::new(), candidates: best.candidates.clone() };
-    let after =
-        LinearisedTrials::new(&settled.calibrated_model, columns, search.trials, search.steps)?;
+    let after = LinearisedTrials::new(
+        &settled.calibrated_model,
+        columns,
+        search.trials,
+        search.least_step_s,
+    )?;
     let level = search.levels[search.levels.len() - 1];
     let of = |workspace: &LinearisedTrials<'_>, trial: usize| -> Vec<Smoothed> {
         let parts = workspace.linear()[trial].iter();

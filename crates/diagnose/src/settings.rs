@@ -3,8 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::linearised_trials::Steps;
-
 /// Settings of a diagnosis; every one is kept with its report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -18,10 +16,6 @@ pub struct Settings {
     /// which the ship sails her length.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub least_step_s: Option<f64>,
-    /// Where instruments have smoothed what they record, only some of the samples are read: what
-    /// lies between two of them is then one step, which costs less time and memory.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub steps_by_reading: bool,
     /// How far a published coefficient may be from the truth, as a share of its value, where the
     /// model does not say what its own trials leave open.
     #[schemars(range(max = 1), extend("exclusiveMinimum" = 0))]
@@ -40,7 +34,6 @@ impl Default for Settings {
         Self {
             restart_s: None,
             least_step_s: None,
-            steps_by_reading: false,
             slack: 0.02,
             least_evidence: 5.0,
             most_effects: 3,
@@ -49,11 +42,6 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// How samples are taken.
-    pub(crate) fn steps(&self) -> Steps {
-        Steps { least_s: self.least_step_s, by_reading: self.steps_by_reading }
-    }
-
     /// Checks the numbers.
     ///
     /// # Errors

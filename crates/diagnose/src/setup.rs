@@ -11,7 +11,7 @@ use sistership_model::{Effect, Model, Trial};
 use super::Request;
 use super::calibrated_model::CalibratedModel;
 use super::evidence::DiscrepancyFactor;
-use super::linearised_trials::{LinearisedTrials, Steps};
+use super::linearised_trials::LinearisedTrials;
 use super::nuisance::{Terms, columns, lacked, learned, learned_prior, prior};
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
@@ -110,7 +110,7 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, 
         calibrated: shift,
         expected: Vec::new(),
         levels,
-        steps: request.settings.steps(),
+        least_step_s: request.settings.least_step_s,
         log_priors: log_priors(listed.iter().chain(&freed)),
         listed,
         freed,
@@ -136,12 +136,8 @@ fn expected(
     search: &HypothesisSearch<'_>,
 ) -> Result<Discrepancies, RefineError> {
     let columns = Columns::default();
-    let workspace = LinearisedTrials::new(
-        &search.calibrated_model,
-        columns,
-        search.trials,
-        Steps { least_s: Some(f64::MAX), by_reading: false },
-    )?;
+    let workspace =
+        LinearisedTrials::new(&search.calibrated_model, columns, search.trials, Some(f64::MAX))?;
     let mut expected = workspace.scales().discrepancies(THRESHOLDS.discrepancy.least_level);
     if let Some(uncertainty) = &request.model.uncertainty {
         for (axis, discrepancy) in workspace.axes().iter().zip(&mut expected) {

@@ -56,9 +56,8 @@ pub fn by(
         println!("{channel:>6} {:10.5} -> {:10.5}", before[channel], after[channel]);
     }
     let mut model = refinement.model;
-    let is_thrifty = settings.thrifty_calibration || std::env::var("DIAGNOSIS_THRIFTY").is_ok();
-    let uncertainty = calibrate(&model, law, &library(), trials, is_thrifty)
-        .unwrap_or_else(|error| panic!("{error}"));
+    let uncertainty =
+        calibrate(&model, law, &library(), trials).unwrap_or_else(|error| panic!("{error}"));
     println!("discrepancy {:?}", uncertainty.discrepancy);
     model.uncertainty = Some(uncertainty);
     Baseline { model, law: law.clone() }

@@ -108,7 +108,6 @@ fn settings(arguments: &DiagnoseArguments) -> Result<Settings, Failure> {
     let settings = Settings {
         restart_s: arguments.restart_s,
         least_step_s: arguments.least_step_s,
-        steps_by_reading: false,
         slack: arguments.slack.unwrap_or(default.slack),
         least_evidence: arguments.least_evidence.unwrap_or(default.least_evidence),
         most_effects: arguments.most_effects.unwrap_or(default.most_effects),

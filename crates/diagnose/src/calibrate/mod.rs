@@ -19,20 +19,18 @@ use trial_information::TrialInformation;
 use super::calibrated_model::CalibratedModel;
 use super::coefficient_prior::CoefficientPrior;
 use super::evidence::not_positive;
-use super::linearised_trials::{LinearisedTrials, length_time_s};
+use super::linearised_trials::LinearisedTrials;
 use super::nuisance::{Terms, lacked, learned, prior, regressor};
 use super::remainder::largest;
 use super::setup::listed;
 use super::thresholds::THRESHOLDS;
-use super::{Request, Settings};
 use crate::residual::{Columns, Discrepancies, EffectCandidate, Instrument, Noise, Nuisance};
 use sistership_estimate::refine::RefineError;
 
 /// What the trials that a model was fitted on leave open, to be kept with it. Terms of the
 /// library's grammar that the model lacks are learned too, as far as those trials show them; and
 /// what effects would explain of these trials, which do not have them, is kept to judge them by
-/// later. Where this is to cost little, what lies between two readings is one step, and scatter is
-/// learned from a part of the trials.
+/// later.
 ///
 /// # Errors
 /// Names the channel that a trial lacks, or says that the information is not positive.
@@ -41,28 +39,24 @@ pub fn calibrate(
     law: &Law,
     effects: &[Arc<Effect>],
     trials: &[&Trial],
-    is_thrifty: bool,
 ) -> Result<Uncertainty, RefineError> {
     let model = &Model { uncertainty: None, ..model.clone() };
-    let settings = Settings {
-        steps_by_reading: is_thrifty,
-        least_evidence: THRESHOLDS.calibration.systematic_error_evidence,
-        ..Settings::default()
-    };
-    let request = Request { model, law, effects, trials, settings: &settings };
-    let first = by_instruments(&request)?;
-    let systematic_errors = systematic_errors::of(&request, &first)?;
+    let first = by_instruments(model, law, effects, trials)?;
+    let systematic_errors = systematic_errors::of(model, &first, law, effects, trials)?;
     if systematic_errors.is_empty() {
         return Ok(first);
     }
     let erring = Uncertainty { systematic_errors, instruments: BTreeMap::new(), ..first };
-    let model = &Model { uncertainty: Some(erring), ..model.clone() };
-    by_instruments(&Request { model, ..request })
+    by_instruments(&Model { uncertainty: Some(erring), ..model.clone() }, law, effects, trials)
 }
 
 /// What the trials leave open where instruments err as the model's uncertainty says, or not at all.
-fn by_instruments(request: &Request<'_>) -> Result<Uncertainty, RefineError> {
-    let Request { model, law, effects, trials, settings } = *request;
+fn by_instruments(
+    model: &Model,
+    law: &Law,
+    effects: &[Arc<Effect>],
+    trials: &[&Trial],
+) -> Result<Uncertainty, RefineError> {
     let terms = learned(model, law, effects, trials);
     let extra: Vec<_> = terms
         .iter()
@@ -70,19 +64,19 @@ fn by_instruments(request: &Request<'_>) -> Result<Uncertainty, RefineError> {
         .collect();
     let nuisance = Columns::nuisance(model, law, &extra);
     let prior = prior(model, &nuisance, &terms, THRESHOLDS.calibration.prior_share);
-    let (shift, rough) = first_shift(request, &terms, &nuisance, &prior)?;
+    let (shift, rough) = first_shift(model, law, &terms, &nuisance, &prior, trials)?;
     let candidates = listed(model, law, effects, trials);
     let columns = Columns { nuisance: nuisance.clone(), candidates: candidates.clone() };
     let mut workspace = LinearisedTrials::new(
         &CalibratedModel::new(model, law, &terms, &nuisance, &shift)?,
         columns,
         trials,
-        settings.steps(),
+        None,
     )?;
     let fixed = prior.from(&shift);
     let scatter = workspace.noise.clone();
     let NoiseModel { discrepancies, noise } =
-        noise_model::most_probable(&workspace, &fixed, Some(rough), span_s(request)?)?;
+        noise_model::most_probable(&workspace, &fixed, Some(rough))?;
     workspace.noise = noise;
     let grams = workspace.each(&discrepancies);
     let freed = lacked(model, law, effects, trials);
@@ -103,29 +97,20 @@ fn by_instruments(request: &Request<'_>) -> Result<Uncertainty, RefineError> {
     })
 }
 
-/// How long a record scatter is learned from; all of it where that may cost what it will.
-fn span_s(request: &Request<'_>) -> Result<Option<f64>, RefineError> {
-    let is_thrifty = request.settings.steps_by_reading;
-    let span_s = || {
-        length_time_s(request.model, request.trials)
-            .map(|s| THRESHOLDS.calibration.noise_lengths * s)
-    };
-    is_thrifty.then(span_s).transpose()
-}
-
 /// What the trials teach by one linearisation about the model as it is, and the discrepancies by
 /// that.
 fn first_shift(
-    request: &Request<'_>,
+    model: &Model,
+    law: &Law,
     terms: &Terms,
     nuisance: &[Nuisance],
     prior: &CoefficientPrior,
+    trials: &[&Trial],
 ) -> Result<(Vec<f64>, NoiseModel), RefineError> {
-    let Request { model, law, trials, settings, .. } = *request;
     let columns = Columns { nuisance: nuisance.to_vec(), candidates: Vec::new() };
     let as_it_is = CalibratedModel::new(model, law, terms, nuisance, &vec![0.0; nuisance.len()])?;
-    let mut workspace = LinearisedTrials::new(&as_it_is, columns, trials, settings.steps())?;
-    let scatter = noise_model::most_probable(&workspace, prior, None, span_s(request)?)?;
+    let mut workspace = LinearisedTrials::new(&as_it_is, columns, trials, None)?;
+    let scatter = noise_model::most_probable(&workspace, prior, None)?;
     workspace.noise.clone_from(&scatter.noise);
     let grams = workspace.each(&scatter.discrepancies);
     let shift = TrialInformation { fixed: prior, grams: &grams, scatter: 1.0 }

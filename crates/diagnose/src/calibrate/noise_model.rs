@@ -68,7 +68,7 @@ impl NoiseModel {
 
 /// The most probable scatter, coefficients and scatter being fitted in turn. Each trial is judged
 /// by coefficients fitted on the others, so that what these have followed by chance is not taken
-/// for knowledge. Scatter is learned from about `span_s` of the trials, or from all.
+/// for knowledge.
 ///
 /// # Errors
 /// Says that the information is not positive.
@@ -76,23 +76,20 @@ pub(super) fn most_probable(
     workspace: &LinearisedTrials<'_>,
     fixed: &CoefficientPrior,
     start: Option<NoiseModel>,
-    span_s: Option<f64>,
 ) -> Result<NoiseModel, RefineError> {
     let first = if start.is_some() { THRESHOLDS.calibration.factors.len() - 1 } else { 0 };
-    let as_it_is = vec![vec![0.0; workspace.columns().len()]; workspace.trials.len()];
-    let judged = |parameters: &[Vec<f64>]| spanned(along(workspace, parameters), span_s);
-    let start = start.or_else(|| coarse(workspace, &judged(&as_it_is)));
-    let mut best = start.ok_or_else(not_positive)?;
+    let mut best = start.or_else(|| coarse(workspace)).ok_or_else(not_positive)?;
     for factors in &THRESHOLDS.calibration.factors[first..] {
         let coefficients = coefficients(workspace, fixed, &best).ok_or_else(not_positive)?;
-        best = refined(workspace, best, &judged(&coefficients), factors);
+        best = refined(workspace, best, &coefficients, factors);
     }
     Ok(best)
 }
 
 /// The best of a few levels of discrepancy, the same for all axes.
-fn coarse(workspace: &LinearisedTrials<'_>, parts: &LinearisedParts) -> Option<NoiseModel> {
-    let scales = workspace.scales();
+fn coarse(workspace: &LinearisedTrials<'_>) -> Option<NoiseModel> {
+    let as_it_is = vec![vec![0.0; workspace.columns().len()]; workspace.trials.len()];
+    let (scales, parts) = (workspace.scales(), along(workspace, &as_it_is));
     let at = |level: &f64| NoiseModel {
         discrepancies: scales.discrepancies(*level),
         noise: workspace.noise.clone(),
@@ -102,7 +99,7 @@ fn coarse(workspace: &LinearisedTrials<'_>, parts: &LinearisedParts) -> Option<N
         .first_levels
         .iter()
         .map(at)
-        .map(|tried| (deviance(parts, &tried), tried));
+        .map(|tried| (deviance(&parts, &tried), tried));
     Some(scored.min_by(|a, b| a.0.total_cmp(&b.0))?.1)
 }
 
@@ -135,30 +132,6 @@ fn along(workspace: &LinearisedTrials<'_>, parameters: &[Vec<f64>]) -> Linearise
     workspace.linear().par_iter().zip(parameters).map(along).collect()
 }
 
-/// Windows of all parts, spread evenly, that add up to about `span_s`; everything where that is
-/// all.
-fn spanned(parts: LinearisedParts, span_s: Option<f64>) -> LinearisedParts {
-    let lasts = |part: &Linearised| part.t_s[part.t_s.len() - 1] - part.t_s[0];
-    let all_s: f64 = parts.iter().flatten().map(lasts).sum();
-    let every = span_s.map_or(1, |span_s| (all_s / span_s).ceil().max(1.0) as usize);
-    if every == 1 {
-        return parts;
-    }
-    let windows = THRESHOLDS.calibration.noise_windows * every;
-    let window_s = all_s / windows as f64;
-    let mut number = 0;
-    let mut of_part = |part: &Linearised| {
-        let count = (lasts(part) / window_s).round().max(1.0) as usize;
-        let edge = |k: usize| k * part.samples.len() / count;
-        let kept = (0..count).filter(|k| (number + k).is_multiple_of(every));
-        let kept = kept.map(|k| part.window(edge(k)..edge(k + 1)));
-        let kept: Vec<Linearised> = kept.filter(|part| part.samples.len() > 2).collect();
-        number += count;
-        kept
-    };
-    parts.iter().map(|parts| parts.iter().flat_map(&mut of_part).collect()).collect()
-}
-
 /// Minus twice the logarithm of the likelihood.
 fn deviance(parts: &LinearisedParts, scatter: &NoiseModel) -> f64 {
     let all: Vec<&Linearised> = parts.iter().flatten().collect();
@@ -172,10 +145,11 @@ fn deviance(parts: &LinearisedParts, scatter: &NoiseModel) -> f64 {
 fn refined(
     workspace: &LinearisedTrials<'_>,
     start: NoiseModel,
-    parts: &LinearisedParts,
+    coefficients: &[Vec<f64>],
     factors: &[f64],
 ) -> NoiseModel {
-    let mut best = (deviance(parts, &start), start);
+    let parts = along(workspace, coefficients);
+    let mut best = (deviance(&parts, &start), start);
     for factor in factors {
         for number in best.1.numbers() {
             for by in [*factor, factor.recip()] {
@@ -184,7 +158,7 @@ fn refined(
                     if !is_possible(workspace, &tried, number) {
                         break;
                     }
-                    let deviance = deviance(parts, &tried);
+                    let deviance = deviance(&parts, &tried);
                     // What is no number is no gain.
                     if deviance.is_nan() || deviance > best.0 - THRESHOLDS.calibration.least_gain {
                         break;

@@ -1,7 +1,5 @@
 //! A model linearised along a recorded motion.
 
-use std::ops::Range;
-
 use sistership_model::trial::Channel;
 
 /// One gap-free part of a trial: how deviations from the recorded path go from sample to sample,
@@ -61,31 +59,6 @@ impl Linearised {
     /// is the other's.
     pub fn by_filter_of(self, other: &Self) -> Self {
         Self { jacobian: other.jacobian.clone(), by_state: other.by_state.clone(), ..self }
-    }
-
-    /// Some of its samples, as a part of their own; the first of them is one that is read.
-    pub fn window(&self, samples: Range<usize>) -> Self {
-        let first = samples.start.next_multiple_of(self.every);
-        let (Sizes { states, axes, columns }, channels) = (self.sizes, self.channels.len());
-        let of_steps = |values: &[f64], width: usize| {
-            values[first * width..samples.end.saturating_sub(1).max(first) * width].to_vec()
-        };
-        let of_samples =
-            |values: &[f64], width: usize| values[first * width..samples.end * width].to_vec();
-        Self {
-            samples: self.samples[first..samples.end].to_vec(),
-            t_s: self.t_s[first..samples.end].to_vec(),
-            sizes: self.sizes,
-            jacobian: of_steps(&self.jacobian, states * states),
-            accelerations: of_steps(&self.accelerations, axes * columns),
-            defect: of_steps(&self.defect, states),
-            reading: of_samples(&self.reading, channels),
-            by_state: self.by_state.as_ref().map(|all| of_samples(all, channels * states)),
-            by_column: of_samples(&self.by_column, channels * self.measured.len()),
-            measured: self.measured.clone(),
-            channels: self.channels.clone(),
-            every: self.every,
-        }
     }
 
     /// All columns at given parameters, as one column.

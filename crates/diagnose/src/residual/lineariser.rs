@@ -61,39 +61,6 @@ impl TangentSweep {
     }
 }
 
-/// What lies between two samples of a linearisation: means over time, and the sum of the defects.
-#[derive(Default)]
-struct Between {
-    duration_s: f64,
-    jacobian: Vec<f64>,
-    accelerations: Vec<f64>,
-    defect: Vec<f64>,
-}
-
-impl Between {
-    /// Of one interval as it is; of several the mean.
-    fn add(&mut self, interval: Self) {
-        if self.duration_s == 0.0 {
-            *self = interval;
-            return;
-        }
-        let share = interval.duration_s / (self.duration_s + interval.duration_s);
-        let blend = |mean: &mut [f64], new: &[f64]| {
-            mean.iter_mut().zip(new).for_each(|(mean, new)| *mean += share * (new - *mean));
-        };
-        blend(&mut self.jacobian, &interval.jacobian);
-        blend(&mut self.accelerations, &interval.accelerations);
-        self.defect.iter_mut().zip(&interval.defect).for_each(|(sum, new)| *sum += new);
-        self.duration_s += interval.duration_s;
-    }
-
-    fn end(self, out: &mut Linearised) {
-        out.jacobian.extend(self.jacobian);
-        out.accelerations.extend(self.accelerations);
-        out.defect.extend(self.defect);
-    }
-}
-
 /// The model at a sample.
 struct SampleLinearisation {
     rate: Vec<f64>,
@@ -130,37 +97,30 @@ impl<'a> PathLineariser<'a> {
         let recorded: Vec<usize> =
             (0..self.system.channels.len()).filter(|&c| self.path.said[c].is_some()).collect();
         let channels = recorded.iter().map(|&c| self.system.channels[c]).collect();
-        let record = self.path.record;
-        let samples: Vec<usize> = part.iter().copied().step_by(record.stride).collect();
-        let (Sizes { states, axes, columns }, steps) =
-            (self.sizes, samples.len().saturating_sub(1));
+        let (Sizes { states, axes, columns }, steps) = (self.sizes, part.len().saturating_sub(1));
         let mut out = Linearised {
-            t_s: samples.iter().map(|&k| trial.t_s[k]).collect(),
+            samples: part.to_vec(),
+            t_s: part.iter().map(|&k| trial.t_s[k]).collect(),
             sizes: self.sizes,
             // As large as they become: what a vector grows by would stay with it.
             jacobian: Vec::with_capacity(steps * states * states),
             accelerations: Vec::with_capacity(steps * axes * columns),
             defect: Vec::with_capacity(steps * states),
-            reading: Vec::with_capacity(samples.len() * recorded.len()),
-            samples,
+            reading: Vec::with_capacity(part.len() * recorded.len()),
             by_state: (!self.system.says.is_empty()).then(Vec::new),
             by_column: Vec::new(),
             measured: self.measuring(),
             channels,
-            every: record.every / record.stride,
+            every: self.path.record.every,
         };
-        let mut between = Between::default();
-        let mut before: Option<(usize, SampleLinearisation)> = None;
+        let mut before: Option<SampleLinearisation> = None;
         for (i, &k) in part.iter().enumerate() {
             let instant = self.instant(k);
-            if let Some((previous, before)) = &before {
-                between.add(self.interval(before, &instant, (*previous, k)));
+            if let Some(before) = before {
+                self.interval(&before, &instant, (part[i - 1], k), &mut out);
             }
-            if i.is_multiple_of(record.stride) {
-                std::mem::take(&mut between).end(&mut out);
-                self.readings(k, &instant.rate, &recorded, &mut out);
-            }
-            before = Some((k, instant));
+            self.readings(k, &instant.rate, &recorded, &mut out);
+            before = Some(instant);
         }
         out
     }
@@ -351,18 +311,17 @@ impl<'a> PathLineariser<'a> {
         before: &SampleLinearisation,
         after: &SampleLinearisation,
         (k, next): (usize, usize),
-    ) -> Between {
-        let duration_s = self.path.record.trial.t_s[next] - self.path.record.trial.t_s[k];
+        out: &mut Linearised,
+    ) {
+        let dt = self.path.record.trial.t_s[next] - self.path.record.trial.t_s[k];
         let mean = |a: &[f64], b: &[f64]| {
             a.iter().zip(b).map(|(x, y)| 0.5 * (x + y)).collect::<Vec<f64>>()
         };
-        let moved = |state: usize| self.path.states[state][next] - self.path.states[state][k];
-        let rates = mean(&before.rate, &after.rate).into_iter().enumerate();
-        Between {
-            duration_s,
-            jacobian: mean(&before.jacobian, &after.jacobian),
-            accelerations: mean(&before.accelerations, &after.accelerations),
-            defect: rates.map(|(state, rate)| duration_s * rate - moved(state)).collect(),
+        out.jacobian.extend(mean(&before.jacobian, &after.jacobian));
+        out.accelerations.extend(mean(&before.accelerations, &after.accelerations));
+        for (state, rate) in mean(&before.rate, &after.rate).into_iter().enumerate() {
+            let moved = self.path.states[state][next] - self.path.states[state][k];
+            out.defect.push(dt * rate - moved);
         }
     }
 

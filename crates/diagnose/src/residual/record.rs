@@ -15,8 +15,6 @@ pub struct TrialReadings<'a> {
     pub parts: Vec<Vec<usize>>,
     /// Of these samples, how many go with one reading.
     pub every: usize,
-    /// Of these samples, how many are one step: one, or as many as go with a reading.
-    pub stride: usize,
 }
 
 impl<'a> TrialReadings<'a> {
@@ -27,15 +25,7 @@ impl<'a> TrialReadings<'a> {
         let parts = undisturbed(trial, settles_s)
             .into_iter()
             .map(|range| range.step_by(stride).collect::<Vec<usize>>());
-        Self { trial, parts: parts.filter(|part| part.len() > 2).collect(), every: 1, stride: 1 }
-    }
-
-    /// One reading goes with so many samples, and what lies between is one step or several. Parts
-    /// with fewer than three steps are not used.
-    pub fn read_every(&mut self, every: usize, one_step: bool) {
-        self.every = every;
-        self.stride = if one_step { every } else { 1 };
-        self.parts.retain(|part| part.len() > 2 * self.stride);
+        Self { trial, parts: parts.filter(|part| part.len() > 2).collect(), every: 1 }
     }
 
     /// How many samples are used.

@@ -3,15 +3,6 @@
 /// Calibration on the trials that a model was fitted on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CalibrationThresholds {
-    /// `T_n`: how long a record scatter is learned from where calibration is to cost little, by
-    /// `L/U`, dimensionless. Source: derived: the discrepancy is correlated over one length, so that its
-    /// deviation has a standard error of `1/sqrt(2 T_n)` = 2.9 %, a seventh of the last step of
-    /// [`Self::factors`].
-    pub noise_lengths: f64,
-    /// `n_w`: windows that such a record is made of, a count. Source: derived: each is then 12
-    /// lengths long at least, of which the first, where the filter finds its state, tells less; and
-    /// 48 fill the lanes in which they are filtered.
-    pub noise_windows: usize,
     /// `s_0`: deviation of a coefficient's prior by its own size, dimensionless. Source: chosen so
     /// that the prior says no more than the order of magnitude, since the trials that follow
     /// decide.
@@ -64,8 +55,6 @@ pub(crate) struct CalibrationThresholds {
 
 /// Calibration's values.
 pub(super) const CALIBRATION: CalibrationThresholds = CalibrationThresholds {
-    noise_lengths: 600.0,
-    noise_windows: 48,
     prior_share: 1.0,
     least_prior_share: 0.1,
     fallback_deviation: 1e-2,

@@ -146,10 +146,6 @@ pub struct Settings {
     /// is wider than the noise of the readings makes it. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub posterior_by_folds: bool,
-    /// What the trials leave open is learned at little cost: what lies between two readings is one
-    /// step, and scatter is learned from a part of long trials. The default search sets it.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub thrifty_calibration: bool,
     /// Names of trials that are kept out of fit and choice altogether, to be judged on.
     pub held_out: Vec<String>,
     /// What the refined model must keep to.
@@ -185,7 +181,6 @@ impl Default for Settings {
             in_parts: false,
             steering_from_trials: false,
             posterior_by_folds: false,
-            thrifty_calibration: false,
             held_out: Vec::new(),
             constraints: Constraints::default(),
             bands: Sampling::default(),

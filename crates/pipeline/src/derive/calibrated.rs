@@ -19,8 +19,7 @@ pub fn with_uncertainty(
     let held_out = &refinement.settings.held_out;
     let fitted: Vec<&Trial> =
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
-    let is_thrifty = refinement.settings.thrifty_calibration;
-    match calibrate(&refinement.model, law, effects, &fitted, is_thrifty) {
+    match calibrate(&refinement.model, law, effects, &fitted) {
         Ok(uncertainty) => refinement.model.uncertainty = Some(uncertainty),
         Err(error) => refinement
             .remarks
