@@ -8,13 +8,14 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crates that only some may name.
-const ALLOWED: [(&str, &[&str]); 16] = [
+const ALLOWED: [(&str, &[&str]); 17] = [
     ("model", &[]),
     ("dynamics", &["model"]),
     ("stretches", &[]),
     ("containers", &[]),
     ("trials", &["model", "containers"]),
     ("regression", &[]),
+    ("branches", &["model", "dynamics"]),
     ("estimate", &["model", "dynamics", "regression"]),
     ("choice", &["model", "estimate"]),
     ("diagnose", &["model", "dynamics", "regression", "estimate"]),
