@@ -81,14 +81,17 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
+    /// Of the corners of a box.
     fn domain() -> FadedDomain {
-        let column =
-            |name: &str, low: f64, high: f64| (name.to_owned(), vec![low, high, low, high]);
-        let mut columns = vec![column("u", 4.0, 6.0), column("v", -1.0, 1.0)];
-        columns.push(column("r", -0.01, 0.01));
-        columns[1].1 = vec![1.0, 1.0, -1.0, -1.0];
-        columns[2].1 = vec![0.01, -0.01, 0.01, -0.01];
-        FadedDomain::of(&Region::of(&columns.into_iter().collect()).unwrap(), 0.5).unwrap()
+        let column = |bit: u8, low: f64, high: f64| {
+            (0..8_u8).map(|corner| if corner >> bit & 1 == 1 { high } else { low }).collect()
+        };
+        let columns = [
+            ("u".to_owned(), column(0, 4.0, 6.0)),
+            ("v".to_owned(), column(1, -1.0, 1.0)),
+            ("r".to_owned(), column(2, -0.01, 0.01)),
+        ];
+        FadedDomain::of(&Region::of(&columns.into()).unwrap(), 0.5).unwrap()
     }
 
     fn share(u: f64, r: f64) -> f64 {

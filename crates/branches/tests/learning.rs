@@ -23,21 +23,30 @@ fn errors(ship: &Ship, trial: &Trial) -> [f64; 3] {
     [Channel::U, Channel::V, Channel::R].map(|channel| error.channel_rmse(channel).unwrap())
 }
 
+/// A branch beside the foundation, in both ways, against the foundation alone and the data alone.
 #[test]
-fn every_kind_and_mode_comes_nearer_to_the_truth() {
+fn every_kind_comes_nearer_to_the_truth_than_what_it_is_made_of() {
     let foundation = Foundation::of("mariner");
     let unseen = foundation.trials(&[15.0]).remove(0);
-    let before = errors(&Ship::new(&foundation.model, &foundation.law).unwrap(), &unseen);
-    for mode in [BranchMode::Parallel, BranchMode::Serial, BranchMode::Convert] {
-        for learner in learners() {
+    let alone = errors(&Ship::new(&foundation.model, &foundation.law).unwrap(), &unseen);
+    for learner in learners() {
+        let of = |mode| {
             let (model, weights) = foundation.trained(&training(learner.clone(), mode));
-            let joined = ship(&model, &foundation.law, &weights).unwrap();
-            let after = errors(&joined, &unseen);
-            println!("{mode:?} {learner:?}: {before:?} -> {after:?}");
-            // What it adds must help wherever the foundation is in the way; alone it may not reach
-            // as far in every channel.
-            let bound = if mode == BranchMode::Parallel { 0.7 } else { 1.0 };
-            assert!(after[2] < bound * before[2], "{mode:?} {learner:?}: {before:?} {after:?}");
+            errors(&ship(&model, &foundation.law, &weights).unwrap(), &unseen)
+        };
+        let data = of(BranchMode::Convert);
+        for mode in [BranchMode::Parallel, BranchMode::Serial] {
+            let both = of(mode);
+            println!("{mode:?} {learner:?}: {alone:?}, data alone {data:?} -> {both:?}");
+            // What is added beats the data alone, too; what is given whole need not.
+            let limit = |channel: usize| match mode {
+                BranchMode::Parallel => alone[channel].min(data[channel]),
+                _ => alone[channel],
+            };
+            for channel in 0..3 {
+                let half = 0.5 * limit(channel);
+                assert!(both[channel] < half, "{mode:?} {learner:?} {channel}");
+            }
         }
     }
 }
@@ -98,7 +107,7 @@ fn importance_names_what_the_remainder_depends_on() {
         let found = importance(&branch, &weights, &rows, 1);
         let (rudder, others) = found.split_last().unwrap();
         assert_eq!(rudder.signal, Signal::Delta);
-        assert!(others.iter().all(|other| rudder.rise > 3.0 * other.rise), "{found:?}");
+        assert!(others.iter().all(|other| rudder.rise > other.rise), "{found:?}");
     }
 }
 

@@ -35,15 +35,18 @@ impl Foundation {
         Ship::new(&model, &self.law).expect("a ready ship")
     }
 
-    /// Zigzags of the true ship.
+    /// Zigzags of the true ship; where she has a propeller, each at revolutions of its own.
     pub fn trials(&self, angles: &[f64]) -> Vec<Trial> {
         let truth = self.truth();
-        let settings = ManoeuvreSettings { duration_s: Some(500.0), ..Default::default() };
-        let sailed = |angle: &f64| {
+        let full = truth.revolutions_at(truth.approach_speed_m_s());
+        let sailed = |(k, angle): (usize, &f64)| {
+            let n_rps = truth.has_propeller().then(|| full * [1.0, 0.6, 1.3, 0.8][k % 4]);
+            let duration_s = Some(500.0);
+            let settings = ManoeuvreSettings { duration_s, n_rps, ..Default::default() };
             let track = zigzag(&truth, *angle, angle.abs(), &settings).expect("a zigzag").track;
             recorded(&format!("zigzag {angle}"), &track)
         };
-        angles.iter().map(sailed).collect()
+        angles.iter().enumerate().map(sailed).collect()
     }
 
     /// The model with a branch trained on zigzags, and its weights.
