@@ -13,6 +13,11 @@ pub struct Sample {
 }
 
 impl Sample {
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.targets.is_empty()
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.targets.len()

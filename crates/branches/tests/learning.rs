@@ -43,9 +43,9 @@ fn every_kind_comes_nearer_to_the_truth_than_what_it_is_made_of() {
                 BranchMode::Parallel => alone[channel].min(data[channel]),
                 _ => alone[channel],
             };
-            for channel in 0..3 {
+            for (channel, error) in both.iter().enumerate() {
                 let half = 0.5 * limit(channel);
-                assert!(both[channel] < half, "{mode:?} {learner:?} {channel}");
+                assert!(*error < half, "{mode:?} {learner:?} {channel}");
             }
         }
     }

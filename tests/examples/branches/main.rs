@@ -1,6 +1,7 @@
 //! Learned branches on data, one command each:
 //!
-//! `cargo run --release -p sistership-branches --example branches -- rm-rf | esso-osaka | rates`
+//! `cargo run --release -p sistership-branches --example branches -- rm-rf`, or `esso-osaka`,
+//! which takes the window in seconds after it, or `rates`.
 
 #[path = "../../src/esso_osaka.rs"]
 mod esso_osaka;
@@ -15,9 +16,10 @@ mod score;
 
 fn main() {
     let asked = std::env::args().nth(1).unwrap_or_default();
+    let window_s = std::env::args().nth(2).and_then(|text| text.parse().ok());
     match asked.as_str() {
         "rm-rf" => rm_rf::run(),
-        "esso-osaka" => osaka::run(),
+        "esso-osaka" => osaka::run(window_s.unwrap_or(osaka::WINDOW_S)),
         "rates" => rates::run(),
         _ => println!("which? rm-rf, esso-osaka or rates"),
     }

@@ -17,25 +17,30 @@ use crate::score::{KINDS, RESTART_S, over_all};
 /// Errors by trial.
 pub type Errors = Vec<(String, SquaredError)>;
 
-/// Windows tried, s: about an eighth and a half of the time L/U in which she sails her length at
-/// 0.4 m/s.
-const WINDOWS_S: [f64; 2] = [1.0, 4.0];
+/// The window unless another is asked for: half of the time L/U in which she sails her length at
+/// 0.4 m/s, s.
+pub const WINDOW_S: f64 = 4.0;
 
-/// A learner of each kind.
 pub const NAMES: [&str; 4] = ["forest", "boosted", "kernels", "perceptron"];
 
-pub fn learners() -> [Learner; 4] {
+/// Learners of each kind, the freest first and the most restrained last.
+pub fn learners() -> [[Learner; 3]; 4] {
+    let forest = |leaf, depth| Learner::RandomForest { trees: 50, tried: 2, leaf, depth };
+    let boosted =
+        |trees, leaf, depth| Learner::BoostedTrees { trees, leaf, depth, rate: 0.05, sampled: 0.5 };
+    let kernels = |ridge| Learner::KernelRidge { centres: 200, length: 3.0, ridge };
+    let network = |hidden: &[usize], epochs, decay| Learner::Perceptron {
+        hidden: hidden.to_vec(),
+        epochs,
+        batch: 64,
+        rate: 0.005,
+        decay,
+    };
     [
-        Learner::RandomForest { trees: 50, tried: 2, leaf: 20, depth: 12 },
-        Learner::BoostedTrees { trees: 100, leaf: 40, depth: 4, rate: 0.05, sampled: 0.5 },
-        Learner::KernelRidge { centres: 200, length: 3.0, ridge: 1.0 },
-        Learner::Perceptron {
-            hidden: vec![16, 16],
-            epochs: 30,
-            batch: 64,
-            rate: 0.005,
-            decay: 0.01,
-        },
+        [forest(20, 12), forest(200, 8), forest(1000, 5)],
+        [boosted(100, 40, 4), boosted(50, 400, 2), boosted(20, 1000, 2)],
+        [kernels(1.0), kernels(100.0), kernels(10_000.0)],
+        [network(&[16, 16], 30, 0.01), network(&[8], 20, 0.3), network(&[4], 10, 1.0)],
     ]
 }
 
@@ -79,19 +84,25 @@ fn split<'t>(trials: &[&'t Trial], folds: usize, fold: usize) -> (Vec<&'t Trial>
     (bare(inside), bare(outside))
 }
 
-/// The error of a training within the trials that it may see, three parts each left out once; of
-/// the foundation alone where there is none. The foundation has seen all of them, so that it is
-/// favoured here.
-fn within(model: &Model, law: &Law, inside: &[&Trial], training: Option<&Training>) -> f64 {
+/// Errors within the trials that a fold may see, three parts each left out once, by the law
+/// refined on the rest: of the law alone, and with each learner beside it.
+fn within(zoo: &Zoo, inside: &[&Trial], window_s: f64) -> (f64, [[f64; 3]; 4]) {
     let all: Vec<Trial> = inside.iter().map(|trial| (*trial).clone()).collect();
-    let one = |fold: usize| {
-        let (seen, unseen) = split(inside, 3, fold);
-        match training {
-            Some(training) => with_branch(model, law, &seen, &unseen, training),
-            None => simulated(Ship::new(model, law).unwrap_or_else(|e| panic!("{e}")), &unseen),
+    let law = law(zoo);
+    let mut alone = Errors::new();
+    let mut beside: [[Errors; 3]; 4] = Default::default();
+    for part in 0..3 {
+        let (seen, unseen) = split(inside, 3, part);
+        let model = refined(zoo, &seen);
+        let bare = Ship::new(&model, law).unwrap_or_else(|error| panic!("{error}"));
+        alone.extend(simulated(bare, &unseen));
+        for (learner, errors) in learners().into_iter().flatten().zip(beside.iter_mut().flatten()) {
+            let wanted = training(learner, BranchMode::Parallel, window_s);
+            errors.extend(with_branch(&model, law, &seen, &unseen, &wanted));
         }
-    };
-    over_all(&all, &(0..3).flat_map(one).collect::<Errors>(), "all")
+    }
+    let of = |errors: &Errors| over_all(&all, errors, "all");
+    (of(&alone), beside.each_ref().map(|kind| kind.each_ref().map(of)))
 }
 
 /// What a fold gives: of the law alone, of each kind beside it, of the kind chosen, and of each
@@ -103,36 +114,37 @@ struct Fold {
     data: [Errors; 4],
 }
 
-fn fold(zoo: &Zoo, all: &[&Trial], number: usize) -> Fold {
+fn fold(zoo: &Zoo, all: &[&Trial], number: usize, window_s: f64) -> Fold {
     let (inside, outside) = split(all, 4, number);
     let (law, model, bare) = (law(zoo), refined(zoo, &inside), nothing(zoo, &inside));
     let alone = simulated(Ship::new(&model, law).unwrap_or_else(|e| panic!("{e}")), &outside);
-    let before = within(&model, law, &inside, None);
-    let mut least = (before, None);
-    let beside = learners().map(|learner| {
-        let wanted = WINDOWS_S.map(|w| training(learner.clone(), BranchMode::Parallel, w));
-        let errors = wanted.each_ref().map(|w| within(&model, law, &inside, Some(w)));
-        let best = usize::from(errors[1] < errors[0]);
-        println!("fold {number} {learner:?}: within {errors:.4?}, without {before:.4}");
-        let found = with_branch(&model, law, &inside, &outside, &wanted[best]);
-        if errors[best] < least.0 {
-            least = (errors[best], Some(found.clone()));
-        }
-        found
+    let (without, with) = within(zoo, &inside, window_s);
+    println!("fold {number}: within its trials {without:.4} by the law alone; {with:.4?}");
+    let best = with.map(|kind| least(&kind));
+    let beside = std::array::from_fn(|kind| {
+        let wanted = training(learners()[kind][best[kind]].clone(), BranchMode::Parallel, window_s);
+        with_branch(&model, law, &inside, &outside, &wanted)
     });
-    let data = learners().map(|learner| {
-        let wanted = training(learner, BranchMode::Convert, WINDOWS_S[0]);
-        with_branch(&bare, law, &inside, &outside, &wanted)
+    let data = learners().map(|[free, ..]| {
+        with_branch(&bare, law, &inside, &outside, &training(free, BranchMode::Convert, window_s))
     });
-    let chosen = least.1.unwrap_or_else(|| alone.clone());
+    let kind = least(&std::array::from_fn::<f64, 4, _>(|kind| with[kind][best[kind]]));
+    let wins = with[kind][best[kind]] < without;
+    let beside: [Errors; 4] = beside;
+    let chosen = if wins { beside[kind].clone() } else { alone.clone() };
+    println!("  taken: {}", if wins { NAMES[kind] } else { "no branch" });
     Fold { alone, beside, chosen, data }
+}
+
+fn least(errors: &[f64]) -> usize {
+    (0..errors.len()).min_by(|a, b| errors[*a].total_cmp(&errors[*b])).unwrap_or_default()
 }
 
 /// On what the refined law's remainder depends, by a forest trained on three files in four.
 fn tell_importance(zoo: &Zoo, all: &[&Trial]) {
     let (inside, outside) = split(all, 4, 1);
-    let (law, model, [forest, ..]) = (law(zoo), refined(zoo, &inside), learners());
-    let wanted = training(forest, BranchMode::Parallel, WINDOWS_S[1]);
+    let (law, model, [[forest, ..], ..]) = (law(zoo), refined(zoo, &inside), learners());
+    let wanted = training(forest, BranchMode::Parallel, WINDOW_S);
     let (branch, weights) =
         train(&model, law, &inside, &wanted).unwrap_or_else(|error| panic!("{error}"));
     let alone = Ship::new(&model, law).unwrap_or_else(|error| panic!("{error}"));
@@ -144,11 +156,11 @@ fn tell_importance(zoo: &Zoo, all: &[&Trial]) {
     }
 }
 
-pub fn run() {
+pub fn run(window_s: f64) {
     let Some(trials) = trials() else { return };
     let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
     let all: Vec<&Trial> = trials.iter().collect();
-    let folds: Vec<Fold> = (0..4).map(|number| fold(&zoo, &all, number)).collect();
+    let folds: Vec<Fold> = (0..4).map(|number| fold(&zoo, &all, number, window_s)).collect();
     let joined = |of: &dyn Fn(&Fold) -> Errors| folds.iter().flat_map(of).collect::<Errors>();
     println!("standardised mean squared error, mean over u, v, r, psi, x, y; files left out");
     println!("           refined law, with a branch beside it                 data alone");

@@ -9,7 +9,7 @@ use sistership_model::branch::BranchMode;
 use sistership_model::{Trial, Zoo};
 
 use crate::measured::{law, nothing, trials};
-use crate::osaka::{NAMES, learners, training};
+use crate::osaka::{NAMES, WINDOW_S, learners, training};
 
 /// Answers timed.
 const ANSWERS: usize = 200_000;
@@ -20,8 +20,9 @@ pub fn run() {
     let all: Vec<&Trial> = trials.iter().collect();
     let model = nothing(&zoo, &all);
     println!("kind        training, s    weights, kB    answers a second, of all three outputs");
-    for (name, learner) in NAMES.into_iter().zip(learners()) {
-        let wanted = training(learner, BranchMode::Convert, 1.0);
+    let named = NAMES.into_iter().zip(learners());
+    for (name, learner) in named.flat_map(|(name, all)| all.map(|learner| (name, learner))) {
+        let wanted = training(learner, BranchMode::Convert, WINDOW_S);
         let begun = Clock::now();
         let (branch, weights) =
             train(&model, law(&zoo), &all, &wanted).unwrap_or_else(|error| panic!("{error}"));

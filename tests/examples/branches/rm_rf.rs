@@ -6,6 +6,7 @@
 
 use sistership_branches::{Training, ship, train};
 use sistership_dynamics::recorded::{ReplaySettings, replay};
+use sistership_dynamics::state::{StateVector, at};
 use sistership_dynamics::{Ship, Trajectory};
 use sistership_model::Model;
 use sistership_model::branch::{BranchMode, Learner, Signal};
@@ -28,12 +29,15 @@ const PRINTED: [[Option<f64>; 6]; 2] = [
 const CHANNELS: [Channel; 6] =
     [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::X, Channel::Y];
 
+/// Their places in the state.
+const PLACES: [usize; 6] = [at::U, at::V, at::R, at::PSI, at::X, at::Y];
+
 /// Windows, by L/U, and fades tried on the trials for work.
 const WINDOWS: [f64; 3] = [0.25, 0.5, 1.0];
 const FADES: [f64; 4] = [0.5, 1.0, 2.0, 3.0];
 /// What came out best there.
 const WINDOW: f64 = 0.5;
-const FADE: f64 = 2.0;
+const FADE: f64 = 3.0;
 
 /// Eq. 14.
 fn published() -> Vec<(Axis, Vec<Signal>)> {
@@ -79,12 +83,24 @@ fn sailed(ship: &Ship, trial: &Trial) -> Trajectory {
     run.track
 }
 
+/// The motion that a trial recorded.
+fn track_of(trial: &Trial) -> Trajectory {
+    let mut track = Trajectory::default();
+    for k in 0..trial.len() {
+        let mut state = StateVector::zeros();
+        for (channel, place) in CHANNELS.iter().zip(PLACES) {
+            state[place] = trial.channel(*channel).map_or(0.0, |column| column[k]);
+        }
+        track.push(trial.t_s[k], state, 0.0);
+    }
+    track
+}
+
 /// Root mean square of the error by the range of what was measured, and the correlation.
 fn scores(trial: &Trial, track: &Trajectory) -> [(f64, f64); 6] {
-    let places = [0, 1, 2, 5, 6, 7];
     std::array::from_fn(|k| {
         let measured = trial.channel(CHANNELS[k]).unwrap_or_default();
-        let found = track.column(places[k]);
+        let found = track.column(PLACES[k]);
         let count = measured.len() as f64;
         let square: f64 = measured.iter().zip(&found).map(|(a, b)| (a - b).powi(2)).sum();
         let most = measured.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b));
@@ -159,7 +175,8 @@ fn judge(pair: &Pair, ships: &[Ship; 3], order: Order, printed: &[Option<f64>; 6
     if order.1.is_none() {
         let lpp_m = pair.truth.lpp_m();
         let figures = tracks.each_ref().map(|track| turning(track, order.0, lpp_m));
-        println!("advance, tactical diameter by L: {figures:.2?}");
+        let truth = turning(&track_of(&trial), order.0, lpp_m);
+        println!("advance, tactical diameter by L: {figures:.2?}, of the ship {truth:.2?}");
     }
     for (k, channel) in CHANNELS.iter().enumerate() {
         let better = both[k].0 < reference[k].0;
