@@ -180,9 +180,9 @@ fn judge(pair: &Pair, ships: &[Ship; 3], order: Order, printed: &[Option<f64>; 6
     }
     for (k, channel) in CHANNELS.iter().enumerate() {
         let better = both[k].0 < reference[k].0;
-        println!(
-            "  {channel}: RM-RF {} than its reference",
-            if better { "better" } else { "WORSE" }
-        );
+        let word = if better { "better" } else { "WORSE" };
+        println!("  {channel}: RM-RF {word} than its reference");
+        // Beyond what it was trained on it need not win everywhere.
+        assert!(better || order.1.is_none() && k > 1, "{order:?} {channel}");
     }
 }
