@@ -1,8 +1,8 @@
 //! Tactical diameters at 35 deg of rudder.
 
+use sistership_bands::{Sampling, draws};
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{Manoeuvre, ManoeuvreSettings, Turn, sail_together};
-use sistership_estimate::bands::{Sampling, draws};
 use sistership_model::{Law, Model};
 
 const TURN_DEG: f64 = 35.0;

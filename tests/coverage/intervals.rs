@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
+use sistership_bands::Sampling;
 use sistership_dynamics::Ship;
-use sistership_estimate::bands::Sampling;
 use sistership_estimate::refine::{Family, Method, Request, Settings, refine};
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model, Vessel, Zoo};

@@ -2,8 +2,8 @@
 //! than it says.
 
 use rayon::prelude::*;
+use sistership_bands::Sampling;
 use sistership_dynamics::Ship;
-use sistership_estimate::bands::Sampling;
 use sistership_estimate::refine::{Method, Request, Settings, refine};
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model, Zoo};

@@ -36,9 +36,19 @@ pub async fn upload(server: &TestServer) -> Value {
 
 /// Asks for a refinement under a key; gives the job's id.
 pub async fn refine(server: &TestServer, key: &str) -> String {
-    let body = json!({ "ship": NAME, "source": "auto" });
+    submit(server, key, &json!({ "ship": NAME, "source": "auto" })).await
+}
+
+/// Submits a refinement from the nearest ship by a named estimator, which takes a fraction of the
+/// search, and gives the job.
+pub async fn refine_weakly(server: &TestServer, key: &str) -> String {
+    let body = json!({ "ship": NAME, "source": "auto", "settings": { "method": "weak" } });
+    submit(server, key, &body).await
+}
+
+async fn submit(server: &TestServer, key: &str, body: &Value) -> String {
     let (status, job) =
-        server.send(Method::POST, "/v1/refinements", &body, &[("Idempotency-Key", key)]).await;
+        server.send(Method::POST, "/v1/refinements", body, &[("Idempotency-Key", key)]).await;
     assert_eq!(status, 202, "{job}");
     job["id"].as_str().expect("an id").to_owned()
 }

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crates that only some may name.
-const ALLOWED: [(&str, &[&str]); 17] = [
+const ALLOWED: [(&str, &[&str]); 18] = [
     ("model", &[]),
     ("dynamics", &["model"]),
     ("stretches", &[]),
@@ -16,12 +16,13 @@ const ALLOWED: [(&str, &[&str]); 17] = [
     ("trials", &["model", "containers"]),
     ("regression", &[]),
     ("branches", &["model", "dynamics"]),
-    ("estimate", &["model", "dynamics", "regression"]),
-    ("choice", &["model", "estimate"]),
+    ("bands", &["model", "dynamics"]),
+    ("estimate", &["model", "dynamics", "bands", "regression"]),
+    ("choice", &["model", "bands", "estimate"]),
     ("diagnose", &["model", "dynamics", "regression", "estimate"]),
     ("fleet", &["model", "dynamics", "regression", "estimate"]),
     ("store", &[]),
-    ("report", &["model", "dynamics", "estimate", "choice", "diagnose"]),
+    ("report", &["model", "dynamics", "bands", "estimate", "choice", "diagnose"]),
     (
         "pipeline",
         &["model", "dynamics", "trials", "estimate", "choice", "diagnose", "fleet", "store"],
@@ -30,8 +31,8 @@ const ALLOWED: [(&str, &[&str]); 17] = [
     (
         "server",
         &[
-            "model", "dynamics", "trials", "estimate", "choice", "diagnose", "fleet", "store",
-            "report", "pipeline", "listen",
+            "model", "dynamics", "trials", "bands", "estimate", "choice", "diagnose", "fleet",
+            "store", "report", "pipeline", "listen",
         ],
     ),
     (
@@ -41,6 +42,7 @@ const ALLOWED: [(&str, &[&str]); 17] = [
             "dynamics",
             "stretches",
             "trials",
+            "bands",
             "estimate",
             "choice",
             "diagnose",

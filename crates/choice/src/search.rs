@@ -12,7 +12,7 @@ use crate::choice::{chosen, standard_error};
 use crate::entrant::Entrant;
 use crate::ladder::{Ladder, Line, Rung};
 use crate::thresholds::SEARCH;
-use sistership_estimate::bands::Sampling;
+use sistership_bands::Sampling;
 use sistership_estimate::refine::{
     Extent, Family, Progress, RefineError, Refinement, Request, Settings, Weighed, refine_wanted,
     weigh,

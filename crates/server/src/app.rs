@@ -4,14 +4,13 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use sistership_model::{Law, Vessel, Zoo};
-use sistership_store::{Objects, Store};
+use sistership_store::{Objects, Spool, Store};
 use tokio::sync::{Notify, RwLock, Semaphore};
 
 use crate::answers::Answers;
 use crate::config::{Config, Leases, Limits};
 use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
-use crate::upload::Spool;
 use crate::web::api_key::ApiKey;
 use sistership_listen::{Stopping, Throttle};
 use sistership_pipeline::archive::Archive;

@@ -129,10 +129,11 @@ fn date(text: &str, order: Order) -> Option<Date> {
     if one.len() == 4 {
         return Some(Date::Known(day(whole(one)?, month(two)?, whole(three)?)?));
     }
-    if three.len() != 4 {
+    // Two digits between hyphens may be the year in front.
+    if three.len() == 2 && mark == '-' && whole(two).is_some() {
         return None;
     }
-    let (year, first) = (whole(three)?, whole(one)?);
+    let (year, first) = (year(three)?, whole(one)?);
     let (Some(second), true) = (whole(two), matches!(mark, '/' | '-')) else {
         // Points and names of months follow the day wherever they are in use.
         return Some(Date::Known(day(year, month(two)?, first)?));
@@ -144,6 +145,16 @@ fn date(text: &str, order: Order) -> Option<Date> {
             let fits = day(year, second, first).or_else(|| day(year, first, second)).is_some();
             fits.then_some(Date::Either(OpenDate { first, second, year }))
         }
+    }
+}
+
+/// Of four digits, or of two: those from 69 on are of 1900, the others of 2000 (POSIX.1-2017,
+/// `strptime`, `%y`).
+fn year(text: &str) -> Option<i64> {
+    match (text.len(), whole(text)?) {
+        (4, year) => Some(year),
+        (2, year) => Some(if year < 69 { 2000 + year } else { 1900 + year }),
+        _ => None,
     }
 }
 
@@ -188,6 +199,9 @@ mod tests {
             ("2024/05/01 12:00", "2024-05-01T12:00:00"),
             ("01-May-2024 12:00:03", "2024-05-01T12:00:03"),
             ("05/01/2024 12:00:03 PM", "5|1|2024"),
+            ("01.05.24 12:00:03", "2024-05-01T12:00:03"),
+            ("01-May-98 12:00", "1998-05-01T12:00:00"),
+            ("05/01/24 12:00", "5|1|2024"),
             ("12:00:03.5", "T12:00:03.5"),
             ("12:00:03 AM", "T00:00:03"),
             ("23:59:60", "1970-01-02T00:00:00"),
@@ -209,7 +223,8 @@ mod tests {
             "2024-05-01",
             "1:2:3:4",
             "13/13/2024 12:00",
-            "01.05.24 12:00",
+            "01-05-24 12:00",
+            "01.05.124 12:00",
             "13:00 PM",
             "12:00:0x",
             "T",

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use sistership_bands::{Bands, Sampling, bands};
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::ManoeuvreSettings;
-use sistership_estimate::bands::{Bands, Sampling, bands};
 use sistership_model::{Law, Model, Zoo};
 
 use super::manoeuvre_document::ManoeuvreDocument;

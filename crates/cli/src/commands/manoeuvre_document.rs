@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use sistership_bands::Bands;
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::StandardManoeuvres;
 use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
-use sistership_estimate::bands::Bands;
 use sistership_model::Model;
 use sistership_model::validity::Excursion;
 

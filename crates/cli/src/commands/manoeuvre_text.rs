@@ -1,8 +1,8 @@
 //! The manoeuvres of a model in words and tables.
 
+use sistership_bands::Bands;
 use sistership_dynamics::Ship;
 use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
-use sistership_estimate::bands::Bands;
 use sistership_model::{Law, Model};
 
 use super::manoeuvre_document::ManoeuvreDocument;

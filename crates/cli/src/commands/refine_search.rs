@@ -1,7 +1,8 @@
 //! The source, law and method of a refinement that names none of them.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use sistership_choice::{Asked, Ladder, best_start};
 use sistership_estimate::refine::{Refinement, Settings};
@@ -11,6 +12,11 @@ use sistership_model::{Law, Model, Vessel, Zoo};
 use crate::failure::Failure;
 use crate::output::note;
 use crate::trials::{self, ReadTrial};
+
+/// From one note of progress to the next.
+const BETWEEN: Duration = Duration::from_secs(1);
+/// Share of the work before which the time left is not told: the first rung is not like the others.
+const TELLING: f64 = 0.1;
 
 /// Where a refinement starts, and how that was found.
 pub struct Start {
@@ -46,8 +52,14 @@ pub fn searched(
     let trials = trials::trials(read);
     let champions = BTreeMap::new();
     let asked = Asked { zoo, target, champions: &champions, trials: &trials, settings };
+    let (begun, last) = (Instant::now(), Mutex::new(None));
     let told = |fraction: f64, what: &str| {
-        note(&format!("search {:3.0} % {what}", 100.0 * fraction));
+        let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
+        if last.is_none_or(|last: Instant| last.elapsed() >= BETWEEN) {
+            *last = Some(Instant::now());
+            let left = time_left(begun.elapsed().as_secs_f64(), fraction);
+            note(&format!("search {:3.0} %{left}: {what}", 100.0 * fraction));
+        }
         true
     };
     let found = best_start(&asked, &told).map_err(|error| Failure::Refused(error.to_string()))?;
@@ -62,4 +74,24 @@ pub fn searched(
         made: found.refinement,
     };
     Ok((start, found.settings))
+}
+
+/// How long it will take, as far as what is done tells.
+fn time_left(elapsed_s: f64, fraction: f64) -> String {
+    if fraction < TELLING {
+        return String::new();
+    }
+    let left_s = elapsed_s * (1.0 - fraction) / fraction;
+    format!(", about {:.0} s left", left_s.ceil())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_left_is_told_once_there_is_something_to_tell_it_by() {
+        assert_eq!(time_left(1.0, 0.05), "");
+        assert_eq!(time_left(3.0, 0.25), ", about 9 s left");
+    }
 }

@@ -1,8 +1,8 @@
 //! A refinement in words and tables.
 
+use sistership_bands::Band;
 use sistership_choice::{Ladder, Rung};
 use sistership_dynamics::manoeuvre::Figure;
-use sistership_estimate::bands::Band;
 use sistership_estimate::refine::{CoefficientChange, HeldOut, Manoeuvres, Refinement, StepOption};
 use sistership_estimate::similarity::RankedSource;
 use sistership_model::Model;

@@ -18,9 +18,12 @@ impl TrialInformation<'_> {
     pub fn by(&self, keep: &dyn Fn(usize) -> bool) -> CoefficientPrior {
         let mut known = self.fixed.clone();
         let size = known.weighted_mean.len();
+        // In place: as expressions these would be two new matrices a trial.
         for (_, gram) in self.grams.iter().enumerate().filter(|(trial, _)| keep(*trial)) {
-            known.information += gram.products.view((1, 1), (size, size)) / self.scatter;
-            known.weighted_mean += gram.products.view((1, 0), (size, 1)).column(0) / self.scatter;
+            let products = gram.products.view((1, 0), (size, size + 1));
+            let add = |sum: &mut f64, product: f64| *sum += product / self.scatter;
+            known.information.zip_apply(&products.columns(1, size), add);
+            known.weighted_mean.zip_apply(&products.column(0), add);
         }
         known
     }

@@ -15,7 +15,7 @@ use super::selection::resolved;
 use super::settings::{Method, Settings};
 use super::thresholds::SELECTION;
 use super::variant::variants;
-use crate::bands::Sampling;
+use sistership_bands::Sampling;
 
 /// A fit by the weak form or by trajectories.
 pub struct Alternative {

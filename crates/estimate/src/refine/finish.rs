@@ -18,8 +18,7 @@ use super::progress::{Progress, step};
 use super::ridge::{Choices, Fit};
 use super::thresholds::SELECTION;
 use super::variant::Variant;
-use crate::bands::bands;
-use crate::fold_scatter::fold_factor;
+use sistership_bands::{bands, fold_factor};
 use sistership_regression::RidgeChoice;
 
 /// Why a candidate may not be taken.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::cma_es::CmaEs;
 use super::constraints::Constraints;
 use super::family::Family;
-use crate::bands::Sampling;
+use sistership_bands::Sampling;
 
 /// The estimator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]

@@ -3,8 +3,8 @@
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+use sistership_bands::Bands;
 use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
-use sistership_estimate::bands::Bands;
 use sistership_model::validity::Excursion;
 
 use super::input::RefinementInput;

@@ -2,9 +2,9 @@
 
 use serde::Deserialize;
 use serde_json::{Value, json};
+use sistership_bands::{Bands, Sampling, bands};
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, standard, turn, zigzag};
 use sistership_dynamics::{Ship, Stopped};
-use sistership_estimate::bands::{Bands, Sampling, bands};
 use sistership_model::{Law, Model};
 use utoipa::ToSchema;
 

@@ -1,8 +1,8 @@
 #![allow(clippy::unwrap_used)]
 use super::super::{Method, Refinement, Request, Settings, refine};
 use super::*;
-use crate::bands::Sampling;
 use crate::testing::{mariner, trials, with};
+use sistership_bands::Sampling;
 use sistership_model::{Trial, Zoo};
 
 /// Coefficients that zigzags tell well, and how the truth differs in them.

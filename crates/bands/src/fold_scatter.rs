@@ -10,8 +10,9 @@
 use sistership_model::Model;
 use sistership_model::law::Law;
 
-use crate::bands::{Sampling, draws, figures};
+use crate::bands::figures;
 use crate::next_trial::Drawn;
+use crate::sampling::{Sampling, draws};
 
 /// Draws that tell the posterior's own scatter.
 const DRAWS: usize = 40;
@@ -22,7 +23,7 @@ const NORMAL: f64 = 1.959_964;
 /// The root of the jackknife's variance by the posterior's, in the mean over the figures of the
 /// standard manoeuvres, by Student's quantile to the normal's; at least one, and one where fewer
 /// than three folds sail them.
-pub(crate) fn fold_factor(model: &Model, law: &Law, folds: &[Model]) -> f64 {
+pub fn fold_factor(model: &Model, law: &Law, folds: &[Model]) -> f64 {
     let sampling = Sampling { samples: DRAWS, ..Sampling::default() };
     let drawn = draws(model, sampling).and_then(|draws| figures(model, law, &draws));
     let left_out = figures(model, law, folds).filter(|left_out| left_out.len() > 2);

@@ -1,0 +1,12 @@
+//! How sure a model's standard manoeuvres are: draws from its posterior, the bands that they give,
+//! the trial that would narrow them, and how far models are apart that each missed some trials.
+
+mod bands;
+mod fold_scatter;
+mod next_trial;
+mod sampling;
+
+pub use bands::{Band, Bands, bands};
+pub use fold_scatter::fold_factor;
+pub use next_trial::NextTrial;
+pub use sampling::{Sampling, TooManySamples, draws};
