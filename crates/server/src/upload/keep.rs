@@ -10,7 +10,8 @@ use sistership_trials::samples::{self, SamplesError};
 use sistership_trials::{ManifestFile, Refusal, read_trial};
 use tempfile::NamedTempFile;
 
-use super::received::{Arrived, Upload, lost};
+use super::arrived::Arrived;
+use super::received::{Upload, lost};
 use super::room::room;
 use super::spool::temporary;
 use crate::app::App;

@@ -1,10 +1,9 @@
 //! An upload that has arrived.
 
-use std::path::PathBuf;
-
 use sistership_model::manifest::{Manifest, ManifestTrial, TrialConventions, TrialsKind};
-use sistership_trials::{CheckOutcome, ManifestFile, Mapping, Refusal, SensorFile, Source, check};
+use sistership_trials::{CheckOutcome, ManifestFile, Refusal, check};
 
+use super::arrived::Arrived;
 use super::room::room;
 use super::spool::Spooled;
 use crate::app::App;
@@ -23,22 +22,6 @@ pub(crate) struct Upload {
     pub(super) files: Vec<Spooled>,
     /// Of each trial its file among these, and its sensors'.
     pub(super) places: Vec<(usize, Vec<usize>)>,
-}
-
-/// One trial of an upload.
-pub(super) struct Arrived {
-    /// What the manifest says of it.
-    pub manifest: ManifestFile,
-    pub name: String,
-    pub mapping: Mapping,
-    pub path: PathBuf,
-    pub sensors: Vec<(SensorFile, PathBuf)>,
-}
-
-impl Arrived {
-    pub(super) fn open(&self) -> std::io::Result<Source<'static>> {
-        Source::open_trial(&self.name, &self.path, &self.mapping, &self.sensors)
-    }
 }
 
 impl Upload {

@@ -2,7 +2,7 @@
 
 use sistership_trials::{Demand, demand_of_trial, measuring};
 
-use super::received::Arrived;
+use super::arrived::Arrived;
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
 use sistership_pipeline::budget::{self, Share, Shortage};
