@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use sistership_model::Trial;
-use sistership_trials::{Mapping, Source, read_manifest, read_trial};
+use sistership_trials::{Mapping, Source, read_manifest_file, read_trial};
 
 /// How the files of the dataset are read: the columns of `../shared/data/esso-osaka/README.md`.
 pub const MANIFEST: &str = include_str!("../data/esso-osaka.yaml");
@@ -14,7 +14,8 @@ pub const MANIFEST: &str = include_str!("../data/esso-osaka.yaml");
 /// Where a file cannot be read: the measured data must pass the door.
 pub fn trials(folder: &Path, kinds: &[&str]) -> Vec<Trial> {
     let manifest =
-        read_manifest("esso-osaka.yaml", MANIFEST).unwrap_or_else(|error| panic!("{error}"));
+        read_manifest_file("esso-osaka.yaml", MANIFEST).unwrap_or_else(|error| panic!("{error}"));
+    let manifest = manifest.manifest;
     let wanted = manifest
         .trials
         .iter()

@@ -8,13 +8,14 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crates that only some may name.
-const ALLOWED: [(&str, &[&str]); 17] = [
+const ALLOWED: [(&str, &[&str]); 18] = [
     ("model", &[]),
     ("dynamics", &["model"]),
     ("stretches", &[]),
     ("containers", &[]),
     ("trials", &["model", "containers"]),
     ("regression", &[]),
+    ("branches", &["model", "dynamics"]),
     ("bands", &["model", "dynamics"]),
     ("estimate", &["model", "dynamics", "bands", "regression"]),
     ("choice", &["model", "bands", "estimate"]),

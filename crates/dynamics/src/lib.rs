@@ -1,6 +1,7 @@
 //! Forward: from a model and what is done to the ship to her motion, and to the figures by which
 //! she is judged.
 
+pub mod branch;
 pub mod candidates;
 pub mod envelope;
 pub mod equations;

@@ -2,6 +2,7 @@
 //! motion is compared.
 
 mod part;
+mod rates;
 mod record;
 mod replayed;
 mod truth;
@@ -12,6 +13,7 @@ use crate::integrate::Method;
 use crate::lockstep;
 use crate::ship::Ship;
 use part::Part;
+pub use rates::instants_along;
 pub use record::MissingChannel;
 use record::Record;
 pub use replayed::Replay;

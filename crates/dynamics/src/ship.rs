@@ -1,17 +1,20 @@
 //! A ship ready to sail: plant, steering gear, envelope and what is held constant around her.
 
+use std::sync::Arc;
+
 use sistership_model::law::Law;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::validity::{Excursion, Region};
 use sistership_model::{Model, particulars};
 
+use crate::branch::{Instant, LearnedBranch};
 use crate::envelope::Envelope;
 use crate::equations::{Coefficients, EquationsOfMotion, PlantError};
 use crate::gear::Gear;
 use crate::instruments::{Instruments, truth};
 use crate::integrate::Method;
 use crate::plant::{Inputs, MAX_INPUTS, Plant, Work};
-use crate::state::{StateVector, States, Trajectory, at};
+use crate::state::{StateVector, States, Trajectory, at, lane_of};
 use crate::tape::Lanes;
 use crate::validity::leaves;
 
@@ -39,7 +42,12 @@ pub struct Ship {
     instruments: [Option<Instruments>; 2],
     /// What the model's trials covered.
     validity: Option<Region>,
+    /// What was learned beside the law.
+    branch: Option<Arc<dyn LearnedBranch>>,
 }
+
+/// Places of the velocities that a learned branch changes.
+const VELOCITIES: [usize; 3] = [at::U, at::V, at::R];
 
 /// Places of the inputs that change during a run.
 #[derive(Debug, Clone, Copy)]
@@ -109,7 +117,14 @@ impl Ship {
             approach_speed_m_s: speed,
             approach_n_rps,
             validity: model.validity.clone(),
+            branch: None,
         })
+    }
+
+    /// This ship with what was learned beside her law of motion, her foundation.
+    pub fn with_branch(mut self, branch: Arc<dyn LearnedBranch>) -> Self {
+        self.branch = Some(branch);
+        self
     }
 
     /// Sets the water depth for laws that know it, m.
@@ -186,7 +201,7 @@ impl Ship {
         work: &mut Work,
     ) -> StateVector {
         let Some(instruments) = &self.instruments[frame as usize] else { return *state };
-        let rate = self.plant.rate(state, inputs, work);
+        let rate = self.rate_with(state, inputs, work);
         instruments.read(
             state,
             &rate,
@@ -249,7 +264,8 @@ impl Ship {
         step_s: f64,
         work: &mut Work,
     ) -> StateVector {
-        let mut rate = self.plant.rate(state, &self.inputs(state[at::DELTA], order.n_rps), work);
+        let inputs = self.inputs(state[at::DELTA], order.n_rps);
+        let mut rate = self.rate_with(state, &inputs, work);
         rate[at::DELTA] = self.gear.rate(order.delta_rad, state[at::DELTA], step_s);
         rate
     }
@@ -262,13 +278,34 @@ impl Ship {
         n_rps: f64,
         work: &mut Work,
     ) -> StateVector {
-        self.plant.rate(state, &self.inputs(delta_rad, n_rps), work)
+        self.rate_with(state, &self.inputs(delta_rad, n_rps), work)
     }
 
     /// The rate of change of the state with every input of the law given, in the order of
     /// [`Ship::law_inputs`].
     pub fn rate_with(&self, state: &StateVector, inputs: &Inputs, work: &mut Work) -> StateVector {
-        self.plant.rate(state, inputs, work)
+        let mut rate = self.plant.rate(state, inputs, work);
+        if let Some(branch) = &self.branch {
+            let added = branch.addition(&self.instant(state, &|slot| inputs[slot], &rate));
+            VELOCITIES.into_iter().zip(added).for_each(|(place, added)| rate[place] += added);
+        }
+        rate
+    }
+
+    /// What a learned branch sees; `input` is that of the law at its place.
+    pub fn instant(
+        &self,
+        state: &StateVector,
+        input: &dyn Fn(usize) -> f64,
+        foundation: &StateVector,
+    ) -> Instant {
+        let at_slot = |slot: Option<usize>| slot.map_or(0.0, input);
+        Instant {
+            velocities: VELOCITIES.map(|place| state[place]),
+            delta_rad: at_slot(self.slots.delta),
+            n_rps: at_slot(self.slots.n),
+            accelerations: VELOCITIES.map(|place| foundation[place]),
+        }
     }
 
     /// The rates of change of several states, each with every input of the law.
@@ -278,7 +315,20 @@ impl Ship {
         inputs: &[Lanes<N>],
         work: &mut Work<N>,
     ) -> States<N> {
-        self.plant.rates(states, inputs, work)
+        let mut rates = self.plant.rates(states, inputs, work);
+        if let Some(branch) = &self.branch {
+            // Each lane by itself: what comes out does not depend on who sails beside.
+            for lane in 0..N {
+                let input = |slot: usize| inputs[slot][lane];
+                let (state, own) = (lane_of(states, lane), lane_of(&rates, lane));
+                let added = branch.addition(&self.instant(&state, &input, &own));
+                VELOCITIES
+                    .into_iter()
+                    .zip(added)
+                    .for_each(|(place, added)| rates[place][lane] += added);
+            }
+        }
+        rates
     }
 
     /// How fast the steering gear moves the rudder towards what is ordered, rad/s.

@@ -3,6 +3,7 @@
 //! No I/O and no async: text goes in, checked values come out, and every refusal names file, line
 //! and field.
 
+pub mod branch;
 pub mod categories;
 pub mod coefficient;
 pub mod effect;

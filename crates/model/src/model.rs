@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::branch::Branch;
 use crate::effect::{AppliedEffect, Form, dress, qualified};
 use crate::error::{Blame, FileError};
 use crate::law::limits::most;
@@ -67,6 +68,11 @@ pub struct Model {
     /// The motion that its trials covered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub validity: Option<Region>,
+    /// What was learned beside the law. Not in the schema until requests may bring it: a simulation
+    /// needs its weights, too.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(skip)]
+    pub branch: Option<Branch>,
 }
 
 /// The word `model`.
@@ -133,6 +139,7 @@ impl Model {
             uncertainty: None,
             posterior: None,
             validity: None,
+            branch: None,
         };
         model.fill_parameters(law);
         model
@@ -164,6 +171,7 @@ impl Model {
         // What acted on the source's trials, and what they left open, belongs to those trials.
         model.effects = Vec::new();
         (model.uncertainty, model.posterior, model.validity) = (None, None, None);
+        model.branch = None;
         for name in law.parameters.keys() {
             if let Some(value) = law.derived_parameter(name, particulars) {
                 model.parameters.insert(name.clone(), Quantity::new(value, DERIVED));
@@ -235,6 +243,9 @@ impl Model {
         }
         if let Some(region) = &self.validity {
             region.check().map_err(|e| ("validity".to_owned(), e.to_string()))?;
+        }
+        if let Some(branch) = &self.branch {
+            branch.check().map_err(|e| ("branch".to_owned(), e.to_string()))?;
         }
         law.with_effects(self).map(|_| ())
     }

@@ -114,6 +114,27 @@ impl Region {
         outside.map(|excursion| Excursion { share: count as f64 / t_s.len() as f64, ..excursion })
     }
 
+    /// The directions in which it is bounded, for who asks often.
+    pub fn faces(&self) -> Vec<Face<'_>> {
+        let single = self
+            .ranges
+            .keys()
+            .map(|name| Face { terms: vec![self.term(name, 1.0)], bounds: [-1.0, 1.0] });
+        let together = pairs(&self.ranges).flat_map(|(a, b)| {
+            let of = |sign: char, factor: f64| {
+                let bounds = *self.pairs.get(&format!("{a}{sign}{b}"))?;
+                Some(Face { terms: vec![self.term(a, 1.0), self.term(b, factor)], bounds })
+            };
+            [of('+', 1.0), of('-', -1.0)].into_iter().flatten().collect::<Vec<_>>()
+        });
+        single.chain(together).collect()
+    }
+
+    fn term<'a>(&self, channel: &'a str, sign: f64) -> FaceTerm<'a> {
+        let (centre, half) = centre_and_half(self.ranges[channel]);
+        FaceTerm { channel, centre, factor: sign / half }
+    }
+
     /// Checks that bounds are in order.
     ///
     /// # Errors
@@ -141,6 +162,26 @@ pub struct RangeError {
     pub high: f64,
 }
 
+/// A direction in which a region is bounded: a channel, or a sum or difference of two.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Face<'a> {
+    /// What is summed, each scaled to its range.
+    pub terms: Vec<FaceTerm<'a>>,
+    /// Least and greatest sum inside.
+    pub bounds: [f64; 2],
+}
+
+/// `factor (value - centre)` of a channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FaceTerm<'a> {
+    /// The channel.
+    pub channel: &'a str,
+    /// The middle of its range.
+    pub centre: f64,
+    /// One by half its range, with the sign.
+    pub factor: f64,
+}
+
 impl Excursion {
     /// In words.
     pub fn words(&self) -> String {
@@ -160,10 +201,16 @@ const SLACK: f64 = 0.005;
 const STILL: f64 = 0.01;
 
 /// A value with -1 at the low and 1 at the high end of a range.
-fn scale(x: f64, [low, high]: [f64; 2]) -> f64 {
+fn scale(x: f64, range: [f64; 2]) -> f64 {
+    let (centre, half) = centre_and_half(range);
+    (x - centre) / half
+}
+
+/// The middle of a range and half its width; 1 for a channel that stayed at nothing.
+fn centre_and_half([low, high]: [f64; 2]) -> (f64, f64) {
     let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
     let half = half.max(STILL * centre.abs());
-    if half > 0.0 { (x - centre) / half } else { x - centre }
+    (centre, if half > 0.0 { half } else { 1.0 })
 }
 
 fn excess(x: f64, [low, high]: [f64; 2]) -> f64 {
@@ -238,6 +285,26 @@ mod tests {
             .unwrap();
         assert_eq!((out.first_s, out.share, out.along.as_str()), (4.0, 0.6, "u"));
         assert!(out.beyond > 5.0 && out.words().contains("from 4 s, 60 % of the time"));
+    }
+
+    #[test]
+    fn faces_say_the_same_as_the_region() {
+        let region = region();
+        for (u, v, r) in [(5.0, 0.4, 0.008), (8.0, 0.0, 0.0), (3.0, -0.9, 0.002)] {
+            let value = |name: &str| match name {
+                "u" => u,
+                "v" => v,
+                _ => r,
+            };
+            let one = |face: Face<'_>| {
+                let term = |t: &FaceTerm<'_>| t.factor * (value(t.channel) - t.centre);
+                let sum: f64 = face.terms.iter().map(term).sum();
+                excess(sum, face.bounds)
+            };
+            let furthest = region.faces().into_iter().map(one).fold(0.0, f64::max);
+            let (_, beyond) = region.beyond(&|name| Some(value(name))).unwrap();
+            assert!((furthest - beyond).abs() < 1e-12, "{furthest} {beyond}");
+        }
     }
 
     #[test]

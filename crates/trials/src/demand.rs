@@ -2,11 +2,12 @@
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sistership_containers::archive;
 
 use crate::csv_file;
+use crate::declarations::SensorFile;
 use crate::mapping::Mapping;
 use crate::mat_file;
 use crate::nmea_file;
@@ -84,6 +85,26 @@ pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
         columns,
         bytes: EVERY + measuring(path)? + holding + rows as u64 * row + writing,
     })
+}
+
+/// As [`demand`], of a file with the sensors' that belong to the same trial: all are held until
+/// they are on one time base.
+///
+/// # Errors
+/// A file cannot be read.
+pub fn demand_of_trial(
+    path: &Path,
+    mapping: &Mapping,
+    sensors: &[(SensorFile, PathBuf)],
+) -> io::Result<Demand> {
+    let mut whole = demand(path, mapping)?;
+    for (sensor, path) in sensors {
+        let own = demand(path, &mapping.of_sensor(sensor))?;
+        // Its columns by its own rows, and once more by the trial's.
+        whole.bytes += own.bytes + 8 * (own.columns * whole.rows) as u64;
+        whole.columns += own.columns;
+    }
+    Ok(whole)
 }
 
 /// Bytes for each row that deriving channels takes: a state and its covariance, what is smoothed of

@@ -67,11 +67,11 @@ mod vocabulary;
 mod workbook;
 
 pub use declarations::{Antenna, Declarations, Derivable, Maximum, North, SensorFile};
-pub use demand::{Demand, demand, measuring};
+pub use demand::{Demand, demand_of_trial, measuring};
 pub use derived_channel::DerivedChannel;
 pub use limits::Limits;
 pub use load::{Loaded, check_path, load_path};
-pub use manifest::{read_manifest, read_manifest_file};
+pub use manifest::read_manifest_file;
 pub use manifest_file::ManifestFile;
 pub use mapping::Mapping;
 pub use needs::{Lack, lacking};

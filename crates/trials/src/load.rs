@@ -71,14 +71,7 @@ struct Listed {
 
 impl Listed {
     fn open(&self) -> io::Result<Source<'static>> {
-        let mut source = Source::open(&self.name, &self.path)?;
-        for (sensor, path) in &self.sensors {
-            let named = |error| io::Error::other(format!("{}: {error}", sensor.file));
-            let other = Source::open(&sensor.file, path).map_err(named)?;
-            source =
-                source.with_sensor(other, self.mapping.of_sensor(sensor), sensor.clock_offset_s);
-        }
-        Ok(source)
+        Source::open_trial(&self.name, &self.path, &self.mapping, &self.sensors)
     }
 
     /// Whether both are stretches of one file, which is then read once.

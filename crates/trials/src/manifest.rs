@@ -13,29 +13,11 @@ use crate::stretches::{self, same_file};
 use crate::table::Target;
 use crate::units::Kind;
 
-/// Reads a manifest; `file_name` is only for messages.
-///
-/// # Errors
-/// Names line and field of what is wrong: the YAML, an unknown channel or unit, a path that leaves
-/// the folder, a file named twice, impossible smoothing.
-pub fn read_manifest(file_name: &str, text: &str) -> Result<Manifest, FileError> {
-    let file = read_manifest_file(file_name, text)?;
-    if file.is_plain() {
-        return Ok(file.manifest);
-    }
-    let known = "kind, ship, conventions, columns and trials of whole files";
-    Err(FileError {
-        file: file_name.to_owned(),
-        line: None,
-        field: String::new(),
-        message: format!("only {known} are read here; read the files from their folder instead"),
-    })
-}
-
 /// Reads a manifest with everything that it declares; `file_name` is only for messages.
 ///
 /// # Errors
-/// As [`read_manifest`], and what is wrong with the declarations.
+/// Names line and field of what is wrong: the YAML, an unknown channel or unit, a path that leaves
+/// the folder, a file named twice, impossible smoothing, a declaration that cannot be.
 pub fn read_manifest_file(file_name: &str, text: &str) -> Result<ManifestFile, FileError> {
     let written: Written =
         sistership_model::yaml::read(text).map_err(|error| FileError::of_yaml(file_name, error))?;
@@ -221,12 +203,12 @@ trials:
 
     fn refused(from: &str, to: &str) -> String {
         assert!(GOOD.contains(from));
-        read_manifest("m.yaml", &GOOD.replace(from, to)).unwrap_err().to_string()
+        read_manifest_file("m.yaml", &GOOD.replace(from, to)).unwrap_err().to_string()
     }
 
     #[test]
     fn the_manifest_of_the_design_is_read() {
-        let manifest = read_manifest("m.yaml", GOOD).unwrap();
+        let manifest = read_manifest_file("m.yaml", GOOD).unwrap().manifest;
         assert_eq!(manifest.columns.len(), 2);
         assert_eq!(manifest.trials[0].manoeuvre.as_deref(), Some("zigzag 15/15"));
     }
@@ -282,7 +264,6 @@ trials:
         let file = read_manifest_file("m.yaml", &text).unwrap();
         assert_eq!(file.declarations.maximum["delta"].value, 120.0);
         assert_eq!(read_manifest_file("m", &file.to_yaml().unwrap()).unwrap(), file);
-        assert!(read_manifest("m", &text).unwrap_err().to_string().contains("only kind, ship"));
         let refused = |from: &str, to: &str| {
             read_manifest_file("m", &text.replace(from, to)).unwrap_err().to_string()
         };

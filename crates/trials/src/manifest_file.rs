@@ -11,7 +11,8 @@ use crate::declarations::{Antenna, Declarations, Derivable, Maximum, North, Sens
 use crate::mapping::Mapping;
 
 /// A manifest with everything that it declares.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(into = "Written")]
 pub struct ManifestFile {
     /// Columns, conventions and files.
     pub manifest: Manifest,
@@ -75,11 +76,14 @@ impl ManifestFile {
         Mapping { declared: self.declarations.clone(), ..Mapping::of(&self.manifest, trial) }
     }
 
-    /// Whether it says no more than the model's type holds.
-    pub(crate) fn is_plain(&self) -> bool {
-        self.declarations == Declarations::default()
-            && self.sensors.iter().all(Vec::is_empty)
-            && !self.manifest.trials.iter().any(ManifestTrial::is_stretch)
+    /// What it says of one of its trials.
+    pub fn only(&self, index: usize) -> Self {
+        let trials = self.manifest.trials.get(index).cloned().into_iter().collect();
+        Self {
+            manifest: Manifest { trials, ..self.manifest.clone() },
+            declarations: self.declarations.clone(),
+            sensors: self.sensors.get(index).cloned().into_iter().collect(),
+        }
     }
 
     /// The text of the file.
@@ -88,6 +92,13 @@ impl ManifestFile {
     /// None that is known: its content is plain text and numbers.
     pub fn to_yaml(&self) -> Result<String, serde_yaml::Error> {
         serde_yaml::to_string(&Written::from(self.clone()))
+    }
+}
+
+impl From<Manifest> for ManifestFile {
+    fn from(manifest: Manifest) -> Self {
+        let sensors = vec![Vec::new(); manifest.trials.len()];
+        Self { manifest, declarations: Declarations::default(), sensors }
     }
 }
 

@@ -2,10 +2,11 @@
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use bytes::Bytes;
 
+use crate::declarations::SensorFile;
 use crate::magic::{self, Kind, LOOKED_AT};
 use crate::mapping::Mapping;
 use crate::workbook::ReadSeek;
@@ -83,6 +84,25 @@ impl<'a> Source<'a> {
         let Self { name, content, .. } = other;
         self.sensors.push(Sensor { name, content, mapping, clock_offset_s });
         self
+    }
+
+    /// A file on disk with the sensors' that belong to the same trial.
+    ///
+    /// # Errors
+    /// A file cannot be opened or read; a sensor's is named.
+    pub fn open_trial(
+        name: impl Into<String>,
+        path: &Path,
+        mapping: &Mapping,
+        sensors: &[(SensorFile, PathBuf)],
+    ) -> io::Result<Self> {
+        let mut source = Self::open(name, path)?;
+        for (sensor, path) in sensors {
+            let named = |error| io::Error::other(format!("{}: {error}", sensor.file));
+            let other = Self::open(&sensor.file, path).map_err(named)?;
+            source = source.with_sensor(other, mapping.of_sensor(sensor), sensor.clock_offset_s);
+        }
+        Ok(source)
     }
 
     /// A file on disk, streamed and told by its first bytes.

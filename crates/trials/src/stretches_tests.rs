@@ -6,7 +6,6 @@ use sistership_model::trial::Channel;
 
 use super::*;
 use crate::load::{check_path, load_path};
-use crate::manifest::read_manifest;
 use crate::outcome::Refusal;
 
 /// Trials of a file of 1000 rows, one a second, by entries of a manifest.
@@ -128,8 +127,6 @@ fn manifests_refuse_what_is_wrong_without_the_file() {
     let text = refused("  - { file: a.csv, to: 10 }\n  - { file: a.csv, from: 9, to: 12 }\n");
     assert!(text.contains("trials[1].from: overlaps with `a.csv#t=,10`"), "{text}");
     assert!(refused("  - { file: a.csv, to: 10 }\n  - { file: a.csv }\n").contains("twice"));
-    let text = "kind: trials\nship: a\ntrials: [{ file: a.csv, from: 1 }]\n";
-    assert!(read_manifest("m", text).unwrap_err().to_string().contains("trials of whole files"));
 }
 
 #[test]

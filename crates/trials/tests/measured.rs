@@ -9,7 +9,9 @@ use std::path::{Path, PathBuf};
 use sistership_model::manifest::Manifest;
 use sistership_model::trial::{Channel, Trial};
 use sistership_trials::samples::{from_parquet, to_parquet};
-use sistership_trials::{Mapping, Refusal, Source, check, load_path, read_manifest, read_trial};
+use sistership_trials::{
+    Mapping, Refusal, Source, check, load_path, read_manifest_file, read_trial,
+};
 
 const ESSO_OSAKA: &str = r#"
 kind: trials
@@ -60,7 +62,7 @@ fn csv_files(folder: &Path) -> Vec<PathBuf> {
 }
 
 fn esso_osaka() -> Mapping {
-    let manifest: Manifest = read_manifest("esso-osaka.yaml", ESSO_OSAKA).unwrap();
+    let manifest: Manifest = read_manifest_file("esso-osaka.yaml", ESSO_OSAKA).unwrap().manifest;
     Mapping::of(&manifest, &manifest.trials[0])
 }
 

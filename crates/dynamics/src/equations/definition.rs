@@ -50,8 +50,12 @@ impl<'a> EquationsOfMotion<'a> {
     /// Of a law with the effects that a model carries.
     ///
     /// # Errors
-    /// Says which effect cannot be used, and why.
+    /// Says which effect cannot be used, and why. Refuses a model with a learned branch, whose
+    /// weights only [`Ship::with_branch`](crate::Ship::with_branch) brings.
     pub fn new(model: &'a Model, law: &'a Law) -> Result<Self, PlantError> {
+        if model.branch.is_some() {
+            return Err(PlantError::Branch(model.name.clone()));
+        }
         if model.effects.is_empty() {
             return Ok(Self::of_law(model, Cow::Borrowed(law)));
         }

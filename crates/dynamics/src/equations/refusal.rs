@@ -40,6 +40,9 @@ pub enum PlantError {
         /// Most inputs.
         most: usize,
     },
+    /// A model with a learned branch is sailed without its weights.
+    #[error("`{0}` has a learned branch, and would be sailed here without it")]
+    Branch(String),
     /// The law has no such coefficient.
     #[error(transparent)]
     Term(#[from] TermError),

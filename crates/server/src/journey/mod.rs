@@ -12,3 +12,4 @@ mod observed;
 mod refusals;
 mod registry;
 mod search;
+mod uploads;

@@ -66,7 +66,7 @@ async fn upload(State(app): State<App>, key: Key, upload: Upload) -> Result<Resp
 }
 
 async fn kept(app: &App, upload: Upload) -> Result<Reply> {
-    let ship = upload.manifest.ship.clone();
+    let ship = upload.ship().to_owned();
     let (kept, job): (Vec<Kept>, _) = keep(app, upload).await?;
     let location = match kept.as_slice() {
         [only] => format!("/v1/trials/{}", only.row.id),

@@ -3,17 +3,17 @@
 use std::io::BufWriter;
 
 use bytes::Bytes;
-use sistership_model::manifest::Manifest;
 use sistership_store::{
     Alias, Inserted, Job, NewJob, NewTrial, Objects, Spool, StoreError, Trial, is_out_of_space,
 };
 use sistership_trials::samples::{self, SamplesError};
-use sistership_trials::{Mapping, Refusal, Source, read_trial};
+use sistership_trials::{ManifestFile, Refusal, read_trial};
 use tempfile::NamedTempFile;
 
+use super::arrived::Arrived;
 use super::received::{Upload, lost};
 use super::room::room;
-use super::spool::{Spooled, temporary};
+use super::spool::temporary;
 use crate::app::App;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::problem::{Problem, Result};
@@ -36,7 +36,7 @@ struct Accepted {
 /// Keeps the trials of an upload: all of them, or none where one is refused. The job that diagnoses
 /// the ship's champion on the new ones is queued with them.
 pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option<Job>)> {
-    let (ship, diagnose) = (upload.manifest.ship.clone(), upload.diagnose);
+    let (ship, diagnose) = (upload.ship().to_owned(), upload.diagnose);
     match app.store().ships().get(&ship).await {
         Err(StoreError::NotFound { .. }) => return Err(no_ship(&ship)),
         other => drop(other?),
@@ -79,14 +79,11 @@ impl Upload {
     /// Reads every file, one after the other; the refusals of all of them are told together.
     async fn accept(self, app: &App) -> Result<Vec<Accepted>> {
         let (mut accepted, mut refused) = (Vec::new(), Vec::new());
-        for (entry, file) in self.manifest.trials.iter().zip(self.files) {
-            let mut mapping = Mapping::of(&self.manifest, entry);
-            let share = room(app, &entry.file, &file.path, &mut mapping).await?;
-            let (only, inner) =
-                (Manifest { trials: vec![entry.clone()], ..self.manifest.clone() }, app.clone());
+        for mut trial in self.trials() {
+            let (share, inner) = (room(app, &mut trial).await?, app.clone());
             let read = move || {
                 let _share = share;
-                read(&only, &file, &mapping, inner.spool())
+                read(&trial, inner.spool())
             };
             match app.compute(read).await?? {
                 Ok(trial) => accepted.push(trial),
@@ -97,31 +94,29 @@ impl Upload {
     }
 }
 
-/// Reads the file of a manifest that lists one.
-fn read(
-    only: &Manifest,
-    file: &Spooled,
-    mapping: &Mapping,
-    spool: &Spool,
-) -> Result<std::result::Result<Accepted, Refusal>> {
-    let name = only.trials.first().map_or("", |entry| entry.file.as_str());
-    let source = Source::open(name, &file.path).map_err(|error| lost(name, &error));
-    match source.and_then(|source| read_trial(source, mapping)) {
-        Ok(trial) => Accepted::new(only, &trial, spool).map(Ok),
+/// Reads a trial, and writes its samples.
+fn read(arrived: &Arrived, spool: &Spool) -> Result<std::result::Result<Accepted, Refusal>> {
+    let source = arrived.open().map_err(|error| lost(&arrived.name, &error));
+    match source.and_then(|source| read_trial(source, &arrived.mapping)) {
+        Ok(trial) => Accepted::new(&arrived.manifest, &trial, spool).map(Ok),
         Err(refusal) => Ok(Err(refusal)),
     }
 }
 
 impl Accepted {
-    fn new(only: &Manifest, trial: &sistership_model::trial::Trial, spool: &Spool) -> Result<Self> {
+    fn new(
+        only: &ManifestFile,
+        trial: &sistership_model::trial::Trial,
+        spool: &Spool,
+    ) -> Result<Self> {
         let samples = temporary(spool)?;
         samples::write_parquet(BufWriter::new(samples.as_file()), trial).map_err(unwritten)?;
         let new = NewTrial {
-            ship: only.ship.clone(),
+            ship: only.manifest.ship.clone(),
             sha256: String::new(),
             name: trial.name.clone(),
             manifest: json(only)?,
-            conventions: json(&only.conventions)?,
+            conventions: json(&only.manifest.conventions)?,
             manoeuvre: trial.manoeuvre.clone(),
             sample_rows: i64::try_from(trial.len()).map_err(Problem::internal)?,
             duration_s: trial.duration_s(),

@@ -1,6 +1,7 @@
 //! Uploads of trials: streamed to files, read and checked there, and kept all together or not at
 //! all.
 
+mod arrived;
 mod keep;
 mod multipart;
 mod raw;

@@ -3,8 +3,8 @@
 use axum::extract::multipart::{Field, Multipart, MultipartError};
 use axum::extract::{FromRequest as _, Request};
 use axum::http::StatusCode;
-use sistership_model::manifest::{Manifest, ManifestTrial};
-use sistership_trials::read_manifest;
+use sistership_model::manifest::ManifestTrial;
+use sistership_trials::{ManifestFile, read_manifest_file};
 
 use super::received::{Upload, canonical};
 use super::spool::{Spooled, spool};
@@ -49,9 +49,9 @@ pub(super) async fn receive(request: Request, app: &App) -> Result<Upload> {
     }
 }
 
-async fn read(manifest: &str) -> Result<Manifest> {
+async fn read(manifest: &str) -> Result<ManifestFile> {
     read_yaml(manifest.len()).await?;
-    Ok(read_manifest("manifest", manifest)?)
+    Ok(read_manifest_file("manifest", manifest)?)
 }
 
 impl Parts {
@@ -89,20 +89,30 @@ impl Parts {
     }
 
     /// The files that a manifest lists; each must be there, and no other.
-    fn listed(mut self, manifest: Manifest) -> Result<Upload> {
-        let mut files = Vec::with_capacity(manifest.trials.len());
-        for (index, trial) in manifest.trials.iter().enumerate() {
-            let Some(found) = self.find(&trial.file) else {
-                return Err(self.missing(index, &trial.file));
-            };
-            files.push(self.files.swap_remove(found).file);
+    fn listed(mut self, manifest: ManifestFile) -> Result<Upload> {
+        let (mut files, mut names, mut places) = (Vec::new(), Vec::new(), Vec::new());
+        let mut place = |parts: &mut Self, field: String, name: &str| -> Result<usize> {
+            if let Some(known) = names.iter().position(|known| known == name) {
+                return Ok(known);
+            }
+            let found = parts.find(name).ok_or_else(|| parts.missing(field, name))?;
+            files.push(parts.files.swap_remove(found).file);
+            names.push(name.to_owned());
+            Ok(files.len() - 1)
+        };
+        for (index, trial) in manifest.manifest.trials.iter().enumerate() {
+            let main = place(&mut self, format!("trials[{index}].file"), &trial.file)?;
+            let sensors = manifest.sensors[index].iter().enumerate().map(|(at, sensor)| {
+                place(&mut self, format!("trials[{index}].sensors[{at}].file"), &sensor.file)
+            });
+            places.push((main, sensors.collect::<Result<_>>()?));
         }
         match self.files.first() {
             Some(extra) => Err(Problem::invalid(
                 &extra.name,
                 "is not listed under `trials` of the manifest; list it or leave it out",
             )),
-            None => Ok(Upload { manifest, diagnose: true, files }),
+            None => Ok(Upload { manifest, diagnose: true, files, places }),
         }
     }
 
@@ -120,7 +130,7 @@ impl Parts {
         exact.or_else(|| alike.next().filter(|_| alike.next().is_none()))
     }
 
-    fn missing(&self, index: usize, path: &str) -> Problem {
+    fn missing(&self, field: String, path: &str) -> Problem {
         let sent: Vec<&str> = self.files.iter().map(|part| part.name.as_str()).collect();
         let sent = if sent.is_empty() {
             "none is left".to_owned()
@@ -129,7 +139,7 @@ impl Parts {
         };
         let message = format!("the manifest lists `{path}`, but no part has that filename; {sent}");
         Problem::new(StatusCode::UNPROCESSABLE_ENTITY, message.clone())
-            .with(Fault::at(format!("trials[{index}].file"), message))
+            .with(Fault::at(field, message))
     }
 
     fn canonical(self, ship: String) -> Result<Upload> {
@@ -138,11 +148,7 @@ impl Parts {
         }
         let trial = |part: &Part| ManifestTrial::of(part.name.clone());
         let manifest = canonical(ship, self.files.iter().map(trial).collect())?;
-        Ok(Upload {
-            manifest,
-            diagnose: true,
-            files: self.files.into_iter().map(|part| part.file).collect(),
-        })
+        Ok(Upload::of(manifest, true, self.files.into_iter().map(|part| part.file).collect()))
     }
 }
 

@@ -50,11 +50,8 @@ pub(super) async fn receive(mut request: Request, app: &App) -> Result<Upload> {
         vec![ManifestTrial { manoeuvre, depth_m, ..ManifestTrial::of(file) }],
     )?;
     let stream = request.with_limited_body().into_body().into_data_stream().map_err(interrupted);
-    Ok(Upload {
-        manifest,
-        diagnose: diagnose.unwrap_or(true),
-        files: vec![spool(app.spool(), stream).await?],
-    })
+    let files = vec![spool(app.spool(), stream).await?];
+    Ok(Upload::of(manifest, diagnose.unwrap_or(true), files))
 }
 
 /// Too much was sent, or the caller hung up.

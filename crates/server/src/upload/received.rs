@@ -1,8 +1,9 @@
 //! An upload that has arrived.
 
 use sistership_model::manifest::{Manifest, ManifestTrial, TrialConventions, TrialsKind};
-use sistership_trials::{CheckOutcome, Mapping, Refusal, Source, check};
+use sistership_trials::{CheckOutcome, ManifestFile, Refusal, check};
 
+use super::arrived::Arrived;
 use super::room::room;
 use super::spool::Spooled;
 use crate::app::App;
@@ -11,17 +12,44 @@ use crate::problem::{Problem, Result};
 /// The longest name of a file.
 const NAME_BYTES: usize = 200;
 
-/// An upload that has arrived: a manifest and the files that it lists, in its order.
+/// An upload that has arrived: a manifest and the files that it lists.
 #[derive(Debug)]
 pub(crate) struct Upload {
     /// What the files are.
-    pub manifest: Manifest,
+    pub manifest: ManifestFile,
     /// Whether the ship's champion is to be diagnosed on them.
     pub diagnose: bool,
     pub(super) files: Vec<Spooled>,
+    /// Of each trial its file among these, and its sensors'.
+    pub(super) places: Vec<(usize, Vec<usize>)>,
 }
 
 impl Upload {
+    /// Of files each of which is a trial, in the manifest's order.
+    pub(super) fn of(manifest: Manifest, diagnose: bool, files: Vec<Spooled>) -> Self {
+        let places = (0..files.len()).map(|file| (file, Vec::new())).collect();
+        Self { manifest: manifest.into(), diagnose, files, places }
+    }
+
+    /// The ship whose trials they are.
+    pub(crate) fn ship(&self) -> &str {
+        &self.manifest.manifest.ship
+    }
+
+    /// Its trials; the files stay where they are while the upload is held.
+    pub(super) fn trials(&self) -> impl Iterator<Item = Arrived> {
+        let path = |file: usize| self.files[file].path.to_path_buf();
+        let manifest = &self.manifest;
+        let each = manifest.manifest.trials.iter().zip(&manifest.sensors).zip(&self.places);
+        each.enumerate().map(move |(index, ((entry, sensors), (file, others)))| Arrived {
+            manifest: manifest.only(index),
+            name: entry.label(),
+            mapping: manifest.mapping(entry),
+            path: path(*file),
+            sensors: sensors.iter().cloned().zip(others.iter().map(|&other| path(other))).collect(),
+        })
+    }
+
     /// What tells one upload from another, however its parts are delimited.
     pub(crate) fn fingerprint(&self) -> Result<String> {
         let manifest = serde_json::to_string(&self.manifest).map_err(Problem::internal)?;
@@ -31,16 +59,14 @@ impl Upload {
 
     /// Checks every file without keeping any, one after the other.
     pub(crate) async fn check(self, app: &App) -> Result<Vec<CheckOutcome>> {
-        let mut outcomes = Vec::with_capacity(self.files.len());
-        for (entry, file) in self.manifest.trials.iter().zip(self.files) {
-            let mut mapping = Mapping::of(&self.manifest, entry);
-            let share = room(app, &entry.file, &file.path, &mut mapping).await?;
-            let name = entry.file.clone();
+        let mut outcomes = Vec::with_capacity(self.places.len());
+        for mut trial in self.trials() {
+            let share = room(app, &mut trial).await?;
             let one = move || {
                 let _share = share;
-                match Source::open(&name, &file.path) {
-                    Ok(source) => check(source, &mapping),
-                    Err(error) => unreadable(&name, &error),
+                match trial.open() {
+                    Ok(source) => check(source, &trial.mapping),
+                    Err(error) => unreadable(&trial.name, &error),
                 }
             };
             outcomes.push(app.compute(one).await?);

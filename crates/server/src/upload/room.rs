@@ -1,9 +1,8 @@
 //! Memory for a file of an upload, taken before the file is read.
 
-use std::path::Path;
+use sistership_trials::{Demand, demand_of_trial, measuring};
 
-use sistership_trials::{Demand, Mapping, demand, measuring};
-
+use super::arrived::Arrived;
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
 use sistership_pipeline::budget::{self, Share, Shortage};
@@ -13,21 +12,21 @@ use sistership_pipeline::budget::{self, Share, Shortage};
 ///
 /// # Errors
 /// There is not so much memory, or not soon; the file is named.
-pub(super) async fn room(
-    app: &App,
-    name: &str,
-    path: &Path,
-    mapping: &mut Mapping,
-) -> Result<Option<Share>> {
-    let measuring = measuring(path).map_err(Problem::internal)?;
-    let share = budget::share(measuring).await.map_err(|shortage| named(name, None, shortage))?;
-    let (at, asked) = (path.to_path_buf(), mapping.clone());
-    let measured = app.compute(move || demand(&at, &asked)).await?.map_err(Problem::internal)?;
+pub(super) async fn room(app: &App, trial: &mut Arrived) -> Result<Option<Share>> {
+    let name = trial.name.clone();
+    let paths = std::iter::once(&trial.path).chain(trial.sensors.iter().map(|(_, path)| path));
+    let each: std::io::Result<Vec<u64>> = paths.map(|path| measuring(path)).collect();
+    let measuring = each.map_err(Problem::internal)?.iter().sum();
+    let share = budget::share(measuring).await.map_err(|shortage| named(&name, None, shortage))?;
+    let (path, mapping, sensors) =
+        (trial.path.clone(), trial.mapping.clone(), trial.sensors.clone());
+    let measure = move || demand_of_trial(&path, &mapping, &sensors);
+    let measured = app.compute(measure).await?.map_err(Problem::internal)?;
     // Given back before more is asked for: nobody holds some of the memory while waiting for the
     // rest.
     drop(share);
-    mapping.room = measured.rows;
-    budget::share(measured.bytes).await.map_err(|shortage| named(name, Some(measured), shortage))
+    trial.mapping.room = measured.rows;
+    budget::share(measured.bytes).await.map_err(|shortage| named(&name, Some(measured), shortage))
 }
 
 fn named(name: &str, measured: Option<Demand>, shortage: Shortage) -> Problem {

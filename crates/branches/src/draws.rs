@@ -1,0 +1,60 @@
+//! Random numbers that stay the same: ChaCha is specified to the bit, and what is made of its words
+//! is written here, as libraries change theirs from version to version.
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha12Rng;
+
+/// A stream of random numbers.
+pub struct Draws(ChaCha12Rng);
+
+impl Draws {
+    /// One of the independent streams of a seed.
+    pub fn new(seed: u64, stream: u64) -> Self {
+        let mut rng = ChaCha12Rng::seed_from_u64(seed);
+        rng.set_stream(stream);
+        Self(rng)
+    }
+
+    /// A whole number below `n`.
+    pub fn below(&mut self, n: usize) -> usize {
+        ((u128::from(self.0.next_u64()) * n as u128) >> 64) as usize
+    }
+
+    /// A number between -1 and 1.
+    pub fn signed(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// Some of `0..n`, each at most once, in no order.
+    pub fn some_of(&mut self, count: usize, n: usize) -> Vec<u32> {
+        let mut all: Vec<u32> = (0..n as u32).collect();
+        let count = count.min(n);
+        (0..count).for_each(|k| {
+            let other = k + self.below(n - k);
+            all.swap(k, other);
+        });
+        all.truncate(count);
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn streams_repeat_and_differ() {
+        let first = |stream| Draws::new(7, stream).some_of(5, 100);
+        assert_eq!(first(1), first(1));
+        assert_ne!(first(1), first(2));
+        let mut all = Draws::new(1, 0).some_of(50, 50);
+        all.sort_unstable();
+        assert_eq!(all, (0..50).collect::<Vec<u32>>());
+    }
+
+    #[test]
+    fn numbers_keep_to_their_range() {
+        let mut draws = Draws::new(3, 3);
+        assert!((0..1000).all(|_| draws.below(3) < 3 && draws.signed().abs() <= 1.0));
+    }
+}

@@ -1,0 +1,98 @@
+//! Ridge regression on kernels about some of the samples: the mean of a Gaussian process by a
+//! subset of regressors (Rasmussen and Williams 2006, Eq. 8.14). The kernel is the rational
+//! quadratic one (Eq. 4.19 with an exponent of 1), which needs no function that libraries round
+//! each in their own way.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+use crate::draws::Draws;
+use crate::sample::Sample;
+
+/// A sum of kernels.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Kernels {
+    /// What is answered far from every centre.
+    pub mean: f64,
+    /// Length scale, in deviations.
+    pub length: f64,
+    /// The samples that kernels stand about, one after the other.
+    pub centres: Vec<f64>,
+    /// What each counts for.
+    pub factors: Vec<f64>,
+}
+
+/// What keeps the system solvable where two centres all but coincide, by its mean diagonal: well
+/// above what rounding makes of a sum of some thousand products, 1e-13 of it.
+const NUGGET: f64 = 1e-10;
+
+/// Solves `(K_mn K_nm + ridge K_mm) factors = K_mn targets`; none where that is singular.
+pub fn train(
+    sample: &Sample,
+    centres: usize,
+    length: f64,
+    ridge: f64,
+    draws: &mut Draws,
+) -> Option<Kernels> {
+    let mut about = draws.some_of(centres, sample.len());
+    about.sort_unstable();
+    let rows = about.iter().flat_map(|row| sample.row(*row as usize)).collect();
+    let mean = sample.targets.iter().sum::<f64>() / sample.len() as f64;
+    let mut kernels = Kernels { mean, length, centres: rows, factors: vec![0.0; about.len()] };
+    let (mut matrix, mut right) = normal_equations(&kernels, sample);
+    for (place, row) in about.iter().enumerate() {
+        let own = kernels.values(&sample.row(*row as usize));
+        own.iter().enumerate().for_each(|(k, value)| matrix[(place, k)] += ridge * value);
+    }
+    let nugget = NUGGET * matrix.trace() / about.len() as f64;
+    (0..about.len()).for_each(|k| matrix[(k, k)] += nugget);
+    Cholesky::new(matrix)?.solve_mut(&mut right);
+    kernels.factors = right.iter().copied().collect();
+    kernels.factors.iter().all(|factor| factor.is_finite()).then_some(kernels)
+}
+
+/// `K_mn K_nm` and `K_mn targets`.
+fn normal_equations(kernels: &Kernels, sample: &Sample) -> (DMatrix<f64>, DVector<f64>) {
+    let count = kernels.factors.len();
+    let mut matrix = DMatrix::zeros(count, count);
+    let mut right = DVector::zeros(count);
+    for k in 0..sample.len() {
+        let values = kernels.values(&sample.row(k));
+        let target = sample.targets[k] - kernels.mean;
+        for (column, value) in values.iter().enumerate() {
+            right[column] += value * target;
+            let own = &mut matrix.column_mut(column);
+            own.iter_mut().zip(&values).skip(column).for_each(|(m, other)| *m += value * other);
+        }
+    }
+    matrix.fill_upper_triangle_with_lower_triangle();
+    (matrix, right)
+}
+
+impl Kernels {
+    fn values(&self, inputs: &[f64]) -> Vec<f64> {
+        self.centres.chunks_exact(inputs.len()).map(|centre| self.kernel(centre, inputs)).collect()
+    }
+
+    #[inline]
+    fn kernel(&self, centre: &[f64], inputs: &[f64]) -> f64 {
+        let square: f64 = centre.iter().zip(inputs).map(|(c, x)| (c - x) * (c - x)).sum();
+        1.0 / (1.0 + square / (2.0 * self.length * self.length))
+    }
+
+    /// The sum.
+    pub fn answer(&self, inputs: &[f64]) -> f64 {
+        let centres = self.centres.chunks_exact(inputs.len());
+        let terms = centres.zip(&self.factors).map(|(c, factor)| factor * self.kernel(c, inputs));
+        self.mean + terms.sum::<f64>()
+    }
+
+    /// Whether the lists go together and are of numbers.
+    pub fn is_sound(&self, inputs: usize) -> bool {
+        let mut numbers = self.centres.iter().chain(&self.factors).chain([&self.mean]);
+        self.centres.len() == inputs * self.factors.len()
+            && self.length > 0.0
+            && numbers.all(|number| number.is_finite())
+    }
+}

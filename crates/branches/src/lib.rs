@@ -1,0 +1,30 @@
+//! Learned branches: what is learned beside a law of motion, from trials, and sailed with it.
+//!
+//! [`train`] makes a branch and its weights, [`ship`] joins them to the model's own law. The same
+//! foundation, trials, recipe and seed give the same bytes (decision 20).
+
+mod boosted;
+mod domain;
+mod draws;
+mod forest;
+mod importance;
+mod joined;
+mod kernels;
+mod learned;
+mod perceptron;
+mod regressor;
+mod rows;
+mod sample;
+mod train;
+mod tree;
+mod weights;
+
+pub use domain::FadedDomain;
+pub use importance::{Importance, importance};
+pub use joined::{JoinError, ship};
+pub use learned::Learned;
+pub use regressor::Regressor;
+pub use rows::{Row, RowsError, rows};
+pub use sample::Sample;
+pub use train::{TrainError, Training, retrain, train};
+pub use weights::{Weights, WeightsError};

@@ -1,0 +1,278 @@
+//! Multilayer perceptrons, trained by Adam (Kingma and Ba 2015, Algorithm 1) with decay of the
+//! weights beside the gradient (Loshchilov and Hutter 2019). Neurons answer `x / sqrt(1 + x^2)`,
+//! which every processor rounds alike, as it does not the hyperbolic tangent.
+
+use serde::{Deserialize, Serialize};
+
+use crate::draws::Draws;
+use crate::sample::Sample;
+
+/// Layers of neurons; the last has one, which answers its sum.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Perceptron(Vec<Layer>);
+
+/// Neurons that see the same.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Layer {
+    /// Of each neuron after the other, one for every input.
+    weights: Vec<f64>,
+    biases: Vec<f64>,
+}
+
+/// How a perceptron is trained.
+#[derive(Debug, Clone)]
+pub struct Descent<'a> {
+    /// Neurons of each hidden layer.
+    pub hidden: &'a [usize],
+    /// How often every sample is seen.
+    pub epochs: usize,
+    /// Samples to a step.
+    pub batch: usize,
+    /// Length of the first steps; it falls linearly to nothing.
+    pub rate: f64,
+    /// Decay of the weights by step and rate.
+    pub decay: f64,
+}
+
+/// Most neurons of a layer, and room for a layer's answers.
+const MOST: usize = 256;
+
+impl Layer {
+    /// Small random weights by the fan in and out (Glorot and Bengio 2010, Eq. 16).
+    fn drawn(inputs: usize, neurons: usize, draws: &mut Draws) -> Self {
+        let limit = (6.0 / (inputs + neurons) as f64).sqrt();
+        let weights = (0..inputs * neurons).map(|_| limit * draws.signed()).collect();
+        Self { weights, biases: vec![0.0; neurons] }
+    }
+
+    fn sums(&self, inputs: &[f64], out: &mut [f64]) {
+        let rows = self.weights.chunks_exact(inputs.len());
+        for ((out, row), bias) in out.iter_mut().zip(rows).zip(&self.biases) {
+            *out = bias + row.iter().zip(inputs).map(|(w, x)| w * x).sum::<f64>();
+        }
+    }
+
+    fn numbers(&mut self) -> impl Iterator<Item = &mut f64> {
+        self.weights.iter_mut().chain(&mut self.biases)
+    }
+}
+
+/// A neuron's answer to its sum, and the slope there.
+fn neuron(sum: f64) -> (f64, f64) {
+    let root = 1.0 / (1.0 + sum * sum).sqrt();
+    (sum * root, root * root * root)
+}
+
+impl Perceptron {
+    /// The answer for inputs in deviations.
+    pub fn answer(&self, inputs: &[f64]) -> f64 {
+        let (mut here, mut next) = ([0.0; MOST], [0.0; MOST]);
+        let mut width = inputs.len();
+        here[..width].copy_from_slice(inputs);
+        for (place, layer) in self.0.iter().enumerate() {
+            layer.sums(&here[..width], &mut next);
+            width = layer.biases.len();
+            if place + 1 < self.0.len() {
+                next[..width].iter_mut().for_each(|sum| *sum = neuron(*sum).0);
+            }
+            std::mem::swap(&mut here, &mut next);
+        }
+        here[0]
+    }
+
+    /// Whether layers go together, end in one neuron and are of numbers.
+    pub fn is_sound(&self, inputs: usize) -> bool {
+        let mut width = inputs;
+        let goes_on = |layer: &Layer| {
+            let before = std::mem::replace(&mut width, layer.biases.len());
+            let mut numbers = layer.weights.iter().chain(&layer.biases);
+            (1..=MOST).contains(&width)
+                && layer.weights.len() == before * width
+                && numbers.all(|number| number.is_finite())
+        };
+        (1..=MOST).contains(&inputs)
+            && self.0.iter().all(goes_on)
+            && self.0.last().is_some_and(|last| last.biases.len() == 1)
+    }
+}
+
+/// Trains a perceptron on squared errors.
+pub fn train(sample: &Sample, descent: &Descent<'_>, draws: &mut Draws) -> Perceptron {
+    let mut widths = vec![sample.columns.len()];
+    widths.extend(descent.hidden.iter().chain(&[1]));
+    let layers = widths.windows(2).map(|pair| Layer::drawn(pair[0], pair[1], draws)).collect();
+    let rows: Vec<Vec<f64>> = (0..sample.len()).map(|k| sample.row(k)).collect();
+    let mut trainee = Trainee::new(Perceptron(layers));
+    let steps = descent.epochs * sample.len().div_ceil(descent.batch);
+    let mut taken = 0;
+    for _ in 0..descent.epochs {
+        for batch in draws.some_of(sample.len(), sample.len()).chunks(descent.batch) {
+            for row in batch {
+                trainee.learn(&rows[*row as usize], sample.targets[*row as usize]);
+            }
+            let rate = descent.rate * (1.0 - taken as f64 / steps as f64);
+            trainee.step(batch.len(), rate, descent.decay);
+            taken += 1;
+        }
+    }
+    trainee.network
+}
+
+/// A network with the sums of its gradient and Adam's moments.
+struct Trainee {
+    network: Perceptron,
+    gradient: Vec<Layer>,
+    first: Vec<Layer>,
+    second: Vec<Layer>,
+    /// What the moments lack of their full size: powers of the decays.
+    lacks: [f64; 2],
+    /// Answers of each layer, the inputs first, and slopes there.
+    answers: Vec<Vec<f64>>,
+    slopes: Vec<Vec<f64>>,
+    /// How the error changes with each sum of a layer, and of the one before it.
+    blame: Vec<f64>,
+    before: Vec<f64>,
+}
+
+/// Adam's decays of the moments and what keeps it from dividing by nothing, as its authors give
+/// them.
+const DECAYS: [f64; 2] = [0.9, 0.999];
+const EPSILON: f64 = 1e-8;
+
+impl Trainee {
+    fn new(network: Perceptron) -> Self {
+        let empty = |layer: &Layer| Layer {
+            weights: vec![0.0; layer.weights.len()],
+            biases: vec![0.0; layer.biases.len()],
+        };
+        let zeros: Vec<Layer> = network.0.iter().map(empty).collect();
+        let of_widths = || network.0.iter().map(|layer| vec![0.0; layer.biases.len()]).collect();
+        let mut answers: Vec<Vec<f64>> = of_widths();
+        let slopes = of_widths();
+        answers.insert(0, Vec::new());
+        Self {
+            gradient: zeros.clone(),
+            first: zeros.clone(),
+            second: zeros,
+            network,
+            lacks: [1.0; 2],
+            answers,
+            slopes,
+            blame: Vec::new(),
+            before: Vec::new(),
+        }
+    }
+
+    /// Adds the gradient of a row's squared error by half.
+    fn learn(&mut self, inputs: &[f64], target: f64) {
+        self.forward(inputs);
+        let last = self.network.0.len();
+        self.blame.clear();
+        self.blame.push(self.answers[last][0] - target);
+        for place in (0..last).rev() {
+            self.backward(place);
+            std::mem::swap(&mut self.blame, &mut self.before);
+        }
+    }
+
+    fn forward(&mut self, inputs: &[f64]) {
+        self.answers[0].clear();
+        self.answers[0].extend_from_slice(inputs);
+        let last = self.network.0.len() - 1;
+        for (place, layer) in self.network.0.iter().enumerate() {
+            let (before, after) = self.answers.split_at_mut(place + 1);
+            layer.sums(&before[place], &mut after[0]);
+            if place < last {
+                for (sum, slope) in after[0].iter_mut().zip(&mut self.slopes[place]) {
+                    (*sum, *slope) = neuron(*sum);
+                }
+            }
+        }
+    }
+
+    /// Adds a layer's gradient, and finds the blame of the one before.
+    fn backward(&mut self, place: usize) {
+        let (inputs, layer) = (&self.answers[place], &self.network.0[place]);
+        self.before.clear();
+        self.before.resize(inputs.len(), 0.0);
+        let width = inputs.len();
+        for (neuron, blame) in self.blame.iter().enumerate() {
+            let own = neuron * width..(neuron + 1) * width;
+            let gradient = &mut self.gradient[place];
+            gradient.biases[neuron] += blame;
+            let sums = gradient.weights[own.clone()].iter_mut().zip(inputs);
+            sums.for_each(|(sum, x)| *sum += blame * x);
+            let back = self.before.iter_mut().zip(&layer.weights[own]);
+            back.for_each(|(back, weight)| *back += blame * weight);
+        }
+        if place > 0 {
+            self.before.iter_mut().zip(&self.slopes[place - 1]).for_each(|(b, slope)| *b *= slope);
+        }
+    }
+
+    /// A step of Adam by the mean gradient of a batch, which is forgotten.
+    fn step(&mut self, batch: usize, rate: f64, decay: f64) {
+        self.lacks.iter_mut().zip(DECAYS).for_each(|(lack, decay)| *lack *= decay);
+        let full = self.lacks.map(|lack| 1.0 - lack);
+        let layers = self.network.0.iter_mut().zip(&mut self.gradient);
+        let moments = self.first.iter_mut().zip(&mut self.second);
+        for ((layer, gradient), (first, second)) in layers.zip(moments) {
+            let numbers = layer.numbers().zip(gradient.numbers());
+            for ((number, sum), (m, v)) in numbers.zip(first.numbers().zip(second.numbers())) {
+                let slope = std::mem::take(sum) / batch as f64;
+                *m = DECAYS[0] * *m + (1.0 - DECAYS[0]) * slope;
+                *v = DECAYS[1] * *v + (1.0 - DECAYS[1]) * slope * slope;
+                let move_by = (*m / full[0]) / ((*v / full[1]).sqrt() + EPSILON);
+                *number -= rate * (move_by + decay * *number);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample() -> Sample {
+        let x: Vec<f64> = (0..400).map(|k| f64::from(k % 20) / 10.0 - 1.0).collect();
+        let y: Vec<f64> = (0..400).map(|k| f64::from(k / 20) / 10.0 - 1.0).collect();
+        let targets = x.iter().zip(&y).map(|(x, y)| x * y + 0.5 * x).collect();
+        Sample { columns: vec![x, y], targets }
+    }
+
+    fn descent(hidden: &[usize]) -> Descent<'_> {
+        Descent { hidden, epochs: 100, batch: 32, rate: 0.02, decay: 0.0 }
+    }
+
+    #[test]
+    fn a_product_is_learned() {
+        let sample = sample();
+        let network = train(&sample, &descent(&[12, 12]), &mut Draws::new(1, 0));
+        let error = |k: usize| (network.answer(&sample.row(k)) - sample.targets[k]).powi(2);
+        let mean = (0..sample.len()).map(error).sum::<f64>() / sample.len() as f64;
+        assert!(mean < 1e-3, "{mean}");
+        assert!(network.is_sound(2) && !network.is_sound(3));
+    }
+
+    #[test]
+    fn the_gradient_is_that_of_differences() {
+        let layers = |draws: &mut Draws| vec![Layer::drawn(2, 3, draws), Layer::drawn(3, 1, draws)];
+        let network = Perceptron(layers(&mut Draws::new(5, 0)));
+        let (inputs, target) = ([0.3, -0.7], 0.4);
+        let mut trainee = Trainee::new(network.clone());
+        trainee.learn(&inputs, target);
+        let error = |network: &Perceptron| 0.5 * (network.answer(&inputs) - target).powi(2);
+        for (layer, place) in [(0, 0), (0, 5), (1, 2)] {
+            let moved = |by: f64| {
+                let mut network = network.clone();
+                network.0[layer].weights[place] += by;
+                error(&network)
+            };
+            let slope = (moved(1e-5) - moved(-1e-5)) / 2e-5;
+            let found = trainee.gradient[layer].weights[place];
+            assert!((slope - found).abs() < 1e-8, "{slope} {found}");
+        }
+    }
+}
