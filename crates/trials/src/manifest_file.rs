@@ -78,9 +78,17 @@ impl ManifestFile {
 
     /// What it says of one of its trials.
     pub fn only(&self, index: usize) -> Self {
-        let trials = self.manifest.trials.get(index).cloned().into_iter().collect();
+        // Field by field: the other trials are not copied, of which an upload may have hundreds.
+        let Manifest { kind, ship, conventions, columns, trials } = &self.manifest;
+        let manifest = Manifest {
+            kind: *kind,
+            ship: ship.clone(),
+            conventions: conventions.clone(),
+            columns: columns.clone(),
+            trials: trials.get(index).cloned().into_iter().collect(),
+        };
         Self {
-            manifest: Manifest { trials, ..self.manifest.clone() },
+            manifest,
             declarations: self.declarations.clone(),
             sensors: self.sensors.get(index).cloned().into_iter().collect(),
         }

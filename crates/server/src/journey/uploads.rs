@@ -6,7 +6,7 @@ use sistership_store::testing::TestDatabase;
 
 use super::harness::{Harness, read};
 
-/// Two stretches of a log, a heading from a sensor's own file, knots and a yaw rate that is derived.
+/// Two stretches of a log, a heading from a sensor's own file, knots, a yaw rate that is derived.
 const MANIFEST: &str = "
 kind: trials
 ship: mariner
