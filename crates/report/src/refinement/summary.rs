@@ -81,6 +81,11 @@ impl<'a> HeldOutErrors<'a> {
     }
 }
 
+/// What such a comparison is worth.
+const WITHOUT_SOURCE: &str = " No ship was the source: the comparison is with the law without \
+                              coefficients, which answers to no rudder, so these factors are no \
+                              measure of what a similar ship would have given.";
+
 fn verdict(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
     if input.is_source_kept() {
         return "No refinement beat the source on manoeuvres left out: the source model is kept as it is.".into();
@@ -95,7 +100,14 @@ fn verdict(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
     if phrases.is_empty() {
         return format!("{place}, no error is known.");
     }
-    format!("{place}, the error {}.", phrases.join("; it "))
+    let compared = if is_without_source(input) { WITHOUT_SOURCE } else { "" };
+    format!("{place}, the error {}.{compared}", phrases.join("; it "))
+}
+
+/// Whether the trials alone made the model: what stands for its source is a law without
+/// coefficients.
+fn is_without_source(input: &RefinementInput<'_>) -> bool {
+    input.refinement.transferred.coefficients.values().all(|coefficient| coefficient.value == 0.0)
 }
 
 /// `fell by a factor of 4.2 in surge speed and 1.3 in heading`.
