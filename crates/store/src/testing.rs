@@ -95,6 +95,21 @@ impl TestDatabase {
     }
 }
 
+/// A table of a PostgreSQL database that can be read but not written, until this is dropped.
+#[derive(Debug)]
+pub struct HeldTable(#[expect(dead_code, reason = "the lock is its connection's")] PgConnection);
+
+impl TestDatabase {
+    /// Makes whoever writes to a table of a PostgreSQL database wait until what this returns is
+    /// dropped.
+    pub async fn hold_writes(&self, table: &str) -> HeldTable {
+        let mut connection = PgConnection::connect(&self.url).await.expect("a connection");
+        let held = format!("BEGIN; LOCK TABLE {table} IN EXCLUSIVE MODE");
+        connection.execute(AssertSqlSafe(held)).await.expect("a lock on the table");
+        HeldTable(connection)
+    }
+}
+
 /// A database that sorts as people do, where the server can (from PostgreSQL 15): keys must not
 /// depend on that.
 async fn create(connection: &mut PgConnection, name: &str) -> sqlx::Result<()> {
