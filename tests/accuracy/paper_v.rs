@@ -11,6 +11,7 @@
 //!   in the last yaw rate, at 650 s. Against the printed truth, SP's errors in the radius come out
 //!   within 0.1 points too.
 
+mod plain;
 mod published;
 mod refined;
 mod truth;
@@ -105,6 +106,33 @@ fn the_weak_form_on_turns_of_5_and_10_degrees() {
     let pooled = mean("abkowitz-roll", &weak::pooled());
     println!("mean of 48 cells: weak {plane:.2}, weak with roll {roll:.2}, pooled {pooled:.2} %");
     assert!(plane <= 2.7 && roll <= 1.9 && pooled <= 0.5);
+}
+
+/// The plain call on each single data set and on all of them in one, roll recorded.
+#[test]
+#[ignore = "minutes; for people"]
+fn the_plain_call_on_paper_v() {
+    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let [single, pooled] = [weak::single(), weak::pooled()].map(|sets| by_plain(&zoo, &sets));
+    let (single, pooled) = (mean_of(&single), mean_of(&pooled));
+    println!("mean of 24 cells: plain call, single {single:.2}, pooled {pooled:.2} %");
+}
+
+fn by_plain(zoo: &Zoo, sets: &[Vec<(f64, f64)>]) -> Vec<Metrics> {
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    let mut errors = Vec::new();
+    for blocks in TABLE_5.chunks(2) {
+        let truth = Truth::new(zoo, blocks[0].n_rpm);
+        let refined: Vec<(Model, Law)> =
+            sets.iter().map(|set| plain::refined(zoo, &truth, set, &mut rng)).collect();
+        for block in blocks {
+            let track = truth.turn(block.rudder_deg);
+            let one =
+                |(model, law): &(Model, Law)| judged(std::slice::from_ref(model), law, &track);
+            errors.push(Metrics::mean(&refined.iter().map(one).collect::<Vec<_>>()));
+        }
+    }
+    errors
 }
 
 fn mean_of(errors: &[Metrics]) -> f64 {

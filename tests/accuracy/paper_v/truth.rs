@@ -24,8 +24,9 @@ pub struct Truth {
     pub model: Model,
     /// Its speed in steady running, m/s.
     pub speed_m_s: f64,
+    /// Its revolutions, 1/s.
+    pub n_rps: f64,
     ship: Ship,
-    n_rps: f64,
 }
 
 impl Truth {

@@ -52,7 +52,8 @@ pub fn pooled() -> Vec<Vec<(f64, f64)>> {
     vec![ZIGZAGS.to_vec()]
 }
 
-fn measured(track: &sistership_dynamics::Trajectory, rng: &mut ChaCha8Rng) -> Trial {
+/// A track with the paper's noise, and a like noise of roll; nothing of the plane but velocities.
+pub fn measured(track: &sistership_dynamics::Trajectory, rng: &mut ChaCha8Rng) -> Trial {
     let mut trial = recorded(track, FITTED);
     for (channel, index, deviation) in ROLL.into_iter().chain(NOISE) {
         trial.channels.insert(channel, noisy(track, index, deviation, rng));
