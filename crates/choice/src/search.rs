@@ -60,15 +60,20 @@ struct Tried {
 pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
     let held_out = &search.settings.held_out;
     let fitted = search.trials.iter().filter(|trial| !held_out.contains(&trial.name)).count();
-    let in_parts = search.settings.in_parts || fitted < SEARCH.few;
-    let settings = Settings {
-        in_parts,
+    let settings = searched_by(search.settings, fitted);
+    climbed(&Search { settings: &settings, ..*search }, progress)
+}
+
+/// What the search sets beside what is asked of it.
+fn searched_by(settings: &Settings, fitted: usize) -> Settings {
+    Settings {
+        in_parts: settings.in_parts || fitted < SEARCH.few,
         steering_from_trials: true,
         posterior_by_folds: true,
-        bands: Sampling { within_steps: true, ..search.settings.bands },
-        ..search.settings.clone()
-    };
-    climbed(&Search { settings: &settings, ..*search }, progress)
+        calibration_samples: settings.calibration_samples.or(Some(SEARCH.calibration)),
+        bands: Sampling { within_steps: true, ..settings.bands },
+        ..settings.clone()
+    }
 }
 
 fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {

@@ -27,6 +27,9 @@ pub(super) struct SearchThresholds {
     /// Most sources that enter, by rank of correlation, a count. Source: chosen; each costs a fit
     /// for every law, and correlation has ranked them.
     pub sources: usize,
+    /// `n_c`: samples of the trials on which the noise model is learned, a count. Source: memory;
+    /// `docs/evidence/plain.md`.
+    pub calibration: usize,
 }
 
 /// The values.
@@ -39,4 +42,5 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     near: [3.16, 1.0, 0.316],
     kept: 1e9,
     sources: 5,
+    calibration: 30_000,
 };

@@ -1,5 +1,7 @@
 //! A model, columns and trials made ready: linearised once, filtered at any level of discrepancy.
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 use sistership_model::coefficient::Axis;
 use sistership_model::manifest::VelocityFrame;
@@ -24,6 +26,7 @@ pub struct LinearisedTrials<'a> {
     pub speed_m_s: f64,
     system: ResidualSystem,
     records: Vec<TrialReadings<'a>>,
+    /// By trial; empty where each is linearised anew when it is asked for.
     linear: Vec<Vec<Linearised>>,
 }
 
@@ -53,9 +56,28 @@ impl MotionScales {
 }
 
 impl<'a> LinearisedTrials<'a> {
+    /// Each trial linearised once and kept.
+    ///
     /// # Errors
     /// Names what the model or a trial lacks.
     pub fn new(
+        learned: &CalibratedModel,
+        columns: Columns,
+        trials: &'a [&'a Trial],
+        least_step_s: Option<f64>,
+    ) -> Result<Self, RefineError> {
+        let mut all = Self::one_at_a_time(learned, columns, trials, least_step_s)?;
+        let whole = |record| linearise(&all.system, record, Detail::Whole);
+        all.linear = all.records.par_iter().map(whole).collect::<Result<_, _>>()?;
+        Ok(all)
+    }
+
+    /// Each trial linearised whenever it is asked for: what is kept is as many times as large as
+    /// the trials as there are columns.
+    ///
+    /// # Errors
+    /// Names what the model lacks; what a trial lacks is said when it is asked for.
+    pub fn one_at_a_time(
         learned: &CalibratedModel,
         columns: Columns,
         trials: &'a [&'a Trial],
@@ -79,11 +101,7 @@ impl<'a> LinearisedTrials<'a> {
         let noise = noise(&records, lpp_m, speed_m_s, model.uncertainty.as_ref());
         let frame = trials.first().map(|trial| trial.velocity).unwrap_or_default();
         let system = ResidualSystem::new(model, law, columns, frame)?;
-        let linear = records
-            .par_iter()
-            .map(|record| linearise(&system, record, Detail::Whole))
-            .collect::<Result<_, _>>()?;
-        Ok(Self { trials, noise, lpp_m, speed_m_s, system, records, linear })
+        Ok(Self { trials, noise, lpp_m, speed_m_s, system, records, linear: Vec::new() })
     }
 
     pub fn columns(&self) -> &Columns {
@@ -102,8 +120,20 @@ impl<'a> LinearisedTrials<'a> {
         &self.records
     }
 
+    /// What is kept ([`Self::new`]).
     pub fn linear(&self) -> &[Vec<Linearised>] {
         &self.linear
+    }
+
+    /// A trial linearised, kept or not.
+    ///
+    /// # Errors
+    /// Names what the trial lacks.
+    pub fn parts(&self, trial: usize) -> Result<Cow<'_, [Linearised]>, RefineError> {
+        match self.linear.get(trial) {
+            Some(kept) => Ok(Cow::Borrowed(kept)),
+            None => linearise(&self.system, &self.records[trial], Detail::Whole).map(Cow::Owned),
+        }
     }
 
     pub fn scales(&self) -> MotionScales {
@@ -115,19 +145,30 @@ impl<'a> LinearisedTrials<'a> {
     }
 
     /// The products of each trial.
-    pub fn each(&self, discrepancies: &Discrepancies) -> Vec<Gram> {
+    ///
+    /// # Errors
+    /// Names what a trial lacks.
+    pub fn each(&self, discrepancies: &Discrepancies) -> Result<Vec<Gram>, RefineError> {
         self.each_under(&self.noise, discrepancies)
     }
 
     /// The products of each trial, by other instruments.
-    pub fn each_under(&self, noise: &Noise, discrepancies: &Discrepancies) -> Vec<Gram> {
+    ///
+    /// # Errors
+    /// Names what a trial lacks.
+    pub fn each_under(
+        &self,
+        noise: &Noise,
+        discrepancies: &Discrepancies,
+    ) -> Result<Vec<Gram>, RefineError> {
         let width = 1 + self.columns().len();
-        let of_trial = |parts: &Vec<Linearised>| {
+        let of_trial = |trial: usize| {
+            let parts = self.parts(trial)?;
             let grams: Vec<Gram> =
                 parts.iter().map(|part| filter(part, noise, discrepancies)).collect();
-            Gram::sum(&grams, width)
+            Ok(Gram::sum(&grams, width))
         };
-        self.linear.par_iter().map(of_trial).collect()
+        (0..self.trials.len()).into_par_iter().map(of_trial).collect()
     }
 }
 

@@ -25,7 +25,8 @@ pub(super) fn unexplained(
     };
     let mut found = Vec::new();
     for (place, trial) in workspace.trials.iter().enumerate() {
-        for (channel, sums) in sums(workspace, place, discrepancies, [parameters, effects]) {
+        let parts = &workspace.linear()[place];
+        for (channel, sums) in sums(workspace, parts, discrepancies, [parameters, effects]) {
             found.extend(sums.stretches(&trial.name, channel, limit(channel)));
         }
     }
@@ -36,12 +37,12 @@ pub(super) fn unexplained(
 /// The largest that any stretch of a trial leaves, by channel.
 pub(super) fn largest(
     workspace: &LinearisedTrials<'_>,
-    trial: usize,
+    parts: &[Linearised],
     discrepancies: &Discrepancies,
     parameters: &[f64],
 ) -> Vec<(Channel, f64)> {
     let of = |(channel, sums): (Channel, BlockSums<'_>)| (channel, sums.largest());
-    sums(workspace, trial, discrepancies, [parameters, &vec![0.0; parameters.len()]])
+    sums(workspace, parts, discrepancies, [parameters, &vec![0.0; parameters.len()]])
         .into_iter()
         .map(of)
         .collect()
@@ -58,14 +59,14 @@ struct BlockSums<'a> {
 }
 
 fn sums<'a>(
-    workspace: &'a LinearisedTrials<'_>,
-    trial: usize,
+    workspace: &LinearisedTrials<'_>,
+    parts: &'a [Linearised],
     discrepancies: &Discrepancies,
     [parameters, effects]: [&[f64]; 2],
 ) -> Vec<(Channel, BlockSums<'a>)> {
     let block_s = THRESHOLDS.remainder.block * workspace.lpp_m / workspace.speed_m_s;
     let mut all = Vec::new();
-    for part in &workspace.linear()[trial] {
+    for part in parts {
         let interval = (part.t_s[part.t_s.len() - 1] - part.t_s[0]) / (part.t_s.len() - 1) as f64;
         let size = (block_s / (interval * part.every as f64)).round().max(1.0) as usize;
         let (left, _) = errors(&part.along(parameters), &workspace.noise, discrepancies);

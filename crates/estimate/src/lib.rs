@@ -3,6 +3,7 @@
 
 mod estimated;
 pub mod refine;
+pub mod representative;
 pub mod similarity;
 pub mod source;
 mod steering;

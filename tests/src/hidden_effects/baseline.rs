@@ -57,7 +57,7 @@ pub fn by(
     }
     let mut model = refinement.model;
     let uncertainty =
-        calibrate(&model, law, &library(), trials).unwrap_or_else(|error| panic!("{error}"));
+        calibrate(&model, law, &library(), trials, None).unwrap_or_else(|error| panic!("{error}"));
     println!("discrepancy {:?}", uncertainty.discrepancy);
     model.uncertainty = Some(uncertainty);
     Baseline { model, law: law.clone() }

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 use noise_model::NoiseModel;
+use rayon::prelude::*;
 use sistership_model::law::Law;
 use sistership_model::trial::Channel;
 use sistership_model::uncertainty::{Discrepancy, InstrumentFit, Uncertainty};
@@ -26,11 +27,26 @@ use super::setup::listed;
 use super::thresholds::THRESHOLDS;
 use crate::residual::{Columns, Discrepancies, EffectCandidate, Instrument, Noise, Nuisance};
 use sistership_estimate::refine::RefineError;
+use sistership_estimate::representative::representative;
+
+/// What a model is calibrated with.
+#[derive(Clone, Copy)]
+struct Calibration<'a> {
+    law: &'a Law,
+    effects: &'a [Arc<Effect>],
+    trials: &'a [&'a Trial],
+    /// Those on which the noise model is learned.
+    noise: &'a [&'a Trial],
+}
 
 /// What the trials that a model was fitted on leave open, to be kept with it. Terms of the
 /// library's grammar that the model lacks are learned too, as far as those trials show them; and
 /// what effects would explain of these trials, which do not have them, is kept to judge them by
 /// later.
+///
+/// Given a number of samples, the noise model, which is asked for again and again, is learned on
+/// trials that have about so many between them and stand for all; each trial is then linearised
+/// when its turn comes, and not kept.
 ///
 /// # Errors
 /// Names the channel that a trial lacks, or says that the information is not positive.
@@ -39,62 +55,83 @@ pub fn calibrate(
     law: &Law,
     effects: &[Arc<Effect>],
     trials: &[&Trial],
+    samples: Option<usize>,
 ) -> Result<Uncertainty, RefineError> {
+    let places = representative(trials, samples.unwrap_or(usize::MAX));
+    let noise: Vec<&Trial> = places.into_iter().map(|place| trials[place]).collect();
+    let calibration = Calibration { law, effects, trials, noise: &noise };
     let model = &Model { uncertainty: None, ..model.clone() };
-    let first = by_instruments(model, law, effects, trials)?;
-    let systematic_errors = systematic_errors::of(model, &first, law, effects, trials)?;
+    let first = calibration.by_instruments(model)?;
+    let systematic_errors = systematic_errors::of(model, &first, law, effects, &noise)?;
     if systematic_errors.is_empty() {
         return Ok(first);
     }
     let erring = Uncertainty { systematic_errors, instruments: BTreeMap::new(), ..first };
-    by_instruments(&Model { uncertainty: Some(erring), ..model.clone() }, law, effects, trials)
+    calibration.by_instruments(&Model { uncertainty: Some(erring), ..model.clone() })
 }
 
-/// What the trials leave open where instruments err as the model's uncertainty says, or not at all.
-fn by_instruments(
-    model: &Model,
-    law: &Law,
-    effects: &[Arc<Effect>],
-    trials: &[&Trial],
-) -> Result<Uncertainty, RefineError> {
-    let terms = learned(model, law, effects, trials);
-    let extra: Vec<_> = terms
-        .iter()
-        .filter_map(|(name, form)| Some((name.clone(), regressor(model, form)?.0)))
-        .collect();
-    let nuisance = Columns::nuisance(model, law, &extra);
-    let prior = prior(model, &nuisance, &terms, THRESHOLDS.calibration.prior_share);
-    let (shift, rough) = first_shift(model, law, &terms, &nuisance, &prior, trials)?;
-    let candidates = listed(model, law, effects, trials);
-    let columns = Columns { nuisance: nuisance.clone(), candidates: candidates.clone() };
-    let mut workspace = LinearisedTrials::new(
-        &CalibratedModel::new(model, law, &terms, &nuisance, &shift)?,
-        columns,
-        trials,
-        None,
-    )?;
-    let fixed = prior.from(&shift);
-    let scatter = workspace.noise.clone();
-    let NoiseModel { discrepancies, noise } =
-        noise_model::most_probable(&workspace, &fixed, Some(rough))?;
-    workspace.noise = noise;
-    let grams = workspace.each(&discrepancies);
-    let freed = lacked(model, law, effects, trials);
-    let freed = freed.iter().map(|(effect, form)| EffectCandidate::absent(effect, form));
-    let all: Vec<_> = candidates.into_iter().chain(freed).collect();
-    let known = TrialInformation { fixed: &fixed, grams: &grams, scatter: 1.0 };
-    let known = TrialInformation { scatter: known.scatter(), ..known };
-    Ok(Uncertainty {
-        instruments: instruments(&workspace.noise, &scatter),
-        systematic_errors: model
-            .uncertainty
-            .as_ref()
-            .map(|known| known.systematic_errors.clone())
-            .unwrap_or_default(),
-        false_alarm_levels: false_alarm::levels(&workspace, &known, &all),
-        remainder: remainder(&workspace, &known, &discrepancies),
-        ..uncertainty(&workspace, &known, &shift, &discrepancies)?
-    })
+impl Calibration<'_> {
+    /// What the trials leave open where instruments err as the model's uncertainty says, or not at
+    /// all.
+    fn by_instruments(&self, model: &Model) -> Result<Uncertainty, RefineError> {
+        let &Self { law, effects, trials, noise } = self;
+        let terms = learned(model, law, effects, trials);
+        let extra: Vec<_> = terms
+            .iter()
+            .filter_map(|(name, form)| Some((name.clone(), regressor(model, form)?.0)))
+            .collect();
+        let nuisance = Columns::nuisance(model, law, &extra);
+        let prior = prior(model, &nuisance, &terms, THRESHOLDS.calibration.prior_share);
+        let (shift, rough) = first_shift(model, law, &terms, &nuisance, &prior, noise)?;
+        let fixed = prior.from(&shift);
+        let shifted = CalibratedModel::new(model, law, &terms, &nuisance, &shift)?;
+        let (workspace, scatter, discrepancies) =
+            self.under_noise(&shifted, (model, &nuisance), &fixed, rough)?;
+        let grams = workspace.each(&discrepancies)?;
+        let freed = lacked(model, law, effects, trials);
+        let freed = freed.iter().map(|(effect, form)| EffectCandidate::absent(effect, form));
+        let all: Vec<_> = workspace.columns().candidates.iter().cloned().chain(freed).collect();
+        let known = TrialInformation { fixed: &fixed, grams: &grams, scatter: 1.0 };
+        let known = TrialInformation { scatter: known.scatter(), ..known };
+        Ok(Uncertainty {
+            instruments: instruments(&workspace.noise, &scatter),
+            systematic_errors: model
+                .uncertainty
+                .as_ref()
+                .map(|known| known.systematic_errors.clone())
+                .unwrap_or_default(),
+            false_alarm_levels: false_alarm::levels(&workspace, &known, &all),
+            remainder: remainder(&workspace, &known, &discrepancies)?,
+            ..uncertainty(&workspace, &known, &shift, &discrepancies)?
+        })
+    }
+
+    /// All trials ready for all columns under the most probable noise, the scatter of the
+    /// instruments on the trials which that was learned on, and the discrepancies.
+    fn under_noise(
+        &self,
+        shifted: &CalibratedModel,
+        (model, nuisance): (&Model, &[Nuisance]),
+        fixed: &CoefficientPrior,
+        rough: NoiseModel,
+    ) -> Result<(LinearisedTrials<'_>, Noise, Discrepancies), RefineError> {
+        let candidates = listed(model, self.law, self.effects, self.trials);
+        let columns = Columns { nuisance: nuisance.to_vec(), candidates };
+        let all_at_once = self.noise.len() == self.trials.len();
+        let (mut workspace, few) = if all_at_once {
+            (LinearisedTrials::new(shifted, columns, self.trials, None)?, None)
+        } else {
+            let alone = Columns { candidates: Vec::new(), ..columns.clone() };
+            let few = LinearisedTrials::new(shifted, alone, self.noise, None)?;
+            (LinearisedTrials::one_at_a_time(shifted, columns, self.trials, None)?, Some(few))
+        };
+        let learned_on = few.as_ref().unwrap_or(&workspace);
+        let scatter = learned_on.noise.clone();
+        let NoiseModel { discrepancies, noise } =
+            noise_model::most_probable(learned_on, fixed, Some(rough))?;
+        workspace.noise = noise;
+        Ok((workspace, scatter, discrepancies))
+    }
 }
 
 /// What the trials teach by one linearisation about the model as it is, and the discrepancies by
@@ -112,7 +149,7 @@ fn first_shift(
     let mut workspace = LinearisedTrials::new(&as_it_is, columns, trials, None)?;
     let scatter = noise_model::most_probable(&workspace, prior, None)?;
     workspace.noise.clone_from(&scatter.noise);
-    let grams = workspace.each(&scatter.discrepancies);
+    let grams = workspace.each(&scatter.discrepancies)?;
     let shift = TrialInformation { fixed: prior, grams: &grams, scatter: 1.0 }
         .by(&|_| true)
         .expected_shift(nuisance);
@@ -133,18 +170,24 @@ fn remainder(
     workspace: &LinearisedTrials<'_>,
     known: &TrialInformation<'_>,
     discrepancies: &Discrepancies,
-) -> BTreeMap<String, f64> {
+) -> Result<BTreeMap<String, f64>, RefineError> {
+    let sizes = |trial: usize| {
+        let Some(shift) = known.shift(trial, workspace.columns().len()) else {
+            return Ok(Vec::new());
+        };
+        Ok(largest(workspace, &workspace.parts(trial)?, discrepancies, &shift))
+    };
+    let sizes: Vec<Vec<(Channel, f64)>> = (0..workspace.trials.len())
+        .into_par_iter()
+        .map(sizes)
+        .collect::<Result<_, RefineError>>()?;
     let mut limits: BTreeMap<String, f64> = BTreeMap::new();
-    for trial in 0..workspace.trials.len() {
-        let Some(shift) = known.shift(trial, workspace.columns().len()) else { continue };
-        for (channel, size) in largest(workspace, trial, discrepancies, &shift) {
-            let limit = limits.entry(channel.name().to_owned()).or_default();
-            *limit = limit.max(
-                (THRESHOLDS.calibration.rounding * size).round() / THRESHOLDS.calibration.rounding,
-            );
-        }
+    for (channel, size) in sizes.into_iter().flatten() {
+        let limit = limits.entry(channel.name().to_owned()).or_default();
+        let rounding = THRESHOLDS.calibration.rounding;
+        *limit = limit.max((rounding * size).round() / rounding);
     }
-    limits
+    Ok(limits)
 }
 
 fn uncertainty(

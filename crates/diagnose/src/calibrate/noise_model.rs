@@ -80,7 +80,7 @@ pub(super) fn most_probable(
     let first = if start.is_some() { THRESHOLDS.calibration.factors.len() - 1 } else { 0 };
     let mut best = start.or_else(|| coarse(workspace)).ok_or_else(not_positive)?;
     for factors in &THRESHOLDS.calibration.factors[first..] {
-        let coefficients = coefficients(workspace, fixed, &best).ok_or_else(not_positive)?;
+        let coefficients = coefficients(workspace, fixed, &best)?.ok_or_else(not_positive)?;
         best = refined(workspace, best, &coefficients, factors);
     }
     Ok(best)
@@ -108,9 +108,9 @@ fn coefficients(
     workspace: &LinearisedTrials<'_>,
     fixed: &CoefficientPrior,
     scatter: &NoiseModel,
-) -> Option<Vec<Vec<f64>>> {
+) -> Result<Option<Vec<Vec<f64>>>, RefineError> {
     let columns: Vec<usize> = (0..fixed.weighted_mean.len()).collect();
-    let grams = workspace.each_under(&scatter.noise, &scatter.discrepancies);
+    let grams = workspace.each_under(&scatter.noise, &scatter.discrepancies)?;
     let grams: Vec<_> = grams.iter().map(|gram| gram.select(&columns)).collect();
     let known = TrialInformation { fixed, grams: &grams, scatter: 1.0 };
     let of = |trial: usize| -> Option<Vec<f64>> {
@@ -119,7 +119,7 @@ fn coefficients(
         mean.resize(workspace.columns().len(), 0.0);
         Some(mean)
     };
-    (0..grams.len()).map(of).collect()
+    Ok((0..grams.len()).map(of).collect())
 }
 
 /// Parts of trials with all columns in one.

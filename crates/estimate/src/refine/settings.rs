@@ -146,6 +146,11 @@ pub struct Settings {
     /// is wider than the noise of the readings makes it. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub posterior_by_folds: bool,
+    /// The noise model of what the trials leave open is learned on whole trials of about so many
+    /// samples in all, those that differ most. Where absent, on all. The default search sets it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1))]
+    pub calibration_samples: Option<usize>,
     /// Names of trials that are kept out of fit and choice altogether, to be judged on.
     pub held_out: Vec<String>,
     /// What the refined model must keep to.
@@ -181,6 +186,7 @@ impl Default for Settings {
             in_parts: false,
             steering_from_trials: false,
             posterior_by_folds: false,
+            calibration_samples: None,
             held_out: Vec::new(),
             constraints: Constraints::default(),
             bands: Sampling::default(),
@@ -224,6 +230,9 @@ impl Settings {
         }
         if !(2..=100).contains(&self.folds) {
             return refuse("folds", "must be from 2 to 100");
+        }
+        if self.calibration_samples == Some(0) {
+            return refuse("calibration_samples", "must be at least 1");
         }
         if !self.method.keeps_constraints() && !self.constraints.is_empty() {
             return refuse("constraints", "are kept by the methods `published` and `weak` only");

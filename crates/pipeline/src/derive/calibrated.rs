@@ -19,7 +19,8 @@ pub fn with_uncertainty(
     let held_out = &refinement.settings.held_out;
     let fitted: Vec<&Trial> =
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
-    match calibrate(&refinement.model, law, effects, &fitted) {
+    let samples = refinement.settings.calibration_samples;
+    match calibrate(&refinement.model, law, effects, &fitted, samples) {
         Ok(uncertainty) => refinement.model.uncertainty = Some(uncertainty),
         Err(error) => refinement
             .remarks
