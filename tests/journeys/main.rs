@@ -8,6 +8,7 @@ mod crash;
 mod crowd;
 mod diagnosis_on_files;
 mod diagnosis_over_http;
+mod exports;
 mod families;
 mod fleet;
 mod full_disk;

@@ -3,10 +3,12 @@
 pub mod backup;
 mod channels;
 pub mod check;
+pub mod compare;
 mod config_file;
 pub mod derive;
 pub mod diagnose;
 mod diagnose_text;
+pub mod export;
 pub mod family;
 pub mod fsck;
 pub mod gc;
