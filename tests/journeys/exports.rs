@@ -88,3 +88,40 @@ async fn versions_over_http() {
     let alone = server.get("/v1/compare?version=sr108").await;
     assert_eq!(alone["status"], 400, "{alone}");
 }
+
+/// A ship with a version and trials, from a server on SQLite into one on PostgreSQL where that is
+/// installed.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_ship_moves_to_another_server() {
+    let here = TestServer::sqlite().await;
+    let there = match TestServer::postgres().await {
+        Some(server) => server,
+        None => TestServer::sqlite().await,
+    };
+    create(&here).await;
+    let uploaded = upload(&here).await;
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("ship.bundle").display().to_string();
+    let with = |server: &TestServer, arguments: &[&str]| {
+        let all: Vec<String> =
+            arguments.iter().map(|&a| a.to_owned()).chain(server.store_arguments()).collect();
+        binary::run(&all.iter().map(String::as_str).collect::<Vec<_>>())
+    };
+    let done = with(&here, &["export", NAME, "--format", "bundle", "--out", &file]);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let done = with(&there, &["import", "--bundle", &file, "--json"]);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let taken: serde_json::Value = serde_json::from_slice(&done.stdout).expect("a document");
+    assert_eq!((&taken["ships"][0], &taken["trials"]), (&NAME.into(), &4.into()), "{taken}");
+    let trials = there.get(&format!("/v1/trials?ship={NAME}")).await;
+    let hashes = |list: &serde_json::Value| -> Vec<String> {
+        let all = list.as_array().into_iter().flatten();
+        let mut all: Vec<String> =
+            all.filter_map(|trial| Some(trial["sha256"].as_str()?.to_owned())).collect();
+        all.sort();
+        all
+    };
+    assert_eq!(hashes(&trials["items"]), hashes(&uploaded["trials"]));
+    let broken = with(&there, &["import", "--bundle", "/dev/null"]);
+    assert!(String::from_utf8_lossy(&broken.stderr).contains("is no bundle"));
+}

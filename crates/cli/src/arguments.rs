@@ -61,7 +61,7 @@ pub enum Command {
     Compare(compare::CompareArguments),
     /// Derive a law of motion from a list of actuators.
     Derive(derive::DeriveArguments),
-    /// Write a model down for another tool: C, Python, MATLAB, FMU.
+    /// Write a model down for another tool: C, Python, MATLAB, FMU; or a ship for another store.
     Export(export::ExportArguments),
     /// Show the whole loop through the real server: ship, trials, source, refinement, champion,
     /// report.

@@ -125,10 +125,23 @@ pub fn definition(name: &str) -> Result<Definition, ValueError> {
     Definition::by_name(name).ok_or_else(|| ValueError::UnknownName { known: known.join(" and ") })
 }
 
+/// What a model or a ship is exported as.
+#[derive(Debug, Clone, Copy)]
+pub enum ExportFormat {
+    /// A model for another tool.
+    Model(&'static dyn Format),
+    /// A ship for another store.
+    Bundle,
+}
+
 /// A format of exports by its name.
-pub fn format(name: &str) -> Result<&'static dyn Format, ValueError> {
-    let known = || FORMATS.map(|format| format!("`{}`", format.name())).join(", ");
-    by_name(name).ok_or_else(|| ValueError::UnknownName { known: known() })
+pub fn export_format(name: &str) -> Result<ExportFormat, ValueError> {
+    let known = || FORMATS.map(|format| format!("`{}`, ", format.name())).concat() + "`bundle`";
+    match (name, by_name(name)) {
+        ("bundle", _) => Ok(ExportFormat::Bundle),
+        (_, Some(format)) => Ok(ExportFormat::Model(format)),
+        (_, None) => Err(ValueError::UnknownName { known: known() }),
+    }
 }
 
 /// `SHIP/NUMBER`: a version of a ship's model.

@@ -3,6 +3,7 @@
 
 pub mod archive;
 pub mod budget;
+pub mod bundle;
 pub mod catalogue;
 pub mod champions;
 pub mod comparison;

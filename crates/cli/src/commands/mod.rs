@@ -13,6 +13,7 @@ pub mod family;
 pub mod fsck;
 pub mod gc;
 pub mod import;
+mod import_bundle;
 mod import_log;
 mod log;
 mod log_format;
