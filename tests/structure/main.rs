@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crates that only some may name.
-const ALLOWED: [(&str, &[&str]); 18] = [
+const ALLOWED: [(&str, &[&str]); 19] = [
     ("model", &[]),
     ("dynamics", &["model"]),
     ("stretches", &[]),
@@ -17,6 +17,7 @@ const ALLOWED: [(&str, &[&str]); 18] = [
     ("regression", &[]),
     ("branches", &["model", "dynamics"]),
     ("bands", &["model", "dynamics"]),
+    ("export", &["model", "dynamics"]),
     ("estimate", &["model", "dynamics", "bands", "regression"]),
     ("choice", &["model", "bands", "estimate"]),
     ("diagnose", &["model", "dynamics", "regression", "estimate"]),
@@ -25,7 +26,10 @@ const ALLOWED: [(&str, &[&str]); 18] = [
     ("report", &["model", "dynamics", "bands", "estimate", "choice", "diagnose"]),
     (
         "pipeline",
-        &["model", "dynamics", "trials", "estimate", "choice", "diagnose", "fleet", "store"],
+        &[
+            "model", "dynamics", "trials", "export", "estimate", "choice", "diagnose", "fleet",
+            "store",
+        ],
     ),
     ("listen", &[]),
     (
@@ -50,6 +54,7 @@ const ALLOWED: [(&str, &[&str]); 18] = [
             "report",
             "pipeline",
             "server",
+            "export",
         ],
     ),
 ];

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 use crate::commands::{backup, family, fsck, gc, serve, ships, verify, work};
-use crate::commands::{check, derive, diagnose, import, manoeuvre, refine, similar, simulate};
+use crate::commands::{
+    check, compare, derive, diagnose, export, import, manoeuvre, refine, similar, simulate,
+};
 use crate::demo::DemoArguments;
 
 const EXAMPLES: &str = "\
@@ -21,6 +23,7 @@ Examples:
   sistership simulate --model my-model.yaml --trials trials.yaml
   sistership diagnose --model my-model.yaml --trials new-trials.yaml --report diagnosis.html
   sistership manoeuvre --model my-model.yaml --all
+  sistership export my-model.yaml --format c --out my_model.c
 
 Exit status: 0 done, 1 the data or the model says no, 2 the call is wrong.";
 
@@ -54,8 +57,12 @@ pub enum Command {
     Diagnose(diagnose::DiagnoseArguments),
     /// Sail turning circles and zigzags with a model and judge them by the IMO criteria.
     Manoeuvre(manoeuvre::ManoeuvreArguments),
+    /// Compare two to five models: coefficients, errors on the same trials, standard manoeuvres.
+    Compare(compare::CompareArguments),
     /// Derive a law of motion from a list of actuators.
     Derive(derive::DeriveArguments),
+    /// Write a model down for another tool: C, Python, MATLAB, FMU; or a ship for another store.
+    Export(export::ExportArguments),
     /// Show the whole loop through the real server: ship, trials, source, refinement, champion,
     /// report.
     Demo(DemoArguments),

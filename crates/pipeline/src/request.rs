@@ -4,13 +4,13 @@ use serde::{Deserialize, Serialize};
 use sistership_estimate::refine::Settings;
 
 /// The kind of refinement jobs.
-pub(crate) const REFINEMENT: &str = "refinement";
+pub const REFINEMENT: &str = "refinement";
 
 /// A refinement to be done. Everything but the choice of an `auto` source is settled when it is
 /// asked for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct RefinementJob {
+pub struct RefinementJob {
     /// The ship.
     pub ship: String,
     /// Where to start.
@@ -32,12 +32,12 @@ pub(crate) struct RefinementJob {
 }
 
 /// The kind of diagnosis jobs.
-pub(crate) const DIAGNOSIS: &str = "diagnosis";
+pub const DIAGNOSIS: &str = "diagnosis";
 
 /// A diagnosis to be done; everything is settled when it is asked for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct DiagnosisJob {
+pub struct DiagnosisJob {
     /// The ship, whose name is that of the line of versions.
     pub ship: String,
     /// The number of the version.
@@ -55,7 +55,7 @@ pub(crate) struct DiagnosisJob {
 /// Where a refinement starts.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum SourceChoice {
+pub enum SourceChoice {
     /// At the best eligible ship of the zoo.
     Auto,
     /// At a version.
