@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crates that only some may name.
-const ALLOWED: [(&str, &[&str]); 18] = [
+const ALLOWED: [(&str, &[&str]); 20] = [
     ("model", &[]),
     ("dynamics", &["model"]),
     ("stretches", &[]),
@@ -17,6 +17,8 @@ const ALLOWED: [(&str, &[&str]); 18] = [
     ("regression", &[]),
     ("branches", &["model", "dynamics"]),
     ("bands", &["model", "dynamics"]),
+    ("validation", &["model", "dynamics"]),
+    ("empirical", &["model", "dynamics", "bands"]),
     ("estimate", &["model", "dynamics", "bands", "regression"]),
     ("choice", &["model", "bands", "estimate"]),
     ("diagnose", &["model", "dynamics", "regression", "estimate"]),
@@ -43,6 +45,8 @@ const ALLOWED: [(&str, &[&str]); 18] = [
             "stretches",
             "trials",
             "bands",
+            "validation",
+            "empirical",
             "estimate",
             "choice",
             "diagnose",

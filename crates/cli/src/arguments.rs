@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::{backup, family, fsck, gc, serve, ships, verify, work};
-use crate::commands::{check, derive, diagnose, import, manoeuvre, refine, similar, simulate};
+use crate::commands::{backup, family, fsck, gc, serve, ships, verify, work, zoo};
+use crate::commands::{
+    check, derive, diagnose, estimate, import, manoeuvre, refine, similar, simulate,
+};
 use crate::demo::DemoArguments;
 
 const EXAMPLES: &str = "\
@@ -21,6 +23,8 @@ Examples:
   sistership simulate --model my-model.yaml --trials trials.yaml
   sistership diagnose --model my-model.yaml --trials new-trials.yaml --report diagnosis.html
   sistership manoeuvre --model my-model.yaml --all
+  sistership estimate --ship my-ship.yaml
+  sistership zoo add my-ship.yaml
 
 Exit status: 0 done, 1 the data or the model says no, 2 the call is wrong.";
 
@@ -54,8 +58,12 @@ pub enum Command {
     Diagnose(diagnose::DiagnoseArguments),
     /// Sail turning circles and zigzags with a model and judge them by the IMO criteria.
     Manoeuvre(manoeuvre::ManoeuvreArguments),
+    /// Estimate a model of a ship from its particulars alone, with bands.
+    Estimate(estimate::EstimateArguments),
     /// Derive a law of motion from a list of actuators.
     Derive(derive::DeriveArguments),
+    /// What the models of the zoo are worth; check a ship that is to join it.
+    Zoo(zoo::ZooArguments),
     /// Show the whole loop through the real server: ship, trials, source, refinement, champion,
     /// report.
     Demo(DemoArguments),

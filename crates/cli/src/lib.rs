@@ -55,6 +55,8 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Diagnose(diagnose) => commands::diagnose::run(&zoo()?, diagnose),
         Command::Manoeuvre(manoeuvre) => commands::manoeuvre::run(&zoo()?, manoeuvre),
         Command::Derive(derive) => commands::derive::run(&zoo()?, derive),
+        Command::Estimate(asked) => commands::estimate::run(&zoo()?, asked),
+        Command::Zoo(asked) => commands::zoo::run(&zoo()?, asked),
         Command::Demo(demo) => demo::run(demo, &zoo()?),
         Command::Serve(serve) => commands::serve::run(serve, &arguments.zoo),
         Command::Work(work) => commands::work::run(work),
