@@ -7,7 +7,9 @@ use std::path::PathBuf;
 use sistership_dynamics::manoeuvre::StandardManoeuvres;
 use sistership_model::vessel::Status;
 use sistership_model::{Vessel, Zoo};
-use sistership_validation::{Appraisal, Comparison, Standing, appraise_vessel, limits};
+use sistership_validation::{
+    Appraisal, Comparison, Severity, Standing, appraise_vessel, limits, review,
+};
 
 #[test]
 fn the_page_of_the_zoo_is_current() {
@@ -24,6 +26,18 @@ fn the_page_of_the_zoo_is_current() {
         "docs/zoo.md is not current: run this test with UPDATE_ZOO=1\n{}",
         first_difference(&stored, &current)
     );
+}
+
+#[test]
+fn every_ship_of_the_zoo_passes_the_check_of_a_contributed_one() {
+    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    for vessel in zoo.vessels() {
+        let review = review(&zoo, vessel).unwrap_or_else(|error| panic!("{error}"));
+        let refused = review.findings.iter().filter(|one| one.severity == Severity::Refused);
+        let refused: Vec<String> =
+            refused.map(|one| format!("{}: {}", one.about, one.message)).collect();
+        assert!(review.is_taken(), "{}:\n{}", vessel.name(), refused.join("\n"));
+    }
 }
 
 fn first_difference(stored: &str, current: &str) -> String {

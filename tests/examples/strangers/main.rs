@@ -58,11 +58,14 @@ fn main() {
         .collect();
     let strangers: Vec<Stranger> =
         ships.iter().filter_map(|one| stranger(&zoo, &library, &ships, one)).collect();
-    println!("| stranger | sources | best | its error | most similar (Mei) | its error | estimate |");
+    println!(
+        "| stranger | sources | best | its error | most similar (Mei) | its error | estimate |"
+    );
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     strangers.iter().for_each(print_stranger);
     measures(&strangers);
-    priors(&strangers);
+    priors(&strangers, 0, false);
+    priors(&strangers, 3, true);
 }
 
 fn kin(a: &str, b: &str) -> bool {
@@ -155,7 +158,9 @@ fn print_stranger(stranger: &Stranger) {
 
 /// Does a measure choose well?
 fn measures(strangers: &[Stranger]) {
-    println!("\n| measure | strangers | median error of the chosen | of its category | rank correlation with the benefit | chosen within 10 % of the best |");
+    println!(
+        "\n| measure | strangers | median error of the chosen | of its category | rank correlation with the benefit | chosen within 10 % of the best |"
+    );
     println!("| --- | --- | --- | --- | --- | --- |");
     for (k, name) in MEASURES.iter().enumerate() {
         let errors = |in_group| -> Vec<f64> {
@@ -163,7 +168,7 @@ fn measures(strangers: &[Stranger]) {
         };
         let ranks: Vec<f64> = strangers.iter().filter_map(|one| rank(one, k)).collect();
         let near = |one: &Stranger| {
-            Some(chosen(one, k, false)?.error <= 1.1 * best(one)?.error).map(f64::from)
+            Some(f64::from(chosen(one, k, false)?.error <= 1.1 * best(one)?.error))
         };
         let near: Vec<f64> = strangers.iter().filter_map(near).collect();
         let (low, high) = bootstrap(&ranks, 1);
@@ -182,7 +187,11 @@ fn measures(strangers: &[Stranger]) {
         .collect();
     let bests: Vec<f64> = strangers.iter().filter_map(|one| Some(best(one)?.error)).collect();
     println!("| any source | {} | {:.2} | | | |", any.len(), median(&any));
-    println!("| the best source, known only afterwards | {} | {:.2} | | | 100 % |", bests.len(), median(&bests));
+    println!(
+        "| the best source, known only afterwards | {} | {:.2} | | | 100 % |",
+        bests.len(),
+        median(&bests)
+    );
 }
 
 fn rank(stranger: &Stranger, measure: usize) -> Option<f64> {
@@ -195,11 +204,12 @@ fn rank(stranger: &Stranger, measure: usize) -> Option<f64> {
 }
 
 /// Source alone, estimate alone, and both, each weighted by how well it did for the other ships.
-fn priors(strangers: &[Stranger]) {
-    let known: Vec<(&Stranger, &Figures, &Figures)> = strangers
-        .iter()
-        .filter_map(|one| Some((one, &chosen(one, 0, false)?.figures, one.estimated.as_ref()?)))
-        .collect();
+fn priors(strangers: &[Stranger], measure: usize, in_category: bool) {
+    let both = |one| {
+        let source: &Candidate = chosen(one, measure, in_category)?;
+        Some((one, &source.figures, one.estimated.as_ref()?))
+    };
+    let known: Vec<(&Stranger, &Figures, &Figures)> = strangers.iter().filter_map(both).collect();
     let squares = |without: &str, pick: &dyn Fn(&(&Stranger, &Figures, &Figures)) -> f64| {
         let others = known.iter().filter(|one| !kin(&one.0.ship, without));
         mean(&others.map(|one| pick(one).powi(2)).collect::<Vec<_>>())
@@ -217,6 +227,8 @@ fn priors(strangers: &[Stranger]) {
         .collect();
     let sources: Vec<f64> = known.iter().map(source).collect();
     let estimates: Vec<f64> = known.iter().map(estimated).collect();
+    let within = if in_category { "of its category" } else { "of all" };
+    println!("\nThe source is the most similar {within}, by {}.", MEASURES[measure]);
     println!("\n| prior | strangers | median error | mean error | better than the mixture |");
     println!("| --- | --- | --- | --- | --- |");
     for (name, errors) in
