@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crates that only some may name.
-const ALLOWED: [(&str, &[&str]); 19] = [
+const ALLOWED: &[(&str, &[&str])] = &[
     ("model", &[]),
     ("dynamics", &["model"]),
     ("stretches", &[]),
@@ -18,6 +18,8 @@ const ALLOWED: [(&str, &[&str]); 19] = [
     ("branches", &["model", "dynamics"]),
     ("bands", &["model", "dynamics"]),
     ("export", &["model", "dynamics"]),
+    ("validation", &["model", "dynamics"]),
+    ("empirical", &["model", "dynamics", "bands"]),
     ("estimate", &["model", "dynamics", "bands", "regression"]),
     ("choice", &["model", "bands", "estimate"]),
     ("diagnose", &["model", "dynamics", "regression", "estimate"]),
@@ -47,6 +49,8 @@ const ALLOWED: [(&str, &[&str]); 19] = [
             "stretches",
             "trials",
             "bands",
+            "validation",
+            "empirical",
             "estimate",
             "choice",
             "diagnose",

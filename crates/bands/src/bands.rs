@@ -100,6 +100,21 @@ pub fn bands(
     Some(Bands { sampling, failed, figures, next_trial })
 }
 
+/// The bands of figures over ships that sailed the standard manoeuvres, in the order in which they
+/// first come.
+pub fn bands_over(sailed: Vec<StandardManoeuvres>) -> Vec<Band> {
+    let draws = sailed.len();
+    let mut order: Vec<String> = Vec::new();
+    let mut figures: BTreeMap<String, Vec<Figure>> = BTreeMap::new();
+    for figure in sailed.into_iter().flat_map(|sailed| sailed.figures()) {
+        if !figures.contains_key(&figure.name) {
+            order.push(figure.name.clone());
+        }
+        figures.entry(figure.name.clone()).or_default().push(figure);
+    }
+    order.iter().filter_map(|name| band(&figures[name], draws)).collect()
+}
+
 /// The ship that draws are sisters of, and how they sail: at a coarse step.
 fn prepared(
     model: &Model,

@@ -57,6 +57,8 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Compare(compare) => commands::compare::run(&zoo()?, compare),
         Command::Derive(derive) => commands::derive::run(&zoo()?, derive),
         Command::Export(export) => commands::export::run(&zoo()?, export),
+        Command::Estimate(asked) => commands::estimate::run(&zoo()?, asked),
+        Command::Zoo(asked) => commands::zoo::run(&zoo()?, asked),
         Command::Demo(demo) => demo::run(demo, &zoo()?),
         Command::Serve(serve) => commands::serve::run(serve, &arguments.zoo),
         Command::Work(work) => commands::work::run(work),

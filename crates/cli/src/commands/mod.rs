@@ -8,6 +8,7 @@ mod config_file;
 pub mod derive;
 pub mod diagnose;
 mod diagnose_text;
+pub mod estimate;
 pub mod export;
 pub mod family;
 pub mod fsck;
@@ -35,6 +36,8 @@ pub(crate) mod store;
 pub mod verify;
 pub mod work;
 mod written;
+pub mod zoo;
+mod zoo_text;
 
 use sistership_dynamics::Ship;
 use sistership_model::vessel::Status;
