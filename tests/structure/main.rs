@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crates that only some may name.
-const ALLOWED: [(&str, &[&str]); 18] = [
+const ALLOWED: [(&str, &[&str]); 20] = [
     ("model", &[]),
     ("dynamics", &["model"]),
     ("stretches", &[]),
@@ -27,12 +27,14 @@ const ALLOWED: [(&str, &[&str]); 18] = [
         "pipeline",
         &["model", "dynamics", "trials", "estimate", "choice", "diagnose", "fleet", "store"],
     ),
+    ("pages", &["model", "dynamics", "trials", "estimate", "store", "report", "pipeline"]),
     ("listen", &[]),
+    ("fields", &["store"]),
     (
         "server",
         &[
             "model", "dynamics", "trials", "bands", "estimate", "choice", "diagnose", "fleet",
-            "store", "report", "pipeline", "listen",
+            "store", "report", "pipeline", "pages", "listen", "fields",
         ],
     ),
     (
