@@ -16,6 +16,7 @@ mod lacking;
 mod memory;
 mod operation;
 mod over_http;
+mod pages;
 mod sea_trials;
 mod sisters;
 mod stopping;

@@ -32,8 +32,12 @@ fn outcome(job: &Job) -> Option<String> {
     if let Some(verdict) = result["verdict"].as_str() {
         return Some(found(verdict, &result));
     }
-    let (alias, source) = (result["alias"].as_str()?, result["source"].as_str()?);
-    Some(format!("version {}, {alias}, from {source}", result["version"]))
+    let (version, alias) = (result["version"].as_i64()?, result["alias"].as_str()?);
+    let from = match result["source"].as_str() {
+        Some(source) => format!("from {source}"),
+        None => "from the trials alone".to_owned(),
+    };
+    Some(format!("version {version}, {alias}, {from}"))
 }
 
 /// What a diagnosis has found.

@@ -17,7 +17,7 @@ use crate::form::Fields;
 use crate::shell::Shell;
 
 /// Ships on one page.
-const SHIPS: i64 = 25;
+const SHIPS: i64 = 50;
 
 #[derive(Template)]
 #[template(path = "fleet.html")]

@@ -56,6 +56,12 @@ fn shown(tracks: &[Track], channel: Channel) -> bool {
     tracks.iter().any(|track| track.channels.get(&channel).is_some_and(there))
 }
 
+/// What stays the same gets room, too: its last digits mean nothing.
+fn widened((low, high): (f64, f64)) -> (f64, f64) {
+    let room = 0.5 * (0.02 * low.abs().max(high.abs()) - (high - low)).max(0.0);
+    (low - room, high + room)
+}
+
 fn panel(
     tracks: &[Track],
     (channel, name, unit, factor): Panel,
@@ -66,7 +72,7 @@ fn panel(
     let all = tracks.iter().filter_map(|track| Some((track, track.channels.get(&channel)?)));
     let lines: Vec<(&Track, &Vec<f64>)> = all.collect();
     let values = lines.iter().flat_map(|(_, values)| values.iter().map(|value| value * factor));
-    let (low, high) = padded(extent(values).unwrap_or((0.0, 1.0)), 0.06);
+    let (low, high) = padded(widened(extent(values).unwrap_or((0.0, 1.0))), 0.06);
     let scale = Scale { low, high, length: HEIGHT, reversed: true };
     let (at, size) = ((LEFT, top), (time.length, HEIGHT));
     let title = format!("{name} [{unit}]");

@@ -16,7 +16,7 @@ pub(crate) fn ground(tracks: &[Track], hull: Option<Hull>, label: &str) -> Optio
     let chart = GroundChart::of(range(|place| place.0)?, range(|place| place.1)?);
     let mut inside: Vec<Shape> =
         placed.iter().map(|(track, places)| curve(&chart, track, places)).collect();
-    let interval = mark_interval_s(duration_s(&placed));
+    let interval = mark_interval_s(0.5 * duration_s(&placed));
     inside.extend(
         placed.iter().flat_map(|(track, places)| marks(&chart, track, places, hull, interval)),
     );

@@ -34,13 +34,7 @@ struct Reported {
 #[derive(Deserialize)]
 struct Options {
     #[serde(default)]
-    options: Option<Steps>,
-}
-
-#[derive(Deserialize)]
-struct Steps {
-    #[serde(default)]
-    steps: Vec<Step>,
+    options: Vec<Step>,
 }
 
 #[derive(Deserialize)]
@@ -103,8 +97,7 @@ async fn error(store: &Store, head: &VersionHead) -> Result<Option<f64>, StoreEr
     }
     let document = store.versions().get(&head.model, head.number).await?.document;
     let reported: Option<Reported> = serde_json::from_str(&document).ok();
-    let steps = reported
-        .and_then(|reported| reported.report?.options)
-        .unwrap_or(Steps { steps: Vec::new() });
-    Ok(steps.steps.into_iter().find(|step| step.chosen).and_then(|step| step.error))
+    let options = reported.and_then(|reported| reported.report).map(|report| report.options);
+    let chosen = options.into_iter().flatten().find(|step| step.chosen);
+    Ok(chosen.and_then(|step| step.error))
 }

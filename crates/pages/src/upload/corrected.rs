@@ -6,21 +6,9 @@ use indexmap::IndexMap;
 use sistership_model::manifest::{ColumnMapping, Missing, RudderSign, VelocityFrame};
 use sistership_trials::ManifestFile;
 
-use super::{DERIVED, Proposed, TARGETS, is_mapped};
+use super::proposed::{DERIVED, Proposed, TARGETS};
 use crate::error::{PageError, Result};
 use crate::form::Fields;
-
-/// The columns of a file as they are mapped now.
-pub(super) fn columns_of<'a>(
-    manifest: &'a ManifestFile,
-    file: &str,
-) -> Vec<(&'a String, &'a ColumnMapping)> {
-    let sensor = manifest.sensors.iter().flatten().find(|sensor| sensor.file == file);
-    match sensor {
-        Some(sensor) => sensor.columns.iter().collect(),
-        None => manifest.manifest.columns.iter().collect(),
-    }
-}
 
 /// The manifest with what the form says of columns, signs, manoeuvres and depths.
 ///
@@ -30,7 +18,7 @@ pub fn corrected(of: &Proposed, fields: &Fields) -> Result<ManifestFile> {
     let mut manifest = of.manifest.clone();
     let mut by_file: BTreeMap<&str, IndexMap<String, ColumnMapping>> = BTreeMap::new();
     let mut ignored = Vec::new();
-    for (key, guess) in of.guesses.iter().enumerate().filter(|(_, one)| is_mapped(of, &one.file)) {
+    for (key, guess) in of.guesses.iter().enumerate().filter(|(_, one)| of.is_mapped(&one.file)) {
         let columns = by_file.entry(&guess.file).or_default();
         match mapped(fields, key, &guess.column)? {
             None => ignored.push(guess.column.clone()),

@@ -3,44 +3,20 @@
 
 mod corrected;
 mod preview;
+mod proposed;
 
 use askama::Template;
 use sistership_model::manifest::{Missing, RudderSign, VelocityFrame};
-use sistership_trials::{Derivable, Guess, ManifestFile};
+use sistership_trials::Guess;
 
 pub use corrected::corrected;
 pub use preview::Preview;
+pub use proposed::Proposed;
 
+use self::proposed::{DERIVED, TARGETS, columns_of};
 use crate::error::Result;
 use crate::shell::Shell;
 
-/// Names of what a column may be, as manifests have them.
-const TARGETS: [&str; 24] = [
-    "t",
-    "x",
-    "y",
-    "latitude",
-    "longitude",
-    "psi",
-    "u",
-    "v",
-    "r",
-    "phi",
-    "p",
-    "delta",
-    "delta_s",
-    "delta_p",
-    "n",
-    "n_s",
-    "n_p",
-    "course",
-    "speed",
-    "wind_speed",
-    "wind_from",
-    "apparent_wind_speed",
-    "apparent_wind_from",
-    "depth",
-];
 /// Units in use.
 const UNITS: [&str; 17] = [
     "s", "ms", "min", "auto", "hh:mm:ss", "m", "km", "m/s", "kn", "km/h", "rad", "deg", "rad/s",
@@ -60,21 +36,6 @@ struct UploadPage<'a> {
 /// The page cannot be written.
 pub fn choose(shell: &Shell, ship: &str) -> Result<String> {
     Ok(UploadPage { shell, ship }.render()?)
-}
-
-/// An upload whose files have arrived.
-#[derive(Debug, Clone)]
-pub struct Proposed {
-    /// The ship.
-    pub ship: String,
-    /// Where its files are looked at.
-    pub id: String,
-    /// What each column was taken for at first, and why.
-    pub guesses: Vec<Guess>,
-    /// How the files are read now.
-    pub manifest: ManifestFile,
-    /// Whether the champion is to be diagnosed on what is kept.
-    pub diagnose: bool,
 }
 
 #[derive(Template)]
@@ -126,26 +87,16 @@ pub fn mapping(shell: &Shell, of: &Proposed, previews: &[Preview]) -> Result<Str
     Ok(page.render()?)
 }
 
-/// Velocities that can be derived, by the name of their field.
-const DERIVED: [(&str, Derivable); 3] =
-    [("u", Derivable::U), ("v", Derivable::V), ("r", Derivable::R)];
-
 /// The guesses whose columns the manifest maps: those of the first file, which the other trials
 /// share, and those of further sensors. A sentence of NMEA 0183 needs no mapping.
 fn rows(of: &Proposed) -> Vec<ColumnRow<'_>> {
-    let own = of.guesses.iter().enumerate().filter(|(_, guess)| is_mapped(of, &guess.file));
+    let own = of.guesses.iter().enumerate().filter(|(_, guess)| of.is_mapped(&guess.file));
     own.map(|(key, guess)| {
-        let columns = corrected::columns_of(&of.manifest, &guess.file);
+        let columns = columns_of(&of.manifest, &guess.file);
         let known = columns.iter().find(|(_, mapped)| mapped.column == guess.column);
         let (channel, unit) =
             known.map_or(("", ""), |(channel, mapped)| (channel.as_str(), mapped.unit.as_str()));
         ColumnRow { key, guess, channel, unit }
     })
     .collect()
-}
-
-fn is_mapped(of: &Proposed, file: &str) -> bool {
-    let first = of.manifest.manifest.trials.first();
-    let sensors = of.manifest.sensors.iter().flatten();
-    first.is_some_and(|first| first.file == file) || sensors.into_iter().any(|one| one.file == file)
 }

@@ -33,14 +33,13 @@ pub(super) fn rows(
     sailed: &StandardManoeuvres,
     report: &Value,
 ) -> (Vec<FigureRow>, Vec<CriterionRow>) {
-    let manoeuvres = &report["manoeuvres"];
+    let bands = &report["manoeuvres"]["bands"]["figures"];
     let figures = sailed.figures();
     let plain = figures.iter().filter(|figure| figure.pass.is_none());
     let plain = plain.filter(|figure| !figure.name.starts_with("IMO"));
     let criteria = sailed.imo.iter().map(|criterion| {
-        let known = rows_of(&manoeuvres["imo"]);
-        let mut known = known.filter(|row| row["criterion"] == criterion.criterion.as_str());
-        let share = known.next().and_then(|row| row["pass_share"].as_f64());
+        let name = format!("IMO: {}", criterion.criterion);
+        let share = band_of(&name, bands).and_then(|band| band["pass"].as_f64());
         let (verdict, class) = match criterion.pass {
             Some(true) => ("met", "good"),
             Some(false) => ("not met", "bad"),
@@ -56,15 +55,16 @@ pub(super) fn rows(
             share: share.map_or_else(String::new, |share| format!("{} %", fixed(100.0 * share, 0))),
         }
     });
-    (plain.map(|figure| row(figure, manoeuvres)).collect(), criteria.collect())
+    (plain.map(|figure| row(figure, bands)).collect(), criteria.collect())
 }
 
 fn known_value(value: Option<f64>) -> String {
     known(value, |value| significant(value, 4))
 }
 
-fn row(figure: &Figure, manoeuvres: &Value) -> FigureRow {
-    let band = band(&figure.name, manoeuvres);
+fn row(figure: &Figure, bands: &Value) -> FigureRow {
+    let band = band_of(&figure.name, bands)
+        .and_then(|band| Some((band["low"].as_f64()?, band["high"].as_f64()?)));
     let wide =
         |(low, high): (f64, f64)| figure.value.is_some_and(|value| high - low > WIDE * value.abs());
     FigureRow {
@@ -78,15 +78,7 @@ fn row(figure: &Figure, manoeuvres: &Value) -> FigureRow {
     }
 }
 
-/// The band of a figure, `manoeuvre: figure`.
-fn band(name: &str, manoeuvres: &Value) -> Option<(f64, f64)> {
-    let (manoeuvre, figure) = name.split_once(": ")?;
-    let all = rows_of(&manoeuvres["turns"]).chain(rows_of(&manoeuvres["zigzags"]));
-    let mut own = all.filter(|row| row["manoeuvre"] == manoeuvre && row["figure"] == figure);
-    let band = &own.next()?["band"];
-    Some((band[0].as_f64()?, band[1].as_f64()?))
-}
-
-fn rows_of(value: &Value) -> impl Iterator<Item = &Value> {
-    value.as_array().into_iter().flatten()
+/// The band of a figure, by its name.
+fn band_of<'a>(name: &str, bands: &'a Value) -> Option<&'a Value> {
+    bands.as_array()?.iter().find(|band| band["figure"] == name)
 }

@@ -151,10 +151,16 @@ impl Gathered {
         Ok(page.render()?)
     }
 
+    /// The figures as they were sailed when the version was made.
+    fn reported(&self) -> Option<StandardManoeuvres> {
+        let refined = self.document.report.pointer("/manoeuvres/refined")?;
+        serde_json::from_value(refined.clone()).ok()
+    }
+
     fn sailed(&self) -> Result<Sailed, PlantError> {
         let mut ship = Ship::new(&self.document.model, &self.law)?;
         let settings = ManoeuvreSettings::default();
-        let figures = standard(&ship, &settings);
+        let figures = self.reported().unwrap_or_else(|| standard(&ship, &settings));
         ship.forget_validity();
         let rolls = ship.has_roll();
         let starboard = turn(&ship, 35.0, &settings).ok().map(|turn| turn.track);

@@ -76,8 +76,8 @@ fn order(class: Class, error: Option<f64>) -> f64 {
 /// The error of a refined model on manoeuvres left out, as its report has it: the mean squared error
 /// of what was simulated, by the variance of what was measured.
 pub fn error(version: &VersionDocument) -> Option<f64> {
-    let steps = version.report.pointer("/options/steps")?.as_array()?;
-    let chosen = steps.iter().find(|step| step["chosen"] == Value::Bool(true))?;
+    let options = version.report["options"].as_array()?;
+    let chosen = options.iter().find(|step| step["chosen"] == Value::Bool(true))?;
     chosen["error"].as_f64().filter(|error| error.is_finite())
 }
 
