@@ -6,8 +6,8 @@ use sistership_pipeline::error::DeriveError;
 use sistership_pipeline::library::library;
 use sistership_store::StoreError;
 
+use super::citation::{Citation, citations};
 use super::equations::mathml;
-use super::{Citation, citations};
 use crate::error::Result;
 use crate::shell::Shell;
 

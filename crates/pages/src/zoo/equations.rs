@@ -2,8 +2,8 @@
 
 /// A formula as MathML, from its text in a file.
 ///
-/// Names become italic letters with what follows the first `_` below them; products are set side by
-/// side, powers raised. What stands in the file is not rearranged.
+/// Names become italic letters with what follows the first `_` below them, powers are raised. What
+/// stands in the file is not rearranged.
 pub(super) fn mathml(formula: &str) -> String {
     let tokens = tokens(formula);
     let mut row = String::new();
@@ -21,22 +21,42 @@ pub(super) fn mathml(formula: &str) -> String {
     format!("<math><mrow>{row}</mrow></math>")
 }
 
-/// Names, numbers, and single marks.
+/// Names, numbers, and marks, of which comparisons have two letters.
 fn tokens(formula: &str) -> Vec<String> {
-    let mut tokens: Vec<String> = Vec::new();
-    let mut open = false;
-    for letter in formula.chars() {
-        // What a coefficient's name may hold beside letters.
-        let part = letter.is_alphanumeric() || "_.@|".contains(letter);
-        match (part && letter != '|', open) {
-            (true, true) => tokens.iter_mut().last().into_iter().for_each(|last| last.push(letter)),
-            (true, false) => tokens.push(letter.to_string()),
-            (false, _) if letter.is_whitespace() => {}
-            (false, _) => tokens.push(letter.to_string()),
+    let letters: Vec<char> = formula.chars().collect();
+    let (mut tokens, mut at) = (Vec::new(), 0);
+    while at < letters.len() {
+        let first = letters[at];
+        let length = match first {
+            _ if first.is_ascii_digit() => number_length(&letters[at..]),
+            _ if is_name(first) => letters[at..].iter().take_while(|one| is_name(**one)).count(),
+            '<' | '>' | '=' | '!' if letters.get(at + 1) == Some(&'=') => 2,
+            _ => 1,
+        };
+        if !first.is_whitespace() {
+            tokens.push(letters[at..at + length].iter().collect());
         }
-        open = part && letter != '|';
+        at += length;
     }
     tokens
+}
+
+/// What a name may hold.
+fn is_name(letter: char) -> bool {
+    letter.is_alphanumeric() || "_.@".contains(letter)
+}
+
+/// How many letters a number has, with its exponent.
+fn number_length(letters: &[char]) -> usize {
+    let mut length = 0;
+    for (at, letter) in letters.iter().enumerate() {
+        let signed = "+-".contains(*letter) && at > 0 && "eE".contains(letters[at - 1]);
+        if !(letter.is_ascii_digit() || ".eE".contains(*letter) || signed) {
+            break;
+        }
+        length = at + 1;
+    }
+    length
 }
 
 /// What a power may follow: a bracketed group, a name with its arguments, a number; or a mark.
@@ -45,7 +65,9 @@ fn atom(tokens: &[String], at: &mut usize) -> String {
     *at += 1;
     match token.as_str() {
         "(" => format!("<mrow>{}</mrow>", group(tokens, at)),
-        "*" => "<mo>\u{2062}</mo>".to_owned(),
+        "*" => "<mo>\u{00b7}</mo>".to_owned(),
+        ">=" => "<mo>\u{2265}</mo>".to_owned(),
+        "<=" => "<mo>\u{2264}</mo>".to_owned(),
         "-" => "<mo>\u{2212}</mo>".to_owned(),
         mark if mark.chars().all(|letter| !letter.is_alphanumeric()) => {
             format!("<mo>{}</mo>", escaped(mark))
@@ -93,8 +115,19 @@ const GREEK: [(&str, &str); 12] = [
     ("tau", "τ"),
 ];
 
-/// A name: its first part, with the rest below it.
+/// Particulars by the letters that stand for them, without their units.
+const PARTICULARS: [(&str, &str); 4] = [
+    ("lpp_m", "<msub><mi>L</mi><mi>pp</mi></msub>"),
+    ("beam_m", "<mi>B</mi>"),
+    ("draught_m", "<mi>d</mi>"),
+    ("water_density_kg_m3", "<mi>\u{03c1}</mi>"),
+];
+
+/// A name: its first part, with the rest below it; a particular by its letter.
 pub(super) fn symbol(name: &str) -> String {
+    if let Some((_, letter)) = PARTICULARS.iter().find(|(known, _)| *known == name) {
+        return (*letter).to_owned();
+    }
     let (first, below) = name.split_once('_').unwrap_or((name, ""));
     let letter = format!("<mi>{}</mi>", escaped(&greek(first)));
     match below {
@@ -125,6 +158,8 @@ mod tests {
         assert!(mathml("(u - U0)/U").contains("<mo>(</mo><mi>u</mi><mo>\u{2212}</mo>"));
         assert!(mathml("sqrt(u^2)").contains("<mi>sqrt</mi><mo>(</mo><msup>"));
         assert_eq!(symbol("Y_vvdelta"), "<msub><mi>Y</mi><mi>vvδ</mi></msub>");
+        assert_eq!(tokens("1e-4*lpp_m>=x^2"), ["1e-4", "*", "lpp_m", ">=", "x", "^", "2"]);
+        assert!(mathml("0.5*draught_m").contains("<mn>0.5</mn><mo>\u{b7}</mo><mi>d</mi>"));
         assert!(mathml("a<b").contains("&lt;"), "what is written is not taken for a tag");
         assert!(mathml("((((").contains("math"), "an open bracket ends");
     }

@@ -5,8 +5,8 @@ use sistership_model::law::{AxisFile, LawFile, TermFile};
 use sistership_model::{FileError, yaml};
 use sistership_pipeline::Archive;
 
+use super::citation::{Citation, citations};
 use super::equations::{mathml, symbol};
-use super::{Citation, citations};
 use crate::error::Result;
 use crate::shell::Shell;
 
@@ -53,9 +53,9 @@ pub async fn law(archive: &Archive, shell: Shell, name: &str) -> Result<String> 
             .mass
             .iter()
             .flat_map(|(row, entries)| {
-                entries
-                    .iter()
-                    .map(move |(column, formula)| (format!("M_{row}{column}"), mathml(formula)))
+                entries.iter().map(move |(column, formula)| {
+                    (symbol_alone(&format!("M_{row}{column}")), mathml(formula))
+                })
             })
             .collect(),
         citations: citations(&law.sources),

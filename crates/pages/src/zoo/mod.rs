@@ -1,13 +1,11 @@
 //! The zoo: laws with their equations, effects, ships with a published model.
 
+mod citation;
 mod effect;
 mod equations;
 mod law;
 
-use std::collections::BTreeMap;
-
 use askama::Template;
-use sistership_model::source::Source;
 use sistership_model::{Effect, Law, Zoo};
 use sistership_pipeline::library::library;
 
@@ -49,22 +47,4 @@ pub fn index(zoo: &Zoo, shell: Shell) -> Result<String> {
     let effects = library()?.effects.iter().map(|effect| &**effect).collect();
     let laws = zoo.laws().map(|law| row(&**law)).collect();
     Ok(ZooPage { shell: shell.at("/zoo"), laws, effects }.render()?)
-}
-
-/// A publication as pages cite it.
-struct Citation {
-    key: String,
-    text: String,
-    doi: Option<String>,
-    note: Option<String>,
-}
-
-fn citations(sources: &BTreeMap<String, Source>) -> Vec<Citation> {
-    let one = |(key, source): (&String, &Source)| Citation {
-        key: key.clone(),
-        text: source.citation.clone(),
-        doi: source.doi.clone(),
-        note: source.note.clone(),
-    };
-    sources.iter().map(one).collect()
 }
