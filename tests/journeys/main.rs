@@ -17,6 +17,7 @@ mod lacking;
 mod memory;
 mod operation;
 mod over_http;
+mod pages;
 mod python_client;
 mod sea_trials;
 mod sisters;

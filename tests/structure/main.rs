@@ -33,12 +33,14 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "store",
         ],
     ),
+    ("pages", &["model", "dynamics", "trials", "estimate", "store", "report", "pipeline"]),
     ("listen", &[]),
+    ("fields", &["store"]),
     (
         "server",
         &[
             "model", "dynamics", "trials", "bands", "estimate", "choice", "diagnose", "fleet",
-            "store", "report", "pipeline", "listen",
+            "store", "report", "pipeline", "pages", "listen", "fields",
         ],
     ),
     (

@@ -14,10 +14,10 @@ use utoipa::openapi::schema::{
 };
 
 /// The greatest whole number that every reader of JSON holds exactly.
-pub(crate) const MAX_WHOLE: i64 = (1 << 53) - 1;
+pub const MAX_WHOLE: i64 = (1 << 53) - 1;
 
 /// What a text may be.
-pub(crate) struct TextRule {
+pub struct TextRule {
     /// Fewest characters.
     pub min: usize,
     /// Most characters.
@@ -49,14 +49,14 @@ macro_rules! text {
     ($(#[$about:meta])* $name:ident: $min:literal..=$max:literal, $pattern:expr, $says:literal) => {
         $(#[$about])*
         #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-        pub(crate) struct $name(String);
+        pub struct $name(String);
 
         impl $name {
             const RULE: TextRule = TextRule { min: $min, max: $max, pattern: $pattern, says: $says };
 
             /// The text itself.
             #[allow(dead_code, reason = "not every text is kept")]
-            pub(crate) fn into_string(self) -> String {
+            pub fn into_string(self) -> String {
                 self.0
             }
         }
@@ -161,11 +161,11 @@ macro_rules! whole {
     ($(#[$about:meta])* $name:ident: $min:expr, $max:expr, $read:ident $(, default $default:expr)?) => {
         $(#[$about])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-        pub(crate) struct $name(i64);
+        pub struct $name(i64);
 
         impl $name {
             /// The number itself.
-            pub(crate) fn get(self) -> i64 {
+            pub fn get(self) -> i64 {
                 self.0
             }
 
@@ -264,11 +264,11 @@ macro_rules! number {
     ($(#[$about:meta])* $name:ident: $fits:expr, $says:literal, $schema:expr) => {
         $(#[$about])*
         #[derive(Debug, Clone, Copy, PartialEq)]
-        pub(crate) struct $name(f64);
+        pub struct $name(f64);
 
         impl $name {
             /// The number itself.
-            pub(crate) fn get(self) -> f64 {
+            pub fn get(self) -> f64 {
                 self.0
             }
         }
@@ -310,12 +310,12 @@ fn not_zero() -> Option<utoipa::openapi::extensions::Extensions> {
 }
 
 /// The schema of a text that is one of several words.
-pub(crate) fn one_of(words: impl IntoIterator<Item = &'static str>) -> RefOr<Schema> {
+pub fn one_of(words: impl IntoIterator<Item = &'static str>) -> RefOr<Schema> {
     ObjectBuilder::new().schema_type(Type::String).enum_values(Some(words)).build().into()
 }
 
 /// The schema of an object of which the keys are not fixed here.
-pub(crate) fn any_object() -> RefOr<Schema> {
+pub fn any_object() -> RefOr<Schema> {
     ObjectBuilder::new()
         .schema_type(Type::Object)
         .additional_properties(Some(AdditionalProperties::FreeForm(true)))
