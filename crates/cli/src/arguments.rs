@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 use crate::commands::{backup, family, fsck, gc, serve, ships, verify, work};
-use crate::commands::{check, derive, diagnose, import, manoeuvre, refine, similar, simulate};
+use crate::commands::{
+    branch, check, derive, diagnose, import, manoeuvre, refine, similar, simulate,
+};
 use crate::demo::DemoArguments;
 
 const EXAMPLES: &str = "\
@@ -19,6 +21,7 @@ Examples:
   sistership check trials.yaml
   sistership refine --ship my-ship.yaml --trials trials.yaml --out my-model.yaml
   sistership simulate --model my-model.yaml --trials trials.yaml
+  sistership branch --model my-model.yaml --trials trials.yaml --out with-branch.yaml
   sistership diagnose --model my-model.yaml --trials new-trials.yaml --report diagnosis.html
   sistership manoeuvre --model my-model.yaml --all
 
@@ -48,6 +51,8 @@ pub enum Command {
     Import(import::ImportArguments),
     /// Refine a source model against a ship's trials.
     Refine(Box<refine::RefineArguments>),
+    /// Train a learned branch beside a model, on what it leaves of trials.
+    Branch(branch::BranchArguments),
     /// Simulate recorded trials with a model and measure its errors.
     Simulate(simulate::SimulateArguments),
     /// Find what a model lacks, by trials that it has not seen.

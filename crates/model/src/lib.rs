@@ -11,6 +11,7 @@ mod error;
 pub mod formula;
 pub mod hybrid;
 pub mod law;
+pub mod learned;
 pub mod manifest;
 pub mod model;
 pub mod name;

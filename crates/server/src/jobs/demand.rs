@@ -7,7 +7,7 @@ use sistership_store::{Job, StoreError};
 
 use super::outcome::{JobError, Result, failed};
 use super::progress::Progress;
-use super::request::{DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob};
+use super::request::{BRANCH, BranchJob, DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob};
 use crate::app::App;
 use sistership_pipeline::budget::{Share, Shortage};
 
@@ -47,6 +47,10 @@ async fn demand(app: &App, job: &Job) -> Result<u64> {
                 Err(error) => return Err(error.into()),
             };
             (law, asked.trials)
+        }
+        BRANCH => {
+            let asked = serde_json::from_str::<BranchJob>(&job.request).map_err(failed)?;
+            (None, asked.trials)
         }
         // These read one trial after the other.
         _ => (None, Vec::new()),

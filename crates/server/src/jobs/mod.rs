@@ -1,7 +1,9 @@
 //! Long work: what is asked for, and the workers that do it.
 
+mod branch;
 mod chunk;
 mod commit;
+mod commit_branch;
 mod commit_diagnosis;
 mod demand;
 mod diagnosis;
@@ -13,7 +15,8 @@ mod refinement;
 mod request;
 mod worker;
 
-pub(crate) use request::{DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob, SourceChoice};
+pub(crate) use request::{BRANCH, BranchJob, DIAGNOSIS, DiagnosisJob};
+pub(crate) use request::{REFINEMENT, RefinementJob, SourceChoice};
 pub(crate) use worker::Worker;
 
 /// How often another version of the same ship may come in between while one is kept. Each time

@@ -6,8 +6,8 @@ use tower_http::timeout::TimeoutLayer;
 use utoipa_axum::router::OpenApiRouter;
 
 use super::{
-    about, aliases, bulk_refinements, champion, diagnoses, drift, effects, events, families,
-    health, jobs, laws, metrics, predictions, refinements, register, reports, samples,
+    about, aliases, branches, bulk_refinements, champion, diagnoses, drift, effects, events,
+    families, health, jobs, laws, metrics, predictions, refinements, register, reports, samples,
     ship_changes, ships, similar, tags, trials, uploads, versions,
 };
 use crate::app::App;
@@ -37,6 +37,7 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(samples::routes())
         .merge(refinements::routes())
         .merge(diagnoses::routes())
+        .merge(branches::routes())
         .merge(jobs::routes())
         .merge(events::routes())
         .merge(versions::routes())
