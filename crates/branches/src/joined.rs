@@ -1,9 +1,10 @@
-//! A model's law of motion with its branch: a ship that sails by both.
+//! A model with the weights of its branch, so that it sails by both halves.
 
 use std::sync::Arc;
 
-use sistership_dynamics::{PlantError, Ship};
-use sistership_model::branch::{Branch, BranchError};
+use sistership_dynamics::{Envelope, PlantError, Ship};
+use sistership_model::branch::BranchError;
+use sistership_model::learned::Attached;
 use sistership_model::{Law, Model};
 
 use crate::learned::Learned;
@@ -35,30 +36,34 @@ pub enum JoinError {
     },
 }
 
+/// Attaches the weights of a model's branch, the bytes that it names by hash, so that
+/// [`Ship::new`] sails it by both halves.
+///
+/// # Errors
+/// Names what of branch or weights is at fault; the model stays as it is.
+pub fn attach(model: &mut Model, weights: &[u8]) -> Result<(), JoinError> {
+    let envelope = Envelope::of(model);
+    let Some(branch) = &mut model.branch else {
+        return Err(JoinError::None(model.name.clone()));
+    };
+    branch.check()?;
+    let weights = Weights::read(weights, branch)?;
+    let learned = Learned::of(branch, weights).ok_or(JoinError::Channels)?;
+    // A model without length or speed does not sail at all, and says so then.
+    if envelope.is_some_and(|envelope| !learned.domain().is_within(&envelope)) {
+        return Err(JoinError::Reach { fade: branch.fade });
+    }
+    branch.learned = Attached::new(Arc::new(learned));
+    Ok(())
+}
+
 /// Makes a model with a branch ready; `weights` are the bytes that the branch names by hash. Runs
 /// say how they left what the trials covered ([`Ship::leaves`]), outside which the branch fades.
 ///
 /// # Errors
 /// Names what of branch, weights or foundation is at fault.
 pub fn ship(model: &Model, law: &Law, weights: &[u8]) -> Result<Ship, JoinError> {
-    let branch = model.branch.as_ref().ok_or_else(|| JoinError::None(model.name.clone()))?;
-    branch.check()?;
-    let learned = learned(branch, Weights::read(weights, branch)?)?;
-    // Where nobody says what the foundation's trials covered, runs tell when the branch fades.
-    let validity = model.validity.clone().or_else(|| Some(branch.domain.clone()));
-    let foundation = Ship::new(&Model { validity, ..foundation(model) }, law)?;
-    if !learned.domain().is_within(foundation.envelope()) {
-        return Err(JoinError::Reach { fade: branch.fade });
-    }
-    Ok(foundation.with_branch(Arc::new(learned)))
-}
-
-/// The branch ready to be asked.
-fn learned(branch: &Branch, weights: Weights) -> Result<Learned, JoinError> {
-    Learned::of(branch, weights).ok_or(JoinError::Channels)
-}
-
-/// The model without its branch.
-pub fn foundation(model: &Model) -> Model {
-    Model { branch: None, ..model.clone() }
+    let mut model = model.clone();
+    attach(&mut model, weights)?;
+    Ok(Ship::new(&model, law)?)
 }

@@ -51,6 +51,10 @@ fn answer(output: &BranchOutput, regressor: &Regressor, instant: &Instant) -> f6
 }
 
 impl LearnedBranch for Learned {
+    fn share(&self, instant: &Instant) -> f64 {
+        self.domain.share(instant)
+    }
+
     fn addition(&self, instant: &Instant) -> [f64; 3] {
         let (mut added, share) = ([0.0; 3], self.domain.share(instant));
         if share == 0.0 {

@@ -4,27 +4,35 @@
 //! foundation, trials, recipe and seed give the same bytes (decision 20).
 
 mod boosted;
+mod choice;
 mod domain;
 mod draws;
 mod forest;
 mod importance;
 mod joined;
+mod judge;
 mod kernels;
 mod learned;
 mod perceptron;
 mod regressor;
 mod rows;
 mod sample;
+mod settings;
 mod train;
 mod tree;
+mod version;
 mod weights;
 
+pub use choice::{BranchChoice, TriedKind, choose};
 pub use domain::FadedDomain;
 pub use importance::{Importance, importance};
-pub use joined::{JoinError, ship};
+pub use joined::{JoinError, attach, ship};
+pub use judge::{JudgedTrial, Judgement, TrialError, judge};
 pub use learned::Learned;
 pub use regressor::Regressor;
 pub use rows::{Row, RowsError, rows};
 pub use sample::Sample;
+pub use settings::{BranchKind, BranchSettings};
 pub use train::{TrainError, Training, retrain, train};
+pub use version::with_branch;
 pub use weights::{Weights, WeightsError};

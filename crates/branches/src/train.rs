@@ -2,25 +2,28 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
 use sistership_dynamics::{Envelope, PlantError, Ship};
 use sistership_model::branch::{
     Branch, BranchError, BranchInput, BranchMode, BranchOutput, BranchRecipe, Learner, Signal,
 };
 use sistership_model::coefficient::Axis;
+use sistership_model::learned::Attached;
 use sistership_model::trial::Trial;
 use sistership_model::validity::Region;
 use sistership_model::version::sha256;
 use sistership_model::{Law, Model};
 
 use crate::domain::FadedDomain;
-use crate::joined::foundation;
+use crate::joined::JoinError;
 use crate::regressor::Regressor;
 use crate::rows::{Row, RowsError, rows};
 use crate::sample::{Sample, centre_and_scale, scaled, value};
 use crate::weights::{Weights, WeightsError};
 
 /// What is to be trained, and how.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Training {
     /// How it is joined to the foundation.
     pub mode: BranchMode,
@@ -65,6 +68,9 @@ pub enum TrainError {
     /// What the trials covered fills the physical range.
     #[error("what the trials covered reaches the physical range of `{0}`: is a reading wrong?")]
     Reach(String),
+    /// What was trained does not go with its foundation.
+    #[error(transparent)]
+    Joined(#[from] Box<JoinError>),
     /// The weights cannot be written.
     #[error(transparent)]
     Weights(#[from] WeightsError),
@@ -92,7 +98,7 @@ pub fn train(
         trials: trials.iter().map(|trial| trial.name.clone()).collect(),
     };
     recipe.check()?;
-    let ship = Ship::new(&foundation(model), law)?;
+    let ship = Ship::new(&model.foundation(), law)?;
     let mut all = Vec::new();
     for trial in trials {
         all.extend(rows(&ship, trial, training.window_s, training.hop_s)?);
@@ -105,7 +111,15 @@ pub fn train(
     let fade = fade_within(&domain, training.fade, ship.envelope()).ok_or_else(reached)?;
     let (outputs, weights) = learn(&all, training)?;
     let weights_sha256 = sha256(&weights.bytes()?);
-    let branch = Branch { mode: training.mode, outputs, weights_sha256, domain, fade, recipe };
+    let branch = Branch {
+        mode: training.mode,
+        outputs,
+        weights_sha256,
+        domain,
+        fade,
+        recipe,
+        learned: Attached::default(),
+    };
     branch.check()?;
     Ok((branch, weights))
 }

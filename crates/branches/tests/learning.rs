@@ -132,7 +132,12 @@ fn joined(model: &Model, law: &Law, weights: &[u8]) -> String {
 fn what_does_not_belong_together_is_refused_by_name() {
     let (Foundation { law, model: bare }, model, weights) = forest();
     assert!(matches!(ship(&bare, &law, &weights), Err(JoinError::None(_))));
-    assert_eq!(Ship::new(&model, &law).unwrap_err(), PlantError::Branch(model.name.clone()));
+    assert!(matches!(Ship::new(&model, &law), Err(PlantError::Weights { .. })));
+    assert_eq!(
+        Ship::sisters(&model, &law).unwrap_err(),
+        PlantError::Branch(model.name.clone()),
+        "a view by formulas cannot have a branch"
+    );
     let mut other = weights.clone();
     *other.last_mut().unwrap() = b' ';
     let refused = ship(&model, &law, &other);

@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 
 use crate::commands::{backup, family, fsck, gc, serve, ships, verify, work, zoo};
 use crate::commands::{
-    check, compare, derive, diagnose, estimate, export, import, manoeuvre, refine, similar,
+    branch, check, compare, derive, diagnose, estimate, export, import, manoeuvre, refine, similar,
     simulate,
 };
 use crate::demo::DemoArguments;
@@ -22,6 +22,7 @@ Examples:
   sistership check trials.yaml
   sistership refine --ship my-ship.yaml --trials trials.yaml --out my-model.yaml
   sistership simulate --model my-model.yaml --trials trials.yaml
+  sistership branch --model my-model.yaml --trials trials.yaml --out with-branch.yaml
   sistership diagnose --model my-model.yaml --trials new-trials.yaml --report diagnosis.html
   sistership manoeuvre --model my-model.yaml --all
   sistership export my-model.yaml --format c --out my_model.c
@@ -54,6 +55,8 @@ pub enum Command {
     Import(import::ImportArguments),
     /// Refine a source model against a ship's trials.
     Refine(Box<refine::RefineArguments>),
+    /// Train a learned branch beside a model, on what it leaves of trials.
+    Branch(branch::BranchArguments),
     /// Simulate recorded trials with a model and measure its errors.
     Simulate(simulate::SimulateArguments),
     /// Find what a model lacks, by trials that it has not seen.

@@ -18,6 +18,7 @@ mod table;
 mod track;
 mod trials;
 mod values;
+mod weights;
 mod zoo;
 
 pub use demo::sea_trials;
@@ -63,6 +64,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Serve(serve) => commands::serve::run(serve, &arguments.zoo),
         Command::Work(work) => commands::work::run(work),
         Command::Ships(ships) => commands::ships::run(ships),
+        Command::Branch(branch) => commands::branch::run(&zoo()?, branch),
         Command::Verify(verify) => commands::verify::run(verify),
         Command::Family(family) => commands::family::run(family),
         Command::Fsck(fsck) => commands::fsck::run(fsck),

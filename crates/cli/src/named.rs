@@ -7,6 +7,8 @@ use sistership_model::{FileError, Law, Model, Vessel, Zoo};
 
 use crate::close::close_names;
 use crate::failure::{Failure, about_file};
+use crate::output::note;
+use crate::weights;
 use crate::zoo::text_of;
 
 /// The vessel that `SHIP` names.
@@ -74,6 +76,19 @@ pub fn model(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
     Ok((model, law))
 }
 
+/// The model that `MODEL` names without what was learned beside its law, and its law; it says so
+/// where that is less than the model.
+///
+/// # Errors
+/// As [`model`].
+pub fn foundation(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
+    let (model, law) = model(zoo, name)?;
+    if model.branch.is_some() {
+        note(&format!("{name}: its learned branch is left out; its law and coefficients are used"));
+    }
+    Ok((model.foundation(), law))
+}
+
 /// The law of a model.
 ///
 /// # Errors
@@ -96,7 +111,12 @@ fn model_file(zoo: &Zoo, path: &Path) -> Result<Model, Failure> {
             Err(about_file(path, format!("is of `kind: {kind}`; {WANTED}")))
         }
         DocumentKind::None => Err(about_file(path, format!("is no model's file: {WANTED}"))),
-        _ => Ok(Model::parse(&shown, &text, &|law| zoo.law(law).map(|law| (**law).clone()))?),
+        _ => {
+            let law_of = |law: &str| zoo.law(law).map(|law| (**law).clone());
+            let mut model = Model::parse(&shown, &text, &law_of)?;
+            weights::attach(path, &mut model)?;
+            Ok(model)
+        }
     }
 }
 

@@ -1,6 +1,8 @@
 //! The range in which a simulation is believed: outside it a run stops with a reason, never with
 //! infinities.
 
+use sistership_model::{Model, particulars};
+
 use crate::state::{StateVector, at, speed};
 
 /// Limits of what a ship can do.
@@ -32,6 +34,12 @@ impl Envelope {
             yaw_rate_rad_s: 6.0 * reference / lpp_m,
             roll_rad: 80_f64.to_radians(),
         }
+    }
+
+    /// Of the ship that a model is of; none where it gives no length or no approach speed.
+    pub fn of(model: &Model) -> Option<Self> {
+        let value = |name: &str| particulars::value(&model.particulars, name);
+        Some(Self::new(value("lpp_m")?, model.speed_m_s.or(value("service_speed_m_s"))?))
     }
 
     /// Greatest speed, m/s.

@@ -2,6 +2,7 @@
 //! she is judged.
 
 pub mod branch;
+mod branch_share;
 pub mod candidates;
 pub mod envelope;
 pub mod equations;

@@ -7,7 +7,7 @@ use sistership_model::manifest::VelocityFrame;
 use sistership_model::validity::{Excursion, Region};
 use sistership_model::{Model, particulars};
 
-use crate::branch::{Instant, LearnedBranch};
+use crate::branch::{Instant, LearnedBranch, attached};
 use crate::envelope::Envelope;
 use crate::equations::{Coefficients, EquationsOfMotion, PlantError};
 use crate::gear::Gear;
@@ -58,12 +58,15 @@ struct Slots {
 }
 
 impl Ship {
-    /// Makes a model ready.
+    /// Makes a model ready, with what was learned beside its law.
     ///
     /// # Errors
-    /// As [`Plant::new`]; also where the model has no length or no approach speed.
+    /// As [`Plant::new`]; also where the model has no length or no approach speed, or the weights
+    /// of its learned branch have not been attached.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
-        Self::of(&EquationsOfMotion::new(model, law)?, Coefficients::Values)
+        let branch = attached(model)?;
+        let equations = EquationsOfMotion::of_foundation(model, law)?;
+        Ok(Self { branch, ..Self::of(&equations, Coefficients::Values)? })
     }
 
     /// As [`Ship::new`], for sisters whose coefficients are given with each passage: those of the
@@ -100,6 +103,7 @@ impl Ship {
             *value = default.unwrap_or(0.0);
         }
         let envelope = Envelope::new(lpp_m, speed);
+        let domain = model.branch.as_ref().map(|branch| &branch.domain);
         let approach_n_rps = model.revolutions_rps.unwrap_or(0.0);
         let lag_s = plant
             .lags_s()
@@ -116,15 +120,16 @@ impl Ship {
             lpp_m,
             approach_speed_m_s: speed,
             approach_n_rps,
-            validity: model.validity.clone(),
+            // Where nobody says what the foundation's trials covered, runs tell when the branch
+            // fades.
+            validity: model.validity.as_ref().or(domain).cloned(),
             branch: None,
         })
     }
 
-    /// This ship with what was learned beside her law of motion, her foundation.
-    pub fn with_branch(mut self, branch: Arc<dyn LearnedBranch>) -> Self {
-        self.branch = Some(branch);
-        self
+    /// What was learned beside the law, if anything was.
+    pub fn branch(&self) -> Option<&dyn LearnedBranch> {
+        self.branch.as_deref()
     }
 
     /// Sets the water depth for laws that know it, m.
@@ -152,6 +157,11 @@ impl Ship {
     /// Whether the law turns revolutions into thrust.
     pub fn has_propeller(&self) -> bool {
         self.slots.n.is_some()
+    }
+
+    /// Whether the law takes a rudder angle.
+    pub fn has_rudder(&self) -> bool {
+        self.slots.delta.is_some()
     }
 
     /// Whether the law has roll.

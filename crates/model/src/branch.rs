@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::coefficient::Axis;
+use crate::learned::Attached;
 use crate::validity::{RangeError, Region};
 
 /// A learned branch of a model.
@@ -24,6 +25,10 @@ pub struct Branch {
     pub fade: f64,
     /// How it was trained.
     pub recipe: BranchRecipe,
+    /// Its weights, where they have been attached; not part of the document.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub learned: Attached,
 }
 
 /// How a branch is joined to its foundation.
@@ -165,6 +170,39 @@ pub enum Learner {
         /// Decay of the weights.
         decay: f64,
     },
+}
+
+impl Learner {
+    /// What it is called.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::RandomForest { .. } => "random forest",
+            Self::BoostedTrees { .. } => "boosted trees",
+            Self::KernelRidge { .. } => "kernel ridge",
+            Self::Perceptron { .. } => "perceptron",
+        }
+    }
+}
+
+impl BranchMode {
+    /// Every mode.
+    pub const ALL: [Self; 3] = [Self::Convert, Self::Serial, Self::Parallel];
+
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Convert => "convert",
+            Self::Serial => "serial",
+            Self::Parallel => "parallel",
+        }
+    }
+}
+
+impl Branch {
+    /// What it is, in words: `random forest, parallel`.
+    pub fn words(&self) -> String {
+        format!("{}, {}", self.recipe.learner.name(), self.mode.name())
+    }
 }
 
 /// Why a branch cannot be used.

@@ -12,6 +12,7 @@ pub mod formula;
 pub mod free_running;
 pub mod hybrid;
 pub mod law;
+pub mod learned;
 pub mod manifest;
 pub mod model;
 pub mod name;

@@ -68,10 +68,8 @@ pub struct Model {
     /// The motion that its trials covered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub validity: Option<Region>,
-    /// What was learned beside the law. Not in the schema until requests may bring it: a simulation
-    /// needs its weights, too.
+    /// What was learned beside the law; its weights are kept apart, under the hash that it names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(skip)]
     pub branch: Option<Branch>,
 }
 
@@ -181,6 +179,11 @@ impl Model {
             model.set_approach_speed(law, speed);
         }
         model
+    }
+
+    /// The model without what was learned beside its law.
+    pub fn foundation(&self) -> Self {
+        Self { branch: None, ..self.clone() }
     }
 
     /// Sets the speed about which the law is expanded, m/s.

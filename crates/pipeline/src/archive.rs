@@ -24,7 +24,7 @@ use crate::version::VersionDocument;
 pub struct Archive {
     /// The database.
     pub store: Store,
-    /// The samples of trials.
+    /// The samples of trials, and the weights of learned branches.
     pub objects: Objects,
 }
 
@@ -90,7 +90,27 @@ impl Archive {
         Ok(Law::parse(&law.name, &law.document)?)
     }
 
-    /// The model of a version that another starts from.
+    /// The model of a version, with the weights of its learned branch, if it has one.
+    ///
+    /// # Errors
+    /// The version does not read, or its weights are missing, damaged or not its own.
+    pub async fn model(&self, version: &Version) -> Result<Model> {
+        let mut model = document(version)?.model;
+        self.attach(&mut model).await?;
+        Ok(model)
+    }
+
+    /// Attaches the weights of a model's learned branch, if it has one.
+    ///
+    /// # Errors
+    /// They are missing, damaged or not its own.
+    pub async fn attach(&self, model: &mut Model) -> Result<()> {
+        let Some(branch) = &model.branch else { return Ok(()) };
+        let weights = self.objects.get(&branch.weights_sha256).await?;
+        Ok(sistership_branches::attach(model, &weights)?)
+    }
+
+    /// The model of a version that another starts from, without the weights of a learned branch.
     pub async fn source(&self, source: &SourceVersion) -> Result<Model> {
         let version = self.store.versions().get(&source.ship, source.number).await?;
         let SourceVersion { ship, number, sha256 } = source;

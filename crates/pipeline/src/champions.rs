@@ -53,7 +53,8 @@ async fn champion(
         document.recipe,
         Recipe::Plain(sistership_model::version::Recipe::Published { .. })
     );
-    let model = document.model;
+    // What was learned beside its law is of its own trials.
+    let model = document.model.foundation();
     let usable = !is_published && model.effects.is_empty() && zoo.law(&model.law).is_some();
     Ok(usable.then_some((model, version)))
 }

@@ -1,5 +1,6 @@
 //! Why a version, or anything else that a job makes, cannot be made.
 
+use sistership_branches::{JoinError, TrainError};
 use sistership_estimate::refine::RefineError;
 use sistership_model::FileError;
 use sistership_store::StoreError;
@@ -23,6 +24,12 @@ pub enum DeriveError {
     /// The refinement is refused, or was stopped.
     #[error(transparent)]
     Refine(#[from] RefineError),
+    /// A branch cannot be trained.
+    #[error(transparent)]
+    Train(#[from] TrainError),
+    /// A branch and its weights do not belong together.
+    #[error(transparent)]
+    Join(#[from] JoinError),
     /// What does not happen unless the program is at fault, or others keep writing.
     #[error("{0}")]
     Unexpected(String),

@@ -116,6 +116,10 @@ fn compared(contest: &Contest<'_>) -> Option<Comparison> {
 
 /// The champion's error as it is; outer none where it cannot be simulated on these trials.
 fn champion_error(contest: &Contest<'_>) -> Option<Option<f64>> {
+    // By its law alone it would be another model.
+    if contest.champion.model.branch.is_some() {
+        return None;
+    }
     let trials: Vec<&Trial> = contest.trials.iter().map(|(trial, _)| *trial).collect();
     let Contest { champion, law, target, refinement, .. } = *contest;
     let settings = Settings {

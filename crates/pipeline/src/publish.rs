@@ -38,6 +38,7 @@ pub async fn publish(store: &Store, zoo: &Zoo, vessel: &Vessel, ship_document: &
             law: file.law.clone(),
             method: METHOD.to_owned(),
             document: published.canonical()?,
+            weights: None,
         };
         put(store, &new, &file.name, &published).await?;
     }

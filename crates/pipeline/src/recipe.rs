@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use sistership_branches::Training;
 use sistership_fleet::bulk::BulkSettings;
 use sistership_model::version::{self, RecipeTrial, SourceVersion};
 
@@ -19,6 +20,8 @@ pub enum Recipe {
     Diagnosis(DiagnosisRecipe),
     /// As a member of a family, from statistics.
     Family(FamilyRecipe),
+    /// By training a learned branch beside a version.
+    Training(TrainingRecipe),
     /// Not at all: the model was made elsewhere.
     Registered(RegisteredRecipe),
     /// From a ship's own document, or by refinement.
@@ -43,6 +46,33 @@ pub struct DiagnosisRecipe {
     pub settings: Value,
     /// The program that did it.
     pub code_revision: String,
+}
+
+/// How a version with a learned branch is derived. Everything it starts from is named by the SHA-256
+/// of its bytes; its document names the weights that came of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainingRecipe {
+    /// Always `branch`.
+    pub kind: TrainingKind,
+    /// The version that the branch was trained beside.
+    pub foundation: SourceVersion,
+    /// The law's file.
+    pub law_sha256: String,
+    /// The trials, in the order in which they were given.
+    pub trials: Vec<RecipeTrial>,
+    /// Every setting, the seed among them.
+    pub settings: Training,
+    /// The program that did it.
+    pub code_revision: String,
+}
+
+/// The word `branch`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TrainingKind {
+    /// The only one.
+    Branch,
 }
 
 /// What is known of a model that was made elsewhere.
@@ -127,6 +157,7 @@ impl Recipe {
         match self {
             Self::Diagnosis(DiagnosisRecipe { law_sha256, .. })
             | Self::Family(FamilyRecipe { law_sha256, .. })
+            | Self::Training(TrainingRecipe { law_sha256, .. })
             | Self::Registered(RegisteredRecipe { law_sha256, .. })
             | Self::Plain(
                 version::Recipe::Published { law_sha256, .. }
@@ -140,6 +171,7 @@ impl Recipe {
         match self {
             Self::Diagnosis(DiagnosisRecipe { code_revision, .. })
             | Self::Family(FamilyRecipe { code_revision, .. })
+            | Self::Training(TrainingRecipe { code_revision, .. })
             | Self::Plain(version::Recipe::Refinement { code_revision, .. }) => Some(code_revision),
             Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => None,
         }
@@ -150,6 +182,7 @@ impl Recipe {
         match self {
             Self::Diagnosis(DiagnosisRecipe { trials, .. })
             | Self::Family(FamilyRecipe { trials, .. })
+            | Self::Training(TrainingRecipe { trials, .. })
             | Self::Plain(version::Recipe::Refinement { trials, .. }) => trials,
             Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => &[],
         }
@@ -163,7 +196,7 @@ impl Recipe {
                 | version::Recipe::Refinement { ship_sha256, .. },
             ) => Some(ship_sha256),
             Self::Family(recipe) => recipe.ship_sha256.as_deref(),
-            Self::Diagnosis(_) | Self::Registered(_) => None,
+            Self::Diagnosis(_) | Self::Training(_) | Self::Registered(_) => None,
         }
     }
 
@@ -173,6 +206,7 @@ impl Recipe {
             Self::Plain(version::Recipe::Refinement { source, .. }) => source.as_ref(),
             Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => None,
             Self::Family(recipe) => Some(&recipe.start),
+            Self::Training(recipe) => Some(&recipe.foundation),
             Self::Diagnosis(_) => self.diagnosed(),
         }
     }
@@ -186,6 +220,7 @@ impl Recipe {
                 Some(effects_sha256.as_deref().unwrap_or(FIRST_SHA256))
             }
             Self::Family(_)
+            | Self::Training(_)
             | Self::Plain(version::Recipe::Published { .. })
             | Self::Registered(_) => None,
         }
@@ -195,7 +230,7 @@ impl Recipe {
     pub fn prior(&self) -> Option<&PriorName> {
         match self {
             Self::Family(recipe) => recipe.prior.as_ref(),
-            Self::Diagnosis(_) | Self::Plain(_) | Self::Registered(_) => None,
+            _ => None,
         }
     }
 
@@ -203,7 +238,7 @@ impl Recipe {
     pub fn versions(&self) -> Vec<&SourceVersion> {
         let foundation = match self {
             Self::Family(recipe) => Some(&recipe.foundation),
-            Self::Diagnosis(_) | Self::Plain(_) | Self::Registered(_) => None,
+            _ => None,
         };
         self.starts_from().into_iter().chain(foundation).collect()
     }
@@ -228,7 +263,7 @@ impl Recipe {
     pub fn diagnosed(&self) -> Option<&SourceVersion> {
         match self {
             Self::Diagnosis(recipe) => Some(&recipe.diagnosed),
-            Self::Family(_) | Self::Plain(_) | Self::Registered(_) => None,
+            _ => None,
         }
     }
 }
@@ -248,7 +283,13 @@ mod tests {
             "settings": { "slack": 0.02 }, "code_revision": "1" });
         let registered =
             json!({ "kind": "registered", "law_sha256": "b", "origin": "a towing tank" });
-        for (value, kind) in [(published, None), (registered, None), (diagnosed, Some(2))] {
+        let trained = json!({ "kind": "branch", "foundation": { "ship": "kcs", "number": 2, "sha256": "c" },
+            "law_sha256": "b", "trials": [{ "name": "t.csv", "sha256": "d" }],
+            "settings": { "mode": "parallel", "inputs": [["N", ["r", "delta"]]], "learner":
+                { "kind": "kernel_ridge", "centres": 9, "length": 3.0, "ridge": 0.5 },
+                "seed": 1, "window_s": 2.0, "hop_s": 0.5, "fade": 1.0 }, "code_revision": "1" });
+        let all = [(published, None), (registered, None), (diagnosed, Some(2)), (trained, None)];
+        for (value, kind) in all {
             let recipe: Recipe = serde_json::from_value(value.clone()).unwrap();
             assert_eq!(recipe.diagnosed().map(|source| source.number), kind);
             assert_eq!(serde_json::to_value(&recipe).unwrap(), value);

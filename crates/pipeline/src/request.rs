@@ -1,6 +1,7 @@
 //! What a job is asked to do, as its row keeps it.
 
 use serde::{Deserialize, Serialize};
+use sistership_branches::BranchSettings;
 use sistership_estimate::refine::Settings;
 
 /// The kind of refinement jobs.
@@ -50,6 +51,23 @@ pub struct DiagnosisJob {
     /// with the job.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key_sha256: Option<String>,
+}
+
+/// The kind of jobs that train learned branches.
+pub const BRANCH: &str = "branch";
+
+/// A branch to be trained; everything but an open kind is settled when it is asked for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BranchJob {
+    /// The ship, whose name is that of the line of versions.
+    pub ship: String,
+    /// The number of the version that is its foundation.
+    pub number: i64,
+    /// The trials' ids.
+    pub trials: Vec<String>,
+    /// What is asked.
+    pub settings: BranchSettings,
 }
 
 /// Where a refinement starts.

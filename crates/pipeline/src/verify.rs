@@ -56,6 +56,7 @@ pub async fn demand(archive: &Archive, ship: &str, number: i64) -> Result<u64, D
     let trials = match document(&archive.store.versions().get(ship, number).await?)?.recipe {
         Recipe::Plain(sistership_model::version::Recipe::Refinement { trials, .. }) => trials,
         Recipe::Diagnosis(recipe) => recipe.trials,
+        Recipe::Training(recipe) => recipe.trials,
         _ => return Ok(0),
     };
     let mut bytes = 0;
@@ -80,7 +81,12 @@ pub async fn verify_with(
     let stored = document(&version)?;
     let derived = match &stored.recipe {
         Recipe::Registered(recipe) => checked(archive, &stored, &recipe.law_sha256).await?,
-        recipe => derive(archive, ship, recipe, progress).await?.document.canonical()?,
+        recipe => {
+            let derived = derive(archive, ship, recipe, progress).await?;
+            // The document names them by hash; those that are kept must be whole.
+            archive.attach(&mut stored.model.clone()).await?;
+            derived.document.canonical()?
+        }
     };
     let (stored_sha256, derived_sha256) =
         (sha256(version.document.as_bytes()), sha256(derived.as_bytes()));
@@ -115,6 +121,7 @@ async fn checked(
     let wrong =
         |(field, message): (String, String)| DeriveError::Lost(format!("{field}: {message}"));
     stored.model.check(&law).map_err(wrong)?;
+    archive.attach(&mut stored.model.clone()).await?;
     Ok(stored.canonical()?)
 }
 

@@ -1,8 +1,9 @@
-//! The reports of a refinement ([`render_refinement`]) and of a diagnosis ([`render_diagnosis`]):
-//! one HTML page that a stranger can read and print, and the same content as JSON.
+//! The reports of a refinement ([`render_refinement`]), of a diagnosis ([`render_diagnosis`]) and of
+//! a learned branch ([`render_branch`]): one HTML page that a stranger can read and print, and the same content as JSON.
 //!
 //! Both are made of the same tables and plots. Nothing depends on the clock.
 
+mod branch;
 mod diagnosis;
 mod error_row;
 mod metrics;
@@ -18,6 +19,7 @@ mod words;
 /// The style of reports, which other pages share.
 pub const STYLE: &str = include_str!("../templates/report_style.css");
 
+pub use branch::{BranchInput, render_branch};
 pub use diagnosis::{DiagnosisInput, distinct, render_diagnosis};
 pub use refinement::{RefinementInput, render_refinement};
 pub use rendered::{Rendered, ReportError, VersionLabel};

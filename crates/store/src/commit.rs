@@ -4,13 +4,14 @@
 use crate::aliases::AliasMove;
 use crate::error::Result;
 use crate::job::Job;
+use crate::objects::Objects;
 use crate::reports::{self, NewReport, ReportHead};
 use crate::store::Store;
 use crate::version::{NewVersion, VersionHead};
 use crate::versions;
 use crate::work;
 
-/// What a refinement brings.
+/// What a refinement, or the training of a learned branch, brings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refinement {
     /// The version.
@@ -46,9 +47,41 @@ impl Store {
     where
         F: FnOnce(&VersionHead, Option<&ReportHead>) -> String,
     {
+        self.commit_refined(None, (job, fence), refinement, result).await
+    }
+
+    /// The same where the version has a learned branch, whose weights are in `objects`. Where they
+    /// are no longer there, because [`Store::remove_unreferred`] was faster, nothing is kept.
+    pub async fn commit_with_weights<F>(
+        &self,
+        objects: &Objects,
+        job: &str,
+        fence: i64,
+        refinement: &Refinement,
+        result: F,
+    ) -> Result<Committed>
+    where
+        F: FnOnce(&VersionHead, Option<&ReportHead>) -> String,
+    {
+        self.commit_refined(Some(objects), (job, fence), refinement, result).await
+    }
+
+    async fn commit_refined<F>(
+        &self,
+        objects: Option<&Objects>,
+        (job, fence): (&str, i64),
+        refinement: &Refinement,
+        result: F,
+    ) -> Result<Committed>
+    where
+        F: FnOnce(&VersionHead, Option<&ReportHead>) -> String,
+    {
         let mut tx = self.begin().await?;
         let version =
             versions::insert(self, &mut tx, &refinement.version, &refinement.moves).await?;
+        if let Some(objects) = objects {
+            objects.must_have(refinement.version.weights.iter().cloned()).await?;
+        }
         let report = match refinement.report.clone() {
             Some(report) => {
                 let report = NewReport { version_id: Some(version.id.clone()), ..report };

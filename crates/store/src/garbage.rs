@@ -13,21 +13,24 @@ use crate::statements::{pair, same, statements};
 use crate::store::Store;
 
 statements! {
-    // Keeps new trials out until the end of the transaction; on SQLite its begin has done so.
-    LOCK = pair("SELECT 1 WHERE FALSE", "LOCK TABLE trials IN SHARE ROW EXCLUSIVE MODE");
-    REFERRED = same("SELECT COUNT(*) AS rows FROM trials WHERE object_key = $1");
+    // Keeps new trials and versions out until the end of the transaction; on SQLite its begin has
+    // done so.
+    LOCK = pair("SELECT 1 WHERE FALSE", "LOCK TABLE trials, versions IN SHARE ROW EXCLUSIVE MODE");
+    REFERRED = same("SELECT (SELECT COUNT(*) FROM trials WHERE object_key = $1) \
+        + (SELECT COUNT(*) FROM versions WHERE weights_key = $1) AS rows");
 }
 
 impl Store {
-    /// Those of the keys that no trial refers to, deleted or not.
+    /// Those of the keys that no trial, deleted or not, and no version refers to.
     pub async fn unreferred(&self, keys: &[String]) -> Result<Vec<String>> {
         let mut tx = self.begin().await?;
         unreferred(&mut tx, keys).await
     }
 
-    /// Removes the objects of those keys that no trial refers to, and returns these keys. No trial
-    /// is put in meanwhile, and [`crate::Trials::insert_all_and_enqueue`] looks for its objects
-    /// after it has waited for this: neither order of the two leaves a trial without samples.
+    /// Removes the objects of those keys that no trial and no version refers to, and returns these
+    /// keys. None is put in meanwhile, and [`crate::Trials::insert_all_and_enqueue`] and
+    /// [`Store::commit_with_weights`] look for their objects after they have waited for this:
+    /// neither order leaves a trial without samples, or a branch without weights.
     pub async fn remove_unreferred(
         &self,
         objects: &Objects,

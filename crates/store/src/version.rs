@@ -58,6 +58,8 @@ pub struct NewVersion {
     pub method: String,
     /// The whole record of the version as canonical JSON.
     pub document: String,
+    /// The key of the object with the weights of its learned branch, where it has one.
+    pub weights: Option<String>,
 }
 
 impl NewVersion {
@@ -66,6 +68,7 @@ impl NewVersion {
         checks::name("model", &self.model)?;
         checks::name("law", &self.law)?;
         checks::name("method", &self.method)?;
+        self.weights.as_deref().map_or(Ok(()), |key| checks::sha256("weights", key))?;
         checks::json("document", &self.document)
     }
 }

@@ -4,7 +4,7 @@ use crate::aliases::{self, AliasMove};
 use crate::arguments::args;
 use crate::database::Transaction;
 use crate::error::{Result, StoreError};
-use crate::objects::sha256_hex;
+use crate::objects::{Objects, sha256_hex};
 use crate::page::{List, Page};
 use crate::questions::CurrentVersion;
 use crate::record::record;
@@ -17,8 +17,8 @@ statements! {
     // number back: no gaps.
     NUMBER = same("INSERT INTO models (name, next_number) VALUES ($1, 2) \
         ON CONFLICT (name) DO UPDATE SET next_number = models.next_number + 1 RETURNING next_number - 1 AS number");
-    INSERT = same("INSERT INTO versions (id, model, number, parent, law, method, document, sha256, created_us) \
-        VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9) RETURNING id, model, number, parent, law, method, sha256, created_us");
+    INSERT = same("INSERT INTO versions (id, model, number, parent, law, method, document, sha256, created_us, \
+        weights_key) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10) RETURNING id, model, number, parent, law, method, sha256, created_us");
     GET = same("SELECT id, model, number, parent, law, method, document, sha256, created_us FROM versions \
         WHERE model = $1 AND number = $2");
     HEAD = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions \
@@ -32,6 +32,16 @@ statements! {
         WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
     CHILDREN = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions \
         WHERE parent = $1 AND id > COALESCE($2, '') ORDER BY id LIMIT $3");
+    WEIGHTS = same("SELECT DISTINCT weights_key FROM versions WHERE weights_key > COALESCE($1, '') \
+        ORDER BY weights_key LIMIT $2");
+}
+
+record! {
+    /// The object with the weights of a learned branch.
+    pub struct WeightsKey {
+        /// Its key.
+        pub weights_key: String,
+    }
 }
 
 record! {
@@ -105,6 +115,29 @@ impl Versions<'_> {
         Ok(page.of(versions, |version: &Version| version.head.id.clone()))
     }
 
+    /// The objects with the weights of learned branches, by key.
+    pub async fn weights(&self, page: &Page) -> Result<List<WeightsKey>> {
+        let values = args![after: &page.after, limit: page.fetch()?];
+        let keys = self.0.database().all(WEIGHTS, values).await?;
+        Ok(page.of(keys, |key: &WeightsKey| key.weights_key.clone()))
+    }
+
+    /// Makes the next version of a model, whose learned branch has its weights in `objects`, and
+    /// moves aliases to it, all or nothing. Where the weights are no longer there, because
+    /// [`Store::remove_unreferred`] was faster, nothing is made.
+    pub async fn create_with_weights(
+        &self,
+        objects: &Objects,
+        new: &NewVersion,
+        moves: &[AliasMove],
+    ) -> Result<VersionHead> {
+        let mut tx = self.0.begin().await?;
+        let version = insert(self.0, &mut tx, new, moves).await?;
+        objects.must_have(new.weights.iter().cloned()).await?;
+        tx.commit().await?;
+        Ok(version)
+    }
+
     /// The versions, of whatever model, that were made from the version `id`, the oldest first.
     pub async fn children(&self, id: &str, page: &Page) -> Result<List<VersionHead>> {
         let values = args![parent: id, after: &page.after, limit: page.fetch()?];
@@ -127,7 +160,7 @@ pub(crate) async fn insert(
     let NextNumber { number } = tx.one(NUMBER, args![model: &new.model]).await?;
     let (id, sha256) = (store.new_id(), sha256_hex(new.document.as_bytes()));
     let values = args![id: &id, model: &new.model, number: number, parent: &new.parent, law: &new.law, method: &new.method,
-        document: &new.document, sha256: &sha256, created_us: store.now_us()];
+        document: &new.document, sha256: &sha256, created_us: store.now_us(), weights_key: &new.weights];
     let version = tx.one(INSERT, values).await?;
     for alias in moves {
         aliases::shift(store, tx, &new.model, number, alias).await?;

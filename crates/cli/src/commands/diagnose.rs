@@ -7,6 +7,7 @@ use clap::Args;
 use serde::Serialize;
 use serde_json::Value;
 use sistership_diagnose::{Diagnosis, Request, Settings, diagnose};
+use sistership_dynamics::PlantError;
 use sistership_model::{Effect, Law, Model, Zoo};
 use sistership_report::{DiagnosisInput, render_diagnosis};
 
@@ -82,6 +83,10 @@ struct DiagnoseDocument<'a> {
 pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
     let settings = settings(arguments)?;
     let (model, law) = named::model(zoo, &arguments.model)?;
+    if model.branch.is_some() {
+        let error = PlantError::Branch(model.name);
+        return Err(Failure::Refused(format!("{}: {error}", arguments.model)));
+    }
     let named: Vec<PathBuf> =
         arguments.trials.iter().cloned().chain([PathBuf::from(&arguments.model)]).collect();
     let out = promised(arguments.out.as_deref(), &named)?;

@@ -34,6 +34,9 @@ pub struct ManoeuvreDocument {
     /// Manoeuvres that left what the model's trials covered.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub outside: BTreeMap<String, Excursion>,
+    /// What a learned branch counted for in each manoeuvre, 0 to 1.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub branch_share: BTreeMap<String, f64>,
     /// Confidence bands, where they were asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bands: Option<Bands>,
@@ -61,6 +64,7 @@ impl ManoeuvreDocument {
             imo: sailed.imo,
             failures: sailed.failures,
             outside: sailed.outside,
+            branch_share: sailed.branch_share,
             bands,
             remarks,
         }

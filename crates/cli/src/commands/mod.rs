@@ -1,6 +1,9 @@
 //! One file for each command, and what they share.
 
 pub mod backup;
+pub mod branch;
+mod branch_document;
+mod branch_text;
 mod channels;
 pub mod check;
 pub mod compare;

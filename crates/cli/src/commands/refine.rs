@@ -138,7 +138,8 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     let target = named::ship(zoo, &arguments.ship)?;
     let mut settings = settings(arguments)?;
     let named = arguments.source.as_deref().filter(|source| *source != "auto");
-    let given = named.map(|source| named::model(zoo, source)).transpose()?.map(|(model, _)| model);
+    let given =
+        named.map(|source| named::foundation(zoo, source)).transpose()?.map(|(model, _)| model);
     let law = arguments.law.as_deref().map(|name| law(zoo, name)).transpose()?;
     let inputs = named_files(arguments);
     let out = promised(arguments.out.as_deref(), &inputs)?;

@@ -15,6 +15,7 @@ use crate::output::{self, count, note};
 use crate::table::{TextTable, number};
 use crate::trials::{self, ReadTrial};
 use crate::values::{Integration, positive};
+use crate::weights::BranchWords;
 use crate::{commands::model_line, folder, named, track};
 
 const EXAMPLES: &str = "\
@@ -57,6 +58,8 @@ pub struct SimulateArguments {
 struct SimulateDocument<'a> {
     model: &'a str,
     law: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    branch: Option<BranchWords<'a>>,
     trials: &'a [SimulatedTrial],
     all: Option<SimulatedTrial>,
 }
@@ -76,6 +79,7 @@ pub fn run(zoo: &Zoo, simulate: &SimulateArguments) -> Result<(), Failure> {
     let document = SimulateDocument {
         model: &model.name,
         law: &model.law,
+        branch: model.branch.as_ref().map(BranchWords::of),
         trials: &simulated,
         all: total(&simulated),
     };
@@ -161,5 +165,7 @@ fn text(
         .out
         .as_ref()
         .map_or(String::new(), |out| format!("simulated states written to {}\n", out.display()));
-    format!("{head}{table}{}{outside}{written}", diverged.collect::<String>())
+    let share = document.all.as_ref().and_then(|all| all.branch_share);
+    let branch = document.branch.as_ref().map_or(String::new(), |branch| branch.line(share));
+    format!("{head}{table}{}{outside}{branch}{written}", diverged.collect::<String>())
 }

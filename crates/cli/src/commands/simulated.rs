@@ -40,6 +40,9 @@ pub struct SimulatedTrial {
     /// How the motion left what the model's trials covered, if it did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outside: Option<Excursion>,
+    /// What a learned branch counted for in the mean over the simulation, 0 to 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub branch_share: Option<f64>,
     /// The file of simulated states.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub out: Option<String>,
@@ -70,7 +73,8 @@ impl TrialSimulator<'_> {
         let run = run.map_err(|error| {
             Failure::Refused(format!("{error} of {} by law `{}`", self.model.name, self.law.name))
         })?;
-        Ok((self.errors(&read.file, &read.trial, &run), run))
+        let errors = self.errors(&read.file, &read.trial, &run);
+        Ok((SimulatedTrial { branch_share: ship.branch_share(&run.track), ..errors }, run))
     }
 
     /// The ship with a range that covers the speeds of a trial; its water depth is an input that
@@ -108,6 +112,7 @@ impl TrialSimulator<'_> {
             diverged: reason.is_some(),
             reason,
             outside: run.outside.clone(),
+            branch_share: None,
             out: None,
             samples: run.samples.len(),
         }
@@ -155,6 +160,7 @@ pub fn total(trials: &[SimulatedTrial]) -> Option<SimulatedTrial> {
         diverged: false,
         reason: None,
         outside: None,
+        branch_share: mean(&|trial| trial.branch_share),
         out: None,
         samples: trials.iter().map(|trial| trial.samples).sum(),
     })

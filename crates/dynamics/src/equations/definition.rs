@@ -50,12 +50,20 @@ impl<'a> EquationsOfMotion<'a> {
     /// Of a law with the effects that a model carries.
     ///
     /// # Errors
-    /// Says which effect cannot be used, and why. Refuses a model with a learned branch, whose
-    /// weights only [`Ship::with_branch`](crate::Ship::with_branch) brings.
+    /// Says which effect cannot be used, and why. Refuses a model with a learned branch, which is
+    /// no formula: only [`Ship`](crate::Ship) sails both halves.
     pub fn new(model: &'a Model, law: &'a Law) -> Result<Self, PlantError> {
         if model.branch.is_some() {
             return Err(PlantError::Branch(model.name.clone()));
         }
+        Self::of_foundation(model, law)
+    }
+
+    /// As [`EquationsOfMotion::new`], and without what was learned beside the law.
+    ///
+    /// # Errors
+    /// Says which effect cannot be used, and why.
+    pub fn of_foundation(model: &'a Model, law: &'a Law) -> Result<Self, PlantError> {
         if model.effects.is_empty() {
             return Ok(Self::of_law(model, Cow::Borrowed(law)));
         }

@@ -41,7 +41,18 @@ pub enum PlantError {
         most: usize,
     },
     /// A model with a learned branch is sailed without its weights.
-    #[error("`{0}` has a learned branch, and would be sailed here without it")]
+    #[error("branch: `{model}` has a learned branch, whose weights {sha256} are not here")]
+    Weights {
+        /// The model.
+        model: String,
+        /// The hash of the weights.
+        sha256: String,
+    },
+    /// What is asked of a model with a learned branch can only be asked of its foundation.
+    #[error(
+        "branch: `{0}` has a learned branch, which has no formulas and no coefficients: give the \
+         model that it was trained on"
+    )]
     Branch(String),
     /// The law has no such coefficient.
     #[error(transparent)]

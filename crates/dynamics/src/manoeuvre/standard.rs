@@ -49,12 +49,18 @@ pub struct StandardManoeuvres {
     /// Manoeuvres that left what the model's trials covered, and how.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub outside: BTreeMap<String, Excursion>,
+    /// What a learned branch counted for in the mean over each manoeuvre, 0 to 1; nothing for a
+    /// model without one.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub branch_share: BTreeMap<String, f64>,
 }
 
 impl StandardManoeuvres {
-    /// Notes how a manoeuvre left what the model's trials covered, if it did.
+    /// Notes how a manoeuvre left what the model's trials covered, if it did, and what a learned
+    /// branch counted for.
     pub fn note_outside(&mut self, name: &str, ship: &Ship, track: &Trajectory) {
         self.outside.extend(ship.leaves(track).map(|excursion| (name.to_owned(), excursion)));
+        self.branch_share.extend(ship.branch_share(track).map(|share| (name.to_owned(), share)));
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use bytes::Bytes;
 use serde::{Deserialize, Serialize};
 
-/// Everything but the samples. Ships, laws and versions are named; what a version starts from is
+/// Everything but the objects. Ships, laws and versions are named; what a version starts from is
 /// among them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -86,6 +86,9 @@ pub struct VersionRecord {
     pub sha256: String,
     /// The whole record of it, byte for byte.
     pub document: String,
+    /// The SHA-256 of the weights of its learned branch, where it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weights: Option<String>,
     /// Reports on it, the first one first.
     pub reports: Vec<ReportRecord>,
 }
@@ -105,8 +108,8 @@ pub struct ReportRecord {
 /// A bundle in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bundle {
-    /// Everything but the samples.
+    /// Everything but the objects.
     pub content: Content,
-    /// Samples as they are stored, by their SHA-256.
-    pub samples: BTreeMap<String, Bytes>,
+    /// Samples of trials and weights of learned branches as they are stored, by their SHA-256.
+    pub objects: BTreeMap<String, Bytes>,
 }

@@ -38,8 +38,8 @@ impl Bundle {
     pub fn packed(&self) -> Result<Vec<u8>, BundleError> {
         let content = serde_json::to_vec(&self.content).map_err(broken)?;
         let mut files = BTreeMap::from([(CONTENT.to_owned(), Bytes::from(content))]);
-        let samples = self.samples.iter();
-        files.extend(samples.map(|(hash, bytes)| (place(hash), bytes.clone())));
+        let objects = self.objects.iter();
+        files.extend(objects.map(|(hash, bytes)| (place(hash), bytes.clone())));
         let manifest = Manifest {
             format: FORMAT.to_owned(),
             ship: self.content.ship.clone(),
@@ -96,18 +96,24 @@ impl Bundle {
                 return Err(BundleError::File(message));
             }
         }
-        let mut samples = BTreeMap::new();
+        let mut objects = BTreeMap::new();
         for (name, bytes) in files {
             let hash = sha256(&bytes);
             if name != place(&hash) {
                 return Err(BundleError::File(format!("{name} does not have that hash")));
             }
-            samples.insert(hash, bytes);
+            objects.insert(hash, bytes);
         }
-        match content.trials.iter().find(|trial| !samples.contains_key(&trial.sha256)) {
-            Some(trial) => Err(BundleError::File(format!("lacks the samples of {}", trial.name))),
-            None => Ok(Self { content, samples }),
+        let lacks = |what: String| BundleError::File(format!("lacks the {what}"));
+        if let Some(trial) = content.trials.iter().find(|one| !objects.contains_key(&one.sha256)) {
+            return Err(lacks(format!("samples of {}", trial.name)));
         }
+        for (line, number, version) in content.versions() {
+            if version.weights.as_ref().is_some_and(|hash| !objects.contains_key(hash)) {
+                return Err(lacks(format!("weights of version {line}/{number}")));
+            }
+        }
+        Ok(Self { content, objects })
     }
 }
 
@@ -121,7 +127,7 @@ impl Content {
 }
 
 fn place(hash: &str) -> String {
-    format!("samples/{hash}.parquet")
+    format!("objects/{hash}")
 }
 
 fn broken(error: impl std::fmt::Display) -> BundleError {

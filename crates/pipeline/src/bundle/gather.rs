@@ -10,6 +10,7 @@ use super::error::BundleError;
 use super::history::revisions;
 use crate::archive::{Archive, document};
 use crate::recipe::Recipe;
+use crate::version::VersionDocument;
 
 type Result<T> = std::result::Result<T, BundleError>;
 
@@ -36,7 +37,7 @@ pub async fn gather(archive: &Archive, ship: &str) -> Result<Bundle> {
 
 fn empty(ship: &str) -> Bundle {
     let content = Content { ship: ship.to_owned(), ..Content::default() };
-    Bundle { content, samples: BTreeMap::new() }
+    Bundle { content, objects: BTreeMap::new() }
 }
 
 struct Gathering<'a> {
@@ -68,7 +69,7 @@ impl Gathering<'_> {
 
     async fn version(&mut self, version: &Version) -> Result<VersionRecord> {
         let head = &version.head;
-        let recipe = document(version)?.recipe;
+        let VersionDocument { recipe, model, .. } = document(version)?;
         if recipe.prior().is_some() {
             return Err(BundleError::Prior(format!("{}/{}", head.model, head.number)));
         }
@@ -84,12 +85,17 @@ impl Gathering<'_> {
             None => None,
         };
         self.inputs(head.model.as_str(), &head.law, &recipe).await?;
+        let weights = model.branch.map(|branch| branch.weights_sha256);
+        if let Some(hash) = &weights {
+            self.object(hash).await?;
+        }
         Ok(VersionRecord {
             parent,
             law: head.law.clone(),
             method: head.method.clone(),
             sha256: head.sha256.clone(),
             document: version.document.clone(),
+            weights,
             reports: self.reports(&head.id).await?,
         })
     }
@@ -117,7 +123,7 @@ impl Gathering<'_> {
             }
         }
         for trial in recipe.trials() {
-            self.sample(&trial.sha256).await?;
+            self.object(&trial.sha256).await?;
             match store.trials().find(ship, &trial.sha256).await {
                 Ok(row) => self.trial(row),
                 // It was deleted, or came from elsewhere: the recipe needs its samples only.
@@ -128,10 +134,10 @@ impl Gathering<'_> {
         Ok(())
     }
 
-    async fn sample(&mut self, hash: &str) -> Result<()> {
-        if !self.bundle.samples.contains_key(hash) {
+    async fn object(&mut self, hash: &str) -> Result<()> {
+        if !self.bundle.objects.contains_key(hash) {
             let bytes = self.archive.objects.get(hash).await?;
-            self.bundle.samples.insert(hash.to_owned(), bytes);
+            self.bundle.objects.insert(hash.to_owned(), bytes);
         }
         Ok(())
     }
@@ -181,7 +187,7 @@ impl Gathering<'_> {
         loop {
             let found = self.archive.store.trials().list(ship, &page).await?;
             for row in found.items {
-                self.sample(&row.object_key).await?;
+                self.object(&row.object_key).await?;
                 self.trial(row);
             }
             let Some(next) = found.next else { return Ok(()) };

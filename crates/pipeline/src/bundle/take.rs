@@ -50,7 +50,7 @@ pub async fn take(archive: &Archive, bundle: &Bundle) -> Result<Taken> {
     for ship in &content.ships {
         taken.ships.extend(ship_taken(archive, ship).await?.then(|| ship.name.clone()));
     }
-    for bytes in bundle.samples.values() {
+    for bytes in bundle.objects.values() {
         archive.objects.put(bytes.clone()).await?;
     }
     taken.trials = trials_taken(archive, content).await?;
@@ -171,6 +171,7 @@ async fn version_taken(
         law: version.law.clone(),
         method: version.method.clone(),
         document: version.document.clone(),
+        weights: version.weights.clone(),
     };
     let follow = step(LATEST, Expect::Any, "bundle");
     let made = archive.store.versions().create(&new, &[follow]).await?;

@@ -54,6 +54,7 @@ async fn filled(database: &TestDatabase) -> Archive {
             law: field("law"),
             method: field("method"),
             document: field("document"),
+            weights: None,
         };
         let made = archive.store.versions().create(&new, &[]).await.unwrap();
         if own {
@@ -166,6 +167,6 @@ async fn a_damaged_file_is_refused() {
     changed.content.lines.get_mut(SHIP).unwrap()[0].document.push(' ');
     assert!(refused(&changed.packed().unwrap()).contains("demo-ship/1 is not what its hash says"));
     let mut lacking = bundle.clone();
-    lacking.samples.clear();
+    lacking.objects.clear();
     assert!(refused(&lacking.packed().unwrap()).contains("lacks the samples"));
 }

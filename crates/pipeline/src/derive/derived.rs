@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use bytes::Bytes;
 use sistership_estimate::refine::{Refinement, Settings};
 use sistership_model::trial::Trial;
 use sistership_model::version;
@@ -23,6 +24,8 @@ pub struct Derived {
     pub document: VersionDocument,
     /// The refinement that gave it, if one did.
     pub refined: Option<Refined>,
+    /// The weights of its learned branch, if it has one.
+    pub weights: Option<Bytes>,
 }
 
 /// A refinement with everything that went into it.
@@ -54,6 +57,11 @@ pub struct Ingredients {
 }
 
 impl Derived {
+    /// A document, and nothing beside it.
+    pub(super) fn of(document: VersionDocument) -> Self {
+        Self { document, refined: None, weights: None }
+    }
+
     /// The same with every setting that was used spelled out in the recipe of a refinement, so that
     /// no later default speaks for it. Evaluations stay as they were asked for: they are a limit,
     /// and not what was spent.

@@ -8,6 +8,7 @@ mod published;
 mod refined;
 #[cfg(test)]
 mod tests;
+mod trained;
 
 use sistership_model::version;
 
@@ -44,9 +45,8 @@ pub async fn derive(
             tokio::task::spawn_blocking(move || refined::refined(ingredients, &recipe, &progress))
                 .await?
         }
-        Recipe::Family(recipe) => {
-            Ok(Derived { document: fleet::derived(inputs, ship, recipe).await?, refined: None })
-        }
+        Recipe::Family(recipe) => Ok(Derived::of(fleet::derived(inputs, ship, recipe).await?)),
+        Recipe::Training(recipe) => trained::trained(inputs, ship, recipe, progress).await,
         Recipe::Registered(_) => Err(DeriveError::Lost(
             "the model was made elsewhere: its own bytes are all there is of it".into(),
         )),
@@ -58,7 +58,7 @@ pub async fn derive(
                     "the diagnosis finds no effect now, so that no version comes of it".into(),
                 )
             };
-            Ok(Derived { document: document.ok_or_else(nothing)?, refined: None })
+            Ok(Derived::of(document.ok_or_else(nothing)?))
         }
     }?;
     inputs.check(recipe)?;

@@ -23,7 +23,7 @@ pub(super) async fn published(
     let file = vessel.file.models.iter().find(|file| file.name == model).ok_or_else(lost)?;
     let law = inputs.law(&file.law, law_sha256).await?;
     let document = published_document(&vessel, model, &law, ship_sha256, law_sha256)?;
-    Ok(Derived { document, refined: None })
+    Ok(Derived::of(document))
 }
 
 /// The version of a model that a ship's own document publishes.

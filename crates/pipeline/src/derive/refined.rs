@@ -42,7 +42,8 @@ pub(super) async fn gather(
     let trials = inputs.trials(trials).await?;
     let (model, law, source_law) = match source {
         Some(source) => {
-            let model = inputs.source(source).await?;
+            // What was learned beside the source's law is no prior of coefficients.
+            let model = inputs.source(source).await?.foundation();
             let name = across.as_ref().map_or(&model.law, |across| &across.law);
             let law = inputs.law(name, law_sha256).await?;
             let source_law = match across {
@@ -82,7 +83,7 @@ pub(super) fn refined(
     progress: &Progress,
 ) -> Result<Derived, DeriveError> {
     let (document, refinement) = refined_document(&ingredients, recipe, &**progress)?;
-    Ok(Derived { document, refined: Some(Refined { refinement, ingredients }) })
+    Ok(Derived { refined: Some(Refined { refinement, ingredients }), ..Derived::of(document) })
 }
 
 /// The version that a refinement gives: a function of its ingredients and nothing else.

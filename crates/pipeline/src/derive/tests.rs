@@ -46,6 +46,7 @@ fn version_of(row: &Value) -> NewVersion {
         law: field("law"),
         method: field("method"),
         document: field("document"),
+        weights: None,
     }
 }
 

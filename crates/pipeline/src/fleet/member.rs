@@ -134,6 +134,7 @@ pub fn kept(loaded: &Loaded, bulk: &str, member: Member, outcome: Outcome) -> Re
         law: document.model.law.clone(),
         method: METHOD.to_owned(),
         document: document.canonical()?,
+        weights: None,
     };
     let outcome = if champion { CHAMPION } else { CANDIDATE }.to_owned();
     Ok(NewOutcome {

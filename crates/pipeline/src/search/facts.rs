@@ -10,7 +10,7 @@ use serde::Deserializer;
 use serde::de::{DeserializeSeed, IgnoredAny, MapAccess, Visitor};
 use sistership_estimate::similarity::{CharacteristicVector, Definition};
 use sistership_model::{Vessel, Zoo, particulars};
-use sistership_store::{Ship, ShipFacts, StoreError, Waiting};
+use sistership_store::{Ship, ShipFacts, StoreError, Version, Waiting};
 
 use super::metrics;
 use super::query::fact;
@@ -112,9 +112,17 @@ async fn champion(archive: &Archive, ship: &str) -> Result<Option<VersionDocumen
         other => other?,
     };
     let version = archive.store.versions().get(ship, alias.version_number).await?;
-    Ok(document(&version)
+    Ok(whole(archive, &version)
+        .await
         .inspect_err(|error: &DeriveError| tracing::error!(%error, "a champion has no metrics"))
         .ok())
+}
+
+/// A version's document, whose model sails.
+async fn whole(archive: &Archive, version: &Version) -> Result<VersionDocument, DeriveError> {
+    let mut document = document(version)?;
+    archive.attach(&mut document.model).await?;
+    Ok(document)
 }
 
 fn known(vessel: &Vessel, champion: Option<&VersionDocument>, laws: &Zoo) -> Vec<(String, f64)> {

@@ -97,12 +97,32 @@ async fn recipe(
     if let Some(prior) = recipe.prior() {
         told("version-prior", place, archive.prior(prior).await.map(drop), findings)?;
     }
+    weights(archive, document, place, findings).await?;
     for trial in recipe.trials() {
         if !there(&archive.objects, &trial.sha256).await? {
             let message =
                 format!("the samples {} of its trial `{}` are missing", trial.sha256, trial.name);
             findings.add("version-trial", place.to_owned(), message);
         }
+    }
+    Ok(())
+}
+
+/// The weights of a learned branch must be there, and the version's row must refer to them, or they
+/// would be removed as garbage.
+async fn weights(
+    archive: &Archive,
+    document: &VersionDocument,
+    place: &str,
+    findings: &mut Findings,
+) -> Result<()> {
+    let Some(branch) = &document.model.branch else { return Ok(()) };
+    let key = &branch.weights_sha256;
+    let mut add = |message: String| findings.add("version-weights", place.to_owned(), message);
+    if !there(&archive.objects, key).await? {
+        add(format!("the weights {key} of its learned branch are missing"));
+    } else if !archive.store.unreferred(std::slice::from_ref(key)).await?.is_empty() {
+        add(format!("its row does not refer to the weights {key} of its learned branch"));
     }
     Ok(())
 }

@@ -40,7 +40,7 @@ pub struct Findings {
     pub faults: Vec<Fault>,
     /// What was looked at.
     pub checked: Checked,
-    /// Objects that no trial refers to. They are no fault: `gc` removes them.
+    /// Objects that no trial and no version refers to. They are no fault: `gc` removes them.
     pub unreferred: Unreferred,
     /// Puts that are under way or never ended. They are no fault either: `gc` removes them once
     /// they are old.

@@ -89,21 +89,17 @@ fn candidate(head: ObjectHead, before_us: i64, named: &HashSet<String>) -> Optio
     }
 }
 
-/// The samples that versions name. Trials have rows for them; where such a row is lost, its samples
-/// must not go as well.
+/// The samples and weights that versions name. Trials have rows for samples; where such a row is
+/// lost, its samples must not go as well.
 async fn named(archive: &Archive) -> Result<HashSet<String>> {
     let (mut named, mut page) = (HashSet::new(), Page::first(ROWS));
     loop {
         let versions = archive.store.versions().all(&page).await?;
         for version in &versions.items {
             // What a damaged document named cannot be known; `fsck` tells of it.
-            let document = document(version).ok();
-            named.extend(
-                document
-                    .iter()
-                    .flat_map(|document| document.recipe.trials())
-                    .map(|trial| trial.sha256.clone()),
-            );
+            let Ok(document) = document(version) else { continue };
+            named.extend(document.recipe.trials().iter().map(|trial| trial.sha256.clone()));
+            named.extend(document.model.branch.map(|branch| branch.weights_sha256));
         }
         let Some(next) = versions.next else { return Ok(named) };
         page = Page::after(next, ROWS);

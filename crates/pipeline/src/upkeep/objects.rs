@@ -1,4 +1,4 @@
-//! Objects: the bytes of each, and the trials that refer to them.
+//! Objects: the bytes of each, and the trials and versions that refer to them.
 
 use std::collections::HashMap;
 
@@ -21,6 +21,7 @@ pub(super) async fn check(archive: &Archive, findings: &mut Findings) -> Result<
         }
     }
     trials(archive, &mut objects, findings).await?;
+    weights(archive, &mut objects).await?;
     findings.unreferred = Unreferred { objects: objects.len(), bytes: objects.values().sum() };
     let staged = archive.objects.staged().await?;
     findings.unfinished =
@@ -54,6 +55,20 @@ async fn object(
             }
             Ok(Some(key.clone()))
         }
+    }
+}
+
+/// Takes the weights of learned branches out of `objects`; where they are missing, that is told
+/// with the version.
+async fn weights(archive: &Archive, objects: &mut HashMap<String, u64>) -> Result<()> {
+    let mut page = Page::first(ROWS);
+    loop {
+        let keys = archive.store.versions().weights(&page).await?;
+        for key in &keys.items {
+            objects.remove(&key.weights_key);
+        }
+        let Some(next) = keys.next else { return Ok(()) };
+        page = Page::after(next, ROWS);
     }
 }
 

@@ -297,6 +297,7 @@ async fn a_source_that_has_changed_is_named() {
         law: mariner.head.law,
         method: "published".into(),
         document: document.to_string(),
+        weights: None,
     };
     archive
         .store

@@ -56,7 +56,7 @@ pub(super) async fn commit(
 
 impl Made {
     fn new(derived: Derived, prepared: Prepared) -> Result<Self> {
-        let Derived { document, refined } = derived;
+        let Derived { document, refined, .. } = derived;
         let named = |source: &Version| format!("{}/{}", source.head.model, source.head.number);
         let source = prepared.start.source.as_ref().map(named);
         let refined = refined.ok_or_else(|| failed("the recipe is not that of a refinement"))?;
@@ -66,6 +66,7 @@ impl Made {
             law: document.model.law.clone(),
             method: refined.refinement.method.clone(),
             document: document.canonical().map_err(failed)?,
+            weights: None,
         };
         let ranking = prepared.start.similarity.as_ref().map(|similarity| &similarity.ranking);
         let mut result = json!({ "source": source, "held_out": refined.refinement.held_out, "ranking": ranking });

@@ -9,7 +9,9 @@ use super::outcome::{JobError, Result, failed};
 use super::progress::Progress;
 use crate::app::App;
 use sistership_pipeline::budget::{Share, Shortage};
-use sistership_pipeline::request::{DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob};
+use sistership_pipeline::request::{
+    BRANCH, BranchJob, DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob,
+};
 
 /// How often a job that waits for memory looks whether it shall stop.
 const LOOK: Duration = Duration::from_millis(500);
@@ -47,6 +49,10 @@ async fn demand(app: &App, job: &Job) -> Result<u64> {
                 Err(error) => return Err(error.into()),
             };
             (law, asked.trials)
+        }
+        BRANCH => {
+            let asked = serde_json::from_str::<BranchJob>(&job.request).map_err(failed)?;
+            (None, asked.trials)
         }
         // These read one trial after the other.
         _ => (None, Vec::new()),

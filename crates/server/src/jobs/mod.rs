@@ -1,7 +1,9 @@
 //! Long work: what is asked for, and the workers that do it.
 
+mod branch;
 mod chunk;
 mod commit;
+mod commit_branch;
 mod commit_diagnosis;
 mod demand;
 mod diagnosis;
@@ -13,7 +15,7 @@ mod refinement;
 mod worker;
 
 pub(crate) use sistership_pipeline::request::{
-    DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob, SourceChoice,
+    BRANCH, BranchJob, DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob, SourceChoice,
 };
 pub(crate) use worker::Worker;
 

@@ -11,11 +11,11 @@ use uuid::Uuid;
 
 use super::outcome::JobError;
 use super::progress::{Progress, Stop};
-use super::{chunk, demand, diagnosis, family_prior, refinement};
+use super::{branch, chunk, demand, diagnosis, family_prior, refinement};
 use crate::app::App;
 use sistership_listen::Stopping;
 use sistership_pipeline::fleet::{BULK, LEARN};
-use sistership_pipeline::request::{DIAGNOSIS, REFINEMENT};
+use sistership_pipeline::request::{BRANCH, DIAGNOSIS, REFINEMENT};
 
 /// How often progress is written while it changes.
 const TELL: Duration = Duration::from_millis(250);
@@ -222,6 +222,7 @@ async fn work(app: App, job: Job, progress: Progress) -> Result<(), JobError> {
     match job.kind.as_str() {
         REFINEMENT => refinement::run(&app, &job, progress).await,
         DIAGNOSIS => diagnosis::run(&app, &job, progress).await,
+        BRANCH => branch::run(&app, &job, progress).await,
         BULK => chunk::run(&app, &job, progress).await,
         LEARN => family_prior::run(&app, &job, progress).await,
         other => {

@@ -7,7 +7,7 @@ use sistership_dynamics::recorded::{ReplaySettings, replay};
 use sistership_model::trial::{Channel, Trial};
 use utoipa::ToSchema;
 
-use super::track::{bounded, columns};
+use super::track::{bounded, columns, with_share};
 use crate::problem::{Problem, Result};
 
 /// Recorded inputs.
@@ -73,9 +73,8 @@ impl InputsRequest {
             .map_err(|error| Problem::invalid("inputs", error.to_string()))?;
         let stopped =
             run.stopped.map(|stopped| json!({ "t_s": stopped.t_s, "reason": stopped.reason }));
-        Ok(
-            json!({ "metrics": null, "trajectory": columns(&run.track), "stopped": stopped, "outside": run.outside }),
-        )
+        let answer = json!({ "metrics": null, "trajectory": columns(&run.track), "stopped": stopped, "outside": run.outside });
+        Ok(with_share(answer, ship, &run.track))
     }
 
     /// The inputs as a trial that starts where the request says.

@@ -8,7 +8,7 @@ use sistership_dynamics::{Ship, Stopped};
 use sistership_model::{Law, Model};
 use utoipa::ToSchema;
 
-use super::track::{bounded, columns, positive};
+use super::track::{bounded, columns, positive, with_share};
 use crate::problem::{Problem, Result};
 use crate::web::field::{Angle, Positive, SampleCount};
 
@@ -71,18 +71,16 @@ impl ManoeuvreRequest {
         match (self.turn_deg, &self.zigzag, self.all) {
             (Some(rudder), None, false) => {
                 let sailed = turn(ship, rudder.get(), &settings).map_err(diverged)?;
-                Ok(
-                    json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null,
-                    "outside": ship.leaves(&sailed.track) }),
-                )
+                let answer = json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null,
+                    "outside": ship.leaves(&sailed.track) });
+                Ok(with_share(answer, ship, &sailed.track))
             }
             (None, Some(ZigzagRequest { rudder_deg, switch_deg }), false) => {
                 let sailed = zigzag(ship, rudder_deg.get(), switch_deg.get().abs(), &settings)
                     .map_err(diverged)?;
-                Ok(
-                    json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null,
-                    "outside": ship.leaves(&sailed.track) }),
-                )
+                let answer = json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null,
+                    "outside": ship.leaves(&sailed.track) });
+                Ok(with_share(answer, ship, &sailed.track))
             }
             (None, None, true) => {
                 let mut sailed =

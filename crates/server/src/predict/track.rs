@@ -1,8 +1,8 @@
 //! A simulated track: how long it may be, and its columns.
 
 use serde_json::{Value, json};
-use sistership_dynamics::Trajectory;
 use sistership_dynamics::state::at;
+use sistership_dynamics::{Ship, Trajectory};
 
 use crate::problem::{Problem, Result};
 use sistership_pipeline::budget::take_now;
@@ -44,6 +44,14 @@ const COLUMNS: [(&str, usize); 9] = [
     ("p_rad_s", at::P),
     ("delta_rad", at::DELTA),
 ];
+
+/// An answer with what a learned branch counted for along the track, where the ship has one.
+pub(super) fn with_share(mut answer: Value, ship: &Ship, track: &Trajectory) -> Value {
+    if let Some(share) = ship.branch_share(track) {
+        answer["branch_share"] = json!(share);
+    }
+    answer
+}
 
 /// A track by column.
 pub(super) fn columns(track: &Trajectory) -> Value {

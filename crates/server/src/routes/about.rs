@@ -24,7 +24,8 @@ use crate::problem::{Fault, Problem};
         (name = "jobs", description = "Long work."),
         (name = "models", description = "Versions of models, insert-only, and the aliases that move between them."),
         (name = "predictions", description = "Simulations with a version."),
-        (name = "reports", description = "What a refinement or a diagnosis reported."),
+        (name = "branches", description = "What is learned beside a law of motion, and its weights."),
+        (name = "reports", description = "What a refinement, a diagnosis or a training reported."),
         (name = "laws", description = "Laws of motion."),
         (name = "effects", description = "Libraries of effects, as recipes name them."),
         (name = "health", description = "Whether the server lives and can work.")

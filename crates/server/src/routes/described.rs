@@ -3,6 +3,7 @@
 
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value};
+use sistership_branches::BranchSettings;
 use sistership_diagnose as diagnose;
 use sistership_estimate::refine;
 use sistership_fleet::bulk::BulkSettings;
@@ -37,6 +38,7 @@ pub(super) fn schemas() -> Map<String, Value> {
     generator.subschema_for::<refine::Settings>();
     generator.subschema_for::<diagnose::Settings>();
     generator.subschema_for::<BulkSettings>();
+    generator.subschema_for::<BranchSettings>();
     generator.subschema_for::<Model>();
     generator.subschema_for::<VesselFile>();
     generator.take_definitions(true)

@@ -6,9 +6,9 @@ use tower_http::timeout::TimeoutLayer;
 use utoipa_axum::router::OpenApiRouter;
 
 use super::{
-    about, aliases, bulk_refinements, champion, compare, diagnoses, drift, effects, events,
-    exports, families, health, jobs, laws, metrics, predictions, refinements, register, reports,
-    samples, ship_changes, ships, similar, tags, trials, uploads, versions,
+    about, aliases, branches, bulk_refinements, champion, compare, diagnoses, drift, effects,
+    events, exports, families, health, jobs, laws, metrics, predictions, refinements, register,
+    reports, samples, ship_changes, ships, similar, tags, trials, uploads, versions,
 };
 use crate::app::App;
 use crate::config::Limits;
@@ -37,6 +37,7 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(samples::routes())
         .merge(refinements::routes())
         .merge(diagnoses::routes())
+        .merge(branches::routes())
         .merge(jobs::routes())
         .merge(events::routes())
         .merge(versions::routes())

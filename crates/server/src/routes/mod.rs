@@ -3,6 +3,7 @@
 mod about;
 mod aliases;
 mod binary;
+mod branches;
 mod bulk_refinements;
 mod champion;
 mod compare;

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use serde_json::Value;
 use sistership_model::Model;
 use sistership_model::version::FORMAT;
-use sistership_store::{Expect, NewVersion};
+use sistership_store::{Expect, NewVersion, StoreError};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -17,6 +17,7 @@ use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::field::{Remark, RequestKey, VersionNumber};
 use crate::web::{Key, Name, Payload, Place, Reply};
+use sistership_pipeline::error::DeriveError;
 use sistership_pipeline::line::{LATEST, step};
 use sistership_pipeline::recipe::{Recipe, RegisteredRecipe};
 use sistership_pipeline::schema::described;
@@ -83,17 +84,20 @@ async fn registered(app: &App, ship: String, request: RegisterRequest) -> Result
     }
     app.store().ships().get(&ship).await?;
     let law_sha256 = checked(app, &model).await?;
+    let weights = weights(app, &model).await?;
     let new = NewVersion {
         parent: parent_id(app, &ship, parent.map(VersionNumber::get)).await?,
         law: model.law.clone(),
         method: METHOD.to_owned(),
         document: document(&ship, model, law_sha256, origin.into_string())?,
         model: ship,
+        weights,
     };
     // Nothing of the document depends on the number, so that it does not matter who else makes
     // versions.
     let follow = step(LATEST, Expect::Any, METHOD);
-    let version = app.store().versions().create(&new, &[follow]).await?;
+    let versions = app.store().versions();
+    let version = versions.create_with_weights(app.objects(), &new, &[follow]).await?;
     let location = format!("/v1/models/{}/versions/{}", version.model, version.number);
     Ok(Reply::new(StatusCode::CREATED, &VersionHead::of(version))?.at(location))
 }
@@ -113,10 +117,25 @@ async fn checked(app: &App, model: &Model) -> Result<String> {
     Ok(law.sha256)
 }
 
+/// The object with the weights of a model's learned branch, which must be here and suit it.
+async fn weights(app: &App, model: &Model) -> Result<Option<String>> {
+    let Some(branch) = &model.branch else { return Ok(None) };
+    let refuse = |error: DeriveError| match error {
+        DeriveError::Store(StoreError::NotFound { .. }) => Problem::invalid(
+            "model.branch.weights_sha256",
+            "there are no such weights here; train a branch with POST /v1/branches",
+        ),
+        DeriveError::Join(error) => Problem::invalid("model.branch", error.to_string()),
+        other => other.into(),
+    };
+    app.archive().attach(&mut model.clone()).await.map_err(refuse)?;
+    Ok(Some(branch.weights_sha256.clone()))
+}
+
 async fn parent_id(app: &App, ship: &str, parent: Option<i64>) -> Result<Option<String>> {
     let Some(number) = parent else { return Ok(None) };
     match app.store().versions().get(ship, number).await {
-        Err(sistership_store::StoreError::NotFound { .. }) => {
+        Err(StoreError::NotFound { .. }) => {
             Err(Problem::invalid("parent", format!("there is no version {ship}/{number}")))
         }
         other => Ok(Some(other?.head.id)),

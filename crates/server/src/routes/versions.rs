@@ -36,7 +36,8 @@ pub(super) struct VersionHead {
     /// The id of the version it was made from.
     pub parent: Option<String>,
     pub law: String,
-    /// `published-source`, the method of the refinement, `diagnosis`, or `registered`.
+    /// `published-source`, the method of the refinement, `diagnosis`, `branch-KIND-MODE`,
+    /// or `registered`.
     pub method: String,
     /// The SHA-256 of its document.
     pub sha256: String,

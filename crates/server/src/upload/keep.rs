@@ -4,7 +4,7 @@ use std::io::BufWriter;
 
 use bytes::Bytes;
 use sistership_store::{
-    Alias, Inserted, Job, NewJob, NewTrial, Objects, Spool, StoreError, Trial, is_out_of_space,
+    Inserted, Job, NewJob, NewTrial, Objects, Spool, StoreError, Trial, is_out_of_space,
 };
 use sistership_trials::samples::{self, SamplesError};
 use sistership_trials::{ManifestFile, Refusal, read_trial};
@@ -19,6 +19,7 @@ use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::problem::{Problem, Result};
 use sistership_pipeline::budget;
 use sistership_pipeline::line::{CHAMPION, alias};
+use sistership_pipeline::training::foundation_of;
 
 /// How often samples are put again that were removed before their rows were written.
 const TRIES: usize = 3;
@@ -42,8 +43,8 @@ pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option
         other => drop(other?),
     }
     let accepted = upload.accept(app).await?;
-    let champion = if diagnose { alias(app.store(), &ship, CHAMPION).await? } else { None };
-    let job = |kept: &[Kept]| champion.as_ref().and_then(|champion| follow_up(champion, kept));
+    let champion = if diagnose { diagnosable(app, &ship).await? } else { None };
+    let job = |kept: &[Kept]| champion.and_then(|number| follow_up(&ship, number, kept));
     for _ in 0..TRIES {
         let rows = rows(&accepted, put_samples(app.objects(), &accepted).await?);
         match app.store().trials().insert_all_and_enqueue(&rows, app.objects(), job).await {
@@ -55,12 +56,20 @@ pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option
     Err(Problem::internal("the samples of an upload kept disappearing from the object store"))
 }
 
+/// The number of the ship's champion, or of the foundation of its learned branch: a diagnosis looks
+/// at laws.
+async fn diagnosable(app: &App, ship: &str) -> Result<Option<i64>> {
+    match alias(app.store(), ship, CHAMPION).await? {
+        None => Ok(None),
+        Some(champion) => Ok(foundation_of(app.archive(), ship, champion.version_number).await?),
+    }
+}
+
 /// The diagnosis of a champion on what is new.
-fn follow_up(champion: &Alias, kept: &[Kept]) -> Option<NewJob> {
+fn follow_up(ship: &str, number: i64, kept: &[Kept]) -> Option<NewJob> {
     let trials: Vec<String> =
         kept.iter().filter(|trial| trial.new).map(|trial| trial.row.id.clone()).collect();
-    let (ship, number, settings) =
-        (champion.model.clone(), champion.version_number, Default::default());
+    let (ship, settings) = (ship.to_owned(), Default::default());
     let asked = DiagnosisJob { ship: ship.clone(), number, trials, settings, key_sha256: None };
     let request = serde_json::to_string(&asked).ok().filter(|_| !asked.trials.is_empty())?;
     Some(NewJob { kind: DIAGNOSIS.to_owned(), ship: Some(ship), request })

@@ -2,6 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+/// The objects that rows refer to: the samples of trials, and the weights of learned branches.
+pub(crate) const KEYS: &str = "SELECT object_key FROM trials UNION \
+    SELECT weights_key FROM versions WHERE weights_key IS NOT NULL ORDER BY 1";
+
 /// The kinds of databases.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

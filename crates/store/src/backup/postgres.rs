@@ -9,7 +9,7 @@ use sqlx::{Connection as _, PgConnection, PgPool};
 use tokio::fs::File;
 use tokio::io::AsyncWriteExt as _;
 
-use super::content::{DatabaseCopy, DatabaseKind, TableHead};
+use super::content::{DatabaseCopy, DatabaseKind, KEYS, TableHead};
 use super::files::{at, not_a_backup};
 use super::manifest::BackupManifest;
 use crate::error::{Result, StoreError};
@@ -57,9 +57,7 @@ pub(crate) async fn take(pool: &PgPool, folder: &Path) -> Result<DatabaseCopy> {
         take_table(&mut tx, &table, &folder.join(file_of(&table))).await?;
         tables.push(table);
     }
-    let keys = sqlx::query_scalar("SELECT DISTINCT object_key FROM trials ORDER BY 1")
-        .fetch_all(&mut *tx)
-        .await?;
+    let keys = sqlx::query_scalar(KEYS).fetch_all(&mut *tx).await?;
     let schema =
         sqlx::query_scalar("SELECT MAX(version) FROM _sqlx_migrations").fetch_one(&mut *tx).await?;
     tx.commit().await?;

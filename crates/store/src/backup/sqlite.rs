@@ -7,7 +7,7 @@ use std::str::FromStr as _;
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions as _, Connection as _, SqlitePool};
 
-use super::content::{DatabaseCopy, DatabaseKind};
+use super::content::{DatabaseCopy, DatabaseKind, KEYS};
 use super::files::{at, write_whole};
 use crate::error::{Result, StoreError};
 use crate::folders;
@@ -40,9 +40,7 @@ pub(crate) async fn take(pool: &SqlitePool, folder: &Path) -> Result<DatabaseCop
 async fn look(path: &Path) -> Result<DatabaseCopy> {
     let options = SqliteConnectOptions::new().filename(path).read_only(true).immutable(true);
     let mut connection = options.connect().await?;
-    let keys = sqlx::query_scalar("SELECT DISTINCT object_key FROM trials ORDER BY 1")
-        .fetch_all(&mut connection)
-        .await?;
+    let keys = sqlx::query_scalar(KEYS).fetch_all(&mut connection).await?;
     let schema = sqlx::query_scalar("SELECT MAX(version) FROM _sqlx_migrations")
         .fetch_one(&mut connection)
         .await?;

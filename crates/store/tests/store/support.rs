@@ -58,6 +58,7 @@ pub fn version(model: &str) -> NewVersion {
         law,
         method,
         document: r#"{"coefficients":{}}"#.into(),
+        weights: None,
     }
 }
 

@@ -1,0 +1,89 @@
+//! Which kind of branch, if any: each is tried, and trials left out of its training decide.
+
+use serde::{Deserialize, Serialize};
+use sistership_model::trial::Trial;
+use sistership_model::{Law, Model};
+
+use crate::judge::{Judgement, judge};
+use crate::settings::{BranchKind, BranchSettings};
+use crate::train::TrainError;
+
+/// What was tried, and what is taken.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BranchChoice {
+    /// Every kind, in its order.
+    pub tried: Vec<TriedKind>,
+    /// The kind of least error, where that is better than the foundation's by more than one
+    /// standard error of the difference; none where no branch should be taken.
+    pub taken: Option<BranchKind>,
+    /// Why, in words.
+    pub reason: String,
+}
+
+/// A kind that was tried.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TriedKind {
+    /// The kind.
+    pub kind: BranchKind,
+    /// Standardised mean squared error of the foundation on trials left out.
+    pub foundation: f64,
+    /// The same with the branch.
+    pub branch: f64,
+    /// Standard error of the difference.
+    pub standard_error: f64,
+}
+
+/// Tries every kind; `told` is asked before each whether to go on.
+///
+/// # Errors
+/// As [`judge`]; none where it was stopped.
+pub fn choose(
+    model: &Model,
+    law: &Law,
+    trials: &[&Trial],
+    settings: &BranchSettings,
+    told: &dyn Fn(BranchKind) -> bool,
+) -> Result<Option<BranchChoice>, TrainError> {
+    let mut tried = Vec::new();
+    for kind in BranchKind::ALL {
+        if !told(kind) {
+            return Ok(None);
+        }
+        let training = settings.of(kind).training(model, law, trials)?;
+        let Some(judged) = judge(model, law, trials, &training)? else {
+            let reason = "there is one trial only, and none is left to judge on".to_owned();
+            return Ok(Some(BranchChoice { tried: Vec::new(), taken: None, reason }));
+        };
+        tried.push((kind, judged));
+    }
+    Ok(Some(decided(tried)))
+}
+
+fn decided(judged: Vec<(BranchKind, Judgement)>) -> BranchChoice {
+    let best = judged.iter().min_by(|(_, a), (_, b)| a.branch.total_cmp(&b.branch));
+    let reason = best.map_or_else(String::new, |(kind, judged)| because(*kind, judged));
+    let taken = best.filter(|(_, judged)| judged.wins()).map(|(kind, _)| *kind);
+    let tried = |(kind, judged): &(BranchKind, Judgement)| TriedKind {
+        kind: *kind,
+        foundation: judged.foundation,
+        branch: judged.branch,
+        standard_error: judged.standard_error,
+    };
+    BranchChoice { tried: judged.iter().map(tried).collect(), taken, reason }
+}
+
+/// `kernels leaves 0.21 of 0.24 on trials left out, with a standard error of 0.05: no win`
+fn because(kind: BranchKind, judged: &Judgement) -> String {
+    let Judgement { foundation, branch, standard_error, trials, .. } = judged;
+    let said = format!(
+        "`{}` is the best of the kinds: on {} trials left out, error {branch:.4} with it and \
+         {foundation:.4} without, the difference sure to {standard_error:.4}",
+        kind.name(),
+        trials.len()
+    );
+    if judged.wins() {
+        said
+    } else {
+        format!("{said}: it does not win by more than that, and no branch is taken")
+    }
+}

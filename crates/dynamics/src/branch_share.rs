@@ -1,0 +1,24 @@
+//! How much a learned branch counted for along a motion.
+
+use crate::branch::Instant;
+use crate::ship::Ship;
+use crate::state::{Trajectory, at};
+
+impl Ship {
+    /// What the learned branch counted for in the mean over a motion, 0 to 1; none for a ship
+    /// without one, or without samples.
+    pub fn branch_share(&self, track: &Trajectory) -> Option<f64> {
+        let branch = self.branch()?;
+        let share = |k: usize| {
+            let state = &track.states[k];
+            branch.share(&Instant {
+                velocities: [at::U, at::V, at::R].map(|place| state[place]),
+                delta_rad: if self.has_rudder() { state[at::DELTA] } else { 0.0 },
+                n_rps: if self.has_propeller() { track.n_rps[k] } else { 0.0 },
+                accelerations: [0.0; 3],
+            })
+        };
+        let count = track.states.len();
+        (count > 0).then(|| (0..count).map(share).sum::<f64>() / count as f64)
+    }
+}

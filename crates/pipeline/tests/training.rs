@@ -1,0 +1,163 @@
+//! A version with a learned branch: kept whole, and derived again.
+#![allow(clippy::unwrap_used)]
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use sistership_branches::{BranchKind, BranchSettings};
+use sistership_dynamics::Ship;
+use sistership_dynamics::manoeuvre::{ManoeuvreSettings, zigzag};
+use sistership_dynamics::state::{RECORDED, at};
+use sistership_model::version::RecipeTrial;
+use sistership_model::{Trial, Zoo, trial::Channel};
+use sistership_store::testing::TestDatabase;
+use sistership_store::{Expect, NewTrial, NewVersion, VersionHead};
+use sistership_trials::samples::write_parquet;
+
+use sistership_pipeline::archive::Archive;
+use sistership_pipeline::catalogue::Catalogue;
+use sistership_pipeline::derive::{Derived, derive};
+use sistership_pipeline::line::step;
+use sistership_pipeline::recipe::Recipe;
+use sistership_pipeline::seed;
+use sistership_pipeline::training::{chosen, foundation_of, training_recipe};
+use sistership_pipeline::upkeep::{Findings, fsck, gc};
+use sistership_pipeline::verify::verify;
+
+/// Zigzags of a Mariner that is more damped than its model says.
+fn trials() -> Vec<Trial> {
+    let zoo = Zoo::embedded().unwrap();
+    let mut model = zoo.model("mariner").unwrap();
+    for (name, factor) in [("N_r", 1.25), ("N_delta", 0.85)] {
+        model.coefficients.get_mut(name).unwrap().value *= factor;
+    }
+    let ship = Ship::new(&model, zoo.law(&model.law).unwrap()).unwrap();
+    let sailed = |angle: f64| {
+        let settings = ManoeuvreSettings { duration_s: Some(400.0), ..Default::default() };
+        let track = zigzag(&ship, angle, angle.abs(), &settings).unwrap().track;
+        let thin = |column: Vec<f64>| column.into_iter().step_by(10).collect::<Vec<f64>>();
+        let columns = RECORDED[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
+        let channels = columns.map(|&(channel, at)| (channel, thin(track.column(at)))).collect();
+        let name = format!("zigzag {angle}");
+        Trial { name, t_s: thin(track.t_s.clone()), channels, ..Trial::default() }
+    };
+    [10.0, -10.0, 20.0, -20.0].map(sailed).to_vec()
+}
+
+/// An archive with the zoo and those trials.
+async fn archive(database: &TestDatabase) -> (Archive, Vec<RecipeTrial>) {
+    let archive = Archive::open(&database.url, database.folder.path()).await.unwrap();
+    seed::seed(&archive.store, &Catalogue::default()).await.unwrap();
+    let mut named = Vec::new();
+    for trial in trials() {
+        let mut bytes = Vec::new();
+        write_parquet(&mut bytes, &trial).unwrap();
+        let key = archive.objects.put(bytes.into()).await.unwrap();
+        let text = |text: &str| text.to_owned();
+        let new = NewTrial {
+            ship: text("mariner"),
+            sha256: key.clone(),
+            name: trial.name.clone(),
+            manifest: text("{}"),
+            conventions: text("{}"),
+            manoeuvre: None,
+            sample_rows: 401,
+            duration_s: 400.0,
+            warnings: text("[]"),
+            object_key: key.clone(),
+        };
+        archive.store.trials().insert(&new).await.unwrap();
+        named.push(RecipeTrial { name: trial.name, sha256: key });
+    }
+    (archive, named)
+}
+
+async fn trained(archive: &Archive, trials: Vec<RecipeTrial>) -> Derived {
+    let version = archive.store.versions().get("mariner", 1).await.unwrap();
+    let settings = BranchSettings::default().of(BranchKind::Kernels);
+    let recipe = training_recipe(archive, &version, trials, &settings).await.unwrap();
+    derive(archive, "mariner", &Recipe::Training(recipe), Arc::new(|_, _| true)).await.unwrap()
+}
+
+/// Keeps what was derived, as a job does.
+async fn kept(archive: &Archive, derived: &Derived) -> sistership_store::Result<VersionHead> {
+    let new = NewVersion {
+        model: "mariner".into(),
+        parent: None,
+        law: derived.document.model.law.clone(),
+        method: "branch-kernel-ridge-parallel".into(),
+        document: derived.document.canonical().unwrap(),
+        weights: derived.document.model.branch.as_ref().map(|b| b.weights_sha256.clone()),
+    };
+    let moves = [step("latest", Expect::Any, "a test")];
+    archive.store.versions().create_with_weights(&archive.objects, &new, &moves).await
+}
+
+async fn faults(archive: &Archive) -> Vec<String> {
+    let Findings { faults, .. } = fsck(archive).await.unwrap();
+    faults.into_iter().map(|fault| format!("{} {}", fault.check, fault.message)).collect()
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_version_with_a_branch_is_kept_whole_and_derived_again() {
+    let databases = [Some(TestDatabase::sqlite()), TestDatabase::postgres().await];
+    for database in databases.into_iter().flatten() {
+        let (archive, trials) = archive(&database).await;
+        let derived = trained(&archive, trials).await;
+        assert!(kept(&archive, &derived).await.is_err(), "a version whose weights are not there");
+        let key = archive.objects.put(derived.weights.clone().unwrap()).await.unwrap();
+        let head = kept(&archive, &derived).await.unwrap();
+        let verification = verify(&archive, "mariner", head.number).await.unwrap();
+        assert!(verification.identical, "{:?}", verification.remarks);
+        tokio::time::sleep(Duration::from_millis(20)).await;
+        assert!(gc(&archive, Duration::ZERO, false).await.unwrap().removed.is_empty());
+        assert_eq!(faults(&archive).await, Vec::<String>::new());
+        sails(&archive, &head).await;
+        assert_eq!(foundation_of(&archive, "mariner", head.number).await.unwrap(), Some(1));
+        backed_up(&archive, &database, &key).await;
+        database.damage("UPDATE versions SET weights_key = NULL").await;
+        assert!(faults(&archive).await[0].contains("does not refer to the weights"));
+        assert_eq!(gc(&archive, Duration::ZERO, false).await.unwrap().removed, [] as [&str; 0]);
+        let place = format!("objects/{}/{}", &key[..2], &key[2..]);
+        std::fs::remove_file(database.folder.path().join(place)).unwrap();
+        assert!(faults(&archive).await[0].starts_with("version-weights the weights"));
+        assert!(verify(&archive, "mariner", head.number).await.is_err(), "weights are gone");
+    }
+}
+
+/// It sails by both halves, and its report says that it is better on trials left out.
+async fn sails(archive: &Archive, head: &VersionHead) {
+    let version = archive.store.versions().by_id(&head.id).await.unwrap();
+    let document = sistership_pipeline::archive::document(&version).unwrap();
+    assert!(document.report["branch"].as_f64() < document.report["foundation"].as_f64());
+    let zoo = Zoo::embedded().unwrap();
+    let law = zoo.law("abkowitz").unwrap();
+    assert!(Ship::new(&document.model, law).is_err(), "half of it is missing");
+    let ship = Ship::new(&archive.model(&version).await.unwrap(), law).unwrap();
+    let track = zigzag(&ship, 10.0, 10.0, &ManoeuvreSettings::default()).unwrap().track;
+    assert!(ship.branch_share(&track).unwrap() > 0.9);
+}
+
+/// Its weights go into a backup.
+async fn backed_up(archive: &Archive, database: &TestDatabase, key: &str) {
+    let folder = database.folder.path().join("backup");
+    let manifest = archive.store.backup(&archive.objects, &folder).await.unwrap();
+    assert_eq!(manifest.objects, 5, "four trials, and weights");
+    assert!(folder.join(format!("objects/{}/{}", &key[..2], &key[2..])).exists());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn every_kind_is_tried_and_the_best_taken_where_it_wins() {
+    let database = TestDatabase::sqlite();
+    let (archive, trials) = archive(&database).await;
+    let version = archive.store.versions().get("mariner", 1).await.unwrap();
+    let open = BranchSettings::default();
+    let go_on = Arc::new(|_: f64, _: &str| true);
+    let choice = chosen(&archive, &version, &trials, open.clone(), go_on.clone()).await.unwrap();
+    assert_eq!(choice.tried.len(), BranchKind::ALL.len());
+    let taken = choice.taken.unwrap();
+    let best = choice.tried.iter().find(|tried| tried.kind == taken).unwrap();
+    assert!(choice.tried.iter().all(|tried| best.branch <= tried.branch));
+    let one = chosen(&archive, &version, &trials[..1], open, go_on).await.unwrap();
+    assert!(one.taken.is_none() && one.reason.contains("one trial only"), "{one:?}");
+}
