@@ -44,6 +44,8 @@ FigureValue = TypedDict('FigureValue', {'pass': 'Union[bool, None]', 'value': 'U
 Form = TypedDict('Form', {'file': 'List[str]', 'manifest': 'Union[str, None]', 'ship': 'Union[str, None]'}, total=False)
 FormFile = TypedDict('FormFile', {'accelerates': 'Dict[str, str]', 'coefficients': 'Dict[str, str]', 'forces': 'Dict[str, str]', 'lags': 'Dict[str, str]', 'meaning': 'str', 'measures': 'Dict[str, str]', 'name': 'str', 'needs': 'List[Channel]', 'only_without_roll': 'bool', 'parameters': 'Dict[str, EffectParameterFile]', 'particulars': 'Dict[str, str]', 'reports': 'Dict[str, str]', 'sees': 'Dict[str, str]', 'unless': 'List[Channel]', 'values': 'Dict[str, str]'}, total=False)
 FoundBy = TypedDict('FoundBy', {'at_us': 'int', 'diagnosis': 'str', 'report': 'str'}, total=True)
+FreeRunning = TypedDict('FreeRunning', {'kind': 'FreeRunningKind', 'note': 'Union[str, None]', 'source': 'str', 'speed_m_s': 'Union[float, None]', 'turns': 'List[PublishedTurn]', 'zigzags': 'List[PublishedZigzag]'}, total=False)
+FreeRunningKind = Any  # What sailed a free-running trial.
 Health = TypedDict('Health', {'revision': 'str', 'status': 'str', 'writes': 'Union[str, None]'}, total=False)
 InitialState = TypedDict('InitialState', {'p_rad_s': 'float', 'phi_rad': 'float', 'psi_rad': 'float', 'r_rad_s': 'float', 'u_m_s': 'float', 'v_m_s': 'float', 'x_m': 'float', 'y_m': 'float'}, total=False)
 InputsRequest = TypedDict('InputsRequest', {'delta_rad': 'List[float]', 'n_rps': 'Union[List[float], None]', 'start': 'InitialState', 't_s': 'List[float]'}, total=False)
@@ -85,6 +87,8 @@ Problem = TypedDict('Problem', {'detail': 'str', 'errors': 'List[Fault]', 'insta
 Promoted = TypedDict('Promoted', {'champions': 'int'}, total=True)
 Promotion = TypedDict('Promotion', {'actor': 'str', 'reason': 'str', 'ships': 'Union[List[str], None]'}, total=False)
 PublishedModelFile = TypedDict('PublishedModelFile', {'coefficients': 'Section', 'law': 'str', 'name': 'str', 'note': 'Union[str, None]', 'parameters': 'Section', 'revolutions_rps': 'Union[float, None]', 'speed_m_s': 'Union[float, None]', 'status': 'Status', 'steering': 'Steering'}, total=False)
+PublishedTurn = TypedDict('PublishedTurn', {'advance': 'Union[float, None]', 'both_sides': 'bool', 'rudder_deg': 'float', 'steady_radius': 'Union[float, None]', 'tactical_diameter': 'Union[float, None]', 'transfer': 'Union[float, None]', 'uncertainty': 'float'}, total=False)
+PublishedZigzag = TypedDict('PublishedZigzag', {'both_sides': 'bool', 'first_overshoot_deg': 'Union[float, None]', 'rudder_deg': 'float', 'second_overshoot_deg': 'Union[float, None]', 'switch_deg': 'float', 'uncertainty_deg': 'float'}, total=False)
 Quantity = TypedDict('Quantity', {'note': 'Union[str, None]', 'source': 'str', 'standard_error': 'Union[float, None]', 'value': 'float'}, total=False)
 QuotedVectorFile = TypedDict('QuotedVectorFile', {'note': 'Union[str, None]', 'source': 'str', 'values': 'Dict[str, Written]'}, total=False)
 RefinementRequest = TypedDict('RefinementRequest', {'law': 'Union[str, None]', 'settings': 'RefinementSettings', 'ship': 'str', 'source': 'Union[str, None]', 'trials': 'Union[List[str], None]'}, total=False)
@@ -114,7 +118,7 @@ Verification = TypedDict('Verification', {'checked_by': 'str', 'derived_sha256':
 VersionDetail = TypedDict('VersionDetail', {'document': 'Dict[str, Any]', 'version': 'VersionHead'}, total=True)
 VersionHead = TypedDict('VersionHead', {'created_us': 'int', 'id': 'str', 'law': 'str', 'method': 'str', 'model': 'str', 'number': 'int', 'parent': 'Union[str, None]', 'report': 'Union[str, None]', 'sha256': 'str'}, total=False)
 VesselConventions = TypedDict('VesselConventions', {'rudder_positive': 'RudderSign'}, total=False)
-VesselFile = TypedDict('VesselFile', {'category': 'str', 'conventions': 'VesselConventions', 'kind': 'VesselKind', 'models': 'List[PublishedModelFile]', 'name': 'str', 'particulars': 'Section', 'quoted_vectors': 'Dict[str, QuotedVectorFile]', 'scale': 'Union[float, None]', 'sources': 'Dict[str, Source]', 'title': 'str', 'type': 'Union[str, None]'}, total=False)
+VesselFile = TypedDict('VesselFile', {'category': 'str', 'conventions': 'VesselConventions', 'free_running': 'List[FreeRunning]', 'kind': 'VesselKind', 'models': 'List[PublishedModelFile]', 'name': 'str', 'particulars': 'Section', 'quoted_vectors': 'Dict[str, QuotedVectorFile]', 'scale': 'Union[float, None]', 'sources': 'Dict[str, Source]', 'title': 'str', 'type': 'Union[str, None]'}, total=False)
 VesselKind = Any  # The word `vessel`.
 Written = Any  # The ways in which a file may write a value.
 WrittenInFull = TypedDict('WrittenInFull', {'note': 'Union[str, None]', 'source': 'Union[str, None]', 'standard_error': 'Union[float, None]', 'value': 'NumberOrExpression'}, total=False)
