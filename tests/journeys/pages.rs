@@ -207,6 +207,46 @@ async fn journey(server: TestServer) {
     others(&server).await;
     promoted(&server).await;
     refused(&server).await;
+    in_a_browser(&server).await;
+}
+
+/// A browser shows the pages without a word on its console: the policy allows what they have, and
+/// their script runs. Skipped, and said so, where Debian's chromium is not installed.
+async fn in_a_browser(server: &TestServer) {
+    if std::process::Command::new("chromium").arg("--version").output().is_err() {
+        println!("skipped: no chromium is installed");
+        return;
+    }
+    let paths = [
+        "/".to_owned(),
+        format!("/ships/{NAME}"),
+        format!("/ships/{NAME}/versions/2"),
+        format!("/playground?model={NAME}"),
+        "/zoo/laws/mmg".to_owned(),
+    ];
+    for path in paths {
+        let address = format!("{}{path}", server.url());
+        let shown = tokio::task::spawn_blocking(move || browsed(&address)).await.expect("it ends");
+        let (page, log) = shown;
+        assert!(
+            page.contains("aria-current=\"page\"") && page.contains("</html>"),
+            "{path}: {log}"
+        );
+        assert!(!log.contains(":CONSOLE"), "{path}: {log}");
+    }
+}
+
+/// What a browser has made of a page, and what it says.
+fn browsed(address: &str) -> (String, String) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut browser = std::process::Command::new("chromium");
+    browser.args(["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run"]);
+    browser.args(["--disable-background-networking", "--disable-component-update"]);
+    browser.args(["--disable-sync", "--enable-logging=stderr", "--dump-dom"]);
+    browser.arg(format!("--user-data-dir={}", folder.path().display())).arg(address);
+    let output = browser.output().expect("it starts");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (text(&output.stdout), text(&output.stderr))
 }
 
 async fn does_not_hold(server: &TestServer) {
