@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crates that only some may name.
-const ALLOWED: [(&str, &[&str]); 20] = [
+const ALLOWED: &[(&str, &[&str])] = &[
     ("model", &[]),
     ("dynamics", &["model"]),
     ("stretches", &[]),
@@ -17,6 +17,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
     ("regression", &[]),
     ("branches", &["model", "dynamics"]),
     ("bands", &["model", "dynamics"]),
+    ("export", &["model", "dynamics"]),
     ("validation", &["model", "dynamics"]),
     ("empirical", &["model", "dynamics", "bands"]),
     ("estimate", &["model", "dynamics", "bands", "regression"]),
@@ -27,14 +28,19 @@ const ALLOWED: [(&str, &[&str]); 20] = [
     ("report", &["model", "dynamics", "bands", "estimate", "choice", "diagnose"]),
     (
         "pipeline",
-        &["model", "dynamics", "trials", "estimate", "choice", "diagnose", "fleet", "store"],
+        &[
+            "model", "dynamics", "trials", "export", "estimate", "choice", "diagnose", "fleet",
+            "store",
+        ],
     ),
+    ("pages", &["model", "dynamics", "trials", "estimate", "store", "report", "pipeline"]),
     ("listen", &[]),
+    ("fields", &["store"]),
     (
         "server",
         &[
             "model", "dynamics", "trials", "bands", "estimate", "choice", "diagnose", "fleet",
-            "store", "report", "pipeline", "listen",
+            "store", "report", "pipeline", "pages", "listen", "fields",
         ],
     ),
     (
@@ -54,6 +60,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
             "report",
             "pipeline",
             "server",
+            "export",
         ],
     ),
 ];

@@ -6,8 +6,8 @@
 mod diagnosis;
 mod error_row;
 mod metrics;
-mod numbers;
-mod plots;
+pub mod numbers;
+pub mod plots;
 mod refinement;
 mod rendered;
 mod replayed;

@@ -16,6 +16,7 @@ const SQLITE: &[MigrationSource] = &[
     (4, "fleets", include_str!("../../../migrations/sqlite/0004_fleets.sql")),
     (5, "effects", include_str!("../../../migrations/sqlite/0005_effects.sql")),
     (6, "leases", include_str!("../../../migrations/sqlite/0006_leases.sql")),
+    (8, "standing", include_str!("../../../migrations/sqlite/0008_standing.sql")),
 ];
 const POSTGRES: &[MigrationSource] = &[
     (1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql")),
@@ -24,6 +25,7 @@ const POSTGRES: &[MigrationSource] = &[
     (4, "fleets", include_str!("../../../migrations/postgres/0004_fleets.sql")),
     (5, "effects", include_str!("../../../migrations/postgres/0005_effects.sql")),
     (6, "leases", include_str!("../../../migrations/postgres/0006_leases.sql")),
+    (8, "standing", include_str!("../../../migrations/postgres/0008_standing.sql")),
 ];
 
 fn migrator(sources: &'static [MigrationSource]) -> Migrator {

@@ -3,15 +3,18 @@
 pub mod backup;
 mod channels;
 pub mod check;
+pub mod compare;
 mod config_file;
 pub mod derive;
 pub mod diagnose;
 mod diagnose_text;
 pub mod estimate;
+pub mod export;
 pub mod family;
 pub mod fsck;
 pub mod gc;
 pub mod import;
+mod import_bundle;
 mod import_log;
 mod log;
 mod log_format;

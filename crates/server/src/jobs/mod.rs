@@ -10,10 +10,11 @@ mod outcome;
 mod prepared;
 mod progress;
 mod refinement;
-mod request;
 mod worker;
 
-pub(crate) use request::{DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob, SourceChoice};
+pub(crate) use sistership_pipeline::request::{
+    DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob, SourceChoice,
+};
 pub(crate) use worker::Worker;
 
 /// How often another version of the same ship may come in between while one is kept. Each time

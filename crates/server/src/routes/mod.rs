@@ -5,6 +5,7 @@ mod aliases;
 mod binary;
 mod bulk_refinements;
 mod champion;
+mod compare;
 mod described;
 mod diagnoses;
 mod document;
@@ -12,6 +13,7 @@ mod drift;
 mod effects;
 mod endpoints;
 mod events;
+mod exports;
 mod families;
 mod health;
 mod jobs;
@@ -56,7 +58,7 @@ pub(crate) fn router(app: App) -> Router {
     let api = api.route_layer(from_fn_with_state(known, query::refuse_unknown));
     let text = document::text();
     api.route("/openapi.json", get(move || async move { document::served(text) }))
-        .merge(pages::routes())
+        .merge(pages::routes(app.limits()))
         .fallback(envelope::nowhere)
         .layer(from_fn_with_state(app.clone(), guard::guard))
         .layer(CatchPanicLayer::custom(envelope::panicked))
