@@ -20,7 +20,8 @@ impl NamedVersion {
     /// The version that a name stands for; `field` is where it was written.
     pub async fn find(archive: &Archive, field: &str, name: &str) -> Result<Self> {
         let version = version(archive, field, name).await?;
-        let document = document(&version)?;
+        let mut document = document(&version)?;
+        archive.attach(&mut document.model).await?;
         let law = archive.law(&document.model.law, document.recipe.law_sha256()).await?;
         Ok(Self { head: version.head, document, law })
     }

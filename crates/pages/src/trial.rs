@@ -86,7 +86,8 @@ pub async fn gather(archive: &Archive, shell: Shell, id: &str) -> Result<Gathere
 async fn champion(archive: &Archive, ship: &str) -> Result<Option<Champion>> {
     let Some(alias) = alias(&archive.store, ship, CHAMPION).await? else { return Ok(None) };
     let number = alias.version_number;
-    let version = document(&archive.store.versions().get(ship, number).await?)?;
+    let mut version = document(&archive.store.versions().get(ship, number).await?)?;
+    archive.attach(&mut version.model).await?;
     let law = archive.law(&version.model.law, version.recipe.law_sha256()).await?;
     Ok(Some(Champion { number, model: version.model, law }))
 }

@@ -76,7 +76,8 @@ struct EffectRow {
 pub async fn gather(archive: &Archive, shell: Shell, ship: &str, number: i64) -> Result<Gathered> {
     let store = &archive.store;
     let version = store.versions().get(ship, number).await?;
-    let parsed = document(&version)?;
+    let mut parsed = document(&version)?;
+    archive.attach(&mut parsed.model).await?;
     let law = archive.law(&parsed.model.law, parsed.recipe.law_sha256()).await?;
     let aliases = store.aliases().list(ship, &Page::first(50)).await?.items;
     let reports = store.reports().by_version(&version.head.id, &Page::first(1)).await?;
