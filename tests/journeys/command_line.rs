@@ -134,3 +134,33 @@ fn a_law_and_a_vessel_are_added_by_files() {
     );
     assert!(sailed["turns"][0]["advance_m"].as_f64() > Some(100.0), "{sailed}");
 }
+
+/// A ship without trials and without a model: estimated, sailed, written as a vessel of a zoo of
+/// one's own, and found there.
+#[test]
+fn a_ship_without_trials_is_estimated_and_joins_a_zoo() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (ship, model) = (path("coaster.yaml"), path("estimate.yaml"));
+    let text = "kind: vessel\nname: coaster\ntitle: A coaster\ncategory: general-cargo\nsources: { \
+                a: { citation: made for this test } }\nparticulars: { source: a, values: { lpp_m: \
+                80.0, beam_m: 13.0, draught_m: 5.0, block_coefficient: 0.72, service_speed_m_s: \
+                6.0 } }\n";
+    std::fs::write(&ship, text).expect("written");
+    let estimated = binary::json(&["estimate", "--ship", &ship, "--out", &model, "--json"], 0);
+    assert_eq!(estimated["status"], "estimated");
+    for key in ["law", "speed_m_s", "revolutions_rps", "manoeuvres", "bands", "values", "model"] {
+        assert!(!estimated[key].is_null(), "{key} is missing");
+    }
+    let band = &estimated["bands"][0];
+    assert!(band["low"].as_f64() < band["high"].as_f64(), "{band}");
+    let sailed = binary::json(&["manoeuvre", "--model", &model, "--all", "--json"], 0);
+    assert!(sailed["turns"][0]["tactical_diameter_m"].is_f64(), "{sailed}");
+    let own = path("zoo");
+    let added = binary::json(&["zoo", "add", &ship, "--into", &own, "--json"], 0);
+    assert_eq!((added["taken"].as_bool(), added["ship"].as_str()), (Some(true), Some("coaster")));
+    let similar = binary::json(&["similar", "coaster", "--zoo", &own, "--json"], 0);
+    assert_eq!(similar["target"], "coaster");
+    let listed = binary::json(&["zoo", "list", "wpcc", "--json"], 0);
+    assert_eq!(listed["models"][0]["standing"], "disputed");
+}

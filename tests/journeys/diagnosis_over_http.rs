@@ -117,7 +117,7 @@ async fn does_not_hold(server: &TestServer) {
     );
     assert_eq!(made["document"]["recipe"]["kind"], "diagnosis", "{made}");
     let page = page(server, &format!("/ships/{NAME}")).await;
-    assert!(page.contains("Her model does not hold") && page.contains(EFFECT), "the page says so");
+    assert!(page.contains("Its model does not hold") && page.contains(EFFECT), "the page says so");
 }
 
 /// The report says it in one sentence, as data and as a page that stands alone.
@@ -235,7 +235,7 @@ async fn asked_for(server: &TestServer) {
         condition["since"], condition["found_by"],
         "it has held since the diagnosis that it came of"
     );
-    assert!(page(server, &format!("/ships/{NAME}")).await.contains("Her model holds"));
+    assert!(page(server, &format!("/ships/{NAME}")).await.contains("Its model holds"));
     let versions = server.get(&format!("/v1/models/{NAME}/versions")).await;
     assert_eq!(versions["items"].as_array().map(Vec::len), Some(2), "nothing found, no version");
 }

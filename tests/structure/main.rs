@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Which of our crates each crate may use, and the outside crates that only some may name.
-const ALLOWED: [(&str, &[&str]); 18] = [
+const ALLOWED: &[(&str, &[&str])] = &[
     ("model", &[]),
     ("dynamics", &["model"]),
     ("stretches", &[]),
@@ -17,6 +17,9 @@ const ALLOWED: [(&str, &[&str]); 18] = [
     ("regression", &[]),
     ("branches", &["model", "dynamics"]),
     ("bands", &["model", "dynamics"]),
+    ("export", &["model", "dynamics"]),
+    ("validation", &["model", "dynamics"]),
+    ("empirical", &["model", "dynamics", "bands"]),
     ("estimate", &["model", "dynamics", "bands", "regression"]),
     ("choice", &["model", "bands", "estimate"]),
     ("diagnose", &["model", "dynamics", "regression", "estimate"]),
@@ -26,16 +29,18 @@ const ALLOWED: [(&str, &[&str]); 18] = [
     (
         "pipeline",
         &[
-            "model", "dynamics", "branches", "trials", "estimate", "choice", "diagnose", "fleet",
-            "store",
+            "model", "dynamics", "branches", "trials", "export", "estimate", "choice", "diagnose",
+            "fleet", "store",
         ],
     ),
+    ("pages", &["model", "dynamics", "trials", "estimate", "store", "report", "pipeline"]),
     ("listen", &[]),
+    ("fields", &["store"]),
     (
         "server",
         &[
             "model", "dynamics", "branches", "trials", "bands", "estimate", "choice", "diagnose",
-            "fleet", "store", "report", "pipeline", "listen",
+            "fleet", "store", "report", "pipeline", "pages", "listen", "fields",
         ],
     ),
     (
@@ -47,6 +52,8 @@ const ALLOWED: [(&str, &[&str]); 18] = [
             "stretches",
             "trials",
             "bands",
+            "validation",
+            "empirical",
             "estimate",
             "choice",
             "diagnose",
@@ -54,6 +61,7 @@ const ALLOWED: [(&str, &[&str]); 18] = [
             "report",
             "pipeline",
             "server",
+            "export",
         ],
     ),
 ];

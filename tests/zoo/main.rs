@@ -4,4 +4,5 @@
 mod additions;
 mod files;
 mod hybrids;
+mod page;
 mod schemas;

@@ -78,9 +78,10 @@ fn searched_by(settings: &Settings, fitted: usize) -> Settings {
 
 fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
     let mut tried = Vec::new();
-    let (known, mut alone): (Vec<usize>, Vec<usize>) = (0..search.entrants.len())
-        .partition(|entrant| search.entrants[*entrant].source_law.is_some());
-    climb(search, Rung::CarriedOver, &known, (0.0, 0.1), &mut tried, progress)?;
+    let mut alone: Vec<usize> = (0..search.entrants.len())
+        .filter(|entrant| search.entrants[*entrant].source_law.is_none())
+        .collect();
+    carried_over(search, &mut tried, progress)?;
     let mut next = leading_by_law(search, &tried);
     // Parts of one manoeuvre tell nothing of others, and without a source nothing else does.
     if search.settings.in_parts && !next.is_empty() {
@@ -91,6 +92,33 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     let next = leading(&tried);
     climb(search, Rung::Trajectory, &next, (0.5, 0.5), &mut tried, progress)?;
     taken(search, tried)
+}
+
+/// Weighs each source as carried over, by its own law where that is fitted: what another law says
+/// in its place is an imitation of that, and needed only where that does not sail.
+fn carried_over(
+    search: &Search<'_>,
+    tried: &mut Vec<Tried>,
+    progress: Progress<'_>,
+) -> Result<(), RefineError> {
+    let mut by_source: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (place, entrant) in search.entrants.iter().enumerate() {
+        entrant.source_name().into_iter().for_each(|source| {
+            by_source.entry(source).or_default().push(place);
+        });
+    }
+    let share = 0.1 / by_source.len().max(1) as f64;
+    for (k, entrants) in by_source.into_values().enumerate() {
+        let (begin, each) = (share * k as f64, share / entrants.len() as f64);
+        for (j, entrant) in entrants.into_iter().enumerate() {
+            let span = (begin + each * j as f64, each);
+            climb(search, Rung::CarriedOver, &[entrant], span, tried, progress)?;
+            if tried.last().is_some_and(|one| one.weighed.error.is_some()) {
+                break;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Weighs entrants on a rung, whose progress begins at a fraction of the whole and takes a span of
@@ -198,16 +226,21 @@ fn ordered<'a>(tried: impl Iterator<Item = &'a Tried>) -> Vec<(usize, f64)> {
 /// Of each law the sources that lead as carried over, one in [`SEARCH`]`.share`: how well a source
 /// is carried over says which source serves a law best, but not how well a law can be fitted.
 fn leading_by_law(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
-    let mut by_law: BTreeMap<&str, Vec<&Tried>> = BTreeMap::new();
-    for one in tried {
-        by_law.entry(&search.entrants[one.entrant].law.name).or_default().push(one);
+    let order = ordered(tried.iter());
+    let sources = order.iter().filter_map(|(entrant, _)| search.entrants[*entrant].source_name());
+    let mut by_law: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for source in sources {
+        for (place, entrant) in search.entrants.iter().enumerate() {
+            if entrant.source_name() == Some(source) {
+                by_law.entry(&entrant.law.name).or_default().push(place);
+            }
+        }
     }
-    let first = |of_law: &Vec<&Tried>| {
-        let order = ordered(of_law.iter().copied());
-        let count = order.len().div_ceil(SEARCH.share);
-        order.into_iter().take(count).map(|(entrant, _)| entrant).collect::<Vec<_>>()
+    let first = |entrants: Vec<usize>| {
+        let count = entrants.len().div_ceil(SEARCH.share);
+        entrants.into_iter().take(count)
     };
-    by_law.values().flat_map(first).collect()
+    by_law.into_values().flat_map(first).collect()
 }
 
 /// The entrants that lead in weak form: trajectories seldom gain more than

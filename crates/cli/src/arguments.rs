@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::{backup, family, fsck, gc, serve, ships, verify, work};
+use crate::commands::{backup, family, fsck, gc, serve, ships, verify, work, zoo};
 use crate::commands::{
-    branch, check, derive, diagnose, import, manoeuvre, refine, similar, simulate,
+    branch, check, compare, derive, diagnose, estimate, export, import, manoeuvre, refine, similar,
+    simulate,
 };
 use crate::demo::DemoArguments;
 
@@ -24,6 +25,9 @@ Examples:
   sistership branch --model my-model.yaml --trials trials.yaml --out with-branch.yaml
   sistership diagnose --model my-model.yaml --trials new-trials.yaml --report diagnosis.html
   sistership manoeuvre --model my-model.yaml --all
+  sistership export my-model.yaml --format c --out my_model.c
+  sistership estimate --ship my-ship.yaml
+  sistership zoo add my-ship.yaml
 
 Exit status: 0 done, 1 the data or the model says no, 2 the call is wrong.";
 
@@ -59,8 +63,16 @@ pub enum Command {
     Diagnose(diagnose::DiagnoseArguments),
     /// Sail turning circles and zigzags with a model and judge them by the IMO criteria.
     Manoeuvre(manoeuvre::ManoeuvreArguments),
+    /// Compare two to five models: coefficients, errors on the same trials, standard manoeuvres.
+    Compare(compare::CompareArguments),
     /// Derive a law of motion from a list of actuators.
     Derive(derive::DeriveArguments),
+    /// Write a model down for another tool: C, Python, MATLAB, FMU; or a ship for another store.
+    Export(export::ExportArguments),
+    /// Estimate a model of a ship from its particulars alone, with bands.
+    Estimate(estimate::EstimateArguments),
+    /// What the models of the zoo are worth; check a ship that is to join it.
+    Zoo(zoo::ZooArguments),
     /// Show the whole loop through the real server: ship, trials, source, refinement, champion,
     /// report.
     Demo(DemoArguments),

@@ -31,7 +31,11 @@ pub fn ship(zoo: &Zoo, name: &str) -> Result<Arc<Vessel>, Failure> {
     Err(unknown(name, zoo.vessels().map(|vessel| vessel.name().to_owned()).collect()))
 }
 
-fn vessel_file(zoo: &Zoo, path: &Path) -> Result<Arc<Vessel>, Failure> {
+/// The vessel of a file.
+///
+/// # Errors
+/// It is no vessel file, or does not read.
+pub fn vessel_file(zoo: &Zoo, path: &Path) -> Result<Arc<Vessel>, Failure> {
     let text = text_of(path)?;
     match kind_of(&text) {
         DocumentKind::Named(kind) if kind == "model" => {

@@ -14,6 +14,11 @@ impl TextTable {
         Self { rows: vec![header.map(str::to_owned).to_vec()] }
     }
 
+    /// A table with a header of as many columns as there are.
+    pub fn of<'a>(header: impl Iterator<Item = &'a str>) -> Self {
+        Self { rows: vec![header.map(str::to_owned).collect()] }
+    }
+
     /// Adds a row.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());

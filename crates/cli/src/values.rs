@@ -7,6 +7,7 @@ use clap::ValueEnum;
 use sistership_dynamics::Method as Integrator;
 use sistership_estimate::refine::Method;
 use sistership_estimate::similarity::Definition;
+use sistership_export::{FORMATS, Format, by_name};
 
 /// Why a value does not read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -122,6 +123,25 @@ pub fn method(name: &str) -> Result<Method, ValueError> {
 pub fn definition(name: &str) -> Result<Definition, ValueError> {
     let known: Vec<&str> = Definition::ALL.into_iter().map(Definition::name).collect();
     Definition::by_name(name).ok_or_else(|| ValueError::UnknownName { known: known.join(" and ") })
+}
+
+/// What a model or a ship is exported as.
+#[derive(Debug, Clone, Copy)]
+pub enum ExportFormat {
+    /// A model for another tool.
+    Model(&'static dyn Format),
+    /// A ship for another store.
+    Bundle,
+}
+
+/// A format of exports by its name.
+pub fn export_format(name: &str) -> Result<ExportFormat, ValueError> {
+    let known = || FORMATS.map(|format| format!("`{}`, ", format.name())).concat() + "`bundle`";
+    match (name, by_name(name)) {
+        ("bundle", _) => Ok(ExportFormat::Bundle),
+        (_, Some(format)) => Ok(ExportFormat::Model(format)),
+        (_, None) => Err(ValueError::UnknownName { known: known() }),
+    }
 }
 
 /// `SHIP/NUMBER`: a version of a ship's model.

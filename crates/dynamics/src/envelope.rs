@@ -52,6 +52,11 @@ impl Envelope {
         self.yaw_rate_rad_s
     }
 
+    /// Greatest roll angle, rad.
+    pub fn roll_rad(&self) -> f64 {
+        self.roll_rad
+    }
+
     /// Checks a state.
     ///
     /// # Errors

@@ -25,6 +25,21 @@ impl Gear {
         Self { time_constant_s: self.time_constant_s + lag_s, ..self }
     }
 
+    /// Largest rudder angle, rad.
+    pub fn limit_rad(&self) -> f64 {
+        self.limit_rad
+    }
+
+    /// Largest rudder rate, rad/s.
+    pub fn rate_rad_s(&self) -> f64 {
+        self.rate_rad_s
+    }
+
+    /// Time constant, s.
+    pub fn time_constant_s(&self) -> f64 {
+        self.time_constant_s
+    }
+
     /// The rudder rate, rad/s. A gear without a time constant would chatter about its order: within
     /// what it covers in one step of `step_s` it goes straight there.
     pub fn rate(&self, order_rad: f64, angle_rad: f64, step_s: f64) -> f64 {

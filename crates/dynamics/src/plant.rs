@@ -1,5 +1,6 @@
 //! A model made ready to run: its law and figures on one tape.
 
+mod listed;
 mod rate;
 
 use nalgebra::{LU, Matrix4};
@@ -11,6 +12,7 @@ use sistership_model::law::Law;
 use crate::equations::{Coefficients, EquationsOfMotion, Lowering, PlantError};
 use crate::tape::Tape;
 
+pub use listed::Listed;
 pub use rate::Work;
 
 /// What is given from outside at an instant, in the order of the law's inputs.

@@ -250,6 +250,11 @@ impl Ship {
         &self.envelope
     }
 
+    /// The steering gear, with the lag that effects put before it.
+    pub fn gear(&self) -> Gear {
+        self.gear
+    }
+
     /// Widens the range to that of a run at another speed.
     pub fn set_envelope_speed(&mut self, speed_m_s: f64) {
         self.envelope = Envelope::new(self.lpp_m, speed_m_s.abs().max(self.approach_speed_m_s));

@@ -9,6 +9,7 @@ pub mod coefficient;
 pub mod effect;
 mod error;
 pub mod formula;
+pub mod free_running;
 pub mod hybrid;
 pub mod law;
 pub mod learned;

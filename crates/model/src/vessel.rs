@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Blame, FileError};
+use crate::free_running::FreeRunning;
 use crate::manifest::RudderSign;
 use crate::name::check_slug;
 use crate::particulars::{self, Particulars};
@@ -47,6 +48,9 @@ pub struct VesselFile {
     /// Her models; none for a ship known by particulars only.
     #[serde(default)]
     pub models: Vec<PublishedModelFile>,
+    /// Published free-running trials, by which the models are judged.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub free_running: Vec<FreeRunning>,
 }
 
 /// The word `vessel`.
@@ -192,6 +196,9 @@ impl Vessel {
         let quoted_vectors = quoted(&raw, &keys).map_err(at("quoted_vectors"))?;
         for (index, model) in raw.models.iter().enumerate() {
             check_model(model, raw.models.iter().take(index)).map_err(at("models"))?;
+        }
+        for (index, trials) in raw.free_running.iter().enumerate() {
+            trials.check(&keys).map_err(at(&format!("free_running.{index}")))?;
         }
         Ok(Self { file: raw, particulars, quoted_vectors })
     }

@@ -72,11 +72,11 @@ impl Condition {
     pub async fn of(store: &Store, ship: &str) -> Result<Self, StoreError> {
         let Some(champion) = alias(store, ship, CHAMPION).await? else {
             return Ok(Self {
-                sentence: "Unknown: she has no champion yet.".into(),
+                sentence: "Unknown: it has no champion yet.".into(),
                 ..Self::default()
             });
         };
-        let version = store.versions().get(ship, champion.version_number).await?.head;
+        let version = store.versions().head(ship, champion.version_number).await?;
         let newest =
             store.diagnoses().by_version(&version.id, &Page::first(MAX_LIMIT)).await?.items;
         let mut condition = Self::found(&version, &newest);
@@ -128,20 +128,20 @@ impl Condition {
         let effects = self.effects.join(" and ");
         match (self.model, effects.is_empty(), self.verdict.as_deref()) {
             (Standing::Unknown, ..) => {
-                "Unknown: her champion has not been diagnosed on a trial yet.".into()
+                "Unknown: its champion has not been diagnosed on a trial yet.".into()
             }
             (Standing::Holds, ..) => {
-                format!("Her model holds: on {trials} its residual is what the noise predicts.")
+                format!("Its model holds: on {trials} its residual is what the noise predicts.")
             }
             (_, false, Some("effects")) => {
-                format!("Her model does not hold: on {trials} it lacks {effects}.")
+                format!("Its model does not hold: on {trials} it lacks {effects}.")
             }
             (_, true, _) => format!(
-                "Her model does not hold: on {trials} something is missing that no known effect explains."
+                "Its model does not hold: on {trials} something is missing that no known effect explains."
             ),
             (_, false, _) => {
                 format!(
-                    "Her model does not hold: on {trials} it lacks {effects}, and something that no known effect explains."
+                    "Its model does not hold: on {trials} it lacks {effects}, and something that no known effect explains."
                 )
             }
         }

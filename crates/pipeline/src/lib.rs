@@ -3,20 +3,25 @@
 
 pub mod archive;
 pub mod budget;
+pub mod bundle;
 pub mod catalogue;
 pub mod champions;
+pub mod comparison;
 pub mod condition;
 pub mod derive;
 pub mod error;
+pub mod exported;
 pub mod fleet;
 pub mod input;
 pub mod inputs;
+pub mod leases;
 pub mod library;
 pub mod line;
 pub mod memory;
 pub mod promotion;
 pub mod publish;
 pub mod recipe;
+pub mod request;
 pub mod schema;
 pub mod search;
 pub mod seed;

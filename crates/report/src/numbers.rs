@@ -1,7 +1,7 @@
 //! Numbers as people read them: significant digits, a true minus sign, powers of ten.
 
 /// A value with so many significant digits; very small and very large ones as a power of ten.
-pub(crate) fn significant(value: f64, digits: usize) -> String {
+pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() || value.abs() >= 1e300 {
         return "–".into();
     }
@@ -17,7 +17,7 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
 }
 
 /// A stated value: as many digits as it was given with, at most so many.
-pub(crate) fn stated(value: f64, digits: usize) -> String {
+pub fn stated(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
     let (number, power) = text
         .split_once('×')
@@ -53,7 +53,7 @@ pub(crate) fn superscript(number: i32) -> String {
 }
 
 /// A value with so many decimals.
-pub(crate) fn fixed(value: f64, decimals: usize) -> String {
+pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() || value.abs() >= 1e300 {
         return "–".into();
     }
@@ -66,13 +66,13 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
 }
 
 /// The same with a plus sign on what is not negative.
-pub(crate) fn signed(value: f64, decimals: usize) -> String {
+pub fn signed(value: f64, decimals: usize) -> String {
     let text = fixed(value, decimals);
     if text.starts_with(['−', '–']) { text } else { format!("+{text}") }
 }
 
 /// A value that may be unknown.
-pub(crate) fn known(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
+pub fn known(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
     value.map_or_else(|| "–".into(), format)
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::plots::Hull;
 use serde::Serialize;
 use sistership_dynamics::recorded::Replay;
 use sistership_model::trial::Trial;
@@ -30,5 +31,7 @@ pub(crate) struct ReplayedTrial<'a> {
     pub refined: Replay,
     /// Whether roll is part of the simulation.
     pub rolls: bool,
+    /// The ship that sailed it, where length and beam are known.
+    pub hull: Option<Hull>,
     pub shown: ReplaySummary<'a>,
 }

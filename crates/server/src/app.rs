@@ -9,9 +9,10 @@ use tokio::sync::{Notify, RwLock, Semaphore};
 
 use crate::answers::Answers;
 use crate::config::{Config, Leases, Limits};
+use crate::drafts::Drafts;
 use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
-use crate::web::api_key::ApiKey;
+use crate::web::api_key::{ApiKey, FormToken};
 use sistership_listen::{Stopping, Throttle};
 use sistership_pipeline::archive::Archive;
 use sistership_pipeline::budget::{self, Budget, Held};
@@ -24,6 +25,8 @@ pub(crate) struct App(Arc<Inner>, Arc<Archive>);
 struct Inner {
     catalogue: Catalogue,
     key: Option<ApiKey>,
+    form_token: FormToken,
+    drafts: Drafts,
     throttle: Throttle,
     limits: Limits,
     leases: Leases,
@@ -47,9 +50,12 @@ impl App {
         stopping: Stopping,
     ) -> Self {
         let seats = std::thread::available_parallelism().map_or(2, std::num::NonZero::get);
+        let key = config.api_key.as_deref().map(ApiKey::new);
         let inner = Inner {
             catalogue,
-            key: config.api_key.as_deref().map(ApiKey::new),
+            form_token: FormToken::of(key.as_ref()),
+            drafts: Drafts::default(),
+            key,
             throttle: Throttle::default(),
             limits: config.limits,
             leases: config.leases,
@@ -87,6 +93,16 @@ impl App {
 
     pub(crate) fn key(&self) -> Option<&ApiKey> {
         self.0.key.as_ref()
+    }
+
+    /// What forms of pages send along.
+    pub(crate) fn form_token(&self) -> &FormToken {
+        &self.0.form_token
+    }
+
+    /// Uploads that a person looks over.
+    pub(crate) fn drafts(&self) -> &Drafts {
+        &self.0.drafts
     }
 
     /// Who has presented wrong keys.

@@ -5,6 +5,7 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+pub use sistership_pipeline::leases::Leases;
 use sistership_store::ObjectsPlace;
 
 use crate::start_error::StartError;
@@ -78,19 +79,6 @@ pub struct Limits {
     pub job_memory: u64,
     /// How long a request waits for memory that others have.
     pub memory_wait: Duration,
-}
-
-/// How workers hold their jobs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Leases {
-    /// After this long without a beat, another worker may take the job.
-    pub lease: Duration,
-    /// How often a worker tells that it lives.
-    pub beat: Duration,
-    /// How often an idle worker looks for jobs that other processes have queued.
-    pub poll: Duration,
-    /// How long a worker that is told to stop goes on with its job before it gives it back.
-    pub drain: Duration,
 }
 
 impl Config {
@@ -200,30 +188,6 @@ impl Default for Limits {
             job_memory: 1 << 30,
             memory_wait: Duration::from_secs(5),
         }
-    }
-}
-
-impl Leases {
-    /// The longest that a lease may be.
-    pub const MAX: Duration = Duration::from_secs(3600);
-
-    /// The longest that stopping may wait for jobs.
-    pub const MAX_DRAIN: Duration = Duration::from_secs(24 * 3600);
-
-    /// A lease of a length, with five beats in it: four may be missed before the job is lost.
-    pub fn of(lease: Duration) -> Self {
-        Self {
-            lease,
-            beat: lease / 5,
-            poll: Duration::from_millis(500),
-            drain: Duration::from_secs(20),
-        }
-    }
-}
-
-impl Default for Leases {
-    fn default() -> Self {
-        Self::of(Duration::from_secs(15))
     }
 }
 

@@ -7,6 +7,7 @@
 mod answers;
 mod app;
 mod config;
+mod drafts;
 mod jobs;
 #[cfg(test)]
 mod journey;

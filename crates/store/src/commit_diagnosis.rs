@@ -6,6 +6,7 @@ use crate::diagnoses::{self, Diagnosed, NewDiagnosed};
 use crate::error::Result;
 use crate::job::Job;
 use crate::reports::{self, NewReport, ReportHead};
+use crate::search_index;
 use crate::store::Store;
 use crate::version::{NewVersion, VersionHead};
 use crate::versions;
@@ -60,6 +61,8 @@ impl Store {
         let found =
             diagnoses::insert(self, &mut tx, &diagnosis.found, made_id.as_deref(), &report.id)
                 .await?;
+        // How the ship stands has changed.
+        search_index::mark(self, &mut tx, &diagnosis.report.ship).await?;
         let result = result(version.as_ref(), &report);
         let job = work::complete(&mut tx, job, fence, &result, self.now_us()).await?;
         tx.commit().await?;

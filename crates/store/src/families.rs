@@ -17,6 +17,8 @@ statements! {
     GET = same("SELECT name, title, foundation, created_us FROM families WHERE name = $1");
     LIST = same("SELECT name, title, foundation, created_us FROM families WHERE name > COALESCE($1, '') ORDER BY name LIMIT $2");
     FOUND = same("UPDATE families SET foundation = $2 WHERE name = $1 RETURNING name, title, foundation, created_us");
+    OF_SHIP = same("SELECT f.name, f.title, f.foundation, f.created_us FROM family_members m JOIN families f ON f.name = m.family \
+        WHERE m.ship = $1 AND m.family > COALESCE($2, '') ORDER BY m.family LIMIT $3");
     ADD = same("INSERT INTO family_members (family, ship, added_us) VALUES ($1, $2, $3) ON CONFLICT (family, ship) DO NOTHING");
     REMOVE = same("DELETE FROM family_members WHERE family = $1 AND ship = $2");
     SHIP = same("SELECT COUNT(*) AS rows FROM ships WHERE name = $1 AND deleted_us IS NULL");
@@ -166,6 +168,13 @@ impl Families<'_> {
         let counted: Option<Counted> =
             self.0.database().optional(COUNT, args![family: family]).await?;
         Ok(counted.map_or(0, |counted| counted.rows))
+    }
+
+    /// The families that a ship is a member of, by name.
+    pub async fn of_ship(&self, ship: &str, page: &Page) -> Result<List<Family>> {
+        let all = args![ship: ship, after: &page.after, limit: page.fetch()?];
+        let found = self.0.database().all(OF_SHIP, all).await?;
+        Ok(page.of(found, |family: &Family| family.name.clone()))
     }
 
     /// The members by name.

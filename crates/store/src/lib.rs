@@ -84,7 +84,7 @@ pub use page::{List, MAX_LIMIT, Page};
 pub use questions::CurrentVersion;
 pub use reports::{NewReport, Report, ReportHead, Reports};
 pub use search::{FactRange, FoundShip, MAX_RANGES, ShipKey, ShipSearch, ShipVectors};
-pub use search_index::{SearchIndex, ShipFacts, Waiting};
+pub use search_index::{SearchIndex, ShipFact, ShipFacts, Waiting};
 pub use ships::{NewShip, Ship, ShipRevision, Ships};
 pub use spool::Spool;
 pub use staged::Staged;

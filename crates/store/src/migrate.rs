@@ -17,6 +17,7 @@ const SQLITE: &[MigrationSource] = &[
     (5, "effects", include_str!("../../../migrations/sqlite/0005_effects.sql")),
     (6, "leases", include_str!("../../../migrations/sqlite/0006_leases.sql")),
     (7, "weights", include_str!("../../../migrations/sqlite/0007_weights.sql")),
+    (8, "standing", include_str!("../../../migrations/sqlite/0008_standing.sql")),
 ];
 const POSTGRES: &[MigrationSource] = &[
     (1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql")),
@@ -26,6 +27,7 @@ const POSTGRES: &[MigrationSource] = &[
     (5, "effects", include_str!("../../../migrations/postgres/0005_effects.sql")),
     (6, "leases", include_str!("../../../migrations/postgres/0006_leases.sql")),
     (7, "weights", include_str!("../../../migrations/postgres/0007_weights.sql")),
+    (8, "standing", include_str!("../../../migrations/postgres/0008_standing.sql")),
 ];
 
 fn migrator(sources: &'static [MigrationSource]) -> Migrator {

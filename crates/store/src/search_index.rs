@@ -18,6 +18,7 @@ statements! {
     MARK = same("INSERT INTO search_queue (ship, mark) SELECT name, CAST($2 AS TEXT) FROM ships WHERE name = $1 \
         ON CONFLICT (ship) DO UPDATE SET mark = excluded.mark");
     WAITING = same("SELECT ship, mark FROM search_queue WHERE ship > $1 ORDER BY ship LIMIT $2");
+    FACTS = same("SELECT fact, value FROM ship_facts WHERE ship = $1 ORDER BY fact");
     TAKE = same("DELETE FROM search_queue WHERE ship = $1 AND mark = $2");
     FORGET = same("DELETE FROM ship_facts WHERE ship = $1");
     FACT = same("INSERT INTO ship_facts (ship, fact, value) VALUES ($1, $2, $3)");
@@ -32,6 +33,16 @@ record! {
         pub ship: String,
         /// Tells this change from later ones.
         pub mark: String,
+    }
+}
+
+record! {
+    /// One fact of a ship.
+    pub struct ShipFact {
+        /// What it is.
+        pub fact: String,
+        /// Its value.
+        pub value: f64,
     }
 }
 
@@ -71,6 +82,11 @@ impl SearchIndex<'_> {
     /// after `after`.
     pub async fn waiting(&self, after: &str, limit: i64) -> Result<Vec<Waiting>> {
         self.0.database().all(WAITING, args![after: after, limit: limit]).await
+    }
+
+    /// The facts of a ship as they were last written, by name.
+    pub async fn facts(&self, ship: &str) -> Result<Vec<ShipFact>> {
+        self.0.database().all(FACTS, args![ship: ship]).await
     }
 
     /// Writes the facts of ships, all at once, and returns of how many. Of one that has changed

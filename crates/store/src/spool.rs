@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, SystemTime};
 
-use tempfile::{Builder, NamedTempFile};
+use tempfile::{Builder, NamedTempFile, TempDir};
 use uuid::Uuid;
 
 use crate::error::is_out_of_space;
@@ -76,6 +76,14 @@ impl Spool {
     /// It cannot be made.
     pub fn temporary(&self) -> io::Result<NamedTempFile> {
         Builder::new().prefix(PREFIX).tempfile_in(self.folder()?)
+    }
+
+    /// A folder for files under way; it goes with them when this is dropped.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn folder_under_way(&self) -> io::Result<TempDir> {
+        Builder::new().prefix(PREFIX).tempdir_in(self.folder()?)
     }
 
     /// Whether there is room for a file of this many bytes.

@@ -21,6 +21,8 @@ statements! {
         weights_key) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10) RETURNING id, model, number, parent, law, method, sha256, created_us");
     GET = same("SELECT id, model, number, parent, law, method, document, sha256, created_us FROM versions \
         WHERE model = $1 AND number = $2");
+    HEAD = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions \
+        WHERE model = $1 AND number = $2");
     BY_ID = same("SELECT id, model, number, parent, law, method, document, sha256, created_us FROM versions WHERE id = $1");
     LATEST = same("SELECT id, model, number, parent, law, method, document, sha256, created_us FROM versions \
         WHERE model = $1 ORDER BY number DESC LIMIT 1");
@@ -68,6 +70,12 @@ impl Versions<'_> {
         let version = insert(self.0, &mut tx, new, moves).await?;
         tx.commit().await?;
         Ok(version)
+    }
+
+    /// A version without its document.
+    pub async fn head(&self, model: &str, number: i64) -> Result<VersionHead> {
+        let found = self.0.database().optional(HEAD, args![model: model, number: number]).await?;
+        found.ok_or_else(|| missing(model, number))
     }
 
     /// A version by its number.

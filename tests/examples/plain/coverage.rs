@@ -21,6 +21,8 @@ const AIM: std::ops::RangeInclusive<f64> = 0.90..=0.98;
 
 /// A true figure and its band.
 struct Held {
+    /// The figure, as reports name it.
+    name: String,
     /// Which: `tactical diameter`, `advance`, `first overshoot`, `second overshoot`.
     kind: String,
     truth: f64,
@@ -29,6 +31,13 @@ struct Held {
 }
 
 impl Held {
+    fn outside(&self) -> String {
+        let place = self.band.map_or(f64::NAN, |[low, high]| {
+            (self.truth - 0.5 * (low + high)) / (0.5 * (high - low))
+        });
+        format!("{}: {:.2}, {place:+.1}", self.name, self.truth)
+    }
+
     fn inside(&self) -> bool {
         self.band.is_some_and(|[low, high]| (low..=high).contains(&self.truth))
     }
@@ -56,6 +65,12 @@ pub fn run(program: &Program, arguments: &Arguments) {
         row(kind, &all.iter().copied().filter(|held| held.kind == kind).collect::<Vec<_>>());
     }
     row("all", &all);
+    println!("\nOutside, in half widths of the band from its middle:\n");
+    for (place, ship) in ships.iter().enumerate() {
+        for held in ship.iter().flatten().filter(|held| !held.inside()) {
+            println!("- ship {}, {}", place + 1, held.outside());
+        }
+    }
     println!();
 }
 
@@ -84,7 +99,7 @@ fn held(truth: &BTreeMap<String, f64>, bands: &Value) -> Vec<Held> {
         let band = bands.as_array().and_then(|all| all.iter().find(named));
         let limits = band.and_then(|band| Some([band["low"].as_f64()?, band["high"].as_f64()?]));
         let kind = name.split(": ").last().unwrap_or_default().to_owned();
-        Held { kind, truth: *truth, band: limits }
+        Held { name: name.clone(), kind, truth: *truth, band: limits }
     };
     truth.iter().map(one).collect()
 }

@@ -8,7 +8,9 @@ use sistership_model::trial::Trial;
 use sistership_model::{FileError, Zoo};
 use sistership_trials::{Guess, Loaded, lacking, load_path, propose};
 
+use super::import_bundle;
 use super::import_log::{SearchedLog, searched};
+use super::store::StoreArguments;
 use crate::failure::{Failure, about_file};
 use crate::files::PromisedFile;
 use crate::output::{self, count, note};
@@ -21,6 +23,7 @@ Examples:
   sistership import log/*.csv --ship my-ship
   sistership import voyage.nmea --ship my-ship --out trials.yaml
   sistership import month.parquet --ship mariner --out trials.yaml
+  sistership import --bundle my-ship.bundle --data-dir sistership-data
 
 Every guess is shown with its reason; those marked `look` are to be read over. The manifest is then
 used in place of the files: sistership refine --trials trials.yaml
@@ -35,11 +38,11 @@ Exit status 1 when a file cannot be read, or is refused by the manifest that was
 #[command(after_help = EXAMPLES)]
 pub struct ImportArguments {
     /// Files of one folder: CSV, Parquet, Excel, MATLAB 5, NMEA 0183.
-    #[arg(required = true)]
+    #[arg(required_unless_present = "bundle")]
     files: Vec<PathBuf>,
     /// The ship that the trials are of.
-    #[arg(long, value_name = "NAME")]
-    ship: String,
+    #[arg(long, value_name = "NAME", required_unless_present = "bundle")]
+    ship: Option<String>,
     /// Where the manifest goes; `trials.yaml` beside the files where absent.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -47,9 +50,21 @@ pub struct ImportArguments {
     /// sailed. Where absent, that of the zoo's ship of this name, or else one that suits the speed.
     #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
     length: Option<f64>,
+    /// Take a ship that `sistership export --format bundle` wrote into a store.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["files", "ship", "out", "length"])]
+    bundle: Option<PathBuf>,
+    #[command(flatten)]
+    store: StoreArguments,
     /// Print one JSON document.
     #[arg(long)]
     json: bool,
+}
+
+impl ImportArguments {
+    /// The ship's name; clap has seen that there is one.
+    fn ship(&self) -> &str {
+        self.ship.as_deref().unwrap_or_default()
+    }
 }
 
 /// What was made of the files.
@@ -94,13 +109,16 @@ impl From<Guess> for GuessRow {
 /// # Errors
 /// Each file that cannot be read, or that the manifest cannot be written.
 pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
+    if let Some(bundle) = &arguments.bundle {
+        return import_bundle::run(bundle, &arguments.store, arguments.json);
+    }
     let out = arguments.out.clone().unwrap_or_else(|| beside(&arguments.files));
     if arguments.out.is_none() && out.exists() {
         return Err(about_file(&out, "is there already; name another place with --out"));
     }
     let promised = PromisedFile::new(&out, &arguments.files)?;
     let files: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
-    let mut proposal = propose(&arguments.ship, &files).map_err(all)?;
+    let mut proposal = propose(arguments.ship(), &files).map_err(all)?;
     let logs = searched(&mut proposal.manifest, folder(&arguments.files), length(zoo, arguments));
     let text = proposal.manifest.to_yaml().map_err(|error| about_file(&out, error))?;
     promised.write(text.as_bytes())?;
@@ -121,7 +139,7 @@ fn folder(files: &[PathBuf]) -> &Path {
 /// The ship's length: as given, or of the ship of that name in the zoo.
 fn length(zoo: &Zoo, arguments: &ImportArguments) -> Option<f64> {
     let known =
-        || zoo.vessel(&arguments.ship)?.particulars.get("lpp_m").map(|quantity| quantity.value);
+        || zoo.vessel(arguments.ship())?.particulars.get("lpp_m").map(|quantity| quantity.value);
     arguments.length.or_else(known)
 }
 

@@ -149,26 +149,44 @@ fn refined(
     factors: &[f64],
 ) -> NoiseModel {
     let parts = along(workspace, coefficients);
+    let scored = |tried: NoiseModel, number: NoiseParameter| {
+        is_possible(workspace, &tried, number).then(|| (deviance(&parts, &tried), tried))
+    };
     let mut best = (deviance(&parts, &start), start);
     for factor in factors {
         for number in best.1.numbers() {
-            for by in [*factor, factor.recip()] {
-                loop {
-                    let tried = best.1.times(number, by);
-                    if !is_possible(workspace, &tried, number) {
-                        break;
-                    }
-                    let deviance = deviance(&parts, &tried);
-                    // What is no number is no gain.
-                    if deviance.is_nan() || deviance > best.0 - THRESHOLDS.calibration.least_gain {
-                        break;
-                    }
-                    best = (deviance, tried);
-                }
-            }
+            best = multiplied(best, number, *factor, &scored);
         }
     }
     best.1
+}
+
+/// A noise model with its deviance.
+type Scored = (f64, NoiseModel);
+
+/// One number multiplied by a factor, or divided by it, for as long as that helps. Both ways are
+/// looked at together; where one has helped, the other leads back.
+fn multiplied(
+    best: Scored,
+    number: NoiseParameter,
+    factor: f64,
+    scored: &(dyn Fn(NoiseModel, NoiseParameter) -> Option<Scored> + Sync),
+) -> Scored {
+    let better = |from: &Scored, by: f64| {
+        let most = from.0 - THRESHOLDS.calibration.least_gain;
+        // What is no number is no gain.
+        scored(from.1.times(number, by), number).filter(|(deviance, _)| *deviance <= most)
+    };
+    let (more, less) = rayon::join(|| better(&best, factor), || better(&best, factor.recip()));
+    let (by, mut best) = match (more, less) {
+        (Some(more), _) => (factor, more),
+        (None, Some(less)) => (factor.recip(), less),
+        (None, None) => return best,
+    };
+    while let Some(next) = better(&best, by) {
+        best = next;
+    }
+    best
 }
 
 /// No instrument errs by less than its readings scatter.

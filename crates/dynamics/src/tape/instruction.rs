@@ -4,12 +4,19 @@ use super::{Op, Slot};
 
 /// What a tape does at one place.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Instruction {
+pub enum Instruction {
     /// One operation.
     Op(Op),
-    /// A result, and added to it one after the other the products of the [terms](Tape) from a place
-    /// to another.
-    Products { first: Slot, from: u32, to: u32 },
+    /// A result, and added to it one after the other the products of the [terms](Tape::terms) from
+    /// a place to another.
+    Products {
+        /// What the products are added to.
+        first: Slot,
+        /// The place of the first term.
+        from: u32,
+        /// The place after the last one.
+        to: u32,
+    },
 }
 
 /// A list of instructions with named inputs and numbered outputs.
@@ -26,6 +33,21 @@ impl Tape {
     /// The names of the inputs, in the order in which values are given.
     pub fn inputs(&self) -> &[String] {
         &self.inputs
+    }
+
+    /// What it does, in this order; each reads results of earlier ones by their place.
+    pub fn instructions(&self) -> &[Instruction] {
+        &self.instructions
+    }
+
+    /// The pairs of factors of sums of products, by which [`Instruction::Products`] counts.
+    pub fn terms(&self) -> &[[Slot; 2]] {
+        &self.terms
+    }
+
+    /// The place of the instruction that gives an output.
+    pub fn slot(&self, output: usize) -> Slot {
+        self.outputs[output]
     }
 
     /// How many instructions it takes.

@@ -17,9 +17,7 @@ mod tangent;
 #[cfg(test)]
 mod testing;
 
-pub(crate) use instruction::Instruction;
-pub use instruction::Tape;
+pub use instruction::{Instruction, Tape};
 pub use lower::{Binding, TapeBuilder, Unbound};
-pub(crate) use op::Op;
-pub use op::Slot;
+pub use op::{Op, Slot};
 pub use slots::{Lanes, Slots};

@@ -7,17 +7,28 @@ pub type Slot = u32;
 
 /// One operation on earlier results.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Op {
+pub enum Op {
+    /// A number.
     Constant(f64),
+    /// What is given, by its place among the inputs.
     Input(u32),
+    /// `-a`
     Negate(Slot),
+    /// `a + b`
     Add(Slot, Slot),
+    /// `a - b`
     Subtract(Slot, Slot),
+    /// `a b`
     Multiply(Slot, Slot),
+    /// `a / b`
     Divide(Slot, Slot),
+    /// `a^b`
     Power(Slot, Slot),
+    /// A function of one argument.
     Call1(Function, Slot),
+    /// A function of two arguments.
     Call2(Function, Slot, Slot),
+    /// The third where the first compares so with the second, else the fourth.
     Select(Comparison, Slot, Slot, Slot, Slot),
 }
 

@@ -4,6 +4,7 @@
 mod asked;
 mod choices;
 mod drift;
+mod family_drift;
 mod frame;
 mod kept;
 mod learned;
@@ -16,6 +17,7 @@ mod standing;
 pub use asked::{Asked, OrderError, order_refinement};
 pub use choices::{PriorChoice, Rule, Start};
 pub use drift::{Drift, TrialResidual};
+pub use family_drift::{FamilyDrift, MemberDrift};
 pub use frame::{Framed, Frames};
 pub use kept::statistics_of;
 pub use learned::{LEARN, LearnJob, learn, trials_of};

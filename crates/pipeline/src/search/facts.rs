@@ -1,5 +1,5 @@
-//! What is known of a ship: her particulars, the vectors by which ships are similar, and the
-//! metrics of her champion.
+//! What is known of a ship: its particulars, the vectors by which ships are similar, the metrics of
+//! its champion, and how that stands.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -14,6 +14,7 @@ use sistership_store::{Ship, ShipFacts, StoreError, Version, Waiting};
 
 use super::metrics;
 use super::query::fact;
+use super::standing;
 use crate::archive::{Archive, document, vessel};
 use crate::error::DeriveError;
 use crate::line::CHAMPION;
@@ -29,6 +30,8 @@ struct Read {
     category: String,
     vessel: Option<Vessel>,
     champion: Option<VersionDocument>,
+    /// How it stands.
+    standing: Vec<(String, f64)>,
 }
 
 /// The facts of ships, which are computed on all cores: manoeuvres may have to be sailed for them.
@@ -56,6 +59,7 @@ async fn read(archive: &Archive, laws: &Zoo, waiting: Waiting) -> Result<Read, S
         category,
         vessel: None,
         champion: None,
+        standing: Vec::new(),
     };
     let ship = match archive.store.ships().get(&waiting.ship).await {
         Err(StoreError::NotFound { .. }) => return Ok(nothing(waiting, String::new())),
@@ -70,16 +74,19 @@ async fn read(archive: &Archive, laws: &Zoo, waiting: Waiting) -> Result<Read, S
     };
     published(archive, laws, &vessel, &ship).await?;
     let champion = champion(archive, &ship.name).await?;
-    Ok(Read { waiting, category: ship.category, vessel: Some(vessel), champion })
+    let standing = standing::facts(&archive.store, &ship.name, champion.as_ref()).await?;
+    Ok(Read { waiting, category: ship.category, vessel: Some(vessel), champion, standing })
 }
 
 impl Read {
     fn facts(self, laws: &Zoo) -> ShipFacts {
-        let Self { waiting, category, vessel, champion } = self;
+        let Self { waiting, category, vessel, champion, standing } = self;
         match vessel {
             None => ShipFacts { category, ..ShipFacts::none(waiting) },
             Some(vessel) => {
-                let (facts, vectors) = (known(&vessel, champion.as_ref(), laws), vectors(&vessel));
+                let mut facts = known(&vessel, champion.as_ref(), laws);
+                facts.extend(standing);
+                let vectors = vectors(&vessel);
                 ShipFacts { waiting, category, facts, vectors }
             }
         }

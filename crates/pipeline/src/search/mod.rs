@@ -5,6 +5,7 @@ mod index;
 mod metrics;
 mod query;
 mod similar;
+pub mod standing;
 
 pub use index::{catch_up, write_facts};
 pub use query::{RangeFault, Search, metric, metrics, particular, particulars, pattern};

@@ -8,6 +8,7 @@ use sistership_model::Model;
 use sistership_model::trial::{Channel, Trial};
 
 use super::input::DiagnosisInput;
+use crate::plots::Hull;
 use crate::replayed::{ReplaySummary, ReplayedTrial};
 
 /// Most trials that are plotted.
@@ -46,7 +47,15 @@ fn replayed<'a>(
         source_stopped: stopped(&before),
         refined_stopped: stopped(&after),
     };
-    ReplayedTrial { trial, source: before, refined: after, rolls: input.law.has_roll(), shown }
+    let hull = Hull::of(&input.model.particulars);
+    ReplayedTrial {
+        trial,
+        source: before,
+        refined: after,
+        rolls: input.law.has_roll(),
+        hull,
+        shown,
+    }
 }
 
 /// A ship whose envelope covers the speeds of the trials.

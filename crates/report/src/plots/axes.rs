@@ -5,9 +5,12 @@ use crate::numbers::fixed;
 
 /// A linear scale from values to places along an axis.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Scale {
+pub struct Scale {
+    /// The value at one end.
     pub low: f64,
+    /// The value at the other.
     pub high: f64,
+    /// How long the axis is, in the plot's units.
     pub length: f64,
     /// Whether larger values stand at smaller places, as upwards on a screen.
     pub reversed: bool,
@@ -34,7 +37,7 @@ impl Scale {
 }
 
 /// The next larger of 1, 2, 5 times a power of ten.
-pub(crate) fn nice_step(least: f64) -> f64 {
+pub fn nice_step(least: f64) -> f64 {
     let power = 10_f64.powf(least.log10().floor());
     [1.0, 2.0, 5.0]
         .into_iter()
@@ -44,13 +47,13 @@ pub(crate) fn nice_step(least: f64) -> f64 {
 }
 
 /// The range of values with a margin, never empty.
-pub(crate) fn padded((low, high): (f64, f64), share: f64) -> (f64, f64) {
+pub fn padded((low, high): (f64, f64), share: f64) -> (f64, f64) {
     let margin = share * (high - low).max(1e-6 * low.abs().max(high.abs())).max(1e-9);
     (low - margin, high + margin)
 }
 
 /// Least and greatest of some values.
-pub(crate) fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+pub fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     values.filter(|value| value.is_finite()).fold(None, |range, value| {
         let (low, high) = range.unwrap_or((value, value));
         Some((low.min(value), high.max(value)))
@@ -59,7 +62,7 @@ pub(crate) fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 
 /// The range shown: that of the measured values, widened for the others by at most its own size on
 /// each side.
-pub(crate) fn shown(measured: Option<(f64, f64)>, others: Option<(f64, f64)>) -> (f64, f64) {
+pub fn shown(measured: Option<(f64, f64)>, others: Option<(f64, f64)>) -> (f64, f64) {
     match (measured, others) {
         (Some((low, high)), Some((from, to))) => {
             // What stays the same gets room too: its last digits mean nothing.
@@ -72,7 +75,7 @@ pub(crate) fn shown(measured: Option<(f64, f64)>, others: Option<(f64, f64)>) ->
 }
 
 /// A panel's grid lines across with labels to its left.
-pub(crate) fn rows(at: (f64, f64), width: f64, scale: &Scale, about: usize) -> Vec<Shape> {
+pub fn rows(at: (f64, f64), width: f64, scale: &Scale, about: usize) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for (value, label) in scale.ticks(about) {
         let y = at.1 + scale.at(value);
@@ -84,7 +87,7 @@ pub(crate) fn rows(at: (f64, f64), width: f64, scale: &Scale, about: usize) -> V
 }
 
 /// A panel's grid lines upwards, with labels below it where asked.
-pub(crate) fn columns(
+pub fn columns(
     at: (f64, f64),
     height: f64,
     scale: &Scale,

@@ -4,7 +4,7 @@
 const MOST: usize = 600;
 
 /// The indices that are drawn: every so many, first and last among them.
-pub(crate) fn kept(count: usize) -> Vec<usize> {
+pub fn kept(count: usize) -> Vec<usize> {
     let stride = count.div_ceil(MOST - 1).max(1);
     let mut kept: Vec<usize> = (0..count).step_by(stride).collect();
     if kept.last().is_some_and(|last| last + 1 < count) {
@@ -14,7 +14,7 @@ pub(crate) fn kept(count: usize) -> Vec<usize> {
 }
 
 /// Path data through points, broken where `jumps` says that a gap lies between two samples.
-pub(crate) fn path(points: &[(f64, f64)], jumps: impl Fn(usize, usize) -> bool) -> String {
+pub fn path(points: &[(f64, f64)], jumps: impl Fn(usize, usize) -> bool) -> String {
     let mut data = String::new();
     let mut last: Option<usize> = None;
     for index in kept(points.len()) {

@@ -1,7 +1,9 @@
 //! Plots as inline SVG: a few shapes, axes with nice ticks, and what is drawn on them.
 
-pub(crate) mod axes;
+pub mod axes;
 mod decimate;
+mod ground;
+mod hull;
 mod lines;
 mod residual;
 mod scatter;
@@ -10,29 +12,37 @@ mod trajectory;
 
 use askama::Template;
 
+pub use decimate::{kept, path};
+pub use ground::GroundChart;
+pub use hull::Hull;
 pub(crate) use residual::residual;
 pub(crate) use scatter::scatters;
 pub(crate) use series::series;
-pub(crate) use trajectory::{mark_interval_s, trajectory};
+pub use trajectory::mark_interval_s;
+pub(crate) use trajectory::trajectory;
 
 /// Width of every plot in its own units, near that of a phone's screen, so that text stays legible
 /// there.
-const WIDTH: f64 = 420.0;
+pub const WIDTH: f64 = 420.0;
 
 /// A plot.
 #[derive(Debug, Template)]
 #[template(path = "report_plot.html")]
-pub(crate) struct Plot {
+pub struct Plot {
+    /// Its width in its own units.
     pub width: f64,
+    /// Its height.
     pub height: f64,
     /// What it shows, for those who cannot see it.
     pub label: String,
+    /// What is drawn, in this order.
     pub shapes: Vec<Shape>,
 }
 
 /// What plots are made of. `class` is a style of the page.
 #[derive(Debug)]
-pub(crate) enum Shape {
+#[allow(missing_docs, reason = "from, to, at, size say what they are")]
+pub enum Shape {
     /// A straight line.
     Line { from: (f64, f64), to: (f64, f64), class: &'static str },
     /// A line through many points, as path data.

@@ -9,6 +9,7 @@ use sistership_model::Model;
 use sistership_model::trial::{Channel, Trial};
 
 use super::input::RefinementInput;
+use crate::plots::Hull;
 use crate::replayed::{ReplaySummary, ReplayedTrial};
 
 /// Most trials that are plotted.
@@ -45,7 +46,8 @@ fn replayed<'a>(
         source_stopped: stopped(&source),
         refined_stopped: stopped(&refined),
     };
-    ReplayedTrial { trial, source, refined, rolls: input.law.has_roll(), shown }
+    let hull = Hull::of(&input.refinement.model.particulars);
+    ReplayedTrial { trial, source, refined, rolls: input.law.has_roll(), hull, shown }
 }
 
 fn is_fitted(input: &RefinementInput<'_>, trial: &Trial) -> bool {

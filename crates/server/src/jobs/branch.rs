@@ -14,8 +14,8 @@ use super::commit_branch::commit;
 use super::outcome::{Result, failed};
 use super::prepared::trials;
 use super::progress::{Progress, tell};
-use super::request::BranchJob;
 use crate::app::App;
+use sistership_pipeline::request::BranchJob;
 
 /// How much of a job the trying of all kinds is.
 const TRIED: f64 = 0.6;

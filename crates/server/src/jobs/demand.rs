@@ -7,9 +7,11 @@ use sistership_store::{Job, StoreError};
 
 use super::outcome::{JobError, Result, failed};
 use super::progress::Progress;
-use super::request::{BRANCH, BranchJob, DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob};
 use crate::app::App;
 use sistership_pipeline::budget::{Share, Shortage};
+use sistership_pipeline::request::{
+    BRANCH, BranchJob, DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob,
+};
 
 /// How often a job that waits for memory looks whether it shall stop.
 const LOOK: Duration = Duration::from_millis(500);

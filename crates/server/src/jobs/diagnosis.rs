@@ -10,11 +10,11 @@ use super::outcome::{Result, failed};
 use super::prepared::trials;
 use super::progress::Progress;
 use super::progress::tell;
-use super::request::DiagnosisJob;
 use crate::app::App;
 use sistership_model::version::code_revision;
 use sistership_pipeline::derive::diagnosed;
 use sistership_pipeline::recipe::{DiagnosisKind, DiagnosisRecipe};
+use sistership_pipeline::request::DiagnosisJob;
 use sistership_pipeline::sorted::sorted;
 use sistership_pipeline::start::library_of;
 

@@ -12,11 +12,11 @@ mod outcome;
 mod prepared;
 mod progress;
 mod refinement;
-mod request;
 mod worker;
 
-pub(crate) use request::{BRANCH, BranchJob, DIAGNOSIS, DiagnosisJob};
-pub(crate) use request::{REFINEMENT, RefinementJob, SourceChoice};
+pub(crate) use sistership_pipeline::request::{
+    BRANCH, BranchJob, DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob, SourceChoice,
+};
 pub(crate) use worker::Worker;
 
 /// How often another version of the same ship may come in between while one is kept. Each time

@@ -9,8 +9,8 @@ use sistership_pipeline::start::{Start, most_similar, searched};
 
 use super::outcome::Result;
 use super::progress::{Progress, tell};
-use super::request::{RefinementJob, SourceChoice};
 use crate::app::App;
+use sistership_pipeline::request::{RefinementJob, SourceChoice};
 
 /// How much of a job the search is: what it finds is fitted once more.
 pub(super) const SEARCHED: f64 = 0.6;

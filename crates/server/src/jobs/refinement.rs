@@ -10,8 +10,8 @@ use super::commit::commit;
 use super::outcome::{Result, failed};
 use super::prepared::{SEARCHED, prepare};
 use super::progress::{Progress, tell};
-use super::request::RefinementJob;
 use crate::app::App;
+use sistership_pipeline::request::RefinementJob;
 
 /// Does a refinement.
 pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {

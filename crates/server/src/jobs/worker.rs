@@ -11,11 +11,11 @@ use uuid::Uuid;
 
 use super::outcome::JobError;
 use super::progress::{Progress, Stop};
-use super::request::{BRANCH, DIAGNOSIS, REFINEMENT};
 use super::{branch, chunk, demand, diagnosis, family_prior, refinement};
 use crate::app::App;
 use sistership_listen::Stopping;
 use sistership_pipeline::fleet::{BULK, LEARN};
+use sistership_pipeline::request::{BRANCH, DIAGNOSIS, REFINEMENT};
 
 /// How often progress is written while it changes.
 const TELL: Duration = Duration::from_millis(250);

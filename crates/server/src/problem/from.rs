@@ -6,6 +6,7 @@ use axum::http::StatusCode;
 use sistership_estimate::refine::RefineError;
 use sistership_model::FileError;
 use sistership_model::trial::Finding;
+use sistership_pages::PageError;
 use sistership_store::StoreError;
 use sistership_trials::Refusal;
 
@@ -88,6 +89,16 @@ impl From<DeriveError> for Problem {
             DeriveError::Refine(error) => error.into(),
             DeriveError::Lost(message) => Self::new(StatusCode::CONFLICT, message),
             other => Self::internal(other),
+        }
+    }
+}
+
+impl From<PageError> for Problem {
+    fn from(error: PageError) -> Self {
+        match error {
+            PageError::Derive(error) => error.into(),
+            PageError::Invalid { field, message } => Self::invalid(&field, message),
+            PageError::Render(_) => Self::internal(error),
         }
     }
 }

@@ -130,6 +130,18 @@ impl Problem {
         self
     }
 
+    /// The same as a page for people.
+    pub(crate) fn page(&self) -> Option<String> {
+        let place = |fault: &Fault| {
+            let row = fault.row.map(|row| format!("row {row}"));
+            let parts = [fault.field.clone(), row, fault.column.clone()];
+            (parts.into_iter().flatten().collect::<Vec<_>>().join(", "), fault.message.clone())
+        };
+        let faults: Vec<_> = self.errors.iter().map(place).collect();
+        let instance = self.instance.as_deref().unwrap_or_default();
+        sistership_pages::problem(self.title, &self.detail, &faults, instance).ok()
+    }
+
     pub(crate) fn status(&self) -> StatusCode {
         StatusCode::from_u16(self.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR)
     }

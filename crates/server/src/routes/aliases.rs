@@ -126,15 +126,23 @@ async fn put(
     check(&name)?;
     let current = alias(app.store(), &model, &name).await?.map(|alias| alias.revision);
     let expect = conditions.expect(&format!("alias `{model}/{name}`"), current)?;
-    let change = AliasMove {
-        alias: name.into_string(),
-        expect,
-        reason: reason.into_string(),
-        actor: "api".to_owned(),
-    };
-    let moved = app.store().aliases().move_to(&model, version.get(), &change).await?;
+    let moved = move_to(&app, &model, &name, version.get(), expect, &reason).await?;
     let status = if expect == Expect::Absent { StatusCode::CREATED } else { StatusCode::OK };
     Ok(AliasView::of(moved).answer(status))
+}
+
+/// Moves an alias that stands where it is expected.
+pub(super) async fn move_to(
+    app: &App,
+    model: &str,
+    alias: &str,
+    version: i64,
+    expect: Expect,
+    reason: &str,
+) -> Result<Alias> {
+    let (alias, actor) = (alias.to_owned(), "api".to_owned());
+    let change = AliasMove { alias, expect, reason: reason.to_owned(), actor };
+    Ok(app.store().aliases().move_to(model, version, &change).await?)
 }
 
 fn check(name: &str) -> Result<()> {

@@ -3,8 +3,9 @@
 use axum::extract::State;
 use axum::response::Response;
 use serde::Deserialize;
+use serde_json::Value;
 use sistership_diagnose::Settings;
-use sistership_store::{Trial, Version};
+use sistership_store::{Job, Trial, Version};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -19,6 +20,7 @@ use crate::app::App;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::problem::{Problem, Result};
 use crate::web::field::RequestKey;
+use crate::web::payload::from_slice;
 use crate::web::{Id, Key, ModelName, Payload, Reply};
 use sistership_pipeline::archive::document;
 use sistership_pipeline::schema::described;
@@ -61,8 +63,17 @@ async fn diagnose(State(app): State<App>, key: Key, payload: Payload) -> Result<
 }
 
 async fn queued(app: &App, request: DiagnosisRequest) -> Result<Reply> {
+    accepted(enqueued(app, request).await?)
+}
+
+async fn enqueued(app: &App, request: DiagnosisRequest) -> Result<Job> {
     let ship = request.model.split('/').next().unwrap_or_default().to_owned();
-    accepted(enqueue(app, DIAGNOSIS, &ship, &settled(app, request).await?).await?)
+    enqueue(app, DIAGNOSIS, &ship, &settled(app, request).await?).await
+}
+
+/// Queues a diagnosis that a page asks for, by the document that the endpoint takes.
+pub(super) async fn ask(app: &App, asked: &Value) -> Result<Job> {
+    enqueued(app, from_slice(&serde_json::to_vec(asked).map_err(Problem::internal)?)?).await
 }
 
 /// The request with everything looked up, so that a job that is wrong is refused at once.

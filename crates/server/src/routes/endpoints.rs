@@ -6,9 +6,9 @@ use tower_http::timeout::TimeoutLayer;
 use utoipa_axum::router::OpenApiRouter;
 
 use super::{
-    about, aliases, branches, bulk_refinements, champion, diagnoses, drift, effects, events,
-    families, health, jobs, laws, metrics, predictions, refinements, register, reports, samples,
-    ship_changes, ships, similar, tags, trials, uploads, versions,
+    about, aliases, branches, bulk_refinements, champion, compare, diagnoses, drift, effects,
+    events, exports, families, health, jobs, laws, metrics, predictions, refinements, register,
+    reports, samples, ship_changes, ships, similar, tags, trials, uploads, versions,
 };
 use crate::app::App;
 use crate::config::Limits;
@@ -41,6 +41,8 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(jobs::routes())
         .merge(events::routes())
         .merge(versions::routes())
+        .merge(exports::routes())
+        .merge(compare::routes())
         .merge(register::routes())
         .merge(aliases::routes())
         .merge(predictions::routes())

@@ -6,6 +6,7 @@ mod binary;
 mod branches;
 mod bulk_refinements;
 mod champion;
+mod compare;
 mod described;
 mod diagnoses;
 mod document;
@@ -13,6 +14,7 @@ mod drift;
 mod effects;
 mod endpoints;
 mod events;
+mod exports;
 mod families;
 mod health;
 mod jobs;
@@ -57,7 +59,7 @@ pub(crate) fn router(app: App) -> Router {
     let api = api.route_layer(from_fn_with_state(known, query::refuse_unknown));
     let text = document::text();
     api.route("/openapi.json", get(move || async move { document::served(text) }))
-        .merge(pages::routes())
+        .merge(pages::routes(app.limits()))
         .fallback(envelope::nowhere)
         .layer(from_fn_with_state(app.clone(), guard::guard))
         .layer(CatchPanicLayer::custom(envelope::panicked))

@@ -3,8 +3,9 @@
 use axum::extract::State;
 use axum::response::Response;
 use serde::Deserialize;
+use serde_json::Value;
 use sistership_estimate::refine::Settings;
-use sistership_store::StoreError;
+use sistership_store::{Job, StoreError};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -18,6 +19,7 @@ use crate::app::App;
 use crate::jobs::{REFINEMENT, RefinementJob, SourceChoice};
 use crate::problem::{Problem, Result};
 use crate::web::field::RequestKey;
+use crate::web::payload::from_slice;
 use crate::web::{Id, Key, ModelName, Name, Payload, Reply};
 use sistership_pipeline::schema::described;
 
@@ -71,6 +73,14 @@ async fn refine(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
         .await
 }
 
+/// Queues a refinement that a page asks for, by the document that the endpoint takes.
+pub(super) async fn ask(app: &App, asked: &Value) -> Result<Job> {
+    let body = serde_json::to_vec(asked).map_err(Problem::internal)?;
+    let request: RefinementRequest = from_slice(&body)?;
+    let search = names_no_method(&body) && request.is_open();
+    enqueued(app, request, search).await
+}
+
 impl RefinementRequest {
     /// Whether neither source nor law is named, nor what only some methods keep.
     fn is_open(&self) -> bool {
@@ -81,14 +91,18 @@ impl RefinementRequest {
 
 /// Whether the settings leave the method open; a default says nothing of that.
 fn names_no_method(body: &[u8]) -> bool {
-    let asked: serde_json::Value = serde_json::from_slice(body).unwrap_or_default();
+    let asked: Value = serde_json::from_slice(body).unwrap_or_default();
     asked.pointer("/settings/method").is_none()
 }
 
 async fn queued(app: &App, request: RefinementRequest, search: bool) -> Result<Reply> {
+    accepted(enqueued(app, request, search).await?)
+}
+
+async fn enqueued(app: &App, request: RefinementRequest, search: bool) -> Result<Job> {
     let ship = request.ship.to_string();
     let job = RefinementJob { search, ..settled(app, request).await? };
-    accepted(enqueue(app, REFINEMENT, &ship, &job).await?)
+    enqueue(app, REFINEMENT, &ship, &job).await
 }
 
 /// The request with everything looked up, so that a job that is wrong is refused at once.

@@ -134,7 +134,8 @@ fn unknown(name: &str) -> Problem {
     )
 }
 
-fn wrong(name: &str, message: impl Into<String>) -> Problem {
+/// The refusal of a parameter.
+pub(super) fn wrong(name: &str, message: impl Into<String>) -> Problem {
     let message = message.into();
     Problem::bad_request(format!("{name}: {message}")).with(Fault::at(name, message))
 }

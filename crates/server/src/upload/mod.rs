@@ -16,7 +16,7 @@ use serde::Deserialize;
 pub(crate) use keep::{Kept, keep};
 pub(crate) use raw::RawQuery;
 pub(crate) use received::Upload;
-pub(crate) use spool::{hex, spool};
+pub(crate) use spool::{Spooled, hex, spool, unwritten};
 
 use crate::app::App;
 use crate::problem::{Problem, Result};

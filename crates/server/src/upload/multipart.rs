@@ -54,6 +54,15 @@ async fn read(manifest: &str) -> Result<ManifestFile> {
     Ok(read_manifest_file("manifest", manifest)?)
 }
 
+impl Upload {
+    /// Of files by their names, which a manifest lists.
+    pub(crate) fn listed(manifest: ManifestFile, files: Vec<(String, Spooled)>) -> Result<Self> {
+        let part = |(name, file): (String, Spooled)| Part { field: name.clone(), name, file };
+        let files = files.into_iter().map(part).collect();
+        Parts { files, ..Parts::default() }.listed(manifest)
+    }
+}
+
 impl Parts {
     async fn take(&mut self, field: Field<'_>, app: &App) -> Result<()> {
         let name = field.name().unwrap_or_default().to_owned();

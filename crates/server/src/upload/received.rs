@@ -1,7 +1,8 @@
 //! An upload that has arrived.
 
 use sistership_model::manifest::{Manifest, ManifestTrial, TrialConventions, TrialsKind};
-use sistership_trials::{CheckOutcome, ManifestFile, Refusal, check};
+use sistership_model::trial::Trial;
+use sistership_trials::{CheckOutcome, ManifestFile, Refusal, check, read_trial};
 
 use super::arrived::Arrived;
 use super::room::room;
@@ -55,6 +56,25 @@ impl Upload {
         let manifest = serde_json::to_string(&self.manifest).map_err(Problem::internal)?;
         let files = self.files.iter().map(|file| file.sha256.as_str());
         Ok(std::iter::once(manifest.as_str()).chain(files).collect::<Vec<_>>().join("\n"))
+    }
+
+    /// Reads every file without keeping any, one after the other, and makes something of each.
+    pub(crate) async fn each<T: Send + 'static>(
+        self,
+        app: &App,
+        of: impl Fn(usize, std::result::Result<Trial, Refusal>) -> T + Copy + Send + 'static,
+    ) -> Result<Vec<T>> {
+        let mut made = Vec::with_capacity(self.places.len());
+        for (at, mut trial) in self.trials().enumerate() {
+            let share = room(app, &mut trial).await?;
+            let one = move || {
+                let _share = share;
+                let source = trial.open().map_err(|error| lost(&trial.name, &error));
+                of(at, source.and_then(|source| read_trial(source, &trial.mapping)))
+            };
+            made.push(app.compute(one).await?);
+        }
+        Ok(made)
     }
 
     /// Checks every file without keeping any, one after the other.

@@ -47,7 +47,8 @@ pub(crate) fn temporary(place: &Spool) -> Result<NamedTempFile> {
     place.temporary().map_err(unwritten)
 }
 
-fn unwritten(error: io::Error) -> Problem {
+/// Why an upload could not be written.
+pub(crate) fn unwritten(error: io::Error) -> Problem {
     let reason = format!("an upload cannot be written: {error}");
     if is_out_of_space(&error) { Problem::no_room(reason) } else { Problem::internal(reason) }
 }

@@ -22,12 +22,13 @@ pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Nex
     let id = Uuid::now_v7();
     let (method, route) = (request.method().clone(), route(&request));
     let peer = request.extensions().get::<Peer>().cloned();
+    let for_people = is_for_people(&request);
     let span = tracing::info_span!("request", %id, method = %request.method(), path = request.uri().path());
     async move {
         let start = Instant::now();
         let response = app.held().scope(async { counted(next.run(request).await).await }).await;
         let slow = peer.is_some_and(|peer| peer.is_too_slow());
-        let response = finish(if slow { too_slow() } else { response }, id);
+        let response = finish(if slow { too_slow() } else { response }, id, for_people);
         let elapsed = start.elapsed();
         if response.status() == StatusCode::INSUFFICIENT_STORAGE {
             app.no_room().store(true, Ordering::Relaxed);
@@ -49,9 +50,16 @@ fn route(request: &Request) -> String {
     request.extensions().get::<MatchedPath>().map_or("none", MatchedPath::as_str).to_owned()
 }
 
-fn finish(response: Response, id: Uuid) -> Response {
+/// Whether a browser wants to show the answer as a page.
+fn is_for_people(request: &Request) -> bool {
+    let accepted = request.headers().get(header::ACCEPT).and_then(|value| value.to_str().ok());
+    let page = accepted.is_some_and(|accepted| accepted.contains("text/html"));
+    page && !request.uri().path().starts_with("/v1")
+}
+
+fn finish(response: Response, id: Uuid, for_people: bool) -> Response {
     let failed = response.status().is_client_error() || response.status().is_server_error();
-    let mut response = if failed { problem(response, id) } else { response };
+    let mut response = if failed { problem(response, id, for_people) } else { response };
     let headers = response.headers_mut();
     if let Ok(id) = HeaderValue::try_from(id.to_string()) {
         headers.insert("x-request-id", id);
@@ -68,18 +76,30 @@ fn too_slow() -> Response {
 }
 
 /// The same answer with a problem as its body; other headers stay (`Allow`, `WWW-Authenticate`).
-fn problem(response: Response, id: Uuid) -> Response {
+fn problem(response: Response, id: Uuid, for_people: bool) -> Response {
     let (mut parts, _) = response.into_parts();
     let mut problem = parts
         .extensions
         .remove::<Problem>()
         .unwrap_or_else(|| Problem::new(parts.status, reason(parts.status)));
     problem.instance = Some(format!("urn:uuid:{id}"));
+    let page = for_people.then(|| problem.page()).flatten();
     let (fresh, body) = problem.into_response().into_parts();
     parts.headers.remove(header::CONTENT_LENGTH);
     parts.headers.extend(fresh.headers);
-    parts.headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(MEDIA));
-    HttpResponse::from_parts(parts, body)
+    let Some(page) = page else {
+        parts.headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(MEDIA));
+        return HttpResponse::from_parts(parts, body);
+    };
+    let head = [
+        (header::CONTENT_TYPE, "text/html; charset=utf-8"),
+        (header::CONTENT_SECURITY_POLICY, sistership_pages::policy()),
+    ];
+    head.into_iter().for_each(|(name, value)| {
+        parts.headers.insert(name, HeaderValue::from_static(value));
+    });
+    parts.headers.remove(header::CONTENT_LENGTH);
+    HttpResponse::from_parts(parts, page.into())
 }
 
 /// What to do about an error that a layer made.

@@ -2,7 +2,7 @@
 //! machine.
 
 use axum::extract::{Request, State};
-use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Response};
 use base64::Engine as _;
@@ -70,14 +70,19 @@ fn allowed(app: &App, request: &Request) -> std::result::Result<(), Refusal> {
         return Ok(());
     }
     match app.key() {
-        Some(key) => authorised(key, request.method(), request.headers()),
+        Some(key) => {
+            // A form that a page of this server sends, which has a token besides.
+            let own = !request.uri().path().starts_with("/v1")
+                && host::is_same_origin(request.headers(), host.as_ref())?;
+            authorised(key, request.method().is_safe() || own, request.headers())
+        }
         None => Ok(host::from_this_machine(request.method(), request.headers(), host.as_ref())?),
     }
 }
 
 fn authorised(
     key: &ApiKey,
-    method: &Method,
+    by_browser: bool,
     headers: &HeaderMap,
 ) -> std::result::Result<(), Refusal> {
     let needed = || {
@@ -91,8 +96,8 @@ fn authorised(
     let presented = match scheme.to_ascii_lowercase().as_str() {
         "bearer" => rest.trim().to_owned(),
         // Browsers send this by themselves, also on behalf of other sites: good enough to look, not
-        // to change.
-        "basic" if method.is_safe() => password(rest.trim()).ok_or_else(needed)?,
+        // to change, unless the browser says that a page of this server asks.
+        "basic" if by_browser => password(rest.trim()).ok_or_else(needed)?,
         _ => return Err(needed().into()),
     };
     if key.is(&presented) { Ok(()) } else { Err(Refusal::WrongKey(needed())) }
@@ -108,6 +113,7 @@ fn password(encoded: &str) -> Option<String> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use axum::http::Method;
 
     fn with(name: header::HeaderName, value: &str) -> HeaderMap {
         HeaderMap::from_iter([(name, value.parse().unwrap())])
@@ -125,7 +131,7 @@ mod tests {
     fn only_the_key_opens() {
         let key = ApiKey::new("secret");
         let ask = |method: Method, value: &str| {
-            authorised(&key, &method, &with(header::AUTHORIZATION, value)).is_ok()
+            authorised(&key, method.is_safe(), &with(header::AUTHORIZATION, value)).is_ok()
         };
         assert!(ask(Method::POST, "Bearer secret") && ask(Method::GET, "bearer secret"));
         assert!(
@@ -134,9 +140,9 @@ mod tests {
                 && !ask(Method::GET, "Basic !")
         );
         let wrong = with(header::AUTHORIZATION, "Bearer secre");
-        assert_eq!(status(authorised(&key, &Method::GET, &wrong)), (401, true));
+        assert_eq!(status(authorised(&key, true, &wrong)), (401, true));
         let basic = format!("Basic {}", BASE64_STANDARD.encode("me:secret"));
         assert!(ask(Method::GET, &basic) && !ask(Method::POST, &basic));
-        assert_eq!(status(authorised(&key, &Method::GET, &HeaderMap::new())), (401, false));
+        assert_eq!(status(authorised(&key, true, &HeaderMap::new())), (401, false));
     }
 }

@@ -87,6 +87,16 @@ pub(super) fn from_this_machine(
     }
 }
 
+/// Whether a browser says that a page of this very server asks. Its scheme may be another where a
+/// proxy stands before the server.
+pub(super) fn is_same_origin(headers: &HeaderMap, host: Option<&Authority>) -> Result<bool> {
+    let (origin, site) = (single(headers, &header::ORIGIN)?, single(headers, &SEC_FETCH_SITE)?);
+    let authority = origin.and_then(|origin| origin.split_once("://")).map(|(_, own)| own);
+    let own =
+        authority.zip(host).is_some_and(|(own, host)| own.eq_ignore_ascii_case(host.as_str()));
+    Ok(own && site.is_none_or(|site| site == "same-origin"))
+}
+
 fn refused(detail: String) -> Problem {
     Problem::new(StatusCode::FORBIDDEN, detail)
 }
@@ -151,6 +161,25 @@ mod tests {
         assert!(addressed_as(Version::HTTP_10, "/", &["a", "b"]).is_err());
         assert!(addressed_as(Version::HTTP_11, "http://localhost/", &["LOCALHOST"]).is_ok());
         assert!(addressed_as(Version::HTTP_11, "http://evil.example/", &["localhost"]).is_err());
+    }
+
+    #[test]
+    fn a_form_of_this_server_is_told_from_others() {
+        let host = "ships.example".parse().unwrap();
+        let own =
+            |pairs: &[(&'static str, &str)]| is_same_origin(&headers(pairs), Some(&host)).unwrap();
+        assert!(own(&[("origin", "https://ships.example"), ("sec-fetch-site", "same-origin")]));
+        assert!(own(&[("origin", "http://Ships.example")]));
+        for other in [
+            &[][..],
+            &[("sec-fetch-site", "same-origin")],
+            &[("origin", "null")],
+            &[("origin", "https://evil.example")],
+            &[("origin", "https://ships.example:8443")],
+            &[("origin", "https://ships.example"), ("sec-fetch-site", "cross-site")],
+        ] {
+            assert!(!own(other), "{other:?}");
+        }
     }
 
     #[test]

@@ -73,6 +73,15 @@ fn too_large(what: &str) -> Problem {
     Problem::new(StatusCode::PAYLOAD_TOO_LARGE, format!("{what}; trials go to /v1/trials"))
 }
 
+/// A JSON document, whose faults are told by field.
+pub(crate) fn from_slice<T: DeserializeOwned>(bytes: &[u8]) -> Result<T> {
+    let mut reader = serde_json::Deserializer::from_slice(bytes);
+    let value = serde_path_to_error::deserialize(&mut reader)
+        .map_err(|error| refused(&error.path().to_string(), error.inner()))?;
+    reader.end().map_err(|error| refused(".", &error))?;
+    Ok(value)
+}
+
 /// Takes the memory that a YAML document which has arrived takes to be read.
 pub(crate) async fn read_yaml(bytes: usize) -> Result<()> {
     Ok(budget::take(YAML_FACTOR * bytes as u64).await?)
@@ -117,11 +126,7 @@ impl Payload {
         if !self.is_json() {
             return Err(self.wrong("application/json"));
         }
-        let mut reader = serde_json::Deserializer::from_slice(&self.bytes);
-        let value = serde_path_to_error::deserialize(&mut reader)
-            .map_err(|error| refused(&error.path().to_string(), error.inner()))?;
-        reader.end().map_err(|error| refused(".", &error))?;
-        Ok(value)
+        from_slice(&self.bytes)
     }
 
     /// The YAML document as text.

@@ -1,20 +1,22 @@
 //! A page as an answer.
 
-use askama::Template;
-use axum::http::header;
-use axum::response::{IntoResponse, Response};
+use axum::http::{HeaderName, header};
+use axum::response::{IntoResponse, Redirect, Response};
 
-use crate::problem::{Problem, Result};
-
-/// What a page may load: nothing but its own styles and pictures.
-pub(in crate::routes) const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; form-action 'none'; frame-ancestors 'none'";
+const REFERRER_POLICY: HeaderName = header::REFERRER_POLICY;
 
 /// With the headers of a page.
-pub(super) fn answer(page: &impl Template) -> Result<Response> {
-    let html = page.render().map_err(Problem::internal)?;
+pub(super) fn answer(html: String) -> Response {
     let head = [
         (header::CONTENT_TYPE, "text/html; charset=utf-8"),
-        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::CONTENT_SECURITY_POLICY, sistership_pages::policy()),
+        (header::CACHE_CONTROL, "no-cache"),
+        (REFERRER_POLICY, "same-origin"),
     ];
-    Ok((head, html).into_response())
+    (head, html).into_response()
+}
+
+/// Where to go once something is done (RFC 9110, 15.4.4).
+pub(super) fn then(place: &str) -> Response {
+    Redirect::to(place).into_response()
 }

@@ -1,21 +1,46 @@
-//! Pages for people: what there is, at a glance. They stand alone: no script, nothing from
-//! elsewhere.
+//! Pages for people: `sistership_pages` writes them, the routes here look and act.
 
+mod act;
 mod answer;
-mod family;
-mod index;
-mod rows;
-mod ship;
+mod draft;
+mod look;
 
-pub(super) use answer::POLICY;
 use axum::Router;
-use axum::routing::get;
+use axum::extract::DefaultBodyLimit;
+use axum::routing::{get, post};
 
 use crate::app::App;
+use crate::config::Limits;
 
-pub(super) fn routes() -> Router<App> {
-    Router::new()
-        .route("/", get(index::page))
-        .route("/ships/{ship}", get(ship::page))
-        .route("/families/{family}", get(family::page))
+/// What a form but an upload may be.
+const FORM_BYTES: usize = 256 << 10;
+
+pub(super) fn routes(limits: &Limits) -> Router<App> {
+    let forms = Router::new()
+        .route("/", get(look::fleet))
+        .route("/ships/{ship}", get(look::ship))
+        .route("/ships/{ship}/refine", post(act::refine))
+        .route("/ships/{ship}/diagnose", post(act::diagnose))
+        .route("/ships/{ship}/champion", post(act::promote))
+        .route("/ships/{ship}/tag", post(act::tag))
+        .route("/ships/{ship}/untag", post(act::untag))
+        .route("/ships/{ship}/versions/{number}", get(look::version))
+        .route("/ships/{ship}/uploads/{draft}", get(draft::shown).post(draft::corrected))
+        .route("/trials/{id}", get(look::trial))
+        .route("/compare", get(look::compare))
+        .route("/playground", get(look::playground))
+        .route("/families", get(look::families))
+        .route("/families/{family}", get(look::family))
+        .route("/zoo", get(look::zoo))
+        .route("/zoo/laws/{law}", get(look::law))
+        .route("/zoo/effects/{effect}", get(look::effect))
+        .route("/jobs", get(look::jobs))
+        .route("/jobs/{id}", get(look::job))
+        .route("/jobs/{id}/cancel", post(act::cancel))
+        .route("/jobs/{id}/retry", post(act::retry))
+        .layer(DefaultBodyLimit::max(FORM_BYTES));
+    let upload = Router::new()
+        .route("/ships/{ship}/upload", get(draft::choose).post(draft::arrived))
+        .layer(DefaultBodyLimit::max(limits.upload_bytes));
+    forms.merge(upload)
 }

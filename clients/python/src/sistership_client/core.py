@@ -1,0 +1,388 @@
+"""Types and operations of the REST interface, written by `generate.py`: not to be edited."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List, Literal, Optional, TypedDict, Union
+
+from .http import Http
+
+ActsOn = Any  # Where an effect acts.
+AliasRequest = TypedDict('AliasRequest', {'reason': 'str', 'version': 'int'}, total=True)
+AliasStep = TypedDict('AliasStep', {'actor': 'str', 'from': 'Union[int, None]', 'moved_us': 'int', 'reason': 'str', 'revision': 'int', 'to': 'int'}, total=False)
+AliasView = TypedDict('AliasView', {'alias': 'str', 'model': 'str', 'revision': 'int', 'version': 'int'}, total=True)
+AppliedEffect = TypedDict('AppliedEffect', {'acts_on': 'ActsOn', 'form': 'FormFile', 'name': 'str', 'parameters': 'Dict[str, Quantity]'}, total=True)
+Asked = TypedDict('Asked', {'chunk_ships': 'Union[int, None]', 'prior': 'PriorChoice', 'rule': 'Rule', 'settings': 'BulkSettings', 'start': 'Start'}, total=False)
+BandsRequest = TypedDict('BandsRequest', {'samples': 'Union[int, None]', 'seed': 'Union[int, None]'}, total=False)
+Binary = Any  # A file as it is.
+Bound = TypedDict('Bound', {'max': 'Union[float, None]', 'min': 'Union[float, None]'}, total=False)
+BulkSettings = TypedDict('BulkSettings', {'difference_s': 'Union[float, None]', 'lambda_count': 'int', 'lambda_max': 'float', 'lambda_min': 'float'}, total=False)
+BulkStanding = TypedDict('BulkStanding', {'chunks': 'Dict[str, int]', 'done': 'int', 'left_s': 'Union[float, None]', 'outcomes': 'Dict[str, int]', 'progress': 'float', 'ships': 'int', 'ships_per_s': 'Union[float, None]', 'state': 'str'}, total=False)
+BulkView = Any  # A refinement of all members of a family.
+Champion = TypedDict('Champion', {'model': 'Dict[str, Any]', 'ship': 'str', 'version': 'VersionHead'}, total=True)
+Channel = Any  # What a trial may record besides time. Ship-fixed velocities are of mid
+CmaEs = TypedDict('CmaEs', {'absolute': 'float', 'box_width': 'float', 'cpu_s': 'Union[float, None]', 'deviation': 'float', 'evaluations': 'int', 'fold_share': 'float', 'integration': 'IntegrationMethod', 'largest_population': 'int', 'population': 'int', 'seed': 'int', 'spread': 'float', 'wall_s': 'Union[float, None]'}, total=False)
+Column = TypedDict('Column', {'failures': 'List[str]', 'law': 'str', 'lpp_m': 'float', 'model': 'str', 'name': 'str', 'ship': 'str', 'speed_m_s': 'float', 'standardised_mse': 'Union[float, None]'}, total=False)
+ComparedCoefficient = TypedDict('ComparedCoefficient', {'name': 'str', 'values': 'List[Union[Estimate, None]]'}, total=True)
+ComparedFigure = TypedDict('ComparedFigure', {'name': 'str', 'unit': 'str', 'values': 'List[Union[FigureValue, None]]'}, total=True)
+ComparedTrial = TypedDict('ComparedTrial', {'duration_s': 'float', 'errors': 'List[TrialError]', 'samples': 'int', 'trial': 'str'}, total=True)
+Comparison = TypedDict('Comparison', {'coefficients': 'List[ComparedCoefficient]', 'figures': 'List[ComparedFigure]', 'models': 'List[Column]', 'trials': 'List[ComparedTrial]'}, total=True)
+Condition = TypedDict('Condition', {'effects': 'List[str]', 'found_by': 'Union[FoundBy, None]', 'model': 'Standing', 'sentence': 'str', 'since': 'Union[FoundBy, None]', 'trials': 'List[str]', 'verdict': 'Union[str, None]', 'version': 'Union[int, None]', 'with_effects': 'Union[MadeVersion, None]'}, total=False)
+Constraints = TypedDict('Constraints', {'bounds': 'Dict[str, Bound]', 'dissipative': 'bool', 'physical_signs': 'bool', 'straight_line': 'Union[StraightLine, None]', 'trust_sd': 'Union[float, None]'}, total=False)
+DiagnosisRequest = TypedDict('DiagnosisRequest', {'model': 'str', 'settings': 'DiagnosisSettings', 'trials': 'Union[List[str], None]'}, total=False)
+DiagnosisSettings = TypedDict('DiagnosisSettings', {'least_evidence': 'float', 'least_step_s': 'Union[float, None]', 'most_effects': 'int', 'restart_s': 'Union[float, None]', 'slack': 'float'}, total=False)
+Discrepancy = TypedDict('Discrepancy', {'deviation': 'float', 'time_s': 'float', 'white': 'float'}, total=True)
+Drift = TypedDict('Drift', {'ratio': 'Dict[str, float]', 'reason': 'Union[str, None]', 'ship': 'str', 'trials': 'List[TrialResidual]', 'version': 'int', 'worst': 'Union[float, None]'}, total=False)
+EffectLibraryHead = TypedDict('EffectLibraryHead', {'created_us': 'int', 'sha256': 'str'}, total=True)
+EffectParameterFile = TypedDict('EffectParameterFile', {'absent': 'float', 'bounds': 'List[float]', 'meaning': 'str', 'mirror': 'Mirror', 'prior': 'PriorFile', 'start': 'Union[float, None]', 'unit': 'str'}, total=False)
+Estimate = TypedDict('Estimate', {'standard_error': 'Union[float, None]', 'value': 'float'}, total=False)
+Estimator = Any  # The estimator.
+FalseAlarmLevel = TypedDict('FalseAlarmLevel', {'each': 'float', 'together': 'float'}, total=True)
+FamilyDrift = TypedDict('FamilyDrift', {'family': 'str', 'members': 'int', 'ships': 'List[MemberDrift]'}, total=True)
+FamilyView = TypedDict('FamilyView', {'created_us': 'int', 'foundation': 'str', 'members': 'int', 'name': 'str', 'prior': 'Union[int, None]', 'title': 'str'}, total=False)
+Fault = TypedDict('Fault', {'column': 'Union[str, None]', 'field': 'Union[str, None]', 'message': 'str', 'row': 'Union[int, None]'}, total=False)
+FigureValue = TypedDict('FigureValue', {'pass': 'Union[bool, None]', 'value': 'Union[float, None]'}, total=False)
+Form = TypedDict('Form', {'file': 'List[str]', 'manifest': 'Union[str, None]', 'ship': 'Union[str, None]'}, total=False)
+FormFile = TypedDict('FormFile', {'accelerates': 'Dict[str, str]', 'coefficients': 'Dict[str, str]', 'forces': 'Dict[str, str]', 'lags': 'Dict[str, str]', 'meaning': 'str', 'measures': 'Dict[str, str]', 'name': 'str', 'needs': 'List[Channel]', 'only_without_roll': 'bool', 'parameters': 'Dict[str, EffectParameterFile]', 'particulars': 'Dict[str, str]', 'reports': 'Dict[str, str]', 'sees': 'Dict[str, str]', 'unless': 'List[Channel]', 'values': 'Dict[str, str]'}, total=False)
+FoundBy = TypedDict('FoundBy', {'at_us': 'int', 'diagnosis': 'str', 'report': 'str'}, total=True)
+FreeRunning = TypedDict('FreeRunning', {'kind': 'FreeRunningKind', 'note': 'Union[str, None]', 'source': 'str', 'speed_m_s': 'Union[float, None]', 'turns': 'List[PublishedTurn]', 'zigzags': 'List[PublishedZigzag]'}, total=False)
+FreeRunningKind = Any  # What sailed a free-running trial.
+Health = TypedDict('Health', {'revision': 'str', 'status': 'str', 'writes': 'Union[str, None]'}, total=False)
+InitialState = TypedDict('InitialState', {'p_rad_s': 'float', 'phi_rad': 'float', 'psi_rad': 'float', 'r_rad_s': 'float', 'u_m_s': 'float', 'v_m_s': 'float', 'x_m': 'float', 'y_m': 'float'}, total=False)
+InputsRequest = TypedDict('InputsRequest', {'delta_rad': 'List[float]', 'n_rps': 'Union[List[float], None]', 'start': 'InitialState', 't_s': 'List[float]'}, total=False)
+InstrumentFit = TypedDict('InstrumentFit', {'deviation_by_scatter': 'float', 'drift': 'float'}, total=True)
+IntegrationMethod = Any  # An integration method.
+JobView = TypedDict('JobView', {'attempt': 'int', 'cancel_requested': 'bool', 'created_us': 'int', 'error': 'Union[str, None]', 'finished_us': 'Union[int, None]', 'id': 'str', 'kind': 'str', 'message': 'str', 'progress': 'float', 'request': 'Dict[str, Any]', 'result': 'Union[Dict[str, Any], None]', 'ship': 'Union[str, None]', 'started_us': 'Union[int, None]', 'state': 'str'}, total=False)
+LawHead = TypedDict('LawHead', {'created_us': 'int', 'name': 'str', 'sha256': 'str'}, total=True)
+LawText = TypedDict('LawText', {'created_us': 'int', 'document': 'str', 'name': 'str', 'sha256': 'str'}, total=True)
+Listing_AliasStep = TypedDict('Listing_AliasStep', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_AliasView = TypedDict('Listing_AliasView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_BulkView = TypedDict('Listing_BulkView', {'items': 'List[Any]', 'next': 'Union[str, None]'}, total=False)
+Listing_EffectLibraryHead = TypedDict('Listing_EffectLibraryHead', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_FamilyView = TypedDict('Listing_FamilyView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_JobView = TypedDict('Listing_JobView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_LawHead = TypedDict('Listing_LawHead', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_MemberView = TypedDict('Listing_MemberView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_OutcomeView = TypedDict('Listing_OutcomeView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_ShipHead = TypedDict('Listing_ShipHead', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_TrialView = TypedDict('Listing_TrialView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_VersionHead = TypedDict('Listing_VersionHead', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+MadeVersion = TypedDict('MadeVersion', {'at': 'str', 'number': 'int'}, total=True)
+ManoeuvreRequest = TypedDict('ManoeuvreRequest', {'all': 'bool', 'bands': 'Union[BandsRequest, None]', 'n_rps': 'Union[float, None]', 'speed_m_s': 'Union[float, None]', 'turn_deg': 'Union[float, None]', 'zigzag': 'Union[ZigzagRequest, None]'}, total=False)
+MemberDrift = TypedDict('MemberDrift', {'condition': 'Condition', 'drift': 'Union[Drift, None]', 'ship': 'str'}, total=False)
+MemberView = TypedDict('MemberView', {'added_us': 'int', 'champion': 'Union[int, None]', 'method': 'Union[str, None]', 'ship': 'str'}, total=False)
+Mirror = Any  # What a parameter becomes when the ship is mirrored port to starboard.
+Model = TypedDict('Model', {'coefficients': 'Dict[str, Quantity]', 'effects': 'List[AppliedEffect]', 'kind': 'ModelKind', 'law': 'str', 'name': 'str', 'note': 'Union[str, None]', 'parameters': 'Dict[str, Quantity]', 'particulars': 'Dict[str, Quantity]', 'posterior': 'Union[Posterior, None]', 'revolutions_rps': 'Union[float, None]', 'ship': 'str', 'sources': 'Dict[str, Source]', 'speed_m_s': 'Union[float, None]', 'status': 'Status', 'steering': 'Steering', 'uncertainty': 'Union[Uncertainty, None]', 'validity': 'Union[Region, None]'}, total=False)
+ModelKind = Any  # The word `model`.
+NewFamily = TypedDict('NewFamily', {'foundation': 'str', 'members': 'List[str]', 'name': 'str', 'title': 'Union[str, None]'}, total=False)
+NewFoundation = TypedDict('NewFoundation', {'foundation': 'str'}, total=True)
+NewMembers = TypedDict('NewMembers', {'ships': 'List[str]'}, total=True)
+NumberOrExpression = Any  # 
+OutcomeView = TypedDict('OutcomeView', {'comparison': 'Dict[str, Any]', 'outcome': 'str', 'ship': 'str', 'version': 'Union[int, None]', 'worst_change': 'Union[float, None]'}, total=False)
+Posterior = TypedDict('Posterior', {'deviations': 'List[float]', 'names': 'List[str]', 'root_correlation': 'List[str]', 'values': 'List[float]'}, total=True)
+PredictionRequest = TypedDict('PredictionRequest', {'depth_m': 'Union[float, None]', 'inputs': 'Union[InputsRequest, None]', 'manoeuvre': 'Union[ManoeuvreRequest, None]', 'model': 'str'}, total=False)
+PriorChoice = Any  # What holds the coefficients.
+PriorFile = TypedDict('PriorFile', {'deviation': 'float', 'mean': 'float'}, total=False)
+PriorView = TypedDict('PriorView', {'created_us': 'int', 'document': 'Dict[str, Any]', 'family': 'str', 'revision': 'int', 'sha256': 'str'}, total=True)
+Problem = TypedDict('Problem', {'detail': 'str', 'errors': 'List[Fault]', 'instance': 'Union[str, None]', 'status': 'int', 'title': 'str', 'type': 'str'}, total=False)
+Promoted = TypedDict('Promoted', {'champions': 'int'}, total=True)
+Promotion = TypedDict('Promotion', {'actor': 'str', 'reason': 'str', 'ships': 'Union[List[str], None]'}, total=False)
+PublishedModelFile = TypedDict('PublishedModelFile', {'coefficients': 'Section', 'law': 'str', 'name': 'str', 'note': 'Union[str, None]', 'parameters': 'Section', 'revolutions_rps': 'Union[float, None]', 'speed_m_s': 'Union[float, None]', 'status': 'Status', 'steering': 'Steering'}, total=False)
+PublishedTurn = TypedDict('PublishedTurn', {'advance': 'Union[float, None]', 'both_sides': 'bool', 'rudder_deg': 'float', 'steady_radius': 'Union[float, None]', 'tactical_diameter': 'Union[float, None]', 'transfer': 'Union[float, None]', 'uncertainty': 'float'}, total=False)
+PublishedZigzag = TypedDict('PublishedZigzag', {'both_sides': 'bool', 'first_overshoot_deg': 'Union[float, None]', 'rudder_deg': 'float', 'second_overshoot_deg': 'Union[float, None]', 'switch_deg': 'float', 'uncertainty_deg': 'float'}, total=False)
+Quantity = TypedDict('Quantity', {'note': 'Union[str, None]', 'source': 'str', 'standard_error': 'Union[float, None]', 'value': 'float'}, total=False)
+QuotedVectorFile = TypedDict('QuotedVectorFile', {'note': 'Union[str, None]', 'source': 'str', 'values': 'Dict[str, Written]'}, total=False)
+RefinementRequest = TypedDict('RefinementRequest', {'law': 'Union[str, None]', 'settings': 'RefinementSettings', 'ship': 'str', 'source': 'Union[str, None]', 'trials': 'Union[List[str], None]'}, total=False)
+RefinementSettings = TypedDict('RefinementSettings', {'bands': 'Sampling', 'calibration_samples': 'Union[int, None]', 'cma_es': 'Union[CmaEs, None]', 'constraints': 'Constraints', 'difference_s': 'Union[float, None]', 'families': 'List[TermFamily]', 'folds': 'int', 'held_out': 'List[str]', 'hop_s': 'Union[float, None]', 'in_parts': 'bool', 'lambda_count': 'int', 'method': 'Estimator', 'posterior_by_folds': 'bool', 'ranges': 'List[TuningRange]', 'residual_s': 'Union[float, None]', 'restart_s': 'Union[float, None]', 'segment_s': 'Union[float, None]', 'steering_from_trials': 'bool', 'step_s': 'Union[float, None]', 'strengths': 'List[float]', 'window_s': 'Union[float, None]'}, total=False)
+Region = TypedDict('Region', {'pairs': 'Dict[str, List[float]]', 'ranges': 'Dict[str, List[float]]'}, total=True)
+RegisterRequest = TypedDict('RegisterRequest', {'model': 'Model', 'origin': 'str', 'parent': 'Union[int, None]'}, total=False)
+RudderSign = Any  # Which way positive rudder turns the ship.
+Rule = TypedDict('Rule', {'no_worse_than': 'Union[float, None]'}, total=False)
+Sampling = TypedDict('Sampling', {'samples': 'int', 'seed': 'int', 'within_steps': 'bool'}, total=False)
+Section = TypedDict('Section', {'source': 'Union[str, None]', 'values': 'Dict[str, Written]'}, total=False)
+ShipDetail = TypedDict('ShipDetail', {'category': 'str', 'condition': 'Condition', 'created_us': 'int', 'document': 'Dict[str, Any]', 'name': 'str', 'revision': 'int', 'title': 'str', 'updated_us': 'int'}, total=True)
+ShipHead = TypedDict('ShipHead', {'category': 'str', 'created_us': 'int', 'name': 'str', 'revision': 'int', 'title': 'str', 'updated_us': 'int', 'value': 'Union[float, None]'}, total=False)
+Source = TypedDict('Source', {'citation': 'str', 'doi': 'Union[str, None]', 'note': 'Union[str, None]'}, total=False)
+Standing = Any  # Whether a model holds.
+Start = Any  # Where a member starts.
+Status = Any  # How far a model's figures can be trusted to be somebody's measurement.
+Steering = TypedDict('Steering', {'limit_deg': 'float', 'note': 'Union[str, None]', 'rate_deg_s': 'float', 'source': 'Union[str, None]', 'time_constant_s': 'float'}, total=False)
+StraightLine = Any  # What a ship does after a small disturbance with the rudder amidships.
+TermFamily = Any  # A set of terms among which model selection chooses.
+TrialError = TypedDict('TrialError', {'reason': 'Union[str, None]', 'rmse': 'Dict[str, float]', 'standardised_mse': 'Union[float, None]'}, total=False)
+TrialResidual = TypedDict('TrialResidual', {'at_us': 'int', 'fitted': 'bool', 'name': 'str', 'residual': 'Dict[str, float]', 'trial': 'str'}, total=True)
+TrialView = TypedDict('TrialView', {'created_us': 'int', 'duration_s': 'float', 'id': 'str', 'manifest': 'Dict[str, Any]', 'manoeuvre': 'Union[str, None]', 'name': 'str', 'rows': 'int', 'sha256': 'str', 'ship': 'str', 'warnings': 'List[Dict[str, Any]]'}, total=False)
+TuningRange = TypedDict('TuningRange', {'alpha_max': 'float', 'lambda_max': 'float', 'lambda_min': 'float'}, total=True)
+Uncertainty = TypedDict('Uncertainty', {'discrepancy': 'Dict[str, Discrepancy]', 'feigned': 'Dict[str, FalseAlarmLevel]', 'habits': 'List[AppliedEffect]', 'instruments': 'Dict[str, InstrumentFit]', 'names': 'List[str]', 'offset': 'List[float]', 'remainder': 'Dict[str, float]', 'root_information': 'List[str]', 'scales': 'List[float]', 'trials': 'List[str]'}, total=False)
+Uploaded = TypedDict('Uploaded', {'diagnosis': 'Union[str, None]', 'new': 'int', 'ship': 'str', 'trials': 'List[TrialView]'}, total=False)
+Verification = TypedDict('Verification', {'checked_by': 'str', 'derived_sha256': 'str', 'identical': 'bool', 'made_by': 'Union[str, None]', 'model': 'str', 'number': 'int', 'remarks': 'List[str]', 'sha256': 'str', 'stored_sha256': 'str'}, total=False)
+VersionDetail = TypedDict('VersionDetail', {'document': 'Dict[str, Any]', 'version': 'VersionHead'}, total=True)
+VersionHead = TypedDict('VersionHead', {'created_us': 'int', 'id': 'str', 'law': 'str', 'method': 'str', 'model': 'str', 'number': 'int', 'parent': 'Union[str, None]', 'report': 'Union[str, None]', 'sha256': 'str'}, total=False)
+VesselConventions = TypedDict('VesselConventions', {'rudder_positive': 'RudderSign'}, total=False)
+VesselFile = TypedDict('VesselFile', {'category': 'str', 'conventions': 'VesselConventions', 'free_running': 'List[FreeRunning]', 'kind': 'VesselKind', 'models': 'List[PublishedModelFile]', 'name': 'str', 'particulars': 'Section', 'quoted_vectors': 'Dict[str, QuotedVectorFile]', 'scale': 'Union[float, None]', 'sources': 'Dict[str, Source]', 'title': 'str', 'type': 'Union[str, None]'}, total=False)
+VesselKind = Any  # The word `vessel`.
+Written = Any  # The ways in which a file may write a value.
+WrittenInFull = TypedDict('WrittenInFull', {'note': 'Union[str, None]', 'source': 'Union[str, None]', 'standard_error': 'Union[float, None]', 'value': 'NumberOrExpression'}, total=False)
+ZigzagRequest = TypedDict('ZigzagRequest', {'rudder_deg': 'float', 'switch_deg': 'float'}, total=True)
+
+
+class Core:
+    """Every operation by its name."""
+
+    def __init__(self, http: Http) -> None:
+        self.http = http
+
+    def get_healthz(self) -> Health:
+        """Whether the server lives."""
+        return self.http.json('GET', '/healthz')
+
+    def get_metrics(self) -> bytes:
+        """Requests by route and status, their duration, jobs by kind and state, the queue's age, the object store's size."""
+        return self.http.bytes('GET', '/metrics')
+
+    def get_readyz(self) -> Health:
+        """Whether the server can work: its database and its object store answer, and it is not stopping."""
+        return self.http.json('GET', '/readyz')
+
+    def get_bulk_refinements(self, *, family: Optional[str] = None, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_BulkView:
+        """List the refinements of families, the latest first."""
+        return self.http.json('GET', '/v1/bulk-refinements', query={'family': family, 'limit': limit, 'after': after})
+
+    def delete_bulk_refinements_id(self, id: str) -> BulkView:
+        """Cancel what is left of a refinement; ships that are done stay so."""
+        return self.http.json('DELETE', f'/v1/bulk-refinements/{id}')
+
+    def get_bulk_refinements_id(self, id: str) -> BulkView:
+        """How far a refinement of a family is."""
+        return self.http.json('GET', f'/v1/bulk-refinements/{id}')
+
+    def post_bulk_refinements_id_champions(self, id: str, body: Promotion) -> Promoted:
+        """Make candidates of a refinement champions, by a person's word."""
+        return self.http.json('POST', f'/v1/bulk-refinements/{id}/champions', json=body)
+
+    def post_bulk_refinements_id_retry(self, id: str) -> BulkView:
+        """Go on with the chunks that failed or were cancelled."""
+        return self.http.json('POST', f'/v1/bulk-refinements/{id}/retry')
+
+    def get_bulk_refinements_id_ships(self, id: str, *, outcome: Optional[Literal['champion', 'candidate', 'unchanged', 'refused']] = None, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_OutcomeView:
+        """Every ship of a refinement, before and after."""
+        return self.http.json('GET', f'/v1/bulk-refinements/{id}/ships', query={'outcome': outcome, 'limit': limit, 'after': after})
+
+    def get_compare(self, *, version: Optional[List[str]] = None, trial: Optional[List[str]] = None) -> Comparison:
+        """Two to five versions side by side."""
+        return self.http.json('GET', '/v1/compare', query={'version': version, 'trial': trial})
+
+    def post_diagnoses(self, body: DiagnosisRequest, *, idempotency_key: Optional[str] = None) -> JobView:
+        """Find what a model lacks."""
+        return self.http.json('POST', '/v1/diagnoses', headers={'Idempotency-Key': idempotency_key}, json=body)
+
+    def get_effects(self, *, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_EffectLibraryHead:
+        """List the libraries of effects, by hash."""
+        return self.http.json('GET', '/v1/effects', query={'limit': limit, 'after': after})
+
+    def get_effects_sha256(self, sha256: str) -> bytes:
+        """A library of effects: the YAML files of its effects one after another, byte for byte as they were hashed."""
+        return self.http.bytes('GET', f'/v1/effects/{sha256}')
+
+    def get_families(self, *, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_FamilyView:
+        """List the families by name."""
+        return self.http.json('GET', '/v1/families', query={'limit': limit, 'after': after})
+
+    def post_families(self, body: NewFamily, *, idempotency_key: Optional[str] = None) -> FamilyView:
+        """Make a family on a foundation."""
+        return self.http.json('POST', '/v1/families', headers={'Idempotency-Key': idempotency_key}, json=body)
+
+    def get_families_family(self, family: str) -> FamilyView:
+        """A family."""
+        return self.http.json('GET', f'/v1/families/{family}')
+
+    def put_families_family(self, family: str, body: NewFoundation) -> FamilyView:
+        """Put a family on another foundation; models are refined from it when the family is refined next."""
+        return self.http.json('PUT', f'/v1/families/{family}', json=body)
+
+    def get_families_family_drift(self, family: str, *, limit: Optional[int] = None) -> FamilyDrift:
+        """Ships of a family whose model no longer holds, the worst first, with the effects that their diagnosis names."""
+        return self.http.json('GET', f'/v1/families/{family}/drift', query={'limit': limit})
+
+    def get_families_family_members(self, family: str, *, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_MemberView:
+        """List the members of a family by name."""
+        return self.http.json('GET', f'/v1/families/{family}/members', query={'limit': limit, 'after': after})
+
+    def post_families_family_members(self, family: str, body: NewMembers) -> FamilyView:
+        """Add ships to a family, all or none; those that are members already stay so."""
+        return self.http.json('POST', f'/v1/families/{family}/members', json=body)
+
+    def delete_families_family_members_ship(self, family: str, ship: str) -> FamilyView:
+        """Take a ship out of a family."""
+        return self.http.json('DELETE', f'/v1/families/{family}/members/{ship}')
+
+    def get_families_family_prior(self, family: str, *, revision: Optional[int] = None) -> PriorView:
+        """What a family has taught: how each coefficient varies over its members."""
+        return self.http.json('GET', f'/v1/families/{family}/prior', query={'revision': revision})
+
+    def post_families_family_prior(self, family: str) -> JobView:
+        """Learn from the members' trials how their coefficients vary; the work is a job."""
+        return self.http.json('POST', f'/v1/families/{family}/prior')
+
+    def post_families_family_refinements(self, family: str, body: Asked, *, idempotency_key: Optional[str] = None) -> BulkView:
+        """Refine every member of a family from the statistics of her trials."""
+        return self.http.json('POST', f'/v1/families/{family}/refinements', headers={'Idempotency-Key': idempotency_key}, json=body)
+
+    def get_jobs(self, *, ship: Optional[str] = None, state: Optional[Literal['queued', 'running', 'succeeded', 'failed', 'cancelled']] = None, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_JobView:
+        """List the jobs, the latest first."""
+        return self.http.json('GET', '/v1/jobs', query={'ship': ship, 'state': state, 'limit': limit, 'after': after})
+
+    def delete_jobs_id(self, id: str) -> JobView:
+        """Cancel a job; one that runs stops at its next step."""
+        return self.http.json('DELETE', f'/v1/jobs/{id}')
+
+    def get_jobs_id(self, id: str) -> JobView:
+        """A job."""
+        return self.http.json('GET', f'/v1/jobs/{id}')
+
+    def get_jobs_id_events(self, id: str) -> bytes:
+        """Follow a job until its end."""
+        return self.http.bytes('GET', f'/v1/jobs/{id}/events')
+
+    def post_jobs_id_retry(self, id: str) -> JobView:
+        """Do a job again that failed or was cancelled."""
+        return self.http.json('POST', f'/v1/jobs/{id}/retry')
+
+    def get_laws(self, *, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_LawHead:
+        """List the laws."""
+        return self.http.json('GET', '/v1/laws', query={'limit': limit, 'after': after})
+
+    def post_laws(self, body: bytes, media: str, *, idempotency_key: Optional[str] = None) -> LawHead:
+        """Add a law; it never changes afterwards."""
+        return self.http.json('POST', '/v1/laws', headers={'Idempotency-Key': idempotency_key}, body=body, media=media)
+
+    def get_laws_law(self, law: str) -> LawText:
+        """A law, as JSON or as its YAML file."""
+        return self.http.json('GET', f'/v1/laws/{law}')
+
+    def get_models_model_aliases(self, model: str, *, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_AliasView:
+        """List the aliases of a model."""
+        return self.http.json('GET', f'/v1/models/{model}/aliases', query={'limit': limit, 'after': after})
+
+    def get_models_model_aliases_alias(self, model: str, alias: str) -> AliasView:
+        """Where an alias stands; its ETag is what a move must present."""
+        return self.http.json('GET', f'/v1/models/{model}/aliases/{alias}')
+
+    def put_models_model_aliases_alias(self, model: str, alias: str, body: AliasRequest, *, if_match: Optional[str] = None, if_none_match: Optional[str] = None) -> AliasView:
+        """Move an alias, or create it."""
+        return self.http.json('PUT', f'/v1/models/{model}/aliases/{alias}', headers={'If-Match': if_match, 'If-None-Match': if_none_match}, json=body)
+
+    def get_models_model_aliases_alias_history(self, model: str, alias: str, *, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_AliasStep:
+        """How an alias has moved, the latest first."""
+        return self.http.json('GET', f'/v1/models/{model}/aliases/{alias}/history', query={'limit': limit, 'after': after})
+
+    def get_models_model_versions(self, model: str, *, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_VersionHead:
+        """List the versions of a model, the latest first."""
+        return self.http.json('GET', f'/v1/models/{model}/versions', query={'limit': limit, 'after': after})
+
+    def post_models_model_versions(self, model: str, body: RegisterRequest, *, idempotency_key: Optional[str] = None) -> VersionHead:
+        """Keep a model that was made elsewhere as the next version."""
+        return self.http.json('POST', f'/v1/models/{model}/versions', headers={'Idempotency-Key': idempotency_key}, json=body)
+
+    def get_models_model_versions_number(self, model: str, number: int) -> VersionDetail:
+        """A version with its document."""
+        return self.http.json('GET', f'/v1/models/{model}/versions/{number}')
+
+    def get_models_model_versions_number_document(self, model: str, number: int, *, if_none_match: Optional[str] = None) -> Dict[str, Any]:
+        """The document of a version, byte for byte as it was hashed."""
+        return self.http.json('GET', f'/v1/models/{model}/versions/{number}/document', headers={'If-None-Match': if_none_match})
+
+    def get_models_model_versions_number_export(self, model: str, number: int, *, format: Optional[Literal['c', 'python', 'matlab', 'modelica', 'fmu2', 'fmu3']] = None) -> bytes:
+        """A version as a file for another tool."""
+        return self.http.bytes('GET', f'/v1/models/{model}/versions/{number}/export', query={'format': format})
+
+    def post_models_model_versions_number_verify(self, model: str, number: int) -> Verification:
+        """Derive a version again from its recipe, and compare the bytes."""
+        return self.http.json('POST', f'/v1/models/{model}/versions/{number}/verify')
+
+    def post_predictions(self, body: PredictionRequest) -> Dict[str, Any]:
+        """Simulate a manoeuvre, or recorded inputs, with a version of a model."""
+        return self.http.json('POST', '/v1/predictions', json=body)
+
+    def post_refinements(self, body: RefinementRequest, *, idempotency_key: Optional[str] = None) -> JobView:
+        """Refine a model against trials."""
+        return self.http.json('POST', '/v1/refinements', headers={'Idempotency-Key': idempotency_key}, json=body)
+
+    def get_reports_id(self, id: str, *, format: Optional[Literal['json', 'html']] = None) -> Dict[str, Any]:
+        """A report, as JSON or as a page that stands alone."""
+        return self.http.json('GET', f'/v1/reports/{id}', query={'format': format})
+
+    def get_ships(self, *, limit: Optional[int] = None, after: Optional[str] = None, category: Optional[str] = None, tag: Optional[str] = None, particular: Optional[List[str]] = None, metric: Optional[List[str]] = None, similar_to: Optional[str] = None, vector: Optional[Literal['mei-2019', 'kanazawa-2023']] = None) -> Listing_ShipHead:
+        """Find ships: by category, tag, particulars, metrics of the champion, and similarity."""
+        return self.http.json('GET', '/v1/ships', query={'limit': limit, 'after': after, 'category': category, 'tag': tag, 'particular': particular, 'metric': metric, 'similar_to': similar_to, 'vector': vector})
+
+    def post_ships(self, body: VesselFile, *, idempotency_key: Optional[str] = None) -> ShipDetail:
+        """Create a ship."""
+        return self.http.json('POST', '/v1/ships', headers={'Idempotency-Key': idempotency_key}, json=body)
+
+    def delete_ships_ship(self, ship: str, *, if_match: Optional[str] = None) -> None:
+        """Delete a ship; her versions stay, and `undelete` brings her back."""
+        return self.http.none('DELETE', f'/v1/ships/{ship}', headers={'If-Match': if_match})
+
+    def get_ships_ship(self, ship: str, *, if_none_match: Optional[str] = None) -> ShipDetail:
+        """A ship; her ETag is what a change must present."""
+        return self.http.json('GET', f'/v1/ships/{ship}', headers={'If-None-Match': if_none_match})
+
+    def put_ships_ship(self, ship: str, body: VesselFile, *, if_match: Optional[str] = None) -> ShipDetail:
+        """Replace a ship's document, as you last read it."""
+        return self.http.json('PUT', f'/v1/ships/{ship}', headers={'If-Match': if_match}, json=body)
+
+    def get_ships_ship_drift(self, ship: str) -> Drift:
+        """What a ship's champion leaves of each of her trials, over time."""
+        return self.http.json('GET', f'/v1/ships/{ship}/drift')
+
+    def get_ships_ship_model(self, ship: str, *, format: Optional[Literal['json', 'yaml']] = None, if_none_match: Optional[str] = None) -> Champion:
+        """The model of a ship: her champion."""
+        return self.http.json('GET', f'/v1/ships/{ship}/model', query={'format': format}, headers={'If-None-Match': if_none_match})
+
+    def get_ships_ship_similar(self, ship: str, *, vector: Optional[Literal['mei-2019', 'kanazawa-2023']] = None, trials: Optional[bool] = None) -> Dict[str, Any]:
+        """Rank the zoo for a ship, and say which ships may be her source."""
+        return self.http.json('GET', f'/v1/ships/{ship}/similar', query={'vector': vector, 'trials': trials})
+
+    def get_ships_ship_tags(self, ship: str) -> List[str]:
+        """The tags of a ship, in alphabetical order, at most 100."""
+        return self.http.json('GET', f'/v1/ships/{ship}/tags')
+
+    def delete_ships_ship_tags_tag(self, ship: str, tag: str) -> None:
+        """Take a tag off a ship."""
+        return self.http.none('DELETE', f'/v1/ships/{ship}/tags/{tag}')
+
+    def put_ships_ship_tags_tag(self, ship: str, tag: str) -> None:
+        """Put a tag on a ship, to find her by."""
+        return self.http.none('PUT', f'/v1/ships/{ship}/tags/{tag}')
+
+    def post_ships_ship_undelete(self, ship: str) -> ShipDetail:
+        """Bring a deleted ship back."""
+        return self.http.json('POST', f'/v1/ships/{ship}/undelete')
+
+    def get_trials(self, *, ship: Optional[str] = None, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_TrialView:
+        """List the trials of a ship, in the order of their upload."""
+        return self.http.json('GET', '/v1/trials', query={'ship': ship, 'limit': limit, 'after': after})
+
+    def post_trials(self, body: bytes, media: str, *, ship: Optional[str] = None, name: Optional[str] = None, manoeuvre: Optional[str] = None, depth_m: Optional[float] = None, diagnose: Optional[bool] = None, idempotency_key: Optional[str] = None) -> Uploaded:
+        """Upload trials, all together or none."""
+        return self.http.json('POST', '/v1/trials', query={'ship': ship, 'name': name, 'manoeuvre': manoeuvre, 'depth_m': depth_m, 'diagnose': diagnose}, headers={'Idempotency-Key': idempotency_key}, body=body, media=media)
+
+    def post_trials_check(self, body: bytes, media: str, *, ship: Optional[str] = None, name: Optional[str] = None, manoeuvre: Optional[str] = None, depth_m: Optional[float] = None, diagnose: Optional[bool] = None) -> Dict[str, Any]:
+        """Check trials without keeping them."""
+        return self.http.json('POST', '/v1/trials/check', query={'ship': ship, 'name': name, 'manoeuvre': manoeuvre, 'depth_m': depth_m, 'diagnose': diagnose}, body=body, media=media)
+
+    def delete_trials_id(self, id: str) -> None:
+        """Delete a trial; versions that were made with it stay, and `undelete` brings it back."""
+        return self.http.none('DELETE', f'/v1/trials/{id}')
+
+    def get_trials_id(self, id: str) -> TrialView:
+        """A trial."""
+        return self.http.json('GET', f'/v1/trials/{id}')
+
+    def get_trials_id_samples(self, id: str) -> bytes:
+        """The samples of a trial, as CSV or as Parquet, under canonical names."""
+        return self.http.bytes('GET', f'/v1/trials/{id}/samples')
+
+    def post_trials_id_undelete(self, id: str) -> TrialView:
+        """Bring a deleted trial back."""
+        return self.http.json('POST', f'/v1/trials/{id}/undelete')

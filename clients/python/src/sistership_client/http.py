@@ -1,0 +1,82 @@
+"""Requests and their refusals, by the standard library alone."""
+
+from __future__ import annotations
+
+import json as _json
+import urllib.error
+import urllib.parse
+import urllib.request
+from typing import Any, Mapping, Optional
+
+
+class Refused(Exception):
+    """The server's reason: its problem document (RFC 9457)."""
+
+    def __init__(self, status: int, problem: Mapping[str, Any]) -> None:
+        self.status = status
+        self.problem = dict(problem)
+        lines = [str(problem.get("detail") or problem.get("title") or status)]
+        for error in problem.get("errors", []):
+            lines.append(f"  {error.get('field')}: {error.get('message')}")
+        super().__init__("\n".join(lines))
+
+
+def _text(value: Any) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+class Http:
+    """A server by its address, with the key that it asks for."""
+
+    def __init__(self, url: str, key: Optional[str] = None, timeout_s: float = 600.0) -> None:
+        self.url = url.rstrip("/")
+        self.key = key
+        self.timeout_s = timeout_s
+
+    def send(self, method: str, path: str, *, query: Optional[Mapping[str, Any]] = None,
+             headers: Optional[Mapping[str, Any]] = None, json: Any = None,
+             body: Optional[bytes] = None, media: Optional[str] = None) -> bytes:
+        """The bytes of the answer."""
+        address = self.url + urllib.parse.quote(path)
+        given = {name: value for name, value in (query or {}).items() if value is not None}
+        if given:
+            plain = {n: [_text(v) for v in value] if isinstance(value, (list, tuple))
+                     else _text(value) for n, value in given.items()}
+            address += "?" + urllib.parse.urlencode(plain, doseq=True)
+        request = urllib.request.Request(address, data=body, method=method)
+        if json is not None:
+            request.data = _json.dumps(json).encode()
+            media = "application/json"
+        if media:
+            request.add_header("Content-Type", media)
+        if self.key:
+            request.add_header("Authorization", f"Bearer {self.key}")
+        for name, value in (headers or {}).items():
+            if value is not None:
+                request.add_header(name, _text(value))
+        try:
+            with urllib.request.urlopen(request, timeout=self.timeout_s) as answer:
+                return answer.read()
+        except urllib.error.HTTPError as error:
+            raise Refused(error.code, _problem(error.read())) from None
+
+    def json(self, method: str, path: str, **given: Any) -> Any:
+        """The answer as JSON."""
+        given["headers"] = {"Accept": "application/json", **(given.get("headers") or {})}
+        return _json.loads(self.send(method, path, **given))
+
+    def bytes(self, method: str, path: str, **given: Any) -> bytes:
+        """The answer as it is."""
+        return self.send(method, path, **given)
+
+    def none(self, method: str, path: str, **given: Any) -> None:
+        """Nothing is answered."""
+        self.send(method, path, **given)
+
+
+def _problem(text: bytes) -> Mapping[str, Any]:
+    try:
+        known = _json.loads(text)
+    except ValueError:
+        return {"detail": text.decode(errors="replace")}
+    return known if isinstance(known, dict) else {"detail": str(known)}

@@ -1,0 +1,98 @@
+//! The zoo and a contributed ship, for people.
+
+use std::path::Path;
+
+use sistership_dynamics::metrics::TurningMetrics;
+use sistership_validation::{Appraisal, Comparison, Review, Severity};
+
+use crate::table::TextTable;
+
+/// Models with their status and manoeuvres, and the published trials that they are held against.
+pub fn listed(models: &[Appraisal]) -> String {
+    format!("{}{}", table(models), trials(models))
+}
+
+fn table(models: &[Appraisal]) -> String {
+    let mut table = TextTable::new([
+        "model",
+        "law",
+        "status",
+        "advance L",
+        "tactical L",
+        "10/10 deg",
+        "20/20 deg",
+    ]);
+    for model in models {
+        table.row([
+            model.model.clone(),
+            model.law.clone(),
+            model.standing.word().to_owned(),
+            turn(model, |turn| turn.advance_m),
+            turn(model, |turn| turn.tactical_diameter_m),
+            overshoot(model, 10.0),
+            overshoot(model, 20.0),
+        ]);
+    }
+    table.to_string()
+}
+
+fn turn(model: &Appraisal, of: impl Fn(&TurningMetrics) -> Option<f64>) -> String {
+    let starboard = model.manoeuvres.turns.iter().find(|turn| turn.rudder_deg > 0.0);
+    number(starboard.and_then(of).map(|metres| metres / model.lpp_m))
+}
+
+fn overshoot(model: &Appraisal, rudder_deg: f64) -> String {
+    let zigzag = model.manoeuvres.zigzags.iter().find(|zigzag| zigzag.rudder_deg == rudder_deg);
+    number(zigzag.and_then(|zigzag| zigzag.first_overshoot_deg))
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"))
+}
+
+fn trials(models: &[Appraisal]) -> String {
+    let mut table =
+        TextTable::new(["model", "published trial", "unit", "published", "sailed", "allowed", ""]);
+    let mut any = false;
+    for model in models {
+        for one in &model.comparisons {
+            any = true;
+            table.row(trial(model, one));
+        }
+    }
+    if any { format!("\n{table}") } else { String::new() }
+}
+
+fn trial(model: &Appraisal, one: &Comparison) -> [String; 7] {
+    [
+        model.model.clone(),
+        one.figure.clone(),
+        one.unit.to_owned(),
+        number(Some(one.published)),
+        number(one.sailed),
+        number(Some(one.limit)),
+        if one.is_within() { "met" } else { "missed" }.to_owned(),
+    ]
+}
+
+/// What was found of a contributed ship.
+pub fn reviewed(review: &Review, written: Option<&Path>) -> String {
+    let mut text = format!("{}: {}\n\n{}", review.ship, review.title, listed(&review.models));
+    for (severity, head) in
+        [(Severity::Refused, "Refused"), (Severity::Look, "A reviewer should look at")]
+    {
+        let of = review.findings.iter().filter(|finding| finding.severity == severity);
+        let lines: Vec<String> =
+            of.map(|finding| format!("  {}: {}", finding.about, finding.message)).collect();
+        if !lines.is_empty() {
+            text.push_str(&format!("\n{head}\n{}\n", lines.join("\n")));
+        }
+    }
+    if review.findings.is_empty() {
+        text.push_str("\nNothing found.\n");
+    }
+    if let Some(path) = written {
+        text.push_str(&format!("\nwritten to {}\n", path.display()));
+    }
+    text
+}

@@ -1,0 +1,27 @@
+//! A model of any ship from its particulars alone.
+//!
+//! Published regressions (`models/regressions`) each give some of the coefficients and parameters
+//! of the law `mmg`. They are combined into a mean and a covariance ([`combined`]), which become a
+//! model labelled estimated with its posterior ([`estimate`]), and bands on the standard manoeuvres
+//! ([`bands`]).
+
+mod balance;
+pub mod bands;
+pub mod combined;
+mod draws;
+mod error;
+mod estimate;
+pub mod inputs;
+mod library;
+mod limits;
+mod propeller;
+mod regression;
+
+pub use bands::{EstimateBands, estimate_bands};
+pub use error::EstimateError;
+pub use estimate::{Estimate, Spread, estimate};
+pub use library::Library;
+pub use regression::{Given, Regression};
+
+/// The law that estimates are of.
+pub const LAW: &str = "mmg";

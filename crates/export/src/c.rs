@@ -1,0 +1,188 @@
+//! One file of plain C: no allocation, no input or output, no state of its own.
+
+use sistership_model::formula::Function;
+
+use crate::error::ExportError;
+use crate::expression::{Language, function};
+use crate::format::Format;
+use crate::outside::Outside;
+use crate::plan::{Coefficient, Plan, STATES};
+use crate::{header, rates, wrapped};
+
+/// C99.
+#[derive(Debug)]
+pub struct C;
+
+impl Format for C {
+    fn name(&self) -> &'static str {
+        "c"
+    }
+
+    fn extension(&self) -> &'static str {
+        "c"
+    }
+
+    fn write(&self, plan: &Plan) -> Result<Vec<u8>, ExportError> {
+        Ok(text(plan).into_bytes())
+    }
+}
+
+impl Language for C {
+    fn number(&self, value: f64) -> String {
+        if value.is_infinite() {
+            return if value > 0.0 { "INFINITY" } else { "(-INFINITY)" }.to_owned();
+        }
+        if value < 0.0 { format!("({value:?})") } else { format!("{value:?}") }
+    }
+
+    fn state(&self, place: usize) -> String {
+        format!("s->{}", STATES[place].0)
+    }
+
+    fn outside(&self, outside: &Outside) -> String {
+        format!("in->{}", outside.identifier)
+    }
+
+    fn coefficient(&self, coefficient: &Coefficient) -> String {
+        format!("c->{}", coefficient.identifier)
+    }
+
+    fn power(&self, a: &str, b: &str) -> String {
+        format!("pow({a}, {b})")
+    }
+
+    fn call(&self, of: Function, arguments: &[&str]) -> String {
+        let name = match of {
+            Function::Sign => return format!("(({0} > 0.0) - ({0} < 0.0))", arguments[0]),
+            Function::Abs => "fabs",
+            Function::Min => "fmin",
+            Function::Max => "fmax",
+            other => function(other),
+        };
+        format!("{name}({})", arguments.join(", "))
+    }
+
+    fn choice(&self, comparison: &str, [a, b, c, d]: [&str; 4]) -> String {
+        format!("{a} {comparison} {b} ? {c} : {d}")
+    }
+
+    fn assign(&self, name: &str, terms: &[String]) -> String {
+        let kind = if name.starts_with("rate->") { "" } else { "const double " };
+        wrapped::sum(&format!("    {kind}{name} = "), terms, "\n       ") + ";"
+    }
+
+    fn solve(&self, mass: &[[String; 4]; 4], forces: &[String; 4]) -> Vec<String> {
+        let row = |(mass, force): (&[String; 4], &String)| {
+            format!("        {{{}, {force}}}", mass.join(", "))
+        };
+        let rows: Vec<String> = mass.iter().zip(forces).map(row).collect();
+        let mut lines = vec![
+            format!("    double m[4][5] = {{\n{}}};", rows.join(",\n")),
+            "    double a[4];".to_owned(),
+            "    solve(m, a);".to_owned(),
+        ];
+        let names = ["a_u", "a_v", "a_p", "a_r"].into_iter().enumerate();
+        lines.extend(names.map(|(k, name)| format!("    const double {name} = a[{k}];")));
+        lines
+    }
+
+    fn rate(&self, place: usize) -> String {
+        format!("rate->{}", STATES[place].0)
+    }
+}
+
+/// Gaussian elimination with row exchanges.
+const SOLVE: &str = include_str!("../templates/solve.c");
+const STEP: &str = include_str!("../templates/step.c");
+
+fn text(plan: &Plan) -> String {
+    let lines = header::lines(plan);
+    let comment = lines.iter().flat_map(|line| wrapped::comment(" *", &line.replace("*/", "* /")));
+    let mut text =
+        format!("/*\n{}\n */\n#include <math.h>\n\n", comment.collect::<Vec<_>>().join("\n"));
+    text.push_str(&types(plan));
+    text.push_str(&values(plan));
+    if plan.listed().mobility.is_none() {
+        text.push_str(SOLVE);
+    }
+    text.push_str(&rates_text(plan));
+    text.push_str(STEP);
+    for (mark, by) in marks(plan) {
+        text = text.replace(mark, &by);
+    }
+    text
+}
+
+fn types(plan: &Plan) -> String {
+    let member = |name: &str, remark: &str| format!("    double {name}; /* {remark} */\n");
+    let states: String = STATES
+        .iter()
+        .map(|(name, unit, meaning)| member(name, &format!("{meaning}, {unit}")))
+        .collect();
+    let order = plan.gear.map(|_| member("delta_order", "ordered rudder, rad"));
+    let outside = plan.outside.iter();
+    let inputs: String = order
+        .into_iter()
+        .chain(outside.map(|o| member(&o.identifier, &format!("{}, {}", o.meaning, o.unit))))
+        .collect();
+    let coefficients: String =
+        plan.coefficients.iter().map(|c| member(&c.identifier, &header::remark(c))).collect();
+    format!(
+        "typedef struct {{\n{states}}} @_state;\n\ntypedef struct {{\n{inputs}}} @_inputs;\n\n\
+         typedef struct {{\n{coefficients}}} @_coefficients;\n\n"
+    )
+}
+
+fn values(plan: &Plan) -> String {
+    let value = |c: &Coefficient| format!("    {:?}, /* {} */\n", c.value, c.identifier);
+    let values: String = plan.coefficients.iter().map(value).collect();
+    let default = |o: &Outside| format!("    in.{} = {};\n", o.identifier, C.number(o.default));
+    let order = plan.gear.map(|_| "    in.delta_order = 0.0;\n".to_owned());
+    let inputs: String = order.into_iter().chain(plan.outside.iter().map(default)).collect();
+    format!(
+        "/* The model's own coefficients. */\nconst @_coefficients @_values = {{\n{values}}};\n\n\
+         /* Straight running at the approach speed, rudder amidships. */\n\
+         @_inputs @_approach_inputs(void)\n{{\n    @_inputs in;\n{inputs}    return in;\n}}\n\n\
+         @_state @_approach_state(void)\n{{\n    @_state s = {{0}};\n    s.u = {:?};\n    return s;\n}}\n\n",
+        plan.speed_m_s
+    )
+}
+
+fn rates_text(plan: &Plan) -> String {
+    let rudder = match &plan.gear {
+        None => "    rate->delta = 0.0;".to_owned(),
+        Some(gear) => format!(
+            "    const double limit = {:?}, fastest = {:?};\n    \
+             const double time = fmax({:?}, step_s);\n    \
+             const double order = fmin(fmax(in->delta_order, -limit), limit);\n    \
+             rate->delta = fmin(fmax((order - s->delta)/time, -fastest), fastest);",
+            gear.limit_rad(),
+            gear.rate_rad_s(),
+            gear.time_constant_s()
+        ),
+    };
+    let statements = rates::statements(plan, &C).join("\n");
+    format!(
+        "/* The rates of the states. A gear without a time constant goes to its order within step_s,\n \
+         * the step with which the rates are integrated. */\n\
+         void @_rates(const @_state *s, const @_inputs *in, const @_coefficients *c, double step_s,\n    \
+         @_state *rate)\n{{\n    (void)in;\n    (void)c;\n    (void)step_s;\n{statements}\n{rudder}\n}}\n\n"
+    )
+}
+
+fn marks(plan: &Plan) -> [(&'static str, String); 7] {
+    let figure = |value: f64| format!("{value:?}");
+    let order = match plan.gear {
+        Some(_) => "in.delta_order = rudder_deg*3.14159265358979323846/180.0;",
+        None => "(void)rudder_deg; /* the law has no single rudder */",
+    };
+    [
+        ("@@order", order.to_owned()),
+        ("@@speed", figure(plan.envelope.speed_m_s())),
+        ("@@yaw", figure(plan.envelope.yaw_rate_rad_s())),
+        ("@@roll", figure(plan.envelope.roll_rad())),
+        ("@@duration", figure((60.0 * plan.lpp_m / plan.speed_m_s).ceil())),
+        ("@@step", figure(plan.step_s())),
+        ("@_", format!("{}_", plan.identifier)),
+    ]
+}

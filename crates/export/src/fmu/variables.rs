@@ -1,0 +1,165 @@
+//! The variables of an FMU, in the order of their value references.
+
+use crate::header::remark;
+use crate::plan::{Coefficient, DELTA, Plan, STATES};
+
+/// The value reference of the first state; that of time is zero.
+pub const FIRST_STATE: u32 = 1;
+/// The value reference of the rate of the first state.
+const FIRST_RATE: u32 = 10;
+/// The value reference of the ordered rudder.
+const ORDER: u32 = 19;
+/// The value reference of the first further input; coefficients and the longest step follow.
+pub const FIRST_OUTSIDE: u32 = 20;
+/// Deep water: formats that know no infinity, and tools that do not read it, have this, m.
+const DEEP_M: f64 = 1e9;
+
+/// What a variable is to an FMU.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// A state, whose start can be set; an output.
+    State,
+    /// The rate of a state.
+    Rate,
+    /// An input.
+    Input,
+    /// A parameter that can be set before the simulation.
+    Parameter,
+}
+
+/// A variable.
+#[derive(Debug, Clone)]
+pub struct Variable {
+    /// Its value reference.
+    pub reference: u32,
+    /// Its name.
+    pub name: String,
+    /// Its unit, where it is one of [`UNITS`].
+    pub unit: Option<String>,
+    /// What it is.
+    pub description: String,
+    /// What it is to the FMU.
+    pub role: Role,
+    /// What it is where nobody says; rates have none.
+    pub start: Option<f64>,
+    /// Its range.
+    pub range: [Option<f64>; 2],
+}
+
+/// Units with the exponents of kg, m, s and rad.
+pub const UNITS: [(&str, [i32; 4]); 8] = [
+    ("m", [0, 1, 0, 0]),
+    ("s", [0, 0, 1, 0]),
+    ("rad", [0, 0, 0, 1]),
+    ("m/s", [0, 1, -1, 0]),
+    ("rad/s", [0, 0, -1, 1]),
+    ("1/s", [0, 0, -1, 0]),
+    ("m/s2", [0, 1, -2, 0]),
+    ("rad/s2", [0, 0, -2, 1]),
+];
+
+/// Every variable.
+pub fn all(plan: &Plan) -> Vec<Variable> {
+    let mut all: Vec<Variable> = plan.states().map(|place| state(plan, place)).collect();
+    all.extend(plan.states().map(rate));
+    all.extend(order(plan));
+    all.extend(plan.outside.iter().zip(FIRST_OUTSIDE..).map(|(outside, reference)| Variable {
+        reference,
+        name: outside.identifier.clone(),
+        unit: known(&outside.unit),
+        description: outside.meaning.clone(),
+        role: Role::Input,
+        start: Some(outside.default.min(DEEP_M)),
+        range: outside.range,
+    }));
+    let first = FIRST_OUTSIDE + plan.outside.len() as u32;
+    all.extend(plan.coefficients.iter().zip(first..).map(coefficient));
+    all.push(step(plan, first + plan.coefficients.len() as u32));
+    all
+}
+
+/// What every variable is where nobody says, by value reference.
+pub fn starts(plan: &Plan) -> Vec<f64> {
+    let count = FIRST_OUTSIDE as usize + plan.outside.len() + plan.coefficients.len() + 1;
+    let mut starts = vec![0.0; count];
+    for variable in all(plan) {
+        starts[variable.reference as usize] = variable.start.unwrap_or(0.0);
+    }
+    starts
+}
+
+fn known(unit: &str) -> Option<String> {
+    UNITS.iter().any(|(known, _)| *known == unit).then(|| unit.to_owned())
+}
+
+fn state(plan: &Plan, place: usize) -> Variable {
+    let (name, unit, meaning) = STATES[place];
+    Variable {
+        reference: FIRST_STATE + place as u32,
+        name: name.to_owned(),
+        unit: known(unit),
+        description: meaning.to_owned(),
+        role: Role::State,
+        start: Some(if place == 0 { plan.speed_m_s } else { 0.0 }),
+        range: [None, None],
+    }
+}
+
+fn rate(place: usize) -> Variable {
+    let (name, unit, meaning) = STATES[place];
+    let unit = match unit {
+        "m/s" => "m/s2",
+        "rad/s" => "rad/s2",
+        "m" => "m/s",
+        _ => "rad/s",
+    };
+    Variable {
+        reference: FIRST_RATE + place as u32,
+        name: format!("{name}_dot"),
+        unit: known(unit),
+        description: format!("rate of change of {name}: {meaning}"),
+        role: Role::Rate,
+        start: None,
+        range: [None, None],
+    }
+}
+
+fn order(plan: &Plan) -> Option<Variable> {
+    let limit = plan.gear?.limit_rad();
+    Some(Variable {
+        reference: ORDER,
+        name: "delta_order".to_owned(),
+        unit: known(STATES[DELTA].1),
+        description: "ordered rudder, positive turns the ship to starboard".to_owned(),
+        role: Role::Input,
+        start: Some(0.0),
+        range: [Some(-limit), Some(limit)],
+    })
+}
+
+fn coefficient((coefficient, reference): (&Coefficient, u32)) -> Variable {
+    Variable {
+        reference,
+        name: coefficient.identifier.clone(),
+        unit: None,
+        description: format!("coefficient {}", remark(coefficient)),
+        role: Role::Parameter,
+        start: Some(coefficient.value),
+        range: [None, None],
+    }
+}
+
+fn step(plan: &Plan, reference: u32) -> Variable {
+    Variable {
+        reference,
+        name: "step_s".to_owned(),
+        unit: known("s"),
+        description:
+            "longest step of the integration, and the time in which a steering gear without \
+                      time constant reaches its order"
+                .to_owned(),
+        role: Role::Parameter,
+        start: Some(plan.step_s()),
+        range: [Some(1e-6), None],
+    }
+}

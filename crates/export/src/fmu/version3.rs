@@ -1,0 +1,76 @@
+//! `modelDescription.xml` and `buildDescription.xml` of FMI 3.0.
+
+use sistership_model::version::code_revision;
+
+use super::variables::{Role, Variable, all};
+use super::xml::{attributes, escaped, summary, units};
+use crate::plan::Plan;
+
+/// The description.
+pub fn description(plan: &Plan) -> String {
+    let variables = all(plan);
+    let listed: String = variables.iter().map(|one| variable(one, &variables)).collect();
+    let structure = |role: Role, element: &str| -> String {
+        let of = variables.iter().filter(|variable| variable.role == role);
+        of.map(|one| format!("    <{element} valueReference=\"{}\"/>\n", one.reference)).collect()
+    };
+    let (name, model, summary) = (escaped(&plan.name), &plan.identifier, summary(plan));
+    let can = "canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\"";
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+         <fmiModelDescription fmiVersion=\"3.0\" modelName=\"{name}\" instantiationToken=\"{token}\"\n  \
+         description=\"{summary}\"\n  \
+         generationTool=\"sistership {tool}\" variableNamingConvention=\"flat\">\n  \
+         <ModelExchange modelIdentifier=\"{model}\" {can}/>\n  \
+         <CoSimulation modelIdentifier=\"{model}\" canHandleVariableCommunicationStepSize=\"true\" \
+         {can}/>\n  \
+         <UnitDefinitions>\n{units}  </UnitDefinitions>\n  \
+         <LogCategories><Category name=\"logStatusError\"/></LogCategories>\n  \
+         <DefaultExperiment startTime=\"0.0\" stopTime=\"600.0\" stepSize=\"{step:?}\"/>\n  \
+         <ModelVariables>\n    \
+         <Float64 name=\"time\" valueReference=\"0\" causality=\"independent\" \
+         variability=\"continuous\" unit=\"s\"/>\n{listed}  </ModelVariables>\n  \
+         <ModelStructure>\n{outputs}{rates}{unknown}  </ModelStructure>\n\
+         </fmiModelDescription>\n",
+        token = plan.sha256,
+        tool = code_revision(),
+        units = units(),
+        step = plan.step_s(),
+        outputs = structure(Role::State, "Output"),
+        rates = structure(Role::Rate, "ContinuousStateDerivative"),
+        unknown = structure(Role::Rate, "InitialUnknown"),
+    )
+}
+
+fn variable(variable: &Variable, all: &[Variable]) -> String {
+    let kind = match variable.role {
+        Role::State => "causality=\"output\" variability=\"continuous\" initial=\"exact\"",
+        Role::Rate => "causality=\"local\" variability=\"continuous\" initial=\"calculated\"",
+        Role::Input => "causality=\"input\" variability=\"continuous\"",
+        Role::Parameter => "causality=\"parameter\" variability=\"fixed\" initial=\"exact\"",
+    };
+    let state = variable.name.trim_end_matches("_dot");
+    let of = all.iter().find(|one| variable.role == Role::Rate && one.name == state);
+    let derivative =
+        of.map_or(String::new(), |state| format!(" derivative=\"{}\"", state.reference));
+    format!(
+        "    <Float64 name=\"{}\" valueReference=\"{}\" description=\"{}\" {kind}{}{derivative}/>\n",
+        variable.name,
+        variable.reference,
+        escaped(&variable.description),
+        attributes(variable)
+    )
+}
+
+/// How others build the library from its sources.
+pub fn build(plan: &Plan) -> String {
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+         <fmiBuildDescription fmiVersion=\"3.0\">\n  \
+         <BuildConfiguration modelIdentifier=\"{}\">\n    \
+         <SourceFileSet language=\"C99\">\n      \
+         <SourceFile name=\"model.c\"/>\n      <SourceFile name=\"fmi3.c\"/>\n    \
+         </SourceFileSet>\n  </BuildConfiguration>\n</fmiBuildDescription>\n",
+        plan.identifier
+    )
+}

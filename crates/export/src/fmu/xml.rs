@@ -1,0 +1,49 @@
+//! Pieces of XML that both versions have.
+
+use super::variables::{UNITS, Variable};
+use crate::header;
+use crate::plan::Plan;
+
+/// A text as an attribute or content.
+pub fn escaped(text: &str) -> String {
+    let marked = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    let marked = marked.replace('"', "&quot;");
+    marked.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Units with what they are made of.
+pub fn units() -> String {
+    let unit = |(name, exponents): (&str, [i32; 4])| {
+        let of = ["kg", "m", "s", "rad"].into_iter().zip(exponents);
+        let of: String =
+            of.filter(|(_, n)| *n != 0).map(|(base, n)| format!(" {base}=\"{n}\"")).collect();
+        format!("    <Unit name=\"{name}\"><BaseUnit{of}/></Unit>\n")
+    };
+    UNITS.into_iter().map(unit).collect()
+}
+
+/// Unit, range and start of a variable as attributes.
+pub fn attributes(variable: &Variable) -> String {
+    let [low, high] = variable.range;
+    let numbers = [("min", low), ("max", high), ("start", variable.start)];
+    let unit = variable.unit.iter().map(|unit| format!(" unit=\"{unit}\""));
+    let numbers = numbers
+        .into_iter()
+        .filter_map(|(name, value)| value.map(|value| format!(" {name}=\"{value:?}\"")));
+    unit.chain(numbers).collect()
+}
+
+/// What the description says of the model in one line.
+pub fn summary(plan: &Plan) -> String {
+    escaped(&plan.provenance.iter().take(4).cloned().collect::<Vec<_>>().join(". "))
+}
+
+/// A page with all that a reader must know.
+pub fn documentation(plan: &Plan) -> String {
+    let lines: String = header::lines(plan).iter().map(|line| escaped(line) + "\n").collect();
+    let name = escaped(&plan.name);
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{name}</title></head>\n\
+         <body><h1>{name}</h1>\n<pre>\n{lines}</pre></body></html>\n"
+    )
+}

@@ -1,0 +1,16 @@
+//! The formats that there are.
+
+use crate::c::C;
+use crate::fmu::{Fmu2, Fmu3};
+use crate::format::Format;
+use crate::matlab::Matlab;
+use crate::modelica::Modelica;
+use crate::python::Python;
+
+/// Every format.
+pub const FORMATS: [&dyn Format; 6] = [&C, &Python, &Matlab, &Modelica, &Fmu2, &Fmu3];
+
+/// The format of that name.
+pub fn by_name(name: &str) -> Option<&'static dyn Format> {
+    FORMATS.into_iter().find(|format| format.name() == name)
+}

@@ -1,0 +1,63 @@
+//! What the first lines of every export say: what it is, its units and signs, its sources.
+
+use crate::outside::Outside;
+use crate::plan::{Coefficient, Plan, STATES};
+
+/// All that a reader must know before the code: provenance, units, signs, inputs, coefficients.
+pub fn lines(plan: &Plan) -> Vec<String> {
+    let mut lines = plan.provenance.clone();
+    lines.push(String::new());
+    lines.push(
+        "SI units and radians. Axes: x forward, y to starboard, z down, origin at midship; \
+         instruments that err in the model's trials are left out: states are true."
+            .to_owned(),
+    );
+    lines.push("States:".to_owned());
+    lines.extend(plan.states().map(|place| {
+        let (name, unit, meaning) = STATES[place];
+        format!("  {name} [{unit}] {meaning}")
+    }));
+    lines.push("Inputs:".to_owned());
+    lines.extend(gear(plan));
+    lines.extend(plan.outside.iter().map(|outside| {
+        let range = range(outside.range).map_or(String::new(), |range| format!(", {range}"));
+        let Outside { identifier, unit, meaning, .. } = outside;
+        format!("  {identifier} [{unit}] {meaning}{range}")
+    }));
+    lines.push(format!(
+        "A simulation is not believed above {:.2} m/s, {:.4} rad/s of yaw rate or {:.2} rad of roll.",
+        plan.envelope.speed_m_s(),
+        plan.envelope.yaw_rate_rad_s(),
+        plan.envelope.roll_rad()
+    ));
+    lines
+}
+
+fn gear(plan: &Plan) -> Option<String> {
+    let gear = plan.gear.as_ref()?;
+    Some(format!(
+        "  delta_order [rad] ordered rudder, positive turns the ship to starboard; the gear stops at \
+         {:.1} deg, moves at most {:.2} deg/s, time constant {} s",
+        gear.limit_rad().to_degrees(),
+        gear.rate_rad_s().to_degrees(),
+        gear.time_constant_s()
+    ))
+}
+
+fn range([low, high]: [Option<f64>; 2]) -> Option<String> {
+    match (low, high) {
+        (Some(low), Some(high)) => Some(format!("trials covered {low:.4} to {high:.4}")),
+        (Some(low), None) => Some(format!("above {low}")),
+        (None, Some(high)) => Some(format!("below {high}")),
+        (None, None) => None,
+    }
+}
+
+/// A coefficient's unit, source and standard error.
+pub fn remark(coefficient: &Coefficient) -> String {
+    let Coefficient { name, unit, source, standard_error, .. } = coefficient;
+    let error =
+        standard_error.map_or(String::new(), |error| format!(", standard error {error:.3e}"));
+    let unit = if unit == "1" { String::new() } else { format!(" [{unit}]") };
+    format!("{name}{unit}, {source}{error}")
+}

@@ -1,0 +1,64 @@
+//! Names that every language takes.
+
+use std::collections::BTreeSet;
+
+/// A name of letters, digits and underscores for any text: `X_v|v|` is `X_v_abs_v`,
+/// `mariner/abkowitz` is `mariner_abkowitz`.
+pub fn identifier(text: &str) -> String {
+    let mut name = String::new();
+    let mut inside = false;
+    for letter in text.chars() {
+        match letter {
+            '|' => {
+                inside = !inside;
+                name.push_str(if inside { "_abs_" } else { "_" });
+            }
+            letter if letter.is_ascii_alphanumeric() => name.push(letter),
+            '@' => name.push_str("_at_"),
+            _ => name.push('_'),
+        }
+    }
+    let mut name = name.trim_matches('_').to_owned();
+    while name.contains("__") {
+        name = name.replace("__", "_");
+    }
+    if name.starts_with(|first: char| !first.is_ascii_alphabetic()) {
+        name.insert_str(0, "m_");
+    }
+    name
+}
+
+/// The names of several texts, each once.
+pub fn identifiers<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut taken = BTreeSet::new();
+    let one = |text: &'a str| {
+        let plain = identifier(text);
+        let mut name = plain.clone();
+        let mut number = 2;
+        while !taken.insert(name.clone()) {
+            name = format!("{plain}_{number}");
+            number += 1;
+        }
+        name
+    };
+    texts.map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn absolute_values_and_submodels_are_spelled_out() {
+        let names = ["X_v|v|", "N_|v|r", "X_u@astern", "mariner/abkowitz", "6-dof", "Y_vvr"];
+        let spelled = names.map(identifier);
+        let expected =
+            ["X_v_abs_v", "N_abs_v_r", "X_u_at_astern", "mariner_abkowitz", "m_6_dof", "Y_vvr"];
+        assert_eq!(spelled, expected);
+    }
+
+    #[test]
+    fn names_that_come_out_alike_are_told_apart() {
+        assert_eq!(identifiers(["a/b", "a-b", "a b"].into_iter()), ["a_b", "a_b_2", "a_b_3"]);
+    }
+}

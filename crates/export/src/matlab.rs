@@ -1,0 +1,153 @@
+//! One function of MATLAB (and Octave) in the style of the Marine Systems Simulator: a structure,
+//! and the rates of the states by it.
+
+use sistership_model::formula::Function;
+
+use crate::error::ExportError;
+use crate::expression::{Language, function};
+use crate::format::Format;
+use crate::outside::Outside;
+use crate::plan::{Coefficient, Plan, STATES};
+use crate::{header, rates, wrapped};
+
+/// MATLAB R2016b and later, Octave 6 and later.
+#[derive(Debug)]
+pub struct Matlab;
+
+impl Format for Matlab {
+    fn name(&self) -> &'static str {
+        "matlab"
+    }
+
+    fn extension(&self) -> &'static str {
+        "m"
+    }
+
+    fn write(&self, plan: &Plan) -> Result<Vec<u8>, ExportError> {
+        Ok(text(plan).into_bytes())
+    }
+}
+
+impl Language for Matlab {
+    fn number(&self, value: f64) -> String {
+        if value.is_infinite() {
+            return if value > 0.0 { "Inf" } else { "(-Inf)" }.to_owned();
+        }
+        if value < 0.0 { format!("({value:?})") } else { format!("{value:?}") }
+    }
+
+    fn state(&self, place: usize) -> String {
+        STATES[place].0.to_owned()
+    }
+
+    fn outside(&self, outside: &Outside) -> String {
+        outside.identifier.clone()
+    }
+
+    fn coefficient(&self, coefficient: &Coefficient) -> String {
+        format!("c.{}", coefficient.identifier)
+    }
+
+    fn power(&self, a: &str, b: &str) -> String {
+        format!("{a}^{b}")
+    }
+
+    fn call(&self, of: Function, arguments: &[&str]) -> String {
+        format!("{}({})", function(of), arguments.join(", "))
+    }
+
+    fn choice(&self, comparison: &str, [a, b, c, d]: [&str; 4]) -> String {
+        format!("choice({a} {comparison} {b}, {c}, {d})")
+    }
+
+    fn assign(&self, name: &str, terms: &[String]) -> String {
+        wrapped::sum(&format!("{name} = "), terms, " ...\n   ") + ";"
+    }
+
+    fn solve(&self, mass: &[[String; 4]; 4], forces: &[String; 4]) -> Vec<String> {
+        let rows: Vec<String> = mass.iter().map(|row| row.join(", ")).collect();
+        let mut lines =
+            vec![format!("a = [{}] \\ [{}];", rows.join("; ...\n    "), forces.join("; "))];
+        let names = ["a_u", "a_v", "a_p", "a_r"].into_iter().enumerate();
+        lines.extend(names.map(|(k, name)| format!("{name} = a({});", k + 1)));
+        lines
+    }
+
+    fn rate(&self, place: usize) -> String {
+        format!("xdot({})", place + 1)
+    }
+}
+
+const TEMPLATE: &str = include_str!("../templates/model.m");
+
+fn text(plan: &Plan) -> String {
+    let mut help = vec!["Time derivative of the state of a ship manoeuvring model.".to_owned()];
+    help.extend(header::lines(plan));
+    let help: Vec<String> = help
+        .iter()
+        .flat_map(|line| wrapped::comment("%", line))
+        .map(|line| line.trim_end().to_owned())
+        .collect();
+    TEMPLATE
+        .replace("@@help", &help.join("\n"))
+        .replace("@@order_of_inputs", &names(plan).join(", "))
+        .replace("@@unpack", &unpack(plan))
+        .replace("@@statements", &rates::statements(plan, &Matlab).join("\n"))
+        .replace("@@rudder", rudder(plan))
+        .replace("@@structure", &structure(plan))
+        .replace("@@model", &plan.identifier)
+}
+
+fn names(plan: &Plan) -> Vec<String> {
+    let order = plan.gear.map(|_| "delta_order".to_owned());
+    order.into_iter().chain(plan.outside.iter().map(|o| o.identifier.clone())).collect()
+}
+
+fn unpack(plan: &Plan) -> String {
+    let one = |(k, name): (usize, String)| format!("{name} = ui({});", k + 1);
+    names(plan).into_iter().enumerate().map(one).collect::<Vec<_>>().join("\n")
+}
+
+fn rudder(plan: &Plan) -> &'static str {
+    match plan.gear {
+        None => "xdot(9) = 0;",
+        Some(_) => {
+            "order = min(max(delta_order, -model.gear.limit_rad), model.gear.limit_rad);\n\
+             xdot(9) = (order - delta)/max(model.gear.time_constant_s, model.step_s);\n\
+             xdot(9) = min(max(xdot(9), -model.gear.rate_rad_s), model.gear.rate_rad_s);"
+        }
+    }
+}
+
+fn structure(plan: &Plan) -> String {
+    let mut lines = vec![
+        format!("model.name = '{}';", plan.name),
+        format!("model.sha256 = '{}';", plan.sha256),
+        format!("model.lpp_m = {:?};", plan.lpp_m),
+        format!("model.speed_m_s = {:?};", plan.speed_m_s),
+        format!(
+            "model.step_s = {:?}; % a gear without time constant moves within this",
+            plan.step_s()
+        ),
+        format!("model.x = [{:?}; zeros(8, 1)]; % straight running", plan.speed_m_s),
+    ];
+    let inputs: Vec<String> = plan.outside.iter().map(|o| Matlab.number(o.default)).collect();
+    let order = plan.gear.map(|_| "0".to_owned());
+    let inputs: Vec<String> = order.into_iter().chain(inputs).collect();
+    lines.push(format!("model.ui = [{}]; % {}", inputs.join("; "), names(plan).join(", ")));
+    if let Some(gear) = &plan.gear {
+        lines.push(format!("model.gear.limit_rad = {:?};", gear.limit_rad()));
+        lines.push(format!("model.gear.rate_rad_s = {:?};", gear.rate_rad_s()));
+        lines.push(format!("model.gear.time_constant_s = {:?};", gear.time_constant_s()));
+    }
+    lines.push("model.c = struct();".to_owned());
+    lines.extend(
+        plan.coefficients
+            .iter()
+            .map(|c| format!("model.c.{} = {:?}; % {}", c.identifier, c.value, header::remark(c))),
+    );
+    lines.push(format!("model.most.speed_m_s = {:?};", plan.envelope.speed_m_s()));
+    lines.push(format!("model.most.yaw_rate_rad_s = {:?};", plan.envelope.yaw_rate_rad_s()));
+    lines.push(format!("model.most.roll_rad = {:?};", plan.envelope.roll_rad()));
+    lines.join("\n")
+}

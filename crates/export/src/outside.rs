@@ -1,0 +1,103 @@
+//! What an exported model takes from outside, with unit, meaning and range.
+
+use sistership_model::effect::qualified;
+use sistership_model::validity::Region;
+use sistership_model::{Model, law, particulars};
+
+use crate::identifier::identifier;
+
+/// Something that the model takes from outside.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outside {
+    /// The law's name of it.
+    pub name: String,
+    /// The name that programs use.
+    pub identifier: String,
+    /// Its SI unit.
+    pub unit: String,
+    /// What it is, with its sign.
+    pub meaning: String,
+    /// What it is where nobody says.
+    pub default: f64,
+    /// The range in which the model is believed, where one is known.
+    pub range: [Option<f64>; 2],
+}
+
+/// The effect and the form by which a current acts on any law, and its parameters.
+pub const CURRENT: (&str, &str, [&str; 2]) = ("current", "constant", ["north_m_s", "east_m_s"]);
+
+/// Names, units and meanings of what laws and effects commonly take.
+const KNOWN: [(&str, &str, &str, &str); 9] = [
+    ("n", "n", "1/s", "propeller revolutions, positive drives ahead"),
+    ("depth", "depth", "m", "water depth; infinite for deep water"),
+    ("wind_speed", "wind_speed", "m/s", "true wind speed"),
+    ("wind_from", "wind_from", "rad", "where the true wind comes from, clockwise from north"),
+    ("apparent_wind_speed", "apparent_wind_speed", "m/s", "apparent wind speed"),
+    (
+        "apparent_wind_from",
+        "apparent_wind_from",
+        "rad",
+        "where the apparent wind comes from, clockwise from the bow",
+    ),
+    ("recorded.t", "t_since_start", "s", "time since the start, for effects that grow with it"),
+    (
+        "recorded.phi",
+        "phi_given",
+        "rad",
+        "roll angle to starboard, which the law does not simulate",
+    ),
+    ("recorded.p", "p_given", "rad/s", "roll rate to starboard, which the law does not simulate"),
+];
+
+impl Outside {
+    /// An input of a model's law, as effects have dressed it.
+    pub fn of(model: &Model, name: &str, input: &law::Input) -> Self {
+        if let Some(current) = Self::current(name, input) {
+            return current;
+        }
+        let known = KNOWN.iter().find(|(law, ..)| *law == name);
+        let (identifier, unit, meaning) = match known {
+            Some(&(_, identifier, unit, meaning)) => {
+                (identifier.to_owned(), unit.to_owned(), meaning.to_owned())
+            }
+            None => (identifier(name), si(input), format!("`{name}` of the law")),
+        };
+        let default = match (name, input.default) {
+            ("n", None) => model.revolutions_rps.unwrap_or(0.0),
+            (_, default) => default.unwrap_or(0.0),
+        };
+        let range = range(model, name);
+        Self { name: name.to_owned(), identifier, unit, meaning, default, range }
+    }
+
+    fn current(name: &str, input: &law::Input) -> Option<Self> {
+        let (effect, form, parameters) = CURRENT;
+        let place = parameters.iter().position(|p| qualified(effect, form, p) == name)?;
+        Some(Self {
+            name: name.to_owned(),
+            identifier: ["current_north", "current_east"][place].to_owned(),
+            unit: "m/s".to_owned(),
+            meaning: format!("velocity of the water to the {}", ["north", "east"][place]),
+            default: input.default.unwrap_or(0.0),
+            range: [None, None],
+        })
+    }
+}
+
+fn si(input: &law::Input) -> String {
+    match input.dimension.to_string().as_str() {
+        "1" => "rad".to_owned(),
+        "m s^-1" => "m/s".to_owned(),
+        "s^-1" => "1/s".to_owned(),
+        other => other.to_owned(),
+    }
+}
+
+/// Deeper than the draught; elsewhere what the trials covered.
+fn range(model: &Model, name: &str) -> [Option<f64>; 2] {
+    if name == "depth" {
+        return [particulars::value(&model.particulars, "draught_m"), None];
+    }
+    let covered = |region: &Region| region.ranges.get(name).map(|range| range.map(Some));
+    model.validity.as_ref().and_then(covered).unwrap_or([None, None])
+}

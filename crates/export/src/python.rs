@@ -1,0 +1,163 @@
+//! One file of Python: the equations by plain floats, numpy for what a simulation returns.
+
+use sistership_model::formula::Function;
+
+use crate::error::ExportError;
+use crate::expression::{Language, function};
+use crate::format::Format;
+use crate::outside::Outside;
+use crate::plan::{Coefficient, Plan, STATES};
+use crate::{header, rates, wrapped};
+
+/// Python 3.8 and later.
+#[derive(Debug)]
+pub struct Python;
+
+impl Format for Python {
+    fn name(&self) -> &'static str {
+        "python"
+    }
+
+    fn extension(&self) -> &'static str {
+        "py"
+    }
+
+    fn write(&self, plan: &Plan) -> Result<Vec<u8>, ExportError> {
+        Ok(text(plan).into_bytes())
+    }
+}
+
+impl Language for Python {
+    fn number(&self, value: f64) -> String {
+        if value.is_infinite() {
+            return if value > 0.0 { "math.inf" } else { "(-math.inf)" }.to_owned();
+        }
+        if value < 0.0 { format!("({value:?})") } else { format!("{value:?}") }
+    }
+
+    fn state(&self, place: usize) -> String {
+        STATES[place].0.to_owned()
+    }
+
+    fn outside(&self, outside: &Outside) -> String {
+        outside.identifier.clone()
+    }
+
+    fn coefficient(&self, coefficient: &Coefficient) -> String {
+        coefficient.identifier.clone()
+    }
+
+    /// Python raises where other languages give an infinity; a number that is not zero is safe.
+    fn quotient(&self, a: &str, b: &str) -> String {
+        let safe = b.trim_matches(['(', ')']).parse::<f64>().is_ok_and(|number| number != 0.0);
+        if safe { format!("{a}/{b}") } else { format!("_quotient({a}, {b})") }
+    }
+
+    fn power(&self, a: &str, b: &str) -> String {
+        format!("_safe(math.pow, {a}, {b})")
+    }
+
+    fn call(&self, of: Function, arguments: &[&str]) -> String {
+        let all = arguments.join(", ");
+        match of {
+            Function::Abs | Function::Min | Function::Max => format!("{}({all})", function(of)),
+            Function::Sign => format!("float(({all} > 0.0) - ({all} < 0.0))"),
+            Function::Sqrt | Function::Log | Function::Exp => {
+                format!("_safe(math.{}, {all})", function(of))
+            }
+            other => format!("math.{}({all})", function(other)),
+        }
+    }
+
+    fn choice(&self, comparison: &str, [a, b, c, d]: [&str; 4]) -> String {
+        format!("{c} if {a} {comparison} {b} else {d}")
+    }
+
+    fn assign(&self, name: &str, terms: &[String]) -> String {
+        let one = wrapped::sum(&format!("    {name} = "), terms, "");
+        if one.len() <= 96 {
+            return one;
+        }
+        wrapped::sum(&format!("    {name} = ("), terms, "\n       ") + ")"
+    }
+
+    fn solve(&self, mass: &[[String; 4]; 4], forces: &[String; 4]) -> Vec<String> {
+        let row = |(mass, force): (&[String; 4], &String)| {
+            format!("        [{}, {force}],", mass.join(", "))
+        };
+        let rows: Vec<String> = mass.iter().zip(forces).map(row).collect();
+        vec![format!("    a_u, a_v, a_p, a_r = _solve([\n{}\n    ])", rows.join("\n"))]
+    }
+
+    fn rate(&self, place: usize) -> String {
+        format!("{}_dot", STATES[place].0)
+    }
+}
+
+const TEMPLATE: &str = include_str!("../templates/model.py");
+
+fn text(plan: &Plan) -> String {
+    let lines = header::lines(plan);
+    let lines: Vec<String> = lines
+        .iter()
+        .flat_map(|line| wrapped::comment("#", line))
+        .map(|l| l.trim_end().to_owned())
+        .collect();
+    let body = TEMPLATE
+        .replace("@@coefficients", &dictionary(plan))
+        .replace("@@inputs", &inputs(plan))
+        .replace("@@unpack", &unpack(plan))
+        .replace("@@statements", &rates::statements(plan, &Python).join("\n"))
+        .replace("@@rudder", &rudder(plan))
+        .replace(
+            "@@order",
+            if plan.gear.is_some() { "delta_order=math.radians(rudder_deg)" } else { "" },
+        )
+        .replace("@@speed_m_s", &format!("{:?}", plan.speed_m_s))
+        .replace("@@most_speed", &format!("{:?}", plan.envelope.speed_m_s()))
+        .replace("@@most_yaw", &format!("{:?}", plan.envelope.yaw_rate_rad_s()))
+        .replace("@@most_roll", &format!("{:?}", plan.envelope.roll_rad()))
+        .replace("@@duration", &format!("{:?}", (60.0 * plan.lpp_m / plan.speed_m_s).ceil()))
+        .replace("@@step", &format!("{:?}", plan.step_s()));
+    format!("{}\n{body}", lines.join("\n"))
+}
+
+fn dictionary(plan: &Plan) -> String {
+    let one = |c: &Coefficient| {
+        format!("    \"{}\": {:?},  # {}\n", c.identifier, c.value, header::remark(c))
+    };
+    plan.coefficients.iter().map(one).collect()
+}
+
+fn inputs(plan: &Plan) -> String {
+    let one = |o: &Outside| {
+        format!(
+            "    \"{}\": {},  # {}, {}\n",
+            o.identifier,
+            Python.number(o.default),
+            o.meaning,
+            o.unit
+        )
+    };
+    let order = plan.gear.map(|_| "    \"delta_order\": 0.0,  # ordered rudder, rad\n".to_owned());
+    order.into_iter().chain(plan.outside.iter().map(one)).collect()
+}
+
+fn unpack(plan: &Plan) -> String {
+    let from = |what: &str, name: &str| format!("    {name} = {what}[\"{name}\"]");
+    let order = plan.gear.map(|_| from("inputs", "delta_order"));
+    let outside = plan.outside.iter().map(|o| from("inputs", &o.identifier));
+    let coefficients = plan.coefficients.iter().map(|c| from("coefficients", &c.identifier));
+    order.into_iter().chain(outside).chain(coefficients).collect::<Vec<_>>().join("\n")
+}
+
+fn rudder(plan: &Plan) -> String {
+    let Some(gear) = &plan.gear else { return "    delta_dot = 0.0".to_owned() };
+    format!(
+        "    limit, fastest = {:?}, {:?}\n    order = min(max(delta_order, -limit), limit)\n    \
+         delta_dot = min(max((order - delta)/max({:?}, step_s), -fastest), fastest)",
+        gear.limit_rad(),
+        gear.rate_rad_s(),
+        gear.time_constant_s()
+    )
+}

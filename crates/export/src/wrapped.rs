@@ -1,0 +1,57 @@
+//! Long sums over several lines.
+
+/// Longest line of generated code.
+const WIDTH: usize = 96;
+
+/// A sum over as many lines as it takes; `next` ends one line and begins another.
+pub fn sum(head: &str, terms: &[String], next: &str) -> String {
+    let mut text = head.to_owned();
+    let mut line = head.len();
+    for (index, term) in terms.iter().enumerate() {
+        let plus = if index == 0 { "" } else { " + " };
+        if index > 0 && line + plus.len() + term.len() > WIDTH {
+            text.push_str(next);
+            line = next.rsplit('\n').next().map_or(0, str::len);
+        }
+        text.push_str(plus);
+        text.push_str(term);
+        line += plus.len() + term.len();
+    }
+    text
+}
+
+/// A text of words over as many lines as it takes, each after a mark of comments; what it is
+/// indented by is kept.
+pub fn comment(mark: &str, text: &str) -> Vec<String> {
+    let indent = &text[..text.len() - text.trim_start().len()];
+    let (mut lines, mut line) = (Vec::new(), format!("{mark}{indent}"));
+    for word in text.split_whitespace() {
+        if line.len() + 1 + word.len() > WIDTH && line.len() > mark.len() + indent.len() {
+            lines.push(std::mem::replace(&mut line, format!("{mark}{indent}   ")));
+        }
+        line.push(' ');
+        line.push_str(word);
+    }
+    lines.push(line);
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_break_between_terms() {
+        let terms: Vec<String> = (0..40).map(|k| format!("X_{k:02}*t{k:02}")).collect();
+        let text = sum("    X = ", &terms, "\n        ");
+        assert!(text.lines().count() > 3 && text.lines().all(|line| line.len() <= WIDTH));
+        assert_eq!(text.replace("\n        ", ""), format!("    X = {}", terms.join(" + ")));
+    }
+
+    #[test]
+    fn comments_break_between_words() {
+        let lines = comment("#", &"abc defghi ".repeat(30));
+        assert!(lines.len() > 3 && lines.iter().all(|line| line.len() <= WIDTH));
+        assert!(lines.iter().all(|line| line.starts_with('#')));
+    }
+}

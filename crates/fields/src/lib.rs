@@ -1,0 +1,397 @@
+//! Fields of requests that are checked as they are read, and described by the same figures:
+//! whatever the document says of a name, a text, a count or a number is what
+//! [`Deserialize`](serde::Deserialize) checks, so that neither drifts from the other.
+
+use std::marker::PhantomData;
+use std::str::FromStr;
+use std::sync::LazyLock;
+
+use regex::Regex;
+use sistership_store::MAX_LIMIT;
+use utoipa::openapi::RefOr;
+use utoipa::openapi::schema::{
+    AdditionalProperties, KnownFormat, ObjectBuilder, Schema, SchemaFormat, Type,
+};
+
+/// The greatest whole number that every reader of JSON holds exactly.
+pub const MAX_WHOLE: i64 = (1 << 53) - 1;
+
+/// What a text may be.
+pub struct TextRule {
+    /// Fewest characters.
+    pub min: usize,
+    /// Most characters.
+    pub max: usize,
+    /// What it looks like, as a regular expression that Rust, ECMAScript and Python read alike.
+    pub pattern: &'static str,
+    /// What would be right, in words.
+    pub says: &'static str,
+}
+
+impl TextRule {
+    /// Checks a text; `regex` is the compiled pattern.
+    fn check(&self, regex: &LazyLock<Option<Regex>>, text: &str) -> Result<(), String> {
+        let fits = (self.min..=self.max).contains(&text.chars().count());
+        match fits && regex.as_ref().is_some_and(|regex| regex.is_match(text)) {
+            true => Ok(()),
+            false => Err(format!("must be {}", self.says)),
+        }
+    }
+
+    fn schema(&self) -> RefOr<Schema> {
+        let text = ObjectBuilder::new().schema_type(Type::String).pattern(Some(self.pattern));
+        text.min_length(Some(self.min)).max_length(Some(self.max)).build().into()
+    }
+}
+
+/// A text with a rule of its own.
+macro_rules! text {
+    ($(#[$about:meta])* $name:ident: $min:literal..=$max:literal, $pattern:expr, $says:literal) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+        pub struct $name(String);
+
+        impl $name {
+            const RULE: TextRule = TextRule { min: $min, max: $max, pattern: $pattern, says: $says };
+
+            /// The text itself.
+            #[allow(dead_code, reason = "not every text is kept")]
+            pub fn into_string(self) -> String {
+                self.0
+            }
+        }
+
+        impl std::str::FromStr for $name {
+            type Err = String;
+
+            fn from_str(text: &str) -> Result<Self, String> {
+                static REGEX: LazyLock<Option<Regex>> = LazyLock::new(|| Regex::new($pattern).ok());
+                Self::RULE.check(&REGEX, text).map(|()| Self(text.to_owned()))
+            }
+        }
+
+        impl<'de> serde::Deserialize<'de> for $name {
+            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+                from.deserialize_str(Written(PhantomData))
+            }
+        }
+
+        impl std::ops::Deref for $name {
+            type Target = str;
+
+            fn deref(&self) -> &str {
+                &self.0
+            }
+        }
+
+        impl std::fmt::Display for $name {
+            fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                out.write_str(&self.0)
+            }
+        }
+
+        impl utoipa::PartialSchema for $name {
+            fn schema() -> RefOr<Schema> {
+                Self::RULE.schema()
+            }
+        }
+
+        impl utoipa::ToSchema for $name {}
+    };
+}
+
+text! {
+    /// The name of a ship, a law or a model: `sistership_model::name::check_slug`.
+    Name: 1..=64, "^[a-z0-9][a-z0-9-]*$", "a name of 1 to 64 lower-case letters, digits and hyphens, such as `esso-osaka-3m`"
+}
+text! {
+    /// A tag, or the name of a family: one word in any script.
+    Word: 1..=200, r"^[^\s/.\x00-\x1f\x7f-\x9f][^\s/\x00-\x1f\x7f-\x9f]*$",
+        "a word of 1 to 200 characters without white space, control characters and slashes, that does not begin with a full stop"
+}
+text! {
+    /// The id of a trial, a job, a report or a refinement of a family.
+    Id: 1..=64, "^[0-9A-Za-z-]+$", "an id of 1 to 64 letters, digits and hyphens, as the server gives them"
+}
+text! {
+    /// A version by a name that people give it.
+    ModelName: 1..=129, "^[a-z0-9][a-z0-9-]{0,63}(/[a-z0-9][a-z0-9-]{0,63})?$",
+        "`ship` (her champion), `ship/number` or `ship/alias`, in lower-case letters, digits and hyphens"
+}
+text! {
+    /// A word of a person that is kept: a reason, an origin, a name.
+    Remark: 1..=1000, r"^[^\x00]*[^\s\x00][^\x00]*$", "1 to 1000 characters that are not all white space, without NUL"
+}
+text! {
+    /// The name of a file.
+    FileName: 1..=200, r"^[^\x00-\x1f\x7f-\x9f]+$", "a name of 1 to 200 characters without control characters"
+}
+text! {
+    /// `next` of the page before.
+    Cursor: 1..=4096, "^[0-9A-Za-z_-]+$", "the `next` of a page of this list; leave it out for the first page"
+}
+text! {
+    /// `Idempotency-Key`.
+    RequestKey: 1..=200, "^[!-.0-~]+$", "1 to 200 letters, digits and marks (no slash), such as a UUID"
+}
+text! {
+    /// `If-Match` and `If-None-Match`.
+    EntityTags: 1..=2000, r#"^[ \t]*(\*|(W/)?"[!#-+\x2d-~]+"([ \t]*,[ \t]*(W/)?"[!#-+\x2d-~]+")*)[ \t]*$"#,
+        "`*` or the quoted ETag of the last answer, such as \"3\""
+}
+
+/// Checks while it visits: libraries then know the field that an error belongs to.
+struct Written<T>(PhantomData<T>);
+
+impl<T: FromStr<Err = String>> serde::de::Visitor<'_> for Written<T> {
+    type Value = T;
+
+    fn expecting(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        out.write_str("a string")
+    }
+
+    fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<T, E> {
+        text.parse().map_err(E::custom)
+    }
+}
+
+/// A whole number with a least and a greatest value; `deserialize_str` reads it from a path or a
+/// query, `deserialize_i64` from a body.
+macro_rules! whole {
+    ($(#[$about:meta])* $name:ident: $min:expr, $max:expr, $read:ident $(, default $default:expr)?) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub struct $name(i64);
+
+        impl $name {
+            /// The number itself.
+            pub fn get(self) -> i64 {
+                self.0
+            }
+
+            fn check(value: Option<i64>) -> Result<Self, String> {
+                let known = value.filter(|value| ($min..=$max).contains(value));
+                known.map(Self).ok_or_else(|| format!("must be a whole number from {} to {}", $min, $max))
+            }
+        }
+
+        $(impl Default for $name {
+            fn default() -> Self {
+                Self($default)
+            }
+        })?
+
+        impl std::str::FromStr for $name {
+            type Err = String;
+
+            fn from_str(text: &str) -> Result<Self, String> {
+                Self::check(text.parse().ok())
+            }
+        }
+
+        impl<'de> serde::Deserialize<'de> for $name {
+            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+                from.$read(Whole(Self::check))
+            }
+        }
+
+        impl utoipa::PartialSchema for $name {
+            fn schema() -> RefOr<Schema> {
+                let whole = ObjectBuilder::new().schema_type(Type::Integer);
+                let whole = whole.format(Some(SchemaFormat::KnownFormat(KnownFormat::Int64)));
+                let whole = whole.minimum(Some($min)).maximum(Some($max));
+                $(let whole = whole.default(Some($default.into()));)?
+                whole.build().into()
+            }
+        }
+
+        impl utoipa::ToSchema for $name {}
+    };
+}
+
+whole! {
+    /// The most items of a page.
+    Limit: 1, MAX_LIMIT, deserialize_str, default 100
+}
+whole! {
+    /// The most members of a family that are looked at.
+    MemberLimit: 1, MAX_LIMIT, deserialize_str, default 50
+}
+whole! {
+    /// The number of a version or of a prior.
+    Number: 1, MAX_WHOLE, deserialize_str
+}
+whole! {
+    /// How many models are drawn from a posterior.
+    SampleCount: 2, 1000, deserialize_i64, default 100
+}
+whole! {
+    /// The number of a version, in a body.
+    VersionNumber: 1, MAX_WHOLE, deserialize_i64
+}
+
+/// Reads a number as JSON, a path or a query writes it: 3 and 3.0 are one number to a reader of
+/// JSON Schema.
+struct Whole<T>(fn(Option<i64>) -> Result<T, String>);
+
+impl<T> serde::de::Visitor<'_> for Whole<T> {
+    type Value = T;
+
+    fn expecting(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        out.write_str("a whole number")
+    }
+
+    fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<T, E> {
+        self.0(Some(value)).map_err(E::custom)
+    }
+
+    fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<T, E> {
+        self.0(i64::try_from(value).ok()).map_err(E::custom)
+    }
+
+    fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<T, E> {
+        let whole = value.fract() == 0.0 && value.abs() <= MAX_WHOLE as f64;
+        self.0(whole.then_some(value as i64)).map_err(E::custom)
+    }
+
+    fn visit_str<E: serde::de::Error>(self, value: &str) -> Result<T, E> {
+        self.0(value.parse().ok()).map_err(E::custom)
+    }
+}
+
+/// A number with a rule of its own.
+macro_rules! number {
+    ($(#[$about:meta])* $name:ident: $fits:expr, $says:literal, $schema:expr) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $name(f64);
+
+        impl $name {
+            /// The number itself.
+            pub fn get(self) -> f64 {
+                self.0
+            }
+        }
+
+        impl<'de> serde::Deserialize<'de> for $name {
+            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+                let (value, fits): (f64, fn(f64) -> bool) = (f64::deserialize(from)?, $fits);
+                let wrong = || serde::de::Error::custom(format!("must be {}, is {value}", $says));
+                if value.is_finite() && fits(value) { Ok(Self(value)) } else { Err(wrong()) }
+            }
+        }
+
+        impl utoipa::PartialSchema for $name {
+            fn schema() -> RefOr<Schema> {
+                let number = ObjectBuilder::new().schema_type(Type::Number);
+                let describe: fn(ObjectBuilder) -> ObjectBuilder = $schema;
+                describe(number.format(Some(SchemaFormat::KnownFormat(KnownFormat::Double)))).build().into()
+            }
+        }
+
+        impl utoipa::ToSchema for $name {}
+    };
+}
+
+number! {
+    /// A depth, a speed or a time: above 0.
+    Positive: |value| value > 0.0, "above 0", |number| number.exclusive_minimum(Some(0))
+}
+number! {
+    /// An angle of a rudder or a heading, in degrees.
+    Angle: |value| value != 0.0 && value.abs() <= 90.0, "an angle up to 90 deg to either side and not 0",
+        |number| number.minimum(Some(-90)).maximum(Some(90)).extensions(not_zero())
+}
+
+/// What a schema adds to say that 0 is refused; the extension is taken for the keyword `not`, see
+/// `routes::document`.
+fn not_zero() -> Option<utoipa::openapi::extensions::Extensions> {
+    Some([("x-not".to_owned(), serde_json::json!({ "const": 0 }))].into_iter().collect())
+}
+
+/// The schema of a text that is one of several words.
+pub fn one_of(words: impl IntoIterator<Item = &'static str>) -> RefOr<Schema> {
+    ObjectBuilder::new().schema_type(Type::String).enum_values(Some(words)).build().into()
+}
+
+/// The schema of an object of which the keys are not fixed here.
+pub fn any_object() -> RefOr<Schema> {
+    ObjectBuilder::new()
+        .schema_type(Type::Object)
+        .additional_properties(Some(AdditionalProperties::FreeForm(true)))
+        .build()
+        .into()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn every_pattern_compiles_and_takes_what_its_words_say() {
+        assert!(
+            "esso-osaka-3m".parse::<Name>().is_ok()
+                && "-a".parse::<Name>().is_err()
+                && "A".parse::<Name>().is_err()
+        );
+        assert!(
+            "größe".parse::<Word>().is_ok()
+                && "two words".parse::<Word>().is_err()
+                && "..".parse::<Word>().is_err()
+        );
+        assert!("01a-F".parse::<Id>().is_ok() && "a/b".parse::<Id>().is_err());
+        assert!("a/1".parse::<ModelName>().is_ok() && "a/1/2".parse::<ModelName>().is_err());
+        assert!("because\nof it".parse::<Remark>().is_ok() && " \n".parse::<Remark>().is_err());
+        assert!(
+            "sailed/1 a.csv".parse::<FileName>().is_ok() && "a\u{7}".parse::<FileName>().is_err()
+        );
+        assert!("eyJ-_".parse::<Cursor>().is_ok() && "=".parse::<Cursor>().is_err());
+        assert!("a.b".parse::<RequestKey>().is_ok() && "a/b".parse::<RequestKey>().is_err());
+        for tags in ["*", "\"3\"", "W/\"3.a\" , \"4\"", " \"-\" "] {
+            assert!(tags.parse::<EntityTags>().is_ok(), "{tags}");
+        }
+        assert!("3".parse::<EntityTags>().is_err() && "\"\"".parse::<EntityTags>().is_err());
+        assert_eq!(
+            "x".repeat(65).parse::<Name>().unwrap_err(),
+            format!("must be {}", Name::RULE.says)
+        );
+        assert!(
+            "ü".repeat(200).parse::<Word>().is_ok() && "ü".repeat(201).parse::<Word>().is_err()
+        );
+    }
+
+    #[test]
+    fn a_name_is_what_the_files_call_one() {
+        for name in ["a", "0-", "-a", "A", "", "a_b", "é", &"a".repeat(64), &"a".repeat(65), "a\n"]
+        {
+            assert_eq!(
+                Name::from_str(name).is_ok(),
+                sistership_model::name::check_slug(name).is_ok(),
+                "{name:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_whole_number_may_be_written_as_a_decimal() {
+        let read = |text: &str| serde_json::from_str::<VersionNumber>(text).map(VersionNumber::get);
+        assert_eq!(
+            (read("3").unwrap(), read("3.0").unwrap(), read("9007199254740991").unwrap()),
+            (3, 3, MAX_WHOLE)
+        );
+        for wrong in [
+            "0",
+            "9007199254740992",
+            "1.5",
+            "1e300",
+            "-1",
+            "\"3\"",
+            "null",
+            "true",
+            "18446744073709551615",
+        ] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
+    }
+}

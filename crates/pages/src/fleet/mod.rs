@@ -1,0 +1,111 @@
+//! The fleet: its ships, the one first that most needs somebody.
+
+mod query;
+
+use askama::Template;
+use sistership_pipeline::Archive;
+use sistership_pipeline::condition::Condition;
+use sistership_pipeline::search::standing::{Class, ERROR};
+use sistership_pipeline::search::{self, Search};
+use sistership_report::numbers::{significant, stated};
+use sistership_store::{FoundShip, List, Page, ShipKey};
+
+use self::query::{FleetQuery, Sort};
+use crate::cursor::cursor;
+use crate::error::Result;
+use crate::form::Fields;
+use crate::shell::Shell;
+
+/// Ships on one page.
+const SHIPS: i64 = 50;
+
+#[derive(Template)]
+#[template(path = "fleet.html")]
+struct FleetPage {
+    shell: Shell,
+    query: FleetQuery,
+    particulars: Vec<&'static str>,
+    metrics: Vec<&'static str>,
+    value: Option<String>,
+    ships: Vec<ShipRow>,
+    next: Option<String>,
+    changing: bool,
+}
+
+struct ShipRow {
+    name: String,
+    title: String,
+    category: String,
+    class: &'static str,
+    says: &'static str,
+    why: String,
+    champion: Option<i64>,
+    error: String,
+    families: Vec<String>,
+    value: String,
+}
+
+/// The ships that a query finds.
+///
+/// # Errors
+/// A field of the query is wrong, or the store does not answer.
+pub async fn page(archive: &Archive, shell: Shell, fields: &Fields) -> Result<String> {
+    let query = FleetQuery::read(fields)?;
+    let found = found(archive, &query, query.search()?).await?;
+    let next = cursor(found.next.as_ref()).map(|next| query.address(&next));
+    let mut ships = Vec::with_capacity(found.items.len());
+    for ship in found.items {
+        ships.push(row(archive, ship, query.sort).await?);
+    }
+    let page = FleetPage {
+        shell: shell.at("/"),
+        particulars: search::particulars().collect(),
+        metrics: search::metrics().collect(),
+        value: query.value_name(),
+        query,
+        ships,
+        next,
+        changing: !archive.store.search_index().waiting("", 1).await?.is_empty(),
+    };
+    Ok(page.render()?)
+}
+
+async fn found(
+    archive: &Archive,
+    query: &FleetQuery,
+    search: Search,
+) -> Result<List<FoundShip, ShipKey>> {
+    let page = Page { after: query.after()?, limit: SHIPS };
+    Ok(search::ships(archive, &search, &page).await?)
+}
+
+async fn row(archive: &Archive, ship: FoundShip, sort: Sort) -> Result<ShipRow> {
+    let condition = Condition::of(&archive.store, &ship.name).await?;
+    let class = Class::of(&condition);
+    let facts = archive.store.search_index().facts(&ship.name).await?;
+    let error = facts.iter().find(|fact| fact.fact == ERROR).map(|fact| fact.value);
+    let families = archive.store.families().of_ship(&ship.name, &Page::first(4)).await?;
+    let value = ship.value.filter(|_| matches!(sort, Sort::Value | Sort::Similar));
+    Ok(ShipRow {
+        name: ship.name,
+        title: ship.title,
+        category: ship.category,
+        class: class.name(),
+        says: says(class),
+        why: condition.effects.join(", "),
+        champion: condition.version,
+        error: error.map_or_else(String::new, |error| significant(error, 2)),
+        families: families.items.into_iter().map(|family| family.name).collect(),
+        value: value.map_or_else(String::new, |value| stated(value, 4)),
+    })
+}
+
+/// A class in words.
+pub(crate) fn says(class: Class) -> &'static str {
+    match class {
+        Class::DoesNotHold => "does not hold",
+        Class::Unknown => "cannot tell",
+        Class::NoModel => "no model",
+        Class::Holds => "holds",
+    }
+}

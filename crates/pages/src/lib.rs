@@ -1,0 +1,31 @@
+//! The pages for people: what the store holds, as HTML that stands alone. Tied to no route: a page
+//! takes an archive and what was asked, and gives its text.
+//!
+//! Pages that simulate are made in two steps: `gather` reads, `html` computes, so that the caller
+//! chooses the thread.
+
+pub mod compare;
+mod cursor;
+mod date;
+mod error;
+pub mod families;
+pub mod fleet;
+mod form;
+pub mod jobs;
+mod named;
+mod picture;
+pub mod playground;
+mod plot;
+mod problem;
+mod rows;
+mod shell;
+pub mod ship;
+pub mod trial;
+pub mod upload;
+pub mod version;
+pub mod zoo;
+
+pub use error::{PageError, Result};
+pub use form::Fields;
+pub use problem::problem;
+pub use shell::{Shell, TOKEN, policy};

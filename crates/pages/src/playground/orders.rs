@@ -1,0 +1,207 @@
+//! What is to be sailed, and in what surroundings.
+
+use crate::error::{PageError, Result};
+use crate::form::Fields;
+
+/// The longest run, s.
+const LONGEST_S: f64 = 20_000.0;
+/// The greatest rudder angle, deg.
+const HARD_OVER: f64 = 45.0;
+/// Lines of a script.
+const LINES: usize = 500;
+
+/// What kind of manoeuvre.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Kind {
+    /// A turning circle.
+    #[default]
+    Turn,
+    /// A zigzag.
+    Zigzag,
+    /// Rudder and revolutions by time.
+    Script,
+}
+
+impl Kind {
+    /// As the form has it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Turn => "turn",
+            Self::Zigzag => "zigzag",
+            Self::Script => "script",
+        }
+    }
+}
+
+/// What is to be sailed.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Orders {
+    pub kind: Kind,
+    pub rudder_deg: f64,
+    pub switch_deg: f64,
+    pub speed_m_s: Option<f64>,
+    /// Revolutions in 1/min.
+    pub n_rpm: Option<f64>,
+    pub duration_s: Option<f64>,
+    pub script: String,
+}
+
+impl Default for Orders {
+    fn default() -> Self {
+        Self {
+            kind: Kind::Turn,
+            rudder_deg: 20.0,
+            switch_deg: 20.0,
+            speed_m_s: None,
+            n_rpm: None,
+            duration_s: None,
+            script: "0 0\n30 20\n150 20\n160 -10\n400 -10".to_owned(),
+        }
+    }
+}
+
+/// One line of a script: time, s; rudder, rad; revolutions, 1/s, where given.
+pub(super) type Line = (f64, f64, Option<f64>);
+
+impl Orders {
+    pub fn read(fields: &Fields) -> Result<Self> {
+        let default = Self::default();
+        let kind = match fields.text("kind") {
+            None | Some("turn") => Kind::Turn,
+            Some("zigzag") => Kind::Zigzag,
+            Some("script") => Kind::Script,
+            Some(other) => {
+                let message = format!("there are turn, zigzag and script, not `{other}`");
+                return Err(PageError::invalid("kind", message));
+            }
+        };
+        let positive = |name: &str, most: f64| match fields.number(name)? {
+            Some(number) if !(number > 0.0 && number <= most) => {
+                Err(PageError::invalid(name, format!("must be above 0 and at most {most}")))
+            }
+            number => Ok(number),
+        };
+        Ok(Self {
+            kind,
+            rudder_deg: fields.within("rudder", (-HARD_OVER, HARD_OVER), default.rudder_deg)?,
+            switch_deg: fields.within("switch", (1.0, 90.0), default.switch_deg)?,
+            speed_m_s: positive("speed", 40.0)?,
+            n_rpm: fields.number("n")?,
+            duration_s: positive("duration", LONGEST_S)?,
+            script: fields.text("script").map_or(default.script, str::to_owned),
+        })
+    }
+
+    /// The lines of the script, in time.
+    pub fn lines(&self) -> Result<Vec<Line>> {
+        let written = self.script.lines().map(str::trim).enumerate();
+        let written = written.filter(|(_, line)| !line.is_empty());
+        let lines = written.map(|(at, text)| line(at + 1, text)).collect::<Result<Vec<_>>>()?;
+        let wrong = |message: String| Err(PageError::invalid("script", message));
+        match lines.as_slice() {
+            [] | [_] => wrong("needs two lines at least, such as `0 0` and `60 20`".to_owned()),
+            many if many.len() > LINES => wrong(format!("has more than {LINES} lines")),
+            all if all.windows(2).any(|pair| pair[1].0 <= pair[0].0) => {
+                wrong("times must increase from line to line".to_owned())
+            }
+            all if all[all.len() - 1].0 - all[0].0 > LONGEST_S => {
+                wrong(format!("lasts longer than {LONGEST_S} s"))
+            }
+            _ => Ok(lines),
+        }
+    }
+}
+
+fn line(number: usize, text: &str) -> Result<Line> {
+    let cells: Vec<Option<f64>> = text
+        .split([' ', '\t', ';'])
+        .filter(|cell| !cell.is_empty())
+        .map(|cell| cell.replace(',', ".").parse().ok().filter(|value: &f64| value.is_finite()))
+        .collect();
+    match cells.as_slice() {
+        [Some(t), Some(rudder)] if rudder.abs() <= HARD_OVER => Ok((*t, rudder.to_radians(), None)),
+        [Some(t), Some(rudder), Some(rpm)] if rudder.abs() <= HARD_OVER => {
+            Ok((*t, rudder.to_radians(), Some(rpm / 60.0)))
+        }
+        _ => Err(PageError::invalid(
+            "script",
+            format!(
+                "line {number}, `{text}`: write time in s, rudder in deg (at most {HARD_OVER} to \
+                 either side) and, if you like, revolutions in 1/min"
+            ),
+        )),
+    }
+}
+
+/// Current, wind and depth.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Surroundings {
+    pub current_m_s: f64,
+    pub current_to_deg: f64,
+    pub wind_m_s: f64,
+    pub wind_from_deg: f64,
+    pub depth_m: Option<f64>,
+}
+
+impl Surroundings {
+    pub fn read(fields: &Fields) -> Result<Self> {
+        let depth_m = match fields.number("depth")? {
+            Some(depth) if !(depth > 0.0 && depth <= 12_000.0) => {
+                return Err(PageError::invalid("depth", "must be above 0 and at most 12000 m"));
+            }
+            depth => depth,
+        };
+        Ok(Self {
+            current_m_s: fields.within("current", (0.0, 4.0), 0.0)?,
+            current_to_deg: fields.within("current_to", (-360.0, 360.0), 0.0)?,
+            wind_m_s: fields.within("wind", (0.0, 40.0), 0.0)?,
+            wind_from_deg: fields.within("wind_from", (-360.0, 360.0), 0.0)?,
+            depth_m,
+        })
+    }
+
+    /// Velocity of the water to north and east, m/s.
+    pub fn current(&self) -> Option<(f64, f64)> {
+        split(self.current_m_s, self.current_to_deg)
+    }
+
+    /// Speed of the wind from north and from east, m/s.
+    pub fn wind(&self) -> Option<(f64, f64)> {
+        split(self.wind_m_s, self.wind_from_deg)
+    }
+}
+
+fn split(speed: f64, direction_deg: f64) -> Option<(f64, f64)> {
+    let (sin, cos) = direction_deg.to_radians().sin_cos();
+    (speed > 0.0).then_some((speed * cos, speed * sin))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_script_is_read_line_by_line_or_its_line_is_named() {
+        let script = |text: &str| Orders { script: text.to_owned(), ..Orders::default() }.lines();
+        let lines = script("0 0\n\n 60; 20 ;90\n").unwrap();
+        assert_eq!(lines[1], (60.0, 20_f64.to_radians(), Some(1.5)));
+        for (text, says) in [
+            ("0 0\n10 90", "line 2"),
+            ("0 0", "two lines"),
+            ("0 0\n0 1", "increase"),
+            ("0 0\n1e9 1", "longer"),
+            ("0 a\n1 1", "line 1"),
+        ] {
+            assert!(script(text).unwrap_err().to_string().contains(says), "{text}");
+        }
+    }
+
+    #[test]
+    fn current_is_where_it_goes() {
+        let around = Surroundings { current_m_s: 2.0, current_to_deg: 90.0, ..Default::default() };
+        let (north, east) = around.current().unwrap();
+        assert!(north.abs() < 1e-12 && (east - 2.0).abs() < 1e-12);
+        assert_eq!(around.wind(), None);
+    }
+}

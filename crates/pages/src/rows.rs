@@ -1,0 +1,83 @@
+//! Jobs and trials as lists show them.
+
+use serde_json::Value;
+use sistership_store::{Job, Trial};
+
+use crate::date::date;
+
+/// A job in a list.
+pub(crate) struct JobRow {
+    pub id: String,
+    pub kind: String,
+    pub ship: String,
+    pub state: &'static str,
+    pub percent: u32,
+    pub message: String,
+    pub created: String,
+}
+
+impl JobRow {
+    pub fn of(job: Job) -> Self {
+        let percent = (100.0 * job.progress.clamp(0.0, 1.0)).round() as u32;
+        let (state, created, outcome) = (job.state.as_str(), date(job.created_us), outcome(&job));
+        let message = outcome.or(job.error).unwrap_or(job.message);
+        let (id, kind, ship) = (job.id, job.kind, job.ship.unwrap_or_default());
+        Self { id, kind, ship, state, percent, message, created }
+    }
+}
+
+/// What came of a job that is done.
+fn outcome(job: &Job) -> Option<String> {
+    let result: Value = serde_json::from_str(job.result.as_deref()?).ok()?;
+    if let Some(verdict) = result["verdict"].as_str() {
+        return Some(found(verdict, &result));
+    }
+    let (version, alias) = (result["version"].as_i64()?, result["alias"].as_str()?);
+    let from = match result["source"].as_str() {
+        Some(source) => format!("from {source}"),
+        None => "from the trials alone".to_owned(),
+    };
+    Some(format!("version {version}, {alias}, {from}"))
+}
+
+/// What a diagnosis has found.
+fn found(verdict: &str, result: &Value) -> String {
+    let diagnosed = result["diagnosed"].as_str().unwrap_or_default();
+    let effects: Vec<&str> =
+        result["effects"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+    match effects.as_slice() {
+        [] => format!("{diagnosed} diagnosed: {verdict}"),
+        effects => format!(
+            "{diagnosed} diagnosed: lacks {}; version {}",
+            effects.join(", "),
+            result["version"]
+        ),
+    }
+}
+
+/// A trial in a list.
+pub(crate) struct TrialRow {
+    pub id: String,
+    pub name: String,
+    pub manoeuvre: String,
+    pub rows: i64,
+    pub duration: String,
+    pub warnings: usize,
+    pub created: String,
+}
+
+impl TrialRow {
+    pub fn of(trial: Trial) -> Self {
+        let warnings = serde_json::from_str::<Vec<Value>>(&trial.warnings)
+            .map_or(0, |warnings| warnings.len());
+        Self {
+            id: trial.id,
+            name: trial.name,
+            manoeuvre: trial.manoeuvre.unwrap_or_default(),
+            rows: trial.sample_rows,
+            duration: format!("{:.0} s", trial.duration_s),
+            warnings,
+            created: date(trial.created_us),
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Trials on their way in: files are chosen, what each column is taken for is shown with what was
+//! read, corrected, and only then kept.
+
+mod corrected;
+mod preview;
+mod proposed;
+
+use askama::Template;
+use sistership_model::manifest::{Missing, RudderSign, VelocityFrame};
+use sistership_trials::Guess;
+
+pub use corrected::corrected;
+pub use preview::Preview;
+pub use proposed::Proposed;
+
+use self::proposed::{DERIVED, TARGETS, columns_of};
+use crate::error::Result;
+use crate::shell::Shell;
+
+/// Units in use.
+const UNITS: [&str; 17] = [
+    "s", "ms", "min", "auto", "hh:mm:ss", "m", "km", "m/s", "kn", "km/h", "rad", "deg", "rad/s",
+    "deg/s", "deg/min", "rps", "rpm",
+];
+
+#[derive(Template)]
+#[template(path = "upload.html")]
+struct UploadPage<'a> {
+    shell: &'a Shell,
+    ship: &'a str,
+}
+
+/// The page on which files are chosen.
+///
+/// # Errors
+/// The page cannot be written.
+pub fn choose(shell: &Shell, ship: &str) -> Result<String> {
+    Ok(UploadPage { shell, ship }.render()?)
+}
+
+#[derive(Template)]
+#[template(path = "mapping.html")]
+struct MappingPage<'a> {
+    shell: &'a Shell,
+    of: &'a Proposed,
+    targets: [&'static str; 24],
+    units: [&'static str; 17],
+    columns: Vec<ColumnRow<'a>>,
+    previews: &'a [Preview],
+    accepted: bool,
+    port: bool,
+    water: bool,
+    refuse: bool,
+    derived: [(&'static str, bool); 3],
+    manifest: String,
+}
+
+/// A column of one of the files whose columns are mapped.
+struct ColumnRow<'a> {
+    key: usize,
+    guess: &'a Guess,
+    channel: &'a str,
+    unit: &'a str,
+}
+
+/// The page on which the mapping is read over.
+///
+/// # Errors
+/// The page cannot be written.
+pub fn mapping(shell: &Shell, of: &Proposed, previews: &[Preview]) -> Result<String> {
+    let conventions = &of.manifest.manifest.conventions;
+    let derive = &of.manifest.declarations.derive;
+    let page = MappingPage {
+        shell,
+        of,
+        targets: TARGETS,
+        units: UNITS,
+        columns: rows(of),
+        previews,
+        accepted: previews.iter().all(Preview::is_accepted),
+        port: conventions.rudder_positive == RudderSign::PortTurn,
+        water: conventions.velocity == VelocityFrame::Water,
+        refuse: conventions.missing == Missing::Refuse,
+        derived: DERIVED.map(|(name, one)| (name, derive.contains(&one))),
+        manifest: of.manifest.to_yaml().unwrap_or_default(),
+    };
+    Ok(page.render()?)
+}
+
+/// The guesses whose columns the manifest maps: those of the first file, which the other trials
+/// share, and those of further sensors. A sentence of NMEA 0183 needs no mapping.
+fn rows(of: &Proposed) -> Vec<ColumnRow<'_>> {
+    let own = of.guesses.iter().enumerate().filter(|(_, guess)| of.is_mapped(&guess.file));
+    own.map(|(key, guess)| {
+        let columns = columns_of(&of.manifest, &guess.file);
+        let known = columns.iter().find(|(_, mapped)| mapped.column == guess.column);
+        let (channel, unit) =
+            known.map_or(("", ""), |(channel, mapped)| (channel.as_str(), mapped.unit.as_str()));
+        ColumnRow { key, guess, channel, unit }
+    })
+    .collect()
+}

@@ -1,0 +1,62 @@
+//! What was read of a file, before it is kept.
+
+use sistership_model::trial::{Finding, Trial};
+use sistership_trials::Refusal;
+
+use crate::picture::svg;
+use crate::plot::{Track, channels, ground};
+
+/// What was read of a file.
+#[derive(Debug)]
+pub struct Preview {
+    pub(super) file: String,
+    pub(super) rows: usize,
+    pub(super) duration: String,
+    pub(super) errors: Vec<Finding>,
+    pub(super) remarks: Vec<Finding>,
+    pub(super) track: Option<String>,
+    pub(super) series: Option<String>,
+}
+
+impl Preview {
+    /// Of a trial that was read, or of what was refused.
+    pub fn of(read: Result<Trial, Refusal>) -> Self {
+        match read {
+            Ok(trial) => Self::accepted(&trial),
+            Err(Refusal { file, findings }) => Self {
+                file,
+                rows: 0,
+                duration: String::new(),
+                errors: findings,
+                remarks: Vec::new(),
+                track: None,
+                series: None,
+            },
+        }
+    }
+
+    /// Leaves out the plots: a page has room for those of a few files.
+    pub fn without_plots(self) -> Self {
+        Self { track: None, series: None, ..self }
+    }
+
+    fn accepted(trial: &Trial) -> Self {
+        let tracks = [Track::measured(trial)];
+        let track = ground(&tracks, None, &format!("Track of {}", trial.name));
+        let series = channels(&tracks, &format!("Channels of {} over time", trial.name));
+        Self {
+            file: trial.name.clone(),
+            rows: trial.len(),
+            duration: format!("{:.1} s", trial.duration_s()),
+            errors: Vec::new(),
+            remarks: trial.warnings.clone(),
+            track: track.and_then(|plot| svg(&plot).ok()),
+            series: svg(&series).ok(),
+        }
+    }
+
+    /// Whether the file can be kept.
+    pub fn is_accepted(&self) -> bool {
+        self.errors.is_empty()
+    }
+}

@@ -1,0 +1,38 @@
+//! The coefficients of a version as its page lists them.
+
+use sistership_model::{Law, Model};
+use sistership_report::numbers::{fixed, significant};
+
+/// A coefficient with its error.
+pub(super) struct CoefficientRow {
+    pub name: String,
+    pub value: String,
+    pub error: String,
+    /// The error by the size of the value.
+    pub share: String,
+    pub source: String,
+}
+
+/// In the order of the law.
+pub(super) fn rows(model: &Model, law: &Law) -> Vec<CoefficientRow> {
+    let ordered = law.coefficient_names();
+    let place = |name: &String| ordered.iter().position(|known| known == name);
+    let mut names: Vec<&String> = model.coefficients.keys().collect();
+    names.sort_by_key(|name| (place(name).unwrap_or(usize::MAX), *name));
+    names.into_iter().filter_map(|name| row(model, name)).collect()
+}
+
+fn row(model: &Model, name: &str) -> Option<CoefficientRow> {
+    let quantity = model.coefficients.get(name)?;
+    let posterior =
+        model.posterior.as_ref().and_then(|known| known.deviations().get(name).copied());
+    let error = posterior.or(quantity.standard_error);
+    let share = error.filter(|_| quantity.value != 0.0).map(|error| error / quantity.value.abs());
+    Some(CoefficientRow {
+        name: name.to_owned(),
+        value: significant(quantity.value, 5),
+        error: error.map_or_else(String::new, |error| significant(error, 2)),
+        share: share.map_or_else(String::new, |share| format!("{} %", fixed(100.0 * share, 0))),
+        source: quantity.source.clone(),
+    })
+}

@@ -1,0 +1,34 @@
+"use strict";
+// A job that goes on: its progress as it is told, and the page anew at its end.
+for (const job of document.querySelectorAll("[data-job]")) {
+  const events = new EventSource("/v1/jobs/" + job.dataset.job + "/events");
+  events.addEventListener("job", (event) => {
+    const now = JSON.parse(event.data);
+    const bar = job.querySelector("progress"), words = job.querySelector("[data-words]");
+    if (bar && now.state === "running") bar.value = now.progress;
+    if (words) words.textContent = now.state + ", " + Math.round(100 * now.progress) + " %" + (now.message ? ": " + now.message : "");
+    if (!["queued", "running"].includes(now.state)) { events.close(); location.reload(); }
+  });
+}
+// Sliders say their value; a form marked live is answered while it is changed.
+const said = (slider) => {
+  const output = document.querySelector("output[for='" + slider.id + "']");
+  if (output) output.textContent = slider.value;
+};
+for (const slider of document.querySelectorAll("input[type=range]")) {
+  slider.addEventListener("input", () => said(slider));
+  said(slider);
+}
+for (const form of document.querySelectorAll("form[data-live]")) {
+  let waiting, latest = 0;
+  const ask = async () => {
+    const query = "?" + new URLSearchParams(new FormData(form)), turn = ++latest;
+    const answer = await fetch(form.getAttribute("action") + query);
+    const page = new DOMParser().parseFromString(await answer.text(), "text/html");
+    const result = page.getElementById("result");
+    if (turn !== latest || !result) return;
+    document.getElementById("result").replaceWith(result);
+    history.replaceState(null, "", query);
+  };
+  form.addEventListener("input", () => { clearTimeout(waiting); waiting = setTimeout(ask, 250); });
+}

@@ -1,0 +1,152 @@
+//! A bundle as a file: an archive with a manifest of the hashes of all that is in it.
+
+use std::collections::BTreeMap;
+use std::io::{Cursor, Read, Write};
+
+use bytes::Bytes;
+use serde::{Deserialize, Serialize};
+use sistership_model::version::{code_revision, sha256};
+use zip::write::SimpleFileOptions;
+use zip::{ZipArchive, ZipWriter};
+
+use super::content::{Bundle, Content};
+use super::error::BundleError;
+
+/// The format of a bundle.
+const FORMAT: &str = "sistership-bundle/1";
+const MANIFEST: &str = "manifest.json";
+const CONTENT: &str = "content.json";
+/// Largest bundle once it is unpacked, bytes: it is in memory as a whole.
+const MOST: u64 = 1 << 30;
+
+/// What a bundle says of itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Manifest {
+    format: String,
+    ship: String,
+    made_by: String,
+    /// The SHA-256 of each file.
+    files: BTreeMap<String, String>,
+}
+
+impl Bundle {
+    /// The file; the same bundle gives the same bytes.
+    ///
+    /// # Errors
+    /// Says why it cannot be packed.
+    pub fn packed(&self) -> Result<Vec<u8>, BundleError> {
+        let content = serde_json::to_vec(&self.content).map_err(broken)?;
+        let mut files = BTreeMap::from([(CONTENT.to_owned(), Bytes::from(content))]);
+        let objects = self.objects.iter();
+        files.extend(objects.map(|(hash, bytes)| (place(hash), bytes.clone())));
+        let manifest = Manifest {
+            format: FORMAT.to_owned(),
+            ship: self.content.ship.clone(),
+            made_by: code_revision().to_owned(),
+            files: files.iter().map(|(name, bytes)| (name.clone(), sha256(bytes))).collect(),
+        };
+        let manifest = serde_json::to_vec_pretty(&manifest).map_err(broken)?;
+        let first = std::iter::once((MANIFEST.to_owned(), Bytes::from(manifest)));
+        let pack = || -> zip::result::ZipResult<Vec<u8>> {
+            let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+            let time = zip::DateTime::default();
+            let options = SimpleFileOptions::default().last_modified_time(time);
+            for (name, bytes) in first.chain(files) {
+                writer.start_file(name, options)?;
+                writer.write_all(&bytes)?;
+            }
+            Ok(writer.finish()?.into_inner())
+        };
+        pack().map_err(broken)
+    }
+
+    /// Reads a file, and checks every hash in it.
+    ///
+    /// # Errors
+    /// The file is no bundle, or some part of it is not what the manifest says.
+    pub fn unpacked(bytes: &[u8]) -> Result<Self, BundleError> {
+        let mut archive = ZipArchive::new(Cursor::new(bytes))
+            .map_err(|error| BundleError::File(format!("is no bundle: {error}")))?;
+        let mut left = MOST;
+        let manifest: Manifest =
+            serde_json::from_slice(&read(&mut archive, MANIFEST, &mut left)?).map_err(broken)?;
+        if manifest.format != FORMAT {
+            let found = manifest.format;
+            return Err(BundleError::File(format!("is of the format `{found}`, not `{FORMAT}`")));
+        }
+        let mut files = BTreeMap::new();
+        for (name, hash) in &manifest.files {
+            let bytes = read(&mut archive, name, &mut left)?;
+            if sha256(&bytes) != *hash {
+                return Err(BundleError::File(format!("{name} is not what the manifest says")));
+            }
+            files.insert(name.clone(), Bytes::from(bytes));
+        }
+        Self::of(files)
+    }
+
+    fn of(mut files: BTreeMap<String, Bytes>) -> Result<Self, BundleError> {
+        let lacking = || BundleError::File(format!("lacks {CONTENT}"));
+        let content: Content =
+            serde_json::from_slice(&files.remove(CONTENT).ok_or_else(lacking)?).map_err(broken)?;
+        for (line, number, version) in content.versions() {
+            if sha256(version.document.as_bytes()) != version.sha256 {
+                let message = format!("version {line}/{number} is not what its hash says");
+                return Err(BundleError::File(message));
+            }
+        }
+        let mut objects = BTreeMap::new();
+        for (name, bytes) in files {
+            let hash = sha256(&bytes);
+            if name != place(&hash) {
+                return Err(BundleError::File(format!("{name} does not have that hash")));
+            }
+            objects.insert(hash, bytes);
+        }
+        let lacks = |what: String| BundleError::File(format!("lacks the {what}"));
+        if let Some(trial) = content.trials.iter().find(|one| !objects.contains_key(&one.sha256)) {
+            return Err(lacks(format!("samples of {}", trial.name)));
+        }
+        for (line, number, version) in content.versions() {
+            if version.weights.as_ref().is_some_and(|hash| !objects.contains_key(hash)) {
+                return Err(lacks(format!("weights of version {line}/{number}")));
+            }
+        }
+        Ok(Self { content, objects })
+    }
+}
+
+impl Content {
+    /// Every version with its line and number.
+    pub fn versions(&self) -> impl Iterator<Item = (&str, i64, &super::content::VersionRecord)> {
+        self.lines.iter().flat_map(|(line, versions)| {
+            (1..).zip(versions).map(move |(number, version)| (line.as_str(), number, version))
+        })
+    }
+}
+
+fn place(hash: &str) -> String {
+    format!("objects/{hash}")
+}
+
+fn broken(error: impl std::fmt::Display) -> BundleError {
+    BundleError::File(error.to_string())
+}
+
+/// A file of the archive; `left` is what all of them may still take.
+fn read(
+    archive: &mut ZipArchive<Cursor<&[u8]>>,
+    name: &str,
+    left: &mut u64,
+) -> Result<Vec<u8>, BundleError> {
+    let file = archive
+        .by_name(name)
+        .map_err(|error| BundleError::File(format!("lacks {name}: {error}")))?;
+    let mut bytes = Vec::new();
+    file.take(*left + 1).read_to_end(&mut bytes).map_err(broken)?;
+    *left = left
+        .checked_sub(bytes.len() as u64)
+        .ok_or_else(|| BundleError::File(format!("takes more than {MOST} bytes unpacked")))?;
+    Ok(bytes)
+}

@@ -1,0 +1,204 @@
+//! From an archive to a bundle.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use sistership_model::version;
+use sistership_store::{MAX_LIMIT, Page, StoreError, Trial, Version};
+
+use super::content::{Bundle, Content, ReportRecord, ShipRecord, TrialRecord, VersionRecord};
+use super::error::BundleError;
+use super::history::revisions;
+use crate::archive::{Archive, document};
+use crate::recipe::Recipe;
+use crate::version::VersionDocument;
+
+type Result<T> = std::result::Result<T, BundleError>;
+
+/// Gathers a ship with all its versions, and of other ships the lines that these start from, up to
+/// the version that is needed: numbers stay what they are.
+///
+/// # Errors
+/// Names what is not there, or what a bundle cannot hold.
+pub async fn gather(archive: &Archive, ship: &str) -> Result<Bundle> {
+    let mut gathering = Gathering { archive, needed: BTreeMap::new(), bundle: empty(ship) };
+    archive.store.ships().get(ship).await?;
+    let latest = match archive.store.versions().latest(ship).await {
+        Ok(latest) => latest.head.number,
+        Err(StoreError::NotFound { .. }) => 0,
+        Err(error) => return Err(error.into()),
+    };
+    gathering.needed.insert(ship.to_owned(), latest);
+    gathering.lines().await?;
+    gathering.ships().await?;
+    gathering.trials(ship).await?;
+    gathering.aliases(ship).await?;
+    Ok(gathering.bundle)
+}
+
+fn empty(ship: &str) -> Bundle {
+    let content = Content { ship: ship.to_owned(), ..Content::default() };
+    Bundle { content, objects: BTreeMap::new() }
+}
+
+struct Gathering<'a> {
+    archive: &'a Archive,
+    /// The last version that is needed of each line.
+    needed: BTreeMap<String, i64>,
+    bundle: Bundle,
+}
+
+impl Gathering<'_> {
+    /// Lines grow while what their versions start from is found.
+    async fn lines(&mut self) -> Result<()> {
+        let has = |gathering: &Self, line: &String| {
+            gathering.bundle.content.lines.get(line).map_or(0, Vec::len) as i64
+        };
+        let open = |gathering: &Self| {
+            let lines = gathering.needed.iter();
+            let mut open = lines.filter(|(line, number)| has(gathering, line) < **number);
+            open.next().map(|(line, _)| line.clone())
+        };
+        while let Some(line) = open(self) {
+            let number = has(self, &line) + 1;
+            let version = self.archive.store.versions().get(&line, number).await?;
+            let record = self.version(&version).await?;
+            self.bundle.content.lines.entry(line).or_default().push(record);
+        }
+        Ok(())
+    }
+
+    async fn version(&mut self, version: &Version) -> Result<VersionRecord> {
+        let head = &version.head;
+        let VersionDocument { recipe, model, .. } = document(version)?;
+        if recipe.prior().is_some() {
+            return Err(BundleError::Prior(format!("{}/{}", head.model, head.number)));
+        }
+        for source in recipe.versions() {
+            self.need(&source.ship, source.number);
+        }
+        let parent = match &head.parent {
+            Some(id) => {
+                let parent = self.archive.store.versions().by_id(id).await?.head;
+                self.need(&parent.model, parent.number);
+                Some((parent.model, parent.number))
+            }
+            None => None,
+        };
+        self.inputs(head.model.as_str(), &head.law, &recipe).await?;
+        let weights = model.branch.map(|branch| branch.weights_sha256);
+        if let Some(hash) = &weights {
+            self.object(hash).await?;
+        }
+        Ok(VersionRecord {
+            parent,
+            law: head.law.clone(),
+            method: head.method.clone(),
+            sha256: head.sha256.clone(),
+            document: version.document.clone(),
+            weights,
+            reports: self.reports(&head.id).await?,
+        })
+    }
+
+    fn need(&mut self, line: &str, number: i64) {
+        let last = self.needed.entry(line.to_owned()).or_default();
+        *last = number.max(*last);
+    }
+
+    /// Laws, libraries and samples that a recipe names.
+    async fn inputs(&mut self, ship: &str, law: &str, recipe: &Recipe) -> Result<()> {
+        let store = &self.archive.store;
+        let mut laws = BTreeSet::from([law.to_owned()]);
+        if let Recipe::Plain(version::Recipe::Refinement { across: Some(across), .. }) = recipe {
+            laws.insert(across.law.clone());
+        }
+        for name in laws {
+            let text = store.laws().get(&name).await?.document;
+            self.bundle.content.laws.insert(name, text);
+        }
+        if let Some(hash) = recipe.effects_sha256() {
+            let library = store.effects().get(hash).await?.document;
+            if !self.bundle.content.effects.contains(&library) {
+                self.bundle.content.effects.push(library);
+            }
+        }
+        for trial in recipe.trials() {
+            self.object(&trial.sha256).await?;
+            match store.trials().find(ship, &trial.sha256).await {
+                Ok(row) => self.trial(row),
+                // It was deleted, or came from elsewhere: the recipe needs its samples only.
+                Err(StoreError::NotFound { .. }) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Ok(())
+    }
+
+    async fn object(&mut self, hash: &str) -> Result<()> {
+        if !self.bundle.objects.contains_key(hash) {
+            let bytes = self.archive.objects.get(hash).await?;
+            self.bundle.objects.insert(hash.to_owned(), bytes);
+        }
+        Ok(())
+    }
+
+    fn trial(&mut self, row: Trial) {
+        let record = TrialRecord {
+            ship: row.ship,
+            sha256: row.sha256,
+            name: row.name,
+            manifest: row.manifest,
+            conventions: row.conventions,
+            manoeuvre: row.manoeuvre,
+            sample_rows: row.sample_rows,
+            duration_s: row.duration_s,
+            warnings: row.warnings,
+        };
+        let known = &mut self.bundle.content.trials;
+        if !known.iter().any(|one| one.ship == record.ship && one.sha256 == record.sha256) {
+            known.push(record);
+        }
+    }
+
+    /// Reports on a version, the first one first.
+    async fn reports(&self, version: &str) -> Result<Vec<ReportRecord>> {
+        let reports = self.archive.store.reports();
+        let heads = reports.by_version(version, &Page::first(MAX_LIMIT)).await?;
+        let mut all = Vec::new();
+        for head in heads.items.iter().rev() {
+            let report = reports.get(&head.id).await?;
+            let (kind, document, html) = (report.head.kind, report.document, report.html);
+            all.push(ReportRecord { kind, document, html });
+        }
+        Ok(all)
+    }
+
+    async fn ships(&mut self) -> Result<()> {
+        for name in self.needed.keys().cloned().collect::<Vec<_>>() {
+            let revisions = revisions(self.archive, &name).await?;
+            self.bundle.content.ships.push(ShipRecord { name, revisions });
+        }
+        Ok(())
+    }
+
+    /// Every trial of the ship, also those that no version was derived from.
+    async fn trials(&mut self, ship: &str) -> Result<()> {
+        let mut page = Page::first(MAX_LIMIT);
+        loop {
+            let found = self.archive.store.trials().list(ship, &page).await?;
+            for row in found.items {
+                self.object(&row.object_key).await?;
+                self.trial(row);
+            }
+            let Some(next) = found.next else { return Ok(()) };
+            page = Page::after(next, MAX_LIMIT);
+        }
+    }
+
+    async fn aliases(&mut self, ship: &str) -> Result<()> {
+        let aliases = self.archive.store.aliases().list(ship, &Page::first(MAX_LIMIT)).await?;
+        let places = aliases.items.into_iter().map(|alias| (alias.alias, alias.version_number));
+        self.bundle.content.aliases.extend(places);
+        Ok(())
+    }
+}

@@ -1,0 +1,37 @@
+//! What an archive has of a ship, if it has it.
+
+use sistership_store::{MAX_LIMIT, Page, StoreError};
+
+use super::content::Revision;
+use super::error::BundleError;
+use crate::archive::Archive;
+
+type Result<T> = std::result::Result<T, BundleError>;
+
+/// What was found; nothing where it is not there.
+pub fn found<T>(result: std::result::Result<T, StoreError>) -> Result<Option<T>> {
+    match result {
+        Ok(found) => Ok(Some(found)),
+        Err(StoreError::NotFound { .. }) => Ok(None),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// The revisions of a ship, the first one first; none where there is no such ship.
+pub async fn revisions(archive: &Archive, name: &str) -> Result<Vec<Revision>> {
+    let mut all = Vec::new();
+    let mut page = Page::first(MAX_LIMIT);
+    loop {
+        let listed = archive.store.ships().revisions(name, &page).await;
+        let Some(listed) = found(listed)? else { return Ok(all) };
+        all.extend(listed.items.into_iter().map(|revision| Revision {
+            title: revision.title,
+            category: revision.category,
+            document: revision.document,
+        }));
+        let Some(next) = listed.next else { break };
+        page = Page::after(next, MAX_LIMIT);
+    }
+    all.reverse();
+    Ok(all)
+}

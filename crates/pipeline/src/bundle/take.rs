@@ -1,0 +1,202 @@
+//! From a bundle into an archive.
+//!
+//! Everything is looked at before anything is written. Rows are only added, and one that is there is
+//! left as it is, so that a bundle whose taking was interrupted is taken again.
+
+use serde::Serialize;
+use sistership_model::version::sha256;
+use sistership_store::{Expect, NewReport, NewShip, NewTrial, NewVersion, Version};
+
+use super::content::{Bundle, Content, ReportRecord, Revision, ShipRecord, VersionRecord};
+use super::error::BundleError;
+use super::history::{found, revisions};
+use crate::archive::Archive;
+use crate::line::{LATEST, step};
+
+type Result<T> = std::result::Result<T, BundleError>;
+
+/// What was new to the archive.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct Taken {
+    /// The ship.
+    pub ship: String,
+    /// Ships that were not there.
+    pub ships: Vec<String>,
+    /// Versions that were not there, `ship/number`.
+    pub versions: Vec<String>,
+    /// How many trials were not there.
+    pub trials: usize,
+    /// How many versions of the bundle were there already.
+    pub known: usize,
+}
+
+/// Takes a bundle in.
+///
+/// # Errors
+/// Names everything in the archive that contradicts the bundle, of which then nothing is taken.
+pub async fn take(archive: &Archive, bundle: &Bundle) -> Result<Taken> {
+    let content = &bundle.content;
+    let conflicts = conflicts(archive, content).await?;
+    if !conflicts.is_empty() {
+        return Err(BundleError::Conflicts(conflicts));
+    }
+    let mut taken = Taken { ship: content.ship.clone(), ..Taken::default() };
+    for (name, text) in &content.laws {
+        archive.store.laws().insert(name, text).await?;
+    }
+    for library in &content.effects {
+        archive.store.effects().keep(library).await?;
+    }
+    for ship in &content.ships {
+        taken.ships.extend(ship_taken(archive, ship).await?.then(|| ship.name.clone()));
+    }
+    for bytes in bundle.objects.values() {
+        archive.objects.put(bytes.clone()).await?;
+    }
+    taken.trials = trials_taken(archive, content).await?;
+    versions_taken(archive, content, &mut taken).await?;
+    aliases_taken(archive, content).await?;
+    Ok(taken)
+}
+
+/// What is there under the same name, and is something else.
+async fn conflicts(archive: &Archive, content: &Content) -> Result<Vec<String>> {
+    let mut all = Vec::new();
+    for (name, text) in &content.laws {
+        let known = found(archive.store.laws().get(name).await)?;
+        if known.is_some_and(|law| law.sha256 != sha256(text.as_bytes())) {
+            all.push(format!("the law `{name}` is another one here"));
+        }
+    }
+    for ship in &content.ships {
+        let known = revisions(archive, &ship.name).await?;
+        if known.iter().zip(&ship.revisions).any(|(here, there)| here.document != there.document) {
+            all.push(format!("the ship `{}` has another history here", ship.name));
+        }
+    }
+    for (line, number, version) in content.versions() {
+        let known = found(archive.store.versions().get(line, number).await)?;
+        if known.is_some_and(|known| known.head.sha256 != version.sha256) {
+            all.push(format!("version {line}/{number} is another one here"));
+        }
+    }
+    Ok(all)
+}
+
+/// Brings a ship up to the bundle's last revision; whether it was not there.
+async fn ship_taken(archive: &Archive, ship: &ShipRecord) -> Result<bool> {
+    let known = revisions(archive, &ship.name).await?.len();
+    for (before, revision) in ship.revisions.iter().enumerate().skip(known) {
+        let Revision { title, category, document } = revision.clone();
+        let new = NewShip { name: ship.name.clone(), title, category, document };
+        match before {
+            0 => archive.store.ships().create(&new).await?,
+            before => archive.store.ships().update(&new, before as i64).await?,
+        };
+    }
+    Ok(known == 0)
+}
+
+async fn trials_taken(archive: &Archive, content: &Content) -> Result<usize> {
+    let new = |trial: &super::content::TrialRecord| NewTrial {
+        ship: trial.ship.clone(),
+        sha256: trial.sha256.clone(),
+        name: trial.name.clone(),
+        manifest: trial.manifest.clone(),
+        conventions: trial.conventions.clone(),
+        manoeuvre: trial.manoeuvre.clone(),
+        sample_rows: trial.sample_rows,
+        duration_s: trial.duration_s,
+        warnings: trial.warnings.clone(),
+        object_key: trial.sha256.clone(),
+    };
+    let all: Vec<NewTrial> = content.trials.iter().map(new).collect();
+    let inserted = archive.store.trials().insert_all(&all).await?;
+    Ok(inserted.iter().filter(|trial| trial.new).count())
+}
+
+/// Makes the versions that are not there, parents first: a round takes those whose parent is there.
+async fn versions_taken(archive: &Archive, content: &Content, taken: &mut Taken) -> Result<()> {
+    let mut open: Vec<(&str, i64, &VersionRecord)> = content.versions().collect();
+    while !open.is_empty() {
+        let (mut later, before) = (Vec::new(), open.len());
+        for (line, number, version) in open {
+            let name = format!("{line}/{number}");
+            if found(archive.store.versions().get(line, number).await)?.is_some() {
+                taken.known += 1;
+            } else if let Some(parent) = ready(archive, line, number, version).await? {
+                version_taken(archive, (line, number), version, parent).await?;
+                taken.versions.push(name);
+            } else {
+                later.push((line, number, version));
+            }
+        }
+        if later.len() == before {
+            let (line, number, _) = later[0];
+            return Err(BundleError::File(format!("lacks what {line}/{number} was made from")));
+        }
+        open = later;
+    }
+    Ok(())
+}
+
+/// The id of the parent, if there is one to be; nothing while it or the version before is missing.
+async fn ready(
+    archive: &Archive,
+    line: &str,
+    number: i64,
+    version: &VersionRecord,
+) -> Result<Option<Option<String>>> {
+    let at = async |line: &str, number: i64| -> Result<Option<Version>> {
+        found(archive.store.versions().get(line, number).await)
+    };
+    if number > 1 && at(line, number - 1).await?.is_none() {
+        return Ok(None);
+    }
+    match &version.parent {
+        None => Ok(Some(None)),
+        Some((line, number)) => Ok(at(line, *number).await?.map(|parent| Some(parent.head.id))),
+    }
+}
+
+async fn version_taken(
+    archive: &Archive,
+    (line, number): (&str, i64),
+    version: &VersionRecord,
+    parent: Option<String>,
+) -> Result<()> {
+    let new = NewVersion {
+        model: line.to_owned(),
+        parent,
+        law: version.law.clone(),
+        method: version.method.clone(),
+        document: version.document.clone(),
+        weights: version.weights.clone(),
+    };
+    let follow = step(LATEST, Expect::Any, "bundle");
+    let made = archive.store.versions().create(&new, &[follow]).await?;
+    if (made.number, &made.sha256) != (number, &version.sha256) {
+        let message = format!("{line}/{number} became {line}/{}: others write to it", made.number);
+        return Err(BundleError::File(message));
+    }
+    for ReportRecord { kind, document, html } in version.reports.clone() {
+        let (version_id, ship) = (Some(made.id.clone()), line.to_owned());
+        archive
+            .store
+            .reports()
+            .insert(&NewReport { version_id, ship, kind, document, html })
+            .await?;
+    }
+    Ok(())
+}
+
+/// Sets the aliases of the ship that are not there; one that is there stays where it stands.
+async fn aliases_taken(archive: &Archive, content: &Content) -> Result<()> {
+    for (alias, number) in content.aliases.iter().filter(|(alias, _)| *alias != LATEST) {
+        if found(archive.store.aliases().get(&content.ship, alias).await)?.is_none() {
+            let change = step(alias, Expect::Absent, "bundle");
+            archive.store.aliases().move_to(&content.ship, *number, &change).await?;
+        }
+    }
+    Ok(())
+}

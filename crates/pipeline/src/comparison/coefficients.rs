@@ -1,0 +1,41 @@
+//! Coefficients side by side.
+
+use std::collections::BTreeSet;
+
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::compared::Compared;
+
+/// The value of a coefficient in one model.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
+pub struct Estimate {
+    /// Its value.
+    pub value: f64,
+    /// Its standard error, where one is known.
+    pub standard_error: Option<f64>,
+}
+
+/// A coefficient in every model.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+pub struct ComparedCoefficient {
+    /// Its name.
+    pub name: String,
+    /// Its value in each model; null where the model does not have it.
+    pub values: Vec<Option<Estimate>>,
+}
+
+/// Every coefficient that one of the models has. Models of different laws may give one name to what
+/// is not the same.
+pub fn side_by_side(compared: &[Compared<'_>]) -> Vec<ComparedCoefficient> {
+    let names: BTreeSet<&String> =
+        compared.iter().flat_map(|one| one.model.coefficients.keys()).collect();
+    let row = |name: &String| {
+        let of = |one: &Compared<'_>| {
+            let quantity = one.model.coefficients.get(name)?;
+            Some(Estimate { value: quantity.value, standard_error: quantity.standard_error })
+        };
+        ComparedCoefficient { name: name.clone(), values: compared.iter().map(of).collect() }
+    };
+    names.into_iter().map(row).collect()
+}

@@ -1,0 +1,116 @@
+//! Which ships somebody should look at first, as facts by which they are listed.
+
+use serde_json::Value;
+use sistership_store::{FactRange, Store, StoreError};
+
+use crate::condition::{Condition, Standing};
+use crate::version::VersionDocument;
+
+/// Orders ships, the one that most needs somebody first: its class, and within it the larger error
+/// first.
+pub const ORDER: &str = "standing order";
+/// The error of a ship's champion on manoeuvres left out, see [`error`].
+pub const ERROR: &str = "standing error";
+
+/// How a ship stands, the worst first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Class {
+    /// A diagnosis says that its champion lacks something.
+    DoesNotHold,
+    /// It has a champion that no diagnosis speaks of.
+    Unknown,
+    /// It has no model yet.
+    NoModel,
+    /// The residual of its champion is what the noise predicts.
+    Holds,
+}
+
+impl Class {
+    /// Every class, the worst first.
+    pub const ALL: [Self; 4] = [Self::DoesNotHold, Self::Unknown, Self::NoModel, Self::Holds];
+
+    /// Of a ship in this condition.
+    pub fn of(condition: &Condition) -> Self {
+        match (condition.model, condition.version) {
+            (Standing::DoesNotHold, _) => Self::DoesNotHold,
+            (Standing::Holds, _) => Self::Holds,
+            (Standing::Unknown, Some(_)) => Self::Unknown,
+            (Standing::Unknown, None) => Self::NoModel,
+        }
+    }
+
+    /// As addresses have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::DoesNotHold => "does-not-hold",
+            Self::Unknown => "unknown",
+            Self::NoModel => "no-model",
+            Self::Holds => "holds",
+        }
+    }
+
+    /// The class of this name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|class| class.name() == name)
+    }
+
+    /// The range that finds the ships of this class, in their order.
+    pub fn range(self) -> FactRange {
+        let first = f64::from(self as u8);
+        FactRange { fact: ORDER.to_owned(), min: first, max: first + WIDTH }
+    }
+
+    /// The range that finds the ships of every class, in their order.
+    pub fn every() -> FactRange {
+        FactRange { fact: ORDER.to_owned(), min: 0.0, max: Self::ALL.len() as f64 }
+    }
+}
+
+/// How much of the distance between two classes the errors take.
+const WIDTH: f64 = 0.999;
+
+fn order(class: Class, error: Option<f64>) -> f64 {
+    f64::from(class as u8) + WIDTH / (1.0 + error.unwrap_or(0.0).max(0.0))
+}
+
+/// The error of a refined model on manoeuvres left out, as its report has it: the mean squared error
+/// of what was simulated, by the variance of what was measured.
+pub fn error(version: &VersionDocument) -> Option<f64> {
+    let options = version.report["options"].as_array()?;
+    let chosen = options.iter().find(|step| step["chosen"] == Value::Bool(true))?;
+    chosen["error"].as_f64().filter(|error| error.is_finite())
+}
+
+/// The facts of a ship.
+pub(super) async fn facts(
+    store: &Store,
+    ship: &str,
+    champion: Option<&VersionDocument>,
+) -> Result<Vec<(String, f64)>, StoreError> {
+    let class = Class::of(&Condition::of(store, ship).await?);
+    let error = champion.and_then(error);
+    let facts = [(ORDER, Some(order(class, error))), (ERROR, error)];
+    Ok(facts.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_worse_class_is_first_and_in_it_the_larger_error() {
+        let ordered = [
+            order(Class::DoesNotHold, Some(2.0)),
+            order(Class::DoesNotHold, Some(0.1)),
+            order(Class::DoesNotHold, None),
+            order(Class::Unknown, Some(1e9)),
+            order(Class::Holds, Some(0.1)),
+        ];
+        assert!(ordered.is_sorted(), "{ordered:?}");
+        for class in Class::ALL {
+            let range = class.range();
+            assert!((range.min..=range.max).contains(&order(class, None)));
+            assert_eq!(Class::by_name(class.name()), Some(class));
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! The outline of a ship on its track, to scale.
+
+use sistership_model::particulars::Particulars;
+
+/// The particulars that an outline is drawn from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hull {
+    /// Length between perpendiculars, m.
+    pub lpp_m: f64,
+    /// Beam, m.
+    pub beam_m: f64,
+}
+
+/// Half of the outline from bow to stern: forward of midship by L, to starboard by B. Only length
+/// and beam are the ship's own.
+const HALF: [(f64, f64); 6] =
+    [(0.5, 0.0), (0.42, 0.24), (0.3, 0.44), (0.18, 0.5), (-0.38, 0.5), (-0.5, 0.36)];
+
+impl Hull {
+    /// Of a ship whose length and beam are known.
+    pub fn of(particulars: &Particulars) -> Option<Self> {
+        let known = |name: &str| particulars.get(name).map(|quantity| quantity.value);
+        Some(Self { lpp_m: known("lpp_m")?, beam_m: known("beam_m")? })
+    }
+
+    /// The corners of the outline at a place `(north, east)` and heading, m: clockwise from the bow.
+    pub fn outline(&self, (north, east): (f64, f64), psi_rad: f64) -> Vec<(f64, f64)> {
+        let (sin, cos) = psi_rad.sin_cos();
+        let starboard = HALF.iter().map(|&(x, y)| (x, y));
+        let port = HALF.iter().skip(1).rev().map(|&(x, y)| (x, -y));
+        let placed = |(x, y): (f64, f64)| {
+            let (forward, right) = (x * self.lpp_m, y * self.beam_m);
+            (north + forward * cos - right * sin, east + forward * sin + right * cos)
+        };
+        starboard.chain(port).map(placed).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bow_points_along_the_heading() {
+        let hull = Hull { lpp_m: 100.0, beam_m: 20.0 };
+        let bow = hull.outline((10.0, 20.0), std::f64::consts::FRAC_PI_2)[0];
+        assert!((bow.0 - 10.0).abs() < 1e-9 && (bow.1 - 70.0).abs() < 1e-9, "{bow:?}");
+        let widest = hull.outline((0.0, 0.0), 0.0).iter().map(|point| point.1).fold(0.0, f64::max);
+        assert!((widest - 10.0).abs() < 1e-9);
+    }
+}
