@@ -114,10 +114,12 @@ pub fn fit(motions: &[Motion], training: &SequenceTraining) -> Option<Fit> {
         return None;
     }
     let scales = Scales::of(motions);
-    let (kept, seen): (Vec<(usize, Place)>, Vec<(usize, Place)>) =
-        places(motions, training).into_iter().enumerate().partition(|(k, _)| k % VALIDATION == 0);
-    let bare = |some: Vec<(usize, Place)>| some.into_iter().map(|(_, place)| place).collect();
-    let (kept, seen): (Vec<Place>, Vec<Place>) = (bare(kept), bare(seen));
+    let places = places(motions, training);
+    let part = |kept: bool| -> Vec<Place> {
+        let own = places.iter().enumerate().filter(|(k, _)| (k % VALIDATION == 0) == kept);
+        own.map(|(_, place)| *place).collect()
+    };
+    let (kept, seen) = (part(true), part(false));
     if seen.is_empty() {
         return None;
     }
@@ -280,10 +282,9 @@ impl Trainee<'_> {
             let Some(one) = &unrolled[step] else { continue };
             let from = self.network.sees_from(step);
             for (back, seen) in self.network.back(one, &outputs, &mut gradient).iter().enumerate() {
-                for axis in 0..3 {
-                    blame.velocities[from + back][axis] +=
-                        seen[axis] / self.scales.velocities[axis];
-                }
+                let at = &mut blame.velocities[from + back];
+                let scaled = seen.iter().zip(&self.scales.velocities);
+                at.iter_mut().zip(scaled).for_each(|(at, (seen, scale))| *at += seen / scale);
             }
         }
         (blame.loss, gradient)
