@@ -14,6 +14,7 @@ mod judge;
 mod kernels;
 mod learned;
 mod perceptron;
+pub mod recurrent;
 mod regressor;
 mod rows;
 mod sample;

@@ -1,7 +1,7 @@
 //! Learned branches on data, one command each:
 //!
 //! `cargo run --release -p sistership-branches --example branches -- rm-rf`, or `esso-osaka`,
-//! which takes the window in seconds after it, or `rates`.
+//! which takes the window in seconds after it, or `wakita`, which takes the epochs, or `rates`.
 
 #[path = "../../src/esso_osaka.rs"]
 mod esso_osaka;
@@ -13,6 +13,7 @@ mod rm_rf_data;
 #[path = "../../accuracy/esso_osaka/score.rs"]
 #[allow(dead_code)]
 mod score;
+mod wakita;
 
 fn main() {
     let asked = std::env::args().nth(1).unwrap_or_default();
@@ -20,7 +21,8 @@ fn main() {
     match asked.as_str() {
         "rm-rf" => rm_rf::run(),
         "esso-osaka" => osaka::run(window_s.unwrap_or(osaka::WINDOW_S)),
+        "wakita" => wakita::run(window_s.map_or(wakita::EPOCHS, |epochs: f64| epochs as usize)),
         "rates" => rates::run(),
-        _ => println!("which? rm-rf, esso-osaka or rates"),
+        _ => println!("which? rm-rf, esso-osaka, wakita or rates"),
     }
 }

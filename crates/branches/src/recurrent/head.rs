@@ -1,0 +1,77 @@
+//! What stands above a recurrent cell: two layers of neurons and a sum for each output, to none of
+//! which anything comes of nothing (Wakita 2022, Eq. 8).
+
+use super::cell::neuron;
+
+/// Answers of the layers, and slopes there, as the gradient needs them.
+#[derive(Debug, Clone)]
+pub struct HeadStep {
+    inputs: [Vec<f64>; 3],
+    slopes: [Vec<f64>; 2],
+}
+
+/// Numbers of the head.
+pub fn numbers(width: usize, outputs: usize) -> usize {
+    2 * width * (width + 1) + outputs * width
+}
+
+/// The outputs for a cell's answer.
+pub fn forward(numbers: &[f64], answer: &[f64], outputs: usize) -> (Vec<f64>, HeadStep) {
+    let width = answer.len();
+    let mut inputs: [Vec<f64>; 3] = Default::default();
+    let mut slopes: [Vec<f64>; 2] = Default::default();
+    inputs[0] = answer.to_vec();
+    for (layer, weights) in
+        numbers[..2 * width * (width + 1)].chunks(width * (width + 1)).enumerate()
+    {
+        let answers: Vec<(f64, f64)> = weights
+            .chunks_exact(width + 1)
+            .map(|row| {
+                let sum = row[width] + dot(row, &inputs[layer]);
+                let (answer, slope) = neuron(sum);
+                (answer - neuron(row[width]).0, slope)
+            })
+            .collect();
+        inputs[layer + 1] = answers.iter().map(|(answer, _)| *answer).collect();
+        slopes[layer] = answers.iter().map(|(_, slope)| *slope).collect();
+    }
+    let last = &numbers[2 * width * (width + 1)..];
+    let out = last.chunks_exact(width).take(outputs).map(|row| dot(row, &inputs[2])).collect();
+    (out, HeadStep { inputs, slopes })
+}
+
+fn dot(row: &[f64], inputs: &[f64]) -> f64 {
+    row.iter().zip(inputs).map(|(w, x)| w * x).sum()
+}
+
+/// How an error that changes with the outputs changes with the cell's answer; the changes with the
+/// numbers are added to `gradient`.
+pub fn backward(numbers: &[f64], step: &HeadStep, blame: &[f64], gradient: &mut [f64]) -> Vec<f64> {
+    let width = step.inputs[0].len();
+    let layer = width * (width + 1);
+    let mut back = vec![0.0; width];
+    let rows = numbers[2 * layer..].chunks_exact(width);
+    let slopes = gradient[2 * layer..].chunks_exact_mut(width);
+    for ((row, slopes), blame) in rows.zip(slopes).zip(blame) {
+        add(slopes, &step.inputs[2], *blame);
+        add(&mut back, row, *blame);
+    }
+    for place in [1, 0] {
+        let mut before = vec![0.0; width];
+        let own = place * layer..(place + 1) * layer;
+        let rows = numbers[own.clone()].chunks_exact(width + 1);
+        let slopes = gradient[own].chunks_exact_mut(width + 1);
+        for (k, (row, slopes)) in rows.zip(slopes).enumerate() {
+            let sum = back[k] * step.slopes[place][k];
+            add(&mut slopes[..width], &step.inputs[place], sum);
+            slopes[width] += sum - back[k] * neuron(row[width]).1;
+            add(&mut before, &row[..width], sum);
+        }
+        back = before;
+    }
+    back
+}
+
+fn add(to: &mut [f64], what: &[f64], times: f64) {
+    to.iter_mut().zip(what).for_each(|(to, what)| *to += times * what);
+}
