@@ -36,11 +36,12 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("pages", &["model", "dynamics", "trials", "estimate", "store", "report", "pipeline"]),
     ("listen", &[]),
     ("fields", &["store"]),
+    ("predict", &["model", "dynamics", "bands", "fields", "pipeline"]),
     (
         "server",
         &[
             "model", "dynamics", "branches", "trials", "bands", "estimate", "choice", "diagnose",
-            "fleet", "store", "report", "pipeline", "pages", "listen", "fields",
+            "fleet", "store", "report", "pipeline", "pages", "listen", "fields", "predict",
         ],
     ),
     (
@@ -171,7 +172,7 @@ fn the_fields_own_words_are_used() {
 }
 
 /// The largest crate, without its tests: beyond this a room does several things.
-const LINES_OF_A_CRATE: usize = 9500;
+const LINES_OF_A_CRATE: usize = 9000;
 
 #[test]
 fn no_crate_is_too_large() {

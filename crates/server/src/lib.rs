@@ -12,7 +12,6 @@ mod jobs;
 #[cfg(test)]
 mod journey;
 mod metrics;
-mod predict;
 mod problem;
 mod process;
 mod routes;

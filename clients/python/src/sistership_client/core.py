@@ -12,9 +12,18 @@ AliasStep = TypedDict('AliasStep', {'actor': 'str', 'from': 'Union[int, None]', 
 AliasView = TypedDict('AliasView', {'alias': 'str', 'model': 'str', 'revision': 'int', 'version': 'int'}, total=True)
 AppliedEffect = TypedDict('AppliedEffect', {'acts_on': 'ActsOn', 'form': 'FormFile', 'name': 'str', 'parameters': 'Dict[str, Quantity]'}, total=True)
 Asked = TypedDict('Asked', {'chunk_ships': 'Union[int, None]', 'prior': 'PriorChoice', 'rule': 'Rule', 'settings': 'BulkSettings', 'start': 'Start'}, total=False)
+Axis = Any  # An axis of the equations of motion.
 BandsRequest = TypedDict('BandsRequest', {'samples': 'Union[int, None]', 'seed': 'Union[int, None]'}, total=False)
 Binary = Any  # A file as it is.
 Bound = TypedDict('Bound', {'max': 'Union[float, None]', 'min': 'Union[float, None]'}, total=False)
+Branch = TypedDict('Branch', {'domain': 'Region', 'fade': 'float', 'mode': 'BranchMode', 'outputs': 'List[BranchOutput]', 'recipe': 'BranchRecipe', 'weights_sha256': 'str'}, total=True)
+BranchInput = TypedDict('BranchInput', {'centre': 'float', 'scale': 'float', 'signal': 'Signal'}, total=True)
+BranchKind = Any  # A kind of learner, with settings that restrain it as small data need.
+BranchMode = Any  # How a branch is joined to its foundation.
+BranchOutput = TypedDict('BranchOutput', {'axis': 'Axis', 'inputs': 'List[BranchInput]', 'range': 'List[float]', 'scale': 'float'}, total=True)
+BranchRecipe = TypedDict('BranchRecipe', {'hop_s': 'float', 'learner': 'Learner', 'seed': 'int', 'trials': 'List[str]', 'window_s': 'float'}, total=True)
+BranchRequest = TypedDict('BranchRequest', {'model': 'str', 'settings': 'BranchSettings', 'trials': 'Union[List[str], None]'}, total=False)
+BranchSettings = TypedDict('BranchSettings', {'fade': 'Union[float, None]', 'hop_s': 'Union[float, None]', 'kind': 'Union[BranchKind, None]', 'learner': 'Union[Learner, None]', 'mode': 'Union[BranchMode, None]', 'seed': 'Union[int, None]', 'window_s': 'Union[float, None]'}, total=False)
 BulkSettings = TypedDict('BulkSettings', {'difference_s': 'Union[float, None]', 'lambda_count': 'int', 'lambda_max': 'float', 'lambda_min': 'float'}, total=False)
 BulkStanding = TypedDict('BulkStanding', {'chunks': 'Dict[str, int]', 'done': 'int', 'left_s': 'Union[float, None]', 'outcomes': 'Dict[str, int]', 'progress': 'float', 'ships': 'int', 'ships_per_s': 'Union[float, None]', 'state': 'str'}, total=False)
 BulkView = Any  # A refinement of all members of a family.
@@ -54,6 +63,7 @@ IntegrationMethod = Any  # An integration method.
 JobView = TypedDict('JobView', {'attempt': 'int', 'cancel_requested': 'bool', 'created_us': 'int', 'error': 'Union[str, None]', 'finished_us': 'Union[int, None]', 'id': 'str', 'kind': 'str', 'message': 'str', 'progress': 'float', 'request': 'Dict[str, Any]', 'result': 'Union[Dict[str, Any], None]', 'ship': 'Union[str, None]', 'started_us': 'Union[int, None]', 'state': 'str'}, total=False)
 LawHead = TypedDict('LawHead', {'created_us': 'int', 'name': 'str', 'sha256': 'str'}, total=True)
 LawText = TypedDict('LawText', {'created_us': 'int', 'document': 'str', 'name': 'str', 'sha256': 'str'}, total=True)
+Learner = Any  # What learns.
 Listing_AliasStep = TypedDict('Listing_AliasStep', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_AliasView = TypedDict('Listing_AliasView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_BulkView = TypedDict('Listing_BulkView', {'items': 'List[Any]', 'next': 'Union[str, None]'}, total=False)
@@ -71,7 +81,7 @@ ManoeuvreRequest = TypedDict('ManoeuvreRequest', {'all': 'bool', 'bands': 'Union
 MemberDrift = TypedDict('MemberDrift', {'condition': 'Condition', 'drift': 'Union[Drift, None]', 'ship': 'str'}, total=False)
 MemberView = TypedDict('MemberView', {'added_us': 'int', 'champion': 'Union[int, None]', 'method': 'Union[str, None]', 'ship': 'str'}, total=False)
 Mirror = Any  # What a parameter becomes when the ship is mirrored port to starboard.
-Model = TypedDict('Model', {'coefficients': 'Dict[str, Quantity]', 'effects': 'List[AppliedEffect]', 'kind': 'ModelKind', 'law': 'str', 'name': 'str', 'note': 'Union[str, None]', 'parameters': 'Dict[str, Quantity]', 'particulars': 'Dict[str, Quantity]', 'posterior': 'Union[Posterior, None]', 'revolutions_rps': 'Union[float, None]', 'ship': 'str', 'sources': 'Dict[str, Source]', 'speed_m_s': 'Union[float, None]', 'status': 'Status', 'steering': 'Steering', 'uncertainty': 'Union[Uncertainty, None]', 'validity': 'Union[Region, None]'}, total=False)
+Model = TypedDict('Model', {'branch': 'Union[Branch, None]', 'coefficients': 'Dict[str, Quantity]', 'effects': 'List[AppliedEffect]', 'kind': 'ModelKind', 'law': 'str', 'name': 'str', 'note': 'Union[str, None]', 'parameters': 'Dict[str, Quantity]', 'particulars': 'Dict[str, Quantity]', 'posterior': 'Union[Posterior, None]', 'revolutions_rps': 'Union[float, None]', 'ship': 'str', 'sources': 'Dict[str, Source]', 'speed_m_s': 'Union[float, None]', 'status': 'Status', 'steering': 'Steering', 'uncertainty': 'Union[Uncertainty, None]', 'validity': 'Union[Region, None]'}, total=False)
 ModelKind = Any  # The word `model`.
 NewFamily = TypedDict('NewFamily', {'foundation': 'str', 'members': 'List[str]', 'name': 'str', 'title': 'Union[str, None]'}, total=False)
 NewFoundation = TypedDict('NewFoundation', {'foundation': 'str'}, total=True)
@@ -101,6 +111,7 @@ Sampling = TypedDict('Sampling', {'samples': 'int', 'seed': 'int', 'within_steps
 Section = TypedDict('Section', {'source': 'Union[str, None]', 'values': 'Dict[str, Written]'}, total=False)
 ShipDetail = TypedDict('ShipDetail', {'category': 'str', 'condition': 'Condition', 'created_us': 'int', 'document': 'Dict[str, Any]', 'name': 'str', 'revision': 'int', 'title': 'str', 'updated_us': 'int'}, total=True)
 ShipHead = TypedDict('ShipHead', {'category': 'str', 'created_us': 'int', 'name': 'str', 'revision': 'int', 'title': 'str', 'updated_us': 'int', 'value': 'Union[float, None]'}, total=False)
+Signal = Any  # What a branch can be told from.
 Source = TypedDict('Source', {'citation': 'str', 'doi': 'Union[str, None]', 'note': 'Union[str, None]'}, total=False)
 Standing = Any  # Whether a model holds.
 Start = Any  # Where a member starts.
@@ -142,6 +153,10 @@ class Core:
     def get_readyz(self) -> Health:
         """Whether the server can work: its database and its object store answer, and it is not stopping."""
         return self.http.json('GET', '/readyz')
+
+    def post_branches(self, body: BranchRequest, *, idempotency_key: Optional[str] = None) -> JobView:
+        """Train a learned branch beside a version."""
+        return self.http.json('POST', '/v1/branches', headers={'Idempotency-Key': idempotency_key}, json=body)
 
     def get_bulk_refinements(self, *, family: Optional[str] = None, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_BulkView:
         """List the refinements of families, the latest first."""
@@ -298,6 +313,10 @@ class Core:
     def post_models_model_versions_number_verify(self, model: str, number: int) -> Verification:
         """Derive a version again from its recipe, and compare the bytes."""
         return self.http.json('POST', f'/v1/models/{model}/versions/{number}/verify')
+
+    def get_models_model_versions_number_weights(self, model: str, number: int) -> Dict[str, Any]:
+        """The weights of a version's learned branch."""
+        return self.http.json('GET', f'/v1/models/{model}/versions/{number}/weights')
 
     def post_predictions(self, body: PredictionRequest) -> Dict[str, Any]:
         """Simulate a manoeuvre, or recorded inputs, with a version of a model."""

@@ -14,6 +14,7 @@ use super::{Fault, Problem};
 use sistership_pipeline::budget::Shortage;
 use sistership_pipeline::error::DeriveError;
 use sistership_pipeline::fleet::OrderError;
+use sistership_predict::PredictError;
 
 impl From<StoreError> for Problem {
     fn from(error: StoreError) -> Self {
@@ -99,6 +100,16 @@ impl From<PageError> for Problem {
             PageError::Derive(error) => error.into(),
             PageError::Invalid { field, message } => Self::invalid(&field, message),
             PageError::Render(_) => Self::internal(error),
+        }
+    }
+}
+
+impl From<PredictError> for Problem {
+    fn from(error: PredictError) -> Self {
+        match error {
+            PredictError::Field { field, message } => Self::invalid(&field, message),
+            PredictError::Memory(shortage) => shortage.into(),
+            PredictError::Answer(error) => Self::internal(error),
         }
     }
 }

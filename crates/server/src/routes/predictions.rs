@@ -5,12 +5,12 @@ use axum::extract::State;
 use serde_json::{Value, json};
 use sistership_model::Model;
 use sistership_model::branch::Branch;
+use sistership_predict::{PredictionRequest, predict};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::model_ref::resolve;
 use crate::app::App;
-use crate::predict::{PredictionRequest, predict};
 use crate::problem::Result;
 use crate::web::Payload;
 

@@ -8,12 +8,12 @@ use sistership_model::trial::{Channel, Trial};
 use utoipa::ToSchema;
 
 use super::track::{bounded, columns, with_share};
-use crate::problem::{Problem, Result};
+use crate::error::{PredictError, Result};
 
 /// Recorded inputs.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct InputsRequest {
+pub struct InputsRequest {
     /// Times, increasing and without gaps.
     #[schema(min_items = 2)]
     t_s: Vec<f64>,
@@ -30,7 +30,7 @@ pub(crate) struct InputsRequest {
 /// A state; what is not given is 0.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct InitialState {
+pub struct InitialState {
     u_m_s: f64,
     #[serde(default)]
     v_m_s: f64,
@@ -70,7 +70,7 @@ impl InputsRequest {
         bounded("inputs.t_s", trial.duration_s() / settings.step_s + trial.len() as f64, most)?;
         ship.set_envelope_speed(self.start.u_m_s.hypot(self.start.v_m_s));
         let run = replay(ship, &trial, &settings)
-            .map_err(|error| Problem::invalid("inputs", error.to_string()))?;
+            .map_err(|error| PredictError::invalid("inputs", error.to_string()))?;
         let stopped =
             run.stopped.map(|stopped| json!({ "t_s": stopped.t_s, "reason": stopped.reason }));
         let answer = json!({ "metrics": null, "trajectory": columns(&run.track), "stopped": stopped, "outside": run.outside });
@@ -84,7 +84,7 @@ impl InputsRequest {
         let n = self.n_rps.clone().unwrap_or_else(steady);
         for (field, values) in [("inputs.delta_rad", &self.delta_rad), ("inputs.n_rps", &n)] {
             if values.len() != count {
-                return Err(Problem::invalid(
+                return Err(PredictError::invalid(
                     field,
                     format!("has {} values, `t_s` has {count}", values.len()),
                 ));
@@ -101,7 +101,7 @@ impl InputsRequest {
 }
 
 fn check_times(trial: &Trial) -> Result<()> {
-    let refuse = |message: String| Err(Problem::invalid("inputs.t_s", message));
+    let refuse = |message: String| Err(PredictError::invalid("inputs.t_s", message));
     if trial.len() < 2 {
         return refuse("give at least two times".into());
     }

@@ -1,5 +1,6 @@
 //! Predictions: a model sails a manoeuvre, or follows recorded inputs.
 
+mod error;
 mod inputs;
 mod manoeuvre;
 mod track;
@@ -10,19 +11,18 @@ use sistership_dynamics::Ship;
 use sistership_model::{Law, Model};
 use utoipa::ToSchema;
 
-pub(crate) use inputs::InputsRequest;
-pub(crate) use manoeuvre::ManoeuvreRequest;
+pub use error::{PredictError, Result};
+pub use inputs::{InitialState, InputsRequest};
+pub use manoeuvre::{BandsRequest, ManoeuvreRequest, ZigzagRequest};
 
-use crate::problem::{Problem, Result};
-use crate::web::ModelName;
-use crate::web::field::Positive;
 use manoeuvre::Whose;
+use sistership_fields::{ModelName, Positive};
 
 /// What is to be simulated: a manoeuvre or recorded inputs.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct PredictionRequest {
-    /// `ship` (her champion), `ship/number` or `ship/alias`.
+pub struct PredictionRequest {
+    /// `ship` (its champion), `ship/number` or `ship/alias`.
     #[schema(inline)]
     pub model: ModelName,
     /// Water depth for laws that know it, m; deep where absent.
@@ -35,14 +35,17 @@ pub(crate) struct PredictionRequest {
 }
 
 /// Simulates; no track has more than `most` samples.
-pub(crate) fn predict(
+///
+/// # Errors
+/// Names the field of the request that is at fault, or the memory that is lacking.
+pub fn predict(
     request: &PredictionRequest,
     model: &Model,
     law: &Law,
     most: usize,
 ) -> Result<Value> {
     let mut ship =
-        Ship::new(model, law).map_err(|error| Problem::invalid("model", error.to_string()))?;
+        Ship::new(model, law).map_err(|error| PredictError::invalid("model", error.to_string()))?;
     if let Some(depth) = request.depth_m {
         ship.set_depth(depth.get());
     }
@@ -53,7 +56,7 @@ pub(crate) fn predict(
             most,
         ),
         (None, Some(inputs)) => inputs.follow(&mut ship, most),
-        _ => Err(Problem::invalid("manoeuvre", "give either `manoeuvre` or `inputs`")),
+        _ => Err(PredictError::invalid("manoeuvre", "give either `manoeuvre` or `inputs`")),
     }
 }
 
@@ -71,9 +74,16 @@ mod tests {
         let model = zoo.model(ship).unwrap();
         let request: PredictionRequest =
             serde_path_to_error::deserialize(request).map_err(|error| {
-                Problem::invalid(&error.path().to_string(), error.inner().to_string())
+                PredictError::invalid(&error.path().to_string(), error.inner().to_string())
             })?;
         predict(&request, &model, zoo.law(&model.law).unwrap(), 100_000)
+    }
+
+    fn field(error: PredictError) -> String {
+        match error {
+            PredictError::Field { field, .. } => field,
+            other => panic!("{other}"),
+        }
     }
 
     #[test]
@@ -128,7 +138,7 @@ mod tests {
         assert!(turn["outside"].is_null());
         let published =
             ask("mariner", json!({ "model": "m", "manoeuvre": { "all": true, "bands": {} } }));
-        assert_eq!(published.unwrap_err().errors[0].field.as_deref(), Some("manoeuvre.bands"));
+        assert_eq!(published.map_err(field).unwrap_err(), "manoeuvre.bands");
     }
 
     #[test]
@@ -143,8 +153,7 @@ mod tests {
 
     #[test]
     fn impossible_requests_are_refused_by_field() {
-        let field =
-            |request: Value| ask("mariner", request).unwrap_err().errors[0].field.clone().unwrap();
+        let field = |request: Value| ask("mariner", request).map_err(field).unwrap_err();
         let inputs = |t: Value, delta: Value| json!({ "model": "m", "inputs": { "t_s": t, "delta_rad": delta, "start": { "u_m_s": 8.0 } } });
         assert_eq!(field(json!({ "model": "m" })), "manoeuvre");
         assert_eq!(

@@ -9,8 +9,8 @@ use sistership_model::{Law, Model};
 use utoipa::ToSchema;
 
 use super::track::{bounded, columns, positive, with_share};
-use crate::problem::{Problem, Result};
-use crate::web::field::{Angle, Positive, SampleCount};
+use crate::error::{PredictError, Result};
+use sistership_fields::{Angle, Positive, SampleCount};
 
 /// Longest step.
 const STEP_S: f64 = 0.1;
@@ -18,7 +18,7 @@ const STEP_S: f64 = 0.1;
 /// One of `turn_deg`, `zigzag` and `all`.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct ManoeuvreRequest {
+pub struct ManoeuvreRequest {
     /// A turning circle with this rudder angle, positive to starboard.
     #[schema(inline)]
     turn_deg: Option<Angle>,
@@ -39,7 +39,7 @@ pub(crate) struct ManoeuvreRequest {
 /// How a posterior is sampled.
 #[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct BandsRequest {
+pub struct BandsRequest {
     /// Models drawn; 100 where absent.
     #[schema(inline)]
     samples: Option<SampleCount>,
@@ -50,7 +50,7 @@ pub(crate) struct BandsRequest {
 /// A zigzag.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct ZigzagRequest {
+pub struct ZigzagRequest {
     /// Rudder angle, positive where the first execution is to starboard.
     #[schema(inline)]
     rudder_deg: Angle,
@@ -63,7 +63,7 @@ impl ManoeuvreRequest {
     pub(super) fn sail(&self, ship: &mut Ship, whose: Whose<'_>, most: usize) -> Result<Value> {
         let settings = self.settings(ship, most)?;
         if self.bands.is_some() && !self.all {
-            return Err(Problem::invalid(
+            return Err(PredictError::invalid(
                 "manoeuvre.bands",
                 "are those of all standard manoeuvres: give `all`",
             ));
@@ -83,15 +83,16 @@ impl ManoeuvreRequest {
                 Ok(with_share(answer, ship, &sailed.track))
             }
             (None, None, true) => {
-                let mut sailed =
-                    serde_json::to_value(standard(ship, &settings)).map_err(Problem::internal)?;
+                let mut sailed = serde_json::to_value(standard(ship, &settings))?;
                 if let Some(request) = self.bands {
-                    sailed["bands"] = serde_json::to_value(request.drawn(whose, &settings)?)
-                        .map_err(Problem::internal)?;
+                    sailed["bands"] = serde_json::to_value(request.drawn(whose, &settings)?)?;
                 }
                 Ok(sailed)
             }
-            _ => Err(Problem::invalid("manoeuvre", "give one of `turn_deg`, `zigzag` and `all`")),
+            _ => Err(PredictError::invalid(
+                "manoeuvre",
+                "give one of `turn_deg`, `zigzag` and `all`",
+            )),
         }
     }
 
@@ -103,7 +104,7 @@ impl ManoeuvreRequest {
             self.speed_m_s.map_or(ship.approach_speed_m_s(), Positive::get),
         )?;
         if self.n_rps.is_some_and(|n| !n.is_finite()) {
-            return Err(Problem::invalid("manoeuvre.n_rps", "must be a number"));
+            return Err(PredictError::invalid("manoeuvre.n_rps", "must be a number"));
         }
         let length_s = ship.lpp_m() / speed;
         let step_s = STEP_S.min(0.02 * length_s);
@@ -132,7 +133,7 @@ impl BandsRequest {
             Sampling { samples, seed: self.seed.unwrap_or(default.seed), within_steps: true };
         let none = || {
             let why = "only a refined one whose coefficients are those that were estimated has one";
-            Problem::invalid(
+            PredictError::invalid(
                 "manoeuvre.bands",
                 format!("the model has no posterior to draw from; {why}"),
             )
@@ -142,8 +143,8 @@ impl BandsRequest {
     }
 }
 
-fn diverged(stopped: Stopped) -> Problem {
-    Problem::invalid(
+fn diverged(stopped: Stopped) -> PredictError {
+    PredictError::invalid(
         "manoeuvre",
         format!(
             "the simulation left the physical range, {stopped}; the model does not hold for this manoeuvre"

@@ -4,14 +4,14 @@ use serde_json::{Value, json};
 use sistership_dynamics::state::at;
 use sistership_dynamics::{Ship, Trajectory};
 
-use crate::problem::{Problem, Result};
+use crate::error::{PredictError, Result};
 use sistership_pipeline::budget::take_now;
 
 /// A number above zero.
 pub(super) fn positive(field: &str, value: f64) -> Result<f64> {
     match value > 0.0 && value.is_finite() {
         true => Ok(value),
-        false => Err(Problem::invalid(field, format!("must be above 0, is {value}"))),
+        false => Err(PredictError::invalid(field, format!("must be above 0, is {value}"))),
     }
 }
 
@@ -23,7 +23,7 @@ const SAMPLE_BYTES: u64 = 15 * 8 + 11 * (32 + 20);
 pub(super) fn bounded(field: &str, steps: f64, most: usize) -> Result<()> {
     match steps <= most as f64 {
         true => Ok(take_now(SAMPLE_BYTES * steps.max(0.0).ceil() as u64)?),
-        false => Err(Problem::invalid(
+        false => Err(PredictError::invalid(
             field,
             format!(
                 "would take {steps:.0} steps, at most {most} are made: give a higher speed or a shorter time"
