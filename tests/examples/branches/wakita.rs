@@ -135,6 +135,9 @@ struct Entrant<'a> {
     ship: Option<&'a Ship>,
 }
 
+/// Its name, what it is trained on, its memory, loss and cells, and whether it stands beside the law.
+type Plan<'a> = (&'a str, &'a [&'a Trial], Memory, Loss, Cell, bool);
+
 pub fn run(epochs: usize) {
     let Some(trials) = trials() else { return };
     let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
@@ -150,7 +153,7 @@ pub fn run(epochs: usize) {
     let model = refined(&zoo, &all);
     let ship = Ship::new(&model, law(&zoo)).unwrap_or_else(|error| panic!("{error}"));
     let (short, long) = (Memory::Steps(MEMORY), Memory::All);
-    let plans: [(&str, &[&Trial], Memory, Loss, Cell, bool); 8] = [
+    let plans: [Plan<'_>; 8] = [
         ("law alone", &[], short, Loss::States, Cell::Rnn, true),
         ("Type-1", &all, short, Loss::States, Cell::Rnn, false),
         ("Type-2", &all, long, Loss::States, Cell::Rnn, false),
