@@ -13,7 +13,7 @@ pub(crate) fn ground(tracks: &[Track], hull: Option<Hull>, label: &str) -> Optio
     let range = |of: fn(&(f64, f64)) -> f64| {
         extent(placed.iter().flat_map(|(_, places)| places.iter().map(of)))
     };
-    let chart = GroundChart::of(range(|place| place.0)?, range(|place| place.1)?);
+    let chart = GroundChart::of(range(|place| place.0)?, range(|place| place.1)?, hull);
     let mut inside: Vec<Shape> =
         placed.iter().map(|(track, places)| curve(&chart, track, places)).collect();
     let interval = mark_interval_s(0.5 * duration_s(&placed));

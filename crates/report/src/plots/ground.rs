@@ -20,8 +20,10 @@ pub struct GroundChart {
 }
 
 impl GroundChart {
-    /// That holds these ranges, m, with a margin.
-    pub fn of(north: (f64, f64), east: (f64, f64)) -> Self {
+    /// That holds places in these ranges, m, with a margin, and a ship at each of them.
+    pub fn of(north: (f64, f64), east: (f64, f64), hull: Option<Hull>) -> Self {
+        let half_m = hull.map_or(0.0, |hull| 0.5 * hull.lpp_m);
+        let [north, east] = [north, east].map(|(low, high)| (low - half_m, high + half_m));
         let width = WIDTH - LEFT - RIGHT;
         let span = |range: (f64, f64)| (range.1 - range.0).max(1e-6) * 1.1;
         let metres = (span(east) / width).max(span(north) / MOST);

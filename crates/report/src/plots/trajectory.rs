@@ -7,13 +7,13 @@ use sistership_model::trial::Channel;
 use super::axes::{extent, nice_step, shown};
 use super::decimate::path;
 use super::lines::{self, PlottedLine};
-use super::{GroundChart, Plot, Shape, WIDTH};
+use super::{GroundChart, Hull, Plot, Shape, WIDTH};
 use crate::replayed::ReplayedTrial;
 
 /// The trajectory of one trial.
 pub(crate) fn trajectory(replayed: &ReplayedTrial<'_>) -> Plot {
     let lines = lines::positions(replayed);
-    let chart = chart(&lines);
+    let chart = chart(&lines, replayed.hull);
     let mut inside: Vec<Shape> = lines.iter().map(|line| curve(&chart, replayed, line)).collect();
     inside.extend(lines.iter().flat_map(|line| marks(&chart, replayed, line)));
     let mut shapes = chart.drawn(inside);
@@ -32,7 +32,7 @@ pub fn mark_interval_s(duration_s: f64) -> f64 {
     nice_step((duration_s / 8.0).max(1e-3))
 }
 
-fn chart(lines: &[PlottedLine<(f64, f64)>]) -> GroundChart {
+fn chart(lines: &[PlottedLine<(f64, f64)>], hull: Option<Hull>) -> GroundChart {
     let range = |of: fn(&(f64, f64)) -> f64| {
         let own = |measured: bool| {
             let lines = lines.iter().filter(move |line| (line.class == "measured") == measured);
@@ -40,7 +40,7 @@ fn chart(lines: &[PlottedLine<(f64, f64)>]) -> GroundChart {
         };
         shown(own(true), own(false))
     };
-    GroundChart::of(range(|point| point.0), range(|point| point.1))
+    GroundChart::of(range(|point| point.0), range(|point| point.1), hull)
 }
 
 fn curve(
