@@ -116,7 +116,7 @@ text! {
 text! {
     /// A version by a name that people give it.
     ModelName: 1..=129, "^[a-z0-9][a-z0-9-]{0,63}(/[a-z0-9][a-z0-9-]{0,63})?$",
-        "`ship` (her champion), `ship/number` or `ship/alias`, in lower-case letters, digits and hyphens"
+        "`ship` (its champion), `ship/number` or `ship/alias`, in lower-case letters, digits and hyphens"
 }
 text! {
     /// A word of a person that is kept: a reason, an origin, a name.

@@ -11,11 +11,11 @@ use crate::line::{CHAMPION, alias};
 /// came of.
 #[derive(Debug, Clone, Default, Serialize, ToSchema)]
 pub struct Condition {
-    /// `holds`, `does_not_hold`, or `unknown` where her champion was never diagnosed.
+    /// `holds`, `does_not_hold`, or `unknown` where its champion was never diagnosed.
     pub model: Standing,
     /// The same in one sentence.
     pub sentence: String,
-    /// The number of her champion.
+    /// The number of its champion.
     pub version: Option<i64>,
     /// What was found of the champion: `complete`, `effects` or `unexplained`.
     pub verdict: Option<String>,

@@ -355,7 +355,7 @@ class Core:
         return self.http.json('GET', f'/v1/ships/{ship}/drift')
 
     def get_ships_ship_model(self, ship: str, *, format: Optional[Literal['json', 'yaml']] = None, if_none_match: Optional[str] = None) -> Champion:
-        """The model of a ship: her champion."""
+        """The model of a ship: its champion."""
         return self.http.json('GET', f'/v1/ships/{ship}/model', query={'format': format}, headers={'If-None-Match': if_none_match})
 
     def get_ships_ship_similar(self, ship: str, *, vector: Optional[Literal['mei-2019', 'kanazawa-2023']] = None, trials: Optional[bool] = None) -> Dict[str, Any]:

@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Start {
-    /// At her champion; at the family's foundation where she has none.
+    /// At its champion; at the family's foundation where she has none.
     #[default]
     Champion,
     /// At the family's foundation, carried over to her particulars.

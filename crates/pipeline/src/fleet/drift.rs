@@ -19,7 +19,7 @@ use crate::line::CHAMPION;
 pub struct Drift {
     /// The ship.
     pub ship: String,
-    /// The number of her champion.
+    /// The number of its champion.
     pub version: i64,
     /// What is left of new trials by what is left of those that the champion was fitted on, by
     /// axis: 1 where it holds as well as on those. Empty where there are none of either.

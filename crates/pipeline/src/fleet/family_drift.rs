@@ -25,9 +25,9 @@ pub struct FamilyDrift {
 pub struct MemberDrift {
     /// The ship.
     pub ship: String,
-    /// What the newest diagnosis of her champion found: the effects that it lacks.
+    /// What the newest diagnosis of its champion found: the effects that it lacks.
     pub condition: Condition,
-    /// What her champion leaves of her trials over time.
+    /// What its champion leaves of her trials over time.
     pub drift: Option<Drift>,
 }
 

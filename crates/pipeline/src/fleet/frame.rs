@@ -1,4 +1,4 @@
-//! The model that a member is refined from: her champion, or the foundation carried over to her.
+//! The model that a member is refined from: its champion, or the foundation carried over to her.
 
 use sistership_estimate::transfer::transfer;
 use sistership_model::version::{SourceVersion, sha256};
@@ -36,7 +36,7 @@ pub struct Framed {
     pub ship_sha256: Option<String>,
     /// The id of the version, if it is hers.
     pub version_id: Option<String>,
-    /// The revision of her champion.
+    /// The revision of its champion.
     pub champion: Option<i64>,
 }
 

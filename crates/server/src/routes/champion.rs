@@ -56,7 +56,7 @@ enum Format {
     Yaml,
 }
 
-/// The model of a ship: her champion
+/// The model of a ship: its champion
 ///
 /// As YAML it is a file that `sistership simulate --model` takes.
 #[utoipa::path(

@@ -23,7 +23,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[into_params(parameter_in = Query)]
 #[allow(dead_code, reason = "it only describes the query, whose parameters come several times")]
 struct Query {
-    /// Two to five versions: `ship` (her champion), `ship/number` or `ship/alias`.
+    /// Two to five versions: `ship` (its champion), `ship/number` or `ship/alias`.
     #[param(inline, style = Form, explode, min_items = 2, max_items = 5)]
     version: Vec<ModelName>,
     /// Trials on which each of them is simulated.

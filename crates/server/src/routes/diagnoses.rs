@@ -33,7 +33,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct DiagnosisRequest {
-    /// The version to diagnose: `ship` (her champion), `ship/number`, `ship/alias`.
+    /// The version to diagnose: `ship` (its champion), `ship/number`, `ship/alias`.
     #[schema(inline)]
     model: ModelName,
     /// Ids of trials of the ship; where absent, those that the version was not made of, or all

@@ -51,7 +51,7 @@ pub(super) struct FamilyView {
 pub(super) struct MemberView {
     pub ship: String,
     pub added_us: i64,
-    /// The number of her champion, if she has one.
+    /// The number of its champion, if it has one.
     pub champion: Option<i64>,
     /// How that was made.
     pub method: Option<String>,
@@ -82,7 +82,7 @@ struct NewFamily {
     /// What people call it; the name where absent.
     #[schema(inline)]
     title: Option<Remark>,
-    /// The version that the members' models are founded on: `ship` (her champion), `ship/number`,
+    /// The version that the members' models are founded on: `ship` (its champion), `ship/number`,
     /// `ship/alias`.
     #[schema(inline)]
     foundation: ModelName,
@@ -96,7 +96,7 @@ struct NewFamily {
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct NewFoundation {
-    /// The version: `ship` (her champion), `ship/number`, `ship/alias`.
+    /// The version: `ship` (its champion), `ship/number`, `ship/alias`.
     #[schema(inline)]
     foundation: ModelName,
 }

@@ -21,7 +21,7 @@ pub(super) async fn resolve(store: &Store, field: &str, name: &str) -> Result<Ve
 }
 
 fn nothing(field: &str, name: &str) -> Problem {
-    let forms = "give `ship` (her champion), `ship/number` or `ship/alias`";
+    let forms = "give `ship` (its champion), `ship/number` or `ship/alias`";
     Problem::invalid(
         field,
         format!(

@@ -83,7 +83,7 @@ async fn replace(
     if vessel.name() != &*name {
         return Err(Problem::invalid(
             "name",
-            format!("is `{}`, but the path says `{name}`; a ship keeps her name", vessel.name()),
+            format!("is `{}`, but the path says `{name}`; a ship keeps its name", vessel.name()),
         ));
     }
     let zoo = app.laws().await?;

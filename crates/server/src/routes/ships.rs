@@ -55,7 +55,7 @@ pub(super) struct ShipDetail {
     pub revision: i64,
     pub created_us: i64,
     pub updated_us: i64,
-    /// Whether her champion still holds.
+    /// Whether its champion still holds.
     pub condition: Condition,
     /// The vessel as `models/schema/vessel.json` describes it.
     #[schema(value_type = Object)]

@@ -118,7 +118,7 @@ impl Operation {
         // What is named need not be there, and two fields may have a rule between them.
         let detail = problem["detail"].as_str().unwrap_or_default();
         let missing =
-            ["there is no", "has no trials", "nothing yet", "keeps her name", "give either"]
+            ["there is no", "has no trials", "nothing yet", "keeps its name", "give either"]
                 .iter()
                 .any(|words| detail.contains(words));
         if (blamed && !missing) || status.is_server_error() {
