@@ -37,11 +37,12 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("listen", &[]),
     ("fields", &["store"]),
     ("predict", &["model", "dynamics", "bands", "fields", "pipeline"]),
+    ("http", &["model", "trials", "estimate", "store", "pipeline", "pages", "fields", "predict"]),
     (
         "server",
         &[
             "model", "dynamics", "branches", "trials", "bands", "estimate", "choice", "diagnose",
-            "fleet", "store", "report", "pipeline", "pages", "listen", "fields", "predict",
+            "fleet", "store", "report", "pipeline", "pages", "listen", "fields", "predict", "http",
         ],
     ),
     (
@@ -66,7 +67,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
 ];
-const ALONE: [(&str, &[&str]); 2] = [("sqlx", &["store"]), ("axum", &["server", "listen"])];
+const ALONE: [(&str, &[&str]); 2] = [("sqlx", &["store"]), ("axum", &["server", "http", "listen"])];
 
 /// The folder of a crate.
 fn folder(name: &str) -> PathBuf {

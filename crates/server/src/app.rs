@@ -13,6 +13,7 @@ use crate::drafts::Drafts;
 use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
 use crate::web::api_key::{ApiKey, FormToken};
+use sistership_http::payload::DocumentLimits;
 use sistership_listen::{Stopping, Throttle};
 use sistership_pipeline::archive::Archive;
 use sistership_pipeline::budget::{self, Budget, Held};
@@ -40,6 +41,13 @@ struct Inner {
     stopping: Stopping,
     requests: Budget,
     jobs: Budget,
+}
+
+impl axum::extract::FromRef<App> for DocumentLimits {
+    fn from_ref(app: &App) -> Self {
+        let Limits { document_bytes: json_bytes, yaml_bytes, .. } = *app.limits();
+        Self { json_bytes, yaml_bytes }
+    }
 }
 
 impl App {

@@ -71,7 +71,7 @@ pub struct Limits {
     pub refinement_trials: usize,
     /// How long a server that is told to stop waits for what is under way.
     pub stop_time: Duration,
-    /// A YAML document, bytes: its tree is near a hundred times as large, see `web::payload`.
+    /// A YAML document, bytes: its tree is near a hundred times as large, see `sistership_http::payload`.
     pub yaml_bytes: usize,
     /// Memory that requests take together, bytes.
     pub request_memory: u64,

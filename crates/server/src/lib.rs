@@ -12,7 +12,7 @@ mod jobs;
 #[cfg(test)]
 mod journey;
 mod metrics;
-mod problem;
+use sistership_http::problem;
 mod process;
 mod routes;
 mod search_index;

@@ -10,8 +10,7 @@ use axum::response::{IntoResponse, Response};
 use sistership_store::{Begun, PROLONG_EVERY, Store, Ticket, UnitOfWork, sha256_hex};
 use tracing::Instrument as _;
 
-use super::field::RequestKey;
-use super::reply::Reply;
+use super::{Reply, field::RequestKey};
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
 use sistership_pipeline::budget::{Held, carried_on};
