@@ -25,6 +25,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("diagnose", &["model", "dynamics", "regression", "estimate"]),
     ("fleet", &["model", "dynamics", "regression", "estimate"]),
     ("store", &[]),
+    ("access", &[]),
     ("report", &["model", "dynamics", "branches", "bands", "estimate", "choice", "diagnose"]),
     (
         "pipeline",
@@ -43,6 +44,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         &[
             "model", "dynamics", "branches", "trials", "bands", "estimate", "choice", "diagnose",
             "fleet", "store", "report", "pipeline", "pages", "listen", "fields", "predict", "http",
+            "access",
         ],
     ),
     (
@@ -64,6 +66,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "pipeline",
             "server",
             "export",
+            "access",
         ],
     ),
 ];

@@ -4,6 +4,7 @@
 //! without serving. What its jobs do stands in `sistership_pipeline`, which the command line uses,
 //! too.
 
+mod accounts;
 mod answers;
 mod app;
 mod config;
@@ -14,6 +15,7 @@ mod journey;
 mod metrics;
 use sistership_http::problem;
 mod process;
+mod rights;
 mod routes;
 mod search_index;
 mod server;

@@ -24,6 +24,7 @@ impl From<StoreError> for Problem {
             full if full.is_out_of_space() => Self::no_room(text),
             StoreError::NotFound { .. } => Self::not_found(text),
             StoreError::Conflict { .. } => Self::new(StatusCode::CONFLICT, text),
+            StoreError::Forbidden { .. } => Self::new(StatusCode::FORBIDDEN, text),
             StoreError::PreconditionFailed { .. } => Self::new(
                 StatusCode::PRECONDITION_FAILED,
                 format!("{text}; read it again and decide anew"),

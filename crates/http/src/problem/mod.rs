@@ -52,8 +52,8 @@ pub struct Fault {
 /// Status, URI and title of each kind.
 const KINDS: [(u16, &str, &str); 19] = [
     (400, "urn:sistership:problem:bad-request", "The request cannot be read"),
-    (401, "urn:sistership:problem:unauthorized", "An API key is needed"),
-    (403, "urn:sistership:problem:forbidden", "The request is not allowed from there"),
+    (401, "urn:sistership:problem:unauthorized", "A key, or a sign-in, is needed"),
+    (403, "urn:sistership:problem:forbidden", "The request is not allowed"),
     (404, "urn:sistership:problem:not-found", "There is no such thing"),
     (405, "urn:sistership:problem:method-not-allowed", "The method is not possible here"),
     (406, "urn:sistership:problem:not-acceptable", "None of the accepted forms is available"),

@@ -13,4 +13,4 @@ pub(crate) use sistership_http::page::{Listing, Paged};
 pub(crate) use sistership_http::params::{Params, Place};
 pub(crate) use sistership_http::payload::Payload;
 pub(crate) use sistership_http::reply::Reply;
-pub(crate) use sistership_http::{accept, conditions, field, host, page, payload, query};
+pub(crate) use sistership_http::{accept, conditions, field, page, payload, query};
