@@ -6,12 +6,12 @@ use axum::http::request::Parts;
 use axum::http::{HeaderMap, HeaderName, StatusCode, header};
 use sistership_store::Expect;
 
-use super::field::EntityTags;
+use crate::field::EntityTags;
 use crate::problem::{Fault, Problem, Result};
 
 /// The conditions of a request.
 #[derive(Debug, Default)]
-pub(crate) struct Conditions {
+pub struct Conditions {
     if_match: Option<Tags>,
     if_none_match: Option<Tags>,
 }
@@ -23,7 +23,7 @@ enum Tags {
 }
 
 /// The tag of a revision.
-pub(crate) fn tag(revision: impl std::fmt::Display) -> String {
+pub fn tag(revision: impl std::fmt::Display) -> String {
     format!("\"{revision}\"")
 }
 
@@ -65,7 +65,10 @@ impl Tags {
 
 impl Conditions {
     /// The revision that a change must start from; `what` is at `current`.
-    pub(crate) fn revision(&self, what: &str, current: i64) -> Result<i64> {
+    ///
+    /// # Errors
+    /// None is named, or another one.
+    pub fn revision(&self, what: &str, current: i64) -> Result<i64> {
         let Some(tags) = &self.if_match else {
             return Err(required(&format!("If-Match with the ETag of {what} as you last read it")));
         };
@@ -73,12 +76,18 @@ impl Conditions {
     }
 
     /// As [`Conditions::revision`], but a request without the header may change anything.
-    pub(crate) fn optional_revision(&self, what: &str, current: i64) -> Result<Option<i64>> {
+    ///
+    /// # Errors
+    /// Another revision is named.
+    pub fn optional_revision(&self, what: &str, current: i64) -> Result<Option<i64>> {
         self.if_match.as_ref().map(|_| self.revision(what, current)).transpose()
     }
 
     /// What a change that may also create expects.
-    pub(crate) fn expect(&self, what: &str, current: Option<i64>) -> Result<Expect> {
+    ///
+    /// # Errors
+    /// No condition is there, or one that does not hold.
+    pub fn expect(&self, what: &str, current: Option<i64>) -> Result<Expect> {
         match (&self.if_match, &self.if_none_match, current) {
             (Some(_), _, Some(current)) => self.revision(what, current).map(Expect::Revision),
             (Some(_), _, None) => Err(stale(what, None)),
@@ -94,7 +103,7 @@ impl Conditions {
     }
 
     /// Whether the caller has this representation already.
-    pub(crate) fn has(&self, tag: &str) -> bool {
+    pub fn has(&self, tag: &str) -> bool {
         self.if_none_match.as_ref().is_some_and(|tags| tags.name(tag))
     }
 }

@@ -15,10 +15,11 @@ use crate::problem::{Fault, Problem, Result};
 
 /// The parameters of each operation, by path and method, as the document has them.
 #[derive(Debug)]
-pub(crate) struct KnownQuery(HashMap<(String, Method), Vec<String>>);
+pub struct KnownQuery(HashMap<(String, Method), Vec<String>>);
 
 impl KnownQuery {
-    pub(crate) fn of(document: &OpenApi) -> Self {
+    /// Those of a document.
+    pub fn of(document: &OpenApi) -> Self {
         let mut known = HashMap::new();
         for (path, item) in document.paths.paths.iter().filter(|(path, _)| path.starts_with("/v1"))
         {
@@ -51,7 +52,7 @@ impl KnownQuery {
 }
 
 /// The parameters of an operation.
-pub(crate) fn parameters(operation: &Operation) -> impl Iterator<Item = &Parameter> {
+pub fn parameters(operation: &Operation) -> impl Iterator<Item = &Parameter> {
     operation.parameters.iter().flatten().filter_map(|known| match known {
         RefOr::T(parameter) => Some(parameter),
         RefOr::Ref(_) => None,
@@ -80,7 +81,7 @@ fn refused(name: &str, known: &[String]) -> Problem {
 }
 
 /// Lets a request through whose parameters are all known.
-pub(crate) async fn refuse_unknown(
+pub async fn refuse_unknown(
     State(known): State<Arc<KnownQuery>>,
     path: MatchedPath,
     request: Request,

@@ -1,13 +1,12 @@
 //! A document as a body: JSON or YAML, whole and bounded.
 
 use axum::RequestExt as _;
-use axum::extract::{FromRequest, Request};
+use axum::extract::{FromRef, FromRequest, Request};
 use axum::http::{HeaderMap, StatusCode, header};
 use bytes::{Bytes, BytesMut};
 use futures::StreamExt as _;
 use serde::de::DeserializeOwned;
 
-use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
 use sistership_pipeline::budget;
 
@@ -20,21 +19,34 @@ const JSON_FACTOR: u64 = 20;
 
 /// A body that is one document.
 #[derive(Debug)]
-pub(crate) struct Payload {
+pub struct Payload {
     media: String,
     bytes: Bytes,
 }
 
-impl FromRequest<App> for Payload {
+/// The most that a document may have.
+#[derive(Debug, Clone, Copy)]
+pub struct DocumentLimits {
+    /// Of JSON, bytes.
+    pub json_bytes: usize,
+    /// Of YAML, bytes.
+    pub yaml_bytes: usize,
+}
+
+impl<S: Send + Sync> FromRequest<S> for Payload
+where
+    DocumentLimits: FromRef<S>,
+{
     type Rejection = Problem;
 
-    async fn from_request(request: Request, app: &App) -> Result<Self> {
+    async fn from_request(request: Request, state: &S) -> Result<Self> {
+        let limits = DocumentLimits::from_ref(state);
         plain(request.headers())?;
         let media = media(request.headers());
         let mut payload = Self { media, bytes: Bytes::new() };
         let (most, factor) = match payload.is_json() {
-            true => (app.limits().document_bytes, JSON_FACTOR),
-            false => (app.limits().yaml_bytes, YAML_FACTOR),
+            true => (limits.json_bytes, JSON_FACTOR),
+            false => (limits.yaml_bytes, YAML_FACTOR),
         };
         payload.bytes = whole(request, most).await?;
         budget::take(factor * payload.bytes.len() as u64).await?;
@@ -74,7 +86,10 @@ fn too_large(what: &str) -> Problem {
 }
 
 /// A JSON document, whose faults are told by field.
-pub(crate) fn from_slice<T: DeserializeOwned>(bytes: &[u8]) -> Result<T> {
+///
+/// # Errors
+/// Names the field and the line.
+pub fn from_slice<T: DeserializeOwned>(bytes: &[u8]) -> Result<T> {
     let mut reader = serde_json::Deserializer::from_slice(bytes);
     let value = serde_path_to_error::deserialize(&mut reader)
         .map_err(|error| refused(&error.path().to_string(), error.inner()))?;
@@ -83,19 +98,25 @@ pub(crate) fn from_slice<T: DeserializeOwned>(bytes: &[u8]) -> Result<T> {
 }
 
 /// Takes the memory that a YAML document which has arrived takes to be read.
-pub(crate) async fn read_yaml(bytes: usize) -> Result<()> {
+///
+/// # Errors
+/// There is none.
+pub async fn read_yaml(bytes: usize) -> Result<()> {
     Ok(budget::take(YAML_FACTOR * bytes as u64).await?)
 }
 
 /// The media type of a body, in lower case and without parameters; empty where there is none.
-pub(crate) fn media(headers: &HeaderMap) -> String {
+pub fn media(headers: &HeaderMap) -> String {
     let value =
         headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
     value.split(';').next().unwrap_or_default().trim().to_ascii_lowercase()
 }
 
 /// Refuses a compressed body: what it grows to is not bounded by what is sent.
-pub(crate) fn plain(headers: &HeaderMap) -> Result<()> {
+///
+/// # Errors
+/// It is one.
+pub fn plain(headers: &HeaderMap) -> Result<()> {
     match headers.get(header::CONTENT_ENCODING) {
         Some(encoding) if encoding != "identity" => Err(Problem::new(
             StatusCode::UNSUPPORTED_MEDIA_TYPE,
@@ -107,11 +128,12 @@ pub(crate) fn plain(headers: &HeaderMap) -> Result<()> {
 
 impl Payload {
     /// The bytes, which tell one request from another.
-    pub(crate) fn bytes(&self) -> &Bytes {
+    pub fn bytes(&self) -> &Bytes {
         &self.bytes
     }
 
-    pub(crate) fn is_json(&self) -> bool {
+    /// Whether it says that it is JSON.
+    pub fn is_json(&self) -> bool {
         self.media == "application/json" || self.media.ends_with("+json")
     }
 
@@ -122,7 +144,10 @@ impl Payload {
     }
 
     /// The JSON document.
-    pub(crate) fn json<T: DeserializeOwned>(&self) -> Result<T> {
+    ///
+    /// # Errors
+    /// It is of another type, or does not read; names the field and the line.
+    pub fn json<T: DeserializeOwned>(&self) -> Result<T> {
         if !self.is_json() {
             return Err(self.wrong("application/json"));
         }
@@ -130,7 +155,10 @@ impl Payload {
     }
 
     /// The YAML document as text.
-    pub(crate) fn text(&self) -> Result<&str> {
+    ///
+    /// # Errors
+    /// It is of another type, or no UTF-8.
+    pub fn text(&self) -> Result<&str> {
         if !self.is_text() {
             return Err(self.wrong("application/yaml"));
         }
@@ -139,7 +167,7 @@ impl Payload {
     }
 
     /// A refusal of the content type.
-    pub(crate) fn wrong(&self, wanted: &str) -> Problem {
+    pub fn wrong(&self, wanted: &str) -> Problem {
         let found =
             if self.media.is_empty() { "nothing".to_owned() } else { format!("`{}`", self.media) };
         let detail = format!("Content-Type is {found}; send `{wanted}`");

@@ -25,7 +25,7 @@ struct Large {
 }
 
 /// Takes a share for an answer that is large; refuses the request where there is none.
-pub(crate) async fn counted(response: Response) -> Response {
+pub async fn counted(response: Response) -> Response {
     let size = response.body().size_hint().exact().unwrap_or_default();
     if size <= PIECE as u64 {
         return response;

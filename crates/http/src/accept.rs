@@ -5,7 +5,7 @@ use axum::http::{HeaderMap, StatusCode, header};
 use crate::problem::{Problem, Result};
 
 /// The form that the caller likes best among those offered; the first where it does not say.
-pub(crate) fn choose(headers: &HeaderMap, offered: &[&'static str]) -> Result<&'static str> {
+pub fn choose(headers: &HeaderMap, offered: &[&'static str]) -> Result<&'static str> {
     let lines = headers.get_all(header::ACCEPT).into_iter().filter_map(|value| value.to_str().ok());
     let accepted: Vec<(&str, f64)> = lines.flat_map(|line| line.split(',')).map(range).collect();
     if accepted.is_empty() {

@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 use sistership_store::{List, Page};
 use utoipa::{IntoParams, ToSchema};
 
-use super::field::{Cursor, Limit};
+use crate::field::{Cursor, Limit};
 use crate::problem::{Fault, Problem, Result};
 
 /// The query of a list that is not filtered.
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-pub(crate) struct Paged {
+pub struct Paged {
     /// The most items to return.
     #[param(inline)]
     limit: Option<Limit>,
@@ -24,14 +24,18 @@ pub(crate) struct Paged {
 }
 
 impl Paged {
-    pub(crate) fn page<K: DeserializeOwned>(&self) -> Result<Page<K>> {
+    /// The page that it asks for.
+    ///
+    /// # Errors
+    /// `after` is no place of the list.
+    pub fn page<K: DeserializeOwned>(&self) -> Result<Page<K>> {
         page(self.limit, self.after.as_ref())
     }
 }
 
 /// One page of a list.
 #[derive(Debug, Serialize, ToSchema)]
-pub(crate) struct Listing<T> {
+pub struct Listing<T> {
     /// The items, in the list's order.
     pub items: Vec<T>,
     /// What to give as `after` for the next page, as it is; null on the last one. It stands for the
@@ -40,7 +44,8 @@ pub(crate) struct Listing<T> {
 }
 
 impl<T> Listing<T> {
-    pub(crate) fn of<R, K: Serialize>(list: List<R, K>, view: impl FnMut(R) -> T) -> Self {
+    /// The page with each row as the caller shows it.
+    pub fn of<R, K: Serialize>(list: List<R, K>, view: impl FnMut(R) -> T) -> Self {
         Self {
             items: list.items.into_iter().map(view).collect(),
             next: list.next.as_ref().and_then(cursor),
@@ -49,15 +54,15 @@ impl<T> Listing<T> {
 }
 
 /// A key in a form that promises nothing but to be taken back.
-pub(crate) fn cursor<K: Serialize>(key: &K) -> Option<String> {
+pub fn cursor<K: Serialize>(key: &K) -> Option<String> {
     Some(BASE64_URL_SAFE_NO_PAD.encode(serde_json::to_vec(key).ok()?))
 }
 
 /// The page that a query asks for.
-pub(crate) fn page<K: DeserializeOwned>(
-    limit: Option<Limit>,
-    after: Option<&Cursor>,
-) -> Result<Page<K>> {
+///
+/// # Errors
+/// `after` is no place of the list.
+pub fn page<K: DeserializeOwned>(limit: Option<Limit>, after: Option<&Cursor>) -> Result<Page<K>> {
     let key = |text: &str| serde_json::from_slice(&BASE64_URL_SAFE_NO_PAD.decode(text).ok()?).ok();
     let wrong = || {
         let message = "is not the `next` of a page of this list; leave it out for the first page";

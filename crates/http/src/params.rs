@@ -7,9 +7,9 @@ use crate::problem::Problem;
 /// The parameters of the path.
 #[derive(Debug, FromRequestParts)]
 #[from_request(via(Path), rejection(Problem))]
-pub(crate) struct Place<T>(pub T);
+pub struct Place<T>(pub T);
 
 /// The parameters of the query.
 #[derive(Debug, FromRequestParts)]
 #[from_request(via(Query), rejection(Problem))]
-pub(crate) struct Params<T>(pub T);
+pub struct Params<T>(pub T);

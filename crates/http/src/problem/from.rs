@@ -1,5 +1,6 @@
 //! What the other crates refuse, as problems.
 
+use axum::extract::multipart::MultipartError;
 use axum::extract::path::ErrorKind;
 use axum::extract::rejection::{BytesRejection, PathRejection, QueryRejection};
 use axum::http::StatusCode;
@@ -23,6 +24,7 @@ impl From<StoreError> for Problem {
             full if full.is_out_of_space() => Self::no_room(text),
             StoreError::NotFound { .. } => Self::not_found(text),
             StoreError::Conflict { .. } => Self::new(StatusCode::CONFLICT, text),
+            StoreError::Forbidden { .. } => Self::new(StatusCode::FORBIDDEN, text),
             StoreError::PreconditionFailed { .. } => Self::new(
                 StatusCode::PRECONDITION_FAILED,
                 format!("{text}; read it again and decide anew"),
@@ -168,6 +170,18 @@ impl From<PathRejection> for Problem {
                     .with(Fault::at(key, message))
             }
             other => Self::not_found(format!("there is nothing under this path: {other}")),
+        }
+    }
+}
+
+impl From<MultipartError> for Problem {
+    fn from(error: MultipartError) -> Self {
+        match error.status() {
+            StatusCode::PAYLOAD_TOO_LARGE => Self::new(
+                StatusCode::PAYLOAD_TOO_LARGE,
+                "the upload is larger than this server takes; send several uploads",
+            ),
+            _ => Self::bad_request(format!("the form cannot be read: {}", error.body_text())),
         }
     }
 }

@@ -9,17 +9,17 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 /// The media type of [`Problem`].
-pub(crate) const MEDIA: &str = "application/problem+json";
+pub const MEDIA: &str = "application/problem+json";
 
 /// After how long a request may be repeated that was one too many, s.
 const RETRY_AFTER_S: &str = "5";
 
 /// What an operation of the server returns.
-pub(crate) type Result<T, E = Problem> = std::result::Result<T, E>;
+pub type Result<T, E = Problem> = std::result::Result<T, E>;
 
 /// Why a request was not carried out, and what to do about it.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-pub(crate) struct Problem {
+pub struct Problem {
     /// A URI that names the kind of problem.
     #[serde(rename = "type")]
     pub kind: &'static str,
@@ -38,7 +38,7 @@ pub(crate) struct Problem {
 
 /// One fault, with its place.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
-pub(crate) struct Fault {
+pub struct Fault {
     /// The field of a document (dotted path), or the file of an upload.
     pub field: Option<String>,
     /// The row of a file or the line of a document, counted from 1.
@@ -52,8 +52,8 @@ pub(crate) struct Fault {
 /// Status, URI and title of each kind.
 const KINDS: [(u16, &str, &str); 19] = [
     (400, "urn:sistership:problem:bad-request", "The request cannot be read"),
-    (401, "urn:sistership:problem:unauthorized", "An API key is needed"),
-    (403, "urn:sistership:problem:forbidden", "The request is not allowed from there"),
+    (401, "urn:sistership:problem:unauthorized", "A key, or a sign-in, is needed"),
+    (403, "urn:sistership:problem:forbidden", "The request is not allowed"),
     (404, "urn:sistership:problem:not-found", "There is no such thing"),
     (405, "urn:sistership:problem:method-not-allowed", "The method is not possible here"),
     (406, "urn:sistership:problem:not-acceptable", "None of the accepted forms is available"),
@@ -77,7 +77,8 @@ const KINDS: [(u16, &str, &str); 19] = [
 ];
 
 impl Problem {
-    pub(crate) fn new(status: StatusCode, detail: impl Into<String>) -> Self {
+    /// A problem of the kind that the status names.
+    pub fn new(status: StatusCode, detail: impl Into<String>) -> Self {
         let known = KINDS.iter().find(|(known, ..)| *known == status.as_u16());
         let (_, kind, title) = known.copied().unwrap_or((
             0,
@@ -94,23 +95,25 @@ impl Problem {
         }
     }
 
-    pub(crate) fn bad_request(detail: impl Into<String>) -> Self {
+    /// A request that cannot be read.
+    pub fn bad_request(detail: impl Into<String>) -> Self {
         Self::new(StatusCode::BAD_REQUEST, detail)
     }
 
-    pub(crate) fn not_found(detail: impl Into<String>) -> Self {
+    /// There is no such thing.
+    pub fn not_found(detail: impl Into<String>) -> Self {
         Self::new(StatusCode::NOT_FOUND, detail)
     }
 
     /// A document of which one field is at fault.
-    pub(crate) fn invalid(field: &str, message: impl Into<String>) -> Self {
+    pub fn invalid(field: &str, message: impl Into<String>) -> Self {
         let message = message.into();
         Self::new(StatusCode::UNPROCESSABLE_ENTITY, format!("{field}: {message}"))
             .with(Fault::at(field, message))
     }
 
     /// A failure of ours: the log has the reason, the answer does not.
-    pub(crate) fn internal(reason: impl std::fmt::Display) -> Self {
+    pub fn internal(reason: impl std::fmt::Display) -> Self {
         tracing::error!(%reason, "internal error");
         Self::new(
             StatusCode::INTERNAL_SERVER_ERROR,
@@ -119,19 +122,21 @@ impl Problem {
     }
 
     /// There is no space left where it would be kept.
-    pub(crate) fn no_room(reason: impl std::fmt::Display) -> Self {
+    pub fn no_room(reason: impl std::fmt::Display) -> Self {
         tracing::error!(%reason, "no room");
         let detail = "there is no room left where the server keeps this; nothing was kept. Reading goes on; make room and send it again";
         Self::new(StatusCode::INSUFFICIENT_STORAGE, detail)
     }
 
-    pub(crate) fn with(mut self, fault: Fault) -> Self {
+    /// The same with one fault more.
+    #[must_use]
+    pub fn with(mut self, fault: Fault) -> Self {
         self.errors.push(fault);
         self
     }
 
     /// The same as a page for people.
-    pub(crate) fn page(&self) -> Option<String> {
+    pub fn page(&self) -> Option<String> {
         let place = |fault: &Fault| {
             let row = fault.row.map(|row| format!("row {row}"));
             let parts = [fault.field.clone(), row, fault.column.clone()];
@@ -142,13 +147,15 @@ impl Problem {
         sistership_pages::problem(self.title, &self.detail, &faults, instance).ok()
     }
 
-    pub(crate) fn status(&self) -> StatusCode {
+    /// The HTTP status.
+    pub fn status(&self) -> StatusCode {
         StatusCode::from_u16(self.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR)
     }
 }
 
 impl Fault {
-    pub(crate) fn at(field: impl Into<String>, message: impl Into<String>) -> Self {
+    /// A fault of a field.
+    pub fn at(field: impl Into<String>, message: impl Into<String>) -> Self {
         Self { field: Some(field.into()), message: message.into(), ..Self::default() }
     }
 }

@@ -12,7 +12,7 @@ const SEC_FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
 
 /// The authority that a request is addressed to: exactly one (RFC 9112, 3.2). HTTP/1.0 knows no
 /// `Host`, and no browser speaks it: there it may be missing.
-pub(super) fn addressed(request: &Request) -> Result<Option<Authority>> {
+pub fn addressed(request: &Request) -> Result<Option<Authority>> {
     let host = single(request.headers(), &header::HOST)?;
     let host = host.map(|host| host.parse::<Authority>().map_err(|_| wrong_host())).transpose()?;
     if host.as_ref().is_some_and(|host| host.as_str().contains('@')) {
@@ -38,7 +38,7 @@ fn wrong_host() -> Problem {
 }
 
 /// A header that may be there once.
-pub(super) fn single<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Option<&'a str>> {
+pub fn single<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Option<&'a str>> {
     let mut values = headers.get_all(name).iter();
     let first = values.next();
     if values.next().is_some() {
@@ -59,7 +59,7 @@ pub(super) fn single<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Op
 /// Without a key, web pages of others that a browser on this machine shows must not reach the
 /// server: neither by a name that they let point here (`Host`), nor by sending forms (`Origin`,
 /// `Sec-Fetch-Site`).
-pub(super) fn from_this_machine(
+pub fn from_this_machine(
     method: &Method,
     headers: &HeaderMap,
     host: Option<&Authority>,
@@ -89,7 +89,7 @@ pub(super) fn from_this_machine(
 
 /// Whether a browser says that a page of this very server asks. Its scheme may be another where a
 /// proxy stands before the server.
-pub(super) fn is_same_origin(headers: &HeaderMap, host: Option<&Authority>) -> Result<bool> {
+pub fn is_same_origin(headers: &HeaderMap, host: Option<&Authority>) -> Result<bool> {
     let (origin, site) = (single(headers, &header::ORIGIN)?, single(headers, &SEC_FETCH_SITE)?);
     let authority = origin.and_then(|origin| origin.split_once("://")).map(|(_, own)| own);
     let own =

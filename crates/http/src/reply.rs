@@ -8,10 +8,14 @@ use crate::problem::{Problem, Result};
 
 /// An answer with its headers, in a form that is stored for replay.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Reply {
+pub struct Reply {
+    /// Its status.
     pub status: u16,
+    /// Where what was made is.
     pub location: Option<String>,
+    /// The tag of what was made.
     pub etag: Option<String>,
+    /// A JSON document.
     pub body: String,
     /// Whether there is work for the workers now.
     #[serde(skip)]
@@ -19,23 +23,31 @@ pub(crate) struct Reply {
 }
 
 impl Reply {
-    pub(crate) fn new(status: StatusCode, body: &impl Serialize) -> Result<Self> {
+    /// An answer of a document.
+    ///
+    /// # Errors
+    /// The document does not write.
+    pub fn new(status: StatusCode, body: &impl Serialize) -> Result<Self> {
         let body = serde_json::to_string(body).map_err(Problem::internal)?;
         Ok(Self { status: status.as_u16(), location: None, etag: None, body, queued: false })
     }
 
-    pub(crate) fn at(mut self, location: String) -> Self {
+    /// With the place of what was made.
+    #[must_use]
+    pub fn at(mut self, location: String) -> Self {
         self.location = Some(location);
         self
     }
 
     /// With jobs that wait, for which the workers are woken once they are kept.
-    pub(crate) fn with_jobs(mut self) -> Self {
+    pub fn with_jobs(mut self) -> Self {
         self.queued = true;
         self
     }
 
-    pub(crate) fn tagged(mut self, etag: String) -> Self {
+    /// With the tag of what was made.
+    #[must_use]
+    pub fn tagged(mut self, etag: String) -> Self {
         self.etag = Some(etag);
         self
     }
