@@ -1,5 +1,5 @@
-//! Wind by regression: Isherwood, R.M. (1972), Wind resistance of merchant ships, Transactions RINA
-//! 115, 327-338; the tables read through isherwood72.m of the Marine Systems Simulator.
+//! Wind by regression: the formulas of Isherwood (1972) for merchant ships, their tables read
+//! through isherwood72.m of the Marine Systems Simulator; the paper was not seen.
 
 use super::wind::Areas;
 
