@@ -7,15 +7,15 @@ use sistership_store::testing::TestDatabase;
 use sistership_tests::server::TestServer;
 use sistership_tests::worker::TestWorker;
 
-use super::over_http::{create, refine, upload, verified};
+use super::over_http::{create, refine_weakly, upload, verified};
 use super::sea_trials::NAME;
 
 async fn killed(mut server: TestServer) {
     create(&server).await;
     let uploaded = upload(&server).await;
-    let first = server.finished(&refine(&server, "before").await).await;
+    let first = server.finished(&refine_weakly(&server, "before").await).await;
     assert_eq!(first["state"], "succeeded", "{first}");
-    let job = refine(&server, "during").await;
+    let job = refine_weakly(&server, "during").await;
     while server.get(&format!("/v1/jobs/{job}")).await["state"] == "queued" {
         tokio::time::sleep(Duration::from_millis(2)).await;
     }
@@ -70,13 +70,13 @@ async fn set_aside(database: TestDatabase) {
     let server = TestServer::on(database, &["--no-worker"]).await;
     create(&server).await;
     upload(&server).await;
-    let poison = refine(&server, "poison").await;
+    let poison = refine_weakly(&server, "poison").await;
     for attempt in 1..=2 {
         let mut worker = TestWorker::start(&server, "1");
         running(&server, &poison, attempt).await;
         worker.kill();
     }
-    let healthy = refine(&server, "healthy").await;
+    let healthy = refine_weakly(&server, "healthy").await;
     let _worker = TestWorker::start(&server, "1");
     let failed = server.finished(&poison).await;
     assert_eq!((&failed["state"], &failed["attempt"]), (&"failed".into(), &2.into()), "{failed}");

@@ -1,4 +1,4 @@
-//! A batch of jobs, four worker processes on one database, and one of them killed every few seconds
+//! A batch of jobs, four worker processes on one database, and one of them killed now and then
 //! in the middle of a job.
 
 use std::collections::BTreeSet;
@@ -15,11 +15,11 @@ use sistership_tests::worker::TestWorker;
 use super::over_http::{create, refine_weakly, upload, verified};
 use super::sea_trials::NAME;
 
-const JOBS: usize = 16;
+const JOBS: usize = 12;
 const WORKERS: usize = 4;
 const KILLED: usize = 3;
 const LEASE_S: &str = "2";
-const BETWEEN: Duration = Duration::from_secs(2);
+const BETWEEN: Duration = Duration::from_millis(300);
 const PATIENCE: Duration = Duration::from_secs(300);
 
 /// The workers, and the store as an onlooker sees it.

@@ -11,7 +11,7 @@ use sistership_tests::binary;
 use sistership_tests::server::TestServer;
 use sistership_tests::worker::TestWorker;
 
-use super::over_http::{create, refine, upload};
+use super::over_http::{create, refine_weakly, upload};
 use super::sea_trials::NAME;
 
 /// A job under way, a server that is told to stop, and the job afterwards: its state and how often
@@ -20,7 +20,7 @@ async fn stopped(drain_s: &str) -> (JobState, i64) {
     let mut server = TestServer::on(TestDatabase::sqlite(), &["--drain-s", drain_s]).await;
     create(&server).await;
     upload(&server).await;
-    let job = refine(&server, "drained").await;
+    let job = refine_weakly(&server, "drained").await;
     while server.get(&format!("/v1/jobs/{job}")).await["state"] == "queued" {
         tokio::time::sleep(Duration::from_millis(2)).await;
     }
@@ -111,7 +111,7 @@ async fn a_server_runs_by_its_file_and_logs_in_json() {
         TestServer::logged(database, &["--config", &config.display().to_string()]).await;
     create(&server).await;
     upload(&server).await;
-    refine(&server, "waits").await;
+    refine_weakly(&server, "waits").await;
     tokio::time::sleep(Duration::from_millis(1500)).await;
     let store =
         Store::connect(&server.database().url, Arc::new(SystemClock)).await.expect("a store");
