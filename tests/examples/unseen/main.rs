@@ -22,6 +22,7 @@ mod table;
 use std::time::Instant;
 
 use arguments::Arguments;
+use cases::Case;
 use outcome::Outcome;
 use program::Program;
 use rayon::prelude::*;
@@ -50,9 +51,9 @@ fn outcomes(program: &Program, arguments: &Arguments) -> Vec<Outcome> {
             |(ship, model): &(&TrueShip, &Refined)| limits::tested(program, ship, model, arguments);
         return pairs.par_iter().flat_map(tested).collect();
     }
-    let of_ship = |(ship, model): &(&TrueShip, &Refined)| -> Vec<_> {
-        cases::cases(ship, arguments).into_iter().map(|case| (*ship, *model, case)).collect()
+    let of_ship = |&(ship, model)| {
+        cases::cases(ship, arguments).into_iter().map(move |case| (ship, model, case))
     };
-    let cases: Vec<_> = pairs.iter().flat_map(of_ship).collect();
+    let cases: Vec<(&TrueShip, &Refined, Case)> = pairs.iter().flat_map(of_ship).collect();
     cases.into_par_iter().map(|(s, m, case)| diagnosed::run(program, s, m, case)).collect()
 }

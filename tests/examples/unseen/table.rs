@@ -59,6 +59,12 @@ const FIGURES: [Figure; 9] = [
         name: "single: right name first",
         of: is_single,
         right: Outcome::is_first,
+        target: "",
+    },
+    Figure {
+        name: "single not below its limit: right name first",
+        of: |outcome| is_single(outcome) && !outcome.below_limit,
+        right: Outcome::is_first,
         target: "95 %",
     },
     Figure {
