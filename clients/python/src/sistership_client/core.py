@@ -38,7 +38,7 @@ Comparison = TypedDict('Comparison', {'coefficients': 'List[ComparedCoefficient]
 Condition = TypedDict('Condition', {'effects': 'List[str]', 'found_by': 'Union[FoundBy, None]', 'model': 'Standing', 'sentence': 'str', 'since': 'Union[FoundBy, None]', 'trials': 'List[str]', 'verdict': 'Union[str, None]', 'version': 'Union[int, None]', 'with_effects': 'Union[MadeVersion, None]'}, total=False)
 Constraints = TypedDict('Constraints', {'bounds': 'Dict[str, Bound]', 'dissipative': 'bool', 'physical_signs': 'bool', 'straight_line': 'Union[StraightLine, None]', 'trust_sd': 'Union[float, None]'}, total=False)
 DiagnosisRequest = TypedDict('DiagnosisRequest', {'model': 'str', 'settings': 'DiagnosisSettings', 'trials': 'Union[List[str], None]'}, total=False)
-DiagnosisSettings = TypedDict('DiagnosisSettings', {'least_evidence': 'float', 'least_step_s': 'Union[float, None]', 'most_effects': 'int', 'restart_s': 'Union[float, None]', 'slack': 'float'}, total=False)
+DiagnosisSettings = TypedDict('DiagnosisSettings', {'least_evidence': 'float', 'least_step_s': 'Union[float, None]', 'most_effects': 'int', 'prior_odds': 'Dict[str, float]', 'restart_s': 'Union[float, None]', 'slack': 'float'}, total=False)
 Discrepancy = TypedDict('Discrepancy', {'deviation': 'float', 'time_s': 'float', 'white': 'float'}, total=True)
 Drift = TypedDict('Drift', {'ratio': 'Dict[str, float]', 'reason': 'Union[str, None]', 'ship': 'str', 'trials': 'List[TrialResidual]', 'version': 'int', 'worst': 'Union[float, None]'}, total=False)
 EffectLibraryHead = TypedDict('EffectLibraryHead', {'created_us': 'int', 'sha256': 'str'}, total=True)
@@ -52,7 +52,7 @@ FamilyView = TypedDict('FamilyView', {'created_us': 'int', 'foundation': 'str', 
 Fault = TypedDict('Fault', {'column': 'Union[str, None]', 'field': 'Union[str, None]', 'message': 'str', 'row': 'Union[int, None]'}, total=False)
 FigureValue = TypedDict('FigureValue', {'pass': 'Union[bool, None]', 'value': 'Union[float, None]'}, total=False)
 Form = TypedDict('Form', {'file': 'List[str]', 'manifest': 'Union[str, None]', 'ship': 'Union[str, None]'}, total=False)
-FormFile = TypedDict('FormFile', {'accelerates': 'Dict[str, str]', 'coefficients': 'Dict[str, str]', 'forces': 'Dict[str, str]', 'lags': 'Dict[str, str]', 'meaning': 'str', 'measures': 'Dict[str, str]', 'name': 'str', 'needs': 'List[Channel]', 'only_without_roll': 'bool', 'parameters': 'Dict[str, EffectParameterFile]', 'particulars': 'Dict[str, str]', 'reports': 'Dict[str, str]', 'sees': 'Dict[str, str]', 'unless': 'List[Channel]', 'values': 'Dict[str, str]'}, total=False)
+FormFile = TypedDict('FormFile', {'accelerates': 'Dict[str, str]', 'coefficients': 'Dict[str, str]', 'forces': 'Dict[str, str]', 'lags': 'Dict[str, str]', 'meaning': 'str', 'measures': 'Dict[str, str]', 'misfit': 'Union[float, None]', 'name': 'str', 'needs': 'List[Channel]', 'only_without_roll': 'bool', 'parameters': 'Dict[str, EffectParameterFile]', 'particulars': 'Dict[str, str]', 'reports': 'Dict[str, str]', 'sees': 'Dict[str, str]', 'unless': 'List[Channel]', 'values': 'Dict[str, str]'}, total=False)
 FoundBy = TypedDict('FoundBy', {'at_us': 'int', 'diagnosis': 'str', 'report': 'str'}, total=True)
 FreeRunning = TypedDict('FreeRunning', {'kind': 'FreeRunningKind', 'note': 'Union[str, None]', 'source': 'str', 'speed_m_s': 'Union[float, None]', 'turns': 'List[PublishedTurn]', 'zigzags': 'List[PublishedZigzag]'}, total=False)
 FreeRunningKind = Any  # What sailed a free-running trial.

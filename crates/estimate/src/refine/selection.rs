@@ -18,6 +18,7 @@ use super::progress::{MonotoneProgress, Progress, Watch, step};
 use super::ridge_candidates::source_candidate;
 use super::settings::Settings;
 use super::thresholds::SELECTION;
+use super::unrecorded;
 use super::variant::{Variant, variants};
 use super::weighed::{Extent, Weighed, weighed};
 use crate::steering::{RateWindow, measured_rate};
@@ -164,11 +165,14 @@ fn starting(
     let approach = approach_of(whole);
     let Some(own) = source_law.filter(|own| own.name != law.name) else {
         let same = source.ship == target.name();
-        let carried = if same { source.clone() } else { transfer(source, law, target, approach) };
+        let mut carried =
+            if same { source.clone() } else { transfer(source, law, target, approach) };
+        unrecorded::forget(&mut carried, law, whole);
         let measure = PriorMeasure::own(&carried, law, whole, in_parts);
         return Ok((carried, measure));
     };
     let (mut model, envelope) = across::begun((source, own), law, target, approach, whole)?;
+    unrecorded::forget(&mut model, law, whole);
     let blocks = Blocks::new(&model, law)?;
     SourceRegression::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);
     Ok((model, PriorMeasure::Source(envelope)))
