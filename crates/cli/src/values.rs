@@ -44,6 +44,9 @@ pub enum ValueError {
         /// The names, in words.
         known: String,
     },
+    /// No name with a number.
+    #[error("write an effect and its odds, such as `wind=2`")]
+    NoOdds,
     /// No version of a ship's model.
     #[error("write ship and number, such as `sr108/2`")]
     NoVersion,
@@ -83,6 +86,12 @@ pub fn positive(text: &str) -> Result<f64, ValueError> {
         value if value > 0.0 => Ok(value),
         value => Err(ValueError::NotPositive(value)),
     }
+}
+
+/// An effect and the odds that trials have it: `wind=2`.
+pub fn odds(text: &str) -> Result<(String, f64), ValueError> {
+    let (name, odds) = text.split_once('=').ok_or(ValueError::NoOdds)?;
+    Ok((name.to_owned(), positive(odds)?))
 }
 
 /// A rudder angle in degrees that is no zero.

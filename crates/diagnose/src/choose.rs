@@ -9,6 +9,9 @@ use super::discount::is_from_outside;
 use super::evidence::DiscrepancyFactor;
 use super::filtered_base::FilteredBase;
 use super::hypothesis::JudgedHypothesis;
+use super::limits::limits;
+use super::misfit::misfit;
+use super::outcome::DetectionLimit;
 use super::placebo::is_placebo;
 use super::screening::{ScreenedEffect, screen};
 use super::search::HypothesisSearch;
@@ -21,6 +24,8 @@ use sistership_estimate::refine::RefineError;
 pub(super) struct EffectChoice {
     /// The model alone.
     pub alone: JudgedHypothesis,
+    /// How small each effect would have been shown.
+    pub limits: Vec<DetectionLimit>,
     pub tried: Vec<JudgedHypothesis>,
     /// Place of the one taken; none where the model alone stands.
     pub taken: Option<usize>,
@@ -45,9 +50,10 @@ pub(super) fn choose(
     settings: &Settings,
 ) -> Result<EffectChoice, RefineError> {
     let base = search.base(&[], &search.levels)?;
-    let (_, alone) = search.alone(&base)?;
-    let mut choice =
-        EffectChoice { alone, tried: Vec::new(), taken: None, levels: search.levels.clone() };
+    let (level, alone) = search.alone(&base)?;
+    let limits = limits(search, &base, level, settings.least_evidence);
+    let (tried, levels) = (Vec::new(), search.levels.clone());
+    let mut choice = EffectChoice { alone, limits, tried, taken: None, levels };
     choice.add(search, settings, &base, THRESHOLDS.search.judged)?;
     while choice.taken.is_some() && choice.kept().len() < settings.most_effects {
         let kept = choice.kept();
@@ -143,7 +149,7 @@ impl EffectChoice {
             (0..found.len()).filter(|&at| self.accepts(search, &found[at], settings)).collect();
         // What is believed decides, not what fits: an instrument that always erred would stand
         // before what is new.
-        let belief = |place: &usize| last_evidence(search, &found[*place]);
+        let belief = |place: &usize| self.last_evidence(search, &found[*place]);
         accepted.sort_by(|a, b| belief(b).total_cmp(&belief(a)));
         let mut better = None;
         for place in accepted {
@@ -242,6 +248,13 @@ impl EffectChoice {
         self.taken.map_or(&self.alone, |taken| &self.tried[taken])
     }
 
+    /// The evidence for the effect that came last, which is not more than what the whole hypothesis
+    /// has over the one without it: seen from where both stand, an effect of which the columns
+    /// change with its size would be worth more.
+    fn last_evidence(&self, search: &HypothesisSearch<'_>, found: &JudgedHypothesis) -> f64 {
+        last_evidence(search, found).min(found.log_evidence - self.best().log_evidence)
+    }
+
     /// A hypothesis is taken where it is more probable by enough, also on trials that its fit has
     /// not seen.
     fn accepts(
@@ -252,17 +265,27 @@ impl EffectChoice {
     ) -> bool {
         let held_out =
             |judged: &JudgedHypothesis| judged.held_out(&search.fixed).unwrap_or(f64::NEG_INFINITY);
-        stands(search, found, settings) && held_out(found) > held_out(self.best())
+        let evidence = self.last_evidence(search, found);
+        stands_by(search, found, settings, evidence) && held_out(found) > held_out(self.best())
     }
 }
 
 /// Whether the evidence for the effect that came last is enough, and more than a shadow of the
 /// others'.
 fn stands(search: &HypothesisSearch<'_>, found: &JudgedHypothesis, settings: &Settings) -> bool {
+    stands_by(search, found, settings, last_evidence(search, found))
+}
+
+/// The same by evidence that is known.
+fn stands_by(
+    search: &HypothesisSearch<'_>,
+    found: &JudgedHypothesis,
+    settings: &Settings,
+    of_last: f64,
+) -> bool {
     let last = found.candidates.len() - 1;
-    let evidence = |place: usize| search.evidence(found, place).unwrap_or(f64::NEG_INFINITY);
-    let strongest = (0..last).map(evidence).fold(0.0, f64::max);
-    evidence(last) > settings.least_evidence.max(THRESHOLDS.effect.size.powi(2) * strongest)
+    let evidence = all_evidence(search, found);
+    of_last > settings.least_evidence.max(shadow(found, &evidence, last))
 }
 
 /// The weakest of effects that are judged together, where the evidence for it is not enough.
@@ -271,11 +294,21 @@ fn needless(
     best: &JudgedHypothesis,
     settings: &Settings,
 ) -> Option<usize> {
-    let evidence = |place: usize| search.evidence(best, place).unwrap_or(f64::NEG_INFINITY);
-    let evidence: Vec<f64> = (0..best.candidates.len()).map(evidence).collect();
-    let strongest = evidence.iter().copied().fold(0.0, f64::max);
+    let evidence = all_evidence(search, best);
     let weakest = (0..evidence.len()).min_by(|&a, &b| evidence[a].total_cmp(&evidence[b]));
     weakest.filter(|&place| {
-        evidence[place] <= settings.least_evidence.max(THRESHOLDS.effect.size.powi(2) * strongest)
+        evidence[place] <= settings.least_evidence.max(shadow(best, &evidence, place))
     })
+}
+
+fn all_evidence(search: &HypothesisSearch<'_>, judged: &JudgedHypothesis) -> Vec<f64> {
+    let evidence = |place: usize| search.evidence(judged, place).unwrap_or(f64::NEG_INFINITY);
+    (0..judged.candidates.len()).map(evidence).collect()
+}
+
+/// What the others leave unexplained where their forms are another author's than nature's: of the
+/// evidence for each, its misfit squared; an effect beside them that explains no more may be that.
+fn shadow(judged: &JudgedHypothesis, evidence: &[f64], place: usize) -> f64 {
+    let of = |other: usize| misfit(&judged.candidates[other]).powi(2) * evidence[other].max(0.0);
+    (0..evidence.len()).filter(|other| *other != place).map(of).sum()
 }

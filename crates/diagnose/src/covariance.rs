@@ -1,12 +1,12 @@
 //! What is not known of an effect's parameters: by noise and slack, and by what no trial tells.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
-use sistership_model::effect::ActsOn;
 
 use super::coefficient_prior::CoefficientPrior;
 use super::hypothesis::{JudgedHypothesis, priors};
+use super::misfit::of_size;
 use super::thresholds::THRESHOLDS;
-use super::values::{acts_on, own_covariance};
+use super::values::own_covariance;
 use crate::residual::{Gram, Nuisance, NuisanceKind};
 
 /// The covariance of an effect's parameters, with its false-alarm level on clean trials, what its
@@ -23,8 +23,7 @@ pub(super) fn covariance(
     let change = DVector::from_vec(candidate.change());
     let response =
         Cholesky::new(own.clone()).map_or(0.0, |factor| change.dot(&factor.solve(&change)));
-    // What an instrument says of a motion is exact by definition; what a force does is not.
-    let size = if acts_on(candidate) == ActsOn::Measurement { 0.0 } else { THRESHOLDS.effect.size };
+    let size = of_size(candidate);
     let mut covariance = own * (discount + THRESHOLDS.effect.shape.powi(2) * response);
     covariance += &change * change.transpose() * size.powi(2);
     if let Some(answers) = answers_to_masses(judged, place, nuisance, fixed) {

@@ -13,7 +13,10 @@ mod evidence;
 mod filtered_base;
 mod hypothesis;
 mod judge;
+mod limits;
 mod linearised_trials;
+mod log_priors;
+mod misfit;
 mod next_trial;
 mod nuisance;
 mod outcome;
@@ -35,8 +38,8 @@ use std::sync::Arc;
 
 pub use calibrate::calibrate;
 pub use outcome::{
-    Confounded, Diagnosis, DiscrepancyLevel, Found, Hypothesis, NextTrial, ResidualSeries,
-    SailedManoeuvre, TrialErrors, Unexplained, Value, Verdict,
+    Confounded, DetectionLimit, Diagnosis, DiscrepancyLevel, Found, Hypothesis, LimitedBy,
+    NextTrial, ResidualSeries, SailedManoeuvre, TrialErrors, Unexplained, Value, Verdict,
 };
 pub use run::diagnose;
 pub use settings::Settings;

@@ -32,6 +32,17 @@ pub struct Diagnosis {
     pub effects: Vec<Found>,
     /// What no effect explains.
     pub unexplained: Vec<Unexplained>,
+    /// How small each effect that was not found would still have been shown, with a probability of
+    /// 90 %.
+    #[serde(default)]
+    pub limits: Vec<DetectionLimit>,
+    /// Effects of which these trials and this model cannot tell a usual size, and what stands in the
+    /// way.
+    #[serde(default)]
+    pub cannot_tell: BTreeMap<String, LimitedBy>,
+    /// Odds that were given each effect before the trials were looked at, all its forms together.
+    #[serde(default)]
+    pub prior_odds: BTreeMap<String, f64>,
     /// The trial that would tell the effects found from those that they are confounded with; absent
     /// where nothing is to be told apart.
     pub next_trial: Option<NextTrial>,
@@ -61,6 +72,35 @@ pub struct Diagnosis {
     pub settings: Settings,
     /// Remarks for the person who must defend the answer.
     pub remarks: Vec<String>,
+}
+
+/// How small an effect would still have been shown.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DetectionLimit {
+    /// The effect.
+    pub effect: String,
+    /// Its form.
+    pub form: String,
+    /// The parameter whose size is limited, the others at the absence of the effect.
+    pub parameter: String,
+    /// The smallest size that is shown with a probability of 90 %, SI; absent where none is.
+    pub size: Option<f64>,
+    /// A usual size, by the library's prior.
+    pub usual: f64,
+    /// What stands in the way of showing a usual size; absent where it would be shown.
+    pub limited_by: Option<LimitedBy>,
+}
+
+/// What stands in the way of telling an effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LimitedBy {
+    /// The model leaves of its own trials what resembles the effect: refine it first.
+    Model,
+    /// What the trials excite does not tell it from the coefficients or from another effect.
+    Trials,
+    /// The instruments scatter too much.
+    Sensors,
 }
 
 /// A value with its standard error, in the unit of its name.

@@ -11,7 +11,8 @@ use super::thresholds::THRESHOLDS;
 use crate::residual::{Discrepancies, Linearised, errors, responses};
 
 /// Stretches that the columns at `parameters` leave unexplained, under the discrepancy that is
-/// expected; the largest first.
+/// expected; the largest first. `effects` are the parts of the parameters that the laws of the
+/// effects leave open.
 pub(super) fn unexplained(
     workspace: &LinearisedTrials<'_>,
     discrepancies: &Discrepancies,
@@ -54,7 +55,7 @@ struct BlockSums<'a> {
     /// Samples in a block.
     size: usize,
     sums: Vec<f64>,
-    /// What the effects found move these sums by: their laws are not exact.
+    /// What the effects found may leave of what they move these sums by: their laws are not exact.
     moved: Vec<f64>,
 }
 
@@ -114,8 +115,7 @@ impl BlockSums<'_> {
         let mut found: Vec<(usize, usize)> = Vec::new();
         let is_large = |&from: &usize| {
             let blocks = from..from + THRESHOLDS.remainder.blocks;
-            rms(&self.sums[blocks.clone()])
-                > limit.hypot(THRESHOLDS.effect.shape * rms(&self.moved[blocks]))
+            rms(&self.sums[blocks.clone()]) > limit.hypot(rms(&self.moved[blocks]))
         };
         for from in self.starts().filter(is_large) {
             match found.last_mut().filter(|(_, end)| from <= *end) {

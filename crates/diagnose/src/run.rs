@@ -7,7 +7,9 @@ use super::choose::{ConvergedChoice, EffectChoice, choose};
 use super::constancy::inconstant;
 use super::hypothesis::JudgedHypothesis;
 use super::judge::errors;
+use super::limits::{but, cannot_tell};
 use super::linearised_trials::LinearisedTrials;
+use super::misfit::of_shape;
 use super::outcome::{Diagnosis, Unexplained, Verdict};
 use super::refit::refits;
 use super::remainder::unexplained;
@@ -16,6 +18,7 @@ use super::search::HypothesisSearch;
 use super::series::{levels, residuals};
 use super::setup::search;
 use super::thresholds::THRESHOLDS;
+use crate::residual::EffectCandidate;
 use sistership_estimate::refine::{Progress, RefineError};
 
 /// Diagnoses a model on trials.
@@ -69,10 +72,15 @@ fn answer(
     });
     let is_better = found.is_empty() || model.is_some();
     let remarks = remarks(&refused, is_better, &found);
+    let names: Vec<String> = found.iter().map(|found| found.name.clone()).collect();
+    let limits = but(choice.limits.clone(), &names);
     Ok(Diagnosis {
         verdict,
         effects: found,
         unexplained: remaining,
+        cannot_tell: cannot_tell(&limits),
+        limits,
+        prior_odds: first.prior_odds(),
         next_trial,
         before: errors.before,
         after: errors.after,
@@ -141,8 +149,11 @@ fn remaining(
     };
     let parameters: Vec<f64> = best.shift.iter().copied().chain(best.moved()).collect();
     let clean = search.model.uncertainty.as_ref().map(|uncertainty| &uncertainty.remainder);
-    let changes: Vec<f64> =
-        best.candidates.iter().flat_map(|candidate| candidate.change()).collect();
+    let open = |candidate: &EffectCandidate| {
+        let share = of_shape(candidate);
+        candidate.change().into_iter().map(move |change| share * change)
+    };
+    let changes: Vec<f64> = best.candidates.iter().flat_map(open).collect();
     let effects: Vec<f64> = vec![0.0; best.shift.len()].into_iter().chain(changes).collect();
     let found = unexplained(workspace, expected, &parameters, &effects, clean);
     if clean.is_none() || found.is_empty() {

@@ -1,5 +1,7 @@
 //! Which hypothesis is most probable: every effect alone, then those together that improve on it.
 
+use std::collections::BTreeMap;
+
 use nalgebra::DVector;
 use sistership_model::law::Law;
 use sistership_model::{Model, Trial};
@@ -41,7 +43,7 @@ pub(super) struct HypothesisSearch<'a> {
     /// Terms that the model lacks.
     pub freed: Vec<EffectCandidate>,
     /// Logarithm of the prior probability of each form among all.
-    pub log_priors: std::collections::BTreeMap<String, f64>,
+    pub log_priors: BTreeMap<String, f64>,
 }
 
 impl<'a> HypothesisSearch<'a> {
@@ -155,6 +157,15 @@ impl<'a> HypothesisSearch<'a> {
     /// Logarithm of the prior probability of an effect among all that can be tried.
     pub fn log_prior(&self, candidate: &EffectCandidate) -> f64 {
         self.log_priors.get(&candidate.key()).copied().unwrap_or_default()
+    }
+
+    /// The prior odds of each effect against the model alone, all its forms together.
+    pub fn prior_odds(&self) -> BTreeMap<String, f64> {
+        let mut odds: BTreeMap<String, f64> = BTreeMap::new();
+        for candidate in self.listed.iter().chain(&self.freed) {
+            *odds.entry(candidate.effect.clone()).or_default() += self.log_prior(candidate).exp();
+        }
+        odds
     }
 
     /// The effects of a base alone, at the level at which they are most probable.

@@ -1,5 +1,7 @@
 //! What a diagnosis may be told.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +29,10 @@ pub struct Settings {
     /// Most effects that are named together.
     #[schemars(range(min = 1, max = 4))]
     pub most_effects: usize,
+    /// Odds that trials have an effect, by its name, before they are looked at; where absent, those
+    /// of the library.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub prior_odds: BTreeMap<String, f64>,
 }
 
 impl Default for Settings {
@@ -37,6 +43,7 @@ impl Default for Settings {
             slack: 0.02,
             least_evidence: 5.0,
             most_effects: 3,
+            prior_odds: BTreeMap::new(),
         }
     }
 }
@@ -64,6 +71,10 @@ impl Settings {
         }
         if !(1..=4).contains(&self.most_effects) {
             return refuse("most_effects", "must be from 1 to 4");
+        }
+        let wrong = |odds: &f64| !(*odds > 0.0 && odds.is_finite());
+        if let Some((name, _)) = self.prior_odds.iter().find(|(_, odds)| wrong(odds)) {
+            return refuse("prior_odds", &format!("of `{name}` must be above 0"));
         }
         Ok(())
     }

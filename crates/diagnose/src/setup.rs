@@ -1,7 +1,6 @@
 //! From a request to a search: which forms are tried, what the coefficients are left, which
 //! discrepancy is expected.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use sistership_model::effect::Form;
@@ -12,6 +11,7 @@ use super::Request;
 use super::calibrated_model::CalibratedModel;
 use super::evidence::DiscrepancyFactor;
 use super::linearised_trials::LinearisedTrials;
+use super::log_priors::log_priors;
 use super::nuisance::{Terms, columns, lacked, learned, learned_prior, prior};
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
@@ -61,18 +61,6 @@ fn fits(form: &Form, law: &Law, trials: &[&Trial]) -> bool {
     form.file.needs.iter().all(everywhere) && !form.file.unless.iter().any(somewhere) && !rolls
 }
 
-/// Every effect is as probable as another, and so is every form of it.
-fn log_priors<'a>(
-    candidates: impl Iterator<Item = &'a EffectCandidate> + Clone,
-) -> BTreeMap<String, f64> {
-    let mut forms: BTreeMap<&str, f64> = BTreeMap::new();
-    candidates.clone().for_each(|candidate| *forms.entry(&candidate.effect).or_default() += 1.0);
-    let effects = forms.len() as f64;
-    candidates
-        .map(|candidate| (candidate.key(), -(effects * forms[candidate.effect.as_str()]).ln()))
-        .collect()
-}
-
 /// # Errors
 /// Names what the model or a trial lacks.
 pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, RefineError> {
@@ -111,7 +99,7 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, 
         expected: Vec::new(),
         levels,
         least_step_s: request.settings.least_step_s,
-        log_priors: log_priors(listed.iter().chain(&freed)),
+        log_priors: log_priors(request, &listed, &freed),
         listed,
         freed,
     };

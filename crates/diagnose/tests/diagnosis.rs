@@ -68,17 +68,21 @@ fn hidden(zoo: &Zoo, effect: &str, parameters: &[(&str, f64)]) -> AppliedEffect 
 }
 
 fn diagnosed(zoo: &Zoo, model: &Model, trials: &[Trial]) -> Diagnosis {
+    by(zoo, model, trials, &Settings::default())
+}
+
+fn by(zoo: &Zoo, model: &Model, trials: &[Trial], settings: &Settings) -> Diagnosis {
     let names = ["current", "rudder-offset", "yaw-rate-bias", "extra-resistance"];
     let effects: Vec<Arc<Effect>> =
         names.iter().map(|name| Arc::clone(zoo.effect(name).unwrap())).collect();
     let trials: Vec<&Trial> = trials.iter().collect();
-    let settings = Settings::default();
     let law = zoo.law(&model.law).unwrap();
-    diagnose(
-        &Request { model, law, effects: &effects, trials: &trials, settings: &settings },
-        &|_, _| true,
-    )
-    .unwrap()
+    diagnose(&Request { model, law, effects: &effects, trials: &trials, settings }, &|_, _| true)
+        .unwrap()
+}
+
+fn names(diagnosis: &Diagnosis) -> Vec<&str> {
+    diagnosis.effects.iter().map(|found| found.name.as_str()).collect()
 }
 
 #[test]
@@ -120,4 +124,33 @@ fn a_hidden_rudder_offset_is_named_with_its_angle() {
     assert_eq!(diagnosis.effects[0].name, "rudder-offset");
     let offset = diagnosis.effects[0].parameters["offset_rad"];
     assert!((offset.value - 0.02).abs() < 1e-3, "{offset:?}");
+}
+
+#[test]
+fn an_effect_is_named_above_its_detection_limit_and_not_far_below() {
+    let zoo = Zoo::embedded().unwrap();
+    let model = zoo.model("mariner").unwrap();
+    let limits = diagnosed(&zoo, &model, &trials(&zoo, None)).limits;
+    for (effect, parameter) in [("rudder-offset", "offset_rad"), ("yaw-rate-bias", "bias_rad_s")] {
+        let limit = limits.iter().find(|limit| limit.effect == effect).unwrap().size.unwrap();
+        let of = |share: f64| {
+            let hidden = hidden(&zoo, effect, &[(parameter, share * limit)]);
+            diagnosed(&zoo, &model, &trials(&zoo, Some(hidden)))
+        };
+        assert_eq!(names(&of(1.5)), [effect], "{limit}");
+        assert!(names(&of(0.5)).is_empty(), "{limit}");
+    }
+}
+
+#[test]
+fn what_is_held_for_impossible_is_not_named() {
+    let zoo = Zoo::embedded().unwrap();
+    let model = zoo.model("mariner").unwrap();
+    let trials = trials(&zoo, Some(hidden(&zoo, "rudder-offset", &[("offset_rad", 0.004)])));
+    assert_eq!(names(&diagnosed(&zoo, &model, &trials)), ["rudder-offset"]);
+    let prior_odds = [("rudder-offset".to_owned(), 1e-300)].into();
+    let settings = Settings { prior_odds, ..Settings::default() };
+    let diagnosis = by(&zoo, &model, &trials, &settings);
+    assert!(!names(&diagnosis).contains(&"rudder-offset"), "{:?}", names(&diagnosis));
+    assert!(diagnosis.prior_odds["rudder-offset"] < 1e-299);
 }

@@ -194,6 +194,10 @@ impl Truth for Ferry {
         [surge, sway, yaw, 0.0]
     }
 
+    fn inertia(&self) -> &Inertia {
+        &self.inertia
+    }
+
     fn revolutions_rps(&self) -> f64 {
         self.revolutions_rps
     }

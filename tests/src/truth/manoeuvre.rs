@@ -23,7 +23,7 @@ pub enum Manoeuvre {
 }
 
 /// Lengths sailed before the first order.
-const APPROACH: f64 = 0.5;
+pub(super) const APPROACH: f64 = 0.5;
 
 impl Manoeuvre {
     /// A name for files.
@@ -37,7 +37,7 @@ impl Manoeuvre {
     }
 
     /// How long it takes, by the time in which the ship sails its length.
-    fn lengths(&self) -> f64 {
+    pub(super) fn lengths(&self) -> f64 {
         match self {
             Self::Zigzag(..) => 25.0,
             Self::Turn(_) => 18.0,
@@ -58,7 +58,7 @@ impl Manoeuvre {
 }
 
 /// Who steers.
-struct Helm {
+pub(super) struct Helm {
     manoeuvre: Manoeuvre,
     length_time_s: f64,
     reversals_s: Vec<f64>,
@@ -66,7 +66,7 @@ struct Helm {
 }
 
 impl Helm {
-    fn new(manoeuvre: Manoeuvre, length_time_s: f64) -> Self {
+    pub(super) fn new(manoeuvre: Manoeuvre, length_time_s: f64) -> Self {
         let orders = match manoeuvre {
             Manoeuvre::Random(rudder_deg, seed) => random_orders(rudder_deg, seed),
             _ => Vec::new(),
@@ -74,8 +74,8 @@ impl Helm {
         Self { manoeuvre, length_time_s, reversals_s: Vec::new(), orders }
     }
 
-    /// The order, deg, so long after the first.
-    fn order_deg(&mut self, t_s: f64, state: &StateVector) -> f64 {
+    /// The order, deg, so long after the first; headings count from that of the approach.
+    pub(super) fn order_deg(&mut self, t_s: f64, state: &StateVector) -> f64 {
         if t_s < -1e-9 {
             return 0.0;
         }

@@ -17,6 +17,8 @@ pub trait Truth: Sync {
     /// Accelerations of surge, sway (m/s2), yaw and roll (rad/s2) at a state, whose rudder angle is
     /// the actual one.
     fn accelerations(&self, state: &StateVector, n_rps: f64) -> [f64; 4];
+    /// Its mass and the water's.
+    fn inertia(&self) -> &Inertia;
     /// Revolutions that keep the approach speed, 1/s.
     fn revolutions_rps(&self) -> f64;
     /// Rudder rate, rad/s.
@@ -55,11 +57,25 @@ impl Inertia {
         let across = [(d * sway - b * yaw) / determinant, (a * yaw - c * sway) / determinant];
         [surge / self.surge_kg, across[0], across[1]]
     }
+
+    /// Accelerations under forces from outside alone.
+    pub fn answers(&self, forces: [f64; 3]) -> [f64; 3] {
+        self.accelerations(forces, [0.0; 3])
+    }
 }
 
 /// Rate of change of the state under an ordered rudder angle (rad).
 fn rate(ship: &dyn Truth, state: &StateVector, order_rad: f64, n_rps: f64) -> StateVector {
-    let [surge, sway, yaw, roll] = ship.accelerations(state, n_rps);
+    rate_under(ship, state, order_rad, ship.accelerations(state, n_rps))
+}
+
+/// The same by accelerations that are known.
+pub(super) fn rate_under(
+    ship: &dyn Truth,
+    state: &StateVector,
+    order_rad: f64,
+    [surge, sway, yaw, roll]: [f64; 4],
+) -> StateVector {
     let (sin, cos) = state[at::PSI].sin_cos();
     let (u, across) = (state[at::U], state[at::V] * state[at::PHI].cos());
     let mut rate = StateVector::zeros();

@@ -181,6 +181,10 @@ impl Truth for SingleScrew {
         [surge, sway, yaw, self.roll(state, hull[1], rudder[1])]
     }
 
+    fn inertia(&self) -> &Inertia {
+        &self.inertia
+    }
+
     fn revolutions_rps(&self) -> f64 {
         self.revolutions_rps
     }

@@ -18,7 +18,7 @@ use crate::files::PromisedFile;
 use crate::named;
 use crate::output::{self, count, note};
 use crate::trials::{self, ReadTrial};
-use crate::values::positive;
+use crate::values::{odds, positive};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -57,6 +57,10 @@ pub struct DiagnoseArguments {
     /// Most effects that are named together.
     #[arg(long, value_name = "N")]
     most_effects: Option<usize>,
+    /// Odds that the trials have an effect, before they are looked at, against that they do not;
+    /// where absent, those of the library. May be given more than once.
+    #[arg(long, value_name = "EFFECT=ODDS", value_parser = odds)]
+    prior_odds: Vec<(String, f64)>,
     /// Write the model with the effects found.
     #[arg(long, value_name = "MODEL.yaml")]
     out: Option<PathBuf>,
@@ -81,7 +85,7 @@ struct DiagnoseDocument<'a> {
 /// # Errors
 /// The model, a trial or a setting is refused, or a file cannot be written.
 pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
-    let settings = settings(arguments)?;
+    let settings = settings(zoo, arguments)?;
     let (model, law) = named::model(zoo, &arguments.model)?;
     if model.branch.is_some() {
         let error = PlantError::Branch(model.name);
@@ -108,7 +112,13 @@ pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
 }
 
 /// What can be seen in the call alone is a call that is wrong.
-fn settings(arguments: &DiagnoseArguments) -> Result<Settings, Failure> {
+fn settings(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<Settings, Failure> {
+    let unknown = |(name, _): &&(String, f64)| zoo.effect(name).is_none();
+    if let Some((name, _)) = arguments.prior_odds.iter().find(unknown) {
+        let known: Vec<&str> = zoo.effects().map(|effect| effect.name.as_str()).collect();
+        let message = format!("--prior-odds: no effect `{name}`; there are {}", known.join(", "));
+        return Err(Failure::Call(message));
+    }
     let default = Settings::default();
     let settings = Settings {
         restart_s: arguments.restart_s,
@@ -116,6 +126,7 @@ fn settings(arguments: &DiagnoseArguments) -> Result<Settings, Failure> {
         slack: arguments.slack.unwrap_or(default.slack),
         least_evidence: arguments.least_evidence.unwrap_or(default.least_evidence),
         most_effects: arguments.most_effects.unwrap_or(default.most_effects),
+        prior_odds: arguments.prior_odds.iter().cloned().collect(),
     };
     let flag = |field: String| field.replace('_', "-");
     settings

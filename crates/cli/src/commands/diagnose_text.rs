@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use sistership_diagnose::{
-    Confounded, Diagnosis, Found, Hypothesis, NextTrial, Unexplained, Verdict,
+    Confounded, Diagnosis, Found, Hypothesis, LimitedBy, NextTrial, Unexplained, Verdict,
 };
 use sistership_model::Model;
 use sistership_report::distinct;
@@ -29,6 +29,7 @@ pub fn text(diagnosis: &Diagnosis, model: &Model, files: &WrittenFiles<'_>) -> S
         parts.push(format!("What no effect explains\n{}", unexplained(&diagnosis.unexplained)));
     }
     parts.extend(diagnosis.next_trial.as_ref().map(next_trial));
+    parts.extend(limits(diagnosis));
     parts.push(format!("Root mean square errors: {}\n{}", diagnosis.how, errors(diagnosis)));
     parts.push(format!(
         "Most probable hypotheses (evidence: natural logarithm)\n{}",
@@ -43,7 +44,7 @@ fn verdict(diagnosis: &Diagnosis) -> String {
     let names: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.name.as_str()).collect();
     match diagnosis.verdict {
         Verdict::Complete => {
-            "COMPLETE: nothing is missing; the residual is what the noise predicts".to_owned()
+            "COMPLETE: nothing is missing above the sizes that these trials would show".to_owned()
         }
         Verdict::Effects => format!("EFFECTS: the model lacks {}", names.join(" and ")),
         Verdict::Unexplained if names.is_empty() => {
@@ -96,6 +97,23 @@ fn next_trial(next: &NextTrial) -> String {
         next.manoeuvre,
         next.separates.join(" and ")
     )
+}
+
+/// How small an effect would have been shown; none where nothing says it.
+fn limits(diagnosis: &Diagnosis) -> Option<String> {
+    let mut table = TextTable::new(["effect", "form", "parameter", "shown from", "usual", "told"]);
+    for limit in &diagnosis.limits {
+        let told = limit.limited_by.map_or("yes", |cause| match cause {
+            LimitedBy::Model => "cannot tell: refine the model first",
+            LimitedBy::Trials => "cannot tell: other trials are needed",
+            LimitedBy::Sensors => "cannot tell: the instruments scatter too much",
+        });
+        let names = [&limit.effect, &limit.form, &limit.parameter].map(Clone::clone);
+        let sizes = [optional(limit.size), number(limit.usual), told.to_owned()];
+        table.row(names.into_iter().chain(sizes));
+    }
+    (!diagnosis.limits.is_empty())
+        .then(|| format!("The smallest sizes that would have been shown (90 %)\n{table}"))
 }
 
 /// The errors on trials left out, before and after, and what they are by the noise.

@@ -22,6 +22,11 @@ pub(crate) struct EffectThresholds {
     /// dimensionless. Source: chosen: quarters are as far from the record and from each other as
     /// three shifts can be.
     pub placebo_shifts: [f64; 3],
+    /// `w_0`: how much a record from outside must differ from itself at other times for these to be
+    /// a placebo, root mean square of the difference over `sqrt(2)` by that of the record,
+    /// dimensionless. Source: chosen; with a turbulence of 10 to 20 % gusts alone do it, while an
+    /// anemometer's scatter about a steady wind does not.
+    pub least_variation: f64,
     /// `h`: step of numerical derivatives of what is reported, by the parameter's standard error,
     /// dimensionless. Source: derived: central differences err by its square.
     pub report_step: f64,
@@ -34,6 +39,7 @@ pub(super) const EFFECT: EffectThresholds = EffectThresholds {
     unknown_discount: 10.0,
     mass_deviation: 0.08,
     placebo_shifts: [0.25, 0.5, 0.75],
+    least_variation: 0.15,
     report_step: 1e-3,
 };
 

@@ -8,6 +8,7 @@
 
 mod calibration;
 mod effects;
+mod limits;
 mod remainder;
 mod search;
 mod trials;
@@ -16,6 +17,7 @@ use calibration::{CALIBRATION, CalibrationThresholds, DISCREPANCY, DiscrepancyTh
 use effects::{
     CONFOUNDING, CONSTANCY, ConfoundingThresholds, ConstancyThresholds, EFFECT, EffectThresholds,
 };
+use limits::{LIMITS, LimitThresholds};
 use remainder::{REMAINDER, RemainderThresholds};
 use search::{REFIT, RefitThresholds, SEARCH, SearchThresholds};
 use trials::{NEXT_TRIAL, NextTrialThresholds, SERIES, SeriesThresholds, TRIALS, TrialThresholds};
@@ -37,6 +39,8 @@ pub(crate) struct Thresholds {
     pub constancy: ConstancyThresholds,
     /// When two effects count as different.
     pub confounding: ConfoundingThresholds,
+    /// How small an effect would have been shown.
+    pub limits: LimitThresholds,
     /// When something remains unexplained.
     pub remainder: RemainderThresholds,
     /// The fit of the model that is given.
@@ -57,6 +61,7 @@ pub(crate) const THRESHOLDS: Thresholds = Thresholds {
     effect: EFFECT,
     constancy: CONSTANCY,
     confounding: CONFOUNDING,
+    limits: LIMITS,
     remainder: REMAINDER,
     refit: REFIT,
     trials: TRIALS,

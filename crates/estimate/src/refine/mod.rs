@@ -32,6 +32,7 @@ mod simulated;
 mod thinned;
 mod thresholds;
 mod trajectory;
+mod unrecorded;
 mod variant;
 mod weak;
 mod weighed;

@@ -18,9 +18,10 @@ use super::progress::{MonotoneProgress, Progress, Watch, step};
 use super::ridge_candidates::source_candidate;
 use super::settings::Settings;
 use super::thresholds::SELECTION;
+use super::unrecorded;
 use super::variant::{Variant, variants};
 use super::weighed::{Extent, Weighed, weighed};
-use crate::steering::measured_rate;
+use crate::steering::{RateWindow, measured_rate};
 use crate::transfer::{approach_of, transfer};
 
 /// What is to be refined, and against what.
@@ -122,7 +123,11 @@ fn with_candidates<T>(
     let parts = parts(&whole, request.law, equations, &settings);
     let (mut transferred, measure) = starting(request, &whole, !parts.is_empty())?;
     if settings.steering_from_trials {
-        steer_as_recorded(&mut transferred, request.target, &whole);
+        let window = match settings.steering_above_noise {
+            true => RateWindow::AboveNoise,
+            false => RateWindow::OfLength,
+        };
+        steer_as_recorded(&mut transferred, request.target, &whole, window);
     }
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
     let (law, source, watch) = (request.law, request.source.name.as_str(), Some(watch));
@@ -160,20 +165,24 @@ fn starting(
     let approach = approach_of(whole);
     let Some(own) = source_law.filter(|own| own.name != law.name) else {
         let same = source.ship == target.name();
-        let carried = if same { source.clone() } else { transfer(source, law, target, approach) };
+        let mut carried =
+            if same { source.clone() } else { transfer(source, law, target, approach) };
+        unrecorded::forget(&mut carried, law, whole);
         let measure = PriorMeasure::own(&carried, law, whole, in_parts);
         return Ok((carried, measure));
     };
     let (mut model, envelope) = across::begun((source, own), law, target, approach, whole)?;
+    unrecorded::forget(&mut model, law, whole);
     let blocks = Blocks::new(&model, law)?;
     SourceRegression::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);
     Ok((model, PriorMeasure::Source(envelope)))
 }
 
 /// Gives a model the gear that the trials' rudders show.
-fn steer_as_recorded(model: &mut Model, target: &Vessel, trials: &[&Trial]) {
+fn steer_as_recorded(model: &mut Model, target: &Vessel, trials: &[&Trial], window: RateWindow) {
     let length_s = target.particular("lpp_m").zip(approach_of(trials));
-    let rate = length_s.and_then(|(l, approach)| measured_rate(trials, l / approach.speed_m_s));
+    let rate =
+        length_s.and_then(|(l, approach)| measured_rate(trials, l / approach.speed_m_s, window));
     if let Some(rate) = rate {
         model.steering.rate_deg_s = rate.to_degrees();
         model.steering.source = Some("the rudder's movements in the trials".to_owned());

@@ -27,12 +27,30 @@ pub struct EffectFile {
     /// A remark.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
+    /// How common it is, before any trial is looked at.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beforehand: Option<PriorOddsFile>,
     /// The forms in which it may appear; each is tried on trials that have the channels it needs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub forms: Vec<FormFile>,
     /// Instead of forms: terms that are searched for one by one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub grammar: Option<GrammarFile>,
+}
+
+/// Odds that new trials have an effect which the model lacks, against that they do not.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PriorOddsFile {
+    /// In all forms together.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub odds: f64,
+    /// The same where trials record the cause, such as the wind: for forms that need such a channel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub odds_where_recorded: Option<f64>,
+    /// What they come from.
+    pub because: String,
 }
 
 /// The word `effect`.
@@ -72,6 +90,11 @@ pub struct FormFile {
     /// Whether the form is meant only for laws without roll.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub only_without_roll: bool,
+    /// How far one author's form of it is from another's: root mean square of the difference by that
+    /// of the response, where the sizes suit each other best. Where absent, a few per cent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1), extend("exclusiveMinimum" = 0))]
+    pub misfit: Option<f64>,
     /// Particulars it uses, with what stands in where the ship does not state them.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, String>")]

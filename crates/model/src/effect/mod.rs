@@ -18,7 +18,10 @@ pub use applied::AppliedEffect;
 pub use as_terms::AsTerms;
 pub(crate) use dress::dress;
 pub use dress::{TIME, input_channel, qualified};
-pub use file::{ActsOn, EffectFile, EffectParameterFile, FormFile, GrammarFile, Mirror, PriorFile};
+pub use file::{
+    ActsOn, EffectFile, EffectParameterFile, FormFile, GrammarFile, Mirror, PriorFile,
+    PriorOddsFile,
+};
 pub use form::{EffectParameter, Form, Report};
 pub use grammar::Grammar;
 pub use read::Effect;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::file::{ActsOn, EffectFile, FormFile, GrammarFile};
+use super::file::{ActsOn, EffectFile, FormFile, GrammarFile, PriorOddsFile};
 use super::form::Form;
 use super::grammar::Grammar;
 use crate::error::{Blame, FileError};
@@ -23,6 +23,8 @@ pub struct Effect {
     pub sources: BTreeMap<String, Source>,
     /// A remark.
     pub note: Option<String>,
+    /// How common it is, before any trial is looked at.
+    pub beforehand: Option<PriorOddsFile>,
     /// The forms in which it may appear; none where terms are searched for.
     pub forms: Vec<Arc<Form>>,
     /// Terms that are searched for.
@@ -48,6 +50,7 @@ fn read(file: &str, text: &str) -> Result<Effect, FileError> {
         return Err(blame.at("forms", "write either `forms` or a `grammar`"));
     }
     let at = |(field, message): (String, String)| blame.at(&field, message);
+    raw.beforehand.as_ref().map_or(Ok(()), check_odds).map_err(at)?;
     Ok(Effect {
         forms: forms(raw.acts_on, &raw.forms).map_err(at)?,
         grammar: raw
@@ -61,7 +64,27 @@ fn read(file: &str, text: &str) -> Result<Effect, FileError> {
         acts_on: raw.acts_on,
         sources: raw.sources,
         note: raw.note,
+        beforehand: raw.beforehand,
     })
+}
+
+fn check_odds(raw: &PriorOddsFile) -> Result<(), (String, String)> {
+    let wrong = |odds: f64| !(odds > 0.0 && odds.is_finite());
+    let refuse = |field: &str| Err((format!("beforehand.{field}"), "should be above 0".to_owned()));
+    match raw.odds_where_recorded {
+        _ if wrong(raw.odds) => refuse("odds"),
+        Some(odds) if wrong(odds) => refuse("odds_where_recorded"),
+        _ => Ok(()),
+    }
+}
+
+fn check_misfit(form: &FormFile) -> Result<(), (String, String)> {
+    match form.misfit {
+        Some(share) if !(share > 0.0 && share <= 1.0) => {
+            Err(("misfit".into(), "should be above 0 and at most 1".into()))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn forms(acts_on: ActsOn, raw: &[FormFile]) -> Result<Vec<Arc<Form>>, (String, String)> {
@@ -75,6 +98,7 @@ fn forms(acts_on: ActsOn, raw: &[FormFile]) -> Result<Vec<Arc<Form>>, (String, S
             let field = if field.is_empty() { path.clone() } else { format!("{path}.{field}") };
             (field, message)
         };
+        check_misfit(form).map_err(below)?;
         Form::read(acts_on, form).map(Arc::new).map_err(below)
     };
     raw.iter().enumerate().map(one).collect()
@@ -124,6 +148,14 @@ forms:
             (form.parameters["share"].start, form.parameters["share"].prior_mean),
             (0.0, 0.0)
         );
+    }
+
+    #[test]
+    fn odds_and_misfit_are_above_nothing() {
+        let odds = refused("forms:\n", "beforehand: { odds: 0, because: test }\nforms:\n");
+        assert!(odds.starts_with("drag.yaml:8: beforehand.odds: "), "{odds}");
+        let misfit = refused("needs: [phi]", "needs: [phi]\n    misfit: 1.5");
+        assert!(misfit.contains("forms.only.misfit: "), "{misfit}");
     }
 
     #[test]

@@ -71,6 +71,7 @@ impl Term<'_> {
             needs: needs(&force),
             unless: Vec::new(),
             only_without_roll: false,
+            misfit: None,
             particulars: IndexMap::new(),
             parameters: IndexMap::from([(
                 parameter,

@@ -6,7 +6,7 @@ use askama::Template;
 use sistership_diagnose::{Found, ResidualSeries, Unexplained};
 
 use super::input::DiagnosisInput;
-use super::{errors, evidence, provenance, remaining, sentence};
+use super::{errors, evidence, limits, provenance, remaining, sentence, summary};
 use crate::numbers::{fixed, list, significant, stated};
 use crate::plots::{self, Plot};
 use crate::rendered::ReportError;
@@ -22,8 +22,12 @@ use sistership_model::version::code_revision;
 struct DiagnosisPage<'a> {
     input: &'a DiagnosisInput<'a>,
     sentence: String,
+    /// What to do, and what could not be told.
+    advice: [String; 2],
     tiles: Vec<Tile>,
     hypotheses: Table,
+    limits: Table,
+    odds: Table,
     further: Table,
     effects: Vec<ShownEffect<'a>>,
     next_trial: Option<String>,
@@ -66,9 +70,13 @@ pub(crate) fn page(
 ) -> Result<String, ReportError> {
     let diagnosis = input.diagnosis;
     let (hypotheses, further) = evidence::hypotheses(diagnosis);
+    let [sentence, advice, open] = summary::summary(diagnosis);
     let page = DiagnosisPage {
         input,
-        sentence: sentence::sentence(diagnosis),
+        sentence,
+        advice: [advice, open],
+        limits: limits::limits(diagnosis),
+        odds: limits::odds(diagnosis),
         tiles: tiles(input),
         hypotheses,
         further,

@@ -1,8 +1,9 @@
 //! The report of a diagnosis: one HTML page that a stranger can read and print, and the diagnosis
 //! as JSON.
 //!
-//! [`render_diagnosis`] says in one sentence what was found (`sentence`), puts the figures into
-//! tables (`evidence`, `errors`, `remaining`, `provenance`) and simulates the trials with the model
+//! [`render_diagnosis`] says in one sentence what was found (`sentence`), in two more what to do and
+//! what could not be told (`summary`), puts the figures into tables (`evidence`, `errors`, `limits`,
+//! `remaining`, `provenance`) and simulates the trials with the model
 //! before and after (`replays`) for the plots. Nothing depends on the clock.
 
 mod distinct;
@@ -10,11 +11,13 @@ mod errors;
 mod evidence;
 mod html;
 mod input;
+mod limits;
 mod parameter;
 mod provenance;
 mod remaining;
 mod replays;
 mod sentence;
+mod summary;
 #[cfg(test)]
 mod tests;
 
@@ -39,6 +42,7 @@ fn document(input: &DiagnosisInput<'_>) -> Result<Value, ReportError> {
     let mut document = serde_json::to_value(input.diagnosis)?;
     document["format"] = json!("sistership-diagnosis/1");
     document["sentence"] = json!(sentence::sentence(input.diagnosis));
+    document["summary"] = json!(summary::summary(input.diagnosis));
     document["version"] = json!({ "diagnosed": input.of, "made": input.made });
     Ok(document)
 }

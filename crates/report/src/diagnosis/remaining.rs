@@ -78,7 +78,7 @@ pub(crate) fn coefficients(before: &Model, after: &Model) -> Option<Table> {
 }
 
 /// What the settings mean.
-const MEANINGS: [(&str, &str); 5] = [
+const MEANINGS: [(&str, &str); 6] = [
     (
         "restart_s",
         "simulations that judge start anew from the measured state every so often, s; by default ten times L/U",
@@ -93,6 +93,7 @@ const MEANINGS: [(&str, &str); 5] = [
     ),
     ("least_evidence", "least evidence for an effect to be named"),
     ("most_effects", "most effects that are named together"),
+    ("prior_odds", "odds that trials have an effect, where others than the library's are set"),
 ];
 
 /// Every setting with what it means.

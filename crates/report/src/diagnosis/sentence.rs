@@ -83,11 +83,9 @@ fn compass(angle: &ShownParameter) -> String {
     format!("{:.0} deg", angle.value.rem_euclid(360.0))
 }
 
-/// Where the largest remainder is.
+/// Where it is: the stretch that the diagnosis puts first.
 fn where_(diagnosis: &Diagnosis) -> String {
-    let largest =
-        diagnosis.unexplained.iter().max_by(|a, b| a.rms_over_noise.total_cmp(&b.rms_over_noise));
-    largest.map_or_else(String::new, |stretch| {
+    diagnosis.unexplained.first().map_or_else(String::new, |stretch| {
         let what = motion(&stretch.channel);
         format!(
             ", most of all in {what} of {} from {:.0} s to {:.0} s",

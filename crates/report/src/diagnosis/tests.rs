@@ -24,12 +24,22 @@ fn a_current_is_said_in_one_sentence() {
 }
 
 #[test]
+fn what_could_not_be_told_is_said_with_its_cause() {
+    let Rendered { html, json } = Case::new().render();
+    let open = "These trials cannot tell: wave drift (until the model is refined further).";
+    assert_eq!(json["summary"][2], open);
+    assert!(html.contains(open));
+    assert!(html.contains("<td class=\"number\">0.11") || html.contains("0.11"));
+}
+
+#[test]
 fn every_part_is_there_and_in_order() {
     let html = Case::new().render().html;
     let ids = [
         "effects",
         "unexplained",
         "evidence",
+        "limits",
         "errors",
         "sailed",
         "trials",

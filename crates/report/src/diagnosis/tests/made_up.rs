@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use sistership_diagnose::{
-    Confounded, Diagnosis, DiscrepancyLevel, Found, Hypothesis, NextTrial, ResidualSeries,
-    SailedManoeuvre, Settings, TrialErrors, Unexplained, Value, Verdict,
+    Confounded, DetectionLimit, Diagnosis, DiscrepancyLevel, Found, Hypothesis, LimitedBy,
+    NextTrial, ResidualSeries, SailedManoeuvre, Settings, TrialErrors, Unexplained, Value, Verdict,
 };
 use sistership_dynamics::metrics::{ManoeuvreMetrics, TurningMetrics};
 use sistership_model::effect::ActsOn;
@@ -171,6 +171,21 @@ fn sailed() -> SailedManoeuvre {
     }
 }
 
+fn limits() -> Vec<DetectionLimit> {
+    let limit = |effect: &str, parameter: &str, size, limited_by| DetectionLimit {
+        effect: effect.into(),
+        form: "constant".into(),
+        parameter: parameter.into(),
+        size,
+        usual: 0.03,
+        limited_by,
+    };
+    vec![
+        limit("rudder-offset", "offset_rad", Some(0.002), None),
+        limit("wave-drift", "north", None, Some(LimitedBy::Model)),
+    ]
+}
+
 fn diagnosis(after: Model) -> Diagnosis {
     let residuals = ["zz<1>", "turn"]
         .into_iter()
@@ -197,6 +212,9 @@ fn diagnosis(after: Model) -> Diagnosis {
         verdict: Verdict::Effects,
         effects: vec![current()],
         unexplained: vec![stretch],
+        limits: limits(),
+        cannot_tell: BTreeMap::from([("wave-drift".to_owned(), LimitedBy::Model)]),
+        prior_odds: BTreeMap::from([("current".to_owned(), 0.5), ("wave-drift".to_owned(), 0.15)]),
         next_trial: Some(next),
         before: errors(1.0),
         after: errors(0.2),

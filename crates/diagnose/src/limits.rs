@@ -1,0 +1,245 @@
+//! How small an effect these trials and this model would still have shown.
+//!
+//! An effect of a size moves the evidence for it, and for every other that resembles it, by what its
+//! columns say; chance adds a spread that is known. The limit is the smallest size at which the
+//! evidence is enough, and ahead of every other's, with a probability of 90 %: the minimum detectable
+//! value of a test with given error probabilities (Currie 1968, Anal Chem 40, 586-593).
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+use sistership_model::effect::{ActsOn, EffectParameter};
+
+use super::evidence::MarginalInformation;
+use super::filtered_base::FilteredBase;
+use super::hypothesis::priors;
+use super::outcome::{DetectionLimit, LimitedBy};
+use super::search::HypothesisSearch;
+use super::thresholds::THRESHOLDS;
+use super::values::acts_on;
+use crate::residual::EffectCandidate;
+
+/// Of every listed effect and of each of its parameters whose absence is zero, from a base without
+/// effects at one of its levels; none where the information is not positive.
+pub(super) fn limits(
+    search: &HypothesisSearch<'_>,
+    base: &FilteredBase<'_>,
+    level: usize,
+    least_evidence: f64,
+) -> Vec<DetectionLimit> {
+    let all = Detection::new(search, base, level, least_evidence);
+    let of = |all: &Detection<'_>| {
+        let listed = (0..all.candidates.len()).filter(|&place| all.is_listed(place));
+        listed.flat_map(|place| all.of_candidate(place)).collect()
+    };
+    all.as_ref().map(of).unwrap_or_default()
+}
+
+/// Everything that may be found on these trials, with the coefficients integrated out.
+struct Detection<'a> {
+    search: &'a HypothesisSearch<'a>,
+    candidates: Vec<&'a EffectCandidate>,
+    /// Places of each in the information.
+    places: Vec<Vec<usize>>,
+    information: DMatrix<f64>,
+    /// The same under coefficients that are known.
+    of_known: DMatrix<f64>,
+    least_evidence: f64,
+}
+
+/// What is expected of the evidence for an effect: mean and standard deviation.
+#[derive(Debug, Clone, Copy)]
+struct ExpectedEvidence {
+    mean: f64,
+    deviation: f64,
+}
+
+impl<'a> Detection<'a> {
+    fn new(
+        search: &'a HypothesisSearch<'a>,
+        base: &FilteredBase<'_>,
+        level: usize,
+        least_evidence: f64,
+    ) -> Option<Self> {
+        let candidates = search.others(&[]);
+        let columns: Vec<Vec<usize>> = candidates
+            .iter()
+            .map(|candidate| base.workspace.columns().showing(candidate))
+            .collect();
+        let size = search.nuisance.len();
+        let select: Vec<usize> = (0..size).chain(columns.iter().flatten().copied()).collect();
+        let mut first = 0;
+        let place = |columns: &Vec<usize>| {
+            first += columns.len();
+            (first - columns.len()..first).collect()
+        };
+        let places = columns.iter().map(place).collect();
+        let total = base.total(level).select(&select);
+        let of_known = total.products.view_range(1 + size.., 1 + size..).into_owned();
+        let information = MarginalInformation::new(&total, &search.fixed)?.information;
+        Some(Self { search, candidates, places, information, of_known, least_evidence })
+    }
+
+    fn is_listed(&self, place: usize) -> bool {
+        place < self.search.listed.len()
+    }
+
+    /// The limits of a candidate's parameters.
+    fn of_candidate(&self, place: usize) -> Vec<DetectionLimit> {
+        let candidate = self.candidates[place];
+        let parameters = candidate.form.parameters.iter().enumerate();
+        let one = |(own, (name, parameter)): (usize, (&String, &EffectParameter))| {
+            if parameter.absent != 0.0 {
+                return None;
+            }
+            let usual = parameter.prior_mean.abs() + parameter.prior_deviation;
+            let discount = self.search.discount(candidate);
+            let size = self.limit(&self.information, place, own, usual, discount);
+            Some(DetectionLimit {
+                effect: candidate.effect.clone(),
+                form: candidate.form.file.name.clone(),
+                parameter: name.clone(),
+                size,
+                usual,
+                limited_by: self.cause(place, own, usual, size),
+            })
+        };
+        parameters.filter_map(one).collect()
+    }
+
+    /// What would have to be better for an effect of a usual size to be shown; none where it is.
+    fn cause(&self, place: usize, own: usize, usual: f64, size: Option<f64>) -> Option<LimitedBy> {
+        let shows = |size: Option<f64>| size.is_some_and(|size| size <= usual);
+        if shows(size) {
+            return None;
+        }
+        if shows(self.limit(&self.information, place, own, usual, 1.0)) {
+            return Some(LimitedBy::Model);
+        }
+        let known = shows(self.limit(&self.of_known, place, own, usual, 1.0));
+        let reads = acts_on(self.candidates[place]) == ActsOn::Measurement;
+        Some(if known || !reads { LimitedBy::Trials } else { LimitedBy::Sensors })
+    }
+
+    /// The smallest size of one parameter that is shown, from a grid of equal ratios; none where the
+    /// largest is not.
+    fn limit(
+        &self,
+        information: &DMatrix<f64>,
+        place: usize,
+        own: usize,
+        usual: f64,
+        discount: f64,
+    ) -> Option<f64> {
+        let given = THRESHOLDS.limits;
+        let sizes = (0..given.steps).map(|k| given.largest * usual * given.ratio.powi(-(k as i32)));
+        let mut smallest = None;
+        let rivals = self.rivals(information, place, own);
+        for size in sizes {
+            if !self.is_shown(information, (place, own), size, discount, &rivals) {
+                break;
+            }
+            smallest = Some(size);
+        }
+        smallest
+    }
+
+    fn is_shown(
+        &self,
+        information: &DMatrix<f64>,
+        (place, own): (usize, usize),
+        size: f64,
+        discount: f64,
+        rivals: &[(usize, DVector<f64>)],
+    ) -> bool {
+        let part = block(information, &self.places[place], &self.places[place]);
+        let seen = part.column(own) * size;
+        let candidate = self.candidates[place];
+        let Some(expected) = self.expected(candidate, &part, &seen, discount) else { return false };
+        let sure = expected.mean - THRESHOLDS.limits.quantile * expected.deviation;
+        sure > self.least_evidence
+            && rivals.iter().all(|(rival, column)| {
+                let other = self.candidates[*rival];
+                let part = block(information, &self.places[*rival], &self.places[*rival]);
+                let discount = if discount > 1.0 { self.search.discount(other) } else { 1.0 };
+                let seen = column * size;
+                self.expected(other, &part, &seen, discount).is_none_or(|of| of.mean < sure)
+            })
+    }
+
+    /// The others that answer to a parameter, with how they see a unit of it.
+    fn rivals(
+        &self,
+        information: &DMatrix<f64>,
+        place: usize,
+        own: usize,
+    ) -> Vec<(usize, DVector<f64>)> {
+        let effect = &self.candidates[place].effect;
+        let others =
+            (0..self.candidates.len()).filter(|&other| self.candidates[other].effect != *effect);
+        let column = |other: usize| {
+            let seen = block(information, &self.places[other], &self.places[place]);
+            (other, seen.column(own).into_owned())
+        };
+        others.map(column).collect()
+    }
+
+    /// The evidence for a candidate that sees so much, as the search would judge it: its information
+    /// divided by its false-alarm level, its parameters integrated out, and the logarithm of its
+    /// prior odds. With `A` the information and `P` the prior's, the gain is `g' S g/2` and a
+    /// constant, `g = A t + P m` and `S = (A + P)^-1`; chance adds `tr(S A)/2` to its mean.
+    fn expected(
+        &self,
+        candidate: &EffectCandidate,
+        part: &DMatrix<f64>,
+        seen: &DVector<f64>,
+        discount: f64,
+    ) -> Option<ExpectedEvidence> {
+        let fixing = priors(candidate);
+        let precision = DVector::from_iterator(
+            fixing.len(),
+            fixing.iter().map(|prior| prior.deviation.powi(-2)),
+        );
+        let information = part / discount;
+        let factor = Cholesky::new(&information + DMatrix::from_diagonal(&precision))?;
+        let pulled = fixing.iter().zip(precision.iter()).map(|(prior, p)| p * prior.mean);
+        let right = seen / discount + DVector::from_iterator(fixing.len(), pulled);
+        let mean = factor.solve(&right);
+        let log_determinant: f64 = factor.l().diagonal().iter().map(|x| 2.0 * x.ln()).sum();
+        let of_prior: f64 = fixing
+            .iter()
+            .map(|prior| (prior.mean / prior.deviation).powi(2) + 2.0 * prior.deviation.ln())
+            .sum();
+        let spread = factor.solve(&information);
+        let variance = mean.dot(&(&information * &mean)) + 0.5 * (&spread * &spread).trace();
+        Some(ExpectedEvidence {
+            mean: 0.5 * (right.dot(&mean) - log_determinant - of_prior + spread.trace())
+                + self.search.log_prior(candidate),
+            deviation: variance.max(0.0).sqrt(),
+        })
+    }
+}
+
+fn block(of: &DMatrix<f64>, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
+    DMatrix::from_fn(rows.len(), columns.len(), |i, j| of[(rows[i], columns[j])])
+}
+
+/// The parameters of an effect that was found are not asked for again: those of all others are.
+pub(super) fn but(limits: Vec<DetectionLimit>, found: &[String]) -> Vec<DetectionLimit> {
+    limits.into_iter().filter(|limit| !found.contains(&limit.effect)).collect()
+}
+
+/// Names of the effects of which a usual size would not have been shown in any of their forms, with
+/// what stands in the way.
+pub(super) fn cannot_tell(limits: &[DetectionLimit]) -> BTreeMap<String, LimitedBy> {
+    let mut open = BTreeMap::new();
+    for limit in limits {
+        let of_effect = || limits.iter().filter(|other| other.effect == limit.effect);
+        if let Some(cause) =
+            limit.limited_by.filter(|_| of_effect().all(|l| l.limited_by.is_some()))
+        {
+            open.entry(limit.effect.clone()).or_insert(cause);
+        }
+    }
+    open
+}

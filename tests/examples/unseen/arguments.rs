@@ -1,0 +1,87 @@
+//! What is asked for.
+
+use std::path::PathBuf;
+
+/// Which ships.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Half {
+    /// Those on which the diagnosis is worked.
+    Work,
+    /// Those on which it is judged.
+    Judgement,
+}
+
+/// The command line.
+pub struct Arguments {
+    pub half: Half,
+    /// Labels begin with one of these.
+    pub only: Vec<String>,
+    pub ship: Option<String>,
+    pub seeds: u64,
+    /// Shares of the size that is hidden.
+    pub sizes: Vec<f64>,
+    /// Shares of their detection limits at which effects are hidden instead.
+    pub limits: Vec<f64>,
+    /// The program that is judged; this tree's where absent.
+    pub program: Option<PathBuf>,
+    /// Where refined models are kept.
+    pub models: Option<PathBuf>,
+    pub jobs: usize,
+}
+
+impl Arguments {
+    /// Those of the process.
+    ///
+    /// # Panics
+    /// Where they are wrong.
+    pub fn given() -> Self {
+        let mut given = std::env::args().skip(1);
+        let half = match given.next().as_deref() {
+            Some("work") => Half::Work,
+            Some("judgement") => Half::Judgement,
+            other => panic!("work or judgement, not {other:?}"),
+        };
+        let mut all = Self::of(half);
+        while let Some(flag) = given.next() {
+            let value = given.next().unwrap_or_else(|| panic!("{flag} needs a value"));
+            all.set(&flag, &value);
+        }
+        all
+    }
+
+    fn of(half: Half) -> Self {
+        Self {
+            half,
+            only: Vec::new(),
+            ship: None,
+            seeds: 1,
+            sizes: vec![1.0],
+            limits: Vec::new(),
+            program: None,
+            models: None,
+            jobs: 1,
+        }
+    }
+
+    fn set(&mut self, flag: &str, value: &str) {
+        let listed = || value.split(',').map(str::to_owned).collect::<Vec<_>>();
+        let share = |text: &String| text.parse::<f64>().expect("a share");
+        let shares = || listed().iter().map(share).collect::<Vec<f64>>();
+        match flag {
+            "--only" => self.only = listed(),
+            "--ship" => self.ship = Some(value.to_owned()),
+            "--seeds" => self.seeds = value.parse().expect("a number of seeds"),
+            "--sizes" => self.sizes = shares(),
+            "--limits" => self.limits = shares(),
+            "--program" => self.program = Some(value.into()),
+            "--models" => self.models = Some(value.into()),
+            "--jobs" => self.jobs = value.parse().expect("a number of jobs"),
+            _ => panic!("no flag {flag}"),
+        }
+    }
+
+    /// Whether a case is asked for.
+    pub fn has(&self, label: &str) -> bool {
+        self.only.is_empty() || self.only.iter().any(|begin| label.starts_with(begin.as_str()))
+    }
+}

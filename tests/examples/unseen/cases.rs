@@ -1,0 +1,79 @@
+//! What is hidden in which trials.
+
+use sistership_tests::truth::causes::{Course, Hidden};
+use sistership_tests::truth::manoeuvre::Manoeuvre;
+
+use crate::arguments::Arguments;
+use crate::listed::{pairs, singles, unlisted};
+use crate::ships::TrueShip;
+
+/// What should come out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    Single,
+    /// The name of an effect at a share of its detection limit.
+    AtLimit(f64),
+    Pair,
+    /// No name, but this channel from this share of the trial on.
+    Unlisted(&'static str, f64),
+    Clean,
+}
+
+/// A parameter by its name in the document, with the truth where the library's form has one.
+pub type Size = (&'static str, f64);
+
+/// One diagnosis.
+#[derive(Debug, Clone)]
+pub struct Case {
+    pub label: String,
+    pub kind: Kind,
+    /// Names of the library's effects that are right.
+    pub names: Vec<&'static str>,
+    pub hidden: Hidden,
+    pub sizes: Vec<Size>,
+    pub seed: u64,
+}
+
+/// Clean sets of trials, for each set of random numbers.
+const CLEAN: u64 = 3;
+
+/// The cases of a ship.
+pub fn cases(ship: &TrueShip, arguments: &Arguments) -> Vec<Case> {
+    let mut all = Vec::new();
+    for seed in 0..arguments.seeds {
+        for share in &arguments.sizes {
+            all.extend(of_ship(ship, *share, 50 * seed));
+        }
+        all.extend((0..CLEAN).map(|k| clean(40 + k + 50 * seed)));
+    }
+    for case in &mut all {
+        case.seed += 1000 * ship.seed;
+    }
+    all.into_iter().filter(|case| arguments.has(&case.label)).collect()
+}
+
+fn of_ship(ship: &TrueShip, share: f64, first: u64) -> Vec<Case> {
+    let all = singles(&*ship.truth, share).into_iter().chain(pairs(&*ship.truth, share));
+    let mut all: Vec<Case> = all.chain(unlisted(share)).collect();
+    for (place, case) in all.iter_mut().enumerate() {
+        case.seed = first + place as u64;
+        if share != 1.0 {
+            case.label = format!("{} x{share}", case.label);
+        }
+    }
+    all
+}
+
+/// Nothing hidden.
+pub fn clean(seed: u64) -> Case {
+    let (label, names) = ("clean".to_owned(), Vec::new());
+    Case { label, kind: Kind::Clean, names, hidden: Hidden::default(), sizes: Vec::new(), seed }
+}
+
+/// The new trials: two zigzags and a turn at two headings.
+pub fn programme() -> Vec<Course> {
+    let manoeuvres =
+        [Manoeuvre::Zigzag(10.0, 10.0), Manoeuvre::Zigzag(20.0, 20.0), Manoeuvre::Turn(15.0)];
+    let at = |manoeuvre| [0.0, 90.0].map(|heading_deg| Course { manoeuvre, heading_deg });
+    manoeuvres.into_iter().flat_map(at).collect()
+}

@@ -1,0 +1,43 @@
+//! One case: trials sailed, written, and given to `sistership diagnose`.
+
+use serde_json::Value;
+use sistership_model::Trial;
+use sistership_tests::truth::causes::trials;
+use sistership_tests::truth::files::write_trials;
+
+use crate::cases::{Case, programme};
+use crate::outcome::Outcome;
+use crate::program::Program;
+use crate::ships::{Refined, TrueShip};
+
+/// Runs a case.
+///
+/// # Panics
+/// The program refuses.
+pub fn run(program: &Program, ship: &TrueShip, model: &Refined, case: Case) -> Outcome {
+    let (answer, duration_s, wall_s) = answer(program, ship, model, &case);
+    let outcome = Outcome::new(ship.name(), case, &answer, duration_s, wall_s);
+    println!("{}", outcome.line());
+    outcome
+}
+
+/// The document of a case, the duration of its longest trial and how long the call took, s.
+///
+/// # Panics
+/// The program refuses.
+pub fn answer(
+    program: &Program,
+    ship: &TrueShip,
+    model: &Refined,
+    case: &Case,
+) -> (Value, f64, f64) {
+    let sailed = trials(&*ship.truth, &case.hidden, &programme(), &ship.instruments(), case.seed);
+    let folder = tempfile::tempdir().expect("a folder");
+    let files = write_trials(folder.path(), &ship.name(), &sailed.iter().collect::<Vec<&Trial>>());
+    let words = [model.path.display().to_string(), files.display().to_string()];
+    let (answer, wall_s) =
+        program.asked(&["diagnose", "--model", &words[0], "--trials", &words[1]]);
+    let answer = answer.unwrap_or_else(|error| panic!("{}, {}: {error}", ship.name(), case.label));
+    let duration_s = sailed.iter().flat_map(|trial| trial.t_s.last().copied()).fold(0.0, f64::max);
+    (answer, duration_s, wall_s)
+}

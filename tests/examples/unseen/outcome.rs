@@ -1,0 +1,128 @@
+//! What a diagnosis made of a case.
+
+use serde_json::Value;
+
+use crate::cases::{Case, Kind};
+use crate::limits;
+
+/// A size that was found beside the true one.
+#[derive(Debug, Clone)]
+pub struct Estimate {
+    pub name: String,
+    /// By how many standard errors it is off.
+    pub off: f64,
+}
+
+/// What came out of a case.
+pub struct Outcome {
+    pub ship: String,
+    pub case: Case,
+    /// First things first.
+    pub named: Vec<String>,
+    pub verdict: String,
+    pub estimates: Vec<Estimate>,
+    /// The strongest stretch that nothing explains: channel, from, to by the longest trial.
+    pub open: Option<(String, f64, f64)>,
+    /// Whether the smallest size that would have been shown is above what was hidden.
+    pub below_limit: bool,
+    pub wall_s: f64,
+    evidence: Vec<String>,
+}
+
+impl Outcome {
+    pub fn new(ship: String, case: Case, answer: &Value, duration_s: f64, wall_s: f64) -> Self {
+        let effects = answer["effects"].as_array().cloned().unwrap_or_default();
+        let name = |effect: &Value| effect["name"].as_str().unwrap_or_default().to_owned();
+        let evidence = |effect: &Value| {
+            format!("{} {:.0}", name(effect), effect["evidence"].as_f64().unwrap_or_default())
+        };
+        let right = effects.iter().filter(|effect| case.names.contains(&name(effect).as_str()));
+        Self {
+            named: effects.iter().map(name).collect(),
+            verdict: answer["verdict"].as_str().unwrap_or_default().to_owned(),
+            estimates: right.flat_map(|effect| estimates(effect, &case)).collect(),
+            open: strongest(&answer["unexplained"], duration_s),
+            below_limit: limits::is_below(&answer["limits"], &case),
+            evidence: effects.iter().map(evidence).collect(),
+            ship,
+            case,
+            wall_s,
+        }
+    }
+
+    /// Whether the name that comes first is one of those hidden.
+    pub fn is_first(&self) -> bool {
+        self.named.first().is_some_and(|name| self.case.names.contains(&name.as_str()))
+    }
+
+    /// Whether what is named is what is hidden, no more and no less; nothing of what has no name.
+    pub fn is_exact(&self) -> bool {
+        self.named.len() == self.case.names.len()
+            && self.named.iter().all(|name| self.case.names.contains(&name.as_str()))
+    }
+
+    /// Whether all that is hidden is among what is named.
+    pub fn has_all(&self) -> bool {
+        self.case.names.iter().all(|name| self.named.iter().any(|named| named == name))
+    }
+
+    /// Whether something is called unexplained.
+    pub fn is_unexplained(&self) -> bool {
+        self.verdict == "unexplained"
+    }
+
+    /// Whether it is so in the right channel, with its middle in the right time.
+    pub fn is_right_place(&self) -> bool {
+        let Kind::Unlisted(channel, from) = self.case.kind else { return false };
+        let holds = |(open, begins, ends): &(String, f64, f64)| {
+            // Yaw rate and heading are of one motion.
+            let same = open == channel || (channel == "r" && open == "psi");
+            same && 0.5 * (begins + ends) >= 0.8 * from
+        };
+        self.is_unexplained() && self.open.as_ref().is_some_and(holds)
+    }
+
+    fn is_right(&self) -> bool {
+        match self.case.kind {
+            Kind::Single | Kind::Pair => self.is_exact(),
+            Kind::AtLimit(share) => self.is_first() == (share > 1.0),
+            Kind::Unlisted(..) => self.is_right_place(),
+            Kind::Clean => self.named.is_empty() && !self.is_unexplained(),
+        }
+    }
+
+    pub fn line(&self) -> String {
+        let off = |estimate: &Estimate| format!("{} {:+.1} se", estimate.name, estimate.off);
+        let off: Vec<String> = self.estimates.iter().map(off).collect();
+        let open = self.open.as_ref().map(|(channel, from, to)| {
+            format!(" open {channel} {:.0}-{:.0} %", 100.0 * from, 100.0 * to)
+        });
+        format!(
+            "{} {:22} {:28} {}: [{}]{} {}{} {:.1} s",
+            if self.is_right() { " " } else { "X" },
+            self.ship,
+            self.case.label,
+            self.verdict,
+            self.evidence.join(", "),
+            open.unwrap_or_default(),
+            off.join(", "),
+            if self.below_limit { " below the limit" } else { "" },
+            self.wall_s
+        )
+    }
+}
+
+fn estimates(effect: &Value, case: &Case) -> Vec<Estimate> {
+    let one = |(name, truth): &(&str, f64)| {
+        let value = &effect["parameters"][*name];
+        let off = (value["value"].as_f64()? - truth) / value["se"].as_f64()?;
+        Some(Estimate { name: (*name).to_owned(), off })
+    };
+    case.sizes.iter().filter_map(one).collect()
+}
+
+fn strongest(unexplained: &Value, duration_s: f64) -> Option<(String, f64, f64)> {
+    let first = unexplained.as_array()?.first()?;
+    let share = |name: &str| Some(first[name].as_f64()? / duration_s);
+    Some((first["channel"].as_str()?.to_owned(), share("from_s")?, share("to_s")?))
+}

@@ -1,0 +1,34 @@
+//! Everything that the trials of a ship hide.
+
+use super::current::Current;
+use super::force::Force;
+use super::gear::Gear;
+use super::sensors::Sensor;
+use super::wind::Wind;
+
+/// What is hidden; nothing by default.
+#[derive(Debug, Clone, Default)]
+pub struct Hidden {
+    /// The wind, where it blows.
+    pub wind: Option<Wind>,
+    /// The water's own motion.
+    pub current: Option<Current>,
+    /// Between the rudder that is recorded and the one that is there.
+    pub gear: Vec<Gear>,
+    /// Forces of any other kind.
+    pub forces: Vec<Force>,
+    /// Errors of instruments.
+    pub sensors: Vec<Sensor>,
+}
+
+impl Hidden {
+    /// Both together.
+    pub fn and(mut self, other: Self) -> Self {
+        self.wind = self.wind.or(other.wind);
+        self.current = self.current.or(other.current);
+        self.gear.extend(other.gear);
+        self.forces.extend(other.forces);
+        self.sensors.extend(other.sensors);
+        self
+    }
+}
