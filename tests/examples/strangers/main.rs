@@ -19,13 +19,14 @@ use sistership_model::{Model, Vessel, Zoo};
 use figures::{Figures, error, sailed};
 use statistics::{bootstrap, mean, median, rank_correlation};
 
-/// Ships that are one hull at several scales or in several hands: none may be the source of its
-/// own kin.
-const KIN: [&[&str]; 4] = [
+/// Ships that are one hull at several scales or in several hands, or sisters that were identified
+/// together: none may be the source of its own kin.
+const KIN: [&[&str]; 5] = [
     &["kcs", "kcs-2m", "kcs-3m"],
     &["kvlcc2", "kvlcc2-7m"],
     &["sr108", "s175-3m5"],
     &["gunnerus-29m", "gunnerus-34m"],
+    &["fs-bitumen-1", "fs-bitumen-2"],
 ];
 
 /// A source's prediction for a stranger.
