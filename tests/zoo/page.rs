@@ -226,7 +226,7 @@ fn comparisons_table(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
     text
 }
 
-/// What the estimate from particulars makes of the same trials, whether the ship has a model or not.
+/// What the estimate from particulars makes of the same trials, whatever models the ship has.
 fn estimates_table(zoo: &Zoo, appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
     let mut text = String::from(
         "## Estimates from particulars against the same trials\n\n\

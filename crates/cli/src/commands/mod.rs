@@ -42,6 +42,7 @@ pub mod verify;
 pub mod work;
 mod written;
 pub mod zoo;
+mod zoo_page;
 mod zoo_text;
 
 use sistership_dynamics::Ship;
