@@ -3,7 +3,8 @@
 //! An effect of a size moves the evidence for it, and for every other that resembles it, by what its
 //! columns say; chance adds a spread that is known. The limit is the smallest size at which the
 //! evidence is enough, and ahead of every other's, with a probability of 90 %: the minimum detectable
-//! value of a test with given error probabilities (Currie 1968, Anal Chem 40, 586-593).
+//! value of a test with given error probabilities (Currie 1968, Anal Chem 40, 586-593). The model
+//! alone is a rival, too, with any other level of the random accelerations.
 
 use std::collections::BTreeMap;
 
@@ -44,7 +45,18 @@ struct Detection<'a> {
     information: DMatrix<f64>,
     /// The same under coefficients that are known.
     of_known: DMatrix<f64>,
+    /// The model alone at each level of the discrepancy.
+    alone: Vec<AloneLevel>,
+    level: usize,
     least_evidence: f64,
+}
+
+/// The model alone at a level of the discrepancy.
+struct AloneLevel {
+    /// Logarithm of its probability on these trials.
+    log_evidence: f64,
+    /// What an effect that is there takes of it: half the square of its size by this.
+    information: DMatrix<f64>,
 }
 
 /// What is expected of the evidence for an effect: mean and standard deviation.
@@ -76,8 +88,24 @@ impl<'a> Detection<'a> {
         let places = columns.iter().map(place).collect();
         let total = base.total(level).select(&select);
         let of_known = total.products.view_range(1 + size.., 1 + size..).into_owned();
-        let information = MarginalInformation::new(&total, &search.fixed)?.information;
-        Some(Self { search, candidates, places, information, of_known, least_evidence })
+        let at = |level: usize| {
+            let total = base.total(level).select(&select);
+            let reduced = MarginalInformation::new(&total, &search.fixed)?;
+            let log_evidence = base.levels[level].level.log_prior - 0.5 * reduced.deviance;
+            Some(AloneLevel { log_evidence, information: reduced.information })
+        };
+        let alone: Vec<AloneLevel> = (0..base.levels.len()).map(at).collect::<Option<_>>()?;
+        let information = alone.get(level)?.information.clone();
+        Some(Self {
+            search,
+            candidates,
+            places,
+            information,
+            of_known,
+            alone,
+            level,
+            least_evidence,
+        })
     }
 
     fn is_listed(&self, place: usize) -> bool {
@@ -121,8 +149,8 @@ impl<'a> Detection<'a> {
         Some(if known || !reads { LimitedBy::Trials } else { LimitedBy::Sensors })
     }
 
-    /// The smallest size of one parameter that is shown, from a grid of equal ratios; none where the
-    /// largest is not.
+    /// The smallest size of one parameter that is shown, from a grid of equal ratios; none where no
+    /// size is.
     fn limit(
         &self,
         information: &DMatrix<f64>,
@@ -133,15 +161,13 @@ impl<'a> Detection<'a> {
     ) -> Option<f64> {
         let given = THRESHOLDS.limits;
         let sizes = (0..given.steps).map(|k| given.largest * usual * given.ratio.powi(-(k as i32)));
-        let mut smallest = None;
         let rivals = self.rivals(information, place, own);
-        for size in sizes {
-            if !self.is_shown(information, (place, own), size, discount, &rivals) {
-                break;
-            }
-            smallest = Some(size);
-        }
-        smallest
+        let is_shown = |size: &f64| {
+            self.is_shown(information, (place, own), *size, discount, &rivals)
+                && self.beats_alone((place, own), *size)
+        };
+        // The largest may be beyond belief: the prior speaks against them.
+        sizes.skip_while(|size| !is_shown(size)).take_while(is_shown).last()
     }
 
     fn is_shown(
@@ -165,6 +191,23 @@ impl<'a> Detection<'a> {
                 let seen = column * size;
                 self.expected(other, &part, &seen, discount).is_none_or(|of| of.mean < sure)
             })
+    }
+
+    /// Whether the model alone is less probable at every level of the discrepancy.
+    fn beats_alone(&self, (place, own): (usize, usize), size: f64) -> bool {
+        let column = self.places[place][own];
+        let alone = |level: &AloneLevel| {
+            level.log_evidence - 0.5 * size.powi(2) * level.information[(column, column)]
+        };
+        let here = &self.alone[self.level];
+        let part = block(&here.information, &self.places[place], &self.places[place]);
+        let seen = part.column(own) * size;
+        let expected = self.expected(self.candidates[place], &part, &seen, 1.0);
+        expected.is_some_and(|expected| {
+            let sure = expected.mean - THRESHOLDS.limits.quantile * expected.deviation;
+            let with = alone(here) + sure;
+            self.alone.iter().all(|level| with > alone(level) + self.least_evidence)
+        })
     }
 
     /// The others that answer to a parameter, with how they see a unit of it.

@@ -131,7 +131,8 @@ fn an_effect_is_named_above_its_detection_limit_and_not_far_below() {
     let zoo = Zoo::embedded().unwrap();
     let model = zoo.model("mariner").unwrap();
     let limits = diagnosed(&zoo, &model, &trials(&zoo, None)).limits;
-    for (effect, parameter) in [("rudder-offset", "offset_rad"), ("yaw-rate-bias", "bias_rad_s")] {
+    let sizes = [("rudder-offset", "offset_rad"), ("extra-resistance", "coefficient")];
+    for (effect, parameter) in sizes {
         let limit = limits.iter().find(|limit| limit.effect == effect).unwrap().size.unwrap();
         let of = |share: f64| {
             let hidden = hidden(&zoo, effect, &[(parameter, share * limit)]);
@@ -146,7 +147,7 @@ fn an_effect_is_named_above_its_detection_limit_and_not_far_below() {
 fn what_is_held_for_impossible_is_not_named() {
     let zoo = Zoo::embedded().unwrap();
     let model = zoo.model("mariner").unwrap();
-    let trials = trials(&zoo, Some(hidden(&zoo, "rudder-offset", &[("offset_rad", 0.004)])));
+    let trials = trials(&zoo, Some(hidden(&zoo, "rudder-offset", &[("offset_rad", 0.02)])));
     assert_eq!(names(&diagnosed(&zoo, &model, &trials)), ["rudder-offset"]);
     let prior_odds = [("rudder-offset".to_owned(), 1e-300)].into();
     let settings = Settings { prior_odds, ..Settings::default() };

@@ -29,7 +29,8 @@ fn what_could_not_be_told_is_said_with_its_cause() {
     let open = "These trials cannot tell: wave drift (until the model is refined further).";
     assert_eq!(json["summary"][2], open);
     assert!(html.contains(open));
-    assert!(html.contains("<td class=\"number\">0.11") || html.contains("0.11"));
+    // The limit of the offset in degrees.
+    assert!(html.contains("<td class=\"num\">0.11</td>"));
 }
 
 #[test]
@@ -64,7 +65,7 @@ fn every_part_is_there_and_in_order() {
 fn each_hypothesis_is_shown_once_and_the_last_are_folded_away() {
     let html = Case::new().render().html;
     let evidence = &html[html.find("<section id=\"evidence\"").unwrap()
-        ..html.find("<section id=\"errors\"").unwrap()];
+        ..html.find("<section id=\"limits\"").unwrap()];
     assert_eq!(
         evidence.matches("<td>current").count() + evidence.matches(">current<").count(),
         1,
