@@ -157,8 +157,15 @@ fn a_ship_without_trials_is_estimated_and_joins_a_zoo() {
     let sailed = binary::json(&["manoeuvre", "--model", &model, "--all", "--json"], 0);
     assert!(sailed["turns"][0]["tactical_diameter_m"].is_f64(), "{sailed}");
     let own = path("zoo");
-    let added = binary::json(&["zoo", "add", &ship, "--into", &own, "--json"], 0);
+    let page = path("coaster.md");
+    let add = ["zoo", "add", &ship, "--into", &own, "--page", &page, "--json"];
+    let added = binary::json(&add, 0);
     assert_eq!((added["taken"].as_bool(), added["ship"].as_str()), (Some(true), Some("coaster")));
+    let page = std::fs::read_to_string(page).expect("written");
+    assert!(page.contains("| lpp_m | 80 | a |"), "{page}");
+    let cited = binary::json(&["zoo", "cite", "coaster", "--zoo", &own, "--json"], 0);
+    let entry = &cited["@graph"][0];
+    assert_eq!((&entry["@type"], &entry["identifier"]), (&"Dataset".into(), &"coaster".into()));
     let similar = binary::json(&["similar", "coaster", "--zoo", &own, "--json"], 0);
     assert_eq!(similar["target"], "coaster");
     let listed = binary::json(&["zoo", "list", "wpcc", "--json"], 0);

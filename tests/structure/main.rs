@@ -25,6 +25,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("diagnose", &["model", "dynamics", "regression", "estimate"]),
     ("fleet", &["model", "dynamics", "regression", "estimate"]),
     ("store", &[]),
+    ("access", &[]),
     ("report", &["model", "dynamics", "branches", "bands", "estimate", "choice", "diagnose"]),
     (
         "pipeline",
@@ -37,11 +38,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("listen", &[]),
     ("fields", &["store"]),
     ("predict", &["model", "dynamics", "bands", "fields", "pipeline"]),
+    ("http", &["model", "trials", "estimate", "store", "pipeline", "pages", "fields", "predict"]),
     (
         "server",
         &[
             "model", "dynamics", "branches", "trials", "bands", "estimate", "choice", "diagnose",
-            "fleet", "store", "report", "pipeline", "pages", "listen", "fields", "predict",
+            "fleet", "store", "report", "pipeline", "pages", "listen", "fields", "predict", "http",
+            "access",
         ],
     ),
     (
@@ -63,10 +66,11 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "pipeline",
             "server",
             "export",
+            "access",
         ],
     ),
 ];
-const ALONE: [(&str, &[&str]); 2] = [("sqlx", &["store"]), ("axum", &["server", "listen"])];
+const ALONE: [(&str, &[&str]); 2] = [("sqlx", &["store"]), ("axum", &["server", "http", "listen"])];
 
 /// The folder of a crate.
 fn folder(name: &str) -> PathBuf {

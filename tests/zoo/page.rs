@@ -4,27 +4,42 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::StandardManoeuvres;
+use sistership_empirical::{LAW, Library, estimate};
 use sistership_model::vessel::Status;
 use sistership_model::{Vessel, Zoo};
 use sistership_validation::{
-    Appraisal, Comparison, Severity, Standing, appraise_vessel, limits, review,
+    Appraisal, Comparison, Dataset, Severity, Standing, appraise_vessel, compare, limits, review,
 };
 
 #[test]
 fn the_page_of_the_zoo_is_current() {
     let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-    let current = page(&zoo);
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../docs/zoo.md");
+    is_current("zoo.md", &page(&zoo));
+}
+
+/// One `Dataset` of schema.org a ship, each on a line of its own.
+#[test]
+fn the_catalogue_of_the_zoo_is_current() {
+    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let entries = zoo.vessels().map(|vessel| serde_json::to_string(&Dataset::of(vessel)));
+    let entries: Result<Vec<String>, _> = entries.collect();
+    let entries = entries.unwrap_or_else(|error| panic!("{error}"));
+    is_current("zoo.jsonld", &format!("{{\"@graph\":[\n{}\n]}}\n", entries.join(",\n")));
+}
+
+fn is_current(name: &str, current: &str) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../docs").join(name);
     if std::env::var_os("UPDATE_ZOO").is_some() {
-        std::fs::write(&path, &current)
+        std::fs::write(&path, current)
             .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     }
     let stored = std::fs::read_to_string(&path).unwrap_or_default();
     assert!(
         stored == current,
-        "docs/zoo.md is not current: run this test with UPDATE_ZOO=1\n{}",
-        first_difference(&stored, &current)
+        "docs/{name} is not current: run this test with UPDATE_ZOO=1\n{}",
+        first_difference(&stored, current)
     );
 }
 
@@ -57,6 +72,7 @@ fn page(zoo: &Zoo) -> String {
     let mut text = head(&appraised);
     text.push_str(&models_table(&appraised));
     text.push_str(&comparisons_table(&appraised));
+    text.push_str(&estimates_table(zoo, &appraised));
     text.push_str(&without_model(&appraised));
     text.push_str(&sources_list(&appraised));
     text
@@ -75,17 +91,17 @@ fn head(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
         .collect();
     let sail = all().filter(|model| model.manoeuvres.failures.is_empty()).count();
     let count = |standing| all().filter(|model| model.standing == standing).count();
-    let tried = appraised
-        .iter()
-        .filter(|(vessel, models)| !models.is_empty() && !vessel.file.free_running.is_empty())
-        .count();
+    let by_model = tried(appraised, |models| !models.is_empty());
+    let by_estimate = tried(appraised, <[Appraisal]>::is_empty);
     format!(
         "# The zoo\n\n\
          Generated: `UPDATE_ZOO=1 cargo test -p sistership-tests --test zoo page`.\n\n\
          {} models of {with_model} ships, from {} publications or programs (the first source of \
          each model); {} ships in all.\n{sail} of the models sail every standard manoeuvre. By \
-         status: {} validated, {} published, {} disputed, {} estimated.\n{tried} ships with a \
-         model are held against published free-running trials of their own.\n\n\
+         status: {} validated, {} published, {} disputed, {} estimated.\n{} ships are held \
+         against published free-running trials of their own: {by_model} by their models, \
+         {by_estimate} by the\nestimate from their particulars. A ship that the zoo has at several \
+         scales counts once.\n\n\
          A model is `validated` where every published free-running figure of its ship is met: \
          turning figures within {:.0} %, overshoots\nwithin {:.0} % or {:.0} deg, whichever is \
          more, each beside the uncertainty of the trial; `disputed` where one is\nmissed; \
@@ -98,10 +114,27 @@ fn head(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
         count(Standing::Published),
         count(Standing::Disputed),
         count(Standing::Estimated),
+        by_model + by_estimate,
         100.0 * limits::TURN_SHARE,
         100.0 * limits::OVERSHOOT_SHARE,
         limits::OVERSHOOT_DEG,
     )
+}
+
+/// Ships with published trials whose models are as wanted. The same trials of a ship at several
+/// scales count once.
+fn tried(appraised: &[(&Vessel, Vec<Appraisal>)], wanted: impl Fn(&[Appraisal]) -> bool) -> usize {
+    let with_trials = appraised
+        .iter()
+        .filter(|(vessel, models)| wanted(models) && !vessel.file.free_running.is_empty());
+    let trials = |vessel: &Vessel| {
+        let each = vessel.file.free_running.iter().map(|trial| {
+            let citation = vessel.file.sources.get(&trial.source).map(|source| &source.citation);
+            format!("{citation:?} {:?} {:?}", trial.turns, trial.zigzags)
+        });
+        each.collect::<Vec<String>>()
+    };
+    with_trials.map(|(vessel, _)| trials(vessel)).collect::<BTreeSet<_>>().len()
 }
 
 fn models_table(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
@@ -191,6 +224,51 @@ fn comparisons_table(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
     }
     text.push('\n');
     text
+}
+
+/// What the estimate from particulars makes of the same trials, whatever models the ship has.
+fn estimates_table(zoo: &Zoo, appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
+    let mut text = String::from(
+        "## Estimates from particulars against the same trials\n\n\
+         What `sistership estimate` sails, which knows the particulars only and takes every ship \
+         for one with one screw and one rudder\n(docs/evidence/estimates.md has the bands).\n\n\
+         | ship | figure | published | estimate | error | source |\n\
+         | --- | --- | --- | --- | --- | --- |\n",
+    );
+    let library = Library::embedded().unwrap_or_else(|error| panic!("{error}"));
+    for (vessel, _) in appraised {
+        for one in estimated(zoo, &library, vessel) {
+            let _ = writeln!(
+                text,
+                "| `{}` | {} | {:.2} ± {:.2} {} | {} | {} | {} |",
+                vessel.name(),
+                one.figure,
+                one.published,
+                one.uncertainty,
+                one.unit,
+                two(one.sailed),
+                two(one.error()),
+                one.source,
+            );
+        }
+    }
+    text.push('\n');
+    text
+}
+
+/// The estimate at the speed of each trial, beside the trial.
+fn estimated(zoo: &Zoo, library: &Library, vessel: &Vessel) -> Vec<Comparison> {
+    let law = zoo.law(LAW).unwrap_or_else(|| panic!("the law {LAW} is missing"));
+    let mut all = Vec::new();
+    for trial in &vessel.file.free_running {
+        let speed = trial.speed_m_s.or_else(|| vessel.particular("service_speed_m_s"));
+        let speed = speed.or_else(|| vessel.file.models.first()?.speed_m_s);
+        let Some(speed) = speed else { continue };
+        let Ok(estimate) = estimate(library, vessel, law, speed) else { continue };
+        let ship = Ship::new(&estimate.model, law).unwrap_or_else(|error| panic!("{error}"));
+        all.extend(compare(&ship, std::slice::from_ref(trial)));
+    }
+    all
 }
 
 fn two(value: Option<f64>) -> String {

@@ -7,6 +7,6 @@ mod next_trial;
 mod sampling;
 
 pub use bands::{Band, Bands, bands, bands_over};
-pub use fold_scatter::fold_factor;
+pub use fold_scatter::{FoldQuantile, fold_factor};
 pub use next_trial::NextTrial;
 pub use sampling::{Sampling, TooManySamples, draws};

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::{backup, family, fsck, gc, serve, ships, verify, work, zoo};
+use crate::commands::{backup, family, fsck, gc, keys, serve, ships, users, verify, work, zoo};
 use crate::commands::{
     branch, check, compare, derive, diagnose, estimate, export, import, manoeuvre, refine, similar,
     simulate,
@@ -86,6 +86,10 @@ pub enum Command {
     Verify(verify::VerifyArguments),
     /// Families of ships: make one, learn from it, refine all of it.
     Family(family::FamilyArguments),
+    /// Users of the servers on a store: add, list, give roles, disable.
+    Users(users::UsersArguments),
+    /// Service keys of programs: add, list, revoke.
+    Keys(keys::KeysArguments),
     /// Check every hash and every reference of a store.
     Fsck(fsck::FsckArguments),
     /// Remove objects that nothing refers to.

@@ -67,6 +67,8 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Branch(branch) => commands::branch::run(&zoo()?, branch),
         Command::Verify(verify) => commands::verify::run(verify),
         Command::Family(family) => commands::family::run(family),
+        Command::Users(users) => commands::users::run(users),
+        Command::Keys(keys) => commands::keys::run(keys),
         Command::Fsck(fsck) => commands::fsck::run(fsck),
         Command::Gc(gc) => commands::gc::run(gc),
         Command::Backup(backup) => commands::backup::backup(backup),

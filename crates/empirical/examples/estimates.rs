@@ -74,7 +74,8 @@ fn against_trials(zoo: &Zoo, library: &Library, law: &Law) {
 
 fn one_against_trials(vessel: &Vessel, library: &Library, law: &Law) {
     for trials in &vessel.file.free_running {
-        let speed = trials.speed_m_s.or_else(|| vessel.particular("service_speed_m_s")).unwrap();
+        let speed = trials.speed_m_s.or_else(|| vessel.particular("service_speed_m_s"));
+        let speed = speed.or_else(|| vessel.file.models.first()?.speed_m_s).unwrap();
         let estimated = estimate(library, vessel, law, speed).unwrap();
         let bands = estimate_bands(&estimated, law, 1).unwrap();
         let ship = Ship::new(&estimated.model, law).unwrap();

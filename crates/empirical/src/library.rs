@@ -1,6 +1,7 @@
 //! The regressions that the program carries.
 
 use include_dir::{Dir, include_dir};
+use rayon::prelude::*;
 use sistership_model::FileError;
 
 use crate::propeller::PropellerSeries;
@@ -25,25 +26,23 @@ impl Library {
     /// # Errors
     /// The first file that does not read; a test keeps this from happening in a release.
     pub fn embedded() -> Result<Self, FileError> {
-        let mut regressions = Vec::new();
-        let mut series = None;
-        for file in FILES.files() {
-            let name = file.path().to_str().unwrap_or_default();
-            let text = file.contents_utf8().unwrap_or_default();
-            if name == SERIES {
-                series = Some(PropellerSeries::parse(name, text)?);
-            } else if name.ends_with(".yaml") {
-                regressions.push(Regression::parse(name, text)?);
-            }
-        }
+        let files = FILES.files().filter_map(|file| {
+            let name = file.path().to_str().filter(|name| name.ends_with(".yaml"))?;
+            Some((name, file.contents_utf8()?))
+        });
+        let (series, others): (Vec<_>, Vec<_>) = files.partition(|(name, _)| *name == SERIES);
+        let parsed: Vec<Result<Regression, FileError>> =
+            others.into_par_iter().map(|(name, text)| Regression::parse(name, text)).collect();
+        let mut regressions = parsed.into_iter().collect::<Result<Vec<_>, _>>()?;
         regressions.sort_by(|a, b| a.name.cmp(&b.name));
+        let series = series.first().map(|(name, text)| PropellerSeries::parse(name, text));
         let missing = || FileError {
             file: SERIES.to_owned(),
             line: None,
             field: String::new(),
             message: "is missing".to_owned(),
         };
-        Ok(Self { regressions, series: series.ok_or_else(missing)? })
+        Ok(Self { regressions, series: series.ok_or_else(missing)?? })
     }
 
     /// What every regression gives for a name.

@@ -20,17 +20,46 @@ struct SteeringThresholds {
     /// small orders does not show how fast its gear can be; the least order of ITTC 7.5-04-02-01's
     /// zigzags is 10 deg, which from amidships is this twice.
     least_rad: f64,
+    /// Standard deviations of an angle's reading that a window at the largest rate must cover,
+    /// dimensionless. Source: derived: three deviations of the difference of two readings are then
+    /// half of what `inside` leaves, `3 sqrt(2) / 0.1`. At half of it a ship of 129 m at 17 kn, its
+    /// rudder read twice a second to 0.09 deg, shows no movement as a whole.
+    above_noise: f64,
+    /// Most samples in a window. Source: derived: twenty of the trials' twice a second are 10 s, in
+    /// which a gear by SOLAS covers the 20 deg of a 10/10 zigzag.
+    most_samples: usize,
 }
 
-const STEERING: SteeringThresholds =
-    SteeringThresholds { window: 0.05, inside: 0.8, least_rad: 0.0873 };
+const STEERING: SteeringThresholds = SteeringThresholds {
+    window: 0.05,
+    inside: 0.8,
+    least_rad: 0.0873,
+    above_noise: 42.0,
+    most_samples: 20,
+};
+
+/// Over which time a rate is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum RateWindow {
+    /// By the time of sailing a length alone: what versions made before the other was there have.
+    OfLength,
+    /// As long as the readings' noise asks for besides.
+    AboveNoise,
+}
 
 /// The gear's rate, rad/s, by the fastest movements of the rudder in trials; none where no movement
 /// is long enough to show it. `length_s` is the time in which the ship sails its length.
-pub(crate) fn measured_rate(trials: &[&Trial], length_s: f64) -> Option<f64> {
-    let each: Vec<Vec<(f64, f64)>> =
-        trials.iter().map(|trial| rates(trial, STEERING.window * length_s)).collect();
-    let largest = each.iter().flatten().map(|(rate, _)| *rate).fold(0.0, f64::max);
+pub(crate) fn measured_rate(trials: &[&Trial], length_s: f64, window: RateWindow) -> Option<f64> {
+    let of = |trial: &&Trial| {
+        let step_s = trial.interval_s();
+        let count = ((STEERING.window * length_s / step_s).round() as usize).max(1);
+        match window {
+            RateWindow::OfLength => rates(trial, count),
+            RateWindow::AboveNoise => rates_above_noise(trial, count),
+        }
+    };
+    let each: Vec<Vec<(f64, f64)>> = trials.iter().map(of).collect();
+    let largest = largest(each.iter().flatten());
     let is_inside = |(rate, _): &(f64, f64)| largest > 0.0 && *rate >= STEERING.inside * largest;
     let movements =
         each.iter().flat_map(|rates| rates.chunk_by(|a, b| is_inside(a) == is_inside(b)));
@@ -43,12 +72,11 @@ pub(crate) fn measured_rate(trials: &[&Trial], length_s: f64) -> Option<f64> {
     inside.get(inside.len() / 2).copied()
 }
 
-/// Rates of the rudder over windows that begin at each sample, each with the time to the next
-/// sample.
-fn rates(trial: &Trial, window_s: f64) -> Vec<(f64, f64)> {
+/// Rates of the rudder over windows of so many samples that begin at each sample, each with the
+/// time to the next sample.
+fn rates(trial: &Trial, count: usize) -> Vec<(f64, f64)> {
     let Some(angle) = trial.channel(Channel::Delta) else { return Vec::new() };
     let step_s = trial.interval_s();
-    let count = ((window_s / step_s).round() as usize).max(1);
     let pairs = (count..angle.len()).map(|end| (end - count, end));
     let rate = |(from, to): (usize, usize)| {
         let time_s = trial.t_s[to] - trial.t_s[from];
@@ -57,6 +85,34 @@ fn rates(trial: &Trial, window_s: f64) -> Vec<(f64, f64)> {
         whole.then(|| ((angle[to] - angle[from]).abs() / time_s, step_s))
     };
     pairs.filter_map(rate).collect()
+}
+
+/// The same over windows of at least `count` samples, as many as it takes that the largest rate
+/// stands out of the noise.
+fn rates_above_noise(trial: &Trial, count: usize) -> Vec<(f64, f64)> {
+    let needed_rad = STEERING.above_noise * noise_rad(trial);
+    let stands_out = |count: &usize, rates: &[(f64, f64)]| {
+        largest(rates.iter()) * *count as f64 * trial.interval_s() >= needed_rad
+    };
+    let tried =
+        (count..=STEERING.most_samples.max(count)).map(|count| (count, rates(trial, count)));
+    let found = tried.into_iter().find(|(count, rates)| stands_out(count, rates));
+    found.map(|(_, rates)| rates).unwrap_or_default()
+}
+
+fn largest<'a>(rates: impl Iterator<Item = &'a (f64, f64)>) -> f64 {
+    rates.map(|(rate, _)| *rate).fold(0.0, f64::max)
+}
+
+/// Standard deviation of the noise of a rudder's readings, rad: by the median of their second
+/// differences, in which most of the time there is no movement. White noise of deviation s has
+/// second differences of sqrt(6) s, and a normal variable's median size is 0.6745 deviations.
+fn noise_rad(trial: &Trial) -> f64 {
+    let Some(angle) = trial.channel(Channel::Delta) else { return 0.0 };
+    let mut second: Vec<f64> =
+        angle.windows(3).map(|at| (at[0] - 2.0 * at[1] + at[2]).abs()).collect();
+    second.sort_by(f64::total_cmp);
+    second.get(second.len() / 2).map_or(0.0, |median| median / (0.6745 * 6.0_f64.sqrt()))
 }
 
 #[cfg(test)]
@@ -85,16 +141,30 @@ mod tests {
     #[test]
     fn the_rate_is_that_of_the_gear_whatever_the_noise() {
         for (rate, noise) in [(2.32, 0.0), (2.32, 0.1), (4.0, 0.1), (5.0, 0.3)] {
-            let trial = zigzag(rate, noise, &[20.0, -20.0]);
-            let measured = measured_rate(&[&trial], 30.0).unwrap().to_degrees();
-            assert!((measured / rate - 1.0).abs() < 0.1, "{rate} deg/s read as {measured}");
+            for window in [RateWindow::OfLength, RateWindow::AboveNoise] {
+                let trial = zigzag(rate, noise, &[20.0, -20.0]);
+                let measured = measured_rate(&[&trial], 30.0, window).unwrap().to_degrees();
+                assert!((measured / rate - 1.0).abs() < 0.1, "{rate} deg/s read as {measured}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_short_ship_shows_its_rate_within_the_noise() {
+        for rate in [2.32, 2.9, 3.8] {
+            let trial = zigzag(rate, 0.09, &[20.0, -20.0]);
+            let measured = measured_rate(&[&trial], 14.7, RateWindow::AboveNoise).unwrap();
+            let measured = measured.to_degrees();
+            assert!((measured / rate - 1.0).abs() < 0.03, "{rate} deg/s read as {measured}");
         }
     }
 
     #[test]
     fn a_rudder_that_hardly_moves_shows_no_rate() {
         let trial = zigzag(5.0, 0.05, &[1.0, -1.0]);
-        assert_eq!(measured_rate(&[&trial], 30.0), None);
-        assert_eq!(measured_rate(&[&Trial::default()], 30.0), None);
+        for window in [RateWindow::OfLength, RateWindow::AboveNoise] {
+            assert_eq!(measured_rate(&[&trial], 30.0, window), None);
+            assert_eq!(measured_rate(&[&Trial::default()], 30.0, window), None);
+        }
     }
 }

@@ -114,6 +114,23 @@ text! {
     Id: 1..=64, "^[0-9A-Za-z-]+$", "an id of 1 to 64 letters, digits and hyphens, as the server gives them"
 }
 text! {
+    /// The name of a user: `sistership_access::check_name`.
+    UserName: 1..=64, "^[a-z0-9][a-z0-9._@-]*$",
+        "a name of 1 to 64 lower-case letters, digits, `.`, `_`, `@` and `-`, the first a letter or digit"
+}
+text! {
+    /// The prefix of a service key.
+    KeyPrefix: 12..=12, "^[0-9a-f]{12}$", "the 12 hexadecimal digits that a service key begins with after `sis_`"
+}
+text! {
+    /// A password that is set: `sistership_access::check_password`.
+    Password: 15..=256, r"^[^\x00]*$", "a password of 15 to 256 characters without NUL; a sentence with spaces will do"
+}
+text! {
+    /// Who or what an entry of the audit is about.
+    AuditName: 1..=300, r"^[^\s\x00-\x1f\x7f-\x9f]+$", "a name of 1 to 300 characters, such as `ann` or `ship:kvlcc2`"
+}
+text! {
     /// A version by a name that people give it.
     ModelName: 1..=129, "^[a-z0-9][a-z0-9-]{0,63}(/[a-z0-9][a-z0-9-]{0,63})?$",
         "`ship` (its champion), `ship/number` or `ship/alias`, in lower-case letters, digits and hyphens"
@@ -228,6 +245,10 @@ whole! {
 whole! {
     /// The number of a version, in a body.
     VersionNumber: 1, MAX_WHOLE, deserialize_i64
+}
+whole! {
+    /// A moment, microseconds since 1970.
+    MomentUs: 1, MAX_WHOLE, deserialize_i64
 }
 
 /// Reads a number as JSON, a path or a query writes it: 3 and 3.0 are one number to a reader of

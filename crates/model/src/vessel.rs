@@ -37,6 +37,9 @@ pub struct VesselFile {
     /// Publications by key.
     #[serde(default)]
     pub sources: BTreeMap<String, Source>,
+    /// On what terms a source's own files stand, by its key: `MIT`, `CC BY 4.0`, `none stated`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub licences: BTreeMap<String, String>,
     /// How the sources count.
     #[serde(default)]
     pub conventions: VesselConventions,
@@ -191,6 +194,7 @@ impl Vessel {
             let section = section.to_owned();
             move |(name, message): (String, String)| blame.at(&format!("{section}.{name}"), message)
         };
+        check_licences(&raw.licences, &keys).map_err(at("licences"))?;
         let particulars = raw.particulars.resolve(&keys).map_err(at("particulars.values"))?;
         particulars::check(&particulars).map_err(at("particulars.values"))?;
         let quoted_vectors = quoted(&raw, &keys).map_err(at("quoted_vectors"))?;
@@ -220,6 +224,26 @@ impl Vessel {
 }
 
 type FieldError = (String, String);
+
+/// The longest licence that is a name and no text, bytes.
+const LONGEST_LICENCE: usize = 80;
+
+fn check_licences(
+    licences: &BTreeMap<String, String>,
+    sources: &[&str],
+) -> Result<(), (String, String)> {
+    for (key, licence) in licences {
+        let message = if !sources.contains(&key.as_str()) {
+            format!("`{key}` is not listed under `sources`")
+        } else if licence.trim().is_empty() || licence.len() > LONGEST_LICENCE {
+            format!("name the licence in 1 to {LONGEST_LICENCE} bytes, or say `none stated`")
+        } else {
+            continue;
+        };
+        return Err((key.clone(), message));
+    }
+    Ok(())
+}
 
 fn quoted(
     raw: &VesselFile,
@@ -269,4 +293,21 @@ fn check_model<'a>(
         return blame("speed_m_s", "must be above 0 and below 50 m/s");
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::check_licences;
+
+    #[test]
+    fn a_licence_is_of_a_listed_source_and_a_name() {
+        let of = |key: &str, licence: &str| {
+            let licences = [(key.to_owned(), licence.to_owned())].into();
+            check_licences(&licences, &["a"]).map_err(|(field, _)| field)
+        };
+        assert_eq!(of("a", "MIT"), Ok(()));
+        assert_eq!(of("b", "MIT"), Err("b".to_owned()));
+        assert_eq!(of("a", " "), Err("a".to_owned()));
+        assert_eq!(of("a", &"MIT".repeat(40)), Err("a".to_owned()));
+    }
 }

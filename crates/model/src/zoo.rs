@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use include_dir::{Dir, include_dir};
+use rayon::prelude::*;
 
 use crate::effect::Effect;
 use crate::error::FileError;
@@ -29,14 +30,31 @@ impl Zoo {
     /// The first file that does not read; a test keeps this from happening in a release.
     pub fn embedded() -> Result<Self, FileError> {
         let mut zoo = Self::default();
-        for (name, text) in yaml_files("laws") {
-            zoo.add_law(name, text)?;
+        let (laws, (effects, vessels)) = rayon::join(
+            || parsed("laws", Law::parse),
+            || {
+                rayon::join(
+                    || parsed("effects", Effect::parse),
+                    || parsed("vessels", Vessel::parse),
+                )
+            },
+        );
+        for (_, text, law) in laws {
+            zoo.keep_law(Arc::new(law?), text);
         }
-        for (name, text) in yaml_files("effects") {
-            zoo.add_effect(name, text)?;
+        for (_, text, effect) in effects {
+            zoo.keep_effect(Arc::new(effect?), text);
         }
-        for (name, text) in yaml_files("vessels") {
-            zoo.add_vessel(name, text)?;
+        let checked: Vec<Result<(), FileError>> = vessels
+            .par_iter()
+            .map(|(file, _, vessel)| match vessel {
+                Ok(vessel) => zoo.check_file(file, vessel),
+                Err(error) => Err(error.clone()),
+            })
+            .collect();
+        for ((_, text, vessel), checked) in vessels.into_iter().zip(checked) {
+            checked?;
+            zoo.keep_vessel(Arc::new(vessel?), text);
         }
         Ok(zoo)
     }
@@ -47,9 +65,13 @@ impl Zoo {
     /// As [`Law::parse`].
     pub fn add_law(&mut self, file: &str, text: &str) -> Result<Arc<Law>, FileError> {
         let law = Arc::new(Law::parse(file, text)?);
-        self.texts.insert(format!("law {}", law.name), text.to_owned());
-        self.laws.insert(law.name.clone(), Arc::clone(&law));
+        self.keep_law(Arc::clone(&law), text);
         Ok(law)
+    }
+
+    fn keep_law(&mut self, law: Arc<Law>, text: &str) {
+        self.texts.insert(format!("law {}", law.name), text.to_owned());
+        self.laws.insert(law.name.clone(), law);
     }
 
     /// Adds an effect, or replaces the one of the same name.
@@ -58,9 +80,13 @@ impl Zoo {
     /// As [`Effect::parse`].
     pub fn add_effect(&mut self, file: &str, text: &str) -> Result<Arc<Effect>, FileError> {
         let effect = Arc::new(Effect::parse(file, text)?);
-        self.texts.insert(format!("effect {}", effect.name), text.to_owned());
-        self.effects.insert(effect.name.clone(), Arc::clone(&effect));
+        self.keep_effect(Arc::clone(&effect), text);
         Ok(effect)
+    }
+
+    fn keep_effect(&mut self, effect: Arc<Effect>, text: &str) {
+        self.texts.insert(format!("effect {}", effect.name), text.to_owned());
+        self.effects.insert(effect.name.clone(), effect);
     }
 
     /// Adds a vessel, or replaces the one of the same name; each of her models is checked against
@@ -70,10 +96,18 @@ impl Zoo {
     /// As [`Vessel::parse`] and [`Model::published`].
     pub fn add_vessel(&mut self, file: &str, text: &str) -> Result<Arc<Vessel>, FileError> {
         let vessel = Arc::new(Vessel::parse(file, text)?);
-        self.check_models(&vessel).map_err(|error| FileError { file: file.to_owned(), ..error })?;
-        self.texts.insert(format!("vessel {}", vessel.name()), text.to_owned());
-        self.vessels.insert(vessel.name().to_owned(), Arc::clone(&vessel));
+        self.check_file(file, &vessel)?;
+        self.keep_vessel(Arc::clone(&vessel), text);
         Ok(vessel)
+    }
+
+    fn check_file(&self, file: &str, vessel: &Vessel) -> Result<(), FileError> {
+        self.check_models(vessel).map_err(|error| FileError { file: file.to_owned(), ..error })
+    }
+
+    fn keep_vessel(&mut self, vessel: Arc<Vessel>, text: &str) {
+        self.texts.insert(format!("vessel {}", vessel.name()), text.to_owned());
+        self.vessels.insert(vessel.name().to_owned(), vessel);
     }
 
     /// Checks that each model of a vessel fits its law.
@@ -181,6 +215,18 @@ impl Zoo {
     fn law_names(&self) -> Vec<&str> {
         self.laws.keys().map(String::as_str).collect()
     }
+}
+
+/// A file with its text, and what was made of it.
+type Parsed<T> = (&'static str, &'static str, Result<T, FileError>);
+
+/// Parses the files of a folder on all cores, in their order.
+fn parsed<T: Send>(
+    folder: &str,
+    parse: impl Fn(&str, &str) -> Result<T, FileError> + Sync,
+) -> Vec<Parsed<T>> {
+    let files: Vec<(&str, &str)> = yaml_files(folder).collect();
+    files.into_par_iter().map(|(file, text)| (file, text, parse(file, text))).collect()
 }
 
 fn yaml_files(folder: &str) -> impl Iterator<Item = (&'static str, &'static str)> {

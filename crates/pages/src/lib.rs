@@ -4,6 +4,7 @@
 //! Pages that simulate are made in two steps: `gather` reads, `html` computes, so that the caller
 //! chooses the thread.
 
+pub mod audit;
 pub mod compare;
 mod cursor;
 mod date;
@@ -13,6 +14,7 @@ pub mod fleet;
 mod form;
 pub mod jobs;
 mod named;
+pub mod people;
 mod picture;
 pub mod playground;
 mod plot;
@@ -28,4 +30,4 @@ pub mod zoo;
 pub use error::{PageError, Result};
 pub use form::Fields;
 pub use problem::problem;
-pub use shell::{Shell, TOKEN, policy};
+pub use shell::{Shell, SignedIn, TOKEN, policy};

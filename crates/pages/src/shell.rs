@@ -16,14 +16,18 @@ pub(crate) const SCRIPT: &str = include_str!("../templates/script.js");
 pub const TOKEN: &str = "form_token";
 
 /// The places of the navigation.
-pub(crate) const PLACES: [(&str, &str); 6] = [
+const PLACES: [(&str, &str); 8] = [
     ("/", "Fleet"),
     ("/compare", "Compare"),
     ("/playground", "Playground"),
     ("/families", "Families"),
     ("/zoo", "Zoo"),
     ("/jobs", "Jobs"),
+    ("/users", "Users"),
+    ("/audit", "Audit"),
 ];
+/// Those for admins.
+const ADMINS: [&str; 2] = ["/users", "/audit"];
 
 /// What is around the content of a page.
 #[derive(Debug, Clone, Default)]
@@ -32,12 +36,42 @@ pub struct Shell {
     pub(crate) place: &'static str,
     /// What forms send, so that no other web site can send them.
     pub(crate) token: String,
+    /// Who looks at it, where anybody has said.
+    pub(crate) signed_in: Option<SignedIn>,
+}
+
+/// Who looks at a page.
+#[derive(Debug, Clone)]
+pub struct SignedIn {
+    /// As the audit names them.
+    pub name: String,
+    /// Whether they give rights, and read the audit.
+    pub is_admin: bool,
+    /// Whether they can sign out.
+    pub by_session: bool,
 }
 
 impl Shell {
     /// For pages whose forms send this token.
     pub fn new(token: impl Into<String>) -> Self {
-        Self { place: "", token: token.into() }
+        Self { place: "", token: token.into(), signed_in: None }
+    }
+
+    /// The same with who looks at it.
+    #[must_use]
+    pub fn with(self, signed_in: Option<SignedIn>) -> Self {
+        Self { signed_in, ..self }
+    }
+
+    /// Whether whoever looks at it has signed in.
+    pub(crate) fn by_session(&self) -> bool {
+        self.signed_in.as_ref().is_some_and(|who| who.by_session)
+    }
+
+    /// The places of the navigation that this one may go to.
+    pub(crate) fn places(&self) -> Vec<(&'static str, &'static str)> {
+        let admin = self.signed_in.as_ref().is_none_or(|who| who.is_admin);
+        PLACES.into_iter().filter(|(place, _)| admin || !ADMINS.contains(place)).collect()
     }
 
     /// Whether it is at this place.

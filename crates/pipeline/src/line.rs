@@ -42,6 +42,8 @@ pub fn is_reserved(alias: &str) -> bool {
 pub struct Standing {
     /// Whether it has a champion.
     pub champion: bool,
+    /// Whether a version becomes champion only by the word of somebody else than who made it.
+    pub second_person: bool,
     /// The number that the next version gets, as long as [`Standing::follow`] can be made.
     pub next: i64,
     latest: Option<Alias>,
@@ -57,6 +59,7 @@ impl Standing {
         let champion = alias(store, model, CHAMPION).await?.is_some();
         Ok(Self {
             champion,
+            second_person: store.settings().second_person().await?,
             next: latest.as_ref().map_or(1, |alias| alias.version_number + 1),
             latest,
         })

@@ -12,7 +12,10 @@ use crate::config::{Config, Leases, Limits};
 use crate::drafts::Drafts;
 use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
+use crate::rights::known::Known;
 use crate::web::api_key::{ApiKey, FormToken};
+use sistership_access::Attempts;
+use sistership_http::payload::DocumentLimits;
 use sistership_listen::{Stopping, Throttle};
 use sistership_pipeline::archive::Archive;
 use sistership_pipeline::budget::{self, Budget, Held};
@@ -25,6 +28,9 @@ pub(crate) struct App(Arc<Inner>, Arc<Archive>);
 struct Inner {
     catalogue: Catalogue,
     key: Option<ApiKey>,
+    accounts: bool,
+    known: Known,
+    attempts: Attempts,
     form_token: FormToken,
     drafts: Drafts,
     throttle: Throttle,
@@ -42,6 +48,13 @@ struct Inner {
     jobs: Budget,
 }
 
+impl axum::extract::FromRef<App> for DocumentLimits {
+    fn from_ref(app: &App) -> Self {
+        let Limits { document_bytes: json_bytes, yaml_bytes, .. } = *app.limits();
+        Self { json_bytes, yaml_bytes }
+    }
+}
+
 impl App {
     pub(crate) fn new(
         config: &Config,
@@ -56,6 +69,9 @@ impl App {
             form_token: FormToken::of(key.as_ref()),
             drafts: Drafts::default(),
             key,
+            accounts: config.accounts,
+            known: Known::default(),
+            attempts: Attempts::default(),
             throttle: Throttle::default(),
             limits: config.limits,
             leases: config.leases,
@@ -93,6 +109,26 @@ impl App {
 
     pub(crate) fn key(&self) -> Option<&ApiKey> {
         self.0.key.as_ref()
+    }
+
+    /// Whether nobody is asked who they are: without a key, on this machine's own interface.
+    pub(crate) fn is_open(&self) -> bool {
+        self.key().is_none() && !self.has_accounts()
+    }
+
+    /// Whether people sign in.
+    pub(crate) fn has_accounts(&self) -> bool {
+        self.0.accounts
+    }
+
+    /// Credentials that were looked up just now.
+    pub(crate) fn known(&self) -> &Known {
+        &self.0.known
+    }
+
+    /// Wrong passwords of late.
+    pub(crate) fn attempts(&self) -> &Attempts {
+        &self.0.attempts
     }
 
     /// What forms of pages send along.

@@ -20,7 +20,8 @@ const CLOSING: Duration = Duration::from_secs(5);
 /// What a server is told before it starts.
 #[derive(Clone)]
 pub struct Config {
-    /// Address and port; port 0 takes a free one. Another address than loopback needs an API key.
+    /// Address and port; port 0 takes a free one. Another address than loopback needs an API key, or
+    /// accounts.
     pub listen: SocketAddr,
     /// `sqlite://path/file.db` or `postgres://...`.
     pub database_url: String,
@@ -30,6 +31,8 @@ pub struct Config {
     pub objects: ObjectsPlace,
     /// What every request must present as `Authorization: Bearer KEY`, if one is set.
     pub api_key: Option<String>,
+    /// Whether people sign in by name and password, and nobody is let in without that or a key.
+    pub accounts: bool,
     /// Bounds on what is sent.
     pub limits: Limits,
     /// How workers hold their jobs.
@@ -71,7 +74,7 @@ pub struct Limits {
     pub refinement_trials: usize,
     /// How long a server that is told to stop waits for what is under way.
     pub stop_time: Duration,
-    /// A YAML document, bytes: its tree is near a hundred times as large, see `web::payload`.
+    /// A YAML document, bytes: its tree is near a hundred times as large, see `sistership_http::payload`.
     pub yaml_bytes: usize,
     /// Memory that requests take together, bytes.
     pub request_memory: u64,
@@ -91,6 +94,7 @@ impl Config {
             objects: ObjectsPlace::Folder(data_dir.clone()),
             data_dir,
             api_key: None,
+            accounts: false,
             limits: Limits::default(),
             leases: Leases::default(),
             workers: 1,
@@ -103,7 +107,9 @@ impl Config {
     /// Says which setting cannot be, and what to do.
     pub fn check(&self) -> Result<(), StartError> {
         match &self.api_key {
-            None if !self.listen.ip().is_loopback() => Err(StartError::OpenWithoutKey(self.listen)),
+            None if !self.accounts && !self.listen.ip().is_loopback() => {
+                Err(StartError::OpenWithoutKey(self.listen))
+            }
             Some(key) if key.is_empty() || !key.bytes().all(|byte| byte.is_ascii_graphic()) => {
                 Err(StartError::Key)
             }

@@ -4,6 +4,7 @@
 //! without serving. What its jobs do stands in `sistership_pipeline`, which the command line uses,
 //! too.
 
+mod accounts;
 mod answers;
 mod app;
 mod config;
@@ -12,8 +13,9 @@ mod jobs;
 #[cfg(test)]
 mod journey;
 mod metrics;
-mod problem;
+use sistership_http::problem;
 mod process;
+mod rights;
 mod routes;
 mod search_index;
 mod server;

@@ -25,7 +25,7 @@ fn the_document_is_the_one_in_the_repository() {
 fn no_two_types_share_a_name() {
     let mut names = std::collections::BTreeMap::<String, Vec<String>>::new();
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let rooms = ["server", "pipeline"].map(|name| crates.join(name).join("src"));
+    let rooms = ["server", "http", "pipeline"].map(|name| crates.join(name).join("src"));
     for file in rooms.iter().flat_map(|room| walk(room)) {
         let text = std::fs::read_to_string(&file).unwrap();
         let mut lines = text.lines();

@@ -1,5 +1,7 @@
 //! Aliases: names of versions that move by compare-and-swap and remember every move.
 
+use serde_json::{Value, json};
+
 use crate::arguments::args;
 use crate::checks;
 use crate::database::Transaction;
@@ -7,6 +9,7 @@ use crate::error::{Result, StoreError};
 use crate::page::{List, Page};
 use crate::record::record;
 use crate::search_index;
+use crate::settings;
 use crate::statements::{pair, same, statements};
 use crate::store::Store;
 use crate::version;
@@ -169,6 +172,7 @@ pub(crate) async fn shift(
     if !change.expect.holds(current) {
         return Err(StoreError::stale("alias", format!("{model}/{}", change.alias), current));
     }
+    settings::check_promotion(tx, model, &change.alias, to).await?;
     let after = tx.one(PUT, args![model: model, alias: &change.alias, version_number: to]).await?;
     remember(store, tx, before, &after, change).await?;
     search_index::mark_moved(store, tx, model, &change.alias).await?;
@@ -187,6 +191,12 @@ async fn remember(
     after: &Alias,
     change: &AliasMove,
 ) -> Result<()> {
+    let place =
+        |alias: &Alias| json!({ "version": alias.version_number, "revision": alias.revision });
+    let mut now = place(after);
+    now["reason"] = Value::from(change.reason.as_str());
+    let subject = format!("alias:{}/{}", after.model, after.alias);
+    tx.note(store.now_us(), "alias.move", subject, before.as_ref().map(place), Some(now));
     let from = before.map(|alias| alias.version_number);
     let id = store.new_id();
     let values = args![id: &id, model: &after.model, alias: &after.alias, from_number: from, to_number: after.version_number,

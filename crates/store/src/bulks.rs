@@ -1,5 +1,7 @@
 //! Refinements of all members of a family: chunks of ships as jobs, and one outcome for each ship.
 
+use serde_json::json;
+
 use crate::aliases::AliasMove;
 use crate::arguments::{Arg, args};
 use crate::checks;
@@ -144,12 +146,14 @@ impl Bulks<'_> {
         let ships = i64::try_from(chunks.iter().map(Vec::len).sum::<usize>()).unwrap_or(i64::MAX);
         let mut tx = self.0.begin().await?;
         let values = args![id: &id, family: family, request: request, ships: ships, created_us: self.0.now_us()];
-        let bulk = tx.one(INSERT, values).await?;
+        let bulk: Bulk = tx.one(INSERT, values).await?;
         for (number, ships) in (1..).zip(chunks) {
             let new = NewJob { kind: kind.to_owned(), ship: None, request: chunk(&id, ships) };
             let job = jobs::insert(self.0, &mut tx, &new).await?;
             tx.execute(CHUNK, args![bulk: &id, number: number, job: &job.id]).await?;
         }
+        let after = json!({ "family": family, "ships": bulk.ships });
+        tx.note(self.0.now_us(), "bulk-refinement.create", subject(&id), None, Some(after));
         tx.commit().await?;
         Ok(bulk)
     }
@@ -179,22 +183,29 @@ impl Bulks<'_> {
 
     /// Cancels the chunks that wait, and asks the workers of those that run to stop.
     pub async fn request_cancel(&self, id: &str) -> Result<u64> {
-        self.all(CANCEL, &[("bulk", id.into()), ("finished_us", self.0.now_us().into())]).await
+        let values = &[("bulk", id.into()), ("finished_us", self.0.now_us().into())];
+        self.all(CANCEL, "bulk-refinement.cancel", id, values).await
     }
 
     /// Puts the chunks that failed or were cancelled back in the queue; ships that have an outcome
     /// keep it.
     pub async fn retry(&self, id: &str) -> Result<u64> {
-        self.all(RETRY, &[("bulk", id.into())]).await
+        self.all(RETRY, "bulk-refinement.retry", id, &[("bulk", id.into())]).await
     }
 
     async fn all(
         &self,
         statement: crate::statements::Statement,
+        action: &'static str,
+        id: &str,
         values: &[(&'static str, Arg<'_>)],
     ) -> Result<u64> {
         let mut tx = self.0.begin().await?;
         let changed = tx.execute(statement, values).await?;
+        if changed > 0 {
+            let after = json!({ "chunks": changed });
+            tx.note(self.0.now_us(), action, subject(id), None, Some(after));
+        }
         tx.commit().await?;
         Ok(changed)
     }
@@ -254,6 +265,11 @@ impl Bulks<'_> {
         tx.commit().await?;
         Ok(job)
     }
+}
+
+/// What stands for a refinement of a family in the audit.
+fn subject(id: &str) -> String {
+    format!("bulk-refinement:{id}")
 }
 
 async fn keep(store: &Store, tx: &mut Transaction, bulk: &str, new: &NewOutcome) -> Result<()> {

@@ -1,6 +1,8 @@
 //! The one transaction that ends a diagnosis: its report, what was found, the version that came of
 //! it, and its job.
 
+use serde_json::json;
+
 use crate::aliases::AliasMove;
 use crate::diagnoses::{self, Diagnosed, NewDiagnosed};
 use crate::error::Result;
@@ -61,6 +63,14 @@ impl Store {
         let found =
             diagnoses::insert(self, &mut tx, &diagnosis.found, made_id.as_deref(), &report.id)
                 .await?;
+        let after = json!({ "ship": diagnosis.report.ship, "verdict": found.verdict });
+        tx.note(
+            self.now_us(),
+            "diagnosis.create",
+            format!("diagnosis:{}", found.id),
+            None,
+            Some(after),
+        );
         // How the ship stands has changed.
         search_index::mark(self, &mut tx, &diagnosis.report.ship).await?;
         let result = result(version.as_ref(), &report);

@@ -1,8 +1,12 @@
 //! A database as repositories see it: read, or begin to write, alone or as a step of a unit of
 //! work.
 
+use serde_json::Value;
+
 use crate::arguments::{Args, check};
+use crate::chain;
 use crate::connections::{DatabaseTransaction, Pool, Reader, Writer};
+use crate::entry::Entry;
 use crate::error::Result;
 use crate::record::Record;
 use crate::statements::Statement;
@@ -19,7 +23,13 @@ pub(crate) struct Database {
 }
 
 /// A transaction that may write; it is undone unless [committed](Self::commit).
-pub(crate) enum Transaction {
+pub(crate) struct Transaction {
+    part: Part,
+    /// What goes into the audit with it.
+    entries: Vec<Entry>,
+}
+
+enum Part {
     /// One of its own.
     Alone(DatabaseTransaction),
     /// A part of a unit of work, which is kept with the whole of it.
@@ -29,10 +39,11 @@ pub(crate) enum Transaction {
 impl Database {
     /// Begins to write.
     pub(crate) async fn begin(&self) -> Result<Transaction> {
-        Ok(match &self.unit {
-            Some(unit) => Transaction::Step(unit.step(&self.write).await?),
-            None => Transaction::Alone(self.write.begin().await?),
-        })
+        let part = match &self.unit {
+            Some(unit) => Part::Step(unit.step(&self.write).await?),
+            None => Part::Alone(self.write.begin().await?),
+        };
+        Ok(Transaction { part, entries: Vec::new() })
     }
 
     /// The row that a reading statement finds, if any; a unit of work sees what it has written.
@@ -79,9 +90,9 @@ impl Database {
 
 impl Transaction {
     fn transaction(&mut self) -> Result<&mut DatabaseTransaction> {
-        match self {
-            Self::Alone(transaction) => Ok(transaction),
-            Self::Step(step) => step.transaction(),
+        match &mut self.part {
+            Part::Alone(transaction) => Ok(transaction),
+            Part::Step(step) => step.transaction(),
         }
     }
 
@@ -111,11 +122,37 @@ impl Transaction {
         self.transaction()?.one(statement, args).await
     }
 
+    /// The rows that a statement finds or returns.
+    pub(crate) async fn all<T: Record>(
+        &mut self,
+        statement: Statement,
+        args: Args<'_>,
+    ) -> Result<Vec<T>> {
+        check(args)?;
+        self.transaction()?.all(statement, args).await
+    }
+
+    /// Enters into the audit, as the transaction is kept, that the present actor does this to
+    /// `subject`: what was true of it before, and what is since.
+    pub(crate) fn note(
+        &mut self,
+        at_us: i64,
+        action: &'static str,
+        subject: String,
+        before: Option<Value>,
+        after: Option<Value>,
+    ) {
+        self.entries.push(Entry::new(at_us, action, subject, before, after));
+    }
+
     /// Makes it last; as a step of a unit of work, together with the whole of it.
     pub(crate) async fn commit(self) -> Result<()> {
-        match self {
-            Self::Alone(transaction) => transaction.commit().await,
-            Self::Step(step) => step.keep().await,
+        match self.part {
+            Part::Alone(mut transaction) => {
+                chain::enter(&mut transaction, self.entries).await?;
+                transaction.commit().await
+            }
+            Part::Step(step) => step.keep(self.entries).await,
         }
     }
 }

@@ -30,6 +30,12 @@ pub enum StoreError {
         /// What stands in the way.
         message: String,
     },
+    /// The present actor may not do this (403).
+    #[error("{message}")]
+    Forbidden {
+        /// Why not, and who may.
+        message: String,
+    },
     /// The caller has seen an older state than the present one (412).
     #[error("{kind} `{id}` is at {}, not where the request expects it", at(*current))]
     PreconditionFailed {

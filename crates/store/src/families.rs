@@ -1,5 +1,7 @@
 //! Families of ships whose models share a foundation, and what each has taught.
 
+use serde_json::json;
+
 use crate::arguments::args;
 use crate::checks;
 use crate::database::Transaction;
@@ -110,6 +112,8 @@ impl Families<'_> {
         let family = family.ok_or_else(|| {
             StoreError::conflict("family", name, "there is one of this name already")
         })?;
+        let after = json!({ "foundation": foundation });
+        tx.note(self.0.now_us(), "family.create", subject(name), None, Some(after));
         tx.commit().await?;
         Ok(family)
     }
@@ -131,8 +135,12 @@ impl Families<'_> {
     pub async fn found(&self, name: &str, foundation: &str) -> Result<Family> {
         let mut tx = self.0.begin().await?;
         version::check_id(&mut tx, "foundation", foundation).await?;
+        let before: Option<Family> = tx.optional(GET, args![name: name]).await?;
         let family = tx.optional(FOUND, args![name: name, foundation: foundation]).await?;
         let family = family.ok_or_else(|| StoreError::missing("family", name))?;
+        let before = before.map(|family| json!({ "foundation": family.foundation }));
+        let after = json!({ "foundation": foundation });
+        tx.note(self.0.now_us(), "family.found", subject(name), before, Some(after));
         tx.commit().await?;
         Ok(family)
     }
@@ -151,6 +159,10 @@ impl Families<'_> {
                 .execute(ADD, args![family: family, ship: ship, added_us: self.0.now_us()])
                 .await?;
         }
+        if added > 0 {
+            let after = json!({ "ships": ships });
+            tx.note(self.0.now_us(), "family.add", subject(family), None, Some(after));
+        }
         tx.commit().await?;
         Ok(added)
     }
@@ -159,6 +171,10 @@ impl Families<'_> {
     pub async fn remove(&self, family: &str, ship: &str) -> Result<bool> {
         let mut tx = self.0.begin().await?;
         let removed = tx.execute(REMOVE, args![family: family, ship: ship]).await?;
+        if removed > 0 {
+            let before = json!({ "ships": [ship] });
+            tx.note(self.0.now_us(), "family.remove", subject(family), Some(before), None);
+        }
         tx.commit().await?;
         Ok(removed > 0)
     }
@@ -219,11 +235,17 @@ pub(crate) async fn teach(
     checks::json("document", document)?;
     exists(tx, family).await?;
     let sha256 = sha256_hex(document.as_bytes());
-    tx.one(
-        TEACH,
-        args![family: family, document: document, sha256: &sha256, created_us: store.now_us()],
-    )
-    .await
+    let values =
+        args![family: family, document: document, sha256: &sha256, created_us: store.now_us()];
+    let prior: FamilyPrior = tx.one(TEACH, values).await?;
+    let after = json!({ "revision": prior.revision, "sha256": sha256 });
+    tx.note(store.now_us(), "family.prior", subject(family), None, Some(after));
+    Ok(prior)
+}
+
+/// What stands for a family in the audit.
+fn subject(name: &str) -> String {
+    format!("family:{name}")
 }
 
 async fn exists(tx: &mut Transaction, family: &str) -> Result<()> {

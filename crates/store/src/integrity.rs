@@ -88,6 +88,16 @@ statements! {
         WHERE name NOT IN (SELECT ship FROM ship_vectors) AND name NOT IN (SELECT ship FROM search_queue) ORDER BY name");
     SEARCH_FACT = same("SELECT DISTINCT 'ship ' || ship AS place, 'has facts, but is not there' AS message FROM ship_facts \
         WHERE ship NOT IN (SELECT name FROM ships) ORDER BY 1");
+    GRANT_PRINCIPAL = same("SELECT DISTINCT 'roles of ' || principal AS place, 'there is no such user or key' AS message FROM grants \
+        WHERE principal NOT IN (SELECT 'user:' || name FROM users) AND principal NOT IN (SELECT 'key:' || prefix FROM service_keys) \
+        ORDER BY 1");
+    GRANT_SCOPE = same("SELECT 'roles of ' || principal AS place, 'there is no ' || scope_kind || ' ' || scope_name AS message FROM grants \
+        WHERE (scope_kind = 'ship' AND scope_name NOT IN (SELECT name FROM ships)) \
+        OR (scope_kind = 'family' AND scope_name NOT IN (SELECT name FROM families)) ORDER BY principal, scope_kind, scope_name");
+    KEY_USER = same("SELECT 'key ' || prefix AS place, 'there is no user ' || user_name AS message FROM service_keys \
+        WHERE user_name IS NOT NULL AND user_name NOT IN (SELECT name FROM users) ORDER BY prefix");
+    SESSION_USER = same("SELECT 'sessions of ' || user_name AS place, 'there is no such user' AS message FROM sessions \
+        WHERE user_name NOT IN (SELECT name FROM users) ORDER BY user_name");
     JOB_SHIP = same("SELECT 'job ' || id AS place, 'there is no ship ' || ship AS message FROM jobs \
         WHERE ship IS NOT NULL AND ship NOT IN (SELECT name FROM ships) ORDER BY id");
     JOB_STATE = same("SELECT 'job ' || id AS place, 'is ' || state || ', which its lease, result, error or end contradicts' AS message \
@@ -125,6 +135,10 @@ const CHECKS: &[(&str, Statement)] = &[
     ("tag-ship", TAG_SHIP),
     ("search-ship", SEARCH_SHIP),
     ("search-fact", SEARCH_FACT),
+    ("grant-principal", GRANT_PRINCIPAL),
+    ("grant-scope", GRANT_SCOPE),
+    ("key-user", KEY_USER),
+    ("session-user", SESSION_USER),
     ("job-ship", JOB_SHIP),
     ("job-state", JOB_STATE),
 ];
@@ -158,7 +172,7 @@ impl Fault {
 }
 
 impl Store {
-    /// Checks the database and every reference between its rows.
+    /// Checks the database, every reference between its rows.
     pub async fn row_faults(&self) -> Result<Vec<Fault>> {
         let mut faults = Vec::new();
         for (check, statement) in CHECKS {

@@ -12,7 +12,7 @@ macro_rules! job {
         concat!(
             $before,
             " id, kind, ship, request, state, progress, message, result, error, attempt, fence, lease_until_us, worker, \
-             created_us, started_us, finished_us, cancel_requested, lost_workers ",
+             created_us, started_us, finished_us, cancel_requested, lost_workers, author ",
             $after
         )
     };
@@ -118,6 +118,8 @@ record! {
         /// How many of its workers have let their lease run out without a word, as a process does
         /// that has ended.
         pub lost_workers: i64,
+        /// Who asked for it; none where it was asked for before that was kept.
+        pub author: Option<String>,
     }
 }
 

@@ -1,5 +1,8 @@
 //! Long work, as rows: what those who ask for it do. What workers do is in `work.rs`.
 
+use serde_json::json;
+
+use crate::actor::Actor;
 use crate::arguments::{Args, args};
 use crate::checks;
 use crate::database::Transaction;
@@ -11,7 +14,7 @@ use crate::store::Store;
 
 statements! {
     INSERT = same(job!("INSERT INTO jobs (id, kind, ship, request, state, progress, message, attempt, fence, created_us, \
-        cancel_requested) VALUES ($1, $2, $3, $4, 'queued', 0, '', 0, 0, $5, 0) RETURNING", ""));
+        cancel_requested, author) VALUES ($1, $2, $3, $4, 'queued', 0, '', 0, 0, $5, 0, $6) RETURNING", ""));
     GET = same(job!("SELECT", "FROM jobs WHERE id = $1"));
     LIST = same(job!("SELECT", "FROM jobs WHERE id < COALESCE($1, '~') ORDER BY id DESC LIMIT $2"));
     LIST_SHIP = same(job!("SELECT", "FROM jobs WHERE ship = $3 AND id < COALESCE($1, '~') \
@@ -84,7 +87,7 @@ impl Jobs<'_> {
     /// Cancels a job that waits, or asks the worker of a running one to stop.
     pub async fn request_cancel(&self, id: &str) -> Result<Job> {
         self.unless(
-            CANCEL,
+            (CANCEL, "job.cancel"),
             id,
             args![id: id, finished_us: self.0.now_us()],
             "only what waits or runs can be cancelled",
@@ -95,7 +98,7 @@ impl Jobs<'_> {
     /// Puts a job that failed or was cancelled back in the queue.
     pub async fn retry(&self, id: &str) -> Result<Job> {
         self.unless(
-            RETRY,
+            (RETRY, "job.retry"),
             id,
             args![id: id],
             "only what failed or was cancelled can be tried again",
@@ -106,29 +109,39 @@ impl Jobs<'_> {
     /// A change that the job's state may rule out.
     async fn unless(
         &self,
-        statement: Statement,
+        (statement, action): (Statement, &'static str),
         id: &str,
         values: Args<'_>,
         rule: &str,
     ) -> Result<Job> {
         let mut tx = self.0.begin().await?;
-        let Some(job) = tx.optional(statement, values).await? else {
+        let Some(job) = tx.optional::<Job>(statement, values).await? else {
             let state = find(&mut tx, id).await?.state;
             return Err(StoreError::conflict("job", id, format!("is {state}; {rule}")));
         };
+        let after =
+            json!({ "state": job.state.as_str(), "cancel_requested": job.cancel_requested });
+        tx.note(self.0.now_us(), action, subject(id), None, Some(after));
         tx.commit().await?;
         Ok(job)
     }
+}
+
+/// What stands for a job in the audit.
+fn subject(id: &str) -> String {
+    format!("job:{id}")
 }
 
 /// Puts a job in the queue within a transaction.
 pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewJob) -> Result<Job> {
     checks::name("kind", &new.kind)?;
     checks::json("request", &new.request)?;
-    let (id, now) = (store.new_id(), store.now_us());
-    let values =
-        args![id: &id, kind: &new.kind, ship: &new.ship, request: &new.request, created_us: now];
-    tx.one(INSERT, values).await
+    let (id, now, author) = (store.new_id(), store.now_us(), Actor::current().name);
+    let values = args![id: &id, kind: &new.kind, ship: &new.ship, request: &new.request, created_us: now, author: &author];
+    let job = tx.one(INSERT, values).await?;
+    let after = json!({ "kind": new.kind, "ship": new.ship });
+    tx.note(now, "job.create", subject(&id), None, Some(after));
+    Ok(job)
 }
 
 /// The job, as the transaction sees it.

@@ -1,5 +1,7 @@
 //! Laws of motion: a name, its document, nothing that ever changes.
 
+use serde_json::json;
+
 use crate::arguments::args;
 use crate::checks;
 use crate::error::{Result, StoreError};
@@ -47,11 +49,12 @@ impl Laws<'_> {
         checks::name("name", name)?;
         let sha256 = sha256_hex(document.as_bytes());
         let mut tx = self.0.begin().await?;
-        tx.execute(
-            INSERT,
-            args![name: name, document: document, sha256: &sha256, created_us: self.0.now_us()],
-        )
-        .await?;
+        let values =
+            args![name: name, document: document, sha256: &sha256, created_us: self.0.now_us()];
+        if tx.execute(INSERT, values).await? > 0 {
+            let after = json!({ "sha256": sha256 });
+            tx.note(self.0.now_us(), "law.create", format!("law:{name}"), None, Some(after));
+        }
         let law: Law = tx.one(GET, args![name: name]).await?;
         tx.commit().await?;
         match law.sha256 == sha256 {

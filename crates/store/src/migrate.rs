@@ -18,6 +18,7 @@ const SQLITE: &[MigrationSource] = &[
     (6, "leases", include_str!("../../../migrations/sqlite/0006_leases.sql")),
     (7, "weights", include_str!("../../../migrations/sqlite/0007_weights.sql")),
     (8, "standing", include_str!("../../../migrations/sqlite/0008_standing.sql")),
+    (9, "access", include_str!("../../../migrations/sqlite/0009_access.sql")),
 ];
 const POSTGRES: &[MigrationSource] = &[
     (1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql")),
@@ -28,6 +29,7 @@ const POSTGRES: &[MigrationSource] = &[
     (6, "leases", include_str!("../../../migrations/postgres/0006_leases.sql")),
     (7, "weights", include_str!("../../../migrations/postgres/0007_weights.sql")),
     (8, "standing", include_str!("../../../migrations/postgres/0008_standing.sql")),
+    (9, "access", include_str!("../../../migrations/postgres/0009_access.sql")),
 ];
 
 fn migrator(sources: &'static [MigrationSource]) -> Migrator {

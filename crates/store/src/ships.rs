@@ -1,9 +1,12 @@
 //! Ships: the present document under a revision, and every document before it.
 
+use serde_json::{Value, json};
+
 use crate::arguments::args;
 use crate::checks;
 use crate::database::Transaction;
 use crate::error::{Result, StoreError};
+use crate::objects::sha256_hex;
 use crate::page::{List, Page};
 use crate::record::record;
 use crate::search_index;
@@ -116,6 +119,7 @@ impl Ships<'_> {
             return Err(taken(name, find(&mut tx, name).await));
         };
         tx.execute(REMEMBER, args![name: name]).await?;
+        tx.note(self.0.now_us(), "ship.create", subject(name), None, Some(state(&ship)));
         search_index::mark(self.0, &mut tx, name).await?;
         tx.commit().await?;
         Ok(ship)
@@ -134,10 +138,13 @@ impl Ships<'_> {
         let mut tx = self.0.begin().await?;
         let values = args![name: name, revision: revision, title: title, category: category, document: document,
             updated_us: self.0.now_us()];
+        let before: Option<Ship> = tx.optional(GET, args![name: name]).await?;
         let Some(ship) = tx.optional(UPDATE, values).await? else {
             return Err(stale(&mut tx, name).await);
         };
         tx.execute(REMEMBER, args![name: name]).await?;
+        let (before, after) = (before.as_ref().map(state), Some(state(&ship)));
+        tx.note(self.0.now_us(), "ship.update", subject(name), before, after);
         search_index::mark(self.0, &mut tx, name).await?;
         tx.commit().await?;
         Ok(ship)
@@ -151,6 +158,7 @@ impl Ships<'_> {
         let Some(ship) = tx.optional(DELETE, values).await? else {
             return Err(stale(&mut tx, name).await);
         };
+        tx.note(self.0.now_us(), "ship.delete", subject(name), Some(state(&ship)), None);
         tx.commit().await?;
         Ok(ship)
     }
@@ -158,8 +166,11 @@ impl Ships<'_> {
     /// Brings a deleted ship back as it was.
     pub async fn undelete(&self, name: &str) -> Result<Ship> {
         let mut tx = self.0.begin().await?;
-        let ship = tx.optional(UNDELETE, args![name: name]).await?;
+        let ship: Option<Ship> = tx.optional(UNDELETE, args![name: name]).await?;
         search_index::mark(self.0, &mut tx, name).await?;
+        if let Some(ship) = &ship {
+            tx.note(self.0.now_us(), "ship.undelete", subject(name), None, Some(state(ship)));
+        }
         tx.commit().await?;
         ship.ok_or_else(|| StoreError::missing("ship", name))
     }
@@ -184,6 +195,16 @@ impl Ships<'_> {
         let revisions = self.0.database().all(REVISIONS, values).await?;
         Ok(page.of(revisions, |revision: &ShipRevision| revision.revision))
     }
+}
+
+/// What stands for a ship in the audit.
+fn subject(name: &str) -> String {
+    format!("ship:{name}")
+}
+
+/// A ship as the audit has it; its history has the document.
+fn state(ship: &Ship) -> Value {
+    json!({ "revision": ship.revision, "sha256": sha256_hex(ship.document.as_bytes()) })
 }
 
 /// The ship, if it is there and not deleted, as the transaction sees it.

@@ -1,5 +1,7 @@
 //! Tags: words that people put on ships, to find them by.
 
+use serde_json::json;
+
 use crate::arguments::args;
 use crate::checks;
 use crate::database::Transaction;
@@ -42,8 +44,12 @@ impl Ships<'_> {
         let mut tx = self.0.begin().await?;
         ships::find(&mut tx, name).await?;
         tx.execute(LOCK, args![ship: name]).await?;
-        tx.execute(PUT, args![ship: name, tag: tag]).await?;
+        let new = tx.execute(PUT, args![ship: name, tag: tag]).await?;
         check_count(&mut tx, name).await?;
+        if new > 0 {
+            let after = json!({ "tag": tag });
+            tx.note(self.0.now_us(), "ship.tag", format!("ship:{name}"), None, Some(after));
+        }
         tx.commit().await
     }
 
@@ -52,6 +58,10 @@ impl Ships<'_> {
         let mut tx = self.0.begin().await?;
         ships::find(&mut tx, name).await?;
         let removed = tx.execute(REMOVE, args![ship: name, tag: tag]).await?;
+        if removed > 0 {
+            let before = json!({ "tag": tag });
+            tx.note(self.0.now_us(), "ship.untag", format!("ship:{name}"), Some(before), None);
+        }
         tx.commit().await?;
         if removed > 0 { Ok(()) } else { Err(StoreError::missing("tag", format!("{name}/{tag}"))) }
     }

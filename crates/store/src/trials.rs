@@ -1,5 +1,7 @@
 //! Trials: what is known of a recorded manoeuvre; its samples are an object, named by their hash.
 
+use serde_json::{Value, json};
+
 use crate::arguments::args;
 use crate::checks;
 use crate::database::Transaction;
@@ -186,7 +188,10 @@ impl Trials<'_> {
             conventions: &new.conventions, manoeuvre: &new.manoeuvre, sample_rows: new.sample_rows,
             duration_s: new.duration_s, warnings: &new.warnings, object_key: &new.object_key, created_us: self.0.now_us()];
         let inserted = tx.execute(INSERT, values).await?;
-        let row = tx.one(REVIVE, args![ship: &new.ship, sha256: &new.sha256]).await?;
+        let row: Trial = tx.one(REVIVE, args![ship: &new.ship, sha256: &new.sha256]).await?;
+        if inserted == 1 {
+            tx.note(self.0.now_us(), "trial.create", subject(&row), None, Some(state(&row)));
+        }
         Ok(Inserted { row, new: inserted == 1 })
     }
 
@@ -226,7 +231,11 @@ impl Trials<'_> {
     /// them by their hash.
     pub async fn delete(&self, id: &str) -> Result<Trial> {
         let mut tx = self.0.begin().await?;
-        let trial = tx.optional(DELETE, args![id: id, deleted_us: self.0.now_us()]).await?;
+        let trial: Option<Trial> =
+            tx.optional(DELETE, args![id: id, deleted_us: self.0.now_us()]).await?;
+        if let Some(trial) = &trial {
+            tx.note(self.0.now_us(), "trial.delete", subject(trial), Some(state(trial)), None);
+        }
         tx.commit().await?;
         trial.ok_or_else(|| StoreError::missing("trial", id))
     }
@@ -234,8 +243,21 @@ impl Trials<'_> {
     /// Brings a deleted trial back.
     pub async fn undelete(&self, id: &str) -> Result<Trial> {
         let mut tx = self.0.begin().await?;
-        let trial = tx.optional(UNDELETE, args![id: id]).await?;
+        let trial: Option<Trial> = tx.optional(UNDELETE, args![id: id]).await?;
+        if let Some(trial) = &trial {
+            tx.note(self.0.now_us(), "trial.undelete", subject(trial), None, Some(state(trial)));
+        }
         tx.commit().await?;
         trial.ok_or_else(|| StoreError::missing("trial", id))
     }
+}
+
+/// What stands for a trial in the audit.
+fn subject(trial: &Trial) -> String {
+    format!("trial:{}", trial.id)
+}
+
+/// A trial as the audit has it.
+fn state(trial: &Trial) -> Value {
+    json!({ "ship": trial.ship, "name": trial.name, "sha256": trial.sha256 })
 }

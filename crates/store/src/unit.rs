@@ -7,7 +7,9 @@ use std::sync::Arc;
 
 use tokio::sync::{Mutex, OwnedMutexGuard};
 
+use crate::chain;
 use crate::connections::{DatabaseTransaction, Writer};
+use crate::entry::Entry;
 use crate::error::{Result, StoreError};
 
 /// The transaction that the clones of a handle share.
@@ -17,6 +19,8 @@ pub(crate) struct Unit(Arc<Mutex<UnitState>>);
 #[derive(Default)]
 struct UnitState {
     transaction: Option<DatabaseTransaction>,
+    /// What its steps enter into the audit, at its end: who has done that waits for nothing more.
+    entries: Vec<Entry>,
     /// Whether the last step came to nothing and is still to be taken back.
     undo: bool,
     ended: bool,
@@ -68,11 +72,23 @@ impl Unit {
         Ok(UnitStep { state, writes: false })
     }
 
-    /// Ends it, and gives the transaction if it has begun.
+    /// Ends it, and gives the transaction if it has begun, with all in it but the commit.
     pub(crate) async fn end(&self) -> Result<Option<DatabaseTransaction>> {
         let mut step = self.enter().await?;
         step.state.ended = true;
-        Ok(step.state.transaction.take())
+        let entries = std::mem::take(&mut step.state.entries);
+        let Some(mut transaction) = step.state.transaction.take() else { return Ok(None) };
+        chain::enter(&mut transaction, entries).await?;
+        Ok(Some(transaction))
+    }
+
+    /// Ends it with nothing kept.
+    pub(crate) async fn undo(&self) {
+        if let Ok(mut step) = self.enter().await {
+            step.state.ended = true;
+            // Whatever cannot be rolled back in words goes with its connection.
+            drop(step.state.transaction.take());
+        }
     }
 }
 
@@ -81,8 +97,10 @@ impl UnitStep {
         self.state.transaction.as_mut().ok_or_else(ended)
     }
 
-    pub(crate) async fn keep(mut self) -> Result<()> {
+    /// Keeps the step, with what it enters into the audit, as a part of the whole.
+    pub(crate) async fn keep(mut self, entries: Vec<Entry>) -> Result<()> {
         self.transaction()?.run("RELEASE SAVEPOINT step").await?;
+        self.state.entries.extend(entries);
         self.writes = false;
         Ok(())
     }

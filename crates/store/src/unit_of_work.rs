@@ -54,7 +54,6 @@ impl UnitOfWork {
 
     /// Takes the work back.
     pub async fn undo(self) {
-        // Whatever cannot be rolled back in words goes with its connection.
-        drop(self.unit.end().await);
+        self.unit.undo().await;
     }
 }

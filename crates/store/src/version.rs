@@ -8,9 +8,9 @@ use crate::record::record;
 use crate::statements::{same, statements};
 
 statements! {
-    HEAD = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions \
+    HEAD = same("SELECT id, model, number, parent, law, method, sha256, created_us, author FROM versions \
         WHERE model = $1 AND number = $2");
-    HEAD_BY_ID = same("SELECT id, model, number, parent, law, method, sha256, created_us FROM versions WHERE id = $1");
+    HEAD_BY_ID = same("SELECT id, model, number, parent, law, method, sha256, created_us, author FROM versions WHERE id = $1");
 }
 
 record! {
@@ -32,6 +32,8 @@ record! {
         pub sha256: String,
         /// When it was made.
         pub created_us: i64,
+        /// Who asked for it; none where it was made before that was kept.
+        pub author: Option<String>,
     }
 }
 

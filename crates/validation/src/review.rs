@@ -71,12 +71,8 @@ fn sources(vessel: &Vessel) -> Vec<Finding> {
             let message = "has neither a DOI nor a repository: can it be found?";
             found.push(Finding::look(&about, message));
         }
-        let notes = [Some(source.citation.as_str()), source.note.as_deref()];
-        let says_terms = notes.iter().flatten().any(|text| {
-            ["licen", "MIT", "GPL", "CC BY", "free to"].iter().any(|word| text.contains(word))
-        });
-        if source.citation.contains("github.com") && !says_terms {
-            found.push(Finding::look(&about, "says nothing of the licence"));
+        if source.citation.contains("github.com") && !vessel.file.licences.contains_key(key) {
+            found.push(Finding::look(&about, "`licences` does not say on what terms it stands"));
         }
     }
     found

@@ -38,8 +38,11 @@ impl Held {
         format!("{}: {:.2}, {place:+.1}", self.name, self.truth)
     }
 
-    fn inside(&self) -> bool {
-        self.band.is_some_and(|[low, high]| (low..=high).contains(&self.truth))
+    /// Whether the truth is in the band, were it so many times as wide about its middle.
+    fn inside(&self, times: f64) -> bool {
+        self.band.is_some_and(|[low, high]| {
+            (self.truth - 0.5 * (low + high)).abs() <= 0.5 * times * (high - low)
+        })
     }
 }
 
@@ -65,17 +68,25 @@ pub fn run(program: &Program, arguments: &Arguments) {
         row(kind, &all.iter().copied().filter(|held| held.kind == kind).collect::<Vec<_>>());
     }
     row("all", &all);
+    println!("\nInside, were the bands wider or narrower:\n\n| times | inside |\n| --: | --: |");
+    for times in [0.25, 0.5, 0.76, 1.0, 1.5, 2.0] {
+        println!("| {times} | {:.1} % |", 100.0 * share_inside(&all, times));
+    }
     println!("\nOutside, in half widths of the band from its middle:\n");
     for (place, ship) in ships.iter().enumerate() {
-        for held in ship.iter().flatten().filter(|held| !held.inside()) {
+        for held in ship.iter().flatten().filter(|held| !held.inside(1.0)) {
             println!("- ship {}, {}", place + 1, held.outside());
         }
     }
     println!();
 }
 
+fn share_inside(all: &[&Held], times: f64) -> f64 {
+    all.iter().filter(|held| held.inside(times)).count() as f64 / all.len() as f64
+}
+
 fn row(name: &str, all: &[&Held]) {
-    let share = all.iter().filter(|held| held.inside()).count() as f64 / all.len() as f64;
+    let share = share_inside(all, 1.0);
     let none = all.iter().filter(|held| held.band.is_none()).count();
     let width = |held: &&&Held| held.band.map(|[low, high]| (high - low) / held.truth.abs());
     let widths: Vec<f64> = all.iter().filter_map(|held| width(&held)).collect();

@@ -43,6 +43,7 @@ Discrepancy = TypedDict('Discrepancy', {'deviation': 'float', 'time_s': 'float',
 Drift = TypedDict('Drift', {'ratio': 'Dict[str, float]', 'reason': 'Union[str, None]', 'ship': 'str', 'trials': 'List[TrialResidual]', 'version': 'int', 'worst': 'Union[float, None]'}, total=False)
 EffectLibraryHead = TypedDict('EffectLibraryHead', {'created_us': 'int', 'sha256': 'str'}, total=True)
 EffectParameterFile = TypedDict('EffectParameterFile', {'absent': 'float', 'bounds': 'List[float]', 'meaning': 'str', 'mirror': 'Mirror', 'prior': 'PriorFile', 'start': 'Union[float, None]', 'unit': 'str'}, total=False)
+EntryView = TypedDict('EntryView', {'action': 'str', 'actor': 'str', 'after': 'Union[Dict[str, Any], None]', 'at_us': 'int', 'before': 'Union[Dict[str, Any], None]', 'number': 'int', 'origin': 'str', 'previous_sha256': 'str', 'sha256': 'str', 'subject': 'str'}, total=False)
 Estimate = TypedDict('Estimate', {'standard_error': 'Union[float, None]', 'value': 'float'}, total=False)
 Estimator = Any  # The estimator.
 FalseAlarmLevel = TypedDict('FalseAlarmLevel', {'each': 'float', 'together': 'float'}, total=True)
@@ -55,12 +56,15 @@ FormFile = TypedDict('FormFile', {'accelerates': 'Dict[str, str]', 'coefficients
 FoundBy = TypedDict('FoundBy', {'at_us': 'int', 'diagnosis': 'str', 'report': 'str'}, total=True)
 FreeRunning = TypedDict('FreeRunning', {'kind': 'FreeRunningKind', 'note': 'Union[str, None]', 'source': 'str', 'speed_m_s': 'Union[float, None]', 'turns': 'List[PublishedTurn]', 'zigzags': 'List[PublishedZigzag]'}, total=False)
 FreeRunningKind = Any  # What sailed a free-running trial.
+HeadView = TypedDict('HeadView', {'number': 'int', 'sha256': 'str'}, total=True)
 Health = TypedDict('Health', {'revision': 'str', 'status': 'str', 'writes': 'Union[str, None]'}, total=False)
 InitialState = TypedDict('InitialState', {'p_rad_s': 'float', 'phi_rad': 'float', 'psi_rad': 'float', 'r_rad_s': 'float', 'u_m_s': 'float', 'v_m_s': 'float', 'x_m': 'float', 'y_m': 'float'}, total=False)
 InputsRequest = TypedDict('InputsRequest', {'delta_rad': 'List[float]', 'n_rps': 'Union[List[float], None]', 'start': 'InitialState', 't_s': 'List[float]'}, total=False)
 InstrumentFit = TypedDict('InstrumentFit', {'deviation_by_scatter': 'float', 'drift': 'float'}, total=True)
 IntegrationMethod = Any  # An integration method.
 JobView = TypedDict('JobView', {'attempt': 'int', 'cancel_requested': 'bool', 'created_us': 'int', 'error': 'Union[str, None]', 'finished_us': 'Union[int, None]', 'id': 'str', 'kind': 'str', 'message': 'str', 'progress': 'float', 'request': 'Dict[str, Any]', 'result': 'Union[Dict[str, Any], None]', 'ship': 'Union[str, None]', 'started_us': 'Union[int, None]', 'state': 'str'}, total=False)
+KeyRequest = TypedDict('KeyRequest', {'expires_us': 'Union[int, None]', 'roles': 'List[RoleRequest]', 'title': 'str', 'user': 'Union[str, None]'}, total=False)
+KeyView = TypedDict('KeyView', {'created_us': 'int', 'expires_us': 'Union[int, None]', 'last_used_us': 'Union[int, None]', 'prefix': 'str', 'revoked_us': 'Union[int, None]', 'roles': 'List[RoleView]', 'title': 'str', 'user': 'Union[str, None]'}, total=False)
 LawHead = TypedDict('LawHead', {'created_us': 'int', 'name': 'str', 'sha256': 'str'}, total=True)
 LawText = TypedDict('LawText', {'created_us': 'int', 'document': 'str', 'name': 'str', 'sha256': 'str'}, total=True)
 Learner = Any  # What learns.
@@ -68,16 +72,20 @@ Listing_AliasStep = TypedDict('Listing_AliasStep', {'items': 'List[Dict[str, Any
 Listing_AliasView = TypedDict('Listing_AliasView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_BulkView = TypedDict('Listing_BulkView', {'items': 'List[Any]', 'next': 'Union[str, None]'}, total=False)
 Listing_EffectLibraryHead = TypedDict('Listing_EffectLibraryHead', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_EntryView = TypedDict('Listing_EntryView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_FamilyView = TypedDict('Listing_FamilyView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_JobView = TypedDict('Listing_JobView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_KeyView = TypedDict('Listing_KeyView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_LawHead = TypedDict('Listing_LawHead', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_MemberView = TypedDict('Listing_MemberView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_OutcomeView = TypedDict('Listing_OutcomeView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_ShipHead = TypedDict('Listing_ShipHead', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_TrialView = TypedDict('Listing_TrialView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_UserView = TypedDict('Listing_UserView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_VersionHead = TypedDict('Listing_VersionHead', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 MadeVersion = TypedDict('MadeVersion', {'at': 'str', 'number': 'int'}, total=True)
 ManoeuvreRequest = TypedDict('ManoeuvreRequest', {'all': 'bool', 'bands': 'Union[BandsRequest, None]', 'n_rps': 'Union[float, None]', 'speed_m_s': 'Union[float, None]', 'turn_deg': 'Union[float, None]', 'zigzag': 'Union[ZigzagRequest, None]'}, total=False)
+Me = TypedDict('Me', {'kind': 'str', 'name': 'str', 'roles': 'List[RoleView]'}, total=True)
 MemberDrift = TypedDict('MemberDrift', {'condition': 'Condition', 'drift': 'Union[Drift, None]', 'ship': 'str'}, total=False)
 MemberView = TypedDict('MemberView', {'added_us': 'int', 'champion': 'Union[int, None]', 'method': 'Union[str, None]', 'ship': 'str'}, total=False)
 Mirror = Any  # What a parameter becomes when the ship is mirrored port to starboard.
@@ -85,9 +93,11 @@ Model = TypedDict('Model', {'branch': 'Union[Branch, None]', 'coefficients': 'Di
 ModelKind = Any  # The word `model`.
 NewFamily = TypedDict('NewFamily', {'foundation': 'str', 'members': 'List[str]', 'name': 'str', 'title': 'Union[str, None]'}, total=False)
 NewFoundation = TypedDict('NewFoundation', {'foundation': 'str'}, total=True)
+NewKeyView = TypedDict('NewKeyView', {'about': 'KeyView', 'key': 'str'}, total=True)
 NewMembers = TypedDict('NewMembers', {'ships': 'List[str]'}, total=True)
 NumberOrExpression = Any  # 
 OutcomeView = TypedDict('OutcomeView', {'comparison': 'Dict[str, Any]', 'outcome': 'str', 'ship': 'str', 'version': 'Union[int, None]', 'worst_change': 'Union[float, None]'}, total=False)
+PasswordRequest = TypedDict('PasswordRequest', {'password': 'str'}, total=True)
 Posterior = TypedDict('Posterior', {'deviations': 'List[float]', 'names': 'List[str]', 'root_correlation': 'List[str]', 'values': 'List[float]'}, total=True)
 PredictionRequest = TypedDict('PredictionRequest', {'depth_m': 'Union[float, None]', 'inputs': 'Union[InputsRequest, None]', 'manoeuvre': 'Union[ManoeuvreRequest, None]', 'model': 'str'}, total=False)
 PriorChoice = Any  # What holds the coefficients.
@@ -102,13 +112,18 @@ PublishedZigzag = TypedDict('PublishedZigzag', {'both_sides': 'bool', 'first_ove
 Quantity = TypedDict('Quantity', {'note': 'Union[str, None]', 'source': 'str', 'standard_error': 'Union[float, None]', 'value': 'float'}, total=False)
 QuotedVectorFile = TypedDict('QuotedVectorFile', {'note': 'Union[str, None]', 'source': 'str', 'values': 'Dict[str, Written]'}, total=False)
 RefinementRequest = TypedDict('RefinementRequest', {'law': 'Union[str, None]', 'settings': 'RefinementSettings', 'ship': 'str', 'source': 'Union[str, None]', 'trials': 'Union[List[str], None]'}, total=False)
-RefinementSettings = TypedDict('RefinementSettings', {'bands': 'Sampling', 'calibration_samples': 'Union[int, None]', 'cma_es': 'Union[CmaEs, None]', 'constraints': 'Constraints', 'difference_s': 'Union[float, None]', 'families': 'List[TermFamily]', 'folds': 'int', 'held_out': 'List[str]', 'hop_s': 'Union[float, None]', 'in_parts': 'bool', 'lambda_count': 'int', 'method': 'Estimator', 'posterior_by_folds': 'bool', 'ranges': 'List[TuningRange]', 'residual_s': 'Union[float, None]', 'restart_s': 'Union[float, None]', 'segment_s': 'Union[float, None]', 'steering_from_trials': 'bool', 'step_s': 'Union[float, None]', 'strengths': 'List[float]', 'window_s': 'Union[float, None]'}, total=False)
+RefinementSettings = TypedDict('RefinementSettings', {'bands': 'Sampling', 'calibration_samples': 'Union[int, None]', 'cma_es': 'Union[CmaEs, None]', 'constraints': 'Constraints', 'difference_s': 'Union[float, None]', 'families': 'List[TermFamily]', 'folds': 'int', 'folds_pooled': 'bool', 'held_out': 'List[str]', 'hop_s': 'Union[float, None]', 'in_parts': 'bool', 'lambda_count': 'int', 'method': 'Estimator', 'posterior_by_folds': 'bool', 'ranges': 'List[TuningRange]', 'residual_s': 'Union[float, None]', 'restart_s': 'Union[float, None]', 'segment_s': 'Union[float, None]', 'steering_above_noise': 'bool', 'steering_from_trials': 'bool', 'step_s': 'Union[float, None]', 'strengths': 'List[float]', 'window_s': 'Union[float, None]'}, total=False)
 Region = TypedDict('Region', {'pairs': 'Dict[str, List[float]]', 'ranges': 'Dict[str, List[float]]'}, total=True)
 RegisterRequest = TypedDict('RegisterRequest', {'model': 'Model', 'origin': 'str', 'parent': 'Union[int, None]'}, total=False)
+RoleName = Any  # What somebody may do; each has the rights of those before it.
+RoleRequest = TypedDict('RoleRequest', {'family': 'Union[str, None]', 'role': 'RoleName', 'ship': 'Union[str, None]'}, total=False)
+RoleView = TypedDict('RoleView', {'family': 'Union[str, None]', 'role': 'str', 'ship': 'Union[str, None]'}, total=False)
+RolesRequest = TypedDict('RolesRequest', {'roles': 'List[RoleRequest]'}, total=True)
 RudderSign = Any  # Which way positive rudder turns the ship.
 Rule = TypedDict('Rule', {'no_worse_than': 'Union[float, None]'}, total=False)
 Sampling = TypedDict('Sampling', {'samples': 'int', 'seed': 'int', 'within_steps': 'bool'}, total=False)
 Section = TypedDict('Section', {'source': 'Union[str, None]', 'values': 'Dict[str, Written]'}, total=False)
+Settings = TypedDict('Settings', {'second_person': 'bool'}, total=True)
 ShipDetail = TypedDict('ShipDetail', {'category': 'str', 'condition': 'Condition', 'created_us': 'int', 'document': 'Dict[str, Any]', 'name': 'str', 'revision': 'int', 'title': 'str', 'updated_us': 'int'}, total=True)
 ShipHead = TypedDict('ShipHead', {'category': 'str', 'created_us': 'int', 'name': 'str', 'revision': 'int', 'title': 'str', 'updated_us': 'int', 'value': 'Union[float, None]'}, total=False)
 Signal = Any  # What a branch can be told from.
@@ -125,11 +140,13 @@ TrialView = TypedDict('TrialView', {'created_us': 'int', 'duration_s': 'float', 
 TuningRange = TypedDict('TuningRange', {'alpha_max': 'float', 'lambda_max': 'float', 'lambda_min': 'float'}, total=True)
 Uncertainty = TypedDict('Uncertainty', {'discrepancy': 'Dict[str, Discrepancy]', 'feigned': 'Dict[str, FalseAlarmLevel]', 'habits': 'List[AppliedEffect]', 'instruments': 'Dict[str, InstrumentFit]', 'names': 'List[str]', 'offset': 'List[float]', 'remainder': 'Dict[str, float]', 'root_information': 'List[str]', 'scales': 'List[float]', 'trials': 'List[str]'}, total=False)
 Uploaded = TypedDict('Uploaded', {'diagnosis': 'Union[str, None]', 'new': 'int', 'ship': 'str', 'trials': 'List[TrialView]'}, total=False)
+UserRequest = TypedDict('UserRequest', {'name': 'str', 'password': 'Union[str, None]', 'roles': 'List[RoleRequest]', 'title': 'Union[str, None]'}, total=False)
+UserView = TypedDict('UserView', {'created_us': 'int', 'enabled': 'bool', 'has_password': 'bool', 'name': 'str', 'roles': 'List[RoleView]', 'title': 'str'}, total=True)
 Verification = TypedDict('Verification', {'checked_by': 'str', 'derived_sha256': 'str', 'identical': 'bool', 'made_by': 'Union[str, None]', 'model': 'str', 'number': 'int', 'remarks': 'List[str]', 'sha256': 'str', 'stored_sha256': 'str'}, total=False)
 VersionDetail = TypedDict('VersionDetail', {'document': 'Dict[str, Any]', 'version': 'VersionHead'}, total=True)
-VersionHead = TypedDict('VersionHead', {'created_us': 'int', 'id': 'str', 'law': 'str', 'method': 'str', 'model': 'str', 'number': 'int', 'parent': 'Union[str, None]', 'report': 'Union[str, None]', 'sha256': 'str'}, total=False)
+VersionHead = TypedDict('VersionHead', {'author': 'Union[str, None]', 'created_us': 'int', 'id': 'str', 'law': 'str', 'method': 'str', 'model': 'str', 'number': 'int', 'parent': 'Union[str, None]', 'report': 'Union[str, None]', 'sha256': 'str'}, total=False)
 VesselConventions = TypedDict('VesselConventions', {'rudder_positive': 'RudderSign'}, total=False)
-VesselFile = TypedDict('VesselFile', {'category': 'str', 'conventions': 'VesselConventions', 'free_running': 'List[FreeRunning]', 'kind': 'VesselKind', 'models': 'List[PublishedModelFile]', 'name': 'str', 'particulars': 'Section', 'quoted_vectors': 'Dict[str, QuotedVectorFile]', 'scale': 'Union[float, None]', 'sources': 'Dict[str, Source]', 'title': 'str', 'type': 'Union[str, None]'}, total=False)
+VesselFile = TypedDict('VesselFile', {'category': 'str', 'conventions': 'VesselConventions', 'free_running': 'List[FreeRunning]', 'kind': 'VesselKind', 'licences': 'Dict[str, str]', 'models': 'List[PublishedModelFile]', 'name': 'str', 'particulars': 'Section', 'quoted_vectors': 'Dict[str, QuotedVectorFile]', 'scale': 'Union[float, None]', 'sources': 'Dict[str, Source]', 'title': 'str', 'type': 'Union[str, None]'}, total=False)
 VesselKind = Any  # The word `vessel`.
 Written = Any  # The ways in which a file may write a value.
 WrittenInFull = TypedDict('WrittenInFull', {'note': 'Union[str, None]', 'source': 'Union[str, None]', 'standard_error': 'Union[float, None]', 'value': 'NumberOrExpression'}, total=False)
@@ -153,6 +170,14 @@ class Core:
     def get_readyz(self) -> Health:
         """Whether the server can work: its database and its object store answer, and it is not stopping."""
         return self.http.json('GET', '/readyz')
+
+    def get_audit(self, *, actor: Optional[str] = None, subject: Optional[str] = None, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_EntryView:
+        """What has been done by whom, the latest first."""
+        return self.http.json('GET', '/v1/audit', query={'actor': actor, 'subject': subject, 'limit': limit, 'after': after})
+
+    def get_audit_head(self) -> HeadView:
+        """The number and the hash of the last entry of the audit."""
+        return self.http.json('GET', '/v1/audit/head')
 
     def post_branches(self, body: BranchRequest, *, idempotency_key: Optional[str] = None) -> JobView:
         """Train a learned branch beside a version."""
@@ -262,6 +287,26 @@ class Core:
         """Do a job again that failed or was cancelled."""
         return self.http.json('POST', f'/v1/jobs/{id}/retry')
 
+    def get_keys(self, *, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_KeyView:
+        """List the service keys by prefix, those that have ended too."""
+        return self.http.json('GET', '/v1/keys', query={'limit': limit, 'after': after})
+
+    def post_keys(self, body: KeyRequest) -> NewKeyView:
+        """Make a service key."""
+        return self.http.json('POST', '/v1/keys', json=body)
+
+    def delete_keys_prefix(self, prefix: str) -> KeyView:
+        """Revoke a service key, for ever."""
+        return self.http.json('DELETE', f'/v1/keys/{prefix}')
+
+    def get_keys_prefix(self, prefix: str) -> KeyView:
+        """A service key."""
+        return self.http.json('GET', f'/v1/keys/{prefix}')
+
+    def put_keys_prefix_roles(self, prefix: str, body: RolesRequest) -> KeyView:
+        """Give a service key these roles instead of all others."""
+        return self.http.json('PUT', f'/v1/keys/{prefix}/roles', json=body)
+
     def get_laws(self, *, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_LawHead:
         """List the laws."""
         return self.http.json('GET', '/v1/laws', query={'limit': limit, 'after': after})
@@ -273,6 +318,10 @@ class Core:
     def get_laws_law(self, law: str) -> LawText:
         """A law, as JSON or as its YAML file."""
         return self.http.json('GET', f'/v1/laws/{law}')
+
+    def get_me(self) -> Me:
+        """Whoever asks, and what they may do."""
+        return self.http.json('GET', '/v1/me')
 
     def get_models_model_aliases(self, model: str, *, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_AliasView:
         """List the aliases of a model."""
@@ -329,6 +378,14 @@ class Core:
     def get_reports_id(self, id: str, *, format: Optional[Literal['json', 'html']] = None) -> Dict[str, Any]:
         """A report, as JSON or as a page that stands alone."""
         return self.http.json('GET', f'/v1/reports/{id}', query={'format': format})
+
+    def get_settings(self) -> Settings:
+        """Settings that hold for every process on the store."""
+        return self.http.json('GET', '/v1/settings')
+
+    def put_settings(self, body: Settings) -> Settings:
+        """Change the settings."""
+        return self.http.json('PUT', '/v1/settings', json=body)
 
     def get_ships(self, *, limit: Optional[int] = None, after: Optional[str] = None, category: Optional[str] = None, tag: Optional[str] = None, particular: Optional[List[str]] = None, metric: Optional[List[str]] = None, similar_to: Optional[str] = None, vector: Optional[Literal['mei-2019', 'kanazawa-2023']] = None) -> Listing_ShipHead:
         """Find ships: by category, tag, particulars, metrics of the champion, and similarity."""
@@ -405,3 +462,31 @@ class Core:
     def post_trials_id_undelete(self, id: str) -> TrialView:
         """Bring a deleted trial back."""
         return self.http.json('POST', f'/v1/trials/{id}/undelete')
+
+    def get_users(self, *, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_UserView:
+        """List the users by name."""
+        return self.http.json('GET', '/v1/users', query={'limit': limit, 'after': after})
+
+    def post_users(self, body: UserRequest, *, idempotency_key: Optional[str] = None) -> UserView:
+        """Create a user."""
+        return self.http.json('POST', '/v1/users', headers={'Idempotency-Key': idempotency_key}, json=body)
+
+    def delete_users_user(self, user: str) -> UserView:
+        """Disable a user: signed out everywhere, with no rights; the name stays taken."""
+        return self.http.json('DELETE', f'/v1/users/{user}')
+
+    def get_users_user(self, user: str) -> UserView:
+        """A user."""
+        return self.http.json('GET', f'/v1/users/{user}')
+
+    def post_users_user_enable(self, user: str) -> UserView:
+        """Give a disabled user the rights again that they had."""
+        return self.http.json('POST', f'/v1/users/{user}/enable')
+
+    def put_users_user_password(self, user: str, body: PasswordRequest) -> None:
+        """Set the password of a user, who is signed out everywhere."""
+        return self.http.none('PUT', f'/v1/users/{user}/password', json=body)
+
+    def put_users_user_roles(self, user: str, body: RolesRequest) -> UserView:
+        """Give a user these roles instead of all others."""
+        return self.http.json('PUT', f'/v1/users/{user}/roles', json=body)

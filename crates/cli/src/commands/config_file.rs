@@ -28,6 +28,8 @@ pub struct ConfigFile {
     pub objects_region: Option<String>,
     /// `--api-key-file`
     pub api_key_file: Option<PathBuf>,
+    /// `--accounts`
+    pub accounts: Option<bool>,
     /// `--workers`
     pub workers: Option<u16>,
     /// `--connections`

@@ -12,8 +12,8 @@ Examples:
   sistership fsck --data-dir /var/lib/sistership
   sistership fsck --database-url postgres://user@host/sistership --data-dir /var/lib/sistership --json
 
-Checks the hash of every law, version and object, and every reference between ships, trials, versions, aliases, jobs,
-reports, diagnoses and objects. Changes nothing; servers and workers may go on. Exit status 1 when there are faults.";
+Checks the hash of every law, version, object and entry of the audit, and every reference between ships, trials,
+versions, aliases, jobs, reports, diagnoses and objects. Changes nothing; servers and workers may go on. Exit status 1 when there are faults.";
 
 /// Check every hash and every reference of a store.
 #[derive(Debug, Args)]
@@ -38,11 +38,11 @@ pub fn run(fsck: &FsckArguments) -> Result<(), Failure> {
 
 fn text(findings: &Findings) -> String {
     let Findings { faults, checked, unreferred, unfinished, .. } = findings;
-    let Checked { laws, effects, versions, trials, jobs, diagnoses, objects } = checked;
+    let Checked { laws, effects, versions, trials, jobs, diagnoses, objects, audit } = checked;
     let fault = |fault: &Fault| format!("{}: {}: {}\n", fault.check, fault.place, fault.message);
     let mut text: String = faults.iter().map(fault).collect();
     text += &format!(
-        "looked at {laws} laws, {effects} libraries of effects, {versions} versions, {trials} trials, {jobs} jobs, {diagnoses} diagnoses, {objects} objects: {}\n",
+        "looked at {laws} laws, {effects} libraries of effects, {versions} versions, {trials} trials, {jobs} jobs, {diagnoses} diagnoses, {objects} objects, {audit} entries of the audit: {}\n",
         if faults.is_empty() { "clean".to_owned() } else { count(faults.len(), "fault") }
     );
     if unreferred.objects > 0 {

@@ -25,7 +25,7 @@ Examples:
   sistership serve --listen 0.0.0.0:8080 --database-url postgres://user@host/sistership --api-key-file /run/secrets/key
 
 The API key is read from SISTERSHIP_API_KEY or --api-key-file, never from a flag that others could see; requests carry
-it as `Authorization: Bearer KEY`. Without a key the server listens on loopback only. Stop it with Ctrl-C or SIGTERM: jobs
+it as `Authorization: Bearer KEY`. Without a key or --accounts the server listens on loopback only. Stop it with Ctrl-C or SIGTERM: jobs
 under way get --drain-s to end and then go back to the queue.";
 
 /// Run the REST server.
@@ -40,6 +40,10 @@ pub struct ServeArguments {
     /// File that holds the API key; wins over SISTERSHIP_API_KEY.
     #[arg(long, value_name = "FILE", env = "SISTERSHIP_API_KEY_FILE")]
     api_key_file: Option<PathBuf>,
+    /// People sign in by name and password (`sistership users`), and nobody is let in without that
+    /// or a key.
+    #[arg(long, env = "SISTERSHIP_ACCOUNTS")]
+    accounts: bool,
     /// Jobs worked on at a time, 0 to 64; 0 leaves them to other processes on the same database
     /// (`sistership work`) [default: 1].
     #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS")]
@@ -108,6 +112,7 @@ fn config(serve: &ServeArguments, file: &ConfigFile) -> Result<Config, Failure> 
     limits.job_memory =
         memory("job_memory_mb", serve.job_memory_mb, file.job_memory_mb, limits.job_memory)?;
     config.api_key = api_key(serve, file)?;
+    config.accounts = serve.accounts || file.accounts.unwrap_or(false);
     config.check().map_err(refused)?;
     Ok(config)
 }
@@ -153,7 +158,7 @@ fn key_of(file: &Path) -> Result<String, Failure> {
 fn refused(error: StartError) -> Failure {
     match error {
         StartError::OpenWithoutKey(listen) => Failure::Call(format!(
-            "refusing to listen on {listen} without an API key: set {KEY} or --api-key-file, or listen on 127.0.0.1"
+            "refusing to listen on {listen} without an API key: set {KEY} or --api-key-file, let people sign in with --accounts, or listen on 127.0.0.1"
         )),
         StartError::Key => Failure::Call(error.to_string()),
         other => Failure::Refused(other.to_string()),

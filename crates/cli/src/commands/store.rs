@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use sistership_pipeline::Archive;
-use sistership_store::ObjectsPlace;
+use sistership_store::{Actor, ObjectsPlace};
 
 use super::config_file::{self, ConfigFile};
 use crate::failure::Failure;
@@ -134,7 +134,7 @@ pub fn with_archive<T, E: std::fmt::Display>(
         let archive = Archive::open_at(&place.database_url, &place.objects).await;
         let archive =
             archive.map_err(|error| Failure::Refused(format!("cannot open the store: {error}")))?;
-        let done = work(&archive).await;
+        let done = Actor::command_line().acting(work(&archive)).await;
         archive.store.close().await;
         done.map_err(|error| Failure::Refused(error.to_string()))
     })

@@ -1,13 +1,14 @@
 //! `sistership zoo`: what the zoo is worth, and the check of a ship that is to join it.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::{Args, Subcommand};
 use serde::Serialize;
-use sistership_model::Zoo;
-use sistership_validation::{Appraisal, Review, Severity, appraise_vessel, review};
+use sistership_model::{Vessel, Zoo};
+use sistership_validation::{Appraisal, Dataset, Review, Severity, appraise_vessel, review};
 
-use super::zoo_text;
+use super::{zoo_page, zoo_text};
 use crate::failure::{Failure, about_file};
 use crate::files::PromisedFile;
 use crate::zoo::text_of;
@@ -18,7 +19,8 @@ Examples:
   sistership zoo list
   sistership zoo list kvlcc2 wpcc --json
   sistership zoo add my-ship.yaml
-  sistership zoo add my-ship.yaml --into zoo
+  sistership zoo add my-ship.yaml --into zoo --page my-ship.md
+  sistership zoo cite kvlcc2 --json
   sistership manoeuvre --zoo zoo --model my-ship --all";
 
 /// The zoo: what its models are worth, and a ship that is to join it.
@@ -48,6 +50,15 @@ enum ZooAction {
         /// Copy it into `DIR/vessels` where nothing is refused.
         #[arg(long, value_name = "DIR")]
         into: Option<PathBuf>,
+        /// Write the ship's page, in Markdown, whether it is taken or not.
+        #[arg(long, value_name = "FILE")]
+        page: Option<PathBuf>,
+    },
+    /// What a ship's figures are taken from and on what terms; with `--json` as schema.org Dataset.
+    Cite {
+        /// Ships, or vessel files; all of the zoo where none is named.
+        #[arg(value_name = "SHIP")]
+        ships: Vec<String>,
     },
 }
 
@@ -58,7 +69,29 @@ enum ZooAction {
 pub fn run(zoo: &Zoo, asked: &ZooArguments) -> Result<(), Failure> {
     match &asked.what {
         ZooAction::List { ships } => list(zoo, ships, asked.json),
-        ZooAction::Add { file, into } => add(zoo, file, into.as_deref(), asked.json),
+        ZooAction::Add { file, into, page } => {
+            add(zoo, file, into.as_deref(), page.as_deref(), asked.json)
+        }
+        ZooAction::Cite { ships } => cite(zoo, ships, asked.json),
+    }
+}
+
+#[derive(Serialize)]
+struct CiteDocument {
+    #[serde(rename = "@graph")]
+    graph: Vec<Dataset>,
+}
+
+fn cite(zoo: &Zoo, ships: &[String], json: bool) -> Result<(), Failure> {
+    let graph = vessels(zoo, ships)?.iter().map(|vessel| Dataset::of(vessel)).collect();
+    let document = CiteDocument { graph };
+    output::print(json, &document, || zoo_text::cited(&document.graph))
+}
+
+fn vessels(zoo: &Zoo, ships: &[String]) -> Result<Vec<Arc<Vessel>>, Failure> {
+    match ships {
+        [] => Ok(zoo.vessels().cloned().collect()),
+        names => names.iter().map(|name| named::ship(zoo, name)).collect(),
     }
 }
 
@@ -68,12 +101,8 @@ struct ListDocument {
 }
 
 fn list(zoo: &Zoo, ships: &[String], json: bool) -> Result<(), Failure> {
-    let vessels = match ships {
-        [] => zoo.vessels().cloned().collect(),
-        names => names.iter().map(|name| named::ship(zoo, name)).collect::<Result<Vec<_>, _>>()?,
-    };
     let mut models = Vec::new();
-    for vessel in vessels {
+    for vessel in vessels(zoo, ships)? {
         models.extend(appraise_vessel(zoo, &vessel)?);
     }
     let document = ListDocument { models };
@@ -93,10 +122,15 @@ fn add(
     zoo: &Zoo,
     file: &std::path::Path,
     into: Option<&std::path::Path>,
+    page: Option<&std::path::Path>,
     json: bool,
 ) -> Result<(), Failure> {
+    let page = page.map(|path| PromisedFile::new(path, &[file.to_owned()])).transpose()?;
     let vessel = named::vessel_file(zoo, file)?;
     let review = review(zoo, &vessel)?;
+    if let Some(page) = page {
+        page.write(zoo_page::page(&vessel, &review).as_bytes())?;
+    }
     let taken = review.is_taken();
     let written = match into.filter(|_| taken) {
         Some(zoo_folder) => Some(copied(file, zoo_folder, vessel.name())?),
@@ -146,16 +180,25 @@ mod tests {
         let into = Some(folder.path().join("own"));
         let text = zoo.vessel_text("mariner").unwrap().replace("name: mariner", "name: liberty");
         std::fs::write(&file, &text).unwrap();
-        run(&zoo, &asked(ZooAction::Add { file: file.clone(), into: into.clone() })).unwrap();
+        let page = folder.path().join("liberty.md");
+        let first =
+            ZooAction::Add { file: file.clone(), into: into.clone(), page: Some(page.clone()) };
+        run(&zoo, &asked(first)).unwrap();
+        let page = std::fs::read_to_string(page).unwrap();
+        assert!(page.starts_with("# liberty\n"), "{page}");
+        assert!(page.contains("| lpp_m | 160.93 |"), "{page}");
+        assert!(page.contains("| `abkowitz` | `abkowitz` | published |"), "{page}");
         let added = folder.path().join("own/vessels/liberty.yaml");
         assert_eq!(std::fs::read_to_string(&added).unwrap(), text);
-        let again = run(&zoo, &asked(ZooAction::Add { file: file.clone(), into })).unwrap_err();
+        let again =
+            run(&zoo, &asked(ZooAction::Add { file: file.clone(), into, page: None })).unwrap_err();
         assert!(again.message().unwrap().contains("is there already"));
         let wrong = text.replace("rudder_positive: port_turn", "rudder_positive: starboard_turn");
         assert_ne!(wrong, text);
         std::fs::write(&file, wrong).unwrap();
         let elsewhere = Some(folder.path().join("other"));
-        let refused = run(&zoo, &asked(ZooAction::Add { file, into: elsewhere })).unwrap_err();
+        let refused =
+            run(&zoo, &asked(ZooAction::Add { file, into: elsewhere, page: None })).unwrap_err();
         assert_eq!(refused, Failure::Told);
         assert!(!folder.path().join("other").exists());
     }

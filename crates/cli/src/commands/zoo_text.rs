@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use sistership_dynamics::metrics::TurningMetrics;
-use sistership_validation::{Appraisal, Comparison, Review, Severity};
+use sistership_validation::{Appraisal, Comparison, Dataset, Review, Severity, Work};
 
 use crate::table::TextTable;
 
@@ -95,4 +95,19 @@ pub fn reviewed(review: &Review, written: Option<&Path>) -> String {
         text.push_str(&format!("\nwritten to {}\n", path.display()));
     }
     text
+}
+
+/// Ships with what their figures are taken from.
+pub fn cited(graph: &[Dataset]) -> String {
+    let one = |ship: &Dataset| {
+        let works: String = ship.sources.iter().map(work).collect();
+        format!("{}: {}\n{works}", ship.identifier, ship.name)
+    };
+    graph.iter().map(one).collect::<Vec<String>>().join("\n")
+}
+
+fn work(work: &Work) -> String {
+    let url = work.url.as_ref().map_or(String::new(), |url| format!("\n    {url}"));
+    let terms = work.license.as_deref().or(work.usage).unwrap_or("not known");
+    format!("  {}: {}{url}\n    licence: {terms}\n", work.alternate_name, work.name)
 }

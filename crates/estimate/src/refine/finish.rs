@@ -18,7 +18,7 @@ use super::progress::{Progress, step};
 use super::ridge::{Choices, Fit};
 use super::thresholds::SELECTION;
 use super::variant::Variant;
-use sistership_bands::{bands, fold_factor};
+use sistership_bands::{FoldQuantile, bands, fold_factor};
 use sistership_regression::RidgeChoice;
 
 /// Why a candidate may not be taken.
@@ -120,7 +120,11 @@ fn take(
     let mut model = model_of(problem, fitted.as_ref());
     model.posterior = posterior(problem, &model, fitted.as_ref(), variants)?;
     if problem.settings.posterior_by_folds {
-        let factor = fold_factor(&model, problem.law, &candidates[best].left_out);
+        let quantile = match problem.settings.folds_pooled {
+            true => FoldQuantile::Normal,
+            false => FoldQuantile::Student,
+        };
+        let factor = fold_factor(&model, problem.law, &candidates[best].left_out, quantile);
         widen(&mut model, fitted.as_mut(), factor);
     }
     let measured = measured_manoeuvres(problem, &model);

@@ -21,7 +21,7 @@ use super::thresholds::SELECTION;
 use super::unrecorded;
 use super::variant::{Variant, variants};
 use super::weighed::{Extent, Weighed, weighed};
-use crate::steering::measured_rate;
+use crate::steering::{RateWindow, measured_rate};
 use crate::transfer::{approach_of, transfer};
 
 /// What is to be refined, and against what.
@@ -123,7 +123,11 @@ fn with_candidates<T>(
     let parts = parts(&whole, request.law, equations, &settings);
     let (mut transferred, measure) = starting(request, &whole, !parts.is_empty())?;
     if settings.steering_from_trials {
-        steer_as_recorded(&mut transferred, request.target, &whole);
+        let window = match settings.steering_above_noise {
+            true => RateWindow::AboveNoise,
+            false => RateWindow::OfLength,
+        };
+        steer_as_recorded(&mut transferred, request.target, &whole, window);
     }
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
     let (law, source, watch) = (request.law, request.source.name.as_str(), Some(watch));
@@ -175,9 +179,10 @@ fn starting(
 }
 
 /// Gives a model the gear that the trials' rudders show.
-fn steer_as_recorded(model: &mut Model, target: &Vessel, trials: &[&Trial]) {
+fn steer_as_recorded(model: &mut Model, target: &Vessel, trials: &[&Trial], window: RateWindow) {
     let length_s = target.particular("lpp_m").zip(approach_of(trials));
-    let rate = length_s.and_then(|(l, approach)| measured_rate(trials, l / approach.speed_m_s));
+    let rate =
+        length_s.and_then(|(l, approach)| measured_rate(trials, l / approach.speed_m_s, window));
     if let Some(rate) = rate {
         model.steering.rate_deg_s = rate.to_degrees();
         model.steering.source = Some("the rudder's movements in the trials".to_owned());

@@ -142,10 +142,18 @@ pub struct Settings {
     /// it; else it is the source's, scaled. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub steering_from_trials: bool,
+    /// That rate is taken over as long a time as the noise of the rudder's readings asks for, not by
+    /// the ship's length alone. The default search sets it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub steering_above_noise: bool,
     /// The posterior is as wide as models are apart that each missed some of the trials, where that
     /// is wider than the noise of the readings makes it. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub posterior_by_folds: bool,
+    /// That width is taken by the normal's quantile, not by Student's: it is a mean over the figures
+    /// of all standard manoeuvres. The default search sets it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub folds_pooled: bool,
     /// The noise model of what the trials leave open is learned on whole trials of about so many
     /// samples in all, those that differ most. Where absent, on all. The default search sets it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -185,7 +193,9 @@ impl Default for Settings {
             folds: 8,
             in_parts: false,
             steering_from_trials: false,
+            steering_above_noise: false,
             posterior_by_folds: false,
+            folds_pooled: false,
             calibration_samples: None,
             held_out: Vec::new(),
             constraints: Constraints::default(),

@@ -22,6 +22,7 @@ pub(super) struct VersionRow {
     pub method: String,
     pub error: String,
     pub created: String,
+    pub author: String,
     pub report: Option<String>,
 }
 
@@ -75,7 +76,7 @@ async fn row(
     aliases: &[Alias],
     labels: &BTreeMap<String, (String, String)>,
 ) -> Result<VersionRow> {
-    let VersionHead { number, parent, law, method, created_us, .. } = head;
+    let VersionHead { number, parent, law, method, created_us, author, .. } = head;
     let reports = store.reports().by_version(&head.id, &Page::first(1)).await?;
     let own = aliases.iter().filter(|alias| alias.version_number == *number);
     Ok(VersionRow {
@@ -86,6 +87,7 @@ async fn row(
         method: method.clone(),
         error: error(store, head).await?.map_or_else(String::new, |error| significant(error, 2)),
         created: date(*created_us),
+        author: author.clone().unwrap_or_default(),
         report: reports.items.into_iter().next().map(|report| report.id),
     })
 }

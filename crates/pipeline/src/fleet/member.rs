@@ -125,7 +125,9 @@ pub fn kept(loaded: &Loaded, bulk: &str, member: Member, outcome: Outcome) -> Re
             document: summary.to_string(),
         });
     }
-    let champion = loaded.order.rule.no_worse_than.is_some_and(|share| worst <= share);
+    let allowed = !member.standing.second_person;
+    let rule = loaded.order.rule.no_worse_than;
+    let champion = allowed && rule.is_some_and(|share| worst <= share);
     let reason =
         format!("refined with the family {} in bulk refinement {bulk}", loaded.order.family);
     let version = NewVersion {

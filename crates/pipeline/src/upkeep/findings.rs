@@ -29,6 +29,8 @@ pub struct Checked {
     pub diagnoses: usize,
     /// Objects, by their hash.
     pub objects: usize,
+    /// Entries of the audit, each by its hash and that of the one before.
+    pub audit: usize,
 }
 
 /// What was found.

@@ -19,6 +19,9 @@ pub async fn fsck(archive: &Archive) -> Result<Findings> {
     documents::jobs(archive, &mut findings).await?;
     documents::diagnoses(archive, &mut findings).await?;
     objects::check(archive, &mut findings).await?;
+    let (entries, faults) = archive.store.audit().faults().await?;
+    findings.checked.audit = usize::try_from(entries).unwrap_or(usize::MAX);
+    findings.faults.extend(faults);
     findings.clean = findings.faults.is_empty();
     Ok(findings)
 }

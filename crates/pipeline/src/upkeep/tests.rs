@@ -89,6 +89,7 @@ async fn a_healthy_archive_is_clean() {
         );
         assert!(
             findings.checked.laws > 3
+                && findings.checked.audit > 20
                 && findings.checked.effects > 0
                 && findings.checked.versions > 5,
             "{:?}",
@@ -177,6 +178,13 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     (TAG, "tag-ship", "tag nobody/own"),
     ("DELETE FROM ship_vectors; DELETE FROM search_queue", "search-ship", "ship mariner"),
     (FACT, "search-fact", "ship nobody"),
+    (GRANT, "grant-principal", "roles of user:nobody"),
+    (GRANT, "grant-scope", "roles of user:nobody"),
+    (KEY, "key-user", "key 0123456789ab"),
+    (SESSION, "session-user", "sessions of nobody"),
+    ("UPDATE audit SET actor = 'bob' WHERE number = 2", "audit-chain", "audit entry 2"),
+    ("DELETE FROM audit WHERE number = 2", "audit-chain", "audit entry 3"),
+    (CUT, "audit-chain", "audit entry "),
     (JOB, "job-ship", "job j"),
     (JOB, "job-state", "job j"),
     (JOB, "job-result", "job j"),
@@ -193,9 +201,14 @@ const CHUNK: &str = "INSERT INTO bulk_chunks VALUES ('b', 1, 'none')";
 const OUTCOME: &str =
     "INSERT INTO bulk_outcomes VALUES ('b', 'mariner', 'champion', NULL, NULL, '{}', 0)";
 const TAG: &str = "INSERT INTO ship_tags VALUES ('nobody', 'own')";
+const GRANT: &str = "INSERT INTO grants VALUES ('user:nobody', 'ship', 'none', 'reader')";
+const KEY: &str =
+    "INSERT INTO service_keys VALUES ('0123456789ab', 'K', 'nobody', 'x', 0, NULL, NULL, NULL)";
+const SESSION: &str = "INSERT INTO sessions VALUES ('x', 'nobody', 0, 0)";
+const CUT: &str = "DELETE FROM audit WHERE number = (SELECT MAX(number) FROM audit)";
 const FACT: &str = "INSERT INTO ship_facts VALUES ('nobody', 'particular lpp_m', 1)";
 const JOB: &str = "INSERT INTO jobs VALUES ('j', 'refinement', 'nobody', '{}', 'succeeded', 1, '', \
-    '{\"model\": \"mariner\", \"version\": 1, \"sha256\": \"x\", \"report\": \"none\"}', NULL, 1, 1, 5, NULL, 0, 0, NULL, 0, 0)";
+    '{\"model\": \"mariner\", \"version\": 1, \"sha256\": \"x\", \"report\": \"none\"}', NULL, 1, 1, 5, NULL, 0, 0, NULL, 0, 0, NULL)";
 
 #[tokio::test(flavor = "multi_thread")]
 async fn each_damage_to_rows_is_named_on_sqlite() {
@@ -234,7 +247,7 @@ async fn damaged(database: TestDatabase) {
     assert!(found(&archive).await.clean, "healed again");
 }
 
-const TABLES: [&str; 22] = [
+const TABLES: [&str; 28] = [
     "laws",
     "effect_libraries",
     "ships",
@@ -257,6 +270,12 @@ const TABLES: [&str; 22] = [
     "ship_vectors",
     "ship_tags",
     "search_queue",
+    "users",
+    "grants",
+    "service_keys",
+    "sessions",
+    "audit",
+    "audit_head",
 ];
 
 #[tokio::test(flavor = "multi_thread")]

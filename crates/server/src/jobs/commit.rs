@@ -113,7 +113,7 @@ impl Made {
             job.id
         );
         let alias = match &self.comparison {
-            _ if !standing.champion => Some((CHAMPION, Expect::Absent)),
+            _ if !standing.champion && !standing.second_person => Some((CHAMPION, Expect::Absent)),
             Some(comparison) if comparison.is_worse() => None,
             _ => Some((CANDIDATE, Expect::Any)),
         };

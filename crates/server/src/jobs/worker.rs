@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use sistership_store::{Claimed, Job, StoreError};
+use sistership_store::{Actor, Claimed, Job, StoreError};
 use tokio::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, watch};
 use tokio::task::JoinHandle;
 use uuid::Uuid;
@@ -112,7 +112,10 @@ impl Worker {
     async fn attend(&mut self, job: &Job) {
         tracing::info!("begun");
         let (progress, seen) = Progress::new();
-        let work = tokio::spawn(work(self.app.clone(), job.clone(), progress.clone()));
+        let author = job.author.clone().unwrap_or_else(|| Actor::current().name);
+        let actor = Actor::new(author, format!("job {}", job.id));
+        let work = work(self.app.clone(), job.clone(), progress.clone());
+        let work = tokio::spawn(actor.acting(work));
         let mut watched = Watched { work, progress, seen };
         let ended = self.accompany(job, &mut watched).await;
         if let Err(error) = self.end(job, ended, watched.progress.stopped()).await {

@@ -57,6 +57,7 @@ async fn request(harness: &Harness, route: &str) -> RequestBuilder {
             post("/v1/refinements").json(&json!({ "ship": "mariner", "source": "mariner" }))
         }
         "post /v1/diagnoses" => post("/v1/diagnoses").json(&json!({ "model": "mariner" })),
+        "post /v1/users" => post("/v1/users").json(&json!({ "name": "ann" })),
         "post /v1/branches" => post("/v1/branches").json(&json!({ "model": "mariner" })),
         other => panic!("say here how `{other}` is asked"),
     }

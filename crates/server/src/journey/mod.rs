@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod access;
 mod contract;
 mod documents;
 mod harness;
@@ -12,4 +13,5 @@ mod observed;
 mod refusals;
 mod registry;
 mod search;
+mod sessions;
 mod uploads;

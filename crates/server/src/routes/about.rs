@@ -28,6 +28,7 @@ use crate::problem::{Fault, Problem};
         (name = "reports", description = "What a refinement, a diagnosis or a training reported."),
         (name = "laws", description = "Laws of motion."),
         (name = "effects", description = "Libraries of effects, as recipes name them."),
+        (name = "access", description = "Who may do what, and who has done what."),
         (name = "health", description = "Whether the server lives and can work.")
     )
 )]
@@ -39,7 +40,7 @@ pub(super) fn about() -> OpenApi {
     about.info.version = env!("CARGO_PKG_VERSION").to_owned();
     let key = HttpBuilder::new()
         .scheme(HttpAuthScheme::Bearer)
-        .description(Some("The server's API key, where it has one"))
+        .description(Some("The server's API key, or a service key; where the server asks for one"))
         .build();
     about
         .components

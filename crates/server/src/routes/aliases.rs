@@ -5,7 +5,7 @@ use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
-use sistership_store::{Alias, AliasChange, AliasMove, Expect};
+use sistership_store::{Actor, Alias, AliasChange, AliasMove, Expect, Store};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -13,10 +13,11 @@ use utoipa_axum::routes;
 use super::versions::exists;
 use crate::app::App;
 use crate::problem::{Problem, Result};
+use crate::rights::{SECOND_PERSON, on_ship};
 use crate::web::conditions::tag;
 use crate::web::field::{EntityTags, Remark, VersionNumber};
 use crate::web::{Conditions, Listing, Name, Paged, Params, Payload, Place};
-use sistership_pipeline::line::{alias, is_reserved};
+use sistership_pipeline::line::{CHAMPION, alias, is_reserved};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get, put)).routes(routes!(history))
@@ -140,9 +141,20 @@ pub(super) async fn move_to(
     expect: Expect,
     reason: &str,
 ) -> Result<Alias> {
-    let (alias, actor) = (alias.to_owned(), "api".to_owned());
+    if alias == CHAMPION {
+        second_person(app.store(), model).await?;
+    }
+    let (alias, actor) = (alias.to_owned(), Actor::current().name);
     let change = AliasMove { alias, expect, reason: reason.to_owned(), actor };
     Ok(app.store().aliases().move_to(model, version, &change).await?)
+}
+
+/// Where a second person is asked for, the champion moves by the word of an approver.
+pub(super) async fn second_person(store: &Store, ship: &str) -> Result<()> {
+    match store.settings().second_person().await? {
+        true => on_ship(store, SECOND_PERSON, ship).await,
+        false => Ok(()),
+    }
 }
 
 fn check(name: &str) -> Result<()> {

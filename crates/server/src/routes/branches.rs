@@ -17,8 +17,10 @@ use super::trials::all_of_ship;
 use crate::app::App;
 use crate::jobs::{BRANCH, BranchJob};
 use crate::problem::{Problem, Result};
+use crate::rights::on_ship;
 use crate::web::field::RequestKey;
 use crate::web::{Id, Key, ModelName, Name, Number, Payload, Place, Reply};
+use sistership_access::Role;
 use sistership_pipeline::archive::document;
 use sistership_pipeline::schema::described;
 use sistership_pipeline::training::foundation_of;
@@ -69,6 +71,7 @@ async fn queued(app: &App, request: BranchRequest) -> Result<Reply> {
 async fn settled(app: &App, request: BranchRequest) -> Result<BranchJob> {
     let BranchRequest { model, trials, settings } = request;
     let version = resolve(app.store(), "model", &model).await?;
+    on_ship(app.store(), Role::Engineer, &version.head.model).await?;
     without_branch(app, &version).await?;
     settings
         .check()

@@ -11,6 +11,7 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::aliases::second_person;
 use crate::app::App;
 use crate::problem::Result;
 use crate::web::field::{Cursor, Limit, Remark, RequestKey};
@@ -270,6 +271,7 @@ async fn promote(
                 .as_ref()
                 .is_none_or(|ships| ships.iter().any(|ship| **ship == *outcome.ship));
             if let (true, Some(version)) = (meant, outcome.version) {
+                second_person(app.store(), &outcome.ship).await?;
                 app.store().bulks().promote(&bulk.id, &outcome.ship, version, &change).await?;
                 champions += 1;
             }

@@ -19,9 +19,11 @@ use super::trials::all_of_ship;
 use crate::app::App;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::problem::{Problem, Result};
+use crate::rights::on_ship;
 use crate::web::field::RequestKey;
 use crate::web::payload::from_slice;
 use crate::web::{Id, Key, ModelName, Payload, Reply};
+use sistership_access::Role;
 use sistership_pipeline::archive::document;
 use sistership_pipeline::schema::described;
 
@@ -80,6 +82,7 @@ pub(super) async fn ask(app: &App, asked: &Value) -> Result<Job> {
 async fn settled(app: &App, request: DiagnosisRequest) -> Result<DiagnosisJob> {
     let DiagnosisRequest { model, trials, settings } = request;
     let version = resolve(app.store(), "model", &model).await?;
+    on_ship(app.store(), Role::Engineer, &version.head.model).await?;
     without_branch(app, &version).await?;
     settings
         .check()

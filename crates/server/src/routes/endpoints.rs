@@ -6,9 +6,10 @@ use tower_http::timeout::TimeoutLayer;
 use utoipa_axum::router::OpenApiRouter;
 
 use super::{
-    about, aliases, branches, bulk_refinements, champion, compare, diagnoses, drift, effects,
-    events, exports, families, health, jobs, laws, metrics, predictions, refinements, register,
-    reports, samples, ship_changes, ships, similar, tags, trials, uploads, versions,
+    about, aliases, audit, branches, bulk_refinements, champion, compare, diagnoses, drift,
+    effects, events, exports, families, health, jobs, keys, laws, metrics, predictions,
+    refinements, register, reports, samples, ship_changes, ships, similar, tags, trials, uploads,
+    users, versions,
 };
 use crate::app::App;
 use crate::config::Limits;
@@ -47,6 +48,9 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(aliases::routes())
         .merge(predictions::routes())
         .merge(reports::routes())
+        .merge(users::routes())
+        .merge(keys::routes())
+        .merge(audit::routes())
         .layer(DefaultBodyLimit::max(limits.document_bytes))
         .layer(TimeoutLayer::with_status_code(StatusCode::GATEWAY_TIMEOUT, limits.request_time))
 }

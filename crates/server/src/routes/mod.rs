@@ -2,6 +2,7 @@
 
 mod about;
 mod aliases;
+mod audit;
 mod binary;
 mod branches;
 mod bulk_refinements;
@@ -18,6 +19,7 @@ mod exports;
 mod families;
 mod health;
 mod jobs;
+mod keys;
 mod laws;
 mod metrics;
 mod model_ref;
@@ -28,6 +30,7 @@ mod queue;
 mod refinements;
 mod register;
 mod reports;
+mod roles;
 mod samples;
 mod ship_changes;
 mod ship_search;
@@ -37,6 +40,7 @@ mod tags;
 mod tidy;
 mod trials;
 mod uploads;
+mod users;
 mod versions;
 
 use std::sync::Arc;

@@ -3,11 +3,14 @@
 use sistership_store::{Store, StoreError, Version};
 
 use crate::problem::{Problem, Result};
+use crate::rights::on_ship;
+use sistership_access::Role;
 use sistership_pipeline::line::{CHAMPION, alias};
 
 /// The version that a name in a request stands for; `field` is where it stands.
 pub(super) async fn resolve(store: &Store, field: &str, name: &str) -> Result<Version> {
     let (ship, rest) = name.split_once('/').unwrap_or((name, CHAMPION));
+    on_ship(store, Role::Reader, ship).await?;
     let number = match rest.parse() {
         Ok(number) => number,
         Err(_) => {

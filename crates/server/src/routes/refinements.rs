@@ -18,9 +18,11 @@ use super::trials::all_of_ship;
 use crate::app::App;
 use crate::jobs::{REFINEMENT, RefinementJob, SourceChoice};
 use crate::problem::{Problem, Result};
+use crate::rights::on_ship;
 use crate::web::field::RequestKey;
 use crate::web::payload::from_slice;
 use crate::web::{Id, Key, ModelName, Name, Payload, Reply};
+use sistership_access::Role;
 use sistership_pipeline::schema::described;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
@@ -108,6 +110,7 @@ async fn enqueued(app: &App, request: RefinementRequest, search: bool) -> Result
 /// The request with everything looked up, so that a job that is wrong is refused at once.
 async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob> {
     let RefinementRequest { ship, source, law, trials, settings } = request;
+    on_ship(app.store(), Role::Engineer, &ship).await?;
     match app.store().ships().get(&ship).await {
         Err(StoreError::NotFound { .. }) => {
             return Err(Problem::invalid(

@@ -45,6 +45,8 @@ pub(super) struct VersionHead {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub report: Option<String>,
     pub created_us: i64,
+    /// Who asked for it, as the audit names them; null where that was not kept yet.
+    pub author: Option<String>,
 }
 
 /// A version.
@@ -67,8 +69,10 @@ impl VersionHead {
             method,
             sha256,
             created_us,
+            author,
         } = head;
-        Self { id, model, number, parent, law, method, sha256, report: None, created_us }
+        let report = None;
+        Self { id, model, number, parent, law, method, sha256, report, created_us, author }
     }
 
     pub(super) async fn with_report(

@@ -17,6 +17,8 @@ use super::spool::temporary;
 use crate::app::App;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::problem::{Problem, Result};
+use crate::rights::on_ship;
+use sistership_access::Role;
 use sistership_pipeline::budget;
 use sistership_pipeline::line::{CHAMPION, alias};
 use sistership_pipeline::training::foundation_of;
@@ -38,6 +40,7 @@ struct Accepted {
 /// the ship's champion on the new ones is queued with them.
 pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option<Job>)> {
     let (ship, diagnose) = (upload.ship().to_owned(), upload.diagnose);
+    on_ship(app.store(), Role::Engineer, &ship).await?;
     match app.store().ships().get(&ship).await {
         Err(StoreError::NotFound { .. }) => return Err(no_ship(&ship)),
         other => drop(other?),

@@ -1,6 +1,6 @@
 //! A manifest and its files as the parts of a form.
 
-use axum::extract::multipart::{Field, Multipart, MultipartError};
+use axum::extract::multipart::{Field, Multipart};
 use axum::extract::{FromRequest as _, Request};
 use axum::http::StatusCode;
 use sistership_model::manifest::ManifestTrial;
@@ -180,16 +180,4 @@ async fn text(mut field: Field<'_>, app: &App) -> Result<String> {
     }
     String::from_utf8(bytes)
         .map_err(|error| Problem::bad_request(format!("a part is not UTF-8: {error}")))
-}
-
-impl From<MultipartError> for Problem {
-    fn from(error: MultipartError) -> Self {
-        match error.status() {
-            StatusCode::PAYLOAD_TOO_LARGE => Self::new(
-                StatusCode::PAYLOAD_TOO_LARGE,
-                "the upload is larger than this server takes; send several uploads",
-            ),
-            _ => Self::bad_request(format!("the form cannot be read: {}", error.body_text())),
-        }
-    }
 }

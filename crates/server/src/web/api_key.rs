@@ -1,6 +1,7 @@
-//! The API key, of which only the hash is kept, and the token of forms.
+//! The server's API key, of which only the hash is kept, and the token of forms.
 
 use sha2::{Digest as _, Sha256};
+use sistership_access::{hex, same, sha256};
 use uuid::Uuid;
 
 /// An API key, as its hash.
@@ -9,20 +10,18 @@ pub(crate) struct ApiKey([u8; 32]);
 
 impl ApiKey {
     pub(crate) fn new(key: &str) -> Self {
-        Self(Sha256::digest(key.as_bytes()).into())
+        Self(sha256(key))
     }
 
     /// Whether this is the key, in a time that does not tell how much of it is right.
-    pub(super) fn is(&self, presented: &str) -> bool {
-        let presented: [u8; 32] = Sha256::digest(presented.as_bytes()).into();
-        let difference = self.0.iter().zip(presented).fold(0, |all, (a, b)| all | (a ^ b));
-        std::hint::black_box(difference) == 0
+    pub(crate) fn is(&self, presented: &str) -> bool {
+        same(&self.0, &sha256(presented))
     }
 }
 
 /// What forms of pages send along, so that no other web site can send them: it cannot read a page of
 /// this server. With a key it follows from the key, so that every server with that key takes it;
-/// without one it is drawn at the start.
+/// without one it is drawn at the start. Who is signed in has another, see `web::form`.
 pub(crate) struct FormToken(String);
 
 impl FormToken {
@@ -33,15 +32,23 @@ impl FormToken {
             // Each has 32 random bits at least (RFC 9562, 5.7).
             None => (0..8).for_each(|_| hash.update(Uuid::now_v7())),
         }
-        Self(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+        Self(hex(&hash.finalize()))
     }
 
     pub(super) fn text(&self) -> &str {
         &self.0
     }
+}
 
-    /// Whether this is the token, in a time that does not tell how much of it is right.
-    pub(super) fn is(&self, presented: &str) -> bool {
-        ApiKey::new(&self.0).is(presented)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_key_opens() {
+        let key = ApiKey::new("secret");
+        assert!(key.is("secret") && !key.is("secre") && !key.is(""));
+        assert_eq!(FormToken::of(Some(&key)).text(), FormToken::of(Some(&key)).text());
+        assert_ne!(FormToken::of(None).text(), FormToken::of(None).text());
     }
 }

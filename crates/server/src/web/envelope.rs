@@ -13,7 +13,7 @@ use uuid::Uuid;
 
 use crate::app::App;
 use crate::problem::{MEDIA, Problem};
-use crate::web::large::counted;
+use sistership_http::large::counted;
 use sistership_listen::Peer;
 
 /// Gives the request an id, logs and counts it, and sees to it that an error is a problem with that

@@ -1,35 +1,32 @@
-//! Who may ask: the API key, or, on a machine's own interface without a key, programs of that
-//! machine.
+//! Who may ask for what: whoever asks shows who they are, or, on a machine's own interface without
+//! a key, is a program of that machine; then their roles decide.
 
-use axum::extract::{Request, State};
-use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::RequestExt as _;
+use axum::extract::{MatchedPath, RawPathParams, Request, State};
+use axum::http::{HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
-use axum::response::{IntoResponse as _, Response};
-use base64::Engine as _;
-use base64::prelude::BASE64_STANDARD;
+use axum::response::{IntoResponse as _, Redirect, Response};
 
-use super::api_key::ApiKey;
-use super::host;
 use crate::app::App;
 use crate::problem::Problem;
+use crate::rights::{Acting, Asked, HEALTH, OPEN, Refusal, allowed, identify};
+use sistership_http::host;
 use sistership_listen::Peer;
-
-/// Paths that tell nothing worth a key.
-const OPEN: [&str; 3] = ["/healthz", "/readyz", "/openapi.json"];
 
 /// How long who finds no seat should wait, seconds.
 const RETRY: u64 = 2;
 
 /// Lets a request through, or says what it lacks.
-pub(crate) async fn guard(State(app): State<App>, request: Request, next: Next) -> Response {
-    let peer = request.extensions().get::<Peer>();
-    if peer.is_some_and(|peer| peer.crowded) {
+pub(crate) async fn guard(State(app): State<App>, mut request: Request, next: Next) -> Response {
+    let peer = request.extensions().get::<Peer>().cloned();
+    if peer.as_ref().is_some_and(|peer| peer.crowded) {
         let why = "all connections are at work, or those of your address; try again in a moment";
         return later(Problem::new(StatusCode::SERVICE_UNAVAILABLE, why), RETRY);
     }
-    match allowed(&app, &request) {
-        Ok(()) => next.run(request).await,
-        Err(Refusal::Problem(problem)) => problem.into_response(),
+    match admitted(&app, &mut request).await {
+        Ok(Some(acting)) => acting.scope(next.run(request)).await,
+        Ok(None) => next.run(request).await,
+        Err(Refusal::Problem(problem)) => refused(&app, &request, problem),
         Err(Refusal::WrongKey(problem)) => {
             match peer.and_then(|peer| app.throttle().wrong(peer.party)) {
                 Some(wait) => {
@@ -42,6 +39,21 @@ pub(crate) async fn guard(State(app): State<App>, request: Request, next: Next) 
     }
 }
 
+/// A refusal; a browser that wants a page goes to sign in first.
+fn refused(app: &App, request: &Request, problem: Problem) -> Response {
+    let accepted = request.headers().get(header::ACCEPT).and_then(|value| value.to_str().ok());
+    let page = request.method() == Method::GET
+        && !request.uri().path().starts_with("/v1")
+        && accepted.is_some_and(|accepted| accepted.contains("text/html"));
+    if problem.status != StatusCode::UNAUTHORIZED.as_u16() || !page || !app.has_accounts() {
+        return problem.into_response();
+    }
+    let place = request.uri().path_and_query().map_or("/", |place| place.as_str());
+    let asked = [("next", place)];
+    let query = serde_urlencoded::to_string(asked).unwrap_or_default();
+    Redirect::to(&format!("/sign-in?{query}")).into_response()
+}
+
 /// A refusal that ends the connection and says when to come again.
 fn later(problem: Problem, seconds: u64) -> Response {
     let mut response = problem.into_response();
@@ -50,99 +62,44 @@ fn later(problem: Problem, seconds: u64) -> Response {
     response
 }
 
-/// Why a request is not let through.
-#[derive(Debug)]
-enum Refusal {
-    Problem(Problem),
-    /// A key was presented, and is not the key.
-    WrongKey(Problem),
-}
-
-impl From<Problem> for Refusal {
-    fn from(problem: Problem) -> Self {
-        Self::Problem(problem)
-    }
-}
-
-fn allowed(app: &App, request: &Request) -> std::result::Result<(), Refusal> {
+/// Whoever is let through; nobody where nobody is asked for.
+async fn admitted(app: &App, request: &mut Request) -> Result<Option<Acting>, Refusal> {
     let host = host::addressed(request)?;
-    if OPEN.contains(&request.uri().path()) {
-        return Ok(());
+    let place = (as_get(request.method()), request.uri().path());
+    if HEALTH.contains(&place) {
+        return Ok(None);
     }
-    match app.key() {
-        Some(key) => {
-            // A form that a page of this server sends, which has a token besides.
-            let own = !request.uri().path().starts_with("/v1")
-                && host::is_same_origin(request.headers(), host.as_ref())?;
-            authorised(key, request.method().is_safe() || own, request.headers())
-        }
-        None => Ok(host::from_this_machine(request.method(), request.headers(), host.as_ref())?),
+    if app.is_open() {
+        host::from_this_machine(request.method(), request.headers(), host.as_ref())?;
     }
-}
-
-fn authorised(
-    key: &ApiKey,
-    by_browser: bool,
-    headers: &HeaderMap,
-) -> std::result::Result<(), Refusal> {
-    let needed = || {
-        Problem::new(
-            StatusCode::UNAUTHORIZED,
-            "send the header `Authorization: Bearer KEY` with the server's API key",
-        )
+    if OPEN.contains(&place) {
+        return Ok(None);
+    }
+    // A form that a page of this server sends, which has a token besides.
+    let own = !request.uri().path().starts_with("/v1")
+        && host::is_same_origin(request.headers(), host.as_ref())?;
+    let principal = identify(app, request.method(), request.headers(), own).await?;
+    let origin = origin(request);
+    let acting = Acting { principal, origin };
+    let params = request.extract_parts::<RawPathParams>().await;
+    let params = params.map_err(|error| Problem::not_found(error.body_text()))?;
+    let route = request.extensions().get::<MatchedPath>().cloned();
+    let asked = Asked {
+        method: request.method(),
+        uri: request.uri(),
+        route: route.as_ref().map(MatchedPath::as_str),
+        params: &params,
     };
-    let value = host::single(headers, &header::AUTHORIZATION)?.ok_or_else(needed)?;
-    let (scheme, rest) = value.split_once(' ').ok_or_else(needed)?;
-    let presented = match scheme.to_ascii_lowercase().as_str() {
-        "bearer" => rest.trim().to_owned(),
-        // Browsers send this by themselves, also on behalf of other sites: good enough to look, not
-        // to change, unless the browser says that a page of this server asks.
-        "basic" if by_browser => password(rest.trim()).ok_or_else(needed)?,
-        _ => return Err(needed().into()),
-    };
-    if key.is(&presented) { Ok(()) } else { Err(Refusal::WrongKey(needed())) }
+    allowed(app, &acting, &asked).await?;
+    Ok(Some(acting))
 }
 
-/// The password of `user:password` in Base64.
-fn password(encoded: &str) -> Option<String> {
-    let text = String::from_utf8(BASE64_STANDARD.decode(encoded).ok()?).ok()?;
-    text.split_once(':').map(|(_, password)| password.to_owned())
+fn as_get(method: &Method) -> &str {
+    if *method == Method::HEAD { "GET" } else { method.as_str() }
 }
 
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::*;
-    use axum::http::Method;
-
-    fn with(name: header::HeaderName, value: &str) -> HeaderMap {
-        HeaderMap::from_iter([(name, value.parse().unwrap())])
-    }
-
-    /// The status of a refusal, and whether it counts as a wrong key.
-    fn status(refused: std::result::Result<(), Refusal>) -> (u16, bool) {
-        match refused.unwrap_err() {
-            Refusal::Problem(problem) => (problem.status, false),
-            Refusal::WrongKey(problem) => (problem.status, true),
-        }
-    }
-
-    #[test]
-    fn only_the_key_opens() {
-        let key = ApiKey::new("secret");
-        let ask = |method: Method, value: &str| {
-            authorised(&key, method.is_safe(), &with(header::AUTHORIZATION, value)).is_ok()
-        };
-        assert!(ask(Method::POST, "Bearer secret") && ask(Method::GET, "bearer secret"));
-        assert!(
-            !ask(Method::GET, "Bearer secre")
-                && !ask(Method::GET, "secret")
-                && !ask(Method::GET, "Basic !")
-        );
-        let wrong = with(header::AUTHORIZATION, "Bearer secre");
-        assert_eq!(status(authorised(&key, true, &wrong)), (401, true));
-        let basic = format!("Basic {}", BASE64_STANDARD.encode("me:secret"));
-        assert!(ask(Method::GET, &basic) && !ask(Method::POST, &basic));
-        assert_eq!(status(authorised(&key, true, &HeaderMap::new())), (401, false));
-    }
+/// From where somebody asks, as the audit has it.
+fn origin(request: &Request) -> String {
+    let peer = request.extensions().get::<Peer>();
+    peer.map_or_else(|| "unknown".to_owned(), |peer| peer.party.to_string())
 }

@@ -10,10 +10,10 @@ use axum::response::{IntoResponse, Response};
 use sistership_store::{Begun, PROLONG_EVERY, Store, Ticket, UnitOfWork, sha256_hex};
 use tracing::Instrument as _;
 
-use super::field::RequestKey;
-use super::reply::Reply;
+use super::{Reply, field::RequestKey};
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
+use crate::rights::{Kind, carried, current};
 use sistership_pipeline::budget::{Held, carried_on};
 
 const HEADER: &str = "idempotency-key";
@@ -54,10 +54,11 @@ impl Key {
         W: FnOnce(App) -> F + Send + 'static,
         F: Future<Output = Result<Reply>> + Send + 'static,
     {
+        let scope = own(self.scope);
         let ticket = match &self.value {
             None => None,
             Some(key) => {
-                match app.store().idempotency().begin(&self.scope, key, &sha256_hex(body)).await? {
+                match app.store().idempotency().begin(&scope, key, &sha256_hex(body)).await? {
                     Begun::New(ticket) => Some(ticket),
                     Begun::Replay { body, .. } => return replay(&body),
                     Begun::InProgress => return Err(in_progress()),
@@ -69,11 +70,22 @@ impl Key {
     }
 }
 
+/// The scope of a key: whoever sends the same key in another name gets no answer that was not
+/// theirs.
+fn own(scope: String) -> String {
+    match current().map(|acting| acting.principal) {
+        Some(who) if !matches!(who.kind, Kind::Local | Kind::ServerKey) => {
+            format!("{scope} by {}", who.name)
+        }
+        _ => scope,
+    }
+}
+
 /// Waits for work that goes on if nobody waits.
 async fn finished<T: Send + 'static>(
     work: impl Future<Output = Result<T>> + Send + 'static,
 ) -> Result<T> {
-    let work = carried_on(Held::current(), work);
+    let work = carried_on(Held::current(), carried(work));
     tokio::spawn(work.in_current_span()).await.map_err(Problem::internal)?
 }
 

@@ -42,6 +42,13 @@ pub(crate) const TABLES: &[&str] = &[
     "ship_vectors",
     "ship_tags",
     "search_queue",
+    "users",
+    "grants",
+    "service_keys",
+    "sessions",
+    "settings",
+    "audit",
+    "audit_head",
 ];
 const FOLDER: &str = "tables";
 const COLUMNS: &str = "SELECT CAST(column_name AS TEXT) FROM information_schema.columns \

@@ -4,6 +4,7 @@
 #[macro_use]
 mod support;
 
+mod access;
 mod aliases;
 mod backup;
 mod concurrency;

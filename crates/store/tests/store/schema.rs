@@ -29,9 +29,15 @@ async fn insert_only_holds_below_the_store_too(on: &TestStore) {
     on.store.laws().insert("abkowitz", "").await.unwrap();
     on.store.effects().keep("kind: effect").await.unwrap();
     on.store.versions().create(&version("kcs"), &[champion(Expect::Any)]).await.unwrap();
-    for table in
-        ["laws", "effect_libraries", "ship_revisions", "versions", "alias_moves", "diagnoses"]
-    {
+    for table in [
+        "laws",
+        "effect_libraries",
+        "ship_revisions",
+        "versions",
+        "alias_moves",
+        "diagnoses",
+        "audit",
+    ] {
         for change in [
             format!("DELETE FROM {table}"),
             format!("UPDATE {table} SET id = id").replace("id = id", key(table)),
@@ -45,6 +51,7 @@ async fn insert_only_holds_below_the_store_too(on: &TestStore) {
 fn key(table: &str) -> &'static str {
     match table {
         "laws" | "effect_libraries" => "document = ''",
+        "audit" => "actor = ''",
         "ship_revisions" => "document = ''",
         _ => "id = id",
     }

@@ -234,6 +234,8 @@ fn usual(name: &str) -> &'static str {
         "alias" => "mine",
         "family" => "walked",
         "tag" => "walked",
+        "user" => "nobody",
+        "prefix" => "000000000000",
         _ => "00000000-0000-0000-0000-000000000000",
     }
 }

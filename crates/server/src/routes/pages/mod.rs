@@ -4,6 +4,7 @@ mod act;
 mod answer;
 mod draft;
 mod look;
+mod people;
 
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -38,6 +39,19 @@ pub(super) fn routes(limits: &Limits) -> Router<App> {
         .route("/jobs/{id}", get(look::job))
         .route("/jobs/{id}/cancel", post(act::cancel))
         .route("/jobs/{id}/retry", post(act::retry))
+        .route("/sign-in", get(people::sign_in).post(people::signed_in))
+        .route("/sign-out", post(people::sign_out))
+        .route("/account", get(people::account))
+        .route("/account/password", post(people::password))
+        .route("/users", get(people::users).post(people::create))
+        .route("/users/{user}/roles", post(people::set_roles))
+        .route("/users/{user}/password", post(people::set_password))
+        .route("/users/{user}/disable", post(people::disable))
+        .route("/users/{user}/enable", post(people::enable))
+        .route("/keys", post(people::make_key))
+        .route("/keys/{prefix}/revoke", post(people::revoke))
+        .route("/settings", post(people::settings))
+        .route("/audit", get(people::audit))
         .layer(DefaultBodyLimit::max(FORM_BYTES));
     let upload = Router::new()
         .route("/ships/{ship}/upload", get(draft::choose).post(draft::arrived))

@@ -1,0 +1,110 @@
+//! A role, and what it is given for.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::role::Role;
+
+/// What a role is given for.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Scope {
+    /// Everything.
+    Server,
+    /// One ship, its trials and its models.
+    Ship(String),
+    /// A family and the ships in it.
+    Family(String),
+}
+
+impl Scope {
+    /// The kind and the name, as they are stored.
+    pub fn parts(&self) -> (&'static str, &str) {
+        match self {
+            Self::Server => ("server", ""),
+            Self::Ship(name) => ("ship", name),
+            Self::Family(name) => ("family", name),
+        }
+    }
+
+    /// From what [`Scope::parts`] gives; none where the kind is unknown.
+    pub fn of_parts(kind: &str, name: &str) -> Option<Self> {
+        match kind {
+            "server" => Some(Self::Server),
+            "ship" => Some(Self::Ship(name.to_owned())),
+            "family" => Some(Self::Family(name.to_owned())),
+            _ => None,
+        }
+    }
+}
+
+/// A role for something, written `role`, `role@ship:NAME` or `role@family:NAME`.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Grant {
+    /// For what.
+    pub scope: Scope,
+    /// The role.
+    pub role: Role,
+}
+
+impl Grant {
+    /// A role for everything.
+    pub fn everywhere(role: Role) -> Self {
+        Self { scope: Scope::Server, role }
+    }
+}
+
+impl fmt::Display for Grant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.scope {
+            Scope::Server => write!(f, "{}", self.role),
+            Scope::Ship(name) => write!(f, "{}@ship:{name}", self.role),
+            Scope::Family(name) => write!(f, "{}@family:{name}", self.role),
+        }
+    }
+}
+
+impl FromStr for Grant {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let Some((role, scope)) = text.split_once('@') else {
+            return Ok(Self::everywhere(text.parse()?));
+        };
+        let role: Role = role.parse()?;
+        let scope = match scope.split_once(':').filter(|(_, name)| !name.is_empty()) {
+            Some((kind @ ("ship" | "family"), name)) => Scope::of_parts(kind, name),
+            _ => None,
+        };
+        let scope = scope.ok_or_else(|| {
+            format!("`{text}` is no role; write reader, engineer@ship:NAME or approver@family:NAME")
+        })?;
+        match role {
+            Role::Admin => Err("the role admin is given for the whole server only".to_owned()),
+            role => Ok(Self { scope, role }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grants_are_read_as_they_are_written() {
+        for text in ["reader", "admin", "engineer@ship:kvlcc2", "approver@family:tankers"] {
+            assert_eq!(text.parse::<Grant>().map(|grant| grant.to_string()), Ok(text.to_owned()));
+        }
+        for wrong in ["captain", "reader@", "reader@ship:", "reader@fleet:a", "admin@ship:a", ""] {
+            assert!(wrong.parse::<Grant>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn scopes_are_stored_by_their_parts() {
+        for scope in [Scope::Server, Scope::Ship("a".into()), Scope::Family("b".into())] {
+            let (kind, name) = scope.parts();
+            assert_eq!(Scope::of_parts(kind, name), Some(scope.clone()));
+        }
+        assert_eq!(Scope::of_parts("fleet", "a"), None);
+    }
+}

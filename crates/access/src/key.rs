@@ -1,0 +1,81 @@
+//! Service keys: what programs present. The first part is shown in lists and finds the key; the
+//! rest is secret, and only the hash of the whole is kept.
+//!
+//! A key has 256 random bits, so nobody finds it by trying, and a fast hash keeps it: what Argon2id
+//! adds is for passwords, which people choose. It would cost some 20 ms and 19 MiB a request.
+
+use crate::secret::{hex, same, secret, sha256};
+
+const MARK: &str = "sis_";
+const PREFIX: usize = 12;
+
+/// A service key as it is kept.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ServiceKey {
+    /// What finds it, and what is shown of it.
+    pub prefix: String,
+    /// The SHA-256 of the whole, in hexadecimal.
+    pub sha256: String,
+}
+
+/// A service key as its owner sees it, once.
+#[derive(Clone, PartialEq, Eq)]
+pub struct KeyText(String);
+
+impl KeyText {
+    /// A new one.
+    ///
+    /// # Errors
+    /// The system gives no random numbers.
+    pub fn new() -> Result<Self, getrandom::Error> {
+        let mut bytes = [0; PREFIX / 2];
+        getrandom::fill(&mut bytes)?;
+        Ok(Self(format!("{MARK}{}_{}", hex(&bytes), secret()?)))
+    }
+
+    /// The text.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    /// What is kept of it.
+    pub fn kept(&self) -> ServiceKey {
+        let prefix = ServiceKey::prefix(&self.0).unwrap_or_default().to_owned();
+        ServiceKey { prefix, sha256: hex(&sha256(&self.0)) }
+    }
+}
+
+impl ServiceKey {
+    /// The prefix of a text, where it has the form of a service key.
+    pub fn prefix(text: &str) -> Option<&str> {
+        let (prefix, rest) = text.strip_prefix(MARK)?.split_once('_')?;
+        let hexadecimal = |byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
+        let fits = prefix.len() == PREFIX && prefix.bytes().all(hexadecimal) && !rest.is_empty();
+        fits.then_some(prefix)
+    }
+
+    /// Whether a text is this key.
+    pub fn is(&self, presented: &str) -> bool {
+        same(self.sha256.as_bytes(), hex(&sha256(presented)).as_bytes())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_key_is_found_by_its_prefix_and_told_by_its_hash() {
+        let text = KeyText::new().unwrap();
+        let kept = text.kept();
+        assert_eq!(ServiceKey::prefix(text.as_str()), Some(kept.prefix.as_str()));
+        assert!(kept.is(text.as_str()) && !kept.sha256.contains(text.as_str()));
+        let other = format!("{}x", text.as_str());
+        assert!(!kept.is(&other) && !kept.is("") && !kept.is(KeyText::new().unwrap().as_str()));
+        for wrong in ["", "sis_", "sis_0123456789ab_", "sis_0123_x", "sis_0123456789aB_x", "secret"]
+        {
+            assert_eq!(ServiceKey::prefix(wrong), None, "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Passwords: Argon2id (RFC 9106) with 19 MiB, two passes and one lane, which the library has by
+//! default and OWASP's Password Storage Cheat Sheet asks for at least.
+
+use argon2::Argon2;
+use argon2::password_hash::phc::PasswordHash;
+use argon2::password_hash::{PasswordHasher as _, PasswordVerifier as _};
+
+/// Fewest characters of a password: NIST SP 800-63B-4, 3.1.1.2, asks for 15 where it is the only
+/// factor.
+const FEWEST: usize = 15;
+/// Most bytes: what is hashed is bounded.
+const MOST: usize = 256;
+
+/// Why there is no hash of a password.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the password could not be hashed: {0}")]
+pub struct PasswordError(String);
+
+/// Checks a password that is to be set.
+///
+/// # Errors
+/// Says what would be right.
+pub fn check_password(password: &str) -> Result<(), String> {
+    let characters = password.chars().count();
+    match characters >= FEWEST && password.len() <= MOST {
+        true => Ok(()),
+        false => Err(format!(
+            "must have {FEWEST} characters at least and {MOST} bytes at most; it may have spaces, \
+             so that a sentence will do"
+        )),
+    }
+}
+
+/// The hash of a password, with a salt of its own, as a PHC string.
+///
+/// # Errors
+/// The system gives no random numbers, or no memory.
+pub fn hash_password(password: &str) -> Result<String, PasswordError> {
+    let hash = Argon2::default().hash_password(password.as_bytes());
+    hash.map(|hash| hash.to_string()).map_err(|error| PasswordError(error.to_string()))
+}
+
+/// Whether a password is the one of a hash. It takes some 20 ms and 19 MiB.
+pub fn verify_password(password: &str, hash: &str) -> bool {
+    password.len() <= MOST
+        && PasswordHash::new(hash)
+            .is_ok_and(|hash| Argon2::default().verify_password(password.as_bytes(), &hash).is_ok())
+}
+
+/// Takes as long as [`verify_password`], for somebody who has no password, so that the time does
+/// not tell who has.
+pub fn verify_unknown(password: &str) {
+    let shortened = password.get(..MOST).unwrap_or(password);
+    std::hint::black_box(hash_password(shortened).is_ok());
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_password_is_told_by_its_hash_alone() {
+        let hash = hash_password("a sentence of mine").unwrap();
+        assert!(hash.starts_with("$argon2id$v=19$m=19456,t=2,p=1$"), "{hash}");
+        assert!(verify_password("a sentence of mine", &hash));
+        assert!(!verify_password("a sentence of yours", &hash) && !verify_password("", &hash));
+        assert!(!verify_password("a sentence of mine", "no hash"));
+        assert_ne!(hash, hash_password("a sentence of mine").unwrap(), "each has its own salt");
+        verify_unknown("anything");
+    }
+
+    #[test]
+    fn short_passwords_are_refused() {
+        assert!(check_password("fourteen chars").is_err() && check_password("").is_err());
+        assert!(check_password("fifteen charact").is_ok());
+        assert!(check_password(&"a".repeat(257)).is_err());
+    }
+}

@@ -1,0 +1,177 @@
+//! `ETag`, `If-Match` and `If-None-Match`: nothing is changed by someone who has not seen its
+//! present state.
+
+use axum::extract::FromRequestParts;
+use axum::http::request::Parts;
+use axum::http::{HeaderMap, HeaderName, StatusCode, header};
+use sistership_store::Expect;
+
+use crate::field::EntityTags;
+use crate::problem::{Fault, Problem, Result};
+
+/// The conditions of a request.
+#[derive(Debug, Default)]
+pub struct Conditions {
+    if_match: Option<Tags>,
+    if_none_match: Option<Tags>,
+}
+
+#[derive(Debug, PartialEq, Eq)]
+enum Tags {
+    Any,
+    These(Vec<String>),
+}
+
+/// The tag of a revision.
+pub fn tag(revision: impl std::fmt::Display) -> String {
+    format!("\"{revision}\"")
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for Conditions {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self> {
+        let read = |name: HeaderName| Tags::read(&parts.headers, &name);
+        Ok(Self { if_match: read(header::IF_MATCH)?, if_none_match: read(header::IF_NONE_MATCH)? })
+    }
+}
+
+impl Tags {
+    fn read(headers: &HeaderMap, name: &HeaderName) -> Result<Option<Self>> {
+        let Some(value) = headers.get(name) else { return Ok(None) };
+        let text = value.to_str().map_err(|_| malformed(name, "must be text".to_owned()))?;
+        let tags: EntityTags = text.parse().map_err(|message| malformed(name, message))?;
+        if tags.trim() == "*" {
+            return Ok(Some(Self::Any));
+        }
+        Ok(Some(Self::These(tags.split(',').map(|tag| tag.trim().to_owned()).collect())))
+    }
+
+    /// Whether the tags name this one. A weak tag is no ground to overwrite something.
+    fn name(&self, tag: &str) -> bool {
+        matches!(self, Self::These(tags) if tags.iter().any(|known| known == tag))
+            || *self == Self::Any
+    }
+}
+
+impl Tags {
+    /// Whether the tags name this revision, with whatever was shown beside it.
+    fn name_revision(&self, revision: i64) -> bool {
+        let (alone, with_more) = (tag(revision), format!("\"{revision}."));
+        let named = |known: &String| *known == alone || known.starts_with(&with_more);
+        matches!(self, Self::These(tags) if tags.iter().any(named)) || *self == Self::Any
+    }
+}
+
+impl Conditions {
+    /// The revision that a change must start from; `what` is at `current`.
+    ///
+    /// # Errors
+    /// None is named, or another one.
+    pub fn revision(&self, what: &str, current: i64) -> Result<i64> {
+        let Some(tags) = &self.if_match else {
+            return Err(required(&format!("If-Match with the ETag of {what} as you last read it")));
+        };
+        if tags.name_revision(current) { Ok(current) } else { Err(stale(what, Some(current))) }
+    }
+
+    /// As [`Conditions::revision`], but a request without the header may change anything.
+    ///
+    /// # Errors
+    /// Another revision is named.
+    pub fn optional_revision(&self, what: &str, current: i64) -> Result<Option<i64>> {
+        self.if_match.as_ref().map(|_| self.revision(what, current)).transpose()
+    }
+
+    /// What a change that may also create expects.
+    ///
+    /// # Errors
+    /// No condition is there, or one that does not hold.
+    pub fn expect(&self, what: &str, current: Option<i64>) -> Result<Expect> {
+        match (&self.if_match, &self.if_none_match, current) {
+            (Some(_), _, Some(current)) => self.revision(what, current).map(Expect::Revision),
+            (Some(_), _, None) => Err(stale(what, None)),
+            (None, Some(Tags::Any), None) => Ok(Expect::Absent),
+            (None, Some(Tags::Any), current) => Err(stale(what, current)),
+            (None, Some(Tags::These(_)), _) => {
+                Err(Problem::bad_request("If-None-Match: only `*` is understood here"))
+            }
+            (None, None, _) => {
+                Err(required("If-Match with its ETag to move it, or If-None-Match: * to create it"))
+            }
+        }
+    }
+
+    /// Whether the caller has this representation already.
+    pub fn has(&self, tag: &str) -> bool {
+        self.if_none_match.as_ref().is_some_and(|tags| tags.name(tag))
+    }
+}
+
+fn malformed(name: &HeaderName, message: String) -> Problem {
+    let name = if *name == header::IF_MATCH { "If-Match" } else { "If-None-Match" };
+    Problem::bad_request(format!("{name}: {message}")).with(Fault::at(name, message))
+}
+
+fn required(what: &str) -> Problem {
+    Problem::new(
+        StatusCode::PRECONDITION_REQUIRED,
+        format!("send {what}: so that nobody's change is lost"),
+    )
+}
+
+fn stale(what: &str, current: Option<i64>) -> Problem {
+    let now = current.map_or_else(
+        || "does not exist".to_owned(),
+        |revision| format!("is now at {}", tag(revision)),
+    );
+    Problem::new(
+        StatusCode::PRECONDITION_FAILED,
+        format!("{what} {now}; read it again and decide anew"),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn given(name: HeaderName, value: &str) -> Conditions {
+        let headers = HeaderMap::from_iter([(name, value.parse().unwrap())]);
+        let read = |name| Tags::read(&headers, &name).unwrap();
+        Conditions { if_match: read(header::IF_MATCH), if_none_match: read(header::IF_NONE_MATCH) }
+    }
+
+    #[test]
+    fn a_change_needs_the_present_tag() {
+        assert_eq!(given(header::IF_MATCH, "\"3\"").revision("ship", 3).unwrap(), 3);
+        assert_eq!(given(header::IF_MATCH, "\"1\", \"3\"").revision("ship", 3).unwrap(), 3);
+        assert_eq!(given(header::IF_MATCH, "*").revision("ship", 3).unwrap(), 3);
+        assert_eq!(given(header::IF_MATCH, "\"3.a\"").revision("ship", 3).unwrap(), 3);
+        assert_eq!(given(header::IF_MATCH, "\"31\"").revision("ship", 3).unwrap_err().status, 412);
+        assert_eq!(given(header::IF_MATCH, "\"2\"").revision("ship", 3).unwrap_err().status, 412);
+        assert_eq!(given(header::IF_MATCH, "W/\"3\"").revision("ship", 3).unwrap_err().status, 412);
+        assert_eq!(Conditions::default().revision("ship", 3).unwrap_err().status, 428);
+    }
+
+    #[test]
+    fn creation_needs_absence() {
+        assert_eq!(
+            given(header::IF_NONE_MATCH, "*").expect("alias", None).unwrap(),
+            Expect::Absent
+        );
+        assert_eq!(
+            given(header::IF_NONE_MATCH, "*").expect("alias", Some(1)).unwrap_err().status,
+            412
+        );
+        assert_eq!(given(header::IF_MATCH, "\"1\"").expect("alias", None).unwrap_err().status, 412);
+        assert_eq!(Conditions::default().expect("alias", None).unwrap_err().status, 428);
+        assert!(
+            Tags::read(
+                &HeaderMap::from_iter([(header::IF_MATCH, "3".parse().unwrap())]),
+                &header::IF_MATCH
+            )
+            .is_err()
+        );
+    }
+}

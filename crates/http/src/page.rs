@@ -1,0 +1,100 @@
+//! Lists, a page at a time.
+
+use base64::Engine as _;
+use base64::prelude::BASE64_URL_SAFE_NO_PAD;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use sistership_store::{List, Page};
+use utoipa::{IntoParams, ToSchema};
+
+use crate::field::{Cursor, Limit};
+use crate::problem::{Fault, Problem, Result};
+
+/// The query of a list that is not filtered.
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub struct Paged {
+    /// The most items to return.
+    #[param(inline)]
+    limit: Option<Limit>,
+    /// `next` of the page before.
+    #[param(inline)]
+    after: Option<Cursor>,
+}
+
+impl Paged {
+    /// The page that it asks for.
+    ///
+    /// # Errors
+    /// `after` is no place of the list.
+    pub fn page<K: DeserializeOwned>(&self) -> Result<Page<K>> {
+        page(self.limit, self.after.as_ref())
+    }
+}
+
+/// One page of a list.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Listing<T> {
+    /// The items, in the list's order.
+    pub items: Vec<T>,
+    /// What to give as `after` for the next page, as it is; null on the last one. It stands for the
+    /// last item of this page: the next one goes on behind it, whatever is added meanwhile.
+    pub next: Option<String>,
+}
+
+impl<T> Listing<T> {
+    /// The page with each row as the caller shows it.
+    pub fn of<R, K: Serialize>(list: List<R, K>, view: impl FnMut(R) -> T) -> Self {
+        Self {
+            items: list.items.into_iter().map(view).collect(),
+            next: list.next.as_ref().and_then(cursor),
+        }
+    }
+}
+
+/// A key in a form that promises nothing but to be taken back.
+pub fn cursor<K: Serialize>(key: &K) -> Option<String> {
+    Some(BASE64_URL_SAFE_NO_PAD.encode(serde_json::to_vec(key).ok()?))
+}
+
+/// The page that a query asks for.
+///
+/// # Errors
+/// `after` is no place of the list.
+pub fn page<K: DeserializeOwned>(limit: Option<Limit>, after: Option<&Cursor>) -> Result<Page<K>> {
+    let key = |text: &str| serde_json::from_slice(&BASE64_URL_SAFE_NO_PAD.decode(text).ok()?).ok();
+    let wrong = || {
+        let message = "is not the `next` of a page of this list; leave it out for the first page";
+        Problem::bad_request(format!("after: {message}")).with(Fault::at("after", message))
+    };
+    let after = after.map(|text| key(text).ok_or_else(wrong)).transpose()?;
+    Ok(Page { after, limit: limit.unwrap_or_default().get() })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_cursor_is_taken_back_and_nothing_else_is() {
+        let key = (Some(0.1 + 0.2), "a/b".to_owned());
+        let text = cursor(&key).unwrap();
+        assert!(
+            text.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_')
+        );
+        assert_eq!(
+            page(None, Some(&text.parse().unwrap())).unwrap(),
+            Page { after: Some(key), limit: 100 }
+        );
+        for wrong in ["7", "mariner", &cursor(&7).unwrap()] {
+            let problem = page::<String>(None, Some(&wrong.parse().unwrap())).unwrap_err();
+            assert_eq!(
+                (problem.status, problem.errors[0].field.as_deref()),
+                (400, Some("after")),
+                "{wrong}"
+            );
+        }
+    }
+}

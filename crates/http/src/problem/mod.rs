@@ -1,0 +1,195 @@
+//! Problem details (RFC 9457): the one form of every error.
+
+mod from;
+
+use axum::Json;
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// The media type of [`Problem`].
+pub const MEDIA: &str = "application/problem+json";
+
+/// After how long a request may be repeated that was one too many, s.
+const RETRY_AFTER_S: &str = "5";
+
+/// What an operation of the server returns.
+pub type Result<T, E = Problem> = std::result::Result<T, E>;
+
+/// Why a request was not carried out, and what to do about it.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+pub struct Problem {
+    /// A URI that names the kind of problem.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// The kind of problem in words.
+    pub title: &'static str,
+    /// The HTTP status.
+    pub status: u16,
+    /// What happened this time, and what to do.
+    pub detail: String,
+    /// A URI that names this one occurrence; the server's log has the same id.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instance: Option<String>,
+    /// Each fault on its own, where it can be placed; else empty.
+    pub errors: Vec<Fault>,
+}
+
+/// One fault, with its place.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
+pub struct Fault {
+    /// The field of a document (dotted path), or the file of an upload.
+    pub field: Option<String>,
+    /// The row of a file or the line of a document, counted from 1.
+    pub row: Option<usize>,
+    /// The column of a file.
+    pub column: Option<String>,
+    /// What is wrong, and what would be right.
+    pub message: String,
+}
+
+/// Status, URI and title of each kind.
+const KINDS: [(u16, &str, &str); 19] = [
+    (400, "urn:sistership:problem:bad-request", "The request cannot be read"),
+    (401, "urn:sistership:problem:unauthorized", "A key, or a sign-in, is needed"),
+    (403, "urn:sistership:problem:forbidden", "The request is not allowed"),
+    (404, "urn:sistership:problem:not-found", "There is no such thing"),
+    (405, "urn:sistership:problem:method-not-allowed", "The method is not possible here"),
+    (406, "urn:sistership:problem:not-acceptable", "None of the accepted forms is available"),
+    (408, "urn:sistership:problem:request-timeout", "The request took too long to arrive"),
+    (409, "urn:sistership:problem:conflict", "The request contradicts what is there"),
+    (412, "urn:sistership:problem:stale", "It has changed since it was read"),
+    (413, "urn:sistership:problem:too-large", "The request is too large"),
+    (
+        415,
+        "urn:sistership:problem:unsupported-media-type",
+        "The content type is not one that is read here",
+    ),
+    (422, "urn:sistership:problem:invalid", "The content is not valid"),
+    (428, "urn:sistership:problem:precondition-required", "A precondition is needed"),
+    (429, "urn:sistership:problem:too-many-requests", "Too much is asked at a time"),
+    (431, "urn:sistership:problem:headers-too-large", "The headers are too large"),
+    (500, "urn:sistership:problem:internal", "The server failed"),
+    (503, "urn:sistership:problem:unavailable", "The server cannot answer at the moment"),
+    (504, "urn:sistership:problem:timeout", "The request took too long"),
+    (507, "urn:sistership:problem:no-room", "There is no room to keep it"),
+];
+
+impl Problem {
+    /// A problem of the kind that the status names.
+    pub fn new(status: StatusCode, detail: impl Into<String>) -> Self {
+        let known = KINDS.iter().find(|(known, ..)| *known == status.as_u16());
+        let (_, kind, title) = known.copied().unwrap_or((
+            0,
+            "about:blank",
+            status.canonical_reason().unwrap_or("Problem"),
+        ));
+        Self {
+            kind,
+            title,
+            status: status.as_u16(),
+            detail: detail.into(),
+            instance: None,
+            errors: Vec::new(),
+        }
+    }
+
+    /// A request that cannot be read.
+    pub fn bad_request(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::BAD_REQUEST, detail)
+    }
+
+    /// There is no such thing.
+    pub fn not_found(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::NOT_FOUND, detail)
+    }
+
+    /// A document of which one field is at fault.
+    pub fn invalid(field: &str, message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self::new(StatusCode::UNPROCESSABLE_ENTITY, format!("{field}: {message}"))
+            .with(Fault::at(field, message))
+    }
+
+    /// A failure of ours: the log has the reason, the answer does not.
+    pub fn internal(reason: impl std::fmt::Display) -> Self {
+        tracing::error!(%reason, "internal error");
+        Self::new(
+            StatusCode::INTERNAL_SERVER_ERROR,
+            "the server failed to do this; its log tells why, under the id in `instance`",
+        )
+    }
+
+    /// There is no space left where it would be kept.
+    pub fn no_room(reason: impl std::fmt::Display) -> Self {
+        tracing::error!(%reason, "no room");
+        let detail = "there is no room left where the server keeps this; nothing was kept. Reading goes on; make room and send it again";
+        Self::new(StatusCode::INSUFFICIENT_STORAGE, detail)
+    }
+
+    /// The same with one fault more.
+    #[must_use]
+    pub fn with(mut self, fault: Fault) -> Self {
+        self.errors.push(fault);
+        self
+    }
+
+    /// The same as a page for people.
+    pub fn page(&self) -> Option<String> {
+        let place = |fault: &Fault| {
+            let row = fault.row.map(|row| format!("row {row}"));
+            let parts = [fault.field.clone(), row, fault.column.clone()];
+            (parts.into_iter().flatten().collect::<Vec<_>>().join(", "), fault.message.clone())
+        };
+        let faults: Vec<_> = self.errors.iter().map(place).collect();
+        let instance = self.instance.as_deref().unwrap_or_default();
+        sistership_pages::problem(self.title, &self.detail, &faults, instance).ok()
+    }
+
+    /// The HTTP status.
+    pub fn status(&self) -> StatusCode {
+        StatusCode::from_u16(self.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR)
+    }
+}
+
+impl Fault {
+    /// A fault of a field.
+    pub fn at(field: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { field: Some(field.into()), message: message.into(), ..Self::default() }
+    }
+}
+
+impl IntoResponse for Problem {
+    fn into_response(self) -> Response {
+        let mut response = (self.status(), Json(&self)).into_response();
+        response.headers_mut().insert(header::CONTENT_TYPE, HeaderValue::from_static(MEDIA));
+        if self.status == StatusCode::UNAUTHORIZED {
+            let challenge = HeaderValue::from_static("Bearer, Basic realm=\"sistership\"");
+            response.headers_mut().insert(header::WWW_AUTHENTICATE, challenge);
+        }
+        if self.status == StatusCode::TOO_MANY_REQUESTS {
+            response
+                .headers_mut()
+                .insert(header::RETRY_AFTER, HeaderValue::from_static(RETRY_AFTER_S));
+        }
+        // Whoever knows the request's id writes it in, see `web::envelope`.
+        response.extensions_mut().insert(self);
+        response
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_problem_names_its_kind_and_place() {
+        let problem = Problem::invalid("settings.folds", "must be from 2 to 100");
+        let json = serde_json::to_value(&problem).unwrap_or_default();
+        assert_eq!(json["type"], "urn:sistership:problem:invalid");
+        assert_eq!(json["errors"][0]["field"], "settings.folds");
+        assert_eq!(json["status"], 422);
+        assert_eq!(Problem::new(StatusCode::IM_A_TEAPOT, "").kind, "about:blank");
+    }
+}

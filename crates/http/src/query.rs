@@ -1,0 +1,92 @@
+//! Parameters of the query that an operation does not have are refused: one that is misspelt would
+//! silently do nothing.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use axum::extract::{MatchedPath, Query, Request, State};
+use axum::http::Method;
+use axum::middleware::Next;
+use axum::response::Response;
+use utoipa::openapi::path::{Operation, Parameter, ParameterIn};
+use utoipa::openapi::{OpenApi, RefOr};
+
+use crate::problem::{Fault, Problem, Result};
+
+/// The parameters of each operation, by path and method, as the document has them.
+#[derive(Debug)]
+pub struct KnownQuery(HashMap<(String, Method), Vec<String>>);
+
+impl KnownQuery {
+    /// Those of a document.
+    pub fn of(document: &OpenApi) -> Self {
+        let mut known = HashMap::new();
+        for (path, item) in document.paths.paths.iter().filter(|(path, _)| path.starts_with("/v1"))
+        {
+            let all = [
+                (Method::GET, &item.get),
+                (Method::PUT, &item.put),
+                (Method::POST, &item.post),
+                (Method::DELETE, &item.delete),
+            ];
+            let there = all
+                .into_iter()
+                .filter_map(|(method, operation)| Some((method, operation.as_ref()?)));
+            known.extend(
+                there.map(|(method, operation)| ((path.clone(), method), names(operation))),
+            );
+        }
+        Self(known)
+    }
+
+    fn check(&self, path: &str, method: &Method, query: &str) -> Result<()> {
+        let method = if method == Method::HEAD { Method::GET } else { method.clone() };
+        let (Some(known), false) = (self.0.get(&(path.to_owned(), method)), query.is_empty())
+        else {
+            return Ok(());
+        };
+        let pairs: Vec<(String, String)> = pairs(query)?;
+        let unknown = pairs.into_iter().map(|(name, _)| name).find(|name| !known.contains(name));
+        unknown.map_or(Ok(()), |name| Err(refused(&name, known)))
+    }
+}
+
+/// The parameters of an operation.
+pub fn parameters(operation: &Operation) -> impl Iterator<Item = &Parameter> {
+    operation.parameters.iter().flatten().filter_map(|known| match known {
+        RefOr::T(parameter) => Some(parameter),
+        RefOr::Ref(_) => None,
+    })
+}
+
+fn names(operation: &Operation) -> Vec<String> {
+    let all = parameters(operation);
+    all.filter(|known| known.parameter_in == ParameterIn::Query)
+        .map(|known| known.name.clone())
+        .collect()
+}
+
+fn pairs(query: &str) -> Result<Vec<(String, String)>> {
+    let uri = axum::http::Uri::builder().path_and_query(format!("/?{query}")).build();
+    let uri = uri.map_err(|error| Problem::bad_request(format!("query: {error}")))?;
+    Ok(Query::try_from_uri(&uri).map(|Query(pairs)| pairs)?)
+}
+
+fn refused(name: &str, known: &[String]) -> Problem {
+    let message = match known {
+        [] => "is no parameter here; there are none".to_owned(),
+        known => format!("is no parameter here; there are {}", known.join(", ")),
+    };
+    Problem::bad_request(format!("{name}: {message}")).with(Fault::at(name, message))
+}
+
+/// Lets a request through whose parameters are all known.
+pub async fn refuse_unknown(
+    State(known): State<Arc<KnownQuery>>,
+    path: MatchedPath,
+    request: Request,
+    next: Next,
+) -> Result<Response> {
+    known.check(path.as_str(), request.method(), request.uri().query().unwrap_or_default())?;
+    Ok(next.run(request).await)
+}

@@ -1,0 +1,10 @@
+//! Who may do what: signing in, one's own account, users and keys.
+
+mod account;
+mod roles;
+mod sign_in;
+mod users;
+
+pub use account::account;
+pub use sign_in::sign_in;
+pub use users::{new_key, users};

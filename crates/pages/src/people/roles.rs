@@ -1,0 +1,12 @@
+//! Roles in words.
+
+use sistership_store::GrantRow;
+
+/// Roles as a person writes them.
+pub(super) fn words(roles: &[GrantRow]) -> String {
+    let word = |row: &GrantRow| match row.scope_kind.as_str() {
+        "server" => row.role.clone(),
+        kind => format!("{}@{kind}:{}", row.role, row.scope_name),
+    };
+    roles.iter().map(word).collect::<Vec<_>>().join(" ")
+}

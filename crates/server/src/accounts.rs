@@ -1,0 +1,140 @@
+//! Users, keys and sessions: what endpoints and pages do alike.
+
+use std::time::{Duration, Instant};
+
+use axum::http::StatusCode;
+use sistership_access::{
+    Grant, KeyText, check_name, check_password, hash_password, hex, secret, sha256,
+    verify_password, verify_unknown,
+};
+use sistership_pipeline::budget;
+use sistership_store::{GrantRow, KeyRow, NewKey, User};
+
+use crate::app::App;
+use crate::problem::{Problem, Result};
+
+/// How long a browser stays signed in.
+pub(crate) const SESSION: Duration = Duration::from_secs(12 * 3600);
+/// Memory that a hash of a password takes, bytes.
+const HASH_BYTES: u64 = 19 << 20;
+
+/// A role as it is kept.
+pub(crate) fn row(grant: &Grant) -> GrantRow {
+    let (kind, name) = grant.scope.parts();
+    let (scope_kind, scope_name) = (kind.to_owned(), name.to_owned());
+    GrantRow { scope_kind, scope_name, role: grant.role.as_str().to_owned() }
+}
+
+fn rows(roles: &[Grant]) -> Vec<GrantRow> {
+    roles.iter().map(row).collect()
+}
+
+/// Creates a user.
+pub(crate) async fn create_user(
+    app: &App,
+    name: &str,
+    title: &str,
+    password: Option<&str>,
+    roles: &[Grant],
+) -> Result<User> {
+    check_name(name).map_err(|message| Problem::invalid("name", message))?;
+    let hash = match password {
+        Some(password) => Some(hashed(app, password).await?),
+        None => None,
+    };
+    Ok(app.store().users().create(name, title, hash.as_deref(), &rows(roles)).await?)
+}
+
+/// Sets a password, which signs the user out everywhere.
+pub(crate) async fn set_password(app: &App, name: &str, password: &str) -> Result<User> {
+    let hash = hashed(app, password).await?;
+    let user = app.store().users().set_password(name, &hash).await?;
+    app.known().forget();
+    Ok(user)
+}
+
+/// Gives a user or a key these roles instead of all others.
+pub(crate) async fn set_roles(app: &App, principal: &str, roles: &[Grant]) -> Result<()> {
+    app.store().grants().replace(principal, &rows(roles)).await?;
+    app.known().forget();
+    Ok(())
+}
+
+/// Takes every right from a user, or gives them back.
+pub(crate) async fn enable(app: &App, name: &str, on: bool) -> Result<User> {
+    let users = app.store().users();
+    let user = if on { users.enable(name).await? } else { users.disable(name).await? };
+    app.known().forget();
+    Ok(user)
+}
+
+/// Makes a service key; its text is known to nobody else afterwards.
+pub(crate) async fn make_key(
+    app: &App,
+    title: &str,
+    user: Option<String>,
+    expires_us: Option<i64>,
+    roles: &[Grant],
+) -> Result<(KeyText, KeyRow)> {
+    let text = KeyText::new().map_err(Problem::internal)?;
+    let kept = text.kept();
+    let title = title.to_owned();
+    let new = NewKey { prefix: kept.prefix, title, user, sha256: kept.sha256, expires_us };
+    Ok((text, app.store().service_keys().create(&new, &rows(roles)).await?))
+}
+
+/// Ends a key.
+pub(crate) async fn revoke(app: &App, prefix: &str) -> Result<KeyRow> {
+    let key = app.store().service_keys().revoke(prefix).await?;
+    app.known().forget();
+    Ok(key)
+}
+
+async fn hashed(app: &App, password: &str) -> Result<String> {
+    check_password(password).map_err(|message| Problem::invalid("password", message))?;
+    budget::take(HASH_BYTES).await?;
+    let password = password.to_owned();
+    app.compute(move || hash_password(&password)).await?.map_err(Problem::internal)
+}
+
+/// Begins a session of a user who knows the password; gives the secret of its cookie.
+pub(crate) async fn sign_in(app: &App, name: &str, password: &str, from: &str) -> Result<String> {
+    verified(app, name, password, from).await?;
+    let secret = secret().map_err(Problem::internal)?;
+    let ends = i64::try_from(SESSION.as_micros()).unwrap_or(i64::MAX);
+    let until = app.store().now_us().saturating_add(ends);
+    app.store().sessions().begin(&hex(&sha256(&secret)), name, until).await?;
+    Ok(secret)
+}
+
+/// Whether this is the password of an enabled user.
+///
+/// # Errors
+/// It is not, which is not told from there being no such user; or too many were wrong of late.
+pub(crate) async fn verified(app: &App, name: &str, password: &str, from: &str) -> Result<()> {
+    let concerned = [format!("name {name}"), format!("from {from}")];
+    let now = Instant::now();
+    if let Some(wait) = concerned.iter().filter_map(|whom| app.attempts().wait(whom, now)).max() {
+        return Err(Problem::new(
+            StatusCode::TOO_MANY_REQUESTS,
+            format!("too many wrong passwords; try again in {} s", wait.as_secs().max(1)),
+        ));
+    }
+    let user = app.store().users().find(name).await?.filter(User::is_enabled);
+    let hash = user.and_then(|user| user.password_hash);
+    budget::take(HASH_BYTES).await?;
+    let password = password.to_owned();
+    let right = app.compute(move || match hash {
+        Some(hash) => verify_password(&password, &hash),
+        None => {
+            verify_unknown(&password);
+            false
+        }
+    });
+    if right.await? {
+        return Ok(());
+    }
+    concerned.iter().for_each(|whom| app.attempts().wrong(whom, now));
+    tracing::warn!(name, from, "a wrong password");
+    Err(Problem::new(StatusCode::UNAUTHORIZED, "name or password is wrong"))
+}

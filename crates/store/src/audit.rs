@@ -1,0 +1,140 @@
+//! The audit: what has been done by whom, the latest first, and whether all of it is as it was
+//! entered.
+
+use crate::arguments::args;
+use crate::chain::AuditHead;
+use crate::entry::AuditEntry;
+use crate::error::Result;
+use crate::integrity::Fault;
+use crate::page::{List, Page};
+use crate::statements::{same, statements};
+use crate::store::Store;
+
+/// Entries that are checked at a time.
+const ROWS: i64 = 1000;
+
+/// The columns of an entry.
+macro_rules! entries {
+    ($which:literal) => {
+        same(concat!(
+            "SELECT number, at_us, actor, origin, action, subject, state_before, state_after, previous_sha256, sha256 \
+             FROM audit WHERE ",
+            $which
+        ))
+    };
+}
+
+statements! {
+    LIST = entries!("number < COALESCE($1, 9223372036854775807) ORDER BY number DESC LIMIT $2");
+    LIST_ACTOR = entries!("actor = $3 AND number < COALESCE($1, 9223372036854775807) ORDER BY number DESC LIMIT $2");
+    LIST_SUBJECT = entries!("subject = $3 AND number < COALESCE($1, 9223372036854775807) ORDER BY number DESC LIMIT $2");
+    FOLLOWING = entries!("number > $1 AND number <= $2 ORDER BY number LIMIT $3");
+    HEAD = same("SELECT number, sha256 FROM audit_head WHERE one = 1");
+    BEYOND = entries!("number > $1 ORDER BY number LIMIT 1");
+}
+
+/// Which entries to list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AuditFilter<'a> {
+    /// All of them.
+    All,
+    /// Those of one actor.
+    Actor(&'a str),
+    /// Those about one thing.
+    Subject(&'a str),
+}
+
+/// The audit of a store.
+#[derive(Debug, Clone, Copy)]
+pub struct Audit<'a>(pub(crate) &'a Store);
+
+impl Store {
+    /// What has been done by whom.
+    pub fn audit(&self) -> Audit<'_> {
+        Audit(self)
+    }
+}
+
+impl Audit<'_> {
+    /// Entries, the latest first, by number.
+    pub async fn list(
+        &self,
+        filter: AuditFilter<'_>,
+        page: &Page<i64>,
+    ) -> Result<List<AuditEntry, i64>> {
+        let (database, limit) = (self.0.database(), page.fetch()?);
+        let of = |statement, whom| async move {
+            database.all(statement, args![after: page.after, limit: limit, whom: whom]).await
+        };
+        let entries = match filter {
+            AuditFilter::All => database.all(LIST, args![after: page.after, limit: limit]).await?,
+            AuditFilter::Actor(actor) => of(LIST_ACTOR, actor).await?,
+            AuditFilter::Subject(subject) => of(LIST_SUBJECT, subject).await?,
+        };
+        Ok(page.of(entries, |entry: &AuditEntry| entry.number))
+    }
+
+    /// The number and the hash of the last entry, as they were noted beside it: who keeps a copy of
+    /// them elsewhere can tell later whether entries up to there were written anew.
+    pub async fn head(&self) -> Result<AuditHead> {
+        let head = self.0.database().optional(HEAD, &[]).await?;
+        Ok(head.unwrap_or(AuditHead { number: 0, sha256: String::new() }))
+    }
+
+    /// What is not as it was entered: entries that were changed, taken out, put in, or cut off at
+    /// the end. Others may add some meanwhile. Returns also how many entries there were.
+    pub async fn faults(&self) -> Result<(i64, Vec<Fault>)> {
+        let head = self.head().await?;
+        let (mut faults, mut last) = (Vec::new(), AuditHead { number: 0, sha256: String::new() });
+        loop {
+            let values = args![after: last.number, until: head.number, limit: ROWS];
+            let entries: Vec<AuditEntry> = self.0.database().all(FOLLOWING, values).await?;
+            if entries.is_empty() {
+                break;
+            }
+            for entry in entries {
+                faults.extend(wrong(&last, &entry).map(|message| fault(entry.number, message)));
+                last = AuditHead { number: entry.number, sha256: entry.sha256 };
+            }
+        }
+        faults.extend(self.end(&head, &last).await?);
+        Ok((head.number, faults))
+    }
+
+    /// What is wrong with the end of the list.
+    async fn end(&self, head: &AuditHead, last: &AuditHead) -> Result<Option<Fault>> {
+        if last != head {
+            let message =
+                format!("the last entry is number {}, not this one as noted", last.number);
+            return Ok(Some(fault(head.number, message)));
+        }
+        let beyond: Option<AuditEntry> =
+            self.0.database().optional(BEYOND, args![number: head.number]).await?;
+        match beyond {
+            // Entered since the head was read.
+            Some(_) if self.head().await?.number > head.number => Ok(None),
+            Some(entry) => {
+                Ok(Some(fault(entry.number, "comes after the last entry as noted".into())))
+            }
+            None => Ok(None),
+        }
+    }
+}
+
+/// What is wrong with an entry that follows another.
+fn wrong(last: &AuditHead, entry: &AuditEntry) -> Option<String> {
+    let expected = last.number + 1;
+    if entry.number != expected {
+        return Some(format!("comes after number {}: {expected} is missing", last.number));
+    }
+    if entry.previous_sha256 != last.sha256 {
+        return Some("does not hold the hash of the entry before it".to_owned());
+    }
+    (entry.hash() != entry.sha256).then(|| {
+        format!("what it says has the hash {}, not {} as entered", entry.hash(), entry.sha256)
+    })
+}
+
+fn fault(number: i64, message: String) -> Fault {
+    Fault::new("audit-chain", format!("audit entry {number}"), message)
+}

@@ -1,0 +1,104 @@
+//! Roles of users and of service keys, each for the server, a ship or a family.
+
+use serde_json::{Value, json};
+
+use crate::arguments::args;
+use crate::checks;
+use crate::database::Transaction;
+use crate::error::{Result, StoreError};
+use crate::record::{Counted, record};
+use crate::statements::{same, statements};
+use crate::store::Store;
+
+statements! {
+    OF = same("SELECT scope_kind, scope_name, role FROM grants WHERE principal = $1 ORDER BY scope_kind, scope_name");
+    CLEAR = same("DELETE FROM grants WHERE principal = $1");
+    PUT = same("INSERT INTO grants (principal, scope_kind, scope_name, role) VALUES ($1, $2, $3, $4) \
+        ON CONFLICT (principal, scope_kind, scope_name) DO UPDATE SET role = excluded.role");
+    SHIP = same("SELECT COUNT(*) AS rows FROM ships WHERE name = $1");
+    FAMILY = same("SELECT COUNT(*) AS rows FROM families WHERE name = $1");
+    HOLDERS = same("SELECT (SELECT COUNT(*) FROM users WHERE name = SUBSTR(CAST($1 AS TEXT), 6) \
+        AND SUBSTR(CAST($1 AS TEXT), 1, 5) = 'user:' AND disabled_us IS NULL) \
+        + (SELECT COUNT(*) FROM service_keys WHERE prefix = SUBSTR(CAST($1 AS TEXT), 5) \
+        AND SUBSTR(CAST($1 AS TEXT), 1, 4) = 'key:' AND revoked_us IS NULL) AS rows");
+}
+
+record! {
+    /// A role for something.
+    pub struct GrantRow {
+        /// `server`, `ship` or `family`.
+        pub scope_kind: String,
+        /// The name of the ship or family; empty for the server.
+        pub scope_name: String,
+        /// `reader`, `engineer`, `approver` or `admin`.
+        pub role: String,
+    }
+}
+
+/// The roles of a store.
+#[derive(Debug, Clone, Copy)]
+pub struct Grants<'a>(pub(crate) &'a Store);
+
+impl Store {
+    /// Who has which role.
+    pub fn grants(&self) -> Grants<'_> {
+        Grants(self)
+    }
+}
+
+impl Grants<'_> {
+    /// The roles of a user (`user:NAME`) or a service key (`key:PREFIX`).
+    pub async fn of(&self, principal: &str) -> Result<Vec<GrantRow>> {
+        self.0.database().all(OF, args![principal: principal]).await
+    }
+
+    /// Gives somebody these roles instead of all others.
+    pub async fn replace(&self, principal: &str, roles: &[GrantRow]) -> Result<()> {
+        let mut tx = self.0.begin().await?;
+        let holders: Counted = tx.one(HOLDERS, args![principal: principal]).await?;
+        if holders.rows == 0 {
+            return Err(StoreError::missing("user or key", principal));
+        }
+        let before: Vec<GrantRow> = tx.all(OF, args![principal: principal]).await?;
+        tx.execute(CLEAR, args![principal: principal]).await?;
+        put(&mut tx, principal, roles).await?;
+        let (before, after) =
+            (json!({ "roles": words(&before) }), json!({ "roles": words(roles) }));
+        tx.note(self.0.now_us(), "roles.set", principal.to_owned(), Some(before), Some(after));
+        tx.commit().await
+    }
+}
+
+/// Gives roles within a transaction; the ships and families must be there.
+pub(crate) async fn put(tx: &mut Transaction, principal: &str, roles: &[GrantRow]) -> Result<()> {
+    for GrantRow { scope_kind, scope_name, role } in roles {
+        exists(tx, scope_kind, scope_name).await?;
+        let values =
+            args![principal: principal, scope_kind: scope_kind, scope_name: scope_name, role: role];
+        tx.execute(PUT, values).await?;
+    }
+    Ok(())
+}
+
+async fn exists(tx: &mut Transaction, kind: &str, name: &str) -> Result<()> {
+    let statement = match kind {
+        "ship" => SHIP,
+        "family" => FAMILY,
+        _ => return Ok(()),
+    };
+    checks::name("roles", name)?;
+    let found: Counted = tx.one(statement, args![name: name]).await?;
+    match found.rows {
+        0 => Err(StoreError::invalid("roles", format!("there is no {kind} `{name}`"))),
+        _ => Ok(()),
+    }
+}
+
+/// Roles as the audit has them.
+pub(crate) fn words(roles: &[GrantRow]) -> Value {
+    let word = |row: &GrantRow| match row.scope_kind.as_str() {
+        "server" => row.role.clone(),
+        kind => format!("{}@{kind}:{}", row.role, row.scope_name),
+    };
+    roles.iter().map(word).collect()
+}

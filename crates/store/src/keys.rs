@@ -1,0 +1,156 @@
+//! Service keys: what programs present. Only the prefix and the hash are kept.
+
+use serde_json::json;
+
+use crate::arguments::args;
+use crate::checks;
+use crate::error::{Result, StoreError};
+use crate::grants::{self, GrantRow};
+use crate::page::{List, Page};
+use crate::record::record;
+use crate::statements::{same, statements};
+use crate::store::Store;
+
+/// The columns of a key.
+macro_rules! key {
+    ($before:literal, $after:literal) => {
+        same(concat!(
+            $before,
+            " prefix, title, user_name, sha256, created_us, expires_us, revoked_us, last_used_us ",
+            $after
+        ))
+    };
+}
+
+statements! {
+    INSERT = key!("INSERT INTO service_keys (prefix, title, user_name, sha256, created_us, expires_us) \
+        VALUES ($1, $2, $3, $4, $5, $6) RETURNING", "");
+    GET = key!("SELECT", "FROM service_keys WHERE prefix = $1");
+    LIST = key!("SELECT", "FROM service_keys WHERE prefix > COALESCE($1, '') ORDER BY prefix LIMIT $2");
+    REVOKE = key!("UPDATE service_keys SET revoked_us = $2 WHERE prefix = $1 AND revoked_us IS NULL RETURNING", "");
+    USED = same("UPDATE service_keys SET last_used_us = $2 WHERE prefix = $1 AND COALESCE(last_used_us, 0) < $2");
+    USER = same("SELECT name, title, password_hash, created_us, disabled_us FROM users WHERE name = $1 AND disabled_us IS NULL");
+}
+
+record! {
+    /// A service key.
+    pub struct KeyRow {
+        /// What finds it, and what is shown of it.
+        pub prefix: String,
+        /// What it is for.
+        pub title: String,
+        /// The user in whose name it acts, if it does.
+        pub user_name: Option<String>,
+        /// The SHA-256 of the whole, in hexadecimal.
+        pub sha256: String,
+        /// When it was made.
+        pub created_us: i64,
+        /// When it ends by itself, if it does.
+        pub expires_us: Option<i64>,
+        /// When it was revoked, if it was.
+        pub revoked_us: Option<i64>,
+        /// When it was last used, to a minute.
+        pub last_used_us: Option<i64>,
+    }
+}
+
+/// A key that is to be kept.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NewKey {
+    /// What finds it.
+    pub prefix: String,
+    /// What it is for.
+    pub title: String,
+    /// The user in whose name it acts.
+    pub user: Option<String>,
+    /// The SHA-256 of the whole, in hexadecimal.
+    pub sha256: String,
+    /// When it ends by itself.
+    pub expires_us: Option<i64>,
+}
+
+/// The service keys of a store.
+#[derive(Debug, Clone, Copy)]
+pub struct ServiceKeys<'a>(pub(crate) &'a Store);
+
+impl Store {
+    /// What programs present.
+    pub fn service_keys(&self) -> ServiceKeys<'_> {
+        ServiceKeys(self)
+    }
+}
+
+impl KeyRow {
+    /// What stands for it in [`crate::Grants`] and in the audit.
+    pub fn principal(prefix: &str) -> String {
+        format!("key:{prefix}")
+    }
+
+    /// Whether it opens anything at a moment.
+    pub fn is_valid(&self, now_us: i64) -> bool {
+        self.revoked_us.is_none() && self.expires_us.is_none_or(|end| now_us < end)
+    }
+}
+
+impl ServiceKeys<'_> {
+    /// Keeps a key with its roles.
+    pub async fn create(&self, new: &NewKey, roles: &[GrantRow]) -> Result<KeyRow> {
+        checks::sha256("sha256", &new.sha256)?;
+        let NewKey { prefix, title, user, sha256, expires_us } = new;
+        let mut tx = self.0.begin().await?;
+        if let Some(name) = user {
+            let found: Option<crate::users::User> = tx.optional(USER, args![name: name]).await?;
+            found
+                .ok_or_else(|| StoreError::invalid("user", format!("there is no user `{name}`")))?;
+        }
+        let values = args![prefix: prefix, title: title, user_name: user, sha256: sha256,
+            created_us: self.0.now_us(), expires_us: *expires_us];
+        let key = tx.one(INSERT, values).await?;
+        let principal = KeyRow::principal(prefix);
+        grants::put(&mut tx, &principal, roles).await?;
+        let after = json!({ "title": title, "user": user, "expires_us": expires_us, "roles": grants::words(roles) });
+        tx.note(self.0.now_us(), "key.create", principal, None, Some(after));
+        tx.commit().await?;
+        Ok(key)
+    }
+
+    /// A key.
+    pub async fn get(&self, prefix: &str) -> Result<KeyRow> {
+        self.find(prefix).await?.ok_or_else(|| StoreError::missing("key", prefix))
+    }
+
+    /// A key, if there is one with this prefix.
+    pub async fn find(&self, prefix: &str) -> Result<Option<KeyRow>> {
+        self.0.database().optional(GET, args![prefix: prefix]).await
+    }
+
+    /// The keys by prefix, those that have ended too.
+    pub async fn list(&self, page: &Page) -> Result<List<KeyRow>> {
+        let values = args![after: &page.after, limit: page.fetch()?];
+        let keys = self.0.database().all(LIST, values).await?;
+        Ok(page.of(keys, |key: &KeyRow| key.prefix.clone()))
+    }
+
+    /// Ends a key, for ever.
+    pub async fn revoke(&self, prefix: &str) -> Result<KeyRow> {
+        let mut tx = self.0.begin().await?;
+        let values = args![prefix: prefix, revoked_us: self.0.now_us()];
+        let Some(key) = tx.optional(REVOKE, values).await? else {
+            return Err(match tx.optional::<KeyRow>(GET, args![prefix: prefix]).await? {
+                Some(_) => StoreError::conflict("key", prefix, "is revoked already"),
+                None => StoreError::missing("key", prefix),
+            });
+        };
+        let after = json!({ "revoked": true });
+        tx.note(self.0.now_us(), "key.revoke", KeyRow::principal(prefix), None, Some(after));
+        tx.commit().await?;
+        Ok(key)
+    }
+
+    /// Notes that a key is being used.
+    pub async fn used(&self, prefix: &str) -> Result<()> {
+        let mut tx = self.0.begin().await?;
+        tx.execute(USED, args![prefix: prefix, last_used_us: self.0.now_us()]).await?;
+        tx.commit().await
+    }
+}

@@ -1,0 +1,80 @@
+//! Sessions of browsers. What a browser has is a secret of its own; only its hash is kept.
+
+use crate::arguments::args;
+use crate::checks;
+use crate::error::Result;
+use crate::record::record;
+use crate::statements::{same, statements};
+use crate::store::Store;
+use crate::users::User;
+
+statements! {
+    INSERT = same("INSERT INTO sessions (sha256, user_name, created_us, expires_us) VALUES ($1, $2, $3, $4) \
+        RETURNING sha256, user_name, created_us, expires_us");
+    GET = same("SELECT sha256, user_name, created_us, expires_us FROM sessions WHERE sha256 = $1");
+    END = same("DELETE FROM sessions WHERE sha256 = $1 RETURNING sha256, user_name, created_us, expires_us");
+    PURGE = same("DELETE FROM sessions WHERE expires_us < $1");
+}
+
+record! {
+    /// A browser that is signed in.
+    pub struct Session {
+        /// The hash of what it has.
+        pub sha256: String,
+        /// As whom.
+        pub user_name: String,
+        /// Since when.
+        pub created_us: i64,
+        /// Until when.
+        pub expires_us: i64,
+    }
+}
+
+/// The sessions of a store.
+#[derive(Debug, Clone, Copy)]
+pub struct Sessions<'a>(pub(crate) &'a Store);
+
+impl Store {
+    /// Browsers that are signed in.
+    pub fn sessions(&self) -> Sessions<'_> {
+        Sessions(self)
+    }
+}
+
+impl Sessions<'_> {
+    /// Begins a session of a user, and forgets those that have ended.
+    pub async fn begin(&self, sha256: &str, user: &str, expires_us: i64) -> Result<Session> {
+        checks::sha256("sha256", sha256)?;
+        let now = self.0.now_us();
+        let mut tx = self.0.begin().await?;
+        tx.execute(PURGE, args![expires_us: now]).await?;
+        let values =
+            args![sha256: sha256, user_name: user, created_us: now, expires_us: expires_us];
+        let session = tx.one(INSERT, values).await?;
+        tx.note(self.0.now_us(), "session.begin", User::principal(user), None, None);
+        tx.commit().await?;
+        Ok(session)
+    }
+
+    /// The session with this hash, if it has not ended.
+    pub async fn find(&self, sha256: &str) -> Result<Option<Session>> {
+        let found: Option<Session> = self.0.database().optional(GET, args![sha256: sha256]).await?;
+        Ok(found.filter(|session| self.0.now_us() < session.expires_us))
+    }
+
+    /// Ends a session, if it has not ended.
+    pub async fn end(&self, sha256: &str) -> Result<()> {
+        let mut tx = self.0.begin().await?;
+        let ended: Option<Session> = tx.optional(END, args![sha256: sha256]).await?;
+        if let Some(session) = ended {
+            tx.note(
+                self.0.now_us(),
+                "session.end",
+                User::principal(&session.user_name),
+                None,
+                None,
+            );
+        }
+        tx.commit().await
+    }
+}

@@ -1,0 +1,161 @@
+//! Users: who signs in by name and password. One that goes is disabled, and its name stays taken:
+//! the audit names it.
+
+use serde_json::json;
+
+use crate::arguments::args;
+use crate::checks;
+use crate::database::Transaction;
+use crate::error::{Result, StoreError};
+use crate::grants::{self, GrantRow};
+use crate::page::{List, Page};
+use crate::record::record;
+use crate::statements::{same, statements};
+use crate::store::Store;
+
+statements! {
+    INSERT = same("INSERT INTO users (name, title, password_hash, created_us) VALUES ($1, $2, $3, $4) \
+        ON CONFLICT (name) DO NOTHING RETURNING name, title, password_hash, created_us, disabled_us");
+    GET = same("SELECT name, title, password_hash, created_us, disabled_us FROM users WHERE name = $1");
+    LIST = same("SELECT name, title, password_hash, created_us, disabled_us FROM users \
+        WHERE name > COALESCE($1, '') ORDER BY name LIMIT $2");
+    PASSWORD = same("UPDATE users SET password_hash = $2 WHERE name = $1 \
+        RETURNING name, title, password_hash, created_us, disabled_us");
+    DISABLE = same("UPDATE users SET disabled_us = $2 WHERE name = $1 AND disabled_us IS NULL \
+        RETURNING name, title, password_hash, created_us, disabled_us");
+    ENABLE = same("UPDATE users SET disabled_us = NULL WHERE name = $1 AND disabled_us IS NOT NULL \
+        RETURNING name, title, password_hash, created_us, disabled_us");
+    SIGN_OUT = same("DELETE FROM sessions WHERE user_name = $1");
+}
+
+record! {
+    /// A user.
+    pub struct User {
+        /// The name, for ever.
+        pub name: String,
+        /// What people call this one.
+        pub title: String,
+        /// The Argon2id hash of the password as a PHC string; none where none is set.
+        pub password_hash: Option<String>,
+        /// When it was created.
+        pub created_us: i64,
+        /// Since when it may do nothing, if it may not.
+        pub disabled_us: Option<i64>,
+    }
+}
+
+/// The users of a store.
+#[derive(Debug, Clone, Copy)]
+pub struct Users<'a>(pub(crate) &'a Store);
+
+impl Store {
+    /// Who signs in by name.
+    pub fn users(&self) -> Users<'_> {
+        Users(self)
+    }
+}
+
+impl User {
+    /// What stands for it in [`crate::Grants`] and in the audit.
+    pub fn principal(name: &str) -> String {
+        format!("user:{name}")
+    }
+
+    /// Whether it may do anything.
+    pub fn is_enabled(&self) -> bool {
+        self.disabled_us.is_none()
+    }
+}
+
+impl Users<'_> {
+    /// Creates a user with some roles; a name that was ever taken is a conflict.
+    pub async fn create(
+        &self,
+        name: &str,
+        title: &str,
+        password_hash: Option<&str>,
+        roles: &[GrantRow],
+    ) -> Result<User> {
+        checks::name("name", name)?;
+        let values = args![name: name, title: title, password_hash: password_hash, created_us: self.0.now_us()];
+        let mut tx = self.0.begin().await?;
+        let Some(user) = tx.optional(INSERT, values).await? else {
+            return Err(StoreError::conflict("user", name, "there is one of this name already"));
+        };
+        let principal = User::principal(name);
+        grants::put(&mut tx, &principal, roles).await?;
+        let after = json!({ "title": title, "roles": grants::words(roles) });
+        tx.note(self.0.now_us(), "user.create", principal, None, Some(after));
+        tx.commit().await?;
+        Ok(user)
+    }
+
+    /// A user.
+    pub async fn get(&self, name: &str) -> Result<User> {
+        self.find(name).await?.ok_or_else(|| StoreError::missing("user", name))
+    }
+
+    /// A user, if there is one of this name.
+    pub async fn find(&self, name: &str) -> Result<Option<User>> {
+        self.0.database().optional(GET, args![name: name]).await
+    }
+
+    /// The users by name.
+    pub async fn list(&self, page: &Page) -> Result<List<User>> {
+        let values = args![after: &page.after, limit: page.fetch()?];
+        let users = self.0.database().all(LIST, values).await?;
+        Ok(page.of(users, |user: &User| user.name.clone()))
+    }
+
+    /// Sets a password; whoever is signed in under the name is signed out.
+    pub async fn set_password(&self, name: &str, password_hash: &str) -> Result<User> {
+        let mut tx = self.0.begin().await?;
+        let set = tx.optional(PASSWORD, args![name: name, password_hash: password_hash]).await?;
+        let user = self.changed(&mut tx, name, set, "has gone").await?;
+        tx.note(self.0.now_us(), "user.password", User::principal(name), None, None);
+        tx.commit().await?;
+        Ok(user)
+    }
+
+    /// Takes every right from a user, and signs it out.
+    pub async fn disable(&self, name: &str) -> Result<User> {
+        let mut tx = self.0.begin().await?;
+        let values = args![name: name, disabled_us: self.0.now_us()];
+        let disabled = tx.optional(DISABLE, values).await?;
+        let user = self.changed(&mut tx, name, disabled, "is disabled already").await?;
+        let (before, after) = (json!({ "enabled": true }), json!({ "enabled": false }));
+        tx.note(self.0.now_us(), "user.disable", User::principal(name), Some(before), Some(after));
+        tx.commit().await?;
+        Ok(user)
+    }
+
+    /// Gives a disabled user its rights again.
+    pub async fn enable(&self, name: &str) -> Result<User> {
+        let mut tx = self.0.begin().await?;
+        let enabled = tx.optional(ENABLE, args![name: name]).await?;
+        let user = self.changed(&mut tx, name, enabled, "is enabled already").await?;
+        let (before, after) = (json!({ "enabled": false }), json!({ "enabled": true }));
+        tx.note(self.0.now_us(), "user.enable", User::principal(name), Some(before), Some(after));
+        tx.commit().await?;
+        Ok(user)
+    }
+
+    /// The user as it was changed, signed out; or why it was not.
+    async fn changed(
+        &self,
+        tx: &mut Transaction,
+        name: &str,
+        changed: Option<User>,
+        why: &str,
+    ) -> Result<User> {
+        tx.execute(SIGN_OUT, args![user_name: name]).await?;
+        if let Some(user) = changed {
+            return Ok(user);
+        }
+        let there: Option<User> = tx.optional(GET, args![name: name]).await?;
+        match there {
+            Some(_) => Err(StoreError::conflict("user", name, why)),
+            None => Err(StoreError::missing("user", name)),
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! Users, service keys, sessions and roles, and what the audit has of them.
+
+use sistership_store::{
+    Actor, AuditFilter, Expect, GrantRow, KeyRow, NewKey, Page, StoreError, User, sha256_hex,
+};
+
+use crate::support::*;
+
+fn role(kind: &str, name: &str, role: &str) -> GrantRow {
+    GrantRow { scope_kind: kind.into(), scope_name: name.into(), role: role.into() }
+}
+
+fn key(user: Option<&str>) -> NewKey {
+    NewKey {
+        prefix: "0123456789ab".into(),
+        title: "A logger".into(),
+        user: user.map(str::to_owned),
+        sha256: sha256_hex(b"secret"),
+        expires_us: None,
+    }
+}
+
+/// Actions and actors, the first first.
+async fn audited(on: &TestStore) -> Vec<(String, String)> {
+    let entries = on.store.audit().list(AuditFilter::All, &Page::first(100)).await.unwrap();
+    entries.items.into_iter().rev().map(|entry| (entry.action, entry.actor)).collect()
+}
+
+async fn users_keep_their_names(on: &TestStore) {
+    let users = on.store.users();
+    on.store.ships().create(&ship("kcs")).await.unwrap();
+    let roles = [role("server", "", "reader"), role("ship", "kcs", "engineer")];
+    let ann = users.create("ann", "Ann", Some("hash"), &roles).await.unwrap();
+    assert!(ann.is_enabled());
+    assert_conflict(users.create("ann", "Another", None, &[]).await, "already");
+    assert_eq!(on.store.grants().of(&User::principal("ann")).await.unwrap(), roles);
+    let nowhere = [role("ship", "nobody", "reader")];
+    assert_invalid(users.create("bob", "Bob", None, &nowhere).await, "roles");
+    assert_not_found(users.get("bob").await, "user");
+    assert_invalid(on.store.grants().replace("user:ann", &nowhere).await, "roles");
+    assert_eq!(on.store.grants().of("user:ann").await.unwrap().len(), 2, "nothing is half done");
+    on.store.grants().replace("user:ann", &roles[..1]).await.unwrap();
+    assert_eq!(on.store.grants().of("user:ann").await.unwrap(), roles[..1]);
+    assert_not_found(on.store.grants().replace("user:bob", &[]).await, "user or key");
+    users.disable("ann").await.unwrap();
+    assert_conflict(users.disable("ann").await, "disabled");
+    assert_not_found(on.store.grants().replace("user:ann", &[]).await, "user or key");
+    assert!(!users.get("ann").await.unwrap().is_enabled());
+    users.enable("ann").await.unwrap();
+    assert_conflict(users.enable("ann").await, "enabled");
+    assert_not_found(users.disable("bob").await, "user");
+    assert_eq!(users.list(&Page::first(1)).await.unwrap().items[0].name, "ann");
+}
+
+async fn sessions_end(on: &TestStore) {
+    on.store.users().create("ann", "Ann", Some("hash"), &[]).await.unwrap();
+    let (sessions, hash) = (on.store.sessions(), sha256_hex(b"cookie"));
+    let later = on.store.now_us() + 1000;
+    sessions.begin(&hash, "ann", later).await.unwrap();
+    assert_eq!(sessions.find(&hash).await.unwrap().unwrap().user_name, "ann");
+    on.clock.advance(std::time::Duration::from_millis(1));
+    assert_eq!(sessions.find(&hash).await.unwrap(), None, "by itself");
+    for end in ["end", "password", "disable"] {
+        let hash = sha256_hex(end.as_bytes());
+        sessions.begin(&hash, "ann", i64::MAX).await.unwrap();
+        match end {
+            "end" => sessions.end(&hash).await.unwrap(),
+            "password" => drop(on.store.users().set_password("ann", "other").await.unwrap()),
+            _ => drop(on.store.users().disable("ann").await.unwrap()),
+        }
+        assert_eq!(sessions.find(&hash).await.unwrap(), None, "{end}");
+    }
+}
+
+async fn keys_end_for_ever(on: &TestStore) {
+    let keys = on.store.service_keys();
+    assert_invalid(keys.create(&key(Some("nobody")), &[]).await, "user");
+    let roles = [role("server", "", "engineer")];
+    let made = keys.create(&key(None), &roles).await.unwrap();
+    let now = on.store.now_us();
+    assert!(made.is_valid(now) && made.last_used_us.is_none());
+    assert!(!KeyRow { expires_us: Some(now), ..made.clone() }.is_valid(now));
+    assert_eq!(on.store.grants().of(&KeyRow::principal(&made.prefix)).await.unwrap(), roles);
+    keys.used(&made.prefix).await.unwrap();
+    assert_eq!(keys.get(&made.prefix).await.unwrap().last_used_us, Some(now));
+    assert!(!keys.revoke(&made.prefix).await.unwrap().is_valid(now));
+    assert_conflict(keys.revoke(&made.prefix).await, "revoked already");
+    assert_not_found(keys.revoke("nothing").await, "key");
+    assert_eq!(keys.list(&Page::first(10)).await.unwrap().items.len(), 1);
+}
+
+async fn what_is_done_is_in_the_audit_and_what_is_not_is_not(on: &TestStore) {
+    let ann = || Actor::new("ann", "192.0.2.1");
+    ann().acting(async { on.store.ships().create(&ship("kcs")).await }).await.unwrap();
+    assert_conflict(on.store.ships().create(&ship("kcs")).await, "already");
+    on.store.versions().create(&version("kcs"), &[champion(Expect::Absent)]).await.unwrap();
+    on.store.ships().tag("kcs", "own").await.unwrap();
+    on.store.ships().tag("kcs", "own").await.unwrap();
+    let program = "sistership";
+    let expected = [
+        ("ship.create", "ann"),
+        ("version.create", program),
+        ("alias.move", program),
+        ("ship.tag", program),
+    ];
+    let expected = expected.map(|(action, actor)| (action.to_owned(), actor.to_owned()));
+    assert_eq!(audited(on).await, expected);
+    let of = |filter| async move {
+        on.store.audit().list(filter, &Page::first(10)).await.unwrap().items
+    };
+    let entries = of(AuditFilter::Actor("ann")).await;
+    assert_eq!((entries.len(), entries[0].origin.as_str()), (1, "192.0.2.1"));
+    let entries = of(AuditFilter::Subject("alias:kcs/champion")).await;
+    assert_eq!(entries[0].state_before, None);
+    assert!(entries[0].state_after.as_ref().unwrap().contains(r#""version":1"#), "{entries:?}");
+    let (count, faults) = on.store.audit().faults().await.unwrap();
+    assert_eq!((count, faults.len()), (4, 0));
+    let head = on.store.audit().head().await.unwrap();
+    assert_eq!((head.number, head.sha256.len()), (4, 64));
+}
+
+async fn a_unit_of_work_is_entered_as_a_whole_or_not_at_all(on: &TestStore) {
+    let unit = on.store.unit();
+    unit.store().ships().create(&ship("a")).await.unwrap();
+    unit.store().ships().create(&ship("a")).await.unwrap_err();
+    unit.store().ships().create(&ship("b")).await.unwrap();
+    unit.keep(None).await.unwrap();
+    let unit = on.store.unit();
+    unit.store().ships().create(&ship("c")).await.unwrap();
+    unit.undo().await;
+    let subjects: Vec<String> = on
+        .store
+        .audit()
+        .list(AuditFilter::All, &Page::first(10))
+        .await
+        .unwrap()
+        .items
+        .into_iter()
+        .map(|entry| entry.subject)
+        .collect();
+    assert_eq!(subjects, ["ship:b", "ship:a"]);
+    assert_eq!(on.store.audit().faults().await.unwrap().1, []);
+}
+
+async fn many_enter_at_once_and_each_has_its_number(on: &TestStore) {
+    let writing = (0..24).map(|n| {
+        let store = on.store.clone();
+        tokio::spawn(async move {
+            match n % 3 {
+                0 => {
+                    let unit = store.unit();
+                    for part in ["a", "b"] {
+                        let name = format!("ship-{n}-{part}");
+                        unit.store().ships().create(&ship(&name)).await.unwrap();
+                    }
+                    unit.keep(None).await.unwrap();
+                }
+                _ => drop(store.ships().create(&ship(&format!("ship-{n}"))).await.unwrap()),
+            }
+        })
+    });
+    for done in futures::future::join_all(writing).await {
+        done.unwrap();
+    }
+    let (count, faults) = on.store.audit().faults().await.unwrap();
+    assert_eq!((count, faults), (32, vec![]));
+}
+
+/// Each way in which entries may be other than they were entered.
+const TAMPERING: &[&str] = &[
+    "UPDATE audit SET actor = 'bob' WHERE number = 2",
+    "UPDATE audit SET state_after = NULL WHERE number = 1",
+    "UPDATE audit SET at_us = at_us + 1 WHERE number = 3",
+    "DELETE FROM audit WHERE number = 2",
+    "DELETE FROM audit WHERE number = 3",
+    "DELETE FROM audit",
+    "UPDATE audit SET number = 4 WHERE number = 3",
+    "UPDATE audit SET sha256 = previous_sha256 WHERE number = 3",
+    "UPDATE audit_head SET number = 2, sha256 = (SELECT sha256 FROM audit WHERE number = 2)",
+    "DELETE FROM audit_head",
+];
+
+async fn tampering_with_one_entry_is_found(database: impl AsyncFn() -> Option<TestDatabase>) {
+    for damage in TAMPERING {
+        let Some(database) = database().await else { return };
+        let on = database.open().await;
+        for name in ["a", "b", "c"] {
+            on.store.ships().create(&ship(name)).await.unwrap();
+        }
+        assert_eq!(on.store.audit().faults().await.unwrap().1, [], "{damage}");
+        on.database.damage(damage).await;
+        let faults = on.store.audit().faults().await.unwrap().1;
+        assert!(!faults.is_empty(), "{damage}");
+        assert!(faults.iter().all(|fault| fault.check == "audit-chain"), "{faults:?}");
+    }
+}
+
+#[tokio::test]
+async fn tampering_is_found_on_sqlite() {
+    tampering_with_one_entry_is_found(async || Some(TestDatabase::sqlite())).await;
+}
+
+#[tokio::test]
+async fn tampering_is_found_on_postgres() {
+    tampering_with_one_entry_is_found(TestDatabase::postgres).await;
+}
+
+async fn a_second_person_is_asked_for_where_that_is_set(on: &TestStore) {
+    let ann = || Actor::new("ann", "::1");
+    ann().acting(versions(on, "kcs", 2)).await;
+    assert_eq!(on.store.versions().head("kcs", 1).await.unwrap().author.as_deref(), Some("ann"));
+    let promote = |actor: Actor, to| async move {
+        let moves = on.store.aliases();
+        actor.acting(moves.move_to("kcs", to, &champion(Expect::Any))).await
+    };
+    promote(ann(), 1).await.unwrap();
+    on.store.settings().set_second_person(true).await.unwrap();
+    assert!(on.store.settings().second_person().await.unwrap());
+    match promote(ann(), 2).await {
+        Err(StoreError::Forbidden { message }) => assert!(message.contains("made by ann")),
+        other => panic!("{other:?}"),
+    }
+    promote(Actor::new("bob", "::1"), 2).await.unwrap();
+    let mine = sistership_store::AliasMove { alias: "mine".into(), ..champion(Expect::Any) };
+    ann().acting(on.store.aliases().move_to("kcs", 1, &mine)).await.unwrap();
+    on.store.settings().set_second_person(false).await.unwrap();
+    promote(ann(), 1).await.unwrap();
+}
+
+async fn jobs_and_versions_have_authors(on: &TestStore) {
+    let job = Actor::new("ann", "::1").acting(on.store.jobs().enqueue(&job("kcs"))).await.unwrap();
+    assert_eq!(job.author.as_deref(), Some("ann"));
+}
+
+on_both_databases!(
+    users_keep_their_names,
+    sessions_end,
+    keys_end_for_ever,
+    what_is_done_is_in_the_audit_and_what_is_not_is_not,
+    a_unit_of_work_is_entered_as_a_whole_or_not_at_all,
+    many_enter_at_once_and_each_has_its_number,
+    a_second_person_is_asked_for_where_that_is_set,
+    jobs_and_versions_have_authors,
+);
