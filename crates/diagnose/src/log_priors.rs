@@ -27,6 +27,12 @@ pub(super) fn log_priors(
     all().map(log).collect()
 }
 
+/// Whether the settings or the library state the odds of any effect.
+pub(super) fn states_odds(request: &Request<'_>) -> bool {
+    let stated = |effect: &std::sync::Arc<Effect>| effect.beforehand.is_some();
+    !request.settings.prior_odds.is_empty() || request.effects.iter().any(stated)
+}
+
 /// The odds of an effect in all its forms; absent where nobody states them.
 fn odds(request: &Request<'_>, candidate: &EffectCandidate) -> Option<f64> {
     let set = request.settings.prior_odds.get(&candidate.effect).copied();

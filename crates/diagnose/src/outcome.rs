@@ -34,14 +34,14 @@ pub struct Diagnosis {
     pub unexplained: Vec<Unexplained>,
     /// How small each effect that was not found would still have been shown, with a probability of
     /// 90 %.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub limits: Vec<DetectionLimit>,
     /// Effects of which these trials and this model cannot tell a usual size, and what stands in the
     /// way.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub cannot_tell: BTreeMap<String, LimitedBy>,
     /// Odds that were given each effect before the trials were looked at, all its forms together.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub prior_odds: BTreeMap<String, f64>,
     /// The trial that would tell the effects found from those that they are confounded with; absent
     /// where nothing is to be told apart.

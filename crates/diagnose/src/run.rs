@@ -9,6 +9,7 @@ use super::hypothesis::JudgedHypothesis;
 use super::judge::errors;
 use super::limits::{but, cannot_tell};
 use super::linearised_trials::LinearisedTrials;
+use super::log_priors::states_odds;
 use super::misfit::of_shape;
 use super::outcome::{Diagnosis, Unexplained, Verdict};
 use super::refit::refits;
@@ -73,14 +74,16 @@ fn answer(
     let is_better = found.is_empty() || model.is_some();
     let remarks = remarks(&refused, is_better, &found);
     let names: Vec<String> = found.iter().map(|found| found.name.clone()).collect();
-    let limits = but(choice.limits.clone(), &names);
+    // A library that states no odds is of before limits were told: its diagnoses are as they were.
+    let tells = states_odds(request);
+    let limits = if tells { but(choice.limits.clone(), &names) } else { Vec::new() };
     Ok(Diagnosis {
         verdict,
         effects: found,
         unexplained: remaining,
         cannot_tell: cannot_tell(&limits),
         limits,
-        prior_odds: first.prior_odds(),
+        prior_odds: if tells { first.prior_odds() } else { BTreeMap::new() },
         next_trial,
         before: errors.before,
         after: errors.after,
