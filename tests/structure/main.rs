@@ -38,7 +38,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("listen", &[]),
     ("fields", &["store"]),
     ("predict", &["model", "dynamics", "bands", "fields", "pipeline"]),
-    ("http", &["model", "trials", "estimate", "store", "pipeline", "pages", "fields", "predict"]),
+    (
+        "http",
+        &[
+            "access", "model", "trials", "estimate", "store", "pipeline", "pages", "fields",
+            "predict",
+        ],
+    ),
     (
         "server",
         &[

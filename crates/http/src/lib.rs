@@ -1,15 +1,22 @@
 //! What every endpoint needs of HTTP: the one form of errors, bodies, parameters, conditions,
-//! negotiation, lists and answers. It knows no route.
+//! negotiation, lists and answers, whoever a request is carried out for, and what is counted of
+//! requests. It knows no route.
 
 pub mod accept;
+pub mod acting;
+pub mod api_key;
 pub mod conditions;
 pub mod host;
+pub mod known;
 pub mod large;
+pub mod metrics;
 pub mod page;
 pub mod params;
 pub mod payload;
 pub mod problem;
 pub mod query;
 pub mod reply;
+pub mod spool;
+pub mod tidy;
 
 pub use sistership_fields as field;

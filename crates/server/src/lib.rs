@@ -12,8 +12,7 @@ mod drafts;
 mod jobs;
 #[cfg(test)]
 mod journey;
-mod metrics;
-use sistership_http::problem;
+use sistership_http::{metrics, problem};
 mod process;
 mod rights;
 mod routes;

@@ -5,10 +5,10 @@ use axum::http::{Method, StatusCode, Uri};
 use sistership_access::{Rights, Role};
 use sistership_store::{MAX_LIMIT, Page, Store};
 
-use super::acting::{Acting, current};
 use super::table::{Need, Of, need};
 use crate::app::App;
 use crate::problem::{Problem, Result};
+use sistership_http::acting::{Acting, current};
 
 /// A request as far as rights depend on it.
 pub(crate) struct Asked<'a> {

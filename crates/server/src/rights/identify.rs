@@ -8,9 +8,9 @@ use base64::prelude::BASE64_STANDARD;
 use sistership_access::{Grant, Rights, Scope, ServiceKey, hex, sha256};
 use sistership_store::{GrantRow, KeyRow, User};
 
-use super::acting::{Kind, Principal};
 use crate::app::App;
 use crate::problem::{Problem, Result};
+use sistership_http::acting::{Kind, Principal};
 use sistership_http::host;
 
 /// The cookie of a session.

@@ -6,10 +6,11 @@ use serde_json::Value;
 use utoipa::openapi::path::{Operation, ParameterIn};
 use utoipa::openapi::{Components, Content, PathItem, Ref, RefOr, Response, ResponseBuilder};
 
-use super::{described, endpoints, tidy};
+use super::{described, endpoints};
 use crate::config::Limits;
 use crate::problem::{MEDIA, Problem};
 use crate::web::query::parameters;
+use sistership_http::tidy;
 
 /// The contract of the server, as `/openapi.json` serves it.
 pub fn openapi() -> Value {

@@ -37,7 +37,6 @@ mod ship_search;
 mod ships;
 mod similar;
 mod tags;
-mod tidy;
 mod trials;
 mod uploads;
 mod users;

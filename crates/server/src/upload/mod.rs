@@ -7,7 +7,6 @@ mod multipart;
 mod raw;
 mod received;
 mod room;
-mod spool;
 
 use axum::extract::{FromRequest, Query, Request};
 use axum::http::StatusCode;
@@ -16,7 +15,7 @@ use serde::Deserialize;
 pub(crate) use keep::{Kept, keep};
 pub(crate) use raw::RawQuery;
 pub(crate) use received::Upload;
-pub(crate) use spool::{Spooled, hex, spool, unwritten};
+pub(crate) use sistership_http::spool::{Spooled, hex, spool, unwritten};
 
 use crate::app::App;
 use crate::problem::{Problem, Result};

@@ -7,10 +7,10 @@ use sistership_model::manifest::ManifestTrial;
 use sistership_trials::{ManifestFile, read_manifest_file};
 
 use super::received::{Upload, canonical};
-use super::spool::{Spooled, spool};
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
 use crate::web::payload::read_yaml;
+use sistership_http::spool::{Spooled, spool};
 use sistership_pipeline::budget;
 
 /// The parts of a form as they have arrived.

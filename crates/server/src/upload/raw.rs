@@ -9,11 +9,11 @@ use sistership_model::manifest::ManifestTrial;
 use utoipa::IntoParams;
 
 use super::received::{Upload, canonical};
-use super::spool::spool;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::Name;
 use crate::web::field::{FileName, Positive, Remark};
+use sistership_http::spool::spool;
 
 /// The name of a trial that has none.
 const UNNAMED: &str = "trial";

@@ -6,9 +6,9 @@ use sistership_trials::{CheckOutcome, ManifestFile, Refusal, check, read_trial};
 
 use super::arrived::Arrived;
 use super::room::room;
-use super::spool::Spooled;
 use crate::app::App;
 use crate::problem::{Problem, Result};
+use sistership_http::spool::Spooled;
 
 /// The longest name of a file.
 const NAME_BYTES: usize = 200;

@@ -1,6 +1,5 @@
 //! What wraps every endpoint of this server; what each needs of HTTP stands in `sistership_http`.
 
-pub(crate) mod api_key;
 pub(crate) mod envelope;
 pub(crate) mod form;
 pub(crate) mod guard;

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use quick_cache::sync::Cache;
 use sistership_access::sha256;
 
-use super::acting::Principal;
+use crate::acting::Principal;
 
 /// How long something is known.
 const FRESH: Duration = Duration::from_secs(1);
@@ -16,7 +16,7 @@ const FRESH: Duration = Duration::from_secs(1);
 const MANY: usize = 4096;
 
 /// Credentials that were found right of late, by their hash.
-pub(crate) struct Known(Cache<[u8; 32], (Instant, Arc<Principal>)>);
+pub struct Known(Cache<[u8; 32], (Instant, Arc<Principal>)>);
 
 impl Default for Known {
     fn default() -> Self {
@@ -25,19 +25,21 @@ impl Default for Known {
 }
 
 impl Known {
-    pub(super) fn get(&self, credential: &str) -> Option<Arc<Principal>> {
+    /// Whoever a credential was found to stand for within the last second.
+    pub fn get(&self, credential: &str) -> Option<Arc<Principal>> {
         let (at, principal) = self.0.get(&sha256(credential))?;
         (at.elapsed() < FRESH).then_some(principal)
     }
 
-    pub(super) fn put(&self, credential: &str, principal: Principal) -> Arc<Principal> {
+    /// Remembers whom a credential stands for.
+    pub fn put(&self, credential: &str, principal: Principal) -> Arc<Principal> {
         let principal = Arc::new(principal);
         self.0.insert(sha256(credential), (Instant::now(), Arc::clone(&principal)));
         principal
     }
 
     /// Forgets all: somebody's rights have changed.
-    pub(crate) fn forget(&self) {
+    pub fn forget(&self) {
         self.0.clear();
     }
 }

@@ -12,7 +12,7 @@ tokio::task_local! {
 
 /// How somebody has shown who they are.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub enum Kind {
     /// By being on this machine, on a server that asks nobody.
     Local,
     /// By the server's one API key.
@@ -20,12 +20,17 @@ pub(crate) enum Kind {
     /// By a service key.
     Key,
     /// By signing in; with the token that forms of this session send, and the session's hash.
-    Session { form_token: String, sha256: String },
+    Session {
+        /// What the session's forms send.
+        form_token: String,
+        /// The hash of the session's secret.
+        sha256: String,
+    },
 }
 
 /// Somebody with their rights.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Principal {
+pub struct Principal {
     /// As the audit names them.
     pub name: String,
     /// What they may do.
@@ -36,33 +41,35 @@ pub(crate) struct Principal {
 
 /// Somebody who asks, from somewhere.
 #[derive(Debug, Clone)]
-pub(crate) struct Acting {
+pub struct Acting {
+    /// Who.
     pub principal: Arc<Principal>,
+    /// From where, as the audit has it.
     pub origin: String,
 }
 
 impl Principal {
     /// Somebody who may do everything.
-    pub(super) fn owner(name: &str, kind: Kind) -> Self {
+    pub fn owner(name: &str, kind: Kind) -> Self {
         Self { name: name.to_owned(), rights: Rights::all(), kind }
     }
 }
 
 impl Acting {
     /// Carries something out for this one: what the store keeps bears the name.
-    pub(crate) async fn scope<T>(self, work: impl Future<Output = T>) -> T {
+    pub async fn scope<T>(self, work: impl Future<Output = T>) -> T {
         let actor = Actor::new(self.principal.name.clone(), self.origin.clone());
         ACTING.scope(self, actor.acting(work)).await
     }
 }
 
 /// Whoever the present task works for; nobody outside of a request.
-pub(crate) fn current() -> Option<Acting> {
+pub fn current() -> Option<Acting> {
     ACTING.try_with(Clone::clone).ok()
 }
 
 /// Work for a task of its own, that goes on in the same name.
-pub(crate) fn carried<T>(work: impl Future<Output = T>) -> impl Future<Output = T> {
+pub fn carried<T>(work: impl Future<Output = T>) -> impl Future<Output = T> {
     let acting = current();
     async move {
         match acting {

@@ -18,7 +18,7 @@ use self::measured::Measured;
 use sistership_pipeline::archive::Archive;
 
 /// The media type of what is scraped.
-pub(crate) const MEDIA: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
+pub const MEDIA: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
 /// Upper bounds of the histogram, s: from a look-up to a derivation that takes minutes.
 const SECONDS: [f64; 13] =
     [0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 1.0, 2.5, 10.0, 60.0, 600.0];
@@ -37,7 +37,7 @@ struct Route {
 }
 
 /// What the server counts of itself.
-pub(crate) struct Metrics {
+pub struct Metrics {
     registry: Registry,
     requests: Family<Answered, Counter>,
     seconds: Family<Route, Histogram>,
@@ -76,13 +76,7 @@ fn histogram() -> Histogram {
 impl Metrics {
     /// Counts an answer. `route` is the path as the router knows it, so that ids do not make labels
     /// without end.
-    pub(crate) fn answered(
-        &self,
-        method: &Method,
-        route: &str,
-        status: StatusCode,
-        elapsed: Duration,
-    ) {
+    pub fn answered(&self, method: &Method, route: &str, status: StatusCode, elapsed: Duration) {
         let method = named(method);
         let labels = Answered { method, route: route.to_owned(), status: status.as_u16() };
         self.requests.get_or_create(&labels).inc();
@@ -92,7 +86,7 @@ impl Metrics {
     }
 
     /// Everything there is to scrape, with what is asked of the archive now.
-    pub(crate) async fn scrape(&self, archive: &Archive) -> Result<String> {
+    pub async fn scrape(&self, archive: &Archive) -> Result<String> {
         let now = self.measured.registry(archive).await?;
         let mut text = String::new();
         // Writing to a string does not fail.

@@ -6,15 +6,16 @@ use uuid::Uuid;
 
 /// An API key, as its hash.
 #[derive(Clone, Copy)]
-pub(crate) struct ApiKey([u8; 32]);
+pub struct ApiKey([u8; 32]);
 
 impl ApiKey {
-    pub(crate) fn new(key: &str) -> Self {
+    /// What is kept of a key.
+    pub fn new(key: &str) -> Self {
         Self(sha256(key))
     }
 
     /// Whether this is the key, in a time that does not tell how much of it is right.
-    pub(crate) fn is(&self, presented: &str) -> bool {
+    pub fn is(&self, presented: &str) -> bool {
         same(&self.0, &sha256(presented))
     }
 }
@@ -22,10 +23,11 @@ impl ApiKey {
 /// What forms of pages send along, so that no other web site can send them: it cannot read a page of
 /// this server. With a key it follows from the key, so that every server with that key takes it;
 /// without one it is drawn at the start. Who is signed in has another, see `web::form`.
-pub(crate) struct FormToken(String);
+pub struct FormToken(String);
 
 impl FormToken {
-    pub(crate) fn of(key: Option<&ApiKey>) -> Self {
+    /// Of a server with this key, or without one.
+    pub fn of(key: Option<&ApiKey>) -> Self {
         let mut hash = Sha256::new_with_prefix("sistership form ");
         match key {
             Some(ApiKey(key)) => hash.update(key),
@@ -35,7 +37,8 @@ impl FormToken {
         Self(hex(&hash.finalize()))
     }
 
-    pub(super) fn text(&self) -> &str {
+    /// The token.
+    pub fn text(&self) -> &str {
         &self.0
     }
 }

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 /// Puts right what is known to be written wrongly, wherever it stands.
-pub(super) fn tidy(document: &mut Value) {
+pub fn tidy(document: &mut Value) {
     match document {
         Value::Object(object) => {
             described(object);

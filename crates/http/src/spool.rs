@@ -14,7 +14,7 @@ use crate::problem::{Problem, Result};
 
 /// A file that has arrived; it goes when this is dropped.
 #[derive(Debug)]
-pub(crate) struct Spooled {
+pub struct Spooled {
     /// Where it lies.
     pub path: TempPath,
     /// The hash of its bytes.
@@ -22,7 +22,7 @@ pub(crate) struct Spooled {
 }
 
 /// Writes a stream to a file.
-pub(crate) async fn spool<E: Into<Problem>>(
+pub async fn spool<E: Into<Problem>>(
     place: &Spool,
     mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
 ) -> Result<Spooled> {
@@ -38,17 +38,17 @@ pub(crate) async fn spool<E: Into<Problem>>(
 }
 
 /// A hash in lower-case hexadecimal.
-pub(crate) fn hex(hash: &[u8]) -> String {
+pub fn hex(hash: &[u8]) -> String {
     hash.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// A file among the uploads under way; it goes when this is dropped.
-pub(crate) fn temporary(place: &Spool) -> Result<NamedTempFile> {
+pub fn temporary(place: &Spool) -> Result<NamedTempFile> {
     place.temporary().map_err(unwritten)
 }
 
 /// Why an upload could not be written.
-pub(crate) fn unwritten(error: io::Error) -> Problem {
+pub fn unwritten(error: io::Error) -> Problem {
     let reason = format!("an upload cannot be written: {error}");
     if is_out_of_space(&error) { Problem::no_room(reason) } else { Problem::internal(reason) }
 }
