@@ -70,6 +70,7 @@ fn searched_by(settings: &Settings, fitted: usize) -> Settings {
         in_parts: settings.in_parts || fitted < SEARCH.few,
         steering_from_trials: true,
         steering_above_noise: true,
+        recorded_terms: true,
         posterior_by_folds: true,
         folds_pooled: true,
         calibration_samples: settings.calibration_samples.or(Some(SEARCH.calibration)),

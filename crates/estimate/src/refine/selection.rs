@@ -167,12 +167,16 @@ fn starting(
         let same = source.ship == target.name();
         let mut carried =
             if same { source.clone() } else { transfer(source, law, target, approach) };
-        unrecorded::forget(&mut carried, law, whole);
+        if request.settings.recorded_terms {
+            unrecorded::forget(&mut carried, law, whole);
+        }
         let measure = PriorMeasure::own(&carried, law, whole, in_parts);
         return Ok((carried, measure));
     };
     let (mut model, envelope) = across::begun((source, own), law, target, approach, whole)?;
-    unrecorded::forget(&mut model, law, whole);
+    if request.settings.recorded_terms {
+        unrecorded::forget(&mut model, law, whole);
+    }
     let blocks = Blocks::new(&model, law)?;
     SourceRegression::new(&envelope, &blocks, &model)?.fill(&blocks, &mut model);
     Ok((model, PriorMeasure::Source(envelope)))

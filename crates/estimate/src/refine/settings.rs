@@ -146,6 +146,10 @@ pub struct Settings {
     /// the ship's length alone. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub steering_above_noise: bool,
+    /// Terms of an input that no trial records, such as the wind, are left out where the source has
+    /// none. The default search sets it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub recorded_terms: bool,
     /// The posterior is as wide as models are apart that each missed some of the trials, where that
     /// is wider than the noise of the readings makes it. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -194,6 +198,7 @@ impl Default for Settings {
             in_parts: false,
             steering_from_trials: false,
             steering_above_noise: false,
+            recorded_terms: false,
             posterior_by_folds: false,
             folds_pooled: false,
             calibration_samples: None,

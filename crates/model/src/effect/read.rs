@@ -153,7 +153,7 @@ forms:
     #[test]
     fn odds_and_misfit_are_above_nothing() {
         let odds = refused("forms:\n", "beforehand: { odds: 0, because: test }\nforms:\n");
-        assert!(odds.starts_with("drag.yaml:8: beforehand.odds: "), "{odds}");
+        assert!(odds.starts_with("drag.yaml:7: beforehand.odds: "), "{odds}");
         let misfit = refused("needs: [phi]", "needs: [phi]\n    misfit: 1.5");
         assert!(misfit.contains("forms.only.misfit: "), "{misfit}");
     }
