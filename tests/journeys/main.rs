@@ -20,6 +20,7 @@ mod operation;
 mod over_http;
 mod pages;
 mod python_client;
+mod rights;
 mod sea_trials;
 mod sisters;
 mod stopping;

@@ -16,25 +16,31 @@ const DATA_DIR: &str = "sistership-data";
 #[derive(Debug, Default, Args)]
 pub struct StoreArguments {
     /// YAML file of settings, named as the flags are; flags and environment win over it.
-    #[arg(long, value_name = "FILE", env = "SISTERSHIP_CONFIG")]
+    #[arg(long, global = true, value_name = "FILE", env = "SISTERSHIP_CONFIG")]
     config: Option<PathBuf>,
     /// `sqlite://path/file.db` or `postgres://...`; the file sistership.db in the data folder where
     /// absent.
-    #[arg(long, value_name = "URL", env = "SISTERSHIP_DATABASE_URL", hide_env_values = true)]
+    #[arg(
+        long,
+        global = true,
+        value_name = "URL",
+        env = "SISTERSHIP_DATABASE_URL",
+        hide_env_values = true
+    )]
     database_url: Option<String>,
     /// Folder of trial samples, of uploads under way, and of the embedded database [default:
     /// sistership-data].
-    #[arg(long, value_name = "DIR", env = "SISTERSHIP_DATA_DIR")]
+    #[arg(long, global = true, value_name = "DIR", env = "SISTERSHIP_DATA_DIR")]
     data_dir: Option<PathBuf>,
     /// `s3://bucket/prefix`: where trial samples are instead, with the credentials that
     /// AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY or the machine's role give.
-    #[arg(long, value_name = "URL", env = "SISTERSHIP_OBJECTS_URL")]
+    #[arg(long, global = true, value_name = "URL", env = "SISTERSHIP_OBJECTS_URL")]
     objects_url: Option<String>,
     /// The S3-compatible server, such as http://host:9000; Amazon's where absent.
-    #[arg(long, value_name = "URL", env = "SISTERSHIP_OBJECTS_ENDPOINT")]
+    #[arg(long, global = true, value_name = "URL", env = "SISTERSHIP_OBJECTS_ENDPOINT")]
     objects_endpoint: Option<String>,
     /// The bucket's region [default: AWS_REGION, else us-east-1].
-    #[arg(long, value_name = "NAME", env = "SISTERSHIP_OBJECTS_REGION")]
+    #[arg(long, global = true, value_name = "NAME", env = "SISTERSHIP_OBJECTS_REGION")]
     objects_region: Option<String>,
 }
 

@@ -7,6 +7,7 @@ use super::wind::Areas;
 const STEP_DEG: f64 = 10.0;
 
 /// `A0` to `A6` of the force ahead, from 0 to 180 deg.
+#[allow(clippy::approx_constant, reason = "a regression's coefficient that happens to be 3.14")]
 const AHEAD: [[f64; 7]; 19] = [
     [2.152, -5.00, 0.243, -0.164, 0.0, 0.0, 0.0],
     [1.714, -3.33, 0.145, -0.121, 0.0, 0.0, 0.0],
