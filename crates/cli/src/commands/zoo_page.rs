@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use sistership_dynamics::metrics::TurningMetrics;
 use sistership_model::Vessel;
 use sistership_validation::{Appraisal, Dataset, Review, Severity};
+
+use super::zoo_text::{number, overshoot, turn};
 
 /// Particulars, models, published trials, findings and sources of a ship.
 pub fn page(vessel: &Vessel, review: &Review) -> String {
@@ -70,25 +71,11 @@ fn model(model: &Appraisal) -> Vec<String> {
         format!("`{name}`"),
         format!("`{}`", model.law),
         model.standing.word().to_owned(),
-        lengths(model, |turn| turn.advance_m),
-        lengths(model, |turn| turn.tactical_diameter_m),
+        turn(model, |turn| turn.advance_m),
+        turn(model, |turn| turn.tactical_diameter_m),
         overshoot(model, 10.0),
         overshoot(model, 20.0),
     ]
-}
-
-fn lengths(model: &Appraisal, of: impl Fn(&TurningMetrics) -> Option<f64>) -> String {
-    let starboard = model.manoeuvres.turns.iter().find(|turn| turn.rudder_deg > 0.0);
-    number(starboard.and_then(of).map(|metres| metres / model.lpp_m))
-}
-
-fn overshoot(model: &Appraisal, rudder_deg: f64) -> String {
-    let zigzag = model.manoeuvres.zigzags.iter().find(|zigzag| zigzag.rudder_deg == rudder_deg);
-    number(zigzag.and_then(|zigzag| zigzag.first_overshoot_deg))
-}
-
-fn number(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"))
 }
 
 fn trials(review: &Review) -> String {

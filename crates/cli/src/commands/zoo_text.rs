@@ -36,17 +36,20 @@ fn table(models: &[Appraisal]) -> String {
     table.to_string()
 }
 
-fn turn(model: &Appraisal, of: impl Fn(&TurningMetrics) -> Option<f64>) -> String {
+/// A figure of the turn to starboard in ship lengths.
+pub(super) fn turn(model: &Appraisal, of: impl Fn(&TurningMetrics) -> Option<f64>) -> String {
     let starboard = model.manoeuvres.turns.iter().find(|turn| turn.rudder_deg > 0.0);
     number(starboard.and_then(of).map(|metres| metres / model.lpp_m))
 }
 
-fn overshoot(model: &Appraisal, rudder_deg: f64) -> String {
+/// The first overshoot of the zigzag to starboard at this rudder, deg.
+pub(super) fn overshoot(model: &Appraisal, rudder_deg: f64) -> String {
     let zigzag = model.manoeuvres.zigzags.iter().find(|zigzag| zigzag.rudder_deg == rudder_deg);
     number(zigzag.and_then(|zigzag| zigzag.first_overshoot_deg))
 }
 
-fn number(value: Option<f64>) -> String {
+/// Two decimals, or a dash.
+pub(super) fn number(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"))
 }
 
