@@ -74,7 +74,7 @@ pub fn bands(
 ) -> Option<Bands> {
     let draws = draws(model, sampling)?;
     let within_steps = sampling.within_steps;
-    let (ship, fast) = prepared(model, law, settings, depth_m, within_steps)?;
+    let (ship, fast) = prepared(model, law, settings, depth_m, sampling)?;
     let sailed = sailed(&ship, &draws, &fast)?;
     let failed = sailed.iter().filter(|sailed| !sailed.failures.is_empty()).count();
     let by_step = match within_steps {
@@ -121,17 +121,18 @@ fn prepared(
     law: &Law,
     settings: &ManoeuvreSettings,
     depth_m: Option<f64>,
-    reversals_within_steps: bool,
+    sampling: Sampling,
 ) -> Option<(Ship, ManoeuvreSettings)> {
     let mut ship = Ship::sisters(model, law).ok()?;
     let speed_m_s = settings.speed_m_s.unwrap_or(ship.approach_speed_m_s());
     ship.set_envelope_speed(speed_m_s);
     ship.forget_validity();
     depth_m.into_iter().for_each(|depth_m| ship.set_depth(depth_m));
+    let Sampling { within_steps: reversals_within_steps, figures_only, .. } = sampling;
     let share = if reversals_within_steps { EXACT_STEP } else { STEP };
     let coarse = share * ship.lpp_m() / speed_m_s;
     let step_s = settings.step_s.or(Some(coarse));
-    Some((ship, ManoeuvreSettings { step_s, reversals_within_steps, ..*settings }))
+    Some((ship, ManoeuvreSettings { step_s, reversals_within_steps, figures_only, ..*settings }))
 }
 
 fn sailed(
@@ -149,8 +150,13 @@ fn sailed(
 }
 
 /// Figures of the standard manoeuvres by models that have a model's law and particulars.
-pub(crate) fn figures(model: &Model, law: &Law, models: &[Model]) -> Option<Vec<Drawn>> {
-    let (ship, fast) = prepared(model, law, &ManoeuvreSettings::default(), None, true)?;
+pub(crate) fn figures(
+    model: &Model,
+    law: &Law,
+    models: &[Model],
+    sampling: Sampling,
+) -> Option<Vec<Drawn>> {
+    let (ship, fast) = prepared(model, law, &ManoeuvreSettings::default(), None, sampling)?;
     let named = |sailed: StandardManoeuvres| {
         let figures = sailed.figures().into_iter();
         figures.filter_map(|figure| Some((figure.name, figure.value?))).collect()
@@ -169,8 +175,9 @@ fn errors_by_step(
         let sailed = standard_of_sisters(ship, &[estimate], settings).into_iter();
         sailed.flat_map(|sailed| sailed.figures()).collect::<Vec<_>>()
     };
+    let settings = ManoeuvreSettings { figures_only: fast.figures_only, ..*settings };
     let fine: BTreeMap<String, f64> =
-        figures(settings).into_iter().filter_map(|fine| Some((fine.name, fine.value?))).collect();
+        figures(&settings).into_iter().filter_map(|fine| Some((fine.name, fine.value?))).collect();
     let of = |fast: Figure| Some((fine.get(&fast.name)?, fast.value?, fast.name));
     let fast = figures(fast).into_iter().filter_map(of);
     fast.map(|(fine, fast, name)| (name, fast - fine)).collect()
@@ -252,7 +259,7 @@ mod tests {
                 &law,
                 &ManoeuvreSettings::default(),
                 None,
-                Sampling { samples: 20, seed, within_steps: false },
+                Sampling { samples: 20, seed, ..Sampling::default() },
             )
             .unwrap();
             let band = bands
@@ -273,7 +280,7 @@ mod tests {
     fn narrow_bands_hold_the_estimate_s_figures() {
         let (model, law) = mariner(1e-3);
         let settings = ManoeuvreSettings::default();
-        let sampling = Sampling { samples: 40, seed: 2, within_steps: true };
+        let sampling = Sampling { samples: 40, seed: 2, within_steps: true, figures_only: true };
         let bands = bands(&model, &law, &settings, None, sampling).unwrap();
         let ship = Ship::sisters(&model, &law).unwrap();
         let own = ship.sister(&model).unwrap();

@@ -34,10 +34,17 @@ pub enum FoldQuantile {
 /// The root of the jackknife's variance by the posterior's, in the mean over the figures of the
 /// standard manoeuvres, by the quantile to the normal's; at least one, and one where fewer than
 /// three folds sail them.
-pub fn fold_factor(model: &Model, law: &Law, folds: &[Model], quantile: FoldQuantile) -> f64 {
-    let sampling = Sampling { samples: DRAWS, ..Sampling::default() };
-    let drawn = draws(model, sampling).and_then(|draws| figures(model, law, &draws));
-    let left_out = figures(model, law, folds).filter(|left_out| left_out.len() > 2);
+pub fn fold_factor(
+    model: &Model,
+    law: &Law,
+    folds: &[Model],
+    (quantile, figures_only): (FoldQuantile, bool),
+) -> f64 {
+    let sampling =
+        Sampling { samples: DRAWS, within_steps: true, figures_only, ..Sampling::default() };
+    let of = |models: &[Model]| figures(model, law, models, sampling);
+    let drawn = draws(model, sampling).and_then(|draws| of(&draws));
+    let left_out = of(folds).filter(|left_out| left_out.len() > 2);
     let (Some(drawn), Some(left_out)) = (drawn, left_out) else { return 1.0 };
     let ratios: Vec<f64> = left_out[0]
         .keys()
@@ -99,7 +106,7 @@ mod tests {
             fold
         };
         let law = zoo.law("abkowitz").unwrap();
-        fold_factor(&model, law, &[-1.0, -1.0, 1.0, 1.0].map(fold), quantile)
+        fold_factor(&model, law, &[-1.0, -1.0, 1.0, 1.0].map(fold), (quantile, true))
     }
 
     #[test]

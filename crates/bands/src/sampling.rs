@@ -23,11 +23,15 @@ pub struct Sampling {
     /// keep the bands that they have.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub within_steps: bool,
+    /// Draws sail initial turns to the change of heading that is asked for, and no further. The
+    /// default search sets it, as `within_steps`.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub figures_only: bool,
 }
 
 impl Default for Sampling {
     fn default() -> Self {
-        Self { samples: 100, seed: 1, within_steps: false }
+        Self { samples: 100, seed: 1, within_steps: false, figures_only: false }
     }
 }
 

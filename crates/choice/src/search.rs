@@ -3,8 +3,10 @@
 //! costlier estimator.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
+use rayon::prelude::*;
 use sistership_model::Vessel;
 use sistership_model::trial::Trial;
 
@@ -14,8 +16,8 @@ use crate::ladder::{Ladder, Line, Rung};
 use crate::thresholds::SEARCH;
 use sistership_bands::Sampling;
 use sistership_estimate::refine::{
-    Extent, Family, Progress, RefineError, Refinement, Request, Settings, Weighed, refine_wanted,
-    weigh,
+    Extent, Family, MonotoneProgress, Progress, RefineError, Refinement, Request, Settings,
+    Weighed, refine_wanted, weigh,
 };
 
 /// What is searched.
@@ -74,12 +76,14 @@ fn searched_by(settings: &Settings, fitted: usize) -> Settings {
         posterior_by_folds: true,
         folds_pooled: true,
         calibration_samples: settings.calibration_samples.or(Some(SEARCH.calibration)),
-        bands: Sampling { within_steps: true, ..settings.bands },
+        bands: Sampling { within_steps: true, figures_only: true, ..settings.bands },
         ..settings.clone()
     }
 }
 
 fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
+    let progress = MonotoneProgress::new(progress);
+    let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
     let mut tried = Vec::new();
     let mut alone: Vec<usize> = (0..search.entrants.len())
         .filter(|entrant| search.entrants[*entrant].source_law.is_none())
@@ -93,7 +97,7 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     next.extend(alone);
     climb(search, Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
     let next = leading(&tried);
-    climb(search, Rung::Trajectory, &next, (0.5, 0.5), &mut tried, progress)?;
+    descend(search, &next, (0.5, 0.5), &mut tried, progress)?;
     taken(search, tried)
 }
 
@@ -124,8 +128,8 @@ fn carried_over(
     Ok(())
 }
 
-/// Weighs entrants on a rung, whose progress begins at a fraction of the whole and takes a span of
-/// it.
+/// Weighs entrants on a rung side by side; its progress begins at a fraction of the whole and takes
+/// a span of it.
 fn climb(
     search: &Search<'_>,
     rung: Rung,
@@ -134,63 +138,98 @@ fn climb(
     tried: &mut Vec<Tried>,
     progress: Progress<'_>,
 ) -> Result<(), RefineError> {
-    let share = span / entrants.len().max(1) as f64;
-    for (k, &entrant) in entrants.iter().enumerate() {
-        let from = begin + share * k as f64;
+    let done = AtomicUsize::new(0);
+    let extent = if rung == Rung::CarriedOver { Extent::Source } else { Extent::Estimator };
+    let one = |&entrant: &usize| {
         let named = search.entrants[entrant].name();
-        let told = |fraction: f64, what: &str| {
-            progress(from + share * fraction, &format!("{named}: {what}"))
+        let told = |_: f64, what: &str| {
+            let share = done.load(Ordering::Relaxed) as f64 / entrants.len() as f64;
+            progress(begin + span * share, &format!("{named}: {what}"))
         };
         let begun = Instant::now();
-        let (weighed, refinement) = on_rung(search, rung, entrant, tried, &told)?;
+        let settings = settings_on(search.settings, rung, None);
+        let weighed = weigh(&request(search, entrant, &settings), extent, &told);
+        let weighed = on_rung(rung, weighed)?;
+        done.fetch_add(1, Ordering::Relaxed);
         let cost_s = begun.elapsed().as_secs_f64();
-        tried.push(Tried { entrant, rung, weighed, refinement, cost_s });
+        Ok(Tried { entrant, rung, weighed, refinement: None, cost_s })
+    };
+    let weighed: Result<Vec<Tried>, RefineError> =
+        entrants.par_iter().with_max_len(1).map(one).collect();
+    tried.extend(weighed?);
+    Ok(())
+}
+
+/// Fits trajectories, each entrant within the one before it: what an entrant has prepared is kept
+/// until all have been weighed, and made into a refinement where it is what is taken then.
+fn descend(
+    search: &Search<'_>,
+    entrants: &[usize],
+    (begin, span): (f64, f64),
+    tried: &mut Vec<Tried>,
+    progress: Progress<'_>,
+) -> Result<(), RefineError> {
+    let Some((&entrant, others)) = entrants.split_first() else { return Ok(()) };
+    let share = span / entrants.len() as f64;
+    let rest = (begin + share, span - share);
+    let named = search.entrants[entrant].name();
+    let told =
+        |fraction: f64, what: &str| progress(begin + share * fraction, &format!("{named}: {what}"));
+    let settings = settings_on(search.settings, Rung::Trajectory, ridge_of(tried, entrant));
+    let (begun, place) = (Instant::now(), tried.len());
+    let note = |tried: &mut Vec<Tried>, weighed: Weighed| {
+        let (cost_s, rung) = (begun.elapsed().as_secs_f64(), Rung::Trajectory);
+        tried.push(Tried { entrant, rung, weighed, refinement: None, cost_s });
+        descend(search, others, rest, tried, progress)
+    };
+    let is_taken = |all: &[Weighed]| {
+        note(tried, on_rung(Rung::Trajectory, Ok(all.to_vec()))?)?;
+        Ok(chosen_of(tried) == Some(place))
+    };
+    let made = refine_wanted(&request(search, entrant, &settings), is_taken, &told);
+    match made {
+        Ok((_, refinement)) => tried[place].refinement = refinement,
+        Err(error) => {
+            let refused = on_rung(Rung::Trajectory, Err(error))?;
+            match tried.get_mut(place) {
+                Some(weighed) => weighed.weighed = refused,
+                None => note(tried, refused)?,
+            }
+        }
     }
     Ok(())
 }
 
-/// What an entrant gives on a rung; one that cannot be fitted is out with the reason.
-fn on_rung(
-    search: &Search<'_>,
-    rung: Rung,
-    place: usize,
-    tried: &[Tried],
-    progress: Progress<'_>,
-) -> Result<(Weighed, Option<Refinement>), RefineError> {
-    let entrant = &search.entrants[place];
-    let settings = settings_on(search.settings, rung, ridge_of(tried, place));
-    let least = |rung| ordered(tried.iter().filter(move |one| one.rung == rung)).first().copied();
-    let leads = |all: &[Weighed]| {
-        let error = all.get(1).and_then(|fit| fit.error);
-        error.is_some_and(|error| least(Rung::Trajectory).is_none_or(|(_, least)| error < least))
-    };
-    let request = Request {
+/// An entrant's refinement by some settings.
+fn request<'a>(search: &Search<'a>, entrant: usize, settings: &'a Settings) -> Request<'a> {
+    let entrant = &search.entrants[entrant];
+    Request {
         target: search.target,
         source: &entrant.source,
         source_law: entrant.source_law.as_deref(),
         law: &entrant.law,
         trials: search.trials,
-        settings: &settings,
-    };
+        settings,
+    }
+}
+
+/// What an entrant gives on a rung; one that cannot be fitted is out with the reason.
+fn on_rung(rung: Rung, weighed: Result<Vec<Weighed>, RefineError>) -> Result<Weighed, RefineError> {
     let (of_source, of_fit) = (0, 1);
-    let given = match rung {
-        Rung::CarriedOver => {
-            weigh(&request, Extent::Source, progress).map(|all| (all, of_source, None))
-        }
-        Rung::Weak => weigh(&request, Extent::Estimator, progress).map(|all| (all, of_fit, None)),
-        Rung::Trajectory => {
-            refine_wanted(&request, &leads, progress).map(|(all, made)| (all, of_fit, made))
-        }
-    };
-    match given {
+    let wanted = if rung == Rung::CarriedOver { of_source } else { of_fit };
+    match weighed {
         Err(error @ (RefineError::Cancelled | RefineError::Setting { .. })) => Err(error),
-        Err(error) => Ok((Weighed::refused(error.to_string()), None)),
-        Ok((all, wanted, made)) => {
-            let one = all.into_iter().nth(wanted);
+        Err(error) => Ok(Weighed::refused(error.to_string())),
+        Ok(all) => {
             let no_fit = || Weighed::refused("the trials allow no fit".to_owned());
-            Ok((one.unwrap_or_else(no_fit), made))
+            Ok(all.into_iter().nth(wanted).unwrap_or_else(no_fit))
         }
     }
+}
+
+/// The place of what is taken of all that was tried.
+fn chosen_of(tried: &[Tried]) -> Option<usize> {
+    chosen(&tried.iter().map(|one| &one.weighed).collect::<Vec<_>>())
 }
 
 /// The weak form that an entrant had.
@@ -216,6 +255,16 @@ fn settings_on(settings: &Settings, rung: Rung, ridge: Option<(Family, f64)>) ->
         settings.strengths = strengths;
     }
     settings
+}
+
+/// Settings that give a weak form and no other: the others have been tried already.
+fn settings_of(settings: &Settings, ridge: Option<(Family, f64)>) -> Settings {
+    let mut settings = settings.clone();
+    if let Some((family, lambda)) = ridge {
+        settings.families = vec![family];
+        settings.strengths = vec![lambda];
+    }
+    settings_on(&settings, Rung::Weak, None)
 }
 
 /// Entrants with their errors, the least first; those that did not sail are left out.
@@ -256,8 +305,7 @@ fn leading(tried: &[Tried]) -> Vec<usize> {
 }
 
 fn taken(search: &Search<'_>, mut tried: Vec<Tried>) -> Result<Winner, RefineError> {
-    let weighed: Vec<&Weighed> = tried.iter().map(|one| &one.weighed).collect();
-    let best = chosen(&weighed).ok_or_else(|| {
+    let best = chosen_of(&tried).ok_or_else(|| {
         let reasons: Vec<String> =
             tried.iter().filter_map(|one| one.weighed.reason.clone()).collect();
         RefineError::Diverged(reasons.join("; "))
@@ -266,8 +314,13 @@ fn taken(search: &Search<'_>, mut tried: Vec<Tried>) -> Result<Winner, RefineErr
     let least = tried.iter().filter_map(|one| one.weighed.error).fold(f64::INFINITY, f64::min);
     let lines = lines.map(|(place, one)| line(search, one, least, place == best)).collect();
     let entrant = tried[best].entrant;
-    let below = &tried[..tried.iter().position(|one| one.rung == tried[best].rung).unwrap_or(0)];
-    let settings = settings_on(search.settings, tried[best].rung, ridge_of(below, entrant));
+    let settings = match tried[best].rung {
+        Rung::Weak => settings_of(search.settings, tried[best].weighed.ridge),
+        rung => {
+            let below = tried.iter().position(|one| one.rung == rung).unwrap_or(0);
+            settings_on(search.settings, rung, ridge_of(&tried[..below], entrant))
+        }
+    };
     let refinement = tried[best].refinement.take();
     Ok(Winner { entrant, settings, ladder: Ladder { lines }, refinement })
 }

@@ -1,6 +1,6 @@
 //! Whether a model captures the trend of trials.
 
-use sistership_dynamics::recorded::{MissingChannel, ReplaySettings, replay};
+use sistership_dynamics::recorded::{MissingChannel, Recorded, ReplaySettings, replay_all};
 use sistership_dynamics::state::at;
 use sistership_dynamics::{PlantError, Stopped};
 use sistership_model::Model;
@@ -8,6 +8,9 @@ use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 
 use crate::transfer::ready;
+
+/// Trials that are simulated in lockstep; more would be in vain where the first does not sail.
+const TOGETHER: usize = 8;
 
 /// Why it cannot be told whether a model captures the trend of trials.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -57,19 +60,17 @@ pub fn trend(
     let ship = ready(model, law, trials)?;
     let settings = ReplaySettings { restart_s: Some(restart_s), ..ReplaySettings::default() };
     let mut pairs = Vec::new();
-    for trial in trials {
-        let run = replay(&ship, trial, &settings)?;
-        if let Some(stopped) = run.stopped {
-            return Err(TrendError::Stopped { trial: trial.name.clone(), stopped });
+    for together in trials.chunks(TOGETHER) {
+        let recorded = together.iter().map(|trial| Recorded { trial, coefficients: &[] });
+        let runs = replay_all(&ship, &recorded.collect::<Vec<_>>(), &settings)?;
+        for (trial, run) in together.iter().zip(runs) {
+            if let Some(stopped) = run.stopped {
+                return Err(TrendError::Stopped { trial: trial.name.clone(), stopped });
+            }
+            let measured = trial.channel(Channel::R).unwrap_or_default();
+            let states = run.track.states.iter().zip(&run.samples);
+            pairs.extend(states.map(|(state, &k)| (state[at::R], measured[k])));
         }
-        let measured = trial.channel(Channel::R).unwrap_or_default();
-        pairs.extend(
-            run.track
-                .states
-                .iter()
-                .zip(&run.samples)
-                .map(|(state, &k)| (state[at::R], measured[k])),
-        );
     }
     pearson(&pairs).ok_or(TrendError::Constant)
 }

@@ -129,8 +129,8 @@ impl BandsRequest {
         let default = Sampling::default();
         let samples =
             usize::try_from(self.samples.unwrap_or_default().get()).unwrap_or(default.samples);
-        let sampling =
-            Sampling { samples, seed: self.seed.unwrap_or(default.seed), within_steps: true };
+        let seed = self.seed.unwrap_or(default.seed);
+        let sampling = Sampling { samples, seed, within_steps: true, figures_only: true };
         let none = || {
             let why = "only a refined one whose coefficients are those that were estimated has one";
             PredictError::invalid(

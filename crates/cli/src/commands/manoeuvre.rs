@@ -165,7 +165,8 @@ fn drawn(
     law: &Law,
 ) -> Result<Option<Bands>, Failure> {
     let Some(samples) = manoeuvre.bands else { return Ok(None) };
-    let sampling = Sampling { samples, seed: manoeuvre.seed, within_steps: true };
+    let sampling =
+        Sampling { samples, seed: manoeuvre.seed, within_steps: true, figures_only: true };
     sampling.check().map_err(|message| Failure::Call(format!("--bands: {message}")))?;
     let none = || {
         let why = "only a refined model whose coefficients are those that were estimated has one";

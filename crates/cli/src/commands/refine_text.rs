@@ -166,12 +166,7 @@ fn manoeuvres(manoeuvres: &Manoeuvres) -> TextTable {
 
 fn end(refinement: &Refinement, files: &WrittenFiles<'_>) -> String {
     let mut lines = vec![format!("condition number {}", number(refinement.condition_number))];
-    lines.extend(
-        refinement
-            .collinear_groups
-            .iter()
-            .map(|group| format!("cannot be told apart by these trials: {}", group.join(", "))),
-    );
+    lines.extend(inseparable(&refinement.collinear_groups));
     let failures = refinement.manoeuvres.refined.failures.iter();
     lines.extend(
         failures.map(|failure| {
@@ -189,4 +184,33 @@ fn end(refinement: &Refinement, files: &WrittenFiles<'_>) -> String {
     });
     lines.extend(files.report.map(|path| format!("report written to {}", path.display())));
     lines.join("\n")
+}
+
+/// Groups of coefficients that are listed one by one; more would bury what stands beside them.
+const LISTED: usize = 5;
+
+/// What the trials cannot tell apart.
+fn inseparable(groups: &[Vec<String>]) -> Vec<String> {
+    let line =
+        |group: &Vec<String>| format!("cannot be told apart by these trials: {}", group.join(", "));
+    let mut lines: Vec<String> = groups.iter().take(LISTED).map(line).collect();
+    let (all, more) = (groups.len(), groups.len().saturating_sub(LISTED));
+    let rest =
+        || format!("and {more} more such groups, of {all}; --json and --report have them all");
+    lines.extend((more > 0).then(rest));
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_groups_are_counted() {
+        let group = |k: usize| vec![format!("X_{k}"), format!("Y_{k}")];
+        let lines = |count: usize| inseparable(&(0..count).map(group).collect::<Vec<_>>());
+        assert_eq!(lines(0), Vec::<String>::new());
+        assert_eq!(lines(LISTED).len(), LISTED);
+        assert!(lines(30)[LISTED].starts_with("and 25 more such groups, of 30"));
+    }
 }

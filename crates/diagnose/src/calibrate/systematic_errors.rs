@@ -9,6 +9,8 @@ use sistership_model::uncertainty::Uncertainty;
 use sistership_model::{Effect, Model, Trial};
 
 use super::super::choose::choose;
+use super::super::screening::screen;
+use super::super::search::HypothesisSearch;
 use super::super::setup::search;
 use super::super::thresholds::THRESHOLDS;
 use super::super::values::{acts_on, model_with};
@@ -34,8 +36,24 @@ pub(super) fn of(
     let mut search = search(&request)?;
     search.freed.clear();
     search.listed.retain(|candidate| acts_on(candidate) == ActsOn::Measurement);
+    if !may_err(&search)? {
+        return Ok(Vec::new());
+    }
     let choice = choose(&search, &settings)?;
     Ok(model_with(search.model, &choice.best().candidates, None)
         .effects
         .split_off(model.effects.len()))
+}
+
+/// Whether any error seems to be there by one linearisation, at the discrepancy that the trials
+/// have: most instruments agree, and a search over sets and levels would find so at ten times the
+/// cost.
+fn may_err(search: &HypothesisSearch<'_>) -> Result<bool, RefineError> {
+    let levels: Vec<_> =
+        search.levels.iter().filter(|level| level.factor == 1.0).copied().collect();
+    let base = search.base(&[], &levels)?;
+    let least =
+        THRESHOLDS.calibration.seeming_share * THRESHOLDS.calibration.systematic_error_evidence;
+    let seeming = screen(search, &base).into_iter().map(|likely| likely.discounted);
+    Ok(seeming.fold(0.0, f64::max) >= least)
 }

@@ -2,13 +2,16 @@
 
 use nalgebra::DMatrix;
 use sistership_dynamics::state::at;
-use sistership_dynamics::tape::{Lanes, Slot, Slots};
+use sistership_dynamics::tape::{Lanes, Slots};
 use sistership_model::coefficient::Axis;
+use sistership_model::effect::EffectParameter;
 use sistership_model::law::STATES;
 
 use super::instruments::{InstrumentJacobian, LANES};
 use super::linearised::{Detail, Sizes};
 use super::path::RecordedPath;
+use super::regressor_block::RegressorBlock;
+use super::tangents::{TangentSeed, TangentSweep, sweeps};
 use super::{Linearised, NuisanceKind, ResidualSystem};
 
 /// Where the tapes stand at a sample.
@@ -17,48 +20,15 @@ pub(super) struct PathLineariser<'a> {
     path: &'a RecordedPath<'a>,
     detail: Detail,
     sizes: Sizes,
+    /// Of each state that laws know, its place among the path's.
+    states: Vec<Option<usize>>,
     point: Vec<f64>,
+    inputs: Vec<Lanes<1>>,
     primal: Slots<1>,
+    regressors: RegressorBlock,
+    moved: Vec<Lanes<LANES>>,
+    there: Slots<LANES>,
     sweeps: Vec<TangentSweep>,
-}
-
-/// What a direction of differentiation moves, and where its derivative goes.
-#[derive(Debug, Clone, Copy)]
-enum TangentSeed {
-    /// Input of the tape; state of the filter.
-    State(usize, usize),
-    /// Input of the tape; column.
-    Parameter(usize, usize),
-}
-
-impl TangentSeed {
-    fn input(self) -> usize {
-        let (Self::State(input, _) | Self::Parameter(input, _)) = self;
-        input
-    }
-}
-
-/// Directions that are differentiated together, with the part of the tape that they reach.
-struct TangentSweep {
-    seeds: Vec<TangentSeed>,
-    lanes: Vec<Lanes<LANES>>,
-    reached: Vec<Slot>,
-    tangents: Slots<LANES>,
-}
-
-impl TangentSweep {
-    fn new(system: &ResidualSystem, seeds: &[TangentSeed]) -> Self {
-        let tape = &system.motion.tape;
-        let mut lanes = vec![[0.0; LANES]; tape.inputs().len()];
-        seeds.iter().enumerate().for_each(|(lane, seed)| lanes[seed.input()][lane] = 1.0);
-        let inputs: Vec<usize> = seeds.iter().map(|seed| seed.input()).collect();
-        Self {
-            seeds: seeds.to_vec(),
-            lanes,
-            reached: tape.depending_on(&inputs),
-            tangents: Slots::default(),
-        }
-    }
 }
 
 /// The model at a sample.
@@ -68,6 +38,14 @@ struct SampleLinearisation {
     accelerations: Vec<f64>,
 }
 
+/// An input of the tape moved, and by how much a column's parameter is moved with it.
+struct Secant {
+    input: usize,
+    moved: f64,
+    by: f64,
+    column: usize,
+}
+
 impl<'a> PathLineariser<'a> {
     pub fn new(system: &'a ResidualSystem, path: &'a RecordedPath<'a>, detail: Detail) -> Self {
         let sizes = Sizes {
@@ -75,21 +53,21 @@ impl<'a> PathLineariser<'a> {
             axes: system.axes.len(),
             columns: system.columns.len(),
         };
-        let states = STATES.iter().enumerate().filter_map(|(input, (name, _))| {
-            let place = place_of(name);
-            Some(TangentSeed::State(input, system.states.iter().position(|&state| state == place)?))
-        });
-        let states: Vec<TangentSeed> = states.filter(|_| detail == Detail::Whole).collect();
-        let first = STATES.len() + system.inputs.len();
-        let parameters = (0..system.lagged.len())
-            .map(|j| TangentSeed::Parameter(first + j, system.columns.nuisance.len() + j));
-        let parameters: Vec<TangentSeed> = parameters.collect();
-        let sweeps = states
-            .chunks(LANES)
-            .chain(parameters.chunks(LANES))
-            .map(|seeds| TangentSweep::new(system, seeds))
-            .collect();
-        Self { system, path, detail, sizes, point: Vec::new(), primal: Slots::default(), sweeps }
+        let place = |name| system.states.iter().position(|&state| state == place_of(name));
+        Self {
+            system,
+            path,
+            detail,
+            sizes,
+            states: STATES.iter().map(|(name, _)| place(name)).collect(),
+            point: Vec::new(),
+            inputs: Vec::new(),
+            primal: Slots::default(),
+            regressors: RegressorBlock::new(system),
+            moved: Vec::new(),
+            there: Slots::default(),
+            sweeps: sweeps(system, detail),
+        }
     }
 
     pub fn walk(mut self, part: &[usize]) -> Linearised {
@@ -115,7 +93,10 @@ impl<'a> PathLineariser<'a> {
         };
         let mut before: Option<SampleLinearisation> = None;
         for (i, &k) in part.iter().enumerate() {
-            let instant = self.instant(k);
+            if i.is_multiple_of(LANES) {
+                self.next_regressors(&part[i..part.len().min(i + LANES)]);
+            }
+            let instant = self.instant(k, i % LANES);
             if let Some(before) = before {
                 self.interval(&before, &instant, (part[i - 1], k), &mut out);
             }
@@ -138,10 +119,8 @@ impl<'a> PathLineariser<'a> {
 
     fn load(&mut self, k: usize) {
         self.point.clear();
-        for (name, _) in STATES {
-            let place = place_of(name);
-            let state = self.system.states.iter().position(|&state| state == place);
-            let value = match state {
+        for ((name, _), state) in STATES.iter().zip(&self.states) {
+            let value = match *state {
                 Some(state) => self.path.states[state][k],
                 None => self.path.roll(name, k),
             };
@@ -152,19 +131,38 @@ impl<'a> PathLineariser<'a> {
     }
 
     fn run(&mut self) {
-        let inputs: Vec<Lanes<1>> = self.point.iter().map(|&value| [value]).collect();
-        self.system.motion.tape.run(&inputs, &mut self.primal);
+        self.inputs.clear();
+        self.inputs.extend(self.point.iter().map(|&value| [value]));
+        self.system.motion.tape.run(&self.inputs, &mut self.primal);
+    }
+
+    /// The regressors of samples that follow each other.
+    fn next_regressors(&mut self, samples: &[usize]) {
+        if self.system.columns.nuisance.is_empty() {
+            return;
+        }
+        for (lane, &k) in samples.iter().enumerate() {
+            self.load(k);
+            self.regressors.place(lane, &self.point);
+        }
+        self.regressors.run(&self.system.regressors);
     }
 
     fn read(&self, output: usize) -> f64 {
         self.system.motion.tape.read(output, &self.primal)[0]
     }
 
-    /// Accelerations of what the tape holds, by the inverse of the mass matrix.
-    fn solve(&self, inverse: &DMatrix<f64>) -> Vec<f64> {
+    /// Accelerations of what a lane holds, by the inverse of the mass matrix.
+    fn solve<const N: usize>(
+        &self,
+        inverse: &DMatrix<f64>,
+        work: &Slots<N>,
+        lane: usize,
+    ) -> Vec<f64> {
         let motion = &self.system.motion;
-        let force: Vec<f64> = motion.forces.iter().map(|&output| self.read(output)).collect();
-        let added = |axis: usize| motion.additions[axis].map_or(0.0, |output| self.read(output));
+        let read = |output: usize| motion.tape.read(output, work)[lane];
+        let force: Vec<f64> = motion.forces.iter().map(|&output| read(output)).collect();
+        let added = |axis: usize| motion.additions[axis].map_or(0.0, read);
         (0..self.sizes.axes)
             .map(|row| {
                 (0..self.sizes.axes).map(|c| inverse[(row, c)] * force[c]).sum::<f64>() + added(row)
@@ -180,11 +178,12 @@ impl<'a> PathLineariser<'a> {
         mass.try_inverse().unwrap_or_else(|| DMatrix::from_element(axes, axes, f64::NAN))
     }
 
-    fn instant(&mut self, k: usize) -> SampleLinearisation {
+    /// At a sample, which is one of those whose regressors are there.
+    fn instant(&mut self, k: usize, lane: usize) -> SampleLinearisation {
         self.load(k);
         self.run();
         let inverse = self.inverse_mass();
-        let mut rate = self.solve(&inverse);
+        let mut rate = self.solve(&inverse, &self.primal, 0);
         rate.extend(self.system.motion.kinematics.iter().map(|&output| self.read(output)));
         let Sizes { states, axes, columns } = self.sizes;
         let mut instant = SampleLinearisation {
@@ -193,7 +192,7 @@ impl<'a> PathLineariser<'a> {
             accelerations: vec![0.0; axes * columns],
         };
         self.differentiate(&inverse, &mut instant);
-        self.regressors(&inverse, &mut instant);
+        self.add_regressors(lane, &inverse, &mut instant);
         self.secants(k, &inverse, &mut instant);
         instant
     }
@@ -235,25 +234,28 @@ impl<'a> PathLineariser<'a> {
         }
     }
 
-    fn regressors(&mut self, inverse: &DMatrix<f64>, instant: &mut SampleLinearisation) {
-        if self.system.columns.nuisance.is_empty() {
-            return;
+    fn add_regressors(
+        &self,
+        lane: usize,
+        inverse: &DMatrix<f64>,
+        instant: &mut SampleLinearisation,
+    ) {
+        let Sizes { axes, columns, .. } = self.sizes;
+        for (range, axis) in self.regressors.alike() {
+            let forces = &self.regressors.of_sample(lane)[range.clone()];
+            for row in 0..axes {
+                let weight = inverse[(row, *axis)];
+                let to = &mut instant.accelerations[row * columns..][range.clone()];
+                to.iter_mut().zip(forces).for_each(|(to, force)| *to += weight * force);
+            }
         }
-        let inputs: Vec<Lanes<1>> = self.point.iter().map(|&value| [value]).collect();
-        let mut work = Slots::default();
-        self.system.regressors.run(&inputs, &mut work);
         for (column, nuisance) in self.system.columns.nuisance.iter().enumerate() {
-            let forces = match nuisance.kind {
-                NuisanceKind::Mass(row, other) => self.heavier((row, other), &instant.rate),
-                kind => vec![(kind.axis(), self.system.regressors.read(column, &work)[0])],
-            };
-            for (axis, force) in forces {
-                let Some(axis) = self.system.axes.iter().position(|&known| known == axis) else {
-                    continue;
-                };
-                for row in 0..self.sizes.axes {
-                    instant.accelerations[row * self.sizes.columns + column] +=
-                        inverse[(row, axis)] * force;
+            let NuisanceKind::Mass(row, other) = nuisance.kind else { continue };
+            for (axis, force) in self.heavier((row, other), &instant.rate) {
+                let axis = self.system.axes.iter().position(|&known| known == axis);
+                let Some(axis) = axis else { continue };
+                for row in 0..axes {
+                    instant.accelerations[row * columns + column] += inverse[(row, axis)] * force;
                 }
             }
         }
@@ -278,6 +280,24 @@ impl<'a> PathLineariser<'a> {
     /// Parameters whose derivative at their absence says nothing, and lags: what they change at a
     /// distance, by it.
     fn secants(&mut self, k: usize, inverse: &DMatrix<f64>, instant: &mut SampleLinearisation) {
+        for secants in self.wanted_secants(k).chunks(LANES) {
+            self.moved.clear();
+            self.moved.extend(self.point.iter().map(|&value| [value; LANES]));
+            for (lane, secant) in secants.iter().enumerate() {
+                self.moved[secant.input][lane] = secant.moved;
+            }
+            self.system.motion.tape.run(&self.moved, &mut self.there);
+            for (lane, secant) in secants.iter().enumerate() {
+                let there = self.solve(inverse, &self.there, lane);
+                for (row, there) in there.iter().enumerate() {
+                    instant.accelerations[row * self.sizes.columns + secant.column] =
+                        (there - instant.rate[row]) / secant.by;
+                }
+            }
+        }
+    }
+
+    fn wanted_secants(&self, k: usize) -> Vec<Secant> {
         let first = STATES.len() + self.system.inputs.len();
         let parameters = self
             .system
@@ -285,24 +305,17 @@ impl<'a> PathLineariser<'a> {
             .candidates
             .iter()
             .flat_map(|c| c.at.iter().zip(c.form.parameters.values()));
-        for (j, (&value, parameter)) in parameters.enumerate() {
+        let one = |(j, (&value, parameter)): (usize, (&f64, &EffectParameter))| {
             let (input, moved, by) = match (&self.path.delayed[j], self.system.lagged[j]) {
                 (Some((longer, by)), Some(input)) => (STATES.len() + input, longer[k], *by),
                 _ if value == parameter.absent && parameter.start != parameter.absent => {
                     (first + j, parameter.start, parameter.start - parameter.absent)
                 }
-                _ => continue,
+                _ => return None,
             };
-            let kept = std::mem::replace(&mut self.point[input], moved);
-            self.run();
-            self.point[input] = kept;
-            let there = self.solve(inverse);
-            let column = self.system.columns.nuisance.len() + j;
-            for (row, there) in there.iter().enumerate() {
-                instant.accelerations[row * self.sizes.columns + column] =
-                    (there - instant.rate[row]) / by;
-            }
-        }
+            Some(Secant { input, moved, by, column: self.system.columns.nuisance.len() + j })
+        };
+        parameters.enumerate().filter_map(one).collect()
     }
 
     /// From a sample to the next, by the mean of both ends.
@@ -314,12 +327,9 @@ impl<'a> PathLineariser<'a> {
         out: &mut Linearised,
     ) {
         let dt = self.path.record.trial.t_s[next] - self.path.record.trial.t_s[k];
-        let mean = |a: &[f64], b: &[f64]| {
-            a.iter().zip(b).map(|(x, y)| 0.5 * (x + y)).collect::<Vec<f64>>()
-        };
-        out.jacobian.extend(mean(&before.jacobian, &after.jacobian));
-        out.accelerations.extend(mean(&before.accelerations, &after.accelerations));
-        for (state, rate) in mean(&before.rate, &after.rate).into_iter().enumerate() {
+        out.jacobian.extend(means(&before.jacobian, &after.jacobian));
+        out.accelerations.extend(means(&before.accelerations, &after.accelerations));
+        for (state, rate) in means(&before.rate, &after.rate).enumerate() {
             let moved = self.path.states[state][next] - self.path.states[state][k];
             out.defect.push(dt * rate - moved);
         }
@@ -352,8 +362,12 @@ impl<'a> PathLineariser<'a> {
     }
 }
 
+fn means<'a>(a: &'a [f64], b: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    a.iter().zip(b).map(|(x, y)| 0.5 * (x + y))
+}
+
 /// The place in the state vector of a state that laws know.
-fn place_of(name: &str) -> usize {
+pub(super) fn place_of(name: &str) -> usize {
     match name {
         "u" => at::U,
         "v" => at::V,

@@ -24,7 +24,9 @@ mod lineariser;
 mod noise;
 mod path;
 mod record;
+mod regressor_block;
 mod smoother;
+mod tangents;
 mod tapes;
 mod thresholds;
 

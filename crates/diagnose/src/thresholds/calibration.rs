@@ -51,6 +51,10 @@ pub(crate) struct CalibrationThresholds {
     /// (`docs/evidence/diagnosis.md`, "Measured data"); it must be far above what a law that is not
     /// quite right leaves, since these trials have calibrated the coefficients already.
     pub systematic_error_evidence: f64,
+    /// Share of it that an error must have by one linearisation to be searched for, dimensionless.
+    /// Source: derived: errors of instruments act nearly linearly, so that the evidence where they
+    /// stand is the linearised one within some percent; a third leaves room for a factor of three.
+    pub seeming_share: f64,
 }
 
 /// Calibration's values.
@@ -66,6 +70,7 @@ pub(super) const CALIBRATION: CalibrationThresholds = CalibrationThresholds {
     least_chance: 1e-3,
     rounding: 1e3,
     systematic_error_evidence: 300.0,
+    seeming_share: 1.0 / 3.0,
 };
 
 /// The random accelerations that no coefficient explains.

@@ -1,6 +1,7 @@
 //! Who stands at the helm during a manoeuvre, and the sailing of many at once.
 
 use super::ManoeuvreSettings;
+use super::standard::INITIAL_DEG;
 use crate::envelope::Stopped;
 use crate::sailing::{HeldOrder, Sailing, sail_all};
 use crate::ship::{Order, Ship};
@@ -84,6 +85,8 @@ struct Helm {
     goes_on: bool,
     /// Whether the rudder is reversed at the heading, not at the end of the step.
     at_heading: bool,
+    /// Whether an initial turn ends at its heading.
+    figures_only: bool,
     step_s: f64,
     reversals_s: Vec<f64>,
 }
@@ -97,6 +100,7 @@ impl Helm {
             run_in_s,
             goes_on: settings.duration_s.is_some(),
             at_heading: settings.reversals_within_steps,
+            figures_only: settings.figures_only,
             step_s: settings.step(ship),
             reversals_s: Vec::new(),
         }
@@ -151,6 +155,9 @@ impl Helm {
 
     fn is_done(&self, state: &StateVector) -> bool {
         match self.manoeuvre {
+            Manoeuvre::Turn { rudder } if self.figures_only && rudder.abs() == INITIAL_DEG => {
+                rudder.signum() * state[at::PSI] > INITIAL_DEG.to_radians()
+            }
             Manoeuvre::Turn { .. } => state[at::PSI].abs() > 3.0 * std::f64::consts::TAU,
             Manoeuvre::Zigzag { .. } => self.reversals_s.len() > 4,
         }

@@ -34,6 +34,9 @@ pub struct ManoeuvreSettings {
     /// Whether a zigzag's rudder is reversed when the heading is reached within a step, and not at
     /// the step's end: what coarse steps need for overshoots that differ little.
     pub reversals_within_steps: bool,
+    /// Whether the initial turns end at the change of heading that is asked for, and not three times
+    /// round: all that their figure needs, and half of the time of all standard manoeuvres.
+    pub figures_only: bool,
 }
 
 impl Default for ManoeuvreSettings {
@@ -46,6 +49,7 @@ impl Default for ManoeuvreSettings {
             method: Method::Rk4,
             run_in_s: 0.0,
             reversals_within_steps: false,
+            figures_only: false,
         }
     }
 }

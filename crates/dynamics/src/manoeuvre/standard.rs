@@ -105,7 +105,7 @@ pub const STANDARD: [Manoeuvre; 8] = [
 ];
 
 /// Rudder and change of heading of the initial turning test.
-const INITIAL_DEG: f64 = 10.0;
+pub(super) const INITIAL_DEG: f64 = 10.0;
 
 /// Sails the standard manoeuvres; one that diverges is reported and the others go on.
 pub fn standard(ship: &Ship, settings: &ManoeuvreSettings) -> StandardManoeuvres {

@@ -1,6 +1,6 @@
 //! A candidate: a fit with its errors on trials left out, and which of several is best.
 
-use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
+use sistership_dynamics::error::{SquaredError, standardised_mse};
 use sistership_model::Model;
 
 use super::cma_es::SearchReport;
@@ -14,7 +14,7 @@ use super::variant::Variant;
 use sistership_regression::RidgeChoice;
 
 /// What a candidate gives where it is taken: its fit on all trials.
-pub(super) trait Solution {
+pub(super) trait Solution: Sync {
     /// The coefficients without their errors; `None` where the source stays as it is.
     ///
     /// # Errors
@@ -82,10 +82,10 @@ impl CandidateFit {
         size: usize,
         simulated: Simulated,
     ) -> Self {
-        let deviations = standard_deviations(&problem.training);
+        let deviations = &problem.deviations;
         let Simulated { total: errors, each, reason } = simulated;
-        let error = reason.is_none().then(|| standardised_mse(&errors, &deviations));
-        let each = each.iter().map(|error| standardised_mse(error, &deviations)).collect();
+        let error = reason.is_none().then(|| standardised_mse(&errors, deviations));
+        let each = each.iter().map(|error| standardised_mse(error, deviations)).collect();
         let flat = |of: &dyn Fn(&RidgeChoice) -> f64| {
             solution
                 .ridge()

@@ -44,8 +44,12 @@ pub(super) fn finish(
     variants: &[Variant],
     progress: Progress<'_>,
 ) -> Result<Refinement, RefineError> {
-    step(progress, 0.9, "standard manoeuvres of the source")?;
-    let before = standard_manoeuvres(&problem.transferred, problem.law);
+    step(progress, 0.9, "standard manoeuvres of the source, and of the best option")?;
+    let first = |place: usize| sailed(problem, candidates[place].solution.as_ref(), variants);
+    let (before, mut first) = rayon::join(
+        || standard_manoeuvres(&problem.transferred, problem.law),
+        || best(&candidates).map(first),
+    );
     loop {
         let Some(best) = best(&candidates) else {
             let reasons: Vec<String> =
@@ -57,7 +61,11 @@ pub(super) fn finish(
             0.9,
             &format!("standard manoeuvres of option {}", candidates[best].option.step),
         )?;
-        match accepted(problem, candidates[best].solution.as_ref(), variants, &before)? {
+        let sailed = match first.take() {
+            Some(sailed) => sailed,
+            None => sailed(problem, candidates[best].solution.as_ref(), variants),
+        };
+        match accepted(sailed?, &before) {
             Ok((fitted, after)) => {
                 return take(
                     problem,
@@ -75,13 +83,12 @@ pub(super) fn finish(
     }
 }
 
-/// What a candidate gives on all trials, where it keeps the constraints and sails what the source
-/// sails; else the reason.
-fn accepted(
+/// What a candidate gives on all trials with its standard manoeuvres, where it keeps the
+/// constraints; else the reason.
+fn sailed(
     problem: &Problem<'_>,
     solution: &dyn Solution,
     variants: &[Variant],
-    before: &StandardManoeuvres,
 ) -> Result<Accepted, RefineError> {
     let fitted = match solution.fit(variants) {
         Err(RefineError::Constraints(reason)) => {
@@ -90,12 +97,18 @@ fn accepted(
         fitted => fitted?,
     };
     let after = standard_manoeuvres(&model_of(problem, fitted.as_ref()), problem.law);
+    Ok(Ok((fitted, after)))
+}
+
+/// What a candidate gives, where it sails what the source sails.
+fn accepted(sailed: Accepted, before: &StandardManoeuvres) -> Accepted {
+    let (fitted, after) = sailed?;
     let worse =
         after.failures.iter().find(|failure| before.failures.is_empty() && !failure.is_empty());
-    Ok(match worse {
+    match worse {
         Some(failure) => Err(CandidateRefusal::Manoeuvre(failure.clone())),
         None => Ok((fitted, after)),
-    })
+    }
 }
 
 /// The refined model; the source where nothing was fitted.
@@ -124,7 +137,8 @@ fn take(
             true => FoldQuantile::Normal,
             false => FoldQuantile::Student,
         };
-        let factor = fold_factor(&model, problem.law, &candidates[best].left_out, quantile);
+        let how = (quantile, problem.settings.bands.figures_only);
+        let factor = fold_factor(&model, problem.law, &candidates[best].left_out, how);
         widen(&mut model, fitted.as_mut(), factor);
     }
     let measured = measured_manoeuvres(problem, &model);

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use sistership_dynamics::error::standard_deviations;
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
-use sistership_model::trial::Trial;
+use sistership_model::trial::{Channel, Trial};
 use sistership_model::vessel::Status;
 use sistership_model::{Model, particulars};
 
@@ -28,6 +29,8 @@ pub(super) struct Problem<'a> {
     /// The trials of which that is.
     pub whole: Vec<&'a Trial>,
     pub judged: Vec<&'a Trial>,
+    /// By which errors are standardised: those of the channels over what is fitted and left out.
+    pub deviations: BTreeMap<Channel, f64>,
     pub transferred: Model,
     /// What the prior measures coefficients by.
     pub measure: PriorMeasure,
@@ -46,6 +49,7 @@ impl<'a> Problem<'a> {
         let training = trials.to_vec();
         let (whole, judged, transferred) = (training.clone(), Vec::new(), model.clone());
         let thinned = for_simulation(particulars::value(&model.particulars, "lpp_m"), &training);
+        let deviations = standard_deviations(&training);
         Self {
             law,
             source: &model.name,
@@ -53,6 +57,7 @@ impl<'a> Problem<'a> {
             thinned,
             whole,
             judged,
+            deviations,
             transferred,
             measure: PriorMeasure::Trials,
             settings,

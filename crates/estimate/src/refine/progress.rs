@@ -35,13 +35,14 @@ pub struct Iterate<'a> {
 pub type Watch<'a> = &'a (dyn Fn(&Iterate<'_>) + Sync);
 
 /// Progress that never runs backwards, whatever the parts of the work say.
-pub(super) struct MonotoneProgress<'a> {
+pub struct MonotoneProgress<'a> {
     told: Progress<'a>,
     /// The bits of the largest fraction so far; those of positive numbers have the numbers' order.
     largest: AtomicU64,
 }
 
 impl<'a> MonotoneProgress<'a> {
+    /// Of whoever is told.
     pub fn new(told: Progress<'a>) -> Self {
         Self { told, largest: AtomicU64::new(0.0_f64.to_bits()) }
     }

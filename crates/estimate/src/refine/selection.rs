@@ -1,6 +1,7 @@
 //! The whole refinement: an estimator gives candidates from the source outwards, and the one whose
 //! simulations of manoeuvres left out are best is taken.
 
+use sistership_dynamics::error::standard_deviations;
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel};
@@ -82,7 +83,7 @@ pub fn weigh(
 /// As [`refine`].
 pub fn refine_wanted(
     request: &Request<'_>,
-    wanted: &dyn Fn(&[Weighed]) -> bool,
+    wanted: impl FnOnce(&[Weighed]) -> Result<bool, RefineError>,
     progress: Progress<'_>,
 ) -> Result<(Vec<Weighed>, Option<Refinement>), RefineError> {
     let both = |problem: &Problem<'_>,
@@ -90,7 +91,7 @@ pub fn refine_wanted(
                 variants: &[Variant],
                 progress: Progress<'_>| {
         let weighed = weighed(problem, &fits, variants);
-        let refinement = match wanted(&weighed) {
+        let refinement = match wanted(&weighed)? {
             true => Some(finish(problem, fits, variants, progress)?),
             false => None,
         };
@@ -132,6 +133,7 @@ fn with_candidates<T>(
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
     let (law, source, watch) = (request.law, request.source.name.as_str(), Some(watch));
     let thinned = for_simulation(request.target.particular("lpp_m"), &training);
+    let deviations = standard_deviations(&training);
     let problem = Problem {
         law,
         source,
@@ -139,6 +141,7 @@ fn with_candidates<T>(
         thinned,
         whole,
         judged,
+        deviations,
         transferred,
         measure,
         settings,

@@ -1,6 +1,7 @@
 //! Ranking by correlation, and the three steps by which a source is eligible: Kanazawa 2023,
 //! section 5.1.2.
 
+use rayon::prelude::*;
 use serde::Serialize;
 use sistership_model::categories::group_of;
 use sistership_model::{Model, Vessel};
@@ -63,7 +64,7 @@ pub struct RankedSource {
 
 /// How well a source's model captures the trend of the target's trials (a correlation), or why that
 /// cannot be told.
-pub type Trend<'a> = &'a dyn Fn(&Model) -> Result<f64, TrendError>;
+pub type Trend<'a> = &'a (dyn Fn(&Model) -> Result<f64, TrendError> + Sync);
 
 /// Ranks the candidates by correlation with the target. `trend` measures how well a source's model
 /// captures the trend of the target's trials; without trials the third step is left open and said
@@ -76,8 +77,10 @@ pub fn rank(
     trend: Option<Trend<'_>>,
 ) -> Vec<RankedSource> {
     let here = CharacteristicVector::of(target, definition);
-    let others = candidates.iter().filter(|candidate| candidate.vessel.name() != target.name());
-    let mut ranking: Vec<RankedSource> = others
+    let others = |candidate: &&SourceCandidate<'_>| candidate.vessel.name() != target.name();
+    let mut ranking: Vec<RankedSource> = candidates
+        .par_iter()
+        .filter(others)
         .map(|candidate| {
             let correlation =
                 here.correlation(&CharacteristicVector::of(candidate.vessel, definition));

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use sistership_dynamics::candidates::CandidateSystem;
-use sistership_dynamics::error::standard_deviations;
 use sistership_dynamics::state::at;
 use sistership_model::Model;
 use sistership_model::trial::Channel;
@@ -275,7 +274,7 @@ fn plan(
     system: &CandidateSystem,
     cutting: SegmentLengths,
 ) -> Result<ComparisonPlan, RefineError> {
-    let deviations = standard_deviations(&problem.training);
+    let deviations = &problem.deviations;
     let all = compared(system.states(), &deviations);
     let velocities: Vec<_> =
         all.into_iter().filter(|&(_, place, _)| [at::U, at::V, at::R].contains(&place)).collect();

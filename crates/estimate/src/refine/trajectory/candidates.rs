@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DVector;
-use sistership_dynamics::error::standard_deviations;
 use sistership_dynamics::sensitivity::SensitiveSystem;
 use sistership_model::Model;
 
@@ -64,7 +63,7 @@ pub(super) fn from_weak_form(
     let model = variant.model_at(&weak_form(variant, &choices, &|_| true)?.1);
     let system = SensitiveSystem::new(&model, problem.law)?;
     let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;
-    let compared = compared(system.states(), &standard_deviations(&problem.training));
+    let compared = compared(system.states(), &problem.deviations);
     let plan = ComparisonPlan { compared, stride, step_s: cutting.step_s };
     let segments = cut(&problem.training, problem.law, system.input_names(), cutting, &plan)?;
     if segments.is_empty() {
