@@ -121,7 +121,7 @@ RoleView = TypedDict('RoleView', {'family': 'Union[str, None]', 'role': 'str', '
 RolesRequest = TypedDict('RolesRequest', {'roles': 'List[RoleRequest]'}, total=True)
 RudderSign = Any  # Which way positive rudder turns the ship.
 Rule = TypedDict('Rule', {'no_worse_than': 'Union[float, None]'}, total=False)
-Sampling = TypedDict('Sampling', {'samples': 'int', 'seed': 'int', 'within_steps': 'bool'}, total=False)
+Sampling = TypedDict('Sampling', {'figures_only': 'bool', 'samples': 'int', 'seed': 'int', 'within_steps': 'bool'}, total=False)
 Section = TypedDict('Section', {'source': 'Union[str, None]', 'values': 'Dict[str, Written]'}, total=False)
 Settings = TypedDict('Settings', {'second_person': 'bool'}, total=True)
 ShipDetail = TypedDict('ShipDetail', {'category': 'str', 'condition': 'Condition', 'created_us': 'int', 'document': 'Dict[str, Any]', 'name': 'str', 'revision': 'int', 'title': 'str', 'updated_us': 'int'}, total=True)
