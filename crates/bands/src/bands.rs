@@ -285,7 +285,8 @@ mod tests {
         let ship = Ship::sisters(&model, &law).unwrap();
         let own = ship.sister(&model).unwrap();
         for figure in standard_of_sisters(&ship, &[&own], &settings)[0].figures() {
-            let (band, value) = (bands.of(&figure.name).unwrap(), figure.value.unwrap());
+            let band = bands.of(&figure.name).unwrap_or_else(|| panic!("{}", figure.name));
+            let value = figure.value.unwrap();
             let slack = 1e-3 * (band.high - band.low);
             let inside = (band.low - slack..=band.high + slack).contains(&value);
             assert!(inside, "{}: {value} in {band:?}", figure.name);

@@ -155,8 +155,9 @@ impl Helm {
 
     fn is_done(&self, state: &StateVector) -> bool {
         match self.manoeuvre {
+            // The state at which a run ends is not kept: twice the heading is well past it.
             Manoeuvre::Turn { rudder } if self.figures_only && rudder.abs() == INITIAL_DEG => {
-                rudder.signum() * state[at::PSI] > INITIAL_DEG.to_radians()
+                rudder.signum() * state[at::PSI] > 2.0 * INITIAL_DEG.to_radians()
             }
             Manoeuvre::Turn { .. } => state[at::PSI].abs() > 3.0 * std::f64::consts::TAU,
             Manoeuvre::Zigzag { .. } => self.reversals_s.len() > 4,
