@@ -274,14 +274,13 @@ fn plan(
     system: &CandidateSystem,
     cutting: SegmentLengths,
 ) -> Result<ComparisonPlan, RefineError> {
-    let deviations = &problem.deviations;
-    let all = compared(system.states(), &deviations);
+    let all = compared(system.states(), &problem.deviations);
     let velocities: Vec<_> =
         all.into_iter().filter(|&(_, place, _)| [at::U, at::V, at::R].contains(&place)).collect();
     if velocities.len() < 3 {
         let missing = [Channel::U, Channel::V, Channel::R]
             .into_iter()
-            .find(|channel| !deviations.contains_key(channel));
+            .find(|channel| !problem.deviations.contains_key(channel));
         let message = missing.map_or("a velocity never changes".to_owned(), |channel| {
             format!("no trial has `{channel}`")
         });
