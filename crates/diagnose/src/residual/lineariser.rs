@@ -1,7 +1,6 @@
 //! Along a path, sample by sample.
 
 use nalgebra::DMatrix;
-use sistership_dynamics::state::at;
 use sistership_dynamics::tape::{Lanes, Slots};
 use sistership_model::coefficient::Axis;
 use sistership_model::effect::EffectParameter;
@@ -11,7 +10,7 @@ use super::instruments::{InstrumentJacobian, LANES};
 use super::linearised::{Detail, Sizes};
 use super::path::RecordedPath;
 use super::regressor_block::RegressorBlock;
-use super::tangents::{TangentSeed, TangentSweep, sweeps};
+use super::tangents::{TangentSeed, TangentSweep, place_of, sweeps};
 use super::{Linearised, NuisanceKind, ResidualSystem};
 
 /// Where the tapes stand at a sample.
@@ -364,16 +363,4 @@ impl<'a> PathLineariser<'a> {
 
 fn means<'a>(a: &'a [f64], b: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
     a.iter().zip(b).map(|(x, y)| 0.5 * (x + y))
-}
-
-/// The place in the state vector of a state that laws know.
-pub(super) fn place_of(name: &str) -> usize {
-    match name {
-        "u" => at::U,
-        "v" => at::V,
-        "r" => at::R,
-        "p" => at::P,
-        "phi" => at::PHI,
-        _ => at::PSI,
-    }
 }

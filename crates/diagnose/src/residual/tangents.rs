@@ -1,12 +1,12 @@
 //! In which directions a model is differentiated at a sample, eight of them together.
 
+use sistership_dynamics::state::at;
 use sistership_dynamics::tape::{Lanes, Slot, Slots};
 use sistership_model::law::STATES;
 
 use super::ResidualSystem;
 use super::instruments::LANES;
 use super::linearised::Detail;
-use super::lineariser::place_of;
 
 /// What a direction of differentiation moves, and where its derivative goes.
 #[derive(Debug, Clone, Copy)]
@@ -63,4 +63,16 @@ pub(super) fn sweeps(system: &ResidualSystem, detail: Detail) -> Vec<TangentSwee
         .chain(parameters.chunks(LANES))
         .map(|seeds| TangentSweep::new(system, seeds))
         .collect()
+}
+
+/// The place in the state vector of a state that laws know.
+pub(super) fn place_of(name: &str) -> usize {
+    match name {
+        "u" => at::U,
+        "v" => at::V,
+        "r" => at::R,
+        "p" => at::P,
+        "phi" => at::PHI,
+        _ => at::PSI,
+    }
 }

@@ -1,7 +1,6 @@
 //! Who stands at the helm during a manoeuvre, and the sailing of many at once.
 
 use super::ManoeuvreSettings;
-use super::standard::INITIAL_DEG;
 use crate::envelope::Stopped;
 use crate::sailing::{HeldOrder, Sailing, sail_all};
 use crate::ship::{Order, Ship};
@@ -71,6 +70,8 @@ pub fn sail_together(
     helms.into_iter().zip(sailed).map(one).collect()
 }
 
+/// Rudder and change of heading of the initial turning test.
+pub(super) const INITIAL_DEG: f64 = 10.0;
 /// The heading is reached within this, deg: a hundredth of what overshoots are read to.
 const HEADING_DEG: f64 = 1e-3;
 /// Least part of a step that is sailed alone: it ends the approach to a heading.

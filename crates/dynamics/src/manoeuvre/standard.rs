@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use sistership_model::validity::Excursion;
 
 use super::ManoeuvreSettings;
-use super::helm::{Manoeuvre, Sailed, sail_together};
+use super::helm::{INITIAL_DEG, Manoeuvre, Sailed, sail_together};
 use crate::envelope::Stopped;
 use crate::metrics::{
     Criterion, TurningMetrics, ZigzagMetrics, criteria, initial_turning_distance,
@@ -103,9 +103,6 @@ pub const STANDARD: [Manoeuvre; 8] = [
     Manoeuvre::Turn { rudder: INITIAL_DEG },
     Manoeuvre::Turn { rudder: -INITIAL_DEG },
 ];
-
-/// Rudder and change of heading of the initial turning test.
-pub(super) const INITIAL_DEG: f64 = 10.0;
 
 /// Sails the standard manoeuvres; one that diverges is reported and the others go on.
 pub fn standard(ship: &Ship, settings: &ManoeuvreSettings) -> StandardManoeuvres {
