@@ -23,8 +23,8 @@ pub struct Sampling {
     /// keep the bands that they have.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub within_steps: bool,
-    /// Draws sail initial turns to the change of heading that is asked for, and no further. The
-    /// default search sets it, as `within_steps`.
+    /// Draws end initial turns soon after the change of heading that is asked for. The default
+    /// search sets it, as `within_steps`.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub figures_only: bool,
 }

@@ -41,7 +41,7 @@ pub struct Line {
     pub error: Option<f64>,
     /// Its standard error over the trials; none below two.
     pub standard_error: Option<f64>,
-    /// Wall time, s.
+    /// Wall time until it was weighed, s; weak forms are weighed side by side.
     pub cost_s: f64,
     /// Whether it was taken.
     pub chosen: bool,

@@ -49,9 +49,9 @@ pub(super) fn of(
 /// have: most instruments agree, and a search over sets and levels would find so at ten times the
 /// cost.
 fn may_err(search: &HypothesisSearch<'_>) -> Result<bool, RefineError> {
-    let levels: Vec<_> =
-        search.levels.iter().filter(|level| level.factor == 1.0).copied().collect();
-    let base = search.base(&[], &levels)?;
+    // At the least level, that of the trials themselves, an error has the most evidence.
+    let least_level = search.levels.iter().min_by(|a, b| a.factor.total_cmp(&b.factor)).copied();
+    let base = search.base(&[], least_level.as_slice())?;
     let least =
         THRESHOLDS.calibration.seeming_share * THRESHOLDS.calibration.systematic_error_evidence;
     let seeming = screen(search, &base).into_iter().map(|likely| likely.discounted);

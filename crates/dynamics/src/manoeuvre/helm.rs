@@ -86,7 +86,7 @@ struct Helm {
     goes_on: bool,
     /// Whether the rudder is reversed at the heading, not at the end of the step.
     at_heading: bool,
-    /// Whether an initial turn ends at its heading.
+    /// Whether an initial turn ends soon after its heading.
     figures_only: bool,
     step_s: f64,
     reversals_s: Vec<f64>,

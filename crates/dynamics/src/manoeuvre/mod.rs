@@ -34,8 +34,8 @@ pub struct ManoeuvreSettings {
     /// Whether a zigzag's rudder is reversed when the heading is reached within a step, and not at
     /// the step's end: what coarse steps need for overshoots that differ little.
     pub reversals_within_steps: bool,
-    /// Whether the initial turns end at the change of heading that is asked for, and not three times
-    /// round: all that their figure needs, and half of the time of all standard manoeuvres.
+    /// Whether the initial turns end soon after the change of heading that is asked for, and not
+    /// three times round: their figure needs no more.
     pub figures_only: bool,
 }
 
