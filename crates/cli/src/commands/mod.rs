@@ -25,6 +25,8 @@ mod log_format;
 pub mod manoeuvre;
 mod manoeuvre_document;
 mod manoeuvre_text;
+pub mod plan;
+mod plan_text;
 pub mod refine;
 mod refine_search;
 mod refine_settings;
