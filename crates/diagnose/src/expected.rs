@@ -20,7 +20,6 @@ use super::evidence::not_positive;
 use super::linearised_trials::LinearisedTrials;
 use super::nuisance::{Terms, columns, learned, learned_prior, prior};
 use super::setup::listed;
-use super::thresholds::THRESHOLDS;
 use crate::residual::{
     Columns, Discrepancies, EffectCandidate, Gram, Instrument, Noise, Nuisance, NuisanceKind,
     filter,
@@ -42,6 +41,9 @@ pub struct Unknowns<'a> {
     /// How far a published coefficient may be from the truth, as a share of its value, where the
     /// model does not say what its own trials leave open.
     pub slack: f64,
+    /// Random accelerations of such a model that no coefficient explains, by the typical ones
+    /// (`U^2/L`, or `(U/L)^2`).
+    pub discrepancy_level: f64,
 }
 
 /// The information of trials on unknowns.
@@ -118,10 +120,9 @@ impl<'a> ExpectedInformation<'a> {
     }
 
     /// Accelerations that no coefficient explains: those that the model brings with it, or those
-    /// that are forgiven a model that brings none.
+    /// that are stated for one that brings none.
     fn discrepancies(&self, ready: &LinearisedTrials<'_>) -> Discrepancies {
-        let level = THRESHOLDS.discrepancy.remainder_level;
-        let mut all = ready.scales().discrepancies(level);
+        let mut all = ready.scales().discrepancies(self.unknowns.discrepancy_level);
         if let Some(uncertainty) = &self.unknowns.model.uncertainty {
             for (axis, own) in ready.axes().iter().zip(&mut all) {
                 *own = uncertainty.discrepancy.get(axis).copied().unwrap_or(*own);

@@ -31,6 +31,7 @@ pub(crate) fn design(
         coefficients: &unknowns.coefficients,
         effects: &unknowns.effects,
         slack: THRESHOLDS.unknown_share,
+        discrepancy_level: THRESHOLDS.discrepancy_level,
     };
     let expected = ExpectedInformation::new(asked, like)?;
     let (before, instruments) = known(request, bare, unknowns, &expected)?;

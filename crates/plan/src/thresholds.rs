@@ -41,6 +41,10 @@ pub(crate) struct PlanThresholds {
     /// their value, dimensionless. Source: measured derivatives scatter about regressions by 15 to
     /// 25 % (Clarke 1983).
     pub unknown_share: f64,
+    /// `q`: accelerations that no coefficient of such a model explains, by the typical ones,
+    /// dimensionless. Source: `docs/evidence/plan.md`: manoeuvres of another law leave 0.5 % in
+    /// surge, 1.0 % in sway and 2.5 % in yaw.
+    pub discrepancy_level: f64,
     /// `e_v`: scatter of a figure by its value below which it is known, dimensionless. Source: as
     /// `bands`: below it is rounding.
     pub least_scatter: f64,
@@ -70,6 +74,7 @@ pub(crate) const THRESHOLDS: PlanThresholds = PlanThresholds {
     headings_deg: [0.0, 90.0, 180.0],
     interval: 0.02,
     unknown_share: 0.2,
+    discrepancy_level: 0.01,
     least_scatter: 1e-9,
     least_gain: 1e-4,
     most_trials: 40,
