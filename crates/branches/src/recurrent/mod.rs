@@ -15,6 +15,7 @@ mod sequence;
 mod simulated;
 mod training;
 
+pub(crate) use adam::Adam;
 pub use cell::Cell;
 pub use motion::Motion;
 pub use network::{Memory, Recurrent, Shape};
