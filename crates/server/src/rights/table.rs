@@ -114,6 +114,7 @@ pub(crate) const TABLE: &[Row] = &[
     ("GET", "/v1/models/{model}/versions/{number}", Reader, MODEL),
     ("GET", "/v1/models/{model}/versions/{number}/document", Reader, MODEL),
     ("GET", "/v1/models/{model}/versions/{number}/export", Reader, MODEL),
+    ("GET", "/v1/models/{model}/versions/{number}/validation", Reader, MODEL),
     ("GET", "/v1/models/{model}/versions/{number}/weights", Reader, MODEL),
     ("POST", "/v1/models/{model}/versions/{number}/verify", Reader, MODEL),
     ("GET", "/v1/models/{model}/aliases", Reader, MODEL),

@@ -40,6 +40,7 @@ mod tags;
 mod trials;
 mod uploads;
 mod users;
+mod validation;
 mod versions;
 
 use std::sync::Arc;
