@@ -3,7 +3,8 @@
 
 use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{
-    AsternOrder, ManoeuvreSettings, NotReversing, check_reversing, pull_out, spiral, stop,
+    AsternOrder, FurtherAsked, ManoeuvreSettings, NotReversing, check_reversing, further, pull_out,
+    spiral, stop,
 };
 use sistership_dynamics::metrics::is_straight_line_stable;
 use sistership_model::{Law, Model, Zoo};
@@ -72,16 +73,22 @@ fn a_law_that_is_not_told_of_reversing_says_so() {
     }
 }
 
-/// The Mariner and the SR 108 are stable on a straight course, the Esso tanker is not (van Berlekom
-/// and Goddard 1972).
+/// The SR 108 and the Mariner are stable on a straight course, the Esso tanker is not (van Berlekom
+/// and Goddard 1972); both of the latter turn with the rudder amidships, which spirals see through.
 #[test]
-fn pull_outs_tell_stable_ships_from_unstable_ones() {
-    for (name, expected) in [("mariner", true), ("sr108", true), ("esso-tanker", false)] {
+fn pull_outs_and_spirals_tell_stable_ships_from_unstable_ones() {
+    for (name, by_pull_outs, stable) in
+        [("sr108", Some(true), true), ("mariner", None, true), ("esso-tanker", None, false)]
+    {
         let (model, law) = model(name);
         let ship = Ship::new(&model, &law).unwrap();
-        let sail = |rudder| pull_out(&ship, rudder, &ManoeuvreSettings::default()).unwrap().metrics;
+        let settings = ManoeuvreSettings::default();
+        let sail = |rudder| pull_out(&ship, rudder, &settings).unwrap().metrics;
         let both = [sail(20.0), sail(-20.0)];
-        assert_eq!(is_straight_line_stable(&both), Some(expected), "{name}: {both:?}");
+        assert_eq!(is_straight_line_stable(&both), by_pull_outs, "{name}: {both:?}");
+        let all = further(&model, &law, &ship, &settings, &FurtherAsked::usual());
+        assert_eq!(all.straight_line_stable, Some(stable), "{name}");
+        assert_eq!(all.spiral.is_some(), by_pull_outs != Some(true), "{name}");
     }
 }
 
@@ -101,12 +108,6 @@ fn the_spirals_agree_on_the_loop() {
             sailed.width_limit_deg,
             clock.elapsed()
         );
-        for point in sailed.direct.iter().chain(&sailed.reverse) {
-            println!(
-                "  {:8.3} deg {:8.4} deg/s {}",
-                point.rudder_deg, point.rate_deg_s, point.steady
-            );
-        }
         assert!((sailed.direct_loop_width_deg - sailed.loop_width_deg).abs() < 1.0 + 1.0);
     }
 }

@@ -66,7 +66,8 @@ pub struct FurtherManoeuvres {
     /// Pull-outs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pull_outs: Vec<PullOutMetrics>,
-    /// Whether the ship is stable on a straight course, by pull-outs to both sides.
+    /// Whether the ship is stable on a straight course, by pull-outs to both sides, or by spirals
+    /// where they were sailed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub straight_line_stable: Option<bool>,
     /// Spirals.
@@ -143,7 +144,10 @@ pub fn further(
     if asked.spiral == AskedSpiral::Always || asked.spiral == AskedSpiral::WhereUnstable && unstable
     {
         match spiral(ship, settings) {
-            Ok(sailed) => all.spiral = Some(sailed),
+            Ok(sailed) => {
+                all.straight_line_stable = Some(sailed.is_stable());
+                all.spiral = Some(sailed);
+            }
             Err(stopped) => all.failures.push(format!("spiral: {stopped}")),
         }
     }

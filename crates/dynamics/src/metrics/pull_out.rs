@@ -15,19 +15,25 @@ pub struct PullOutMetrics {
     pub residual_rate_by_length: Option<f64>,
 }
 
-/// A turn about a radius of a thousand lengths: less is not told from straight running.
-const STRAIGHT: f64 = 1e-3;
+/// A turn about a radius of a thousand lengths: less is not told from another.
+const ALIKE: f64 = 1e-3;
+/// A turn about a radius of a hundred lengths: less is a straight course.
+const STRAIGHT: f64 = 1e-2;
 
-/// Whether a ship is stable on a straight course: after turns to both sides the same yaw rate is
-/// left; none where one was not sailed or did not become steady.
+/// Whether a ship is stable on a straight course: after turns to both sides she goes straight. None
+/// where one was not sailed or did not become steady, or where both sides end in the same turn: a
+/// ship that is not the same on both sides goes straight at another rudder than amidships, and
+/// spirals tell how she is there.
 pub fn is_straight_line_stable(pull_outs: &[PullOutMetrics]) -> Option<bool> {
     let side = |starboard: bool| {
         let of = |one: &&PullOutMetrics| (one.rudder_deg > 0.0) == starboard;
         pull_outs.iter().find(of)?.residual_rate_by_length
     };
-    // A ship that is not the same on both sides goes straight at a rudder that is not quite
-    // amidships: what counts is that both sides end alike.
-    Some((side(true)? - side(false)?).abs() < 2.0 * STRAIGHT)
+    let (starboard, port) = (side(true)?, side(false)?);
+    match (starboard - port).abs() < 2.0 * ALIKE {
+        false => Some(false),
+        true => (starboard.abs().max(port.abs()) < STRAIGHT).then_some(true),
+    }
 }
 
 #[cfg(test)]
@@ -47,7 +53,8 @@ mod tests {
     fn both_sides_must_end_alike() {
         let stable = |a, b| is_straight_line_stable(&[left(20.0, a), left(-20.0, b)]);
         assert_eq!(stable(Some(0.0), Some(0.0)), Some(true));
-        assert_eq!(stable(Some(0.01), Some(0.0101)), Some(true));
+        assert_eq!(stable(Some(0.005), Some(0.0051)), Some(true));
+        assert_eq!(stable(Some(0.15), Some(0.15)), None, "spirals tell");
         assert_eq!(stable(Some(0.2), Some(-0.2)), Some(false));
         assert_eq!(stable(Some(0.2), None), None);
         assert_eq!(is_straight_line_stable(&[left(20.0, Some(0.0))]), None);

@@ -45,7 +45,16 @@ impl SpiralMetrics {
             reverse,
         }
     }
+
+    /// Whether the ship is stable on a straight course: she has no loop.
+    pub fn is_stable(&self) -> bool {
+        self.loop_width_deg < NO_LOOP_DEG
+    }
 }
+
+/// What is no loop, deg of rudder: five times what a held rate leaves open of its rudder (0.02 deg).
+/// At half and double of it the verdicts of docs/evidence/manoeuvres.md are the same.
+const NO_LOOP_DEG: f64 = 0.1;
 
 /// The width of the loop that is acceptable, deg: none below L/V = 9 s, 12 deg above 45 s,
 /// (L/V)/3 - 3 between (American Bureau of Shipping 2006, Guide for vessel maneuverability, sec. 2;
@@ -77,7 +86,7 @@ fn reverse_width(points: &[SpiralPoint]) -> f64 {
 
 /// Between the yaw rates with the rudder amidships on the way to port and back.
 fn height(points: &[SpiralPoint]) -> f64 {
-    let amidships = points.iter().filter(|point| point.rudder_deg == 0.0);
+    let amidships = points.iter().filter(|point| point.rudder_deg.abs() < 0.05);
     let rates: Vec<f64> = amidships.map(|point| point.rate_deg_s).collect();
     match rates[..] {
         [there, back] => (there - back).abs(),

@@ -33,7 +33,6 @@ mod reports;
 mod roles;
 mod samples;
 mod ship_changes;
-mod ship_search;
 mod ships;
 mod similar;
 mod tags;

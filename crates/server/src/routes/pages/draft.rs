@@ -11,11 +11,11 @@ use sistership_trials::propose;
 
 use super::answer::{answer, then};
 use crate::app::App;
-use crate::drafts::{Draft, Drafts};
 use crate::problem::{Fault, Problem, Result};
 use crate::upload::{Spooled, Upload, keep, spool, unwritten};
 use crate::web::form::{PageForm, checked, shell};
 use crate::web::{Id, Name, Place};
+use sistership_http::drafts::{Draft, Drafts};
 
 /// Files whose plots are on the page.
 const PLOTTED: usize = 4;
