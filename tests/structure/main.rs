@@ -26,6 +26,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("fleet", &["model", "dynamics", "regression", "estimate"]),
     ("store", &[]),
     ("access", &[]),
+    ("webhooks", &["access", "store"]),
     (
         "report",
         &["model", "dynamics", "branches", "bands", "validation", "estimate", "choice", "diagnose"],
@@ -63,7 +64,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         &[
             "model", "dynamics", "branches", "trials", "bands", "estimate", "choice", "diagnose",
             "fleet", "store", "report", "pipeline", "pages", "listen", "fields", "predict", "http",
-            "access",
+            "access", "webhooks",
         ],
     ),
     (

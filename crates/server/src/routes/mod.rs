@@ -41,6 +41,7 @@ mod uploads;
 mod users;
 mod validation;
 mod versions;
+mod webhooks;
 
 use std::sync::Arc;
 
