@@ -18,6 +18,7 @@ pub mod payload;
 pub mod problem;
 pub mod query;
 pub mod reply;
+pub mod roles;
 pub mod ship_search;
 pub mod spool;
 pub mod tidy;

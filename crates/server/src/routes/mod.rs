@@ -30,7 +30,6 @@ mod queue;
 mod refinements;
 mod register;
 mod reports;
-mod roles;
 mod samples;
 mod ship_changes;
 mod ships;
