@@ -8,6 +8,7 @@ mod choice;
 mod domain;
 mod draws;
 mod forest;
+pub mod horizon;
 mod importance;
 mod joined;
 mod judge;

@@ -3,13 +3,22 @@
 //! They are no kind of branch yet: a simulation asks a branch of an instant, not of its past.
 
 mod adam;
+mod blame;
 mod cell;
 mod head;
+mod loss;
 mod motion;
 mod network;
+mod sail;
+mod scales;
+mod sequence;
+mod simulated;
 mod training;
 
+pub(crate) use adam::Adam;
 pub use cell::Cell;
 pub use motion::Motion;
 pub use network::{Memory, Recurrent, Shape};
-pub use training::{Fit, Loss, Scales, SequenceTraining, fit};
+pub use scales::Scales;
+pub use sequence::{Loss, SequenceTraining};
+pub use training::{Fit, fit};

@@ -1,0 +1,21 @@
+//! One-shot prediction (Kanazawa 2023, secs. 2.1.3, 3.1, 3.3 and 4.1): a foundation draws the track
+//! ahead once under the orders to come, and a network that is asked once takes off what such tracks
+//! lacked. Positions are in the ship's axes at the instant of the prediction (Eq. 4.1), so that
+//! nothing depends on the heading.
+
+mod ahead;
+mod axes;
+mod error;
+mod example;
+mod inputs;
+mod predictor;
+mod scaling;
+mod training;
+
+pub use ahead::ahead;
+pub use axes::Axes;
+pub use error::HorizonError;
+pub use example::{Example, OneShot};
+pub use inputs::Told;
+pub use predictor::Predictor;
+pub use training::{HorizonTraining, train};

@@ -1,0 +1,174 @@
+//! Training by Adam on squared errors, until examples kept for validation are answered no better.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::error::HorizonError;
+use super::example::Example;
+use super::predictor::Predictor;
+use super::scaling::Scaling;
+use crate::draws::Draws;
+use crate::recurrent::{Adam, Cell, Memory, Recurrent, Shape};
+
+/// How a predictor is trained.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HorizonTraining {
+    /// The cell; an RNN told of one sample is a perceptron of three hidden layers.
+    pub cell: Cell,
+    /// Neurons of each layer.
+    pub width: usize,
+    /// Most epochs.
+    pub epochs: usize,
+    /// Epochs without a gain after which it ends (Kanazawa 2023 has 200).
+    pub patience: usize,
+    /// Examples to a step.
+    pub batch: usize,
+    /// Length of the steps of Adam.
+    pub rate: f64,
+    /// Of every random number drawn.
+    pub seed: u64,
+}
+
+/// Fewest examples.
+const FEWEST: usize = 20;
+
+/// An example in deviations.
+struct Scaled {
+    inputs: Vec<Vec<f64>>,
+    target: Vec<f64>,
+}
+
+/// Trains a predictor of what the foundation lacks. It goes on from `start` where one is given, in
+/// its scales (pre-training: Kanazawa 2023, sec. 3.3.1). The same arguments give the same bytes.
+///
+/// # Errors
+/// There are too few examples, or they do not belong together.
+pub fn train(
+    seen: &[Example],
+    kept: &[Example],
+    training: &HorizonTraining,
+    start: Option<&Predictor>,
+) -> Result<Predictor, HorizonError> {
+    if seen.len() < FEWEST || kept.is_empty() {
+        return Err(HorizonError::Few { found: seen.len().min(kept.len()), wanted: FEWEST });
+    }
+    let first = start.cloned().unwrap_or_else(|| drawn(seen, training));
+    check(seen, &first)?;
+    check(kept, &first)?;
+    let (seen, kept) = (scaled(seen, &first), scaled(kept, &first));
+    Ok(descend(first, &seen, &kept, training))
+}
+
+fn drawn(seen: &[Example], training: &HorizonTraining) -> Predictor {
+    let rows: Vec<&[f64]> = seen.iter().flat_map(|one| &one.inputs).map(Vec::as_slice).collect();
+    let targets: Vec<Vec<f64>> = seen.iter().map(Example::lacking).collect();
+    let targets: Vec<&[f64]> = targets.iter().map(Vec::as_slice).collect();
+    let (inputs, answers) = (Scaling::of(&rows), Scaling::of(&targets));
+    let shape = Shape {
+        cell: training.cell,
+        memory: Memory::All,
+        inputs: inputs.width(),
+        width: training.width,
+        outputs: answers.width(),
+    };
+    let network = Recurrent::drawn(shape, training.seed);
+    Predictor { network, inputs, answers, spread_m: Vec::new(), validation: Vec::new() }
+}
+
+fn check(examples: &[Example], predictor: &Predictor) -> Result<(), HorizonError> {
+    let (inputs, answers) = (predictor.inputs.width(), predictor.answers.width());
+    let wrong = |one: &Example| {
+        let row = one.inputs.iter().map(Vec::len).find(|found| *found != inputs);
+        let row = row.map(|found| HorizonError::Shape { found, wanted: inputs });
+        let found = one.sailed.len();
+        row.or((found != answers).then_some(HorizonError::Shape { found, wanted: answers }))
+    };
+    examples.iter().find_map(wrong).map_or(Ok(()), Err)
+}
+
+fn scaled(examples: &[Example], predictor: &Predictor) -> Vec<Scaled> {
+    let of = |one: &Example| Scaled {
+        inputs: one.inputs.iter().map(|row| predictor.inputs.scaled(row)).collect(),
+        target: predictor.answers.scaled(&one.lacking()),
+    };
+    examples.iter().map(of).collect()
+}
+
+fn descend(
+    mut predictor: Predictor,
+    seen: &[Scaled],
+    kept: &[Scaled],
+    training: &HorizonTraining,
+) -> Predictor {
+    let mut adam = Adam::new(predictor.network.numbers.len());
+    let mut draws = Draws::new(training.seed, 1);
+    let mut network = predictor.network.clone();
+    let (mut best, mut last_gain) = (mean_square(&network, kept), 0);
+    for epoch in 1..=training.epochs {
+        for batch in draws.some_of(seen.len(), seen.len()).chunks(training.batch.max(1)) {
+            let gradient = gradient(&network, seen, batch);
+            adam.step(&mut network.numbers, &gradient, training.rate);
+        }
+        let loss = mean_square(&network, kept);
+        predictor.validation.push(loss);
+        if loss < best {
+            (best, last_gain) = (loss, epoch);
+            predictor.network = network.clone();
+        } else if epoch - last_gain >= training.patience {
+            break;
+        }
+    }
+    predictor.spread_m = spread(&predictor, kept);
+    predictor
+}
+
+/// Examples whose gradients are summed by one thread.
+const CHUNK: usize = 8;
+
+/// How the mean square of a batch changes with the network's numbers. Sums are of fixed parts in
+/// their order, whoever was first.
+fn gradient(network: &Recurrent, seen: &[Scaled], batch: &[u32]) -> Vec<f64> {
+    let share = 2.0 / (batch.len() * network.shape.outputs) as f64;
+    let part = |part: &[u32]| {
+        let mut gradient = vec![0.0; network.numbers.len()];
+        for k in part {
+            let Scaled { inputs, target } = &seen[*k as usize];
+            let unrolled = network.unrolled(inputs.iter().map(Vec::as_slice));
+            let off = unrolled.outputs.iter().zip(target);
+            let blame: Vec<f64> = off.map(|(answer, target)| share * (answer - target)).collect();
+            network.back(&unrolled, &blame, &mut gradient);
+        }
+        gradient
+    };
+    let each: Vec<Vec<f64>> = batch.par_chunks(CHUNK).map(part).collect();
+    let mut sum = vec![0.0; network.numbers.len()];
+    for own in &each {
+        sum.iter_mut().zip(own).for_each(|(sum, slope)| *sum += slope);
+    }
+    sum
+}
+
+/// Squares of what each answer lacks, the means over examples, in deviations.
+fn squares(network: &Recurrent, examples: &[Scaled]) -> Vec<f64> {
+    let one = |Scaled { inputs, target }: &Scaled| -> Vec<f64> {
+        let outputs = network.unrolled(inputs.iter().map(Vec::as_slice)).outputs;
+        outputs.iter().zip(target).map(|(answer, target)| (answer - target).powi(2)).collect()
+    };
+    let each: Vec<Vec<f64>> = examples.par_iter().map(one).collect();
+    let mut sums = vec![0.0; network.shape.outputs];
+    for own in &each {
+        sums.iter_mut().zip(own).for_each(|(sum, square)| *sum += square / each.len() as f64);
+    }
+    sums
+}
+
+fn mean_square(network: &Recurrent, examples: &[Scaled]) -> f64 {
+    squares(network, examples).iter().sum::<f64>() / network.shape.outputs as f64
+}
+
+fn spread(predictor: &Predictor, kept: &[Scaled]) -> Vec<f64> {
+    let squares = squares(&predictor.network, kept);
+    let scales = predictor.answers.scales();
+    squares.iter().zip(scales).map(|(square, scale)| scale * square.sqrt()).collect()
+}

@@ -1,0 +1,48 @@
+//! How the loss on states changes with each of them, and how that goes back through a simulation.
+
+use super::motion::Motion;
+use super::scales::Scales;
+use super::simulated::Simulated;
+
+/// How the loss changes with each state.
+pub struct Blame {
+    pub loss: f64,
+    pub positions: Vec<[f64; 3]>,
+    pub velocities: Vec<[f64; 3]>,
+}
+
+impl Blame {
+    /// What a simulation lacks of the recorded motion, and how that changes with its states.
+    pub fn of(run: &Simulated, motion: &Motion, start: usize, scales: &Scales, share: f64) -> Self {
+        let mut loss = 0.0;
+        let mut one = |simulated: &[f64; 3], recorded: &[f64; 3], scales: &[f64; 3]| {
+            std::array::from_fn(|axis| {
+                let off = (simulated[axis] - recorded[axis]) / scales[axis];
+                loss += share * off * off;
+                2.0 * share * off / scales[axis]
+            })
+        };
+        let (mut positions, mut velocities) = (Vec::new(), Vec::new());
+        for k in 0..run.velocities.len() {
+            let there = start + k;
+            positions.push(one(&run.positions[k], &motion.positions[there], &scales.positions));
+            velocities.push(one(&run.velocities[k], &motion.velocities[there], &scales.velocities));
+        }
+        Self { loss, positions, velocities }
+    }
+
+    /// What a step's state has to answer for at the next: Eqs. 21 to 23 backwards.
+    pub fn through_positions(&mut self, run: &Simulated, step: usize, dt: f64) {
+        let ([_, _, psi], [u, v, _]) = (run.positions[step], run.velocities[step]);
+        let (sin, cos) = psi.sin_cos();
+        let ([x, y, heading], next) = (self.positions[step + 1], self.velocities[step + 1]);
+        let at = &mut self.positions[step];
+        at[0] += x;
+        at[1] += y;
+        at[2] += heading + dt * (x * (-u * sin - v * cos) + y * (u * cos - v * sin));
+        let at = &mut self.velocities[step];
+        at[0] += next[0] + dt * (x * cos + y * sin);
+        at[1] += next[1] + dt * (y * cos - x * sin);
+        at[2] += next[2] + dt * heading;
+    }
+}

@@ -1,0 +1,116 @@
+//! The loss of one sequence and its gradient: on positions and velocities that the network
+//! simulates (Wakita 2022, Eq. 24), or on accelerations (Eq. 17).
+
+use super::blame::Blame;
+use super::motion::Motion;
+use super::network::{Memory, Recurrent, Unrolled};
+use super::scales::Scales;
+use super::sequence::{Loss, SequenceTraining};
+use super::simulated::Simulated;
+
+/// A network as it is judged while it is trained.
+pub struct Judged<'a> {
+    pub network: &'a Recurrent,
+    pub scales: &'a Scales,
+    pub training: &'a SequenceTraining,
+}
+
+impl Judged<'_> {
+    /// Loss of the sequence that starts at a sample, and how it changes with the network's numbers.
+    pub fn loss(&self, motion: &Motion, start: usize) -> (f64, Vec<f64>) {
+        match self.training.loss {
+            Loss::States => self.states(motion, start),
+            Loss::Accelerations => self.accelerations(motion, start),
+        }
+    }
+
+    /// Steps that are given, so that the memory is filled: Eq. 20.
+    fn given(&self) -> usize {
+        match self.network.shape.memory {
+            Memory::Steps(steps) => steps,
+            Memory::All => 1,
+        }
+    }
+
+    fn unrolled(&self, inputs: &[Vec<f64>], step: usize) -> Unrolled {
+        let from = self.network.sees_from(step);
+        self.network.unrolled(inputs[from..=step].iter().map(Vec::as_slice))
+    }
+
+    /// Eq. 17.
+    fn accelerations(&self, motion: &Motion, start: usize) -> (f64, Vec<f64>) {
+        let steps = self.training.steps;
+        let inputs: Vec<Vec<f64>> = (start..start + steps)
+            .map(|k| self.scales.inputs(&motion.velocities[k], &motion.known[k]))
+            .collect();
+        let mut gradient = vec![0.0; self.network.numbers.len()];
+        let mut loss = 0.0;
+        for step in self.given() - 1..steps {
+            let unrolled = self.unrolled(&inputs, step);
+            let measured = motion.differences(start + step);
+            let blame: Vec<f64> = (0..3)
+                .map(|axis| {
+                    unrolled.outputs[axis] - measured[axis] / self.scales.accelerations[axis]
+                })
+                .collect();
+            loss += blame.iter().map(|x| x * x).sum::<f64>() / steps as f64;
+            let blame: Vec<f64> = blame.iter().map(|x| 2.0 * x / steps as f64).collect();
+            self.network.back(&unrolled, &blame, &mut gradient);
+        }
+        (loss, gradient)
+    }
+
+    /// Eq. 24 by Euler's method, and its gradient back through the simulation.
+    fn states(&self, motion: &Motion, start: usize) -> (f64, Vec<f64>) {
+        let (run, unrolled) = self.simulated(motion, start);
+        let share = 1.0 / (self.training.steps - self.given() + 1) as f64;
+        let blame = Blame::of(&run, motion, start, self.scales, share);
+        (blame.loss, self.through_simulation(&run, &unrolled, blame, motion.interval_s))
+    }
+
+    /// The simulation of a sequence, and what the network was at each step that it answered.
+    fn simulated(&self, motion: &Motion, start: usize) -> (Simulated, Vec<Option<Unrolled>>) {
+        let steps = self.training.steps;
+        let mut run = Simulated::begin(motion, start, self.given());
+        let mut inputs: Vec<Vec<f64>> = Vec::with_capacity(steps);
+        let mut unrolled: Vec<Option<Unrolled>> = Vec::with_capacity(steps);
+        for step in 0..steps {
+            inputs.push(self.scales.inputs(&run.velocities[step], &motion.known[start + step]));
+            if step + 1 < self.given() {
+                unrolled.push(None);
+                continue;
+            }
+            let one = self.unrolled(&inputs, step);
+            let own = |axis: usize| one.outputs[axis] * self.scales.accelerations[axis];
+            let acceleration =
+                std::array::from_fn(|axis| own(axis) + motion.given[start + step][axis]);
+            run.advance(&acceleration, motion.interval_s);
+            unrolled.push(Some(one));
+        }
+        (run, unrolled)
+    }
+
+    fn through_simulation(
+        &self,
+        run: &Simulated,
+        unrolled: &[Option<Unrolled>],
+        mut blame: Blame,
+        dt: f64,
+    ) -> Vec<f64> {
+        let mut gradient = vec![0.0; self.network.numbers.len()];
+        for step in (self.given() - 1..self.training.steps).rev() {
+            blame.through_positions(run, step, dt);
+            let outputs: Vec<f64> = (0..3)
+                .map(|axis| dt * blame.velocities[step + 1][axis] * self.scales.accelerations[axis])
+                .collect();
+            let Some(one) = &unrolled[step] else { continue };
+            let from = self.network.sees_from(step);
+            for (back, seen) in self.network.back(one, &outputs, &mut gradient).iter().enumerate() {
+                let at = &mut blame.velocities[from + back];
+                let scaled = seen.iter().zip(&self.scales.velocities);
+                at.iter_mut().zip(scaled).for_each(|(at, (seen, scale))| *at += seen / scale);
+            }
+        }
+        gradient
+    }
+}

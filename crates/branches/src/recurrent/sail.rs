@@ -1,0 +1,40 @@
+//! Simulation by a network that was trained.
+
+use super::motion::Motion;
+use super::network::Memory;
+use super::simulated::Simulated;
+use super::training::Fit;
+
+impl Fit {
+    /// Simulates from a sample to another by Euler's method, the first `given` samples as recorded:
+    /// positions and velocities at each. `foundation` gives the accelerations of a foundation at a
+    /// sample and simulated velocities, m/s2, m/s2, rad/s2.
+    pub fn sail(
+        &self,
+        motion: &Motion,
+        own: std::ops::Range<usize>,
+        given: usize,
+        foundation: &mut dyn FnMut(usize, &[f64; 3]) -> [f64; 3],
+    ) -> Vec<([f64; 3], [f64; 3])> {
+        let mut run = Simulated::begin(motion, own.start, given.clamp(1, own.len()));
+        let (mut inputs, mut state) = (Vec::with_capacity(own.len()), self.network.empty());
+        for (step, k) in own.clone().enumerate() {
+            let velocities = run.velocities[step];
+            inputs.push(self.scales.inputs(&velocities, &motion.known[k]));
+            let outputs = match self.network.shape.memory {
+                Memory::All => self.network.step(&inputs[step], &mut state),
+                Memory::Steps(_) => {
+                    let seen = &inputs[self.network.sees_from(step)..];
+                    self.network.unrolled(seen.iter().map(Vec::as_slice)).outputs
+                }
+            };
+            if step + 1 >= run.velocities.len() && k + 1 < own.end {
+                let law = foundation(k, &velocities);
+                let scales = &self.scales.accelerations;
+                let sum = std::array::from_fn(|axis| outputs[axis] * scales[axis] + law[axis]);
+                run.advance(&sum, motion.interval_s);
+            }
+        }
+        run.positions.into_iter().zip(run.velocities).collect()
+    }
+}

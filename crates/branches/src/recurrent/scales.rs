@@ -1,0 +1,53 @@
+//! Deviations by which a network's inputs, outputs and states are divided.
+
+use serde::{Deserialize, Serialize};
+
+use super::motion::Motion;
+use crate::sample::centre_and_scale;
+
+/// Deviations by which inputs, outputs and states are divided.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scales {
+    /// Of x, y, psi.
+    pub positions: [f64; 3],
+    /// Of u, v, r.
+    pub velocities: [f64; 3],
+    /// Of what is known beside.
+    pub known: Vec<f64>,
+    /// Of the accelerations, by differences.
+    pub accelerations: [f64; 3],
+}
+
+impl Scales {
+    /// Of some motions.
+    pub fn of(motions: &[Motion]) -> Self {
+        let scale = |of: &dyn Fn(&Motion) -> Vec<f64>| {
+            centre_and_scale(&motions.iter().flat_map(of).collect::<Vec<f64>>()).1
+        };
+        let three = |of: &dyn Fn(&Motion, usize, usize) -> f64, less: usize| {
+            let axis = |axis: usize| {
+                let column = |motion: &Motion| {
+                    (0..motion.len() - less).map(|k| of(motion, k, axis)).collect()
+                };
+                scale(&column)
+            };
+            std::array::from_fn(axis)
+        };
+        let known = motions.first().map_or(0, |motion| motion.known[0].len());
+        Self {
+            positions: three(&|motion, k, axis| motion.positions[k][axis], 0),
+            velocities: three(&|motion, k, axis| motion.velocities[k][axis], 0),
+            known: (0..known)
+                .map(|at| scale(&|motion| motion.known.iter().map(|known| known[at]).collect()))
+                .collect(),
+            accelerations: three(&|motion, k, axis| motion.differences(k)[axis], 1),
+        }
+    }
+
+    /// The inputs of a step. They are not centred: of nothing comes nothing.
+    pub fn inputs(&self, velocities: &[f64; 3], known: &[f64]) -> Vec<f64> {
+        let own = velocities.iter().zip(&self.velocities);
+        own.chain(known.iter().zip(&self.known)).map(|(value, scale)| value / scale).collect()
+    }
+}

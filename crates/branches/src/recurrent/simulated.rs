@@ -1,0 +1,35 @@
+//! Euler's method as networks are trained through it.
+
+use super::motion::Motion;
+
+/// A simulation of a sequence, sample by sample.
+pub struct Simulated {
+    pub positions: Vec<[f64; 3]>,
+    pub velocities: Vec<[f64; 3]>,
+}
+
+impl Simulated {
+    /// The first samples as recorded.
+    pub fn begin(motion: &Motion, start: usize, given: usize) -> Self {
+        let own = start..start + given;
+        Self {
+            positions: motion.positions[own.clone()].to_vec(),
+            velocities: motion.velocities[own].to_vec(),
+        }
+    }
+
+    /// Eqs. 21 to 23.
+    pub fn advance(&mut self, acceleration: &[f64; 3], dt: f64) {
+        let last = self.velocities.len() - 1;
+        let ([x, y, psi], [u, v, r]) = (self.positions[last], self.velocities[last]);
+        let (sin, cos) = psi.sin_cos();
+        self.positions.push([
+            x + dt * (u * cos - v * sin),
+            y + dt * (u * sin + v * cos),
+            psi + dt * r,
+        ]);
+        self.velocities.push(std::array::from_fn(|axis| {
+            self.velocities[last][axis] + dt * acceleration[axis]
+        }));
+    }
+}
