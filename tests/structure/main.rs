@@ -27,12 +27,26 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("fleet", &["model", "dynamics", "regression", "estimate"]),
     ("store", &[]),
     ("access", &[]),
-    ("report", &["model", "dynamics", "branches", "bands", "estimate", "choice", "diagnose"]),
+    ("webhooks", &["access", "store"]),
+    (
+        "report",
+        &["model", "dynamics", "branches", "bands", "validation", "estimate", "choice", "diagnose"],
+    ),
     (
         "pipeline",
         &[
-            "model", "dynamics", "branches", "trials", "export", "estimate", "choice", "diagnose",
-            "fleet", "store",
+            "model",
+            "dynamics",
+            "branches",
+            "trials",
+            "bands",
+            "validation",
+            "export",
+            "estimate",
+            "choice",
+            "diagnose",
+            "fleet",
+            "store",
         ],
     ),
     ("pages", &["model", "dynamics", "trials", "estimate", "store", "report", "pipeline"]),
@@ -51,7 +65,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         &[
             "model", "dynamics", "branches", "trials", "bands", "estimate", "choice", "diagnose",
             "fleet", "store", "report", "pipeline", "pages", "listen", "fields", "predict", "http",
-            "access",
+            "access", "webhooks",
         ],
     ),
     (

@@ -19,6 +19,7 @@ pub mod recurrent;
 mod regressor;
 mod rows;
 mod sample;
+pub mod seakeeping;
 mod settings;
 mod train;
 mod tree;

@@ -7,7 +7,7 @@ use clap::{Parser, Subcommand};
 use crate::commands::{backup, family, fsck, gc, keys, serve, ships, users, verify, work, zoo};
 use crate::commands::{
     branch, check, compare, derive, diagnose, estimate, export, import, manoeuvre, plan, refine,
-    similar, simulate,
+    similar, simulate, validate,
 };
 use crate::demo::DemoArguments;
 
@@ -62,12 +62,15 @@ pub enum Command {
     Simulate(simulate::SimulateArguments),
     /// Find what a model lacks, by trials that it has not seen.
     Diagnose(diagnose::DiagnoseArguments),
-    /// Sail turning circles and zigzags with a model and judge them by the IMO criteria.
+    /// Sail turning circles, zigzags, stops, pull-outs and spirals with a model and judge them by the
+    /// IMO criteria.
     Manoeuvre(manoeuvre::ManoeuvreArguments),
     /// Plan the trials that narrow the bands of the IMO criteria most in a given time.
     Plan(plan::PlanArguments),
     /// Compare two to five models: coefficients, errors on the same trials, standard manoeuvres.
     Compare(compare::CompareArguments),
+    /// Validate a model by its ship's trials: comparison error, validation uncertainty, verdict.
+    Validate(validate::ValidateArguments),
     /// Derive a law of motion from a list of actuators.
     Derive(derive::DeriveArguments),
     /// Write a model down for another tool: C, Python, MATLAB, FMU; or a ship for another store.

@@ -66,6 +66,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Work(work) => commands::work::run(work),
         Command::Ships(ships) => commands::ships::run(ships),
         Command::Branch(branch) => commands::branch::run(&zoo()?, branch),
+        Command::Validate(validate) => commands::validate::run(&zoo()?, validate),
         Command::Verify(verify) => commands::verify::run(verify),
         Command::Family(family) => commands::family::run(family),
         Command::Users(users) => commands::users::run(users),

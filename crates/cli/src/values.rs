@@ -21,6 +21,9 @@ pub enum ValueError {
     /// Zero or less.
     #[error("must be above 0, not {0}")]
     NotPositive(f64),
+    /// Less than zero.
+    #[error("must be 0 or above, not {0}")]
+    Negative(f64),
     /// No rudder angle, deg.
     #[error(
         "must be a rudder angle from -90 to 90 deg other than 0 (positive turns to starboard), not {0}"
@@ -85,6 +88,14 @@ pub fn positive(text: &str) -> Result<f64, ValueError> {
     match number(text)? {
         value if value > 0.0 => Ok(value),
         value => Err(ValueError::NotPositive(value)),
+    }
+}
+
+/// A finite number, zero or above.
+pub fn not_negative(text: &str) -> Result<f64, ValueError> {
+    match number(text)? {
+        value if value >= 0.0 => Ok(value),
+        value => Err(ValueError::Negative(value)),
     }
 }
 

@@ -140,6 +140,10 @@ text! {
     Remark: 1..=1000, r"^[^\x00]*[^\s\x00][^\x00]*$", "1 to 1000 characters that are not all white space, without NUL"
 }
 text! {
+    /// An address of the web.
+    WebAddress: 10..=2000, r"^https?://[^\s\x00-\x1f\x7f-\x9f]+$", "an address of the web of 10 to 2000 characters, such as `https://example.com/hook`"
+}
+text! {
     /// The name of a file.
     FileName: 1..=200, r"^[^\x00-\x1f\x7f-\x9f]+$", "a name of 1 to 200 characters without control characters"
 }

@@ -4,8 +4,10 @@
 
 pub mod accept;
 pub mod acting;
+pub mod answers;
 pub mod api_key;
 pub mod conditions;
+pub mod drafts;
 pub mod host;
 pub mod known;
 pub mod large;
@@ -16,6 +18,8 @@ pub mod payload;
 pub mod problem;
 pub mod query;
 pub mod reply;
+pub mod roles;
+pub mod ship_search;
 pub mod spool;
 pub mod tidy;
 

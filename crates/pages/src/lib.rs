@@ -14,6 +14,7 @@ pub mod fleet;
 mod form;
 pub mod jobs;
 mod named;
+pub mod new_ship;
 pub mod people;
 mod picture;
 pub mod playground;

@@ -29,6 +29,7 @@ pub mod sorted;
 pub mod start;
 pub mod training;
 pub mod upkeep;
+pub mod validated;
 pub mod verify;
 pub mod version;
 

@@ -1,5 +1,6 @@
-//! The reports of a refinement ([`render_refinement`]), of a diagnosis ([`render_diagnosis`]) and of
-//! a learned branch ([`render_branch`]): one HTML page that a stranger can read and print, and the same content as JSON.
+//! The reports of a refinement ([`render_refinement`]), of a diagnosis ([`render_diagnosis`]), of a
+//! learned branch ([`render_branch`]) and of a validation ([`render_validation`]): one HTML page that
+//! a stranger can read and print, and the same content as JSON.
 //!
 //! Both are made of the same tables and plots. Nothing depends on the clock.
 
@@ -14,6 +15,7 @@ mod rendered;
 mod replayed;
 mod tables;
 mod tile;
+mod validation;
 mod words;
 
 /// The style of reports, which other pages share.
@@ -23,3 +25,4 @@ pub use branch::{BranchInput, render_branch};
 pub use diagnosis::{DiagnosisInput, distinct, render_diagnosis};
 pub use refinement::{RefinementInput, render_refinement};
 pub use rendered::{Rendered, ReportError, VersionLabel};
+pub use validation::render_validation;

@@ -19,7 +19,7 @@ pub(crate) const SESSION: Duration = Duration::from_secs(12 * 3600);
 const HASH_BYTES: u64 = 19 << 20;
 
 /// A role as it is kept.
-pub(crate) fn row(grant: &Grant) -> GrantRow {
+fn row(grant: &Grant) -> GrantRow {
     let (kind, name) = grant.scope.parts();
     let (scope_kind, scope_name) = (kind.to_owned(), name.to_owned());
     GrantRow { scope_kind, scope_name, role: grant.role.as_str().to_owned() }

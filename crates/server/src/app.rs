@@ -7,13 +7,13 @@ use sistership_model::{Law, Vessel, Zoo};
 use sistership_store::{Objects, Spool, Store};
 use tokio::sync::{Notify, RwLock, Semaphore};
 
-use crate::answers::Answers;
 use crate::config::{Config, Leases, Limits};
-use crate::drafts::Drafts;
 use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
 use sistership_access::Attempts;
+use sistership_http::answers::Answers;
 use sistership_http::api_key::{ApiKey, FormToken};
+use sistership_http::drafts::Drafts;
 use sistership_http::known::Known;
 use sistership_http::payload::DocumentLimits;
 use sistership_listen::{Stopping, Throttle};

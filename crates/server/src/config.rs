@@ -82,6 +82,8 @@ pub struct Limits {
     pub job_memory: u64,
     /// How long a request waits for memory that others have.
     pub memory_wait: Duration,
+    /// Whether webhooks may lead into private networks, and speak plain http.
+    pub webhooks_private: bool,
 }
 
 impl Config {
@@ -193,6 +195,7 @@ impl Default for Limits {
             request_memory: 256 << 20,
             job_memory: 1 << 30,
             memory_wait: Duration::from_secs(5),
+            webhooks_private: false,
         }
     }
 }

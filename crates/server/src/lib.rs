@@ -5,10 +5,8 @@
 //! too.
 
 mod accounts;
-mod answers;
 mod app;
 mod config;
-mod drafts;
 mod jobs;
 #[cfg(test)]
 mod journey;

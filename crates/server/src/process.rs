@@ -16,6 +16,7 @@ use sistership_listen::Stopping;
 use sistership_pipeline::archive::Archive;
 use sistership_pipeline::catalogue::Catalogue;
 use sistership_pipeline::seed;
+use sistership_webhooks::Telling;
 
 /// A process that runs until it is [stopped](Self::stop) or dropped.
 #[derive(Debug)]
@@ -40,6 +41,7 @@ impl Process {
         tasks.spawn(tidy::keep(app.clone()));
         if indexes {
             tasks.spawn(search_index::keep(app.clone()));
+            tasks.spawn(told(app.clone()));
         }
         for _ in 0..config.workers {
             tasks.spawn(Worker::new(app.clone()).run());
@@ -57,5 +59,15 @@ impl Process {
         if tokio::time::timeout(self.bound, ended).await.is_err() {
             tracing::warn!("not everything under way has ended in time");
         }
+    }
+}
+
+/// Tells webhooks what has happened, until the server is told to stop.
+async fn told(app: App) {
+    let telling = Telling { private: app.limits().webhooks_private, poll: app.leases().poll };
+    let mut stopping = app.stopping();
+    tokio::select! {
+        () = sistership_webhooks::keep(app.store().clone(), telling) => {}
+        () = stopping.wait() => {}
     }
 }

@@ -13,6 +13,10 @@ use crate::settings;
 use crate::statements::{pair, same, statements};
 use crate::store::Store;
 use crate::version;
+use crate::webhooks;
+
+/// The alias whose moves others are told of.
+const CHAMPION: &str = "champion";
 
 statements! {
     // Moves within one model wait for each other, so that the history tells where an alias came
@@ -174,8 +178,14 @@ pub(crate) async fn shift(
     }
     settings::check_promotion(tx, model, &change.alias, to).await?;
     let after = tx.one(PUT, args![model: model, alias: &change.alias, version_number: to]).await?;
+    let from = before.as_ref().map(|alias| alias.version_number);
     remember(store, tx, before, &after, change).await?;
     search_index::mark_moved(store, tx, model, &change.alias).await?;
+    if change.alias == CHAMPION {
+        let about =
+            json!({ "from": from, "version": to, "reason": change.reason, "actor": change.actor });
+        webhooks::tell(store, tx, webhooks::CHAMPION_MOVED, model, about).await?;
+    }
     Ok(after)
 }
 

@@ -1,9 +1,10 @@
 //! The one transaction that ends a diagnosis: its report, what was found, the version that came of
 //! it, and its job.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::aliases::AliasMove;
+use crate::database::Transaction;
 use crate::diagnoses::{self, Diagnosed, NewDiagnosed};
 use crate::error::Result;
 use crate::job::Job;
@@ -12,10 +13,11 @@ use crate::search_index;
 use crate::store::Store;
 use crate::version::{NewVersion, VersionHead};
 use crate::versions;
+use crate::webhooks;
 use crate::work;
 
 /// What a diagnosis brings.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Diagnosis {
     /// The version with the effects and the aliases that move to it, where effects were found.
     pub version: Option<(NewVersion, Vec<AliasMove>)>,
@@ -23,7 +25,13 @@ pub struct Diagnosis {
     pub report: NewReport,
     /// What was found.
     pub found: NewDiagnosed,
+    /// How many times as much the champion leaves of new trials as of those that it was fitted on,
+    /// where that is known.
+    pub drift: Option<f64>,
 }
+
+/// The verdict by which nothing is missing.
+const COMPLETE: &str = "complete";
 
 /// What has become of a diagnosis.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,11 +79,33 @@ impl Store {
             None,
             Some(after),
         );
+        tell(self, &mut tx, diagnosis, &found, &report.id).await?;
         // How the ship stands has changed.
         search_index::mark(self, &mut tx, &diagnosis.report.ship).await?;
         let result = result(version.as_ref(), &report);
         let job = work::complete(&mut tx, job, fence, &result, self.now_us()).await?;
         tx.commit().await?;
         Ok(CommittedDiagnosis { version, report, found, job })
+    }
+}
+
+/// Tells others of a version that lacks something, and of a champion that no longer holds as it did.
+async fn tell(
+    store: &Store,
+    tx: &mut Transaction,
+    diagnosis: &Diagnosis,
+    found: &Diagnosed,
+    report: &str,
+) -> Result<()> {
+    let ship = &diagnosis.report.ship;
+    if found.verdict != COMPLETE {
+        let effects: Value = serde_json::from_str(&found.effects).unwrap_or_default();
+        let about = json!({ "diagnosis": found.id, "verdict": found.verdict, "effects": effects,
+            "report": report });
+        webhooks::tell(store, tx, webhooks::DIAGNOSIS_FAILED, ship, about).await?;
+    }
+    match diagnosis.drift {
+        Some(ratio) => webhooks::tell_drift(store, tx, ratio, ship).await,
+        None => Ok(()),
     }
 }

@@ -98,6 +98,12 @@ statements! {
         WHERE user_name IS NOT NULL AND user_name NOT IN (SELECT name FROM users) ORDER BY prefix");
     SESSION_USER = same("SELECT 'sessions of ' || user_name AS place, 'there is no such user' AS message FROM sessions \
         WHERE user_name NOT IN (SELECT name FROM users) ORDER BY user_name");
+    WEBHOOK_SHIP = same("SELECT 'webhook ' || id AS place, 'there is no ship ' || ship AS message FROM webhooks \
+        WHERE ship IS NOT NULL AND ship NOT IN (SELECT name FROM ships) ORDER BY id");
+    WEBHOOK_EVENT = same("SELECT 'webhook ' || webhook AS place, 'is told of ' || event || ', but is not there' AS message \
+        FROM webhook_events WHERE webhook NOT IN (SELECT id FROM webhooks) ORDER BY webhook, event");
+    DELIVERY_WEBHOOK = same("SELECT 'delivery ' || id AS place, 'there is no webhook ' || webhook AS message FROM deliveries \
+        WHERE webhook NOT IN (SELECT id FROM webhooks) ORDER BY id");
     JOB_SHIP = same("SELECT 'job ' || id AS place, 'there is no ship ' || ship AS message FROM jobs \
         WHERE ship IS NOT NULL AND ship NOT IN (SELECT name FROM ships) ORDER BY id");
     JOB_STATE = same("SELECT 'job ' || id AS place, 'is ' || state || ', which its lease, result, error or end contradicts' AS message \
@@ -138,6 +144,9 @@ const CHECKS: &[(&str, Statement)] = &[
     ("grant-principal", GRANT_PRINCIPAL),
     ("grant-scope", GRANT_SCOPE),
     ("key-user", KEY_USER),
+    ("webhook-ship", WEBHOOK_SHIP),
+    ("webhook-event", WEBHOOK_EVENT),
+    ("delivery-webhook", DELIVERY_WEBHOOK),
     ("session-user", SESSION_USER),
     ("job-ship", JOB_SHIP),
     ("job-state", JOB_STATE),

@@ -67,6 +67,7 @@ mod unit_of_work;
 mod users;
 mod version;
 mod versions;
+mod webhooks;
 mod work;
 
 pub use actor::Actor;
@@ -115,4 +116,7 @@ pub use unit_of_work::UnitOfWork;
 pub use users::{User, Users};
 pub use version::{NewVersion, Version, VersionHead};
 pub use versions::Versions;
+pub use webhooks::{
+    CHAMPION_MOVED, DIAGNOSIS_FAILED, DRIFT, Delivery, EVENTS, NewWebhook, Webhook, Webhooks,
+};
 pub use work::{Claimed, MAX_LOST_WORKERS};

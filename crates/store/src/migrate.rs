@@ -19,6 +19,7 @@ const SQLITE: &[MigrationSource] = &[
     (7, "weights", include_str!("../../../migrations/sqlite/0007_weights.sql")),
     (8, "standing", include_str!("../../../migrations/sqlite/0008_standing.sql")),
     (9, "access", include_str!("../../../migrations/sqlite/0009_access.sql")),
+    (10, "webhooks", include_str!("../../../migrations/sqlite/0010_webhooks.sql")),
 ];
 const POSTGRES: &[MigrationSource] = &[
     (1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql")),
@@ -30,6 +31,7 @@ const POSTGRES: &[MigrationSource] = &[
     (7, "weights", include_str!("../../../migrations/postgres/0007_weights.sql")),
     (8, "standing", include_str!("../../../migrations/postgres/0008_standing.sql")),
     (9, "access", include_str!("../../../migrations/postgres/0009_access.sql")),
+    (10, "webhooks", include_str!("../../../migrations/postgres/0010_webhooks.sql")),
 ];
 
 fn migrator(sources: &'static [MigrationSource]) -> Migrator {

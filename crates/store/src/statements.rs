@@ -44,7 +44,7 @@ mod prepare {
     use crate::{
         aliases, audit, bulks, chain, current, diagnoses, effects, families, garbage, grants,
         idempotency, integrity, jobs, keys, laws, reports, room, search, search_index, sessions,
-        settings, ships, statistics, store, tags, trials, users, version, versions, work,
+        settings, ships, statistics, store, tags, trials, users, version, versions, webhooks, work,
     };
 
     pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[
@@ -77,6 +77,7 @@ mod prepare {
         ("users", users::STATEMENTS),
         ("version", version::STATEMENTS),
         ("versions", versions::STATEMENTS),
+        ("webhooks", webhooks::STATEMENTS),
         ("work", work::STATEMENTS),
     ];
 

@@ -8,6 +8,7 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::parser::parse_message_type;
 
 use super::*;
+use crate::parquet_footer::open;
 use crate::testing::messages;
 
 /// Three rows as another program might write them: integers, floats with a null, and text.

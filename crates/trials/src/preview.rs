@@ -9,7 +9,7 @@ use crate::layout;
 use crate::limits::Limits;
 use crate::mat_file;
 use crate::nmea_file;
-use crate::parquet_file;
+use crate::parquet_footer;
 use crate::source::{Content, Source};
 use crate::table::Target;
 use crate::workbook;
@@ -55,9 +55,9 @@ pub(crate) fn preview(name: &str, path: &Path) -> io::Result<Preview> {
         }
         Content::ParquetFile(file) => {
             // Of a long log stretches are read, so that it may have any number of rows.
-            let opened = parquet_file::open(file, Limits { rows: usize::MAX, ..limits });
+            let opened = parquet_footer::open(file, Limits { rows: usize::MAX, ..limits });
             let reader = opened.map_err(|refused| io::Error::other(refused.to_string()))?;
-            Ok(Preview { names: parquet_file::headers(&reader), ..Preview::default() })
+            Ok(Preview { names: parquet_footer::headers(&reader), ..Preview::default() })
         }
         Content::Nmea(input) => {
             let mut start = Vec::new();

@@ -25,7 +25,8 @@ use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::{Channel, Finding, Trial};
 
 use crate::limits::Limits;
-use crate::parquet_file::{self, BATCH, Cells};
+use crate::parquet_cells::{BATCH, Cells};
+use crate::parquet_footer;
 
 /// Key of the metadata.
 const KEY: &str = "sistership.trial";
@@ -94,11 +95,11 @@ pub fn write_parquet(out: impl Write + Send, trial: &Trial) -> Result<(), Sample
 /// # Errors
 /// The file is damaged, too large, or not written by [`to_parquet`].
 pub fn from_parquet(bytes: Bytes) -> Result<Trial, SamplesError> {
-    let reader = parquet_file::open(bytes, Limits::default())
+    let reader = parquet_footer::open(bytes, Limits::default())
         .map_err(|refused| SamplesError::Content(refused.to_string()))?;
     let About { name, manoeuvre, depth_m, velocity, warnings } = about(&reader)?;
     let mut trial = Trial { name, manoeuvre, depth_m, velocity, warnings, ..Trial::default() };
-    let mut columns = parquet_file::guarded(|| read_columns(&reader))?;
+    let mut columns = parquet_footer::guarded(|| read_columns(&reader))?;
     trial.t_s =
         columns.remove(TIME).ok_or_else(|| SamplesError::Content(format!("no column `{TIME}`")))?;
     for (name, values) in columns {
@@ -200,7 +201,7 @@ fn about(reader: &SerializedFileReader<Bytes>) -> Result<About, SamplesError> {
 }
 
 fn read_columns(reader: &SerializedFileReader<Bytes>) -> ParquetResult<BTreeMap<String, Vec<f64>>> {
-    let (names, groups) = (parquet_file::headers(reader), reader.metadata().row_groups());
+    let (names, groups) = (parquet_footer::headers(reader), reader.metadata().row_groups());
     let rows: i64 = groups.iter().map(|group| group.num_rows()).sum();
     let mut columns: Vec<Vec<f64>> =
         names.iter().map(|_| Vec::with_capacity(usize::try_from(rows).unwrap_or(0))).collect();
@@ -239,9 +240,9 @@ impl CsvPieces {
     /// # Errors
     /// It is damaged, or too large.
     pub fn open(file: File) -> Result<Self, SamplesError> {
-        let reader = parquet_file::open(file, Limits::default())
+        let reader = parquet_footer::open(file, Limits::default())
             .map_err(|refused| SamplesError::Content(refused.to_string()))?;
-        let names = parquet_file::headers(&reader);
+        let names = parquet_footer::headers(&reader);
         Ok(Self { reader, names, group: 0, cells: Vec::new(), left: 0, has_begun: false })
     }
 
@@ -255,7 +256,7 @@ impl CsvPieces {
             self.has_begun = true;
             writer.write_record(&self.names)?;
         }
-        let rows = parquet_file::guarded(|| self.decode())?;
+        let rows = parquet_footer::guarded(|| self.decode())?;
         let mut row = Vec::with_capacity(self.cells.len());
         for k in 0..rows {
             row.clear();

@@ -40,15 +40,23 @@ impl Comparison {
 
 /// Sails what was published, at the published speed, and sets the figures side by side.
 pub fn compare(ship: &Ship, trials: &[FreeRunning]) -> Vec<Comparison> {
-    trials.iter().flat_map(|trial| of_trial(ship, trial)).collect()
+    compare_at(ship, trials, 1.0)
 }
 
-fn of_trial(ship: &Ship, trial: &FreeRunning) -> Vec<Comparison> {
-    let settings = ManoeuvreSettings {
+/// The same with steps of so many times the usual ones.
+pub(crate) fn compare_at(ship: &Ship, trials: &[FreeRunning], steps: f64) -> Vec<Comparison> {
+    trials.iter().flat_map(|trial| of_trial(ship, trial, steps)).collect()
+}
+
+fn of_trial(ship: &Ship, trial: &FreeRunning, steps: f64) -> Vec<Comparison> {
+    let usual = ManoeuvreSettings {
         speed_m_s: trial.speed_m_s,
         reversals_within_steps: true,
         ..ManoeuvreSettings::default()
     };
+    // The usual step stays what it is where nothing else is asked for.
+    let step_s = (steps != 1.0).then(|| steps * usual.step(ship));
+    let settings = ManoeuvreSettings { step_s, ..usual };
     let turns = trial.turns.iter().flat_map(|published| {
         let sailed = sides(published.rudder_deg, published.both_sides, |rudder| {
             turn_figures(ship, rudder, &settings)

@@ -1,20 +1,29 @@
 //! What speaks for a model of the zoo: its standard manoeuvres beside the published free-running
 //! trials of its ship, the status that follows, the checks that a contributed ship
-//! passes, and its entry in catalogues.
+//! passes, its entry in catalogues, and the validation of any model by ITTC 7.5-02-06-03.
 
 mod appraisal;
 mod comparison;
+mod convergence;
 mod dataset;
 mod finding;
 pub mod limits;
 mod particulars;
 mod physics;
+mod procedure;
+mod published;
+mod quantity;
+mod recorded;
 mod review;
 mod standing;
+mod trial_of_ship;
 
 pub use appraisal::{Appraisal, appraise, appraise_vessel};
 pub use comparison::{Comparison, compare};
 pub use dataset::{Dataset, Work};
 pub use finding::{Finding, Severity};
+pub use procedure::{Validation, validate};
+pub use quantity::{Evidence, ValidatedQuantity, Verdict};
 pub use review::{Review, review};
 pub use standing::Standing;
+pub use trial_of_ship::TrialOfShip;

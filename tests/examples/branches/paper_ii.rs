@@ -4,6 +4,7 @@
 
 use sistership_branches::horizon::{Example, HorizonTraining, OneShot, Predictor, Told, train};
 use sistership_branches::recurrent::Cell;
+use sistership_model::trial::Channel;
 use sistership_model::{Trial, Zoo};
 
 use crate::vessel::foundation::{Shift, ship};
@@ -12,6 +13,7 @@ use crate::vessel::scenarios;
 
 const HORIZON: usize = 30;
 const HOW: OneShot = OneShot { steps: HORIZON, told: Told::Orders { parts: 6 }, memory: 1 };
+const WIND: [Channel; 2] = [Channel::WindSpeed, Channel::WindFrom];
 /// As in Paper I.
 const LOW_FIDELITY: Shift = Shift { damping: 0.6, inertia: 0.0, seed: 1 };
 /// Share of each trial, at its end, that is kept for validation.
@@ -60,9 +62,13 @@ fn training(epochs: usize, seed: u64) -> HorizonTraining {
     }
 }
 
+/// What the perceptron is told, as the paper's: no wind, of which the simulations know nothing.
 fn examples(trials: &[Trial], hop: usize) -> Vec<Example> {
-    let of =
-        |trial: &Trial| HOW.examples(None, trial, hop).unwrap_or_else(|error| panic!("{error}"));
+    let of = |trial: &Trial| {
+        let mut trial = trial.clone();
+        trial.channels.retain(|channel, _| !WIND.contains(channel));
+        HOW.examples(None, &trial, hop).unwrap_or_else(|error| panic!("{error}"))
+    };
     trials.iter().flat_map(of).collect()
 }
 

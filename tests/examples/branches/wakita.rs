@@ -138,7 +138,8 @@ struct Entrant<'a> {
 /// Its name, what it is trained on, its memory, loss and cells, and whether it stands beside the law.
 type Plan<'a> = (&'a str, &'a [&'a Trial], Memory, Loss, Cell, bool);
 
-pub fn run(epochs: usize) {
+/// `wanted` are some of the plans by name; none are all.
+pub fn run(epochs: usize, wanted: &[String]) {
     let Some(trials) = trials() else { return };
     let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
     let names = TEST.map(|(name, _)| name);
@@ -164,7 +165,11 @@ pub fn run(epochs: usize) {
         ("law, Type-1", &all, short, Loss::States, Cell::Rnn, true),
     ];
     let mut entrants = Vec::new();
+    let asked = |name: &str| wanted.is_empty() || wanted.iter().any(|asked| asked == name);
     for (name, seen, memory, loss, cell, beside) in plans {
+        if !asked(name) {
+            continue;
+        }
         let (ship, begun) = (beside.then_some(&ship), std::time::Instant::now());
         // Alone: a network that has learned nothing, of which nothing is taken.
         let epochs = if seen.is_empty() { 0 } else { epochs };

@@ -37,6 +37,7 @@ ComparedTrial = TypedDict('ComparedTrial', {'duration_s': 'float', 'errors': 'Li
 Comparison = TypedDict('Comparison', {'coefficients': 'List[ComparedCoefficient]', 'figures': 'List[ComparedFigure]', 'models': 'List[Column]', 'trials': 'List[ComparedTrial]'}, total=True)
 Condition = TypedDict('Condition', {'effects': 'List[str]', 'found_by': 'Union[FoundBy, None]', 'model': 'Standing', 'sentence': 'str', 'since': 'Union[FoundBy, None]', 'trials': 'List[str]', 'verdict': 'Union[str, None]', 'version': 'Union[int, None]', 'with_effects': 'Union[MadeVersion, None]'}, total=False)
 Constraints = TypedDict('Constraints', {'bounds': 'Dict[str, Bound]', 'dissipative': 'bool', 'physical_signs': 'bool', 'straight_line': 'Union[StraightLine, None]', 'trust_sd': 'Union[float, None]'}, total=False)
+DeliveryView = TypedDict('DeliveryView', {'answer': 'Union[str, None]', 'attempts': 'int', 'body': 'Dict[str, Any]', 'created_us': 'int', 'delivered_us': 'Union[int, None]', 'due_us': 'Union[int, None]', 'event': 'str', 'id': 'str'}, total=False)
 DiagnosisRequest = TypedDict('DiagnosisRequest', {'model': 'str', 'settings': 'DiagnosisSettings', 'trials': 'Union[List[str], None]'}, total=False)
 DiagnosisSettings = TypedDict('DiagnosisSettings', {'least_evidence': 'float', 'least_step_s': 'Union[float, None]', 'most_effects': 'int', 'prior_odds': 'Dict[str, float]', 'restart_s': 'Union[float, None]', 'slack': 'float'}, total=False)
 Discrepancy = TypedDict('Discrepancy', {'deviation': 'float', 'time_s': 'float', 'white': 'float'}, total=True)
@@ -71,6 +72,7 @@ Learner = Any  # What learns.
 Listing_AliasStep = TypedDict('Listing_AliasStep', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_AliasView = TypedDict('Listing_AliasView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_BulkView = TypedDict('Listing_BulkView', {'items': 'List[Any]', 'next': 'Union[str, None]'}, total=False)
+Listing_DeliveryView = TypedDict('Listing_DeliveryView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_EffectLibraryHead = TypedDict('Listing_EffectLibraryHead', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_EntryView = TypedDict('Listing_EntryView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_FamilyView = TypedDict('Listing_FamilyView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
@@ -83,6 +85,7 @@ Listing_ShipHead = TypedDict('Listing_ShipHead', {'items': 'List[Dict[str, Any]]
 Listing_TrialView = TypedDict('Listing_TrialView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_UserView = TypedDict('Listing_UserView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 Listing_VersionHead = TypedDict('Listing_VersionHead', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
+Listing_WebhookView = TypedDict('Listing_WebhookView', {'items': 'List[Dict[str, Any]]', 'next': 'Union[str, None]'}, total=False)
 MadeVersion = TypedDict('MadeVersion', {'at': 'str', 'number': 'int'}, total=True)
 ManoeuvreRequest = TypedDict('ManoeuvreRequest', {'all': 'bool', 'bands': 'Union[BandsRequest, None]', 'n_rps': 'Union[float, None]', 'speed_m_s': 'Union[float, None]', 'turn_deg': 'Union[float, None]', 'zigzag': 'Union[ZigzagRequest, None]'}, total=False)
 Me = TypedDict('Me', {'kind': 'str', 'name': 'str', 'roles': 'List[RoleView]'}, total=True)
@@ -95,6 +98,7 @@ NewFamily = TypedDict('NewFamily', {'foundation': 'str', 'members': 'List[str]',
 NewFoundation = TypedDict('NewFoundation', {'foundation': 'str'}, total=True)
 NewKeyView = TypedDict('NewKeyView', {'about': 'KeyView', 'key': 'str'}, total=True)
 NewMembers = TypedDict('NewMembers', {'ships': 'List[str]'}, total=True)
+NewWebhookView = TypedDict('NewWebhookView', {'about': 'WebhookView', 'secret': 'str'}, total=True)
 NumberOrExpression = Any  # 
 OutcomeView = TypedDict('OutcomeView', {'comparison': 'Dict[str, Any]', 'outcome': 'str', 'ship': 'str', 'version': 'Union[int, None]', 'worst_change': 'Union[float, None]'}, total=False)
 PasswordRequest = TypedDict('PasswordRequest', {'password': 'str'}, total=True)
@@ -142,12 +146,18 @@ Uncertainty = TypedDict('Uncertainty', {'discrepancy': 'Dict[str, Discrepancy]',
 Uploaded = TypedDict('Uploaded', {'diagnosis': 'Union[str, None]', 'new': 'int', 'ship': 'str', 'trials': 'List[TrialView]'}, total=False)
 UserRequest = TypedDict('UserRequest', {'name': 'str', 'password': 'Union[str, None]', 'roles': 'List[RoleRequest]', 'title': 'Union[str, None]'}, total=False)
 UserView = TypedDict('UserView', {'created_us': 'int', 'enabled': 'bool', 'has_password': 'bool', 'name': 'str', 'roles': 'List[RoleView]', 'title': 'str'}, total=True)
+ValidatedQuantity = TypedDict('ValidatedQuantity', {'comparison_error': 'Union[float, None]', 'comparison_error_percent': 'Union[float, None]', 'data': 'float', 'data_from': 'str', 'data_uncertainty': 'Union[float, None]', 'input_uncertainty': 'Union[float, None]', 'quantity': 'str', 'records': 'Union[int, None]', 'simulated': 'Union[float, None]', 'step_uncertainty': 'Union[float, None]', 'unit': 'str', 'validation_uncertainty': 'Union[float, None]', 'validation_uncertainty_percent': 'Union[float, None]', 'verdict': 'Verdict'}, total=False)
+Validation = TypedDict('Validation', {'draws': 'int', 'law': 'str', 'model': 'str', 'procedure': 'str', 'quantities': 'List[ValidatedQuantity]', 'remarks': 'List[str]'}, total=True)
+Verdict = Any  # What a comparison says.
 Verification = TypedDict('Verification', {'checked_by': 'str', 'derived_sha256': 'str', 'identical': 'bool', 'made_by': 'Union[str, None]', 'model': 'str', 'number': 'int', 'remarks': 'List[str]', 'sha256': 'str', 'stored_sha256': 'str'}, total=False)
 VersionDetail = TypedDict('VersionDetail', {'document': 'Dict[str, Any]', 'version': 'VersionHead'}, total=True)
 VersionHead = TypedDict('VersionHead', {'author': 'Union[str, None]', 'created_us': 'int', 'id': 'str', 'law': 'str', 'method': 'str', 'model': 'str', 'number': 'int', 'parent': 'Union[str, None]', 'report': 'Union[str, None]', 'sha256': 'str'}, total=False)
 VesselConventions = TypedDict('VesselConventions', {'rudder_positive': 'RudderSign'}, total=False)
 VesselFile = TypedDict('VesselFile', {'category': 'str', 'conventions': 'VesselConventions', 'free_running': 'List[FreeRunning]', 'kind': 'VesselKind', 'licences': 'Dict[str, str]', 'models': 'List[PublishedModelFile]', 'name': 'str', 'particulars': 'Section', 'quoted_vectors': 'Dict[str, QuotedVectorFile]', 'scale': 'Union[float, None]', 'sources': 'Dict[str, Source]', 'title': 'str', 'type': 'Union[str, None]'}, total=False)
 VesselKind = Any  # The word `vessel`.
+WebhookEvent = Any  # What a webhook may be told.
+WebhookRequest = TypedDict('WebhookRequest', {'drift_above': 'Union[float, None]', 'events': 'List[WebhookEvent]', 'ship': 'Union[str, None]', 'title': 'str', 'url': 'str'}, total=False)
+WebhookView = TypedDict('WebhookView', {'created_us': 'int', 'drift_above': 'float', 'ended_us': 'Union[int, None]', 'events': 'List[str]', 'id': 'str', 'ship': 'Union[str, None]', 'title': 'str', 'url': 'str'}, total=False)
 Written = Any  # The ways in which a file may write a value.
 WrittenInFull = TypedDict('WrittenInFull', {'note': 'Union[str, None]', 'source': 'Union[str, None]', 'standard_error': 'Union[float, None]', 'value': 'NumberOrExpression'}, total=False)
 ZigzagRequest = TypedDict('ZigzagRequest', {'rudder_deg': 'float', 'switch_deg': 'float'}, total=True)
@@ -359,6 +369,10 @@ class Core:
         """A version as a file for another tool."""
         return self.http.bytes('GET', f'/v1/models/{model}/versions/{number}/export', query={'format': format})
 
+    def get_models_model_versions_number_validation(self, model: str, number: int, *, format: Optional[Literal['json', 'html']] = None) -> Validation:
+        """A version validated after ITTC 7.5-02-06-03."""
+        return self.http.json('GET', f'/v1/models/{model}/versions/{number}/validation', query={'format': format})
+
     def post_models_model_versions_number_verify(self, model: str, number: int) -> Verification:
         """Derive a version again from its recipe, and compare the bytes."""
         return self.http.json('POST', f'/v1/models/{model}/versions/{number}/verify')
@@ -490,3 +504,27 @@ class Core:
     def put_users_user_roles(self, user: str, body: RolesRequest) -> UserView:
         """Give a user these roles instead of all others."""
         return self.http.json('PUT', f'/v1/users/{user}/roles', json=body)
+
+    def get_webhooks(self, *, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_WebhookView:
+        """List the webhooks by id, those that have ended too."""
+        return self.http.json('GET', '/v1/webhooks', query={'limit': limit, 'after': after})
+
+    def post_webhooks(self, body: WebhookRequest) -> NewWebhookView:
+        """Tell a place on the web of what happens."""
+        return self.http.json('POST', '/v1/webhooks', json=body)
+
+    def delete_webhooks_id(self, id: str) -> WebhookView:
+        """End a webhook, for ever."""
+        return self.http.json('DELETE', f'/v1/webhooks/{id}')
+
+    def get_webhooks_id(self, id: str) -> WebhookView:
+        """A webhook."""
+        return self.http.json('GET', f'/v1/webhooks/{id}')
+
+    def get_webhooks_id_deliveries(self, id: str, *, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_DeliveryView:
+        """What a webhook was told and is to be told, the latest first."""
+        return self.http.json('GET', f'/v1/webhooks/{id}/deliveries', query={'limit': limit, 'after': after})
+
+    def post_webhooks_id_deliveries_delivery_retry(self, id: str, delivery: str) -> DeliveryView:
+        """Send a delivery that has not arrived once more."""
+        return self.http.json('POST', f'/v1/webhooks/{id}/deliveries/{delivery}/retry')

@@ -3,7 +3,9 @@
 use std::io::IsTerminal as _;
 
 use clap::Args;
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::filter::Targets;
+use tracing_subscriber::layer::SubscriberExt as _;
+use tracing_subscriber::util::SubscriberInitExt as _;
 
 use super::config_file::ConfigFile;
 use super::log_format::LogFormat;
@@ -27,12 +29,16 @@ impl LogArguments {
     /// The filter does not read.
     pub fn begin(&self, file: &ConfigFile) -> Result<(), Failure> {
         let filter = self.log.as_deref().or(file.log.as_deref()).unwrap_or("info");
-        let filter = EnvFilter::try_new(filter)
+        let filter: Targets = filter
+            .parse()
             .map_err(|error| Failure::Call(format!("log filter `{filter}`: {error}")))?;
-        let log = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr);
+        let registry = tracing_subscriber::registry().with(filter);
+        let lines = tracing_subscriber::fmt::layer().with_writer(std::io::stderr);
         match self.log_format.or(file.log_format).unwrap_or_default() {
-            LogFormat::Text => log.with_ansi(std::io::stderr().is_terminal()).init(),
-            LogFormat::Json => log.json().flatten_event(true).init(),
+            LogFormat::Text => {
+                registry.with(lines.with_ansi(std::io::stderr().is_terminal())).init();
+            }
+            LogFormat::Json => registry.with(lines.json().flatten_event(true)).init(),
         }
         Ok(())
     }

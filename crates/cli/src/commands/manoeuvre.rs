@@ -1,14 +1,16 @@
-//! `sistership manoeuvre`: turning circles and zigzags, their figures and the IMO criteria.
+//! `sistership manoeuvre`: turning circles, zigzags, stopping, pull-outs and spirals, their figures
+//! and the IMO criteria.
 
 use std::path::PathBuf;
 
 use clap::Args;
 use sistership_bands::{Bands, Sampling, bands};
 use sistership_dynamics::Ship;
-use sistership_dynamics::manoeuvre::ManoeuvreSettings;
+use sistership_dynamics::manoeuvre::{ManoeuvreSettings, further};
 use sistership_model::{Law, Model, Zoo};
 
 use super::manoeuvre_document::ManoeuvreDocument;
+use super::manoeuvre_further::FurtherArguments;
 use super::sailed::sail;
 use super::{manoeuvre_text, ready, set_depth};
 use crate::failure::Failure;
@@ -21,11 +23,14 @@ Examples:
   sistership manoeuvre --model mariner
   sistership manoeuvre --model kvlcc2 --turn 35 --turn -35 --json
   sistership manoeuvre --model my-model.yaml --zigzag 20/20 --speed-m-s 6 --out zigzag.csv
+  sistership manoeuvre --model csl-spirit --stop --reversal-s 30
+  sistership manoeuvre --model esso-tanker --pull-out 20 --pull-out -20 --spiral
 
 Positive rudder turns to starboard. A criterion that is not met is a result: the exit status is 0.
-Exit status 1 when a manoeuvre leaves the physical range.";
+Exit status 1 when a manoeuvre leaves the physical range, or the law cannot sail what was asked for.";
 
-/// Sail turning circles and zigzags with a model and judge them by the IMO criteria.
+/// Sail turning circles, zigzags, stops, pull-outs and spirals with a model and judge them by the
+/// IMO criteria.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct ManoeuvreArguments {
@@ -38,8 +43,10 @@ pub struct ManoeuvreArguments {
     /// A zigzag: rudder and change of heading, such as 20/20; repeatable.
     #[arg(long, value_name = "DEG/DEG", value_parser = zigzag_deg, allow_hyphen_values = true, conflicts_with = "all")]
     zigzag: Vec<(f64, f64)>,
-    /// Turns at 35 deg, zigzags 10/10 and 20/20 to both sides, initial turning, IMO criteria: the
-    /// default.
+    #[command(flatten)]
+    further: FurtherArguments,
+    /// Turns at 35 deg, zigzags 10/10 and 20/20 to both sides, initial turning, a stop where the law
+    /// can, pull-outs, spirals of an unstable ship, IMO criteria: the default.
     #[arg(long)]
     all: bool,
     /// Approach speed; the model's own where absent.
@@ -62,7 +69,7 @@ pub struct ManoeuvreArguments {
     method: Integration,
     /// Draw so many models from the posterior of a refined one, for confidence bands of the
     /// standard manoeuvres.
-    #[arg(long, value_name = "SAMPLES", conflicts_with_all = ["turn", "zigzag"])]
+    #[arg(long, value_name = "SAMPLES", conflicts_with_all = ["turn", "zigzag", "stop", "pull_out", "spiral"])]
     bands: Option<usize>,
     /// What these draws follow from.
     #[arg(long, value_name = "SEED", default_value_t = 1, requires = "bands")]
@@ -80,26 +87,44 @@ pub struct ManoeuvreArguments {
 /// # Errors
 /// The model is refused or a manoeuvre leaves the physical range.
 pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
-    if manoeuvre.out.is_some() && manoeuvre.turn.len() + manoeuvre.zigzag.len() != 1 {
-        return Err(Failure::Call(
-            "--out writes the track of a single manoeuvre: give one --turn or one --zigzag".into(),
-        ));
-    }
+    check_single(manoeuvre)?;
     let (mut model, law) = named::model(zoo, &manoeuvre.model)?;
     let inputs = [PathBuf::from(&manoeuvre.model)];
     let file = manoeuvre.out.as_ref().map(|path| PromisedFile::new(path, &inputs)).transpose()?;
     let remarks = remarks(manoeuvre, &mut model, &law);
     let ship = ship(manoeuvre, &model, &law)?;
-    let (sailed, tracks) = sail(&ship, &manoeuvre.turn, &manoeuvre.zigzag, &settings(manoeuvre));
-    if let (Some(file), Some(track)) = (file, tracks.first()) {
+    let settings = settings(manoeuvre);
+    let usual = manoeuvre.turn.is_empty() && manoeuvre.zigzag.is_empty();
+    let usual = usual && !manoeuvre.further.any();
+    let (sailed, tracks) = sail(&ship, &manoeuvre.turn, &manoeuvre.zigzag, usual, &settings);
+    let asked = manoeuvre.further.asked(usual);
+    let mut further = further(&model, &law, &ship, &settings, &asked);
+    if !usual && let Some(reason) = further.no_stopping.take() {
+        further.failures.push(format!("stopping: {reason}"));
+    }
+    let tracks = tracks.iter().chain(further.tracks.iter().map(|(_, track)| track));
+    if let (Some(file), Some(track)) = (file, tracks.into_iter().next()) {
         file.write(&track::csv(track, &law, ship.has_propeller())?)?;
     }
     let bands = drawn(manoeuvre, &model, &law)?;
-    let document = ManoeuvreDocument::of(&model, &ship, sailed, bands, remarks);
+    let document = ManoeuvreDocument::of(&model, &ship, sailed, further, bands, remarks);
     output::print(manoeuvre.json, &document, || {
         manoeuvre_text::text(&document, &model, &law, &ship)
     })?;
     if document.failures.is_empty() { Ok(()) } else { Err(Failure::Told) }
+}
+
+/// A file of a track is that of one manoeuvre.
+fn check_single(manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
+    let tracks = manoeuvre.turn.len() + manoeuvre.zigzag.len() + manoeuvre.further.tracks();
+    if manoeuvre.out.is_some() && tracks != 1 {
+        return Err(Failure::Call(
+            "--out writes the track of a single manoeuvre: give one --turn, --zigzag, --stop or \
+             --pull-out"
+                .into(),
+        ));
+    }
+    Ok(())
 }
 
 /// Moves a law that is expanded about a speed to the speed asked for, and says so.
@@ -119,7 +144,7 @@ fn remarks(manoeuvre: &ManoeuvreArguments, model: &mut Model, law: &Law) -> Vec<
         .turn
         .iter()
         .chain(manoeuvre.zigzag.iter().map(|(rudder, _)| rudder))
-        .fold(0.0_f64, |a, b| a.max(b.abs()));
+        .fold(manoeuvre.further.largest_deg(), |a, b| a.max(b.abs()));
     let ordered = if largest == 0.0 { 35.0 } else { largest };
     if ordered > model.steering.limit_deg {
         remarks.push(format!(

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use sistership_bands::Bands;
 use sistership_dynamics::Ship;
-use sistership_dynamics::manoeuvre::StandardManoeuvres;
+use sistership_dynamics::manoeuvre::{FurtherManoeuvres, StandardManoeuvres};
 use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
 use sistership_model::Model;
 use sistership_model::validity::Excursion;
@@ -27,6 +27,9 @@ pub struct ManoeuvreDocument {
     pub zigzags: Vec<ZigzagMetrics>,
     /// Distance to 10 deg of heading with 10 deg of rudder, the worse side, m.
     pub initial_turning_m: Option<f64>,
+    /// Stopping, pull-outs and spirals.
+    #[serde(flatten)]
+    pub further: FurtherManoeuvres,
     /// The IMO criteria.
     pub imo: Vec<Criterion>,
     /// Manoeuvres that left the physical range.
@@ -50,9 +53,19 @@ impl ManoeuvreDocument {
         model: &Model,
         ship: &Ship,
         sailed: StandardManoeuvres,
+        mut further: FurtherManoeuvres,
         bands: Option<Bands>,
-        remarks: Vec<String>,
+        mut remarks: Vec<String>,
     ) -> Self {
+        let mut failures = sailed.failures;
+        // One list says what failed.
+        failures.append(&mut further.failures);
+        remarks.extend(further.remarks(ship.lpp_m()));
+        let stopping = further.criterion(ship.lpp_m());
+        let mut outside = sailed.outside;
+        for (name, track) in &further.tracks {
+            outside.extend(ship.leaves(track).map(|excursion| (name.clone(), excursion)));
+        }
         Self {
             model: model.name.clone(),
             law: model.law.clone(),
@@ -61,9 +74,10 @@ impl ManoeuvreDocument {
             turns: sailed.turns,
             zigzags: sailed.zigzags,
             initial_turning_m: sailed.initial_turning_m,
-            imo: sailed.imo,
-            failures: sailed.failures,
-            outside: sailed.outside,
+            imo: sailed.imo.into_iter().chain(stopping).collect(),
+            further,
+            failures,
+            outside,
             branch_share: sailed.branch_share,
             bands,
             remarks,

@@ -6,6 +6,7 @@ use sistership_dynamics::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
 use sistership_model::{Law, Model};
 
 use super::manoeuvre_document::ManoeuvreDocument;
+use super::manoeuvre_further::tables;
 use super::model_line;
 use crate::table::{TextTable, number, optional};
 
@@ -17,11 +18,15 @@ pub fn text(document: &ManoeuvreDocument, model: &Model, law: &Law, ship: &Ship)
         number(ship.lpp_m()),
         number(document.speed_m_s)
     );
-    let parts = [
+    let further = tables(&document.further, ship.lpp_m());
+    let further =
+        further.into_iter().map(|(title, table)| section(&title, false, || table)).collect();
+    let parts: [String; 5] = [
         section("Turning circles", document.turns.is_empty(), || {
             turns(&document.turns, ship.lpp_m())
         }),
         section("Zigzags", document.zigzags.is_empty(), || zigzags(&document.zigzags)),
+        further,
         section("IMO criteria, MSC.137(76)", document.imo.is_empty(), || criteria(&document.imo)),
         document
             .bands

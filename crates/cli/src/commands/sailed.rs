@@ -5,15 +5,16 @@ use sistership_dynamics::manoeuvre::{
 };
 use sistership_dynamics::{Ship, Trajectory};
 
-/// Sails the turns and zigzags asked for, or the standard set where none is; what diverges is a
+/// Sails the turns and zigzags asked for, or the standard set where that is; what diverges is a
 /// failure in the result.
 pub fn sail(
     ship: &Ship,
     turns: &[f64],
     zigzags: &[(f64, f64)],
+    usual: bool,
     settings: &ManoeuvreSettings,
 ) -> (StandardManoeuvres, Vec<Trajectory>) {
-    if turns.is_empty() && zigzags.is_empty() {
+    if usual {
         return (standard(ship, settings), Vec::new());
     }
     let (mut sailed, mut tracks) = (StandardManoeuvres::default(), Vec::new());
@@ -52,12 +53,13 @@ mod tests {
     fn what_is_asked_for_is_sailed_and_nothing_else() {
         let zoo = Zoo::embedded().unwrap();
         let ship = Ship::new(&zoo.model("mariner").unwrap(), zoo.law("abkowitz").unwrap()).unwrap();
-        let (sailed, tracks) = sail(&ship, &[35.0, -35.0], &[], &ManoeuvreSettings::default());
+        let (sailed, tracks) =
+            sail(&ship, &[35.0, -35.0], &[], false, &ManoeuvreSettings::default());
         assert_eq!(
             (sailed.turns.len(), sailed.zigzags.len(), sailed.imo.len(), tracks.len()),
             (2, 0, 0, 2)
         );
-        let (all, tracks) = sail(&ship, &[], &[], &ManoeuvreSettings::default());
+        let (all, tracks) = sail(&ship, &[], &[], true, &ManoeuvreSettings::default());
         assert!(!all.imo.is_empty() && tracks.is_empty());
     }
 }

@@ -65,6 +65,10 @@ pub struct ServeArguments {
     /// [default: half of the connections].
     #[arg(long, value_name = "N", env = "SISTERSHIP_CONNECTIONS_PER_ADDRESS")]
     connections_per_address: Option<u32>,
+    /// Let webhooks lead into private networks, and speak plain http: their addresses are set by
+    /// admins, and a server asks them.
+    #[arg(long, env = "SISTERSHIP_WEBHOOKS_PRIVATE")]
+    webhooks_private: bool,
     #[command(flatten)]
     lease: LeaseArguments,
     #[command(flatten)]
@@ -125,7 +129,7 @@ fn limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, Failure> 
         true => Ok(value as usize),
         false => Err(Failure::Call(format!("{name} must be from {least} to {most}, not {value}"))),
     };
-    let mut limits = Limits::default();
+    let mut limits = Limits { webhooks_private: serve.webhooks_private, ..Limits::default() };
     if let Some(connections) = serve.connections.or(file.connections) {
         limits.connections = within("connections", connections, 16, 1 << 16)?;
         limits.connections_per_address = limits.connections / 2;

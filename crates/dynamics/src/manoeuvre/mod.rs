@@ -1,14 +1,25 @@
 //! The standard manoeuvres, sailed by a model.
 
 mod figures;
+mod further;
 mod helm;
+mod pull_out;
+mod reversing;
+mod spiral;
 mod standard;
+mod steady;
+mod stopping;
 
 use serde::{Deserialize, Serialize};
 
 pub use figures::Figure;
+pub use further::{AskedSpiral, FurtherAsked, FurtherManoeuvres, further};
 pub use helm::{Manoeuvre, Sailed, sail_together};
+pub use pull_out::{PullOut, pull_out};
+pub use reversing::{NotReversing, check_reversing};
+pub use spiral::spiral;
 pub use standard::{STANDARD, StandardManoeuvres, Turn, Zigzag, standard, standard_of_sisters};
+pub use stopping::{AsternOrder, NoStopping, Stopping, stop};
 
 use crate::envelope::Stopped;
 use crate::integrate::Method;
@@ -68,7 +79,8 @@ impl ManoeuvreSettings {
         self.duration_s.unwrap_or_else(|| 60.0 * ship.lpp_m() / self.speed(ship)) + self.run_in_s
     }
 
-    fn step(&self, ship: &Ship) -> f64 {
+    /// The step, s.
+    pub fn step(&self, ship: &Ship) -> f64 {
         let default = 0.1_f64.min(0.02 * ship.lpp_m() / self.speed(ship));
         self.step_s.unwrap_or(default)
     }

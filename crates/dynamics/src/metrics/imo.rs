@@ -20,7 +20,7 @@ pub struct Criterion {
 }
 
 impl Criterion {
-    fn new(name: &str, value: Option<f64>, limit: f64, unit: &str) -> Self {
+    pub(super) fn new(name: &str, value: Option<f64>, limit: f64, unit: &str) -> Self {
         let pass = value.map(|value| value <= limit);
         Self { criterion: name.into(), value, limit, unit: unit.into(), pass }
     }

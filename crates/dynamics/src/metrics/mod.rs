@@ -2,10 +2,16 @@
 
 mod imo;
 mod measured;
+mod pull_out;
+mod spiral;
+mod stopping;
 mod turning;
 mod zigzag;
 
 pub use imo::{Criterion, criteria};
 pub use measured::{ManoeuvreMetrics, Recognised, recorded_track};
+pub use pull_out::{PullOutMetrics, is_straight_line_stable};
+pub use spiral::{SpiralMetrics, SpiralPoint, width_limit};
+pub use stopping::{StoppingMetrics, TRACK_REACH_ALLOWED};
 pub use turning::{TurningMetrics, initial_turning_distance};
 pub use zigzag::ZigzagMetrics;

@@ -3,6 +3,7 @@
 mod query;
 
 use askama::Template;
+use futures::future::try_join_all;
 use sistership_pipeline::Archive;
 use sistership_pipeline::condition::Condition;
 use sistership_pipeline::search::standing::{Class, ERROR};
@@ -53,10 +54,9 @@ pub async fn page(archive: &Archive, shell: Shell, fields: &Fields) -> Result<St
     let query = FleetQuery::read(fields)?;
     let found = found(archive, &query, query.search()?).await?;
     let next = cursor(found.next.as_ref()).map(|next| query.address(&next));
-    let mut ships = Vec::with_capacity(found.items.len());
-    for ship in found.items {
-        ships.push(row(archive, ship, query.sort).await?);
-    }
+    // Side by side: each is several short reads, which cost their way to the database and back.
+    let rows = found.items.into_iter().map(|ship| row(archive, ship, query.sort));
+    let ships = try_join_all(rows).await?;
     let page = FleetPage {
         shell: shell.at("/"),
         particulars: search::particulars().collect(),

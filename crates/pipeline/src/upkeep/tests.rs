@@ -182,6 +182,9 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     (GRANT, "grant-scope", "roles of user:nobody"),
     (KEY, "key-user", "key 0123456789ab"),
     (SESSION, "session-user", "sessions of nobody"),
+    (WEBHOOK, "webhook-ship", "webhook w"),
+    (LISTENER, "webhook-event", "webhook nowhere"),
+    (DELIVERY, "delivery-webhook", "delivery d"),
     ("UPDATE audit SET actor = 'bob' WHERE number = 2", "audit-chain", "audit entry 2"),
     ("DELETE FROM audit WHERE number = 2", "audit-chain", "audit entry 3"),
     (CUT, "audit-chain", "audit entry "),
@@ -205,6 +208,11 @@ const GRANT: &str = "INSERT INTO grants VALUES ('user:nobody', 'ship', 'none', '
 const KEY: &str =
     "INSERT INTO service_keys VALUES ('0123456789ab', 'K', 'nobody', 'x', 0, NULL, NULL, NULL)";
 const SESSION: &str = "INSERT INTO sessions VALUES ('x', 'nobody', 0, 0)";
+const WEBHOOK: &str =
+    "INSERT INTO webhooks VALUES ('w', 'W', 'https://example.com', 'x', 'nobody', 2, 0, NULL)";
+const LISTENER: &str = "INSERT INTO webhook_events VALUES ('drift', 'nowhere')";
+const DELIVERY: &str =
+    "INSERT INTO deliveries VALUES ('d', 'nowhere', 'drift', '{}', 0, 0, NULL, NULL, NULL)";
 const CUT: &str = "DELETE FROM audit WHERE number = (SELECT MAX(number) FROM audit)";
 const FACT: &str = "INSERT INTO ship_facts VALUES ('nobody', 'particular lpp_m', 1)";
 const JOB: &str = "INSERT INTO jobs VALUES ('j', 'refinement', 'nobody', '{}', 'succeeded', 1, '', \

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use sistership_choice::Ladder;
+use sistership_dynamics::manoeuvre::FurtherManoeuvres;
 use sistership_estimate::source::Similarity;
 
 use super::coefficients::Coefficients;
@@ -23,6 +24,8 @@ pub(crate) struct RefinementContent<'a> {
     pub coefficients: Coefficients<'a>,
     pub options: StepOptions<'a>,
     pub manoeuvres: ManoeuvreComparison<'a>,
+    /// Stopping, pull-outs and spirals of the refined model.
+    pub further: FurtherManoeuvres,
     pub sailed: Vec<Sailed>,
     pub similarity: Option<&'a Similarity>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -33,7 +36,11 @@ pub(crate) struct RefinementContent<'a> {
 }
 
 impl<'a> RefinementContent<'a> {
-    pub(crate) fn of(input: &RefinementInput<'a>, replayed: &[ReplayedTrial<'a>]) -> Self {
+    pub(crate) fn of(
+        input: &RefinementInput<'a>,
+        replayed: &[ReplayedTrial<'a>],
+        further: FurtherManoeuvres,
+    ) -> Self {
         let errors = HeldOutErrors::of(input);
         Self {
             format: "sistership-report/1",
@@ -43,6 +50,7 @@ impl<'a> RefinementContent<'a> {
             coefficients: Coefficients::of(input),
             options: StepOptions::of(input),
             manoeuvres: ManoeuvreComparison::of(input),
+            further,
             sailed: sailed::figures(input),
             similarity: input.similarity,
             ladder: input.ladder,

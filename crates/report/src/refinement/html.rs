@@ -7,7 +7,7 @@ use sistership_model::vessel::Status;
 use super::coefficients::Coefficients;
 use super::content::RefinementContent;
 use super::summary::method_text;
-use super::{ladder, moved, similarity, tables};
+use super::{further, ladder, moved, similarity, tables};
 use crate::numbers::{list, significant, stated};
 use crate::plots::{self, Plot};
 use crate::rendered::ReportError;
@@ -33,6 +33,9 @@ struct RefinementPage<'a> {
     turns: Table,
     zigzags: Table,
     imo: Table,
+    /// Stopping, pull-outs and spirals, where the ship's length is known.
+    further: Option<Table>,
+    further_remarks: Vec<String>,
     sailed: Table,
     why: Option<SourceChoice>,
     ladder: Option<Table>,
@@ -73,6 +76,7 @@ pub(crate) fn page(
     replayed: &[ReplayedTrial<'_>],
 ) -> Result<String, ReportError> {
     let provenance = &content.provenance;
+    let lpp_m = content.manoeuvres.lpp_m;
     let page = RefinementPage {
         content,
         method: method_text(&content.headline),
@@ -92,6 +96,9 @@ pub(crate) fn page(
         turns: tables::turns(&content.manoeuvres),
         zigzags: tables::zigzags(&content.manoeuvres),
         imo: tables::imo(&content.manoeuvres),
+        further: lpp_m.map(|lpp_m| tables::further(&content.further, lpp_m)),
+        further_remarks: lpp_m
+            .map_or_else(Vec::new, |lpp_m| further::remarks(&content.further, lpp_m)),
         sailed: tables::sailed(&content.sailed),
         why: why(content),
         ladder: content.ladder.map(ladder::table),

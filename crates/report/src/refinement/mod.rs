@@ -7,6 +7,7 @@
 
 mod coefficients;
 mod content;
+mod further;
 mod html;
 mod input;
 mod ladder;
@@ -33,7 +34,8 @@ use content::RefinementContent;
 /// A model does not simulate under the law, or the page cannot be written.
 pub fn render_refinement(input: &RefinementInput<'_>) -> Result<Rendered, ReportError> {
     let replayed = replays::replay_chosen(input)?;
-    let content = RefinementContent::of(input, &replayed);
+    let further = further::sailed(input)?;
+    let content = RefinementContent::of(input, &replayed, further);
     let html = html::page(&content, &replayed)?;
     Ok(Rendered { json: serde_json::to_value(&content)?, html })
 }

@@ -14,6 +14,7 @@ use sistership_store::{
 use super::outcome::{JobError, Result, failed};
 use crate::app::App;
 use sistership_pipeline::derive::Diagnosed;
+use sistership_pipeline::fleet::Drift;
 use sistership_pipeline::line::{CANDIDATE, Standing, step};
 use sistership_report::{DiagnosisInput, Rendered, VersionLabel, render_diagnosis};
 
@@ -91,7 +92,8 @@ impl Made<'_> {
         let moves: Vec<AliasMove> =
             vec![step(CANDIDATE, Expect::Any, &reason), standing.follow(&reason)];
         let version = self.version.clone().map(|version| (version, moves));
-        let diagnosis = Diagnosis { version, report, found: self.found()? };
+        let drift = drift(app, &self.of.model).await;
+        let diagnosis = Diagnosis { version, report, found: self.found()?, drift };
         let result =
             |version: Option<&VersionHead>, report: &ReportHead| self.result(version, report);
         app.store().commit_diagnosis(&job.id, job.fence, &diagnosis, result).await?;
@@ -132,6 +134,18 @@ impl Made<'_> {
             result["alias"] = json!(CANDIDATE);
         }
         result.to_string()
+    }
+}
+
+/// How much more the champion leaves of new trials; a diagnosis is kept also where that cannot be
+/// found out.
+async fn drift(app: &App, ship: &str) -> Option<f64> {
+    match Drift::of(app.archive(), ship).await {
+        Ok(drift) => drift?.worst,
+        Err(error) => {
+            tracing::warn!(ship, %error, "drift could not be measured");
+            None
+        }
     }
 }
 

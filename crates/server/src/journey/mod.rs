@@ -15,3 +15,4 @@ mod registry;
 mod search;
 mod sessions;
 mod uploads;
+mod webhooks;

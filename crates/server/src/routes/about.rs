@@ -29,6 +29,7 @@ use crate::problem::{Fault, Problem};
         (name = "laws", description = "Laws of motion."),
         (name = "effects", description = "Libraries of effects, as recipes name them."),
         (name = "access", description = "Who may do what, and who has done what."),
+        (name = "webhooks", description = "Who is told of what happens."),
         (name = "health", description = "Whether the server lives and can work.")
     )
 )]

@@ -13,12 +13,12 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::versions::VersionHead;
-use crate::answers::Answer;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::conditions::tag;
 use crate::web::field::EntityTags;
 use crate::web::{Conditions, Name, Params, Place, accept};
+use sistership_http::answers::Answer;
 use sistership_pipeline::archive::document;
 use sistership_pipeline::line::CHAMPION;
 

@@ -10,10 +10,10 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::model_ref::resolve;
-use super::ship_search::wrong;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::{Id, ModelName, Params};
+use sistership_http::ship_search::wrong;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(compare))

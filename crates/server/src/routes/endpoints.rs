@@ -9,7 +9,7 @@ use super::{
     about, aliases, audit, branches, bulk_refinements, champion, compare, diagnoses, drift,
     effects, events, exports, families, health, jobs, keys, laws, metrics, predictions,
     refinements, register, reports, samples, ship_changes, ships, similar, tags, trials, uploads,
-    users, versions,
+    users, validation, versions, webhooks,
 };
 use crate::app::App;
 use crate::config::Limits;
@@ -44,6 +44,7 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(versions::routes())
         .merge(exports::routes())
         .merge(compare::routes())
+        .merge(validation::routes())
         .merge(register::routes())
         .merge(aliases::routes())
         .merge(predictions::routes())
@@ -51,6 +52,7 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(users::routes())
         .merge(keys::routes())
         .merge(audit::routes())
+        .merge(webhooks::routes())
         .layer(DefaultBodyLimit::max(limits.document_bytes))
         .layer(TimeoutLayer::with_status_code(StatusCode::GATEWAY_TIMEOUT, limits.request_time))
 }

@@ -10,13 +10,13 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::roles::{RoleRequest, RoleView, grants};
 use super::users::RolesRequest;
 use crate::accounts;
 use crate::app::App;
 use crate::problem::Result;
 use crate::web::field::{KeyPrefix, MomentUs, Remark, UserName};
 use crate::web::{Listing, Paged, Params, Payload, Place};
+use sistership_http::roles::{RoleRequest, RoleView, grants};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()

@@ -30,17 +30,17 @@ mod queue;
 mod refinements;
 mod register;
 mod reports;
-mod roles;
 mod samples;
 mod ship_changes;
-mod ship_search;
 mod ships;
 mod similar;
 mod tags;
 mod trials;
 mod uploads;
 mod users;
+mod validation;
 mod versions;
+mod webhooks;
 
 use std::sync::Arc;
 

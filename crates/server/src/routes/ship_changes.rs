@@ -53,13 +53,18 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
     key.once(&app, payload.bytes(), |app| async move { created(&app, &vessel).await }).await
 }
 
-async fn created(app: &App, vessel: &Vessel) -> Result<Reply> {
+/// Keeps a new ship and the models that she publishes.
+pub(super) async fn kept(app: &App, vessel: &Vessel) -> Result<Ship> {
     let zoo = app.laws().await?;
     zoo.check_models(vessel)?;
     let new = new_ship(vessel).map_err(Problem::internal)?;
     let ship = app.store().ships().create(&new).await?;
     publish(app.store(), &zoo, vessel, &ship.document).await?;
-    let ship = ShipDetail::of(app, ship).await?;
+    Ok(ship)
+}
+
+async fn created(app: &App, vessel: &Vessel) -> Result<Reply> {
+    let ship = ShipDetail::of(app, kept(app, vessel).await?).await?;
     let (location, etag) = (format!("/v1/ships/{}", ship.name), ship.etag());
     Ok(Reply::new(StatusCode::CREATED, &ship)?.at(location).tagged(etag))
 }

@@ -11,12 +11,12 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::ship_search::{self, Query};
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::conditions::tag;
 use crate::web::field::EntityTags;
 use crate::web::{Conditions, Listing, Name, Params, Place};
+use sistership_http::ship_search::{self, Query};
 use sistership_pipeline::condition::Condition;
 use sistership_pipeline::derive::DeriveError;
 use sistership_pipeline::search;

@@ -11,11 +11,11 @@ use utoipa::IntoParams;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::ship_search::vectors;
 use super::trials::all_of_ship;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::{Name, Params, Place};
+use sistership_http::ship_search::vectors;
 use sistership_pipeline::archive::vessel;
 use sistership_pipeline::budget;
 use sistership_pipeline::memory::trial_bytes;

@@ -10,13 +10,13 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::roles::{RoleRequest, RoleView, grants};
 use crate::accounts;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::rights::{Kind, current};
 use crate::web::field::{Password, Remark, RequestKey, UserName};
 use crate::web::{Key, Listing, Paged, Params, Payload, Place, Reply};
+use sistership_http::roles::{RoleRequest, RoleView, grants};
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()

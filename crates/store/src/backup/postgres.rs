@@ -49,6 +49,9 @@ pub(crate) const TABLES: &[&str] = &[
     "settings",
     "audit",
     "audit_head",
+    "webhooks",
+    "webhook_events",
+    "deliveries",
 ];
 const FOLDER: &str = "tables";
 const COLUMNS: &str = "SELECT CAST(column_name AS TEXT) FROM information_schema.columns \

@@ -18,6 +18,7 @@ fn diagnosis(version_id: &str, with_version: bool) -> Diagnosis {
         version: with_version.then(|| (version("kcs"), vec![champion(Expect::Any)])),
         report,
         found,
+        drift: Some(3.0),
     }
 }
 

@@ -24,3 +24,4 @@ mod search;
 mod ships;
 mod trials;
 mod versions;
+mod webhooks;

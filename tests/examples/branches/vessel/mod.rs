@@ -12,4 +12,5 @@ pub mod hull;
 pub mod sailed;
 pub mod scenarios;
 pub mod seas;
+pub mod seaway;
 pub mod weather;

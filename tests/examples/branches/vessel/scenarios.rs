@@ -103,7 +103,7 @@ pub fn turning(hull: &Hull, seed: u64) -> Trial {
 }
 
 /// Box and Muller.
-fn normal(rng: &mut ChaCha12Rng) -> f64 {
+pub fn normal(rng: &mut ChaCha12Rng) -> f64 {
     let radius = (-2.0 * (1.0 - rng.random::<f64>()).ln()).sqrt();
     radius * (TAU * rng.random::<f64>()).cos()
 }

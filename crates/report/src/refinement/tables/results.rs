@@ -187,7 +187,7 @@ fn imo_row(verdict: &CriterionComparison<'_>) -> Row {
     ])
 }
 
-fn pass(pass: Option<bool>) -> Cell {
+pub(super) fn pass(pass: Option<bool>) -> Cell {
     match pass {
         Some(true) => Cell::new("").mark("✓ pass", "good"),
         Some(false) => Cell::new("").mark("✗ fail", "bad"),

@@ -4,8 +4,17 @@ use regex::Regex;
 use serde_json::Value;
 
 /// Texts that some pattern takes.
-const SAMPLES: [&str; 8] =
-    ["mariner", "walked", "*", "\"1\"", "lpp_m:1..2", "turn_35.advance_m:..9", "IjAi", "a"];
+const SAMPLES: [&str; 9] = [
+    "mariner",
+    "walked",
+    "*",
+    "\"1\"",
+    "lpp_m:1..2",
+    "turn_35.advance_m:..9",
+    "IjAi",
+    "a",
+    "https://example.com/hook",
+];
 /// Texts that most patterns refuse.
 const ODD: [&str; 9] = ["", " ", "a b", "-", "A", "\u{7}", "é", "a/b/c", "\"\""];
 

@@ -11,11 +11,11 @@ use sistership_trials::propose;
 
 use super::answer::{answer, then};
 use crate::app::App;
-use crate::drafts::{Draft, Drafts};
 use crate::problem::{Fault, Problem, Result};
 use crate::upload::{Spooled, Upload, keep, spool, unwritten};
 use crate::web::form::{PageForm, checked, shell};
 use crate::web::{Id, Name, Place};
+use sistership_http::drafts::{Draft, Drafts};
 
 /// Files whose plots are on the page.
 const PLOTTED: usize = 4;
@@ -52,7 +52,7 @@ pub(super) async fn arrived(
         path.persist(folder.path().join(&name)).map_err(|error| unwritten(error.error))?;
         files.push((name, sha256));
     }
-    let draft = Draft::proposed_for(&app, &ship, folder, files).await?;
+    let draft = proposed_for(&app, &ship, folder, files).await?;
     let id = draft.proposed().id;
     app.drafts().put(id.clone(), draft);
     Ok(then(&format!("/ships/{}/uploads/{id}", &*ship)))
@@ -68,48 +68,45 @@ fn plain_name(path: &str) -> Result<String> {
     }
 }
 
-impl Draft {
-    async fn proposed_for(
-        app: &App,
-        ship: &str,
-        folder: tempfile::TempDir,
-        files: Vec<(String, String)>,
-    ) -> Result<Self> {
-        let paths: Vec<_> = files.iter().map(|(name, _)| folder.path().join(name)).collect();
-        let owner = ship.to_owned();
-        let look =
-            move || propose(&owner, &paths.iter().map(AsRef::as_ref).collect::<Vec<&Path>>());
-        let proposal = app.compute(look).await?.map_err(|errors| {
-            let why = "a file cannot be read; see below";
-            let problem = Problem::new(axum::http::StatusCode::UNPROCESSABLE_ENTITY, why);
-            errors.into_iter().fold(problem, |problem, error| {
-                let name = error.file.rsplit('/').next().unwrap_or_default().to_owned();
-                problem.with(Fault::at(name, error.message))
-            })
-        })?;
-        let (guesses, manifest) = (proposal.guesses, proposal.manifest);
-        let (ship, id) = (ship.to_owned(), Drafts::id());
-        let proposed = Proposed { ship, id, guesses, manifest, diagnose: true };
-        Ok(Self { folder, files, proposed: proposed.into() })
-    }
+async fn proposed_for(
+    app: &App,
+    ship: &str,
+    folder: tempfile::TempDir,
+    files: Vec<(String, String)>,
+) -> Result<Draft> {
+    let paths: Vec<_> = files.iter().map(|(name, _)| folder.path().join(name)).collect();
+    let owner = ship.to_owned();
+    let look = move || propose(&owner, &paths.iter().map(AsRef::as_ref).collect::<Vec<&Path>>());
+    let proposal = app.compute(look).await?.map_err(|errors| {
+        let why = "a file cannot be read; see below";
+        let problem = Problem::new(axum::http::StatusCode::UNPROCESSABLE_ENTITY, why);
+        errors.into_iter().fold(problem, |problem, error| {
+            let name = error.file.rsplit('/').next().unwrap_or_default().to_owned();
+            problem.with(Fault::at(name, error.message))
+        })
+    })?;
+    let (guesses, manifest) = (proposal.guesses, proposal.manifest);
+    let (ship, id) = (ship.to_owned(), Drafts::id());
+    let proposed = Proposed { ship, id, guesses, manifest, diagnose: true };
+    Ok(Draft { folder, files, proposed: proposed.into() })
+}
 
-    /// The upload as it is read now; its files are links to those of the draft.
-    fn upload(&self, app: &App) -> Result<Upload> {
-        let Proposed { manifest, diagnose, .. } = self.proposed();
-        let linked = |(name, sha256): &(String, String)| {
-            let path = app.spool().temporary().map_err(unwritten)?.into_temp_path();
-            std::fs::remove_file(&path).map_err(unwritten)?;
-            let from = self.folder.path().join(name);
-            std::fs::hard_link(&from, &path)
-                .or_else(|_| std::fs::copy(&from, &path).map(drop))
-                .map_err(unwritten)?;
-            Ok((name.clone(), Spooled { path, sha256: sha256.clone() }))
-        };
-        let files = self.files.iter().map(linked).collect::<Result<_>>()?;
-        let mut upload = Upload::listed(manifest, files)?;
-        upload.diagnose = diagnose;
-        Ok(upload)
-    }
+/// A draft's upload as it is read now; its files are links to its own.
+fn uploaded(draft: &Draft, app: &App) -> Result<Upload> {
+    let Proposed { manifest, diagnose, .. } = draft.proposed();
+    let linked = |(name, sha256): &(String, String)| {
+        let path = app.spool().temporary().map_err(unwritten)?.into_temp_path();
+        std::fs::remove_file(&path).map_err(unwritten)?;
+        let from = draft.folder.path().join(name);
+        std::fs::hard_link(&from, &path)
+            .or_else(|_| std::fs::copy(&from, &path).map(drop))
+            .map_err(unwritten)?;
+        Ok((name.clone(), Spooled { path, sha256: sha256.clone() }))
+    };
+    let files = draft.files.iter().map(linked).collect::<Result<_>>()?;
+    let mut upload = Upload::listed(manifest, files)?;
+    upload.diagnose = diagnose;
+    Ok(upload)
 }
 
 fn found(app: &App, ship: &str, id: &str) -> Result<Arc<Draft>> {
@@ -123,7 +120,7 @@ pub(super) async fn shown(
     Place((ship, id)): Place<(Name, Id)>,
 ) -> Result<Response> {
     let draft = found(&app, &ship, &id)?;
-    let previews = draft.upload(&app)?.each(&app, |at, read| {
+    let previews = uploaded(&draft, &app)?.each(&app, |at, read| {
         let preview = Preview::of(read);
         if at < PLOTTED { preview } else { preview.without_plots() }
     });
@@ -141,7 +138,7 @@ pub(super) async fn corrected(
     if form.text("do") != Some("keep") {
         return Ok(then(&format!("/ships/{}/uploads/{}", &*ship, &*id)));
     }
-    let (_, job) = keep(&app, draft.upload(&app)?).await?;
+    let (_, job) = keep(&app, uploaded(&draft, &app)?).await?;
     app.drafts().remove(&id);
     app.wake().notify_one();
     Ok(match job {

@@ -4,6 +4,7 @@ mod act;
 mod answer;
 mod draft;
 mod look;
+mod new_ship;
 mod people;
 
 use axum::Router;
@@ -19,6 +20,8 @@ const FORM_BYTES: usize = 256 << 10;
 pub(super) fn routes(limits: &Limits) -> Router<App> {
     let forms = Router::new()
         .route("/", get(look::fleet))
+        .route("/new-ship", get(new_ship::form))
+        .route("/ships", post(new_ship::create))
         .route("/ships/{ship}", get(look::ship))
         .route("/ships/{ship}/refine", post(act::refine))
         .route("/ships/{ship}/diagnose", post(act::diagnose))

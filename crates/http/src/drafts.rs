@@ -15,11 +15,11 @@ const LONGEST: Duration = Duration::from_secs(3600);
 
 /// The uploads of this process that wait for a person.
 #[derive(Debug, Default)]
-pub(crate) struct Drafts(Mutex<BTreeMap<String, (Instant, Arc<Draft>)>>);
+pub struct Drafts(Mutex<BTreeMap<String, (Instant, Arc<Draft>)>>);
 
 /// One of them.
 #[derive(Debug)]
-pub(crate) struct Draft {
+pub struct Draft {
     /// Where its files lie under their names; they go with it.
     pub folder: TempDir,
     /// Name and hash of each.
@@ -30,24 +30,24 @@ pub(crate) struct Draft {
 
 impl Draft {
     /// How its files are read now.
-    pub(crate) fn proposed(&self) -> Proposed {
+    pub fn proposed(&self) -> Proposed {
         self.proposed.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Reads them in another way from now on.
-    pub(crate) fn set(&self, proposed: Proposed) {
+    pub fn set(&self, proposed: Proposed) {
         *self.proposed.lock().unwrap_or_else(PoisonError::into_inner) = proposed;
     }
 }
 
 impl Drafts {
     /// An id for the next.
-    pub(crate) fn id() -> String {
+    pub fn id() -> String {
         Uuid::now_v7().to_string()
     }
 
     /// Lets one wait.
-    pub(crate) fn put(&self, id: String, draft: Draft) {
+    pub fn put(&self, id: String, draft: Draft) {
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         all.retain(|_, (since, _)| since.elapsed() < LONGEST);
         while all.len() >= MOST {
@@ -58,7 +58,7 @@ impl Drafts {
     }
 
     /// One of a ship, as long as it waits.
-    pub(crate) fn get(&self, ship: &str, id: &str) -> Option<Arc<Draft>> {
+    pub fn get(&self, ship: &str, id: &str) -> Option<Arc<Draft>> {
         let all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let (since, draft) = all.get(id)?;
         let waits = since.elapsed() < LONGEST && draft.proposed().ship == ship;
@@ -66,7 +66,7 @@ impl Drafts {
     }
 
     /// Takes one away.
-    pub(crate) fn remove(&self, id: &str) {
+    pub fn remove(&self, id: &str) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).remove(id);
     }
 }

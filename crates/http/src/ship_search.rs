@@ -9,16 +9,16 @@ use utoipa::IntoParams;
 use utoipa::openapi::RefOr;
 use utoipa::openapi::schema::{ArrayBuilder, ObjectBuilder, Schema, Type};
 
+use crate::field::{Cursor, Limit, Name, Word, one_of};
+use crate::page;
 use crate::problem::{Fault, Problem, Result};
-use crate::web::field::{Cursor, Limit, one_of};
-use crate::web::{Name, Word, page};
 use sistership_pipeline::search::{self, Search, metric, particular};
 
 /// What the query may hold. Everything that is given must be true of a ship.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 #[allow(dead_code, reason = "it only describes the query, whose parameters may come several times")]
-pub(super) struct Query {
+pub struct Query {
     /// The most items to return.
     #[param(inline)]
     limit: Option<Limit>,
@@ -50,7 +50,10 @@ pub(super) struct Query {
 }
 
 /// Reads the query, parameter by parameter.
-pub(super) fn read(pairs: Vec<(String, String)>) -> Result<(Search, Page<ShipKey>)> {
+///
+/// # Errors
+/// The parameter at fault.
+pub fn read(pairs: Vec<(String, String)>) -> Result<(Search, Page<ShipKey>)> {
     let (mut search, mut limit, mut after) = (Search::default(), None, None);
     for (name, value) in pairs {
         match name.as_str() {
@@ -81,7 +84,7 @@ fn parsed<T: FromStr<Err = String>>(name: &str, value: &str) -> Result<T> {
 }
 
 /// The names of the vectors.
-pub(super) fn vectors() -> RefOr<Schema> {
+pub fn vectors() -> RefOr<Schema> {
     one_of(Definition::ALL.map(Definition::name))
 }
 
@@ -135,7 +138,7 @@ fn unknown(name: &str) -> Problem {
 }
 
 /// The refusal of a parameter.
-pub(super) fn wrong(name: &str, message: impl Into<String>) -> Problem {
+pub fn wrong(name: &str, message: impl Into<String>) -> Problem {
     let message = message.into();
     Problem::bad_request(format!("{name}: {message}")).with(Fault::at(name, message))
 }

@@ -5,23 +5,27 @@ use sistership_access::{Grant, Role, Scope};
 use sistership_store::GrantRow;
 use utoipa::ToSchema;
 
+use crate::field::{Name, Word};
 use crate::problem::{Problem, Result};
-use crate::web::{Name, Word};
 
 /// What somebody may do; each has the rights of those before it.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum RoleName {
+pub enum RoleName {
+    /// Reads.
     Reader,
+    /// Works.
     Engineer,
+    /// Promotes.
     Approver,
+    /// Gives rights.
     Admin,
 }
 
 /// A role, and what it is given for: the whole server where neither ship nor family is named.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct RoleRequest {
+pub struct RoleRequest {
     role: RoleName,
     /// For this ship, its trials and its models only.
     #[schema(inline)]
@@ -33,7 +37,7 @@ pub(super) struct RoleRequest {
 
 /// A role, and what it is given for.
 #[derive(Debug, Serialize, ToSchema)]
-pub(super) struct RoleView {
+pub struct RoleView {
     /// `reader`, `engineer`, `approver` or `admin`.
     role: String,
     /// Where it is given for one ship.
@@ -54,19 +58,26 @@ impl From<RoleName> for Role {
 }
 
 impl RoleView {
-    pub(super) fn of(row: GrantRow) -> Self {
+    /// Of a row.
+    pub fn of(row: GrantRow) -> Self {
         let GrantRow { scope_kind, scope_name, role } = row;
         let name = |kind: &str| (scope_kind == kind).then(|| scope_name.clone());
         Self { role, ship: name("ship"), family: name("family") }
     }
 
-    pub(super) fn of_grant(grant: &Grant) -> Self {
-        Self::of(crate::accounts::row(grant))
+    /// Of what is given.
+    pub fn of_grant(grant: &Grant) -> Self {
+        let (kind, name) = grant.scope.parts();
+        let (scope_kind, scope_name) = (kind.to_owned(), name.to_owned());
+        Self::of(GrantRow { scope_kind, scope_name, role: grant.role.as_str().to_owned() })
     }
 }
 
 /// The roles that a request gives.
-pub(super) fn grants(roles: Vec<RoleRequest>) -> Result<Vec<Grant>> {
+///
+/// # Errors
+/// The role at fault.
+pub fn grants(roles: Vec<RoleRequest>) -> Result<Vec<Grant>> {
     roles.into_iter().enumerate().map(|(at, role)| grant(at, role)).collect()
 }
 

@@ -12,18 +12,20 @@ const MOST: u64 = 16 << 20;
 const COUNT: usize = 4096;
 
 /// What makes an answer: the version, the report on it, and the form.
-pub(crate) type AnswerKey = (String, Option<String>, &'static str);
+pub type AnswerKey = (String, Option<String>, &'static str);
 
 /// An answer.
 #[derive(Debug, Clone)]
-pub(crate) struct Answer {
+pub struct Answer {
+    /// Its tag.
     pub etag: HeaderValue,
+    /// Its bytes.
     pub body: Bytes,
 }
 
 /// Answers by what makes them, the least used of which go first.
 #[derive(Debug)]
-pub(crate) struct Answers(Cache<AnswerKey, Answer, Size>);
+pub struct Answers(Cache<AnswerKey, Answer, Size>);
 
 #[derive(Debug, Clone)]
 struct Size;
@@ -42,12 +44,12 @@ impl Default for Answers {
 
 impl Answers {
     /// An answer that was given before.
-    pub(crate) fn get(&self, key: &AnswerKey) -> Option<Answer> {
+    pub fn get(&self, key: &AnswerKey) -> Option<Answer> {
         self.0.get(key)
     }
 
     /// Keeps an answer for the next time.
-    pub(crate) fn keep(&self, key: AnswerKey, answer: Answer) {
+    pub fn keep(&self, key: AnswerKey, answer: Answer) {
         self.0.insert(key, answer);
     }
 }

@@ -1,0 +1,17 @@
+//! Standard deviations of heave, pitch and roll from a directional wave spectrum (Kanazawa 2023,
+//! sec. 3.4): closed-form responses, and a factor for each motion that is learned from samples, the
+//! common ones thinned out. The branch is in series: it maps what the responses give.
+
+mod factor;
+mod heave_pitch;
+mod hull;
+mod response;
+mod roll;
+mod spectrum;
+mod thinned;
+
+pub use factor::factor;
+pub use hull::WaveHull;
+pub use response::Motion;
+pub use spectrum::DirectionalSpectrum;
+pub use thinned::thinned;

@@ -1,0 +1,79 @@
+//! Directional wave spectra, as a wave radar gives them, and what a ship does in them.
+
+use serde::{Deserialize, Serialize};
+
+use super::hull::WaveHull;
+use super::response::Motion;
+
+/// Density of the waves' variance by frequency and direction, m2 s/rad.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DirectionalSpectrum {
+    /// Frequencies, rad/s, equally far apart.
+    pub omegas: Vec<f64>,
+    /// Where waves go relative to the bow, rad, equally far apart around the ship.
+    pub betas: Vec<f64>,
+    /// By frequency, then by direction.
+    pub density: Vec<Vec<f64>>,
+}
+
+impl DirectionalSpectrum {
+    /// Variance of the elevation, m2.
+    pub fn variance_m2(&self) -> f64 {
+        self.moment(|_, _| 1.0)
+    }
+
+    /// Standard deviation of a motion, m or rad: Kanazawa 2023, Eqs. 2.12, 2.13 and 3.7.
+    pub fn deviation(&self, hull: &WaveHull, motion: Motion) -> f64 {
+        self.moment(|omega, beta| hull.response(motion, omega, beta).powi(2)).sqrt()
+    }
+
+    fn moment(&self, of: impl Fn(f64, f64) -> f64) -> f64 {
+        let apart = |all: &[f64]| if all.len() > 1 { all[1] - all[0] } else { 0.0 };
+        let cell = apart(&self.omegas) * apart(&self.betas);
+        let row = |(omega, row): (&f64, &Vec<f64>)| {
+            let cells = self.betas.iter().zip(row);
+            cells.map(|(beta, density)| density * of(*omega, *beta)).sum::<f64>()
+        };
+        cell * self.omegas.iter().zip(&self.density).map(row).sum::<f64>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Long waves: she rides them, heave is the elevation and roll its slope.
+    #[test]
+    fn in_long_waves_she_follows_the_surface() {
+        let hull = WaveHull {
+            lpp_m: 33.9,
+            beam_m: 9.6,
+            draught_m: 2.7,
+            block_coefficient: 0.6,
+            gm_m: 1.5,
+            roll_period_s: 5.0,
+            roll_damping: 0.1,
+            roll_radiation: 0.02,
+        };
+        let (omega, beam) = (0.15, std::f64::consts::FRAC_PI_2);
+        let slope = omega * omega / 9.80665;
+        assert!((hull.response(Motion::Heave, omega, beam) - 1.0).abs() < 0.01);
+        let pitch = hull.response(Motion::Pitch, omega, std::f64::consts::PI);
+        assert!((pitch / slope - 1.0).abs() < 0.05, "{}", pitch / slope);
+        assert!(hull.response(Motion::Pitch, omega, beam) < 1e-12);
+        assert!(hull.response(Motion::Roll, omega, 0.0) < 1e-12);
+    }
+
+    /// Of one direction and one frequency: variance by response squared.
+    #[test]
+    fn a_narrow_sea_gives_the_response_there() {
+        let betas: Vec<f64> = (0..36).map(|k| (10.0 * f64::from(k)).to_radians()).collect();
+        let omegas: Vec<f64> = (0..32).map(|k| 0.2 + 0.1 * f64::from(k)).collect();
+        let mut density = vec![vec![0.0; 36]; 32];
+        density[5][9] = 2.0;
+        let spectrum = DirectionalSpectrum { omegas, betas, density };
+        let expected = 2.0 * 0.1 * 10.0_f64.to_radians();
+        assert!((spectrum.variance_m2() - expected).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,37 @@
+//! Balance: the common samples thinned out to as many as the rare ones (Kanazawa 2023, sec. 3.4.1).
+
+use crate::draws::Draws;
+
+/// Places of the samples that are kept: those above a quantile of what was measured, and of the
+/// others as many, drawn by a seed.
+pub fn thinned(measured: &[f64], quantile: f64, seed: u64) -> Vec<usize> {
+    let mut sorted = measured.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let place = (quantile * measured.len() as f64) as usize;
+    let Some(limit) = sorted.get(place.min(measured.len().saturating_sub(1))) else {
+        return Vec::new();
+    };
+    let (rare, common): (Vec<usize>, Vec<usize>) =
+        (0..measured.len()).partition(|k| measured[*k] >= *limit);
+    let drawn = Draws::new(seed, 2).some_of(rare.len(), common.len());
+    let mut kept: Vec<usize> = drawn.into_iter().map(|k| common[k as usize]).collect();
+    kept.extend(rare);
+    kept.sort_unstable();
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_many_common_samples_as_rare_ones_are_kept() {
+        let measured: Vec<f64> = (0..100).map(|k| f64::from((37 * k) % 100)).collect();
+        let kept = thinned(&measured, 0.9, 3);
+        let rare = kept.iter().filter(|k| measured[**k] >= 90.0).count();
+        assert_eq!((rare, kept.len()), (10, 20));
+        assert_eq!(kept, thinned(&measured, 0.9, 3));
+        assert_ne!(kept, thinned(&measured, 0.9, 4));
+        assert!(thinned(&[], 0.9, 3).is_empty());
+    }
+}

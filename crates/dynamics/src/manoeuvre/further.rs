@@ -1,0 +1,155 @@
+//! Manoeuvres beside the standard ones: stopping, pull-outs, spirals.
+
+use serde::{Deserialize, Serialize};
+use sistership_model::Model;
+use sistership_model::law::Law;
+
+use super::ManoeuvreSettings;
+use super::pull_out::pull_out;
+use super::spiral::spiral;
+use super::stopping::{AsternOrder, NoStopping, stop};
+use crate::metrics::{
+    Criterion, PullOutMetrics, SpiralMetrics, StoppingMetrics, TRACK_REACH_ALLOWED,
+    is_straight_line_stable,
+};
+use crate::ship::Ship;
+use crate::state::Trajectory;
+
+/// Which of them are sailed.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FurtherAsked {
+    /// A full astern stop.
+    pub stop: Option<AsternOrder>,
+    /// Pull-outs of turns with these rudder angles, deg.
+    pub pull_outs_deg: Vec<f64>,
+    /// Whether spirals are sailed.
+    pub spiral: AskedSpiral,
+}
+
+/// Whether spirals are sailed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AskedSpiral {
+    /// They are not.
+    #[default]
+    Never,
+    /// Where pull-outs do not show a ship that is stable on a straight course.
+    WhereUnstable,
+    /// They are.
+    Always,
+}
+
+/// Rudder of the turns before pull-outs, deg: that of the simplified trials of MSC/Circ.1053,
+/// appendix 4.
+const PULL_OUT_DEG: f64 = 20.0;
+
+impl FurtherAsked {
+    /// What is sailed where nobody says more: a stop, pull-outs to both sides, and spirals with a
+    /// ship that is not stable on a straight course.
+    pub fn usual() -> Self {
+        Self {
+            stop: Some(AsternOrder::default()),
+            pull_outs_deg: vec![PULL_OUT_DEG, -PULL_OUT_DEG],
+            spiral: AskedSpiral::WhereUnstable,
+        }
+    }
+}
+
+/// What came of them.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct FurtherManoeuvres {
+    /// The full astern stop.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stopping: Option<StoppingMetrics>,
+    /// Why there is none, where the model is not told of a reversed propeller.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_stopping: Option<String>,
+    /// Pull-outs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pull_outs: Vec<PullOutMetrics>,
+    /// Whether the ship is stable on a straight course, by pull-outs to both sides, or by spirals
+    /// where they were sailed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub straight_line_stable: Option<bool>,
+    /// Spirals.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spiral: Option<SpiralMetrics>,
+    /// Manoeuvres that left the physical range, with the reason.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub failures: Vec<String>,
+    /// Where she went in the stop and the pull-outs, by the name of each.
+    #[serde(skip)]
+    pub tracks: Vec<(String, Trajectory)>,
+}
+
+impl FurtherManoeuvres {
+    /// The criterion of stopping ability, where she was stopped.
+    pub fn criterion(&self, lpp_m: f64) -> Option<Criterion> {
+        Some(self.stopping.as_ref()?.criterion(lpp_m))
+    }
+
+    /// What must be known to read the figures.
+    pub fn remarks(&self, lpp_m: f64) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if let Some(stop) = &self.stopping {
+            let StoppingMetrics { astern_rps, reversal_s, .. } = stop;
+            remarks.push(format!(
+                "stopping: revolutions go to {astern_rps:.4} 1/s in {reversal_s} s, the rudder \
+                 stays amidships"
+            ));
+            let lengths = stop.track_reach_m.map_or(0.0, |metres| metres / lpp_m);
+            let limit = stop.criterion(lpp_m).limit;
+            if lengths > limit && lengths <= TRACK_REACH_ALLOWED {
+                remarks.push(format!(
+                    "stopping: an Administration may allow up to {TRACK_REACH_ALLOWED} L to a \
+                     ship of large displacement"
+                ));
+            }
+        }
+        remarks.extend(self.no_stopping.iter().map(|reason| format!("stopping: {reason}")));
+        remarks
+    }
+}
+
+/// Sails them; what leaves the physical range is reported, and the others go on.
+pub fn further(
+    model: &Model,
+    law: &Law,
+    ship: &Ship,
+    settings: &ManoeuvreSettings,
+    asked: &FurtherAsked,
+) -> FurtherManoeuvres {
+    let mut all = FurtherManoeuvres::default();
+    if let Some(order) = asked.stop {
+        match stop(model, law, ship, settings, order) {
+            Ok(sailed) => {
+                all.stopping = Some(sailed.metrics);
+                all.tracks.push(("stopping".into(), sailed.track));
+            }
+            Err(reason @ NoStopping::NotReversing(_)) => all.no_stopping = Some(reason.to_string()),
+            Err(NoStopping::Stopped(stopped)) => all.failures.push(format!("stopping: {stopped}")),
+        }
+    }
+    for rudder_deg in &asked.pull_outs_deg {
+        let name = format!("pull-out {rudder_deg} deg");
+        match pull_out(ship, *rudder_deg, settings) {
+            Ok(sailed) => {
+                all.pull_outs.push(sailed.metrics);
+                all.tracks.push((name, sailed.track));
+            }
+            Err(stopped) => all.failures.push(format!("{name}: {stopped}")),
+        }
+    }
+    all.straight_line_stable = is_straight_line_stable(&all.pull_outs);
+    let unstable = all.straight_line_stable != Some(true);
+    if asked.spiral == AskedSpiral::Always || asked.spiral == AskedSpiral::WhereUnstable && unstable
+    {
+        match spiral(ship, settings) {
+            Ok(sailed) => {
+                all.straight_line_stable = Some(sailed.is_stable());
+                all.spiral = Some(sailed);
+            }
+            Err(stopped) => all.failures.push(format!("spiral: {stopped}")),
+        }
+    }
+    all
+}

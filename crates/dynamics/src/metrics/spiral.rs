@@ -1,0 +1,130 @@
+//! Spirals: MSC/Circ.1053, appendix 4, 2; ITTC 7.5-04-02-01.
+
+use serde::{Deserialize, Serialize};
+
+/// A steady turn: rudder and yaw rate.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SpiralPoint {
+    /// Rudder, deg, positive to starboard.
+    pub rudder_deg: f64,
+    /// Yaw rate, deg/s.
+    pub rate_deg_s: f64,
+    /// Whether it had become steady when the next rudder angle, or rate, was ordered.
+    pub steady: bool,
+}
+
+/// What two spirals tell of a ship.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SpiralMetrics {
+    /// The direct spiral (Dieudonné): the rudder from starboard to port and back, in this order.
+    pub direct: Vec<SpiralPoint>,
+    /// The reverse spiral (Bech): yaw rates held by the rudder, from port to starboard.
+    pub reverse: Vec<SpiralPoint>,
+    /// Width of the loop by the direct spiral, deg of rudder: between the angles at which she
+    /// changes sides on the way to port and back, each known to a step of the rudder.
+    pub direct_loop_width_deg: f64,
+    /// Width of the loop by the reverse spiral, deg of rudder; 0 for a ship that is stable on a
+    /// straight course.
+    pub loop_width_deg: f64,
+    /// From one side to the other without rudder, deg/s: the height of the loop.
+    pub loop_height_deg_s: f64,
+    /// What the width should not exceed at this length and speed, deg: not a criterion of
+    /// MSC.137(76), but of classification societies.
+    pub width_limit_deg: f64,
+}
+
+impl SpiralMetrics {
+    /// Of points in the order in which they were sailed; `length_s` is length by speed, s.
+    pub fn of(direct: Vec<SpiralPoint>, reverse: Vec<SpiralPoint>, length_s: f64) -> Self {
+        Self {
+            direct_loop_width_deg: direct_width(&direct),
+            loop_width_deg: reverse_width(&reverse),
+            loop_height_deg_s: height(&direct),
+            width_limit_deg: width_limit(length_s),
+            direct,
+            reverse,
+        }
+    }
+
+    /// Whether the ship is stable on a straight course: she has no loop.
+    pub fn is_stable(&self) -> bool {
+        self.loop_width_deg < NO_LOOP_DEG
+    }
+}
+
+/// What is no loop, deg of rudder: five times what a held rate leaves open of its rudder (0.02 deg).
+/// At half and double of it the verdicts of docs/evidence/manoeuvres.md are the same.
+const NO_LOOP_DEG: f64 = 0.1;
+
+/// The width of the loop that is acceptable, deg: none below L/V = 9 s, 12 deg above 45 s,
+/// (L/V)/3 - 3 between (American Bureau of Shipping 2006, Guide for vessel maneuverability, sec. 2;
+/// its text was not at hand).
+pub fn width_limit(length_s: f64) -> f64 {
+    (length_s / 3.0 - 3.0).clamp(0.0, 12.0)
+}
+
+/// Between the rudder angles at which the yaw rate changes its sign on the way to port and back.
+fn direct_width(points: &[SpiralPoint]) -> f64 {
+    let least = points.iter().enumerate().min_by(|a, b| a.1.rudder_deg.total_cmp(&b.1.rudder_deg));
+    let Some((turned, _)) = least else { return 0.0 };
+    let changes = |way: &[SpiralPoint]| {
+        let pair = way.windows(2).find(|pair| pair[0].rate_deg_s * pair[1].rate_deg_s <= 0.0)?;
+        Some(0.5 * (pair[0].rudder_deg + pair[1].rudder_deg))
+    };
+    let (there, back) = (changes(&points[..=turned]), changes(&points[turned..]));
+    there.zip(back).map_or(0.0, |(there, back)| (back - there).max(0.0))
+}
+
+/// How far the rudder must be put against the turn to hold small yaw rates, from side to side.
+fn reverse_width(points: &[SpiralPoint]) -> f64 {
+    let port = points.iter().filter(|point| point.rate_deg_s <= 0.0);
+    let starboard = points.iter().filter(|point| point.rate_deg_s >= 0.0);
+    let most = port.map(|point| point.rudder_deg).fold(f64::NEG_INFINITY, f64::max);
+    let least = starboard.map(|point| point.rudder_deg).fold(f64::INFINITY, f64::min);
+    if most.is_finite() && least.is_finite() { (most - least).max(0.0) } else { 0.0 }
+}
+
+/// Between the yaw rates with the rudder amidships on the way to port and back.
+fn height(points: &[SpiralPoint]) -> f64 {
+    let amidships = points.iter().filter(|point| point.rudder_deg.abs() < 0.05);
+    let rates: Vec<f64> = amidships.map(|point| point.rate_deg_s).collect();
+    match rates[..] {
+        [there, back] => (there - back).abs(),
+        _ => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(all: &[(f64, f64)]) -> Vec<SpiralPoint> {
+        let one = |&(rudder_deg, rate_deg_s): &(f64, f64)| SpiralPoint {
+            rudder_deg,
+            rate_deg_s,
+            steady: true,
+        };
+        all.iter().map(one).collect()
+    }
+
+    #[test]
+    fn an_unstable_ship_has_a_loop() {
+        // The rudder that a yaw rate needs: r^3 - r, its extremes 2/(3 sqrt 3) at r = 1/sqrt 3.
+        let held: Vec<(f64, f64)> =
+            (-200..=200).map(|k| f64::from(k) / 100.0).map(|r| (r * r * r - r, r)).collect();
+        let direct = points(&[(1.0, 1.3), (0.0, 1.0), (-1.0, -1.3), (0.0, -1.0), (1.0, 1.3)]);
+        let spiral = SpiralMetrics::of(direct, points(&held), 30.0);
+        assert!((spiral.loop_width_deg - 4.0 / 27_f64.sqrt()).abs() < 1e-3, "{spiral:?}");
+        assert_eq!((spiral.direct_loop_width_deg, spiral.loop_height_deg_s), (1.0, 2.0));
+        assert_eq!(spiral.width_limit_deg, 7.0);
+    }
+
+    #[test]
+    fn a_stable_ship_has_none() {
+        let held = points(&[(-3.0, -1.0), (-1.0, -0.5), (0.2, 0.0), (1.0, 0.5), (3.0, 1.0)]);
+        let direct = points(&[(1.0, 0.5), (0.0, 0.0), (-1.0, -0.5), (0.0, 0.0), (1.0, 0.5)]);
+        let spiral = SpiralMetrics::of(direct, held, 5.0);
+        assert_eq!((spiral.loop_width_deg, spiral.loop_height_deg_s), (0.0, 0.0));
+        assert_eq!((width_limit(5.0), width_limit(60.0)), (0.0, 12.0));
+    }
+}

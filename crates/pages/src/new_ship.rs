@@ -1,0 +1,121 @@
+//! A ship that is to be: what a person types in becomes a vessel document.
+
+use askama::Template;
+use serde_json::{Map, Value, json};
+
+use crate::error::{PageError, Result};
+use crate::form::Fields;
+use crate::shell::Shell;
+
+/// Particulars that the form asks for: name, words, whether similarity and transfer need it.
+pub const PARTICULARS: [(&str, &str, bool); 14] = [
+    ("lpp_m", "Length between perpendiculars, m", true),
+    ("beam_m", "Beam, m", true),
+    ("draught_m", "Draught, m", true),
+    ("displacement_m3", "Displacement, m³", true),
+    ("service_speed_m_s", "Service speed, m/s", true),
+    ("block_coefficient", "Block coefficient", false),
+    ("x_g_m", "Centre of gravity forward of midship, m", false),
+    ("yaw_gyradius_ratio", "Yaw radius of gyration by length", false),
+    ("rudder_area_m2", "Rudder area, m²", false),
+    ("rudder_height_m", "Rudder height, m", false),
+    ("propeller_diameter_m", "Propeller diameter, m", false),
+    ("gm_m", "Metacentric height, m", false),
+    ("frontal_area_m2", "Frontal area above water, m²", false),
+    ("lateral_area_m2", "Lateral area above water, m²", false),
+];
+
+/// The key of the one source.
+const SOURCE: &str = "typed-in";
+
+#[derive(Template)]
+#[template(path = "new_ship.html")]
+struct NewShipPage<'a> {
+    shell: &'a Shell,
+    particulars: &'static [(&'static str, &'static str, bool)],
+}
+
+/// The form.
+///
+/// # Errors
+/// The page cannot be written.
+pub fn page(shell: &Shell) -> Result<String> {
+    Ok(NewShipPage { shell, particulars: &PARTICULARS }.render()?)
+}
+
+/// The vessel document that a form's fields say, as `models/schema/vessel.json` describes it.
+///
+/// # Errors
+/// Names the field that is missing or no number.
+pub fn document(form: &Fields) -> Result<Value> {
+    let text = |name: &str| {
+        let text = form.text(name).map(str::trim).filter(|text| !text.is_empty());
+        text.ok_or_else(|| PageError::invalid(name, "must be given".to_owned()))
+    };
+    let mut values = Map::new();
+    for (name, _, needed) in PARTICULARS {
+        match form.text(name).map(str::trim).filter(|text| !text.is_empty()) {
+            None if needed => return Err(PageError::invalid(name, "must be given".to_owned())),
+            None => {}
+            Some(text) => {
+                let value: Option<f64> = text.replace(',', ".").parse().ok();
+                let value = value
+                    .filter(|value| value.is_finite())
+                    .ok_or_else(|| PageError::invalid(name, format!("`{text}` is not a number")))?;
+                values.insert(name.to_owned(), json!(value));
+            }
+        }
+    }
+    Ok(json!({
+        "kind": "vessel",
+        "name": text("name")?,
+        "title": text("title")?,
+        "category": text("category")?,
+        "sources": { SOURCE: { "citation": text("citation")? } },
+        "particulars": { "source": SOURCE, "values": values },
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn fields(change: &[(&str, &str)]) -> Fields {
+        let mut all = vec![
+            ("name", "my-ship"),
+            ("title", "My ship"),
+            ("category", "tanker"),
+            ("citation", "Her trim and stability booklet"),
+            ("lpp_m", "175"),
+            ("beam_m", "25,4"),
+            ("draught_m", "8.5"),
+            ("displacement_m3", "21222"),
+            ("service_speed_m_s", "12.4"),
+            ("block_coefficient", ""),
+        ];
+        for (name, text) in change {
+            all.iter_mut().filter(|(known, _)| known == name).for_each(|pair| pair.1 = text);
+        }
+        let owned = |(name, text): (&str, &str)| (name.to_owned(), text.to_owned());
+        Fields::from(all.into_iter().map(owned).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn a_form_becomes_a_document_that_reads() {
+        let document = document(&fields(&[])).unwrap();
+        let file: sistership_model::vessel::VesselFile =
+            serde_json::from_value(document.clone()).unwrap();
+        let vessel = sistership_model::Vessel::from_file("form", file).unwrap();
+        assert_eq!(vessel.particular("beam_m"), Some(25.4));
+        assert!(document["particulars"]["values"].get("block_coefficient").is_none());
+    }
+
+    #[test]
+    fn a_field_that_is_missing_or_no_number_is_named() {
+        let wrong = |change: &[(&str, &str)]| document(&fields(change)).unwrap_err().to_string();
+        assert!(wrong(&[("lpp_m", "long")]).contains("lpp_m"));
+        assert!(wrong(&[("beam_m", " ")]).contains("beam_m"));
+        assert!(wrong(&[("citation", "")]).contains("citation"));
+    }
+}

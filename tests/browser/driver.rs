@@ -1,0 +1,196 @@
+//! A browser, driven by the WebDriver protocol (W3C 2018): Debian's chromium by its chromedriver.
+//! The few commands that a journey needs are plain requests; a library would bring nothing else.
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use reqwest::{Client, Method};
+use serde_json::{Value, json};
+
+/// What the protocol calls an element.
+const ELEMENT: &str = "element-6066-11e4-a52e-4f735466cecf";
+/// How long something on a page is waited for.
+const PATIENCE: Duration = Duration::from_secs(240);
+
+/// A browser with one window; both are gone when this is dropped.
+pub struct Browser {
+    driver: Child,
+    session: String,
+    client: Client,
+    /// Where pictures of pages are put.
+    pictures: Option<PathBuf>,
+}
+
+impl Browser {
+    /// Starts one; none, said plainly, where it is not installed.
+    pub async fn start() -> Option<Self> {
+        let port = std::net::TcpListener::bind("127.0.0.1:0").ok()?.local_addr().ok()?.port();
+        let mut driver = Command::new("chromedriver");
+        driver.arg(format!("--port={port}")).stdout(Stdio::null()).stderr(Stdio::null());
+        let (Ok(driver), true) = (driver.spawn(), Path::new("/usr/bin/chromium").is_file()) else {
+            println!("skipped: chromium and chromedriver are not installed");
+            return None;
+        };
+        let client = Client::new();
+        let pictures = std::env::var_os("SISTERSHIP_PICTURES").map(PathBuf::from);
+        let url = format!("http://127.0.0.1:{port}");
+        let mut browser = Self { driver, session: url, client, pictures };
+        browser.until_ready().await;
+        let options = json!({ "binary": "/usr/bin/chromium", "args": [
+            "--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run",
+            "--disable-background-networking", "--disable-component-update", "--disable-sync"] });
+        let asked = json!({ "capabilities": { "alwaysMatch": { "goog:chromeOptions": options } } });
+        let made = browser.told(Method::POST, "/session", &asked).await;
+        browser.session += &format!("/session/{}", made["sessionId"].as_str().expect("a session"));
+        Some(browser)
+    }
+
+    async fn until_ready(&self) {
+        for _ in 0..200 {
+            if self.client.get(format!("{}/status", self.session)).send().await.is_ok() {
+                return;
+            }
+            tokio::time::sleep(Duration::from_millis(50)).await;
+        }
+        panic!("chromedriver does not answer");
+    }
+
+    async fn asked(&self, method: Method, path: &str, body: &Value) -> Result<Value, Value> {
+        let request = self.client.request(method.clone(), format!("{}{path}", self.session));
+        let request = if method == Method::POST { request.json(body) } else { request };
+        let answer: Value = request.send().await.expect("an answer").json().await.expect("JSON");
+        match answer["value"].get("error") {
+            Some(_) => Err(answer["value"].clone()),
+            None => Ok(answer["value"].clone()),
+        }
+    }
+
+    async fn told(&self, method: Method, path: &str, body: &Value) -> Value {
+        let done = self.asked(method, path, body).await;
+        done.unwrap_or_else(|error| panic!("{path}: {error}"))
+    }
+
+    /// Loads a page.
+    pub async fn go(&self, url: &str) {
+        self.told(Method::POST, "/url", &json!({ "url": url })).await;
+    }
+
+    /// The path of the page that is shown.
+    pub async fn path(&self) -> String {
+        let url = self.told(Method::GET, "/url", &Value::Null).await;
+        let url = url.as_str().expect("text").to_owned();
+        url.splitn(4, '/').nth(3).map_or_else(String::new, |path| format!("/{path}"))
+    }
+
+    /// The text of the page as a person reads it.
+    pub async fn text(&self) -> String {
+        let text = self.run("return document.body ? document.body.innerText : ''").await;
+        text.as_str().unwrap_or_default().to_owned()
+    }
+
+    /// Runs a script on the page.
+    pub async fn run(&self, script: &str) -> Value {
+        self.told(Method::POST, "/execute/sync", &json!({ "script": script, "args": [] })).await
+    }
+
+    /// Runs a script that calls back with what it has found.
+    pub async fn run_until_called_back(&self, script: &str) -> Value {
+        self.told(Method::POST, "/execute/async", &json!({ "script": script, "args": [] })).await
+    }
+
+    async fn element(&self, css: &str) -> String {
+        let asked = json!({ "using": "css selector", "value": css });
+        let until = Instant::now() + PATIENCE;
+        loop {
+            match self.asked(Method::POST, "/element", &asked).await {
+                Ok(found) => return found[ELEMENT].as_str().expect("an id").to_owned(),
+                Err(error) if Instant::now() > until => panic!("{css}: {error}"),
+                Err(_) => tokio::time::sleep(Duration::from_millis(100)).await,
+            }
+        }
+    }
+
+    /// Presses something.
+    pub async fn click(&self, css: &str) {
+        let id = self.element(css).await;
+        self.told(Method::POST, &format!("/element/{id}/click"), &json!({})).await;
+    }
+
+    /// Types into a field, in the place of what it holds.
+    pub async fn fill(&self, css: &str, text: &str) {
+        let id = self.element(css).await;
+        self.told(Method::POST, &format!("/element/{id}/clear"), &json!({})).await;
+        self.keys(css, text).await;
+    }
+
+    /// Types, or chooses files by their paths, one a line.
+    pub async fn keys(&self, css: &str, text: &str) {
+        let id = self.element(css).await;
+        self.told(Method::POST, &format!("/element/{id}/value"), &json!({ "text": text })).await;
+    }
+
+    /// Chooses from a list what has a value.
+    pub async fn choose(&self, css: &str, value: &str) {
+        self.click(&format!("{css} option[value='{value}']")).await;
+    }
+
+    /// Waits until the page says something.
+    pub async fn until(&self, words: &str) -> String {
+        let until = Instant::now() + PATIENCE;
+        loop {
+            let text = self.text().await;
+            if text.contains(words) {
+                return text;
+            }
+            assert!(Instant::now() < until, "`{words}` does not come: {text}");
+            tokio::time::sleep(Duration::from_millis(200)).await;
+        }
+    }
+
+    /// Shows the page at three widths: it must not be wider than the window. Keeps pictures where
+    /// SISTERSHIP_PICTURES names a folder.
+    pub async fn looked_at(&self, name: &str) {
+        for width in [1400, 800, 390] {
+            self.told(Method::POST, "/window/rect", &json!({ "width": width, "height": 900 }))
+                .await;
+            let beyond = self
+                .run("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
+                .await;
+            assert!(beyond.as_i64() <= Some(0), "{name} is {beyond} px too wide at {width} px");
+            if let Some(folder) = &self.pictures {
+                let height = self.run("return document.documentElement.scrollHeight").await;
+                let size = json!({ "width": width, "height": height.as_i64().unwrap_or(900).clamp(900, 6000) + 140 });
+                self.told(Method::POST, "/window/rect", &size).await;
+                let picture = self.told(Method::GET, "/screenshot", &Value::Null).await;
+                let path = folder.join(format!("{name}-{width}.png.base64"));
+                std::fs::write(path, picture.as_str().expect("base64")).expect("a picture");
+            }
+        }
+        self.told(Method::POST, "/window/rect", &json!({ "width": 1400, "height": 900 })).await;
+    }
+
+    /// What axe-core, whose script SISTERSHIP_AXE names, finds serious or critical on the page.
+    pub async fn accessible(&self, name: &str) {
+        let Some(axe) = std::env::var_os("SISTERSHIP_AXE") else { return };
+        let axe = std::fs::read_to_string(axe).expect("the script of axe-core");
+        self.run(&axe).await;
+        let found = self
+            .run_until_called_back(
+                "const back = arguments[arguments.length - 1];
+                axe.run().then(result => back(result.violations
+                    .filter(one => ['serious', 'critical'].includes(one.impact))
+                    .map(one => one.id + ': ' + one.nodes.map(node => node.target.join(' ')).join(', '))));",
+            )
+            .await;
+        assert_eq!(found, json!([]), "{name}");
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        // The driver ends its browser with itself when it is asked to, and is asked here plainly.
+        let _ = Command::new("kill").args(["-TERM", &self.driver.id().to_string()]).status();
+        let _ = self.driver.wait();
+    }
+}

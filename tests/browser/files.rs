@@ -1,0 +1,90 @@
+//! What the ship of the journey is, and the files of her trials: the heading stands in degrees under
+//! a name that says nothing.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use sistership::sea_trials::{TrialManoeuvre, record};
+use sistership_dynamics::Ship;
+use sistership_model::effect::AppliedEffect;
+use sistership_model::quantity::Quantity;
+use sistership_model::trial::Channel;
+use sistership_model::{Trial, Zoo};
+
+/// The Mariner's, as a person types them.
+pub const PARTICULARS: [(&str, &str); 6] = [
+    ("lpp_m", "160.93"),
+    ("beam_m", "23,17"),
+    ("draught_m", "7.47"),
+    ("displacement_m3", "16622"),
+    ("service_speed_m_s", "7.72"),
+    ("block_coefficient", "0.6"),
+];
+
+/// Columns, with the factor from SI to what is written.
+const COLUMNS: [(&str, Channel, f64); 7] = [
+    ("x_m", Channel::X, 1.0),
+    ("y_m", Channel::Y, 1.0),
+    ("kompass", Channel::Psi, 180.0 / std::f64::consts::PI),
+    ("u_m_s", Channel::U, 1.0),
+    ("v_m_s", Channel::V, 1.0),
+    ("r_rad_s", Channel::R, 1.0),
+    ("delta_rad", Channel::Delta, 1.0),
+];
+
+/// Three files of a ship without anything hidden.
+pub fn calm(folder: &Path) -> Vec<String> {
+    let programme = [
+        TrialManoeuvre::Zigzag(10.0, 10.0),
+        TrialManoeuvre::Turn(-12.0),
+        TrialManoeuvre::Zigzag(-20.0, 20.0),
+    ];
+    written(folder, &sailed(&programme, None, 21))
+}
+
+/// Files of trials in a current of 0.8 m/s to the east.
+pub fn in_a_current(folder: &Path) -> Vec<String> {
+    let programme = [TrialManoeuvre::Turn(15.0), TrialManoeuvre::Zigzag(15.0, 15.0)];
+    let current = [("north_m_s", 0.1), ("east_m_s", 0.8)];
+    written(folder, &sailed(&programme, Some(("current", &current)), 22))
+}
+
+fn sailed(
+    programme: &[TrialManoeuvre],
+    hidden: Option<(&str, &[(&str, f64)])>,
+    seed: u64,
+) -> Vec<Trial> {
+    let zoo = Zoo::embedded().unwrap();
+    let mut model = zoo.model("mariner").unwrap();
+    if let Some((name, values)) = hidden {
+        let effect = zoo.effect(name).unwrap();
+        let value =
+            |(name, value): &(&str, f64)| ((*name).to_owned(), Quantity::new(*value, "the truth"));
+        model.effects.push(AppliedEffect {
+            name: name.into(),
+            acts_on: effect.acts_on,
+            parameters: values.iter().map(value).collect::<BTreeMap<_, _>>(),
+            form: effect.forms[0].file.clone(),
+        });
+    }
+    let ship = Ship::new(&model, zoo.law(&model.law).unwrap()).unwrap();
+    record(&ship, 7.7, programme, seed).unwrap()
+}
+
+fn written(folder: &Path, trials: &[Trial]) -> Vec<String> {
+    let one = |trial: &Trial| {
+        let names: Vec<&str> = COLUMNS.iter().map(|(name, ..)| *name).collect();
+        let mut text = format!("t_s,{}\n", names.join(","));
+        for (k, t_s) in trial.t_s.iter().enumerate().step_by(2) {
+            let cell = |(_, channel, factor): &(&str, Channel, f64)| {
+                (trial.channel(*channel).unwrap()[k] * factor).to_string()
+            };
+            let cells: Vec<String> = COLUMNS.iter().map(cell).collect();
+            text += &format!("{t_s},{}\n", cells.join(","));
+        }
+        let path = folder.join(&trial.name);
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    trials.iter().map(one).collect()
+}

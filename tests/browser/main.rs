@@ -1,0 +1,173 @@
+//! A person's journey in a real browser: signed in, a ship is typed in, odd files are uploaded with a
+//! corrected mapping, a model is refined and compared with its source, a second person promotes it, a
+//! hidden current shows that it does not hold, and it is rolled back.
+#![allow(clippy::unwrap_used)]
+
+mod driver;
+mod files;
+
+use driver::Browser;
+use serde_json::Value;
+use sistership_store::testing::TestDatabase;
+use sistership_tests::binary;
+use sistership_tests::server::TestServer;
+
+const SHIP: &str = "browsed";
+
+/// A user of the server with a role, and the password drawn for it.
+fn user(server: &TestServer, name: &str, role: &str) -> String {
+    let store = server.store_arguments();
+    let store: Vec<&str> = store.iter().map(String::as_str).collect();
+    let words = ["users", "add", name, "--role", role];
+    let added: Value = binary::json(&[&words[..], &store, &["--json"]].concat(), 0);
+    added["password"].as_str().unwrap().to_owned()
+}
+
+async fn sign_in(browser: &Browser, server: &TestServer, name: &str, password: &str) {
+    browser.go(&format!("{}/sign-in", server.url())).await;
+    browser.fill("#name", name).await;
+    browser.fill("#password", password).await;
+    browser.click("main form button").await;
+    browser.until("Ships and their manoeuvring models").await;
+}
+
+async fn shown(browser: &Browser, name: &str) {
+    browser.looked_at(name).await;
+    browser.accessible(name).await;
+}
+
+async fn create(browser: &Browser, server: &TestServer) {
+    browser.go(&format!("{}/new-ship", server.url())).await;
+    shown(browser, "new-ship").await;
+    for (field, text) in files::PARTICULARS {
+        browser.fill(&format!("#{field}"), text).await;
+    }
+    for (field, text) in [
+        ("name", SHIP),
+        ("title", "A ship in a browser"),
+        ("category", "dry-cargo"),
+        ("citation", "Typed in by a person"),
+    ] {
+        browser.fill(&format!("#{field}"), text).await;
+    }
+    browser.click("main form button").await;
+    browser.until("A ship in a browser").await;
+    assert_eq!(browser.path().await, format!("/ships/{SHIP}"));
+}
+
+/// Uploads files and corrects what the heading's column is taken for; `diagnosed` says whether a
+/// diagnosis follows.
+async fn upload(browser: &Browser, server: &TestServer, files: &[String], name: &str) {
+    browser.go(&format!("{}/ships/{SHIP}/upload", server.url())).await;
+    browser.keys("#files", &files.join("\n")).await;
+    browser.click("main form button").await;
+    browser.until("What was read").await;
+    shown(browser, name).await;
+    // The compass stands in degrees under a name that says nothing.
+    let column = "select[aria-label='What kompass is taken for']";
+    let chosen = format!(
+        "const list = document.querySelector(\"{column}\");
+        list.value = 'psi'; document.querySelector(\"input[aria-label='Unit of kompass']\").value = 'deg';
+        document.querySelectorAll(\"input[name^='derive_']\").forEach(box => box.checked = false);"
+    );
+    browser.run(&chosen).await;
+    browser.click("button[value='look']").await;
+    browser.until("Every file can be kept").await;
+    browser.click("button[value='keep']").await;
+}
+
+async fn refined(browser: &Browser, server: &TestServer) {
+    browser.go(&format!("{}/ships/{SHIP}", server.url())).await;
+    browser.fill("#source", "mariner").await;
+    browser.choose("#method", "weak").await;
+    browser.click(&format!("form[action='/ships/{SHIP}/refine'] button")).await;
+    let under_way = browser.until("Refinement of").await;
+    assert!(browser.path().await.starts_with("/jobs/"), "{under_way}");
+    // Progress moves without the page being loaded anew.
+    browser.until("succeeded").await;
+    shown(browser, "job").await;
+    browser.go(&format!("{}{}", server.url(), browser.path().await)).await;
+    browser.click("main a[href*='/v1/reports/']").await;
+    browser.until("Errors before and after").await;
+    browser.looked_at("report").await;
+}
+
+async fn compared(browser: &Browser, server: &TestServer) {
+    browser.go(&format!("{}/compare?v={SHIP}/1&v=mariner/1", server.url())).await;
+    let text = browser.until("mariner/1").await;
+    assert!(text.contains("tactical diameter"), "{text}");
+    shown(browser, "compare").await;
+    browser.go(&format!("{}/ships/{SHIP}/versions/1", server.url())).await;
+    browser.until("Lineage").await;
+    shown(browser, "version").await;
+    browser.click("main a[href*='/validation']").await;
+    browser.until("ITTC 7.5-02-06-03").await;
+    browser.looked_at("validation").await;
+}
+
+/// Makes a version champion on the ship's page.
+async fn promote(browser: &Browser, server: &TestServer, reason: &str) -> String {
+    browser.go(&format!("{}/ships/{SHIP}", server.url())).await;
+    browser.fill("#reason", reason).await;
+    browser.click(&format!("form[action='/ships/{SHIP}/champion'] button")).await;
+    tokio::time::sleep(std::time::Duration::from_millis(500)).await;
+    browser.text().await
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_person_refines_and_another_promotes_in_a_browser() {
+    let Some(browser) = Browser::start().await else { return };
+    let server = TestServer::on(TestDatabase::sqlite(), &["--accounts"]).await;
+    let [ann, bob, root] = [("ann", "engineer"), ("bob", "approver"), ("root", "admin")]
+        .map(|(name, role)| user(&server, name, role));
+    sign_in(&browser, &server, "root", &root).await;
+    browser.go(&format!("{}/users", server.url())).await;
+    shown(&browser, "users").await;
+    browser.click("form[action='/settings'] button").await;
+
+    sign_in(&browser, &server, "ann", &ann).await;
+    shown(&browser, "fleet").await;
+    create(&browser, &server).await;
+    let folder = tempfile::tempdir().unwrap();
+    upload(&browser, &server, &files::calm(folder.path()), "upload").await;
+    refined(&browser, &server).await;
+    compared(&browser, &server).await;
+
+    // Who made it does not promote it; another person does.
+    let refused = promote(&browser, &server, "I like it").await;
+    assert!(refused.contains("another person") || refused.contains("approver"), "{refused}");
+    sign_in(&browser, &server, "bob", &bob).await;
+    let promoted = promote(&browser, &server, "looked over").await;
+    assert!(promoted.contains("A ship in a browser"), "{promoted}");
+    shown(&browser, "ship").await;
+
+    // A trial with a current that nobody has said.
+    sign_in(&browser, &server, "ann", &ann).await;
+    upload(&browser, &server, &files::in_a_current(folder.path()), "upload-current").await;
+    browser.until("Diagnosis of").await;
+    browser.until("succeeded").await;
+    browser.go(&format!("{}/ships/{SHIP}", server.url())).await;
+    let ship = browser.until("does not hold").await;
+    assert!(ship.contains("current"), "{ship}");
+    shown(&browser, "ship-does-not-hold").await;
+    browser.click("main a[href^='/trials/']").await;
+    browser.until("What the champion leaves").await;
+    shown(&browser, "trial").await;
+
+    // Its model with the current is promoted by mistake, and rolled back.
+    sign_in(&browser, &server, "bob", &bob).await;
+    browser.go(&format!("{}/ships/{SHIP}", server.url())).await;
+    browser.choose("#promoted", "2").await;
+    browser.fill("#reason", "by mistake").await;
+    browser.click(&format!("form[action='/ships/{SHIP}/champion'] button")).await;
+    browser.until("Roll back to version 1").await;
+    browser.click(&format!("form[action='/ships/{SHIP}/champion'] button.quiet")).await;
+    browser.until("does not hold").await;
+    for (path, name) in [("/jobs", "jobs"), ("/zoo", "zoo"), ("/families", "families")] {
+        browser.go(&format!("{}{path}", server.url())).await;
+        shown(&browser, name).await;
+    }
+    browser.go(&format!("{}/playground?model={SHIP}", server.url())).await;
+    browser.until("Tactical diameter").await;
+    shown(&browser, "playground").await;
+}
