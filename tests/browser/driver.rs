@@ -32,6 +32,7 @@ impl Browser {
             println!("skipped: chromium and chromedriver are not installed");
             return None;
         };
+        sistership_store::provide_cryptography();
         let client = Client::new();
         let pictures = std::env::var_os("SISTERSHIP_PICTURES").map(PathBuf::from);
         let url = format!("http://127.0.0.1:{port}");
