@@ -255,7 +255,7 @@ async fn damaged(database: TestDatabase) {
     assert!(found(&archive).await.clean, "healed again");
 }
 
-const TABLES: [&str; 28] = [
+const TABLES: [&str; 31] = [
     "laws",
     "effect_libraries",
     "ships",
@@ -282,6 +282,9 @@ const TABLES: [&str; 28] = [
     "grants",
     "service_keys",
     "sessions",
+    "webhooks",
+    "webhook_events",
+    "deliveries",
     "audit",
     "audit_head",
 ];
