@@ -149,8 +149,9 @@ fn sailed(
     Some(sisters.par_chunks(TOGETHER).flat_map_iter(together).collect())
 }
 
-/// Figures of the standard manoeuvres by models that have a model's law and particulars.
-pub(crate) fn figures(
+/// Figures of the standard manoeuvres, by their names, of models that have a model's law and
+/// particulars; none where the law does not fit.
+pub fn figures(
     model: &Model,
     law: &Law,
     models: &[Model],

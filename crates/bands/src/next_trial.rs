@@ -39,7 +39,7 @@ impl NextTrial {
 }
 
 /// Figures of a draw by name.
-pub(crate) type Drawn = BTreeMap<String, f64>;
+pub type Drawn = BTreeMap<String, f64>;
 
 /// The manoeuvre that tells most; none where fewer draws than twice the figures reached all of
 /// them, or none differs.

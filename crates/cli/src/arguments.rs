@@ -6,8 +6,8 @@ use clap::{Parser, Subcommand};
 
 use crate::commands::{backup, family, fsck, gc, keys, serve, ships, users, verify, work, zoo};
 use crate::commands::{
-    branch, check, compare, derive, diagnose, estimate, export, import, manoeuvre, refine, similar,
-    simulate, validate,
+    branch, check, compare, derive, diagnose, estimate, export, import, manoeuvre, plan, refine,
+    similar, simulate, validate,
 };
 use crate::demo::DemoArguments;
 
@@ -25,6 +25,7 @@ Examples:
   sistership branch --model my-model.yaml --trials trials.yaml --out with-branch.yaml
   sistership diagnose --model my-model.yaml --trials new-trials.yaml --report diagnosis.html
   sistership manoeuvre --model my-model.yaml --all
+  sistership plan --ship my-model.yaml --budget-min 60
   sistership export my-model.yaml --format c --out my_model.c
   sistership estimate --ship my-ship.yaml
   sistership zoo add my-ship.yaml
@@ -64,6 +65,8 @@ pub enum Command {
     /// Sail turning circles, zigzags, stops, pull-outs and spirals with a model and judge them by the
     /// IMO criteria.
     Manoeuvre(manoeuvre::ManoeuvreArguments),
+    /// Plan the trials that narrow the bands of the IMO criteria most in a given time.
+    Plan(plan::PlanArguments),
     /// Compare two to five models: coefficients, errors on the same trials, standard manoeuvres.
     Compare(compare::CompareArguments),
     /// Validate a model by its ship's trials: comparison error, validation uncertainty, verdict.

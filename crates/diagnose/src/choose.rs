@@ -51,7 +51,10 @@ pub(super) fn choose(
 ) -> Result<EffectChoice, RefineError> {
     let base = search.base(&[], &search.levels)?;
     let (level, alone) = search.alone(&base)?;
-    let limits = limits(search, &base, level, settings.least_evidence);
+    let limits = match search.states_odds {
+        true => limits(search, &base, level, settings.least_evidence),
+        false => Vec::new(),
+    };
     let (tried, levels) = (Vec::new(), search.levels.clone());
     let mut choice = EffectChoice { alone, limits, tried, taken: None, levels };
     choice.add(search, settings, &base, THRESHOLDS.search.judged)?;

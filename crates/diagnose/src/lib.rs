@@ -1,5 +1,6 @@
 //! What the residual says: which effect a model lacks, if any.
 
+mod as_recorded;
 mod calibrate;
 mod calibrated_model;
 mod choose;
@@ -10,6 +11,7 @@ mod corrected;
 mod covariance;
 mod discount;
 mod evidence;
+mod expected;
 mod filtered_base;
 mod hypothesis;
 mod judge;
@@ -36,7 +38,9 @@ mod values;
 
 use std::sync::Arc;
 
+pub use as_recorded::as_recorded;
 pub use calibrate::calibrate;
+pub use expected::{ExpectedInformation, Unknowns, forms_of};
 pub use outcome::{
     Confounded, DetectionLimit, Diagnosis, DiscrepancyLevel, Found, Hypothesis, LimitedBy,
     NextTrial, ResidualSeries, SailedManoeuvre, TrialErrors, Unexplained, Value, Verdict,

@@ -122,7 +122,7 @@ impl<'a> Detection<'a> {
             }
             let usual = parameter.prior_mean.abs() + parameter.prior_deviation;
             let discount = self.search.discount(candidate);
-            let size = self.limit(&self.information, place, own, usual, discount);
+            let size = self.limit(&self.information, (place, own), discount);
             Some(DetectionLimit {
                 effect: candidate.effect.clone(),
                 form: candidate.form.file.name.clone(),
@@ -141,26 +141,26 @@ impl<'a> Detection<'a> {
         if shows(size) {
             return None;
         }
-        if shows(self.limit(&self.information, place, own, usual, 1.0)) {
+        if shows(self.limit(&self.information, (place, own), 1.0)) {
             return Some(LimitedBy::Model);
         }
-        let known = shows(self.limit(&self.of_known, place, own, usual, 1.0));
+        let known = shows(self.limit(&self.of_known, (place, own), 1.0));
         let reads = acts_on(self.candidates[place]) == ActsOn::Measurement;
         Some(if known || !reads { LimitedBy::Trials } else { LimitedBy::Sensors })
     }
 
-    /// The smallest size of one parameter that is shown, from a grid of equal ratios; none where no
-    /// size is.
+    /// The smallest size of one parameter that is shown, from a grid of equal ratios below the
+    /// largest that is believed at all; none where no size is.
     fn limit(
         &self,
         information: &DMatrix<f64>,
-        place: usize,
-        own: usize,
-        usual: f64,
+        (place, own): (usize, usize),
         discount: f64,
     ) -> Option<f64> {
         let given = THRESHOLDS.limits;
-        let sizes = (0..given.steps).map(|k| given.largest * usual * given.ratio.powi(-(k as i32)));
+        let [least, most] = self.candidates[place].form.parameters[own].bounds;
+        let largest = least.abs().max(most.abs());
+        let sizes = (0..given.steps).map(|k| largest * given.ratio.powi(-(k as i32)));
         let rivals = self.rivals(information, place, own);
         let is_shown = |size: &f64| {
             self.is_shown(information, (place, own), *size, discount, &rivals)

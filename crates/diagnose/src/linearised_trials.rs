@@ -83,6 +83,36 @@ impl<'a> LinearisedTrials<'a> {
         trials: &'a [&'a Trial],
         least_step_s: Option<f64>,
     ) -> Result<Self, RefineError> {
+        let mut all = Self::every_sample(learned, columns, trials, least_step_s)?;
+        let every = sparseness(&all.records);
+        all.records.iter_mut().for_each(|record| record.every = every);
+        let known = learned.model.uncertainty.as_ref();
+        all.noise = noise(&all.records, all.lpp_m, all.speed_m_s, known);
+        Ok(all)
+    }
+
+    /// Trials of which every sample is a reading, by instruments that are stated: what nobody has
+    /// sailed yet has no scatter by which either could be told.
+    ///
+    /// # Errors
+    /// Names what the model lacks.
+    pub fn planned(
+        learned: &CalibratedModel,
+        columns: Columns,
+        trials: &'a [&'a Trial],
+        instruments: &Noise,
+    ) -> Result<Self, RefineError> {
+        let mut all = Self::every_sample(learned, columns, trials, None)?;
+        all.noise.clone_from(instruments);
+        Ok(all)
+    }
+
+    fn every_sample(
+        learned: &CalibratedModel,
+        columns: Columns,
+        trials: &'a [&'a Trial],
+        least_step_s: Option<f64>,
+    ) -> Result<Self, RefineError> {
         let CalibratedModel { model, law } = learned;
         let lpp_m = particulars::value(&model.particulars, "lpp_m");
         let lpp_m = lpp_m.ok_or_else(|| {
@@ -94,13 +124,11 @@ impl<'a> LinearisedTrials<'a> {
             .ok_or_else(|| RefineError::Data("the trials have no speed".into()))?;
         let least_step_s = least_step_s.unwrap_or(THRESHOLDS.trials.least_step * lpp_m / speed_m_s);
         let settles_s = THRESHOLDS.trials.settles * lpp_m / speed_m_s;
-        let mut records: Vec<TrialReadings<'a>> =
+        let records: Vec<TrialReadings<'a>> =
             trials.iter().map(|trial| TrialReadings::new(trial, least_step_s, settles_s)).collect();
-        let every = sparseness(&records);
-        records.iter_mut().for_each(|record| record.every = every);
-        let noise = noise(&records, lpp_m, speed_m_s, model.uncertainty.as_ref());
         let frame = trials.first().map(|trial| trial.velocity).unwrap_or_default();
         let system = ResidualSystem::new(model, law, columns, frame)?;
+        let noise = Noise::default();
         Ok(Self { trials, noise, lpp_m, speed_m_s, system, records, linear: Vec::new() })
     }
 

@@ -3,12 +3,11 @@
 //! sails it.
 
 use rayon::prelude::*;
+use sistership_dynamics::Ship;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_dynamics::state::{RECORDED, at};
-use sistership_dynamics::{Ship, Trajectory};
 use sistership_model::Trial;
-use sistership_model::trial::Channel;
 
+use super::as_recorded::as_recorded;
 use super::confounded::Responses;
 use super::filtered_base::FilteredBase;
 use super::hypothesis::JudgedHypothesis;
@@ -110,44 +109,7 @@ fn sailed(base: &FilteredBase<'_>, ship: &Ship, planned: &PlannedManoeuvre) -> O
         None => turn(ship, rudder, &settings).ok()?.track,
     };
     let model = workspace.trials.first()?;
-    Some(recorded(&track, model, planned.heading_deg.to_radians()))
-}
-
-/// With the channels and the interval of a trial that was sailed; the wind and the like as they
-/// were in its middle.
-fn recorded(track: &Trajectory, like: &Trial, heading_rad: f64) -> Trial {
-    let step_s = track.t_s.get(1).copied().unwrap_or(1.0);
-    let stride = (like.interval_s() / step_s).round().max(1.0) as usize;
-    let every = |values: Vec<f64>| values.into_iter().step_by(stride).collect::<Vec<f64>>();
-    let (sin, cos) = heading_rad.sin_cos();
-    let (x, y) = (track.column(at::X), track.column(at::Y));
-    let turned = |channel: Channel, index: usize| match channel {
-        Channel::X => x.iter().zip(&y).map(|(x, y)| x * cos - y * sin).collect(),
-        Channel::Y => x.iter().zip(&y).map(|(x, y)| x * sin + y * cos).collect(),
-        Channel::Psi => track.column(index).into_iter().map(|psi| psi + heading_rad).collect(),
-        _ => track.column(index),
-    };
-    let mut trial = Trial {
-        name: "planned".into(),
-        velocity: like.velocity,
-        depth_m: like.depth_m,
-        ..Trial::default()
-    };
-    trial.t_s = every(track.t_s.clone());
-    let count = trial.t_s.len();
-    for (&channel, values) in &like.channels {
-        let constant = values.get(values.len() / 2).copied().unwrap_or_default();
-        trial.channels.insert(channel, vec![constant; count]);
-    }
-    for &(channel, index) in RECORDED.iter().filter(|(channel, _)| like.channel(*channel).is_some())
-    {
-        trial.channels.insert(channel, every(turned(channel, index)));
-    }
-    trial.channels.insert(Channel::Delta, every(track.column(at::DELTA)));
-    if like.channel(Channel::N).is_some() {
-        trial.channels.insert(Channel::N, every(track.n_rps.clone()));
-    }
-    trial
+    Some(as_recorded(&track, model, planned.heading_deg.to_radians()))
 }
 
 /// The products of all columns of a base over a planned trial.

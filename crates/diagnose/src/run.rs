@@ -6,21 +6,22 @@ use super::Request;
 use super::choose::{ConvergedChoice, EffectChoice, choose};
 use super::constancy::inconstant;
 use super::hypothesis::JudgedHypothesis;
-use super::judge::errors;
+use super::judge::{SimulatedErrors, errors};
 use super::limits::{but, cannot_tell};
 use super::linearised_trials::LinearisedTrials;
-use super::log_priors::states_odds;
 use super::misfit::of_shape;
-use super::outcome::{Diagnosis, Unexplained, Verdict};
-use super::refit::refits;
+use super::outcome::{Diagnosis, Found, NextTrial, Unexplained, Verdict};
+use super::refit::{Refit, refits};
 use super::remainder::unexplained;
 use super::said::{apart, how, hypotheses, in_model, remarks};
 use super::search::HypothesisSearch;
 use super::series::{levels, residuals};
 use super::setup::search;
 use super::thresholds::THRESHOLDS;
-use crate::residual::EffectCandidate;
+use crate::residual::{EffectCandidate, Instrument};
 use sistership_estimate::refine::{Progress, RefineError};
+use sistership_model::Model;
+use sistership_model::trial::Channel;
 
 /// Diagnoses a model on trials.
 ///
@@ -49,60 +50,106 @@ fn answer(
     choice: EffectChoice,
     progress: Progress<'_>,
 ) -> Result<Diagnosis, RefineError> {
-    let SelectedEffects { choice, settled, remaining, refused } =
-        believed(request, first, choice, progress)?;
-    let ConvergedChoice { search, base, best } = &settled;
-    let workspace = &base.workspace;
-    let length_s = workspace.lpp_m / workspace.speed_m_s;
+    let selected = believed(request, first, choice, progress)?;
     step(progress, 0.85, "simulating each trial by a fit on the others")?;
+    let fitted = fitted(request, &selected.settled);
+    step(progress, 0.95, "what these trials cannot tell apart")?;
+    let named = named(request, &selected, &fitted)?;
+    written(request, first, selected, (fitted, named))
+}
+
+/// The model that goes with what was found, and its errors.
+struct FittedModel {
+    errors: SimulatedErrors,
+    taken: Refit,
+}
+
+fn fitted(request: &Request<'_>, settled: &ConvergedChoice<'_>) -> FittedModel {
+    let ConvergedChoice { search, base, best } = settled;
+    let length_s = base.workspace.lpp_m / base.workspace.speed_m_s;
     let restart_s = request.settings.restart_s.unwrap_or(THRESHOLDS.trials.restart * length_s);
     let mut refits = refits(request, search, best, restart_s);
     let errors = errors(request, &refits, restart_s);
     let taken = refits.swap_remove(errors.taken);
-    step(progress, 0.95, "what these trials cannot tell apart")?;
-    let (mut found, next_trial) =
-        apart(request, search, best, choice.best().log_evidence - choice.alone.log_evidence)?;
-    let verdict = match (remaining.is_empty(), found.is_empty()) {
-        (false, _) => Verdict::Unexplained,
-        (true, true) => Verdict::Complete,
-        (true, false) => Verdict::Effects,
-    };
-    let model = (!found.is_empty() && errors.change < 0.0).then_some(taken.all);
+    FittedModel { errors, taken }
+}
+
+/// What has a name.
+struct NamedEffects {
+    found: Vec<Found>,
+    next_trial: Option<NextTrial>,
+    /// The model with them, where it simulates better.
+    model: Option<Model>,
+    remarks: Vec<String>,
+}
+
+fn named(
+    request: &Request<'_>,
+    selected: &SelectedEffects<'_>,
+    fitted: &FittedModel,
+) -> Result<NamedEffects, RefineError> {
+    let SelectedEffects { choice, settled, refused, .. } = selected;
+    let of_all = choice.best().log_evidence - choice.alone.log_evidence;
+    let (mut found, next_trial) = apart(request, &settled.search, &settled.best, of_all)?;
+    let is_better = !found.is_empty() && fitted.errors.change < 0.0;
+    let model = is_better.then(|| fitted.taken.all.clone());
     found.iter_mut().for_each(|found| {
         found.in_model = model.as_ref().map_or_else(BTreeMap::new, |model| in_model(found, model))
     });
-    let is_better = found.is_empty() || model.is_some();
-    let remarks = remarks(&refused, is_better, &found);
-    let names: Vec<String> = found.iter().map(|found| found.name.clone()).collect();
-    // A library that states no odds is of before limits were told: its diagnoses are as they were.
-    let tells = states_odds(request);
-    let limits = if tells { but(choice.limits.clone(), &names) } else { Vec::new() };
+    let remarks = remarks(refused, found.is_empty() || model.is_some(), &found);
+    Ok(NamedEffects { found, next_trial, model, remarks })
+}
+
+fn verdict(remaining: &[Unexplained], found: &[Found]) -> Verdict {
+    match (remaining.is_empty(), found.is_empty()) {
+        (false, _) => Verdict::Unexplained,
+        (true, true) => Verdict::Complete,
+        (true, false) => Verdict::Effects,
+    }
+}
+
+/// All of it as one document.
+fn written(
+    request: &Request<'_>,
+    first: &HypothesisSearch<'_>,
+    selected: SelectedEffects<'_>,
+    (fitted, named): (FittedModel, NamedEffects),
+) -> Result<Diagnosis, RefineError> {
+    let SelectedEffects { choice, settled, remaining, .. } = selected;
+    let ConvergedChoice { search, base, best } = &settled;
+    let names: Vec<String> = named.found.iter().map(|found| found.name.clone()).collect();
+    let limits = but(choice.limits.clone(), &names);
+    let FittedModel { errors, taken } = fitted;
     Ok(Diagnosis {
-        verdict,
-        effects: found,
+        verdict: verdict(&remaining, &named.found),
+        effects: named.found,
         unexplained: remaining,
         cannot_tell: cannot_tell(&limits),
         limits,
-        prior_odds: if tells { first.prior_odds() } else { BTreeMap::new() },
-        next_trial,
+        prior_odds: if first.states_odds { first.prior_odds() } else { BTreeMap::new() },
+        next_trial: named.next_trial,
         before: errors.before,
         after: errors.after,
-        noise: workspace
-            .noise
-            .iter()
-            .map(|(channel, instrument)| (channel.name().to_owned(), instrument.deviation))
-            .collect(),
+        noise: deviations(&base.workspace),
         how: how(request, taken.how.as_deref()),
         diagnosed: request.model.name.clone(),
         hypotheses: hypotheses(request, search, &choice),
         trials: errors.trials,
         manoeuvres: errors.manoeuvres,
         residuals: residuals(first, search, best)?,
-        discrepancies: levels(search, workspace, &choice.alone, best),
-        model,
+        discrepancies: levels(search, &base.workspace, &choice.alone, best),
+        model: named.model,
         settings: request.settings.clone(),
-        remarks,
+        remarks: named.remarks,
     })
+}
+
+/// What the instruments scatter, by channel.
+fn deviations(workspace: &LinearisedTrials<'_>) -> BTreeMap<String, f64> {
+    let one = |(channel, instrument): (&Channel, &Instrument)| {
+        (channel.name().to_owned(), instrument.deviation)
+    };
+    workspace.noise.iter().map(one).collect()
 }
 
 /// What is taken in the end.

@@ -44,6 +44,9 @@ pub(super) struct HypothesisSearch<'a> {
     pub freed: Vec<EffectCandidate>,
     /// Logarithm of the prior probability of each form among all.
     pub log_priors: BTreeMap<String, f64>,
+    /// Whether anybody states odds. A library that does not is of before limits were told: its
+    /// diagnoses are as they were.
+    pub states_odds: bool,
 }
 
 impl<'a> HypothesisSearch<'a> {

@@ -11,7 +11,7 @@ use super::Request;
 use super::calibrated_model::CalibratedModel;
 use super::evidence::DiscrepancyFactor;
 use super::linearised_trials::LinearisedTrials;
-use super::log_priors::log_priors;
+use super::log_priors::{log_priors, states_odds};
 use super::nuisance::{Terms, columns, lacked, learned, learned_prior, prior};
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
@@ -100,6 +100,7 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, 
         levels,
         least_step_s: request.settings.least_step_s,
         log_priors: log_priors(request, &listed, &freed),
+        states_odds: states_odds(request),
         listed,
         freed,
     };

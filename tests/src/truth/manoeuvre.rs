@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use rand::RngExt;
 use sistership_dynamics::metrics::{TurningMetrics, ZigzagMetrics};
-use sistership_dynamics::state::{StateVector, Trajectory, at};
+use sistership_dynamics::state::{StateVector, Trajectory, at, straight};
 
-use super::motion::{STEP_S, Truth, sail};
+use super::motion::{STEP_S, Truth, sail, sail_from};
 use crate::synthetic::replica;
 
 /// A manoeuvre by ordered rudder angles, deg, positive to starboard.
@@ -37,7 +37,7 @@ impl Manoeuvre {
     }
 
     /// How long it takes, by the time in which the ship sails its length.
-    pub(super) fn lengths(&self) -> f64 {
+    pub fn lengths(&self) -> f64 {
         match self {
             Self::Zigzag(..) => 25.0,
             Self::Turn(_) => 18.0,
@@ -49,12 +49,30 @@ impl Manoeuvre {
     /// Sails it: one sample a step, without noise, at constant revolutions.
     pub fn sailed(&self, ship: &dyn Truth) -> Trajectory {
         let time_s = ship.dimensions().length_time_s();
-        let mut helm = Helm::new(*self, time_s);
-        let order = |t_s: f64, state: &StateVector| {
-            helm.order_deg(t_s - APPROACH * time_s, state).to_radians()
-        };
-        sail(ship, (APPROACH + self.lengths()) * time_s, ship.revolutions_rps(), order)
+        let approach = Approach { speed: 1.0, lengths: APPROACH };
+        self.sailed_for(ship, approach, self.lengths() * time_s)
     }
+
+    /// Sails it for so long (s) after an approach.
+    pub fn sailed_for(&self, ship: &dyn Truth, approach: Approach, duration_s: f64) -> Trajectory {
+        let time_s = ship.dimensions().length_time_s() / approach.speed;
+        let before_s = approach.lengths * time_s;
+        let mut helm = Helm::new(*self, time_s);
+        let order =
+            |t_s: f64, state: &StateVector| helm.order_deg(t_s - before_s, state).to_radians();
+        let start = straight(approach.speed * ship.dimensions().speed_m_s);
+        let n_rps = approach.speed * ship.revolutions_rps();
+        sail_from(ship, start, before_s + duration_s, n_rps, order)
+    }
+}
+
+/// How a manoeuvre is approached.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Approach {
+    /// Speed by the ship's own, with revolutions in proportion.
+    pub speed: f64,
+    /// Lengths sailed before the first order.
+    pub lengths: f64,
 }
 
 /// Who steers.

@@ -109,10 +109,21 @@ pub fn sail(
     ship: &dyn Truth,
     duration_s: f64,
     n_rps: f64,
+    order: impl FnMut(f64, &StateVector) -> f64,
+) -> Trajectory {
+    sail_from(ship, straight(ship.dimensions().speed_m_s), duration_s, n_rps, order)
+}
+
+/// The same from a state.
+pub fn sail_from(
+    ship: &dyn Truth,
+    start: StateVector,
+    duration_s: f64,
+    n_rps: f64,
     mut order: impl FnMut(f64, &StateVector) -> f64,
 ) -> Trajectory {
     let mut track = Trajectory::default();
-    let mut state = straight(ship.dimensions().speed_m_s);
+    let mut state = start;
     for k in 0..=(duration_s / STEP_S).round() as usize {
         let t_s = k as f64 * STEP_S;
         track.push(t_s, state, n_rps);

@@ -1,16 +1,17 @@
 //! `sistership estimate`: a model of any ship from its particulars alone.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Args;
 use serde::Serialize;
 use sistership_bands::Band;
 use sistership_dynamics::manoeuvre::{Figure, StandardManoeuvres};
 use sistership_empirical::{
-    EstimateBands, LAW, Library, Spread, estimate as estimated, estimate_bands,
+    Estimate, EstimateBands, LAW, Library, Spread, estimate as estimated, estimate_bands,
 };
 use sistership_model::vessel::Status;
-use sistership_model::{Model, Vessel, Zoo};
+use sistership_model::{Law, Model, Vessel, Zoo};
 
 use super::written::{model_file, promised};
 use crate::failure::Failure;
@@ -73,12 +74,9 @@ pub fn run(zoo: &Zoo, asked: &EstimateArguments) -> Result<(), Failure> {
     let vessel = named::ship(zoo, &asked.ship)?;
     let inputs = [PathBuf::from(&asked.ship)];
     let file = promised(asked.out.as_deref(), &inputs)?;
+    let (estimate, law) = estimate_of(zoo, &vessel, asked.speed_m_s)?;
     let speed_m_s = speed(&vessel, asked.speed_m_s)?;
-    let library = Library::embedded()?;
-    let law = zoo.law(LAW).ok_or_else(|| Failure::Refused(format!("there is no law `{LAW}`")))?;
-    let refused = |error: sistership_empirical::EstimateError| Failure::Refused(error.to_string());
-    let estimate = estimated(&library, &vessel, law, speed_m_s).map_err(refused)?;
-    let bands = estimate_bands(&estimate, law, asked.seed)
+    let bands = estimate_bands(&estimate, &law, asked.seed)
         .ok_or_else(|| Failure::Refused(format!("{}: the law does not fit", vessel.name())))?;
     if let Some(file) = file {
         let text = model_file(zoo, &estimate.model, "estimated from particulars")?;
@@ -100,6 +98,23 @@ pub fn run(zoo: &Zoo, asked: &EstimateArguments) -> Result<(), Failure> {
         out: asked.out.as_ref(),
     };
     output::print(asked.json, &document, || text(&vessel, &document, &bands))
+}
+
+/// The estimate of a ship, and its law.
+///
+/// # Errors
+/// Names the particulars that are missing.
+pub(super) fn estimate_of(
+    zoo: &Zoo,
+    vessel: &Vessel,
+    speed_m_s: Option<f64>,
+) -> Result<(Estimate, Arc<Law>), Failure> {
+    let speed_m_s = speed(vessel, speed_m_s)?;
+    let library = Library::embedded()?;
+    let law = zoo.law(LAW).ok_or_else(|| Failure::Refused(format!("there is no law `{LAW}`")))?;
+    let refused = |error: sistership_empirical::EstimateError| Failure::Refused(error.to_string());
+    let estimate = estimated(&library, vessel, law, speed_m_s).map_err(refused)?;
+    Ok((estimate, Arc::clone(law)))
 }
 
 fn speed(vessel: &Vessel, asked: Option<f64>) -> Result<f64, Failure> {

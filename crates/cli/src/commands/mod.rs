@@ -26,6 +26,8 @@ pub mod manoeuvre;
 mod manoeuvre_document;
 mod manoeuvre_further;
 mod manoeuvre_text;
+pub mod plan;
+mod plan_text;
 pub mod refine;
 mod refine_search;
 mod refine_settings;

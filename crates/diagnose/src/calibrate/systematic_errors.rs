@@ -35,6 +35,8 @@ pub(super) fn of(
     let request = Request { model: &model, law, effects, trials, settings: &settings };
     let mut search = search(&request)?;
     search.freed.clear();
+    // What could not be shown here is nobody's question.
+    search.states_odds = false;
     search.listed.retain(|candidate| acts_on(candidate) == ActsOn::Measurement);
     if !may_err(&search)? {
         return Ok(Vec::new());
