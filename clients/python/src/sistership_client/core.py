@@ -274,7 +274,7 @@ class Core:
         return self.http.json('POST', f'/v1/families/{family}/prior')
 
     def post_families_family_refinements(self, family: str, body: Asked, *, idempotency_key: Optional[str] = None) -> BulkView:
-        """Refine every member of a family from the statistics of her trials."""
+        """Refine every member of a family from the statistics of its trials."""
         return self.http.json('POST', f'/v1/families/{family}/refinements', headers={'Idempotency-Key': idempotency_key}, json=body)
 
     def get_jobs(self, *, ship: Optional[str] = None, state: Optional[Literal['queued', 'running', 'succeeded', 'failed', 'cancelled']] = None, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_JobView:
@@ -410,11 +410,11 @@ class Core:
         return self.http.json('POST', '/v1/ships', headers={'Idempotency-Key': idempotency_key}, json=body)
 
     def delete_ships_ship(self, ship: str, *, if_match: Optional[str] = None) -> None:
-        """Delete a ship; her versions stay, and `undelete` brings her back."""
+        """Delete a ship; its versions stay, and `undelete` brings it back."""
         return self.http.none('DELETE', f'/v1/ships/{ship}', headers={'If-Match': if_match})
 
     def get_ships_ship(self, ship: str, *, if_none_match: Optional[str] = None) -> ShipDetail:
-        """A ship; her ETag is what a change must present."""
+        """A ship; its ETag is what a change must present."""
         return self.http.json('GET', f'/v1/ships/{ship}', headers={'If-None-Match': if_none_match})
 
     def put_ships_ship(self, ship: str, body: VesselFile, *, if_match: Optional[str] = None) -> ShipDetail:
@@ -422,7 +422,7 @@ class Core:
         return self.http.json('PUT', f'/v1/ships/{ship}', headers={'If-Match': if_match}, json=body)
 
     def get_ships_ship_drift(self, ship: str) -> Drift:
-        """What a ship's champion leaves of each of her trials, over time."""
+        """What a ship's champion leaves of each of its trials, over time."""
         return self.http.json('GET', f'/v1/ships/{ship}/drift')
 
     def get_ships_ship_model(self, ship: str, *, format: Optional[Literal['json', 'yaml']] = None, if_none_match: Optional[str] = None) -> Champion:
@@ -430,7 +430,7 @@ class Core:
         return self.http.json('GET', f'/v1/ships/{ship}/model', query={'format': format}, headers={'If-None-Match': if_none_match})
 
     def get_ships_ship_similar(self, ship: str, *, vector: Optional[Literal['mei-2019', 'kanazawa-2023']] = None, trials: Optional[bool] = None) -> Dict[str, Any]:
-        """Rank the zoo for a ship, and say which ships may be her source."""
+        """Rank the zoo for a ship, and say which ships may be its source."""
         return self.http.json('GET', f'/v1/ships/{ship}/similar', query={'vector': vector, 'trials': trials})
 
     def get_ships_ship_tags(self, ship: str) -> List[str]:
@@ -442,7 +442,7 @@ class Core:
         return self.http.none('DELETE', f'/v1/ships/{ship}/tags/{tag}')
 
     def put_ships_ship_tags_tag(self, ship: str, tag: str) -> None:
-        """Put a tag on a ship, to find her by."""
+        """Put a tag on a ship, by which it is found."""
         return self.http.none('PUT', f'/v1/ships/{ship}/tags/{tag}')
 
     def post_ships_ship_undelete(self, ship: str) -> ShipDetail:
