@@ -91,6 +91,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "access",
         ],
     ),
+    ("program", &["cli"]),
 ];
 const ALONE: [(&str, &[&str]); 2] = [("sqlx", &["store"]), ("axum", &["server", "http", "listen"])];
 
