@@ -34,7 +34,7 @@ pub(super) struct Connection {
     limits: Limits,
     party: IpAddr,
     pace: Arc<Pace>,
-    seat: Seat,
+    seat: Arc<Seat>,
 }
 
 impl Connection {
@@ -45,7 +45,7 @@ impl Connection {
         party: IpAddr,
     ) -> Option<Self> {
         let pace = Arc::new(Pace::new(&limits));
-        let seat = Seats::admit(seats, party, &pace)?;
+        let seat = Arc::new(Seats::admit(seats, party, &pace)?);
         Some(Self { router: router.clone(), limits, party, pace, seat })
     }
 
@@ -57,7 +57,7 @@ impl Connection {
         let connection = Arc::new(self);
         let serving = Arc::clone(&connection);
         let service = service_fn(move |request| Arc::clone(&serving).answer(request));
-        let served = builder.serve_connection(TokioIo::new(stream), service);
+        let served = builder.serve_connection(TokioIo::new(stream), service).with_upgrades();
         tokio::select! {
             served = watcher.watch(served) => if let Err(error) = served {
                 tracing::debug!(%error, "a connection broke off");
@@ -78,6 +78,7 @@ impl Connection {
         request.extensions_mut().insert(Peer {
             party: self.party,
             pace: Arc::clone(&pace),
+            _seat: Arc::clone(&self.seat),
             crowded,
         });
         let answered = TowerToHyperService::new(self.router.clone()).call(request).await;

@@ -1,8 +1,9 @@
-//! Predictions: a model sails a manoeuvre, or follows recorded inputs.
+//! Predictions: a model sails a manoeuvre, follows recorded inputs, or is under way as orders come.
 
 mod error;
 mod inputs;
 mod manoeuvre;
+pub mod session;
 mod track;
 
 use serde::Deserialize;

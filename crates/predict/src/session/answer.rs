@@ -1,0 +1,153 @@
+//! Where a ship under way is, as JSON.
+
+use serde_json::{Map, Value, json};
+use sistership_bands::quantile;
+use sistership_dynamics::state::at;
+use sistership_dynamics::{StateVector, Trajectory};
+
+use super::request::StepsRequest;
+use super::under_way::Session;
+use crate::error::Result;
+use crate::track::{COLUMNS, columns, with_share};
+
+/// The ends of a band of 95 %.
+const ENDS: [(&str, f64); 2] = [("low", 0.025), ("high", 0.975)];
+
+/// A ship at an instant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sample {
+    t_s: f64,
+    state: StateVector,
+    n_rps: f64,
+    /// The ends of the band, by state; none where nobody sails beside her.
+    band: Option<[StateVector; 2]>,
+}
+
+impl Session {
+    /// Sails steps under orders, `most` at most; answers with them column by column.
+    ///
+    /// # Errors
+    /// As [`Session::take`].
+    pub fn sail(&mut self, request: &StepsRequest, most: usize) -> Result<Value> {
+        self.take(request, most)?;
+        let steps = (0..request.count()).map_while(|_| self.step(request.dt_s.get()));
+        let samples: Vec<Sample> = steps.collect();
+        let track = track(&samples);
+        let answer = json!({
+            "t_s": self.t_s,
+            "trajectory": columns(&track),
+            "band": self.band_of(&samples),
+            "stopped": self.stopped(),
+            "outside": self.ship.leaves(&track),
+        });
+        Ok(with_share(answer, &self.ship, &track))
+    }
+
+    /// Of the steps that a request asks for, of which some are `sailed`, the next ones, row by row,
+    /// `together` at most; and whether they are the last. With the first its orders are taken.
+    ///
+    /// # Errors
+    /// As [`Session::take`].
+    pub fn rows(
+        &mut self,
+        request: &StepsRequest,
+        sailed: usize,
+        together: usize,
+        most: usize,
+    ) -> Result<(Vec<Value>, bool)> {
+        if sailed == 0 {
+            self.take(request, most)?;
+        }
+        let left = request.count().saturating_sub(sailed);
+        let mut rows = Vec::new();
+        while rows.len() < left.min(together) {
+            let sample = self.step(request.dt_s.get());
+            let stopped = sample.is_none();
+            rows.push(self.row(&sample.unwrap_or_else(|| self.sample())));
+            if stopped {
+                return Ok((rows, true));
+            }
+        }
+        let ended = rows.len() == left;
+        Ok((rows, ended))
+    }
+
+    /// Where she is now, under which orders.
+    pub fn view(&self) -> Value {
+        let mut view = self.row(&self.sample());
+        view["orders"] = json!({ "delta_rad": self.order.delta_rad, "n_rps": self.order.n_rps });
+        view["draws"] = json!(self.beside.as_ref().map_or(0, |beside| beside.drawn));
+        view
+    }
+
+    pub(super) fn sample(&self) -> Sample {
+        let band = self.beside.as_ref().map(|beside| band(beside.sisters.states().collect()));
+        Sample { t_s: self.t_s, state: self.state, n_rps: self.order.n_rps, band: band.flatten() }
+    }
+
+    fn row(&self, sample: &Sample) -> Value {
+        let mut row = named(&sample.state);
+        row.insert("t_s".into(), json!(sample.t_s));
+        row.insert("n_rps".into(), json!(sample.n_rps));
+        if let Some(band) = &sample.band {
+            row.insert("band".into(), ends(|end| Value::Object(named(&band[end]))));
+        }
+        row.insert("stopped".into(), self.stopped());
+        let track = track(std::slice::from_ref(sample));
+        row.insert("outside".into(), json!(self.ship.leaves(&track)));
+        with_share(Value::Object(row), &self.ship, &track)
+    }
+
+    fn stopped(&self) -> Value {
+        self.stopped
+            .as_ref()
+            .map_or(Value::Null, |stopped| json!({ "t_s": stopped.t_s, "reason": stopped.reason }))
+    }
+
+    /// The band over samples, by its ends and columns; how many draws there were, and are left.
+    fn band_of(&self, samples: &[Sample]) -> Option<Value> {
+        let beside = self.beside.as_ref()?;
+        let column = |end: usize, place: usize| {
+            let value = |sample: &Sample| sample.band.map(|band| band[end][place]);
+            samples.iter().map(value).collect::<Vec<_>>()
+        };
+        let mut band = ends(|end| {
+            let all = COLUMNS.map(|(name, place)| (name.to_owned(), json!(column(end, place))));
+            Value::Object(all.into_iter().collect())
+        });
+        band["drawn"] = json!(beside.drawn);
+        band["sailing"] = json!(beside.sisters.states().count());
+        Some(band)
+    }
+}
+
+/// Both ends of a band.
+fn ends(of: impl Fn(usize) -> Value) -> Value {
+    let [(low, _), (high, _)] = ENDS;
+    json!({ low: of(0), high: of(1) })
+}
+
+fn named(state: &StateVector) -> Map<String, Value> {
+    COLUMNS.iter().map(|&(name, place)| (name.to_owned(), json!(state[place]))).collect()
+}
+
+fn track(samples: &[Sample]) -> Trajectory {
+    let mut track = Trajectory::default();
+    samples.iter().for_each(|sample| track.push(sample.t_s, sample.state, sample.n_rps));
+    track
+}
+
+/// The ends of the band of each state over those who still sail; none where nobody does.
+fn band(states: Vec<StateVector>) -> Option<[StateVector; 2]> {
+    let mut out = [StateVector::zeros(); 2];
+    let mut values = Vec::with_capacity(states.len());
+    for place in 0..=at::DELTA {
+        values.clear();
+        values.extend(states.iter().map(|state| state[place]));
+        values.sort_unstable_by(f64::total_cmp);
+        for (end, (_, share)) in ENDS.iter().enumerate() {
+            out[end][place] = quantile(&values, *share)?;
+        }
+    }
+    Some(out)
+}

@@ -1,0 +1,17 @@
+//! A ship under way: she sails on as orders come, and is asked where she is.
+//!
+//! `request` reads, `under_way` sails, `answer` says where she is, `table` keeps those who sail for
+//! others than who asks first.
+
+mod answer;
+mod request;
+mod start;
+mod table;
+mod under_way;
+
+pub use request::{CurrentRequest, OrdersRequest, SessionRequest, StepsRequest, WindRequest};
+pub use table::{Handle, SessionLimits, Sessions};
+pub use under_way::Session;
+
+#[cfg(test)]
+mod tests;
