@@ -8,7 +8,8 @@ use sistership_model::trial::{Channel, Trial};
 use sistership_model::{FileError, Model, Vessel, Zoo};
 
 use crate::similarity::{
-    CharacteristicVector, Definition, EligibilityLimits, RankedSource, SourceCandidate, Trend, rank,
+    CharacteristicVector, Definition, EligibilityLimits, ModelHead, RankedSource, SourceCandidate,
+    rank,
 };
 use crate::transfer::{approach_of, transfer};
 use crate::trend::{TrendError, trend};
@@ -79,25 +80,37 @@ pub fn similar_with(
     champions: &BTreeMap<String, Model>,
 ) -> Similarity {
     let definition = definition.unwrap_or_else(|| definition_for(target));
-    let model = |vessel: &Vessel| match champions.get(vessel.name()) {
-        Some(champion) => Some(champion.clone()),
-        None => zoo.published(vessel, None).ok(),
+    let head = |vessel: &Vessel| match champions.get(vessel.name()) {
+        Some(champion) => {
+            Some(ModelHead { name: champion.name.clone(), law: champion.law.clone() })
+        }
+        None => published_head(vessel),
     };
-    let models: Vec<(&Vessel, Option<Model>)> =
-        zoo.vessels().map(|vessel| (&**vessel, model(vessel))).collect();
-    let candidates: Vec<SourceCandidate<'_>> = models
-        .iter()
-        .map(|(vessel, model)| SourceCandidate { vessel, model: model.as_ref() })
-        .collect();
-    let measured = |model: &Model| trend_on(zoo, target, model, trials);
-    let measured: Option<Trend<'_>> = if trials.is_empty() { None } else { Some(&measured) };
+    let candidates: Vec<SourceCandidate<'_>> =
+        zoo.vessels().map(|vessel| SourceCandidate { vessel, model: head(vessel) }).collect();
+    let measured = |vessel: &Vessel| {
+        let model = match champions.get(vessel.name()) {
+            Some(champion) => champion.clone(),
+            None => zoo.published(vessel, None)?,
+        };
+        if trials.is_empty() {
+            return Ok(None);
+        }
+        trend_on(zoo, target, &model, trials).map(Some)
+    };
     Similarity {
         target: target.name().to_owned(),
         category: target.file.category.clone(),
         definition,
         vector: CharacteristicVector::of(target, definition).values,
-        ranking: rank(target, &candidates, definition, &EligibilityLimits::default(), measured),
+        ranking: rank(target, &candidates, definition, &EligibilityLimits::default(), &measured),
     }
+}
+
+/// A vessel's first model, as [`Model::published`] calls it.
+fn published_head(vessel: &Vessel) -> Option<ModelHead> {
+    let model = vessel.file.models.first()?;
+    Some(ModelHead { name: format!("{}/{}", vessel.name(), model.name), law: model.law.clone() })
 }
 
 /// The trend of a source on the target's trials, started anew each time she has sailed 20 of her

@@ -3,9 +3,9 @@
 use sistership_dynamics::recorded::{MissingChannel, Recorded, ReplaySettings, replay_all};
 use sistership_dynamics::state::at;
 use sistership_dynamics::{PlantError, Stopped};
-use sistership_model::Model;
 use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
+use sistership_model::{FileError, Model};
 
 use crate::transfer::ready;
 
@@ -18,6 +18,9 @@ pub enum TrendError {
     /// The model's law is not known.
     #[error("there is no law `{0}`")]
     NoLaw(String),
+    /// The source's file is at fault.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// The law rolls, and a trial does not record how.
     #[error("its law has roll, and trial `{trial}` has no channel `{channel}`")]
     Roll {

@@ -1,62 +1,63 @@
 //! The zoo: laws, effects and vessels by name, embedded in the program and extended at run time.
 
-use std::collections::BTreeMap;
+mod entries;
+
 use std::sync::Arc;
 
 use include_dir::{Dir, include_dir};
-use rayon::prelude::*;
 
 use crate::effect::Effect;
 use crate::error::FileError;
 use crate::law::Law;
 use crate::model::Model;
 use crate::vessel::Vessel;
+use entries::Entries;
 
 static MODELS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../models");
 
-/// Laws, effects and vessels by name.
-#[derive(Debug, Clone, Default)]
+/// Laws, effects and vessels by name. What the program carries is read when it is first asked for:
+/// most calls need one law and one ship.
+#[derive(Debug, Clone)]
 pub struct Zoo {
-    laws: BTreeMap<String, Arc<Law>>,
-    effects: BTreeMap<String, Arc<Effect>>,
-    vessels: BTreeMap<String, Arc<Vessel>>,
-    texts: BTreeMap<String, String>,
+    laws: Entries<Law>,
+    effects: Entries<Effect>,
+    vessels: Entries<Vessel>,
+}
+
+impl Default for Zoo {
+    fn default() -> Self {
+        Self {
+            laws: Entries::new(Law::parse),
+            effects: Entries::new(Effect::parse),
+            vessels: Entries::new(Vessel::parse),
+        }
+    }
 }
 
 impl Zoo {
-    /// The laws, effects and vessels that the program carries.
+    /// The laws, effects and vessels that the program carries. A test reads them all and checks
+    /// every model ([`Zoo::check`]); one that does not read would be missing.
     ///
     /// # Errors
-    /// The first file that does not read; a test keeps this from happening in a release.
+    /// A file that is no text.
     pub fn embedded() -> Result<Self, FileError> {
-        let mut zoo = Self::default();
-        let (laws, (effects, vessels)) = rayon::join(
-            || parsed("laws", Law::parse),
-            || {
-                rayon::join(
-                    || parsed("effects", Effect::parse),
-                    || parsed("vessels", Vessel::parse),
-                )
-            },
-        );
-        for (_, text, law) in laws {
-            zoo.keep_law(Arc::new(law?), text);
+        Ok(Self {
+            laws: Entries::embedded(MODELS.get_dir("laws"), Law::parse)?,
+            effects: Entries::embedded(MODELS.get_dir("effects"), Effect::parse)?,
+            vessels: Entries::embedded(MODELS.get_dir("vessels"), Vessel::parse)?,
+        })
+    }
+
+    /// Reads everything, and checks each model against its law.
+    ///
+    /// # Errors
+    /// The first file that does not read or fit.
+    pub fn check(&self) -> Result<(), FileError> {
+        let faults = [self.laws.fault(), self.effects.fault(), self.vessels.fault()];
+        if let Some(fault) = faults.into_iter().flatten().next() {
+            return Err(fault.clone());
         }
-        for (_, text, effect) in effects {
-            zoo.keep_effect(Arc::new(effect?), text);
-        }
-        let checked: Vec<Result<(), FileError>> = vessels
-            .par_iter()
-            .map(|(file, _, vessel)| match vessel {
-                Ok(vessel) => zoo.check_file(file, vessel),
-                Err(error) => Err(error.clone()),
-            })
-            .collect();
-        for ((_, text, vessel), checked) in vessels.into_iter().zip(checked) {
-            checked?;
-            zoo.keep_vessel(Arc::new(vessel?), text);
-        }
-        Ok(zoo)
+        self.vessels().try_for_each(|vessel| self.check_models(vessel))
     }
 
     /// Adds a law, or replaces the one of the same name.
@@ -65,13 +66,8 @@ impl Zoo {
     /// As [`Law::parse`].
     pub fn add_law(&mut self, file: &str, text: &str) -> Result<Arc<Law>, FileError> {
         let law = Arc::new(Law::parse(file, text)?);
-        self.keep_law(Arc::clone(&law), text);
+        self.laws.keep(&law.name, text, Arc::clone(&law));
         Ok(law)
-    }
-
-    fn keep_law(&mut self, law: Arc<Law>, text: &str) {
-        self.texts.insert(format!("law {}", law.name), text.to_owned());
-        self.laws.insert(law.name.clone(), law);
     }
 
     /// Adds an effect, or replaces the one of the same name.
@@ -80,13 +76,8 @@ impl Zoo {
     /// As [`Effect::parse`].
     pub fn add_effect(&mut self, file: &str, text: &str) -> Result<Arc<Effect>, FileError> {
         let effect = Arc::new(Effect::parse(file, text)?);
-        self.keep_effect(Arc::clone(&effect), text);
+        self.effects.keep(&effect.name, text, Arc::clone(&effect));
         Ok(effect)
-    }
-
-    fn keep_effect(&mut self, effect: Arc<Effect>, text: &str) {
-        self.texts.insert(format!("effect {}", effect.name), text.to_owned());
-        self.effects.insert(effect.name.clone(), effect);
     }
 
     /// Adds a vessel, or replaces the one of the same name; each of her models is checked against
@@ -96,18 +87,10 @@ impl Zoo {
     /// As [`Vessel::parse`] and [`Model::published`].
     pub fn add_vessel(&mut self, file: &str, text: &str) -> Result<Arc<Vessel>, FileError> {
         let vessel = Arc::new(Vessel::parse(file, text)?);
-        self.check_file(file, &vessel)?;
-        self.keep_vessel(Arc::clone(&vessel), text);
+        let in_file = |error| FileError { file: file.to_owned(), ..error };
+        self.check_models(&vessel).map_err(in_file)?;
+        self.vessels.keep(vessel.name(), text, Arc::clone(&vessel));
         Ok(vessel)
-    }
-
-    fn check_file(&self, file: &str, vessel: &Vessel) -> Result<(), FileError> {
-        self.check_models(vessel).map_err(|error| FileError { file: file.to_owned(), ..error })
-    }
-
-    fn keep_vessel(&mut self, vessel: Arc<Vessel>, text: &str) {
-        self.texts.insert(format!("vessel {}", vessel.name()), text.to_owned());
-        self.vessels.insert(vessel.name().to_owned(), vessel);
     }
 
     /// Checks that each model of a vessel fits its law.
@@ -140,7 +123,7 @@ impl Zoo {
                 field: "models.law".into(),
                 message: format!(
                     "there is no law `{law_name}`; there are {}",
-                    self.law_names().join(", ")
+                    self.laws.names().join(", ")
                 ),
             }),
         }
@@ -159,10 +142,9 @@ impl Zoo {
 
     /// The refusal of a ship that is not here.
     pub fn no_ship(&self, name: &str) -> FileError {
-        let known: Vec<&str> = self.vessels.keys().map(String::as_str).collect();
         let message = format!(
             "there is no such ship in the zoo and no such file; the zoo has {}",
-            known.join(", ")
+            self.vessels.names().join(", ")
         );
         FileError { file: name.to_owned(), line: None, field: String::new(), message }
     }
@@ -184,56 +166,33 @@ impl Zoo {
 
     /// Every law, by name.
     pub fn laws(&self) -> impl Iterator<Item = &Arc<Law>> {
-        self.laws.values()
+        self.laws.all()
     }
 
     /// Every effect, by name.
     pub fn effects(&self) -> impl Iterator<Item = &Arc<Effect>> {
-        self.effects.values()
+        self.effects.all()
     }
 
     /// Every vessel, by name.
     pub fn vessels(&self) -> impl Iterator<Item = &Arc<Vessel>> {
-        self.vessels.values()
+        self.vessels.all()
     }
 
     /// The text of a law's file.
     pub fn law_text(&self, name: &str) -> Option<&str> {
-        self.texts.get(&format!("law {name}")).map(String::as_str)
+        self.laws.text(name)
     }
 
     /// The text of an effect's file.
     pub fn effect_text(&self, name: &str) -> Option<&str> {
-        self.texts.get(&format!("effect {name}")).map(String::as_str)
+        self.effects.text(name)
     }
 
     /// The text of a vessel's file.
     pub fn vessel_text(&self, name: &str) -> Option<&str> {
-        self.texts.get(&format!("vessel {name}")).map(String::as_str)
+        self.vessels.text(name)
     }
-
-    fn law_names(&self) -> Vec<&str> {
-        self.laws.keys().map(String::as_str).collect()
-    }
-}
-
-/// A file with its text, and what was made of it.
-type Parsed<T> = (&'static str, &'static str, Result<T, FileError>);
-
-/// Parses the files of a folder on all cores, in their order.
-fn parsed<T: Send>(
-    folder: &str,
-    parse: impl Fn(&str, &str) -> Result<T, FileError> + Sync,
-) -> Vec<Parsed<T>> {
-    let files: Vec<(&str, &str)> = yaml_files(folder).collect();
-    files.into_par_iter().map(|(file, text)| (file, text, parse(file, text))).collect()
-}
-
-fn yaml_files(folder: &str) -> impl Iterator<Item = (&'static str, &'static str)> {
-    let files = MODELS.get_dir(folder).map(Dir::files).into_iter().flatten();
-    files
-        .filter(|file| file.path().extension().is_some_and(|extension| extension == "yaml"))
-        .filter_map(|file| Some((file.path().to_str()?, file.contents_utf8()?)))
 }
 
 #[cfg(test)]
@@ -242,19 +201,32 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_embedded_file_reads() {
-        let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-        for ship in [
-            "mariner",
-            "sr108",
-            "kvlcc2",
-            "kvlcc2-7m",
-            "kcs",
-            "esso-tanker",
-            "pcc",
-            "esso-osaka-3m",
+    fn every_embedded_file_reads_by_the_name_of_its_document() {
+        let zoo = Zoo::embedded().unwrap();
+        zoo.check().unwrap_or_else(|error| panic!("{error}"));
+        for (folder, known) in [
+            ("laws", zoo.laws().map(|law| law.name.clone()).collect::<Vec<_>>()),
+            ("effects", zoo.effects().map(|effect| effect.name.clone()).collect()),
+            ("vessels", zoo.vessels().map(|vessel| vessel.name().to_owned()).collect()),
         ] {
-            assert!(zoo.vessel(ship).is_some(), "{ship} is missing");
+            let yaml = MODELS.get_dir(folder).unwrap().files().filter(|file| {
+                file.path().extension().is_some_and(|extension| extension == "yaml")
+            });
+            assert_eq!(known.len(), yaml.count());
+            for name in known {
+                let path = format!("{folder}/{name}.yaml");
+                assert!(MODELS.get_file(&path).is_some(), "{name} should be {path}");
+            }
         }
+    }
+
+    #[test]
+    fn a_fault_of_a_file_is_found_by_the_check() {
+        let mut zoo = Zoo::embedded().unwrap();
+        let text = zoo.vessel_text("mariner").unwrap().replace("law: abkowitz", "law: none-such");
+        assert!(zoo.add_vessel("m.yaml", &text).unwrap_err().to_string().contains("none-such"));
+        let text = zoo.law_text("low-speed").unwrap().replace("name: low-speed", "name: abkowitz");
+        zoo.add_law("law.yaml", &text).unwrap();
+        assert!(zoo.check().is_err());
     }
 }

@@ -3,8 +3,8 @@
 
 use rayon::prelude::*;
 use serde::Serialize;
+use sistership_model::Vessel;
 use sistership_model::categories::group_of;
-use sistership_model::{Model, Vessel};
 
 use super::{CharacteristicVector, Definition};
 use crate::trend::TrendError;
@@ -14,8 +14,17 @@ use crate::trend::TrendError;
 pub struct SourceCandidate<'a> {
     /// The ship.
     pub vessel: &'a Vessel,
-    /// Her model; none for a ship known by particulars only.
-    pub model: Option<&'a Model>,
+    /// What her model is called, and its law; none for a ship known by particulars only.
+    pub model: Option<ModelHead>,
+}
+
+/// A model by its name and law, without its values: most candidates are judged before those matter.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ModelHead {
+    /// `ship/model`.
+    pub name: String,
+    /// The name of its law.
+    pub law: String,
 }
 
 /// What is asked of a source.
@@ -62,9 +71,9 @@ pub struct RankedSource {
     pub reasons: Vec<String>,
 }
 
-/// How well a source's model captures the trend of the target's trials (a correlation), or why that
-/// cannot be told.
-pub type Trend<'a> = &'a (dyn Fn(&Model) -> Result<f64, TrendError> + Sync);
+/// How well the model that a ship would give captures the trend of the target's trials (a
+/// correlation), none where there are no trials, or why that cannot be told.
+pub type Trend<'a> = &'a (dyn Fn(&Vessel) -> Result<Option<f64>, TrendError> + Sync);
 
 /// Ranks the candidates by correlation with the target. `trend` measures how well a source's model
 /// captures the trend of the target's trials; without trials the third step is left open and said
@@ -74,7 +83,7 @@ pub fn rank(
     candidates: &[SourceCandidate<'_>],
     definition: Definition,
     limits: &EligibilityLimits,
-    trend: Option<Trend<'_>>,
+    trend: Trend<'_>,
 ) -> Vec<RankedSource> {
     let here = CharacteristicVector::of(target, definition);
     let others = |candidate: &&SourceCandidate<'_>| candidate.vessel.name() != target.name();
@@ -87,8 +96,8 @@ pub fn rank(
             let Eligibility { eligible, reasons } = judge(target, candidate, limits, trend);
             RankedSource {
                 ship: candidate.vessel.name().to_owned(),
-                model: candidate.model.map(|model| model.name.clone()),
-                law: candidate.model.map(|model| model.law.clone()),
+                model: candidate.model.as_ref().map(|model| model.name.clone()),
+                law: candidate.model.as_ref().map(|model| model.law.clone()),
                 correlation,
                 eligible,
                 reasons,
@@ -106,22 +115,19 @@ fn judge(
     target: &Vessel,
     candidate: &SourceCandidate<'_>,
     limits: &EligibilityLimits,
-    trend: Option<Trend<'_>>,
+    trend: Trend<'_>,
 ) -> Eligibility {
     let mut steps = vec![
         same_category(target, candidate.vessel),
         similar_vector(target, candidate.vessel, limits),
     ];
-    match candidate.model {
+    match &candidate.model {
         None => steps.push(StepOutcome::failed("no model: known by particulars only".into())),
         // A simulation costs more than a comparison of numbers: it is run for those that passed
         // them.
-        Some(model) if steps.iter().all(|step| step.passed) => match trend {
-            Some(trend) => steps.push(captures_trend(trend(model), limits)),
-            None => steps.push(StepOutcome::passed(
-                "trend of the trials: not checked, no trials given".into(),
-            )),
-        },
+        Some(_) if steps.iter().all(|step| step.passed) => {
+            steps.push(captures_trend(trend(candidate.vessel), limits));
+        }
         Some(_) => {}
     }
     let eligible = steps.iter().all(|step| step.passed);
@@ -175,13 +181,17 @@ fn similar_vector(target: &Vessel, source: &Vessel, limits: &EligibilityLimits) 
     }
 }
 
-fn captures_trend(measured: Result<f64, TrendError>, limits: &EligibilityLimits) -> StepOutcome {
+fn captures_trend(
+    measured: Result<Option<f64>, TrendError>,
+    limits: &EligibilityLimits,
+) -> StepOutcome {
     match measured {
+        Ok(None) => StepOutcome::passed("trend of the trials: not checked, no trials given".into()),
         Err(reason) => StepOutcome::failed(format!("does not capture the trials: {reason}")),
-        Ok(r) if r >= limits.trend => StepOutcome::passed(format!(
+        Ok(Some(r)) if r >= limits.trend => StepOutcome::passed(format!(
             "captures the trend of the trials: yaw rate correlates at {r:.2}"
         )),
-        Ok(r) => StepOutcome::failed(format!(
+        Ok(Some(r)) => StepOutcome::failed(format!(
             "misses the trend of the trials: yaw rate correlates at {r:.2}, at least {:.2}",
             limits.trend
         )),

@@ -4,4 +4,6 @@ mod characteristic;
 mod eligibility;
 
 pub use characteristic::{CharacteristicVector, Definition};
-pub use eligibility::{Eligibility, EligibilityLimits, RankedSource, SourceCandidate, Trend, rank};
+pub use eligibility::{
+    Eligibility, EligibilityLimits, ModelHead, RankedSource, SourceCandidate, Trend, rank,
+};

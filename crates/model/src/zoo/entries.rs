@@ -1,0 +1,104 @@
+//! Documents of one kind by name, each read when it is first asked for.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
+
+use include_dir::{Dir, File};
+use rayon::prelude::*;
+
+use crate::error::FileError;
+
+/// How a document is read from the name of its file and its text.
+type Parse<T> = fn(&str, &str) -> Result<T, FileError>;
+
+/// Documents by name.
+#[derive(Debug, Clone)]
+pub(super) struct Entries<T> {
+    parse: Parse<T>,
+    by_name: BTreeMap<String, Entry<T>>,
+}
+
+#[derive(Debug, Clone)]
+struct Entry<T> {
+    file: &'static str,
+    text: Cow<'static, str>,
+    read: OnceLock<Result<Arc<T>, FileError>>,
+}
+
+impl<T: Send + Sync> Entries<T> {
+    /// None yet.
+    pub fn new(parse: Parse<T>) -> Self {
+        Self { parse, by_name: BTreeMap::new() }
+    }
+
+    /// The YAML files of an embedded folder; each is called as the document that it holds.
+    ///
+    /// # Errors
+    /// A file that is no text.
+    pub fn embedded(
+        folder: Option<&'static Dir<'static>>,
+        parse: Parse<T>,
+    ) -> Result<Self, FileError> {
+        let files = folder.map(Dir::files).into_iter().flatten();
+        let yaml = |file: &&'static File<'static>| {
+            file.path().extension().is_some_and(|extension| extension == "yaml")
+        };
+        Ok(Self { parse, by_name: files.filter(yaml).map(entry).collect::<Result<_, _>>()? })
+    }
+
+    /// Adds a document that has been read, or replaces the one of the same name.
+    pub fn keep(&mut self, name: &str, text: &str, document: Arc<T>) {
+        let read = OnceLock::from(Ok(document));
+        let entry = Entry { file: "", text: Cow::Owned(text.to_owned()), read };
+        self.by_name.insert(name.to_owned(), entry);
+    }
+
+    /// The document of a name; none where it does not read.
+    pub fn get(&self, name: &str) -> Option<&Arc<T>> {
+        self.read(self.by_name.get(name)?).as_ref().ok()
+    }
+
+    /// The text of a document.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        self.by_name.get(name).map(|entry| &*entry.text)
+    }
+
+    /// The names, in order.
+    pub fn names(&self) -> Vec<&str> {
+        self.by_name.keys().map(String::as_str).collect()
+    }
+
+    /// Every document that reads, by name; those not yet read are read on all cores.
+    pub fn all(&self) -> impl Iterator<Item = &Arc<T>> {
+        let unread: Vec<&Entry<T>> =
+            self.by_name.values().filter(|entry| entry.read.get().is_none()).collect();
+        unread.into_par_iter().for_each(|entry| {
+            self.read(entry);
+        });
+        self.by_name.values().filter_map(|entry| self.read(entry).as_ref().ok())
+    }
+
+    /// The first document that does not read, by name.
+    pub fn fault(&self) -> Option<&FileError> {
+        self.by_name.values().find_map(|entry| self.read(entry).as_ref().err())
+    }
+
+    fn read<'a>(&self, entry: &'a Entry<T>) -> &'a Result<Arc<T>, FileError> {
+        entry.read.get_or_init(|| (self.parse)(entry.file, &entry.text).map(Arc::new))
+    }
+}
+
+/// A file that is not yet read, by its name without folder and extension.
+fn entry<T>(file: &'static File<'static>) -> Result<(String, Entry<T>), FileError> {
+    let no_text = || FileError {
+        file: file.path().display().to_string(),
+        line: None,
+        field: String::new(),
+        message: "is no text".to_owned(),
+    };
+    let path = file.path().to_str().ok_or_else(no_text)?;
+    let name = file.path().file_stem().and_then(|stem| stem.to_str()).ok_or_else(no_text)?;
+    let text = Cow::Borrowed(file.contents_utf8().ok_or_else(no_text)?);
+    Ok((name.to_owned(), Entry { file: path, text, read: OnceLock::new() }))
+}
