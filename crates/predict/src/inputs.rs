@@ -29,7 +29,7 @@ pub struct InputsRequest {
 }
 
 /// A state; what is not given is 0.
-#[derive(Debug, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InitialState {
     u_m_s: f64,

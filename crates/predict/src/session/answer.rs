@@ -32,15 +32,20 @@ impl Session {
         self.take(request, most)?;
         let steps = (0..request.count()).map_while(|_| self.step(request.dt_s.get()));
         let samples: Vec<Sample> = steps.collect();
-        let track = track(&samples);
+        Ok(self.answer(&samples))
+    }
+
+    /// Samples column by column, with all that is told of them.
+    pub(crate) fn answer(&self, samples: &[Sample]) -> Value {
+        let track = track(samples);
         let answer = json!({
             "t_s": self.t_s,
             "trajectory": columns(&track),
-            "band": self.band_of(&samples),
+            "band": self.band_of(samples),
             "stopped": self.stopped(),
             "outside": self.ship.leaves(&track),
         });
-        Ok(with_share(answer, &self.ship, &track))
+        with_share(answer, &self.ship, &track)
     }
 
     /// Of the steps that a request asks for, of which some are `sailed`, the next ones, row by row,
@@ -80,7 +85,7 @@ impl Session {
         view
     }
 
-    pub(super) fn sample(&self) -> Sample {
+    pub(crate) fn sample(&self) -> Sample {
         let band = self.beside.as_ref().map(|beside| band(beside.sisters.states().collect()));
         Sample { t_s: self.t_s, state: self.state, n_rps: self.order.n_rps, band: band.flatten() }
     }

@@ -19,23 +19,23 @@ pub struct SessionRequest {
     pub model: ModelName,
     /// Where she is, and how she moves over the ground; straight ahead to the north at the model's
     /// approach speed where absent.
-    pub(super) start: Option<InitialState>,
+    pub(crate) start: Option<InitialState>,
     /// Her rudder angle at the start, positive to starboard.
     #[serde(default)]
-    pub(super) delta_rad: f64,
+    pub(crate) delta_rad: f64,
     /// Water depth for laws that know it, m; deep where absent.
     #[schema(inline)]
-    pub(super) depth_m: Option<Positive>,
+    pub(crate) depth_m: Option<Positive>,
     /// A steady current.
-    pub(super) current: Option<CurrentRequest>,
+    pub(crate) current: Option<CurrentRequest>,
     /// A steady wind.
-    pub(super) wind: Option<WindRequest>,
+    pub(crate) wind: Option<WindRequest>,
     /// Models drawn from the posterior of a refined one, which sail beside it and give the band;
     /// none where absent.
     #[schema(inline)]
-    pub(super) draws: Option<DrawCount>,
+    pub(crate) draws: Option<DrawCount>,
     /// What the draws follow from; 1 where absent.
-    pub(super) seed: Option<u64>,
+    pub(crate) seed: Option<u64>,
 }
 
 /// A steady current.

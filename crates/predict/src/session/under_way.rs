@@ -44,18 +44,26 @@ impl Session {
     /// # Errors
     /// Names the field of the request that is at fault, or the memory that is lacking.
     pub fn take(&mut self, request: &StepsRequest, most: usize) -> Result<()> {
-        let blocks = self.beside.as_ref().map_or(0, |beside| beside.sisters.blocks());
-        let parts = self.parts(request.dt_s.get()) * request.count();
-        bounded("steps", parts as f64 * (1 + blocks) as f64, most)?;
+        self.bounded(request.dt_s.get(), request.count(), most)?;
         let others = self.places(&request.orders)?;
-        let OrdersRequest { delta_rad, n_rps, .. } = request.orders;
-        delta_rad.into_iter().for_each(|delta_rad| self.order.delta_rad = delta_rad);
-        n_rps.into_iter().for_each(|n_rps| self.order.n_rps = n_rps);
+        self.order(request.orders.delta_rad, request.orders.n_rps);
         for (place, value) in others {
             self.others.retain(|(known, _)| *known != place);
             self.others.push((place, value));
         }
         Ok(())
+    }
+
+    /// Takes the memory of steps; refuses more work than is allowed.
+    pub(crate) fn bounded(&self, dt_s: f64, steps: usize, most: usize) -> Result<()> {
+        let blocks = self.beside.as_ref().map_or(0, |beside| beside.sisters.blocks());
+        bounded("steps", (self.parts(dt_s) * steps) as f64 * (1 + blocks) as f64, most)
+    }
+
+    /// Orders rudder and revolutions; what is not given stays.
+    pub(crate) fn order(&mut self, delta_rad: Option<f64>, n_rps: Option<f64>) {
+        delta_rad.into_iter().for_each(|delta_rad| self.order.delta_rad = delta_rad);
+        n_rps.into_iter().for_each(|n_rps| self.order.n_rps = n_rps);
     }
 
     /// Sails a step; none where the motion has left the physical range, then or before.
