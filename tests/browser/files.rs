@@ -1,4 +1,4 @@
-//! What the ship of the journey is, and the files of her trials: the heading stands in degrees under
+//! What the ship of the journey is, and the files of its trials: the heading stands in degrees under
 //! a name that says nothing.
 
 use std::collections::BTreeMap;

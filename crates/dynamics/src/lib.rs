@@ -1,5 +1,5 @@
-//! Forward: from a model and what is done to the ship to her motion, and to the figures by which
-//! she is judged.
+//! Forward: from a model and what is done to the ship to its motion, and to the figures by which
+//! it is judged.
 
 pub mod branch;
 mod branch_share;

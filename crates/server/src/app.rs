@@ -227,7 +227,7 @@ impl App {
     }
 
     /// The laws of the database, with the ships that a ship is compared with: all of them where
-    /// they are few, else those of her category that are most similar to her.
+    /// they are few, else those of its category that are most similar to it.
     pub(crate) async fn zoo_around(&self, target: &Vessel) -> Result<Arc<Zoo>> {
         Ok(self.0.catalogue.around(self.archive(), target).await?)
     }

@@ -31,7 +31,7 @@ struct Uploaded {
     trials: Vec<TrialView>,
     /// How many of them are new.
     new: usize,
-    /// The job that diagnoses the ship's champion on the new ones; none where she has no champion.
+    /// The job that diagnoses the ship's champion on the new ones; none where it has no champion.
     diagnosis: Option<String>,
 }
 

@@ -81,9 +81,7 @@ fn follow_up(ship: &str, number: i64, kept: &[Kept]) -> Option<NewJob> {
 fn no_ship(ship: &str) -> Problem {
     Problem::invalid(
         "ship",
-        format!(
-            "there is no ship `{ship}`; create her with POST /v1/ships first, or mend the name"
-        ),
+        format!("there is no ship `{ship}`; create it with POST /v1/ships first, or mend the name"),
     )
 }
 
