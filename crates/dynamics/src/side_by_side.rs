@@ -8,7 +8,7 @@ use crate::state::{StateVector, States, at, lane_of, set_lane};
 /// Ships that are calculated together.
 const TOGETHER: usize = 8;
 
-/// Sisters side by side, each in a state of her own. One whose motion leaves the physical range
+/// Sisters side by side, each in a state of its own. One whose motion leaves the physical range
 /// drops out; the others sail on.
 #[derive(Debug)]
 pub struct SideBySide {
@@ -31,7 +31,7 @@ impl SideBySide {
     }
 
     /// Sails a step: `inputs` are those of the law, in which the rudder angle is each ship's own,
-    /// and `order_rad` is what her steering gear follows.
+    /// and `order_rad` is what its steering gear follows.
     pub fn step(&mut self, ship: &Ship, inputs: &Inputs, order_rad: f64, step_s: f64) {
         self.blocks.iter_mut().for_each(|block| block.step(ship, inputs, order_rad, step_s));
     }

@@ -16,10 +16,10 @@ use crate::session::{CurrentRequest, Session, SessionRequest, WindRequest};
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HorizonRequest {
-    /// Where the ship is, and how she moves over the ground; straight ahead to the north at the
+    /// Where the ship is, and how it moves over the ground; straight ahead to the north at the
     /// model's approach speed where absent.
     start: Option<InitialState>,
-    /// Her rudder angle now, positive to starboard.
+    /// Its rudder angle now, positive to starboard.
     #[serde(default)]
     delta_rad: f64,
     /// Orders to come, in time; the rudder as it is and the revolutions of the speed now until the

@@ -19,7 +19,7 @@ pub struct Sample {
     t_s: f64,
     state: StateVector,
     n_rps: f64,
-    /// The ends of the band, by state; none where nobody sails beside her.
+    /// The ends of the band, by state; none where nobody sails beside it.
     band: Option<[StateVector; 2]>,
 }
 
@@ -77,7 +77,7 @@ impl Session {
         Ok((rows, ended))
     }
 
-    /// Where she is now, under which orders.
+    /// Where it is now, under which orders.
     pub fn view(&self) -> Value {
         let mut view = self.row(&self.sample());
         view["orders"] = json!({ "delta_rad": self.order.delta_rad, "n_rps": self.order.n_rps });

@@ -1,6 +1,6 @@
-//! A ship under way: she sails on as orders come, and is asked where she is.
+//! A ship under way: it sails on as orders come, and is asked where it is.
 //!
-//! `request` reads, `under_way` sails, `answer` says where she is, `table` keeps those who sail for
+//! `request` reads, `under_way` sails, `answer` says where it is, `table` keeps those who sail for
 //! others than who asks first.
 
 mod answer;

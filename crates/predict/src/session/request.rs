@@ -17,10 +17,10 @@ pub struct SessionRequest {
     /// `ship` (its champion), `ship/number` or `ship/alias`.
     #[schema(inline)]
     pub model: ModelName,
-    /// Where she is, and how she moves over the ground; straight ahead to the north at the model's
+    /// Where it is, and how it moves over the ground; straight ahead to the north at the model's
     /// approach speed where absent.
     pub(crate) start: Option<InitialState>,
-    /// Her rudder angle at the start, positive to starboard.
+    /// Its rudder angle at the start, positive to starboard.
     #[serde(default)]
     pub(crate) delta_rad: f64,
     /// Water depth for laws that know it, m; deep where absent.

@@ -77,7 +77,7 @@ impl SessionRequest {
     }
 }
 
-/// The ship in her surroundings.
+/// The ship in its surroundings.
 fn ready(mut ship: Ship, request: &SessionRequest, state: &StateVector) -> Result<Ship> {
     if let Some(depth) = request.depth_m {
         ship.set_depth(depth.get());

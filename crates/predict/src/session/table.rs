@@ -135,10 +135,10 @@ impl SessionLimits {
 }
 
 impl Handle {
-    /// Does something with the ship, unless another request has her.
+    /// Does something with the ship, unless another request has it.
     ///
     /// # Errors
-    /// Another request has her, or `work` fails.
+    /// Another request has it, or `work` fails.
     pub fn with<T>(&self, work: impl FnOnce(&mut Session) -> Result<T>) -> Result<T> {
         match self.session.try_lock() {
             Ok(mut session) => work(&mut session),

@@ -103,7 +103,7 @@ fn a_current_carries_her_and_a_wind_turns_her() {
     };
     let still = drift(json!({}));
     let (east, _) = drift(json!({ "current": { "speed_m_s": 1.0, "towards_rad": 1.570_796 } }));
-    // She takes the water's sway up only by and by.
+    // It takes the water's sway up only by and by.
     assert!(east - still.0 > 5.0 && east - still.0 < 60.0, "{east}");
     let (_, heading) = drift(json!({ "wind": { "speed_m_s": 20.0, "from_rad": 1.570_796 } }));
     assert!((heading - still.1).abs() > 1e-4, "{heading}");

@@ -1,4 +1,4 @@
-//! A ship under way, with the draws of her posterior beside her.
+//! A ship under way, with the draws of its posterior beside it.
 
 use sistership_dynamics::integrate::Method;
 use sistership_dynamics::plant::{Inputs, Work};
@@ -23,7 +23,7 @@ pub struct Session {
     /// Other inputs of the law, by their places.
     pub(super) others: Vec<(usize, f64)>,
     pub(super) t_s: f64,
-    /// The longest step in which she is integrated, s.
+    /// The longest step in which it is integrated, s.
     pub(super) longest_s: f64,
     pub(super) stopped: Option<Stopped>,
     pub(super) work: Work,
@@ -94,7 +94,7 @@ impl Session {
         ship.envelope().check(t_s, &next)?;
         (self.state, self.t_s) = (next, t_s);
         if let Some(Beside { ship, sisters, .. }) = &mut self.beside {
-            // The rudder's place is filled by each with her own.
+            // The rudder's place is filled by each with its own.
             let inputs = inputs(ship, 0.0, self.order.n_rps, &self.others);
             sisters.step(ship, &inputs, self.order.delta_rad, step_s);
         }

@@ -1,4 +1,4 @@
-//! Ships under way: by requests and over a WebSocket, each of whoever has opened her.
+//! Ships under way: by requests and over a WebSocket, each of whoever has opened it.
 
 use std::time::{Duration, Instant};
 
