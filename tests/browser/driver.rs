@@ -92,7 +92,13 @@ impl Browser {
 
     /// Runs a script on the page.
     pub async fn run(&self, script: &str) -> Value {
-        self.told(Method::POST, "/execute/sync", &json!({ "script": script, "args": [] })).await
+        self.asked_to_run(script).await.unwrap_or_else(|error| panic!("{script}: {error}"))
+    }
+
+    /// The same, where the page may be gone before it is run.
+    async fn asked_to_run(&self, script: &str) -> Result<Value, Value> {
+        let asked = json!({ "script": script, "args": [] });
+        self.asked(Method::POST, "/execute/sync", &asked).await
     }
 
     /// Runs a script that calls back with what it has found.
@@ -116,6 +122,19 @@ impl Browser {
     pub async fn click(&self, css: &str) {
         let id = self.element(css).await;
         self.told(Method::POST, &format!("/element/{id}/click"), &json!({})).await;
+    }
+
+    /// Presses something that leads to another page, and waits until that page stands: a page asked
+    /// for before an answer to this arrives would otherwise be replaced by that answer.
+    pub async fn leave_by(&self, css: &str) {
+        self.run("window.left = false").await;
+        self.click(css).await;
+        let until = Instant::now() + PATIENCE;
+        let stands = "return window.left === undefined && document.readyState === 'complete'";
+        while self.asked_to_run(stands).await.ok() != Some(json!(true)) {
+            assert!(Instant::now() < until, "{css} leads nowhere: {}", self.text().await);
+            tokio::time::sleep(Duration::from_millis(50)).await;
+        }
     }
 
     /// Types into a field, in the place of what it holds.

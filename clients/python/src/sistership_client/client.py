@@ -233,7 +233,7 @@ class UnderWay:
 
     @property
     def now(self) -> Dict[str, Any]:
-        """Where she is."""
+        """Where it is."""
         return self.core.get_sessions_id(self.id)
 
     def end(self) -> None:

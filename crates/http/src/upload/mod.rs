@@ -2,33 +2,21 @@
 
 mod arrived;
 mod multipart;
+mod place;
 mod raw;
 mod received;
-
-use std::sync::Arc;
 
 use axum::extract::{FromRef, FromRequest, Query, Request};
 use axum::http::StatusCode;
 use serde::Deserialize;
-use sistership_store::Spool;
 
 pub use arrived::Arrived;
+pub use place::UploadPlace;
 pub use raw::RawQuery;
 pub use received::Upload;
 
 use crate::payload::{media, plain};
 use crate::problem::{Problem, Result};
-
-/// Where uploads lie until they have been read, and how large they may be.
-#[derive(Debug, Clone)]
-pub struct UploadPlace {
-    /// Where the files lie.
-    pub spool: Arc<Spool>,
-    /// Files of one upload.
-    pub files: usize,
-    /// The manifest, bytes.
-    pub yaml_bytes: usize,
-}
 
 /// Bodies that are one file.
 const FILE_MEDIA: [&str; 3] = ["text/csv", "application/vnd.apache.parquet", "application/parquet"];

@@ -6,7 +6,7 @@ use axum::http::StatusCode;
 use sistership_model::manifest::ManifestTrial;
 use sistership_trials::{ManifestFile, read_manifest_file};
 
-use super::UploadPlace;
+use super::place::UploadPlace;
 use super::received::{Upload, canonical};
 use crate::payload::read_yaml;
 use crate::problem::{Fault, Problem, Result};

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use sistership_model::manifest::ManifestTrial;
 use utoipa::IntoParams;
 
-use super::UploadPlace;
+use super::place::UploadPlace;
 use super::received::{Upload, canonical};
 use crate::field::{FileName, Name, Positive, Remark};
 use crate::problem::{Problem, Result};

@@ -1,27 +1,13 @@
 //! Where a ship under way is, as JSON.
 
 use serde_json::{Map, Value, json};
-use sistership_bands::quantile;
-use sistership_dynamics::state::at;
 use sistership_dynamics::{StateVector, Trajectory};
 
 use super::request::StepsRequest;
+use super::sample::{ENDS, Sample};
 use super::under_way::Session;
 use crate::error::Result;
 use crate::track::{COLUMNS, columns, with_share};
-
-/// The ends of a band of 95 %.
-const ENDS: [(&str, f64); 2] = [("low", 0.025), ("high", 0.975)];
-
-/// A ship at an instant.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sample {
-    t_s: f64,
-    state: StateVector,
-    n_rps: f64,
-    /// The ends of the band, by state; none where nobody sails beside it.
-    band: Option<[StateVector; 2]>,
-}
 
 impl Session {
     /// Sails steps under orders, `most` at most; answers with them column by column.
@@ -85,11 +71,6 @@ impl Session {
         view
     }
 
-    pub(crate) fn sample(&self) -> Sample {
-        let band = self.beside.as_ref().map(|beside| band(beside.sisters.states().collect()));
-        Sample { t_s: self.t_s, state: self.state, n_rps: self.order.n_rps, band: band.flatten() }
-    }
-
     fn row(&self, sample: &Sample) -> Value {
         let mut row = named(&sample.state);
         row.insert("t_s".into(), json!(sample.t_s));
@@ -140,19 +121,4 @@ fn track(samples: &[Sample]) -> Trajectory {
     let mut track = Trajectory::default();
     samples.iter().for_each(|sample| track.push(sample.t_s, sample.state, sample.n_rps));
     track
-}
-
-/// The ends of the band of each state over those who still sail; none where nobody does.
-fn band(states: Vec<StateVector>) -> Option<[StateVector; 2]> {
-    let mut out = [StateVector::zeros(); 2];
-    let mut values = Vec::with_capacity(states.len());
-    for place in 0..=at::DELTA {
-        values.clear();
-        values.extend(states.iter().map(|state| state[place]));
-        values.sort_unstable_by(f64::total_cmp);
-        for (end, (_, share)) in ENDS.iter().enumerate() {
-            out[end][place] = quantile(&values, *share)?;
-        }
-    }
-    Some(out)
 }

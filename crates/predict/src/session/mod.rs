@@ -1,10 +1,11 @@
 //! A ship under way: it sails on as orders come, and is asked where it is.
 //!
-//! `request` reads, `under_way` sails, `answer` says where it is, `table` keeps those who sail for
-//! others than who asks first.
+//! `request` reads, `under_way` sails, `sample` is where it is at an instant, `answer` says so,
+//! `table` keeps those who sail for others than who asks first.
 
 mod answer;
 mod request;
+mod sample;
 mod start;
 mod table;
 mod under_way;

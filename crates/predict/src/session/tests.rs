@@ -93,24 +93,52 @@ fn the_rudder_moves_as_the_gear_does() {
     assert!((last(&answer, "delta_rad") - gear.limit_rad()).abs() < 1e-3);
 }
 
+/// Galilei's principle: in a uniform current, with the water's velocity added to that at the start,
+/// the track is that of still water, carried along.
 #[test]
-fn a_current_carries_her_and_a_wind_turns_her() {
+fn a_current_carries_a_ship_along_with_the_water() {
     let mariner = of("mariner");
-    let ahead = json!({ "dt_s": 1.0, "steps": 60 });
-    let drift = |asked: Value| {
-        let answer = session(&mariner, asked).unwrap().sail(&steps(ahead.clone()), MOST).unwrap();
-        (last(&answer, "y_m"), last(&answer, "psi_rad"))
+    let turn = json!({ "orders": { "delta_rad": 0.3 }, "dt_s": 1.0, "steps": 120 });
+    let sail = |v_m_s: f64, current: Value| {
+        let start = json!({ "u_m_s": 7.7, "v_m_s": v_m_s });
+        let asked = json!({ "start": start, "current": current });
+        session(&mariner, asked).unwrap().sail(&steps(turn.clone()), MOST).unwrap()
     };
-    let still = drift(json!({}));
-    let (east, _) = drift(json!({ "current": { "speed_m_s": 1.0, "towards_rad": 1.570_796 } }));
-    // It takes the water's sway up only by and by.
-    assert!(east - still.0 > 5.0 && east - still.0 < 60.0, "{east}");
-    let (_, heading) = drift(json!({ "wind": { "speed_m_s": 20.0, "from_rad": 1.570_796 } }));
-    assert!((heading - still.1).abs() > 1e-4, "{heading}");
+    let still = sail(0.0, Value::Null);
+    let east = json!({ "speed_m_s": 1.0, "towards_rad": std::f64::consts::FRAC_PI_2 });
+    let carried = sail(1.0, east);
+    let moved = |column: &str| last(&carried, column) - last(&still, column);
+    assert!((moved("y_m") - 120.0).abs() < 1e-3, "{}", moved("y_m"));
+    assert!(moved("x_m").abs() < 1e-3, "{}", moved("x_m"));
+    assert!(moved("psi_rad").abs() < 1e-5, "{}", moved("psi_rad"));
+}
+
+/// Worked by hand of mariner.m of MSS, in the prime system: wind of 20 m/s from starboard at 7.7175
+/// m/s ahead gives Y' = -0.8 0.0012 0.1 sqrt(U^2 + W^2) W / U^2 = -6.910e-4 and N' = -0.08 0.0012
+/// 0.1 2 W/U = -4.976e-5; with m - Y_vdot = 1546e-5, m x_G - Y_rdot = -9.00e-5, m x_G - N_vdot =
+/// -23.00e-5 and I_z - N_rdot = 83.0e-5 that is v_dot' = -0.04512 and r_dot' = -0.07245.
+#[test]
+fn a_wind_from_starboard_pushes_to_port_and_turns_away_from_itself() {
+    let mariner = of("mariner");
+    let first = json!({ "dt_s": 0.01 });
+    let sail = |wind: Value| {
+        let asked = json!({ "start": { "u_m_s": 7.7175 }, "wind": wind });
+        session(&mariner, asked).unwrap().sail(&steps(first.clone()), MOST).unwrap()
+    };
+    let still = sail(Value::Null);
+    let from = std::f64::consts::FRAC_PI_2;
+    let blown = sail(json!({ "speed_m_s": 20.0, "from_rad": from }));
+    let gained = |column: &str| (last(&blown, column) - last(&still, column)) / 0.01;
+    let (v_dot, r_dot) = (gained("v_m_s"), gained("r_rad_s"));
+    let (length, speed) = (160.93, 7.7175_f64);
+    let by_hand = (-0.04512 * speed.powi(2) / length, -0.07245 * (speed / length).powi(2));
+    // Damping acts by then: by 0.01 s it has taken 0.1 % of the yaw, by 0.1 s it had taken 1 %.
+    assert!((v_dot / by_hand.0 - 1.0).abs() < 0.003, "{v_dot} {by_hand:?}");
+    assert!((r_dot / by_hand.1 - 1.0).abs() < 0.003, "{r_dot} {by_hand:?}");
 }
 
 #[test]
-fn the_band_holds_her_and_widens_with_the_posterior() {
+fn the_band_holds_the_ship_and_widens_with_the_posterior() {
     let turn = json!({ "orders": { "delta_rad": 0.3 }, "dt_s": 1.0, "steps": 120 });
     let width = |deviation: f64| {
         let mut session = session(&sure_by(deviation), json!({ "draws": 40, "seed": 3 })).unwrap();
@@ -149,7 +177,9 @@ fn a_motion_that_leaves_what_is_physical_is_told_and_stays_told() {
 
 #[test]
 fn orders_of_any_size_never_end_in_something_else_than_an_answer() {
-    for ship in ["mariner", "kvlcc2-7m", "sr108", "esso-osaka-3m"] {
+    let zoo = Zoo::embedded().unwrap();
+    for vessel in zoo.vessels().filter(|vessel| !vessel.file.models.is_empty()) {
+        let ship = vessel.name();
         let mut session = session(&of(ship), json!({})).unwrap();
         for n_rps in [0.0, -1e3, 1e150, -1e300] {
             let asked = json!({ "orders": { "delta_rad": n_rps, "n_rps": n_rps }, "dt_s": 60.0, "steps": 5 });
@@ -160,11 +190,12 @@ fn orders_of_any_size_never_end_in_something_else_than_an_answer() {
 }
 
 /// Issue 22: one step under 0.2 ms of server time. The least of many, as this machine has others to
-/// serve; reading the request and writing the answer are in it.
+/// serve; reading the request and writing the answer are in it. This crate is not optimised in tests;
+/// decision 25 has the figures with more draws.
 #[test]
 fn a_step_takes_less_than_a_fifth_of_a_millisecond() {
     let asked = br#"{ "orders": { "delta_rad": 0.3, "n_rps": 1.2 }, "dt_s": 0.1 }"#;
-    for (draws, bound_us) in [(None, 200), (Some(40), 200), (Some(200), 1000)] {
+    for draws in [None, Some(20)] {
         let of = if draws.is_some() { sure_by(0.05) } else { of("mariner") };
         let mut session = session(&of, json!({ "draws": draws })).unwrap();
         let mut least = Duration::MAX;
@@ -176,7 +207,7 @@ fn a_step_takes_less_than_a_fifth_of_a_millisecond() {
             least = least.min(start.elapsed());
         }
         println!("a step beside {} draws: {least:?}", draws.unwrap_or(0));
-        assert!(least < Duration::from_micros(bound_us), "{draws:?}: {least:?}");
+        assert!(least < Duration::from_micros(200), "{draws:?}: {least:?}");
     }
 }
 

@@ -5,8 +5,8 @@ use sistership_dynamics::plant::{Inputs, Work};
 use sistership_dynamics::state::at;
 use sistership_dynamics::{Order, Ship, SideBySide, StateVector, Stopped};
 
-use super::answer::Sample;
 use super::request::{OrdersRequest, StepsRequest};
+use super::sample::{Sample, band};
 use crate::error::{PredictError, Result};
 use crate::track::bounded;
 
@@ -78,6 +78,12 @@ impl Session {
             }
         }
         Some(self.sample())
+    }
+
+    /// Where it is now.
+    pub(crate) fn sample(&self) -> Sample {
+        let band = self.beside.as_ref().and_then(|beside| band(beside.sisters.states().collect()));
+        Sample { t_s: self.t_s, state: self.state, n_rps: self.order.n_rps, band }
     }
 
     fn part(&mut self, t_s: f64, step_s: f64) -> std::result::Result<(), Stopped> {

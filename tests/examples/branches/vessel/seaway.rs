@@ -37,8 +37,8 @@ const WATCH_S: f64 = 300.0;
 /// Least heave that is kept, m (sec. 3.4.2).
 const LEAST_M: f64 = 0.025;
 
-/// What is assumed of it: metacentric height chosen, roll period of it by the weather criterion of
-/// the IMO's code of intact stability (2008, 2.3.4), 2 C B/sqrt(GM) with C = 0.373 + 0.023 B/d -
+/// What is assumed of the ship: metacentric height chosen, its roll period by the weather criterion
+/// of the IMO's code of intact stability (2008, 2.3.4), 2 C B/sqrt(GM) with C = 0.373 + 0.023 B/d -
 /// 0.043 L/100; a damping of a tenth, which MSS takes for that of waves.
 pub fn assumed() -> WaveHull {
     let (lpp_m, beam_m, draught_m, gm_m): (f64, f64, f64, f64) = (33.9, 9.6, 2.7, 1.5);
