@@ -86,6 +86,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "store",
             "report",
             "pipeline",
+            "predict",
             "server",
             "export",
             "access",

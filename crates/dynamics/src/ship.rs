@@ -164,6 +164,11 @@ impl Ship {
         self.slots.delta.is_some()
     }
 
+    /// The place of the rudder angle among the law's inputs.
+    pub(crate) fn rudder_place(&self) -> Option<usize> {
+        self.slots.delta
+    }
+
     /// Whether the law has roll.
     pub fn has_roll(&self) -> bool {
         self.plant.has_roll()

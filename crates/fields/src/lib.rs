@@ -247,6 +247,14 @@ whole! {
     SampleCount: 2, 1000, deserialize_i64, default 100
 }
 whole! {
+    /// How many models drawn from a posterior sail in a session.
+    DrawCount: 2, 200, deserialize_i64, default 100
+}
+whole! {
+    /// How many steps a session is asked to sail.
+    StepCount: 1, 10_000, deserialize_i64, default 1
+}
+whole! {
     /// The number of a version, in a body.
     VersionNumber: 1, MAX_WHOLE, deserialize_i64
 }
@@ -321,6 +329,21 @@ macro_rules! number {
 number! {
     /// A depth, a speed or a time: above 0.
     Positive: |value| value > 0.0, "above 0", |number| number.exclusive_minimum(Some(0))
+}
+number! {
+    /// The length of a step, s.
+    StepLength: |value| value > 0.0 && value <= 60.0, "above 0 and at most 60 s",
+        |number| number.exclusive_minimum(Some(0)).maximum(Some(60))
+}
+number! {
+    /// The speed of a current, m/s.
+    WaterSpeed: |value| (0.0..=10.0).contains(&value), "from 0 to 10 m/s",
+        |number| number.minimum(Some(0)).maximum(Some(10))
+}
+number! {
+    /// The speed of a wind, m/s.
+    WindSpeed: |value| (0.0..=80.0).contains(&value), "from 0 to 80 m/s",
+        |number| number.minimum(Some(0)).maximum(Some(80))
 }
 number! {
     /// An angle of a rudder or a heading, in degrees.
