@@ -1,6 +1,8 @@
 //! A browser, driven by the WebDriver protocol (W3C 2018): Debian's chromium by its chromedriver.
 //! The few commands that a journey needs are plain requests; a library would bring nothing else.
 
+use std::io::Write;
+use std::net::{TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -25,7 +27,7 @@ pub struct Browser {
 impl Browser {
     /// Starts one; none, said plainly, where it is not installed.
     pub async fn start() -> Option<Self> {
-        let port = std::net::TcpListener::bind("127.0.0.1:0").ok()?.local_addr().ok()?.port();
+        let port = TcpListener::bind("127.0.0.1:0").ok()?.local_addr().ok()?.port();
         let mut driver = Command::new("chromedriver");
         driver.arg(format!("--port={port}")).stdout(Stdio::null()).stderr(Stdio::null());
         let (Ok(driver), true) = (driver.spawn(), Path::new("/usr/bin/chromium").is_file()) else {
@@ -209,8 +211,22 @@ impl Browser {
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        // The driver ends its browser with itself when it is asked to, and is asked here plainly.
+        // The session is what ends the browser: a driver that is killed leaves it running.
+        self.end_session();
         let _ = Command::new("kill").args(["-TERM", &self.driver.id().to_string()]).status();
         let _ = self.driver.wait();
+    }
+}
+
+impl Browser {
+    /// Ends the session without the runtime, which a panic may have left.
+    fn end_session(&self) -> Option<()> {
+        let (place, path) = self.session.strip_prefix("http://")?.split_once('/')?;
+        let mut stream = TcpStream::connect(place).ok()?;
+        stream.set_read_timeout(Some(Duration::from_secs(10))).ok()?;
+        let asked =
+            format!("DELETE /{path} HTTP/1.1\r\nHost: {place}\r\nConnection: close\r\n\r\n");
+        stream.write_all(asked.as_bytes()).ok()?;
+        std::io::copy(&mut stream, &mut std::io::sink()).ok().map(drop)
     }
 }
