@@ -1,6 +1,6 @@
-//! Over a horizon from now on: what the foundation draws under orders to come, what a learned branch
-//! makes of it, and the band of the posterior (Kanazawa 2023, sec. 3.1, with the branch in every step
-//! where the paper asks one network once).
+//! Over a horizon from now on: what the foundation draws under orders to come, what a learned
+//! branch makes of it, and the band of the posterior (Kanazawa 2023, sec. 3.1, with the branch in
+//! every step where the paper asks one network once).
 
 use serde::Deserialize;
 use serde_json::Value;
@@ -79,6 +79,8 @@ impl HorizonRequest {
             None => answer["trajectory"].clone(),
             Some(_) => {
                 let alone = Model { branch: None, ..model.clone() };
+                // Its band is not asked for.
+                let asked = SessionRequest { draws: None, ..asked };
                 let mut foundation = Session::new(&asked, &alone, law).map_err(within)?;
                 self.sailed(&mut foundation, steps)["trajectory"].take()
             }
@@ -126,11 +128,12 @@ impl HorizonRequest {
     fn sailed(&self, session: &mut Session, steps: usize) -> Value {
         let dt_s = self.dt_s();
         let mut samples = vec![session.sample()];
+        let mut coming = self.orders.iter().peekable();
         for step in 0..steps {
-            let given = self.orders.partition_point(|one| one.t_s <= (step as f64 + 1e-9) * dt_s);
-            let known = &self.orders[..given];
-            let last = |of: fn(&TimedOrders) -> Option<f64>| known.iter().rev().find_map(of);
-            session.order(last(|one| one.delta_rad), last(|one| one.n_rps));
+            let now_s = (step as f64 + 1e-9) * dt_s;
+            while let Some(one) = coming.next_if(|one| one.t_s <= now_s) {
+                session.order(one.delta_rad, one.n_rps);
+            }
             let Some(sample) = session.step(dt_s) else { break };
             samples.push(sample);
         }
