@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use sistership_model::{Law, Model, Zoo};
 use sistership_pipeline::line::{CHAMPION, alias};
 use sistership_predict::{PredictionRequest, predict};
+use sistership_server::Limits;
 
 use super::predict_orders::{self, Orders};
 use super::predict_text;
@@ -20,14 +21,12 @@ const EXAMPLES: &str = "\
 Examples:
   sistership predict --model mariner --rudder-deg 20 --duration-s 120
   sistership predict --model refined.yaml --orders orders.csv --duration-s 60 --draws 100 --json
-  sistership predict --model my-ship/3 --data-dir here --wind-m-s 15 --wind-from-deg 270 --duration-s 300
+  sistership predict --model my-ship/3 --data-dir here --wind-m-s 15 --wind-from-deg 270 \\
+    --duration-s 300
 
 Orders are a CSV file with the columns t_s, delta_deg or delta_rad, and n_rps; a cell that is empty
 leaves what was ordered before. The answer is that of `POST /v1/predictions` with a horizon.
 Exit status 1 when the motion leaves the physical range.";
-
-/// Longest work, integration steps by blocks of draws: as of a server's request.
-const MOST: usize = 200_000;
 
 /// Sail a model over a horizon under orders to come, in wind and current, with a band.
 #[derive(Debug, Args)]
@@ -53,25 +52,31 @@ pub struct PredictArguments {
     #[arg(long, value_name = "U", value_parser = number, allow_negative_numbers = true)]
     speed_m_s: Option<f64>,
     /// Heading now, clockwise from north; needs a speed.
-    #[arg(long, value_name = "DEG", value_parser = number, allow_negative_numbers = true, requires = "speed_m_s")]
+    #[arg(long, value_name = "DEG", value_parser = number, requires = "speed_m_s")]
+    #[arg(allow_negative_numbers = true)]
     heading_deg: Option<f64>,
     /// Time between samples.
-    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true, default_value_t = 0.5)]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 0.5)]
+    #[arg(allow_negative_numbers = true)]
     dt_s: f64,
     /// Water depth; deep water where absent.
     #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
     depth_m: Option<f64>,
     /// Speed of a steady wind.
-    #[arg(long, value_name = "M/S", value_parser = not_negative, allow_negative_numbers = true, requires = "wind_from_deg")]
+    #[arg(long, value_name = "M/S", value_parser = not_negative, requires = "wind_from_deg")]
+    #[arg(allow_negative_numbers = true)]
     wind_m_s: Option<f64>,
     /// Where it comes from, clockwise from north.
-    #[arg(long, value_name = "DEG", value_parser = number, allow_negative_numbers = true, requires = "wind_m_s")]
+    #[arg(long, value_name = "DEG", value_parser = number, requires = "wind_m_s")]
+    #[arg(allow_negative_numbers = true)]
     wind_from_deg: Option<f64>,
     /// Speed of a steady current.
-    #[arg(long, value_name = "M/S", value_parser = not_negative, allow_negative_numbers = true, requires = "current_towards_deg")]
+    #[arg(long, value_name = "M/S", value_parser = not_negative, requires = "current_towards_deg")]
+    #[arg(allow_negative_numbers = true)]
     current_m_s: Option<f64>,
     /// Where it goes, clockwise from north.
-    #[arg(long, value_name = "DEG", value_parser = number, allow_negative_numbers = true, requires = "current_m_s")]
+    #[arg(long, value_name = "DEG", value_parser = number, requires = "current_m_s")]
+    #[arg(allow_negative_numbers = true)]
     current_towards_deg: Option<f64>,
     /// Draw so many models from the posterior of a refined one, for a band of 95 %.
     #[arg(long, value_name = "NUMBER")]
@@ -102,7 +107,9 @@ pub fn run(zoo: &Zoo, asked: &PredictArguments) -> Result<(), Failure> {
     let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
     let request: PredictionRequest =
         serde_json::from_value(request(asked, &orders)).map_err(|error| refused(&error))?;
-    let mut answer = predict(&request, &model, &law, MOST).map_err(|error| refused(&error))?;
+    // As much work as a server takes on for a request.
+    let most = Limits::default().prediction_samples;
+    let mut answer = predict(&request, &model, &law, most).map_err(|error| refused(&error))?;
     answer["model"] = json!(model.name);
     answer["law"] = json!(model.law);
     if let Some(file) = file {

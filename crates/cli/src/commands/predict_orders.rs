@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use csv::{ReaderBuilder, StringRecord, Trim};
 use serde::Serialize;
 
 use crate::failure::{Failure, about_file};
@@ -38,35 +39,43 @@ pub(super) fn read(path: &Path) -> Result<Vec<Orders>, Failure> {
 }
 
 fn parse(text: &str) -> Result<Vec<Orders>, Vec<String>> {
-    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-    let header = lines.next().map_or("", |(_, line)| line.trim_start_matches('\u{feff}'));
+    let mut reader = ReaderBuilder::new()
+        .trim(Trim::All)
+        .flexible(true)
+        .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
+    let header = reader.headers().map_err(|error| vec![error.to_string()])?;
     let columns = columns(header).map_err(|fault| vec![fault])?;
     let (mut orders, mut faults) = (Vec::<Orders>::new(), Vec::new());
-    for (index, line) in lines {
-        match row(line, &columns) {
+    for record in reader.records() {
+        let record = record.map_err(|error| vec![error.to_string()])?;
+        let line = record.position().map_or(0, csv::Position::line);
+        match row(&record, &columns) {
             Ok(one) if orders.last().is_some_and(|before| one.t_s <= before.t_s) => {
-                faults.push(format!("line {}, t_s: must be later than the row before", index + 1));
+                faults.push(format!("line {line}, t_s: must be later than the row before"));
             }
             Ok(one) => orders.push(one),
-            Err(found) => {
-                faults.extend(found.iter().map(|fault| format!("line {}, {fault}", index + 1)));
-            }
+            Err(found) => faults.extend(found.iter().map(|fault| format!("line {line}, {fault}"))),
         }
     }
     if orders.is_empty() && faults.is_empty() {
         faults.push("has no rows of orders".to_owned());
     }
+    if faults.is_empty() { Ok(orders) } else { Err(few(faults)) }
+}
+
+/// As many as a person reads.
+fn few(mut faults: Vec<String>) -> Vec<String> {
     let further = faults.len().saturating_sub(FAULTS);
     faults.truncate(FAULTS);
     if further > 0 {
         faults.push(format!("and {further} more"));
     }
-    if faults.is_empty() { Ok(orders) } else { Err(faults) }
+    faults
 }
 
-fn columns(header: &str) -> Result<Vec<Column>, String> {
+fn columns(header: &StringRecord) -> Result<Vec<Column>, String> {
     let mut columns = Vec::new();
-    for name in header.split(',').map(str::trim) {
+    for name in header {
         let column = match name {
             "t_s" => Column::Time,
             "delta_deg" => Column::Degrees,
@@ -91,13 +100,12 @@ fn columns(header: &str) -> Result<Vec<Column>, String> {
     }
 }
 
-fn row(line: &str, columns: &[Column]) -> Result<Orders, Vec<String>> {
-    let cells: Vec<&str> = line.split(',').map(str::trim).collect();
+fn row(cells: &StringRecord, columns: &[Column]) -> Result<Orders, Vec<String>> {
     if cells.len() != columns.len() {
         return Err(vec![format!("has {} cells, the header {}", cells.len(), columns.len())]);
     }
     let (mut orders, mut faults) = (Orders { t_s: f64::NAN, delta_rad: None, n_rps: None }, vec![]);
-    for (place, (cell, column)) in cells.into_iter().zip(columns).enumerate() {
+    for (place, (cell, column)) in cells.iter().zip(columns).enumerate() {
         let value = match cell.parse::<f64>() {
             Ok(value) if value.is_finite() => value,
             _ if cell.is_empty() && *column != Column::Time => continue,
