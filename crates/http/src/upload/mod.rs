@@ -53,7 +53,8 @@ struct Wish {
 fn unknown(media: &str) -> String {
     let found = if media.is_empty() { "nothing".to_owned() } else { format!("`{media}`") };
     format!(
-        "Content-Type is {found}; send multipart/form-data with a part `manifest` and the files that it lists, or one file as {}",
+        "Content-Type is {found}; send multipart/form-data with a part `manifest` and the files \
+         that it lists, or one file as {}",
         FILE_MEDIA.join(" or ")
     )
 }

@@ -45,7 +45,8 @@ pub(super) async fn found(app: &App, id: &str) -> Result<Handle> {
 /// has taken them, of whoever has opened them; they end when nobody asks for ten minutes.
 #[utoipa::path(
     post, path = "/v1/sessions", tag = "predictions", request_body = SessionRequest,
-    responses((status = 201, body = Object, headers(("Location" = String)), description = "As `GET /v1/sessions/{id}`"))
+    responses((status = 201, body = Object, headers(("Location" = String)),
+        description = "As `GET /v1/sessions/{id}`"))
 )]
 async fn open(State(app): State<App>, payload: Payload) -> Result<Reply> {
     let request: SessionRequest = payload.json()?;
@@ -56,7 +57,9 @@ async fn open(State(app): State<App>, payload: Payload) -> Result<Reply> {
     let law = app.law(&model.law).await?;
     let session = app.compute(move || Session::new(&request, &model, &law)).await??;
     let (id, head) = (Uuid::new_v4().to_string(), version.head);
-    let about = json!({ "model": head.model, "version": head.number, "sha256": head.sha256, "law": head.law });
+    let about = json!({
+        "model": head.model, "version": head.number, "sha256": head.sha256, "law": head.law,
+    });
     let answer = view(&id, &about, session.view());
     app.sessions().open(&id, &owner, about, session)?;
     Ok(Reply::new(StatusCode::CREATED, &answer)?.at(format!("/v1/sessions/{id}")))
@@ -65,7 +68,8 @@ async fn open(State(app): State<App>, payload: Payload) -> Result<Reply> {
 /// The sessions of whoever asks
 #[utoipa::path(
     get, path = "/v1/sessions", tag = "predictions",
-    responses((status = 200, body = Object, description = "`items`: `id`, `model`, `version`, `sha256`, `law` of each"))
+    responses((status = 200, body = Object,
+        description = "`items`: `id`, `model`, `version`, `sha256`, `law` of each"))
 )]
 async fn list(State(app): State<App>) -> Result<Json<Value>> {
     let own = app.sessions().of(&owner()?);
@@ -76,9 +80,11 @@ async fn list(State(app): State<App>) -> Result<Json<Value>> {
 /// Where a ship under way is
 #[utoipa::path(
     get, path = "/v1/sessions/{id}", tag = "predictions", params(("id" = inline(Id), Path)),
-    responses((status = 200, body = Object, description = "`id`, `model`, `version`, `sha256`, `law`; the state under canonical names, `t_s`; `orders`; `draws`, \
-        and with them `band`: of each state `low` and `high`, between which 95 % of the draws are; `stopped` where the motion has left the physical range, with `reason`; \
-        `outside` where it is outside what the model's trials covered"))
+    responses((status = 200, body = Object,
+        description = "`id`, `model`, `version`, `sha256`, `law`; the state under canonical names, \
+        `t_s`; `orders`; `draws`, and with them `band`: of each state `low` and `high`, between which \
+        95 % of the draws are; `stopped` where the motion has left the physical range, with \
+        `reason`; `outside` where it is outside what the model's trials covered"))
 )]
 async fn show(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Value>> {
     let handle = found(&app, &id).await?;
@@ -94,8 +100,11 @@ async fn show(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Value
 #[utoipa::path(
     post, path = "/v1/sessions/{id}/steps", tag = "predictions", params(("id" = inline(Id), Path)),
     request_body = StepsRequest,
-    responses((status = 200, body = Object, description = "`t_s` now; `trajectory` under canonical names, a sample a step; `band`: `low` and `high` likewise, how many were `drawn` and are \
-        `sailing` still; `stopped` where the motion has left the physical range, now or before: there is no sample after it; `outside`; `branch_share`"))
+    responses((status = 200, body = Object,
+        description = "`t_s` now; `trajectory` under canonical names, a sample a step; `band`: \
+        `low` and `high` likewise, how many were `drawn` and are `sailing` still; `stopped` where \
+        the motion has left the physical range, now or before: there is no sample after it; \
+        `outside`; `branch_share`"))
 )]
 async fn steps(
     State(app): State<App>,
