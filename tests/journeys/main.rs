@@ -21,6 +21,7 @@ mod over_http;
 mod pages;
 mod predictions;
 mod python_client;
+mod python_wheel;
 mod rights;
 mod sea_trials;
 mod sisters;

@@ -1,5 +1,6 @@
-"""Executes `docs/tour.ipynb` in a kernel of this interpreter against the server that `SISTERSHIP_URL`
-names, keeps it as the file that the argument names, and holds its figures to what the tour says."""
+"""Executes `docs/tour.ipynb` in a kernel of this interpreter against the server that
+`SISTERSHIP_URL` names, keeps it as the file that the argument names, and holds its figures to what
+the tour says."""
 
 import base64
 import json
@@ -66,7 +67,7 @@ def judge(notebook, figures):
 
 def main():
     notebook = nbformat.read(TOUR, as_version=4)
-    assert not any(cell.get("outputs") for cell in notebook.cells), "the tour is kept without outputs"
+    assert not any(cell.get("outputs") for cell in notebook.cells), "it is kept without outputs"
     notebook.cells.append(nbformat.v4.new_code_cell(FIGURES))
     try:
         NotebookClient(notebook, timeout=300, kernel_name="python3").execute()

@@ -1,6 +1,6 @@
 """The client as people get it: a wheel in an environment that holds nothing else runs the README's
-lines, and with the extras the tour. Run in a folder with `my-ship.yaml` and `zigzag.csv` against the
-server that `SISTERSHIP_URL` names:
+lines, and with the extras the tour. Run in a folder with `my-ship.yaml` and `zigzag.csv` against
+the server that `SISTERSHIP_URL` names:
 
     python installed.py lines | tour
 
@@ -85,7 +85,7 @@ def lines(folder):
     code = block.replace(local, os.environ["SISTERSHIP_URL"]) + TAIL
     held_out, last, where = run([python, "-I", "-c", code]).splitlines()
     held_out = ast.literal_eval(held_out)
-    assert held_out["refined"].keys() == held_out["source"].keys() >= {"u", "v", "r", "psi"}, held_out
+    assert held_out["refined"].keys() == held_out["source"].keys() >= {"u", "r", "psi"}, held_out
     duration_s, heading_rad = map(float, last.split())
     assert duration_s == 600.0 and heading_rad > 3.2, last
     assert pathlib.Path(where).is_relative_to(folder / "alone"), where

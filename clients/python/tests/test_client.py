@@ -79,6 +79,8 @@ class Journey(unittest.TestCase):
         for column in ("u_m_s", "x_m", "psi_rad", "delta_rad"):
             for a, b in zip(here[column], there[column]):
                 self.assertAlmostEqual(a, b, delta=1e-6)
+        with self.assertRaisesRegex(TypeError, "no input rudder; the inputs are delta_order, n,"):
+            version(100.0, rudder=0.6)
 
     def test_a_ship_under_way_takes_orders(self):
         with self.client.ship("mariner").champion().under_way(start={"u_m_s": 7.0}) as ship:

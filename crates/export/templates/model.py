@@ -89,6 +89,9 @@ def step(state, inputs=INPUTS, step_s=@@step, coefficients=COEFFICIENTS):
 
 def run(duration_s, step_s=@@step, state=None, coefficients=COEFFICIENTS, **inputs):
     """Yields time and state at each step; an input is a number, or a function of time and state."""
+    for name in inputs:
+        if name not in INPUTS:
+            raise TypeError(f"there is no input {name}; the inputs are {', '.join(INPUTS)}")
     state = list(approach() if state is None else state)
     for k in range(round(duration_s/step_s) + 1):
         t = k*step_s

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union
+from typing import Any, Iterator, List, Mapping, Optional, Sequence, Union, cast
 
-from .core import Core
+from .core import Comparison, Core, RefinementRequest, ShipDetail, VesselFile
 from .http import Http
 from .jobs import Job
 from .trials import PathLike, Trial, form, ids
@@ -43,7 +43,7 @@ class Client:
             answer = self.core.http.json(
                 "POST", "/v1/ships", body=document.encode(), media="application/yaml")
         else:
-            answer = self.core.post_ships(dict(document))
+            answer = self.core.post_ships(cast(VesselFile, dict(document)))
         return Ship(self.core, answer["name"])
 
     def version(self, name: str) -> Version:
@@ -52,7 +52,7 @@ class Client:
         return Ship(self.core, ship).version(int(number)) if number else self.ship(ship).champion()
 
     def compare(self, versions: Sequence[Union[str, Version]],
-                trials: Sequence[Union[str, Trial]] = ()) -> Dict[str, Any]:
+                trials: Sequence[Union[str, Trial]] = ()) -> Comparison:
         """Two to five versions side by side, and their errors on the same trials."""
         names = [version if isinstance(version, str) else version.name for version in versions]
         return self.core.get_compare(version=names, trial=ids(trials) or None)
@@ -68,7 +68,7 @@ class Ship:
         return f"Ship({self.name!r})"
 
     @property
-    def about(self) -> Dict[str, Any]:
+    def about(self) -> ShipDetail:
         """Title, category, condition and document."""
         return self.core.get_ships_ship(self.name)
 
@@ -111,7 +111,8 @@ class Ship:
         and `settings`."""
         if trials is not None:
             asked["trials"] = ids(trials)
-        return Job(self.core, self.core.post_refinements({"ship": self.name, **asked}))
+        request = cast(RefinementRequest, {"ship": self.name, **asked})
+        return Job(self.core, self.core.post_refinements(request))
 
     def champion(self) -> Version:
         """The model that the ship stands for."""

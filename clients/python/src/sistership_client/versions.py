@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 import types
-from typing import Any, Dict, Mapping, Optional, Sequence
+from typing import Any, Dict, Mapping, Optional, Sequence, cast
 
-from .core import Core
+from .core import Core, ManoeuvreRequest, SessionRequest
 from .tracks import CANONICAL, Track
 from .trials import PathLike
 
@@ -47,12 +47,14 @@ class Version:
             asked["zigzag"] = {"rudder_deg": zigzag[0], "switch_deg": zigzag[1]}
         else:
             asked["all"] = True
-        return self.core.post_predictions({"model": self.name, "manoeuvre": asked})
+        manoeuvre = cast(ManoeuvreRequest, asked)
+        return self.core.post_predictions({"model": self.name, "manoeuvre": manoeuvre})
 
     def under_way(self, **asked: Any) -> "UnderWay":
         """The ship under way on the server: `start` (`{"u_m_s": 7.0}`), `wind`, `current`,
         `depth_m`, `draws`. Use it in a `with`, which ends the session."""
-        return UnderWay(self.core, self.core.post_sessions({"model": self.name, **asked}))
+        request = cast(SessionRequest, {"model": self.name, **asked})
+        return UnderWay(self.core, self.core.post_sessions(request))
 
     def export(self, format: str) -> bytes:
         """The version for another tool: `c`, `python`, `matlab`, `modelica`, `fmu2`, `fmu3`."""
