@@ -20,7 +20,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("export", &["model", "dynamics"]),
     ("validation", &["model", "dynamics"]),
     ("empirical", &["model", "dynamics", "bands"]),
-    ("estimate", &["model", "dynamics", "bands", "regression"]),
+    ("estimate", &["model", "dynamics", "bands", "regression", "empirical"]),
     ("choice", &["model", "bands", "estimate"]),
     ("diagnose", &["model", "dynamics", "regression", "estimate"]),
     ("plan", &["model", "dynamics", "bands", "estimate", "diagnose"]),

@@ -12,12 +12,13 @@ use super::candidate::CandidateFit;
 use super::estimators::estimator;
 use super::finish::finish;
 use super::measure::PriorMeasure;
+use super::mixture;
 use super::outcome::{RefineError, Refinement};
 use super::parts::parts;
 use super::problem::{Problem, for_simulation};
 use super::progress::{MonotoneProgress, Progress, Watch, step};
 use super::ridge_candidates::source_candidate;
-use super::settings::Settings;
+use super::settings::{Prior, Settings};
 use super::thresholds::SELECTION;
 use super::unrecorded;
 use super::variant::{Variant, variants};
@@ -118,7 +119,11 @@ fn with_candidates<T>(
     let (judged, whole) = divided(request)?;
     let progress = MonotoneProgress::new(progress);
     let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
-    let settings = resolved(request.settings, request.target.particular("lpp_m"), &whole);
+    let mut settings = resolved(request.settings, request.target.particular("lpp_m"), &whole);
+    if settings.prior == Prior::Mixture {
+        let asked = settings.regressions_sha256.as_deref();
+        settings.regressions_sha256 = Some(mixture::regressions_sha256(asked)?);
+    }
     let estimator = estimator(settings.method);
     let equations = estimator.equations(&settings);
     let parts = parts(&whole, request.law, equations, &settings);
@@ -165,6 +170,10 @@ fn starting(
     in_parts: bool,
 ) -> Result<(Model, PriorMeasure), RefineError> {
     let Request { target, source, source_law, law, .. } = *request;
+    let is_mixture = request.settings.prior == Prior::Mixture;
+    if is_mixture {
+        mixture::check(source, target)?;
+    }
     let approach = approach_of(whole);
     let Some(own) = source_law.filter(|own| own.name != law.name) else {
         let same = source.ship == target.name();
@@ -173,10 +182,16 @@ fn starting(
         if request.settings.recorded_terms {
             unrecorded::forget(&mut carried, law, whole);
         }
+        if is_mixture {
+            return mixture::of_same_law(carried, law, target, whole);
+        }
         let measure = PriorMeasure::own(&carried, law, whole, in_parts);
         return Ok((carried, measure));
     };
-    let (mut model, envelope) = across::begun((source, own), law, target, approach, whole)?;
+    let (mut model, mut envelope) = across::begun((source, own), law, target, approach, whole)?;
+    if is_mixture {
+        envelope = mixture::mixed(&envelope, target, model.speed_m_s, whole)?;
+    }
     if request.settings.recorded_terms {
         unrecorded::forget(&mut model, law, whole);
     }
