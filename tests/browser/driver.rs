@@ -1,6 +1,8 @@
 //! A browser, driven by the WebDriver protocol (W3C 2018): Debian's chromium by its chromedriver.
 //! The few commands that a journey needs are plain requests; a library would bring nothing else.
 
+use std::io::Write;
+use std::net::{TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -25,7 +27,7 @@ pub struct Browser {
 impl Browser {
     /// Starts one; none, said plainly, where it is not installed.
     pub async fn start() -> Option<Self> {
-        let port = std::net::TcpListener::bind("127.0.0.1:0").ok()?.local_addr().ok()?.port();
+        let port = TcpListener::bind("127.0.0.1:0").ok()?.local_addr().ok()?.port();
         let mut driver = Command::new("chromedriver");
         driver.arg(format!("--port={port}")).stdout(Stdio::null()).stderr(Stdio::null());
         let (Ok(driver), true) = (driver.spawn(), Path::new("/usr/bin/chromium").is_file()) else {
@@ -92,7 +94,13 @@ impl Browser {
 
     /// Runs a script on the page.
     pub async fn run(&self, script: &str) -> Value {
-        self.told(Method::POST, "/execute/sync", &json!({ "script": script, "args": [] })).await
+        self.asked_to_run(script).await.unwrap_or_else(|error| panic!("{script}: {error}"))
+    }
+
+    /// The same, where the page may be gone before it is run.
+    async fn asked_to_run(&self, script: &str) -> Result<Value, Value> {
+        let asked = json!({ "script": script, "args": [] });
+        self.asked(Method::POST, "/execute/sync", &asked).await
     }
 
     /// Runs a script that calls back with what it has found.
@@ -116,6 +124,19 @@ impl Browser {
     pub async fn click(&self, css: &str) {
         let id = self.element(css).await;
         self.told(Method::POST, &format!("/element/{id}/click"), &json!({})).await;
+    }
+
+    /// Presses something that leads to another page, and waits until that page stands: a page asked
+    /// for before an answer to this arrives would otherwise be replaced by that answer.
+    pub async fn leave_by(&self, css: &str) {
+        self.run("window.left = false").await;
+        self.click(css).await;
+        let until = Instant::now() + PATIENCE;
+        let stands = "return window.left === undefined && document.readyState === 'complete'";
+        while self.asked_to_run(stands).await.ok() != Some(json!(true)) {
+            assert!(Instant::now() < until, "{css} leads nowhere: {}", self.text().await);
+            tokio::time::sleep(Duration::from_millis(50)).await;
+        }
     }
 
     /// Types into a field, in the place of what it holds.
@@ -190,8 +211,22 @@ impl Browser {
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        // The driver ends its browser with itself when it is asked to, and is asked here plainly.
+        // The session is what ends the browser: a driver that is killed leaves it running.
+        self.end_session();
         let _ = Command::new("kill").args(["-TERM", &self.driver.id().to_string()]).status();
         let _ = self.driver.wait();
+    }
+}
+
+impl Browser {
+    /// Ends the session without the runtime, which a panic may have left.
+    fn end_session(&self) -> Option<()> {
+        let (place, path) = self.session.strip_prefix("http://")?.split_once('/')?;
+        let mut stream = TcpStream::connect(place).ok()?;
+        stream.set_read_timeout(Some(Duration::from_secs(10))).ok()?;
+        let asked =
+            format!("DELETE /{path} HTTP/1.1\r\nHost: {place}\r\nConnection: close\r\n\r\n");
+        stream.write_all(asked.as_bytes()).ok()?;
+        std::io::copy(&mut stream, &mut std::io::sink()).ok().map(drop)
     }
 }

@@ -1,10 +1,10 @@
-//! What the ship of the journey is, and the files of her trials: the heading stands in degrees under
+//! What the ship of the journey is, and the files of its trials: the heading stands in degrees under
 //! a name that says nothing.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use sistership::sea_trials::{TrialManoeuvre, record};
+use sistership_cli::sea_trials::{TrialManoeuvre, record};
 use sistership_dynamics::Ship;
 use sistership_model::effect::AppliedEffect;
 use sistership_model::quantity::Quantity;

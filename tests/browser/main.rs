@@ -27,7 +27,7 @@ async fn sign_in(browser: &Browser, server: &TestServer, name: &str, password: &
     browser.go(&format!("{}/sign-in", server.url())).await;
     browser.fill("#name", name).await;
     browser.fill("#password", password).await;
-    browser.click("main form button").await;
+    browser.leave_by("main form button").await;
     browser.until("Ships and their manoeuvring models").await;
 }
 
@@ -50,7 +50,7 @@ async fn create(browser: &Browser, server: &TestServer) {
     ] {
         browser.fill(&format!("#{field}"), text).await;
     }
-    browser.click("main form button").await;
+    browser.leave_by("main form button").await;
     browser.until("A ship in a browser").await;
     assert_eq!(browser.path().await, format!("/ships/{SHIP}"));
 }
@@ -60,7 +60,7 @@ async fn create(browser: &Browser, server: &TestServer) {
 async fn upload(browser: &Browser, server: &TestServer, files: &[String], name: &str) {
     browser.go(&format!("{}/ships/{SHIP}/upload", server.url())).await;
     browser.keys("#files", &files.join("\n")).await;
-    browser.click("main form button").await;
+    browser.leave_by("main form button").await;
     browser.until("What was read").await;
     shown(browser, name).await;
     // The compass stands in degrees under a name that says nothing.
@@ -71,23 +71,23 @@ async fn upload(browser: &Browser, server: &TestServer, files: &[String], name: 
         document.querySelectorAll(\"input[name^='derive_']\").forEach(box => box.checked = false);"
     );
     browser.run(&chosen).await;
-    browser.click("button[value='look']").await;
+    browser.leave_by("button[value='look']").await;
     browser.until("Every file can be kept").await;
-    browser.click("button[value='keep']").await;
+    browser.leave_by("button[value='keep']").await;
 }
 
 async fn refined(browser: &Browser, server: &TestServer) {
     browser.go(&format!("{}/ships/{SHIP}", server.url())).await;
     browser.fill("#source", "mariner").await;
     browser.choose("#method", "weak").await;
-    browser.click(&format!("form[action='/ships/{SHIP}/refine'] button")).await;
+    browser.leave_by(&format!("form[action='/ships/{SHIP}/refine'] button")).await;
     let under_way = browser.until("Refinement of").await;
     assert!(browser.path().await.starts_with("/jobs/"), "{under_way}");
     // Progress moves without the page being loaded anew.
     browser.until("succeeded").await;
     shown(browser, "job").await;
     browser.go(&format!("{}{}", server.url(), browser.path().await)).await;
-    browser.click("main a[href*='/v1/reports/']").await;
+    browser.leave_by("main a[href*='/v1/reports/']").await;
     browser.until("Errors before and after").await;
     browser.looked_at("report").await;
 }
@@ -100,7 +100,7 @@ async fn compared(browser: &Browser, server: &TestServer) {
     browser.go(&format!("{}/ships/{SHIP}/versions/1", server.url())).await;
     browser.until("Lineage").await;
     shown(browser, "version").await;
-    browser.click("main a[href*='/validation']").await;
+    browser.leave_by("main a[href*='/validation']").await;
     browser.until("ITTC 7.5-02-06-03").await;
     browser.looked_at("validation").await;
 }
@@ -109,8 +109,7 @@ async fn compared(browser: &Browser, server: &TestServer) {
 async fn promote(browser: &Browser, server: &TestServer, reason: &str) -> String {
     browser.go(&format!("{}/ships/{SHIP}", server.url())).await;
     browser.fill("#reason", reason).await;
-    browser.click(&format!("form[action='/ships/{SHIP}/champion'] button")).await;
-    tokio::time::sleep(std::time::Duration::from_millis(500)).await;
+    browser.leave_by(&format!("form[action='/ships/{SHIP}/champion'] button")).await;
     browser.text().await
 }
 
@@ -123,7 +122,7 @@ async fn a_person_refines_and_another_promotes_in_a_browser() {
     sign_in(&browser, &server, "root", &root).await;
     browser.go(&format!("{}/users", server.url())).await;
     shown(&browser, "users").await;
-    browser.click("form[action='/settings'] button").await;
+    browser.leave_by("form[action='/settings'] button").await;
 
     sign_in(&browser, &server, "ann", &ann).await;
     shown(&browser, "fleet").await;
@@ -150,7 +149,7 @@ async fn a_person_refines_and_another_promotes_in_a_browser() {
     let ship = browser.until("does not hold").await;
     assert!(ship.contains("current"), "{ship}");
     shown(&browser, "ship-does-not-hold").await;
-    browser.click("main a[href^='/trials/']").await;
+    browser.leave_by("main a[href^='/trials/']").await;
     browser.until("What the champion leaves").await;
     shown(&browser, "trial").await;
 
@@ -159,9 +158,9 @@ async fn a_person_refines_and_another_promotes_in_a_browser() {
     browser.go(&format!("{}/ships/{SHIP}", server.url())).await;
     browser.choose("#promoted", "2").await;
     browser.fill("#reason", "by mistake").await;
-    browser.click(&format!("form[action='/ships/{SHIP}/champion'] button")).await;
+    browser.leave_by(&format!("form[action='/ships/{SHIP}/champion'] button")).await;
     browser.until("Roll back to version 1").await;
-    browser.click(&format!("form[action='/ships/{SHIP}/champion'] button.quiet")).await;
+    browser.leave_by(&format!("form[action='/ships/{SHIP}/champion'] button.quiet")).await;
     browser.until("does not hold").await;
     for (path, name) in [("/jobs", "jobs"), ("/zoo", "zoo"), ("/families", "families")] {
         browser.go(&format!("{}{path}", server.url())).await;

@@ -15,7 +15,7 @@ use sistership_tests::worker::TestWorker;
 use super::over_http::{create, refine_weakly, upload, verified};
 use super::sea_trials::NAME;
 
-const JOBS: usize = 12;
+const JOBS: usize = 6;
 const WORKERS: usize = 4;
 const KILLED: usize = 3;
 const LEASE_S: &str = "2";

@@ -19,6 +19,7 @@ mod memory;
 mod operation;
 mod over_http;
 mod pages;
+mod predictions;
 mod python_client;
 mod rights;
 mod sea_trials;

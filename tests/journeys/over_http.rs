@@ -39,11 +39,13 @@ pub async fn refine(server: &TestServer, key: &str) -> String {
     submit(server, key, &json!({ "ship": NAME, "source": "auto" })).await
 }
 
-/// Submits a refinement from the nearest ship by a named estimator, with few draws of its bands and
-/// a noise model learned on one trial: a twentieth of the search, where it is not what is looked at.
+/// Submits a refinement from the nearest ship by one candidate of a named estimator, with few draws
+/// of its bands and a noise model learned on one trial, where the refinement is not what is looked
+/// at.
 pub async fn refine_weakly(server: &TestServer, key: &str) -> String {
     let settings = json!({
-        "method": "weak", "bands": { "samples": 10 }, "calibration_samples": 1,
+        "method": "weak", "families": ["own"], "strengths": [1.0], "bands": { "samples": 10 },
+        "calibration_samples": 1,
     });
     submit(server, key, &json!({ "ship": NAME, "source": "auto", "settings": settings })).await
 }

@@ -1,7 +1,7 @@
 //! A ship to create and trials to upload, sailed by SR108's own law.
 
 use serde_json::json;
-use sistership::sea_trials::{TrialManoeuvre, record};
+use sistership_cli::sea_trials::{TrialManoeuvre, record};
 use sistership_dynamics::Ship;
 use sistership_model::{Trial, Zoo};
 use sistership_trials::samples::to_csv;

@@ -4,7 +4,7 @@
 use reqwest::Method;
 use reqwest::multipart::{Form, Part};
 use serde_json::{Value, json};
-use sistership::sea_trials::TrialManoeuvre;
+use sistership_cli::sea_trials::TrialManoeuvre;
 use sistership_model::Trial;
 use sistership_tests::server::{TestServer, json as answer};
 

@@ -86,11 +86,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "store",
             "report",
             "pipeline",
+            "predict",
             "server",
             "export",
             "access",
         ],
     ),
+    ("program", &["cli"]),
 ];
 const ALONE: [(&str, &[&str]); 2] = [("sqlx", &["store"]), ("axum", &["server", "http", "listen"])];
 

@@ -47,6 +47,17 @@ class Journey(unittest.TestCase):
             for a, b in zip(here[column], there[column]):
                 self.assertAlmostEqual(a, b, delta=1e-6)
 
+    def test_a_ship_under_way_takes_orders(self):
+        with self.client.ship("mariner").champion().under_way(start={"u_m_s": 7.0}) as ship:
+            ship.step(0.5, steps=10, delta_rad=0.3)
+            track = Track.of(ship.step(0.5, steps=10)["trajectory"])
+            self.assertAlmostEqual(track["t_s"][-1], 10.0)
+            self.assertEqual(ship.now["psi_rad"], track["psi_rad"][-1])
+            self.assertGreater(track["psi_rad"][-1], 0.01)
+        with self.assertRaises(Refused) as caught:
+            ship.step(0.5)
+        self.assertEqual(caught.exception.status, 404)
+
     def test_exports_and_searches(self):
         names = [ship.name for ship in self.client.ships(category="tanker", limit=2)]
         self.assertTrue({"kvlcc2", "esso-tanker"} <= set(names) and len(set(names)) == len(names))

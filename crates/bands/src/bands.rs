@@ -205,7 +205,7 @@ fn band(figures: &[Figure], draws: usize) -> Option<Band> {
 /// A quantile of sorted values, straight between them (Hyndman and Fan 1996, The American
 /// Statistician 50, 361-365, definition 6: without the shrinking of the tails that definition 7
 /// has).
-fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
+pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let last = sorted.len().checked_sub(1)?;
     let place = (share * (sorted.len() + 1) as f64 - 1.0).clamp(0.0, last as f64);
     let (below, above) = (place.floor() as usize, place.ceil() as usize);

@@ -22,7 +22,7 @@ fn how(told: Told, memory: usize) -> OneShot {
     OneShot { steps: STEPS, told, memory }
 }
 
-/// A foundation, and zigzags of a ship that differs from her.
+/// A foundation, and zigzags of a ship that differs from it.
 fn sailed() -> (Ship, Vec<Trial>) {
     let foundation = Foundation::of("mariner");
     let ship = Ship::new(&foundation.model, &foundation.law).unwrap();

@@ -6,8 +6,8 @@ use clap::{Parser, Subcommand};
 
 use crate::commands::{backup, family, fsck, gc, keys, serve, ships, users, verify, work, zoo};
 use crate::commands::{
-    branch, check, compare, derive, diagnose, estimate, export, import, manoeuvre, plan, refine,
-    similar, simulate, validate,
+    branch, check, compare, derive, diagnose, estimate, export, import, manoeuvre, plan, predict,
+    refine, similar, simulate, validate,
 };
 use crate::demo::DemoArguments;
 
@@ -65,6 +65,8 @@ pub enum Command {
     /// Sail turning circles, zigzags, stops, pull-outs and spirals with a model and judge them by the
     /// IMO criteria.
     Manoeuvre(manoeuvre::ManoeuvreArguments),
+    /// Sail a model over a horizon under orders to come, in wind and current, with a band.
+    Predict(Box<predict::PredictArguments>),
     /// Plan the trials that narrow the bands of the IMO criteria most in a given time.
     Plan(plan::PlanArguments),
     /// Compare two to five models: coefficients, errors on the same trials, standard manoeuvres.

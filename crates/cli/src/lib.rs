@@ -55,6 +55,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Simulate(simulate) => commands::simulate::run(&zoo()?, simulate),
         Command::Diagnose(diagnose) => commands::diagnose::run(&zoo()?, diagnose),
         Command::Manoeuvre(manoeuvre) => commands::manoeuvre::run(&zoo()?, manoeuvre),
+        Command::Predict(asked) => commands::predict::run(&zoo()?, asked),
         Command::Plan(asked) => commands::plan::run(&zoo()?, asked),
         Command::Compare(compare) => commands::compare::run(&zoo()?, compare),
         Command::Derive(derive) => commands::derive::run(&zoo()?, derive),

@@ -128,7 +128,8 @@ fn change_of_heading(text: &str) -> Result<f64, ValueError> {
     }
 }
 
-fn number(text: &str) -> Result<f64, ValueError> {
+/// A finite number.
+pub fn number(text: &str) -> Result<f64, ValueError> {
     let value: f64 = text.trim().parse().map_err(|_| ValueError::NotANumber(text.to_owned()))?;
     if value.is_finite() { Ok(value) } else { Err(ValueError::NotFinite(text.to_owned())) }
 }

@@ -131,7 +131,7 @@ impl<'a> ExpectedInformation<'a> {
         all
     }
 
-    /// What an instrument's rate and the velocities disagree by is the ship's own, where she knows.
+    /// What an instrument's rate and the velocities disagree by is the ship's own, where it knows.
     fn drifting(&self, instruments: &Noise) -> Noise {
         let known = self.unknowns.model.uncertainty.as_ref();
         let one = |(channel, own): (&_, &Instrument)| {

@@ -35,7 +35,7 @@ pub struct LinearisedTrials<'a> {
 pub struct MotionScales {
     /// Accelerations by axis: U^2/L, or (U/L)^2.
     pub accelerations: Vec<f64>,
-    /// Time over which the discrepancy is correlated, s: the ship sails her length.
+    /// Time over which the discrepancy is correlated, s: the ship sails its length.
     pub time_s: f64,
 }
 

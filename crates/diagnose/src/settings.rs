@@ -11,11 +11,11 @@ use serde::{Deserialize, Serialize};
 #[schemars(rename = "DiagnosisSettings")]
 pub struct Settings {
     /// Simulations that judge start anew every so often, s. Where absent, ten times the time in
-    /// which the ship sails her length.
+    /// which the ship sails its length.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub restart_s: Option<f64>,
     /// Shortest interval between samples that are used, s. Where absent, a fiftieth of the time in
-    /// which the ship sails her length.
+    /// which the ship sails its length.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub least_step_s: Option<f64>,
     /// How far a published coefficient may be from the truth, as a share of its value, where the

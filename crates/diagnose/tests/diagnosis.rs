@@ -1,4 +1,4 @@
-//! A ship that sails by a law, something that her model lacks, and what the diagnosis makes of it.
+//! A ship that sails by a law, something that its model lacks, and what the diagnosis makes of it.
 
 #![allow(clippy::unwrap_used)]
 
@@ -18,7 +18,7 @@ use sistership_model::{Effect, Model, Trial, Zoo};
 
 const NOISE: [f64; 6] = [2.5e-3, 3e-3, 5e-5, 3.5e-4, 0.3, 0.3];
 
-/// The Mariner with an effect hidden in her, as her own instruments record two manoeuvres.
+/// The Mariner with an effect hidden in it, as its own instruments record two manoeuvres.
 fn trials(zoo: &Zoo, hidden: Option<AppliedEffect>) -> Vec<Trial> {
     let mut truth = zoo.model("mariner").unwrap();
     truth.effects.extend(hidden);

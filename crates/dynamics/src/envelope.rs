@@ -25,7 +25,7 @@ pub struct Stopped {
 
 impl Envelope {
     /// For a ship of a length that approaches at a speed: three times that speed (at least a Froude
-    /// number of 0.1), a yaw rate of one length in a sixth of the time she takes to sail it, 80
+    /// number of 0.1), a yaw rate of one length in a sixth of the time it takes to sail it, 80
     /// degrees of roll.
     pub fn new(lpp_m: f64, approach_speed_m_s: f64) -> Self {
         let reference = approach_speed_m_s.abs().max(0.1 * (9.806_65 * lpp_m).sqrt());

@@ -42,7 +42,7 @@ impl Method {
 }
 
 impl Method {
-    /// As [`Method::step`] for ships in lockstep, each with a step of her own; rounds as that does.
+    /// As [`Method::step`] for ships in lockstep, each with a step of its own; rounds as that does.
     pub fn steps<const N: usize>(
         self,
         states: &States<N>,

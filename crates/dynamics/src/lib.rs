@@ -1,5 +1,5 @@
-//! Forward: from a model and what is done to the ship to her motion, and to the figures by which
-//! she is judged.
+//! Forward: from a model and what is done to the ship to its motion, and to the figures by which
+//! it is judged.
 
 pub mod branch;
 mod branch_share;
@@ -19,6 +19,7 @@ pub mod recorded;
 mod sailing;
 pub mod sensitivity;
 pub mod ship;
+pub mod side_by_side;
 pub mod state;
 pub mod tape;
 pub mod validity;
@@ -29,4 +30,5 @@ pub use equations::PlantError;
 pub use integrate::Method;
 pub use plant::Plant;
 pub use ship::{Order, Run, Ship};
+pub use side_by_side::SideBySide;
 pub use state::{StateVector, Trajectory};

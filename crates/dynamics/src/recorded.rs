@@ -43,7 +43,7 @@ pub struct Recorded<'a> {
     /// The trial.
     pub trial: &'a Trial,
     /// The ship's coefficients, in the order of [`Ship::open_coefficients`]; none for a ship with
-    /// her own.
+    /// its own.
     pub coefficients: &'a [f64],
 }
 

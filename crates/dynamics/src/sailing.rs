@@ -35,7 +35,7 @@ pub(crate) struct Sailed {
 }
 
 impl<'a, B: FnMut(f64, &StateVector) -> Option<HeldOrder>> Sailing<'a, B> {
-    /// `coefficients` are the ship's own among sisters, and none for a ship with hers.
+    /// `coefficients` are the ship's own among sisters, and none for a ship with its own.
     pub fn new(run: Run, coefficients: &'a [f64], bridge: B) -> Self {
         let held = HeldOrder { order: Order { delta_rad: 0.0, n_rps: 0.0 }, lasts_s: run.step_s };
         let sailed = Sailed::default();

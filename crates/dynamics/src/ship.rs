@@ -1,4 +1,4 @@
-//! A ship ready to sail: plant, steering gear, envelope and what is held constant around her.
+//! A ship ready to sail: plant, steering gear, envelope and what is held constant around it.
 
 use std::sync::Arc;
 
@@ -164,6 +164,11 @@ impl Ship {
         self.slots.delta.is_some()
     }
 
+    /// The place of the rudder angle among the law's inputs.
+    pub(crate) fn rudder_place(&self) -> Option<usize> {
+        self.slots.delta
+    }
+
     /// Whether the law has roll.
     pub fn has_roll(&self) -> bool {
         self.plant.has_roll()
@@ -178,8 +183,8 @@ impl Ship {
             .zip(self.plant.input_defaults().iter().copied())
     }
 
-    /// A sister's coefficients as passages take them; none where hers are not those of the others
-    /// by name.
+    /// A sister's coefficients as passages take them; none where its own are not those of the
+    /// others by name.
     pub fn sister(&self, model: &Model) -> Option<Vec<f64>> {
         let names = self.plant.open_coefficients();
         let same = model.coefficients.len() == names.len()

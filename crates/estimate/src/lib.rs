@@ -3,7 +3,6 @@
 
 mod estimated;
 pub mod refine;
-pub mod representative;
 pub mod similarity;
 pub mod source;
 mod steering;

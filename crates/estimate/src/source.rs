@@ -1,4 +1,4 @@
-//! Choosing the source of a refinement: `auto`, a ship, or one of her models.
+//! Choosing the source of a refinement: `auto`, a ship, or one of its models.
 
 use std::collections::BTreeMap;
 
@@ -53,7 +53,7 @@ pub enum SourceError {
     Zoo(#[from] FileError),
 }
 
-/// The definition by which ships are compared with a target: Mei's where she has every component of
+/// The definition by which ships are compared with a target: Mei's where it has every component of
 /// it, else Kanazawa's.
 pub fn definition_for(target: &Vessel) -> Definition {
     let complete = CharacteristicVector::of(target, Definition::Mei2019).missing().is_empty();
@@ -113,7 +113,7 @@ fn published_head(vessel: &Vessel) -> Option<ModelHead> {
     Some(ModelHead { name: format!("{}/{}", vessel.name(), model.name), law: model.law.clone() })
 }
 
-/// The trend of a source on the target's trials, started anew each time she has sailed 20 of her
+/// The trend of a source on the target's trials, started anew each time it has sailed 20 of its
 /// lengths.
 fn trend_on(
     zoo: &Zoo,

@@ -9,7 +9,7 @@ use sistership_dynamics::state::{RECORDED, Trajectory, at};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
 
-/// The Mariner and her law.
+/// The Mariner and its law.
 pub fn mariner() -> (Model, Arc<Law>) {
     let zoo = Zoo::embedded().unwrap();
     let model = zoo.model("mariner").unwrap();

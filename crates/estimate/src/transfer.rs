@@ -14,7 +14,7 @@ use sistership_model::trial::{Channel, Trial};
 use sistership_model::vessel::Status;
 use sistership_model::{Model, Vessel};
 
-/// How a ship approaches her trials.
+/// How a ship approaches its trials.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Approach {
     /// Speed, m/s.
@@ -107,12 +107,12 @@ fn same_parameter(law: &Law, name: &str, source: &Model) -> Option<Quantity> {
     Some(Quantity::new(value, format!("as of {}", source.name)))
 }
 
-/// A model of a law for a ship of which nothing is known but her particulars: every coefficient
+/// A model of a law for a ship of which nothing is known but its particulars: every coefficient
 /// that the law lists is zero, so that a prior which pulls to it is a plain ridge. Only trials make
 /// it a model.
 ///
 /// # Errors
-/// Names a parameter of the law that does not follow from her particulars.
+/// Names a parameter of the law that does not follow from its particulars.
 pub fn blank(
     law: &Law,
     target: &Vessel,

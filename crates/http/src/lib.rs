@@ -22,5 +22,6 @@ pub mod roles;
 pub mod ship_search;
 pub mod spool;
 pub mod tidy;
+pub mod upload;
 
 pub use sistership_fields as field;

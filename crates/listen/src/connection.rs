@@ -21,6 +21,7 @@ use crate::limits::Limits;
 use crate::pace::Pace;
 use crate::peer::{Peer, is_health};
 use crate::seats::{Seat, Seats};
+use crate::stopping::Stopping;
 use crate::stream::Stream;
 
 /// Headers of one request.
@@ -34,7 +35,7 @@ pub(super) struct Connection {
     limits: Limits,
     party: IpAddr,
     pace: Arc<Pace>,
-    seat: Seat,
+    seat: Arc<Seat>,
 }
 
 impl Connection {
@@ -45,11 +46,11 @@ impl Connection {
         party: IpAddr,
     ) -> Option<Self> {
         let pace = Arc::new(Pace::new(&limits));
-        let seat = Seats::admit(seats, party, &pace)?;
+        let seat = Arc::new(Seats::admit(seats, party, &pace)?);
         Some(Self { router: router.clone(), limits, party, pace, seat })
     }
 
-    pub(super) async fn serve(self, stream: TcpStream, watcher: Watcher) {
+    pub(super) async fn serve(self, stream: TcpStream, watcher: Watcher, mut stopping: Stopping) {
         let stream = Stream::new(stream, Arc::clone(&self.pace));
         let mut builder = http1::Builder::new();
         builder.timer(TokioTimer::new()).header_read_timeout(self.limits.header_time);
@@ -57,13 +58,29 @@ impl Connection {
         let connection = Arc::new(self);
         let serving = Arc::clone(&connection);
         let service = service_fn(move |request| Arc::clone(&serving).answer(request));
-        let served = builder.serve_connection(TokioIo::new(stream), service);
-        tokio::select! {
-            served = watcher.watch(served) => if let Err(error) = served {
-                tracing::debug!(%error, "a connection broke off");
-            },
-            () = connection.pace.until_cut() => tracing::debug!("a connection gave way to others"),
+        let served = builder.serve_connection(TokioIo::new(stream), service).with_upgrades();
+        let mut served = std::pin::pin!(served);
+        let mut told = false;
+        loop {
+            tokio::select! {
+                served = served.as_mut() => {
+                    if let Err(error) = served {
+                        tracing::debug!(%error, "a connection broke off");
+                    }
+                    break;
+                }
+                () = stopping.wait(), if !told => {
+                    told = true;
+                    served.as_mut().graceful_shutdown();
+                }
+                () = connection.pace.until_cut() => {
+                    tracing::debug!("a connection gave way to others");
+                    break;
+                }
+            }
         }
+        // Whoever stops the server waits for this: what may be upgraded cannot be watched itself.
+        drop(watcher);
     }
 
     async fn answer(self: Arc<Self>, request: Request<Incoming>) -> hyper::Result<Response<Sent>> {
@@ -78,6 +95,7 @@ impl Connection {
         request.extensions_mut().insert(Peer {
             party: self.party,
             pace: Arc::clone(&pace),
+            _seat: Arc::clone(&self.seat),
             crowded,
         });
         let answered = TowerToHyperService::new(self.router.clone()).call(request).await;

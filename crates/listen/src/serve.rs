@@ -24,8 +24,13 @@ const BREATH: Duration = Duration::from_millis(100);
 
 /// Serves until it is told to stop, then lets what is under way end.
 pub async fn listen(listener: TcpListener, router: Router, limits: Limits, mut stopping: Stopping) {
-    let server =
-        Server { router, limits, graceful: GracefulShutdown::new(), seats: Seats::new(&limits) };
+    let server = Server {
+        router,
+        limits,
+        graceful: GracefulShutdown::new(),
+        seats: Seats::new(&limits),
+        stopping: stopping.clone(),
+    };
     loop {
         tokio::select! {
             () = stopping.wait() => break,
@@ -54,6 +59,7 @@ struct Server {
     limits: Limits,
     graceful: GracefulShutdown,
     seats: Arc<Seats>,
+    stopping: Stopping,
 }
 
 impl Server {
@@ -62,9 +68,11 @@ impl Server {
             tracing::debug!(%error, "no TCP_NODELAY or TCP_NOTSENT_LOWAT");
         }
         match Connection::new(&self.router, self.limits, &self.seats, party(from.ip())) {
-            Some(connection) => {
-                drop(tokio::spawn(connection.serve(stream, self.graceful.watcher())))
-            }
+            Some(connection) => drop(tokio::spawn(connection.serve(
+                stream,
+                self.graceful.watcher(),
+                self.stopping.clone(),
+            ))),
             None => tracing::debug!("a connection was not taken: all others are at work"),
         }
     }

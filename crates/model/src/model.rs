@@ -149,8 +149,8 @@ impl Model {
         Ok(model)
     }
 
-    /// This model carried over to another ship: the same coefficients in the law's own scaling, her
-    /// particulars, and every parameter that the law derives from particulars recomputed for her.
+    /// This model carried over to another ship: the same coefficients in the law's own scaling, its
+    /// particulars, and every parameter that the law derives from particulars recomputed for it.
     /// `approach_speed_m_s` replaces the speed about which the law is expanded, which belongs to
     /// the trials.
     pub fn transferred(
@@ -331,13 +331,13 @@ fn published_file<'a>(
     let models = &vessel.file.models;
     if models.is_empty() {
         return Err(format!(
-            "`{}` is known by particulars only; refine a source model against her trials",
+            "`{}` is known by particulars only; refine a source model against its trials",
             vessel.name()
         ));
     }
     let Some(name) = name else { return Ok(&models[0]) };
     models.iter().find(|model| model.name == name).ok_or_else(|| {
         let known: Vec<&str> = models.iter().map(|model| model.name.as_str()).collect();
-        format!("`{}` has no model `{name}`; she has {}", vessel.name(), known.join(", "))
+        format!("`{}` has no model `{name}`; it has {}", vessel.name(), known.join(", "))
     })
 }

@@ -1,4 +1,4 @@
-//! The particulars of a ship: what a file may state about her, with units in the names.
+//! The particulars of a ship: what a file may state about it, with units in the names.
 
 use std::collections::BTreeMap;
 

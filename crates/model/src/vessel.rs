@@ -1,4 +1,4 @@
-//! A vessel of the zoo: particulars, conventions, and the published coefficients of her models,
+//! A vessel of the zoo: particulars, conventions, and the published coefficients of its models,
 //! with sources.
 
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ use crate::particulars::{self, Particulars};
 use crate::quantity::{Quantity, Section};
 use crate::source::Source;
 
-/// A vessel as her file writes her; see `models/vessels/README.md`.
+/// A vessel as its file writes it; see `models/vessels/README.md`.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VesselFile {
@@ -48,7 +48,7 @@ pub struct VesselFile {
     /// Characteristic vectors exactly as a publication prints them, by the definition's name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub quoted_vectors: BTreeMap<String, QuotedVectorFile>,
-    /// Her models; none for a ship known by particulars only.
+    /// Its models; none for a ship known by particulars only.
     #[serde(default)]
     pub models: Vec<PublishedModelFile>,
     /// Published free-running trials, by which the models are judged.
@@ -123,7 +123,7 @@ pub enum Status {
     Published,
     /// From particulars by regression formulas: a stopgap.
     Estimated,
-    /// A source model carried over to another ship by the prime system, not fitted to her.
+    /// A source model carried over to another ship by the prime system, not fitted to it.
     Transferred,
     /// Fitted to trials.
     Refined,
@@ -157,16 +157,16 @@ impl Default for Steering {
 /// A vessel, read and checked.
 #[derive(Debug, Clone)]
 pub struct Vessel {
-    /// The file she came from.
+    /// The file it came from.
     pub file: VesselFile,
-    /// Her particulars with sources.
+    /// Its particulars with sources.
     pub particulars: Particulars,
     /// Vectors as printed, by definition and component.
     pub quoted_vectors: BTreeMap<String, BTreeMap<String, f64>>,
 }
 
 impl Vessel {
-    /// Reads and checks a vessel; her models are checked against their laws when they are taken.
+    /// Reads and checks a vessel; its models are checked against their laws when they are taken.
     ///
     /// # Errors
     /// Names file, line and field of the first thing that is wrong.
@@ -207,7 +207,7 @@ impl Vessel {
         Ok(Self { file: raw, particulars, quoted_vectors })
     }
 
-    /// Her name in the zoo.
+    /// Its name in the zoo.
     pub fn name(&self) -> &str {
         &self.file.name
     }
@@ -217,7 +217,7 @@ impl Vessel {
         particulars::value(&self.particulars, name)
     }
 
-    /// The keys of her sources.
+    /// The keys of its sources.
     pub fn source_keys(&self) -> Vec<&str> {
         self.file.sources.keys().map(String::as_str).collect()
     }

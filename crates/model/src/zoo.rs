@@ -80,7 +80,7 @@ impl Zoo {
         Ok(effect)
     }
 
-    /// Adds a vessel, or replaces the one of the same name; each of her models is checked against
+    /// Adds a vessel, or replaces the one of the same name; each of its models is checked against
     /// its law.
     ///
     /// # Errors
@@ -105,7 +105,7 @@ impl Zoo {
             .try_for_each(|model| self.published(vessel, Some(&model.name)).map(|_| ()))
     }
 
-    /// A published model of a vessel, by default her first.
+    /// A published model of a vessel, by default its first.
     ///
     /// # Errors
     /// Says which law, model, parameter or coefficient is missing.

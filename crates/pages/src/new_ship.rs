@@ -86,7 +86,7 @@ mod tests {
             ("name", "my-ship"),
             ("title", "My ship"),
             ("category", "tanker"),
-            ("citation", "Her trim and stability booklet"),
+            ("citation", "Its trim and stability booklet"),
             ("lpp_m", "175"),
             ("beam_m", "25,4"),
             ("draught_m", "8.5"),

@@ -66,7 +66,7 @@ impl Archive {
         Ok(Self { store, objects })
     }
 
-    /// The ship as she was when her document had this hash.
+    /// The ship as it was when its document had this hash.
     pub async fn ship(&self, name: &str, hash: &str) -> Result<Vessel> {
         let mut page = Page::first(MAX_LIMIT);
         loop {
@@ -157,7 +157,7 @@ impl Archive {
     }
 }
 
-/// A ship from her document.
+/// A ship from its document.
 pub fn vessel(name: &str, document: &str) -> Result<Vessel> {
     let file: VesselFile =
         serde_json::from_str(document).map_err(|error| damaged("ship", name, &error))?;

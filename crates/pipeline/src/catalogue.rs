@@ -157,7 +157,7 @@ async fn all_laws(store: &Store) -> Result<Vec<Law>> {
     }
 }
 
-/// The ships of a ship's category that are most similar to her.
+/// The ships of a ship's category that are most similar to it.
 async fn similar(archive: &Archive, target: &Vessel) -> Result<Vec<Ship>> {
     let mut ships = Vec::new();
     for name in nearest(archive, target, usize::try_from(MOST).unwrap_or(0)).await? {
@@ -209,8 +209,7 @@ mod tests {
         assert!(catalogue.around(&archive, target).await.unwrap().vessel("mariner").is_none());
     }
 
-    /// Beyond [`MOST`] ships, those of the target's category that resemble her; others of hers stay
-    /// out.
+    /// Beyond [`MOST`] ships, those of the target's category that resemble it; others stay out.
     #[tokio::test]
     async fn of_many_ships_the_most_similar_are_taken() {
         let store = Store::connect("sqlite::memory:", Arc::new(sistership_store::SystemClock))

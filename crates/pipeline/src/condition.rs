@@ -1,4 +1,4 @@
-//! Whether the model of a ship still holds: what the newest diagnosis that concerns her present
+//! Whether the model of a ship still holds: what the newest diagnosis that concerns its present
 //! champion found.
 
 use serde::Serialize;

@@ -27,6 +27,7 @@ pub mod search;
 pub mod seed;
 pub mod sorted;
 pub mod start;
+pub mod surroundings;
 pub mod training;
 pub mod upkeep;
 pub mod validated;

@@ -1,4 +1,4 @@
-//! The models that a ship's own document publishes, as versions of her line.
+//! The models that a ship's own document publishes, as versions of its line.
 
 use sistership_model::version::sha256;
 use sistership_model::{Vessel, Zoo};

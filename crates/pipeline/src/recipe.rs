@@ -111,9 +111,9 @@ pub enum DiagnosisKind {
 pub struct FamilyRecipe {
     /// Always `family`.
     pub kind: FamilyKind,
-    /// The version that she started from: her own, or the foundation.
+    /// The version that it started from: its own, or the foundation.
     pub start: SourceVersion,
-    /// Her document, where the foundation was carried over to it.
+    /// Its document, where the foundation was carried over to it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ship_sha256: Option<String>,
     /// What the family is founded on.

@@ -45,7 +45,7 @@ async fn put_in(store: &Store, catalogue: &Catalogue) -> Result<(), SeedError> {
     Ok(())
 }
 
-/// Makes the versions of a ship of the program's own, unless she was deleted. Those of other ships
+/// Makes the versions of a ship of the program's own, unless it was deleted. Those of other ships
 /// are looked after by [`crate::search`].
 async fn publish_one(store: &Store, zoo: &Zoo, name: &str) -> Result<(), SeedError> {
     let ship = match store.ships().get(name).await {

@@ -32,7 +32,7 @@ pub struct ToValidate {
 }
 
 impl ToValidate {
-    /// Gathers a version, its ship as she is now, and her turning circles and zigzags.
+    /// Gathers a version, its ship as it is now, and its turning circles and zigzags.
     ///
     /// # Errors
     /// The version, its law or its ship is missing or damaged.

@@ -15,7 +15,7 @@ pub(crate) struct Course {
     pub track: Trajectory,
     /// From the execution of the rudder to the end, s.
     pub manoeuvre_s: f64,
-    /// With the approach, and until the ship is steady at her full speed again, s.
+    /// With the approach, and until the ship is steady at its full speed again, s.
     pub takes_s: f64,
 }
 
@@ -85,7 +85,7 @@ fn cut(track: Trajectory) -> Trajectory {
     kept
 }
 
-/// How long the ship needs, on whatever heading, until she is steady at a speed, s.
+/// How long the ship needs, on whatever heading, until it is steady at a speed, s.
 fn recovery_s(ship: &Ship, from: StateVector, speed_m_s: f64) -> f64 {
     let length_s = ship.lpp_m() / speed_m_s;
     let given = THRESHOLDS;
@@ -108,7 +108,7 @@ fn recovery_s(ship: &Ship, from: StateVector, speed_m_s: f64) -> f64 {
         method: Method::Rk4,
     };
     let mut track = Trajectory::default();
-    // One that leaves the physical range while she steadies takes as long as is waited at most.
+    // One that leaves the physical range while it steadies takes as long as is waited at most.
     match ship.sail(run, &mut track, bridge) {
         Ok(()) => track.t_s.last().copied().unwrap_or_default(),
         Err(_) => run.duration_s,

@@ -43,7 +43,7 @@ pub struct PlannedTrial {
     pub heading_deg: Option<f64>,
     /// From the execution of the rudder to the end, min.
     pub manoeuvre_min: f64,
-    /// With the approach, and until the ship is steady at her full speed again, min.
+    /// With the approach, and until the ship is steady at its full speed again, min.
     pub takes_min: f64,
     /// By what share the bands are narrower in the geometric mean with this trial and those before
     /// it.

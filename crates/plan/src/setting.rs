@@ -1,4 +1,4 @@
-//! What a plan is made with: the ship, what her trials will record, and the effects that they are
+//! What a plan is made with: the ship, what its trials will record, and the effects that they are
 //! to tell apart.
 
 use sistership_diagnose::forms_of;
@@ -61,7 +61,7 @@ fn ship(request: &PlanRequest<'_>) -> Result<Ship, PlanError> {
 }
 
 /// What planned trials are recorded like: the first that was sailed, or every motion of the ship,
-/// her rudder and revolutions.
+/// its rudder and revolutions.
 fn like(request: &PlanRequest<'_>, ship: &Ship) -> Trial {
     if let Some(first) = request.sailed.first() {
         return (*first).clone();

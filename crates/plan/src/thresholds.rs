@@ -17,11 +17,11 @@ pub(crate) struct PlanThresholds {
     /// Source: chosen; 2 % of the speed change a tactical diameter by less, for it hardly depends
     /// on the speed.
     pub steady_speed: f64,
-    /// `e_r`: yaw rate below which she is steady, by `U/L`, dimensionless. Source: chosen, a
+    /// `e_r`: yaw rate below which it is steady, by `U/L`, dimensionless. Source: chosen, a
     /// twentieth of that of a hard turn, whose diameter of some 4 lengths means 0.5.
     pub steady_rate: f64,
     /// `T_s`: what recovering takes at most, by `L/U`, dimensionless. Source: chosen; a ship that
-    /// is not steady after a hundred lengths is begun with as she is.
+    /// is not steady after a hundred lengths is begun with as it is.
     pub recovery: f64,
     /// `delta_h`: rudder that holds the course at most, deg. Source: chosen, what a helmsman takes
     /// to steady a ship.

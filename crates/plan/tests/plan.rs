@@ -7,7 +7,7 @@ use sistership_model::posterior::Posterior;
 use sistership_model::{Effect, Law, Model, Zoo};
 use sistership_plan::{Instruments, Plan, PlanError, PlanRequest, plan};
 
-/// The Mariner, her coefficients known within a share, and the library.
+/// The Mariner, its coefficients known within a share, and the library.
 fn mariner(share: f64) -> (Model, Arc<Law>, Vec<Arc<Effect>>) {
     let zoo = Zoo::embedded().unwrap();
     let mut model = zoo.model("mariner").unwrap();

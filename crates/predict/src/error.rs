@@ -16,6 +16,22 @@ pub enum PredictError {
     /// There is no memory for its answer, now or ever.
     #[error(transparent)]
     Memory(#[from] Shortage),
+    /// Somebody has no session of this id, or has none any longer.
+    #[error("there is no session `{0}` of yours; one that is not asked for ten minutes ends")]
+    NoSession(String),
+    /// There are as many sessions as there may be.
+    #[error(
+        "{whose} {most} sessions, and may not have more; end one, or wait until an idle one ends"
+    )]
+    ManySessions {
+        /// Whose they are.
+        whose: &'static str,
+        /// How many there are.
+        most: usize,
+    },
+    /// Another request has the ship.
+    #[error("another request sails this session at the moment; wait for its answer")]
+    SessionBusy,
     /// The answer cannot be written.
     #[error(transparent)]
     Answer(#[from] serde_json::Error),

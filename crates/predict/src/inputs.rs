@@ -2,8 +2,9 @@
 
 use serde::Deserialize;
 use serde_json::{Value, json};
-use sistership_dynamics::Ship;
 use sistership_dynamics::recorded::{ReplaySettings, replay};
+use sistership_dynamics::state::RECORDED;
+use sistership_dynamics::{Ship, StateVector};
 use sistership_model::trial::{Channel, Trial};
 use utoipa::ToSchema;
 
@@ -28,7 +29,7 @@ pub struct InputsRequest {
 }
 
 /// A state; what is not given is 0.
-#[derive(Debug, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InitialState {
     u_m_s: f64,
@@ -49,6 +50,16 @@ pub struct InitialState {
 }
 
 impl InitialState {
+    /// As a state vector, with the rudder amidships.
+    pub(super) fn state(&self) -> StateVector {
+        let mut state = StateVector::zeros();
+        for ((_, value), (_, place)) in self.channels().into_iter().zip(RECORDED) {
+            state[place] = value;
+        }
+        state
+    }
+
+    /// In the order of [`RECORDED`].
     fn channels(&self) -> [(Channel, f64); 8] {
         [
             (Channel::U, self.u_m_s),

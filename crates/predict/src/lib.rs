@@ -1,8 +1,10 @@
-//! Predictions: a model sails a manoeuvre, or follows recorded inputs.
+//! Predictions: a model sails a manoeuvre, follows recorded inputs, or is under way as orders come.
 
 mod error;
+mod horizon;
 mod inputs;
 mod manoeuvre;
+pub mod session;
 mod track;
 
 use serde::Deserialize;
@@ -12,13 +14,14 @@ use sistership_model::{Law, Model};
 use utoipa::ToSchema;
 
 pub use error::{PredictError, Result};
+pub use horizon::{HorizonRequest, TimedOrders};
 pub use inputs::{InitialState, InputsRequest};
 pub use manoeuvre::{BandsRequest, ManoeuvreRequest, ZigzagRequest};
 
 use manoeuvre::Whose;
 use sistership_fields::{ModelName, Positive};
 
-/// What is to be simulated: a manoeuvre or recorded inputs.
+/// What is to be simulated: a manoeuvre, recorded inputs, or orders to come.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PredictionRequest {
@@ -28,10 +31,12 @@ pub struct PredictionRequest {
     /// Water depth for laws that know it, m; deep where absent.
     #[schema(inline)]
     pub depth_m: Option<Positive>,
-    /// A standard manoeuvre; or give `inputs`.
+    /// A standard manoeuvre; or give `inputs` or `horizon`.
     pub manoeuvre: Option<ManoeuvreRequest>,
-    /// Recorded inputs; or give `manoeuvre`.
+    /// Recorded inputs; or give `manoeuvre` or `horizon`.
     pub inputs: Option<InputsRequest>,
+    /// A time from now on, with the orders to come; or give `manoeuvre` or `inputs`.
+    pub horizon: Option<HorizonRequest>,
 }
 
 /// Simulates; no track has more than `most` samples.
@@ -49,14 +54,20 @@ pub fn predict(
     if let Some(depth) = request.depth_m {
         ship.set_depth(depth.get());
     }
-    match (&request.manoeuvre, &request.inputs) {
-        (Some(manoeuvre), None) => manoeuvre.sail(
+    match (&request.manoeuvre, &request.inputs, &request.horizon) {
+        (Some(manoeuvre), None, None) => manoeuvre.sail(
             &mut ship,
             Whose { model, law, depth_m: request.depth_m.map(Positive::get) },
             most,
         ),
-        (None, Some(inputs)) => inputs.follow(&mut ship, most),
-        _ => Err(PredictError::invalid("manoeuvre", "give either `manoeuvre` or `inputs`")),
+        (None, Some(inputs), None) => inputs.follow(&mut ship, most),
+        (None, None, Some(horizon)) => {
+            horizon.sail((&request.model, request.depth_m), model, law, most)
+        }
+        _ => {
+            let message = "give either `manoeuvre`, `inputs` or `horizon`";
+            Err(PredictError::invalid("manoeuvre", message))
+        }
     }
 }
 
@@ -149,6 +160,27 @@ mod tests {
         assert!(run["stopped"].is_null());
         assert!(run["trajectory"]["psi_rad"][99].as_f64().unwrap() > 0.1);
         assert_eq!(run["trajectory"]["t_s"].as_array().unwrap().len(), 100);
+    }
+
+    #[test]
+    fn a_horizon_has_the_foundation_and_the_band_under_orders_to_come() {
+        let orders = json!([{ "t_s": 0, "delta_rad": 0.2 }, { "t_s": 15.0, "delta_rad": -0.2 }]);
+        let request = |horizon: Value| json!({ "model": "m", "horizon": horizon });
+        let asked =
+            json!({ "start": { "u_m_s": 7.0 }, "orders": orders, "duration_s": 30, "dt_s": 1 });
+        let ahead = ask("mariner", request(asked)).unwrap();
+        let heading = ahead["trajectory"]["psi_rad"].as_array().unwrap();
+        let (reached, end) = (heading[15].as_f64().unwrap(), heading[30].as_f64().unwrap());
+        assert_eq!(heading.len(), 31);
+        assert!(reached > 0.01 && ahead["trajectory"]["delta_rad"][30].as_f64().unwrap() < 0.0);
+        assert!(end.is_finite() && ahead["band"].is_null());
+        assert_eq!(ahead["foundation"], ahead["trajectory"]);
+        let field = |horizon: Value| ask("mariner", request(horizon)).map_err(field).unwrap_err();
+        let late = json!([{ "t_s": 3 }, { "t_s": 3 }]);
+        assert_eq!(field(json!({ "orders": late, "duration_s": 9 })), "horizon.orders[1].t_s");
+        assert_eq!(field(json!({ "duration_s": 1e7 })), "horizon.duration_s");
+        assert_eq!(field(json!({ "duration_s": 9, "draws": 10 })), "horizon.draws");
+        assert_eq!(field(json!({ "duration_s": 9, "start": { "u_m_s": 1e9 } })), "horizon.start");
     }
 
     #[test]

@@ -8,12 +8,9 @@ use sistership_dynamics::{Ship, Stopped};
 use sistership_model::{Law, Model};
 use utoipa::ToSchema;
 
-use super::track::{bounded, columns, positive, with_share};
+use super::track::{STEP_S, bounded, columns, positive, with_share};
 use crate::error::{PredictError, Result};
 use sistership_fields::{Angle, Positive, SampleCount};
-
-/// Longest step.
-const STEP_S: f64 = 0.1;
 
 /// One of `turn_deg`, `zigzag` and `all`.
 #[derive(Debug, Deserialize, ToSchema)]

@@ -7,6 +7,9 @@ use sistership_dynamics::{Ship, Trajectory};
 use crate::error::{PredictError, Result};
 use sistership_pipeline::budget::take_now;
 
+/// Longest step, s.
+pub(super) const STEP_S: f64 = 0.1;
+
 /// A number above zero.
 pub(super) fn positive(field: &str, value: f64) -> Result<f64> {
     match value > 0.0 && value.is_finite() {
@@ -33,7 +36,7 @@ pub(super) fn bounded(field: &str, steps: f64, most: usize) -> Result<()> {
 }
 
 /// Places in the state vector by canonical column.
-const COLUMNS: [(&str, usize); 9] = [
+pub(super) const COLUMNS: [(&str, usize); 9] = [
     ("x_m", at::X),
     ("y_m", at::Y),
     ("psi_rad", at::PSI),

@@ -16,10 +16,12 @@ use sistership_http::api_key::{ApiKey, FormToken};
 use sistership_http::drafts::Drafts;
 use sistership_http::known::Known;
 use sistership_http::payload::DocumentLimits;
+use sistership_http::upload::UploadPlace;
 use sistership_listen::{Stopping, Throttle};
 use sistership_pipeline::archive::Archive;
 use sistership_pipeline::budget::{self, Budget, Held};
 use sistership_pipeline::catalogue::{Catalogue, KnownLaw};
+use sistership_predict::session::Sessions;
 
 /// The shared state of a server. A clone is another handle on the same one.
 #[derive(Clone)]
@@ -33,10 +35,11 @@ struct Inner {
     attempts: Attempts,
     form_token: FormToken,
     drafts: Drafts,
+    sessions: Sessions,
     throttle: Throttle,
     limits: Limits,
     leases: Leases,
-    spool: Spool,
+    spool: Arc<Spool>,
     no_room: AtomicBool,
     seats: Arc<Semaphore>,
     wake: Notify,
@@ -55,6 +58,13 @@ impl axum::extract::FromRef<App> for DocumentLimits {
     }
 }
 
+impl axum::extract::FromRef<App> for UploadPlace {
+    fn from_ref(app: &App) -> Self {
+        let Limits { upload_files: files, yaml_bytes, .. } = *app.limits();
+        Self { spool: Arc::clone(&app.0.spool), files, yaml_bytes }
+    }
+}
+
 impl App {
     pub(crate) fn new(
         config: &Config,
@@ -68,6 +78,7 @@ impl App {
             catalogue,
             form_token: FormToken::of(key.as_ref()),
             drafts: Drafts::default(),
+            sessions: Sessions::new(config.limits.sessions),
             key,
             accounts: config.accounts,
             known: Known::default(),
@@ -75,7 +86,7 @@ impl App {
             throttle: Throttle::default(),
             limits: config.limits,
             leases: config.leases,
-            spool: Spool::below(config.data_dir.join("uploads")),
+            spool: Arc::new(Spool::below(config.data_dir.join("uploads"))),
             no_room: AtomicBool::new(false),
             seats: Arc::new(Semaphore::new(seats)),
             wake: Notify::new(),
@@ -139,6 +150,11 @@ impl App {
     /// Uploads that a person looks over.
     pub(crate) fn drafts(&self) -> &Drafts {
         &self.0.drafts
+    }
+
+    /// Ships under way.
+    pub(crate) fn sessions(&self) -> &Sessions {
+        &self.0.sessions
     }
 
     /// Who has presented wrong keys.
@@ -211,7 +227,7 @@ impl App {
     }
 
     /// The laws of the database, with the ships that a ship is compared with: all of them where
-    /// they are few, else those of her category that are most similar to her.
+    /// they are few, else those of its category that are most similar to it.
     pub(crate) async fn zoo_around(&self, target: &Vessel) -> Result<Arc<Zoo>> {
         Ok(self.0.catalogue.around(self.archive(), target).await?)
     }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 pub use sistership_pipeline::leases::Leases;
+use sistership_predict::session::SessionLimits;
 use sistership_store::ObjectsPlace;
 
 use crate::start_error::StartError;
@@ -70,6 +71,8 @@ pub struct Limits {
     pub answer_grace: Duration,
     /// Samples of a predicted track.
     pub prediction_samples: usize,
+    /// Ships under way.
+    pub sessions: SessionLimits,
     /// Trials of one refinement.
     pub refinement_trials: usize,
     /// How long a server that is told to stop waits for what is under way.
@@ -189,6 +192,7 @@ impl Default for Limits {
             body_grace: connections.body_grace,
             answer_grace: connections.answer_grace,
             prediction_samples: 200_000,
+            sessions: SessionLimits::default(),
             refinement_trials: 1000,
             stop_time: connections.stop_time,
             yaml_bytes: 1 << 20,

@@ -34,6 +34,7 @@ pub(crate) async fn keep(app: App) {
 
 /// Tidies once. What fails is said in the log and tried again.
 pub(crate) async fn once(app: &App) {
+    app.sessions().tidy();
     let inner = app.clone();
     let cleared = tokio::task::spawn_blocking(move || inner.spool().clear()).await;
     if let Ok(Err(error)) = cleared {

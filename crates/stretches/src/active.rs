@@ -11,7 +11,7 @@ pub(crate) struct Activity<'a> {
     cells: &'a Cells,
     levels: &'a Levels,
     limits: &'a StretchThresholds,
-    /// Cells in which the ship sails her length.
+    /// Cells in which the ship sails its length.
     lag: usize,
 }
 
@@ -105,7 +105,7 @@ impl<'a> Activity<'a> {
         change > scatter.max(self.limits.speed * self.cells.scale.speed_m_s)
     }
 
-    /// Whether the ship answered beyond what she does in course keeping: a rudder that is tried
+    /// Whether the ship answered beyond what it does in course keeping: a rudder that is tried
     /// alongside moves no ship.
     fn is_answered(&self, range: &Range<usize>) -> bool {
         let (k, mut all) = (self.limits.controls, range.clone());

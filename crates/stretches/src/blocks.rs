@@ -5,7 +5,7 @@ use crate::sample::Sample;
 
 /// Intervals at most: 20 MB, and 2 s each in a log of eleven days.
 const MOST: usize = 1 << 19;
-/// The first intervals, s: a model of 3 m sails her length in 4 s.
+/// The first intervals, s: a model of 3 m sails its length in 4 s.
 const FIRST_S: f64 = 0.25;
 
 /// What is kept of an interval.

@@ -1,4 +1,4 @@
-//! The intervals that a log is judged by: about half of the time in which the ship sails her
+//! The intervals that a log is judged by: about half of the time in which the ship sails its
 //! length.
 
 use crate::blocks::{Blocks, joined};
@@ -31,7 +31,7 @@ pub(crate) struct Cells {
     pub limits: StretchThresholds,
 }
 
-/// The ship's length, speed, and the time in which she sails her length.
+/// The ship's length, speed, and the time in which it sails its length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scale {
     pub length_m: f64,

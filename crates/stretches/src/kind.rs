@@ -19,7 +19,7 @@ pub enum Kind {
     Turn,
     /// The rudder goes amidships while the ship turns on.
     PullOut,
-    /// The propeller stops or is reversed, and the ship loses her way.
+    /// The propeller stops or is reversed, and the ship loses its way.
     Stop,
     /// The revolutions change, the rudder does not.
     SpeedChange,

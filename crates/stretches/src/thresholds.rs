@@ -1,6 +1,6 @@
 //! Constants that decide what is a stretch, with symbol, meaning, unit and source.
 //!
-//! `T = L/U` is the time in which a ship sails her own length. Where the source is the test table,
+//! `T = L/U` is the time in which a ship sails its own length. Where the source is the test table,
 //! `finder_tests.rs` holds that half and double find the same manoeuvres.
 
 /// How course keeping and movements of the controls are told apart.

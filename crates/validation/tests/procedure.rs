@@ -92,7 +92,7 @@ fn a_model_is_validated_by_its_own_trials_and_not_by_those_of_a_ship_with_a_weak
     let advance = by_other.quantities.iter().find(|one| one.quantity == "turn 35 deg: advance");
     let advance = advance.unwrap();
     assert_eq!(advance.verdict, Verdict::NotValidated);
-    // With less rudder she goes further: D is above S.
+    // With less rudder it goes further: D is above S.
     assert!(advance.comparison_error.unwrap() > 0.0);
     let bare = validated(&zoo, &own, &trials_of(0.7), &[], false);
     let advance = bare.quantities.iter().find(|one| one.quantity == "turn 35 deg: advance");

@@ -17,7 +17,7 @@ use crate::score::{KINDS, RESTART_S, over_all};
 /// Errors by trial.
 pub type Errors = Vec<(String, SquaredError)>;
 
-/// The window unless another is asked for: half of the time L/U in which she sails her length at
+/// The window unless another is asked for: half of the time L/U in which it sails its length at
 /// 0.4 m/s, s.
 pub const WINDOW_S: f64 = 4.0;
 

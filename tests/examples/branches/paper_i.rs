@@ -135,7 +135,7 @@ pub fn outcomes(size: Size) -> Vec<Outcome> {
 }
 
 pub fn run(size: Size) {
-    println!("distance from where she went, m: mean (ninth tenth)");
+    println!("distance from where it went, m: mean (ninth tenth)");
     println!("Beaufort  ahead, s   foundation        data alone        both");
     for Outcome { force, misses } in outcomes(size) {
         for k in [5, 10, 15, 20, 25, 30] {

@@ -1,6 +1,6 @@
 //! Paper IV (Kanazawa 2023, chapter 4): how the error of the cooperative model goes with the amount
 //! of data and with how far the foundation is off. For the virtual ship, or for any ship of the
-//! zoo, whose own model then sails in her place, in weather of her size.
+//! zoo, whose own model then sails in its place, in weather of its size.
 
 use sistership_branches::horizon::{Example, HorizonTraining, OneShot, Told, train};
 use sistership_branches::recurrent::Cell;

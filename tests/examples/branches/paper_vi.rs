@@ -36,7 +36,7 @@ fn of_motion(hull: &WaveHull, samples: &[Sample], axis: usize, draw: u64) -> Err
         let seen: Vec<usize> = (0..samples.len()).filter(|k| !of(*k)).collect();
         let pick = |all: &[f64], kept: &[usize]| kept.iter().map(|k| all[*k]).collect::<Vec<f64>>();
         let learned = |kept: &[usize]| {
-            factor(&pick(&drawn, kept), &pick(&measured, kept)).expect("seas that move her")
+            factor(&pick(&drawn, kept), &pick(&measured, kept)).expect("seas that move it")
         };
         let balanced = thinned(&pick(&measured, &seen), RARE, 100 * draw + fold as u64);
         let balanced: Vec<usize> = balanced.into_iter().map(|place| seen[place]).collect();

@@ -1,5 +1,5 @@
 //! What stands for the data of Mei 2019: MARIN's free-running trials of the KVLCC2 are not public,
-//! so that trials are sailed by her published MMG model, of which the reference model knows
+//! so that trials are sailed by its published MMG model, of which the reference model knows
 //! nothing, and read with scatter.
 
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ use sistership_estimate::transfer::{Approach, transfer};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
 
-/// The ship and the four among which the paper chooses her reference model.
+/// The ship and the four among which the paper chooses its reference model.
 const TARGET: &str = "kvlcc2";
 const CANDIDATES: [(&str, f64); 4] =
     [("mariner", -0.576), ("esso-tanker", 0.851), ("sr108", -0.887), ("pcc", -0.723)];
@@ -28,7 +28,7 @@ const SCATTER: f64 = 0.005;
 /// A rudder angle with the heading at which it is reversed, or held.
 pub type Order = (f64, Option<f64>);
 
-/// The ship as she is, and the reference model on her particulars.
+/// The ship as it is, and the reference model on its particulars.
 pub struct Pair {
     pub truth: Ship,
     pub reference: Model,
@@ -47,7 +47,7 @@ impl Pair {
         let source = zoo.model(&name).unwrap_or_else(|error| panic!("{error}"));
         let law = Law::clone(zoo.law(&source.law).expect("its law"));
         let speed_m_s = truth.approach_speed_m_s();
-        // Without revolutions they are her source's by Froude's law.
+        // Without revolutions they are its source's by Froude's law.
         let approach = Approach { speed_m_s, n_rps: None };
         let reference = transfer(&source, &law, target, Some(approach));
         Self { truth, reference, law, speed_m_s }
@@ -69,7 +69,7 @@ impl Pair {
         let columns = RECORDED[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
         let mut channels: BTreeMap<Channel, Vec<f64>> =
             columns.map(|&(channel, place)| (channel, thin(track.column(place)))).collect();
-        // The reference model runs at her own revolutions: the paper's Eq. 6 knows speeds alone.
+        // The reference model runs at its own revolutions: the paper's Eq. 6 knows speeds alone.
         let n_rps = self.reference.revolutions_rps.unwrap_or_default();
         channels.insert(Channel::N, vec![n_rps; channels[&Channel::U].len()]);
         let t_s = thin(track.t_s.clone());

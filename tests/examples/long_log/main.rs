@@ -24,7 +24,7 @@ const ROWS: usize = 10_000_000;
 /// Rows to half a second.
 const EACH: usize = 5;
 
-/// A ship of which nobody has a model; she sails as SR108 does.
+/// A ship of which nobody has a model; it sails as SR108 does.
 const SHIP: &str = "kind: vessel
 name: voyager
 title: The ship of the long log

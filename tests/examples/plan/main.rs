@@ -4,7 +4,7 @@
 //! `cargo run --release -p sistership-tests --example plan -- --ships 20 --seed 1300` (seeds below
 //! 1000 are for work, from 1000 on for judgement); `--budget 60` minutes, `--jobs 2` for ships at
 //! once. Each ship is refined on two trials, a plan is made of that model, and both programmes are
-//! sailed for what the plan says that they take; then she is refined on the two with either.
+//! sailed for what the plan says that they take; then it is refined on the two with either.
 //! `docs/evidence/plan.md` has the results.
 
 mod arguments;

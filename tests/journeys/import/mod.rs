@@ -42,7 +42,8 @@ fn import(folder: &Path, files: &[PathBuf], status: i32) -> Value {
 }
 
 /// No bands, and the noise model of one trial: neither is looked at here.
-const SETTINGS: &str = "method: weak\nbands: { samples: 0 }\ncalibration_samples: 1\n";
+const SETTINGS: &str =
+    "method: weak\nfamilies: [own]\nbands: { samples: 0 }\ncalibration_samples: 1\n";
 
 /// The heading's error on manoeuvres left out, by one and the same explicit call.
 fn refined(folder: &Path) -> f64 {

@@ -183,6 +183,11 @@ class Version:
             asked["all"] = True
         return self.core.post_predictions({"model": self.name, "manoeuvre": asked})
 
+    def under_way(self, **asked: Any) -> "UnderWay":
+        """The ship under way on the server: `start` (`{"u_m_s": 7.0}`), `wind`, `current`,
+        `depth_m`, `draws`. Use it in a `with`, which ends the session."""
+        return UnderWay(self.core, self.core.post_sessions({"model": self.name, **asked}))
+
     def export(self, format: str, path: Optional[str] = None) -> bytes:
         """The version for another tool: `c`, `python`, `matlab`, `modelica`, `fmu2`, `fmu3`."""
         given = self.core.get_models_model_versions_number_export(
@@ -206,6 +211,34 @@ class Version:
         time and state."""
         rows = list(self.module.run(duration_s, **given))
         return Track(["t_s", *CANONICAL], [[t, *state] for t, state in rows])
+
+
+class UnderWay:
+    """A ship under way on the server, who sails on as orders come."""
+
+    def __init__(self, core: Core, view: Mapping[str, Any]) -> None:
+        self.core, self.id = core, view["id"]
+
+    def __enter__(self) -> "UnderWay":
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.end()
+
+    def step(self, dt_s: float, steps: int = 1, **orders: Any) -> Dict[str, Any]:
+        """Sails on: `ship.step(0.5, delta_rad=0.3, n_rps=1.2)`. What is not ordered stays; the
+        answer has `trajectory` (for `Track.of`), `band`, `stopped`."""
+        asked: Dict[str, Any] = {"dt_s": dt_s, "steps": steps, "orders": orders}
+        return self.core.post_sessions_id_steps(self.id, asked)  # type: ignore[arg-type]
+
+    @property
+    def now(self) -> Dict[str, Any]:
+        """Where it is."""
+        return self.core.get_sessions_id(self.id)
+
+    def end(self) -> None:
+        """Ends the session."""
+        self.core.delete_sessions_id(self.id)
 
 
 CANONICAL = ("u_m_s", "v_m_s", "r_rad_s", "p_rad_s", "phi_rad", "psi_rad", "x_m", "y_m",

@@ -37,6 +37,7 @@ ComparedTrial = TypedDict('ComparedTrial', {'duration_s': 'float', 'errors': 'Li
 Comparison = TypedDict('Comparison', {'coefficients': 'List[ComparedCoefficient]', 'figures': 'List[ComparedFigure]', 'models': 'List[Column]', 'trials': 'List[ComparedTrial]'}, total=True)
 Condition = TypedDict('Condition', {'effects': 'List[str]', 'found_by': 'Union[FoundBy, None]', 'model': 'Standing', 'sentence': 'str', 'since': 'Union[FoundBy, None]', 'trials': 'List[str]', 'verdict': 'Union[str, None]', 'version': 'Union[int, None]', 'with_effects': 'Union[MadeVersion, None]'}, total=False)
 Constraints = TypedDict('Constraints', {'bounds': 'Dict[str, Bound]', 'dissipative': 'bool', 'physical_signs': 'bool', 'straight_line': 'Union[StraightLine, None]', 'trust_sd': 'Union[float, None]'}, total=False)
+CurrentRequest = TypedDict('CurrentRequest', {'speed_m_s': 'float', 'towards_rad': 'float'}, total=True)
 DeliveryView = TypedDict('DeliveryView', {'answer': 'Union[str, None]', 'attempts': 'int', 'body': 'Dict[str, Any]', 'created_us': 'int', 'delivered_us': 'Union[int, None]', 'due_us': 'Union[int, None]', 'event': 'str', 'id': 'str'}, total=False)
 DiagnosisRequest = TypedDict('DiagnosisRequest', {'model': 'str', 'settings': 'DiagnosisSettings', 'trials': 'Union[List[str], None]'}, total=False)
 DiagnosisSettings = TypedDict('DiagnosisSettings', {'least_evidence': 'float', 'least_step_s': 'Union[float, None]', 'most_effects': 'int', 'prior_odds': 'Dict[str, float]', 'restart_s': 'Union[float, None]', 'slack': 'float'}, total=False)
@@ -59,6 +60,7 @@ FreeRunning = TypedDict('FreeRunning', {'kind': 'FreeRunningKind', 'note': 'Unio
 FreeRunningKind = Any  # What sailed a free-running trial.
 HeadView = TypedDict('HeadView', {'number': 'int', 'sha256': 'str'}, total=True)
 Health = TypedDict('Health', {'revision': 'str', 'status': 'str', 'writes': 'Union[str, None]'}, total=False)
+HorizonRequest = TypedDict('HorizonRequest', {'current': 'Union[CurrentRequest, None]', 'delta_rad': 'float', 'draws': 'Union[int, None]', 'dt_s': 'Union[float, None]', 'duration_s': 'float', 'orders': 'List[TimedOrders]', 'seed': 'Union[int, None]', 'start': 'Union[InitialState, None]', 'wind': 'Union[WindRequest, None]'}, total=False)
 InitialState = TypedDict('InitialState', {'p_rad_s': 'float', 'phi_rad': 'float', 'psi_rad': 'float', 'r_rad_s': 'float', 'u_m_s': 'float', 'v_m_s': 'float', 'x_m': 'float', 'y_m': 'float'}, total=False)
 InputsRequest = TypedDict('InputsRequest', {'delta_rad': 'List[float]', 'n_rps': 'Union[List[float], None]', 'start': 'InitialState', 't_s': 'List[float]'}, total=False)
 InstrumentFit = TypedDict('InstrumentFit', {'deviation_by_scatter': 'float', 'drift': 'float'}, total=True)
@@ -100,10 +102,11 @@ NewKeyView = TypedDict('NewKeyView', {'about': 'KeyView', 'key': 'str'}, total=T
 NewMembers = TypedDict('NewMembers', {'ships': 'List[str]'}, total=True)
 NewWebhookView = TypedDict('NewWebhookView', {'about': 'WebhookView', 'secret': 'str'}, total=True)
 NumberOrExpression = Any  # 
+OrdersRequest = TypedDict('OrdersRequest', {'delta_rad': 'Union[float, None]', 'inputs': 'Dict[str, float]', 'n_rps': 'Union[float, None]'}, total=False)
 OutcomeView = TypedDict('OutcomeView', {'comparison': 'Dict[str, Any]', 'outcome': 'str', 'ship': 'str', 'version': 'Union[int, None]', 'worst_change': 'Union[float, None]'}, total=False)
 PasswordRequest = TypedDict('PasswordRequest', {'password': 'str'}, total=True)
 Posterior = TypedDict('Posterior', {'deviations': 'List[float]', 'names': 'List[str]', 'root_correlation': 'List[str]', 'values': 'List[float]'}, total=True)
-PredictionRequest = TypedDict('PredictionRequest', {'depth_m': 'Union[float, None]', 'inputs': 'Union[InputsRequest, None]', 'manoeuvre': 'Union[ManoeuvreRequest, None]', 'model': 'str'}, total=False)
+PredictionRequest = TypedDict('PredictionRequest', {'depth_m': 'Union[float, None]', 'horizon': 'Union[HorizonRequest, None]', 'inputs': 'Union[InputsRequest, None]', 'manoeuvre': 'Union[ManoeuvreRequest, None]', 'model': 'str'}, total=False)
 PriorChoice = Any  # What holds the coefficients.
 PriorFile = TypedDict('PriorFile', {'deviation': 'float', 'mean': 'float'}, total=False)
 PriorView = TypedDict('PriorView', {'created_us': 'int', 'document': 'Dict[str, Any]', 'family': 'str', 'revision': 'int', 'sha256': 'str'}, total=True)
@@ -127,6 +130,7 @@ RudderSign = Any  # Which way positive rudder turns the ship.
 Rule = TypedDict('Rule', {'no_worse_than': 'Union[float, None]'}, total=False)
 Sampling = TypedDict('Sampling', {'figures_only': 'bool', 'samples': 'int', 'seed': 'int', 'within_steps': 'bool'}, total=False)
 Section = TypedDict('Section', {'source': 'Union[str, None]', 'values': 'Dict[str, Written]'}, total=False)
+SessionRequest = TypedDict('SessionRequest', {'current': 'Union[CurrentRequest, None]', 'delta_rad': 'float', 'depth_m': 'Union[float, None]', 'draws': 'Union[int, None]', 'model': 'str', 'seed': 'Union[int, None]', 'start': 'Union[InitialState, None]', 'wind': 'Union[WindRequest, None]'}, total=False)
 Settings = TypedDict('Settings', {'second_person': 'bool'}, total=True)
 ShipDetail = TypedDict('ShipDetail', {'category': 'str', 'condition': 'Condition', 'created_us': 'int', 'document': 'Dict[str, Any]', 'name': 'str', 'revision': 'int', 'title': 'str', 'updated_us': 'int'}, total=True)
 ShipHead = TypedDict('ShipHead', {'category': 'str', 'created_us': 'int', 'name': 'str', 'revision': 'int', 'title': 'str', 'updated_us': 'int', 'value': 'Union[float, None]'}, total=False)
@@ -136,8 +140,10 @@ Standing = Any  # Whether a model holds.
 Start = Any  # Where a member starts.
 Status = Any  # How far a model's figures can be trusted to be somebody's measurement.
 Steering = TypedDict('Steering', {'limit_deg': 'float', 'note': 'Union[str, None]', 'rate_deg_s': 'float', 'source': 'Union[str, None]', 'time_constant_s': 'float'}, total=False)
+StepsRequest = TypedDict('StepsRequest', {'dt_s': 'float', 'orders': 'OrdersRequest', 'steps': 'Union[int, None]'}, total=False)
 StraightLine = Any  # What a ship does after a small disturbance with the rudder amidships.
 TermFamily = Any  # A set of terms among which model selection chooses.
+TimedOrders = TypedDict('TimedOrders', {'delta_rad': 'Union[float, None]', 'n_rps': 'Union[float, None]', 't_s': 'float'}, total=False)
 TrialError = TypedDict('TrialError', {'reason': 'Union[str, None]', 'rmse': 'Dict[str, float]', 'standardised_mse': 'Union[float, None]'}, total=False)
 TrialResidual = TypedDict('TrialResidual', {'at_us': 'int', 'fitted': 'bool', 'name': 'str', 'residual': 'Dict[str, float]', 'trial': 'str'}, total=True)
 TrialView = TypedDict('TrialView', {'created_us': 'int', 'duration_s': 'float', 'id': 'str', 'manifest': 'Dict[str, Any]', 'manoeuvre': 'Union[str, None]', 'name': 'str', 'rows': 'int', 'sha256': 'str', 'ship': 'str', 'warnings': 'List[Dict[str, Any]]'}, total=False)
@@ -158,6 +164,7 @@ VesselKind = Any  # The word `vessel`.
 WebhookEvent = Any  # What a webhook may be told.
 WebhookRequest = TypedDict('WebhookRequest', {'drift_above': 'Union[float, None]', 'events': 'List[WebhookEvent]', 'ship': 'Union[str, None]', 'title': 'str', 'url': 'str'}, total=False)
 WebhookView = TypedDict('WebhookView', {'created_us': 'int', 'drift_above': 'float', 'ended_us': 'Union[int, None]', 'events': 'List[str]', 'id': 'str', 'ship': 'Union[str, None]', 'title': 'str', 'url': 'str'}, total=False)
+WindRequest = TypedDict('WindRequest', {'from_rad': 'float', 'speed_m_s': 'float'}, total=True)
 Written = Any  # The ways in which a file may write a value.
 WrittenInFull = TypedDict('WrittenInFull', {'note': 'Union[str, None]', 'source': 'Union[str, None]', 'standard_error': 'Union[float, None]', 'value': 'NumberOrExpression'}, total=False)
 ZigzagRequest = TypedDict('ZigzagRequest', {'rudder_deg': 'float', 'switch_deg': 'float'}, total=True)
@@ -274,7 +281,7 @@ class Core:
         return self.http.json('POST', f'/v1/families/{family}/prior')
 
     def post_families_family_refinements(self, family: str, body: Asked, *, idempotency_key: Optional[str] = None) -> BulkView:
-        """Refine every member of a family from the statistics of her trials."""
+        """Refine every member of a family from the statistics of its trials."""
         return self.http.json('POST', f'/v1/families/{family}/refinements', headers={'Idempotency-Key': idempotency_key}, json=body)
 
     def get_jobs(self, *, ship: Optional[str] = None, state: Optional[Literal['queued', 'running', 'succeeded', 'failed', 'cancelled']] = None, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_JobView:
@@ -382,7 +389,7 @@ class Core:
         return self.http.json('GET', f'/v1/models/{model}/versions/{number}/weights')
 
     def post_predictions(self, body: PredictionRequest) -> Dict[str, Any]:
-        """Simulate a manoeuvre, or recorded inputs, with a version of a model."""
+        """Simulate a manoeuvre, recorded inputs, or orders to come, with a version of a model."""
         return self.http.json('POST', '/v1/predictions', json=body)
 
     def post_refinements(self, body: RefinementRequest, *, idempotency_key: Optional[str] = None) -> JobView:
@@ -392,6 +399,30 @@ class Core:
     def get_reports_id(self, id: str, *, format: Optional[Literal['json', 'html']] = None) -> Dict[str, Any]:
         """A report, as JSON or as a page that stands alone."""
         return self.http.json('GET', f'/v1/reports/{id}', query={'format': format})
+
+    def get_sessions(self) -> Dict[str, Any]:
+        """The sessions of whoever asks."""
+        return self.http.json('GET', '/v1/sessions')
+
+    def post_sessions(self, body: SessionRequest) -> Dict[str, Any]:
+        """Put a ship under way."""
+        return self.http.json('POST', '/v1/sessions', json=body)
+
+    def delete_sessions_id(self, id: str) -> None:
+        """End a session."""
+        return self.http.none('DELETE', f'/v1/sessions/{id}')
+
+    def get_sessions_id(self, id: str) -> Dict[str, Any]:
+        """Where a ship under way is."""
+        return self.http.json('GET', f'/v1/sessions/{id}')
+
+    def post_sessions_id_steps(self, id: str, body: StepsRequest) -> Dict[str, Any]:
+        """Sail on."""
+        return self.http.json('POST', f'/v1/sessions/{id}/steps', json=body)
+
+    def get_sessions_id_stream(self, id: str) -> None:
+        """Sail on over a WebSocket."""
+        return self.http.none('GET', f'/v1/sessions/{id}/stream')
 
     def get_settings(self) -> Settings:
         """Settings that hold for every process on the store."""
@@ -410,11 +441,11 @@ class Core:
         return self.http.json('POST', '/v1/ships', headers={'Idempotency-Key': idempotency_key}, json=body)
 
     def delete_ships_ship(self, ship: str, *, if_match: Optional[str] = None) -> None:
-        """Delete a ship; her versions stay, and `undelete` brings her back."""
+        """Delete a ship; its versions stay, and `undelete` brings it back."""
         return self.http.none('DELETE', f'/v1/ships/{ship}', headers={'If-Match': if_match})
 
     def get_ships_ship(self, ship: str, *, if_none_match: Optional[str] = None) -> ShipDetail:
-        """A ship; her ETag is what a change must present."""
+        """A ship; its ETag is what a change must present."""
         return self.http.json('GET', f'/v1/ships/{ship}', headers={'If-None-Match': if_none_match})
 
     def put_ships_ship(self, ship: str, body: VesselFile, *, if_match: Optional[str] = None) -> ShipDetail:
@@ -422,7 +453,7 @@ class Core:
         return self.http.json('PUT', f'/v1/ships/{ship}', headers={'If-Match': if_match}, json=body)
 
     def get_ships_ship_drift(self, ship: str) -> Drift:
-        """What a ship's champion leaves of each of her trials, over time."""
+        """What a ship's champion leaves of each of its trials, over time."""
         return self.http.json('GET', f'/v1/ships/{ship}/drift')
 
     def get_ships_ship_model(self, ship: str, *, format: Optional[Literal['json', 'yaml']] = None, if_none_match: Optional[str] = None) -> Champion:
@@ -430,7 +461,7 @@ class Core:
         return self.http.json('GET', f'/v1/ships/{ship}/model', query={'format': format}, headers={'If-None-Match': if_none_match})
 
     def get_ships_ship_similar(self, ship: str, *, vector: Optional[Literal['mei-2019', 'kanazawa-2023']] = None, trials: Optional[bool] = None) -> Dict[str, Any]:
-        """Rank the zoo for a ship, and say which ships may be her source."""
+        """Rank the zoo for a ship, and say which ships may be its source."""
         return self.http.json('GET', f'/v1/ships/{ship}/similar', query={'vector': vector, 'trials': trials})
 
     def get_ships_ship_tags(self, ship: str) -> List[str]:
@@ -442,7 +473,7 @@ class Core:
         return self.http.none('DELETE', f'/v1/ships/{ship}/tags/{tag}')
 
     def put_ships_ship_tags_tag(self, ship: str, tag: str) -> None:
-        """Put a tag on a ship, to find her by."""
+        """Put a tag on a ship, by which it is found."""
         return self.http.none('PUT', f'/v1/ships/{ship}/tags/{tag}')
 
     def post_ships_ship_undelete(self, ship: str) -> ShipDetail:

@@ -7,7 +7,7 @@ use super::hull::WaveHull;
 /// Acceleration of gravity, m/s2.
 pub const GRAVITY: f64 = 9.80665;
 
-/// What both share: the wave by the ship, the damping and how much of it moves her.
+/// What both share: the wave by the ship, the damping and how much of it moves it.
 struct Shared {
     /// Wave number, 1/m.
     k: f64,

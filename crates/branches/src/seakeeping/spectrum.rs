@@ -43,7 +43,7 @@ impl DirectionalSpectrum {
 mod tests {
     use super::*;
 
-    /// Long waves: she rides them, heave is the elevation and roll its slope.
+    /// Long waves: it rides them, heave is the elevation and roll its slope.
     #[test]
     fn in_long_waves_she_follows_the_surface() {
         let hull = WaveHull {

@@ -35,7 +35,7 @@ impl Foundation {
         Ship::new(&model, &self.law).expect("a ready ship")
     }
 
-    /// Zigzags of the true ship; where she has a propeller, each at revolutions of its own.
+    /// Zigzags of the true ship; where it has a propeller, each at revolutions of its own.
     pub fn trials(&self, angles: &[f64]) -> Vec<Trial> {
         let truth = self.truth();
         let full = truth.revolutions_at(truth.approach_speed_m_s());

@@ -22,7 +22,7 @@ Examples:
 
 SHIP is a model that was refined (its posterior says what is open), or a ship: one without a model
 is estimated from its particulars. Times hold the approach of each trial, and how long the ship
-needs until she is steady at her full speed again; both are simulated.";
+needs until it is steady at its full speed again; both are simulated.";
 
 /// Plan the trials that narrow the bands of the IMO criteria most in a given time.
 #[derive(Debug, Args)]

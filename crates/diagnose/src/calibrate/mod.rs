@@ -2,6 +2,7 @@
 
 mod false_alarm;
 mod noise_model;
+mod representative;
 mod systematic_errors;
 mod trial_information;
 
@@ -11,6 +12,7 @@ use std::sync::Arc;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use noise_model::NoiseModel;
 use rayon::prelude::*;
+use representative::representative;
 use sistership_model::law::Law;
 use sistership_model::trial::Channel;
 use sistership_model::uncertainty::{Discrepancy, InstrumentFit, Uncertainty};
@@ -27,7 +29,6 @@ use super::setup::listed;
 use super::thresholds::THRESHOLDS;
 use crate::residual::{Columns, Discrepancies, EffectCandidate, Instrument, Noise, Nuisance};
 use sistership_estimate::refine::RefineError;
-use sistership_estimate::representative::representative;
 
 /// What a model is calibrated with.
 #[derive(Clone, Copy)]

@@ -1,4 +1,4 @@
-//! The residual of a model on trials: what her instruments say, less what the model and all earlier
+//! The residual of a model on trials: what its instruments say, less what the model and all earlier
 //! readings predict.
 //!
 //! A Kalman filter runs along each trial. Its state is the ship's (velocities, heading, position,

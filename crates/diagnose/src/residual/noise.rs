@@ -70,7 +70,7 @@ fn differences(record: &TrialReadings<'_>, channel: Channel, every: usize) -> Ve
 }
 
 /// The least noise that is believed of an instrument: noise-free simulations are trials too. By the
-/// length of the ship and her speed.
+/// length of the ship and its speed.
 pub fn floor(channel: Channel, lpp_m: f64, speed_m_s: f64) -> f64 {
     let rate = speed_m_s / lpp_m;
     match channel {

@@ -76,13 +76,13 @@ pub struct FurtherManoeuvres {
     /// Manoeuvres that left the physical range, with the reason.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub failures: Vec<String>,
-    /// Where she went in the stop and the pull-outs, by the name of each.
+    /// Where it went in the stop and the pull-outs, by the name of each.
     #[serde(skip)]
     pub tracks: Vec<(String, Trajectory)>,
 }
 
 impl FurtherManoeuvres {
-    /// The criterion of stopping ability, where she was stopped.
+    /// The criterion of stopping ability, where it was stopped.
     pub fn criterion(&self, lpp_m: f64) -> Option<Criterion> {
         Some(self.stopping.as_ref()?.criterion(lpp_m))
     }

@@ -43,8 +43,8 @@ pub struct Sailed {
     pub reversals_s: Vec<f64>,
 }
 
-/// Sails manoeuvres in lockstep, each by a sister with her own coefficients ([`Ship::sister`]);
-/// none for a ship with hers.
+/// Sails manoeuvres in lockstep, each by a sister with its own coefficients ([`Ship::sister`]);
+/// none for a ship with its own.
 ///
 /// Each fails by itself where the motion leaves the physical range, and says when and why.
 pub fn sail_together(

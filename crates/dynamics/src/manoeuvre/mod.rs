@@ -35,7 +35,7 @@ pub struct ManoeuvreSettings {
     pub n_rps: Option<f64>,
     /// Longest duration, s; enough for a turn of three times round where absent.
     pub duration_s: Option<f64>,
-    /// Step, s; where absent 0.1 s, or a fiftieth of the time in which a small ship sails her
+    /// Step, s; where absent 0.1 s, or a fiftieth of the time in which a small ship sails its
     /// length.
     pub step_s: Option<f64>,
     /// Integration method.
@@ -74,7 +74,7 @@ impl ManoeuvreSettings {
         self.n_rps.unwrap_or_else(|| ship.revolutions_at(self.speed(ship)))
     }
 
-    /// Scaled so that a small model and a large ship sail as far: 60 of her lengths.
+    /// Scaled so that a small model and a large ship sail as far: 60 of its lengths.
     fn duration(&self, ship: &Ship) -> f64 {
         self.duration_s.unwrap_or_else(|| 60.0 * ship.lpp_m() / self.speed(ship)) + self.run_in_s
     }

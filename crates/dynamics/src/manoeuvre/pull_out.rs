@@ -10,13 +10,13 @@ use crate::state::{StateVector, Trajectory, at, speed, straight};
 /// A pull-out that was sailed.
 #[derive(Debug, Clone)]
 pub struct PullOut {
-    /// Where she went, the turn before it included.
+    /// Where it went, the turn before it included.
     pub track: Trajectory,
     /// What came of it.
     pub metrics: PullOutMetrics,
 }
 
-/// The longest turn and the longest time after it, by the time in which she sails her length.
+/// The longest turn and the longest time after it, by the time in which it sails its length.
 const MOST_LENGTHS: f64 = 150.0;
 
 /// Sails a steady turn, puts the rudder amidships, and goes on until the yaw rate is steady.

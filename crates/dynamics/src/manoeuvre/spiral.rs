@@ -13,7 +13,7 @@ const STEPS_DEG: [f64; 8] = [15.0, 10.0, 5.0, 4.0, 3.0, 2.0, 1.0, 0.0];
 /// Yaw rates of the reverse spiral to each side of none, shares of the greatest: close together
 /// where loops are.
 const SHARES: [f64; 10] = [0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.55, 0.75, 1.0];
-/// The longest time at one rudder angle or rate, by the time in which she sails her length.
+/// The longest time at one rudder angle or rate, by the time in which it sails its length.
 const MOST_LENGTHS: f64 = 100.0;
 
 /// Sails both spirals.
@@ -72,7 +72,7 @@ fn point(state: &StateVector, steady: bool) -> SpiralPoint {
 
 /// Holds a yaw rate by the rudder, by what is missing and by what has been missing so far.
 struct RateHelm {
-    /// Rudder by yaw rate, both in the time in which she sails her length.
+    /// Rudder by yaw rate, both in the time in which it sails its length.
     length_s: f64,
     step_s: f64,
     limit_deg: f64,
@@ -80,7 +80,7 @@ struct RateHelm {
     missed_deg: f64,
 }
 
-/// Rudder by missing yaw rate, in the time in which she sails her length: above the 1/K' of ships
+/// Rudder by missing yaw rate, in the time in which it sails its length: above the 1/K' of ships
 /// that are unstable, which are held by it alone.
 const BY_RATE: f64 = 4.0;
 /// How fast what is missing adds to the rudder, in that time.

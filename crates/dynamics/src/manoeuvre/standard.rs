@@ -17,7 +17,7 @@ use crate::state::Trajectory;
 /// A turning circle that was sailed.
 #[derive(Debug, Clone)]
 pub struct Turn {
-    /// Where she went.
+    /// Where it went.
     pub track: Trajectory,
     /// What came of it.
     pub metrics: TurningMetrics,
@@ -26,7 +26,7 @@ pub struct Turn {
 /// A zigzag that was sailed.
 #[derive(Debug, Clone)]
 pub struct Zigzag {
-    /// Where she went.
+    /// Where it went.
     pub track: Trajectory,
     /// What came of it.
     pub metrics: ZigzagMetrics,
@@ -109,7 +109,7 @@ pub fn standard(ship: &Ship, settings: &ManoeuvreSettings) -> StandardManoeuvres
     standard_of_sisters(ship, &[&[]], settings).remove(0)
 }
 
-/// Sails the standard manoeuvres with every sister in lockstep, each given by her coefficients, as
+/// Sails the standard manoeuvres with every sister in lockstep, each given by its coefficients, as
 /// [`standard`] would.
 pub fn standard_of_sisters(
     ship: &Ship,

@@ -6,7 +6,7 @@ use super::ManoeuvreSettings;
 use crate::ship::Ship;
 use crate::state::{StateVector, at, speed};
 
-/// A yaw rate is steady where it changes by less than this in the time in which the ship sails her
+/// A yaw rate is steady where it changes by less than this in the time in which the ship sails its
 /// length, by the rate of one radian in that time. What is left of a motion that dies down with a
 /// time constant of T' lengths is T' times that: below the thousandth by which rates are read even
 /// for a T' of 100.
@@ -14,7 +14,7 @@ const RATE_CHANGE: f64 = 1e-5;
 /// The same for the speed, by that of the approach: within a hundredth for a T' of 100.
 const SPEED_CHANGE: f64 = 1e-4;
 
-/// Step by the time in which the ship sails her length, where nobody asks for another: a steady
+/// Step by the time in which the ship sails its length, where nobody asks for another: a steady
 /// motion does not depend on it.
 const STEP: f64 = 0.05;
 
@@ -31,7 +31,7 @@ pub(super) fn to_the_end(
 
 /// Watches a motion step by step.
 pub(super) struct Steady {
-    /// Yaw rate and speed, without dimension, over the time in which the ship sails her length.
+    /// Yaw rate and speed, without dimension, over the time in which the ship sails its length.
     seen: VecDeque<[f64; 2]>,
     steps: usize,
     length_s: f64,

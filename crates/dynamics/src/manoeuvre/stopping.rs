@@ -21,7 +21,7 @@ pub struct AsternOrder {
 /// A stopping test that was sailed.
 #[derive(Debug, Clone)]
 pub struct Stopping {
-    /// Where she went.
+    /// Where it went.
     pub track: Trajectory,
     /// What came of it.
     pub metrics: StoppingMetrics,
@@ -38,8 +38,8 @@ pub enum NoStopping {
     Stopped(#[from] Stopped),
 }
 
-/// Runs are ended after so many times the time in which she sails her length: a ship that keeps
-/// to the criterion of 15 lengths needs about twice as many, for her mean speed is half.
+/// Runs are ended after so many times the time in which it sails its length: a ship that keeps
+/// to the criterion of 15 lengths needs about twice as many, for its mean speed is half.
 const MOST_LENGTHS: f64 = 120.0;
 
 /// Sails a full astern stopping test with the rudder amidships.

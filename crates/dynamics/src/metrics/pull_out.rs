@@ -20,10 +20,10 @@ const ALIKE: f64 = 1e-3;
 /// A turn about a radius of a hundred lengths: less is a straight course.
 const STRAIGHT: f64 = 1e-2;
 
-/// Whether a ship is stable on a straight course: after turns to both sides she goes straight. None
+/// Whether a ship is stable on a straight course: after turns to both sides it goes straight. None
 /// where one was not sailed or did not become steady, or where both sides end in the same turn: a
 /// ship that is not the same on both sides goes straight at another rudder than amidships, and
-/// spirals tell how she is there.
+/// spirals tell how it is there.
 pub fn is_straight_line_stable(pull_outs: &[PullOutMetrics]) -> Option<bool> {
     let side = |starboard: bool| {
         let of = |one: &&PullOutMetrics| (one.rudder_deg > 0.0) == starboard;

@@ -20,7 +20,7 @@ pub struct SpiralMetrics {
     pub direct: Vec<SpiralPoint>,
     /// The reverse spiral (Bech): yaw rates held by the rudder, from port to starboard.
     pub reverse: Vec<SpiralPoint>,
-    /// Width of the loop by the direct spiral, deg of rudder: between the angles at which she
+    /// Width of the loop by the direct spiral, deg of rudder: between the angles at which it
     /// changes sides on the way to port and back, each known to a step of the rudder.
     pub direct_loop_width_deg: f64,
     /// Width of the loop by the reverse spiral, deg of rudder; 0 for a ship that is stable on a
@@ -46,7 +46,7 @@ impl SpiralMetrics {
         }
     }
 
-    /// Whether the ship is stable on a straight course: she has no loop.
+    /// Whether the ship is stable on a straight course: it has no loop.
     pub fn is_stable(&self) -> bool {
         self.loop_width_deg < NO_LOOP_DEG
     }

@@ -19,7 +19,7 @@ pub struct StoppingMetrics {
     pub astern_rps: f64,
     /// The time in which they were reached from those ahead, in proportion, s.
     pub reversal_s: f64,
-    /// Distance along the track, m; absent where she did not stop.
+    /// Distance along the track, m; absent where it did not stop.
     pub track_reach_m: Option<f64>,
     /// Distance along the first heading, m.
     pub head_reach_m: Option<f64>,
@@ -27,7 +27,7 @@ pub struct StoppingMetrics {
     pub lateral_deviation_m: Option<f64>,
     /// Change of heading, deg, positive to starboard.
     pub heading_change_deg: Option<f64>,
-    /// Time until she is dead in the water, s.
+    /// Time until it is dead in the water, s.
     pub time_s: Option<f64>,
 }
 

@@ -60,7 +60,7 @@ impl Plant {
         lane_of(&self.rates(&states, &inputs, work), 0)
     }
 
-    /// The rates of change of the states of several ships, each with her own inputs and open
+    /// The rates of change of the states of several ships, each with its own inputs and open
     /// coefficients. `inputs` has at least as many as the law takes.
     pub fn rates<const N: usize>(
         &self,
@@ -94,7 +94,7 @@ impl Plant {
         }
     }
 
-    /// Where masses change with the motion, each ship has her own.
+    /// Where masses change with the motion, each ship has its own.
     fn solved<const N: usize>(&self, work: &[Lanes<N>], forces: &[Lanes<N>; 4]) -> [Lanes<N>; 4] {
         let mut out = [[0.0; N]; 4];
         for lane in 0..N {
@@ -114,7 +114,7 @@ impl Plant {
         out
     }
 
-    /// Where she goes, and how her attitude changes.
+    /// Where it goes, and how its attitude changes.
     fn turn<const N: usize>(&self, states: &States<N>, work: &[Lanes<N>], rates: &mut States<N>) {
         let (u, v) = (&states[at::U], &states[at::V]);
         for lane in 0..N {

@@ -218,7 +218,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         });
         let starting = count..columns;
         for (axis, range) in system.of_axis.iter().chain(std::iter::once(&starting)).enumerate() {
-            // Where she started pushes no more.
+            // Where it started pushes no more.
             let pushes = if axis < axes { stages } else { 0 };
             let mut sums = Sums::new(order);
             for row in 0..order {

@@ -37,7 +37,7 @@ pub struct Request<'a> {
     pub source_law: Option<&'a Law>,
     /// The law of what is fitted.
     pub law: &'a Law,
-    /// Her trials.
+    /// Its trials.
     pub trials: &'a [&'a Trial],
     /// Settings.
     pub settings: &'a Settings,

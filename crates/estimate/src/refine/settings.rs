@@ -126,11 +126,11 @@ pub struct Settings {
     #[schemars(range(min = 2, max = 1000))]
     pub lambda_count: usize,
     /// Time over which accelerations are differenced, s, at least one sampling interval. Where
-    /// absent, a tenth of the time in which the ship sails her length: what the instruments add at
+    /// absent, a tenth of the time in which the ship sails its length: what the instruments add at
     /// a shorter one drowns the acceleration.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub difference_s: Option<f64>,
-    /// Length of the weak form's windows, s. Where absent, the time in which the ship sails her
+    /// Length of the weak form's windows, s. Where absent, the time in which the ship sails its
     /// length.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -140,17 +140,17 @@ pub struct Settings {
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub hop_s: Option<f64>,
     /// Length of the trajectory form's segments, s. Where absent, five times the time in which the
-    /// ship sails her length; for the search ten times, and at least 100 s.
+    /// ship sails its length; for the search ten times, and at least 100 s.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub segment_s: Option<f64>,
     /// From one residual of the trajectory form to the next, s. Where absent, a 7.5th of the time
-    /// in which she sails her length; for the search one sampling interval.
+    /// in which it sails its length; for the search one sampling interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub residual_s: Option<f64>,
     /// Integration step of the trajectory form, s, rounded to sampling intervals. Where absent, a
-    /// thirtieth of the time in which she sails her length; for the search a 75th, whole or in
+    /// thirtieth of the time in which it sails its length; for the search a 75th, whole or in
     /// whole parts of an interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -168,7 +168,7 @@ pub struct Settings {
     #[schemars(length(max = 100), extend("items" = { "type": "number", "format": "double", "exclusiveMinimum": 0 }))]
     pub strengths: Vec<f64>,
     /// Simulations of manoeuvres left out start anew every so often, s. Where absent, ten times the
-    /// time in which the ship sails her length; longer than a trial runs it whole.
+    /// time in which the ship sails its length; longer than a trial runs it whole.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub restart_s: Option<f64>,
     /// Most folds; with more manoeuvres than that, several are left out together.

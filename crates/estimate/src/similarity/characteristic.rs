@@ -20,7 +20,7 @@ pub enum Definition {
 /// A component: its name, and the norm by which it is divided before ships are correlated.
 type Component = (&'static str, f64);
 
-/// Norms of the rows of Mei's Table 4 (Eq. 4). They stay those of her five ships: were they taken
+/// Norms of the rows of Mei's Table 4 (Eq. 4). They stay those of its five ships: were they taken
 /// over the ships compared, adding a ship to the zoo would change the correlation of two others.
 const MEI_2019: [Component; 5] = [
     ("C_b", 1.567_947),
@@ -66,7 +66,7 @@ impl Definition {
     }
 }
 
-/// A ship's characteristic vector; a component is absent where her particulars do not give it.
+/// A ship's characteristic vector; a component is absent where its particulars do not give it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CharacteristicVector {
     /// The definition it follows.
@@ -76,7 +76,7 @@ pub struct CharacteristicVector {
 }
 
 impl CharacteristicVector {
-    /// A vessel's vector: as a publication prints it where her file quotes it, else from her
+    /// A vessel's vector: as a publication prints it where its file quotes it, else from its
     /// particulars.
     pub fn of(vessel: &Vessel, definition: Definition) -> Self {
         let quoted = vessel.quoted_vectors.get(definition.name());
@@ -143,7 +143,7 @@ fn component(vessel: &Vessel, name: &str) -> Option<f64> {
         "C_b" => of("block_coefficient"),
         "L/B" => Some(l? / b?),
         "B/T" => Some(b? / t?),
-        // A time: a model's is that of her full-scale ship by Froude's law, or models would
+        // A time: a model's is that of its full-scale ship by Froude's law, or models would
         // resemble nothing but models.
         "L/V0" => Some(l? / of("service_speed_m_s")? * vessel.file.scale.unwrap_or(1.0).sqrt()),
         "L/volume^(1/3)" => Some(l? / of("displacement_m3")?.cbrt()),

@@ -9,12 +9,12 @@ use sistership_model::categories::group_of;
 use super::{CharacteristicVector, Definition};
 use crate::trend::TrendError;
 
-/// A ship of the zoo with the model she would give.
+/// A ship of the zoo with the model it would give.
 #[derive(Debug, Clone)]
 pub struct SourceCandidate<'a> {
     /// The ship.
     pub vessel: &'a Vessel,
-    /// What her model is called, and its law; none for a ship known by particulars only.
+    /// What its model is called, and its law; none for a ship known by particulars only.
     pub model: Option<ModelHead>,
 }
 
@@ -59,13 +59,13 @@ pub struct Eligibility {
 pub struct RankedSource {
     /// The ship.
     pub ship: String,
-    /// Her model's name; none for a ship known by particulars only.
+    /// Its model's name; none for a ship known by particulars only.
     pub model: Option<String>,
     /// The law of that model.
     pub law: Option<String>,
     /// Correlation of the characteristic vectors; none where too few components are known.
     pub correlation: Option<f64>,
-    /// Whether she may be the source.
+    /// Whether it may be the source.
     pub eligible: bool,
     /// Why, step by step, with figures.
     pub reasons: Vec<String>,

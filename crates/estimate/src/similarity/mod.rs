@@ -1,4 +1,4 @@
-//! Which ship of the zoo is most like a new one, and whether she may serve as her source.
+//! Which ship of the zoo is most like a new one, and whether it may serve as its source.
 
 mod characteristic;
 mod eligibility;

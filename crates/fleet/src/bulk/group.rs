@@ -74,7 +74,7 @@ impl AxisGroup {
     }
 }
 
-/// The groups of a ship: those of her regressions where one root serves all axes, else one for each
+/// The groups of a ship: those of its regressions where one root serves all axes, else one for each
 /// axis.
 pub(super) fn groups(
     trials: &[TrialStatistics],

@@ -1,4 +1,4 @@
-//! One ship refined from the statistics of her trials.
+//! One ship refined from the statistics of its trials.
 
 use std::collections::BTreeMap;
 

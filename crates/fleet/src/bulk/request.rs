@@ -9,11 +9,11 @@ use crate::statistics::TrialStatistics;
 /// A ship to be refined from statistics.
 #[derive(Debug, Clone, Copy)]
 pub struct BulkRequest<'a> {
-    /// Her model; it gives everything but the coefficients.
+    /// Its model; it gives everything but the coefficients.
     pub model: &'a Model,
     /// Its law.
     pub law: &'a Law,
-    /// The statistics of her trials, in the model's frame.
+    /// The statistics of its trials, in the model's frame.
     pub trials: &'a [TrialStatistics],
     /// What holds the coefficients.
     pub prior: Prior<'a>,

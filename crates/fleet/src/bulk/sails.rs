@@ -8,7 +8,7 @@ use sistership_dynamics::manoeuvre::{
 use sistership_dynamics::{PlantError, Ship, Stopped};
 use sistership_model::{Law, Model};
 
-/// Steps in which a ship sails her length.
+/// Steps in which a ship sails its length.
 const STEPS_A_LENGTH: f64 = 30.0;
 
 /// What a model makes of a turn at 35 deg and a 20/20 zigzag, both to starboard.

@@ -18,7 +18,7 @@ pub struct BulkSettings {
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub lambda_max: f64,
     /// Time over which accelerations are differenced, s. Where absent, a tenth of the time in which
-    /// the ship sails her length.
+    /// the ship sails its length.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub difference_s: Option<f64>,

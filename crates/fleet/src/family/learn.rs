@@ -28,12 +28,12 @@ pub enum FamilyError {
     Numbers(String),
 }
 
-/// A member with the statistics of her trials.
+/// A member with the statistics of its trials.
 #[derive(Debug, Clone, Copy)]
 pub struct Member<'a> {
-    /// Her name.
+    /// Its name.
     pub name: &'a str,
-    /// Her trials.
+    /// Its trials.
     pub trials: &'a [TrialStatistics],
 }
 

@@ -42,8 +42,8 @@ pub struct FamilyAxis {
     pub deviation: Vec<f64>,
     /// How the differences of two coefficients go together, by row.
     pub correlation: Vec<Vec<f64>>,
-    /// How much of a member's own difference her trials tell, in the mean over the members: 0 where
-    /// the family decides alone, 1 where her trials do.
+    /// How much of a member's own difference its trials tell, in the mean over the members: 0 where
+    /// the family decides alone, 1 where its trials do.
     pub told_by_trials: Vec<f64>,
 }
 

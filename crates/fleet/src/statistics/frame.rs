@@ -24,7 +24,7 @@ pub struct Frame {
 
 impl Frame {
     /// Of a model by the law whose file has the hash `law_sha256`. Without `difference_s`, a tenth
-    /// of the time in which the ship sails her length.
+    /// of the time in which the ship sails its length.
     ///
     /// # Errors
     /// Names what the model does not give. A model with effects is refused: what acted on its own

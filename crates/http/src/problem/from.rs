@@ -111,6 +111,11 @@ impl From<PredictError> for Problem {
         match error {
             PredictError::Field { field, message } => Self::invalid(&field, message),
             PredictError::Memory(shortage) => shortage.into(),
+            PredictError::NoSession(_) => Self::not_found(error.to_string()),
+            PredictError::ManySessions { .. } => {
+                Self::new(StatusCode::TOO_MANY_REQUESTS, error.to_string())
+            }
+            PredictError::SessionBusy => Self::new(StatusCode::CONFLICT, error.to_string()),
             PredictError::Answer(error) => Self::internal(error),
         }
     }

@@ -35,7 +35,7 @@ pub fn dress(
     forms: &[(&str, &Form)],
 ) -> Law {
     let mut dressed = law.clone();
-    // What the law sees is changed before forces are added: an added force sees the ship as she
+    // What the law sees is changed before forces are added: an added force sees the ship as it
     // moves over the ground.
     let (inflow, others): (Vec<_>, Vec<_>) =
         forms.iter().partition(|(_, form)| !form.sees.is_empty());

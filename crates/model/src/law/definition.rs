@@ -230,7 +230,7 @@ impl Law {
         self.values.insert(name, expr);
     }
 
-    /// The value of a parameter for a ship: how it follows from her particulars, where the law says
+    /// The value of a parameter for a ship: how it follows from its particulars, where the law says
     /// so and they suffice.
     pub fn derived_parameter(&self, name: &str, ship: &BTreeMap<String, Quantity>) -> Option<f64> {
         let from = self.parameters.get(name)?.from.as_ref()?;

@@ -3,14 +3,11 @@
 mod orders;
 mod sailed;
 
-use std::collections::BTreeMap;
-
 use askama::Template;
 use sistership_dynamics::Ship;
 use sistership_model::effect::AppliedEffect;
-use sistership_model::quantity::Quantity;
 use sistership_pipeline::Archive;
-use sistership_pipeline::library::library;
+use sistership_pipeline::surroundings::steady;
 use sistership_report::plots::Hull;
 
 use self::orders::{Orders, Surroundings};
@@ -174,25 +171,12 @@ fn drawn(
 impl Surroundings {
     /// Current and wind as the library has them.
     fn effects(&self) -> Result<Vec<AppliedEffect>> {
-        let (current, wind) = (self.current(), self.wind());
-        let named = [("current", current), ("wind", wind)];
+        let named = [("current", self.current()), ("wind", self.wind())];
         let some = named.into_iter().filter_map(|(name, of)| Some((name, of?)));
-        some.map(|(name, (north, east))| applied(name, north, east)).collect()
+        some.map(|(name, (north, east))| {
+            let missing = || PageError::invalid(name, "the library has no constant form of it");
+            steady(name, [north, east], "playground").ok_or_else(missing)
+        })
+        .collect()
     }
-}
-
-/// The form of an effect that is the same everywhere and always.
-fn applied(name: &str, north: f64, east: f64) -> Result<AppliedEffect> {
-    let missing = || PageError::invalid(name, "the library has no constant form of it");
-    let effect = library()?.effects.iter().find(|effect| effect.name == name);
-    let effect = effect.ok_or_else(missing)?;
-    let form = effect.forms.iter().find(|form| form.file.name == "constant");
-    let value = |value: f64| Quantity::new(value, "playground");
-    let parameters = BTreeMap::from([
-        ("north_m_s".to_owned(), value(north)),
-        ("east_m_s".to_owned(), value(east)),
-    ]);
-    let acts_on = effect.acts_on;
-    let form = form.ok_or_else(missing)?.file.clone();
-    Ok(AppliedEffect { name: name.to_owned(), acts_on, parameters, form })
 }

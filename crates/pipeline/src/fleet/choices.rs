@@ -7,10 +7,10 @@ use utoipa::ToSchema;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Start {
-    /// At its champion; at the family's foundation where she has none.
+    /// At its champion; at the family's foundation where it has none.
     #[default]
     Champion,
-    /// At the family's foundation, carried over to her particulars.
+    /// At the family's foundation, carried over to its particulars.
     Foundation,
 }
 

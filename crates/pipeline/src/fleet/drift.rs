@@ -1,4 +1,4 @@
-//! Drift: what a ship's champion leaves of each of her trials, in the order in which they came.
+//! Drift: what a ship's champion leaves of each of its trials, in the order in which they came.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use crate::archive::{Archive, document};
 use crate::error::DeriveError;
 use crate::line::CHAMPION;
 
-/// What a champion leaves of her ship's trials over time.
+/// What a champion leaves of its ship's trials over time.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Drift {
     /// The ship.
@@ -48,7 +48,7 @@ pub struct TrialResidual {
 }
 
 impl Drift {
-    /// Of a ship's champion now; none where she has none.
+    /// Of a ship's champion now; none where it has none.
     ///
     /// # Errors
     /// The store, or a document that is damaged.

@@ -27,7 +27,7 @@ pub struct MemberDrift {
     pub ship: String,
     /// What the newest diagnosis of its champion found: the effects that it lacks.
     pub condition: Condition,
-    /// What its champion leaves of her trials over time.
+    /// What its champion leaves of its trials over time.
     pub drift: Option<Drift>,
 }
 
@@ -59,7 +59,7 @@ impl FamilyDrift {
 }
 
 impl MemberDrift {
-    /// Whether the diagnosis says that her model does not hold, and how much more it leaves of what
+    /// Whether the diagnosis says that its model does not hold, and how much more it leaves of what
     /// is new.
     fn worse(&self) -> (bool, f64) {
         let worst = self.drift.as_ref().and_then(|drift| drift.worst);

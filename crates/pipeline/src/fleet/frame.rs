@@ -1,4 +1,4 @@
-//! The model that a member is refined from: its champion, or the foundation carried over to her.
+//! The model that a member is refined from: its champion, or the foundation carried over to it.
 
 use sistership_estimate::transfer::transfer;
 use sistership_model::version::{SourceVersion, sha256};
@@ -32,9 +32,9 @@ pub struct Framed {
     pub model: Model,
     /// The version that it is from.
     pub from: SourceVersion,
-    /// The hash of her document, where the foundation was carried over to it.
+    /// The hash of its document, where the foundation was carried over to it.
     pub ship_sha256: Option<String>,
-    /// The id of the version, if it is hers.
+    /// The id of the version, if it is its own.
     pub version_id: Option<String>,
     /// The revision of its champion.
     pub champion: Option<i64>,

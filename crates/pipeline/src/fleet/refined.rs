@@ -1,4 +1,4 @@
-//! One member refined: her recipe, and the version that comes of it.
+//! One member refined: its recipe, and the version that comes of it.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ use crate::recipe::{FamilyRecipe, Recipe};
 use crate::sorted::sorted;
 use crate::version::VersionDocument;
 
-/// A member with all that her refinement takes.
+/// A member with all that its refinement takes.
 pub struct Gathered {
     /// The model that is refined.
     pub model: Model,
@@ -53,6 +53,7 @@ pub fn refined(
         (c.name.clone(), fitted)
     });
     let mut refined = refined_model(&model, &fitted.collect::<BTreeMap<_, _>>(), &loaded.held_by());
+    // As versions have it that were kept before ships were "it": their bytes stay.
     refined.note = Some("refined from the statistics of her trials".to_owned());
     let report = sorted(serde_json::to_value(&refinement)?);
     finite(&report)?;
@@ -70,7 +71,7 @@ pub fn refined(
 fn finite(report: &Value) -> Result<(), DeriveError> {
     let bad = |key: &str| {
         DeriveError::Refine(RefineError::Data(format!(
-            "`{key}` is not a finite number: the trials do not excite her"
+            "`{key}` is not a finite number: the trials do not excite it"
         )))
     };
     let lists = ["axes", "coefficients"]

@@ -24,7 +24,7 @@ use crate::version::VersionDocument;
 /// Vectors as they are stored: components by name, by definition.
 type Vectors = BTreeMap<String, BTreeMap<String, f64>>;
 
-/// A ship as she was read, from which her facts follow.
+/// A ship as it was read, from which its facts follow.
 struct Read {
     waiting: Waiting,
     category: String,
@@ -51,7 +51,7 @@ pub(super) async fn of_ships(
     Ok(known.await.map_err(sistership_store::ObjectsError::from)?)
 }
 
-/// Reads a ship; nothing where she is deleted. What does not read is told and left out: it must not
+/// Reads a ship; nothing where it is deleted. What does not read is told and left out: it must not
 /// keep others waiting.
 async fn read(archive: &Archive, laws: &Zoo, waiting: Waiting) -> Result<Read, StoreError> {
     let nothing = |waiting: Waiting, category: String| Read {
@@ -93,7 +93,7 @@ impl Read {
     }
 }
 
-/// Makes the versions that her document publishes, where whoever wrote it was stopped before that.
+/// Makes the versions that its document publishes, where whoever wrote it was stopped before that.
 async fn published(
     archive: &Archive,
     laws: &Zoo,

@@ -24,7 +24,7 @@ pub async fn catch_up(archive: &Archive) -> Result<(), StoreError> {
 }
 
 /// Writes the facts of every ship that has changed, again where one has changed meanwhile: the
-/// first time that her models are published makes her a champion.
+/// first time that its models are published makes it a champion.
 ///
 /// # Errors
 /// The database does not answer.

@@ -36,7 +36,7 @@ pub(super) fn names() -> impl Iterator<Item = &'static str> {
         .chain([INITIAL])
 }
 
-/// The metrics of a version: from its report where that has them, else sailed now. What she does
+/// The metrics of a version: from its report where that has them, else sailed now. What it does
 /// not reach is left out.
 pub(super) fn metrics(version: &VersionDocument, laws: &Zoo) -> Vec<(&'static str, f64)> {
     reported(&version.report)

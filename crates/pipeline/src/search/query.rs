@@ -14,7 +14,7 @@ use super::metrics::names;
 pub struct Search {
     /// Category, tag and ranges; the first range orders what is found.
     pub ships: ShipSearch,
-    /// Similarity to this ship orders what is found, and only ships of her category are.
+    /// Similarity to this ship orders what is found, and only ships of its category are.
     pub similar_to: Option<String>,
     /// The definition of the vector by which ships are similar.
     pub vector: Option<Definition>,

@@ -13,7 +13,7 @@ use super::query::Search;
 use crate::archive::{Archive, vessel};
 use crate::error::DeriveError;
 
-/// Ships that a search finds, the most similar first, without the ship herself.
+/// Ships that a search finds, the most similar first, without the ship itself.
 pub(super) async fn ships(
     archive: &Archive,
     search: &Search,
@@ -32,7 +32,7 @@ pub(super) async fn ships(
     Ok(page.of(found, key))
 }
 
-/// The names of the ships of a ship's category that are most similar to her, the most similar
+/// The names of the ships of a ship's category that are most similar to it, the most similar
 /// first.
 pub async fn nearest(
     archive: &Archive,

@@ -18,7 +18,7 @@ pub(crate) fn remarks(sailed: &FurtherManoeuvres, lpp_m: f64) -> Vec<String> {
         Some(true) => Some("by pull-outs to both sides the ship is stable on a straight course"),
         Some(false) => Some("by pull-outs the ship is not stable on a straight course"),
         None if sailed.pull_outs.is_empty() => None,
-        None => Some("by pull-outs it cannot be told whether she is stable on a straight course"),
+        None => Some("by pull-outs it cannot be told whether it is stable on a straight course"),
     };
     let mut all = sailed.remarks(lpp_m);
     all.extend(stable.map(str::to_owned));

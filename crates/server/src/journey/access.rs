@@ -15,7 +15,7 @@ use crate::rights::{ANYONE, HEALTH, OPEN, TABLE};
 
 /// The server's own key.
 const OWNER: &str = "sesame";
-const PASSWORD: &str = "a long sentence of hers";
+const PASSWORD: &str = "a long sentence of its own";
 
 impl Harness {
     /// A server that asks everybody who they are.

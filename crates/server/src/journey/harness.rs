@@ -9,7 +9,7 @@ use sistership_store::testing::TestDatabase;
 
 use crate::{Config, Leases, Running, Server};
 
-/// A ship like the SR108, without her model and under another name.
+/// A ship like the SR108, without its model and under another name.
 pub(super) const SHIP: &str = "
 kind: vessel
 name: demo-ship

@@ -35,7 +35,7 @@ async fn the_loop(harness: Harness) {
     assert_eq!((status, &uploaded["new"]), (StatusCode::CREATED, &json!(4)), "{uploaded}");
     assert_eq!(harness.upload_trials().await.1["new"], 0);
     let source = refine(&harness, "auto").await["result"]["source"].clone();
-    assert_eq!(source, "sr108/1", "the most similar ship is herself");
+    assert_eq!(source, "sr108/1", "the most similar ship is itself");
     let job = refine(&harness, "mariner").await;
     assert_eq!(
         (&job["result"]["version"], &job["result"]["alias"]),

@@ -14,5 +14,6 @@ mod refusals;
 mod registry;
 mod search;
 mod sessions;
+mod under_way;
 mod uploads;
 mod webhooks;

@@ -9,7 +9,7 @@ use sistership_store::testing::TestDatabase;
 use super::harness::{Harness, config};
 use crate::Server;
 
-const PASSWORD: &str = "a long sentence of hers";
+const PASSWORD: &str = "a long sentence of its own";
 const NEW: &str = "another long sentence";
 
 /// A browser of somebody.

@@ -122,6 +122,13 @@ pub(crate) const TABLE: &[Row] = &[
     ("PUT", "/v1/models/{model}/aliases/{alias}", Engineer, MODEL),
     ("GET", "/v1/models/{model}/aliases/{alias}/history", Reader, MODEL),
     ("POST", "/v1/predictions", Reader, Of::Body),
+    // Sessions are of whoever has opened them, and of nobody else.
+    ("GET", "/v1/sessions", Reader, Of::Anything),
+    ("POST", "/v1/sessions", Reader, Of::Body),
+    ("GET", "/v1/sessions/{id}", Reader, Of::Body),
+    ("DELETE", "/v1/sessions/{id}", Reader, Of::Body),
+    ("POST", "/v1/sessions/{id}/steps", Reader, Of::Body),
+    ("GET", "/v1/sessions/{id}/stream", Reader, Of::Body),
     ("GET", "/v1/compare", Reader, Of::Body),
     ("GET", "/v1/laws", Reader, Of::Anything),
     ("POST", "/v1/laws", Engineer, Of::Server),

@@ -50,7 +50,7 @@ struct OutcomeView {
     outcome: String,
     /// The version that came of it.
     version: Option<i64>,
-    /// By how much her worst axis is worse than before, as a share; below zero where all are
+    /// By how much its worst axis is worse than before, as a share; below zero where all are
     /// better.
     worst_change: Option<f64>,
     /// Errors by axis and manoeuvres before and after, or the reason why not.
@@ -153,7 +153,7 @@ impl OutcomeView {
     }
 }
 
-/// Refine every member of a family from the statistics of her trials
+/// Refine every member of a family from the statistics of its trials
 ///
 /// The ships are shared out among all workers in chunks, each a job. Nothing becomes champion but
 /// by the rule given here, or by a person's word afterwards.

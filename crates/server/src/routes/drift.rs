@@ -27,7 +27,7 @@ struct Query {
     limit: Option<MemberLimit>,
 }
 
-/// What a ship's champion leaves of each of her trials, over time
+/// What a ship's champion leaves of each of its trials, over time
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/drift", tag = "ships", params(("ship" = inline(Name), Path)), responses((status = 200, body = Drift))
 )]
@@ -37,7 +37,7 @@ async fn of_ship(State(app): State<App>, Place(ship): Place<Name>) -> Result<Jso
     drift.map(Json).ok_or_else(|| {
         Problem::invalid(
             "ship",
-            format!("`{ship}` has no champion yet; refine a model for her first"),
+            format!("`{ship}` has no champion yet; refine a model for it first"),
         )
     })
 }

@@ -8,8 +8,8 @@ use utoipa_axum::router::OpenApiRouter;
 use super::{
     about, aliases, audit, branches, bulk_refinements, champion, compare, diagnoses, drift,
     effects, events, exports, families, health, jobs, keys, laws, metrics, predictions,
-    refinements, register, reports, samples, ship_changes, ships, similar, tags, trials, uploads,
-    users, validation, versions, webhooks,
+    refinements, register, reports, samples, session_stream, sessions, ship_changes, ships,
+    similar, tags, trials, uploads, users, validation, versions, webhooks,
 };
 use crate::app::App;
 use crate::config::Limits;
@@ -48,6 +48,8 @@ fn quick(limits: &Limits) -> OpenApiRouter<App> {
         .merge(register::routes())
         .merge(aliases::routes())
         .merge(predictions::routes())
+        .merge(sessions::routes())
+        .merge(session_stream::routes())
         .merge(reports::routes())
         .merge(users::routes())
         .merge(keys::routes())

@@ -31,6 +31,8 @@ mod refinements;
 mod register;
 mod reports;
 mod samples;
+mod session_stream;
+mod sessions;
 mod ship_changes;
 mod ships;
 mod similar;

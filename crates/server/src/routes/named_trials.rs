@@ -45,7 +45,7 @@ async fn mismatch(app: &App, ship: &str, id: &str) -> Result<Option<String>> {
         Ok(trial) if trial.ship == ship => Ok(None),
         Ok(trial) => Ok(Some(format!("is a trial of `{}`, not of `{ship}`", trial.ship))),
         Err(StoreError::NotFound { .. }) => {
-            Ok(Some(format!("is not there; GET /v1/trials?ship={ship} lists her trials")))
+            Ok(Some(format!("is not there; GET /v1/trials?ship={ship} lists its trials")))
         }
         Err(error) => Err(error.into()),
     }

@@ -61,7 +61,7 @@ const AUTO: &str = "auto";
 /// Refine a model against trials
 ///
 /// The work is a job: follow the `Location`, or its `/events`. What comes of it is a version of the
-/// ship's line, champion where she has none and else `candidate`, with a report.
+/// ship's line, champion where it has none and else `candidate`, with a report.
 #[utoipa::path(
     post, path = "/v1/refinements", tag = "refinements",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
@@ -117,7 +117,7 @@ async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob>
         Err(StoreError::NotFound { .. }) => {
             return Err(Problem::invalid(
                 "ship",
-                format!("there is no ship `{ship}`; create her with POST /v1/ships"),
+                format!("there is no ship `{ship}`; create it with POST /v1/ships"),
             ));
         }
         other => drop(other?),

@@ -41,7 +41,7 @@ async fn vessel(app: &App, payload: &Payload) -> Result<Vessel> {
 ///
 /// The body is a vessel document, YAML or JSON (`models/schema/vessel.json`). Each model that it
 /// publishes becomes a version; the first becomes champion. A ship known by particulars only gets
-/// her first model from a refinement.
+/// its first model from a refinement.
 #[utoipa::path(
     post, path = "/v1/ships", tag = "ships",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
@@ -53,7 +53,7 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
     key.once(&app, payload.bytes(), |app| async move { created(&app, &vessel).await }).await
 }
 
-/// Keeps a new ship and the models that she publishes.
+/// Keeps a new ship and the models that it publishes.
 pub(super) async fn kept(app: &App, vessel: &Vessel) -> Result<Ship> {
     let zoo = app.laws().await?;
     zoo.check_models(vessel)?;
@@ -72,7 +72,7 @@ async fn created(app: &App, vessel: &Vessel) -> Result<Reply> {
 /// Replace a ship's document, as you last read it
 #[utoipa::path(
     put, path = "/v1/ships/{ship}", tag = "ships",
-    params(("ship" = inline(Name), Path), ("If-Match" = inline(EntityTags), Header, description = "The ETag of the ship as you last read her")),
+    params(("ship" = inline(Name), Path), ("If-Match" = inline(EntityTags), Header, description = "The ETag of the ship as you last read it")),
     request_body(content((VesselBody = "application/json"), (String = "application/yaml"))),
     responses((status = 200, body = ShipDetail, headers(("ETag" = String))))
 )]
@@ -99,10 +99,10 @@ async fn replace(
     Ok(ShipDetail::of(&app, ship).await?.answer())
 }
 
-/// Delete a ship; her versions stay, and `undelete` brings her back
+/// Delete a ship; its versions stay, and `undelete` brings it back
 #[utoipa::path(
     delete, path = "/v1/ships/{ship}", tag = "ships",
-    params(("ship" = inline(Name), Path), ("If-Match" = inline(Option<EntityTags>), Header, description = "Only if she is still as you last read her")),
+    params(("ship" = inline(Name), Path), ("If-Match" = inline(Option<EntityTags>), Header, description = "Only if it is still as you last read it")),
     responses((status = 204, description = "Deleted"))
 )]
 async fn delete(

@@ -25,15 +25,15 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get))
 }
 
-/// A ship as lists show her.
+/// A ship as lists show it.
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct ShipHead {
     pub name: String,
-    /// What people call her.
+    /// What people call it.
     pub title: String,
     /// Ships are compared within a category.
     pub category: String,
-    /// One more with each change; her ETag.
+    /// One more with each change; its ETag.
     pub revision: i64,
     pub created_us: i64,
     pub updated_us: i64,
@@ -43,11 +43,11 @@ pub(super) struct ShipHead {
     pub value: Option<f64>,
 }
 
-/// A ship with her document.
+/// A ship with its document.
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct ShipDetail {
     pub name: String,
-    /// What people call her.
+    /// What people call it.
     pub title: String,
     /// Ships are compared within a category.
     pub category: String,
@@ -77,7 +77,7 @@ impl ShipDetail {
         Ok(Self { name, title, category, revision, created_us, updated_us, condition, document })
     }
 
-    /// Her revision, and what her condition comes from: either changes what is shown, the first
+    /// Its revision, and what its condition comes from: either changes what is shown, the first
     /// alone what may be changed.
     pub(super) fn etag(&self) -> String {
         tag(format!("{}{}", self.revision, self.condition.tag()))
@@ -107,11 +107,11 @@ async fn list(
     Ok(Json(Listing::of(ships, ShipHead::of)))
 }
 
-/// A ship; her ETag is what a change must present
+/// A ship; its ETag is what a change must present
 #[utoipa::path(
     get, path = "/v1/ships/{ship}", tag = "ships", params(("ship" = inline(Name), Path),
         ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you have")),
-    responses((status = 200, body = ShipDetail, headers(("ETag" = String))), (status = 304, description = "As you have her"))
+    responses((status = 200, body = ShipDetail, headers(("ETag" = String))), (status = 304, description = "As you have it"))
 )]
 async fn get(
     State(app): State<App>,

@@ -32,7 +32,7 @@ struct Query {
     /// Kanazawa's.
     #[param(schema_with = vectors)]
     vector: Option<Definition>,
-    /// Whether eligible ships are measured on the ship's trials, where she has any.
+    /// Whether eligible ships are measured on the ship's trials, where it has any.
     #[serde(default = "yes")]
     trials: bool,
 }
@@ -41,9 +41,9 @@ fn yes() -> bool {
     true
 }
 
-/// Rank the zoo for a ship, and say which ships may be her source
+/// Rank the zoo for a ship, and say which ships may be its source
 ///
-/// Of a zoo of more than 250 ships only the 250 of her category that are most similar to her are
+/// Of a zoo of more than 250 ships only the 250 of its category that are most similar to it are
 /// ranked; `GET /v1/ships?similar_to=` has all of them.
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/similar", tag = "ships", params(("ship" = inline(Name), Path), Query),

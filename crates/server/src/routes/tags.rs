@@ -24,11 +24,11 @@ async fn list(State(app): State<App>, Place(ship): Place<Name>) -> Result<Json<V
     Ok(Json(app.store().ships().tags(&ship).await?))
 }
 
-/// Put a tag on a ship, to find her by
+/// Put a tag on a ship, by which it is found
 #[utoipa::path(
     put, path = "/v1/ships/{ship}/tags/{tag}", tag = "ships",
     params(("ship" = inline(Name), Path), ("tag" = inline(Word), Path)),
-    responses((status = 204, description = "She has it"))
+    responses((status = 204, description = "The ship has it"))
 )]
 async fn put(
     State(app): State<App>,
@@ -41,7 +41,7 @@ async fn put(
 /// Take a tag off a ship
 #[utoipa::path(
     delete, path = "/v1/ships/{ship}/tags/{tag}", tag = "ships", params(("ship" = inline(Name), Path), ("tag" = inline(Word), Path)),
-    responses((status = 204, description = "She no longer has it"))
+    responses((status = 204, description = "The ship no longer has it"))
 )]
 async fn remove(
     State(app): State<App>,

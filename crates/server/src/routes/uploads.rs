@@ -14,7 +14,7 @@ use super::binary::Binary;
 use super::trials::TrialView;
 use crate::app::App;
 use crate::problem::Result;
-use crate::upload::{Kept, RawQuery, Upload, keep};
+use crate::upload::{Kept, RawQuery, Upload, checked, keep};
 use crate::web::field::RequestKey;
 use crate::web::{Key, Reply};
 
@@ -31,7 +31,7 @@ struct Uploaded {
     trials: Vec<TrialView>,
     /// How many of them are new.
     new: usize,
-    /// The job that diagnoses the ship's champion on the new ones; none where she has no champion.
+    /// The job that diagnoses the ship's champion on the new ones; none where it has no champion.
     diagnosis: Option<String>,
 }
 
@@ -92,6 +92,6 @@ async fn kept(app: &App, upload: Upload) -> Result<Reply> {
     responses((status = 200, body = Object, description = "`trials`: `file`, `rows`, `duration_s`, `errors`, `warnings` of each"))
 )]
 async fn check(State(app): State<App>, upload: Upload) -> Result<Json<Value>> {
-    let outcomes = upload.check(&app).await?;
+    let outcomes = checked(&upload, &app).await?;
     Ok(Json(json!({ "trials": outcomes })))
 }

@@ -41,7 +41,7 @@ enum ValidationFormat {
 /// A version validated after ITTC 7.5-02-06-03
 ///
 /// Comparison error and validation uncertainty of every quantity of the ship's published trials,
-/// and of her turning circles and zigzags that neither the version nor one before it was fitted on.
+/// and of its turning circles and zigzags that neither the version nor one before it was fitted on.
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions/{number}/validation", tag = "models",
     params(("model" = inline(Name), Path), ("number" = inline(Number), Path), Query),

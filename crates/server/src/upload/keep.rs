@@ -10,8 +10,7 @@ use sistership_trials::samples::{self, SamplesError};
 use sistership_trials::{ManifestFile, Refusal, read_trial};
 use tempfile::NamedTempFile;
 
-use super::arrived::Arrived;
-use super::received::{Upload, lost};
+use super::reading::lost;
 use super::room::room;
 use crate::app::App;
 use crate::jobs::{DIAGNOSIS, DiagnosisJob};
@@ -19,6 +18,7 @@ use crate::problem::{Problem, Result};
 use crate::rights::on_ship;
 use sistership_access::Role;
 use sistership_http::spool::temporary;
+use sistership_http::upload::{Arrived, Upload};
 use sistership_pipeline::budget;
 use sistership_pipeline::line::{CHAMPION, alias};
 use sistership_pipeline::training::foundation_of;
@@ -45,7 +45,7 @@ pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option
         Err(StoreError::NotFound { .. }) => return Err(no_ship(&ship)),
         other => drop(other?),
     }
-    let accepted = upload.accept(app).await?;
+    let accepted = accept(&upload, app).await?;
     let champion = if diagnose { diagnosable(app, &ship).await? } else { None };
     let job = |kept: &[Kept]| champion.and_then(|number| follow_up(&ship, number, kept));
     for _ in 0..TRIES {
@@ -81,29 +81,25 @@ fn follow_up(ship: &str, number: i64, kept: &[Kept]) -> Option<NewJob> {
 fn no_ship(ship: &str) -> Problem {
     Problem::invalid(
         "ship",
-        format!(
-            "there is no ship `{ship}`; create her with POST /v1/ships first, or mend the name"
-        ),
+        format!("there is no ship `{ship}`; create it with POST /v1/ships first, or mend the name"),
     )
 }
 
-impl Upload {
-    /// Reads every file, one after the other; the refusals of all of them are told together.
-    async fn accept(self, app: &App) -> Result<Vec<Accepted>> {
-        let (mut accepted, mut refused) = (Vec::new(), Vec::new());
-        for mut trial in self.trials() {
-            let (share, inner) = (room(app, &mut trial).await?, app.clone());
-            let read = move || {
-                let _share = share;
-                read(&trial, inner.spool())
-            };
-            match app.compute(read).await?? {
-                Ok(trial) => accepted.push(trial),
-                Err(refusal) => refused.push(refusal),
-            }
+/// Reads every file, one after the other; the refusals of all of them are told together.
+async fn accept(upload: &Upload, app: &App) -> Result<Vec<Accepted>> {
+    let (mut accepted, mut refused) = (Vec::new(), Vec::new());
+    for mut trial in upload.trials() {
+        let (share, inner) = (room(app, &mut trial).await?, app.clone());
+        let read = move || {
+            let _share = share;
+            read(&trial, inner.spool())
+        };
+        match app.compute(read).await?? {
+            Ok(trial) => accepted.push(trial),
+            Err(refusal) => refused.push(refusal),
         }
-        if refused.is_empty() { Ok(accepted) } else { Err(Vec::<Refusal>::into(refused)) }
     }
+    if refused.is_empty() { Ok(accepted) } else { Err(Vec::<Refusal>::into(refused)) }
 }
 
 /// Reads a trial, and writes its samples.

@@ -2,9 +2,9 @@
 
 use sistership_trials::{Demand, demand_of_trial, measuring};
 
-use super::arrived::Arrived;
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
+use sistership_http::upload::Arrived;
 use sistership_pipeline::budget::{self, Share, Shortage};
 
 /// Takes what a file needs from its reading to its samples being kept; gives the mapping room for

@@ -29,7 +29,7 @@ const LIMITS: [(Channel, f64, &str); 9] = [
     (
         Channel::Phi,
         FRAC_PI_2,
-        "the ship would lie on her side; if the values are degrees declare `deg`",
+        "the ship would lie on its side; if the values are degrees declare `deg`",
     ),
     (
         Channel::Delta,

@@ -48,7 +48,7 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// Samples with way ahead: a ship going astern answers her rudder the other way or not at all.
+/// Samples with way ahead: a ship going astern answers its rudder the other way or not at all.
 fn ahead(recording: &Recording) -> Vec<bool> {
     let all = vec![true; recording.trial.len()];
     let Some(u) = recording.channel(Channel::U) else { return all };

@@ -21,17 +21,17 @@ actuators: { pod: { kind: azimuth } }
 rules: { symmetry: mirror, signed_squares: true, trigonometric_powers: drop }
 submodels: one
 ";
-/// The ship of the zoo whose figures she has.
+/// The ship of the zoo whose figures it has.
 pub const VESSEL: &str = "gunnerus-34m";
-/// Motions at which she is fitted, and their ranges: u, v (m/s), r (rad/s), revolutions (rps) and
+/// Motions at which it is fitted, and their ranges: u, v (m/s), r (rad/s), revolutions (rps) and
 /// the thrusters' angle (rad).
 const MOTIONS: usize = 3000;
 const RANGES: [[f64; 2]; 5] = [[-1.0, 6.5], [-1.5, 1.5], [-0.2, 0.2], [0.0, 3.4], [-0.9, 0.9]];
 /// Ridge by the mean square of the terms, which are collinear in part.
 const RIDGE: f64 = 1e-6;
 
-/// Length of that ship, m, and her revolutions on trial, 1/s: times, weather and orders of another
-/// ship are hers by Froude's law.
+/// Length of that ship, m, and its revolutions on trial, 1/s: times, weather and orders of another
+/// ship are its own by Froude's law.
 const LENGTH_M: f64 = 33.9;
 const REVOLUTIONS_RPS: f64 = 2.75;
 
@@ -99,19 +99,19 @@ impl Hull {
         assert!((own.lpp_m() - LENGTH_M).abs() < 1e-9, "the ship of the ranges");
         let mut model = empty(&like, &law);
         let left = fill(&mut model, &law, &own);
-        let of = |name: &str| vessel.particular(name).expect("a particular of hers");
+        let of = |name: &str| vessel.particular(name).expect("a particular of its own");
         let (lpp_m, beam_m) = (of("lpp_m"), of("beam_m"));
         let mass = Mass::of(&model, lpp_m);
         let approach_n_rps = REVOLUTIONS_RPS;
         Self { ship: ship(&model, &law), mass, lpp_m, beam_m, approach_n_rps, left }
     }
 
-    /// A ship of the zoo by her own model.
+    /// A ship of the zoo by its own model.
     pub fn of_zoo(zoo: &Zoo, name: &str) -> Self {
         let model = zoo.model(name).unwrap_or_else(|error| panic!("{error}"));
         let vessel = zoo.vessel(&model.ship).expect("in the zoo");
         let own = ship(&model, zoo.law(&model.law).expect("its law"));
-        let of = |name: &str| vessel.particular(name).expect("a particular of hers");
+        let of = |name: &str| vessel.particular(name).expect("a particular of its own");
         let (lpp_m, beam_m) = (of("lpp_m"), of("beam_m"));
         let approach_n_rps = own.revolutions_at(own.approach_speed_m_s());
         let mass = Mass::typical(1025.0 * of("displacement_m3"), lpp_m);
@@ -124,12 +124,12 @@ impl Hull {
         Self { ship, mass, lpp_m, beam_m, approach_n_rps, left: [0.0; 3] }
     }
 
-    /// Her length by that of the virtual ship.
+    /// Its length by that of the virtual ship.
     pub fn scale(&self) -> f64 {
         self.lpp_m / LENGTH_M
     }
 
-    /// Her revolutions by those of the virtual ship.
+    /// Its revolutions by those of the virtual ship.
     pub fn revolutions(&self) -> f64 {
         self.approach_n_rps / REVOLUTIONS_RPS
     }
@@ -147,7 +147,7 @@ impl Hull {
     }
 }
 
-/// The law with the masses of the ship and nothing else; where she turns about is left as it is.
+/// The law with the masses of the ship and nothing else; where it turns about is left as it is.
 fn empty(like: &Model, law: &Law) -> Model {
     let of = |name: &str| like.parameters[name].value;
     let masses = [

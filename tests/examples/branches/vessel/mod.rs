@@ -1,6 +1,6 @@
 //! A virtual ship for the systems of Kanazawa 2023, where his own was a co-simulation: two azimuth
 //! thrusters under one order, as on R/V Gunnerus, by a law that `derive` writes from that list; in
-//! wind, current and waves of which her foundation knows the wind alone.
+//! wind, current and waves of which its foundation knows the wind alone.
 //!
 //! The foundation is the zoo's `gunnerus-34m`, a law of another form. The hull's coefficients were
 //! fitted to what that law gives over the whole range of motion, so that the two differ by form

@@ -32,7 +32,7 @@ pub struct Start {
     pub delta_rad: f64,
 }
 
-/// Sails a ship in a weather; the trial that her instruments record from `from_s` on. Times and the
+/// Sails a ship in a weather; the trial that its instruments record from `from_s` on. Times and the
 /// weather are those of the virtual ship, for another by Froude's law.
 pub fn sail(
     hull: &Hull,

@@ -64,7 +64,7 @@ pub fn zigzag(hull: &Hull, force: Option<u8>, seed: u64) -> Trial {
 }
 
 /// Paper III: from speed, a turn while the revolutions are taken back by steps, and at last only so
-/// much way that she can be laid alongside.
+/// much way that it can be laid alongside.
 pub fn docking(hull: &Hull, seed: u64) -> Trial {
     let mut rng = rng(seed);
     let force = if rng.random::<bool>() { 3 } else { 0 };

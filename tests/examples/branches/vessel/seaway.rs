@@ -1,4 +1,4 @@
-//! What stands for one year of a ship among waves (Kanazawa 2023, sec. 3.4.2): seas, her motion in
+//! What stands for one year of a ship among waves (Kanazawa 2023, sec. 3.4.2): seas, its motion in
 //! them by strips with a roll damping that grows with the motion, and a wave radar's reading. All
 //! figures were written down before anything was predicted.
 
@@ -37,8 +37,8 @@ const WATCH_S: f64 = 300.0;
 /// Least heave that is kept, m (sec. 3.4.2).
 const LEAST_M: f64 = 0.025;
 
-/// What is assumed of her: metacentric height chosen, roll period of it by the weather criterion of
-/// the IMO's code of intact stability (2008, 2.3.4), 2 C B/sqrt(GM) with C = 0.373 + 0.023 B/d -
+/// What is assumed of the ship: metacentric height chosen, its roll period by the weather criterion
+/// of the IMO's code of intact stability (2008, 2.3.4), 2 C B/sqrt(GM) with C = 0.373 + 0.023 B/d -
 /// 0.043 L/100; a damping of a tenth, which MSS takes for that of waves.
 pub fn assumed() -> WaveHull {
     let (lpp_m, beam_m, draught_m, gm_m): (f64, f64, f64, f64) = (33.9, 9.6, 2.7, 1.5);
@@ -55,7 +55,7 @@ pub fn assumed() -> WaveHull {
     }
 }
 
-/// A sample: what the radar read and what she did, standard deviations in m, rad, rad.
+/// A sample: what the radar read and what it did, standard deviations in m, rad, rad.
 pub struct Sample {
     pub radar: DirectionalSpectrum,
     pub moved: [f64; 3],
@@ -125,7 +125,7 @@ fn read(sea: &DirectionalSpectrum, rng: &mut ChaCha12Rng) -> DirectionalSpectrum
     read
 }
 
-/// What she does, with the scatter of so few waves: 1/sqrt(2 n) of n of them.
+/// What it does, with the scatter of so few waves: 1/sqrt(2 n) of n of them.
 fn moved(sea: &DirectionalSpectrum, rng: &mut ChaCha12Rng) -> [f64; 3] {
     let truth = TrueShip::new();
     let heave = truth.deviation(sea, Motion::Heave, 0.0);
@@ -137,13 +137,13 @@ fn moved(sea: &DirectionalSpectrum, rng: &mut ChaCha12Rng) -> [f64; 3] {
     [heave, pitch, roll].map(|deviation| deviation * (1.0 + normal(rng) / f64::sqrt(2.0 * waves)))
 }
 
-/// The ship as she is: strips of an elliptic waterline, other figures than those assumed.
+/// The ship as it is: strips of an elliptic waterline, other figures than those assumed.
 struct TrueShip {
     /// Places along the ship, m, half breadths by the largest.
     strips: Vec<(f64, f64)>,
 }
 
-/// Periods of heave, pitch and roll, s: heave and pitch by masses twice her own, roll as of a
+/// Periods of heave, pitch and roll, s: heave and pitch by masses twice its own, roll as of a
 /// metacentric height that is a tenth less. Dampings by the critical ones; roll's grows by the
 /// motion (Himeno 1981: a linear and a quadratic part), both chosen.
 const PERIODS_S: [f64; 3] = [3.9, 3.7, 7.2];

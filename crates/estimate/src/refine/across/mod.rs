@@ -1,6 +1,6 @@
 //! A source of one law as the prior of another.
 //!
-//! What a source says of a ship is not its coefficients but her accelerations. Where they are to
+//! What a source says of a ship is not its coefficients but its accelerations. Where they are to
 //! hold another law, they are regressed on its terms over the envelope in which the model will be
 //! used ([`OperatingEnvelope`]): mean and covariance of that regression are the prior
 //! ([`SourceRegression`]). docs/decisions/0015 has the reasons.

@@ -23,7 +23,7 @@ pub struct Constraints {
     /// Bounds by coefficient, in the law's units.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub bounds: BTreeMap<String, Bound>,
-    /// Whether she keeps a straight line with the rudder amidships at her approach speed.
+    /// Whether it keeps a straight line with the rudder amidships at its approach speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub straight_line: Option<StraightLine>,
 }
@@ -44,9 +44,9 @@ pub struct Bound {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StraightLine {
-    /// She settles on a new straight line.
+    /// It settles on a new straight line.
     Stable,
-    /// She starts to turn.
+    /// It starts to turn.
     Unstable,
 }
 

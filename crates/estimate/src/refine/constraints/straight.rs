@@ -1,4 +1,4 @@
-//! How a ship answers to small disturbances of a straight course, as an affine function of her
+//! How a ship answers to small disturbances of a straight course, as an affine function of its
 //! coefficients.
 
 use nalgebra::{Matrix2, Matrix3, Vector3};

@@ -11,6 +11,17 @@ use sistership_store::testing::TestDatabase;
 use super::harness::{Harness, read};
 use values::{fitting, unfit};
 
+/// What refusals say that are of no limit of a field.
+const RULES: [&str; 7] = [
+    "there is no",
+    "has no trials",
+    "nothing yet",
+    "keeps its name",
+    "give either",
+    "is beyond the rudder's limit",
+    "has no posterior to draw from",
+];
+
 /// One operation of the document.
 struct Operation {
     method: Method,
@@ -115,12 +126,10 @@ impl Operation {
         let (status, problem) = read(request.send().await.unwrap()).await;
         let mut errors = problem["errors"].as_array().into_iter().flatten();
         let blamed = status.is_client_error() && errors.any(|error| error["field"] == field);
-        // What is named need not be there, and two fields may have a rule between them.
+        // What is named need not be there, two fields may have a rule between them, and a model
+        // may know less than the document allows.
         let detail = problem["detail"].as_str().unwrap_or_default();
-        let missing =
-            ["there is no", "has no trials", "nothing yet", "keeps its name", "give either"]
-                .iter()
-                .any(|words| detail.contains(words));
+        let missing = RULES.iter().any(|words| detail.contains(words));
         if (blamed && !missing) || status.is_server_error() {
             let short: String = shown.chars().take(300).collect();
             faults.push(format!(

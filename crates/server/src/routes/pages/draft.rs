@@ -12,7 +12,7 @@ use sistership_trials::propose;
 use super::answer::{answer, then};
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
-use crate::upload::{Spooled, Upload, keep, spool, unwritten};
+use crate::upload::{Spooled, Upload, each, keep, spool, unwritten};
 use crate::web::form::{PageForm, checked, shell};
 use crate::web::{Id, Name, Place};
 use sistership_http::drafts::{Draft, Drafts};
@@ -120,7 +120,8 @@ pub(super) async fn shown(
     Place((ship, id)): Place<(Name, Id)>,
 ) -> Result<Response> {
     let draft = found(&app, &ship, &id)?;
-    let previews = uploaded(&draft, &app)?.each(&app, |at, read| {
+    let files = uploaded(&draft, &app)?;
+    let previews = each(&files, &app, |at, read| {
         let preview = Preview::of(read);
         if at < PLOTTED { preview } else { preview.without_plots() }
     });

@@ -6,11 +6,11 @@ use axum::http::StatusCode;
 use sistership_model::manifest::ManifestTrial;
 use sistership_trials::{ManifestFile, read_manifest_file};
 
+use super::place::UploadPlace;
 use super::received::{Upload, canonical};
-use crate::app::App;
+use crate::payload::read_yaml;
 use crate::problem::{Fault, Problem, Result};
-use crate::web::payload::read_yaml;
-use sistership_http::spool::{Spooled, spool};
+use crate::spool::{Spooled, spool};
 use sistership_pipeline::budget;
 
 /// The parts of a form as they have arrived.
@@ -27,14 +27,14 @@ struct Part {
     file: Spooled,
 }
 
-pub(super) async fn receive(request: Request, app: &App) -> Result<Upload> {
+pub(super) async fn receive(request: Request, place: &UploadPlace) -> Result<Upload> {
     let form = Multipart::from_request(request, &()).await;
     let mut form = form.map_err(|error| {
         Problem::bad_request(format!("the form cannot be read: {}", error.body_text()))
     })?;
     let mut parts = Parts::default();
     while let Some(field) = form.next_field().await? {
-        parts.take(field, app).await?;
+        parts.take(field, place).await?;
     }
     match (parts.manifest.take(), parts.ship.take()) {
         (Some(manifest), None) => parts.listed(read(&manifest).await?),
@@ -56,7 +56,10 @@ async fn read(manifest: &str) -> Result<ManifestFile> {
 
 impl Upload {
     /// Of files by their names, which a manifest lists.
-    pub(crate) fn listed(manifest: ManifestFile, files: Vec<(String, Spooled)>) -> Result<Self> {
+    ///
+    /// # Errors
+    /// One is missing, or is not listed.
+    pub fn listed(manifest: ManifestFile, files: Vec<(String, Spooled)>) -> Result<Self> {
         let part = |(name, file): (String, Spooled)| Part { field: name.clone(), name, file };
         let files = files.into_iter().map(part).collect();
         Parts { files, ..Parts::default() }.listed(manifest)
@@ -64,14 +67,14 @@ impl Upload {
 }
 
 impl Parts {
-    async fn take(&mut self, field: Field<'_>, app: &App) -> Result<()> {
+    async fn take(&mut self, field: Field<'_>, place: &UploadPlace) -> Result<()> {
         let name = field.name().unwrap_or_default().to_owned();
         match (name.as_str(), field.file_name().map(str::to_owned)) {
-            ("manifest", _) => set(&mut self.manifest, "manifest", text(field, app).await?),
+            ("manifest", _) => set(&mut self.manifest, "manifest", text(field, place).await?),
             ("ship", None) => {
-                set(&mut self.ship, "ship", text(field, app).await?.trim().to_owned())
+                set(&mut self.ship, "ship", text(field, place).await?.trim().to_owned())
             }
-            (_, Some(file_name)) => self.file(name, file_name, field, app).await,
+            (_, Some(file_name)) => self.file(name, file_name, field, place).await,
             (other, None) => Err(Problem::invalid(
                 other,
                 "is not known here: parts are `manifest`, `ship`, and files with a filename",
@@ -84,16 +87,16 @@ impl Parts {
         field: String,
         name: String,
         content: Field<'_>,
-        app: &App,
+        place: &UploadPlace,
     ) -> Result<()> {
-        let most = app.limits().upload_files;
+        let most = place.files;
         if self.files.len() >= most {
             return Err(Problem::new(
                 StatusCode::PAYLOAD_TOO_LARGE,
                 format!("an upload has at most {most} files; send several uploads"),
             ));
         }
-        self.files.push(Part { field, name, file: spool(app.spool(), content).await? });
+        self.files.push(Part { field, name, file: spool(&place.spool, content).await? });
         Ok(())
     }
 
@@ -169,12 +172,12 @@ fn set(place: &mut Option<String>, name: &str, text: String) -> Result<()> {
 }
 
 /// A part that is a short text.
-async fn text(mut field: Field<'_>, app: &App) -> Result<String> {
+async fn text(mut field: Field<'_>, place: &UploadPlace) -> Result<String> {
     let mut bytes = Vec::new();
     while let Some(chunk) = field.chunk().await? {
         budget::take(2 * chunk.len() as u64).await?;
         bytes.extend_from_slice(&chunk);
-        if bytes.len() > app.limits().yaml_bytes {
+        if bytes.len() > place.yaml_bytes {
             return Err(Problem::new(StatusCode::PAYLOAD_TOO_LARGE, "the manifest is too large"));
         }
     }

@@ -8,12 +8,11 @@ use serde::Deserialize;
 use sistership_model::manifest::ManifestTrial;
 use utoipa::IntoParams;
 
+use super::place::UploadPlace;
 use super::received::{Upload, canonical};
-use crate::app::App;
+use crate::field::{FileName, Name, Positive, Remark};
 use crate::problem::{Problem, Result};
-use crate::web::Name;
-use crate::web::field::{FileName, Positive, Remark};
-use sistership_http::spool::spool;
+use crate::spool::spool;
 
 /// The name of a trial that has none.
 const UNNAMED: &str = "trial";
@@ -22,7 +21,7 @@ const UNNAMED: &str = "trial";
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-pub(crate) struct RawQuery {
+pub struct RawQuery {
     /// The ship; needed for a body that is one file, as the others are only read then.
     #[param(inline, required = false)]
     pub ship: Name,
@@ -40,7 +39,7 @@ pub(crate) struct RawQuery {
     pub diagnose: Option<bool>,
 }
 
-pub(super) async fn receive(mut request: Request, app: &App) -> Result<Upload> {
+pub(super) async fn receive(mut request: Request, place: &UploadPlace) -> Result<Upload> {
     let Query(query) = request.extract_parts::<Query<RawQuery>>().await?;
     let RawQuery { ship, name, manoeuvre, depth_m, diagnose } = query;
     let file = name.map_or_else(|| UNNAMED.to_owned(), FileName::into_string);
@@ -50,7 +49,7 @@ pub(super) async fn receive(mut request: Request, app: &App) -> Result<Upload> {
         vec![ManifestTrial { manoeuvre, depth_m, ..ManifestTrial::of(file) }],
     )?;
     let stream = request.with_limited_body().into_body().into_data_stream().map_err(interrupted);
-    let files = vec![spool(app.spool(), stream).await?];
+    let files = vec![spool(&place.spool, stream).await?];
     Ok(Upload::of(manifest, diagnose.unwrap_or(true), files))
 }
 

@@ -17,7 +17,7 @@ const PLACE: [Channel; 3] = [Channel::X, Channel::Y, Channel::Psi];
 
 /// Places, in order, of trials that together have about `samples` samples; all of them where they
 /// have no more than that, and at least [`LEAST`].
-pub fn representative(trials: &[&Trial], samples: usize) -> Vec<usize> {
+pub(super) fn representative(trials: &[&Trial], samples: usize) -> Vec<usize> {
     let all = 0..trials.len();
     if trials.iter().map(|trial| trial.len()).sum::<usize>() <= samples {
         return all.collect();

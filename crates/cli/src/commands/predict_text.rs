@@ -1,0 +1,91 @@
+//! What a prediction over a horizon answers, as text and as a CSV file.
+
+use serde_json::Value;
+use sistership_model::Law;
+
+use crate::table::{TextTable, number};
+
+/// Rows of the table, at most.
+const ROWS: usize = 13;
+
+/// Columns of a track as a file has them; those of roll last, for laws that have it.
+const COLUMNS: [&str; 9] =
+    ["t_s", "x_m", "y_m", "psi_rad", "u_m_s", "v_m_s", "r_rad_s", "delta_rad", "n_rps"];
+const ROLL: [&str; 2] = ["phi_rad", "p_rad_s"];
+
+/// The track, row by row.
+pub(super) fn csv(answer: &Value, law: &Law) -> String {
+    let roll = if law.has_roll() { ROLL.as_slice() } else { &[] };
+    let columns: Vec<&str> = COLUMNS.iter().chain(roll).copied().collect();
+    let track = &answer["trajectory"];
+    let row = |at: usize| {
+        columns.iter().map(|column| track[column][at].to_string()).collect::<Vec<_>>().join(",")
+    };
+    let rows = (0..samples(answer)).map(row);
+    [columns.join(",")].into_iter().chain(rows).map(|line| line + "\n").collect()
+}
+
+/// Where the ship is at some instants, and how sure that is.
+pub(super) fn text(answer: &Value) -> String {
+    let words = |key: &str| answer[key].as_str().unwrap_or_default();
+    let head = format!("{}, law {}\n\n", words("model"), words("law"));
+    let mut table = TextTable::new(["t s", "x m", "y m", "heading deg", "u m/s", "rudder deg"]);
+    let every = samples(answer).saturating_sub(1).div_ceil(ROWS - 1).max(1);
+    for at in (0..samples(answer)).step_by(every) {
+        table.row(cells(&answer["trajectory"], at));
+    }
+    format!("{head}{table}{}{}{}", band(answer), stopped(answer), outside(answer))
+}
+
+fn samples(answer: &Value) -> usize {
+    answer["trajectory"]["t_s"].as_array().map_or(0, Vec::len)
+}
+
+fn cells(track: &Value, at: usize) -> [String; 6] {
+    let value = |column: &str| track[column][at].as_f64().unwrap_or(f64::NAN);
+    let round =
+        |value: f64, digits: i32| number((value * 10f64.powi(digits)).round() / 10f64.powi(digits));
+    [
+        round(value("t_s"), 2),
+        round(value("x_m"), 1),
+        round(value("y_m"), 1),
+        round(value("psi_rad").to_degrees(), 1),
+        round(value("u_m_s"), 2),
+        round(value("delta_rad").to_degrees(), 1),
+    ]
+}
+
+fn band(answer: &Value) -> String {
+    let band = &answer["band"];
+    let Some(last) = samples(answer).checked_sub(1).filter(|_| !band.is_null()) else {
+        return String::new();
+    };
+    let ends = |column: &str| ["low", "high"].map(|end| band[end][column][last].as_f64());
+    let words = |name: &str, [low, high]: [Option<f64>; 2]| match (low, high) {
+        (Some(low), Some(high)) => format!("{name} {low:.1} to {high:.1}"),
+        _ => format!("{name} not known"),
+    };
+    let degrees = ends("psi_rad").map(|end| end.map(f64::to_degrees));
+    format!(
+        "at the end, 95 % of {} draws: {} m, {} m, {} deg\n",
+        band["drawn"],
+        words("x", ends("x_m")),
+        words("y", ends("y_m")),
+        words("heading", degrees)
+    )
+}
+
+fn stopped(answer: &Value) -> String {
+    let stopped = &answer["stopped"];
+    match stopped["reason"].as_str() {
+        Some(reason) => format!("STOPPED after {} s: {reason}\n", stopped["t_s"]),
+        None => String::new(),
+    }
+}
+
+fn outside(answer: &Value) -> String {
+    match answer["outside"]["along"].as_str() {
+        Some(along) => format!("OUTSIDE what the model's trials covered, along {along}\n"),
+        None => String::new(),
+    }
+}

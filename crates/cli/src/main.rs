@@ -1,7 +1,0 @@
-//! The one binary: see `sistership --help`.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    sistership::run()
-}

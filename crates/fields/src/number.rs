@@ -1,0 +1,69 @@
+//! Numbers: times, speeds, angles.
+
+use utoipa::openapi::RefOr;
+use utoipa::openapi::schema::{KnownFormat, ObjectBuilder, Schema, SchemaFormat, Type};
+
+/// A number with a rule of its own.
+macro_rules! number {
+    ($(#[$about:meta])* $name:ident: $fits:expr, $says:literal, $schema:expr) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $name(f64);
+
+        impl $name {
+            /// The number itself.
+            pub fn get(self) -> f64 {
+                self.0
+            }
+        }
+
+        impl<'de> serde::Deserialize<'de> for $name {
+            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+                let (value, fits): (f64, fn(f64) -> bool) = (f64::deserialize(from)?, $fits);
+                let wrong = || serde::de::Error::custom(format!("must be {}, is {value}", $says));
+                if value.is_finite() && fits(value) { Ok(Self(value)) } else { Err(wrong()) }
+            }
+        }
+
+        impl utoipa::PartialSchema for $name {
+            fn schema() -> RefOr<Schema> {
+                let number = ObjectBuilder::new().schema_type(Type::Number);
+                let describe: fn(ObjectBuilder) -> ObjectBuilder = $schema;
+                describe(number.format(Some(SchemaFormat::KnownFormat(KnownFormat::Double)))).build().into()
+            }
+        }
+
+        impl utoipa::ToSchema for $name {}
+    };
+}
+
+number! {
+    /// A depth, a speed or a time: above 0.
+    Positive: |value| value > 0.0, "above 0", |number| number.exclusive_minimum(Some(0))
+}
+number! {
+    /// The length of a step, s.
+    StepLength: |value| value > 0.0 && value <= 60.0, "above 0 and at most 60 s",
+        |number| number.exclusive_minimum(Some(0)).maximum(Some(60))
+}
+number! {
+    /// The speed of a current, m/s.
+    WaterSpeed: |value| (0.0..=10.0).contains(&value), "from 0 to 10 m/s",
+        |number| number.minimum(Some(0)).maximum(Some(10))
+}
+number! {
+    /// The speed of a wind, m/s.
+    WindSpeed: |value| (0.0..=80.0).contains(&value), "from 0 to 80 m/s",
+        |number| number.minimum(Some(0)).maximum(Some(80))
+}
+number! {
+    /// An angle of a rudder or a heading, in degrees.
+    Angle: |value| value != 0.0 && value.abs() <= 90.0, "an angle up to 90 deg to either side and not 0",
+        |number| number.minimum(Some(-90)).maximum(Some(90)).extensions(not_zero())
+}
+
+/// What a schema adds to say that 0 is refused; the extension is taken for the keyword `not`, see
+/// `routes::document`.
+fn not_zero() -> Option<utoipa::openapi::extensions::Extensions> {
+    Some([("x-not".to_owned(), serde_json::json!({ "const": 0 }))].into_iter().collect())
+}

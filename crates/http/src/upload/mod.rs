@@ -1,0 +1,60 @@
+//! Uploads of trials as they arrive: streamed to files, with a manifest that says what these are.
+
+mod arrived;
+mod multipart;
+mod place;
+mod raw;
+mod received;
+
+use axum::extract::{FromRef, FromRequest, Query, Request};
+use axum::http::StatusCode;
+use serde::Deserialize;
+
+pub use arrived::Arrived;
+pub use place::UploadPlace;
+pub use raw::RawQuery;
+pub use received::Upload;
+
+use crate::payload::{media, plain};
+use crate::problem::{Problem, Result};
+
+/// Bodies that are one file.
+const FILE_MEDIA: [&str; 3] = ["text/csv", "application/vnd.apache.parquet", "application/parquet"];
+
+impl<S: Send + Sync> FromRequest<S> for Upload
+where
+    UploadPlace: FromRef<S>,
+{
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, state: &S) -> Result<Self> {
+        let place = UploadPlace::from_ref(state);
+        plain(request.headers())?;
+        match media(request.headers()).as_str() {
+            "multipart/form-data" => {
+                let Query(Wish { diagnose }) = Query::try_from_uri(request.uri())?;
+                Ok(Self {
+                    diagnose: diagnose.unwrap_or(true),
+                    ..multipart::receive(request, &place).await?
+                })
+            }
+            other if FILE_MEDIA.contains(&other) => raw::receive(request, &place).await,
+            other => Err(Problem::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, unknown(other))),
+        }
+    }
+}
+
+/// What the query of a form says; the rest is in the form.
+#[derive(Debug, Deserialize)]
+struct Wish {
+    diagnose: Option<bool>,
+}
+
+fn unknown(media: &str) -> String {
+    let found = if media.is_empty() { "nothing".to_owned() } else { format!("`{media}`") };
+    format!(
+        "Content-Type is {found}; send multipart/form-data with a part `manifest` and the files \
+         that it lists, or one file as {}",
+        FILE_MEDIA.join(" or ")
+    )
+}
