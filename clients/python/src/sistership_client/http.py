@@ -6,7 +6,7 @@ import json as _json
 import urllib.error
 import urllib.parse
 import urllib.request
-from typing import Any, Mapping, Optional
+from typing import Any, List, Mapping, Optional
 
 
 class Refused(Exception):
@@ -16,9 +16,23 @@ class Refused(Exception):
         self.status = status
         self.problem = dict(problem)
         lines = [str(problem.get("detail") or problem.get("title") or status)]
-        for error in problem.get("errors", []):
-            lines.append(f"  {error.get('field')}: {error.get('message')}")
+        lines += [f"  {_place(error)}: {error.get('message')}" for error in self.errors]
         super().__init__("\n".join(lines))
+
+    @property
+    def errors(self) -> List[Mapping[str, Any]]:
+        """Each thing at fault: `field`, `row` and `column` where it has them, `message`."""
+        return self.problem.get("errors") or []
+
+
+class NoAnswer(ConnectionError):
+    """Nobody answers at the server's address."""
+
+
+def _place(error: Mapping[str, Any]) -> str:
+    """Where an error is, such as `turn.csv, row 3, psi_deg`."""
+    row = f"row {error['row']}" if error.get("row") is not None else None
+    return ", ".join(str(part) for part in (error.get("field"), row, error.get("column")) if part)
 
 
 def _text(value: Any) -> str:
@@ -59,6 +73,8 @@ class Http:
                 return answer.read()
         except urllib.error.HTTPError as error:
             raise Refused(error.code, _problem(error.read())) from None
+        except urllib.error.URLError as error:
+            raise NoAnswer(f"no server answers at {self.url}: {error.reason}") from None
 
     def json(self, method: str, path: str, **given: Any) -> Any:
         """The answer as JSON."""
