@@ -1,5 +1,7 @@
 //! What a prior measures a change of coefficients by.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
 use sistership_model::Model;
 use sistership_model::law::Law;
@@ -24,7 +26,7 @@ pub(super) enum PriorMeasure {
     /// What a mixture says over the envelope, jointly; its model has its values already.
     Mixture(OperatingEnvelope),
     /// What a source of another law says over the envelope, jointly.
-    Source(OperatingEnvelope),
+    Source(Arc<OperatingEnvelope>),
 }
 
 impl PriorMeasure {

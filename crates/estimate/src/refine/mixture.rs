@@ -1,5 +1,5 @@
 //! The prior as a mixture: what the source says of the ship's accelerations and what the estimate
-//! from her particulars says, each a Gaussian whose covariance was learned by leaving ships out.
+//! from its particulars says, each a Gaussian whose covariance was learned by leaving ships out.
 
 use std::sync::LazyLock;
 
@@ -86,7 +86,7 @@ pub(super) fn mixed(
 ) -> Result<OperatingEnvelope, RefineError> {
     let Regressions { library, law } = regressions()?;
     let speed_m_s = speed_m_s.ok_or_else(|| {
-        RefineError::Data(format!("{}: the speed of her estimate is not known", target.name()))
+        RefineError::Data(format!("{}: the speed of the estimate is not known", target.name()))
     })?;
     let estimate = estimate(library, target, law, speed_m_s)
         .map_err(|error| RefineError::Data(format!("no estimate for the mixture: {error}")))?;

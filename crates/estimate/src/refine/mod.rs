@@ -38,6 +38,7 @@ mod variant;
 mod weak;
 mod weighed;
 
+pub use across::SourceEnvelopes;
 pub use alternatives::{Alternative, alternatives};
 pub use blocks::{Block, Blocks};
 pub use cma_es::{CmaEs, SearchReport};

@@ -1,12 +1,14 @@
 //! The whole refinement: an estimator gives candidates from the source outwards, and the one whose
 //! simulations of manoeuvres left out are best is taken.
 
+use std::sync::Arc;
+
 use sistership_dynamics::error::standard_deviations;
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel};
 
-use super::across::{self, SourceRegression};
+use super::across::{self, SourceEnvelopes, SourceRegression};
 use super::blocks::Blocks;
 use super::candidate::CandidateFit;
 use super::estimators::estimator;
@@ -60,22 +62,25 @@ pub fn refine_watched(
     progress: Progress<'_>,
     watch: Watch<'_>,
 ) -> Result<Refinement, RefineError> {
-    with_candidates(request, Extent::Estimator, progress, watch, finish)
+    let known = SourceEnvelopes::default();
+    with_candidates((request, &known), Extent::Estimator, progress, watch, finish)
 }
 
 /// What the source as it is, and the best fit to the extent asked for, give on manoeuvres left out.
-/// No model is made.
+/// No model is made. What sources say is `known` where it has been asked for the same trials.
 ///
 /// # Errors
 /// As [`refine`].
 pub fn weigh(
-    request: &Request<'_>,
+    (request, known): (&Request<'_>, &SourceEnvelopes),
     extent: Extent,
     progress: Progress<'_>,
 ) -> Result<Vec<Weighed>, RefineError> {
-    with_candidates(request, extent, progress, &|_| (), |problem, candidates, variants, _| {
-        Ok(weighed(problem, &candidates, variants))
-    })
+    let weigh = |problem: &Problem<'_>,
+                 fits: Vec<CandidateFit>,
+                 variants: &[Variant],
+                 _: Progress<'_>| Ok(weighed(problem, &fits, variants));
+    with_candidates((request, known), extent, progress, &|_| (), weigh)
 }
 
 /// As [`weigh`], and as [`refine`] where what it tells is wanted.
@@ -83,7 +88,7 @@ pub fn weigh(
 /// # Errors
 /// As [`refine`].
 pub fn refine_wanted(
-    request: &Request<'_>,
+    (request, known): (&Request<'_>, &SourceEnvelopes),
     wanted: impl FnOnce(&[Weighed]) -> Result<bool, RefineError>,
     progress: Progress<'_>,
 ) -> Result<(Vec<Weighed>, Option<Refinement>), RefineError> {
@@ -98,13 +103,13 @@ pub fn refine_wanted(
         };
         Ok((weighed, refinement))
     };
-    with_candidates(request, Extent::Estimator, progress, &|_| (), both)
+    with_candidates((request, known), Extent::Estimator, progress, &|_| (), both)
 }
 
 /// Sets the problem up, gives its candidates to the extent asked for, and does with them what
 /// `then` does.
 fn with_candidates<T>(
-    request: &Request<'_>,
+    (request, known): (&Request<'_>, &SourceEnvelopes),
     extent: Extent,
     progress: Progress<'_>,
     watch: Watch<'_>,
@@ -127,7 +132,7 @@ fn with_candidates<T>(
     let estimator = estimator(settings.method);
     let equations = estimator.equations(&settings);
     let parts = parts(&whole, request.law, equations, &settings);
-    let (mut transferred, measure) = starting(request, &whole, !parts.is_empty())?;
+    let (mut transferred, measure) = starting((request, known), &whole, !parts.is_empty())?;
     if settings.steering_from_trials {
         let window = match settings.steering_above_noise {
             true => RateWindow::AboveNoise,
@@ -165,7 +170,7 @@ fn with_candidates<T>(
 /// What the prior is about: the source carried over, by its own law or as another law says what it
 /// says.
 fn starting(
-    request: &Request<'_>,
+    (request, known): (&Request<'_>, &SourceEnvelopes),
     whole: &[&Trial],
     in_parts: bool,
 ) -> Result<(Model, PriorMeasure), RefineError> {
@@ -188,9 +193,10 @@ fn starting(
         let measure = PriorMeasure::own(&carried, law, whole, in_parts);
         return Ok((carried, measure));
     };
-    let (mut model, mut envelope) = across::begun((source, own), law, target, approach, whole)?;
+    let (mut model, mut envelope) =
+        across::begun((source, own), law, target, approach, (whole, known))?;
     if is_mixture {
-        envelope = mixture::mixed(&envelope, target, model.speed_m_s, whole)?;
+        envelope = Arc::new(mixture::mixed(&envelope, target, model.speed_m_s, whole)?);
     }
     if request.settings.recorded_terms {
         unrecorded::forget(&mut model, law, whole);

@@ -64,7 +64,7 @@ pub(super) const SELECTION: SelectionThresholds = SelectionThresholds {
 };
 
 /// How far what is said of a ship's acceleration is from the truth, by the mean square of that
-/// acceleration over her standard manoeuvres, dimensionless.
+/// acceleration over its standard manoeuvres, dimensionless.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Misfit {
     /// Mean square of the source's error.
