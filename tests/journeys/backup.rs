@@ -11,7 +11,7 @@ use sistership_store::testing::{TestDatabase, TestS3};
 use sistership_tests::binary;
 use sistership_tests::server::{Bucket, TestServer, json as answer};
 
-use super::over_http::{create, refine_weakly, upload};
+use super::over_http::{create, refine_weakly, upload_few};
 use super::sea_trials::NAME;
 
 /// What a writer has begun, and what was acknowledged to it.
@@ -73,7 +73,7 @@ type Buckets = Option<[Bucket; 2]>;
 async fn backed_up(server: TestServer, empty: TestDatabase, buckets: Buckets) {
     let (from, to) = (buckets.as_ref().map(|[from, _]| from), buckets.as_ref().map(|[_, to]| to));
     create(&server).await;
-    upload(&server).await;
+    upload_few(&server).await;
     let done = server.finished(&refine_weakly(&server, "before").await).await;
     assert_eq!(done["state"], "succeeded", "{done}");
     let folder = server.database().folder.path().join("backup");

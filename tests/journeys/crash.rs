@@ -7,12 +7,12 @@ use sistership_store::testing::TestDatabase;
 use sistership_tests::server::TestServer;
 use sistership_tests::worker::TestWorker;
 
-use super::over_http::{create, refine_weakly, upload, verified};
+use super::over_http::{create, refine_weakly, upload_few, verified};
 use super::sea_trials::NAME;
 
 async fn killed(mut server: TestServer) {
     create(&server).await;
-    let uploaded = upload(&server).await;
+    let uploaded = upload_few(&server).await;
     let first = server.finished(&refine_weakly(&server, "before").await).await;
     assert_eq!(first["state"], "succeeded", "{first}");
     let job = refine_weakly(&server, "during").await;
@@ -69,7 +69,7 @@ async fn running(server: &TestServer, job: &str, attempt: i64) {
 async fn set_aside(database: TestDatabase) {
     let server = TestServer::on(database, &["--no-worker"]).await;
     create(&server).await;
-    upload(&server).await;
+    upload_few(&server).await;
     let poison = refine_weakly(&server, "poison").await;
     for attempt in 1..=2 {
         let mut worker = TestWorker::start(&server, "1");

@@ -12,7 +12,7 @@ use sistership_tests::binary;
 use sistership_tests::server::TestServer;
 use sistership_tests::worker::TestWorker;
 
-use super::over_http::{create, refine_weakly, upload, verified};
+use super::over_http::{create, refine_weakly, upload_few, verified};
 use super::sea_trials::NAME;
 
 const JOBS: usize = 6;
@@ -91,7 +91,7 @@ impl Fleet {
 async fn every_job_is_done_once(database: TestDatabase) {
     let mut fleet = Fleet::on(database).await;
     create(&fleet.server).await;
-    upload(&fleet.server).await;
+    upload_few(&fleet.server).await;
     for number in 0..JOBS {
         refine_weakly(&fleet.server, &format!("job-{number}")).await;
     }

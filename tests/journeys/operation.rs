@@ -11,7 +11,7 @@ use sistership_tests::binary;
 use sistership_tests::server::TestServer;
 use sistership_tests::worker::TestWorker;
 
-use super::over_http::{create, refine_weakly, upload};
+use super::over_http::{create, refine_weakly, upload_few};
 use super::sea_trials::NAME;
 
 /// A job under way, a server that is told to stop, and the job afterwards: its state and how often
@@ -19,7 +19,7 @@ use super::sea_trials::NAME;
 async fn stopped(drain_s: &str) -> (JobState, i64) {
     let mut server = TestServer::on(TestDatabase::sqlite(), &["--drain-s", drain_s]).await;
     create(&server).await;
-    upload(&server).await;
+    upload_few(&server).await;
     let job = refine_weakly(&server, "drained").await;
     while server.get(&format!("/v1/jobs/{job}")).await["state"] == "queued" {
         tokio::time::sleep(Duration::from_millis(2)).await;
@@ -110,7 +110,7 @@ async fn a_server_runs_by_its_file_and_logs_in_json() {
     let (server, log) =
         TestServer::logged(database, &["--config", &config.display().to_string()]).await;
     create(&server).await;
-    upload(&server).await;
+    upload_few(&server).await;
     refine_weakly(&server, "waits").await;
     tokio::time::sleep(Duration::from_millis(1500)).await;
     let store =

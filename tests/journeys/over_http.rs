@@ -3,11 +3,12 @@
 use reqwest::Method;
 use reqwest::multipart::{Form, Part};
 use serde_json::{Value, json};
+use sistership_model::Trial;
 use sistership_tests::binary;
 use sistership_tests::server::{TestServer, json as answer};
 use sistership_tests::shape;
 
-use super::sea_trials::{NAME, csv, manifest, ship, trials};
+use super::sea_trials::{NAME, csv, few, manifest, ship, trials};
 
 /// Creates the ship.
 pub async fn create(server: &TestServer) {
@@ -21,8 +22,16 @@ pub async fn create(server: &TestServer) {
 
 /// Uploads its trials by manifest.
 pub async fn upload(server: &TestServer) -> Value {
-    let trials = trials();
-    let form = Form::new().text("manifest", manifest(&trials));
+    sent(server, &trials()).await
+}
+
+/// Uploads few and short ones.
+pub async fn upload_few(server: &TestServer) -> Value {
+    sent(server, &few()).await
+}
+
+async fn sent(server: &TestServer, trials: &[Trial]) -> Value {
+    let form = Form::new().text("manifest", manifest(trials));
     let form = trials.iter().fold(form, |form, trial| {
         form.part("file", Part::bytes(csv(trial)).file_name(trial.name.clone()))
     });
@@ -30,7 +39,7 @@ pub async fn upload(server: &TestServer) -> Value {
         server.request(Method::POST, "/v1/trials").multipart(form).send().await.expect("an answer"),
     )
     .await;
-    assert_eq!((status, uploaded["new"].as_u64()), (201, Some(4)), "{uploaded}");
+    assert_eq!((status, uploaded["new"].as_u64()), (201, Some(trials.len() as u64)), "{uploaded}");
     uploaded
 }
 

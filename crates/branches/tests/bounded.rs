@@ -1,12 +1,9 @@
 //! A branch never makes a simulation diverge, nor leave the physical range.
-#![allow(clippy::unwrap_used)]
 
-mod ships;
-
+use crate::ships::{Foundation, learners, training};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha12Rng;
 use rayon::prelude::*;
-use ships::{Foundation, learners, training};
 use sistership_branches::{Weights, ship};
 use sistership_dynamics::state::{StateVector, straight};
 use sistership_dynamics::validity::leaves;

@@ -1,9 +1,6 @@
 //! One-shot prediction: what is refused, what is bounded, and that training repeats itself.
-#![allow(clippy::unwrap_used)]
 
-mod ships;
-
-use ships::Foundation;
+use crate::ships::Foundation;
 use sistership_branches::horizon::{
     Example, HorizonError, HorizonTraining, OneShot, Predictor, Told, train,
 };

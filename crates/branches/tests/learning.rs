@@ -1,9 +1,6 @@
 //! That branches learn, that they learn the same twice, and what is refused.
-#![allow(clippy::unwrap_used)]
 
-mod ships;
-
-use ships::{Foundation, learners, training};
+use crate::ships::{Foundation, learners, training};
 use sistership_branches::{
     JoinError, TrainError, Training, WeightsError, importance, retrain, rows, ship, train,
 };
@@ -94,7 +91,7 @@ fn importance_names_what_the_remainder_depends_on() {
     truth.coefficients.get_mut("N_delta").unwrap().value *= 0.7;
     let truth = Ship::new(&truth, &foundation.law).unwrap();
     let track = zigzag(&truth, 20.0, 20.0, &ManoeuvreSettings::default()).unwrap().track;
-    let trial = ships::recorded("zigzag", &track);
+    let trial = crate::ships::recorded("zigzag", &track);
     for learner in learners() {
         let wanted = Training {
             inputs: vec![(Axis::N, vec![Signal::U, Signal::V, Signal::R, Signal::Delta])],

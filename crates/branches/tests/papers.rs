@@ -1,32 +1,13 @@
 //! The systems of Kanazawa 2023 in small: the directions that he prints, on a virtual ship. The
 //! tables of docs/evidence/branches.md are the same with his sizes.
-#![allow(clippy::unwrap_used)]
 
-#[path = "../../../tests/examples/branches/paper_i.rs"]
-#[allow(dead_code)]
-mod paper_i;
-#[path = "../../../tests/examples/branches/paper_ii.rs"]
-#[allow(dead_code)]
-mod paper_ii;
-#[path = "../../../tests/examples/branches/paper_iii.rs"]
-#[allow(dead_code)]
-mod paper_iii;
-#[path = "../../../tests/examples/branches/paper_iv.rs"]
-#[allow(dead_code)]
-mod paper_iv;
-#[path = "../../../tests/examples/branches/paper_vi.rs"]
-#[allow(dead_code)]
-mod paper_vi;
-#[path = "../../../tests/examples/branches/vessel/mod.rs"]
-#[allow(dead_code)]
-mod vessel;
-
-use paper_i::{Misses, Outcome, Size};
+use crate::paper_i::{Misses, Outcome, Size};
+use crate::{paper_ii, paper_iii, paper_iv, paper_vi, vessel};
 
 /// Section 3.1: at Beaufort 4 an LSTM beside the foundation is nearer than either alone.
 #[test]
 fn both_are_nearer_than_the_foundation_and_than_data_alone() {
-    let outcomes = paper_i::outcomes(Size { scenarios: 30, epochs: 15, hop: 6 });
+    let outcomes = crate::paper_i::outcomes(Size { scenarios: 30, epochs: 15, hop: 6 });
     let Outcome { force, misses } = &outcomes[1];
     let [foundation, data, both] = misses.each_ref().map(Misses::mean);
     println!("Beaufort {force}: foundation {foundation:.2}, data {data:.2}, both {both:.2} m");

@@ -17,7 +17,7 @@ use crate::thresholds::SEARCH;
 use sistership_bands::Sampling;
 use sistership_estimate::refine::{
     Extent, Family, MonotoneProgress, Progress, RefineError, Refinement, Request, Settings,
-    Weighed, refine_wanted, weigh,
+    SourceEnvelopes, Weighed, refine_wanted, weigh,
 };
 
 /// What is searched.
@@ -84,27 +84,27 @@ fn searched_by(settings: &Settings, fitted: usize) -> Settings {
 fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
     let progress = MonotoneProgress::new(progress);
     let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
-    let mut tried = Vec::new();
+    let (mut tried, known) = (Vec::new(), SourceEnvelopes::default());
     let mut alone: Vec<usize> = (0..search.entrants.len())
         .filter(|entrant| search.entrants[*entrant].source_law.is_none())
         .collect();
-    carried_over(search, &mut tried, progress)?;
+    carried_over((search, &known), &mut tried, progress)?;
     let mut next = leading_by_law(search, &tried);
     // Parts of one manoeuvre tell nothing of others, and without a source nothing else does.
     if search.settings.in_parts && !next.is_empty() {
         alone.clear();
     }
     next.extend(alone);
-    climb(search, Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
+    climb((search, &known), Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
     let next = leading(&tried);
-    descend(search, &next, (0.5, 0.5), &mut tried, progress)?;
+    descend((search, &known), &next, (0.5, 0.5), &mut tried, progress)?;
     taken(search, tried)
 }
 
 /// Weighs each source as carried over, by its own law where that is fitted: what another law says
 /// in its place is an imitation of that, and needed only where that does not sail.
 fn carried_over(
-    search: &Search<'_>,
+    (search, known): (&Search<'_>, &SourceEnvelopes),
     tried: &mut Vec<Tried>,
     progress: Progress<'_>,
 ) -> Result<(), RefineError> {
@@ -119,7 +119,7 @@ fn carried_over(
         let (begin, each) = (share * k as f64, share / entrants.len() as f64);
         for (j, entrant) in entrants.into_iter().enumerate() {
             let span = (begin + each * j as f64, each);
-            climb(search, Rung::CarriedOver, &[entrant], span, tried, progress)?;
+            climb((search, known), Rung::CarriedOver, &[entrant], span, tried, progress)?;
             if tried.last().is_some_and(|one| one.weighed.error.is_some()) {
                 break;
             }
@@ -131,7 +131,7 @@ fn carried_over(
 /// Weighs entrants on a rung side by side; its progress begins at a fraction of the whole and takes
 /// a span of it.
 fn climb(
-    search: &Search<'_>,
+    (search, known): (&Search<'_>, &SourceEnvelopes),
     rung: Rung,
     entrants: &[usize],
     (begin, span): (f64, f64),
@@ -148,7 +148,8 @@ fn climb(
         };
         let begun = Instant::now();
         let settings = settings_on(search.settings, rung, None);
-        let weighed = weigh(&request(search, entrant, &settings), extent, &told);
+        let request = request(search, entrant, &settings);
+        let weighed = weigh((&request, known), extent, &told);
         let weighed = on_rung(rung, weighed)?;
         done.fetch_add(1, Ordering::Relaxed);
         let cost_s = begun.elapsed().as_secs_f64();
@@ -163,7 +164,7 @@ fn climb(
 /// Fits trajectories, each entrant within the one before it: what an entrant has prepared is kept
 /// until all have been weighed, and made into a refinement where it is what is taken then.
 fn descend(
-    search: &Search<'_>,
+    (search, known): (&Search<'_>, &SourceEnvelopes),
     entrants: &[usize],
     (begin, span): (f64, f64),
     tried: &mut Vec<Tried>,
@@ -180,13 +181,14 @@ fn descend(
     let note = |tried: &mut Vec<Tried>, weighed: Weighed| {
         let (cost_s, rung) = (begun.elapsed().as_secs_f64(), Rung::Trajectory);
         tried.push(Tried { entrant, rung, weighed, refinement: None, cost_s });
-        descend(search, others, rest, tried, progress)
+        descend((search, known), others, rest, tried, progress)
     };
     let is_taken = |all: &[Weighed]| {
         note(tried, on_rung(Rung::Trajectory, Ok(all.to_vec()))?)?;
         Ok(chosen_of(tried) == Some(place))
     };
-    let made = refine_wanted(&request(search, entrant, &settings), is_taken, &told);
+    let request = request(search, entrant, &settings);
+    let made = refine_wanted((&request, known), is_taken, &told);
     match made {
         Ok((_, refinement)) => tried[place].refinement = refinement,
         Err(error) => {

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::ValueEnum;
 use sistership_dynamics::Method as Integrator;
-use sistership_estimate::refine::Method;
+use sistership_estimate::refine::{Method, Prior};
 use sistership_estimate::similarity::Definition;
 use sistership_export::{FORMATS, Format, by_name};
 
@@ -138,6 +138,12 @@ pub fn number(text: &str) -> Result<f64, ValueError> {
 pub fn method(name: &str) -> Result<Method, ValueError> {
     let known = || Method::ALL.map(|method| format!("`{}`", method.name())).join(", ");
     Method::by_name(name).ok_or_else(|| ValueError::UnknownName { known: known() })
+}
+
+/// A prior by its name.
+pub fn prior(name: &str) -> Result<Prior, ValueError> {
+    let known = Prior::ALL.map(|prior| format!("`{}`", prior.name())).join(", ");
+    Prior::by_name(name).ok_or(ValueError::UnknownName { known })
 }
 
 /// A definition of the characteristic vector by its name.

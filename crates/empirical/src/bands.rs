@@ -112,13 +112,15 @@ fn sailed(lot: &[Model], law: &Law) -> Option<Vec<StandardManoeuvres>> {
         lot.iter().map(|model| ship.sister(model)).collect::<Option<_>>()?;
     let mut all = vec![StandardManoeuvres::default(); lot.len()];
     let turn = Manoeuvre::Turn { rudder: HARD_DEG };
-    for (one, sailed) in all.iter_mut().zip(run(&ship, &sisters, turn, Some(TURN_LENGTHS))) {
+    for (one, sailed) in all.iter_mut().zip(run(&ship, &sisters, &[turn], Some(TURN_LENGTHS))) {
         let turn = sailed.and_then(|sailed| Turn::of(sailed, HARD_DEG));
         note(one, turn.map(|turn| turn.metrics), turn_name, |all, turn| all.turns.push(turn));
     }
+    // Both angles at once: those that have checked early give their lanes to others.
+    let zigzag = |angle: f64| Manoeuvre::Zigzag { rudder: angle, switch: angle };
+    let mut zigzags = run(&ship, &sisters, &ZIGZAGS_DEG.map(zigzag), None).into_iter();
     for angle in ZIGZAGS_DEG {
-        let zigzag = Manoeuvre::Zigzag { rudder: angle, switch: angle };
-        for (one, sailed) in all.iter_mut().zip(run(&ship, &sisters, zigzag, None)) {
+        for (one, sailed) in all.iter_mut().zip(zigzags.by_ref()) {
             let zigzag = sailed.and_then(|sailed| Zigzag::of(sailed, angle, angle));
             let name = || zigzag_name(angle);
             note(one, zigzag.map(|zigzag| zigzag.metrics), name, |all, zigzag| {
@@ -127,7 +129,8 @@ fn sailed(lot: &[Model], law: &Law) -> Option<Vec<StandardManoeuvres>> {
         }
     }
     let initial = Manoeuvre::Turn { rudder: INITIAL_DEG };
-    for (one, sailed) in all.iter_mut().zip(run(&ship, &sisters, initial, Some(INITIAL_LENGTHS))) {
+    for (one, sailed) in all.iter_mut().zip(run(&ship, &sisters, &[initial], Some(INITIAL_LENGTHS)))
+    {
         one.initial_turning_m = sailed
             .ok()
             .and_then(|sailed| initial_turning_distance(&sailed.after, INITIAL_DEG, INITIAL_DEG));
@@ -147,11 +150,12 @@ fn zigzag_name(angle: f64) -> String {
     Manoeuvre::Zigzag { rudder: angle, switch: angle }.to_string()
 }
 
-/// Sails one manoeuvre by every sister; as long as so many lengths take, or until all is seen.
+/// Sails manoeuvres one after the other, each by every sister; as long as so many lengths take, or
+/// until all is seen.
 fn run(
     ship: &Ship,
     sisters: &[Vec<f64>],
-    manoeuvre: Manoeuvre,
+    manoeuvres: &[Manoeuvre],
     lengths: Option<f64>,
 ) -> Vec<Result<Sailed, Stopped>> {
     let length_s = ship.lpp_m() / ship.approach_speed_m_s();
@@ -161,8 +165,11 @@ fn run(
         reversals_within_steps: true,
         ..ManoeuvreSettings::default()
     };
-    let all: Vec<(Manoeuvre, &[f64])> =
-        sisters.iter().map(|sister| (manoeuvre, sister.as_slice())).collect();
+    let by_all = |manoeuvre: &Manoeuvre| {
+        let manoeuvre = *manoeuvre;
+        sisters.iter().map(move |sister| (manoeuvre, sister.as_slice()))
+    };
+    let all: Vec<(Manoeuvre, &[f64])> = manoeuvres.iter().flat_map(by_all).collect();
     sail_together(ship, &all, &settings)
 }
 

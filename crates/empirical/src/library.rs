@@ -3,6 +3,7 @@
 use include_dir::{Dir, include_dir};
 use rayon::prelude::*;
 use sistership_model::FileError;
+use sistership_model::version::sha256;
 
 use crate::propeller::PropellerSeries;
 use crate::regression::{Given, Regression};
@@ -15,6 +16,8 @@ const SERIES: &str = "wageningen-b.yaml";
 /// Regressions by name, and the propeller series.
 #[derive(Debug, Clone)]
 pub struct Library {
+    /// SHA-256 of all files, in the order of their names.
+    pub sha256: String,
     /// In the order of their names.
     pub regressions: Vec<Regression>,
     pub(crate) series: PropellerSeries,
@@ -30,6 +33,10 @@ impl Library {
             let name = file.path().to_str().filter(|name| name.ends_with(".yaml"))?;
             Some((name, file.contents_utf8()?))
         });
+        let mut files: Vec<(&str, &str)> = files.collect();
+        files.sort_unstable();
+        let texts: Vec<u8> = files.iter().flat_map(|(_, text)| text.bytes()).collect();
+        let files = files.into_iter();
         let (series, others): (Vec<_>, Vec<_>) = files.partition(|(name, _)| *name == SERIES);
         let parsed: Vec<Result<Regression, FileError>> =
             others.into_par_iter().map(|(name, text)| Regression::parse(name, text)).collect();
@@ -42,7 +49,7 @@ impl Library {
             field: String::new(),
             message: "is missing".to_owned(),
         };
-        Ok(Self { regressions, series: series.ok_or_else(missing)?? })
+        Ok(Self { sha256: sha256(&texts), regressions, series: series.ok_or_else(missing)?? })
     }
 
     /// What every regression gives for a name.

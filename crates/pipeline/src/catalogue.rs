@@ -8,13 +8,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, PoisonError, RwLock};
 
 use sistership_model::{Vessel, Zoo};
-use sistership_store::{Law, MAX_LIMIT, Page, Result, Ship, Store, StoreError};
+use sistership_store::{
+    FoundShip, Law, MAX_LIMIT, Page, Result, Ship, ShipSearch, Store, StoreError,
+};
 
 use crate::archive::Archive;
 use crate::search::nearest;
 
 /// The most ships that a ship is compared with.
-const MOST: i64 = 250;
+pub const MOST: usize = 250;
+/// The same as the limit of a page.
+const PAGE: i64 = MOST as i64;
 
 /// The zoo as it was last seen.
 #[derive(Debug, Default)]
@@ -58,16 +62,23 @@ impl Catalogue {
         Ok(remember(&self.laws, fresh).zoo)
     }
 
-    /// The laws of the database, with the ships that a ship is compared with.
-    pub async fn around(&self, archive: &Archive, target: &Vessel) -> Result<Arc<Zoo>> {
+    /// The laws of the database, with the ships that a ship is compared with: all of them where
+    /// they are at most [`MOST`], else the most similar of its category, `count` of them.
+    pub async fn around(
+        &self,
+        archive: &Archive,
+        target: &Vessel,
+        count: usize,
+    ) -> Result<Arc<Zoo>> {
         let laws = self.laws(&archive.store).await?;
-        let few = archive.store.ships().list(None, &Page::first(MOST)).await?;
-        let ships = if few.next.is_none() { few.items } else { similar(archive, target).await? };
+        let heads = compared(archive, target, count).await?;
         let seen = seen(&self.ships);
-        if seen.is(&laws, &ships) {
+        if seen.is(&laws, &heads) {
             return Ok(seen.zoo);
         }
-        let fresh = read(move || seen.grown(laws, &ships)).await?;
+        let kept = seen.kept(laws, &heads);
+        let ships = documents(&archive.store, heads.iter().filter(|head| !kept.has(head))).await?;
+        let fresh = read(move || kept.grown(&ships)).await?;
         Ok(remember(&self.ships, fresh).zoo)
     }
 
@@ -115,27 +126,34 @@ impl Laws {
 }
 
 impl Ships {
-    fn is(&self, laws: &Arc<Zoo>, ships: &[Ship]) -> bool {
+    fn is(&self, laws: &Arc<Zoo>, ships: &[FoundShip]) -> bool {
         Arc::ptr_eq(&self.laws, laws)
             && self.revisions.len() == ships.len()
             && ships.iter().all(|ship| self.has(ship))
     }
 
-    fn has(&self, ship: &Ship) -> bool {
+    fn has(&self, ship: &FoundShip) -> bool {
         self.revisions.get(&ship.name) == Some(&ship.revision)
     }
 
-    /// These ships with what is new; from nothing where a ship has gone or there are other laws.
-    fn grown(self, laws: Arc<Zoo>, ships: &[Ship]) -> Self {
+    /// What of these can stay; nothing where a ship has gone or there are other laws.
+    fn kept(self, laws: Arc<Zoo>, ships: &[FoundShip]) -> Self {
         let names: BTreeSet<&str> = ships.iter().map(|ship| ship.name.as_str()).collect();
         let gone = self.revisions.keys().any(|name| !names.contains(name.as_str()));
-        let kept = if gone || !Arc::ptr_eq(&self.laws, &laws) { Self::default() } else { self };
-        let mut zoo = Zoo::clone(if kept.revisions.is_empty() { &laws } else { &kept.zoo });
-        for ship in ships.iter().filter(|ship| !kept.has(ship)) {
-            report("ship", &ship.name, zoo.add_vessel(&ship.name, &ship.document).err());
+        if gone || !Arc::ptr_eq(&self.laws, &laws) || self.revisions.is_empty() {
+            return Self { revisions: BTreeMap::new(), zoo: Arc::clone(&laws), laws };
         }
-        let revisions = ships.iter().map(|ship| (ship.name.clone(), ship.revision)).collect();
-        Self { revisions, laws, zoo: Arc::new(zoo) }
+        self
+    }
+
+    /// These ships with further ones.
+    fn grown(mut self, ships: &[Ship]) -> Self {
+        let mut zoo = Zoo::clone(&self.zoo);
+        for ship in ships {
+            report("ship", &ship.name, zoo.add_vessel(&ship.name, &ship.document).err());
+            self.revisions.insert(ship.name.clone(), ship.revision);
+        }
+        Self { zoo: Arc::new(zoo), ..self }
     }
 }
 
@@ -157,11 +175,19 @@ async fn all_laws(store: &Store) -> Result<Vec<Law>> {
     }
 }
 
-/// The ships of a ship's category that are most similar to it.
-async fn similar(archive: &Archive, target: &Vessel) -> Result<Vec<Ship>> {
+/// The ships that a ship is compared with, without their documents.
+async fn compared(archive: &Archive, target: &Vessel, count: usize) -> Result<Vec<FoundShip>> {
+    let few = archive.store.ships().search(&ShipSearch::default(), &Page::first(PAGE)).await?;
+    match few.next {
+        None => Ok(few.items),
+        Some(_) => nearest(archive, target, count).await,
+    }
+}
+
+async fn documents(store: &Store, heads: impl Iterator<Item = &FoundShip>) -> Result<Vec<Ship>> {
     let mut ships = Vec::new();
-    for name in nearest(archive, target, usize::try_from(MOST).unwrap_or(0)).await? {
-        match archive.store.ships().get(&name).await {
+    for head in heads {
+        match store.ships().get(&head.name).await {
             // Deleted in between.
             Err(StoreError::NotFound { .. }) => {}
             ship => ships.push(ship?),
@@ -185,16 +211,16 @@ mod tests {
         let catalogue = Catalogue::default();
         let embedded = Zoo::embedded().unwrap();
         let target = embedded.vessel("mariner").unwrap();
-        assert_eq!(catalogue.around(&archive, target).await.unwrap().vessels().count(), 0);
+        assert_eq!(catalogue.around(&archive, target, MOST).await.unwrap().vessels().count(), 0);
         let mariner = crate::seed::new_ship(target).unwrap();
         for law in embedded.laws() {
             store.laws().insert(&law.name, embedded.law_text(&law.name).unwrap()).await.unwrap();
         }
         store.ships().create(&mariner).await.unwrap();
-        let zoo = catalogue.around(&archive, target).await.unwrap();
+        let zoo = catalogue.around(&archive, target, MOST).await.unwrap();
         assert_eq!(zoo.model("mariner").unwrap(), embedded.model("mariner").unwrap());
         assert_eq!(catalogue.laws(&store).await.unwrap().vessels().count(), 0);
-        assert!(Arc::ptr_eq(&zoo, &catalogue.around(&archive, target).await.unwrap()));
+        assert!(Arc::ptr_eq(&zoo, &catalogue.around(&archive, target, MOST).await.unwrap()));
         store
             .ships()
             .update(
@@ -203,10 +229,12 @@ mod tests {
             )
             .await
             .unwrap();
-        let zoo = catalogue.around(&archive, target).await.unwrap();
+        let zoo = catalogue.around(&archive, target, MOST).await.unwrap();
         assert!(zoo.vessel("mariner").unwrap().file.title.contains("Marinara"));
         store.ships().delete("mariner", None).await.unwrap();
-        assert!(catalogue.around(&archive, target).await.unwrap().vessel("mariner").is_none());
+        assert!(
+            catalogue.around(&archive, target, MOST).await.unwrap().vessel("mariner").is_none()
+        );
     }
 
     /// Beyond [`MOST`] ships, those of the target's category that resemble it; others stay out.
@@ -234,7 +262,7 @@ mod tests {
             store.ships().create(&crate::seed::new_ship(vessel).unwrap()).await.unwrap();
         }
         crate::search::catch_up(&archive).await.unwrap();
-        let zoo = Catalogue::default().around(&archive, target).await.unwrap();
+        let zoo = Catalogue::default().around(&archive, target, MOST).await.unwrap();
         let taken: Vec<&str> = zoo.vessels().map(|vessel| vessel.name()).collect();
         let same = |vessel: &&Arc<Vessel>| {
             vessel.file.category == target.file.category && vessel.name() != target.name()
@@ -243,5 +271,8 @@ mod tests {
             embedded.vessels().filter(same).map(|vessel| vessel.name()).collect();
         assert!(!expected.is_empty());
         assert_eq!(taken, expected);
+        let one = Catalogue::default().around(&archive, target, 1).await.unwrap();
+        let nearest = nearest(&archive, target, 1).await.unwrap().remove(0).name;
+        assert_eq!(one.vessels().map(|vessel| vessel.name()).collect::<Vec<_>>(), [nearest]);
     }
 }

@@ -3,7 +3,9 @@
 
 use std::sync::Arc;
 
-use sistership_estimate::refine::{Extent, Family, Refinement, Request, Settings, weigh};
+use sistership_estimate::refine::{
+    Extent, Family, Refinement, Request, Settings, SourceEnvelopes, weigh,
+};
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model, Vessel};
 
@@ -133,7 +135,8 @@ fn champion_error(contest: &Contest<'_>) -> Option<Option<f64>> {
     let source: &Model = &champion.model;
     let source_law = None;
     let request = Request { target, source, source_law, law, trials: &trials, settings: &settings };
-    let weighed = weigh(&request, Extent::Source, &|_, _| true).ok()?;
+    let weighed =
+        weigh((&request, &SourceEnvelopes::default()), Extent::Source, &|_, _| true).ok()?;
     Some(weighed.first()?.error)
 }
 

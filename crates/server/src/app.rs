@@ -18,9 +18,11 @@ use sistership_http::known::Known;
 use sistership_http::payload::DocumentLimits;
 use sistership_http::upload::UploadPlace;
 use sistership_listen::{Stopping, Throttle};
+use sistership_pages::ship::SIMILAR;
+use sistership_pages::version::KnownManoeuvres;
 use sistership_pipeline::archive::Archive;
 use sistership_pipeline::budget::{self, Budget, Held};
-use sistership_pipeline::catalogue::{Catalogue, KnownLaw};
+use sistership_pipeline::catalogue::{Catalogue, KnownLaw, MOST};
 use sistership_predict::session::Sessions;
 
 /// The shared state of a server. A clone is another handle on the same one.
@@ -46,6 +48,7 @@ struct Inner {
     turns: Arc<RwLock<()>>,
     metrics: Metrics,
     answers: Answers,
+    manoeuvres: Arc<KnownManoeuvres>,
     stopping: Stopping,
     requests: Budget,
     jobs: Budget,
@@ -93,6 +96,7 @@ impl App {
             turns: Arc::default(),
             metrics: Metrics::default(),
             answers: Answers::default(),
+            manoeuvres: Arc::default(),
             stopping,
             requests: Budget::new(config.limits.request_memory, "--request-memory-mb"),
             jobs: Budget::new(config.limits.job_memory, "--job-memory-mb"),
@@ -229,7 +233,17 @@ impl App {
     /// The laws of the database, with the ships that a ship is compared with: all of them where
     /// they are few, else those of its category that are most similar to it.
     pub(crate) async fn zoo_around(&self, target: &Vessel) -> Result<Arc<Zoo>> {
-        Ok(self.0.catalogue.around(self.archive(), target).await?)
+        Ok(self.0.catalogue.around(self.archive(), target, MOST).await?)
+    }
+
+    /// The same with no more ships than a page shows, where they are many.
+    pub(crate) async fn zoo_shown(&self, target: &Vessel) -> Result<Arc<Zoo>> {
+        Ok(self.0.catalogue.around(self.archive(), target, SIMILAR).await?)
+    }
+
+    /// What versions say of the standard manoeuvres, as pages show it.
+    pub(crate) fn manoeuvres(&self) -> Arc<KnownManoeuvres> {
+        Arc::clone(&self.0.manoeuvres)
     }
 
     /// A law of the database.

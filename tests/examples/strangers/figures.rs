@@ -14,6 +14,16 @@ const NOT_REACHED: f64 = 1.6;
 const LEAST_DEG: f64 = 0.5;
 
 impl Figures {
+    /// Of the three figures.
+    pub fn new(figures: [Option<f64>; 3]) -> Self {
+        Self(figures)
+    }
+
+    /// Whether all are reached.
+    pub fn complete(&self) -> bool {
+        self.0.iter().all(Option::is_some)
+    }
+
     /// The weighted mean of the logarithms; where one has no figure, the other's.
     pub fn between(&self, other: &Self, share: f64) -> Self {
         Self(std::array::from_fn(|k| match (self.0[k], other.0[k]) {

@@ -1,33 +1,28 @@
 //! Each ship of the zoo in turn is a stranger, of which particulars alone are known: what do the
 //! other ships' models, carried over, say of its manoeuvres, and is the most similar one the best?
-//! `cargo run --release -p sistership-tests --example strangers`; docs/evidence/strangers.md has
-//! what came out.
+//! `cargo run --release -p sistership-tests --example strangers`; `-- misfit` prints how far sources
+//! and estimates are from the truth in accelerations, `-- work` and `-- judgement` what one zigzag
+//! and four trials make of each prior. docs/evidence/strangers.md has what came out.
 
 #![allow(clippy::unwrap_used)]
 
 mod figures;
+mod misfit;
+mod sailing;
+mod ships;
 mod statistics;
+mod with_trials;
 
 use std::sync::Arc;
 
 use sistership_empirical::{LAW, Library, estimate};
-use sistership_estimate::similarity::{CharacteristicVector, Definition};
 use sistership_estimate::transfer::transfer;
 use sistership_model::categories::comparable;
 use sistership_model::{Model, Vessel, Zoo};
 
 use figures::{Figures, error, sailed};
+use ships::{MEASURES, bare, kin, likeness};
 use statistics::{bootstrap, mean, median, rank_correlation};
-
-/// Ships that are one hull at several scales or in several hands, or sisters that were identified
-/// together: none may be the source of its own kin.
-const KIN: [&[&str]; 5] = [
-    &["kcs", "kcs-2m", "kcs-3m"],
-    &["kvlcc2", "kvlcc2-7m"],
-    &["sr108", "s175-3m5"],
-    &["gunnerus-29m", "gunnerus-34m"],
-    &["fs-bitumen-1", "fs-bitumen-2"],
-];
 
 /// A source's prediction for a stranger.
 struct Candidate {
@@ -46,11 +41,16 @@ struct Stranger {
     estimated: Option<Figures>,
 }
 
-/// Measures of similarity, by name.
-const MEASURES: [&str; 4] =
-    ["correlation, Mei", "correlation, Kanazawa", "difference, Mei", "difference, Kanazawa"];
-
 fn main() {
+    match std::env::args().nth(1).as_deref() {
+        Some("misfit") => misfit::run(),
+        Some("work") => with_trials::run(true),
+        Some("judgement") => with_trials::run(false),
+        _ => particulars_alone(),
+    }
+}
+
+fn particulars_alone() {
     let (zoo, library) = (Zoo::embedded().unwrap(), Library::embedded().unwrap());
     let ships: Vec<(Arc<Vessel>, Model)> = zoo
         .vessels()
@@ -67,10 +67,6 @@ fn main() {
     measures(&strangers);
     priors(&strangers, 0, false);
     priors(&strangers, 3, true);
-}
-
-fn kin(a: &str, b: &str) -> bool {
-    a == b || KIN.iter().any(|hull| hull.contains(&a) && hull.contains(&b))
 }
 
 fn stranger(
@@ -101,35 +97,6 @@ fn stranger(
     let estimated = estimate(library, &bare, law, speed).ok();
     let estimated = estimated.and_then(|estimated| sailed(zoo, &estimated.model));
     Some(Stranger { ship: target.name().to_owned(), own, candidates, estimated })
-}
-
-/// The ship with its speed, and without its models and trials.
-fn bare(vessel: &Vessel, model: &Model) -> Vessel {
-    let mut bare = vessel.clone();
-    bare.file.models = Vec::new();
-    bare.file.free_running = Vec::new();
-    if let Some(speed) = model.speed_m_s {
-        let quantity = sistership_model::quantity::Quantity::new(speed, "model");
-        bare.particulars.insert("service_speed_m_s".into(), quantity);
-    }
-    bare
-}
-
-/// By each measure, larger for ships that are more alike.
-fn likeness(a: &Vessel, b: &Vessel) -> Vec<Option<f64>> {
-    let vectors = |definition| {
-        (CharacteristicVector::of(a, definition), CharacteristicVector::of(b, definition))
-    };
-    let definitions = [Definition::Mei2019, Definition::Kanazawa2023];
-    let correlations = definitions.map(|definition| {
-        let (a, b) = vectors(definition);
-        a.correlation(&b)
-    });
-    let differences = definitions.map(|definition| {
-        let (a, b) = vectors(definition);
-        a.largest_difference(&b).map(|(_, difference)| -difference)
-    });
-    correlations.into_iter().chain(differences).collect()
 }
 
 fn best(stranger: &Stranger) -> Option<&Candidate> {

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 use sistership_choice::Ladder;
 use sistership_estimate::refine::{
-    Constraints, Method, Refinement, Request, Settings, StraightLine, refine,
+    Constraints, Method, Prior, Refinement, Request, Settings, StraightLine, refine,
 };
 use sistership_estimate::similarity::RankedSource;
 use sistership_estimate::source::{Similarity, best_source, similar};
@@ -24,7 +24,7 @@ use crate::failure::Failure;
 use crate::named;
 use crate::output::{self, count, note};
 use crate::trials::{self, ReadTrial};
-use crate::values::{method, positive};
+use crate::values::{method, positive, prior};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -62,6 +62,10 @@ pub struct RefineArguments {
     /// `trajectory` (simulated segments) or `cma-es` (simulated segments by a random search, slow).
     #[arg(long, value_name = "NAME", value_parser = method)]
     method: Option<Method>,
+    /// What the prior is about: `source`, which it is where absent, or `mixture`, the source moved
+    /// towards the estimate from particulars.
+    #[arg(long, value_name = "NAME", value_parser = prior)]
+    prior: Option<Prior>,
     /// Settings of the refinement (YAML); the flags below win over it.
     #[arg(long, value_name = "FILE.yaml")]
     settings: Option<PathBuf>,
@@ -191,12 +195,13 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     })
 }
 
-/// Whether neither source, law nor method is named, and nothing that only some methods keep.
+/// Whether neither source, law, method nor another prior is named, and nothing that only some methods keep.
 fn is_plain(arguments: &RefineArguments, settings: &Settings) -> bool {
     let unnamed = arguments.source.as_deref().is_none_or(|source| source == "auto");
     unnamed
         && arguments.method.is_none()
         && arguments.settings.is_none()
+        && settings.prior == Prior::Source
         && settings.constraints.is_empty()
 }
 
@@ -228,6 +233,7 @@ fn settings(arguments: &RefineArguments) -> Result<Settings, Failure> {
     let mut settings =
         arguments.settings.as_deref().map(settings_file).transpose()?.unwrap_or_default();
     settings.method = arguments.method.unwrap_or(settings.method);
+    settings.prior = arguments.prior.unwrap_or(settings.prior);
     settings.restart_s = arguments.restart_s.or(settings.restart_s);
     settings.difference_s = arguments.difference_s.or(settings.difference_s);
     arguments.constrain.iter().for_each(|constrain| constrain.add_to(&mut settings.constraints));

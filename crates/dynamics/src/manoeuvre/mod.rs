@@ -18,7 +18,9 @@ pub use helm::{Manoeuvre, Sailed, sail_together};
 pub use pull_out::{PullOut, pull_out};
 pub use reversing::{NotReversing, check_reversing};
 pub use spiral::spiral;
-pub use standard::{STANDARD, StandardManoeuvres, Turn, Zigzag, standard, standard_of_sisters};
+pub use standard::{
+    STANDARD, StandardManoeuvres, Turn, Zigzag, standard, standard_of_sisters, standard_with_tracks,
+};
 pub use stopping::{AsternOrder, NoStopping, Stopping, stop};
 
 use crate::envelope::Stopped;

@@ -109,6 +109,17 @@ pub fn standard(ship: &Ship, settings: &ManoeuvreSettings) -> StandardManoeuvres
     standard_of_sisters(ship, &[&[]], settings).remove(0)
 }
 
+/// Sails them as [`standard`] does, and gives the tracks as well, in the order of [`STANDARD`]; none
+/// of one that diverged.
+pub fn standard_with_tracks(
+    ship: &Ship,
+    settings: &ManoeuvreSettings,
+) -> (StandardManoeuvres, Vec<Option<Trajectory>>) {
+    let sailed = sail_together(ship, &STANDARD.map(|manoeuvre| (manoeuvre, &[][..])), settings);
+    let tracks = sailed.iter().map(|sailed| Some(sailed.as_ref().ok()?.track.clone())).collect();
+    (judged(ship, settings, sailed.into_iter()), tracks)
+}
+
 /// Sails the standard manoeuvres with every sister in lockstep, each given by its coefficients, as
 /// [`standard`] would.
 pub fn standard_of_sisters(

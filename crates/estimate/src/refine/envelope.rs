@@ -20,7 +20,7 @@ use crate::transfer::ready;
 use sistership_regression::Moments;
 
 /// What a source says where a model will be used.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct OperatingEnvelope {
     /// The source, for people.
     pub source: String,
@@ -28,12 +28,16 @@ pub(super) struct OperatingEnvelope {
     pub law: String,
     /// Whether it knows of roll.
     pub roll: bool,
+    /// Revolutions at which it approaches, 1/s; 0 where it states none.
+    pub n_rps: f64,
+    /// How it was moved to what another model says, for people.
+    pub mixed: Option<String>,
     /// Samples that go together.
     pub groups: Vec<SampleGroup>,
 }
 
 /// The samples of a trial or of a manoeuvre, with the source's accelerations at each.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct SampleGroup {
     /// States and inputs; time only counts them.
     pub samples: Trial,
@@ -92,8 +96,40 @@ impl OperatingEnvelope {
             source: source.name.clone(),
             law: law.name.clone(),
             roll: law.has_roll(),
+            n_rps: source.revolutions_rps.unwrap_or(0.0),
+            mixed: None,
             groups,
         })
+    }
+
+    /// The same states, where the accelerations of each axis are moved by a share of the way to
+    /// what another model says there, at as large a part of its own revolutions.
+    ///
+    /// # Errors
+    /// The other model cannot be made ready, or does not know a state.
+    pub fn moved_to(
+        &self,
+        (model, law): (&Model, &Law),
+        shares: &[f64; 4],
+        trials: &[&Trial],
+    ) -> Result<Self, RefineError> {
+        let ship = ready(model, law, trials)?;
+        let asked = SourceResponse::new(&ship, model, law);
+        let mut moved = self.clone();
+        for group in &mut moved.groups {
+            let mut points = asked.recorded(&group.samples);
+            for (_, n_rps) in points.iter_mut().filter(|_| self.n_rps > 0.0) {
+                *n_rps *= asked.n_rps / self.n_rps;
+            }
+            let Some(rates) = asked.rates(&points, group.samples.depth_m) else {
+                let message = format!("`{}` says nothing of some state", model.name);
+                return Err(RefineError::Data(message));
+            };
+            for ((own, other), share) in group.rates.iter_mut().zip(&rates).zip(shares) {
+                own.iter_mut().zip(other).for_each(|(own, other)| *own += share * (other - *own));
+            }
+        }
+        Ok(moved)
     }
 
     /// The statistics of what the source says, as a law's regressions see it: by group and
@@ -103,6 +139,16 @@ impl OperatingEnvelope {
     /// The law takes something that the trials do not record.
     pub fn moments(&self, blocks: &Blocks) -> Result<Vec<Vec<Moments>>, RefineError> {
         self.groups.iter().map(|group| group.moments(blocks)).collect()
+    }
+}
+
+#[cfg(test)]
+impl OperatingEnvelope {
+    /// Sum of the squares by which accelerations of an axis differ at the same states.
+    pub fn distance(&self, other: &Self, axis: Axis) -> f64 {
+        let pairs = self.groups.iter().zip(&other.groups);
+        let values = pairs.flat_map(|(one, other)| one.rate(axis).iter().zip(other.rate(axis)));
+        values.map(|(one, other)| (one - other).powi(2)).sum()
     }
 }
 
@@ -169,6 +215,12 @@ impl<'a> SourceResponse<'a> {
     fn group(&self, depth_m: Option<f64>, mut points: Vec<OperatingPoint>) -> Option<SampleGroup> {
         points.retain(|point| self.knows(point));
         points.iter_mut().for_each(|(state, _)| state[at::PSI] = 0.0);
+        let rates = self.rates(&points, depth_m).filter(|_| !points.is_empty())?;
+        Some(SampleGroup { samples: self.samples(&points, depth_m), rates, weight: 1.0 })
+    }
+
+    /// Its accelerations by axis; none where one is not finite.
+    fn rates(&self, points: &[OperatingPoint], depth_m: Option<f64>) -> Option<[Vec<f64>; 4]> {
         let mut work = Work::default();
         let rate = |point: &OperatingPoint| {
             self.ship.rate_with(&point.0, &self.inputs(point, depth_m), &mut work)
@@ -176,12 +228,7 @@ impl<'a> SourceResponse<'a> {
         let rates: Vec<StateVector> = points.iter().map(rate).collect();
         let of = |place: usize| rates.iter().map(|rate| rate[place]).collect::<Vec<f64>>();
         let rates = [at::U, at::V, at::P, at::R].map(of);
-        let finite = rates.iter().flatten().all(|rate| rate.is_finite());
-        (finite && !points.is_empty()).then(|| SampleGroup {
-            samples: self.samples(&points, depth_m),
-            rates,
-            weight: 1.0,
-        })
+        rates.iter().flatten().all(|rate| rate.is_finite()).then_some(rates)
     }
 
     fn inputs(&self, (state, n_rps): &OperatingPoint, depth_m: Option<f64>) -> Inputs {

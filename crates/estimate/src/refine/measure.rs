@@ -1,5 +1,7 @@
 //! What a prior measures a change of coefficients by.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
 use sistership_model::Model;
 use sistership_model::law::Law;
@@ -21,8 +23,10 @@ pub(super) enum PriorMeasure {
     /// wrong beyond the trials: in the sizes of the envelope it takes more to move it than a linear
     /// one. docs/decisions/0006 has the evidence.
     Envelope(OperatingEnvelope),
+    /// What a mixture says over the envelope, jointly; its model has its values already.
+    Mixture(OperatingEnvelope),
     /// What a source of another law says over the envelope, jointly.
-    Source(OperatingEnvelope),
+    Source(Arc<OperatingEnvelope>),
 }
 
 impl PriorMeasure {
@@ -50,6 +54,9 @@ impl PriorMeasure {
         match self {
             Self::Trials => {}
             Self::Envelope(envelope) => sized(blocks, &envelope.moments(blocks)?, trials),
+            Self::Mixture(envelope) => {
+                SourceRegression::new(envelope, blocks, model)?.hold(blocks, trials);
+            }
             Self::Source(envelope) => {
                 let imitation = SourceRegression::new(envelope, blocks, model)?;
                 imitation.fill(blocks, model);
@@ -68,9 +75,12 @@ impl PriorMeasure {
                  in the source's standard manoeuvres too"
                     .to_owned(),
             ),
+            Self::Mixture(envelope) => envelope.mixed.clone(),
             Self::Source(envelope) => {
                 let blocks = Blocks::new(model, law).ok()?;
-                Some(SourceRegression::new(envelope, &blocks, model).ok()?.words(&blocks, &law.name))
+                let regression = SourceRegression::new(envelope, &blocks, model).ok()?;
+                let words = regression.words(&blocks, &law.name);
+                Some([words].into_iter().chain(envelope.mixed.clone()).collect::<Vec<_>>().join("; "))
             }
         }
     }

@@ -1,23 +1,26 @@
 //! The whole refinement: an estimator gives candidates from the source outwards, and the one whose
 //! simulations of manoeuvres left out are best is taken.
 
+use std::sync::Arc;
+
 use sistership_dynamics::error::standard_deviations;
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel};
 
-use super::across::{self, SourceRegression};
+use super::across::{self, SourceEnvelopes, SourceRegression};
 use super::blocks::Blocks;
 use super::candidate::CandidateFit;
 use super::estimators::estimator;
 use super::finish::finish;
 use super::measure::PriorMeasure;
+use super::mixture;
 use super::outcome::{RefineError, Refinement};
 use super::parts::parts;
 use super::problem::{Problem, for_simulation};
 use super::progress::{MonotoneProgress, Progress, Watch, step};
 use super::ridge_candidates::source_candidate;
-use super::settings::Settings;
+use super::settings::{Prior, Settings};
 use super::thresholds::SELECTION;
 use super::unrecorded;
 use super::variant::{Variant, variants};
@@ -59,22 +62,25 @@ pub fn refine_watched(
     progress: Progress<'_>,
     watch: Watch<'_>,
 ) -> Result<Refinement, RefineError> {
-    with_candidates(request, Extent::Estimator, progress, watch, finish)
+    let known = SourceEnvelopes::default();
+    with_candidates((request, &known), Extent::Estimator, progress, watch, finish)
 }
 
 /// What the source as it is, and the best fit to the extent asked for, give on manoeuvres left out.
-/// No model is made.
+/// No model is made. What sources say is `known` where it has been asked for the same trials.
 ///
 /// # Errors
 /// As [`refine`].
 pub fn weigh(
-    request: &Request<'_>,
+    (request, known): (&Request<'_>, &SourceEnvelopes),
     extent: Extent,
     progress: Progress<'_>,
 ) -> Result<Vec<Weighed>, RefineError> {
-    with_candidates(request, extent, progress, &|_| (), |problem, candidates, variants, _| {
-        Ok(weighed(problem, &candidates, variants))
-    })
+    let weigh = |problem: &Problem<'_>,
+                 fits: Vec<CandidateFit>,
+                 variants: &[Variant],
+                 _: Progress<'_>| Ok(weighed(problem, &fits, variants));
+    with_candidates((request, known), extent, progress, &|_| (), weigh)
 }
 
 /// As [`weigh`], and as [`refine`] where what it tells is wanted.
@@ -82,7 +88,7 @@ pub fn weigh(
 /// # Errors
 /// As [`refine`].
 pub fn refine_wanted(
-    request: &Request<'_>,
+    (request, known): (&Request<'_>, &SourceEnvelopes),
     wanted: impl FnOnce(&[Weighed]) -> Result<bool, RefineError>,
     progress: Progress<'_>,
 ) -> Result<(Vec<Weighed>, Option<Refinement>), RefineError> {
@@ -97,13 +103,13 @@ pub fn refine_wanted(
         };
         Ok((weighed, refinement))
     };
-    with_candidates(request, Extent::Estimator, progress, &|_| (), both)
+    with_candidates((request, known), Extent::Estimator, progress, &|_| (), both)
 }
 
 /// Sets the problem up, gives its candidates to the extent asked for, and does with them what
 /// `then` does.
 fn with_candidates<T>(
-    request: &Request<'_>,
+    (request, known): (&Request<'_>, &SourceEnvelopes),
     extent: Extent,
     progress: Progress<'_>,
     watch: Watch<'_>,
@@ -118,11 +124,15 @@ fn with_candidates<T>(
     let (judged, whole) = divided(request)?;
     let progress = MonotoneProgress::new(progress);
     let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
-    let settings = resolved(request.settings, request.target.particular("lpp_m"), &whole);
+    let mut settings = resolved(request.settings, request.target.particular("lpp_m"), &whole);
+    if settings.prior == Prior::Mixture {
+        let asked = settings.regressions_sha256.as_deref();
+        settings.regressions_sha256 = Some(mixture::regressions_sha256(asked)?);
+    }
     let estimator = estimator(settings.method);
     let equations = estimator.equations(&settings);
     let parts = parts(&whole, request.law, equations, &settings);
-    let (mut transferred, measure) = starting(request, &whole, !parts.is_empty())?;
+    let (mut transferred, measure) = starting((request, known), &whole, !parts.is_empty())?;
     if settings.steering_from_trials {
         let window = match settings.steering_above_noise {
             true => RateWindow::AboveNoise,
@@ -160,11 +170,15 @@ fn with_candidates<T>(
 /// What the prior is about: the source carried over, by its own law or as another law says what it
 /// says.
 fn starting(
-    request: &Request<'_>,
+    (request, known): (&Request<'_>, &SourceEnvelopes),
     whole: &[&Trial],
     in_parts: bool,
 ) -> Result<(Model, PriorMeasure), RefineError> {
     let Request { target, source, source_law, law, .. } = *request;
+    let is_mixture = request.settings.prior == Prior::Mixture;
+    if is_mixture {
+        mixture::check(source, target)?;
+    }
     let approach = approach_of(whole);
     let Some(own) = source_law.filter(|own| own.name != law.name) else {
         let same = source.ship == target.name();
@@ -173,10 +187,17 @@ fn starting(
         if request.settings.recorded_terms {
             unrecorded::forget(&mut carried, law, whole);
         }
+        if is_mixture {
+            return mixture::of_same_law(carried, law, target, whole);
+        }
         let measure = PriorMeasure::own(&carried, law, whole, in_parts);
         return Ok((carried, measure));
     };
-    let (mut model, envelope) = across::begun((source, own), law, target, approach, whole)?;
+    let (mut model, mut envelope) =
+        across::begun((source, own), law, target, approach, (whole, known))?;
+    if is_mixture {
+        envelope = Arc::new(mixture::mixed(&envelope, target, model.speed_m_s, whole)?);
+    }
     if request.settings.recorded_terms {
         unrecorded::forget(&mut model, law, whole);
     }

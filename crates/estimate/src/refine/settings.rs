@@ -55,6 +55,40 @@ impl Method {
     }
 }
 
+/// What the prior is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Prior {
+    /// The source, carried over to the ship.
+    #[default]
+    Source,
+    /// The source and the estimate from particulars, weighted by how far each was from ships that
+    /// were left out (docs/evidence/strangers.md).
+    Mixture,
+}
+
+impl Prior {
+    /// Every prior.
+    pub const ALL: [Self; 2] = [Self::Source, Self::Mixture];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Source => "source",
+            Self::Mixture => "mixture",
+        }
+    }
+
+    /// The prior of that name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|prior| prior.name() == name)
+    }
+
+    fn is_source(&self) -> bool {
+        *self == Self::Source
+    }
+}
+
 /// A range in which (lambda, alpha) are tuned.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -78,6 +112,13 @@ pub struct Range {
 pub struct Settings {
     /// The estimator.
     pub method: Method,
+    /// What the prior is about.
+    #[serde(skip_serializing_if = "Prior::is_source")]
+    pub prior: Prior,
+    /// SHA-256 of the regressions by which a `mixture` estimates the ship. Where absent, those of
+    /// the program.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub regressions_sha256: Option<String>,
     /// Tuning ranges from the source outwards; each gives an option, the best of which is chosen.
     #[schemars(length(min = 1, max = 20))]
     pub ranges: Vec<Range>,
@@ -182,6 +223,8 @@ impl Default for Settings {
         };
         Self {
             method: Method::Published,
+            prior: Prior::Source,
+            regressions_sha256: None,
             ranges: (0..=6).map(range).collect(),
             lambda_count: 100,
             difference_s: None,
@@ -239,6 +282,9 @@ impl Settings {
             if !(0.0..=1.0).contains(&range.alpha_max) {
                 return refuse("ranges", "alpha_max must be from 0 to 1");
             }
+        }
+        if self.prior.is_source() && self.regressions_sha256.is_some() {
+            return refuse("regressions_sha256", "belongs to `prior: mixture`");
         }
         if !(2..=1000).contains(&self.lambda_count) {
             return refuse("lambda_count", "must be from 2 to 1000");

@@ -63,6 +63,37 @@ pub(super) const SELECTION: SelectionThresholds = SelectionThresholds {
     roll_strength_count: 50,
 };
 
+/// How far what is said of a ship's acceleration is from the truth, by the mean square of that
+/// acceleration over its standard manoeuvres, dimensionless.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Misfit {
+    /// Mean square of the source's error.
+    pub source: f64,
+    /// That of the estimate's.
+    pub estimate: f64,
+    /// Mean product of both.
+    pub common: f64,
+}
+
+/// How the prior's parts are weighted.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MixtureThresholds {
+    /// `C_a`: covariance of both errors by axis, in the order of `Axis`; none of roll, of which an
+    /// estimate says nothing. Source: medians over the zoo's ships for work, each left out
+    /// (`cargo run -p sistership-tests --example strangers -- misfit`, docs/evidence/strangers.md).
+    pub misfit: [Option<Misfit>; 4],
+}
+
+/// The values.
+pub(super) const MIXTURE: MixtureThresholds = MixtureThresholds {
+    misfit: [
+        Some(Misfit { source: 6.744, estimate: 0.707, common: -0.162 }),
+        Some(Misfit { source: 3.139, estimate: 2.339, common: 0.798 }),
+        None,
+        Some(Misfit { source: 7.824, estimate: 4.620, common: 3.040 }),
+    ],
+};
+
 /// What a source is asked, and how far its answers are believed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SourceThresholds {

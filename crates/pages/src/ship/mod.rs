@@ -27,7 +27,7 @@ use crate::shell::Shell;
 /// Lines of each list.
 const LINES: i64 = 50;
 /// Similar ships that are shown.
-const SIMILAR: usize = 5;
+pub const SIMILAR: usize = 5;
 
 /// What the page is made of.
 pub struct Gathered {

@@ -8,6 +8,7 @@ use sistership_report::numbers::{fixed, known, significant};
 const WIDE: f64 = 0.5;
 
 /// A figure of a manoeuvre.
+#[derive(Debug)]
 pub(super) struct FigureRow {
     pub name: String,
     pub unit: String,
@@ -17,6 +18,7 @@ pub(super) struct FigureRow {
 }
 
 /// A criterion of IMO MSC.137(76).
+#[derive(Debug)]
 pub(super) struct CriterionRow {
     pub name: String,
     pub unit: String,

@@ -32,15 +32,15 @@ pub(super) async fn ships(
     Ok(page.of(found, key))
 }
 
-/// The names of the ships of a ship's category that are most similar to it, the most similar
-/// first.
+/// The ships of a ship's category that are most similar to it, the most similar first.
 pub async fn nearest(
     archive: &Archive,
     target: &Vessel,
     count: usize,
-) -> Result<Vec<String>, StoreError> {
-    let found = ranked(archive, &ShipSearch::default(), target, definition_for(target)).await?;
-    Ok(found.into_iter().take(count).map(|ship| ship.name).collect())
+) -> Result<Vec<FoundShip>, StoreError> {
+    let mut found = ranked(archive, &ShipSearch::default(), target, definition_for(target)).await?;
+    found.truncate(count);
+    Ok(found)
 }
 
 async fn ranked(

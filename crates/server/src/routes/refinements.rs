@@ -4,7 +4,7 @@ use axum::extract::State;
 use axum::response::Response;
 use serde::Deserialize;
 use serde_json::Value;
-use sistership_estimate::refine::Settings;
+use sistership_estimate::refine::{Prior, Settings};
 use sistership_store::{Job, StoreError};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -84,10 +84,12 @@ pub(super) async fn ask(app: &App, asked: &Value) -> Result<Job> {
 }
 
 impl RefinementRequest {
-    /// Whether neither source nor law is named, nor what only some methods keep.
+    /// Whether neither source nor law is named, nor another prior, nor what only some methods keep.
     fn is_open(&self) -> bool {
         let source = self.source.as_deref().is_none_or(|source| source == AUTO);
-        source && self.law.is_none() && self.settings.constraints.is_empty()
+        let settings = &self.settings;
+        let is_source = settings.prior == Prior::Source;
+        source && self.law.is_none() && settings.constraints.is_empty() && is_source
     }
 }
 

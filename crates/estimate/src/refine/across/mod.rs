@@ -5,7 +5,10 @@
 //! used ([`OperatingEnvelope`]): mean and covariance of that regression are the prior
 //! ([`SourceRegression`]). docs/decisions/0015 has the reasons.
 
+mod source_envelopes;
 mod source_regression;
+
+use std::sync::Arc;
 
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
@@ -14,6 +17,7 @@ use sistership_model::{Model, Vessel};
 use super::envelope::OperatingEnvelope;
 use super::outcome::RefineError;
 use crate::transfer::{Approach, blank_of, transfer};
+pub use source_envelopes::SourceEnvelopes;
 pub(super) use source_regression::SourceRegression;
 
 /// A source carried over to the target by its own law, and a model of the law to be fitted that
@@ -23,17 +27,17 @@ pub(super) fn begun(
     law: &Law,
     target: &Vessel,
     approach: Option<Approach>,
-    trials: &[&Trial],
-) -> Result<(Model, OperatingEnvelope), RefineError> {
+    (trials, known): (&[&Trial], &SourceEnvelopes),
+) -> Result<(Model, Arc<OperatingEnvelope>), RefineError> {
     let carried = if source.ship == target.name() {
         source.clone()
     } else {
         transfer(source, own, target, approach)
     };
-    let envelope = OperatingEnvelope {
-        source: source.name.clone(),
-        ..OperatingEnvelope::new(&carried, own, trials)?
-    };
+    let envelope = known.of((source, own), || {
+        let envelope = OperatingEnvelope::new(&carried, own, trials)?;
+        Ok(OperatingEnvelope { source: source.name.clone(), ..envelope })
+    })?;
     let mut model = blank_of(law, target, &carried, approach)?;
     (model.speed_m_s, model.revolutions_rps) = (carried.speed_m_s, carried.revolutions_rps);
     model.steering = carried.steering;

@@ -42,6 +42,19 @@ impl<'a> SourceRegression<'a> {
         Ok(imitation)
     }
 
+    /// The same of another envelope, by the same ridge.
+    ///
+    /// # Errors
+    /// As [`SourceRegression::new`].
+    pub fn of<'b>(
+        &self,
+        envelope: &'b OperatingEnvelope,
+        blocks: &Blocks,
+    ) -> Result<SourceRegression<'b>, RefineError> {
+        let (moments, zero) = (envelope.moments(blocks)?, self.zero.clone());
+        Ok(SourceRegression { envelope, moments, ridge: self.ridge, zero })
+    }
+
     /// The ridge by which groups left out are foretold best.
     fn best_ridge(&self, blocks: &Blocks) -> f64 {
         let count = self.moments.len().min(SOURCE.folds);

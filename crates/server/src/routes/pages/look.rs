@@ -21,7 +21,7 @@ pub(super) async fn fleet(State(app): State<App>, Params(query): Asked) -> Resul
 
 pub(super) async fn ship(State(app): State<App>, Place(ship): Place<Name>) -> Result<Response> {
     let gathered = pages::ship::gather(app.archive(), shell(&app), &ship).await?;
-    let zoo = app.zoo_around(gathered.vessel()).await?;
+    let zoo = app.zoo_shown(gathered.vessel()).await?;
     Ok(answer(app.compute(move || gathered.html(&zoo)).await??))
 }
 
@@ -30,7 +30,8 @@ pub(super) async fn version(
     Place((ship, number)): Place<(Name, Number)>,
 ) -> Result<Response> {
     let gathered = pages::version::gather(app.archive(), shell(&app), &ship, number.get()).await?;
-    Ok(answer(app.compute(move || gathered.html()).await??))
+    let known = app.manoeuvres();
+    Ok(answer(app.compute(move || gathered.html(&known)).await??))
 }
 
 pub(super) async fn trial(State(app): State<App>, Place(id): Place<Id>) -> Result<Response> {

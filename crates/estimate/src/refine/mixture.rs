@@ -1,0 +1,182 @@
+//! The prior as a mixture: what the source says of the ship's accelerations and what the estimate
+//! from its particulars says, each a Gaussian whose covariance was learned by leaving ships out.
+
+use std::sync::LazyLock;
+
+use sistership_empirical::{LAW, Library, estimate};
+use sistership_model::coefficient::Axis;
+use sistership_model::law::Law;
+use sistership_model::trial::Trial;
+use sistership_model::{FileError, Model, Vessel};
+
+use super::across::SourceRegression;
+use super::blocks::Blocks;
+use super::envelope::OperatingEnvelope;
+use super::measure::PriorMeasure;
+use super::outcome::RefineError;
+use super::thresholds::{MIXTURE, Misfit};
+
+/// What estimates are made of.
+struct Regressions {
+    library: Library,
+    law: Law,
+}
+
+static REGRESSIONS: LazyLock<Result<Regressions, FileError>> = LazyLock::new(|| {
+    let text = include_str!("../../../../models/laws/mmg.yaml");
+    Ok(Regressions { library: Library::embedded()?, law: Law::parse(LAW, text)? })
+});
+
+fn regressions() -> Result<&'static Regressions, RefineError> {
+    REGRESSIONS.as_ref().map_err(|error| RefineError::Law(error.to_string()))
+}
+
+/// The regressions that a mixture is made with, so that a version records them.
+///
+/// # Errors
+/// Others are asked for than this program has.
+pub(super) fn regressions_sha256(asked: Option<&str>) -> Result<String, RefineError> {
+    let own = &regressions()?.library.sha256;
+    match asked {
+        Some(asked) if asked != own => Err(RefineError::Setting {
+            field: "regressions_sha256".into(),
+            message: format!("this program estimates by the regressions {own}"),
+        }),
+        _ => Ok(own.clone()),
+    }
+}
+
+/// Refuses a source that is the ship's own model: errors of other ships say nothing of it.
+///
+/// # Errors
+/// It is.
+pub(super) fn check(source: &Model, target: &Vessel) -> Result<(), RefineError> {
+    if source.ship != target.name() {
+        return Ok(());
+    }
+    let message = format!("`mixture` is of a source of another ship than {}", target.name());
+    Err(RefineError::Setting { field: "prior".into(), message })
+}
+
+/// A model carried over by the law that is fitted, moved towards the estimate, and what it says.
+///
+/// # Errors
+/// As [`mixed`]; the model cannot sail.
+pub(super) fn of_same_law(
+    mut model: Model,
+    law: &Law,
+    target: &Vessel,
+    trials: &[&Trial],
+) -> Result<(Model, PriorMeasure), RefineError> {
+    let envelope = OperatingEnvelope::new(&model, law, trials)?;
+    let mixed = mixed(&envelope, target, model.speed_m_s, trials)?;
+    moved(&mut model, law, &envelope, &mixed)?;
+    Ok((model, PriorMeasure::Mixture(mixed)))
+}
+
+/// What a source says, moved towards what the estimate says by its shares.
+///
+/// # Errors
+/// The ship's particulars do not suffice for an estimate.
+pub(super) fn mixed(
+    envelope: &OperatingEnvelope,
+    target: &Vessel,
+    speed_m_s: Option<f64>,
+    trials: &[&Trial],
+) -> Result<OperatingEnvelope, RefineError> {
+    let Regressions { library, law } = regressions()?;
+    let speed_m_s = speed_m_s.ok_or_else(|| {
+        RefineError::Data(format!("{}: the speed of the estimate is not known", target.name()))
+    })?;
+    let estimate = estimate(library, target, law, speed_m_s)
+        .map_err(|error| RefineError::Data(format!("no estimate for the mixture: {error}")))?;
+    let moved = envelope.moved_to((&estimate.model, law), &MIXTURE.misfit.map(share), trials)?;
+    Ok(OperatingEnvelope { mixed: Some(words()), ..moved })
+}
+
+/// The estimate's share in the mean of least variance: with `C` the covariance of both errors,
+/// `C^-1 1 / (1' C^-1 1)` (Bates and Granger 1969, Eq. 2).
+fn share(misfit: Option<Misfit>) -> f64 {
+    let Some(Misfit { source, estimate, common }) = misfit else { return 0.0 };
+    ((source - common) / (source + estimate - 2.0 * common)).clamp(0.0, 1.0)
+}
+
+/// Moves a model's coefficients by what the mixture says less what the source says, both regressed
+/// on the law's terms alike: where the estimate has no share the source stays as it is.
+fn moved(
+    model: &mut Model,
+    law: &Law,
+    own: &OperatingEnvelope,
+    mixed: &OperatingEnvelope,
+) -> Result<(), RefineError> {
+    let blocks = Blocks::new(model, law)?;
+    let towards = SourceRegression::new(mixed, &blocks, model)?;
+    let from = towards.of(own, &blocks)?;
+    let (mut before, mut after) = (model.clone(), model.clone());
+    from.fill(&blocks, &mut before);
+    towards.fill(&blocks, &mut after);
+    for (name, quantity) in &mut model.coefficients {
+        quantity.value += after.coefficient(name) - before.coefficient(name);
+        quantity.source = format!("{}, moved towards the estimate", quantity.source);
+    }
+    Ok(())
+}
+
+/// The shares for people.
+fn words() -> String {
+    let one = |axis: Axis| format!("{axis} {:.2}", share(MIXTURE.misfit[axis as usize]));
+    let shares = [Axis::X, Axis::Y, Axis::N].map(one).join(", ");
+    format!(
+        "the prior is a mixture of the source and of the estimate from particulars, whose shares \
+         in the accelerations are {shares}"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::transfer::transfer;
+    use sistership_model::Zoo;
+
+    #[test]
+    fn shares_are_those_of_the_least_variance() {
+        let of = |source, estimate, common| share(Some(Misfit { source, estimate, common }));
+        assert_eq!(of(1.0, 1.0, 0.0), 0.5);
+        assert_eq!(of(4.0, 1.0, 0.0), 0.8);
+        assert_eq!(of(1.0, 9.0, 2.0), 0.0);
+        assert_eq!(share(None), 0.0);
+        // The mean square of the mean by its share is least there.
+        let square = |w: f64| (1.0 - w).powi(2) * 2.0 + w * w * 3.0 + 2.0 * w * (1.0 - w) * 0.5;
+        let best = of(2.0, 3.0, 0.5);
+        assert!(square(best) < square(best + 0.05) && square(best) < square(best - 0.05));
+    }
+
+    #[test]
+    fn coefficients_say_what_the_mixture_says() {
+        let zoo = Zoo::embedded().unwrap();
+        let source = zoo.model("kvlcc2").unwrap();
+        let (target, law) = (zoo.vessel("kcs").unwrap(), zoo.law(&source.law).unwrap());
+        let carried = transfer(&source, law, target, None);
+        let own = OperatingEnvelope::new(&carried, law, &[]).unwrap();
+        let (model, measure) = of_same_law(carried.clone(), law, target, &[]).unwrap();
+        let PriorMeasure::Mixture(mixed) = measure else { panic!("another measure") };
+        let said = own.moved_to((&model, law), &[1.0; 4], &[]).unwrap();
+        for axis in [Axis::X, Axis::Y, Axis::N] {
+            let before = own.distance(&mixed, axis);
+            assert!(before > 0.0, "{axis}: the estimate says the same");
+            assert!(said.distance(&mixed, axis) < 0.3 * before, "{axis}");
+        }
+    }
+
+    #[test]
+    fn a_ships_own_model_and_other_regressions_are_refused() {
+        let zoo = Zoo::embedded().unwrap();
+        let target = zoo.vessel("kvlcc2").unwrap();
+        assert!(check(&zoo.model("kvlcc2").unwrap(), target).is_err());
+        assert!(check(&zoo.model("mariner").unwrap(), target).is_ok());
+        let own = regressions_sha256(None).unwrap();
+        assert_eq!(regressions_sha256(Some(&own)).unwrap(), own);
+        assert!(regressions_sha256(Some("0")).unwrap_err().to_string().contains(&own));
+    }
+}
