@@ -4,11 +4,10 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use sistership_cli::sea_trials::TrialManoeuvre;
 use sistership_tests::server::TestServer;
 use tempfile::TempDir;
 
-use super::sea_trials::{csv, sailed, ship};
+use super::sea_trials::{csv, few, ship};
 
 /// The wheel alone in an empty environment runs the README's five lines.
 #[tokio::test(flavor = "multi_thread")]
@@ -16,12 +15,7 @@ async fn python_wheel() {
     let server = TestServer::sqlite().await;
     let folder = tempfile::tempdir().expect("a temporary folder");
     std::fs::write(folder.path().join("my-ship.yaml"), ship()).expect("written");
-    let trial = &sailed(&[TrialManoeuvre::Zigzag(20.0, 20.0)], 3)[0];
-    let text = String::from_utf8(csv(trial)).expect("text");
-    // One sample in two seconds is enough for these lines.
-    let rows = text.lines().skip(1).step_by(4);
-    let lines: Vec<&str> = text.lines().take(1).chain(rows).collect();
-    std::fs::write(folder.path().join("zigzag.csv"), lines.join("\n")).expect("written");
+    std::fs::write(folder.path().join("zigzag.csv"), csv(&few()[1])).expect("written");
     installed("lines", &server, folder).await;
 }
 
