@@ -5,44 +5,48 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use sistership_tests::server::TestServer;
-use tempfile::TempDir;
 
 use super::sea_trials::{csv, few, ship};
 
 /// The wheel alone in an empty environment runs the README's five lines.
 #[tokio::test(flavor = "multi_thread")]
 async fn python_wheel() {
-    let server = TestServer::sqlite().await;
     let folder = tempfile::tempdir().expect("a temporary folder");
     std::fs::write(folder.path().join("my-ship.yaml"), ship()).expect("written");
     std::fs::write(folder.path().join("zigzag.csv"), csv(&few()[1])).expect("written");
-    installed("lines", &server, folder).await;
+    let server = TestServer::sqlite().await;
+    installed("lines", folder.path(), Some(&server)).await;
 }
 
 /// The tour is executed, and its figures are what it says.
 #[tokio::test(flavor = "multi_thread")]
 async fn python_tour() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    if installed("ready", folder.path(), None).await.starts_with("skipped") {
+        return;
+    }
     let server = TestServer::sqlite().await;
-    installed("tour", &server, tempfile::tempdir().expect("a temporary folder")).await;
+    installed("tour", folder.path(), Some(&server)).await;
 }
 
-/// Runs `clients/python/tests/installed.py` in a folder and shows what it says.
-async fn installed(what: &'static str, server: &TestServer, folder: TempDir) {
-    let script = script();
+/// Runs `clients/python/tests/installed.py` in a folder; shows and gives what it says.
+async fn installed(what: &str, folder: &Path, server: Option<&TestServer>) -> String {
     let mut command = Command::new("python3");
     command
-        .args([Path::new("-B"), &script, Path::new(what)])
-        .current_dir(folder.path())
+        .args([Path::new("-B"), &script(), Path::new(what)])
+        .current_dir(folder)
         .env_remove("PYTHONPATH")
-        .env("SISTERSHIP_URL", server.url());
+        .env("SISTERSHIP_URL", server.map_or("", TestServer::url));
     let output = tokio::task::spawn_blocking(move || command.output()).await.expect("an end");
     let Ok(output) = output else {
         assert!(!required(), "there is no python3, and SISTERSHIP_REQUIRE_PIP=1");
         eprintln!("skipped: no python3");
-        return;
+        return "skipped".to_owned();
     };
-    eprint!("{}", String::from_utf8_lossy(&output.stdout));
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    eprint!("{said}");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    said
 }
 
 fn required() -> bool {

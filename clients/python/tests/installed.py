@@ -4,12 +4,13 @@ the server that `SISTERSHIP_URL` names:
 
     python installed.py lines | tour
 
+`python installed.py ready`, which needs neither, says why the tour would be left out.
+
 The tour's packages (70 MB) come from an index only where `SISTERSHIP_REQUIRE_PIP=1` asks for it;
 without it, what is not there is told and left out."""
 
 import ast
 import importlib.util
-import json
 import os
 import pathlib
 import re
@@ -26,6 +27,9 @@ INDEX = [*PIP, "download", "-q", "--no-deps", "--retries", "0", "--timeout", "5"
 BUILDS = ("import setuptools, importlib.util as u; "
           "assert u.find_spec('setuptools.command.bdist_wheel') or u.find_spec('wheel')")
 TOUR = ["pandas", "matplotlib", "nbclient", "ipykernel"]
+HELD = "import importlib.metadata as m; print(*(d.metadata['Name'] for d in m.distributions()))"
+# What `pip --python` needs.
+SINCE = "import pip; assert tuple(map(int, pip.__version__.split('.')[:2])) >= (22, 3)"
 TAIL = "\nprint(track['t_s'][-1], track['psi_rad'][-1])\n" \
        "import sistership_client; print(sistership_client.__file__)\n"
 
@@ -75,10 +79,9 @@ def environment(folder):
 def lines(folder):
     """The README's lines, by the wheel alone."""
     python = environment(folder / "alone")
-    into = [*PIP, "--python", python]
-    run([*into, "install", "-q", "--no-index", wheel(folder)])
-    held = json.loads(run([*into, "list", "--format", "json"]))
-    assert [package["name"] for package in held] == ["sistership-client"], held
+    run([*PIP, "--python", python, "install", "-q", "--no-index", wheel(folder)])
+    held = run([python, "-I", "-c", HELD]).split()
+    assert held == ["sistership-client"], held
     block = re.search(r"```python\n(.*?)```", (HERE / "README.md").read_text(), re.DOTALL).group(1)
     local = "http://127.0.0.1:8080"
     assert block.count(local) == 1 and len(block.splitlines()) == 6, block
@@ -93,10 +96,15 @@ def lines(folder):
           f"turned {heading_rad:.2f} rad in {duration_s:g} s")
 
 
-def tour(folder):
-    """The notebook, with packages from an index, or with those of this interpreter."""
+def ready(_):
+    """Whether the notebook's packages are here, or may be taken from an index."""
     need(REQUIRED or all(map(importlib.util.find_spec, TOUR)),
          f"the tour needs {', '.join(TOUR)}; SISTERSHIP_REQUIRE_PIP=1 takes them from an index")
+
+
+def tour(folder):
+    """The notebook, with packages from an index, or with those of this interpreter."""
+    ready(folder)
     if REQUIRED:
         python, path = environment(folder / "tour"), ""
         run([*PIP, "--python", python, "install", "-q", "--no-compile",
@@ -110,10 +118,11 @@ def tour(folder):
 
 def main():
     try:
-        need(runs([*PIP, "--python", sys.executable, "--version"]),
+        need(runs([sys.executable, "-c", SINCE]),
              "python3 has no pip of version 22.3 or later (Debian: apt-get install python3-pip)")
         with tempfile.TemporaryDirectory() as folder:
-            {"lines": lines, "tour": tour}[sys.argv[1]](pathlib.Path(folder).resolve())
+            asked = {"lines": lines, "tour": tour, "ready": ready}[sys.argv[1]]
+            asked(pathlib.Path(folder).resolve())
     except Skipped as reason:
         if REQUIRED:
             sys.exit(f"SISTERSHIP_REQUIRE_PIP is set, and {reason}")
