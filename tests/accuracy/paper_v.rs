@@ -22,10 +22,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use sistership_dynamics::recorded::{ReplaySettings, replay};
 use sistership_dynamics::{Method, Ship, Trajectory};
-use sistership_estimate::transfer::{Approach, transfer};
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, Zoo};
+use sistership_sources::transfer::{Approach, transfer};
 
 use published::{Block, TABLE_5};
 use refined::refinements;

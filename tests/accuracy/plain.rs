@@ -4,9 +4,9 @@
 use sistership_dynamics::Ship;
 use sistership_dynamics::error::{SquaredError, standard_deviations, standardised_mse};
 use sistership_dynamics::recorded::{ReplaySettings, replay};
-use sistership_estimate::source::{best_source, similar};
-use sistership_estimate::transfer::{approach_of, transfer};
 use sistership_model::{Model, Trial, Vessel, Zoo};
+use sistership_sources::source::{best_source, similar};
+use sistership_sources::transfer::{approach_of, transfer};
 use sistership_tests::binary;
 use sistership_tests::truth::ferry::ferry;
 use sistership_tests::truth::files::{vessel, write_trials, write_vessel};

@@ -1,9 +1,9 @@
 //! Mei et al. 2019, Tables 5 and 6, from Table 4; and SR108's sources by the three steps of
 //! Kanazawa 2023, 5.1.2.
 
-use sistership_estimate::similarity::{CharacteristicVector, Definition};
-use sistership_estimate::source::similar;
 use sistership_model::Zoo;
+use sistership_sources::similarity::{CharacteristicVector, Definition};
+use sistership_sources::source::similar;
 
 /// Table 5 as printed: the normalised vectors.
 const TABLE_5: [(&str, [f64; 5]); 5] = [

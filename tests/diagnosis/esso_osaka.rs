@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use sistership_diagnose::{Diagnosis, Request, Settings, diagnose};
 use sistership_estimate::refine::{self, Family, Method};
-use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::Trial;
 use sistership_model::law::Law;
 use sistership_model::trial::Channel;
+use sistership_sources::transfer::{approach_of, blank};
 use sistership_tests::{esso_osaka, shared};
 
 use sistership_tests::hidden_effects::baseline::{self, Baseline, library};

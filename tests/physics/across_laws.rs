@@ -4,9 +4,9 @@
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
 use sistership_dynamics::state::{RECORDED, at};
 use sistership_estimate::refine::{Family, Method, Refinement, Request, Settings, refine};
-use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
+use sistership_sources::transfer::{approach_of, blank};
 
 use super::{model, ready};
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Vessel, Zoo};
 
-use sistership_estimate::transfer::{approach_of, blank};
+use sistership_sources::transfer::{approach_of, blank};
 
 /// Laws that belong to no ship.
 const GENERAL: [&str; 3] = ["low-speed", "abkowitz", "abkowitz-roll"];

@@ -10,7 +10,7 @@ use crate::ladder::Ladder;
 use crate::search::{Search, search};
 use crate::thresholds::SEARCH;
 use sistership_estimate::refine::{Progress, RefineError, Refinement, Settings};
-use sistership_estimate::source::{Similarity, similar_with};
+use sistership_sources::source::{Similarity, similar_with};
 
 /// What is to be started.
 #[derive(Debug, Clone, Copy)]

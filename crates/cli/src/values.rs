@@ -6,8 +6,8 @@ use std::time::Duration;
 use clap::ValueEnum;
 use sistership_dynamics::Method as Integrator;
 use sistership_estimate::refine::{Method, Prior};
-use sistership_estimate::similarity::Definition;
 use sistership_export::{FORMATS, Format, by_name};
+use sistership_sources::similarity::Definition;
 
 /// Why a value does not read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

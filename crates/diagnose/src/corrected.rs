@@ -8,7 +8,7 @@ use sistership_model::effect::{ActsOn, AppliedEffect, TIME};
 use sistership_model::{Model, Trial};
 
 use super::Request;
-use sistership_estimate::transfer::ready;
+use sistership_sources::transfer::ready;
 
 pub(super) struct CorrectedRecords<'a>(Vec<Cow<'a, Trial>>);
 

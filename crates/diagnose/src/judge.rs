@@ -11,7 +11,7 @@ use sistership_model::{Model, Trial};
 use super::Request;
 use super::outcome::{SailedManoeuvre, TrialErrors};
 use super::refit::Refit;
-use sistership_estimate::transfer::ready;
+use sistership_sources::transfer::ready;
 
 /// Errors and manoeuvres of all trials.
 pub(super) struct SimulatedErrors {

@@ -16,7 +16,7 @@ use crate::residual::{
     TrialReadings, filter, floor, linearise, scatter, sparseness,
 };
 use sistership_estimate::refine::RefineError;
-use sistership_estimate::transfer::approach_of;
+use sistership_sources::transfer::approach_of;
 
 /// Everything that does not change with the discrepancy.
 pub struct LinearisedTrials<'a> {

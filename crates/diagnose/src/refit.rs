@@ -13,8 +13,8 @@ use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
 use super::values::model_with;
 use sistership_estimate::refine::{Alternative, Blocks, alternatives, fit, trial_moments};
-use sistership_estimate::transfer::approach_of;
 use sistership_regression::{Moments, RidgeChoice};
+use sistership_sources::transfer::approach_of;
 
 /// A model with effects, on all trials and without each of them.
 pub(super) struct Refit {

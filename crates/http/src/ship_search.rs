@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use serde::Deserialize;
-use sistership_estimate::similarity::Definition;
+use sistership_sources::similarity::Definition;
 use sistership_store::{FactRange, MAX_RANGES, Page, ShipKey};
 use utoipa::IntoParams;
 use utoipa::openapi::RefOr;

@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use sistership_estimate::source::similar;
 use sistership_model::categories::comparable;
 use sistership_model::{Model, Vessel, Zoo};
+use sistership_sources::source::similar;
 use sistership_store::Version;
 
 use crate::archive::{Archive, document};

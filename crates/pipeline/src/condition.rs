@@ -92,6 +92,14 @@ impl Condition {
         Ok(condition)
     }
 
+    /// The condition of a ship by its champion and the newest diagnosis that concerns that: without
+    /// since when it is so, and without what was made.
+    pub fn by_newest(champion: Option<&VersionHead>, newest: Option<&Diagnosed>) -> Self {
+        let newest = newest.map_or(&[][..], std::slice::from_ref);
+        let found = champion.map(|champion| Self::found(champion, newest));
+        Self { since: None, ..found.unwrap_or_default() }
+    }
+
     fn found(version: &VersionHead, newest: &[Diagnosed]) -> Self {
         let number = Some(version.number);
         let Some(last) = newest.first() else { return Self { version: number, ..Self::default() } };

@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use sistership_choice::{Asked, Ladder, best_start};
 use sistership_estimate::refine::Settings;
-use sistership_estimate::source::{Similarity, best_source, similar};
 use sistership_model::trial::Trial;
 use sistership_model::version::{
     AcrossLaws, Recipe, RecipeTrial, SourceVersion, code_revision, sha256,
 };
 use sistership_model::{Vessel, Zoo};
+use sistership_sources::source::{Similarity, best_source, similar};
 use sistership_store::{Law, Ship, Version};
 
 use crate::archive::Archive;

@@ -44,7 +44,8 @@ mod prepare {
     use crate::{
         aliases, audit, bulks, chain, current, diagnoses, effects, families, garbage, grants,
         idempotency, integrity, jobs, keys, laws, reports, room, search, search_index, sessions,
-        settings, ships, statistics, store, tags, trials, users, version, versions, webhooks, work,
+        settings, ships, standings, statistics, store, tags, trials, users, version, versions,
+        webhooks, work,
     };
 
     pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[
@@ -70,6 +71,7 @@ mod prepare {
         ("sessions", sessions::STATEMENTS),
         ("settings", settings::STATEMENTS),
         ("ships", ships::STATEMENTS),
+        ("standings", standings::STATEMENTS),
         ("statistics", statistics::STATEMENTS),
         ("store", store::STATEMENTS),
         ("tags", tags::STATEMENTS),

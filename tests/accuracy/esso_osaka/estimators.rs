@@ -2,8 +2,8 @@
 
 use sistership_dynamics::error::SquaredError;
 use sistership_estimate::refine::{CmaEs, Method, Request, Settings, refine};
-use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::{Trial, Zoo};
+use sistership_sources::transfer::{approach_of, blank};
 use sistership_tests::{esso_osaka, shared};
 
 use super::compared;

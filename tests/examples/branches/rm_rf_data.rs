@@ -10,11 +10,11 @@ use rand_distr::StandardNormal;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, turn, zigzag};
 use sistership_dynamics::state::{RECORDED, Trajectory, at};
 use sistership_dynamics::{Ship, metrics};
-use sistership_estimate::similarity::Definition;
-use sistership_estimate::source::similar;
-use sistership_estimate::transfer::{Approach, transfer};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
+use sistership_sources::similarity::Definition;
+use sistership_sources::source::similar;
+use sistership_sources::transfer::{Approach, transfer};
 
 /// The ship and the four among which the paper chooses its reference model.
 const TARGET: &str = "kvlcc2";

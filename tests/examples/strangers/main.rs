@@ -16,9 +16,9 @@ mod with_trials;
 use std::sync::Arc;
 
 use sistership_empirical::{LAW, Library, estimate};
-use sistership_estimate::transfer::transfer;
 use sistership_model::categories::comparable;
 use sistership_model::{Model, Vessel, Zoo};
+use sistership_sources::transfer::transfer;
 
 use figures::{Figures, error, sailed};
 use ships::{MEASURES, bare, kin, likeness};

@@ -6,8 +6,8 @@ use sistership_dynamics::manoeuvre::{ManoeuvreSettings, STANDARD, sail_together}
 use sistership_dynamics::plant::Work;
 use sistership_dynamics::state::{StateVector, at};
 use sistership_empirical::{LAW, Library, estimate};
-use sistership_estimate::transfer::transfer;
 use sistership_model::{Model, Vessel, Zoo};
+use sistership_sources::transfer::transfer;
 
 use crate::ships::{bare, is_for_work, kin, likeness};
 use crate::statistics::{mean, median};

@@ -1,8 +1,8 @@
 //! Ships that are strangers: their kin, their likeness, and which are for work.
 
-use sistership_estimate::similarity::{CharacteristicVector, Definition};
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, Vessel};
+use sistership_sources::similarity::{CharacteristicVector, Definition};
 
 /// Ships that are one hull at several scales or in several hands, or sisters that were identified
 /// together: none may be the source of its own kin.

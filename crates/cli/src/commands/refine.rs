@@ -9,12 +9,12 @@ use sistership_choice::Ladder;
 use sistership_estimate::refine::{
     Constraints, Method, Prior, Refinement, Request, Settings, StraightLine, refine,
 };
-use sistership_estimate::similarity::RankedSource;
-use sistership_estimate::source::{Similarity, best_source, similar};
-use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::{Law, Model, Vessel, Zoo};
 use sistership_pipeline::derive::with_uncertainty;
 use sistership_report::{RefinementInput, render_refinement};
+use sistership_sources::similarity::RankedSource;
+use sistership_sources::source::{Similarity, best_source, similar};
+use sistership_sources::transfer::{approach_of, blank};
 
 use super::refine_search::{Start, searched};
 use super::refine_settings::{held_out, settings_file};

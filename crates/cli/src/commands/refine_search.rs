@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use sistership_choice::{Asked, Ladder, best_start};
 use sistership_estimate::refine::{Refinement, Settings};
-use sistership_estimate::source::Similarity;
 use sistership_model::{Law, Model, Vessel, Zoo};
+use sistership_sources::source::Similarity;
 
 use crate::failure::Failure;
 use crate::output::note;

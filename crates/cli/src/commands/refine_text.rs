@@ -4,8 +4,8 @@ use sistership_bands::Band;
 use sistership_choice::{Ladder, Rung};
 use sistership_dynamics::manoeuvre::Figure;
 use sistership_estimate::refine::{CoefficientChange, HeldOut, Manoeuvres, Refinement, StepOption};
-use sistership_estimate::similarity::RankedSource;
 use sistership_model::Model;
+use sistership_sources::similarity::RankedSource;
 
 use super::channels::CHANNELS;
 use super::written::WrittenFiles;

@@ -2,11 +2,11 @@
 
 use clap::Args;
 use serde_json::{Value, json};
-use sistership_estimate::similarity::Definition;
 use sistership_pipeline::Archive;
 use sistership_pipeline::search::{
     self, FactRange, FoundShip, MAX_RANGES, Page, Search, ShipSearch,
 };
+use sistership_sources::similarity::Definition;
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use sistership_estimate::similarity::{Definition, RankedSource};
-use sistership_estimate::source::{Similarity, similar};
 use sistership_model::{Vessel, Zoo};
+use sistership_sources::similarity::{Definition, RankedSource};
+use sistership_sources::source::{Similarity, similar};
 
 use crate::failure::Failure;
 use crate::table::{TextTable, number};

@@ -16,8 +16,8 @@ use super::blocks::{Block, Blocks};
 use super::outcome::RefineError;
 use super::rows::{Table, known_tables};
 use super::thresholds::SOURCE;
-use crate::transfer::ready;
 use sistership_regression::Moments;
+use sistership_sources::transfer::ready;
 
 /// What a source says where a model will be used.
 #[derive(Debug, Clone)]

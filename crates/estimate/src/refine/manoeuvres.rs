@@ -10,7 +10,7 @@ use sistership_model::trial::Trial;
 
 use super::outcome::MeasuredManoeuvre;
 use super::problem::Problem;
-use crate::transfer::ready;
+use sistership_sources::transfer::ready;
 
 /// The turning circles and zigzags among the trials, beside what both models make of the recorded
 /// rudder.

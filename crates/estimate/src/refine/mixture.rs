@@ -136,8 +136,8 @@ fn words() -> String {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::transfer::transfer;
     use sistership_model::Zoo;
+    use sistership_sources::transfer::transfer;
 
     #[test]
     fn shares_are_those_of_the_least_variance() {

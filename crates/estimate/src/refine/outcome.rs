@@ -12,8 +12,8 @@ use sistership_model::trial::Channel;
 use super::cma_es::SearchReport;
 use super::constraints::LimitError;
 use super::settings::Settings;
-use crate::transfer::UnknownParameter;
 use sistership_bands::{Band, Bands};
+use sistership_sources::transfer::UnknownParameter;
 
 /// Why a refinement is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

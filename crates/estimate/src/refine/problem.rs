@@ -15,7 +15,7 @@ use super::ridge::Fitted;
 use super::settings::Settings;
 use super::thinned::thinned;
 use super::thresholds::SELECTION;
-use crate::transfer::approach_of;
+use sistership_sources::transfer::approach_of;
 
 /// What does not change while candidates are compared.
 pub(super) struct Problem<'a> {

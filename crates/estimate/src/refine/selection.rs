@@ -26,7 +26,7 @@ use super::unrecorded;
 use super::variant::{Variant, variants};
 use super::weighed::{Extent, Weighed, weighed};
 use crate::steering::{RateWindow, measured_rate};
-use crate::transfer::{approach_of, transfer};
+use sistership_sources::transfer::{approach_of, transfer};
 
 /// What is to be refined, and against what.
 #[derive(Debug, Clone, Copy)]

@@ -116,7 +116,7 @@ pub struct Settings {
     #[serde(skip_serializing_if = "Prior::is_source")]
     pub prior: Prior,
     /// SHA-256 of the regressions by which a `mixture` estimates the ship. Where absent, those of
-    /// the program.
+    /// the program; nothing where the prior is the source.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub regressions_sha256: Option<String>,
     /// Tuning ranges from the source outwards; each gives an option, the best of which is chosen.
@@ -282,9 +282,6 @@ impl Settings {
             if !(0.0..=1.0).contains(&range.alpha_max) {
                 return refuse("ranges", "alpha_max must be from 0 to 1");
             }
-        }
-        if self.prior.is_source() && self.regressions_sha256.is_some() {
-            return refuse("regressions_sha256", "belongs to `prior: mixture`");
         }
         if !(2..=1000).contains(&self.lambda_count) {
             return refuse("lambda_count", "must be from 2 to 1000");

@@ -9,7 +9,7 @@ use sistership_model::trial::Trial;
 
 use super::outcome::RefineError;
 use super::problem::Problem;
-use crate::transfer::ready_for_sisters;
+use sistership_sources::transfer::ready_for_sisters;
 
 /// Trials that are simulated in lockstep.
 const TOGETHER: usize = 8;

@@ -47,9 +47,9 @@ fn mentions(formula: &Expr, law: &Law, inputs: &BTreeSet<&str>) -> bool {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::transfer::blank;
     use sistership_model::Zoo;
     use sistership_model::trial::Channel;
+    use sistership_sources::transfer::blank;
 
     #[test]
     fn wind_terms_need_a_recorded_wind() {

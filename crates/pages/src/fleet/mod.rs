@@ -3,13 +3,12 @@
 mod query;
 
 use askama::Template;
-use futures::future::try_join_all;
 use sistership_pipeline::Archive;
 use sistership_pipeline::condition::Condition;
 use sistership_pipeline::search::standing::{Class, ERROR};
 use sistership_pipeline::search::{self, Search};
 use sistership_report::numbers::{significant, stated};
-use sistership_store::{FoundShip, List, Page, ShipKey};
+use sistership_store::{FoundShip, List, Page, ShipKey, ShipStanding};
 
 use self::query::{FleetQuery, Sort};
 use crate::cursor::cursor;
@@ -19,6 +18,8 @@ use crate::shell::Shell;
 
 /// Ships on one page.
 const SHIPS: i64 = 50;
+/// Families that a row names.
+const FAMILIES: usize = 4;
 
 #[derive(Template)]
 #[template(path = "fleet.html")]
@@ -54,9 +55,13 @@ pub async fn page(archive: &Archive, shell: Shell, fields: &Fields) -> Result<St
     let query = FleetQuery::read(fields)?;
     let found = found(archive, &query, query.search()?).await?;
     let next = cursor(found.next.as_ref()).map(|next| query.address(&next));
-    // Side by side: each is several short reads, which cost their way to the database and back.
-    let rows = found.items.into_iter().map(|ship| row(archive, ship, query.sort));
-    let ships = try_join_all(rows).await?;
+    let names: Vec<String> = found.items.iter().map(|ship| ship.name.clone()).collect();
+    let mut standings = archive.store.standings(&names, ERROR).await?;
+    let row = |ship: FoundShip| {
+        let standing = standings.remove(&ship.name).unwrap_or_default();
+        row(ship, standing, query.sort)
+    };
+    let ships = found.items.into_iter().map(row).collect();
     let page = FleetPage {
         shell: shell.at("/"),
         particulars: search::particulars().collect(),
@@ -79,14 +84,12 @@ async fn found(
     Ok(search::ships(archive, &search, &page).await?)
 }
 
-async fn row(archive: &Archive, ship: FoundShip, sort: Sort) -> Result<ShipRow> {
-    let condition = Condition::of(&archive.store, &ship.name).await?;
+fn row(ship: FoundShip, standing: ShipStanding, sort: Sort) -> ShipRow {
+    let ShipStanding { champion, newest, fact, families } = standing;
+    let condition = Condition::by_newest(champion.as_ref(), newest.as_ref());
     let class = Class::of(&condition);
-    let facts = archive.store.search_index().facts(&ship.name).await?;
-    let error = facts.iter().find(|fact| fact.fact == ERROR).map(|fact| fact.value);
-    let families = archive.store.families().of_ship(&ship.name, &Page::first(4)).await?;
     let value = ship.value.filter(|_| matches!(sort, Sort::Value | Sort::Similar));
-    Ok(ShipRow {
+    ShipRow {
         name: ship.name,
         title: ship.title,
         category: ship.category,
@@ -94,10 +97,10 @@ async fn row(archive: &Archive, ship: FoundShip, sort: Sort) -> Result<ShipRow> 
         says: says(class),
         why: condition.effects.join(", "),
         champion: condition.version,
-        error: error.map_or_else(String::new, |error| significant(error, 2)),
-        families: families.items.into_iter().map(|family| family.name).collect(),
+        error: fact.map_or_else(String::new, |error| significant(error, 2)),
+        families: families.into_iter().take(FAMILIES).collect(),
         value: value.map_or_else(String::new, |value| stated(value, 4)),
-    })
+    }
 }
 
 /// A class in words.

@@ -6,8 +6,6 @@ mod versions;
 use std::sync::Arc;
 
 use askama::Template;
-use sistership_estimate::similarity::RankedSource;
-use sistership_estimate::source;
 use sistership_model::{Vessel, Zoo};
 use sistership_pipeline::Archive;
 use sistership_pipeline::archive::vessel;
@@ -15,6 +13,8 @@ use sistership_pipeline::condition::Condition;
 use sistership_pipeline::line::CHAMPION;
 use sistership_pipeline::search::standing::Class;
 use sistership_report::numbers::{significant, stated};
+use sistership_sources::similarity::RankedSource;
+use sistership_sources::source;
 use sistership_store::{Alias, JobFilter, Page, Ship};
 
 use self::versions::{VersionRow, versions};

@@ -2,10 +2,10 @@
 
 use serde_json::Value;
 use sistership_estimate::refine::{RefineError, Refinement, Request, Settings, refine};
-use sistership_estimate::transfer::{approach_of, blank};
 use sistership_model::trial::Trial;
 use sistership_model::version::{FORMAT, Recipe};
 use sistership_model::{Law, Model, Vessel};
+use sistership_sources::transfer::{approach_of, blank};
 
 use super::calibrated::with_uncertainty;
 use super::derived::{Derived, Ingredients, Progress, Refined};

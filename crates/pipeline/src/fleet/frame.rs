@@ -1,8 +1,8 @@
 //! The model that a member is refined from: its champion, or the foundation carried over to it.
 
-use sistership_estimate::transfer::transfer;
 use sistership_model::version::{SourceVersion, sha256};
 use sistership_model::{Law, Model};
+use sistership_sources::transfer::transfer;
 use sistership_store::Version;
 
 use super::choices::Start;

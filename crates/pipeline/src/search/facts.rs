@@ -8,8 +8,8 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use serde::Deserializer;
 use serde::de::{DeserializeSeed, IgnoredAny, MapAccess, Visitor};
-use sistership_estimate::similarity::{CharacteristicVector, Definition};
 use sistership_model::{Vessel, Zoo, particulars};
+use sistership_sources::similarity::{CharacteristicVector, Definition};
 use sistership_store::{Ship, ShipFacts, StoreError, Version, Waiting};
 
 use super::metrics;

@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use regex::Regex;
-use sistership_estimate::similarity::Definition;
 use sistership_model::particulars;
+use sistership_sources::similarity::Definition;
 use sistership_store::{FactRange, ShipSearch};
 
 use super::metrics::names;

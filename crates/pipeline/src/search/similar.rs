@@ -3,9 +3,9 @@
 
 use std::cmp::Ordering;
 
-use sistership_estimate::similarity::{CharacteristicVector, Definition};
-use sistership_estimate::source::definition_for;
 use sistership_model::Vessel;
+use sistership_sources::similarity::{CharacteristicVector, Definition};
+use sistership_sources::source::definition_for;
 use sistership_store::{FoundShip, List, Page, ShipKey, ShipSearch, ShipVectors, StoreError};
 
 use super::facts;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use sistership_choice::Ladder;
 use sistership_dynamics::manoeuvre::FurtherManoeuvres;
-use sistership_estimate::source::Similarity;
+use sistership_sources::source::Similarity;
 
 use super::coefficients::Coefficients;
 use super::input::RefinementInput;

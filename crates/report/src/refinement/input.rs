@@ -2,9 +2,9 @@
 
 use sistership_choice::Ladder;
 use sistership_estimate::refine::Refinement;
-use sistership_estimate::source::Similarity;
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Vessel};
+use sistership_sources::source::Similarity;
 
 use crate::rendered::VersionLabel;
 

@@ -1,7 +1,7 @@
 //! Why this source: the ranking in a form that reads.
 
-use sistership_estimate::similarity::{Definition, RankedSource};
-use sistership_estimate::source::Similarity;
+use sistership_sources::similarity::{Definition, RankedSource};
+use sistership_sources::source::Similarity;
 
 use crate::numbers::{fixed, known, significant};
 use crate::tables::{Cell, Column, Row, Table};

@@ -3,9 +3,9 @@
 //! leaks out of its text.
 
 use sistership_estimate::refine::{Refinement, Request, Settings, refine};
-use sistership_estimate::source::similar;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Vessel, Zoo};
+use sistership_sources::source::similar;
 
 use super::{RefinementInput, render_refinement};
 use crate::rendered::{Rendered, VersionLabel};

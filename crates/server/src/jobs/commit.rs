@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 use sistership_choice::Ladder;
-use sistership_estimate::source::Similarity;
 use sistership_model::trial::Trial;
 use sistership_model::version::sha256;
+use sistership_sources::source::Similarity;
 use sistership_store::{
     Expect, Job, NewReport, NewVersion, Refinement, ReportHead, StoreError, Version, VersionHead,
 };

@@ -19,6 +19,8 @@ const MAY: &[(&str, &str)] = &[
 ];
 /// A list that the statement has made itself.
 const FEW: &str = "SCAN few";
+/// A list that the statement was given.
+const GIVEN: &str = "SCAN n VIRTUAL TABLE";
 /// An index of what waits or runs only, read in its order.
 const SHORT: &str = "jobs_to_claim";
 
@@ -59,7 +61,7 @@ async fn sqlite(pool: &SqlitePool, sql: &str) -> sqlx::Result<Vec<String>> {
     Ok(steps
         .into_iter()
         .filter(|step| step.starts_with("SCAN ") && step != "SCAN CONSTANT ROW")
-        .filter(|step| !step.contains(SHORT) && step != FEW)
+        .filter(|step| !step.contains(SHORT) && step != FEW && !step.starts_with(GIVEN))
         .collect())
 }
 

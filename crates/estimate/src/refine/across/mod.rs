@@ -16,7 +16,7 @@ use sistership_model::{Model, Vessel};
 
 use super::envelope::OperatingEnvelope;
 use super::outcome::RefineError;
-use crate::transfer::{Approach, blank_of, transfer};
+use sistership_sources::transfer::{Approach, blank_of, transfer};
 pub use source_envelopes::SourceEnvelopes;
 pub(super) use source_regression::SourceRegression;
 

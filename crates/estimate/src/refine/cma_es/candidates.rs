@@ -23,10 +23,10 @@ use super::deviation::DeviationPenalty;
 use super::objective::{Objective, Sequences};
 use super::thresholds::OBJECTIVE;
 use super::{CmaEs, SearchReport};
-use crate::transfer::ready;
 use sistership_regression::cma_es::{
     Budget, CmaEsSearch, SearchCancelled, SearchOutcome, SearchState,
 };
+use sistership_sources::transfer::ready;
 
 /// The search among one variant's coefficients.
 struct VariantSearch<'a> {

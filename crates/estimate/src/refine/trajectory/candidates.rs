@@ -20,8 +20,8 @@ use super::prior::WeakFormPrior;
 use super::segments::{ComparisonPlan, SegmentLengths, compared, cut};
 use super::solve::PenalisedEquations;
 use super::thresholds::TRAJECTORY;
-use crate::transfer::ready;
 use sistership_regression::Moments;
+use sistership_sources::transfer::ready;
 
 /// What the trajectory form makes of one variant.
 struct TrajectoryDescent<'a> {

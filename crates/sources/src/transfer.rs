@@ -89,7 +89,7 @@ pub struct UnknownParameter {
 }
 
 /// As [`blank`], with what the target does not state scaled from a source.
-pub(crate) fn blank_of(
+pub fn blank_of(
     law: &Law,
     target: &Vessel,
     source: &Model,
@@ -204,11 +204,7 @@ pub fn ready(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, PlantE
 }
 
 /// As [`ready`], for all models that have the same names of coefficients.
-pub(crate) fn ready_for_sisters(
-    model: &Model,
-    law: &Law,
-    trials: &[&Trial],
-) -> Result<Ship, PlantError> {
+pub fn ready_for_sisters(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, PlantError> {
     let mut ship = widened(Ship::sisters(model, law), trials)?;
     ship.forget_validity();
     Ok(ship)

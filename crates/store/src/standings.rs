@@ -1,0 +1,139 @@
+//! What the list of a fleet says of its ships: of all that are on a page at once, for a page of
+//! fifty would take hundreds of statements otherwise.
+
+use std::collections::BTreeMap;
+
+use crate::arguments::args;
+use crate::diagnoses::Diagnosed;
+use crate::error::Result;
+use crate::record::record;
+use crate::statements::{pair, statements};
+use crate::store::Store;
+use crate::version::VersionHead;
+
+/// A text about the names of `$1`, a JSON list, which it goes through first.
+macro_rules! of_names {
+    ($columns:literal, $joined:literal) => {
+        pair(
+            concat!("SELECT ", $columns, " FROM json_each($1) n CROSS JOIN ", $joined),
+            concat!(
+                "SELECT ",
+                $columns,
+                " FROM json_array_elements_text(CAST($1 AS JSON)) AS n(value) CROSS JOIN ",
+                $joined
+            ),
+        )
+    };
+}
+
+statements! {
+    CHAMPIONS = of_names!(
+        "v.id, v.model, v.number, v.parent, v.law, v.method, v.sha256, v.created_us, v.author",
+        "aliases a CROSS JOIN versions v WHERE a.model = n.value AND a.alias = 'champion' \
+        AND v.model = a.model AND v.number = a.version_number"
+    );
+    NEWEST = pair(
+        "SELECT n.value AS concerns, d.id, d.version_id, d.made_id, d.report_id, d.verdict, d.effects, \
+        d.trials, d.created_us \
+        FROM json_each($1) n CROSS JOIN diagnoses d WHERE d.id = (SELECT MAX(x.id) FROM \
+        (SELECT MAX(s.id) AS id FROM diagnoses s WHERE s.version_id = n.value \
+        UNION ALL SELECT MAX(m.id) AS id FROM diagnoses m WHERE m.made_id = n.value) x)",
+        "SELECT n.value AS concerns, d.id, d.version_id, d.made_id, d.report_id, d.verdict, d.effects, \
+        d.trials, d.created_us \
+        FROM json_array_elements_text(CAST($1 AS JSON)) AS n(value) CROSS JOIN LATERAL (SELECT * FROM \
+        ((SELECT s.* FROM diagnoses s WHERE s.version_id = n.value ORDER BY s.id DESC LIMIT 1) \
+        UNION ALL \
+        (SELECT m.* FROM diagnoses m WHERE m.made_id = n.value ORDER BY m.id DESC LIMIT 1)) x \
+        ORDER BY x.id DESC LIMIT 1) d"
+    );
+    FACTS = of_names!("f.ship, f.value", "ship_facts f WHERE f.ship = n.value AND f.fact = $2");
+    // A limit keeps PostgreSQL from joining all members.
+    FAMILIES = pair(
+        "SELECT m.ship, m.family FROM json_each($1) n CROSS JOIN family_members m \
+        WHERE m.ship = n.value ORDER BY m.ship, m.family",
+        "SELECT m.ship, m.family FROM json_array_elements_text(CAST($1 AS JSON)) AS n(value) \
+        CROSS JOIN LATERAL (SELECT o.ship, o.family FROM family_members o WHERE o.ship = n.value \
+        ORDER BY o.family LIMIT 1000) m ORDER BY m.ship, m.family"
+    );
+}
+
+/// How a ship stands.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ShipStanding {
+    /// The version that is its champion.
+    pub champion: Option<VersionHead>,
+    /// The newest diagnosis that the champion was subject or result of.
+    pub newest: Option<Diagnosed>,
+    /// The fact that was asked for.
+    pub fact: Option<f64>,
+    /// The families that it belongs to, by name.
+    pub families: Vec<String>,
+}
+
+record! {
+    /// A diagnosis with the version that it concerns.
+    pub struct Concerning {
+        flatten head: Diagnosed,
+        /// The version's id.
+        pub concerns: String,
+    }
+}
+
+record! {
+    /// A fact's value.
+    pub struct FactOf {
+        /// The ship.
+        pub ship: String,
+        /// The value.
+        pub value: f64,
+    }
+}
+
+record! {
+    /// That a ship belongs to a family.
+    pub struct Membership {
+        /// The ship.
+        pub ship: String,
+        /// The family.
+        pub family: String,
+    }
+}
+
+impl Store {
+    /// How each of these ships stands, with one of its facts; one of which nothing is known has an
+    /// empty standing.
+    pub async fn standings(
+        &self,
+        ships: &[String],
+        fact: &str,
+    ) -> Result<BTreeMap<String, ShipStanding>> {
+        let (database, names) = (self.database(), list(ships));
+        let empty = |ship: &String| (ship.clone(), ShipStanding::default());
+        let mut all: BTreeMap<String, ShipStanding> = ships.iter().map(empty).collect();
+        let champions: Vec<VersionHead> = database.all(CHAMPIONS, args![names: &names]).await?;
+        let ids: Vec<String> = champions.iter().map(|champion| champion.id.clone()).collect();
+        let newest: Vec<Concerning> = database.all(NEWEST, args![ids: &list(&ids)]).await?;
+        let mut newest: BTreeMap<String, Diagnosed> =
+            newest.into_iter().map(|one| (one.concerns, one.head)).collect();
+        for champion in champions {
+            if let Some(standing) = all.get_mut(&champion.model) {
+                standing.newest = newest.remove(&champion.id);
+                standing.champion = Some(champion);
+            }
+        }
+        let facts: Vec<FactOf> = database.all(FACTS, args![names: &names, fact: fact]).await?;
+        for FactOf { ship, value } in facts {
+            all.entry(ship).and_modify(|standing| standing.fact = Some(value));
+        }
+        let families: Vec<Membership> = database.all(FAMILIES, args![names: &names]).await?;
+        for Membership { ship, family } in families {
+            all.entry(ship).and_modify(|standing| standing.families.push(family));
+        }
+        Ok(all)
+    }
+}
+
+/// Names as a JSON list.
+fn list(names: &[String]) -> String {
+    serde_json::Value::from(names).to_string()
+}

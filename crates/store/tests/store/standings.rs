@@ -1,0 +1,43 @@
+use sistership_store::{Expect, Page, ShipFacts, ShipStanding, Waiting};
+
+use crate::diagnoses;
+use crate::support::*;
+
+async fn ships_of_a_page_are_told_at_once(on: &TestStore) {
+    on.store.ships().create(&ship("kcs")).await.unwrap();
+    diagnoses::one(on).await;
+    on.store.ships().create(&ship("alone")).await.unwrap();
+    let newest = on.store.versions().latest("kcs").await.unwrap().head;
+    for (family, members) in [("sisters", &["kcs"][..]), ("cousins", &["kcs", "alone"])] {
+        on.store.families().create(family, family, &newest.id).await.unwrap();
+        let members: Vec<String> = members.iter().map(|&name| name.to_owned()).collect();
+        on.store.families().add(family, &members).await.unwrap();
+    }
+    let number = newest.number;
+    on.store.aliases().move_to("kcs", number, &champion(Expect::Any)).await.unwrap();
+    let waiting = on.store.search_index().waiting("", 10).await.unwrap();
+    let facts = |waiting: &Waiting| ShipFacts {
+        category: "tanker".into(),
+        facts: vec![("error".to_owned(), waiting.ship.len() as f64)],
+        ..ShipFacts::none(waiting.clone())
+    };
+    on.store.search_index().write(&waiting.iter().map(facts).collect::<Vec<_>>()).await.unwrap();
+    let names = ["kcs", "alone", "lost's \"name\""].map(str::to_owned);
+    let all = on.store.standings(&names, "error").await.unwrap();
+    let head = on.store.versions().head("kcs", number).await.unwrap();
+    let newest = on.store.diagnoses().by_version(&head.id, &Page::first(1)).await.unwrap().items;
+    let kcs = &all["kcs"];
+    assert_eq!((kcs.champion.as_ref(), kcs.newest.as_ref()), (Some(&head), newest.first()));
+    assert!(kcs.newest.is_some());
+    assert_eq!((kcs.fact, &kcs.families), (Some(3.0), &vec!["cousins".into(), "sisters".into()]));
+    let alone = ShipStanding {
+        fact: Some(5.0),
+        families: vec!["cousins".into()],
+        ..ShipStanding::default()
+    };
+    assert_eq!((&all["alone"], &all[&names[2]]), (&alone, &ShipStanding::default()));
+    assert_eq!(all.len(), 3);
+    assert!(on.store.standings(&[], "error").await.unwrap().is_empty());
+}
+
+on_both_databases!(ships_of_a_page_are_told_at_once);
