@@ -6,8 +6,11 @@
 mod driver;
 mod files;
 
+use std::net::TcpListener;
+
 use driver::Browser;
 use serde_json::Value;
+use sistership_openid::testing::RealProvider;
 use sistership_store::testing::TestDatabase;
 use sistership_tests::binary;
 use sistership_tests::server::TestServer;
@@ -169,4 +172,46 @@ async fn a_person_refines_and_another_promotes_in_a_browser() {
     browser.go(&format!("{}/playground?model={SHIP}", server.url())).await;
     browser.until("Tactical diameter").await;
     shown(&browser, "playground").await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_person_signs_in_at_a_provider_in_a_browser() {
+    let listen = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
+    let url = format!("http://{listen}");
+    let Some(provider) = RealProvider::start(&url) else { return };
+    let Some(browser) = Browser::start().await else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let secret = folder.path().join("secret");
+    std::fs::write(&secret, RealProvider::SECRET).unwrap();
+    let (issuer, secret) = (provider.issuer.as_str(), secret.to_str().unwrap());
+    let flags =
+        ["--accounts", "--listen", &listen, "--oidc-client-id", "ships", "--oidc-base-url", &url]
+            .into_iter()
+            .chain(["--oidc-issuer", issuer, "--oidc-client-secret-file", secret])
+            .chain([
+                "--oidc-title",
+                "the yard",
+                "--oidc-auto-create",
+                "--oidc-default-role",
+                "reader",
+            ]);
+    let flags: Vec<&str> = flags.collect();
+    let (server, log) = TestServer::logged(TestDatabase::sqlite(), &flags).await;
+    browser.go(&format!("{}/jobs", server.url())).await;
+    shown(&browser, "sign-in").await;
+    browser.leave_by("main a.button").await;
+    browser.fill("input[name='login']", "carl").await;
+    browser.fill("input[name='password']", "any").await;
+    browser.leave_by("button[type='submit']").await;
+    browser.leave_by("button[type='submit']").await;
+    browser.until("carl").await;
+    assert_eq!(browser.path().await, "/jobs", "where carl wanted to go");
+    browser.go(&format!("{}/account", server.url())).await;
+    browser.until("Link with the yard").await;
+    shown(&browser, "account").await;
+    let log = std::fs::read_to_string(log).unwrap();
+    assert!(log.contains("/sign-in/oidc/callback"), "{log}");
+    for kept in [RealProvider::SECRET, "code=", "state=", "eyJ"] {
+        assert!(!log.contains(kept), "the log holds {kept}");
+    }
 }

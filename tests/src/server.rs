@@ -264,8 +264,11 @@ fn start(
     if let Some(level) = level {
         command.env("SISTERSHIP_LOG", level);
     }
+    if !extra.iter().any(|argument| argument == "--listen") {
+        command.args(["--listen", "127.0.0.1:0"]);
+    }
     let mut process = command
-        .args(["--listen", "127.0.0.1:0", "--database-url", database_url, "--data-dir"])
+        .args(["--database-url", database_url, "--data-dir"])
         .arg(data)
         .args(extra)
         .stdout(Stdio::piped())

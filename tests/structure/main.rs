@@ -28,6 +28,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("fleet", &["model", "dynamics", "regression", "estimate"]),
     ("store", &[]),
     ("access", &[]),
+    ("openid", &["access"]),
     ("webhooks", &["access", "store"]),
     (
         "report",
@@ -72,12 +73,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "fields", "predict",
         ],
     ),
+    ("accounts", &["access", "openid", "http", "pipeline", "store"]),
     (
         "server",
         &[
             "model", "dynamics", "branches", "trials", "bands", "sources", "estimate", "choice",
             "diagnose", "fleet", "store", "report", "pipeline", "pages", "listen", "fields",
-            "predict", "http", "access", "webhooks",
+            "predict", "http", "access", "openid", "accounts", "webhooks",
         ],
     ),
     (
@@ -100,6 +102,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "report",
             "pipeline",
             "predict",
+            "openid",
             "server",
             "export",
             "access",

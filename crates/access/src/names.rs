@@ -1,7 +1,8 @@
 //! What users may be called.
 
 /// Names under which the program itself, or somebody without an account, stands in the audit.
-const RESERVED: [&str; 5] = ["sistership", "server-key", "local", "command-line", "admin-key"];
+const RESERVED: [&str; 6] =
+    ["sistership", "server-key", "local", "command-line", "admin-key", "openid"];
 
 /// Whether no user may have this name.
 pub fn is_reserved_name(name: &str) -> bool {

@@ -111,6 +111,10 @@ text! {
         "a name of 1 to 64 lower-case letters, digits, `.`, `_`, `@` and `-`, the first a letter or digit"
 }
 text! {
+    /// An issuer or a subject of OpenID Connect.
+    Line: 1..=255, r"^[^\x00-\x1f\x7f-\x9f]+$", "a text of 1 to 255 characters without control characters"
+}
+text! {
     /// The prefix of a service key.
     KeyPrefix: 12..=12, "^[0-9a-f]{12}$", "the 12 hexadecimal digits that a service key begins with after `sis_`"
 }

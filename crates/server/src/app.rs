@@ -10,14 +10,14 @@ use tokio::sync::{Notify, RwLock, Semaphore};
 use crate::config::{Config, Leases, Limits};
 use crate::metrics::Metrics;
 use crate::problem::{Problem, Result};
-use sistership_access::Attempts;
+use sistership_accounts::{Accounts, Credentials};
 use sistership_http::answers::Answers;
-use sistership_http::api_key::{ApiKey, FormToken};
+use sistership_http::api_key::FormToken;
 use sistership_http::drafts::Drafts;
-use sistership_http::known::Known;
 use sistership_http::payload::DocumentLimits;
 use sistership_http::upload::UploadPlace;
 use sistership_listen::{Stopping, Throttle};
+use sistership_openid::Provider;
 use sistership_pages::ship::SIMILAR;
 use sistership_pages::version::KnownManoeuvres;
 use sistership_pipeline::archive::Archive;
@@ -31,10 +31,7 @@ pub(crate) struct App(Arc<Inner>, Arc<Archive>);
 
 struct Inner {
     catalogue: Catalogue,
-    key: Option<ApiKey>,
-    accounts: bool,
-    known: Known,
-    attempts: Attempts,
+    credentials: Credentials,
     form_token: FormToken,
     drafts: Drafts,
     sessions: Sessions,
@@ -74,24 +71,24 @@ impl App {
         archive: Archive,
         catalogue: Catalogue,
         stopping: Stopping,
-    ) -> Self {
+    ) -> sistership_openid::Result<Self> {
         let seats = std::thread::available_parallelism().map_or(2, std::num::NonZero::get);
-        let key = config.api_key.as_deref().map(ApiKey::new);
+        let seats = Arc::new(Semaphore::new(seats));
+        let provider = config.openid.clone().map(Provider::new).transpose()?;
+        let (key, people) = (config.api_key.as_deref(), config.accounts);
+        let credentials = Credentials::new(key, people, provider, Arc::clone(&seats));
         let inner = Inner {
             catalogue,
-            form_token: FormToken::of(key.as_ref()),
+            form_token: FormToken::of(credentials.key()),
             drafts: Drafts::default(),
             sessions: Sessions::new(config.limits.sessions),
-            key,
-            accounts: config.accounts,
-            known: Known::default(),
-            attempts: Attempts::default(),
+            credentials,
             throttle: Throttle::default(),
             limits: config.limits,
             leases: config.leases,
             spool: Arc::new(Spool::below(config.data_dir.join("uploads"))),
             no_room: AtomicBool::new(false),
-            seats: Arc::new(Semaphore::new(seats)),
+            seats,
             wake: Notify::new(),
             turns: Arc::default(),
             metrics: Metrics::default(),
@@ -101,7 +98,7 @@ impl App {
             requests: Budget::new(config.limits.request_memory, "--request-memory-mb"),
             jobs: Budget::new(config.limits.job_memory, "--job-memory-mb"),
         };
-        Self(Arc::new(inner), Arc::new(archive))
+        Ok(Self(Arc::new(inner), Arc::new(archive)))
     }
 
     /// The same whose store is another handle: that of a unit of work.
@@ -122,28 +119,14 @@ impl App {
         &self.1.objects
     }
 
-    pub(crate) fn key(&self) -> Option<&ApiKey> {
-        self.0.key.as_ref()
+    /// Who is known, and how they show who they are.
+    pub(crate) fn credentials(&self) -> &Credentials {
+        &self.0.credentials
     }
 
-    /// Whether nobody is asked who they are: without a key, on this machine's own interface.
-    pub(crate) fn is_open(&self) -> bool {
-        self.key().is_none() && !self.has_accounts()
-    }
-
-    /// Whether people sign in.
-    pub(crate) fn has_accounts(&self) -> bool {
-        self.0.accounts
-    }
-
-    /// Credentials that were looked up just now.
-    pub(crate) fn known(&self) -> &Known {
-        &self.0.known
-    }
-
-    /// Wrong passwords of late.
-    pub(crate) fn attempts(&self) -> &Attempts {
-        &self.0.attempts
+    /// The same with the store.
+    pub(crate) fn accounts(&self) -> Accounts<'_> {
+        self.credentials().of(self.store())
     }
 
     /// What forms of pages send along.

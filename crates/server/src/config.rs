@@ -5,6 +5,7 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use sistership_openid::Settings as OpenIdSettings;
 pub use sistership_pipeline::leases::Leases;
 use sistership_predict::session::SessionLimits;
 use sistership_store::ObjectsPlace;
@@ -34,6 +35,8 @@ pub struct Config {
     pub api_key: Option<String>,
     /// Whether people sign in by name and password, and nobody is let in without that or a key.
     pub accounts: bool,
+    /// The OpenID provider at which people may sign in, too.
+    pub openid: Option<OpenIdSettings>,
     /// Bounds on what is sent.
     pub limits: Limits,
     /// How workers hold their jobs.
@@ -100,6 +103,7 @@ impl Config {
             data_dir,
             api_key: None,
             accounts: false,
+            openid: None,
             limits: Limits::default(),
             leases: Leases::default(),
             workers: 1,
@@ -118,6 +122,7 @@ impl Config {
             Some(key) if key.is_empty() || !key.bytes().all(|byte| byte.is_ascii_graphic()) => {
                 Err(StartError::Key)
             }
+            _ if self.openid.is_some() && !self.accounts => Err(StartError::OpenIdWithoutAccounts),
             _ if self.leases.beat >= self.leases.lease => Err(StartError::Leases),
             _ if !(1..=self.limits.connections).contains(&self.limits.connections_per_address) => {
                 Err(StartError::Connections)

@@ -35,7 +35,7 @@ impl Process {
         let catalogue = Catalogue::default();
         seed::seed(&archive.store, &catalogue).await?;
         let (stop, stopping) = Stopping::new();
-        let app = App::new(config, archive.clone(), catalogue, stopping);
+        let app = App::new(config, archive.clone(), catalogue, stopping)?;
         tidy::once(&app).await;
         let mut tasks = JoinSet::new();
         tasks.spawn(tidy::keep(app.clone()));

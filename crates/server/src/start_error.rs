@@ -41,6 +41,12 @@ pub enum StartError {
     /// The database or the object store cannot be used.
     #[error("cannot open the store: {0}")]
     Store(#[from] sistership_store::StoreError),
+    /// People who have signed in at a provider would be asked for a key.
+    #[error("oidc issuer: people sign in only where accounts are asked for; set --accounts, too")]
+    OpenIdWithoutAccounts,
+    /// The system gives no random numbers.
+    #[error("oidc: {0}")]
+    OpenId(#[from] sistership_openid::Failure),
     /// The zoo that the program carries does not read.
     #[error("the zoo is damaged: {0}")]
     Zoo(#[from] sistership_model::FileError),

@@ -8,6 +8,8 @@ use crate::error::{Result, StoreError};
 pub const MAX_TEXT_BYTES: usize = 16 << 20;
 /// The longest name of a ship, law, model, alias or kind.
 pub const MAX_NAME_CHARS: usize = 200;
+/// The longest text of one line: a subject of OpenID Connect (Core 1.0, 2), an address.
+const MAX_LINE_CHARS: usize = 255;
 
 /// A name that can stand in a URL path: not empty, not long, no white space, control character or
 /// slash.
@@ -49,6 +51,18 @@ pub(crate) fn text(field: &'static str, value: &str) -> Result<()> {
     match value.contains('\0') {
         true => Err(StoreError::invalid(field, "must not contain a NUL character")),
         false => Ok(()),
+    }
+}
+
+/// A text of one line that says something and is not long.
+pub(crate) fn line(field: &'static str, value: &str) -> Result<()> {
+    if value.is_empty() || value.chars().count() > MAX_LINE_CHARS {
+        let message = format!("must have 1 to {MAX_LINE_CHARS} characters");
+        return Err(StoreError::invalid(field, message));
+    }
+    match value.chars().find(|c| c.is_control()) {
+        Some(c) => Err(StoreError::invalid(field, format!("must not contain {c:?}"))),
+        None => Ok(()),
     }
 }
 

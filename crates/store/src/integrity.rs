@@ -98,6 +98,8 @@ statements! {
         WHERE user_name IS NOT NULL AND user_name NOT IN (SELECT name FROM users) ORDER BY prefix");
     SESSION_USER = same("SELECT 'sessions of ' || user_name AS place, 'there is no such user' AS message FROM sessions \
         WHERE user_name NOT IN (SELECT name FROM users) ORDER BY user_name");
+    IDENTITY_USER = same("SELECT 'identity ' || subject AS place, 'there is no user ' || user_name AS message FROM identities \
+        WHERE user_name NOT IN (SELECT name FROM users) ORDER BY issuer, subject");
     WEBHOOK_SHIP = same("SELECT 'webhook ' || id AS place, 'there is no ship ' || ship AS message FROM webhooks \
         WHERE ship IS NOT NULL AND ship NOT IN (SELECT name FROM ships) ORDER BY id");
     WEBHOOK_EVENT = same("SELECT 'webhook ' || webhook AS place, 'is told of ' || event || ', but is not there' AS message \
@@ -148,6 +150,7 @@ const CHECKS: &[(&str, Statement)] = &[
     ("webhook-event", WEBHOOK_EVENT),
     ("delivery-webhook", DELIVERY_WEBHOOK),
     ("session-user", SESSION_USER),
+    ("identity-user", IDENTITY_USER),
     ("job-ship", JOB_SHIP),
     ("job-state", JOB_STATE),
 ];

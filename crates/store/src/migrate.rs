@@ -20,6 +20,7 @@ const SQLITE: &[MigrationSource] = &[
     (8, "standing", include_str!("../../../migrations/sqlite/0008_standing.sql")),
     (9, "access", include_str!("../../../migrations/sqlite/0009_access.sql")),
     (10, "webhooks", include_str!("../../../migrations/sqlite/0010_webhooks.sql")),
+    (11, "identities", include_str!("../../../migrations/sqlite/0011_identities.sql")),
 ];
 const POSTGRES: &[MigrationSource] = &[
     (1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql")),
@@ -32,6 +33,7 @@ const POSTGRES: &[MigrationSource] = &[
     (8, "standing", include_str!("../../../migrations/postgres/0008_standing.sql")),
     (9, "access", include_str!("../../../migrations/postgres/0009_access.sql")),
     (10, "webhooks", include_str!("../../../migrations/postgres/0010_webhooks.sql")),
+    (11, "identities", include_str!("../../../migrations/postgres/0011_identities.sql")),
 ];
 
 fn migrator(sources: &'static [MigrationSource]) -> Migrator {

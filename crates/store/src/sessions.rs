@@ -2,6 +2,7 @@
 
 use crate::arguments::args;
 use crate::checks;
+use crate::database::Transaction;
 use crate::error::Result;
 use crate::record::record;
 use crate::statements::{same, statements};
@@ -44,14 +45,10 @@ impl Store {
 impl Sessions<'_> {
     /// Begins a session of a user, and forgets those that have ended.
     pub async fn begin(&self, sha256: &str, user: &str, expires_us: i64) -> Result<Session> {
-        checks::sha256("sha256", sha256)?;
         let now = self.0.now_us();
         let mut tx = self.0.begin().await?;
-        tx.execute(PURGE, args![expires_us: now]).await?;
-        let values =
-            args![sha256: sha256, user_name: user, created_us: now, expires_us: expires_us];
-        let session = tx.one(INSERT, values).await?;
-        tx.note(self.0.now_us(), "session.begin", User::principal(user), None, None);
+        let session = insert(&mut tx, sha256, user, now, expires_us).await?;
+        tx.note(now, "session.begin", User::principal(user), None, None);
         tx.commit().await?;
         Ok(session)
     }
@@ -77,4 +74,18 @@ impl Sessions<'_> {
         }
         tx.commit().await
     }
+}
+
+/// Begins a session within a transaction, and forgets those that have ended.
+pub(crate) async fn insert(
+    tx: &mut Transaction,
+    sha256: &str,
+    user: &str,
+    now_us: i64,
+    expires_us: i64,
+) -> Result<Session> {
+    checks::sha256("sha256", sha256)?;
+    tx.execute(PURGE, args![expires_us: now_us]).await?;
+    let values = args![sha256: sha256, user_name: user, created_us: now_us, expires_us: expires_us];
+    tx.one(INSERT, values).await
 }

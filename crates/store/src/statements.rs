@@ -43,9 +43,9 @@ mod prepare {
     use crate::store::Store;
     use crate::{
         aliases, audit, bulks, chain, current, diagnoses, effects, families, garbage, grants,
-        idempotency, integrity, jobs, keys, laws, reports, room, search, search_index, sessions,
-        settings, ships, standings, statistics, store, tags, trials, users, version, versions,
-        webhooks, work,
+        idempotency, identities, integrity, jobs, keys, laws, reports, room, search, search_index,
+        sessions, settings, ships, standings, statistics, store, tags, trials, users, version,
+        versions, webhooks, work,
     };
 
     pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[
@@ -59,6 +59,7 @@ mod prepare {
         ("garbage", garbage::STATEMENTS),
         ("grants", grants::STATEMENTS),
         ("idempotency", idempotency::STATEMENTS),
+        ("identities", identities::STATEMENTS),
         ("integrity", integrity::STATEMENTS),
         ("jobs", jobs::STATEMENTS),
         ("effects", effects::STATEMENTS),

@@ -76,12 +76,8 @@ impl Users<'_> {
         password_hash: Option<&str>,
         roles: &[GrantRow],
     ) -> Result<User> {
-        checks::name("name", name)?;
-        let values = args![name: name, title: title, password_hash: password_hash, created_us: self.0.now_us()];
         let mut tx = self.0.begin().await?;
-        let Some(user) = tx.optional(INSERT, values).await? else {
-            return Err(StoreError::conflict("user", name, "there is one of this name already"));
-        };
+        let user = insert(&mut tx, name, title, password_hash, self.0.now_us()).await?;
         let principal = User::principal(name);
         grants::put(&mut tx, &principal, roles).await?;
         let after = json!({ "title": title, "roles": grants::words(roles) });
@@ -148,14 +144,36 @@ impl Users<'_> {
         changed: Option<User>,
         why: &str,
     ) -> Result<User> {
-        tx.execute(SIGN_OUT, args![user_name: name]).await?;
+        sign_out(tx, name).await?;
         if let Some(user) = changed {
             return Ok(user);
         }
-        let there: Option<User> = tx.optional(GET, args![name: name]).await?;
-        match there {
-            Some(_) => Err(StoreError::conflict("user", name, why)),
-            None => Err(StoreError::missing("user", name)),
-        }
+        there(tx, name).await?;
+        Err(StoreError::conflict("user", name, why))
     }
+}
+
+/// Creates a user within a transaction.
+pub(crate) async fn insert(
+    tx: &mut Transaction,
+    name: &str,
+    title: &str,
+    password_hash: Option<&str>,
+    now_us: i64,
+) -> Result<User> {
+    checks::name("name", name)?;
+    let values = args![name: name, title: title, password_hash: password_hash, created_us: now_us];
+    let taken = || StoreError::conflict("user", name, "there is one of this name already");
+    tx.optional(INSERT, values).await?.ok_or_else(taken)
+}
+
+/// A user that must be there.
+pub(crate) async fn there(tx: &mut Transaction, name: &str) -> Result<User> {
+    let found = tx.optional(GET, args![name: name]).await?;
+    found.ok_or_else(|| StoreError::missing("user", name))
+}
+
+/// Ends all sessions of a user.
+pub(crate) async fn sign_out(tx: &mut Transaction, name: &str) -> Result<()> {
+    tx.execute(SIGN_OUT, args![user_name: name]).await.map(drop)
 }

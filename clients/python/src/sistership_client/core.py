@@ -61,6 +61,9 @@ FreeRunningKind = Any  # What sailed a free-running trial.
 HeadView = TypedDict('HeadView', {'number': 'int', 'sha256': 'str'}, total=True)
 Health = TypedDict('Health', {'revision': 'str', 'status': 'str', 'writes': 'Union[str, None]'}, total=False)
 HorizonRequest = TypedDict('HorizonRequest', {'current': 'Union[CurrentRequest, None]', 'delta_rad': 'float', 'draws': 'Union[int, None]', 'dt_s': 'Union[float, None]', 'duration_s': 'float', 'orders': 'List[TimedOrders]', 'seed': 'Union[int, None]', 'start': 'Union[InitialState, None]', 'wind': 'Union[WindRequest, None]'}, total=False)
+IdentitiesRequest = TypedDict('IdentitiesRequest', {'identities': 'List[IdentityRequest]'}, total=True)
+IdentityRequest = TypedDict('IdentityRequest', {'issuer': 'str', 'subject': 'str'}, total=True)
+IdentityView = TypedDict('IdentityView', {'issuer': 'str', 'subject': 'str'}, total=True)
 InitialState = TypedDict('InitialState', {'p_rad_s': 'float', 'phi_rad': 'float', 'psi_rad': 'float', 'r_rad_s': 'float', 'u_m_s': 'float', 'v_m_s': 'float', 'x_m': 'float', 'y_m': 'float'}, total=False)
 InputsRequest = TypedDict('InputsRequest', {'delta_rad': 'List[float]', 'n_rps': 'Union[List[float], None]', 'start': 'InitialState', 't_s': 'List[float]'}, total=False)
 InstrumentFit = TypedDict('InstrumentFit', {'deviation_by_scatter': 'float', 'drift': 'float'}, total=True)
@@ -152,7 +155,7 @@ TuningRange = TypedDict('TuningRange', {'alpha_max': 'float', 'lambda_max': 'flo
 Uncertainty = TypedDict('Uncertainty', {'discrepancy': 'Dict[str, Discrepancy]', 'feigned': 'Dict[str, FalseAlarmLevel]', 'habits': 'List[AppliedEffect]', 'instruments': 'Dict[str, InstrumentFit]', 'names': 'List[str]', 'offset': 'List[float]', 'remainder': 'Dict[str, float]', 'root_information': 'List[str]', 'scales': 'List[float]', 'trials': 'List[str]'}, total=False)
 Uploaded = TypedDict('Uploaded', {'diagnosis': 'Union[str, None]', 'new': 'int', 'ship': 'str', 'trials': 'List[TrialView]'}, total=False)
 UserRequest = TypedDict('UserRequest', {'name': 'str', 'password': 'Union[str, None]', 'roles': 'List[RoleRequest]', 'title': 'Union[str, None]'}, total=False)
-UserView = TypedDict('UserView', {'created_us': 'int', 'enabled': 'bool', 'has_password': 'bool', 'name': 'str', 'roles': 'List[RoleView]', 'title': 'str'}, total=True)
+UserView = TypedDict('UserView', {'created_us': 'int', 'enabled': 'bool', 'has_password': 'bool', 'identities': 'List[IdentityView]', 'name': 'str', 'roles': 'List[RoleView]', 'title': 'str'}, total=True)
 ValidatedQuantity = TypedDict('ValidatedQuantity', {'comparison_error': 'Union[float, None]', 'comparison_error_percent': 'Union[float, None]', 'data': 'float', 'data_from': 'str', 'data_uncertainty': 'Union[float, None]', 'input_uncertainty': 'Union[float, None]', 'quantity': 'str', 'records': 'Union[int, None]', 'simulated': 'Union[float, None]', 'step_uncertainty': 'Union[float, None]', 'unit': 'str', 'validation_uncertainty': 'Union[float, None]', 'validation_uncertainty_percent': 'Union[float, None]', 'verdict': 'Verdict'}, total=False)
 Validation = TypedDict('Validation', {'draws': 'int', 'law': 'str', 'model': 'str', 'procedure': 'str', 'quantities': 'List[ValidatedQuantity]', 'remarks': 'List[str]'}, total=True)
 Verdict = Any  # What a comparison says.
@@ -528,6 +531,10 @@ class Core:
     def post_users_user_enable(self, user: str) -> UserView:
         """Give a disabled user the rights again that they had."""
         return self.http.json('POST', f'/v1/users/{user}/enable')
+
+    def put_users_user_identities(self, user: str, body: IdentitiesRequest) -> UserView:
+        """Let OpenID providers know a user as these instead of all others."""
+        return self.http.json('PUT', f'/v1/users/{user}/identities', json=body)
 
     def put_users_user_password(self, user: str, body: PasswordRequest) -> None:
         """Set the password of a user, who is signed out everywhere."""

@@ -5,6 +5,7 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use sistership_openid::OpenIdArguments;
 
 use super::log_format::LogFormat;
 use crate::failure::{Failure, about_file};
@@ -30,6 +31,9 @@ pub struct ConfigFile {
     pub api_key_file: Option<PathBuf>,
     /// `--accounts`
     pub accounts: Option<bool>,
+    /// `--oidc-...`, without `oidc-`
+    #[serde(default)]
+    pub oidc: OpenIdArguments,
     /// `--workers`
     pub workers: Option<u16>,
     /// `--connections`
@@ -63,7 +67,8 @@ pub fn read(path: Option<&Path>) -> Result<ConfigFile, Failure> {
     let mut file: ConfigFile =
         sistership_model::yaml::read(&text).map_err(|error| about_file(path, error))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    for relative in [&mut file.data_dir, &mut file.api_key_file].into_iter().flatten() {
+    let secret = &mut file.oidc.client_secret_file;
+    for relative in [&mut file.data_dir, &mut file.api_key_file, secret].into_iter().flatten() {
         *relative = folder.join(&*relative);
     }
     Ok(file)

@@ -4,6 +4,7 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use sistership_openid::OpenIdArguments;
 use sistership_server::{Config, DEFAULT_LISTEN, Limits, Running, Server, StartError};
 
 use super::config_file::ConfigFile;
@@ -70,6 +71,8 @@ pub struct ServeArguments {
     #[arg(long, env = "SISTERSHIP_WEBHOOKS_PRIVATE")]
     webhooks_private: bool,
     #[command(flatten)]
+    openid: OpenIdArguments,
+    #[command(flatten)]
     lease: LeaseArguments,
     #[command(flatten)]
     log: LogArguments,
@@ -117,6 +120,8 @@ fn config(serve: &ServeArguments, file: &ConfigFile) -> Result<Config, Failure> 
         memory("job_memory_mb", serve.job_memory_mb, file.job_memory_mb, limits.job_memory)?;
     config.api_key = api_key(serve, file)?;
     config.accounts = serve.accounts || file.accounts.unwrap_or(false);
+    config.openid =
+        serve.openid.settings(&file.oidc).map_err(|error| Failure::Call(error.to_string()))?;
     config.check().map_err(refused)?;
     Ok(config)
 }
@@ -164,7 +169,7 @@ fn refused(error: StartError) -> Failure {
         StartError::OpenWithoutKey(listen) => Failure::Call(format!(
             "refusing to listen on {listen} without an API key: set {KEY} or --api-key-file, let people sign in with --accounts, or listen on 127.0.0.1"
         )),
-        StartError::Key => Failure::Call(error.to_string()),
+        StartError::Key | StartError::OpenIdWithoutAccounts => Failure::Call(error.to_string()),
         other => Failure::Refused(other.to_string()),
     }
 }

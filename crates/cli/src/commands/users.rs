@@ -19,6 +19,7 @@ Examples:
   sistership users add ann --role engineer --password-file ann.txt
   sistership users add bob --role reader --role approver@family:tankers
   sistership users roles ann engineer@ship:kvlcc2
+  sistership users identity ann https://id.example 248289761001
   sistership users disable ann
   sistership users second-person on
 
@@ -63,6 +64,14 @@ enum UsersAction {
         /// The roles; none takes every right.
         #[arg(value_name = "ROLE[@ship:NAME|@family:NAME]")]
         roles: Vec<Grant>,
+    },
+    /// Let an OpenID provider know a user by this subject, and no other; by none where absent.
+    Identity {
+        /// The user.
+        name: String,
+        /// The provider, and its claim `sub`.
+        #[arg(num_args = 2, value_names = ["ISSUER", "SUBJECT"])]
+        identity: Vec<String>,
     },
     /// Set a password, and sign the user out everywhere.
     Password {
@@ -153,6 +162,12 @@ async fn done(what: &UsersAction, chosen: Option<&Chosen>, archive: &Archive) ->
         UsersAction::Roles { name, roles } => {
             archive.store.grants().replace(&User::principal(name), &rows(roles)).await?;
             told(name, "has these roles now", None)
+        }
+        UsersAction::Identity { name, identity } => {
+            let pair = |pair: &[String]| (pair[0].clone(), pair[1].clone());
+            let those: Vec<_> = identity.chunks_exact(2).map(pair).collect();
+            archive.store.identities().replace(name, &those).await?;
+            told(name, "is known so by providers now", None)
         }
         UsersAction::Password { name, .. } => {
             let hash = chosen.map(|chosen| hash_password(&chosen.text)).transpose()?;

@@ -5,6 +5,6 @@ mod roles;
 mod sign_in;
 mod users;
 
-pub use account::account;
-pub use sign_in::sign_in;
+pub use account::{Known, account};
+pub use sign_in::{Offered, leave, sign_in};
 pub use users::{new_key, users};

@@ -2,7 +2,7 @@
 
 use askama::Template;
 use sistership_pipeline::Archive;
-use sistership_store::{KeyRow, Page, User};
+use sistership_store::{Identity, KeyRow, Page, User};
 
 use super::roles::words;
 use crate::cursor::{cursor, key};
@@ -29,6 +29,8 @@ struct UserRow {
     name: String,
     title: String,
     roles: String,
+    /// As whom providers know this one.
+    identities: Vec<Identity>,
     enabled: bool,
     created: String,
 }
@@ -56,9 +58,10 @@ pub async fn users(archive: &Archive, shell: Shell, query: &Fields) -> Result<St
     let mut users = Vec::new();
     for user in list.items {
         let roles = store.grants().of(&User::principal(&user.name)).await?;
+        let identities = store.identities().of(&user.name).await?;
         let (enabled, created) = (user.is_enabled(), date(user.created_us));
-        let User { name, title, .. } = user;
-        users.push(UserRow { name, title, roles: words(&roles), enabled, created });
+        let (User { name, title, .. }, roles) = (user, words(&roles));
+        users.push(UserRow { name, title, roles, identities, enabled, created });
     }
     let mut keys = Vec::new();
     let page = Page { after: key(query.text("keys_after"))?, limit: ROWS };

@@ -182,6 +182,7 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     (GRANT, "grant-scope", "roles of user:nobody"),
     (KEY, "key-user", "key 0123456789ab"),
     (SESSION, "session-user", "sessions of nobody"),
+    (IDENTITY, "identity-user", "identity 7-of-9"),
     (WEBHOOK, "webhook-ship", "webhook w"),
     (LISTENER, "webhook-event", "webhook nowhere"),
     (DELIVERY, "delivery-webhook", "delivery d"),
@@ -208,6 +209,8 @@ const GRANT: &str = "INSERT INTO grants VALUES ('user:nobody', 'ship', 'none', '
 const KEY: &str =
     "INSERT INTO service_keys VALUES ('0123456789ab', 'K', 'nobody', 'x', 0, NULL, NULL, NULL)";
 const SESSION: &str = "INSERT INTO sessions VALUES ('x', 'nobody', 0, 0)";
+const IDENTITY: &str =
+    "INSERT INTO identities VALUES ('https://id.example', '7-of-9', 'nobody', 0)";
 const WEBHOOK: &str =
     "INSERT INTO webhooks VALUES ('w', 'W', 'https://example.com', 'x', 'nobody', 2, 0, NULL)";
 const LISTENER: &str = "INSERT INTO webhook_events VALUES ('drift', 'nowhere')";
@@ -255,7 +258,7 @@ async fn damaged(database: TestDatabase) {
     assert!(found(&archive).await.clean, "healed again");
 }
 
-const TABLES: [&str; 31] = [
+const TABLES: [&str; 32] = [
     "laws",
     "effect_libraries",
     "ships",
@@ -282,6 +285,7 @@ const TABLES: [&str; 31] = [
     "grants",
     "service_keys",
     "sessions",
+    "identities",
     "webhooks",
     "webhook_events",
     "deliveries",

@@ -10,6 +10,7 @@ mod keys;
 mod loops;
 mod network;
 mod observed;
+mod openid;
 mod refusals;
 mod registry;
 mod search;

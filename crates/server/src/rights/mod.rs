@@ -1,11 +1,9 @@
 //! Who asks, and whether they may: what `sistership_access` decides, for the routes of this server.
 
 mod decide;
-mod identify;
 mod table;
 
 pub(crate) use decide::{Asked, allowed, on_ship};
-pub(crate) use identify::{COOKIE, Refusal, identify};
 pub(crate) use sistership_http::acting::{Acting, Kind, carried, current};
 #[cfg(test)]
 pub(crate) use table::{ANYONE, TABLE};

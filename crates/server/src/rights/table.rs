@@ -64,11 +64,21 @@ pub(crate) const HEALTH: [(&str, &str); 3] =
     [("GET", "/healthz"), ("GET", "/readyz"), ("GET", "/openapi.json")];
 
 /// Where people show who they are.
-pub(crate) const OPEN: [(&str, &str); 2] = [("GET", "/sign-in"), ("POST", "/sign-in")];
+pub(crate) const OPEN: [(&str, &str); 4] = [
+    ("GET", "/sign-in"),
+    ("POST", "/sign-in"),
+    ("GET", "/sign-in/oidc"),
+    ("GET", "/sign-in/oidc/callback"),
+];
 
 /// Routes for which it is enough to have shown who one is.
-pub(crate) const ANYONE: [(&str, &str); 4] =
-    [("GET", "/v1/me"), ("GET", "/account"), ("POST", "/account/password"), ("POST", "/sign-out")];
+pub(crate) const ANYONE: [(&str, &str); 5] = [
+    ("GET", "/v1/me"),
+    ("GET", "/account"),
+    ("POST", "/account/password"),
+    ("POST", "/account/identity"),
+    ("POST", "/sign-out"),
+];
 
 const SHIP: Of = Of::Ship("ship");
 const MODEL: Of = Of::Ship("model");
@@ -161,6 +171,7 @@ pub(crate) const TABLE: &[Row] = &[
     ("POST", "/v1/users/{user}/enable", Admin, Of::Server),
     ("PUT", "/v1/users/{user}/password", Admin, Of::Server),
     ("PUT", "/v1/users/{user}/roles", Admin, Of::Server),
+    ("PUT", "/v1/users/{user}/identities", Admin, Of::Server),
     ("GET", "/v1/keys", Admin, Of::Server),
     ("POST", "/v1/keys", Admin, Of::Server),
     ("GET", "/v1/keys/{prefix}", Admin, Of::Server),

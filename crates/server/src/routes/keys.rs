@@ -11,7 +11,6 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::users::RolesRequest;
-use crate::accounts;
 use crate::app::App;
 use crate::problem::Result;
 use crate::web::field::{KeyPrefix, MomentUs, Remark, UserName};
@@ -112,7 +111,7 @@ async fn list(
 async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
     let KeyRequest { title, user, roles, expires_us } = payload.json()?;
     let (user, ends) = (user.map(UserName::into_string), expires_us.map(MomentUs::get));
-    let (text, row) = accounts::make_key(&app, &title, user, ends, &grants(roles)?).await?;
+    let (text, row) = app.accounts().make_key(&title, user, ends, &grants(roles)?).await?;
     let location = format!("/v1/keys/{}", row.prefix);
     let about = KeyView::of(&app, row).await?;
     let view = NewKeyView { key: text.as_str().to_owned(), about };
@@ -130,7 +129,7 @@ async fn get(State(app): State<App>, Place(prefix): Place<KeyPrefix>) -> Result<
 /// Revoke a service key, for ever
 #[utoipa::path(delete, path = "/v1/keys/{prefix}", tag = "access", params(("prefix" = inline(KeyPrefix), Path)), responses((status = 200, body = KeyView)))]
 async fn revoke(State(app): State<App>, Place(prefix): Place<KeyPrefix>) -> Result<Json<KeyView>> {
-    let key = accounts::revoke(&app, &prefix).await?;
+    let key = app.accounts().revoke(&prefix).await?;
     Ok(Json(KeyView::of(&app, key).await?))
 }
 
@@ -145,7 +144,7 @@ async fn set_roles(
     payload: Payload,
 ) -> Result<Json<KeyView>> {
     let RolesRequest { roles } = payload.json()?;
-    accounts::set_roles(&app, &KeyRow::principal(&prefix), &grants(roles)?).await?;
+    app.accounts().set_roles(&KeyRow::principal(&prefix), &grants(roles)?).await?;
     let key = app.store().service_keys().get(&prefix).await?;
     Ok(Json(KeyView::of(&app, key).await?))
 }

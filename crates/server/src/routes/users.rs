@@ -5,16 +5,15 @@ use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
 use serde::{Deserialize, Serialize};
-use sistership_store::User;
+use sistership_store::{Identity, User};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use crate::accounts;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::rights::{Kind, current};
-use crate::web::field::{Password, Remark, RequestKey, UserName};
+use crate::web::field::{Line, Password, Remark, RequestKey, UserName};
 use crate::web::{Key, Listing, Paged, Params, Payload, Place, Reply};
 use sistership_http::roles::{RoleRequest, RoleView, grants};
 
@@ -26,6 +25,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(enable))
         .routes(routes!(set_password))
         .routes(routes!(set_roles))
+        .routes(routes!(set_identities))
 }
 
 /// Whoever asks.
@@ -49,7 +49,36 @@ struct UserView {
     enabled: bool,
     /// Whether they can sign in by a password.
     has_password: bool,
+    /// As whom OpenID providers know them.
+    identities: Vec<IdentityView>,
     created_us: i64,
+}
+
+/// Whom an OpenID provider knows.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct IdentityRequest {
+    /// The provider.
+    #[schema(inline)]
+    issuer: Line,
+    /// What it calls them: its claim `sub`.
+    #[schema(inline)]
+    subject: Line,
+}
+
+/// Whom an OpenID provider knows.
+#[derive(Debug, Serialize, ToSchema)]
+struct IdentityView {
+    issuer: String,
+    subject: String,
+}
+
+/// Identities instead of all others.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct IdentitiesRequest {
+    /// The identities; none, and no provider knows the user.
+    identities: Vec<IdentityRequest>,
 }
 
 /// A user to be.
@@ -91,9 +120,12 @@ impl UserView {
     async fn of(app: &App, user: User) -> Result<Self> {
         let roles = app.store().grants().of(&User::principal(&user.name)).await?;
         let (enabled, has_password) = (user.is_enabled(), user.password_hash.is_some());
+        let identities = app.store().identities().of(&user.name).await?;
+        let identity = |Identity { issuer, subject, .. }| IdentityView { issuer, subject };
+        let identities = identities.into_iter().map(identity).collect();
         let User { name, title, created_us, .. } = user;
         let roles = roles.into_iter().map(RoleView::of).collect();
-        Ok(Self { name, title, roles, enabled, has_password, created_us })
+        Ok(Self { name, title, roles, enabled, has_password, identities, created_us })
     }
 }
 
@@ -142,7 +174,7 @@ async fn created(app: &App, request: UserRequest) -> Result<Reply> {
     let UserRequest { name, title, password, roles } = request;
     let title = title.map_or_else(|| name.to_string(), Remark::into_string);
     let roles = grants(roles)?;
-    let user = accounts::create_user(app, &name, &title, password.as_deref(), &roles).await?;
+    let user = app.accounts().create_user(&name, &title, password.as_deref(), &roles).await?;
     let location = format!("/v1/users/{}", user.name);
     Ok(Reply::new(StatusCode::CREATED, &UserView::of(app, user).await?)?.at(location))
 }
@@ -157,14 +189,14 @@ async fn get(State(app): State<App>, Place(name): Place<UserName>) -> Result<Jso
 /// Disable a user: signed out everywhere, with no rights; the name stays taken
 #[utoipa::path(delete, path = "/v1/users/{user}", tag = "access", params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
 async fn disable(State(app): State<App>, Place(name): Place<UserName>) -> Result<Json<UserView>> {
-    let user = accounts::enable(&app, &name, false).await?;
+    let user = app.accounts().enable(&name, false).await?;
     Ok(Json(UserView::of(&app, user).await?))
 }
 
 /// Give a disabled user the rights again that they had
 #[utoipa::path(post, path = "/v1/users/{user}/enable", tag = "access", params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
 async fn enable(State(app): State<App>, Place(name): Place<UserName>) -> Result<Json<UserView>> {
-    let user = accounts::enable(&app, &name, true).await?;
+    let user = app.accounts().enable(&name, true).await?;
     Ok(Json(UserView::of(&app, user).await?))
 }
 
@@ -179,7 +211,7 @@ async fn set_password(
     payload: Payload,
 ) -> Result<StatusCode> {
     let PasswordRequest { password } = payload.json()?;
-    accounts::set_password(&app, &name, &password).await?;
+    app.accounts().set_password(&name, &password).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
@@ -194,7 +226,26 @@ async fn set_roles(
     payload: Payload,
 ) -> Result<Json<UserView>> {
     let RolesRequest { roles } = payload.json()?;
-    accounts::set_roles(&app, &User::principal(&name), &grants(roles)?).await?;
+    app.accounts().set_roles(&User::principal(&name), &grants(roles)?).await?;
+    let user = app.store().users().get(&name).await?;
+    Ok(Json(UserView::of(&app, user).await?))
+}
+
+/// Let OpenID providers know a user as these instead of all others
+#[utoipa::path(
+    put, path = "/v1/users/{user}/identities", tag = "access", params(("user" = inline(UserName), Path)),
+    request_body = IdentitiesRequest, responses((status = 200, body = UserView))
+)]
+async fn set_identities(
+    State(app): State<App>,
+    Place(name): Place<UserName>,
+    payload: Payload,
+) -> Result<Json<UserView>> {
+    let IdentitiesRequest { identities } = payload.json()?;
+    let pair = |one: IdentityRequest| (one.issuer.into_string(), one.subject.into_string());
+    let those: Vec<(String, String)> = identities.into_iter().map(pair).collect();
+    app.store().identities().replace(&name, &those).await?;
+    app.accounts().forget();
     let user = app.store().users().get(&name).await?;
     Ok(Json(UserView::of(&app, user).await?))
 }

@@ -9,7 +9,8 @@ use axum::response::{IntoResponse as _, Redirect, Response};
 
 use crate::app::App;
 use crate::problem::Problem;
-use crate::rights::{Acting, Asked, HEALTH, OPEN, Refusal, allowed, identify};
+use crate::rights::{Acting, Asked, HEALTH, OPEN, allowed};
+use sistership_accounts::Refusal;
 use sistership_http::host;
 use sistership_listen::Peer;
 
@@ -45,7 +46,10 @@ fn refused(app: &App, request: &Request, problem: Problem) -> Response {
     let page = request.method() == Method::GET
         && !request.uri().path().starts_with("/v1")
         && accepted.is_some_and(|accepted| accepted.contains("text/html"));
-    if problem.status != StatusCode::UNAUTHORIZED.as_u16() || !page || !app.has_accounts() {
+    if problem.status != StatusCode::UNAUTHORIZED.as_u16()
+        || !page
+        || !app.credentials().has_people()
+    {
         return problem.into_response();
     }
     let place = request.uri().path_and_query().map_or("/", |place| place.as_str());
@@ -69,7 +73,7 @@ async fn admitted(app: &App, request: &mut Request) -> Result<Option<Acting>, Re
     if HEALTH.contains(&place) {
         return Ok(None);
     }
-    if app.is_open() {
+    if app.credentials().is_open() {
         host::from_this_machine(request.method(), request.headers(), host.as_ref())?;
     }
     if OPEN.contains(&place) {
@@ -78,7 +82,7 @@ async fn admitted(app: &App, request: &mut Request) -> Result<Option<Acting>, Re
     // A form that a page of this server sends, which has a token besides.
     let own = !request.uri().path().starts_with("/v1")
         && host::is_same_origin(request.headers(), host.as_ref())?;
-    let principal = identify(app, request.method(), request.headers(), own).await?;
+    let principal = app.accounts().identify(request.method(), request.headers(), own).await?;
     let origin = origin(request);
     let acting = Acting { principal, origin };
     let params = request.extract_parts::<RawPathParams>().await;

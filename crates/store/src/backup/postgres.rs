@@ -52,6 +52,8 @@ pub(crate) const TABLES: &[&str] = &[
     "webhooks",
     "webhook_events",
     "deliveries",
+    "identities",
+    "spent_sign_ins",
 ];
 const FOLDER: &str = "tables";
 const COLUMNS: &str = "SELECT CAST(column_name AS TEXT) FROM information_schema.columns \

@@ -1,7 +1,8 @@
 //! Users, service keys, sessions and roles, and what the audit has of them.
 
 use sistership_store::{
-    Actor, AuditFilter, Expect, GrantRow, KeyRow, NewKey, Page, StoreError, User, sha256_hex,
+    Actor, AuditFilter, Expect, GrantRow, KeyRow, NewKey, Page, SignIn, StoreError, User,
+    sha256_hex,
 };
 
 use crate::support::*;
@@ -70,6 +71,69 @@ async fn sessions_end(on: &TestStore) {
         }
         assert_eq!(sessions.find(&hash).await.unwrap(), None, "{end}");
     }
+}
+
+/// Somebody whom a provider knows, by the sign-in of this name.
+fn sign_in<'a>(subject: &'a str, sha256: &'a str) -> SignIn<'a> {
+    SignIn { issuer: "https://id.example", subject, sha256, expires_us: 1_900_000_000_000_000 }
+}
+
+async fn an_identity_is_one_users(on: &TestStore) {
+    let (users, identities) = (on.store.users(), on.store.identities());
+    for name in ["ann", "bob"] {
+        users.create(name, name, None, &[]).await.unwrap();
+    }
+    let hashes: Vec<String> = (0..8_u8).map(|n| sha256_hex(&[n])).collect();
+    let own = ("https://id.example".to_owned(), "7-of-9".to_owned());
+    identities.replace("ann", std::slice::from_ref(&own)).await.unwrap();
+    let found = identities.find(&own.0, &own.1).await.unwrap().unwrap();
+    assert_eq!(found.user_name, "ann");
+    assert_eq!(identities.find("https://other.example", &own.1).await.unwrap(), None);
+    assert_conflict(identities.replace("bob", std::slice::from_ref(&own)).await, "another user");
+    assert_conflict(identities.add("bob", sign_in("7-of-9", &hashes[0])).await, "another user");
+    identities.add("bob", sign_in("1-of-9", &hashes[0])).await.unwrap();
+    assert_conflict(identities.add("bob", sign_in("2-of-9", &hashes[0])).await, "ended already");
+    assert_eq!(identities.of("bob").await.unwrap().len(), 1, "nothing is half done");
+    let roles = [role("server", "", "reader")];
+    let eve = sign_in("3-of-9", &hashes[1]);
+    identities.create("eve", "Eve", &roles, eve).await.unwrap();
+    assert_conflict(identities.create("ann", "Ann", &[], sign_in("4", &hashes[2])).await, "name");
+    assert_eq!(identities.find(&own.0, "4").await.unwrap(), None);
+    assert_eq!(on.store.grants().of("user:eve").await.unwrap(), roles);
+    assert!(users.get("eve").await.unwrap().password_hash.is_none());
+    assert_not_found(identities.replace("nobody", &[]).await, "user");
+    for wrong in ["", "a\nb", &"a".repeat(256)] {
+        let pair = (own.0.clone(), wrong.to_owned());
+        assert_invalid(identities.replace("bob", &[pair]).await, "subject");
+    }
+    let actions: Vec<String> = audited(on).await.into_iter().map(|(action, _)| action).collect();
+    let expected =
+        ["user.create", "user.create", "user.identities", "user.identity", "user.create"];
+    assert_eq!(actions, expected);
+}
+
+async fn a_sign_in_at_a_provider_ends_once(on: &TestStore) {
+    on.store.users().create("ann", "Ann", None, &[]).await.unwrap();
+    let (identities, session) = (on.store.identities(), sha256_hex(b"cookie"));
+    let (first, second) = (sha256_hex(b"1"), sha256_hex(b"2"));
+    let once = sign_in("7-of-9", &first);
+    identities.begin_session(&session, "ann", i64::MAX, once).await.unwrap();
+    let again = identities.begin_session(&sha256_hex(b"other"), "ann", i64::MAX, once).await;
+    assert_conflict(again, "ended already");
+    assert!(on.store.sessions().find(&sha256_hex(b"other")).await.unwrap().is_none());
+    assert_conflict(identities.refuse(once, "why").await, "ended already");
+    identities.refuse(sign_in("7-of-9", &second), "no account").await.unwrap();
+    let entries = on.store.audit().list(AuditFilter::All, &Page::first(2)).await.unwrap().items;
+    assert_eq!((&*entries[0].action, &*entries[1].action), ("session.refuse", "session.begin"));
+    let after = entries[0].state_after.as_deref().unwrap();
+    assert!(after.contains("no account") && after.contains("https://id.example"), "{after}");
+    assert!(entries[1].state_after.as_deref().unwrap().contains("7-of-9"));
+    // Known as nobody any more, signed out.
+    let own = ("https://id.example".to_owned(), "7-of-9".to_owned());
+    identities.replace("ann", &[own]).await.unwrap();
+    assert!(on.store.sessions().find(&session).await.unwrap().is_some());
+    identities.replace("ann", &[]).await.unwrap();
+    assert!(on.store.sessions().find(&session).await.unwrap().is_none());
 }
 
 async fn keys_end_for_ever(on: &TestStore) {
@@ -235,6 +299,8 @@ async fn jobs_and_versions_have_authors(on: &TestStore) {
 on_both_databases!(
     users_keep_their_names,
     sessions_end,
+    an_identity_is_one_users,
+    a_sign_in_at_a_provider_ends_once,
     keys_end_for_ever,
     what_is_done_is_in_the_audit_and_what_is_not_is_not,
     a_unit_of_work_is_entered_as_a_whole_or_not_at_all,

@@ -5,6 +5,7 @@ mod answer;
 mod draft;
 mod look;
 mod new_ship;
+mod openid;
 mod people;
 
 use axum::Router;
@@ -43,9 +44,12 @@ pub(super) fn routes(limits: &Limits) -> Router<App> {
         .route("/jobs/{id}/cancel", post(act::cancel))
         .route("/jobs/{id}/retry", post(act::retry))
         .route("/sign-in", get(people::sign_in).post(people::signed_in))
+        .route("/sign-in/oidc", get(openid::begin))
+        .route("/sign-in/oidc/callback", get(openid::callback))
         .route("/sign-out", post(people::sign_out))
         .route("/account", get(people::account))
         .route("/account/password", post(people::password))
+        .route("/account/identity", post(openid::link))
         .route("/users", get(people::users).post(people::create))
         .route("/users/{user}/roles", post(people::set_roles))
         .route("/users/{user}/password", post(people::set_password))

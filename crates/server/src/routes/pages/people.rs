@@ -3,17 +3,18 @@
 use std::sync::Arc;
 
 use axum::extract::{FromRequest as _, Request, State};
-use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::http::{Extensions, HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::Response;
 use sistership_access::Grant;
+use sistership_accounts::{COOKIE, SESSION};
+use sistership_pages::people::{Known, Offered};
 use sistership_pages::{Fields, audit, people};
 use sistership_store::{KeyRow, User};
 
-use super::answer::{answer, then};
-use crate::accounts::{self, SESSION};
+use super::answer::{answer, own_place, then, with_cookie};
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::rights::{Acting, COOKIE, Kind, current};
+use crate::rights::{Acting, Kind, current};
 use crate::web::field::{KeyPrefix, UserName};
 use crate::web::form::{PageForm, shell};
 use crate::web::{Params, Place};
@@ -27,7 +28,7 @@ const DAY: i64 = 86_400_000_000;
 
 pub(super) async fn sign_in(State(app): State<App>, Params(query): Asked) -> Result<Response> {
     let query = Fields::from(query);
-    Ok(answer(people::sign_in(shell(&app), own_place(query.text("next")), None)?))
+    sign_in_page(&app, own_place(query.text("next")), None)
 }
 
 /// Begins a session. The form has no session whose token it could send, so the browser must say that
@@ -38,63 +39,72 @@ pub(super) async fn signed_in(State(app): State<App>, request: Request) -> Resul
         let why = "sign in on the page of this server; the browser says that another site asks";
         return Err(Problem::new(StatusCode::FORBIDDEN, why));
     }
-    let from = request.extensions().get::<Peer>().map(|peer| peer.party.to_string());
-    let from = from.unwrap_or_else(|| "unknown".to_owned());
+    let from = origin_of(request.extensions());
     let secure = is_secure(request.headers());
     let PageForm(form) = PageForm::from_request(request, &app).await?;
     let (name, password) = (form.needed("name")?, form.needed("password")?);
     let next = own_place(form.text("next"));
     let actor = sistership_store::Actor::new(name, from.as_str());
-    match actor.acting(accounts::sign_in(&app, name, password, &from)).await {
-        Ok(secret) => {
-            let age = SESSION.as_secs();
-            Ok(with_cookie(then(next), &format!("{secret}; Max-Age={age}{secure}")))
-        }
+    match actor.acting(app.accounts().sign_in(name, password, &from)).await {
+        Ok(secret) => Ok(with_session(then(next), &secret, secure)),
         Err(problem) if problem.status() == StatusCode::UNAUTHORIZED => {
-            let page = people::sign_in(shell(&app), next, Some(&problem.detail))?;
-            Ok(answer(page))
+            sign_in_page(&app, next, Some(&problem.detail))
         }
         Err(problem) => Err(problem),
     }
 }
 
-/// A place of this server to go to; its front page where another is named.
-fn own_place(next: Option<&str>) -> &str {
-    let own = |next: &&str| next.starts_with('/') && !next[1..].starts_with(['/', '\\']);
-    next.filter(own).unwrap_or("/")
+/// The page to sign in at, with what was wrong with the last attempt.
+pub(super) fn sign_in_page(app: &App, next: &str, why_not: Option<&str>) -> Result<Response> {
+    let place = serde_urlencoded::to_string([("next", next)]).unwrap_or_default();
+    let place = format!("/sign-in/oidc?{place}");
+    let title = app.credentials().provider().map(|provider| provider.settings().title());
+    let provider = title.map(|title| Offered { title, place: &place });
+    Ok(answer(people::sign_in(shell(app), next, why_not, provider)?))
+}
+
+/// With the cookie of a session that begins; `secure` where the browser's connection is.
+pub(super) fn with_session(response: Response, secret: &str, secure: bool) -> Response {
+    let (age, secure) = (SESSION.as_secs(), if secure { "; Secure" } else { "" });
+    with_cookie(response, &format!("{COOKIE}={secret}; Max-Age={age}; Path=/{secure}"))
+}
+
+/// From where a request comes, as the audit has it.
+pub(super) fn origin_of(extensions: &Extensions) -> String {
+    let peer = extensions.get::<Peer>();
+    peer.map_or_else(|| "unknown".to_owned(), |peer| peer.party.to_string())
 }
 
 /// What keeps the cookie from connections without TLS, where the browser itself has one.
-fn is_secure(headers: &HeaderMap) -> &'static str {
+fn is_secure(headers: &HeaderMap) -> bool {
     let origin = headers.get(header::ORIGIN).and_then(|value| value.to_str().ok());
-    if origin.is_some_and(|origin| origin.starts_with("https://")) { "; Secure" } else { "" }
-}
-
-fn with_cookie(mut response: Response, value: &str) -> Response {
-    let cookie = format!("{COOKIE}={value}; Path=/; HttpOnly; SameSite=Lax");
-    if let Ok(cookie) = HeaderValue::try_from(cookie) {
-        response.headers_mut().insert(header::SET_COOKIE, cookie);
-    }
-    response
+    origin.is_some_and(|origin| origin.starts_with("https://"))
 }
 
 pub(super) async fn sign_out(State(app): State<App>, PageForm(_): PageForm) -> Result<Response> {
     if let Kind::Session { sha256, .. } = &who()?.principal.kind {
         app.store().sessions().end(sha256).await?;
-        app.known().forget();
+        app.accounts().forget();
     }
-    Ok(with_cookie(then("/sign-in"), "; Max-Age=0"))
+    Ok(with_cookie(then("/sign-in"), &format!("{COOKIE}=; Max-Age=0; Path=/")))
 }
 
-fn who() -> Result<Acting> {
+pub(super) fn who() -> Result<Acting> {
     current().ok_or_else(|| Problem::internal("nobody is named who asks"))
 }
 
 pub(super) async fn account(State(app): State<App>, Params(query): Asked) -> Result<Response> {
     let principal = Arc::clone(&who()?.principal);
     let roles = principal.rights.grants().iter().map(ToString::to_string).collect();
-    let changed = Fields::from(query).text("changed").is_some();
-    Ok(answer(people::account(shell(&app), &principal.name, roles, changed)?))
+    let notice = match Fields::from(query).text("done") {
+        Some("password") => Some("The password is changed; sign in again wherever else you were."),
+        Some("link") => Some("Your account is linked."),
+        _ => None,
+    };
+    let identities = app.store().identities().of(&principal.name).await?;
+    let provider = app.credentials().provider().map(|provider| provider.settings().title());
+    let known = Known { identities, provider };
+    Ok(answer(people::account(shell(&app), &principal.name, roles, known, notice)?))
 }
 
 /// Changes one's own password, which signs out everywhere, and in here again.
@@ -108,17 +118,15 @@ pub(super) async fn password(
         return Err(Problem::invalid("old", "only who has signed in has a password"));
     }
     let (old, new) = (form.needed("old")?, form.needed("new")?);
-    accounts::verified(&app, &principal.name, old, &origin).await.map_err(
+    app.accounts().verified(&principal.name, old, &origin).await.map_err(
         |problem| match problem.status() {
             StatusCode::UNAUTHORIZED => Problem::invalid("old", "is not your password"),
             _ => problem,
         },
     )?;
-    accounts::set_password(&app, &principal.name, new).await?;
-    let secret = accounts::sign_in(&app, &principal.name, new, &origin).await?;
-    let (age, secure) = (SESSION.as_secs(), is_secure(&headers));
-    let done = then("/account?changed=yes");
-    Ok(with_cookie(done, &format!("{secret}; Max-Age={age}{secure}")))
+    app.accounts().set_password(&principal.name, new).await?;
+    let secret = app.accounts().sign_in(&principal.name, new, &origin).await?;
+    Ok(with_session(then("/account?done=password"), &secret, is_secure(&headers)))
 }
 
 pub(super) async fn users(State(app): State<App>, Params(query): Asked) -> Result<Response> {
@@ -135,8 +143,7 @@ fn roles(form: &Fields) -> Result<Vec<Grant>> {
 pub(super) async fn create(State(app): State<App>, PageForm(form): PageForm) -> Result<Response> {
     let name = form.needed("name")?;
     let title = form.text("title").unwrap_or(name);
-    accounts::create_user(&app, name, title, Some(form.needed("password")?), &roles(&form)?)
-        .await?;
+    app.accounts().create_user(name, title, Some(form.needed("password")?), &roles(&form)?).await?;
     Ok(then("/users"))
 }
 
@@ -145,7 +152,7 @@ pub(super) async fn set_roles(
     Place(name): Place<UserName>,
     PageForm(form): PageForm,
 ) -> Result<Response> {
-    accounts::set_roles(&app, &User::principal(&name), &roles(&form)?).await?;
+    app.accounts().set_roles(&User::principal(&name), &roles(&form)?).await?;
     Ok(then("/users"))
 }
 
@@ -154,7 +161,7 @@ pub(super) async fn set_password(
     Place(name): Place<UserName>,
     PageForm(form): PageForm,
 ) -> Result<Response> {
-    accounts::set_password(&app, &name, form.needed("password")?).await?;
+    app.accounts().set_password(&name, form.needed("password")?).await?;
     Ok(then("/users"))
 }
 
@@ -163,7 +170,7 @@ pub(super) async fn disable(
     Place(name): Place<UserName>,
     PageForm(_): PageForm,
 ) -> Result<Response> {
-    accounts::enable(&app, &name, false).await?;
+    app.accounts().enable(&name, false).await?;
     Ok(then("/users"))
 }
 
@@ -172,7 +179,7 @@ pub(super) async fn enable(
     Place(name): Place<UserName>,
     PageForm(_): PageForm,
 ) -> Result<Response> {
-    accounts::enable(&app, &name, true).await?;
+    app.accounts().enable(&name, true).await?;
     Ok(then("/users"))
 }
 
@@ -181,7 +188,7 @@ pub(super) async fn make_key(State(app): State<App>, PageForm(form): PageForm) -
     let days = form.text("days").map(|_| form.whole("days")).transpose()?;
     let expires_us = days.map(|days| app.store().now_us().saturating_add(days.saturating_mul(DAY)));
     let (title, user) = (form.needed("title")?, form.text("user").map(str::to_owned));
-    let (key, row) = accounts::make_key(&app, title, user, expires_us, &roles(&form)?).await?;
+    let (key, row) = app.accounts().make_key(title, user, expires_us, &roles(&form)?).await?;
     let KeyRow { title, .. } = row;
     let mut shown = answer(people::new_key(shell(&app), &title, key.as_str())?);
     shown.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
@@ -193,7 +200,7 @@ pub(super) async fn revoke(
     Place(prefix): Place<KeyPrefix>,
     PageForm(_): PageForm,
 ) -> Result<Response> {
-    accounts::revoke(&app, &prefix).await?;
+    app.accounts().revoke(&prefix).await?;
     Ok(then("/users"))
 }
 
@@ -205,18 +212,4 @@ pub(super) async fn settings(State(app): State<App>, PageForm(form): PageForm) -
 
 pub(super) async fn audit(State(app): State<App>, Params(query): Asked) -> Result<Response> {
     Ok(answer(audit::page(app.archive(), shell(&app), &Fields::from(query)).await?))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn nobody_is_sent_elsewhere() {
-        assert_eq!(own_place(Some("/ships/kcs?a=b")), "/ships/kcs?a=b");
-        for other in ["//evil.example", "/\\evil.example", "https://evil.example", "", "ships"] {
-            assert_eq!(own_place(Some(other)), "/", "{other}");
-        }
-        assert_eq!(own_place(None), "/");
-    }
 }

@@ -1,0 +1,35 @@
+//! What an ID token says (OpenID Connect Core 1.0, 2).
+
+use serde::Deserialize;
+use serde_json::{Map, Value};
+
+/// The claims of an ID token.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Claims {
+    pub iss: String,
+    pub sub: String,
+    pub aud: Audience,
+    pub azp: Option<String>,
+    pub nonce: Option<String>,
+    /// All others.
+    #[serde(flatten)]
+    pub others: Map<String, Value>,
+}
+
+/// For whom it is.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+pub(crate) enum Audience {
+    One(String),
+    Several(Vec<String>),
+}
+
+impl Audience {
+    /// Those for whom it is.
+    pub fn all(&self) -> &[String] {
+        match self {
+            Self::One(one) => std::slice::from_ref(one),
+            Self::Several(several) => several,
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! Signing in at an OpenID provider (OpenID Connect Core 1.0): the authorization code flow with PKCE
+//! (RFC 7636), and the checks of what comes back. It knows no route and no table: it says where the
+//! browser goes, and afterwards who the provider says is there.
+
+mod admission;
+mod arguments;
+mod claims;
+mod failure;
+mod fetch;
+mod identity;
+mod keys;
+mod metadata;
+mod provider;
+mod ring_keys;
+mod settings;
+#[cfg(feature = "testing")]
+pub mod testing;
+mod ticket;
+mod token;
+
+pub use admission::Admission;
+pub use arguments::OpenIdArguments;
+pub use failure::{Failure, Result};
+pub use identity::Identity;
+pub use provider::{Answer, Begun, Finished, Provider};
+pub use settings::{Settings, SettingsError};
+pub use ticket::{LIFETIME_S, Purpose};

@@ -1,0 +1,188 @@
+//! Whom an OpenID provider knows, as which user. A sign-in at a provider ends once: what is known of
+//! it is written with the session, or with the identity, that comes of it.
+
+use serde_json::{Value, json};
+
+use crate::arguments::args;
+use crate::checks;
+use crate::database::Transaction;
+use crate::error::{Result, StoreError};
+use crate::grants::{self, GrantRow};
+use crate::record::record;
+use crate::sessions;
+use crate::statements::{same, statements};
+use crate::store::Store;
+use crate::users::{self, User};
+
+statements! {
+    GET = same("SELECT issuer, subject, user_name, created_us FROM identities WHERE issuer = $1 AND subject = $2");
+    OF = same("SELECT issuer, subject, user_name, created_us FROM identities WHERE user_name = $1 ORDER BY issuer, subject");
+    PUT = same("INSERT INTO identities (issuer, subject, user_name, created_us) VALUES ($1, $2, $3, $4) \
+        ON CONFLICT (issuer, subject) DO NOTHING RETURNING issuer, subject, user_name, created_us");
+    CLEAR = same("DELETE FROM identities WHERE user_name = $1");
+    SPEND = same("INSERT INTO spent_sign_ins (sha256, expires_us) VALUES ($1, $2) ON CONFLICT (sha256) DO NOTHING");
+    PURGE = same("DELETE FROM spent_sign_ins WHERE expires_us < $1");
+}
+
+record! {
+    /// Whom a provider knows, as which user.
+    pub struct Identity {
+        /// The provider.
+        pub issuer: String,
+        /// Whom it knows.
+        pub subject: String,
+        /// As which user.
+        pub user_name: String,
+        /// Since when.
+        pub created_us: i64,
+    }
+}
+
+/// A sign-in at a provider that has ended well.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SignIn<'a> {
+    /// The provider.
+    pub issuer: &'a str,
+    /// Whom it knows.
+    pub subject: &'a str,
+    /// By what the sign-in is known again.
+    pub sha256: &'a str,
+    /// When it would have expired.
+    pub expires_us: i64,
+}
+
+/// The identities of a store.
+#[derive(Debug, Clone, Copy)]
+pub struct Identities<'a>(pub(crate) &'a Store);
+
+impl Store {
+    /// Whom OpenID providers know.
+    pub fn identities(&self) -> Identities<'_> {
+        Identities(self)
+    }
+}
+
+impl SignIn<'_> {
+    /// As the audit has it.
+    fn told(&self) -> Value {
+        json!({ "issuer": self.issuer, "subject": self.subject })
+    }
+}
+
+impl Identities<'_> {
+    /// Somebody whom a provider knows, if they are a user here.
+    pub async fn find(&self, issuer: &str, subject: &str) -> Result<Option<Identity>> {
+        self.0.database().optional(GET, args![issuer: issuer, subject: subject]).await
+    }
+
+    /// As whom providers know a user.
+    pub async fn of(&self, user: &str) -> Result<Vec<Identity>> {
+        self.0.database().all(OF, args![user_name: user]).await
+    }
+
+    /// Makes a user known as these, issuer and subject, and as no others; signed out where one of
+    /// them goes.
+    pub async fn replace(&self, user: &str, those: &[(String, String)]) -> Result<()> {
+        let mut tx = self.0.begin().await?;
+        users::there(&mut tx, user).await?;
+        let before: Vec<Identity> = tx.all(OF, args![user_name: user]).await?;
+        tx.execute(CLEAR, args![user_name: user]).await?;
+        for (issuer, subject) in those {
+            self.put(&mut tx, user, issuer, subject).await?;
+        }
+        let pair = |one: &Identity| (one.issuer.clone(), one.subject.clone());
+        let before: Vec<(String, String)> = before.iter().map(pair).collect();
+        if before.iter().any(|one| !those.contains(one)) {
+            users::sign_out(&mut tx, user).await?;
+        }
+        let (before, after) = (json!({ "identities": before }), json!({ "identities": those }));
+        let subject = User::principal(user);
+        tx.note(self.0.now_us(), "user.identities", subject, Some(before), Some(after));
+        tx.commit().await
+    }
+
+    /// Makes a user known as whoever has signed in at a provider, beside others.
+    pub async fn add(&self, user: &str, sign_in: SignIn<'_>) -> Result<()> {
+        let mut tx = self.0.begin().await?;
+        self.spend(&mut tx, sign_in).await?;
+        users::there(&mut tx, user).await?;
+        self.put(&mut tx, user, sign_in.issuer, sign_in.subject).await?;
+        let (now, subject) = (self.0.now_us(), User::principal(user));
+        tx.note(now, "user.identity", subject, None, Some(sign_in.told()));
+        tx.commit().await
+    }
+
+    /// Creates a user who is known by a provider, and signs in there only.
+    pub async fn create(
+        &self,
+        name: &str,
+        title: &str,
+        roles: &[GrantRow],
+        sign_in: SignIn<'_>,
+    ) -> Result<()> {
+        let mut tx = self.0.begin().await?;
+        users::insert(&mut tx, name, title, None, self.0.now_us()).await?;
+        let principal = User::principal(name);
+        grants::put(&mut tx, &principal, roles).await?;
+        self.put(&mut tx, name, sign_in.issuer, sign_in.subject).await?;
+        let identity = sign_in.told();
+        let after = json!({ "title": title, "roles": grants::words(roles), "identity": identity });
+        tx.note(self.0.now_us(), "user.create", principal, None, Some(after));
+        tx.commit().await
+    }
+
+    /// Begins a session of a user who has signed in at a provider.
+    pub async fn begin_session(
+        &self,
+        sha256: &str,
+        user: &str,
+        expires_us: i64,
+        sign_in: SignIn<'_>,
+    ) -> Result<()> {
+        let mut tx = self.0.begin().await?;
+        self.spend(&mut tx, sign_in).await?;
+        let now = self.0.now_us();
+        sessions::insert(&mut tx, sha256, user, now, expires_us).await?;
+        tx.note(now, "session.begin", User::principal(user), None, Some(sign_in.told()));
+        tx.commit().await
+    }
+
+    /// Enters that somebody whom a provider knows was not let in, and why.
+    pub async fn refuse(&self, sign_in: SignIn<'_>, why: &str) -> Result<()> {
+        let mut tx = self.0.begin().await?;
+        self.spend(&mut tx, sign_in).await?;
+        let after = json!({ "issuer": sign_in.issuer, "subject": sign_in.subject, "why": why });
+        let subject = format!("identity:{}", sign_in.subject);
+        tx.note(self.0.now_us(), "session.refuse", subject, None, Some(after));
+        tx.commit().await
+    }
+
+    async fn put(
+        &self,
+        tx: &mut Transaction,
+        user: &str,
+        issuer: &str,
+        subject: &str,
+    ) -> Result<()> {
+        checks::line("issuer", issuer)?;
+        checks::line("subject", subject)?;
+        let values =
+            args![issuer: issuer, subject: subject, user_name: user, created_us: self.0.now_us()];
+        let put: Option<Identity> = tx.optional(PUT, values).await?;
+        match put {
+            Some(_) => Ok(()),
+            None => Err(StoreError::conflict("identity", subject, "is another user's already")),
+        }
+    }
+
+    /// Notes that a sign-in has ended; one that has ended before is refused.
+    async fn spend(&self, tx: &mut Transaction, sign_in: SignIn<'_>) -> Result<()> {
+        checks::sha256("sha256", sign_in.sha256)?;
+        tx.execute(PURGE, args![expires_us: self.0.now_us()]).await?;
+        let values = args![sha256: sign_in.sha256, expires_us: sign_in.expires_us];
+        match tx.execute(SPEND, values).await? {
+            0 => Err(StoreError::conflict("sign-in", sign_in.subject, "has ended already")),
+            _ => Ok(()),
+        }
+    }
+}
