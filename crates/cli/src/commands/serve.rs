@@ -71,7 +71,7 @@ pub struct ServeArguments {
     #[arg(long, env = "SISTERSHIP_WEBHOOKS_PRIVATE")]
     webhooks_private: bool,
     #[command(flatten)]
-    openid: OpenIdArguments,
+    openid: Box<OpenIdArguments>,
     #[command(flatten)]
     lease: LeaseArguments,
     #[command(flatten)]
