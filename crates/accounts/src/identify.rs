@@ -40,8 +40,8 @@ type Identified = std::result::Result<Arc<Principal>, Refusal>;
 impl Accounts<'_> {
     /// Who asks.
     pub async fn identify(&self, method: &Method, headers: &HeaderMap, own: bool) -> Identified {
-        // Browsers send some things by themselves, also on behalf of other sites: good enough to look,
-        // not to change, unless the browser says that a page of this server asks.
+        // Browsers send some things by themselves, also on behalf of other sites: good enough to
+        // look, not to change, unless the browser says that a page of this server asks.
         let by_browser = method.is_safe() || own;
         if let Some(found) = self.presented(headers, by_browser).await? {
             return Ok(found);
@@ -55,7 +55,8 @@ impl Accounts<'_> {
         }
     }
 
-    /// Whoever the header `Authorization` shows; none where it is missing, or nobody is asked for it.
+    /// Whoever the header `Authorization` shows; none where it is missing, or nobody is asked for
+    /// it.
     async fn presented(
         &self,
         headers: &HeaderMap,

@@ -14,8 +14,8 @@ pub struct Admission {
     pub auto_create: bool,
     /// What everybody may do who gets in by the provider, where it is not by their groups alone.
     pub default_role: Option<Grant>,
-    /// The claim that names the account; `preferred_username`, else a verified `email`, where none is
-    /// set.
+    /// The claim that names the account; `preferred_username`, else a verified `email`, where none
+    /// is set.
     pub name_claim: Option<String>,
     /// The claim that lists the groups.
     pub groups_claim: String,

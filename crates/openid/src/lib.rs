@@ -1,6 +1,6 @@
-//! Signing in at an OpenID provider (OpenID Connect Core 1.0): the authorization code flow with PKCE
-//! (RFC 7636), and the checks of what comes back. It knows no route and no table: it says where the
-//! browser goes, and afterwards who the provider says is there.
+//! Signing in at an OpenID provider (OpenID Connect Core 1.0): the authorization code flow with
+//! PKCE (RFC 7636), and the checks of what comes back. It knows no route and no table: it says
+//! where the browser goes, and afterwards who the provider says is there.
 
 mod admission;
 mod arguments;

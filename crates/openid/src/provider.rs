@@ -1,5 +1,5 @@
-//! The provider, as a server knows it: it is asked for what it says of itself when somebody wants to
-//! sign in, so that one that is down keeps nothing else from working.
+//! The provider, as a server knows it: it is asked for what it says of itself when somebody wants
+//! to sign in, so that one that is down keeps nothing else from working.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -230,8 +230,8 @@ impl Provider {
         let header = token::header(&id_token)?;
         let claims = match token::verified(&id_token, &header, &known.keys, expected)? {
             Some(claims) => claims,
-            // Signed by a key that was not there an hour ago: once for each sign-in, which costs the
-            // provider a request anyway.
+            // Signed by a key that was not there an hour ago: once for each sign-in, which costs
+            // the provider a request anyway.
             None => {
                 let keys = keys(&known.client, &known.metadata).await?;
                 let found = token::verified(&id_token, &header, &keys, expected)?;
@@ -288,7 +288,8 @@ fn word(text: &str) -> &str {
     if plain { text } else { "for a reason that is no word of the standard" }
 }
 
-/// What an error of the authorization endpoint comes to (RFC 6749, 4.1.2.1; OpenID Connect, 3.1.2.6).
+/// What an error of the authorization endpoint comes to (RFC 6749, 4.1.2.1; OpenID Connect,
+/// 3.1.2.6).
 fn refused(error: &str) -> Failure {
     match error {
         "access_denied"

@@ -1,5 +1,5 @@
-//! What a browser keeps between leaving for the provider and coming back: one secret, from which all
-//! that must not be guessed follows, with where to go then, and sealed so that its age is true.
+//! What a browser keeps between leaving for the provider and coming back: one secret, from which
+//! all that must not be guessed follows, with where to go then, and sealed so that its age is true.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD;

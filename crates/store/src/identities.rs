@@ -1,5 +1,5 @@
-//! Whom an OpenID provider knows, as which user. A sign-in at a provider ends once: what is known of
-//! it is written with the session, or with the identity, that comes of it.
+//! Whom an OpenID provider knows, as which user. A sign-in at a provider ends once: what is known
+//! of it is written with the session, or with the identity, that comes of it.
 
 use serde_json::{Value, json};
 

@@ -195,7 +195,8 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     })
 }
 
-/// Whether neither source, law, method nor another prior is named, and nothing that only some methods keep.
+/// Whether neither source, law, method nor another prior is named, and nothing that only some
+/// methods keep.
 fn is_plain(arguments: &RefineArguments, settings: &Settings) -> bool {
     let unnamed = arguments.source.as_deref().is_none_or(|source| source == "auto");
     unnamed

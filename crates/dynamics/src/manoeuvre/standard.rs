@@ -109,8 +109,8 @@ pub fn standard(ship: &Ship, settings: &ManoeuvreSettings) -> StandardManoeuvres
     standard_of_sisters(ship, &[&[]], settings).remove(0)
 }
 
-/// Sails them as [`standard`] does, and gives the tracks as well, in the order of [`STANDARD`]; none
-/// of one that diverged.
+/// Sails them as [`standard`] does, and gives the tracks as well, in the order of [`STANDARD`];
+/// none of one that diverged.
 pub fn standard_with_tracks(
     ship: &Ship,
     settings: &ManoeuvreSettings,

@@ -1,5 +1,5 @@
-//! `oidc-provider` of npm (MIT), which the OpenID Foundation has certified, as a process of its own: what
-//! it asks for and sends is its authors' reading of the standard, not ours.
+//! `oidc-provider` of npm (MIT), which the OpenID Foundation has certified, as a process of its
+//! own: what it asks for and sends is its authors' reading of the standard, not ours.
 
 use std::io::{BufRead as _, BufReader};
 use std::path::Path;
@@ -21,8 +21,8 @@ impl RealProvider {
     /// `tests/provider`).
     ///
     /// # Panics
-    /// Where it is not installed although `SISTERSHIP_REQUIRE_OPENID=1` says that it must be, or where
-    /// it does not start.
+    /// Where it is not installed although `SISTERSHIP_REQUIRE_OPENID=1` says that it must be, or
+    /// where it does not start.
     pub fn start(url: &str) -> Option<Self> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/provider");
         if !folder.join("node_modules/oidc-provider").is_dir() {

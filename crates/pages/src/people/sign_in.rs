@@ -44,8 +44,8 @@ struct LeavePage<'a> {
     provider: Offered<'a>,
 }
 
-/// The page from which a person goes to the provider that their account is to be linked with. A form
-/// cannot lead there by itself: the policy of pages sends forms to this server only.
+/// The page from which a person goes to the provider that their account is to be linked with. A
+/// form cannot lead there by itself: the policy of pages sends forms to this server only.
 ///
 /// # Errors
 /// The page cannot be written.

@@ -355,26 +355,6 @@ async fn the_audit_names_who_did_what(database: TestDatabase) {
     harness.server.stop().await;
 }
 
-/// Makes two tests of each function: one on SQLite, one on PostgreSQL.
-macro_rules! on_both_databases {
-    ($($name:ident),* $(,)?) => {
-        mod sqlite {$(
-            #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-            async fn $name() {
-                super::$name(super::TestDatabase::sqlite()).await;
-            }
-        )*}
-
-        mod postgres {$(
-            #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-            async fn $name() {
-                let Some(database) = super::TestDatabase::postgres().await else { return };
-                super::$name(database).await;
-            }
-        )*}
-    };
-}
-
 on_both_databases!(
     each_route_is_for_the_roles_of_the_table,
     a_role_for_a_ship_goes_no_further,

@@ -2,6 +2,26 @@
 
 #![allow(clippy::unwrap_used)]
 
+/// Makes two tests of each function: one on SQLite, one on PostgreSQL.
+macro_rules! on_both_databases {
+    ($($name:ident),* $(,)?) => {
+        mod sqlite {$(
+            #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+            async fn $name() {
+                super::$name(super::TestDatabase::sqlite()).await;
+            }
+        )*}
+
+        mod postgres {$(
+            #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+            async fn $name() {
+                let Some(database) = super::TestDatabase::postgres().await else { return };
+                super::$name(database).await;
+            }
+        )*}
+    };
+}
+
 mod access;
 mod contract;
 mod documents;

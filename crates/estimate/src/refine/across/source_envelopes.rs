@@ -15,8 +15,8 @@ use crate::refine::outcome::RefineError;
 pub struct SourceEnvelopes(Mutex<BTreeMap<(String, String), Arc<OperatingEnvelope>>>);
 
 impl SourceEnvelopes {
-    /// That of a source, which is asked where it has not been. Two that ask at once both do: to wait
-    /// for each other could stop the threads that they share.
+    /// That of a source, which is asked where it has not been. Two that ask at once both do: to
+    /// wait for each other could stop the threads that they share.
     ///
     /// # Errors
     /// As `ask`.

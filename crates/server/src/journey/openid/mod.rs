@@ -250,26 +250,6 @@ async fn without_accounts_there_is_no_provider() {
     harness.server.stop().await;
 }
 
-/// Makes two tests of each function: one on SQLite, one on PostgreSQL.
-macro_rules! on_both_databases {
-    ($($name:ident),* $(,)?) => {
-        mod sqlite {$(
-            #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-            async fn $name() {
-                super::$name(super::TestDatabase::sqlite()).await;
-            }
-        )*}
-
-        mod postgres {$(
-            #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-            async fn $name() {
-                let Some(database) = super::TestDatabase::postgres().await else { return };
-                super::$name(database).await;
-            }
-        )*}
-    };
-}
-
 on_both_databases!(
     who_is_linked_gets_in,
     a_sign_in_ends_once_whatever_the_provider_says,

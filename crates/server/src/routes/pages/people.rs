@@ -31,8 +31,8 @@ pub(super) async fn sign_in(State(app): State<App>, Params(query): Asked) -> Res
     sign_in_page(&app, own_place(query.text("next")), None)
 }
 
-/// Begins a session. The form has no session whose token it could send, so the browser must say that
-/// it is of this server: nobody is to be signed in by another site under another name.
+/// Begins a session. The form has no session whose token it could send, so the browser must say
+/// that it is of this server: nobody is to be signed in by another site under another name.
 pub(super) async fn signed_in(State(app): State<App>, request: Request) -> Result<Response> {
     let addressed = host::addressed(&request)?;
     if !host::is_same_origin(request.headers(), addressed.as_ref())? {
