@@ -10,12 +10,13 @@ use sistership_openid::{Answer, Begun, Failure, Finished, OpenIdArguments, Provi
 /// A server that knows a provider, with further settings.
 fn knowing(hostile: &Hostile, change: impl FnOnce(&mut OpenIdArguments)) -> Provider {
     let _ = rustls::crypto::ring::default_provider().install_default();
-    let path = std::env::temp_dir().join(format!("oidc-hostile-{}", std::process::id()));
-    std::fs::write(&path, CLIENT.1).unwrap();
+    // One file a call: the tests of this program run side by side.
+    let secret = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(&secret, CLIENT.1).unwrap();
     let mut told = OpenIdArguments {
         issuer: Some(hostile.url.clone()),
         client_id: Some(CLIENT.0.into()),
-        client_secret_file: Some(path),
+        client_secret_file: Some(secret.path().into()),
         base_url: Some("http://127.0.0.1:1".into()),
         ..OpenIdArguments::default()
     };
