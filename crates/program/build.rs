@@ -10,5 +10,7 @@ fn main() {
     if of("PROFILE") == "release" && target == "x86_64-unknown-linux-gnu" {
         println!("cargo:rustc-link-arg-bins=-Wl,--icf=all");
         println!("cargo:rustc-link-arg-bins=-Wl,-z,pack-relative-relocs");
+        // Cargo 1.95 forgets the profile's `strip` for a package that has a profile of its own.
+        println!("cargo:rustc-link-arg-bins=-Wl,--strip-all");
     }
 }

@@ -107,12 +107,19 @@ async fn a_ship_moves_to_another_server() {
             arguments.iter().map(|&a| a.to_owned()).chain(server.store_arguments()).collect();
         binary::run(&all.iter().map(String::as_str).collect::<Vec<_>>())
     };
-    let done = with(&here, &["export", NAME, "--format", "bundle", "--out", &file]);
+    let key = |name: &str| format!("{}/data/keys/{name}", env!("CARGO_MANIFEST_DIR"));
+    let (private, public, other) = (key("yard.pem"), key("yard.pub.pem"), key("other.pub.pem"));
+    let signed = ["export", NAME, "--format", "bundle", "--sign-key", &private, "--out", &file];
+    let done = with(&here, &signed);
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-    let done = with(&there, &["import", "--bundle", &file, "--json"]);
+    let refused = with(&there, &["import", "--bundle", &file, "--signed-by", &other]);
+    let says = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(says.contains("which is none of the keys"), "{says}");
+    let done = with(&there, &["import", "--bundle", &file, "--signed-by", &public, "--json"]);
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let taken: serde_json::Value = serde_json::from_slice(&done.stdout).expect("a document");
     assert_eq!((&taken["ships"][0], &taken["trials"]), (&NAME.into(), &4.into()), "{taken}");
+    assert_eq!(taken["known_signer"], true, "{taken}");
     let trials = there.get(&format!("/v1/trials?ship={NAME}")).await;
     let hashes = |list: &serde_json::Value| -> Vec<String> {
         let all = list.as_array().into_iter().flatten();

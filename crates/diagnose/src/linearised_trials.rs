@@ -13,7 +13,7 @@ use super::calibrated_model::CalibratedModel;
 use super::thresholds::THRESHOLDS;
 use crate::residual::{
     Columns, Detail, Discrepancies, Gram, Instrument, Linearised, Noise, ResidualSystem,
-    TrialReadings, filter, floor, linearise, scatter, sparseness,
+    TrialReadings, filter_first, floor, linearise, scatter, sparseness,
 };
 use sistership_estimate::refine::RefineError;
 use sistership_sources::transfer::approach_of;
@@ -132,6 +132,12 @@ impl<'a> LinearisedTrials<'a> {
         Ok(Self { trials, noise, lpp_m, speed_m_s, system, records, linear: Vec::new() })
     }
 
+    /// The same by other instruments.
+    pub fn under(mut self, noise: &Noise) -> Self {
+        self.noise.clone_from(noise);
+        self
+    }
+
     pub fn columns(&self) -> &Columns {
         &self.system.columns
     }
@@ -177,24 +183,32 @@ impl<'a> LinearisedTrials<'a> {
     /// # Errors
     /// Names what a trial lacks.
     pub fn each(&self, discrepancies: &Discrepancies) -> Result<Vec<Gram>, RefineError> {
-        self.each_under(&self.noise, discrepancies)
+        self.each_of(self.columns().len(), &self.noise, discrepancies)
     }
 
-    /// The products of each trial, by other instruments.
+    /// The products of each trial with the coefficients' columns alone, by other instruments.
     ///
     /// # Errors
     /// Names what a trial lacks.
-    pub fn each_under(
+    pub fn coefficients_under(
         &self,
         noise: &Noise,
         discrepancies: &Discrepancies,
     ) -> Result<Vec<Gram>, RefineError> {
-        let width = 1 + self.columns().len();
+        self.each_of(self.columns().nuisance.len(), noise, discrepancies)
+    }
+
+    fn each_of(
+        &self,
+        columns: usize,
+        noise: &Noise,
+        discrepancies: &Discrepancies,
+    ) -> Result<Vec<Gram>, RefineError> {
         let of_trial = |trial: usize| {
             let parts = self.parts(trial)?;
-            let grams: Vec<Gram> =
-                parts.iter().map(|part| filter(part, noise, discrepancies)).collect();
-            Ok(Gram::sum(&grams, width))
+            let of = |part: &Linearised| filter_first(part, columns, noise, discrepancies);
+            let grams: Vec<Gram> = parts.iter().map(of).collect();
+            Ok(Gram::sum(&grams, 1 + columns))
         };
         (0..self.trials.len()).into_par_iter().map(of_trial).collect()
     }

@@ -27,7 +27,7 @@ pub(super) fn unexplained(
     let mut found = Vec::new();
     for (place, trial) in workspace.trials.iter().enumerate() {
         let parts = &workspace.linear()[place];
-        for (channel, sums) in sums(workspace, parts, discrepancies, [parameters, effects]) {
+        for (channel, sums) in sums(workspace, parts, discrepancies, (parameters, Some(effects))) {
             found.extend(sums.stretches(&trial.name, channel, limit(channel)));
         }
     }
@@ -43,10 +43,7 @@ pub(super) fn largest(
     parameters: &[f64],
 ) -> Vec<(Channel, f64)> {
     let of = |(channel, sums): (Channel, BlockSums<'_>)| (channel, sums.largest());
-    sums(workspace, parts, discrepancies, [parameters, &vec![0.0; parameters.len()]])
-        .into_iter()
-        .map(of)
-        .collect()
+    sums(workspace, parts, discrepancies, (parameters, None)).into_iter().map(of).collect()
 }
 
 /// Sums of the prediction errors of a channel over blocks of a part of a trial, in deviations.
@@ -56,6 +53,7 @@ struct BlockSums<'a> {
     size: usize,
     sums: Vec<f64>,
     /// What the effects found may leave of what they move these sums by: their laws are not exact.
+    /// Empty where that is not asked.
     moved: Vec<f64>,
 }
 
@@ -63,7 +61,7 @@ fn sums<'a>(
     workspace: &LinearisedTrials<'_>,
     parts: &'a [Linearised],
     discrepancies: &Discrepancies,
-    [parameters, effects]: [&[f64]; 2],
+    (parameters, effects): (&[f64], Option<&[f64]>),
 ) -> Vec<(Channel, BlockSums<'a>)> {
     let block_s = THRESHOLDS.remainder.block * workspace.lpp_m / workspace.speed_m_s;
     let mut all = Vec::new();
@@ -71,7 +69,9 @@ fn sums<'a>(
         let interval = (part.t_s[part.t_s.len() - 1] - part.t_s[0]) / (part.t_s.len() - 1) as f64;
         let size = (block_s / (interval * part.every as f64)).round().max(1.0) as usize;
         let (left, _) = errors(&part.along(parameters), &workspace.noise, discrepancies);
-        let moved = responses(&part.along(effects), &workspace.noise, discrepancies);
+        let moved = effects.map_or_else(Vec::new, |effects| {
+            responses(&part.along(effects), &workspace.noise, discrepancies)
+        });
         for (place, &(channel, _)) in part
             .channels
             .iter()

@@ -13,7 +13,7 @@ use sistership_store::{
 };
 
 use crate::archive::Archive;
-use crate::search::nearest;
+use crate::search::{KnownVectors, nearest};
 
 /// The most ships that a ship is compared with.
 pub const MOST: usize = 250;
@@ -25,6 +25,7 @@ const PAGE: i64 = MOST as i64;
 pub struct Catalogue {
     laws: RwLock<Laws>,
     ships: RwLock<Ships>,
+    vectors: KnownVectors,
 }
 
 /// Laws without ships, and the hashes of their texts.
@@ -71,7 +72,7 @@ impl Catalogue {
         count: usize,
     ) -> Result<Arc<Zoo>> {
         let laws = self.laws(&archive.store).await?;
-        let heads = compared(archive, target, count).await?;
+        let heads = self.compared(archive, target, count).await?;
         let seen = seen(&self.ships);
         if seen.is(&laws, &heads) {
             return Ok(seen.zoo);
@@ -80,6 +81,20 @@ impl Catalogue {
         let ships = documents(&archive.store, heads.iter().filter(|head| !kept.has(head))).await?;
         let fresh = read(move || kept.grown(&ships)).await?;
         Ok(remember(&self.ships, fresh).zoo)
+    }
+
+    /// The ships that a ship is compared with, without their documents.
+    async fn compared(
+        &self,
+        archive: &Archive,
+        target: &Vessel,
+        count: usize,
+    ) -> Result<Vec<FoundShip>> {
+        let few = archive.store.ships().search(&ShipSearch::default(), &Page::first(PAGE)).await?;
+        match few.next {
+            None => Ok(few.items),
+            Some(_) => nearest(archive, &self.vectors, target, count).await,
+        }
     }
 
     /// A law. It never changes, so that the one in memory is the right one.
@@ -175,15 +190,6 @@ async fn all_laws(store: &Store) -> Result<Vec<Law>> {
     }
 }
 
-/// The ships that a ship is compared with, without their documents.
-async fn compared(archive: &Archive, target: &Vessel, count: usize) -> Result<Vec<FoundShip>> {
-    let few = archive.store.ships().search(&ShipSearch::default(), &Page::first(PAGE)).await?;
-    match few.next {
-        None => Ok(few.items),
-        Some(_) => nearest(archive, target, count).await,
-    }
-}
-
 async fn documents(store: &Store, heads: impl Iterator<Item = &FoundShip>) -> Result<Vec<Ship>> {
     let mut ships = Vec::new();
     for head in heads {
@@ -272,7 +278,7 @@ mod tests {
         assert!(!expected.is_empty());
         assert_eq!(taken, expected);
         let one = Catalogue::default().around(&archive, target, 1).await.unwrap();
-        let nearest = nearest(&archive, target, 1).await.unwrap().remove(0).name;
-        assert_eq!(one.vessels().map(|vessel| vessel.name()).collect::<Vec<_>>(), [nearest]);
+        let near = nearest(&archive, &KnownVectors::default(), target, 1).await.unwrap();
+        assert_eq!(one.vessels().map(|vessel| vessel.name()).collect::<Vec<_>>(), [&near[0].name]);
     }
 }

@@ -94,3 +94,8 @@ impl From<Option<f64>> for Arg<'_> {
         Self::Real(value)
     }
 }
+
+/// Names as a JSON list, one argument however many they are.
+pub(crate) fn names_list(names: &[String]) -> String {
+    serde_json::Value::from(names).to_string()
+}

@@ -102,7 +102,9 @@ pub use objects_place::{ObjectsPlace, S3Place, provide_cryptography};
 pub use page::{List, MAX_LIMIT, Page};
 pub use questions::CurrentVersion;
 pub use reports::{NewReport, Report, ReportHead, Reports};
-pub use search::{FactRange, FoundShip, MAX_RANGES, ShipKey, ShipSearch, ShipVectors};
+pub use search::{
+    FactRange, FoundShip, MAX_RANGES, ShipKey, ShipSearch, ShipVectors, VectorsState,
+};
 pub use search_index::{SearchIndex, ShipFact, ShipFacts, Waiting};
 pub use sessions::{Session, Sessions};
 pub use settings::StoreSettings;

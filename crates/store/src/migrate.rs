@@ -21,6 +21,7 @@ const SQLITE: &[MigrationSource] = &[
     (9, "access", include_str!("../../../migrations/sqlite/0009_access.sql")),
     (10, "webhooks", include_str!("../../../migrations/sqlite/0010_webhooks.sql")),
     (11, "identities", include_str!("../../../migrations/sqlite/0011_identities.sql")),
+    (12, "vector_stamps", include_str!("../../../migrations/sqlite/0012_vector_stamps.sql")),
 ];
 const POSTGRES: &[MigrationSource] = &[
     (1, "initial", include_str!("../../../migrations/postgres/0001_initial.sql")),
@@ -34,6 +35,7 @@ const POSTGRES: &[MigrationSource] = &[
     (9, "access", include_str!("../../../migrations/postgres/0009_access.sql")),
     (10, "webhooks", include_str!("../../../migrations/postgres/0010_webhooks.sql")),
     (11, "identities", include_str!("../../../migrations/postgres/0011_identities.sql")),
+    (12, "vector_stamps", include_str!("../../../migrations/postgres/0012_vector_stamps.sql")),
 ];
 
 fn migrator(sources: &'static [MigrationSource]) -> Migrator {

@@ -5,13 +5,13 @@
 //! passes is what is wanted. Where only few ships meet one of the other conditions, those are taken
 //! and put in order instead.
 
-use crate::arguments::{Arg, Args, args};
+use crate::arguments::{Arg, Args, args, names_list};
 use crate::checks;
 use crate::error::{Result, StoreError};
 use crate::page::{List, Page};
 use crate::record::{Counted, record};
 use crate::ships::Ships;
-use crate::statements::{Statement, same, statements};
+use crate::statements::{Statement, pair, same, statements};
 
 /// The most ranges that one search may have.
 pub const MAX_RANGES: usize = 4;
@@ -78,6 +78,18 @@ statements! {
         LIMIT 1 OFFSET $4");
     VECTORS = search!("CAST(NULL AS DOUBLE PRECISION) AS value, v.vectors",
         "ship_vectors v JOIN ships s ON s.name = v.ship WHERE v.category = $1", "");
+    STATE = same("SELECT CAST(COUNT(*) AS BIGINT) AS ships, CAST(COALESCE(SUM(stamp), 0) AS BIGINT) AS stamps \
+        FROM ship_vectors WHERE category = $1");
+    // A limit keeps PostgreSQL from joining all ships.
+    NAMED = pair(
+        "SELECT s.name, s.title, s.category, s.revision, s.created_us, s.updated_us, \
+        CAST(NULL AS DOUBLE PRECISION) AS value FROM json_each($1) n CROSS JOIN ships s \
+        WHERE s.name = n.value AND s.deleted_us IS NULL",
+        "SELECT s.name, s.title, s.category, s.revision, s.created_us, s.updated_us, \
+        CAST(NULL AS DOUBLE PRECISION) AS value \
+        FROM json_array_elements_text(CAST($1 AS JSON)) AS n(value) CROSS JOIN LATERAL \
+        (SELECT o.* FROM ships o WHERE o.name = n.value AND o.deleted_us IS NULL LIMIT 1) s"
+    );
 }
 
 record! {
@@ -106,6 +118,16 @@ record! {
         flatten head: FoundShip,
         /// What [`crate::SearchIndex`] was told of it, JSON.
         pub vectors: String,
+    }
+}
+
+record! {
+    /// What of the vectors of a category changes when one of them does.
+    pub struct VectorsState {
+        /// How many ships there are.
+        pub ships: i64,
+        /// The sum of what tells their vectors apart.
+        pub stamps: i64,
     }
 }
 
@@ -265,6 +287,17 @@ impl Ships<'_> {
                     .await
             }
         }
+    }
+
+    /// The ships of these names, in no order; those that there are not are left out.
+    pub async fn named(&self, names: &[String]) -> Result<Vec<FoundShip>> {
+        self.0.database().all(NAMED, args![names: &names_list(names)]).await
+    }
+
+    /// How the vectors of a category stand, without reading them.
+    pub async fn vectors_state(&self, category: &str) -> Result<VectorsState> {
+        let state = self.0.database().optional(STATE, args![category: category]).await?;
+        Ok(state.unwrap_or(VectorsState { ships: 0, stamps: 0 }))
     }
 
     /// The vectors of every ship of a category that a search finds, in no order.

@@ -3,6 +3,8 @@
 //! Whatever changes what is known of a ship puts it in a queue, in the same transaction. Somebody
 //! who can read documents takes it out again and writes down its facts.
 
+use sha2::{Digest as _, Sha256};
+
 use crate::arguments::args;
 use crate::checks;
 use crate::database::Transaction;
@@ -22,8 +24,9 @@ statements! {
     TAKE = same("DELETE FROM search_queue WHERE ship = $1 AND mark = $2");
     FORGET = same("DELETE FROM ship_facts WHERE ship = $1");
     FACT = same("INSERT INTO ship_facts (ship, fact, value) VALUES ($1, $2, $3)");
-    VECTORS = same("INSERT INTO ship_vectors (ship, category, vectors) VALUES ($1, $2, $3) \
-        ON CONFLICT (ship) DO UPDATE SET category = excluded.category, vectors = excluded.vectors");
+    VECTORS = same("INSERT INTO ship_vectors (ship, category, vectors, stamp) VALUES ($1, $2, $3, $4) \
+        ON CONFLICT (ship) DO UPDATE \
+        SET category = excluded.category, vectors = excluded.vectors, stamp = excluded.stamp");
 }
 
 record! {
@@ -114,9 +117,19 @@ async fn write(tx: &mut Transaction, facts: &ShipFacts) -> Result<()> {
     for (fact, value) in &facts.facts {
         tx.execute(FACT, args![ship: ship, fact: fact, value: *value]).await?;
     }
-    tx.execute(VECTORS, args![ship: ship, category: &facts.category, vectors: &facts.vectors])
-        .await
-        .map(drop)
+    let stamp = stamp(ship, &facts.vectors);
+    tx.execute(
+        VECTORS,
+        args![ship: ship, category: &facts.category, vectors: &facts.vectors, stamp: stamp],
+    )
+    .await
+    .map(drop)
+}
+
+/// Tells these vectors from others: 32 bits, so that those of 2^31 ships can be added.
+fn stamp(ship: &str, vectors: &str) -> i64 {
+    let hash = Sha256::digest(format!("{ship}\n{vectors}"));
+    i64::from(u32::from_be_bytes([hash[0], hash[1], hash[2], hash[3]]))
 }
 
 /// Puts a ship in the queue within a transaction, if there is one of this name.

@@ -158,6 +158,7 @@ impl Ships<'_> {
         let Some(ship) = tx.optional(DELETE, values).await? else {
             return Err(stale(&mut tx, name).await);
         };
+        search_index::mark(self.0, &mut tx, name).await?;
         tx.note(self.0.now_us(), "ship.delete", subject(name), Some(state(&ship)), None);
         tx.commit().await?;
         Ok(ship)

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::arguments::args;
+use crate::arguments::{args, names_list};
 use crate::diagnoses::Diagnosed;
 use crate::error::Result;
 use crate::record::record;
@@ -107,12 +107,12 @@ impl Store {
         ships: &[String],
         fact: &str,
     ) -> Result<BTreeMap<String, ShipStanding>> {
-        let (database, names) = (self.database(), list(ships));
+        let (database, names) = (self.database(), names_list(ships));
         let empty = |ship: &String| (ship.clone(), ShipStanding::default());
         let mut all: BTreeMap<String, ShipStanding> = ships.iter().map(empty).collect();
         let champions: Vec<VersionHead> = database.all(CHAMPIONS, args![names: &names]).await?;
         let ids: Vec<String> = champions.iter().map(|champion| champion.id.clone()).collect();
-        let newest: Vec<Concerning> = database.all(NEWEST, args![ids: &list(&ids)]).await?;
+        let newest: Vec<Concerning> = database.all(NEWEST, args![ids: &names_list(&ids)]).await?;
         let mut newest: BTreeMap<String, Diagnosed> =
             newest.into_iter().map(|one| (one.concerns, one.head)).collect();
         for champion in champions {
@@ -131,9 +131,4 @@ impl Store {
         }
         Ok(all)
     }
-}
-
-/// Names as a JSON list.
-fn list(names: &[String]) -> String {
-    serde_json::Value::from(names).to_string()
 }

@@ -1,14 +1,15 @@
 //! `sistership export`: a model written down for another tool.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use sistership_export::{Plan, Subject};
 use sistership_model::version::sha256;
 use sistership_model::{Model, Zoo};
+use sistership_pipeline::bundle::{BundleError, SigningKey, gather};
 
 use super::store::{StoreArguments, with_archive};
-use crate::failure::Failure;
+use crate::failure::{Failure, about_file};
 use crate::files::PromisedFile;
 use crate::values::{ExportFormat, export_format};
 use crate::{named, output};
@@ -20,8 +21,8 @@ Examples:
   sistership export my-model.yaml --format python --out my_model.py
   sistership export kvlcc2 --format matlab --out kvlcc2_mmg.m
   sistership export kvlcc2 --format fmu2 --out kvlcc2.fmu
-  sistership export my-ship --format bundle --data-dir here --out my-ship.bundle
-  sistership import --bundle my-ship.bundle --data-dir there
+  sistership export my-ship --format bundle --sign-key key.pem --data-dir here --out my-ship.bundle
+  sistership import --bundle my-ship.bundle --signed-by key.pub.pem --data-dir there
 
 What is written is what `sistership manoeuvre` sails: the law with the model's effects, the steering
 gear, and a current as an input. A model with a learned branch is refused.
@@ -42,6 +43,9 @@ pub struct ExportArguments {
     /// The file to write.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+    /// Sign a bundle with this Ed25519 key (PEM, as `openssl genpkey -algorithm ed25519` makes it).
+    #[arg(long, value_name = "FILE")]
+    sign_key: Option<PathBuf>,
     #[command(flatten)]
     store: StoreArguments,
 }
@@ -53,6 +57,9 @@ pub struct ExportArguments {
 pub fn run(zoo: &Zoo, asked: &ExportArguments) -> Result<(), Failure> {
     let format = match asked.format {
         ExportFormat::Bundle => return bundle(asked),
+        ExportFormat::Model(_) if asked.sign_key.is_some() => {
+            return Err(Failure::Call("--sign-key: only a bundle is signed".to_owned()));
+        }
         ExportFormat::Model(format) => format,
     };
     let (model, law) = named::model(zoo, &asked.model)?;
@@ -69,12 +76,23 @@ pub fn run(zoo: &Zoo, asked: &ExportArguments) -> Result<(), Failure> {
 fn bundle(asked: &ExportArguments) -> Result<(), Failure> {
     let file = PromisedFile::new(&asked.out, &[])?;
     let ship = &asked.model;
+    let key = asked.sign_key.as_deref().map(|path| key(path, SigningKey::from_pem)).transpose()?;
     let bytes = with_archive(&asked.store, async |archive| {
-        sistership_pipeline::bundle::gather(archive, ship).await?.packed()
+        gather(archive, ship).await?.packed(key.as_ref())
     })?;
     file.write(&bytes)?;
-    output::note(&format!("{ship} with its versions: {}", asked.out.display()));
+    let by = key.map_or_else(String::new, |key| format!(", signed by {}", key.verifying()));
+    output::note(&format!("{ship} with its versions: {}{by}", asked.out.display()));
     Ok(())
+}
+
+/// Reads a key.
+pub(super) fn key<T>(
+    path: &Path,
+    from_pem: fn(&[u8]) -> Result<T, BundleError>,
+) -> Result<T, Failure> {
+    let text = std::fs::read(path).map_err(|error| about_file(path, error))?;
+    from_pem(&text).map_err(|error| about_file(path, error))
 }
 
 /// The hash of the model's document, as JSON without spaces.

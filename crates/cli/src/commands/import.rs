@@ -53,6 +53,9 @@ pub struct ImportArguments {
     /// Take a ship that `sistership export --format bundle` wrote into a store.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["files", "ship", "out", "length"])]
     bundle: Option<PathBuf>,
+    /// Take a bundle only if one of these keys has signed it (Ed25519, PEM).
+    #[arg(long, value_name = "FILE", requires = "bundle")]
+    signed_by: Vec<PathBuf>,
     #[command(flatten)]
     store: StoreArguments,
     /// Print one JSON document.
@@ -110,7 +113,7 @@ impl From<Guess> for GuessRow {
 /// Each file that cannot be read, or that the manifest cannot be written.
 pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
     if let Some(bundle) = &arguments.bundle {
-        return import_bundle::run(bundle, &arguments.store, arguments.json);
+        return import_bundle::run(bundle, &arguments.signed_by, &arguments.store, arguments.json);
     }
     let out = arguments.out.clone().unwrap_or_else(|| beside(&arguments.files));
     if arguments.out.is_none() && out.exists() {

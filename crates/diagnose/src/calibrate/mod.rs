@@ -27,7 +27,7 @@ use super::nuisance::{Terms, lacked, learned, prior, regressor};
 use super::remainder::largest;
 use super::setup::listed;
 use super::thresholds::THRESHOLDS;
-use crate::residual::{Columns, Discrepancies, EffectCandidate, Instrument, Noise, Nuisance};
+use crate::residual::{Columns, Discrepancies, EffectCandidate, Gram, Instrument, Noise, Nuisance};
 use sistership_estimate::refine::RefineError;
 
 /// What a model is calibrated with.
@@ -62,19 +62,36 @@ pub fn calibrate(
     let noise: Vec<&Trial> = places.into_iter().map(|place| trials[place]).collect();
     let calibration = Calibration { law, effects, trials, noise: &noise };
     let model = &Model { uncertainty: None, ..model.clone() };
-    let first = calibration.by_instruments(model)?;
+    let learned = calibration.learn(model)?;
+    let first = calibration.left_open(&learned)?;
     let systematic_errors = systematic_errors::of(model, &first, law, effects, &noise)?;
     if systematic_errors.is_empty() {
-        return Ok(first);
+        return calibration.judged(&learned);
     }
+    drop(learned);
     let erring = Uncertainty { systematic_errors, instruments: BTreeMap::new(), ..first };
-    calibration.by_instruments(&Model { uncertainty: Some(erring), ..model.clone() })
+    let erring = Model { uncertainty: Some(erring), ..model.clone() };
+    calibration.judged(&calibration.learn(&erring)?)
 }
 
-impl Calibration<'_> {
-    /// What the trials leave open where instruments err as the model's uncertainty says, or not at
-    /// all.
-    fn by_instruments(&self, model: &Model) -> Result<Uncertainty, RefineError> {
+/// What is learned before it is asked what the trials leave open.
+struct Learned<'a> {
+    model: Model,
+    /// The model where trials have shifted it to, and by how much.
+    shifted: CalibratedModel,
+    shift: Vec<f64>,
+    nuisance: Vec<Nuisance>,
+    fixed: CoefficientPrior,
+    /// What instruments scatter by on the trials on which the noise model was learned.
+    scatter: Noise,
+    found: NoiseModel,
+    /// All trials with all columns, and their products, where they are few enough to be kept.
+    kept: Option<(LinearisedTrials<'a>, Vec<Gram>)>,
+}
+
+impl<'a> Calibration<'a> {
+    /// Shift and noise where instruments err as the model's uncertainty says, or not at all.
+    fn learn(&self, model: &Model) -> Result<Learned<'a>, RefineError> {
         let &Self { law, effects, trials, noise } = self;
         let terms = learned(model, law, effects, trials);
         let extra: Vec<_> = terms
@@ -86,53 +103,107 @@ impl Calibration<'_> {
         let (shift, rough) = first_shift(model, law, &terms, &nuisance, &prior, noise)?;
         let fixed = prior.from(&shift);
         let shifted = CalibratedModel::new(model, law, &terms, &nuisance, &shift)?;
-        let (workspace, scatter, discrepancies) =
-            self.under_noise(&shifted, (model, &nuisance), &fixed, rough)?;
-        let grams = workspace.each(&discrepancies)?;
-        let freed = lacked(model, law, effects, trials);
-        let freed = freed.iter().map(|(effect, form)| EffectCandidate::absent(effect, form));
-        let all: Vec<_> = workspace.columns().candidates.iter().cloned().chain(freed).collect();
-        let known = TrialInformation { fixed: &fixed, grams: &grams, scatter: 1.0 };
-        let known = TrialInformation { scatter: known.scatter(), ..known };
-        Ok(Uncertainty {
-            instruments: instruments(&workspace.noise, &scatter),
-            systematic_errors: model
-                .uncertainty
-                .as_ref()
-                .map(|known| known.systematic_errors.clone())
-                .unwrap_or_default(),
-            false_alarm_levels: false_alarm::levels(&workspace, &known, &all),
-            remainder: remainder(&workspace, &known, &discrepancies)?,
-            ..uncertainty(&workspace, &known, &shift, &discrepancies)?
-        })
+        let all_at_once = noise.len() == trials.len();
+        let columns = if all_at_once {
+            self.whole(model, &nuisance)
+        } else {
+            Columns { nuisance: nuisance.clone(), candidates: Vec::new() }
+        };
+        let learned_on = LinearisedTrials::new(&shifted, columns, noise, None)?;
+        let scatter = learned_on.noise.clone();
+        let found = noise_model::most_probable(&learned_on, &fixed, Some(rough))?;
+        let kept = all_at_once.then(|| -> Result<_, RefineError> {
+            let kept = learned_on.under(&found.noise);
+            let grams = kept.each(&found.discrepancies)?;
+            Ok((kept, grams))
+        });
+        let kept = kept.transpose()?;
+        let model = model.clone();
+        Ok(Learned { model, shifted, shift, nuisance, fixed, scatter, found, kept })
     }
 
-    /// All trials ready for all columns under the most probable noise, the scatter of the
-    /// instruments on the trials which that was learned on, and the discrepancies.
-    fn under_noise(
-        &self,
-        shifted: &CalibratedModel,
-        (model, nuisance): (&Model, &[Nuisance]),
-        fixed: &CoefficientPrior,
-        rough: NoiseModel,
-    ) -> Result<(LinearisedTrials<'_>, Noise, Discrepancies), RefineError> {
+    /// Columns of coefficients and of all effects.
+    fn whole(&self, model: &Model, nuisance: &[Nuisance]) -> Columns {
         let candidates = listed(model, self.law, self.effects, self.trials);
-        let columns = Columns { nuisance: nuisance.to_vec(), candidates };
-        let all_at_once = self.noise.len() == self.trials.len();
-        let (mut workspace, few) = if all_at_once {
-            (LinearisedTrials::new(shifted, columns, self.trials, None)?, None)
-        } else {
-            let alone = Columns { candidates: Vec::new(), ..columns.clone() };
-            let few = LinearisedTrials::new(shifted, alone, self.noise, None)?;
-            (LinearisedTrials::one_at_a_time(shifted, columns, self.trials, None)?, Some(few))
-        };
-        let learned_on = few.as_ref().unwrap_or(&workspace);
-        let scatter = learned_on.noise.clone();
-        let NoiseModel { discrepancies, noise } =
-            noise_model::most_probable(learned_on, fixed, Some(rough))?;
-        workspace.noise = noise;
-        Ok((workspace, scatter, discrepancies))
+        Columns { nuisance: nuisance.to_vec(), candidates }
     }
+
+    /// All trials under what was learned; each is linearised when it is asked for.
+    fn one_at_a_time(
+        &self,
+        learned: &Learned<'_>,
+        columns: Columns,
+    ) -> Result<LinearisedTrials<'a>, RefineError> {
+        let all = LinearisedTrials::one_at_a_time(&learned.shifted, columns, self.trials, None)?;
+        Ok(all.under(&learned.found.noise))
+    }
+
+    fn with_all_effects(&self, learned: &Learned<'_>) -> Result<LinearisedTrials<'a>, RefineError> {
+        self.one_at_a_time(learned, self.whole(&learned.model, &learned.nuisance))
+    }
+
+    /// With the coefficients' columns alone, in half the time. The last digits are others than with
+    /// effects, whose equations stand in the tape at their absence.
+    fn without_effects(&self, learned: &Learned<'_>) -> Result<LinearisedTrials<'a>, RefineError> {
+        let columns = Columns { nuisance: learned.nuisance.clone(), candidates: Vec::new() };
+        self.one_at_a_time(learned, columns)
+    }
+
+    /// What the trials leave open of the coefficients.
+    fn left_open(&self, learned: &Learned<'_>) -> Result<Uncertainty, RefineError> {
+        let discrepancies = &learned.found.discrepancies;
+        let of = |all: &LinearisedTrials<'_>, grams: &[Gram]| {
+            uncertainty(all, &known(learned, grams), learned)
+        };
+        match &learned.kept {
+            Some((all, grams)) => of(all, grams),
+            None => {
+                let all = self.with_all_effects(learned)?;
+                of(&all, &all.coefficients_under(&all.noise, discrepancies)?)
+            }
+        }
+    }
+
+    /// The same, and what later diagnoses are to be judged by.
+    fn judged(&self, learned: &Learned<'_>) -> Result<Uncertainty, RefineError> {
+        let discrepancies = &learned.found.discrepancies;
+        if let Some((all, grams)) = &learned.kept {
+            let known = known(learned, grams);
+            let remainder = remainder(all, &known, discrepancies)?;
+            return self.judged_by(learned, all, &known, remainder);
+        }
+        let all = self.with_all_effects(learned)?;
+        let grams = all.each(discrepancies)?;
+        let known = known(learned, &grams);
+        let remainder = remainder(&self.without_effects(learned)?, &known, discrepancies)?;
+        self.judged_by(learned, &all, &known, remainder)
+    }
+
+    fn judged_by(
+        &self,
+        learned: &Learned<'_>,
+        all: &LinearisedTrials<'_>,
+        known: &TrialInformation<'_>,
+        remainder: BTreeMap<String, f64>,
+    ) -> Result<Uncertainty, RefineError> {
+        let model = &learned.model;
+        let freed = lacked(model, self.law, self.effects, self.trials);
+        let freed = freed.iter().map(|(effect, form)| EffectCandidate::absent(effect, form));
+        let candidates: Vec<_> = all.columns().candidates.iter().cloned().chain(freed).collect();
+        let errs = model.uncertainty.as_ref().map(|known| known.systematic_errors.clone());
+        Ok(Uncertainty {
+            systematic_errors: errs.unwrap_or_default(),
+            false_alarm_levels: false_alarm::levels(all, known, &candidates),
+            remainder,
+            ..uncertainty(all, known, learned)?
+        })
+    }
+}
+
+/// What the trials say, coefficients differing from trial to trial as they seem to.
+fn known<'g>(learned: &'g Learned<'_>, grams: &'g [Gram]) -> TrialInformation<'g> {
+    let known = TrialInformation { fixed: &learned.fixed, grams, scatter: 1.0 };
+    TrialInformation { scatter: known.scatter(), ..known }
 }
 
 /// What the trials teach by one linearisation about the model as it is, and the discrepancies by
@@ -194,11 +265,10 @@ fn remainder(
 fn uncertainty(
     workspace: &LinearisedTrials<'_>,
     known: &TrialInformation<'_>,
-    shift: &[f64],
-    discrepancies: &Discrepancies,
+    learned: &Learned<'_>,
 ) -> Result<Uncertainty, RefineError> {
     // From the model as it is, not as the trials have shifted it.
-    let back: Vec<f64> = shift.iter().map(|shift| -shift).collect();
+    let back: Vec<f64> = learned.shift.iter().map(|shift| -shift).collect();
     let all = known.by(&|_| true).from(&back);
     let size = all.weighted_mean.len();
     let scales: Vec<f64> =
@@ -211,14 +281,14 @@ fn uncertainty(
     let offset = lower.solve_lower_triangular(&right).unwrap_or(right);
     let axes = workspace.axes();
     let discrepancy: BTreeMap<_, Discrepancy> =
-        axes.iter().copied().zip(discrepancies.iter().copied()).collect();
+        axes.iter().copied().zip(learned.found.discrepancies.iter().copied()).collect();
     Ok(Uncertainty {
         names: workspace.columns().nuisance.iter().map(|n: &Nuisance| n.name.clone()).collect(),
         scales,
         root_information: Uncertainty::rows(size, &|i, j| lower[(j, i)]),
         offset: offset.iter().copied().collect(),
         discrepancy,
-        instruments: BTreeMap::new(),
+        instruments: instruments(&workspace.noise, &learned.scatter),
         systematic_errors: Vec::new(),
         false_alarm_levels: BTreeMap::new(),
         remainder: BTreeMap::new(),

@@ -109,9 +109,7 @@ fn coefficients(
     fixed: &CoefficientPrior,
     scatter: &NoiseModel,
 ) -> Result<Option<Vec<Vec<f64>>>, RefineError> {
-    let columns: Vec<usize> = (0..fixed.weighted_mean.len()).collect();
-    let grams = workspace.each_under(&scatter.noise, &scatter.discrepancies)?;
-    let grams: Vec<_> = grams.iter().map(|gram| gram.select(&columns)).collect();
+    let grams = workspace.coefficients_under(&scatter.noise, &scatter.discrepancies)?;
     let known = TrialInformation { fixed, grams: &grams, scatter: 1.0 };
     let of = |trial: usize| -> Option<Vec<f64>> {
         let mean: DVector<f64> = known.by(&|other| other != trial || grams.len() == 1).mean()?;

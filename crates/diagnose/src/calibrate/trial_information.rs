@@ -1,6 +1,7 @@
 //! What trials say of the coefficients, some of them left out.
 
 use nalgebra::Cholesky;
+use rayon::prelude::*;
 
 use super::super::coefficient_prior::CoefficientPrior;
 use crate::residual::Gram;
@@ -31,20 +32,23 @@ impl TrialInformation<'_> {
     /// What coefficients fitted on the others leave of each trial and its own would explain, by
     /// what chance would: one where the law is right, more where it only seems to be known so well.
     pub fn scatter(&self) -> f64 {
-        let size = self.fixed.weighted_mean.len();
-        let mut sum = (0.0, 0.0);
-        for (trial, gram) in self.grams.iter().enumerate() {
-            let others = self.by(&|other| other != trial);
-            let (Some(mean), products) = (others.mean(), gram.products.view((1, 1), (size, size)))
-            else {
-                continue;
-            };
-            let left = gram.products.view((1, 0), (size, 1)).column(0) - products * mean;
-            let Some(factor) = Cholesky::new(products + &others.information) else { continue };
-            sum.0 += left.dot(&factor.solve(&left));
-            sum.1 += factor.solve(&products.into_owned()).trace();
-        }
+        let each: Vec<Option<(f64, f64)>> =
+            (0..self.grams.len()).into_par_iter().map(|trial| self.own(trial)).collect();
+        // Summed in order: the same on any number of threads.
+        let sum =
+            each.into_iter().flatten().fold((0.0, 0.0), |sum, own| (sum.0 + own.0, sum.1 + own.1));
         if sum.1 > 0.0 { (sum.0 / sum.1).max(1.0) } else { 1.0 }
+    }
+
+    /// What a trial would explain of what the others leave of it, and what chance would.
+    fn own(&self, trial: usize) -> Option<(f64, f64)> {
+        let size = self.fixed.weighted_mean.len();
+        let others = self.by(&|other| other != trial);
+        let (mean, gram) = (others.mean()?, &self.grams[trial]);
+        let products = gram.products.view((1, 1), (size, size));
+        let left = gram.products.view((1, 0), (size, 1)).column(0) - products * mean;
+        let factor = Cholesky::new(products + &others.information)?;
+        Some((left.dot(&factor.solve(&left)), factor.solve(&products.into_owned()).trace()))
     }
 
     /// The change of the coefficients by the trials but one; all effects absent.

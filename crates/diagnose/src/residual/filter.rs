@@ -17,8 +17,18 @@ pub type Discrepancies = Vec<Discrepancy>;
 
 /// Whitened residual and columns of a part of a trial, added up.
 pub fn filter(linear: &Linearised, noise: &Noise, discrepancies: &Discrepancies) -> Gram {
-    let (rows, log_variance) = whitened(linear, noise, discrepancies);
-    Gram::of_rows(rows, 1 + linear.sizes.columns, log_variance)
+    filter_first(linear, linear.sizes.columns, noise, discrepancies)
+}
+
+/// The same of the first columns alone.
+pub fn filter_first(
+    linear: &Linearised,
+    columns: usize,
+    noise: &Noise,
+    discrepancies: &Discrepancies,
+) -> Gram {
+    let (rows, log_variance) = whitened_first(linear, columns, noise, discrepancies);
+    Gram::of_rows(rows, 1 + columns, log_variance)
 }
 
 /// Prediction errors of parts with all columns in one ([`Linearised::along`]), divided by the
@@ -47,7 +57,16 @@ pub fn whitened(
     noise: &Noise,
     discrepancies: &Discrepancies,
 ) -> (Vec<f64>, f64) {
-    let width = 1 + linear.sizes.columns;
+    whitened_first(linear, linear.sizes.columns, noise, discrepancies)
+}
+
+fn whitened_first(
+    linear: &Linearised,
+    columns: usize,
+    noise: &Noise,
+    discrepancies: &Discrepancies,
+) -> (Vec<f64>, f64) {
+    let width = 1 + columns;
     let mut white = Whitened { rows: Vec::new(), log_variance: 0.0 };
     white.rows.reserve_exact(linear.reading.len() * width);
     widest(Whitening { linear, noise, discrepancies, width, white: &mut white });
@@ -290,7 +309,9 @@ impl FilterState {
         let width = linear.measured.len();
         let row = &linear.by_column[(k * linear.channels.len() + channel) * width..][..width];
         for (&column, value) in linear.measured.iter().zip(row) {
-            self.error[1 + column] -= value;
+            if let Some(error) = self.error.get_mut(1 + column) {
+                *error -= value;
+            }
         }
     }
 }

@@ -11,8 +11,9 @@ use super::filter::{Discrepancies, FilterState, errors};
 use super::linearised::Linearised;
 use super::noise::Noise;
 
-/// Parts in lockstep: one vector of doubles of AVX-512.
-const LANES: usize = 8;
+/// Parts in lockstep: one vector of doubles of AVX2. With twice as many, most would wait for the
+/// longest, and the six trials of many a ship would be one task.
+const LANES: usize = 4;
 
 type Lane = [f64; LANES];
 
@@ -21,17 +22,18 @@ type Lane = [f64; LANES];
 pub fn deviances(parts: &[&Linearised], noise: &Noise, discrepancies: &Discrepancies) -> Vec<f64> {
     let mut order: Vec<usize> = (0..parts.len()).collect();
     // Parts of one shape go together, those of like length first.
-    let is_plain = |part: &Linearised| part.by_state.is_none() && part.samples.len() > 1;
+    let moves = |part: &Linearised| part.samples.len() > 1;
     let shape = |place: &usize| {
         let part = parts[*place];
         let channels: Vec<usize> = part.channels.iter().map(|(_, state)| *state).collect();
-        (is_plain(part), part.sizes.states, part.every, channels)
+        (moves(part), part.by_state.is_some(), part.sizes.states, part.every, channels)
     };
     order.sort_by_cached_key(|place| (shape(place), usize::MAX - parts[*place].samples.len()));
     let alike = order.chunk_by(|a, b| {
         let (a, b) = (parts[*a], parts[*b]);
-        is_plain(a)
-            && is_plain(b)
+        moves(a)
+            && moves(b)
+            && a.by_state.is_some() == b.by_state.is_some()
             && (a.sizes, a.every, &a.channels) == (b.sizes, b.every, &b.channels)
     });
     let together: Vec<&[usize]> = alike.flat_map(|alike| alike.chunks(LANES)).collect();
@@ -298,12 +300,12 @@ impl<'p> LaneFilter<'p> {
                     error[1][lane] -= part.by_column[reading];
                 }
             }
-            for (error, own) in error.iter_mut().zip(&self.deviations[place]) {
-                (0..LANES).for_each(|l| error[l] += -own[l]);
-            }
-            self.gain.copy_from_slice(&self.covariance[place * order..][..order]);
             let sigma = noise.get(&channel).map_or(1.0, |instrument| instrument.deviation);
-            let variance: Lane = std::array::from_fn(|l| self.gain[place][l] + sigma * sigma);
+            let own = match parts[0].by_state {
+                None => self.predict_reading(place, &mut error),
+                Some(_) => self.predict_by_states(&at, i, &mut error),
+            };
+            let variance: Lane = std::array::from_fn(|l| own[l] + sigma * sigma);
             self.count(k, &error, &variance);
             for state in 0..order {
                 let gain: Lane = std::array::from_fn(|l| self.gain[state][l] / variance[l]);
@@ -316,6 +318,56 @@ impl<'p> LaneFilter<'p> {
                 }
             }
         }
+    }
+
+    /// Takes from the errors what deviations make a channel say that is a state, and fills `gain`;
+    /// returns the variance of that.
+    #[inline(always)]
+    fn predict_reading(&mut self, place: usize, error: &mut [Lane; 2]) -> Lane {
+        for (error, own) in error.iter_mut().zip(&self.deviations[place]) {
+            (0..LANES).for_each(|l| error[l] += -own[l]);
+        }
+        self.gain.copy_from_slice(&self.covariance[place * self.order..][..self.order]);
+        self.gain[place]
+    }
+
+    /// The same of a channel that says several states at once.
+    #[inline(always)]
+    fn predict_by_states(
+        &mut self,
+        at: &[usize; LANES],
+        channel: usize,
+        error: &mut [Lane; 2],
+    ) -> Lane {
+        let (n, order) = (self.states, self.order);
+        let weights = |state: usize, parts: &[&Linearised]| -> Lane {
+            let of = |lane: usize| {
+                let part = parts.get(lane)?;
+                let row = (at[lane] * part.channels.len() + channel) * n;
+                part.by_state.as_ref()?.get(row + state).copied()
+            };
+            std::array::from_fn(|lane| of(lane).unwrap_or(0.0))
+        };
+        self.gain.fill([0.0; LANES]);
+        for state in 0..n {
+            let weight = weights(state, self.parts);
+            if weight == [0.0; LANES] {
+                continue;
+            }
+            for (error, own) in error.iter_mut().zip(&self.deviations[state]) {
+                (0..LANES).for_each(|l| error[l] += -weight[l] * own[l]);
+            }
+            let rows = &self.covariance[state * order..][..order];
+            for (to, from) in self.gain.iter_mut().zip(rows) {
+                (0..LANES).for_each(|l| to[l] += weight[l] * from[l]);
+            }
+        }
+        let mut own = [-0.0; LANES];
+        for state in 0..n {
+            let weight = weights(state, self.parts);
+            (0..LANES).for_each(|l| own[l] += weight[l] * self.gain[state][l]);
+        }
+        own
     }
 
     /// Adds a reading's part to the sums of those lanes that go on.

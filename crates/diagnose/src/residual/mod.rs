@@ -31,7 +31,7 @@ mod tapes;
 mod thresholds;
 
 pub use columns::{Columns, EffectCandidate, Nuisance, NuisanceKind, lacked_name};
-pub use filter::{Discrepancies, errors, filter, responses, whitened};
+pub use filter::{Discrepancies, errors, filter, filter_first, responses, whitened};
 pub use gram::Gram;
 pub use likelihood::deviances;
 pub use linearise::linearise;

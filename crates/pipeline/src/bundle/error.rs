@@ -19,6 +19,9 @@ pub enum BundleError {
     /// The file is no bundle, or is not what it was.
     #[error("{0}")]
     File(String),
+    /// A key is not one that signs bundles, or checks them.
+    #[error("{0}")]
+    Key(&'static str),
     /// What is in the archive contradicts the bundle; nothing was written.
     #[error("nothing was taken:\n{}", .0.join("\n"))]
     Conflicts(Vec<String>),

@@ -1,4 +1,5 @@
-//! A bundle as a file: an archive with a manifest of the hashes of all that is in it.
+//! A bundle as a file: an archive with a manifest of the hashes of all that is in it, which may be
+//! signed.
 
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read, Write};
@@ -11,10 +12,14 @@ use zip::{ZipArchive, ZipWriter};
 
 use super::content::{Bundle, Content};
 use super::error::BundleError;
+use super::signature::{Signature, SigningKey, VerifyingKey};
 
 /// The format of a bundle.
 const FORMAT: &str = "sistership-bundle/1";
 const MANIFEST: &str = "manifest.json";
+/// The signature of the manifest, 64 bytes, and the key that it is of, DER.
+const SIGNATURE: &str = "manifest.sig";
+const SIGNER: &str = "signer.der";
 const CONTENT: &str = "content.json";
 /// Largest bundle once it is unpacked, bytes: it is in memory as a whole.
 const MOST: u64 = 1 << 30;
@@ -31,11 +36,11 @@ struct Manifest {
 }
 
 impl Bundle {
-    /// The file; the same bundle gives the same bytes.
+    /// The file; the same bundle and key give the same bytes.
     ///
     /// # Errors
     /// Says why it cannot be packed.
-    pub fn packed(&self) -> Result<Vec<u8>, BundleError> {
+    pub fn packed(&self, key: Option<&SigningKey>) -> Result<Vec<u8>, BundleError> {
         let content = serde_json::to_vec(&self.content).map_err(broken)?;
         let mut files = BTreeMap::from([(CONTENT.to_owned(), Bytes::from(content))]);
         let objects = self.objects.iter();
@@ -47,7 +52,12 @@ impl Bundle {
             files: files.iter().map(|(name, bytes)| (name.clone(), sha256(bytes))).collect(),
         };
         let manifest = serde_json::to_vec_pretty(&manifest).map_err(broken)?;
+        let signature = key.map(|key| key.sign(&manifest));
         let first = std::iter::once((MANIFEST.to_owned(), Bytes::from(manifest)));
+        let first = first.chain(signature.into_iter().flat_map(|Signature { key, bytes }| {
+            let signer = Bytes::copy_from_slice(key.der());
+            [(SIGNATURE.to_owned(), Bytes::from(bytes)), (SIGNER.to_owned(), signer)]
+        }));
         let pack = || -> zip::result::ZipResult<Vec<u8>> {
             let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
             let time = zip::DateTime::default();
@@ -61,16 +71,19 @@ impl Bundle {
         pack().map_err(broken)
     }
 
-    /// Reads a file, and checks every hash in it.
+    /// Reads a file, and checks every hash in it and its signature, if it is signed: then the key
+    /// that has signed it is returned beside.
     ///
     /// # Errors
-    /// The file is no bundle, or some part of it is not what the manifest says.
-    pub fn unpacked(bytes: &[u8]) -> Result<Self, BundleError> {
+    /// The file is no bundle, some part of it is not what the manifest says, or the manifest is not
+    /// what was signed.
+    pub fn unpacked(bytes: &[u8]) -> Result<(Self, Option<VerifyingKey>), BundleError> {
         let mut archive = ZipArchive::new(Cursor::new(bytes))
             .map_err(|error| BundleError::File(format!("is no bundle: {error}")))?;
         let mut left = MOST;
-        let manifest: Manifest =
-            serde_json::from_slice(&read(&mut archive, MANIFEST, &mut left)?).map_err(broken)?;
+        let manifest = read(&mut archive, MANIFEST, &mut left)?;
+        let signer = signer(&mut archive, &manifest, &mut left)?;
+        let manifest: Manifest = serde_json::from_slice(&manifest).map_err(broken)?;
         if manifest.format != FORMAT {
             let found = manifest.format;
             return Err(BundleError::File(format!("is of the format `{found}`, not `{FORMAT}`")));
@@ -83,7 +96,7 @@ impl Bundle {
             }
             files.insert(name.clone(), Bytes::from(bytes));
         }
-        Self::of(files)
+        Ok((Self::of(files)?, signer))
     }
 
     fn of(mut files: BTreeMap<String, Bytes>) -> Result<Self, BundleError> {
@@ -132,6 +145,23 @@ fn place(hash: &str) -> String {
 
 fn broken(error: impl std::fmt::Display) -> BundleError {
     BundleError::File(error.to_string())
+}
+
+/// Who has signed the manifest; none where nobody has.
+fn signer(
+    archive: &mut ZipArchive<Cursor<&[u8]>>,
+    manifest: &[u8],
+    left: &mut u64,
+) -> Result<Option<VerifyingKey>, BundleError> {
+    if ![SIGNATURE, SIGNER].iter().any(|name| archive.index_for_name(name).is_some()) {
+        return Ok(None);
+    }
+    let (bytes, key) = (read(archive, SIGNATURE, left)?, read(archive, SIGNER, left)?);
+    let key = VerifyingKey::from_der(&key)
+        .ok_or_else(|| BundleError::File(format!("{SIGNER} is no Ed25519 key")))?;
+    let signer = Signature { key, bytes }.of(manifest);
+    let forged = || BundleError::File(format!("{MANIFEST} is not what {SIGNATURE} has signed"));
+    signer.ok_or_else(forged).map(Some)
 }
 
 /// A file of the archive; `left` is what all of them may still take.

@@ -6,6 +6,7 @@ mod error;
 mod file;
 mod gather;
 mod history;
+mod signature;
 mod take;
 #[cfg(test)]
 mod tests;
@@ -13,4 +14,5 @@ mod tests;
 pub use content::{Bundle, Content};
 pub use error::BundleError;
 pub use gather::gather;
+pub use signature::{SigningKey, VerifyingKey, trusted};
 pub use take::{Taken, take};

@@ -1,13 +1,14 @@
 //! A ship from one archive into another, of another kind of database.
 #![allow(clippy::unwrap_used)]
 
+use std::io::{Cursor, Read as _, Write as _};
 use std::path::PathBuf;
 
 use serde_json::Value;
 use sistership_store::testing::TestDatabase;
 use sistership_store::{Expect, NewReport, NewShip, NewTrial, NewVersion};
 
-use super::{Bundle, BundleError, gather, take};
+use super::{Bundle, BundleError, SigningKey, gather, take, trusted};
 use crate::archive::Archive;
 use crate::line::{CHAMPION, step};
 use crate::verify::verify;
@@ -100,10 +101,10 @@ async fn hashes_lineage_and_verification_are_kept() {
     let (from, to) = (TestDatabase::sqlite(), target().await);
     let (source, other) = (filled(&from).await, opened(&to).await);
     let bundle = gather(&source, SHIP).await.unwrap();
-    let file = bundle.packed().unwrap();
-    assert_eq!(file, bundle.packed().unwrap(), "the same bytes");
-    let read = Bundle::unpacked(&file).unwrap();
-    assert_eq!(read, bundle);
+    let file = bundle.packed(None).unwrap();
+    assert_eq!(file, bundle.packed(None).unwrap(), "the same bytes");
+    let (read, signer) = Bundle::unpacked(&file).unwrap();
+    assert_eq!((&read, signer), (&bundle, None));
     let taken = take(&other, &read).await.unwrap();
     assert!(taken.ships.contains(&SHIP.to_owned()) && taken.versions.len() >= 3, "{taken:?}");
     assert!(taken.trials > 0 && taken.known == 0);
@@ -165,8 +166,58 @@ async fn a_damaged_file_is_refused() {
     assert!(refused(b"no archive").contains("is no bundle"));
     let mut changed = bundle.clone();
     changed.content.lines.get_mut(SHIP).unwrap()[0].document.push(' ');
-    assert!(refused(&changed.packed().unwrap()).contains("demo-ship/1 is not what its hash says"));
+    assert!(
+        refused(&changed.packed(None).unwrap()).contains("demo-ship/1 is not what its hash says")
+    );
     let mut lacking = bundle.clone();
     lacking.objects.clear();
-    assert!(refused(&lacking.packed().unwrap()).contains("lacks the samples"));
+    assert!(refused(&lacking.packed(None).unwrap()).contains("lacks the samples"));
+}
+
+/// Any 32 bytes are a key: the first of RFC 8032, section 7.1, test 2, the other of zeros.
+pub(super) const KEYS: [&str; 2] = [
+    "-----BEGIN PRIVATE KEY-----\n\
+    MC4CAQAwBQYDK2VwBCIEIEzNCJso/5banbbDRuwRTg9bijGfNaumJNqM9u1PuKb7\n\
+    -----END PRIVATE KEY-----\n",
+    "-----BEGIN PRIVATE KEY-----\n\
+    MC4CAQAwBQYDK2VwBCIEIAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA\n\
+    -----END PRIVATE KEY-----\n",
+];
+
+/// The archive with other bytes in place of a file.
+fn replaced(archive: &[u8], name: &str, bytes: &[u8]) -> Vec<u8> {
+    let mut from = zip::ZipArchive::new(Cursor::new(archive)).unwrap();
+    let mut to = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    for place in 0..from.len() {
+        let mut file = from.by_index(place).unwrap();
+        let (own, mut kept) = (file.name().unwrap().into_owned(), Vec::new());
+        file.read_to_end(&mut kept).unwrap();
+        to.start_file(own.as_str(), zip::write::SimpleFileOptions::default()).unwrap();
+        to.write_all(if own == name { bytes } else { &kept }).unwrap();
+    }
+    to.finish().unwrap().into_inner()
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_signed_file_is_its_signers() {
+    let database = TestDatabase::sqlite();
+    let bundle = gather(&filled(&database).await, SHIP).await.unwrap();
+    let [key, other] = KEYS.map(|pem| SigningKey::from_pem(pem.as_bytes()).unwrap());
+    let file = bundle.packed(Some(&key)).unwrap();
+    let (read, signer) = Bundle::unpacked(&file).unwrap();
+    assert_eq!((read, signer.as_ref()), (bundle.clone(), Some(&key.verifying())));
+    trusted(signer.as_ref(), &[other.verifying(), key.verifying()]).unwrap();
+    let refused = |signer| trusted(signer, &[other.verifying()]).unwrap_err().to_string();
+    assert!(refused(signer.as_ref()).contains("which is none of the keys"));
+    assert!(refused(None).contains("is not signed"));
+    let not_signed = "manifest.json is not what manifest.sig has signed";
+    for (name, bytes, says) in [
+        ("manifest.json", &b"{}"[..], not_signed),
+        ("manifest.sig", &[0; 64], not_signed),
+        ("signer.der", other.verifying().der(), not_signed),
+        ("signer.der", &[0; 44], "signer.der is no Ed25519 key"),
+    ] {
+        let error = Bundle::unpacked(&replaced(&file, name, bytes)).unwrap_err().to_string();
+        assert!(error.contains(says), "{error}");
+    }
 }

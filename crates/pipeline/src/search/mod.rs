@@ -2,12 +2,14 @@
 
 mod facts;
 mod index;
+mod known_vectors;
 mod metrics;
 mod query;
 mod similar;
 pub mod standing;
 
 pub use index::{catch_up, write_facts};
+pub use known_vectors::KnownVectors;
 pub use query::{RangeFault, Search, metric, metrics, particular, particulars, pattern};
 pub use similar::nearest;
 pub use sistership_store::{FactRange, FoundShip, MAX_RANGES, Page, ShipSearch};

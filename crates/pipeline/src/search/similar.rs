@@ -4,11 +4,12 @@
 use std::cmp::Ordering;
 
 use sistership_model::Vessel;
-use sistership_sources::similarity::{CharacteristicVector, Definition};
+use sistership_sources::similarity::{CharacteristicVector, Definition, NormalisedComponents};
 use sistership_sources::source::definition_for;
 use sistership_store::{FoundShip, List, Page, ShipKey, ShipSearch, ShipVectors, StoreError};
 
 use super::facts;
+use super::known_vectors::KnownVectors;
 use super::query::Search;
 use crate::archive::{Archive, vessel};
 use crate::error::DeriveError;
@@ -32,15 +33,32 @@ pub(super) async fn ships(
     Ok(page.of(found, key))
 }
 
-/// The ships of a ship's category that are most similar to it, the most similar first.
+/// The ships of a ship's category that are most similar to it, at most `count`, in no order.
 pub async fn nearest(
     archive: &Archive,
+    known: &KnownVectors,
     target: &Vessel,
     count: usize,
 ) -> Result<Vec<FoundShip>, StoreError> {
-    let mut found = ranked(archive, &ShipSearch::default(), target, definition_for(target)).await?;
-    found.truncate(count);
-    Ok(found)
+    let definition = definition_for(target);
+    let vectors = known.of(&archive.store, &target.file.category, definition).await?;
+    let components = CharacteristicVector::of(target, definition).components();
+    archive.store.ships().named(&first(&vectors, target.name(), &components, count)).await
+}
+
+/// The names of the most similar, without the ship itself.
+fn first(
+    all: &[(String, NormalisedComponents)],
+    name: &str,
+    target: &NormalisedComponents,
+    count: usize,
+) -> Vec<String> {
+    let others = all.iter().filter(|(other, _)| other != name);
+    let mut found: Vec<_> = others
+        .filter_map(|(other, of)| Some((Some(target.correlation(of)?), other.as_str())))
+        .collect();
+    found.sort_unstable_by(|a, b| order(*a, *b));
+    found.into_iter().take(count).map(|(_, other)| other.to_owned()).collect()
 }
 
 async fn ranked(

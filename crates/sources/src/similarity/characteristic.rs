@@ -41,6 +41,9 @@ const KANAZAWA_2023: [Component; 6] = [
     ("Dp/T", 1.419),
 ];
 
+/// The most components that a definition has.
+const MOST_COMPONENTS: usize = 6;
+
 impl Definition {
     /// Every definition.
     pub const ALL: [Self; 2] = [Self::Mei2019, Self::Kanazawa2023];
@@ -109,22 +112,19 @@ impl CharacteristicVector {
     /// Pearson's correlation of the normalised components that both have (Mei 2019, Eq. 5); `None`
     /// below four.
     pub fn correlation(&self, other: &Self) -> Option<f64> {
-        let (here, there) = (self.normalised(), other.normalised());
-        let pairs: Vec<(f64, f64)> =
-            here.iter().filter_map(|(name, a)| Some((*a, *there.get(name)?))).collect();
-        if pairs.len() < 4 {
-            return None;
+        self.components().correlation(&other.components())
+    }
+
+    /// What is correlated.
+    pub fn components(&self) -> NormalisedComponents {
+        // By name: the order of the sums decides their last bits, which versions keep.
+        let mut known = self.definition.components().to_vec();
+        known.sort_unstable_by_key(|(name, _)| *name);
+        let mut all = [None; MOST_COMPONENTS];
+        for (place, (name, norm)) in all.iter_mut().zip(known) {
+            *place = self.values.get(name).map(|value| value / norm);
         }
-        let n = pairs.len() as f64;
-        let (mean_a, mean_b) = (
-            pairs.iter().map(|p| p.0).sum::<f64>() / n,
-            pairs.iter().map(|p| p.1).sum::<f64>() / n,
-        );
-        let sum = |f: &dyn Fn(f64, f64) -> f64| {
-            pairs.iter().map(|(a, b)| f(a - mean_a, b - mean_b)).sum::<f64>()
-        };
-        let spread = (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt();
-        (spread > 0.0).then(|| (sum(&|a, b| a * b) / spread).clamp(-1.0, 1.0))
+        NormalisedComponents(all)
     }
 
     /// The component in which two ships differ most, relative to this one.
@@ -133,6 +133,28 @@ impl CharacteristicVector {
             Some((name.clone(), (other.values.get(name)? / a - 1.0).abs()))
         };
         self.values.iter().filter_map(difference).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// The normalised components of a vector: all that a ranking of many ships needs of each.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NormalisedComponents([Option<f64>; MOST_COMPONENTS]);
+
+impl NormalisedComponents {
+    /// As [`CharacteristicVector::correlation`]; both must follow the same definition.
+    pub fn correlation(&self, other: &Self) -> Option<f64> {
+        let both = || self.0.iter().zip(&other.0).filter_map(|(a, b)| Some(((*a)?, (*b)?)));
+        let count = both().count();
+        if count < 4 {
+            return None;
+        }
+        let n = count as f64;
+        let mean_a = both().map(|pair| pair.0).sum::<f64>() / n;
+        let mean_b = both().map(|pair| pair.1).sum::<f64>() / n;
+        let sum =
+            |f: fn(f64, f64) -> f64| both().map(|(a, b)| f(a - mean_a, b - mean_b)).sum::<f64>();
+        let spread = (sum(|a, _| a * a) * sum(|_, b| b * b)).sqrt();
+        (spread > 0.0).then(|| (sum(|a, b| a * b) / spread).clamp(-1.0, 1.0))
     }
 }
 

@@ -3,7 +3,7 @@
 mod characteristic;
 mod eligibility;
 
-pub use characteristic::{CharacteristicVector, Definition};
+pub use characteristic::{CharacteristicVector, Definition, NormalisedComponents};
 pub use eligibility::{
     Eligibility, EligibilityLimits, ModelHead, RankedSource, SourceCandidate, Trend, rank,
 };

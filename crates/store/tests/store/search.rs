@@ -106,6 +106,12 @@ async fn ships_are_found_by_each_condition_and_all_together(on: &TestStore) {
     let vectors: Vec<_> =
         vectors.iter().map(|ship| (ship.head.name.as_str(), ship.vectors.as_str())).collect();
     assert_eq!(vectors, [("s-00", "[0]"), ("s-12", "[12]")]);
+    let names = ["s-12", "nobody", "s-00"].map(str::to_owned);
+    let mut named: Vec<_> =
+        on.store.ships().named(&names).await.unwrap().into_iter().map(|ship| ship.name).collect();
+    named.sort_unstable();
+    assert_eq!(named, ["s-00", "s-12"]);
+    assert_eq!(on.store.ships().vectors_state("nothing").await.unwrap().ships, 0);
 }
 
 /// Ships as long as their number, as broad as what is missing to 3000, each hundredth tagged.

@@ -1,0 +1,147 @@
+//! Who made a bundle: an Ed25519 signature (RFC 8032) of the manifest, which has the hash of
+//! everything else. Keys are those of `openssl genpkey -algorithm ed25519`, so that OpenSSL can
+//! check a bundle without this program.
+
+use std::fmt;
+
+use ring::signature::{ED25519, Ed25519KeyPair, KeyPair as _, UnparsedPublicKey};
+use rustls_pki_types::pem::PemObject as _;
+use rustls_pki_types::{PrivatePkcs8KeyDer, SubjectPublicKeyInfoDer};
+use sistership_model::version::sha256;
+
+use super::error::BundleError;
+
+/// What stands before the 32 bytes of an Ed25519 key in a SubjectPublicKeyInfo: RFC 8410,
+/// section 4.
+const PREFIX: [u8; 12] = [0x30, 0x2a, 0x30, 0x05, 0x06, 0x03, 0x2b, 0x65, 0x70, 0x03, 0x21, 0x00];
+
+/// A key that signs bundles.
+pub struct SigningKey(Ed25519KeyPair);
+
+impl fmt::Debug for SigningKey {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "SigningKey({})", self.verifying())
+    }
+}
+
+impl SigningKey {
+    /// From a private key as PEM.
+    ///
+    /// # Errors
+    /// It is no Ed25519 key.
+    pub fn from_pem(text: &[u8]) -> Result<Self, BundleError> {
+        let is_none = || BundleError::Key("has no Ed25519 private key in PEM (PKCS #8)");
+        let key = PrivatePkcs8KeyDer::from_pem_slice(text).map_err(|_| is_none())?;
+        // OpenSSL writes the first version of PKCS #8, without the public key beside.
+        let pair = Ed25519KeyPair::from_pkcs8_maybe_unchecked(key.secret_pkcs8_der());
+        Ok(Self(pair.map_err(|_| is_none())?))
+    }
+
+    /// The key that checks its signatures.
+    pub fn verifying(&self) -> VerifyingKey {
+        let key = self.0.public_key().as_ref();
+        VerifyingKey([&PREFIX[..], key].concat())
+    }
+
+    pub(super) fn sign(&self, manifest: &[u8]) -> Signature {
+        let bytes = self.0.sign(manifest).as_ref().to_vec();
+        Signature { key: self.verifying(), bytes }
+    }
+}
+
+/// A key that checks signatures of bundles: a SubjectPublicKeyInfo.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct VerifyingKey(Vec<u8>);
+
+/// The SHA-256 of the key, hexadecimal, as `openssl pkey -pubout -outform DER | sha256sum` has it.
+impl fmt::Display for VerifyingKey {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(&sha256(&self.0))
+    }
+}
+
+impl VerifyingKey {
+    /// From a public key as PEM.
+    ///
+    /// # Errors
+    /// It is no Ed25519 key.
+    pub fn from_pem(text: &[u8]) -> Result<Self, BundleError> {
+        let is_none = || BundleError::Key("has no Ed25519 public key in PEM");
+        let key = SubjectPublicKeyInfoDer::from_pem_slice(text).map_err(|_| is_none())?;
+        Self::from_der(&key).ok_or_else(is_none)
+    }
+
+    pub(super) fn from_der(der: &[u8]) -> Option<Self> {
+        (der.len() == PREFIX.len() + 32 && der.starts_with(&PREFIX)).then(|| Self(der.to_vec()))
+    }
+
+    /// The key as it stands in a bundle.
+    pub(super) fn der(&self) -> &[u8] {
+        &self.0
+    }
+}
+
+/// A signature and the key that it is said to be of.
+pub(super) struct Signature {
+    pub(super) key: VerifyingKey,
+    pub(super) bytes: Vec<u8>,
+}
+
+impl Signature {
+    /// The key, where the signature is that of the manifest.
+    pub(super) fn of(self, manifest: &[u8]) -> Option<VerifyingKey> {
+        let key = UnparsedPublicKey::new(&ED25519, &self.key.0[PREFIX.len()..]);
+        key.verify(manifest, &self.bytes).ok().map(|()| self.key)
+    }
+}
+
+/// Takes a signer only where it is one of those that are trusted; without any, every one is.
+///
+/// # Errors
+/// Names who has signed.
+pub fn trusted(signer: Option<&VerifyingKey>, keys: &[VerifyingKey]) -> Result<(), BundleError> {
+    match signer {
+        _ if keys.is_empty() => Ok(()),
+        None => Err(BundleError::File("is not signed, and a key is asked for".to_owned())),
+        Some(signer) if keys.contains(signer) => Ok(()),
+        Some(signer) => {
+            Err(BundleError::File(format!("is signed by {signer}, which is none of the keys")))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// RFC 8032, section 7.1, test 2: the key, and the signature of `0x72`.
+    const PRIVATE: &str = super::super::tests::KEYS[0];
+    const SIGNATURE: &str = "92a009a9f0d4cab8720e820b5f642540a2b27b5416503f8fb3762223ebdb69da\
+        085ac1e43e15996e458f3613d0f11d8c387b2eaeb4302aeeb00d291612bb0c00";
+
+    fn hex(bytes: &[u8]) -> String {
+        bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    #[test]
+    fn the_signature_of_the_standard_is_made_and_taken() {
+        let key = SigningKey::from_pem(PRIVATE.as_bytes()).unwrap();
+        let made = key.sign(&[0x72]);
+        assert_eq!(hex(&made.bytes), SIGNATURE);
+        assert_eq!(
+            hex(&made.key.der()[PREFIX.len()..]),
+            "3d4017c3e843895a92b70aa74d1b7ebc9c982ccf2ec4968cc0cd55f12af4660c"
+        );
+        assert_eq!(key.sign(&[0x72]).of(&[0x72]), Some(key.verifying()));
+        assert_eq!(made.of(&[0x73]), None);
+    }
+
+    #[test]
+    fn other_keys_are_refused() {
+        let refused = SigningKey::from_pem(b"nothing").unwrap_err().to_string();
+        assert!(refused.contains("no Ed25519 private key"), "{refused}");
+        assert!(VerifyingKey::from_pem(PRIVATE.as_bytes()).is_err(), "a private key is no public");
+        assert_eq!(VerifyingKey::from_der(&[0; 44]), None);
+    }
+}
