@@ -192,10 +192,14 @@ impl Browser {
         self.told(Method::POST, "/window/rect", &json!({ "width": 1400, "height": 900 })).await;
     }
 
-    /// What axe-core, whose script SISTERSHIP_AXE names, finds serious or critical on the page.
+    /// Nothing that axe-core calls serious or critical may be on the page. Where it is not installed
+    /// (`npm ci` in `tests/npm`) this is not looked at.
     pub async fn accessible(&self, name: &str) {
-        let Some(axe) = std::env::var_os("SISTERSHIP_AXE") else { return };
-        let axe = std::fs::read_to_string(axe).expect("the script of axe-core");
+        let place = concat!(env!("CARGO_MANIFEST_DIR"), "/npm/node_modules/axe-core/axe.min.js");
+        let Ok(axe) = std::fs::read_to_string(place) else {
+            println!("skipped: axe-core is not installed in tests/npm, {name} is not looked at");
+            return;
+        };
         self.run(&axe).await;
         let found = self
             .run_until_called_back(

@@ -18,21 +18,18 @@ impl RealProvider {
     pub const SECRET: &str = "of the test & no other";
 
     /// Starts one for a server at a URL; none, said plainly, where it is not installed (`npm ci` in
-    /// `tests/provider`).
+    /// `tests/npm`).
     ///
     /// # Panics
     /// Where it is not installed although `SISTERSHIP_REQUIRE_OPENID=1` says that it must be, or
     /// where it does not start.
     pub fn start(url: &str) -> Option<Self> {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/provider");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/npm");
         if !folder.join("node_modules/oidc-provider").is_dir() {
             let required =
                 std::env::var("SISTERSHIP_REQUIRE_OPENID").is_ok_and(|value| value == "1");
-            assert!(
-                !required,
-                "tests/provider has no oidc-provider and SISTERSHIP_REQUIRE_OPENID=1"
-            );
-            println!("skipped: oidc-provider is not installed in tests/provider");
+            assert!(!required, "tests/npm has no oidc-provider and SISTERSHIP_REQUIRE_OPENID=1");
+            println!("skipped: oidc-provider is not installed in tests/npm");
             return None;
         }
         let mut process = Command::new("node")
