@@ -4,7 +4,6 @@
 use askama::Template;
 use sistership_pipeline::Archive;
 use sistership_pipeline::fleet::{FamilyDrift, MemberDrift};
-use sistership_report::plots::{Plot, Shape};
 use sistership_store::Page;
 
 use crate::cursor::{cursor, key};
@@ -13,6 +12,7 @@ use crate::error::Result;
 use crate::form::Fields;
 use crate::picture::svg;
 use crate::shell::Shell;
+use crate::sparkline::sparkline;
 
 /// Families on one page.
 const FAMILIES: i64 = 50;
@@ -100,11 +100,7 @@ pub async fn one(archive: &Archive, shell: Shell, name: &str) -> Result<String> 
 /// The largest residual of each trial over the axes, the oldest first, and whether it was fitted.
 fn residuals(member: &MemberDrift) -> Vec<(f64, bool, i64)> {
     let trials = member.drift.iter().flat_map(|drift| &drift.trials);
-    let worst = trials.map(|trial| {
-        let worst = trial.residual.values().copied().fold(0.0, f64::max);
-        (worst, trial.fitted, trial.at_us)
-    });
-    worst.collect()
+    trials.map(|trial| (trial.largest(), trial.fitted, trial.at_us)).collect()
 }
 
 impl MemberRow {
@@ -121,28 +117,10 @@ impl MemberRow {
             effects: member.condition.effects.join(", "),
             worst: worst.map_or_else(|| "-".to_owned(), |worst| format!("{worst:.2}")),
             newest: newest.unwrap_or_default(),
-            trend: sparkline(&all).as_ref().map(svg).transpose()?,
+            trend: sparkline(all.iter().map(|(worst, fitted, _)| (*worst, !fitted)))
+                .as_ref()
+                .map(svg)
+                .transpose()?,
         })
     }
-}
-
-/// Residuals in the order of the trials; those that were not fitted have a dot.
-fn sparkline(all: &[(f64, bool, i64)]) -> Option<Plot> {
-    const SIZE: (f64, f64) = (110.0, 26.0);
-    let most = all.iter().map(|(worst, ..)| *worst).fold(0.0, f64::max);
-    if all.len() < 2 || most <= 0.0 {
-        return None;
-    }
-    let place = |(index, (worst, ..)): (usize, &(f64, bool, i64))| {
-        let across = index as f64 / (all.len() - 1) as f64;
-        (4.0 + across * (SIZE.0 - 8.0), SIZE.1 - 4.0 - worst / most * (SIZE.1 - 8.0))
-    };
-    let points: Vec<(f64, f64)> = all.iter().enumerate().map(place).collect();
-    let d = sistership_report::plots::path(&points, |_, _| false);
-    let new = points.iter().zip(all).filter(|(_, (_, fitted, _))| !fitted);
-    let dots = new.map(|(at, _)| Shape::Dot { at: *at, radius: 1.2, class: "dot b" });
-    let shapes = std::iter::once(Shape::Path { d, class: "line a" }).chain(dots).collect();
-    let last = 100.0 * all.last().map_or(0.0, |(worst, ..)| *worst);
-    let label = format!("Left of {} trials over time, {last:.0} % of the last", all.len());
-    Some(Plot { width: SIZE.0, height: SIZE.1, label, shapes })
 }

@@ -23,6 +23,7 @@ mod problem;
 mod rows;
 mod shell;
 pub mod ship;
+mod sparkline;
 pub mod trial;
 pub mod upload;
 pub mod version;

@@ -47,7 +47,14 @@ statements! {
         ORDER BY x.id DESC LIMIT 1) d"
     );
     FACTS = of_names!("f.ship, f.value", "ship_facts f WHERE f.ship = n.value AND f.fact = $2");
-    // A limit keeps PostgreSQL from joining all members.
+    // Here and below a limit keeps PostgreSQL from joining all rows.
+    SERIES = pair(
+        "SELECT f.ship, f.value FROM json_each($1) n CROSS JOIN ship_facts f \
+        WHERE f.ship = n.value AND f.fact >= $2 AND f.fact < $3 ORDER BY f.ship, f.fact",
+        "SELECT f.ship, f.value FROM json_array_elements_text(CAST($1 AS JSON)) AS n(value) \
+        CROSS JOIN LATERAL (SELECT o.ship, o.fact, o.value FROM ship_facts o WHERE o.ship = n.value \
+        AND o.fact >= $2 AND o.fact < $3 ORDER BY o.fact LIMIT 1000) f ORDER BY f.ship, f.fact"
+    );
     FAMILIES = pair(
         "SELECT m.ship, m.family FROM json_each($1) n CROSS JOIN family_members m \
         WHERE m.ship = n.value ORDER BY m.ship, m.family",
@@ -66,6 +73,8 @@ pub struct ShipStanding {
     pub newest: Option<Diagnosed>,
     /// The fact that was asked for.
     pub fact: Option<f64>,
+    /// The facts whose names begin as was asked for, by name.
+    pub series: Vec<f64>,
     /// The families that it belongs to, by name.
     pub families: Vec<String>,
 }
@@ -100,12 +109,13 @@ record! {
 }
 
 impl Store {
-    /// How each of these ships stands, with one of its facts; one of which nothing is known has an
-    /// empty standing.
+    /// How each of these ships stands, with one of its facts, and those whose names begin like
+    /// `series`; one of which nothing is known has an empty standing.
     pub async fn standings(
         &self,
         ships: &[String],
         fact: &str,
+        series: &str,
     ) -> Result<BTreeMap<String, ShipStanding>> {
         let (database, names) = (self.database(), names_list(ships));
         let empty = |ship: &String| (ship.clone(), ShipStanding::default());
@@ -124,6 +134,12 @@ impl Store {
         let facts: Vec<FactOf> = database.all(FACTS, args![names: &names, fact: fact]).await?;
         for FactOf { ship, value } in facts {
             all.entry(ship).and_modify(|standing| standing.fact = Some(value));
+        }
+        // Names are of letters, digits and spaces, all of which come before this.
+        let end = format!("{series}~");
+        let of_series = args![names: &names, from: series, before: &end];
+        for FactOf { ship, value } in database.all(SERIES, of_series).await? {
+            all.entry(ship).and_modify(|standing| standing.series.push(value));
         }
         let families: Vec<Membership> = database.all(FAMILIES, args![names: &names]).await?;
         for Membership { ship, family } in families {

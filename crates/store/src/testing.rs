@@ -126,7 +126,8 @@ impl Store {
     pub async fn row_counts(&self) -> sqlx::Result<Vec<(&'static str, i64)>> {
         let mut counts = Vec::new();
         let kept = |table: &&&str| {
-            !["ship_facts", "ship_vectors", "search_queue", "idempotency_keys"].contains(*table)
+            let in_background = ["ship_facts", "ship_vectors", "search_queue", "trial_statistics"];
+            !in_background.contains(*table) && **table != "idempotency_keys"
         };
         for table in TABLES.iter().filter(kept) {
             let count = AssertSqlSafe(format!("SELECT COUNT(*) FROM {table}"));

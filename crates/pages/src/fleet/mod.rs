@@ -5,7 +5,7 @@ mod query;
 use askama::Template;
 use sistership_pipeline::Archive;
 use sistership_pipeline::condition::Condition;
-use sistership_pipeline::search::standing::{Class, ERROR};
+use sistership_pipeline::search::standing::{Class, ERROR, LEFT};
 use sistership_pipeline::search::{self, Search};
 use sistership_report::numbers::{significant, stated};
 use sistership_store::{FoundShip, List, Page, ShipKey, ShipStanding};
@@ -14,7 +14,9 @@ use self::query::{FleetQuery, Sort};
 use crate::cursor::cursor;
 use crate::error::Result;
 use crate::form::Fields;
+use crate::picture::svg;
 use crate::shell::Shell;
+use crate::sparkline::sparkline;
 
 /// Ships on one page.
 const SHIPS: i64 = 50;
@@ -43,6 +45,7 @@ struct ShipRow {
     why: String,
     champion: Option<i64>,
     error: String,
+    trend: Option<String>,
     families: Vec<String>,
     value: String,
 }
@@ -56,12 +59,12 @@ pub async fn page(archive: &Archive, shell: Shell, fields: &Fields) -> Result<St
     let found = found(archive, &query, query.search()?).await?;
     let next = cursor(found.next.as_ref()).map(|next| query.address(&next));
     let names: Vec<String> = found.items.iter().map(|ship| ship.name.clone()).collect();
-    let mut standings = archive.store.standings(&names, ERROR).await?;
+    let mut standings = archive.store.standings(&names, ERROR, LEFT).await?;
     let row = |ship: FoundShip| {
         let standing = standings.remove(&ship.name).unwrap_or_default();
         row(ship, standing, query.sort)
     };
-    let ships = found.items.into_iter().map(row).collect();
+    let ships = found.items.into_iter().map(row).collect::<Result<_>>()?;
     let page = FleetPage {
         shell: shell.at("/"),
         particulars: search::particulars().collect(),
@@ -84,12 +87,13 @@ async fn found(
     Ok(search::ships(archive, &search, &page).await?)
 }
 
-fn row(ship: FoundShip, standing: ShipStanding, sort: Sort) -> ShipRow {
-    let ShipStanding { champion, newest, fact, families } = standing;
+fn row(ship: FoundShip, standing: ShipStanding, sort: Sort) -> Result<ShipRow> {
+    let ShipStanding { champion, newest, fact, series, families } = standing;
     let condition = Condition::by_newest(champion.as_ref(), newest.as_ref());
     let class = Class::of(&condition);
     let value = ship.value.filter(|_| matches!(sort, Sort::Value | Sort::Similar));
-    ShipRow {
+    let trend = sparkline(series.into_iter().map(|left| (left, false)));
+    Ok(ShipRow {
         name: ship.name,
         title: ship.title,
         category: ship.category,
@@ -98,9 +102,10 @@ fn row(ship: FoundShip, standing: ShipStanding, sort: Sort) -> ShipRow {
         why: condition.effects.join(", "),
         champion: condition.version,
         error: fact.map_or_else(String::new, |error| significant(error, 2)),
+        trend: trend.as_ref().map(svg).transpose()?,
         families: families.into_iter().take(FAMILIES).collect(),
         value: value.map_or_else(String::new, |value| stated(value, 4)),
-    }
+    })
 }
 
 /// A class in words.

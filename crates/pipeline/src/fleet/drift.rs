@@ -6,13 +6,14 @@ use serde::Serialize;
 use sistership_fleet::statistics::{Frame, TrialStatistics};
 use sistership_model::coefficient::Axis;
 use sistership_model::version::RecipeTrial;
-use sistership_store::{MAX_LIMIT, Page, StoreError};
+use sistership_store::{MAX_LIMIT, Page, StoreError, Trial};
 use utoipa::ToSchema;
 
 use super::kept::statistics_of;
 use crate::archive::{Archive, document};
 use crate::error::DeriveError;
 use crate::line::CHAMPION;
+use crate::version::VersionDocument;
 
 /// What a champion leaves of its ship's trials over time.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
@@ -73,29 +74,8 @@ impl Drift {
             Ok(frame) => frame,
             Err(error) => return Ok(Some(Self { reason: Some(error.to_string()), ..drift })),
         };
-        let coefficients = version
-            .model
-            .coefficients
-            .iter()
-            .map(|(name, quantity)| (name.clone(), quantity.value))
-            .collect();
-        for trial in store.trials().list(ship, &Page::first(MAX_LIMIT)).await?.items {
-            let named = RecipeTrial { name: trial.name.clone(), sha256: trial.sha256.clone() };
-            let residual = match statistics_of(archive, &frame, &[named]).await {
-                Ok(statistics) => residual(&statistics[0], &coefficients)?,
-                // A trial that lacks a channel says nothing of this model.
-                Err(DeriveError::Refine(_)) => continue,
-                Err(error) => return Err(error),
-            };
-            let fitted = version.recipe.trials().iter().any(|known| known.sha256 == trial.sha256);
-            drift.trials.push(TrialResidual {
-                trial: trial.id,
-                name: trial.name,
-                at_us: trial.created_us,
-                fitted,
-                residual,
-            });
-        }
+        let trials = store.trials().list(ship, &Page::first(MAX_LIMIT)).await?.items;
+        drift.trials = residuals(archive, &frame, &version, trials).await?;
         drift.compare();
         Ok(Some(drift))
     }
@@ -119,6 +99,64 @@ impl Drift {
         }
         self.worst = self.ratio.values().copied().reduce(f64::max);
     }
+}
+
+/// What a version leaves of the newest of a ship's trials, at most `count`, the oldest first: of
+/// each the largest over the axes. Nothing where its law gives no such residual.
+///
+/// # Errors
+/// The store, or samples that are lost.
+pub async fn left_of_newest(
+    archive: &Archive,
+    version: &VersionDocument,
+    count: usize,
+) -> Result<Vec<f64>, DeriveError> {
+    let law_sha256 = version.recipe.law_sha256();
+    let law = archive.law(&version.model.law, law_sha256).await?;
+    let Ok(frame) = Frame::new(&version.model, &law, law_sha256, None) else {
+        return Ok(Vec::new());
+    };
+    let all = archive.store.trials().list(&version.ship, &Page::first(MAX_LIMIT)).await?.items;
+    let newest = all.iter().skip(all.len().saturating_sub(count)).cloned().collect();
+    let left = residuals(archive, &frame, version, newest).await?;
+    Ok(left.iter().map(TrialResidual::largest).collect())
+}
+
+impl TrialResidual {
+    /// The largest over the axes.
+    pub fn largest(&self) -> f64 {
+        self.residual.values().copied().fold(0.0, f64::max)
+    }
+}
+
+/// What a version leaves of trials; one that lacks a channel says nothing of it.
+async fn residuals(
+    archive: &Archive,
+    frame: &Frame,
+    version: &VersionDocument,
+    trials: Vec<Trial>,
+) -> Result<Vec<TrialResidual>, DeriveError> {
+    let coefficients = version.model.coefficients.iter();
+    let coefficients =
+        coefficients.map(|(name, quantity)| (name.clone(), quantity.value)).collect();
+    let mut all = Vec::with_capacity(trials.len());
+    for trial in trials {
+        let named = RecipeTrial { name: trial.name.clone(), sha256: trial.sha256.clone() };
+        let residual = match statistics_of(archive, frame, &[named]).await {
+            Ok(statistics) => residual(&statistics[0], &coefficients)?,
+            Err(DeriveError::Refine(_)) => continue,
+            Err(error) => return Err(error),
+        };
+        let fitted = version.recipe.trials().iter().any(|known| known.sha256 == trial.sha256);
+        all.push(TrialResidual {
+            trial: trial.id,
+            name: trial.name,
+            at_us: trial.created_us,
+            fitted,
+            residual,
+        });
+    }
+    Ok(all)
 }
 
 fn residual(

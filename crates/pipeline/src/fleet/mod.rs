@@ -16,7 +16,7 @@ mod standing;
 
 pub use asked::{Asked, OrderError, order_refinement};
 pub use choices::{PriorChoice, Rule, Start};
-pub use drift::{Drift, TrialResidual};
+pub use drift::{Drift, TrialResidual, left_of_newest};
 pub use family_drift::{FamilyDrift, MemberDrift};
 pub use frame::{Framed, Frames};
 pub use kept::statistics_of;

@@ -74,7 +74,7 @@ async fn read(archive: &Archive, laws: &Zoo, waiting: Waiting) -> Result<Read, S
     };
     published(archive, laws, &vessel, &ship).await?;
     let champion = champion(archive, &ship.name).await?;
-    let standing = standing::facts(&archive.store, &ship.name, champion.as_ref()).await?;
+    let standing = standing::facts(archive, &ship.name, champion.as_ref()).await?;
     Ok(Read { waiting, category: ship.category, vessel: Some(vessel), champion, standing })
 }
 

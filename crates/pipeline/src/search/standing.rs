@@ -1,9 +1,11 @@
 //! Which ships somebody should look at first, as facts by which they are listed.
 
 use serde_json::Value;
-use sistership_store::{FactRange, Store, StoreError};
+use sistership_store::{FactRange, StoreError};
 
+use crate::archive::Archive;
 use crate::condition::{Condition, Standing};
+use crate::fleet::left_of_newest;
 use crate::version::VersionDocument;
 
 /// Orders ships, the one that most needs somebody first: its class, and within it the larger error
@@ -11,6 +13,12 @@ use crate::version::VersionDocument;
 pub const ORDER: &str = "standing order";
 /// The error of a ship's champion on manoeuvres left out, see [`error`].
 pub const ERROR: &str = "standing error";
+
+/// What a champion leaves of the newest trials of its ship, the oldest of them first: facts whose
+/// names begin so, in their order.
+pub const LEFT: &str = "standing left of trial ";
+/// Of so many trials, at most.
+const TRIALS: usize = 24;
 
 /// How a ship stands, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,14 +91,29 @@ pub fn error(version: &VersionDocument) -> Option<f64> {
 
 /// The facts of a ship.
 pub(super) async fn facts(
-    store: &Store,
+    archive: &Archive,
     ship: &str,
     champion: Option<&VersionDocument>,
 ) -> Result<Vec<(String, f64)>, StoreError> {
-    let class = Class::of(&Condition::of(store, ship).await?);
+    let class = Class::of(&Condition::of(&archive.store, ship).await?);
     let error = champion.and_then(error);
     let facts = [(ORDER, Some(order(class, error))), (ERROR, error)];
-    Ok(facts.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))).collect())
+    let facts = facts.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?)));
+    let left = match champion {
+        Some(champion) => left(archive, champion).await,
+        None => Vec::new(),
+    };
+    let left = left.into_iter().enumerate().map(|(k, value)| (format!("{LEFT}{k:02}"), value));
+    Ok(facts.chain(left).collect())
+}
+
+/// What cannot be told of trials is told to whoever runs the server, and left out.
+async fn left(archive: &Archive, champion: &VersionDocument) -> Vec<f64> {
+    let left = left_of_newest(archive, champion, TRIALS).await;
+    left.unwrap_or_else(|error| {
+        tracing::error!(ship = %champion.ship, %error, "what a champion leaves of trials is not known");
+        Vec::new()
+    })
 }
 
 #[cfg(test)]

@@ -18,12 +18,14 @@ async fn ships_of_a_page_are_told_at_once(on: &TestStore) {
     let waiting = on.store.search_index().waiting("", 10).await.unwrap();
     let facts = |waiting: &Waiting| ShipFacts {
         category: "tanker".into(),
-        facts: vec![("error".to_owned(), waiting.ship.len() as f64)],
+        facts: [("error", 0.0), ("left 00", 1.0), ("left 01", 2.0), ("leftover", 9.0)]
+            .map(|(name, more)| (name.to_owned(), more + waiting.ship.len() as f64))
+            .to_vec(),
         ..ShipFacts::none(waiting.clone())
     };
     on.store.search_index().write(&waiting.iter().map(facts).collect::<Vec<_>>()).await.unwrap();
     let names = ["kcs", "alone", "lost's \"name\""].map(str::to_owned);
-    let all = on.store.standings(&names, "error").await.unwrap();
+    let all = on.store.standings(&names, "error", "left ").await.unwrap();
     let head = on.store.versions().head("kcs", number).await.unwrap();
     let newest = on.store.diagnoses().by_version(&head.id, &Page::first(1)).await.unwrap().items;
     let kcs = &all["kcs"];
@@ -32,12 +34,13 @@ async fn ships_of_a_page_are_told_at_once(on: &TestStore) {
     assert_eq!((kcs.fact, &kcs.families), (Some(3.0), &vec!["cousins".into(), "sisters".into()]));
     let alone = ShipStanding {
         fact: Some(5.0),
+        series: vec![6.0, 7.0],
         families: vec!["cousins".into()],
         ..ShipStanding::default()
     };
     assert_eq!((&all["alone"], &all[&names[2]]), (&alone, &ShipStanding::default()));
     assert_eq!(all.len(), 3);
-    assert!(on.store.standings(&[], "error").await.unwrap().is_empty());
+    assert!(on.store.standings(&[], "error", "left ").await.unwrap().is_empty());
 }
 
 on_both_databases!(ships_of_a_page_are_told_at_once);

@@ -1,0 +1,41 @@
+//! What a champion leaves of trials over time, in the room of a word.
+
+use sistership_report::plots::{Plot, Shape, path};
+
+const SIZE: (f64, f64) = (110.0, 26.0);
+
+/// Residuals in the order of the trials; those that are marked have a dot. None of fewer than two.
+pub fn sparkline(all: impl Iterator<Item = (f64, bool)>) -> Option<Plot> {
+    let all: Vec<(f64, bool)> = all.collect();
+    let most = all.iter().map(|(left, _)| *left).fold(0.0, f64::max);
+    if all.len() < 2 || most <= 0.0 {
+        return None;
+    }
+    let place = |(index, (left, _)): (usize, &(f64, bool))| {
+        let across = index as f64 / (all.len() - 1) as f64;
+        (4.0 + across * (SIZE.0 - 8.0), SIZE.1 - 4.0 - left / most * (SIZE.1 - 8.0))
+    };
+    let points: Vec<(f64, f64)> = all.iter().enumerate().map(place).collect();
+    let d = path(&points, |_, _| false);
+    let marked = points.iter().zip(&all).filter(|(_, (_, marked))| *marked);
+    let dots = marked.map(|(at, _)| Shape::Dot { at: *at, radius: 1.2, class: "dot b" });
+    let shapes = std::iter::once(Shape::Path { d, class: "line a" }).chain(dots).collect();
+    let last = 100.0 * all.last().map_or(0.0, |(left, _)| *left);
+    let label = format!("Left of {} trials over time, {last:.0} % of the last", all.len());
+    Some(Plot { width: SIZE.0, height: SIZE.1, label, shapes })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_line_has_two_ends() {
+        assert!(sparkline([(0.1, false)].into_iter()).is_none());
+        assert!(sparkline([(0.0, false), (0.0, true)].into_iter()).is_none());
+        let plot = sparkline([(0.1, false), (0.3, true), (0.2, false)].into_iter()).unwrap();
+        assert_eq!((plot.shapes.len(), plot.width), (2, SIZE.0));
+        assert!(plot.label.contains("3 trials over time, 20 % of the last"), "{}", plot.label);
+    }
+}
