@@ -142,8 +142,8 @@ impl<'a> Calibration<'a> {
         self.one_at_a_time(learned, self.whole(&learned.model, &learned.nuisance))
     }
 
-    /// With the coefficients' columns alone, in half the time. The last digits are others than with
-    /// effects, whose equations stand in the tape at their absence.
+    /// With the coefficients' columns alone, for what is rounded: the last digits are others than
+    /// with effects, whose equations stand in the tape at their absence.
     fn without_effects(&self, learned: &Learned<'_>) -> Result<LinearisedTrials<'a>, RefineError> {
         let columns = Columns { nuisance: learned.nuisance.clone(), candidates: Vec::new() };
         self.one_at_a_time(learned, columns)

@@ -1,5 +1,5 @@
-//! Characteristic vectors in memory: ships are compared by thousands, and reading as many rows takes
-//! longer than all the rest of a page.
+//! Characteristic vectors in memory: ships are compared by thousands, and reading as many rows
+//! takes longer than all the rest of a page.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError, RwLock};
