@@ -92,7 +92,7 @@ async fn refined(browser: &Browser, server: &TestServer) {
     browser.go(&format!("{}{}", server.url(), browser.path().await)).await;
     browser.leave_by("main a[href*='/v1/reports/']").await;
     browser.until("Errors before and after").await;
-    browser.looked_at("report").await;
+    shown(browser, "report").await;
 }
 
 async fn compared(browser: &Browser, server: &TestServer) {
@@ -105,7 +105,7 @@ async fn compared(browser: &Browser, server: &TestServer) {
     shown(browser, "version").await;
     browser.leave_by("main a[href*='/validation']").await;
     browser.until("ITTC 7.5-02-06-03").await;
-    browser.looked_at("validation").await;
+    shown(browser, "validation").await;
 }
 
 /// Makes a version champion on the ship's page.
