@@ -103,7 +103,7 @@ fn median(values: &[f64]) -> f64 {
 }
 
 #[test]
-fn a_family_tells_more_of_a_new_ship_than_her_nearest_sister() {
+fn a_family_tells_more_of_a_new_ship_than_its_nearest_sister() {
     let (foundation, law) = foundation();
     let known = known(&mut ChaCha12Rng::seed_from_u64(12), &foundation, &law);
     let source = values(&foundation);

@@ -83,7 +83,7 @@ fn esso_osaka_model(values: &str) -> (Zoo, Model) {
 }
 
 #[test]
-fn without_coefficients_the_esso_osaka_model_keeps_her_way() {
+fn without_coefficients_the_esso_osaka_model_keeps_its_way() {
     let ship = esso_osaka("");
     let mut start = StateVector::zeros();
     start[at::U] = 0.5;

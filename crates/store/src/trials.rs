@@ -1,5 +1,7 @@
 //! Trials: what is known of a recorded manoeuvre; its samples are an object, named by their hash.
 
+use std::collections::BTreeSet;
+
 use serde_json::{Value, json};
 
 use crate::arguments::args;
@@ -11,6 +13,7 @@ use crate::jobs;
 use crate::objects::Objects;
 use crate::page::{List, Page};
 use crate::record::{Counted, record};
+use crate::search_index;
 use crate::ships;
 use crate::statements::{same, statements};
 use crate::store::Store;
@@ -173,6 +176,10 @@ impl Trials<'_> {
         if let Some(objects) = objects {
             objects.must_have(inserted.iter().map(|trial| trial.row.object_key.clone())).await?;
         }
+        // In one order, or two who put in trials of the same ships would wait for each other.
+        for ship in all.iter().map(|new| &new.ship).collect::<BTreeSet<_>>() {
+            search_index::mark(self.0, &mut tx, ship).await?;
+        }
         let job = match job(&inserted) {
             Some(new) => Some(jobs::insert(self.0, &mut tx, &new).await?),
             None => None,
@@ -235,6 +242,7 @@ impl Trials<'_> {
             tx.optional(DELETE, args![id: id, deleted_us: self.0.now_us()]).await?;
         if let Some(trial) = &trial {
             tx.note(self.0.now_us(), "trial.delete", subject(trial), Some(state(trial)), None);
+            search_index::mark(self.0, &mut tx, &trial.ship).await?;
         }
         tx.commit().await?;
         trial.ok_or_else(|| StoreError::missing("trial", id))
@@ -246,6 +254,7 @@ impl Trials<'_> {
         let trial: Option<Trial> = tx.optional(UNDELETE, args![id: id]).await?;
         if let Some(trial) = &trial {
             tx.note(self.0.now_us(), "trial.undelete", subject(trial), None, Some(state(trial)));
+            search_index::mark(self.0, &mut tx, &trial.ship).await?;
         }
         tx.commit().await?;
         trial.ok_or_else(|| StoreError::missing("trial", id))

@@ -45,7 +45,7 @@ mod tests {
 
     /// Long waves: it rides them, heave is the elevation and roll its slope.
     #[test]
-    fn in_long_waves_she_follows_the_surface() {
+    fn in_long_waves_the_ship_follows_the_surface() {
         let hull = WaveHull {
             lpp_m: 33.9,
             beam_m: 9.6,

@@ -70,7 +70,7 @@ fn from_statistics_it_is_the_published_estimator() {
 }
 
 #[test]
-fn a_ship_that_differs_from_her_model_is_found_and_sails() {
+fn a_ship_that_differs_from_its_model_is_found_and_sails() {
     let (model, law) = mariner();
     let truth = with(&model, |name| if name == "N_r" || name == "Y_v" { 1.25 } else { 1.0 });
     let trials = statistics(&model, &law, &truth, 1e-4);

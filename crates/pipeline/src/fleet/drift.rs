@@ -74,7 +74,7 @@ impl Drift {
             Ok(frame) => frame,
             Err(error) => return Ok(Some(Self { reason: Some(error.to_string()), ..drift })),
         };
-        let trials = store.trials().list(ship, &Page::first(MAX_LIMIT)).await?.items;
+        let trials = newest(archive, ship, usize::MAX).await?;
         drift.trials = residuals(archive, &frame, &version, trials).await?;
         drift.compare();
         Ok(Some(drift))
@@ -116,10 +116,22 @@ pub async fn left_of_newest(
     let Ok(frame) = Frame::new(&version.model, &law, law_sha256, None) else {
         return Ok(Vec::new());
     };
-    let all = archive.store.trials().list(&version.ship, &Page::first(MAX_LIMIT)).await?.items;
-    let newest = all.iter().skip(all.len().saturating_sub(count)).cloned().collect();
+    let newest = newest(archive, &version.ship, count).await?;
     let left = residuals(archive, &frame, version, newest).await?;
     Ok(left.iter().map(TrialResidual::largest).collect())
+}
+
+/// The newest of a ship's trials, at most `count`, the oldest first.
+async fn newest(archive: &Archive, ship: &str, count: usize) -> Result<Vec<Trial>, StoreError> {
+    let mut newest = Vec::new();
+    let mut page = Page::first(MAX_LIMIT);
+    loop {
+        let trials = archive.store.trials().list(ship, &page).await?;
+        newest.extend(trials.items);
+        newest.drain(..newest.len().saturating_sub(count));
+        let Some(next) = trials.next else { return Ok(newest) };
+        page = Page::after(next, MAX_LIMIT);
+    }
 }
 
 impl TrialResidual {

@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_published_ship_has_every_metric_of_what_she_sails() {
+    fn a_published_ship_has_every_metric_of_what_it_sails() {
         let zoo = Zoo::embedded().unwrap();
         let (vessel, law) = (zoo.vessel("mariner").unwrap(), zoo.law("abkowitz").unwrap());
         let version =

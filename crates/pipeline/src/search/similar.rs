@@ -69,17 +69,19 @@ async fn ranked(
 ) -> Result<Vec<FoundShip>, StoreError> {
     let category = search.category.clone().or_else(|| Some(target.file.category.clone()));
     let all = archive.store.ships().vectors(&ShipSearch { category, ..search.clone() }).await?;
-    let target = (target.name().to_owned(), CharacteristicVector::of(target, definition));
-    let ranking = tokio::task::spawn_blocking(move || rank(all, &target.0, &target.1));
+    let name = target.name().to_owned();
+    let target = CharacteristicVector::of(target, definition);
+    let ranking = tokio::task::spawn_blocking(move || rank(all, &name, &target));
     Ok(ranking.await.map_err(sistership_store::ObjectsError::from)?)
 }
 
 /// Those that share enough components with the target to be compared.
 fn rank(all: Vec<ShipVectors>, name: &str, target: &CharacteristicVector) -> Vec<FoundShip> {
+    let (definition, components) = (target.definition, target.components());
     let correlated = |ship: ShipVectors| {
-        let values = facts::vector(&ship.vectors, target.definition.name())?;
-        let correlation =
-            target.correlation(&CharacteristicVector { definition: target.definition, values })?;
+        let values = facts::vector(&ship.vectors, definition.name())?;
+        let other = CharacteristicVector { definition, values };
+        let correlation = components.correlation(&other.components())?;
         Some(FoundShip { value: Some(correlation), ..ship.head })
     };
     let mut found: Vec<FoundShip> =

@@ -32,7 +32,7 @@ async fn number(store: &Store, ship: &str, alias: &str) -> Option<i64> {
     Some(current.number)
 }
 
-async fn each_who_asks_gets_an_answer_of_her_own(on: &TestStore) {
+async fn each_who_asks_gets_an_answer_of_their_own(on: &TestStore) {
     fleet(on).await;
     let candidate =
         sistership_store::AliasMove { alias: "candidate".into(), ..champion(Expect::Any) };
@@ -109,7 +109,7 @@ async fn whoever_goes_away_holds_up_nobody(on: &TestStore) {
 }
 
 on_both_databases!(
-    each_who_asks_gets_an_answer_of_her_own,
+    each_who_asks_gets_an_answer_of_their_own,
     nobody_reads_an_alias_as_it_was_before_the_question,
     whoever_goes_away_holds_up_nobody
 );

@@ -199,6 +199,18 @@ async fn what_changes_is_written_anew(on: &TestStore) {
     assert_eq!(on.store.search_index().waiting("", 10).await.unwrap().len(), 1);
 }
 
+async fn trials_that_come_and_go_are_news_of_their_ship(on: &TestStore) {
+    fleet(on, 2).await;
+    let trial = on.store.trials().insert(&trial("s-01", "a")).await.unwrap().row;
+    assert_eq!(index(on).await, 1);
+    on.store.trials().delete(&trial.id).await.unwrap();
+    assert_eq!(index(on).await, 1);
+    on.store.trials().undelete(&trial.id).await.unwrap();
+    assert_eq!(index(on).await, 1);
+    assert!(on.store.trials().delete("none").await.is_err());
+    assert_eq!(index(on).await, 0);
+}
+
 async fn tags_are_put_on_and_taken_off(on: &TestStore) {
     let ships = on.store.ships();
     ships.create(&ship("kcs")).await.unwrap();
@@ -237,6 +249,7 @@ on_both_databases!(
     few_are_found_among_many,
     a_page_goes_on_where_the_last_one_ended_whatever_is_added,
     what_changes_is_written_anew,
+    trials_that_come_and_go_are_news_of_their_ship,
     tags_are_put_on_and_taken_off,
     a_search_that_cannot_be_is_refused
 );
