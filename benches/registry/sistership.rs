@@ -44,7 +44,8 @@ pub async fn model(client: &Client, url: &str, model: &str) -> Result<(), Failur
     let ship = json!({
         "kind": "vessel", "name": model, "title": "For measuring", "category": "bench",
         "sources": { "made-up": { "citation": "For measuring" } },
-        "particulars": { "source": "made-up", "values": { "lpp_m": 160.0, "beam_m": 23.0, "draught_m": 7.5 } }
+        "particulars": { "source": "made-up",
+        "values": { "lpp_m": 160.0, "beam_m": 23.0, "draught_m": 7.5 } }
     });
     done(ask(client, Method::POST, format!("{url}/v1/ships")).json(&ship)).await.map(drop)
 }

@@ -1,7 +1,7 @@
 //! How the released program is linked. On x86-64 Linux Rust brings its own linker, `lld`, which can
-//! fold functions of the same machine code (generic code makes many: Chromium is linked so, with the
-//! same SQLite and zstd) and pack the addresses that are set when the program is loaded. Together
-//! that is 2.6 of 35 MB; docs/evidence/size.md.
+//! fold functions of the same machine code (generic code makes many: Chromium is linked so, with
+//! the same SQLite and zstd) and pack the addresses that are set when the program is loaded.
+//! Together that is 2.6 of 35 MB; docs/evidence/size.md.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

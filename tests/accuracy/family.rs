@@ -112,10 +112,12 @@ fn a_family_tells_more_of_a_new_ship_than_its_nearest_sister() {
         .map(|one| refined(&one.ship.frame, &one.all, Prior::Source(&source), PATH))
         .collect();
     println!(
-        "error in yaw rate, %: the model of the nearest ship, refined on two zigzags, and held more tightly; the family's"
+        "error in yaw rate, %: the model of the nearest ship, refined on two zigzags, and held \
+         more tightly; the family's"
     );
     println!(
-        "mean, and refined with the family's prior on the same zigzags; refined on all of its own trials"
+        "mean, and refined with the family's prior on the same zigzags; refined on all of its own \
+         trials"
     );
     let mut table: [Vec<f64>; 6] = Default::default();
     for (index, out) in known.iter().enumerate() {

@@ -73,7 +73,8 @@ fn the_weak_form_beats_the_published_refinement_on_paper_v() {
     let roll = by_weak(&zoo, "abkowitz-roll", &weak::single());
     let pooled = by_weak(&zoo, "abkowitz-roll", &weak::pooled());
     println!(
-        "                    MR paper   weak   weak, roll   weak, roll, pooled  (errors in %; seed {SEED})"
+        "                    MR paper   weak   weak, roll   weak, roll, pooled  (errors in %; seed \
+         {SEED})"
     );
     for (k, block) in TABLE_5.iter().enumerate() {
         for (i, name) in NAMES.iter().enumerate() {
@@ -255,7 +256,8 @@ fn mean_of_cells(rows: &[Row]) -> f64 {
 
 fn print(rows: &[Row]) {
     println!(
-        "                   true             SP %          MR %     (m and m/s; ours, paper; seed {SEED})"
+        "                   true             SP %          MR %     (m and m/s; ours, paper; seed \
+         {SEED})"
     );
     for row in rows {
         for (i, name) in NAMES.iter().enumerate() {

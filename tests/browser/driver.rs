@@ -177,12 +177,16 @@ impl Browser {
             self.told(Method::POST, "/window/rect", &json!({ "width": width, "height": 900 }))
                 .await;
             let beyond = self
-                .run("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
+                .run(
+                    "return document.documentElement.scrollWidth - \
+                    document.documentElement.clientWidth",
+                )
                 .await;
             assert!(beyond.as_i64() <= Some(0), "{name} is {beyond} px too wide at {width} px");
             if let Some(folder) = &self.pictures {
                 let height = self.run("return document.documentElement.scrollHeight").await;
-                let size = json!({ "width": width, "height": height.as_i64().unwrap_or(900).clamp(900, 6000) + 140 });
+                let size = json!({ "width": width,
+                    "height": height.as_i64().unwrap_or(900).clamp(900, 6000) + 140 });
                 self.told(Method::POST, "/window/rect", &size).await;
                 let picture = self.told(Method::GET, "/screenshot", &Value::Null).await;
                 let path = folder.join(format!("{name}-{width}.png.base64"));
@@ -192,8 +196,8 @@ impl Browser {
         self.told(Method::POST, "/window/rect", &json!({ "width": 1400, "height": 900 })).await;
     }
 
-    /// Nothing that axe-core calls serious or critical may be on the page. Where it is not installed
-    /// (`npm ci` in `tests/npm`) this is not looked at.
+    /// Nothing that axe-core calls serious or critical may be on the page. Where it is not
+    /// installed (`npm ci` in `tests/npm`) this is not looked at.
     pub async fn accessible(&self, name: &str) {
         let place = concat!(env!("CARGO_MANIFEST_DIR"), "/npm/node_modules/axe-core/axe.min.js");
         let Ok(axe) = std::fs::read_to_string(place) else {

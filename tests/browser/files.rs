@@ -1,5 +1,5 @@
-//! What the ship of the journey is, and the files of its trials: the heading stands in degrees under
-//! a name that says nothing.
+//! What the ship of the journey is, and the files of its trials: the heading stands in degrees
+//! under a name that says nothing.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,6 +1,6 @@
-//! A person's journey in a real browser: signed in, a ship is typed in, odd files are uploaded with a
-//! corrected mapping, a model is refined and compared with its source, a second person promotes it, a
-//! hidden current shows that it does not hold, and it is rolled back.
+//! A person's journey in a real browser: signed in, a ship is typed in, odd files are uploaded with
+//! a corrected mapping, a model is refined and compared with its source, a second person promotes
+//! it, a hidden current shows that it does not hold, and it is rolled back.
 #![allow(clippy::unwrap_used)]
 
 mod driver;

@@ -109,7 +109,8 @@ fn zigzags_never_spoil_the_turn_by_more_than_the_band() {
         let Turned { ship, truth, source, refined, band: (low, high) } = turned;
         let worse = turned.worse().0;
         println!(
-            "{index:4} {ship:12} {truth:7.3} {source:7.3} {refined:7.3} {low:7.3} {high:7.3} {worse:7.3}"
+            "{index:4} {ship:12} {truth:7.3} {source:7.3} {refined:7.3} {low:7.3} {high:7.3} \
+             {worse:7.3}"
         );
     }
     let mean = |of: &dyn Fn(&Turned) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;

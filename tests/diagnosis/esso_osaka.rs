@@ -187,7 +187,8 @@ fn last_digits_change_neither_that_the_wind_is_named_nor_what_it_is_worth() {
 
 /// Fitted on every other trial, as windy as the rest: what it should do.
 #[test]
-#[ignore = "not met: fitted in the same wind, coefficients take it up, and it is not told from its placebo"]
+#[ignore = "not met: fitted in the same wind, coefficients take it up, and it is not told from its \
+    placebo"]
 fn the_wind_is_named_by_a_model_fitted_in_it() {
     let Some((calm, windy)) = halves() else { return };
     let mut all = [calm, windy].concat();

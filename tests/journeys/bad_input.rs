@@ -33,14 +33,26 @@ fn case(
 
 /// A law that reads, with one thing replaced.
 fn law(from: &str, to: &str) -> String {
-    let good = "kind: law\nname: bad-law\ntitle: A law of the test\nsources: { test: { citation: test } }\ninputs: { delta: { unit: rad } }\nparameters:\n  T: { unit: s, meaning: time constant }\nvalues:\n  U: sqrt(u^2 + v^2)\nfactors: { u: u, v: v, r: r*lpp_m, delta: delta }\naxes:\n  X: { scale: mass_kg/T, terms: [X_u] }\n  Y: { scale: mass_kg/T, terms: [Y_v] }\n  N: { scale: mass_kg*lpp_m/T, terms: [N_r] }\nmass:\n  X: { X: mass_kg }\n  Y: { Y: mass_kg }\n  N: { N: mass_kg*lpp_m^2 }\n";
+    let good = "kind: law\nname: bad-law\ntitle: A law of the test\nsources: { test: { citation: \
+        test } }\ninputs: { delta: { unit: rad } }\nparameters:\n  T: { unit: s, meaning: time \
+        constant }\nvalues:\n  U: sqrt(u^2 + v^2)\nfactors: { u: u, v: v, r: r*lpp_m, delta: delta \
+        }\naxes:\n  X: { scale: mass_kg/T, terms: [X_u] }\n  Y: { scale: mass_kg/T, terms: [Y_v] \
+        }\n  N: { scale: mass_kg*lpp_m/T, terms: [N_r] }\nmass:\n  X: { X: mass_kg }\n  Y: { Y: \
+        mass_kg }\n  N: { N: mass_kg*lpp_m^2 }\n";
     assert!(good.contains(from), "the good law holds {from}");
     good.replacen(from, to, 1)
 }
 
 /// A ship that reads, with one thing replaced.
 fn ship(from: &str, to: &str) -> String {
-    let good = "kind: vessel\nname: bad-ship\ntitle: A ship of the test\ncategory: dry-cargo\nsources: { test: { citation: test } }\nconventions: { rudder_positive: starboard_turn }\nparticulars:\n  source: test\n  values:\n    lpp_m: 100.0\n    beam_m: 16.0\n    draught_m: 6.0\n    displacement_m3: 6000.0\nmodels:\n  - name: own\n    law: abkowitz\n    status: published\n    speed_m_s: 7.0\n    parameters: { source: test, values: { m: 0.01, x_G: 0.0, I_z: 0.0006, X_udot: -0.0004, Y_vdot: -0.007, Y_rdot: 0.0, N_vdot: 0.0, N_rdot: -0.0004 } }\n    coefficients: { source: test, values: { X_u: -0.002, Y_v: -0.01, N_r: -0.002, N_delta: 0.001 } }\n";
+    let good = "kind: vessel\nname: bad-ship\ntitle: A ship of the test\ncategory: \
+        dry-cargo\nsources: { test: { citation: test } }\nconventions: { rudder_positive: \
+        starboard_turn }\nparticulars:\n  source: test\n  values:\n    lpp_m: 100.0\n    beam_m: \
+        16.0\n    draught_m: 6.0\n    displacement_m3: 6000.0\nmodels:\n  - name: own\n    law: \
+        abkowitz\n    status: published\n    speed_m_s: 7.0\n    parameters: { source: test, \
+        values: { m: 0.01, x_G: 0.0, I_z: 0.0006, X_udot: -0.0004, Y_vdot: -0.007, Y_rdot: 0.0, \
+        N_vdot: 0.0, N_rdot: -0.0004 } }\n    coefficients: { source: test, values: { X_u: -0.002, \
+        Y_v: -0.01, N_r: -0.002, N_delta: 0.001 } }\n";
     assert!(good.contains(from), "the good ship holds {from}");
     good.replacen(from, to, 1)
 }

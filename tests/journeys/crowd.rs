@@ -13,8 +13,9 @@ const STALLED: usize = 600;
 /// Fresh connections that are timed, one at a time and then some at a time.
 const TIMED: usize = 300;
 const AT_A_TIME: usize = 4;
-/// What a new connection may wait (p99), and the rounds of which one must keep it: a machine that is
-/// busy with something else for a second is not the server's doing, but a server that is slow stays so.
+/// What a new connection may wait (p99), and the rounds of which one must keep it: a machine that
+/// is busy with something else for a second is not the server's doing, but a server that is slow
+/// stays so.
 const BOUND: Duration = Duration::from_millis(50);
 const ROUNDS: usize = 3;
 const KEY: &str = "sesame";
@@ -39,7 +40,8 @@ fn stalling(key: Option<&str>) -> [String; 2] {
     // The unread answers need no key, the bodies would be refused at once without it.
     let authorised = key.map_or(String::new(), |key| format!("Authorization: Bearer {key}\r\n"));
     let body = format!(
-        "POST /v1/ships HTTP/1.1\r\nHost: localhost\r\n{authorised}Content-Type: application/json\r\nContent-Length: 9000\r\n\r\n{{"
+        "POST /v1/ships HTTP/1.1\r\nHost: localhost\r\n{authorised}Content-Type: \
+         application/json\r\nContent-Length: 9000\r\n\r\n{{"
     );
     [body, "GET /openapi.json HTTP/1.1\r\nHost: localhost\r\n\r\n".repeat(200)]
 }

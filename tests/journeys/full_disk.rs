@@ -30,7 +30,8 @@ impl Disk {
             return Some(Self(folder.to_path_buf()));
         }
         eprintln!(
-            "skipped: no small disk can be mounted here (it takes root on Linux); unit tests try the answers alone"
+            "skipped: no small disk can be mounted here (it takes root on Linux); unit tests try \
+             the answers alone"
         );
         None
     }

@@ -172,7 +172,8 @@ async fn across_laws(server: &TestServer) {
     let body = json!({ "ship": NAME, "source": "kvlcc2", "law": "low-sped" });
     let (status, refused) = server.send(Method::POST, "/v1/refinements", &body, &[]).await;
     assert_eq!((status, refused["errors"][0]["field"].as_str()), (422, Some("law")), "{refused}");
-    let body = json!({ "ship": NAME, "source": "kvlcc2", "law": "low-speed", "settings": { "method": "weak", "strengths": [1.0, 0.1] } });
+    let body = json!({ "ship": NAME, "source": "kvlcc2", "law": "low-speed",
+        "settings": { "method": "weak", "strengths": [1.0, 0.1] } });
     let (status, job) = server.send(Method::POST, "/v1/refinements", &body, &[]).await;
     assert_eq!(status, 202, "{job}");
     let done = server.finished(job["id"].as_str().expect("an id")).await;

@@ -1,6 +1,6 @@
-//! A person's journey by pages and forms alone: odd files are uploaded with a corrected mapping, the
-//! champion turns out not to hold, another is promoted and rolled back. Every page has what a person
-//! must find on it, a policy that allows nothing from elsewhere, and hostile names as text.
+//! A person's journey by pages and forms alone: odd files are uploaded with a corrected mapping,
+//! the champion turns out not to hold, another is promoted and rolled back. Every page has what a
+//! person must find on it, a policy that allows nothing from elsewhere, and hostile names as text.
 
 use reqwest::multipart::{Form, Part};
 use reqwest::{Method, RequestBuilder, Response};

@@ -12,7 +12,11 @@ pub const NAME: &str = "journey";
 /// Particulars of a container ship of which nobody has a model.
 pub fn ship() -> String {
     format!(
-        "kind: vessel\nname: {NAME}\ntitle: The ship of the journeys\ncategory: dry-cargo\nsources: {{ yard: {{ citation: the yard }} }}\nparticulars:\n  source: yard\n  values: {{ lpp_m: 175.0, beam_m: 25.4, draught_m: 8.5, displacement_m3: 21222.0, rudder_area_m2: 33.04, rudder_aspect_ratio: 1.82, propeller_diameter_m: 6.533, service_speed_m_s: 10.47, x_g_m: 0.0, yaw_gyradius_ratio: 0.24 }}\n"
+        "kind: vessel\nname: {NAME}\ntitle: The ship of the journeys\ncategory: \
+         dry-cargo\nsources: {{ yard: {{ citation: the yard }} }}\nparticulars:\n  source: yard\n  \
+         values: {{ lpp_m: 175.0, beam_m: 25.4, draught_m: 8.5, displacement_m3: 21222.0, \
+         rudder_area_m2: 33.04, rudder_aspect_ratio: 1.82, propeller_diameter_m: 6.533, \
+         service_speed_m_s: 10.47, x_g_m: 0.0, yaw_gyradius_ratio: 0.24 }}\n"
     )
 }
 

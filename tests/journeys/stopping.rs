@@ -29,7 +29,8 @@ async fn a_server_with_everything_under_way_ends_in_time() {
     let mut stalled = Vec::new();
     for _ in 0..50 {
         let mut stream = TcpStream::connect(server.address()).await.expect("a connection");
-        let head = "POST /v1/ships HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 9\r\n\r\n{";
+        let head = "POST /v1/ships HTTP/1.1\r\nHost: localhost\r\nContent-Type: \
+            application/json\r\nContent-Length: 9\r\n\r\n{";
         stream.write_all(head.as_bytes()).await.expect("a head");
         stalled.push(stream);
     }

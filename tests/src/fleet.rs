@@ -83,8 +83,9 @@ impl Yard {
         let text = format!(
             "kind: vessel\nname: {name}\ntitle: {name}, made up\ncategory: {}\ntype: cargo ship\n\
              sources:\n  made-up: {{ citation: \"The Mariner at scale {scale:.4}\" }}\n\
-             particulars:\n  source: made-up\n  values:\n    lpp_m: {}\n    beam_m: {}\n    draught_m: {}\n    displacement_m3: {}\n    \
-             x_g_m: {}\n    service_speed_m_s: {}\n    water_density_kg_m3: 1025.0\n",
+             particulars:\n  source: made-up\n  values:\n    lpp_m: {}\n    beam_m: {}\n    \
+             draught_m: {}\n    displacement_m3: {}\n    x_g_m: {}\n    service_speed_m_s: {}\n    \
+             water_density_kg_m3: 1025.0\n",
             self.vessel.file.category,
             scale * of("lpp_m"),
             scale * of("beam_m"),

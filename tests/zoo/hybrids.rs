@@ -71,9 +71,10 @@ fn esso_osaka_model(values: &str) -> (Zoo, Model) {
     let law = derived("hybrid-single-screw");
     zoo.add_law("derived.yaml", &law.text).unwrap_or_else(|error| panic!("{error}"));
     let models = format!(
-        "models:\n  - name: hybrid\n    law: hybrid-single-screw\n    status: published\n    speed_m_s: 0.5\n    \
-         revolutions_rps: 10.0\n    parameters: {{ source: wakita-2022, values: {{ m_x: 0.05, m_y: 0.9, I_zz_plus_J_zz: 0.11 }} }}\n    \
-         coefficients: {{ source: wakita-2022, values: {{ {values} }} }}\n"
+        "models:\n  - name: hybrid\n    law: hybrid-single-screw\n    status: published\n    \
+         speed_m_s: 0.5\n    revolutions_rps: 10.0\n    parameters: {{ source: wakita-2022, \
+         values: {{ m_x: 0.05, m_y: 0.9, I_zz_plus_J_zz: 0.11 }} }}\n    coefficients: {{ source: \
+         wakita-2022, values: {{ {values} }} }}\n"
     );
     let vessel =
         zoo.vessel_text("esso-osaka-3m").expect("in the zoo").replace("models: []", &models);

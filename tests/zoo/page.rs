@@ -142,8 +142,8 @@ fn models_table(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
         "## Models\n\n\
          Turns at 35 deg to starboard (or as far as the gear goes) in ship lengths, zigzags \
          beginning to starboard\nin deg, in deep water unless the model's name says otherwise.\n\n\
-         | model | L, m | m/s | law | origin | status | advance | tactical | 10/10 | 20/20 | source |\n\
-         | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+         | model | L, m | m/s | law | origin | status | advance | tactical | 10/10 | 20/20 | \
+         source |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
     );
     for model in appraised.iter().flat_map(|(_, models)| models) {
         let sailed = &model.manoeuvres;

@@ -8,8 +8,8 @@ use std::str::FromStr;
 pub enum Role {
     /// Looks at ships, trials, models and reports, and predicts with them.
     Reader,
-    /// Creates ships, uploads trials, refines, diagnoses, and moves aliases; the champion too, where
-    /// no second person is asked for.
+    /// Creates ships, uploads trials, refines, diagnoses, and moves aliases; the champion too,
+    /// where no second person is asked for.
     Engineer,
     /// Promotes what others have made.
     Approver,

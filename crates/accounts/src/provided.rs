@@ -146,8 +146,8 @@ impl Accounts<'_> {
         let title = settings.title();
         if !settings.admission().auto_create {
             return Ok(Err(format!(
-                "{title} knows you, but no account here is yours yet: sign in with your password and \
-                 link your account on its page, or ask an admin to link it"
+                "{title} knows you, but no account here is yours yet: sign in with your password \
+                 and link your account on its page, or ask an admin to link it"
             )));
         }
         if roles.is_empty() {
@@ -159,8 +159,9 @@ impl Accounts<'_> {
         };
         if self.store.users().find(&name).await?.is_some() {
             return Ok(Err(format!(
-                "there is an account `{name}` already that is not linked with {title}: if it is yours, \
-                 sign in with its password and link it on its page, or ask an admin to link it"
+                "there is an account `{name}` already that is not linked with {title}: if it is \
+                 yours, sign in with its password and link it on its page, or ask an admin to link \
+                 it"
             )));
         }
         let called = identity.title().unwrap_or(&name);

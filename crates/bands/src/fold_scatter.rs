@@ -24,8 +24,8 @@ const NORMAL: f64 = 1.959_964;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FoldQuantile {
     /// Student's, as if the folds had told the variance of a single figure: what versions made
-    /// before the other was there have. With six trials bands are wider by 1.3 and hold 100 % of the
-    /// true figures where 95 % are meant (docs/evidence/plain.md).
+    /// before the other was there have. With six trials bands are wider by 1.3 and hold 100 % of
+    /// the true figures where 95 % are meant (docs/evidence/plain.md).
     Student,
     /// The normal's: the variance is a mean over some twenty figures.
     Normal,

@@ -32,8 +32,8 @@ impl NextTrial {
         let Self { manoeuvre, narrower } = self;
         let percent = 100.0 * narrower;
         format!(
-            "the trial that would help most: {manoeuvre}; the bands of the standard manoeuvres would \
-             be {percent:.0} % narrower in the mean"
+            "the trial that would help most: {manoeuvre}; the bands of the standard manoeuvres \
+             would be {percent:.0} % narrower in the mean"
         )
     }
 }

@@ -18,9 +18,9 @@ pub struct Sampling {
     pub samples: usize,
     /// What the draws follow from.
     pub seed: u64,
-    /// Draws reverse the rudder within a step, are held against the estimate at a fine one, and tell
-    /// the trial that would help most. The default search sets it; versions made by explicit calls
-    /// keep the bands that they have.
+    /// Draws reverse the rudder within a step, are held against the estimate at a fine one, and
+    /// tell the trial that would help most. The default search sets it; versions made by explicit
+    /// calls keep the bands that they have.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub within_steps: bool,
     /// Draws end initial turns soon after the change of heading that is asked for. The default

@@ -13,8 +13,9 @@ use crate::demo::DemoArguments;
 
 const EXAMPLES: &str = "\
 SHIP and MODEL are a name in the zoo (`mariner`, `mariner/abkowitz`) or a YAML file.
-TRIALS is a trial manifest (YAML), or a CSV or Parquet file with canonical columns (t_s, x_m, y_m, psi_rad, u_m_s,
-v_m_s, r_rad_s, delta_rad, n_rps, ...; other unit suffixes such as _deg, _rpm, _kn are converted).
+TRIALS is a trial manifest (YAML), or a CSV or Parquet file with canonical columns (t_s, x_m, y_m,
+psi_rad, u_m_s, v_m_s, r_rad_s, delta_rad, n_rps, ...; other unit suffixes such as _deg, _rpm, _kn
+are converted).
 
 Examples:
   sistership import log/*.csv --ship my-ship
@@ -62,8 +63,8 @@ pub enum Command {
     Simulate(simulate::SimulateArguments),
     /// Find what a model lacks, by trials that it has not seen.
     Diagnose(diagnose::DiagnoseArguments),
-    /// Sail turning circles, zigzags, stops, pull-outs and spirals with a model and judge them by the
-    /// IMO criteria.
+    /// Sail turning circles, zigzags, stops, pull-outs and spirals with a model and judge them by
+    /// the IMO criteria.
     Manoeuvre(manoeuvre::ManoeuvreArguments),
     /// Sail a model over a horizon under orders to come, in wind and current, with a band.
     Predict(Box<predict::PredictArguments>),

@@ -26,7 +26,8 @@ pub enum ValueError {
     Negative(f64),
     /// No rudder angle, deg.
     #[error(
-        "must be a rudder angle from -90 to 90 deg other than 0 (positive turns to starboard), not {0}"
+        "must be a rudder angle from -90 to 90 deg other than 0 (positive turns to starboard), not \
+         {0}"
     )]
     NoRudderAngle(f64),
     /// One figure where a zigzag has two.

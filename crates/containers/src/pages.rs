@@ -51,7 +51,11 @@ pub fn held<R: ChunkReader>(
     most: usize,
 ) -> Result<Held, String> {
     if matches!(chunk.compression(), Compression::LZ4) {
-        return Err("is compressed by the old LZ4, whose size is not bounded; write it with zstd, snappy or LZ4_RAW".into());
+        return Err(
+            "is compressed by the old LZ4, whose size is not bounded; write it with zstd, \
+            snappy or LZ4_RAW"
+                .into(),
+        );
     }
     let (mut at, length) = chunk.byte_range();
     let end =
@@ -67,7 +71,8 @@ pub fn held<R: ChunkReader>(
         if header.uncompressed.max(header.compressed) > most as u64 {
             let size = header.uncompressed.max(header.compressed);
             return Err(format!(
-                "has a page of {size} bytes, more than the {most} that are read; write smaller pages"
+                "has a page of {size} bytes, more than the {most} that are read; write smaller \
+                 pages"
             ));
         }
         if matches!(chunk.compression(), Compression::GZIP(_)) {

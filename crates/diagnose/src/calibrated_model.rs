@@ -3,8 +3,8 @@
 //! Residuals are linearised about this one. The columns of coefficients alone would not do: how a
 //! lacked term answers to a sensor that errs would be left out.
 
+use sistership_formula::Expr;
 use sistership_model::Model;
-use sistership_model::formula::Expr;
 use sistership_model::law::Law;
 
 use super::nuisance::{Terms, regressor};

@@ -1,10 +1,10 @@
 //! How small an effect these trials and this model would still have shown.
 //!
-//! An effect of a size moves the evidence for it, and for every other that resembles it, by what its
-//! columns say; chance adds a spread that is known. The limit is the smallest size at which the
-//! evidence is enough, and ahead of every other's, with a probability of 90 %: the minimum detectable
-//! value of a test with given error probabilities (Currie 1968, Anal Chem 40, 586-593). The model
-//! alone is a rival, too, with any other level of the random accelerations.
+//! An effect of a size moves the evidence for it, and for every other that resembles it, by what
+//! its columns say; chance adds a spread that is known. The limit is the smallest size at which the
+//! evidence is enough, and ahead of every other's, with a probability of 90 %: the minimum
+//! detectable value of a test with given error probabilities (Currie 1968, Anal Chem 40, 586-593).
+//! The model alone is a rival, too, with any other level of the random accelerations.
 
 use std::collections::BTreeMap;
 
@@ -227,10 +227,11 @@ impl<'a> Detection<'a> {
         others.map(column).collect()
     }
 
-    /// The evidence for a candidate that sees so much, as the search would judge it: its information
-    /// divided by its false-alarm level, its parameters integrated out, and the logarithm of its
-    /// prior odds. With `A` the information and `P` the prior's, the gain is `g' S g/2` and a
-    /// constant, `g = A t + P m` and `S = (A + P)^-1`; chance adds `tr(S A)/2` to its mean.
+    /// The evidence for a candidate that sees so much, as the search would judge it: its
+    /// information divided by its false-alarm level, its parameters integrated out, and the
+    /// logarithm of its prior odds. With `A` the information and `P` the prior's, the gain is `g' S
+    /// g/2` and a constant, `g = A t + P m` and `S = (A + P)^-1`; chance adds `tr(S A)/2` to its
+    /// mean.
     fn expected(
         &self,
         candidate: &EffectCandidate,

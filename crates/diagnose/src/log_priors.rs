@@ -8,9 +8,9 @@ use super::Request;
 use super::discount::is_from_outside;
 use crate::residual::EffectCandidate;
 
-/// Logarithm of the odds of each form against the model alone, by its key: those of the settings, or
-/// of the library, shared by the forms of the effect that can be tried. Without any, every effect is
-/// as probable as another, and the model alone as all of them.
+/// Logarithm of the odds of each form against the model alone, by its key: those of the settings,
+/// or of the library, shared by the forms of the effect that can be tried. Without any, every
+/// effect is as probable as another, and the model alone as all of them.
 pub(super) fn log_priors(
     request: &Request<'_>,
     listed: &[EffectCandidate],

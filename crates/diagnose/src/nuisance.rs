@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
+use sistership_formula::Expr;
 use sistership_model::coefficient::{Axis, CoefficientName};
 use sistership_model::effect::Form;
-use sistership_model::formula::Expr;
 use sistership_model::law::Law;
 use sistership_model::trial::Channel;
 use sistership_model::uncertainty::Uncertainty;

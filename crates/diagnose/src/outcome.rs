@@ -36,8 +36,8 @@ pub struct Diagnosis {
     /// 90 %.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub limits: Vec<DetectionLimit>,
-    /// Effects of which these trials and this model cannot tell a usual size, and what stands in the
-    /// way.
+    /// Effects of which these trials and this model cannot tell a usual size, and what stands in
+    /// the way.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub cannot_tell: BTreeMap<String, LimitedBy>,
     /// Odds that were given each effect before the trials were looked at, all its forms together.

@@ -37,8 +37,8 @@ pub(super) fn is_placebo(
     exceeds(search, judged.log_evidence, &again)
 }
 
-/// Whether effects explain the trials better, by a margin, than with any placebo of the records from
-/// outside.
+/// Whether effects explain the trials better, by a margin, than with any placebo of the records
+/// from outside.
 ///
 /// # Errors
 /// Names what a trial lacks.

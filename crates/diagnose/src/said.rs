@@ -119,7 +119,8 @@ pub(super) fn how(request: &Request<'_>, refit: Option<&str>) -> String {
     };
     match refit {
         Some(refit) => format!(
-            "{fitted}, and so were the coefficients, in the way that does best on the others ({refit})"
+            "{fitted}, and so were the coefficients, in the way that does best on the others \
+             ({refit})"
         ),
         None => fitted,
     }
@@ -129,15 +130,17 @@ pub(super) fn how(request: &Request<'_>, refit: Option<&str>) -> String {
 pub(super) fn remarks(refused: &[String], is_better: bool, found: &[Found]) -> Vec<String> {
     let one = |name: &String| {
         format!(
-            "`{name}` would explain a part of what remains, but in one size here and in another there: it resembles what is \
-             missing and is not named"
+            "`{name}` would explain a part of what remains, but in one size here and in another \
+             there: it resembles what is missing and is not named"
         )
     };
-    let worse = "with what was found the model does not simulate trials better that the fit has not seen: no model is given";
+    let worse = "with what was found the model does not simulate trials better that the fit has \
+        not seen: no model is given";
     let together = |found: &Found| {
         format!(
-            "in the model that is given, `{}` was fitted once more, together with the coefficients, so that simulated trials follow \
-             the measured: its parameters there are not those that the diagnosis estimates",
+            "in the model that is given, `{}` was fitted once more, together with the \
+             coefficients, so that simulated trials follow the measured: its parameters there are \
+             not those that the diagnosis estimates",
             found.name
         )
     };

@@ -9,9 +9,9 @@
 
 use std::collections::BTreeMap;
 
+use sistership_formula::Expr;
 use sistership_model::Model;
 use sistership_model::coefficient::{Axis, split_submodel};
-use sistership_model::formula::Expr;
 use sistership_model::law::{Law, STATES, indicator};
 
 use crate::equations::{

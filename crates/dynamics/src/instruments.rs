@@ -87,11 +87,8 @@ pub fn input_names(law: &Law) -> Vec<String> {
 
 /// What each channel says, where it is not the truth: a log that measures through the water says
 /// what the hull sees.
-pub fn readings(
-    law: &Law,
-    frame: VelocityFrame,
-) -> Vec<(Channel, sistership_model::formula::Expr)> {
-    use sistership_model::formula::Expr;
+pub fn readings(law: &Law, frame: VelocityFrame) -> Vec<(Channel, sistership_formula::Expr)> {
+    use sistership_formula::Expr;
     let mut readings: Vec<(Channel, Expr)> = Vec::new();
     if frame == VelocityFrame::Water {
         for channel in [Channel::U, Channel::V] {

@@ -4,9 +4,9 @@ mod listed;
 mod rate;
 
 use nalgebra::{LU, Matrix4};
+use sistership_formula::Expr;
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
-use sistership_model::formula::Expr;
 use sistership_model::law::Law;
 
 use crate::equations::{Coefficients, EquationsOfMotion, Lowering, PlantError};

@@ -101,7 +101,8 @@ fn the_spirals_agree_on_the_loop() {
         let clock = std::time::Instant::now();
         let sailed = spiral(&ship, &ManoeuvreSettings::default()).unwrap();
         println!(
-            "{name}: direct {:.2} deg, reverse {:.2} deg, height {:.3} deg/s, limit {:.1} deg, {:?}",
+            "{name}: direct {:.2} deg, reverse {:.2} deg, height {:.3} deg/s, limit {:.1} deg, \
+             {:?}",
             sailed.direct_loop_width_deg,
             sailed.loop_width_deg,
             sailed.loop_height_deg_s,

@@ -31,8 +31,8 @@ fn main() {
     let mut rows = Vec::new();
     let mut times_ms = Vec::new();
     println!(
-        "| ship | tactical, L: own | estimate | band | 10/10: own | estimate | band | 20/20: own | estimate | band |\n\
-         | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
+        "| ship | tactical, L: own | estimate | band | 10/10: own | estimate | band | 20/20: own | \
+         estimate | band |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
     );
     for vessel in zoo.vessels().filter(|vessel| !vessel.file.models.is_empty()) {
         let model = zoo.published(vessel, None).unwrap();
@@ -65,7 +65,8 @@ fn main() {
 /// Estimates of ships whose own free-running trials are published.
 fn against_trials(zoo: &Zoo, library: &Library, law: &Law) {
     println!(
-        "\n| ship | trial | published | estimate | error | band |\n| --- | --- | --- | --- | --- | --- |"
+        "\n| ship | trial | published | estimate | error | band |\n| --- | --- | --- | --- | --- | \
+         --- |"
     );
     for vessel in zoo.vessels().filter(|vessel| !vessel.file.free_running.is_empty()) {
         one_against_trials(vessel, library, law);

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
+use sistership_formula::{self as formula, Expr};
 use sistership_model::FileError;
-use sistership_model::formula::{self, Expr};
 use sistership_model::source::Source;
 
 /// A regression file; see `models/regressions/README.md`.

@@ -1,6 +1,6 @@
 //! One file of plain C: no allocation, no input or output, no state of its own.
 
-use sistership_model::formula::Function;
+use sistership_formula::Function;
 
 use crate::error::ExportError;
 use crate::expression::{Language, function};
@@ -143,7 +143,8 @@ fn values(plan: &Plan) -> String {
         "/* The model's own coefficients. */\nconst @_coefficients @_values = {{\n{values}}};\n\n\
          /* Straight running at the approach speed, rudder amidships. */\n\
          @_inputs @_approach_inputs(void)\n{{\n    @_inputs in;\n{inputs}    return in;\n}}\n\n\
-         @_state @_approach_state(void)\n{{\n    @_state s = {{0}};\n    s.u = {:?};\n    return s;\n}}\n\n",
+         @_state @_approach_state(void)\n{{\n    @_state s = {{0}};\n    s.u = {:?};\n    return \
+         s;\n}}\n\n",
         plan.speed_m_s
     )
 }
@@ -163,10 +164,11 @@ fn rates_text(plan: &Plan) -> String {
     };
     let statements = rates::statements(plan, &C).join("\n");
     format!(
-        "/* The rates of the states. A gear without a time constant goes to its order within step_s,\n \
-         * the step with which the rates are integrated. */\n\
-         void @_rates(const @_state *s, const @_inputs *in, const @_coefficients *c, double step_s,\n    \
-         @_state *rate)\n{{\n    (void)in;\n    (void)c;\n    (void)step_s;\n{statements}\n{rudder}\n}}\n\n"
+        "/* The rates of the states. A gear without a time constant goes to its order within \
+         step_s,\n * the step with which the rates are integrated. */\n\
+         void @_rates(const @_state *s, const @_inputs *in, const @_coefficients *c, double \
+         step_s,\n    @_state *rate)\n{{\n    (void)in;\n    (void)c;\n    \
+         (void)step_s;\n{statements}\n{rudder}\n}}\n\n"
     )
 }
 

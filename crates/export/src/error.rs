@@ -7,7 +7,8 @@ use sistership_dynamics::PlantError;
 pub enum ExportError {
     /// Part of it was learned, and is no formula.
     #[error(
-        "`{0}` has a learned branch, whose weights no exported format carries; export its foundation, the model without `branch`"
+        "`{0}` has a learned branch, whose weights no exported format carries; export its \
+         foundation, the model without `branch`"
     )]
     Branch(String),
     /// An effect delays an input that no steering gear takes.

@@ -1,7 +1,7 @@
 //! One operation of the tape as an expression of a language.
 
 use sistership_dynamics::tape::{Instruction, Op, Slot};
-use sistership_model::formula::{Comparison, Function};
+use sistership_formula::{Comparison, Function};
 
 use crate::outside::Outside;
 use crate::plan::{Coefficient, Operand, Plan};

@@ -25,7 +25,8 @@ pub fn lines(plan: &Plan) -> Vec<String> {
         format!("  {identifier} [{unit}] {meaning}{range}")
     }));
     lines.push(format!(
-        "A simulation is not believed above {:.2} m/s, {:.4} rad/s of yaw rate or {:.2} rad of roll.",
+        "A simulation is not believed above {:.2} m/s, {:.4} rad/s of yaw rate or {:.2} rad of \
+         roll.",
         plan.envelope.speed_m_s(),
         plan.envelope.yaw_rate_rad_s(),
         plan.envelope.roll_rad()
@@ -36,8 +37,8 @@ pub fn lines(plan: &Plan) -> Vec<String> {
 fn gear(plan: &Plan) -> Option<String> {
     let gear = plan.gear.as_ref()?;
     Some(format!(
-        "  delta_order [rad] ordered rudder, positive turns the ship to starboard; the gear stops at \
-         {:.1} deg, moves at most {:.2} deg/s, time constant {} s",
+        "  delta_order [rad] ordered rudder, positive turns the ship to starboard; the gear stops \
+         at {:.1} deg, moves at most {:.2} deg/s, time constant {} s",
         gear.limit_rad().to_degrees(),
         gear.rate_rad_s().to_degrees(),
         gear.time_constant_s()

@@ -1,7 +1,7 @@
 //! One function of MATLAB (and Octave) in the style of the Marine Systems Simulator: a structure,
 //! and the rates of the states by it.
 
-use sistership_model::formula::Function;
+use sistership_formula::Function;
 
 use crate::error::ExportError;
 use crate::expression::{Language, function};

@@ -1,6 +1,6 @@
 //! A model of Modelica as text.
 
-use sistership_model::formula::Function;
+use sistership_formula::Function;
 
 use crate::error::ExportError;
 use crate::expression::{Language, function};

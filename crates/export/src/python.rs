@@ -1,6 +1,6 @@
 //! One file of Python: the equations by plain floats, numpy for what a simulation returns.
 
-use sistership_model::formula::Function;
+use sistership_formula::Function;
 
 use crate::error::ExportError;
 use crate::expression::{Language, function};

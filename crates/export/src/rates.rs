@@ -61,7 +61,7 @@ fn products(language: &dyn Language, row: &[f64; 4], forces: &[Option<String>; 4
 }
 
 fn kinematics(plan: &Plan, language: &dyn Language) -> Vec<String> {
-    use sistership_model::formula::Function::{Cos, Sin};
+    use sistership_formula::Function::{Cos, Sin};
     let said = plan.listed().kinematics;
     let state = |place: usize| language.state(place);
     let (u, v, psi) = (state(0), state(1), state(5));

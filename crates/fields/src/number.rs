@@ -58,7 +58,8 @@ number! {
 }
 number! {
     /// An angle of a rudder or a heading, in degrees.
-    Angle: |value| value != 0.0 && value.abs() <= 90.0, "an angle up to 90 deg to either side and not 0",
+    Angle: |value| value != 0.0 && value.abs() <= 90.0, "an angle up to 90 deg to either side and \
+        not 0",
         |number| number.minimum(Some(-90)).maximum(Some(90)).extensions(not_zero())
 }
 

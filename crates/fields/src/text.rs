@@ -94,62 +94,76 @@ macro_rules! text {
 
 text! {
     /// The name of a ship, a law or a model: `sistership_model::name::check_slug`.
-    Name: 1..=64, "^[a-z0-9][a-z0-9-]*$", "a name of 1 to 64 lower-case letters, digits and hyphens, such as `esso-osaka-3m`"
+    Name: 1..=64, "^[a-z0-9][a-z0-9-]*$", "a name of 1 to 64 lower-case letters, digits and \
+        hyphens, such as `esso-osaka-3m`"
 }
 text! {
     /// A tag, or the name of a family: one word in any script.
     Word: 1..=200, r"^[^\s/.\x00-\x1f\x7f-\x9f][^\s/\x00-\x1f\x7f-\x9f]*$",
-        "a word of 1 to 200 characters without white space, control characters and slashes, that does not begin with a full stop"
+        "a word of 1 to 200 characters without white space, control characters and slashes, that \
+         does not begin with a full stop"
 }
 text! {
     /// The id of a trial, a job, a report or a refinement of a family.
-    Id: 1..=64, "^[0-9A-Za-z-]+$", "an id of 1 to 64 letters, digits and hyphens, as the server gives them"
+    Id: 1..=64, "^[0-9A-Za-z-]+$", "an id of 1 to 64 letters, digits and hyphens, as the server \
+        gives them"
 }
 text! {
     /// The name of a user: `sistership_access::check_name`.
     UserName: 1..=64, "^[a-z0-9][a-z0-9._@-]*$",
-        "a name of 1 to 64 lower-case letters, digits, `.`, `_`, `@` and `-`, the first a letter or digit"
+        "a name of 1 to 64 lower-case letters, digits, `.`, `_`, `@` and `-`, the first a letter \
+         or digit"
 }
 text! {
     /// An issuer or a subject of OpenID Connect.
-    Line: 1..=255, r"^[^\x00-\x1f\x7f-\x9f]+$", "a text of 1 to 255 characters without control characters"
+    Line: 1..=255, r"^[^\x00-\x1f\x7f-\x9f]+$", "a text of 1 to 255 characters without control \
+        characters"
 }
 text! {
     /// The prefix of a service key.
-    KeyPrefix: 12..=12, "^[0-9a-f]{12}$", "the 12 hexadecimal digits that a service key begins with after `sis_`"
+    KeyPrefix: 12..=12, "^[0-9a-f]{12}$", "the 12 hexadecimal digits that a service key begins \
+        with after `sis_`"
 }
 text! {
     /// A password that is set: `sistership_access::check_password`.
-    Password: 15..=256, r"^[^\x00]*$", "a password of 15 to 256 characters without NUL; a sentence with spaces will do"
+    Password: 15..=256, r"^[^\x00]*$", "a password of 15 to 256 characters without NUL; a sentence \
+        with spaces will do"
 }
 text! {
     /// Who or what an entry of the audit is about.
-    AuditName: 1..=300, r"^[^\s\x00-\x1f\x7f-\x9f]+$", "a name of 1 to 300 characters, such as `ann` or `ship:kvlcc2`"
+    AuditName: 1..=300, r"^[^\s\x00-\x1f\x7f-\x9f]+$", "a name of 1 to 300 characters, such as \
+        `ann` or `ship:kvlcc2`"
 }
 text! {
     /// A version by a name that people give it.
     ModelName: 1..=129, "^[a-z0-9][a-z0-9-]{0,63}(/[a-z0-9][a-z0-9-]{0,63})?$",
-        "`ship` (its champion), `ship/number` or `ship/alias`, in lower-case letters, digits and hyphens"
+        "`ship` (its champion), `ship/number` or `ship/alias`, in lower-case letters, digits and \
+         hyphens"
 }
 text! {
     /// A word of a person that is kept: a reason, an origin, a name.
-    Remark: 1..=1000, r"^[^\x00]*[^\s\x00][^\x00]*$", "1 to 1000 characters that are not all white space, without NUL"
+    Remark: 1..=1000, r"^[^\x00]*[^\s\x00][^\x00]*$", "1 to 1000 characters that are not all white \
+        space, without NUL"
 }
 text! {
     /// An address of the web.
-    WebAddress: 10..=2000, r"^https?://[^\s\x00-\x1f\x7f-\x9f]+$", "an address of the web of 10 to 2000 characters, such as `https://example.com/hook`"
+    WebAddress: 10..=2000, r"^https?://[^\s\x00-\x1f\x7f-\x9f]+$", "an address of the web of 10 to \
+        2000 characters, such as `https://example.com/hook`"
 }
 text! {
     /// The name of a file.
-    FileName: 1..=200, r"^[^\x00-\x1f\x7f-\x9f]+$", "a name of 1 to 200 characters without control characters"
+    FileName: 1..=200, r"^[^\x00-\x1f\x7f-\x9f]+$", "a name of 1 to 200 characters without control \
+        characters"
 }
 text! {
     /// `next` of the page before.
-    Cursor: 1..=4096, "^[0-9A-Za-z_-]+$", "the `next` of a page of this list; leave it out for the first page"
+    Cursor: 1..=4096, "^[0-9A-Za-z_-]+$", "the `next` of a page of this list; leave it out for the \
+        first page"
 }
 text! {
     /// `Idempotency-Key`.
-    RequestKey: 1..=200, "^[!-.0-~]+$", "1 to 200 letters, digits and marks (no slash), such as a UUID"
+    RequestKey: 1..=200, "^[!-.0-~]+$", "1 to 200 letters, digits and marks (no slash), such as a \
+        UUID"
 }
 text! {
     /// `If-Match` and `If-None-Match`.

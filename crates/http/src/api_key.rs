@@ -20,8 +20,8 @@ impl ApiKey {
     }
 }
 
-/// What forms of pages send along, so that no other web site can send them: it cannot read a page of
-/// this server. With a key it follows from the key, so that every server with that key takes it;
+/// What forms of pages send along, so that no other web site can send them: it cannot read a page
+/// of this server. With a key it follows from the key, so that every server with that key takes it;
 /// without one it is drawn at the start. Who is signed in has another, see `web::form`.
 pub struct FormToken(String);
 

@@ -25,7 +25,8 @@ pub fn addressed(request: &Request) -> Result<Option<Authority>> {
     }
     match (request.uri().authority(), host) {
         (Some(target), Some(host)) if *target != host => Err(Problem::bad_request(
-            "the header `Host` names another server than the request's target; send the same in both",
+            "the header `Host` names another server than the request's target; send the same in \
+             both",
         )),
         (_, host) => Ok(host),
     }
@@ -33,7 +34,8 @@ pub fn addressed(request: &Request) -> Result<Option<Authority>> {
 
 fn wrong_host() -> Problem {
     Problem::bad_request(
-        "the header `Host` must be a name or an address, with a port or without, such as localhost:8080",
+        "the header `Host` must be a name or an address, with a port or without, such as \
+         localhost:8080",
     )
 }
 
@@ -81,7 +83,8 @@ pub fn from_this_machine(
     // `none` is what a person has typed or chosen.
     match site.filter(|site| !["same-origin", "none"].contains(site)) {
         Some(site) => Err(refused(format!(
-            "without an API key this server takes no changes from other web sites (Sec-Fetch-Site: {site})"
+            "without an API key this server takes no changes from other web sites (Sec-Fetch-Site: \
+             {site})"
         ))),
         None => Ok(()),
     }

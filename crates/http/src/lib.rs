@@ -21,6 +21,7 @@ pub mod reply;
 pub mod roles;
 pub mod ship_search;
 pub mod spool;
+mod spool_folder;
 pub mod tidy;
 pub mod upload;
 

@@ -133,7 +133,8 @@ fn definition(value: &str) -> Result<Definition> {
 fn unknown(name: &str) -> Problem {
     wrong(
         name,
-        "is no parameter here; there are limit, after, category, tag, particular, metric, similar_to, vector",
+        "is no parameter here; there are limit, after, category, tag, particular, metric, \
+         similar_to, vector",
     )
 }
 

@@ -5,12 +5,14 @@ use std::io;
 use bytes::Bytes;
 use futures::{Stream, StreamExt as _};
 use sha2::{Digest as _, Sha256};
-use sistership_store::{Spool, is_out_of_space};
+use sistership_store::is_out_of_space;
 use tempfile::{NamedTempFile, TempPath};
 use tokio::fs::File;
 use tokio::io::{AsyncWriteExt as _, BufWriter};
 
 use crate::problem::{Problem, Result};
+
+pub use crate::spool_folder::Spool;
 
 /// A file that has arrived; it goes when this is dropped.
 #[derive(Debug)]

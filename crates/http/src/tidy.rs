@@ -86,7 +86,8 @@ mod tests {
 
     #[test]
     fn what_is_said_of_a_field_is_no_schema_of_its_own() {
-        let mut document = json!({ "allOf": [{ "type": "string", "maxLength": 3 }, { "type": "object", "description": "a" }] });
+        let mut document = json!({ "allOf": [{ "type": "string", "maxLength": 3 },
+            { "type": "object", "description": "a" }] });
         tidy(&mut document);
         assert_eq!(document, json!({ "type": "string", "maxLength": 3, "description": "a" }));
         let both = json!({ "allOf": [{ "$ref": "#/a" }, { "type": "object", "properties": { "b": {} } }] });

@@ -158,7 +158,10 @@ impl CoefficientName {
     /// Says what is wrong and, where it can tell, how the name is spelled here.
     pub fn parse(name: &str, extra: &[&str]) -> Result<Self, NameError> {
         if name.len() > MAX_NAME {
-            return Err(NameError::Long { head: crate::formula::head(name), length: name.len() });
+            return Err(NameError::Long {
+                head: sistership_formula::head(name),
+                length: name.len(),
+            });
         }
         let (shared, submodel) = split_submodel(name);
         let (axis, rest) =

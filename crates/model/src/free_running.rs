@@ -194,7 +194,8 @@ mod tests {
 
     #[test]
     fn figures_that_cannot_be_are_refused_by_field() {
-        let good = "source: a\nkind: sea_trial\nturns: [{ rudder_deg: -35.0, uncertainty: 0.1, advance: 3.1 }]\n";
+        let good = "source: a\nkind: sea_trial\nturns: [{ rudder_deg: -35.0, uncertainty: 0.1, \
+            advance: 3.1 }]\n";
         assert_eq!(trial(good).check(&["a"]), Ok(()));
         let refused = |from: &str, to: &str| trial(&good.replace(from, to)).check(&["a"]);
         assert_eq!(refused("source: a", "source: b").unwrap_err().0, "source");

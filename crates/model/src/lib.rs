@@ -1,4 +1,4 @@
-//! The vocabulary: ships, particulars, laws and their formulas, coefficients, trials, versions.
+//! The vocabulary: ships, particulars, laws, coefficients, trials, versions.
 //!
 //! No I/O and no async: text goes in, checked values come out, and every refusal names file, line
 //! and field.
@@ -8,7 +8,6 @@ pub mod categories;
 pub mod coefficient;
 pub mod effect;
 mod error;
-pub mod formula;
 pub mod free_running;
 pub mod hybrid;
 pub mod law;
@@ -23,7 +22,6 @@ pub mod source;
 pub mod trial;
 pub mod triangle;
 pub mod uncertainty;
-pub mod units;
 pub mod validity;
 pub mod version;
 pub mod vessel;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::quantity::Quantity;
-use crate::units::Dimension;
+use sistership_formula::units::Dimension;
 
 /// Particulars by name, in SI.
 pub type Particulars = BTreeMap<String, Quantity>;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::formula::{self, FormulaError};
+use sistership_formula::{self as formula, FormulaError};
 
 /// A value, its source, and what is known of its uncertainty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::manifest::VelocityFrame;
-use crate::units::Dimension;
+use sistership_formula::units::Dimension;
 
 /// What a trial may record besides time. Ship-fixed velocities are of midship, over the ground
 /// unless the trial says through the water; positive `Delta` turns the ship to starboard; angles in

@@ -188,7 +188,8 @@ impl Excursion {
         let Self { first_s, share, along, beyond } = self;
         let percent = 100.0 * share;
         format!(
-            "outside what its trials covered from {first_s:.0} s, {percent:.0} % of the time, furthest in {along}: {:.0} % of the half range beyond",
+            "outside what its trials covered from {first_s:.0} s, {percent:.0} % of the time, \
+             furthest in {along}: {:.0} % of the half range beyond",
             100.0 * beyond
         )
     }

@@ -12,7 +12,8 @@ use crate::settings::{Settings, SettingsError, is_safe, url};
 /// Holds the secret that the provider knows the server by.
 const SECRET: &str = "SISTERSHIP_OIDC_CLIENT_SECRET";
 
-/// The settings of a provider, each with its flag; the same names stand in the file's section `oidc`.
+/// The settings of a provider, each with its flag; the same names stand in the file's section
+/// `oidc`.
 #[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[command(next_help_heading = "Signing in at an OpenID provider")]
@@ -190,7 +191,8 @@ impl OpenIdArguments {
     fn base_url(&self, faults: &mut Vec<String>) -> String {
         let Some(text) = &self.base_url else {
             faults.push(
-                "oidc base_url: is missing; it is where browsers find this server, such as https://ships.example"
+                "oidc base_url: is missing; it is where browsers find this server, such as \
+                 https://ships.example"
                     .into(),
             );
             return String::new();
@@ -219,7 +221,11 @@ impl OpenIdArguments {
             .ok()
             .flatten();
         if self.auto_create && self.default_role.is_none() && self.group_roles.is_empty() {
-            faults.push("oidc auto_create: needs default_role or group_roles, or a new account could do nothing".into());
+            faults.push(
+                "oidc auto_create: needs default_role or group_roles, or a new account \
+                could do nothing"
+                    .into(),
+            );
         }
         Admission {
             auto_create: self.auto_create,

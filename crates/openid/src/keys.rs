@@ -54,7 +54,8 @@ mod tests {
     use serde_json::json;
 
     fn edwards(about: Value) -> Value {
-        let mut key = json!({ "kty": "OKP", "crv": "Ed25519", "x": "11qYAYKxCrfVS_7TyWQHOg7hcvPapiMlrwIaaPcHURo" });
+        let mut key = json!({ "kty": "OKP", "crv": "Ed25519",
+            "x": "11qYAYKxCrfVS_7TyWQHOg7hcvPapiMlrwIaaPcHURo" });
         key.as_object_mut().unwrap().extend(about.as_object().unwrap().clone());
         key
     }

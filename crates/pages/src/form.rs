@@ -2,8 +2,8 @@
 
 use crate::error::{PageError, Result};
 
-/// Fields in the order in which they came; one may be there several times. What is left empty counts
-/// as absent.
+/// Fields in the order in which they came; one may be there several times. What is left empty
+/// counts as absent.
 #[derive(Debug, Clone, Default)]
 pub struct Fields(Vec<(String, String)>);
 

@@ -122,7 +122,8 @@ impl Archive {
     pub async fn effects(&self, hash: &str) -> Result<Library> {
         let found = match self.store.effects().get(hash).await {
             Err(StoreError::NotFound { .. }) => {
-                let mend = "restore it from a backup, or open the store once with a release that carries it";
+                let mend = "restore it from a backup, or open the store once with a release that \
+                    carries it";
                 return Err(DeriveError::Lost(format!(
                     "the store has no library of effects {hash}: {mend}"
                 )));

@@ -145,11 +145,13 @@ impl Condition {
                 format!("Its model does not hold: on {trials} it lacks {effects}.")
             }
             (_, true, _) => format!(
-                "Its model does not hold: on {trials} something is missing that no known effect explains."
+                "Its model does not hold: on {trials} something is missing that no known effect \
+                 explains."
             ),
             (_, false, _) => {
                 format!(
-                    "Its model does not hold: on {trials} it lacks {effects}, and something that no known effect explains."
+                    "Its model does not hold: on {trials} it lacks {effects}, and something that \
+                     no known effect explains."
                 )
             }
         }

@@ -48,8 +48,8 @@ pub struct DiagnosisRecipe {
     pub code_revision: String,
 }
 
-/// How a version with a learned branch is derived. Everything it starts from is named by the SHA-256
-/// of its bytes; its document names the weights that came of it.
+/// How a version with a learned branch is derived. Everything it starts from is named by the
+/// SHA-256 of its bytes; its document names the weights that came of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainingRecipe {
@@ -278,12 +278,15 @@ mod tests {
     fn recipes_are_told_by_their_kind_and_keep_their_bytes() {
         let published =
             json!({ "kind": "published", "model": "own", "ship_sha256": "a", "law_sha256": "b" });
-        let diagnosed = json!({ "kind": "diagnosis", "diagnosed": { "ship": "kcs", "number": 2, "sha256": "c" },
-            "law_sha256": "b", "trials": [{ "name": "t.csv", "sha256": "d" }], "effects_sha256": "e",
+        let diagnosed = json!({ "kind": "diagnosis",
+            "diagnosed": { "ship": "kcs", "number": 2, "sha256": "c" },
+            "law_sha256": "b", "trials": [{ "name": "t.csv", "sha256": "d" }],
+            "effects_sha256": "e",
             "settings": { "slack": 0.02 }, "code_revision": "1" });
         let registered =
             json!({ "kind": "registered", "law_sha256": "b", "origin": "a towing tank" });
-        let trained = json!({ "kind": "branch", "foundation": { "ship": "kcs", "number": 2, "sha256": "c" },
+        let trained = json!({ "kind": "branch",
+            "foundation": { "ship": "kcs", "number": 2, "sha256": "c" },
             "law_sha256": "b", "trials": [{ "name": "t.csv", "sha256": "d" }],
             "settings": { "mode": "parallel", "inputs": [["N", ["r", "delta"]]], "learner":
                 { "kind": "kernel_ridge", "centres": 9, "length": 3.0, "ridge": 0.5 },

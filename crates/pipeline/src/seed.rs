@@ -25,7 +25,8 @@ pub enum SeedError {
 pub async fn seed(store: &Store, catalogue: &Catalogue) -> Result<(), SeedError> {
     match put_in(store, catalogue).await {
         Err(SeedError::Store(error)) if error.is_out_of_space() => {
-            tracing::error!(%error, "there is no room for what is new in the program's own zoo; the next start puts it in");
+            tracing::error!(%error, "there is no room for what is new in the program's own zoo; \
+                the next start puts it in");
             Ok(())
         }
         other => other,

@@ -128,11 +128,16 @@ async fn checked(
 fn remarks(made_by: Option<&str>, (stored, derived): (&str, &str), undamaged: bool) -> Vec<String> {
     let mut remarks = Vec::new();
     if !undamaged {
-        remarks.push("the stored bytes do not have the recorded hash: the database is damaged or was changed".to_owned());
+        remarks.push(
+            "the stored bytes do not have the recorded hash: the database is damaged or \
+            was changed"
+                .to_owned(),
+        );
     }
     if let Some(other) = made_by.filter(|revision| *revision != code_revision()) {
         remarks.push(format!(
-            "made by revision {other}, checked by {}: the recorded revision was put back before comparing",
+            "made by revision {other}, checked by {}: the recorded revision was put back before \
+             comparing",
             code_revision()
         ));
     }
@@ -143,8 +148,9 @@ fn remarks(made_by: Option<&str>, (stored, derived): (&str, &str), undamaged: bo
         remarks.push(place.unwrap_or_else(|| "the same values, written differently".to_owned()));
         remarks.extend(rounding(&stored, &derived).map(|largest| {
             format!(
-                "nothing but numbers differs, by at most {largest:.0e} of themselves: another processor (without fused \
-                 multiplication) or another C library rounds like that; no input differs"
+                "nothing but numbers differs, by at most {largest:.0e} of themselves: another \
+                 processor (without fused multiplication) or another C library rounds like that; \
+                 no input differs"
             )
         }));
     }

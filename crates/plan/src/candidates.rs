@@ -18,8 +18,8 @@ pub(crate) struct Candidate {
 /// Rudder angles of turns, deg: from the initial turn to hard over.
 const TURNS_DEG: [f64; 5] = [10.0, 15.0, 20.0, 25.0, 35.0];
 
-/// Rudder and change of heading of zigzags, deg: those of IMO, gentler and harder ones, and two with
-/// more rudder than heading.
+/// Rudder and change of heading of zigzags, deg: those of IMO, gentler and harder ones, and two
+/// with more rudder than heading.
 const ZIGZAGS_DEG: [(f64, f64); 6] =
     [(5.0, 5.0), (10.0, 10.0), (20.0, 10.0), (20.0, 20.0), (30.0, 30.0), (35.0, 20.0)];
 

@@ -1,4 +1,5 @@
-//! A candidate sailed by the model: the track that would be recorded, and how long everything takes.
+//! A candidate sailed by the model: the track that would be recorded, and how long everything
+//! takes.
 
 use sistership_dynamics::manoeuvre::{Manoeuvre, ManoeuvreSettings, sail_together};
 use sistership_dynamics::state::{StateVector, Trajectory, at, speed};

@@ -36,7 +36,8 @@ pub enum PlanError {
     },
     /// Nothing is uncertain.
     #[error(
-        "nothing is to be narrowed: no figure of the standard manoeuvres changes with the coefficients of {0}"
+        "nothing is to be narrowed: no figure of the standard manoeuvres changes with the \
+         coefficients of {0}"
     )]
     NothingOpen(String),
     /// The law has no rudder.

@@ -84,7 +84,8 @@ impl InputsRequest {
             .map_err(|error| PredictError::invalid("inputs", error.to_string()))?;
         let stopped =
             run.stopped.map(|stopped| json!({ "t_s": stopped.t_s, "reason": stopped.reason }));
-        let answer = json!({ "metrics": null, "trajectory": columns(&run.track), "stopped": stopped, "outside": run.outside });
+        let answer = json!({ "metrics": null, "trajectory": columns(&run.track),
+            "stopped": stopped, "outside": run.outside });
         Ok(with_share(answer, ship, &run.track))
     }
 

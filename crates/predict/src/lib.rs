@@ -106,7 +106,8 @@ mod tests {
             turn["trajectory"]["t_s"].as_array().unwrap().len(),
             turn["trajectory"]["psi_rad"].as_array().unwrap().len()
         );
-        let zigzag = json!({ "model": "mariner", "manoeuvre": { "zigzag": { "rudder_deg": 10, "switch_deg": 10 } } });
+        let zigzag = json!({ "model": "mariner",
+            "manoeuvre": { "zigzag": { "rudder_deg": 10, "switch_deg": 10 } } });
         assert!(ask("mariner", zigzag).unwrap()["metrics"]["first_overshoot_deg"].is_number());
         let all = ask("kvlcc2-7m", json!({ "model": "kvlcc2-7m", "manoeuvre": { "all": true } }))
             .unwrap();
@@ -155,7 +156,8 @@ mod tests {
     #[test]
     fn inputs_are_followed() {
         let t: Vec<f64> = (0..100).map(f64::from).collect();
-        let request = json!({ "model": "sr108", "inputs": { "t_s": t, "delta_rad": vec![0.1; 100], "start": { "u_m_s": 10.0 } } });
+        let request = json!({ "model": "sr108",
+            "inputs": { "t_s": t, "delta_rad": vec![0.1; 100], "start": { "u_m_s": 10.0 } } });
         let run = ask("sr108", request).unwrap();
         assert!(run["stopped"].is_null());
         assert!(run["trajectory"]["psi_rad"][99].as_f64().unwrap() > 0.1);
@@ -186,7 +188,10 @@ mod tests {
     #[test]
     fn impossible_requests_are_refused_by_field() {
         let field = |request: Value| ask("mariner", request).map_err(field).unwrap_err();
-        let inputs = |t: Value, delta: Value| json!({ "model": "m", "inputs": { "t_s": t, "delta_rad": delta, "start": { "u_m_s": 8.0 } } });
+        let inputs = |t: Value, delta: Value| {
+            json!({ "model": "m",
+                "inputs": { "t_s": t, "delta_rad": delta, "start": { "u_m_s": 8.0 } } })
+        };
         assert_eq!(field(json!({ "model": "m" })), "manoeuvre");
         assert_eq!(
             field(json!({ "model": "m", "manoeuvre": { "turn_deg": 35, "all": true } })),

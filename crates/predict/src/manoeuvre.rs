@@ -68,14 +68,16 @@ impl ManoeuvreRequest {
         match (self.turn_deg, &self.zigzag, self.all) {
             (Some(rudder), None, false) => {
                 let sailed = turn(ship, rudder.get(), &settings).map_err(diverged)?;
-                let answer = json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null,
+                let answer = json!({ "metrics": sailed.metrics,
+                    "trajectory": columns(&sailed.track), "stopped": null,
                     "outside": ship.leaves(&sailed.track) });
                 Ok(with_share(answer, ship, &sailed.track))
             }
             (None, Some(ZigzagRequest { rudder_deg, switch_deg }), false) => {
                 let sailed = zigzag(ship, rudder_deg.get(), switch_deg.get().abs(), &settings)
                     .map_err(diverged)?;
-                let answer = json!({ "metrics": sailed.metrics, "trajectory": columns(&sailed.track), "stopped": null,
+                let answer = json!({ "metrics": sailed.metrics,
+                    "trajectory": columns(&sailed.track), "stopped": null,
                     "outside": ship.leaves(&sailed.track) });
                 Ok(with_share(answer, ship, &sailed.track))
             }
@@ -144,7 +146,8 @@ fn diverged(stopped: Stopped) -> PredictError {
     PredictError::invalid(
         "manoeuvre",
         format!(
-            "the simulation left the physical range, {stopped}; the model does not hold for this manoeuvre"
+            "the simulation left the physical range, {stopped}; the model does not hold for this \
+             manoeuvre"
         ),
     )
 }

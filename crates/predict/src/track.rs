@@ -29,7 +29,8 @@ pub(super) fn bounded(field: &str, steps: f64, most: usize) -> Result<()> {
         false => Err(PredictError::invalid(
             field,
             format!(
-                "would take {steps:.0} steps, at most {most} are made: give a higher speed or a shorter time"
+                "would take {steps:.0} steps, at most {most} are made: give a higher speed or a \
+                 shorter time"
             ),
         )),
     }

@@ -1,10 +1,11 @@
 //! The reports of a refinement ([`render_refinement`]), of a diagnosis ([`render_diagnosis`]), of a
-//! learned branch ([`render_branch`]) and of a validation ([`render_validation`]): one HTML page that
-//! a stranger can read and print, and the same content as JSON.
+//! learned branch ([`render_branch`]) and of a validation ([`render_validation`]): one HTML page
+//! that a stranger can read and print, and the same content as JSON.
 //!
 //! Both are made of the same tables and plots. Nothing depends on the clock.
 
 mod branch;
+mod contributed_ship;
 mod diagnosis;
 mod error_row;
 mod metrics;
@@ -22,6 +23,7 @@ mod words;
 pub const STYLE: &str = include_str!("../templates/report_style.css");
 
 pub use branch::{BranchInput, render_branch};
+pub use contributed_ship::contributed_ship;
 pub use diagnosis::{DiagnosisInput, distinct, render_diagnosis};
 pub use refinement::{RefinementInput, render_refinement};
 pub use rendered::{Rendered, ReportError, VersionLabel};

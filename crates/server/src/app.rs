@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use sistership_model::{Law, Vessel, Zoo};
-use sistership_store::{Objects, Spool, Store};
+use sistership_store::{Objects, Store};
 use tokio::sync::{Notify, RwLock, Semaphore};
 
 use crate::config::{Config, Leases, Limits};
@@ -15,6 +15,7 @@ use sistership_http::answers::Answers;
 use sistership_http::api_key::FormToken;
 use sistership_http::drafts::Drafts;
 use sistership_http::payload::DocumentLimits;
+use sistership_http::spool::Spool;
 use sistership_http::upload::UploadPlace;
 use sistership_listen::{Stopping, Throttle};
 use sistership_openid::Provider;

@@ -22,8 +22,8 @@ const CLOSING: Duration = Duration::from_secs(5);
 /// What a server is told before it starts.
 #[derive(Clone)]
 pub struct Config {
-    /// Address and port; port 0 takes a free one. Another address than loopback needs an API key, or
-    /// accounts.
+    /// Address and port; port 0 takes a free one. Another address than loopback needs an API key,
+    /// or accounts.
     pub listen: SocketAddr,
     /// `sqlite://path/file.db` or `postgres://...`.
     pub database_url: String,
@@ -80,7 +80,8 @@ pub struct Limits {
     pub refinement_trials: usize,
     /// How long a server that is told to stop waits for what is under way.
     pub stop_time: Duration,
-    /// A YAML document, bytes: its tree is near a hundred times as large, see `sistership_http::payload`.
+    /// A YAML document, bytes: its tree is near a hundred times as large, see
+    /// `sistership_http::payload`.
     pub yaml_bytes: usize,
     /// Memory that requests take together, bytes.
     pub request_memory: u64,

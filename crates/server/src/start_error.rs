@@ -10,7 +10,8 @@ use sistership_pipeline::seed::SeedError;
 pub enum StartError {
     /// Anyone on the network could change what it holds.
     #[error(
-        "refusing to listen on {0} without an API key: set one (--api-key or SISTERSHIP_API_KEY), or listen on 127.0.0.1"
+        "refusing to listen on {0} without an API key: set one (--api-key or SISTERSHIP_API_KEY), \
+         or listen on 127.0.0.1"
     )]
     OpenWithoutKey(SocketAddr),
     /// A key that no header can carry.

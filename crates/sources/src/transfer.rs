@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crate::estimated::estimated;
 
 use sistership_dynamics::{PlantError, Ship};
-use sistership_model::formula::Expr;
+use sistership_formula::Expr;
 use sistership_model::law::Law;
 use sistership_model::model::{DERIVED, ModelKind};
 use sistership_model::particulars::{self, Particulars};

@@ -21,17 +21,20 @@ const CHAMPION: &str = "champion";
 statements! {
     // Moves within one model wait for each other, so that the history tells where an alias came
     // from. SQLite's writers wait for each other anyway.
-    LOCK = pair("SELECT name FROM models WHERE name = $1", "SELECT name FROM models WHERE name = $1 FOR UPDATE");
-    PUT = same("INSERT INTO aliases (model, alias, version_number, revision) VALUES ($1, $2, $3, 1) \
-        ON CONFLICT (model, alias) DO UPDATE SET version_number = excluded.version_number, revision = aliases.revision + 1 \
-        RETURNING model, alias, version_number, revision");
-    REMEMBER = same("INSERT INTO alias_moves (id, model, alias, from_number, to_number, revision, reason, actor, moved_us) \
-        VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)");
-    GET = same("SELECT model, alias, version_number, revision FROM aliases WHERE model = $1 AND alias = $2");
+    LOCK = pair("SELECT name FROM models WHERE name = $1", "SELECT name FROM models WHERE name = \
+        $1 FOR UPDATE");
+    PUT = same("INSERT INTO aliases (model, alias, version_number, revision) VALUES ($1, $2, $3, \
+        1) ON CONFLICT (model, alias) DO UPDATE SET version_number = excluded.version_number, \
+        revision = aliases.revision + 1 RETURNING model, alias, version_number, revision");
+    REMEMBER = same("INSERT INTO alias_moves (id, model, alias, from_number, to_number, revision, \
+        reason, actor, moved_us) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)");
+    GET = same("SELECT model, alias, version_number, revision FROM aliases WHERE model = $1 AND \
+        alias = $2");
     LIST = same("SELECT model, alias, version_number, revision FROM aliases \
         WHERE model = $1 AND alias > COALESCE($2, '') ORDER BY alias LIMIT $3");
-    HISTORY = same("SELECT id, model, alias, from_number, to_number, revision, reason, actor, moved_us FROM alias_moves \
-        WHERE model = $1 AND alias = $2 AND revision < COALESCE($3, 9223372036854775807) ORDER BY revision DESC LIMIT $4");
+    HISTORY = same("SELECT id, model, alias, from_number, to_number, revision, reason, actor, \
+        moved_us FROM alias_moves WHERE model = $1 AND alias = $2 AND revision < COALESCE($3, \
+        9223372036854775807) ORDER BY revision DESC LIMIT $4");
 }
 
 record! {
@@ -209,7 +212,9 @@ async fn remember(
     tx.note(store.now_us(), "alias.move", subject, before.as_ref().map(place), Some(now));
     let from = before.map(|alias| alias.version_number);
     let id = store.new_id();
-    let values = args![id: &id, model: &after.model, alias: &after.alias, from_number: from, to_number: after.version_number,
-        revision: after.revision, reason: &change.reason, actor: &change.actor, moved_us: store.now_us()];
+    let values = args![id: &id, model: &after.model, alias: &after.alias, from_number: from,
+        to_number: after.version_number,
+        revision: after.revision, reason: &change.reason, actor: &change.actor,
+        moved_us: store.now_us()];
     tx.execute(REMEMBER, values).await.map(drop)
 }

@@ -17,8 +17,8 @@ const ROWS: i64 = 1000;
 macro_rules! entries {
     ($which:literal) => {
         same(concat!(
-            "SELECT number, at_us, actor, origin, action, subject, state_before, state_after, previous_sha256, sha256 \
-             FROM audit WHERE ",
+            "SELECT number, at_us, actor, origin, action, subject, state_before, state_after, \
+             previous_sha256, sha256 FROM audit WHERE ",
             $which
         ))
     };
@@ -26,8 +26,10 @@ macro_rules! entries {
 
 statements! {
     LIST = entries!("number < COALESCE($1, 9223372036854775807) ORDER BY number DESC LIMIT $2");
-    LIST_ACTOR = entries!("actor = $3 AND number < COALESCE($1, 9223372036854775807) ORDER BY number DESC LIMIT $2");
-    LIST_SUBJECT = entries!("subject = $3 AND number < COALESCE($1, 9223372036854775807) ORDER BY number DESC LIMIT $2");
+    LIST_ACTOR = entries!("actor = $3 AND number < COALESCE($1, 9223372036854775807) ORDER BY \
+        number DESC LIMIT $2");
+    LIST_SUBJECT = entries!("subject = $3 AND number < COALESCE($1, 9223372036854775807) ORDER BY \
+        number DESC LIMIT $2");
     FOLLOWING = entries!("number > $1 AND number <= $2 ORDER BY number LIMIT $3");
     HEAD = same("SELECT number, sha256 FROM audit_head WHERE one = 1");
     BEYOND = entries!("number > $1 ORDER BY number LIMIT 1");

@@ -18,30 +18,36 @@ use crate::versions;
 use crate::work;
 
 statements! {
-    INSERT = same("INSERT INTO bulk_refinements (id, family, request, ships, created_us) VALUES ($1, $2, $3, $4, $5) \
-        RETURNING id, family, request, ships, created_us");
+    INSERT = same("INSERT INTO bulk_refinements (id, family, request, ships, created_us) VALUES \
+        ($1, $2, $3, $4, $5) RETURNING id, family, request, ships, created_us");
     GET = same("SELECT id, family, request, ships, created_us FROM bulk_refinements WHERE id = $1");
     LIST = same("SELECT id, family, request, ships, created_us FROM bulk_refinements \
         WHERE family = COALESCE($1, family) AND id < COALESCE($2, '~') ORDER BY id DESC LIMIT $3");
     CHUNK = same("INSERT INTO bulk_chunks (bulk, number, job) VALUES ($1, $2, $3)");
-    CHUNKS = same("SELECT j.state, COUNT(*) AS jobs, MIN(j.started_us) AS started_us, MAX(j.finished_us) AS finished_us \
-        FROM bulk_chunks c JOIN jobs j ON j.id = c.job WHERE c.bulk = $1 GROUP BY j.state ORDER BY j.state");
-    JOBS = same(job!("SELECT", "FROM jobs WHERE id IN (SELECT job FROM bulk_chunks WHERE bulk = $1) \
-        AND state = COALESCE($2, state) ORDER BY id"));
+    CHUNKS = same("SELECT j.state, COUNT(*) AS jobs, MIN(j.started_us) AS started_us, \
+        MAX(j.finished_us) AS finished_us FROM bulk_chunks c JOIN jobs j ON j.id = c.job WHERE \
+        c.bulk = $1 GROUP BY j.state ORDER BY j.state");
+    JOBS = same(job!("SELECT", "FROM jobs WHERE id IN (SELECT job FROM bulk_chunks WHERE bulk = \
+        $1) AND state = COALESCE($2, state) ORDER BY id"));
     CANCEL = same("UPDATE jobs SET cancel_requested = 1, \
         finished_us = CASE WHEN state = 'queued' THEN $2 ELSE finished_us END, \
         state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END \
-        WHERE id IN (SELECT job FROM bulk_chunks WHERE bulk = $1) AND state IN ('queued', 'running')");
-    RETRY = same("UPDATE jobs SET state = 'queued', attempt = 0, lost_workers = 0, progress = 0, message = '', error = NULL, worker = NULL, \
-        finished_us = NULL, cancel_requested = 0 \
-        WHERE id IN (SELECT job FROM bulk_chunks WHERE bulk = $1) AND state IN ('failed', 'cancelled')");
-    KEEP = same("INSERT INTO bulk_outcomes (bulk, ship, outcome, version_id, worst_change, document, created_us) \
-        VALUES ($1, $2, $3, $4, $5, $6, $7)");
-    PROMOTED = same("UPDATE bulk_outcomes SET outcome = 'champion' WHERE bulk = $1 AND ship = $2 AND outcome = 'candidate'");
-    OUTCOMES = same("SELECT o.bulk, o.ship, o.outcome, v.number AS version, o.worst_change, o.document, o.created_us \
-        FROM bulk_outcomes o LEFT JOIN versions v ON v.id = o.version_id \
-        WHERE o.bulk = $1 AND o.outcome = COALESCE($2, o.outcome) AND o.ship > COALESCE($3, '') ORDER BY o.ship LIMIT $4");
-    COUNTS = same("SELECT outcome, COUNT(*) AS ships FROM bulk_outcomes WHERE bulk = $1 GROUP BY outcome ORDER BY outcome");
+        WHERE id IN (SELECT job FROM bulk_chunks WHERE bulk = $1) AND state IN ('queued', \
+        'running')");
+    RETRY = same("UPDATE jobs SET state = 'queued', attempt = 0, lost_workers = 0, progress = 0, \
+        message = '', error = NULL, worker = NULL, finished_us = NULL, cancel_requested = 0 \
+        WHERE id IN (SELECT job FROM bulk_chunks WHERE bulk = $1) AND state IN ('failed', \
+        'cancelled')");
+    KEEP = same("INSERT INTO bulk_outcomes (bulk, ship, outcome, version_id, worst_change, \
+        document, created_us) VALUES ($1, $2, $3, $4, $5, $6, $7)");
+    PROMOTED = same("UPDATE bulk_outcomes SET outcome = 'champion' WHERE bulk = $1 AND ship = $2 \
+        AND outcome = 'candidate'");
+    OUTCOMES = same("SELECT o.bulk, o.ship, o.outcome, v.number AS version, o.worst_change, \
+        o.document, o.created_us FROM bulk_outcomes o LEFT JOIN versions v ON v.id = o.version_id \
+        WHERE o.bulk = $1 AND o.outcome = COALESCE($2, o.outcome) AND o.ship > COALESCE($3, '') \
+        ORDER BY o.ship LIMIT $4");
+    COUNTS = same("SELECT outcome, COUNT(*) AS ships FROM bulk_outcomes WHERE bulk = $1 GROUP BY \
+        outcome ORDER BY outcome");
 }
 
 record! {
@@ -145,7 +151,8 @@ impl Bulks<'_> {
         let id = self.0.new_id();
         let ships = i64::try_from(chunks.iter().map(Vec::len).sum::<usize>()).unwrap_or(i64::MAX);
         let mut tx = self.0.begin().await?;
-        let values = args![id: &id, family: family, request: request, ships: ships, created_us: self.0.now_us()];
+        let values = args![id: &id, family: family, request: request, ships: ships,
+            created_us: self.0.now_us()];
         let bulk: Bulk = tx.one(INSERT, values).await?;
         for (number, ships) in (1..).zip(chunks) {
             let new = NewJob { kind: kind.to_owned(), ship: None, request: chunk(&id, ships) };

@@ -13,8 +13,8 @@ statements! {
     // Takes the numbers, and the lock; the hash is still that of the entry before.
     TAKE = same("INSERT INTO audit_head (one, number, sha256) VALUES (1, $1, '') \
         ON CONFLICT (one) DO UPDATE SET number = audit_head.number + $1 RETURNING number, sha256");
-    ENTER = same("INSERT INTO audit (number, at_us, actor, origin, action, subject, state_before, state_after, \
-        previous_sha256, sha256) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10)");
+    ENTER = same("INSERT INTO audit (number, at_us, actor, origin, action, subject, state_before, \
+        state_after, previous_sha256, sha256) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10)");
     LAST = same("UPDATE audit_head SET sha256 = $1 WHERE one = 1");
 }
 
@@ -37,9 +37,11 @@ pub(crate) async fn enter(tx: &mut DatabaseTransaction, entries: Vec<Entry>) -> 
     let AuditHead { number, mut sha256 } = tx.one(TAKE, args![count: count]).await?;
     for (number, entry) in (number - count + 1..).zip(entries) {
         let entry = entry.numbered(number, sha256);
-        let values = args![number: number, at_us: entry.at_us, actor: &entry.actor, origin: &entry.origin,
+        let values = args![number: number, at_us: entry.at_us, actor: &entry.actor,
+            origin: &entry.origin,
             action: &entry.action, subject: &entry.subject, state_before: &entry.state_before,
-            state_after: &entry.state_after, previous_sha256: &entry.previous_sha256, sha256: &entry.sha256];
+            state_after: &entry.state_after, previous_sha256: &entry.previous_sha256,
+            sha256: &entry.sha256];
         tx.execute(ENTER, values).await?;
         sha256 = entry.sha256;
     }

@@ -89,7 +89,8 @@ impl Store {
     }
 }
 
-/// Tells others of a version that lacks something, and of a champion that no longer holds as it did.
+/// Tells others of a version that lacks something, and of a champion that no longer holds as it
+/// did.
 async fn tell(
     store: &Store,
     tx: &mut Transaction,

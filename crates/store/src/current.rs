@@ -19,9 +19,10 @@ macro_rules! current {
     ($which:literal) => {
         same(concat!(
             "SELECT a.model, a.version_number AS number, v.id, \
-            (SELECT r.id FROM reports r WHERE r.version_id = v.id ORDER BY r.id DESC LIMIT 1) AS report FROM aliases a \
-            JOIN ships s ON s.name = a.model JOIN versions v ON v.model = a.model AND v.number = a.version_number \
-            WHERE a.alias = $1 AND s.deleted_us IS NULL AND a.model ",
+            (SELECT r.id FROM reports r WHERE r.version_id = v.id ORDER BY r.id DESC LIMIT 1) AS \
+            report FROM aliases a JOIN ships s ON s.name = a.model JOIN versions v ON v.model = \
+            a.model AND v.number = a.version_number WHERE a.alias = $1 AND s.deleted_us IS NULL \
+            AND a.model ",
             $which
         ))
     };
@@ -29,7 +30,8 @@ macro_rules! current {
 
 statements! {
     CURRENT = current!("= $2");
-    CURRENT_OF = current!("IN ($2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17)");
+    CURRENT_OF = current!("IN ($2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, \
+        $17)");
 }
 
 /// Somebody who asks as long as questions wait.

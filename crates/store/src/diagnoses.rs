@@ -12,13 +12,14 @@ use crate::store::Store;
 use crate::version;
 
 statements! {
-    INSERT = same("INSERT INTO diagnoses (id, version_id, made_id, report_id, verdict, effects, trials, created_us) \
-        VALUES ($1, $2, $3, $4, $5, $6, $7, $8) \
+    INSERT = same("INSERT INTO diagnoses (id, version_id, made_id, report_id, verdict, effects, \
+        trials, created_us) VALUES ($1, $2, $3, $4, $5, $6, $7, $8) \
         RETURNING id, version_id, made_id, report_id, verdict, effects, trials, created_us");
-    ALL = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, created_us FROM diagnoses \
-        WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
-    BY_VERSION = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, created_us FROM diagnoses \
-        WHERE (version_id = $1 OR made_id = $1) AND id < COALESCE($2, '~') ORDER BY id DESC LIMIT $3");
+    ALL = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, created_us \
+        FROM diagnoses WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
+    BY_VERSION = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, \
+        created_us FROM diagnoses WHERE (version_id = $1 OR made_id = $1) AND id < COALESCE($2, \
+        '~') ORDER BY id DESC LIMIT $3");
 }
 
 record! {
@@ -97,7 +98,8 @@ pub(crate) async fn insert(
     checks::json("trials", &new.trials)?;
     version::check_id(tx, "version_id", &new.version_id).await?;
     let id = store.new_id();
-    let values = args![id: &id, version_id: &new.version_id, made_id: made_id, report_id: report_id, verdict: &new.verdict,
+    let values = args![id: &id, version_id: &new.version_id, made_id: made_id,
+        report_id: report_id, verdict: &new.verdict,
         effects: &new.effects, trials: &new.trials, created_us: store.now_us()];
     tx.one(INSERT, values).await
 }

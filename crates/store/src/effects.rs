@@ -9,9 +9,11 @@ use crate::statements::{same, statements};
 use crate::store::Store;
 
 statements! {
-    INSERT = same("INSERT INTO effect_libraries (sha256, document, created_us) VALUES ($1, $2, $3) ON CONFLICT (sha256) DO NOTHING");
+    INSERT = same("INSERT INTO effect_libraries (sha256, document, created_us) VALUES ($1, $2, $3) \
+        ON CONFLICT (sha256) DO NOTHING");
     GET = same("SELECT sha256, document, created_us FROM effect_libraries WHERE sha256 = $1");
-    LIST = same("SELECT sha256, document, created_us FROM effect_libraries WHERE sha256 > COALESCE($1, '') ORDER BY sha256 LIMIT $2");
+    LIST = same("SELECT sha256, document, created_us FROM effect_libraries WHERE sha256 > \
+        COALESCE($1, '') ORDER BY sha256 LIMIT $2");
 }
 
 record! {

@@ -14,35 +14,40 @@ use crate::store::Store;
 use crate::version;
 
 statements! {
-    INSERT = same("INSERT INTO families (name, title, foundation, created_us) VALUES ($1, $2, $3, $4) ON CONFLICT (name) DO NOTHING \
-        RETURNING name, title, foundation, created_us");
+    INSERT = same("INSERT INTO families (name, title, foundation, created_us) VALUES ($1, $2, $3, \
+        $4) ON CONFLICT (name) DO NOTHING RETURNING name, title, foundation, created_us");
     GET = same("SELECT name, title, foundation, created_us FROM families WHERE name = $1");
-    LIST = same("SELECT name, title, foundation, created_us FROM families WHERE name > COALESCE($1, '') ORDER BY name LIMIT $2");
-    FOUND = same("UPDATE families SET foundation = $2 WHERE name = $1 RETURNING name, title, foundation, created_us");
-    OF_SHIP = same("SELECT f.name, f.title, f.foundation, f.created_us FROM family_members m JOIN families f ON f.name = m.family \
-        WHERE m.ship = $1 AND m.family > COALESCE($2, '') ORDER BY m.family LIMIT $3");
-    ADD = same("INSERT INTO family_members (family, ship, added_us) VALUES ($1, $2, $3) ON CONFLICT (family, ship) DO NOTHING");
+    LIST = same("SELECT name, title, foundation, created_us FROM families WHERE name > \
+        COALESCE($1, '') ORDER BY name LIMIT $2");
+    FOUND = same("UPDATE families SET foundation = $2 WHERE name = $1 RETURNING name, title, \
+        foundation, created_us");
+    OF_SHIP = same("SELECT f.name, f.title, f.foundation, f.created_us FROM family_members m JOIN \
+        families f ON f.name = m.family WHERE m.ship = $1 AND m.family > COALESCE($2, '') ORDER BY \
+        m.family LIMIT $3");
+    ADD = same("INSERT INTO family_members (family, ship, added_us) VALUES ($1, $2, $3) ON \
+        CONFLICT (family, ship) DO NOTHING");
     REMOVE = same("DELETE FROM family_members WHERE family = $1 AND ship = $2");
     SHIP = same("SELECT COUNT(*) AS rows FROM ships WHERE name = $1 AND deleted_us IS NULL");
     COUNT = same("SELECT COUNT(*) AS rows FROM family_members m JOIN ships s ON s.name = m.ship \
         WHERE m.family = $1 AND s.deleted_us IS NULL");
-    MEMBERS = same("SELECT m.ship, m.added_us, v.number AS champion, v.method FROM family_members m \
-        JOIN ships s ON s.name = m.ship AND s.deleted_us IS NULL \
+    MEMBERS = same("SELECT m.ship, m.added_us, v.number AS champion, v.method FROM family_members \
+        m JOIN ships s ON s.name = m.ship AND s.deleted_us IS NULL \
         LEFT JOIN aliases a ON a.model = m.ship AND a.alias = 'champion' \
         LEFT JOIN versions v ON v.model = a.model AND v.number = a.version_number \
         WHERE m.family = $1 AND m.ship > COALESCE($2, '') ORDER BY m.ship LIMIT $3");
-    DRIFTED = same("SELECT m.ship, m.added_us, v.number AS champion, v.method FROM family_members m \
-        JOIN ships s ON s.name = m.ship AND s.deleted_us IS NULL \
+    DRIFTED = same("SELECT m.ship, m.added_us, v.number AS champion, v.method FROM family_members \
+        m JOIN ships s ON s.name = m.ship AND s.deleted_us IS NULL \
         JOIN aliases a ON a.model = m.ship AND a.alias = 'champion' \
         JOIN versions v ON v.model = a.model AND v.number = a.version_number \
-        WHERE m.family = $1 AND (SELECT d.verdict FROM diagnoses d WHERE d.version_id = v.id OR d.made_id = v.id \
-        ORDER BY d.id DESC LIMIT 1) NOT IN ('complete') ORDER BY m.ship LIMIT $2");
+        WHERE m.family = $1 AND (SELECT d.verdict FROM diagnoses d WHERE d.version_id = v.id OR \
+        d.made_id = v.id ORDER BY d.id DESC LIMIT 1) NOT IN ('complete') ORDER BY m.ship LIMIT $2");
     TEACH = same("INSERT INTO family_priors (family, revision, document, sha256, created_us) \
         SELECT $1, COALESCE(MAX(revision), 0) + 1, $2, $3, $4 FROM family_priors WHERE family = $1 \
         RETURNING family, revision, document, sha256, created_us");
-    PRIOR = same("SELECT family, revision, document, sha256, created_us FROM family_priors WHERE family = $1 AND revision = $2");
-    LAST_PRIOR = same("SELECT family, revision, document, sha256, created_us FROM family_priors WHERE family = $1 \
-        ORDER BY revision DESC LIMIT 1");
+    PRIOR = same("SELECT family, revision, document, sha256, created_us FROM family_priors WHERE \
+        family = $1 AND revision = $2");
+    LAST_PRIOR = same("SELECT family, revision, document, sha256, created_us FROM family_priors \
+        WHERE family = $1 ORDER BY revision DESC LIMIT 1");
 }
 
 record! {

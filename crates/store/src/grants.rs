@@ -11,10 +11,11 @@ use crate::statements::{same, statements};
 use crate::store::Store;
 
 statements! {
-    OF = same("SELECT scope_kind, scope_name, role FROM grants WHERE principal = $1 ORDER BY scope_kind, scope_name");
+    OF = same("SELECT scope_kind, scope_name, role FROM grants WHERE principal = $1 ORDER BY \
+        scope_kind, scope_name");
     CLEAR = same("DELETE FROM grants WHERE principal = $1");
-    PUT = same("INSERT INTO grants (principal, scope_kind, scope_name, role) VALUES ($1, $2, $3, $4) \
-        ON CONFLICT (principal, scope_kind, scope_name) DO UPDATE SET role = excluded.role");
+    PUT = same("INSERT INTO grants (principal, scope_kind, scope_name, role) VALUES ($1, $2, $3, \
+        $4) ON CONFLICT (principal, scope_kind, scope_name) DO UPDATE SET role = excluded.role");
     SHIP = same("SELECT COUNT(*) AS rows FROM ships WHERE name = $1");
     FAMILY = same("SELECT COUNT(*) AS rows FROM families WHERE name = $1");
     HOLDERS = same("SELECT (SELECT COUNT(*) FROM users WHERE name = SUBSTR(CAST($1 AS TEXT), 6) \

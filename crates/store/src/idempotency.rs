@@ -19,16 +19,18 @@ pub const PROLONG_EVERY: Duration = Duration::from_secs(15);
 pub const KEEP_KEYS: Duration = Duration::from_secs(7 * 24 * 3600);
 
 statements! {
-    INSERT = same("INSERT INTO idempotency_keys (scope, key, request_sha256, created_us) VALUES ($1, $2, $3, $4) \
-        ON CONFLICT (scope, key) DO NOTHING");
-    GET = same("SELECT request_sha256, status, response, created_us FROM idempotency_keys WHERE scope = $1 AND key = $2");
+    INSERT = same("INSERT INTO idempotency_keys (scope, key, request_sha256, created_us) VALUES \
+        ($1, $2, $3, $4) ON CONFLICT (scope, key) DO NOTHING");
+    GET = same("SELECT request_sha256, status, response, created_us FROM idempotency_keys WHERE \
+        scope = $1 AND key = $2");
     TAKE_OVER = same("UPDATE idempotency_keys SET created_us = $3, alive_us = NULL \
         WHERE scope = $1 AND key = $2 AND status IS NULL AND COALESCE(alive_us, created_us) <= $4");
     PROLONG = same("UPDATE idempotency_keys SET alive_us = $4 \
         WHERE scope = $1 AND key = $2 AND created_us = $3 AND status IS NULL");
     FINISH = same("UPDATE idempotency_keys SET status = $4, response = $5 \
         WHERE scope = $1 AND key = $2 AND created_us = $3 AND status IS NULL");
-    ABANDON = same("DELETE FROM idempotency_keys WHERE scope = $1 AND key = $2 AND created_us = $3 AND status IS NULL");
+    ABANDON = same("DELETE FROM idempotency_keys WHERE scope = $1 AND key = $2 AND created_us = $3 \
+        AND status IS NULL");
     PURGE = same("DELETE FROM idempotency_keys WHERE created_us < $1");
 }
 

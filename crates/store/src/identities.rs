@@ -15,12 +15,16 @@ use crate::store::Store;
 use crate::users::{self, User};
 
 statements! {
-    GET = same("SELECT issuer, subject, user_name, created_us FROM identities WHERE issuer = $1 AND subject = $2");
-    OF = same("SELECT issuer, subject, user_name, created_us FROM identities WHERE user_name = $1 ORDER BY issuer, subject");
-    PUT = same("INSERT INTO identities (issuer, subject, user_name, created_us) VALUES ($1, $2, $3, $4) \
-        ON CONFLICT (issuer, subject) DO NOTHING RETURNING issuer, subject, user_name, created_us");
+    GET = same("SELECT issuer, subject, user_name, created_us FROM identities WHERE issuer = $1 \
+        AND subject = $2");
+    OF = same("SELECT issuer, subject, user_name, created_us FROM identities WHERE user_name = $1 \
+        ORDER BY issuer, subject");
+    PUT = same("INSERT INTO identities (issuer, subject, user_name, created_us) VALUES ($1, $2, \
+        $3, $4) ON CONFLICT (issuer, subject) DO NOTHING RETURNING issuer, subject, user_name, \
+        created_us");
     CLEAR = same("DELETE FROM identities WHERE user_name = $1");
-    SPEND = same("INSERT INTO spent_sign_ins (sha256, expires_us) VALUES ($1, $2) ON CONFLICT (sha256) DO NOTHING");
+    SPEND = same("INSERT INTO spent_sign_ins (sha256, expires_us) VALUES ($1, $2) ON CONFLICT \
+        (sha256) DO NOTHING");
     PURGE = same("DELETE FROM spent_sign_ins WHERE expires_us < $1");
 }
 

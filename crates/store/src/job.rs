@@ -11,8 +11,9 @@ macro_rules! job {
     ($before:literal, $after:literal) => {
         concat!(
             $before,
-            " id, kind, ship, request, state, progress, message, result, error, attempt, fence, lease_until_us, worker, \
-             created_us, started_us, finished_us, cancel_requested, lost_workers, author ",
+            " id, kind, ship, request, state, progress, message, result, error, attempt, fence, \
+             lease_until_us, worker, created_us, started_us, finished_us, cancel_requested, \
+             lost_workers, author ",
             $after
         )
     };

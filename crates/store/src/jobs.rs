@@ -13,21 +13,24 @@ use crate::statements::{Statement, same, statements};
 use crate::store::Store;
 
 statements! {
-    INSERT = same(job!("INSERT INTO jobs (id, kind, ship, request, state, progress, message, attempt, fence, created_us, \
-        cancel_requested, author) VALUES ($1, $2, $3, $4, 'queued', 0, '', 0, 0, $5, 0, $6) RETURNING", ""));
+    INSERT = same(job!("INSERT INTO jobs (id, kind, ship, request, state, progress, message, \
+        attempt, fence, created_us, cancel_requested, author) VALUES ($1, $2, $3, $4, 'queued', 0, \
+        '', 0, 0, $5, 0, $6) RETURNING", ""));
     GET = same(job!("SELECT", "FROM jobs WHERE id = $1"));
     LIST = same(job!("SELECT", "FROM jobs WHERE id < COALESCE($1, '~') ORDER BY id DESC LIMIT $2"));
     LIST_SHIP = same(job!("SELECT", "FROM jobs WHERE ship = $3 AND id < COALESCE($1, '~') \
         AND (CAST($4 AS TEXT) IS NULL OR state = $4) ORDER BY id DESC LIMIT $2"));
-    LIST_STATE = same(job!("SELECT", "FROM jobs WHERE state = $3 AND id < COALESCE($1, '~') ORDER BY id DESC LIMIT $2"));
+    LIST_STATE = same(job!("SELECT", "FROM jobs WHERE state = $3 AND id < COALESCE($1, '~') ORDER \
+        BY id DESC LIMIT $2"));
     COUNTS = same("SELECT kind, state, COUNT(*) AS jobs, MIN(created_us) AS oldest_us FROM jobs \
         GROUP BY kind, state ORDER BY kind, state");
     CANCEL = same(job!("UPDATE jobs SET cancel_requested = 1, \
         finished_us = CASE WHEN state = 'queued' THEN $2 ELSE finished_us END, \
         state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END \
         WHERE id = $1 AND state IN ('queued', 'running') RETURNING", ""));
-    RETRY = same(job!("UPDATE jobs SET state = 'queued', attempt = 0, lost_workers = 0, progress = 0, message = '', error = NULL, worker = NULL, \
-        finished_us = NULL, cancel_requested = 0 WHERE id = $1 AND state IN ('failed', 'cancelled') RETURNING", ""));
+    RETRY = same(job!("UPDATE jobs SET state = 'queued', attempt = 0, lost_workers = 0, progress = \
+        0, message = '', error = NULL, worker = NULL, finished_us = NULL, cancel_requested = 0 \
+        WHERE id = $1 AND state IN ('failed', 'cancelled') RETURNING", ""));
 }
 
 /// The jobs of a store.
@@ -137,7 +140,8 @@ pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewJob) ->
     checks::name("kind", &new.kind)?;
     checks::json("request", &new.request)?;
     let (id, now, author) = (store.new_id(), store.now_us(), Actor::current().name);
-    let values = args![id: &id, kind: &new.kind, ship: &new.ship, request: &new.request, created_us: now, author: &author];
+    let values = args![id: &id, kind: &new.kind, ship: &new.ship, request: &new.request,
+        created_us: now, author: &author];
     let job = tx.one(INSERT, values).await?;
     let after = json!({ "kind": new.kind, "ship": new.ship });
     tx.note(now, "job.create", subject(&id), None, Some(after));

@@ -23,13 +23,17 @@ macro_rules! key {
 }
 
 statements! {
-    INSERT = key!("INSERT INTO service_keys (prefix, title, user_name, sha256, created_us, expires_us) \
-        VALUES ($1, $2, $3, $4, $5, $6) RETURNING", "");
+    INSERT = key!("INSERT INTO service_keys (prefix, title, user_name, sha256, created_us, \
+        expires_us) VALUES ($1, $2, $3, $4, $5, $6) RETURNING", "");
     GET = key!("SELECT", "FROM service_keys WHERE prefix = $1");
-    LIST = key!("SELECT", "FROM service_keys WHERE prefix > COALESCE($1, '') ORDER BY prefix LIMIT $2");
-    REVOKE = key!("UPDATE service_keys SET revoked_us = $2 WHERE prefix = $1 AND revoked_us IS NULL RETURNING", "");
-    USED = same("UPDATE service_keys SET last_used_us = $2 WHERE prefix = $1 AND COALESCE(last_used_us, 0) < $2");
-    USER = same("SELECT name, title, password_hash, created_us, disabled_us FROM users WHERE name = $1 AND disabled_us IS NULL");
+    LIST = key!("SELECT", "FROM service_keys WHERE prefix > COALESCE($1, '') ORDER BY prefix LIMIT \
+        $2");
+    REVOKE = key!("UPDATE service_keys SET revoked_us = $2 WHERE prefix = $1 AND revoked_us IS \
+        NULL RETURNING", "");
+    USED = same("UPDATE service_keys SET last_used_us = $2 WHERE prefix = $1 AND \
+        COALESCE(last_used_us, 0) < $2");
+    USER = same("SELECT name, title, password_hash, created_us, disabled_us FROM users WHERE name \
+        = $1 AND disabled_us IS NULL");
 }
 
 record! {
@@ -108,7 +112,8 @@ impl ServiceKeys<'_> {
         let key = tx.one(INSERT, values).await?;
         let principal = KeyRow::principal(prefix);
         grants::put(&mut tx, &principal, roles).await?;
-        let after = json!({ "title": title, "user": user, "expires_us": expires_us, "roles": grants::words(roles) });
+        let after = json!({ "title": title, "user": user, "expires_us": expires_us,
+            "roles": grants::words(roles) });
         tx.note(self.0.now_us(), "key.create", principal, None, Some(after));
         tx.commit().await?;
         Ok(key)

@@ -12,9 +12,11 @@ use crate::statements::{same, statements};
 use crate::store::Store;
 
 statements! {
-    INSERT = same("INSERT INTO laws (name, document, sha256, created_us) VALUES ($1, $2, $3, $4) ON CONFLICT (name) DO NOTHING");
+    INSERT = same("INSERT INTO laws (name, document, sha256, created_us) VALUES ($1, $2, $3, $4) \
+        ON CONFLICT (name) DO NOTHING");
     GET = same("SELECT name, document, sha256, created_us FROM laws WHERE name = $1");
-    LIST = same("SELECT name, document, sha256, created_us FROM laws WHERE name > COALESCE($1, '') ORDER BY name LIMIT $2");
+    LIST = same("SELECT name, document, sha256, created_us FROM laws WHERE name > COALESCE($1, '') \
+        ORDER BY name LIMIT $2");
 }
 
 record! {

@@ -13,7 +13,8 @@ use crate::version;
 statements! {
     INSERT = same("INSERT INTO reports (id, version_id, ship, kind, document, html, created_us) \
         VALUES ($1, $2, $3, $4, $5, $6, $7) RETURNING id, version_id, ship, kind, created_us");
-    GET = same("SELECT id, version_id, ship, kind, document, html, created_us FROM reports WHERE id = $1");
+    GET = same("SELECT id, version_id, ship, kind, document, html, created_us FROM reports WHERE \
+        id = $1");
     BY_VERSION = same("SELECT id, version_id, ship, kind, created_us FROM reports \
         WHERE version_id = $1 AND id < COALESCE($2, '~') ORDER BY id DESC LIMIT $3");
 }
@@ -107,7 +108,8 @@ pub(crate) async fn insert(
         version::check_id(tx, "version_id", version).await?;
     }
     let id = store.new_id();
-    let values = args![id: &id, version_id: &new.version_id, ship: &new.ship, kind: &new.kind, document: &new.document,
+    let values = args![id: &id, version_id: &new.version_id, ship: &new.ship, kind: &new.kind,
+        document: &new.document,
         html: &new.html, created_us: store.now_us()];
     tx.one(INSERT, values).await
 }

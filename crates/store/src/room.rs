@@ -7,8 +7,8 @@ use crate::statements::{same, statements};
 use crate::store::Store;
 
 statements! {
-    TRY = same("INSERT INTO idempotency_keys (scope, key, request_sha256, created_us) VALUES ('', 'room', '', 0) \
-        ON CONFLICT (scope, key) DO UPDATE SET request_sha256 = ''");
+    TRY = same("INSERT INTO idempotency_keys (scope, key, request_sha256, created_us) VALUES ('', \
+        'room', '', 0) ON CONFLICT (scope, key) DO UPDATE SET request_sha256 = ''");
     FORGET = same("DELETE FROM idempotency_keys WHERE scope = '' AND key = 'room'");
 }
 

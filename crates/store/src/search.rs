@@ -32,9 +32,9 @@ macro_rules! search {
             " FROM ",
             $from,
             " AND s.deleted_us IS NULL AND (CAST($1 AS TEXT) IS NULL OR s.category = $1) \
-            AND (CAST($2 AS TEXT) IS NULL OR EXISTS (SELECT 1 FROM ship_tags h WHERE h.ship = s.name AND h.tag = $2)) \
-            AND (CAST($3 AS TEXT) IS NULL OR EXISTS (SELECT 1 FROM ship_facts a \
-                WHERE a.ship = s.name AND a.fact = $3 AND a.value BETWEEN $4 AND $5)) \
+            AND (CAST($2 AS TEXT) IS NULL OR EXISTS (SELECT 1 FROM ship_tags h WHERE h.ship = \
+            s.name AND h.tag = $2)) AND (CAST($3 AS TEXT) IS NULL OR EXISTS (SELECT 1 FROM \
+                ship_facts a WHERE a.ship = s.name AND a.fact = $3 AND a.value BETWEEN $4 AND $5)) \
             AND (CAST($6 AS TEXT) IS NULL OR EXISTS (SELECT 1 FROM ship_facts b \
                 WHERE b.ship = s.name AND b.fact = $6 AND b.value BETWEEN $7 AND $8)) \
             AND (CAST($9 AS TEXT) IS NULL OR EXISTS (SELECT 1 FROM ship_facts c \
@@ -53,8 +53,8 @@ macro_rules! of_few {
         search!(
             concat!("WITH few AS MATERIALIZED (", $few, ") "),
             "f.value AS value",
-            "few CROSS JOIN ship_facts f CROSS JOIN ships s WHERE f.ship = few.ship AND f.fact = $3 AND s.name = few.ship \
-            AND (f.value, f.ship) > (CAST($17 AS DOUBLE PRECISION), $15)",
+            "few CROSS JOIN ship_facts f CROSS JOIN ships s WHERE f.ship = few.ship AND f.fact = \
+            $3 AND s.name = few.ship AND (f.value, f.ship) > (CAST($17 AS DOUBLE PRECISION), $15)",
             "ORDER BY f.value, f.ship LIMIT $16"
         )
     };
@@ -62,24 +62,28 @@ macro_rules! of_few {
 
 statements! {
     BY_NAME = search!("CAST(NULL AS DOUBLE PRECISION) AS value", "ships s WHERE s.name > $15", "ORDER BY s.name LIMIT $16");
-    BY_CATEGORY = search!("CAST(NULL AS DOUBLE PRECISION) AS value", "ships s WHERE s.category = $1 AND s.name > $15",
+    BY_CATEGORY = search!("CAST(NULL AS DOUBLE PRECISION) AS value", "ships s WHERE s.category = \
+        $1 AND s.name > $15",
         "ORDER BY s.name LIMIT $16");
     BY_TAG = search!("CAST(NULL AS DOUBLE PRECISION) AS value",
         "ship_tags t JOIN ships s ON s.name = t.ship WHERE t.tag = $2 AND t.ship > $15", "ORDER BY t.ship LIMIT $16");
-    BY_VALUE = search!("f.value AS value", "ship_facts f JOIN ships s ON s.name = f.ship WHERE f.fact = $3 AND f.value <= $5 \
-        AND (f.value, f.ship) > (CAST($17 AS DOUBLE PRECISION), $15)", "ORDER BY f.value, f.ship LIMIT $16");
+    BY_VALUE = search!("f.value AS value", "ship_facts f JOIN ships s ON s.name = f.ship WHERE \
+        f.fact = $3 AND f.value <= $5 AND (f.value, f.ship) > (CAST($17 AS DOUBLE PRECISION), $15)", "ORDER BY f.value, f.ship LIMIT $16");
     OF_TAG = of_few!("SELECT t.ship FROM ship_tags t WHERE t.tag = $2");
     OF_CATEGORY = of_few!("SELECT c.name AS ship FROM ships c WHERE c.category = $1");
-    OF_RANGE = of_few!("SELECT r.ship FROM ship_facts r WHERE r.fact = $18 AND r.value BETWEEN $19 AND $20");
+    OF_RANGE = of_few!("SELECT r.ship FROM ship_facts r WHERE r.fact = $18 AND r.value BETWEEN $19 \
+        AND $20");
     // Whether there are more than some.
-    MORE_OF_TAG = same("SELECT CAST(1 AS BIGINT) AS rows FROM ship_tags WHERE tag = $1 LIMIT 1 OFFSET $2");
-    MORE_OF_CATEGORY = same("SELECT CAST(1 AS BIGINT) AS rows FROM ships WHERE category = $1 LIMIT 1 OFFSET $2");
-    MORE_OF_RANGE = same("SELECT CAST(1 AS BIGINT) AS rows FROM ship_facts WHERE fact = $1 AND value BETWEEN $2 AND $3 \
-        LIMIT 1 OFFSET $4");
+    MORE_OF_TAG = same("SELECT CAST(1 AS BIGINT) AS rows FROM ship_tags WHERE tag = $1 LIMIT 1 \
+        OFFSET $2");
+    MORE_OF_CATEGORY = same("SELECT CAST(1 AS BIGINT) AS rows FROM ships WHERE category = $1 LIMIT \
+        1 OFFSET $2");
+    MORE_OF_RANGE = same("SELECT CAST(1 AS BIGINT) AS rows FROM ship_facts WHERE fact = $1 AND \
+        value BETWEEN $2 AND $3 LIMIT 1 OFFSET $4");
     VECTORS = search!("CAST(NULL AS DOUBLE PRECISION) AS value, v.vectors",
         "ship_vectors v JOIN ships s ON s.name = v.ship WHERE v.category = $1", "");
-    STATE = same("SELECT CAST(COUNT(*) AS BIGINT) AS ships, CAST(COALESCE(SUM(stamp), 0) AS BIGINT) AS stamps \
-        FROM ship_vectors WHERE category = $1");
+    STATE = same("SELECT CAST(COUNT(*) AS BIGINT) AS ships, CAST(COALESCE(SUM(stamp), 0) AS \
+        BIGINT) AS stamps FROM ship_vectors WHERE category = $1");
     // A limit keeps PostgreSQL from joining all ships.
     NAMED = pair(
         "SELECT s.name, s.title, s.category, s.revision, s.created_us, s.updated_us, \

@@ -17,15 +17,15 @@ use crate::store::Store;
 const ALIAS: &str = "champion";
 
 statements! {
-    MARK = same("INSERT INTO search_queue (ship, mark) SELECT name, CAST($2 AS TEXT) FROM ships WHERE name = $1 \
-        ON CONFLICT (ship) DO UPDATE SET mark = excluded.mark");
+    MARK = same("INSERT INTO search_queue (ship, mark) SELECT name, CAST($2 AS TEXT) FROM ships \
+        WHERE name = $1 ON CONFLICT (ship) DO UPDATE SET mark = excluded.mark");
     WAITING = same("SELECT ship, mark FROM search_queue WHERE ship > $1 ORDER BY ship LIMIT $2");
     FACTS = same("SELECT fact, value FROM ship_facts WHERE ship = $1 ORDER BY fact");
     TAKE = same("DELETE FROM search_queue WHERE ship = $1 AND mark = $2");
     FORGET = same("DELETE FROM ship_facts WHERE ship = $1");
     FACT = same("INSERT INTO ship_facts (ship, fact, value) VALUES ($1, $2, $3)");
-    VECTORS = same("INSERT INTO ship_vectors (ship, category, vectors, stamp) VALUES ($1, $2, $3, $4) \
-        ON CONFLICT (ship) DO UPDATE \
+    VECTORS = same("INSERT INTO ship_vectors (ship, category, vectors, stamp) VALUES ($1, $2, $3, \
+        $4) ON CONFLICT (ship) DO UPDATE \
         SET category = excluded.category, vectors = excluded.vectors, stamp = excluded.stamp");
 }
 

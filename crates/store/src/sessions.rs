@@ -10,10 +10,11 @@ use crate::store::Store;
 use crate::users::User;
 
 statements! {
-    INSERT = same("INSERT INTO sessions (sha256, user_name, created_us, expires_us) VALUES ($1, $2, $3, $4) \
-        RETURNING sha256, user_name, created_us, expires_us");
+    INSERT = same("INSERT INTO sessions (sha256, user_name, created_us, expires_us) VALUES ($1, \
+        $2, $3, $4) RETURNING sha256, user_name, created_us, expires_us");
     GET = same("SELECT sha256, user_name, created_us, expires_us FROM sessions WHERE sha256 = $1");
-    END = same("DELETE FROM sessions WHERE sha256 = $1 RETURNING sha256, user_name, created_us, expires_us");
+    END = same("DELETE FROM sessions WHERE sha256 = $1 RETURNING sha256, user_name, created_us, \
+        expires_us");
     PURGE = same("DELETE FROM sessions WHERE expires_us < $1");
 }
 

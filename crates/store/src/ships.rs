@@ -14,26 +14,31 @@ use crate::statements::{same, statements};
 use crate::store::Store;
 
 statements! {
-    INSERT = same("INSERT INTO ships (name, title, category, document, revision, created_us, updated_us) \
-        VALUES ($1, $2, $3, $4, 1, $5, $5) ON CONFLICT (name) DO NOTHING \
+    INSERT = same("INSERT INTO ships (name, title, category, document, revision, created_us, \
+        updated_us) VALUES ($1, $2, $3, $4, 1, $5, $5) ON CONFLICT (name) DO NOTHING \
         RETURNING name, title, category, document, revision, created_us, updated_us, deleted_us");
-    UPDATE = same("UPDATE ships SET title = $3, category = $4, document = $5, revision = revision + 1, updated_us = $6 \
-        WHERE name = $1 AND revision = $2 AND deleted_us IS NULL \
+    UPDATE = same("UPDATE ships SET title = $3, category = $4, document = $5, revision = revision \
+        + 1, updated_us = $6 WHERE name = $1 AND revision = $2 AND deleted_us IS NULL \
         RETURNING name, title, category, document, revision, created_us, updated_us, deleted_us");
     DELETE = same("UPDATE ships SET deleted_us = $3 \
         WHERE name = $1 AND revision = COALESCE($2, revision) AND deleted_us IS NULL \
         RETURNING name, title, category, document, revision, created_us, updated_us, deleted_us");
     UNDELETE = same("UPDATE ships SET deleted_us = NULL WHERE name = $1 \
         RETURNING name, title, category, document, revision, created_us, updated_us, deleted_us");
-    REMEMBER = same("INSERT INTO ship_revisions (ship, revision, title, category, document, created_us) \
-        SELECT name, revision, title, category, document, updated_us FROM ships WHERE name = $1");
-    GET = same("SELECT name, title, category, document, revision, created_us, updated_us, deleted_us FROM ships WHERE name = $1");
-    LIST = same("SELECT name, title, category, document, revision, created_us, updated_us, deleted_us FROM ships \
-        WHERE name > COALESCE($1, '') AND deleted_us IS NULL ORDER BY name LIMIT $2");
-    LIST_CATEGORY = same("SELECT name, title, category, document, revision, created_us, updated_us, deleted_us FROM ships \
-        WHERE name > COALESCE($1, '') AND category = $3 AND deleted_us IS NULL ORDER BY name LIMIT $2");
-    REVISIONS = same("SELECT ship, revision, title, category, document, created_us FROM ship_revisions \
-        WHERE ship = $1 AND revision < COALESCE($2, 9223372036854775807) ORDER BY revision DESC LIMIT $3");
+    REMEMBER = same("INSERT INTO ship_revisions (ship, revision, title, category, document, \
+        created_us) SELECT name, revision, title, category, document, updated_us FROM ships WHERE \
+        name = $1");
+    GET = same("SELECT name, title, category, document, revision, created_us, updated_us, \
+        deleted_us FROM ships WHERE name = $1");
+    LIST = same("SELECT name, title, category, document, revision, created_us, updated_us, \
+        deleted_us FROM ships WHERE name > COALESCE($1, '') AND deleted_us IS NULL ORDER BY name \
+        LIMIT $2");
+    LIST_CATEGORY = same("SELECT name, title, category, document, revision, created_us, \
+        updated_us, deleted_us FROM ships WHERE name > COALESCE($1, '') AND category = $3 AND \
+        deleted_us IS NULL ORDER BY name LIMIT $2");
+    REVISIONS = same("SELECT ship, revision, title, category, document, created_us FROM \
+        ship_revisions WHERE ship = $1 AND revision < COALESCE($2, 9223372036854775807) ORDER BY \
+        revision DESC LIMIT $3");
 }
 
 record! {
@@ -113,7 +118,8 @@ impl Ships<'_> {
     pub async fn create(&self, new: &NewShip) -> Result<Ship> {
         new.check()?;
         let NewShip { name, title, category, document } = new;
-        let values = args![name: name, title: title, category: category, document: document, created_us: self.0.now_us()];
+        let values = args![name: name, title: title, category: category, document: document,
+            created_us: self.0.now_us()];
         let mut tx = self.0.begin().await?;
         let Some(ship) = tx.optional(INSERT, values).await? else {
             return Err(taken(name, find(&mut tx, name).await));
@@ -136,7 +142,8 @@ impl Ships<'_> {
         new.check()?;
         let NewShip { name, title, category, document } = new;
         let mut tx = self.0.begin().await?;
-        let values = args![name: name, revision: revision, title: title, category: category, document: document,
+        let values = args![name: name, revision: revision, title: title, category: category,
+            document: document,
             updated_us: self.0.now_us()];
         let before: Option<Ship> = tx.optional(GET, args![name: name]).await?;
         let Some(ship) = tx.optional(UPDATE, values).await? else {

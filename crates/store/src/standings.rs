@@ -33,16 +33,16 @@ statements! {
         AND v.model = a.model AND v.number = a.version_number"
     );
     NEWEST = pair(
-        "SELECT n.value AS concerns, d.id, d.version_id, d.made_id, d.report_id, d.verdict, d.effects, \
-        d.trials, d.created_us \
+        "SELECT n.value AS concerns, d.id, d.version_id, d.made_id, d.report_id, d.verdict, \
+        d.effects, d.trials, d.created_us \
         FROM json_each($1) n CROSS JOIN diagnoses d WHERE d.id = (SELECT MAX(x.id) FROM \
         (SELECT MAX(s.id) AS id FROM diagnoses s WHERE s.version_id = n.value \
         UNION ALL SELECT MAX(m.id) AS id FROM diagnoses m WHERE m.made_id = n.value) x)",
-        "SELECT n.value AS concerns, d.id, d.version_id, d.made_id, d.report_id, d.verdict, d.effects, \
-        d.trials, d.created_us \
-        FROM json_array_elements_text(CAST($1 AS JSON)) AS n(value) CROSS JOIN LATERAL (SELECT * FROM \
-        ((SELECT s.* FROM diagnoses s WHERE s.version_id = n.value ORDER BY s.id DESC LIMIT 1) \
-        UNION ALL \
+        "SELECT n.value AS concerns, d.id, d.version_id, d.made_id, d.report_id, d.verdict, \
+        d.effects, d.trials, d.created_us \
+        FROM json_array_elements_text(CAST($1 AS JSON)) AS n(value) CROSS JOIN LATERAL (SELECT * \
+        FROM ((SELECT s.* FROM diagnoses s WHERE s.version_id = n.value ORDER BY s.id DESC LIMIT \
+        1) UNION ALL \
         (SELECT m.* FROM diagnoses m WHERE m.made_id = n.value ORDER BY m.id DESC LIMIT 1)) x \
         ORDER BY x.id DESC LIMIT 1) d"
     );
@@ -52,8 +52,9 @@ statements! {
         "SELECT f.ship, f.value FROM json_each($1) n CROSS JOIN ship_facts f \
         WHERE f.ship = n.value AND f.fact >= $2 AND f.fact < $3 ORDER BY f.ship, f.fact",
         "SELECT f.ship, f.value FROM json_array_elements_text(CAST($1 AS JSON)) AS n(value) \
-        CROSS JOIN LATERAL (SELECT o.ship, o.fact, o.value FROM ship_facts o WHERE o.ship = n.value \
-        AND o.fact >= $2 AND o.fact < $3 ORDER BY o.fact LIMIT 1000) f ORDER BY f.ship, f.fact"
+        CROSS JOIN LATERAL (SELECT o.ship, o.fact, o.value FROM ship_facts o WHERE o.ship = \
+        n.value AND o.fact >= $2 AND o.fact < $3 ORDER BY o.fact LIMIT 1000) f ORDER BY f.ship, \
+        f.fact"
     );
     FAMILIES = pair(
         "SELECT m.ship, m.family FROM json_each($1) n CROSS JOIN family_members m \

@@ -10,8 +10,8 @@ use crate::statements::{same, statements};
 use crate::store::Store;
 
 statements! {
-    PUT = same("INSERT INTO trial_statistics (key, document, sha256, created_us) VALUES ($1, $2, $3, $4) \
-        ON CONFLICT (key) DO NOTHING");
+    PUT = same("INSERT INTO trial_statistics (key, document, sha256, created_us) VALUES ($1, $2, \
+        $3, $4) ON CONFLICT (key) DO NOTHING");
     GET = same("SELECT key, document, sha256 FROM trial_statistics WHERE key = $1");
 }
 

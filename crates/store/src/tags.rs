@@ -17,7 +17,8 @@ statements! {
     // Taggers of one ship wait for each other, so that none counts past another. SQLite's writers
     // do so anyway.
     LOCK = pair("SELECT 1 WHERE $1 = ''", "SELECT 1 FROM ships WHERE name = $1 FOR NO KEY UPDATE");
-    PUT = same("INSERT INTO ship_tags (ship, tag) VALUES ($1, $2) ON CONFLICT (ship, tag) DO NOTHING");
+    PUT = same("INSERT INTO ship_tags (ship, tag) VALUES ($1, $2) ON CONFLICT (ship, tag) DO \
+        NOTHING");
     REMOVE = same("DELETE FROM ship_tags WHERE ship = $1 AND tag = $2");
     OF_SHIP = same("SELECT tag FROM ship_tags WHERE ship = $1 ORDER BY tag");
     COUNT = same("SELECT COUNT(*) AS rows FROM ship_tags WHERE ship = $1");

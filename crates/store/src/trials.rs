@@ -19,25 +19,31 @@ use crate::statements::{same, statements};
 use crate::store::Store;
 
 statements! {
-    INSERT = same("INSERT INTO trials (id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, duration_s, \
-        warnings, object_key, created_us) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12) \
-        ON CONFLICT (ship, sha256) DO NOTHING");
-    REVIVE = same("UPDATE trials SET deleted_us = NULL WHERE ship = $1 AND sha256 = $2 RETURNING id, ship, sha256, name, \
-        manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, object_key, created_us, deleted_us");
-    GET = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, \
-        object_key, created_us, deleted_us FROM trials WHERE id = $1 AND deleted_us IS NULL");
-    FIND = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, \
-        object_key, created_us, deleted_us FROM trials WHERE ship = $1 AND sha256 = $2 AND deleted_us IS NULL");
-    LIST = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, \
-        object_key, created_us, deleted_us FROM trials \
+    INSERT = same("INSERT INTO trials (id, ship, sha256, name, manifest, conventions, manoeuvre, \
+        sample_rows, duration_s, warnings, object_key, created_us) VALUES ($1, $2, $3, $4, $5, $6, \
+        $7, $8, $9, $10, $11, $12) ON CONFLICT (ship, sha256) DO NOTHING");
+    REVIVE = same("UPDATE trials SET deleted_us = NULL WHERE ship = $1 AND sha256 = $2 RETURNING \
+        id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, duration_s, \
+        warnings, object_key, created_us, deleted_us");
+    GET = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, \
+        duration_s, warnings, object_key, created_us, deleted_us FROM trials WHERE id = $1 AND \
+        deleted_us IS NULL");
+    FIND = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, \
+        duration_s, warnings, object_key, created_us, deleted_us FROM trials WHERE ship = $1 AND \
+        sha256 = $2 AND deleted_us IS NULL");
+    LIST = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, \
+        duration_s, warnings, object_key, created_us, deleted_us FROM trials \
         WHERE ship = $1 AND id > COALESCE($2, '') AND deleted_us IS NULL ORDER BY id LIMIT $3");
     WAS = same("SELECT COUNT(*) AS rows FROM trials WHERE id = $1");
-    ALL = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, \
-        object_key, created_us, deleted_us FROM trials WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
-    DELETE = same("UPDATE trials SET deleted_us = $2 WHERE id = $1 AND deleted_us IS NULL RETURNING id, ship, sha256, name, \
-        manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, object_key, created_us, deleted_us");
-    UNDELETE = same("UPDATE trials SET deleted_us = NULL WHERE id = $1 RETURNING id, ship, sha256, name, \
-        manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, object_key, created_us, deleted_us");
+    ALL = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, \
+        duration_s, warnings, object_key, created_us, deleted_us FROM trials WHERE id > \
+        COALESCE($1, '') ORDER BY id LIMIT $2");
+    DELETE = same("UPDATE trials SET deleted_us = $2 WHERE id = $1 AND deleted_us IS NULL \
+        RETURNING id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, \
+        duration_s, warnings, object_key, created_us, deleted_us");
+    UNDELETE = same("UPDATE trials SET deleted_us = NULL WHERE id = $1 RETURNING id, ship, sha256, \
+        name, manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, object_key, \
+        created_us, deleted_us");
 }
 
 record! {
@@ -191,9 +197,11 @@ impl Trials<'_> {
     async fn insert_one(&self, tx: &mut Transaction, new: &NewTrial) -> Result<Inserted<Trial>> {
         let id = self.0.new_id();
         ships::find(tx, &new.ship).await?;
-        let values = args![id: &id, ship: &new.ship, sha256: &new.sha256, name: &new.name, manifest: &new.manifest,
+        let values = args![id: &id, ship: &new.ship, sha256: &new.sha256, name: &new.name,
+            manifest: &new.manifest,
             conventions: &new.conventions, manoeuvre: &new.manoeuvre, sample_rows: new.sample_rows,
-            duration_s: new.duration_s, warnings: &new.warnings, object_key: &new.object_key, created_us: self.0.now_us()];
+            duration_s: new.duration_s, warnings: &new.warnings, object_key: &new.object_key,
+            created_us: self.0.now_us()];
         let inserted = tx.execute(INSERT, values).await?;
         let row: Trial = tx.one(REVIVE, args![ship: &new.ship, sha256: &new.sha256]).await?;
         if inserted == 1 {

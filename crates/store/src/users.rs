@@ -14,9 +14,11 @@ use crate::statements::{same, statements};
 use crate::store::Store;
 
 statements! {
-    INSERT = same("INSERT INTO users (name, title, password_hash, created_us) VALUES ($1, $2, $3, $4) \
-        ON CONFLICT (name) DO NOTHING RETURNING name, title, password_hash, created_us, disabled_us");
-    GET = same("SELECT name, title, password_hash, created_us, disabled_us FROM users WHERE name = $1");
+    INSERT = same("INSERT INTO users (name, title, password_hash, created_us) VALUES ($1, $2, $3, \
+        $4) ON CONFLICT (name) DO NOTHING RETURNING name, title, password_hash, created_us, \
+        disabled_us");
+    GET = same("SELECT name, title, password_hash, created_us, disabled_us FROM users WHERE name = \
+        $1");
     LIST = same("SELECT name, title, password_hash, created_us, disabled_us FROM users \
         WHERE name > COALESCE($1, '') ORDER BY name LIMIT $2");
     PASSWORD = same("UPDATE users SET password_hash = $2 WHERE name = $1 \

@@ -8,9 +8,10 @@ use crate::record::record;
 use crate::statements::{same, statements};
 
 statements! {
-    HEAD = same("SELECT id, model, number, parent, law, method, sha256, created_us, author FROM versions \
-        WHERE model = $1 AND number = $2");
-    HEAD_BY_ID = same("SELECT id, model, number, parent, law, method, sha256, created_us, author FROM versions WHERE id = $1");
+    HEAD = same("SELECT id, model, number, parent, law, method, sha256, created_us, author FROM \
+        versions WHERE model = $1 AND number = $2");
+    HEAD_BY_ID = same("SELECT id, model, number, parent, law, method, sha256, created_us, author \
+        FROM versions WHERE id = $1");
 }
 
 record! {

@@ -19,23 +19,26 @@ statements! {
     // The row of the model stays locked until the commit, and an undone transaction gives its
     // number back: no gaps.
     NUMBER = same("INSERT INTO models (name, next_number) VALUES ($1, 2) \
-        ON CONFLICT (name) DO UPDATE SET next_number = models.next_number + 1 RETURNING next_number - 1 AS number");
-    INSERT = same("INSERT INTO versions (id, model, number, parent, law, method, document, sha256, created_us, \
-        weights_key, author) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11) \
+        ON CONFLICT (name) DO UPDATE SET next_number = models.next_number + 1 RETURNING \
+        next_number - 1 AS number");
+    INSERT = same("INSERT INTO versions (id, model, number, parent, law, method, document, sha256, \
+        created_us, weights_key, author) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11) \
         RETURNING id, model, number, parent, law, method, sha256, created_us, author");
-    GET = same("SELECT id, model, number, parent, law, method, document, sha256, created_us, author FROM versions \
-        WHERE model = $1 AND number = $2");
-    HEAD = same("SELECT id, model, number, parent, law, method, sha256, created_us, author FROM versions \
-        WHERE model = $1 AND number = $2");
-    BY_ID = same("SELECT id, model, number, parent, law, method, document, sha256, created_us, author FROM versions WHERE id = $1");
-    LATEST = same("SELECT id, model, number, parent, law, method, document, sha256, created_us, author FROM versions \
-        WHERE model = $1 ORDER BY number DESC LIMIT 1");
-    LIST = same("SELECT id, model, number, parent, law, method, sha256, created_us, author FROM versions \
-        WHERE model = $1 AND number < COALESCE($2, 9223372036854775807) ORDER BY number DESC LIMIT $3");
-    ALL = same("SELECT id, model, number, parent, law, method, document, sha256, created_us, author FROM versions \
-        WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
-    CHILDREN = same("SELECT id, model, number, parent, law, method, sha256, created_us, author FROM versions \
-        WHERE parent = $1 AND id > COALESCE($2, '') ORDER BY id LIMIT $3");
+    GET = same("SELECT id, model, number, parent, law, method, document, sha256, created_us, \
+        author FROM versions WHERE model = $1 AND number = $2");
+    HEAD = same("SELECT id, model, number, parent, law, method, sha256, created_us, author FROM \
+        versions WHERE model = $1 AND number = $2");
+    BY_ID = same("SELECT id, model, number, parent, law, method, document, sha256, created_us, \
+        author FROM versions WHERE id = $1");
+    LATEST = same("SELECT id, model, number, parent, law, method, document, sha256, created_us, \
+        author FROM versions WHERE model = $1 ORDER BY number DESC LIMIT 1");
+    LIST = same("SELECT id, model, number, parent, law, method, sha256, created_us, author FROM \
+        versions WHERE model = $1 AND number < COALESCE($2, 9223372036854775807) ORDER BY number \
+        DESC LIMIT $3");
+    ALL = same("SELECT id, model, number, parent, law, method, document, sha256, created_us, \
+        author FROM versions WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
+    CHILDREN = same("SELECT id, model, number, parent, law, method, sha256, created_us, author \
+        FROM versions WHERE parent = $1 AND id > COALESCE($2, '') ORDER BY id LIMIT $3");
     WEIGHTS = same("SELECT DISTINCT weights_key FROM versions WHERE weights_key > COALESCE($1, '') \
         ORDER BY weights_key LIMIT $2");
 }
@@ -164,8 +167,10 @@ pub(crate) async fn insert(
     let NextNumber { number } = tx.one(NUMBER, args![model: &new.model]).await?;
     let (id, sha256) = (store.new_id(), sha256_hex(new.document.as_bytes()));
     let author = Actor::current().name;
-    let values = args![id: &id, model: &new.model, number: number, parent: &new.parent, law: &new.law, method: &new.method,
-        document: &new.document, sha256: &sha256, created_us: store.now_us(), weights_key: &new.weights, author: &author];
+    let values = args![id: &id, model: &new.model, number: number, parent: &new.parent,
+        law: &new.law, method: &new.method,
+        document: &new.document, sha256: &sha256, created_us: store.now_us(),
+        weights_key: &new.weights, author: &author];
     let version: VersionHead = tx.one(INSERT, values).await?;
     let after = json!({ "sha256": sha256, "method": new.method, "law": new.law });
     tx.note(

@@ -47,34 +47,38 @@ macro_rules! delivery {
 }
 
 statements! {
-    INSERT = webhook!("INSERT INTO webhooks (id, title, url, secret, ship, drift_above, created_us) \
-        VALUES ($1, $2, $3, $4, $5, $6, $7) RETURNING", "");
+    INSERT = webhook!("INSERT INTO webhooks (id, title, url, secret, ship, drift_above, \
+        created_us) VALUES ($1, $2, $3, $4, $5, $6, $7) RETURNING", "");
     GET = webhook!("SELECT", "FROM webhooks WHERE id = $1");
     LIST = webhook!("SELECT", "FROM webhooks WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
     END = webhook!("UPDATE webhooks SET ended_us = $2 WHERE id = $1 AND ended_us IS NULL RETURNING", "");
     SHIP = same("SELECT name AS word FROM ships WHERE name = $1");
     LISTEN = same("INSERT INTO webhook_events (event, webhook) VALUES ($1, $2)");
     EVENTS_OF = same("SELECT event AS word FROM webhook_events WHERE webhook = $1 ORDER BY event");
-    LISTENING = same("SELECT w.id AS word FROM webhook_events e JOIN webhooks w ON w.id = e.webhook \
-        WHERE e.event = $1 AND w.ended_us IS NULL AND (w.ship IS NULL OR w.ship = $2) \
+    LISTENING = same("SELECT w.id AS word FROM webhook_events e JOIN webhooks w ON w.id = \
+        e.webhook WHERE e.event = $1 AND w.ended_us IS NULL AND (w.ship IS NULL OR w.ship = $2) \
         AND w.drift_above < $3 ORDER BY w.id");
     PUT = same("INSERT INTO deliveries (id, webhook, event, body, created_us, attempts, due_us) \
         VALUES ($1, $2, $3, $4, $5, 0, $5)");
     DUE = pair(
         delivery!("SELECT", "FROM deliveries WHERE due_us <= $1 ORDER BY due_us LIMIT 1"),
-        delivery!("SELECT", "FROM deliveries WHERE due_us <= $1 ORDER BY due_us LIMIT 1 FOR UPDATE SKIP LOCKED"),
+        delivery!("SELECT", "FROM deliveries WHERE due_us <= $1 ORDER BY due_us LIMIT 1 FOR UPDATE \
+            SKIP LOCKED"),
     );
     // Whether it is worth to begin to write.
     DUE_NOW = same(delivery!("SELECT", "FROM deliveries WHERE due_us <= $1 ORDER BY due_us LIMIT 1"));
-    TAKE = same(delivery!("UPDATE deliveries SET attempts = attempts + 1, due_us = $2 WHERE id = $1 RETURNING", ""));
-    ARRIVED = same("UPDATE deliveries SET due_us = NULL, delivered_us = $2, answer = $3 WHERE id = $1");
-    FAILED = same("UPDATE deliveries SET due_us = $2, answer = $3 WHERE id = $1 AND delivered_us IS NULL");
+    TAKE = same(delivery!("UPDATE deliveries SET attempts = attempts + 1, due_us = $2 WHERE id = \
+        $1 RETURNING", ""));
+    ARRIVED = same("UPDATE deliveries SET due_us = NULL, delivered_us = $2, answer = $3 WHERE id = \
+        $1");
+    FAILED = same("UPDATE deliveries SET due_us = $2, answer = $3 WHERE id = $1 AND delivered_us \
+        IS NULL");
     GIVE_UP = same("UPDATE deliveries SET due_us = NULL, answer = 'the webhook has ended' \
         WHERE webhook = $1 AND due_us IS NOT NULL");
     AGAIN = same(delivery!("UPDATE deliveries SET due_us = $3, attempts = 0 \
         WHERE id = $1 AND webhook = $2 AND delivered_us IS NULL RETURNING", ""));
-    DELIVERIES = same(delivery!("SELECT", "FROM deliveries WHERE webhook = $1 AND id < COALESCE($2, '~') \
-        ORDER BY id DESC LIMIT $3"));
+    DELIVERIES = same(delivery!("SELECT", "FROM deliveries WHERE webhook = $1 AND id < \
+        COALESCE($2, '~') ORDER BY id DESC LIMIT $3"));
 }
 
 record! {

@@ -18,24 +18,25 @@ pub const MAX_LOST_WORKERS: i64 = 2;
 
 statements! {
     NEXT = pair(
-        job!("SELECT", "FROM jobs WHERE state IN ('queued', 'running') AND (state = 'queued' OR lease_until_us < $1) \
-            ORDER BY id LIMIT 1"),
-        job!("SELECT", "FROM jobs WHERE state IN ('queued', 'running') AND (state = 'queued' OR lease_until_us < $1) \
-            ORDER BY id LIMIT 1 FOR UPDATE SKIP LOCKED"),
+        job!("SELECT", "FROM jobs WHERE state IN ('queued', 'running') AND (state = 'queued' OR \
+            lease_until_us < $1) ORDER BY id LIMIT 1"),
+        job!("SELECT", "FROM jobs WHERE state IN ('queued', 'running') AND (state = 'queued' OR \
+            lease_until_us < $1) ORDER BY id LIMIT 1 FOR UPDATE SKIP LOCKED"),
     );
-    START = same(job!("UPDATE jobs SET state = 'running', attempt = attempt + 1, fence = fence + 1, worker = $2, \
-        lease_until_us = $3, started_us = COALESCE(started_us, $4), lost_workers = $5 WHERE id = $1 RETURNING", ""));
+    START = same(job!("UPDATE jobs SET state = 'running', attempt = attempt + 1, fence = fence + \
+        1, worker = $2, lease_until_us = $3, started_us = COALESCE(started_us, $4), lost_workers = \
+        $5 WHERE id = $1 RETURNING", ""));
     COUNT_LOST = same("UPDATE jobs SET lost_workers = $2 WHERE id = $1");
     // Whoever took the job over counted a worker as lost that was not.
     LIVES = same("UPDATE jobs SET lost_workers = lost_workers - 1 \
         WHERE id = $1 AND fence > $2 AND lost_workers > 0 AND state IN ('queued', 'running')");
     HEARTBEAT = same(job!("UPDATE jobs SET progress = $3, message = $4, lease_until_us = $5 \
         WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
-    END = same(job!("UPDATE jobs SET state = $3, result = $4, error = $5, finished_us = $6, lease_until_us = NULL, \
-        progress = CASE WHEN CAST($4 AS TEXT) IS NULL THEN progress ELSE 1.0 END \
-        WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
-    RELEASE = same(job!("UPDATE jobs SET state = 'queued', attempt = attempt - 1, lease_until_us = NULL, worker = NULL \
-        WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
+    END = same(job!("UPDATE jobs SET state = $3, result = $4, error = $5, finished_us = $6, \
+        lease_until_us = NULL, progress = CASE WHEN CAST($4 AS TEXT) IS NULL THEN progress ELSE \
+        1.0 END WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
+    RELEASE = same(job!("UPDATE jobs SET state = 'queued', attempt = attempt - 1, lease_until_us = \
+        NULL, worker = NULL WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
 }
 
 /// What there is to do for a worker.
@@ -76,7 +77,8 @@ impl Jobs<'_> {
             if lost > 0 && !alone {
                 break Claimed::Alone;
             }
-            let values = args![id: &job.id, worker: worker, lease_until_us: until(now, lease), started_us: now, lost_workers: lost];
+            let values = args![id: &job.id, worker: worker, lease_until_us: until(now, lease),
+                started_us: now, lost_workers: lost];
             break Claimed::Job(Box::new(tx.one(START, values).await?));
         };
         tx.commit().await?;
@@ -101,7 +103,8 @@ impl Jobs<'_> {
         lease: Duration,
     ) -> Result<bool> {
         let until = until(self.0.now_us(), lease);
-        let values = args![id: id, fence: fence, progress: progress, message: message, lease_until_us: until];
+        let values = args![id: id, fence: fence, progress: progress, message: message,
+            lease_until_us: until];
         self.held(HEARTBEAT, id, fence, values).await.map(|job| job.cancel_requested)
     }
 
@@ -174,7 +177,8 @@ async fn end(
     };
     result.map_or(Ok(()), |result| checks::json("result", result))?;
     let state = state.as_str();
-    let values = args![id: id, fence: fence, state: state, result: result, error: error, finished_us: now_us];
+    let values = args![id: id, fence: fence, state: state, result: result, error: error,
+        finished_us: now_us];
     held(tx, END, id, fence, values).await
 }
 
@@ -182,8 +186,8 @@ async fn end(
 async fn bury(tx: &mut Transaction, job: &Job, lost: i64, now_us: i64) -> Result<bool> {
     let worker = job.worker.as_deref().unwrap_or("?");
     let message = format!(
-        "the job ended its process {}; it is set aside and not begun again by itself (the last worker was `{worker}`). Send \
-         POST /v1/jobs/{}/retry once the cause is mended",
+        "the job ended its process {}; it is set aside and not begun again by itself (the last \
+         worker was `{worker}`). Send POST /v1/jobs/{}/retry once the cause is mended",
         if lost == MAX_LOST_WORKERS { "twice".to_owned() } else { format!("{lost} times") },
         job.id
     );

@@ -75,7 +75,8 @@ fn why(
     };
     match kind {
         Kind::Zigzag => format!(
-            "rudder {low:.0} to {high:+.0} deg, to the other side {} times, yaw rate to {yaw:.2} deg/s",
+            "rudder {low:.0} to {high:+.0} deg, to the other side {} times, yaw rate to {yaw:.2} \
+             deg/s",
             excitation.rudder_reversals
         ),
         Kind::PullOut => {
@@ -87,12 +88,14 @@ fn why(
             let last = cells.last().map_or(before.revolutions, |cell| cell.revolutions);
             let range = cells.iter().map(|cell| cell.revolutions).fold(last, f64::min);
             format!(
-                "revolutions {:.2} to {:.2} 1/s (least {range:.2}), speed over {lost:.0} % of its usual",
+                "revolutions {:.2} to {:.2} 1/s (least {range:.2}), speed over {lost:.0} % of its \
+                 usual",
                 before.revolutions, last
             )
         }
         Kind::Turn | Kind::CourseChange | Kind::RudderMovement => format!(
-            "{rudder}, heading over {turned:.0} deg, yaw rate to {yaw:.2} deg/s, speed over {lost:.0} %"
+            "{rudder}, heading over {turned:.0} deg, yaw rate to {yaw:.2} deg/s, speed over \
+             {lost:.0} %"
         ),
     }
 }

@@ -122,20 +122,20 @@ impl Counter {
             let what = match self.decimal_commas {
                 0 => "quote a cell that holds the separator, or name every column in the header",
                 _ => {
-                    "this is what numbers with a decimal comma look like (`7,01` is read as 7 and 01): \
-                     write decimals with a point, as 7.01"
+                    "this is what numbers with a decimal comma look like (`7,01` is read as 7 and \
+                     01): write decimals with a point, as 7.01"
                 }
             };
             self.error(&self.many, what, findings);
         }
         if self.closed.count > 0 && !self.is_closed_throughout() {
-            let what = "the last is empty: close the header with a separator too, or take it from these rows; \
-                        if it comes of a decimal comma, write decimals with a point";
+            let what = "the last is empty: close the header with a separator too, or take it from \
+                        these rows; if it comes of a decimal comma, write decimals with a point";
             self.error(&self.closed, what, findings);
         }
         if self.few.count > 0 && !drops {
-            let what = "complete the rows (an empty cell still has its separator), or set `missing: drop` in the \
-                        manifest's conventions to leave them out";
+            let what = "complete the rows (an empty cell still has its separator), or set \
+                        `missing: drop` in the manifest's conventions to leave them out";
             self.error(&self.few, what, findings);
         }
     }

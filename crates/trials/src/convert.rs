@@ -115,7 +115,8 @@ fn degree_wrap(values: &[f64], recording: &Recording, findings: &mut Findings) {
     if let Some(k) = jump {
         let (header, unit) = (recording.header(Channel::Psi), recording.unit(Channel::Psi));
         let message = format!(
-            "the heading jumps from {:.1} to {:.1} as a compass in degrees does, but its unit is `{unit}`; declare `deg`",
+            "the heading jumps from {:.1} to {:.1} as a compass in degrees does, but its unit is \
+             `{unit}`; declare `deg`",
             values[k - 1],
             values[k]
         );
@@ -138,7 +139,8 @@ fn tell_frame(recording: &Recording, findings: &mut Findings) {
     let moving =
         [Channel::U, Channel::V].into_iter().find(|&channel| recording.channel(channel).is_some());
     if let (VelocityFrame::Water, Some(channel)) = (recording.trial.velocity, moving) {
-        let message = "u and v are speeds through the water, as declared: a current shows in the positions only";
+        let message = "u and v are speeds through the water, as declared: a current shows in the \
+            positions only";
         findings.warning(None, Some(recording.header(channel)), message);
     }
 }

@@ -20,8 +20,8 @@ pub struct Limits {
 /// What is said of a file with more rows than are held.
 pub(crate) fn too_many(most: usize) -> String {
     format!(
-        "the file has more than the {most} rows that are read; split it, or let `sistership import` \
-         find the stretches of it that matter"
+        "the file has more than the {most} rows that are read; split it, or let `sistership \
+         import` find the stretches of it that matter"
     )
 }
 

@@ -173,7 +173,8 @@ mod tests {
     use super::*;
 
     const MANIFEST: &str = "kind: trials\nship: a\ncolumns: { u: { column: log, unit: kn } }\n\
-                            trials: [{ file: a.csv, manoeuvre: zigzag 10/10 }, { file: lost.csv }]\n";
+                            trials: [{ file: a.csv, manoeuvre: zigzag 10/10 }, { file: lost.csv \
+                            }]\n";
 
     #[test]
     fn a_manifest_gives_each_file_its_own_outcome() {

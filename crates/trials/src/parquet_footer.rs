@@ -26,8 +26,8 @@ pub(crate) enum FileRefusal {
     #[error("{found} bytes about the file at its end are more than the {most} that are read")]
     Footer { found: u64, most: usize },
     #[error(
-        "{found} rows are more than the {most} that are read; split the file, or let `sistership import` \
-             find the stretches of it that matter"
+        "{found} rows are more than the {most} that are read; split the file, or let `sistership \
+             import` find the stretches of it that matter"
     )]
     Rows { found: usize, most: usize },
     #[error("{found} columns are more than the {most} that are read")]

@@ -84,7 +84,8 @@ impl<'a> Builder<'a> {
         self.faulty += 1;
         if self.missing == Missing::Refuse && self.faulty <= LISTED {
             let message = format!(
-                "{fault}; fill it in, or set `missing: drop` in the manifest's conventions to leave such rows out"
+                "{fault}; fill it in, or set `missing: drop` in the manifest's conventions to \
+                 leave such rows out"
             );
             self.findings.error(Some(row), Some(&column), message);
         }

@@ -117,8 +117,8 @@ pub(crate) fn smooth(recording: &mut Recording, smoothing: Smoothing, findings: 
     }
     if let Some(k) = uneven(recording) {
         let message = format!(
-            "the step here differs from the median of {:.4} s by more than a tenth, and smoothing needs even steps; \
-             resample the file or leave `smoothing` out",
+            "the step here differs from the median of {:.4} s by more than a tenth, and smoothing \
+             needs even steps; resample the file or leave `smoothing` out",
             recording.interval_s
         );
         return findings.error(Some(recording.row(k)), Some(&recording.time), message);

@@ -60,9 +60,9 @@ fn a_stretch_is_what_the_whole_file_has_there() {
 fn dates_and_times_of_day_name_a_stretch() {
     let clock = |k: u32| format!("{:02}:{:02}", (k / 60) % 60, k % 60);
     let dated = |k: u32| format!("2024-05-01T23:{}Z", clock(k + 3000).replace("66:", "06:"));
-    let entries = "  - { file: log.csv, from: '2024-05-01T23:51:00Z', to: '2024-05-02T01:52:00+02:00' }\n  \
-                   - { file: log.csv, from: '23:53:00', to: '23:54:00' }\n  \
-                   - { file: log.csv, from: 300, to: 320 }\n";
+    let entries = "  - { file: log.csv, from: '2024-05-01T23:51:00Z', to: \
+                   '2024-05-02T01:52:00+02:00' }\n  - { file: log.csv, from: '23:53:00', to: \
+                   '23:54:00' }\n  - { file: log.csv, from: 300, to: 320 }\n";
     let only =
         |k: u32| if k < 600 { dated(k) } else { format!("2024-05-02T00:{}Z", clock(k - 600)) };
     let times: Vec<(f64, f64)> = read(only, "time", entries).iter().map(ends).collect();
@@ -147,8 +147,13 @@ fn rows_outside_of_stretches_may_be_faulty_and_are_not_held() {
     assert!(crate::check(source(), &mapping(99.0)).accepted());
     let outcome = crate::check(source(), &mapping(100.0));
     assert!(outcome.errors[0].message.contains("more than the 100 rows"), "{outcome:?}");
-    std::fs::write(folder.path().join("m.yaml"), "kind: trials\nship: a\ntrials:\n  \
-        - { file: log.csv, to: 9 }\n  - { file: lost.csv, to: 9 }\n  - { file: lost.csv, from: 10 }\n").unwrap();
+    std::fs::write(
+        folder.path().join("m.yaml"),
+        "kind: trials\nship: a\ntrials:\n  \
+        - { file: log.csv, to: 9 }\n  - { file: lost.csv, to: 9 }\n  - { file: lost.csv, from: 10 \
+        }\n",
+    )
+    .unwrap();
     let outcomes = check_path(&folder.path().join("m.yaml")).unwrap();
     let accepted: Vec<bool> = outcomes.iter().map(|outcome| outcome.accepted()).collect();
     assert_eq!(accepted, [true, false, false]);

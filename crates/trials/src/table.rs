@@ -1,7 +1,7 @@
 //! The mapped columns of a file as numbers in SI units and radians, still in the file's own signs.
 
+use sistership_formula::units::Dimension;
 use sistership_model::trial::Channel;
-use sistership_model::units::Dimension;
 
 /// What a column is read into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,7 +1,7 @@
 //! Which units a channel may be given in, and the suffixes that name them in a header.
 
+use sistership_formula::units::{Dimension, Unit};
 use sistership_model::trial::Channel;
-use sistership_model::units::{Dimension, Unit};
 
 use crate::table::{Raw, Target};
 

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use sistership_dynamics::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard};
+use sistership_dynamics::metrics::TurningMetrics;
 use sistership_dynamics::{PlantError, Ship};
 use sistership_model::law::Law;
 use sistership_model::vessel::Status;
@@ -31,6 +32,20 @@ pub struct Appraisal {
     pub comparisons: Vec<Comparison>,
     /// The standard manoeuvres.
     pub manoeuvres: StandardManoeuvres,
+}
+
+impl Appraisal {
+    /// A length of the turn to starboard, in ship lengths.
+    pub fn turn_lengths(&self, of: impl Fn(&TurningMetrics) -> Option<f64>) -> Option<f64> {
+        let starboard = self.manoeuvres.turns.iter().find(|turn| turn.rudder_deg > 0.0)?;
+        Some(of(starboard)? / self.lpp_m)
+    }
+
+    /// The first overshoot of the zigzag that begins to starboard with this rudder, deg.
+    pub fn first_overshoot_deg(&self, rudder_deg: f64) -> Option<f64> {
+        let mut zigzags = self.manoeuvres.zigzags.iter();
+        zigzags.find(|zigzag| zigzag.rudder_deg == rudder_deg)?.first_overshoot_deg
+    }
 }
 
 /// Sails a model's standard manoeuvres and those of its ship's published trials.

@@ -172,7 +172,8 @@ mod tests {
     use super::*;
 
     /// By hand: a tactical diameter of 3.25 L measured within 0.10 L (95 %), 3.05 L simulated, the
-    /// step within 0.02 L, the posterior within 0.09 L. E = 0.20, U_V^2 = 0.0100 + 0.0004 + 0.0081 =
+    /// step within 0.02 L, the posterior within 0.09 L. E = 0.20, U_V^2 = 0.0100 + 0.0004 + 0.0081
+    /// =
     /// 0.0185, U_V = 0.13601; in % of D: 6.154 and 4.185. |E| > U_V.
     fn by_hand() -> Evidence {
         Evidence {

@@ -1,5 +1,5 @@
-//! Telling webhooks what has happened: each delivery is sent, signed, until it arrives, less and less
-//! often. It knows no route.
+//! Telling webhooks what has happened: each delivery is sent, signed, until it arrives, less and
+//! less often. It knows no route.
 
 mod addresses;
 mod sent;

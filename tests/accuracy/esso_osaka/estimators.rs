@@ -54,7 +54,8 @@ fn estimators_on_every_trial_of_esso_osaka() {
     let by_method = QUICK.map(|method| left_out(&trials, &compared(method)));
     let sources = ["kvlcc2", "esso-tanker"].map(|name| (name, by_source(&trials, name)));
     println!(
-        "standardised mean squared error, mean over u, v, r, psi, x, y; restarted every {RESTART_S} s, trials left out"
+        "standardised mean squared error, mean over u, v, r, psi, x, y; restarted every \
+         {RESTART_S} s, trials left out"
     );
     println!("          by variances over all files       by variances of each file");
     println!("kind      published     weak trajectory     published     weak trajectory");
@@ -67,7 +68,8 @@ fn estimators_on_every_trial_of_esso_osaka() {
         println!("{kind:<9}{}   {}", row[..3].concat(), row[3..].concat());
     }
     println!(
-        "scaled sources, not refined, by variances over all files (in brackets: trials of so many that they can sail)"
+        "scaled sources, not refined, by variances over all files (in brackets: trials of so many \
+         that they can sail)"
     );
     for kind in KINDS.iter().copied().chain(["all"]) {
         let of = |errors: &Vec<(String, SquaredError)>| {

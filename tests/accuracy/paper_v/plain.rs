@@ -1,5 +1,5 @@
-//! The plain call on the paper's manoeuvres: neither source, law nor method is named. The ship's own
-//! model, which is the truth, is no source.
+//! The plain call on the paper's manoeuvres: neither source, law nor method is named. The ship's
+//! own model, which is the truth, is no source.
 
 use std::collections::BTreeMap;
 

@@ -21,8 +21,8 @@ pub struct Arguments {
     only: Vec<String>,
 }
 
-const USAGE: &str = "[--minutes N] [--database sqlite|postgres|both] [--seed S] [--only ATTACK,...] [--program PATH] \
-    [--requests-mb MB] [--jobs-mb MB]";
+const USAGE: &str = "[--minutes N] [--database sqlite|postgres|both] [--seed S] [--only \
+    ATTACK,...] [--program PATH] [--requests-mb MB] [--jobs-mb MB]";
 
 impl Arguments {
     /// Reads them.

@@ -17,10 +17,10 @@ pub const PATTERN: &str = "sr108";
 pub fn ship(name: &str) -> String {
     format!(
         "kind: vessel\nname: {name}\ntitle: A ship of the battery\ncategory: dry-cargo\n\
-         sources: {{ yard: {{ citation: the yard }} }}\nparticulars:\n  source: yard\n  values: {{ lpp_m: 175.0, \
-         beam_m: 25.4, draught_m: 8.5, displacement_m3: 21222.0, rudder_area_m2: 33.04, \
-         rudder_aspect_ratio: 1.82, propeller_diameter_m: 6.533, service_speed_m_s: 10.47, x_g_m: 0.0, \
-         yaw_gyradius_ratio: 0.24 }}\n"
+         sources: {{ yard: {{ citation: the yard }} }}\nparticulars:\n  source: yard\n  values: {{ \
+         lpp_m: 175.0, beam_m: 25.4, draught_m: 8.5, displacement_m3: 21222.0, rudder_area_m2: \
+         33.04, rudder_aspect_ratio: 1.82, propeller_diameter_m: 6.533, service_speed_m_s: 10.47, \
+         x_g_m: 0.0, yaw_gyradius_ratio: 0.24 }}\n"
     )
 }
 

@@ -50,7 +50,8 @@ impl Row {
         let over = if peak_mb > self.allowed_mb { " (over)" } else { "" };
         let (database, attack, seconds) = (self.database, self.attack, self.took.as_secs());
         println!(
-            "| {database} | {attack} | {tried} | {lost} | {wrong} | {server_errors} | {aborted} | {peak_mb}{over} | {seconds} | {} |",
+            "| {database} | {attack} | {tried} | {lost} | {wrong} | {server_errors} | {aborted} | \
+             {peak_mb}{over} | {seconds} | {} |",
             self.remarks
         );
     }

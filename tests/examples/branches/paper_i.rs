@@ -145,7 +145,8 @@ pub fn run(size: Size) {
         }
         let [foundation, data, both] = misses.each_ref().map(Misses::mean);
         println!(
-            "{force}, all 30 s: {foundation:.2} {data:.2} {both:.2}; both by the foundation {:.2}, by data alone {:.2}",
+            "{force}, all 30 s: {foundation:.2} {data:.2} {both:.2}; both by the foundation {:.2}, \
+             by data alone {:.2}",
             both / foundation,
             both / data
         );

@@ -135,7 +135,8 @@ struct Entrant<'a> {
     ship: Option<&'a Ship>,
 }
 
-/// Its name, what it is trained on, its memory, loss and cells, and whether it stands beside the law.
+/// Its name, what it is trained on, its memory, loss and cells, and whether it stands beside the
+/// law.
 type Plan<'a> = (&'a str, &'a [&'a Trial], Memory, Loss, Cell, bool);
 
 /// `wanted` are some of the plans by name; none are all.

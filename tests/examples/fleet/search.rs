@@ -35,7 +35,8 @@ pub async fn search(config: &Config, ships: usize) {
     let server = Server::start(config).await.expect("a server");
     let (client, url) = (Client::new(), server.url());
     println!(
-        "| search of {ships} ships, {TIMES} of each kind | p50, ms | slowest, ms | ships on the page, mean |"
+        "| search of {ships} ships, {TIMES} of each kind | p50, ms | slowest, ms | ships on the \
+         page, mean |"
     );
     println!("| --- | --- | --- | --- |");
     for (what, query) in kinds() {

@@ -175,14 +175,16 @@ fn svg(curves: &[Kept]) -> String {
         EDGE + (errors.1 - value.log10()) / (errors.1 - errors.0) * (HEIGHT - 2.0 * EDGE)
     };
     let mut out = format!(
-        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {WIDTH} {HEIGHT}' font-family='sans-serif' font-size='13'>"
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {WIDTH} {HEIGHT}' \
+         font-family='sans-serif' font-size='13'>"
     );
     let _ = write!(out, "<rect width='{WIDTH}' height='{HEIGHT}' fill='white'/>");
     for decade in seconds.0 as i32..=seconds.1 as i32 {
         let (at, value) = (x(10_f64.powi(decade)), 10_f64.powi(decade));
         let _ = write!(
             out,
-            "<line x1='{at}' x2='{at}' y1='{EDGE}' y2='{}' stroke='#ddd'/><text x='{at}' y='{}' text-anchor='middle'>{value}</text>",
+            "<line x1='{at}' x2='{at}' y1='{EDGE}' y2='{}' stroke='#ddd'/><text x='{at}' y='{}' \
+             text-anchor='middle'>{value}</text>",
             HEIGHT - EDGE,
             HEIGHT - EDGE + 18.0
         );
@@ -191,7 +193,8 @@ fn svg(curves: &[Kept]) -> String {
         let (at, value) = (y(10_f64.powi(decade)), 10_f64.powi(decade));
         let _ = write!(
             out,
-            "<line x1='{LEFT}' x2='{}' y1='{at}' y2='{at}' stroke='#ddd'/><text x='{}' y='{}' text-anchor='end'>{value}</text>",
+            "<line x1='{LEFT}' x2='{}' y1='{at}' y2='{at}' stroke='#ddd'/><text x='{}' y='{}' \
+             text-anchor='end'>{value}</text>",
             WIDTH - EDGE,
             LEFT - 6.0,
             at + 4.0
@@ -226,7 +229,8 @@ fn svg(curves: &[Kept]) -> String {
     );
     let _ = write!(
         out,
-        "<text x='{LEFT}' y='{}'>standardised squared error of u, v, r on manoeuvres held out, 100 s at a time</text></svg>",
+        "<text x='{LEFT}' y='{}'>standardised squared error of u, v, r on manoeuvres held out, 100 \
+         s at a time</text></svg>",
         EDGE - 14.0
     );
     out
@@ -246,7 +250,8 @@ fn table(curves: &[Kept]) {
             if told != Some(at) {
                 let Point { wall_s, cpu_s, evaluations, objective, held_out } = points[at];
                 println!(
-                    "{:<11} {wall_s:>9.1} {cpu_s:>9.1} {evaluations:>12} {objective:>12.5} {held_out:>12.5}",
+                    "{:<11} {wall_s:>9.1} {cpu_s:>9.1} {evaluations:>12} {objective:>12.5} \
+                     {held_out:>12.5}",
                     method
                 );
             }

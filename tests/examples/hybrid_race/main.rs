@@ -81,7 +81,8 @@ fn arguments() -> Arguments {
             "--spread" => arguments.search.spread = number(),
             "--box" => arguments.search.box_width = number(),
             _ => panic!(
-                "there are --minutes, --cpu-minutes, --out, --method, --seed, --spread, --box and --rk4, not {flag}"
+                "there are --minutes, --cpu-minutes, --out, --method, --seed, --spread, --box and \
+                 --rk4, not {flag}"
             ),
         }
     }

@@ -47,7 +47,8 @@ pub fn run(program: &Program, arguments: &Arguments) {
     let rise = geometric_mean(&ratios);
     println!("## Candidates: {CANDIDATES} random ones among the sources, {} ships\n", ships.len());
     println!(
-        "| error without | with | rise | median | largest | less than 3 % |\n| --: | --: | --: | --: | --: | --- |"
+        "| error without | with | rise | median | largest | less than 3 % |\n| --: | --: | --: | \
+         --: | --: | --- |"
     );
     println!(
         "| {:.4} | {:.4} | {rise:.3} | {:.3} | {:.2} | {} |\n",
@@ -124,7 +125,8 @@ fn vessel(name: &str, model: &Model, size: &Dimensions) -> Value {
                 "source": "drawn",
             },
             "parameters": plain(&mut model.parameters.iter().map(|(n, q)| (n.clone(), q.value))),
-            "coefficients": plain(&mut model.coefficients.iter().map(|(n, q)| (n.clone(), q.value))),
+            "coefficients": plain(&mut model.coefficients.iter().map(|(n, q)| (n.clone(),
+            q.value))),
         }],
     })
 }

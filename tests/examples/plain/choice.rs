@@ -25,10 +25,12 @@ const WITHIN: f64 = 1.10;
 pub fn run(program: &Program, arguments: &Arguments) {
     println!("## Choice: the plain call against every `--source` x `--law` x `--method`\n");
     println!(
-        "Standardised mean squared error on unseen trials, mean over u, v, r, psi, x, y; heading as root mean square.\n"
+        "Standardised mean squared error on unseen trials, mean over u, v, r, psi, x, y; heading \
+         as root mean square.\n"
     );
     println!(
-        "| data | plain | heading deg | chose | s | MB | unrefined nearest | best explicit | heading deg | s | call | made of tried | plain by best | within 10 % |"
+        "| data | plain | heading deg | chose | s | MB | unrefined nearest | best explicit | \
+         heading deg | s | call | made of tried | plain by best | within 10 % |"
     );
     println!(
         "| --- | --: | --: | --- | --: | --: | --: | --: | --: | --: | --- | --: | --: | --- |"
@@ -76,7 +78,8 @@ fn row(program: &Program, name: &str, data: &DataSet) {
     let ratio = judged(&plain).zip(judged(best)).map(|(plain, best)| plain / best);
     let verdict = if ratio.is_some_and(|ratio| ratio <= WITHIN) { "yes" } else { "no" };
     println!(
-        "| {name} | {} | {} | {:.1} | {:.0} | {} | {} | {:.1} | {call} | {count} of {tried} | {} | {verdict} |",
+        "| {name} | {} | {} | {:.1} | {:.0} | {} | {} | {:.1} | {call} | {count} of {tried} | {} | \
+         {verdict} |",
         cells(&plain),
         plain.chosen,
         plain.wall_s,
@@ -134,7 +137,8 @@ pub fn by_file(program: &Program) {
     }
     let error = sistership_dynamics::error::standardised_mse(&sum, &all.deviations) / 6.0;
     println!(
-        "\nEsso Osaka by the plain call, every file judged by a model made without it: {error:.4} (aim: at most 0.028){}; all {} files: {:.1} s, {:.0} MB (aim: at most 8 s, 300 MB).",
+        "\nEsso Osaka by the plain call, every file judged by a model made without it: {error:.4} \
+         (aim: at most 0.028){}; all {} files: {:.1} s, {:.0} MB (aim: at most 8 s, 300 MB).",
         if failed.is_empty() { String::new() } else { format!(", without {}", failed.join("; ")) },
         all.seen.len(),
         whole.wall_s,

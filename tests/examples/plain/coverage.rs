@@ -62,7 +62,8 @@ pub fn run(program: &Program, arguments: &Arguments) {
         println!("The first of them: {reason}\n");
     }
     println!(
-        "| figure | number | inside | without a band | median width by truth | 90 to 98 % |\n| --- | --: | --: | --: | --: | --- |"
+        "| figure | number | inside | without a band | median width by truth | 90 to 98 % |\n| --- \
+         | --: | --: | --: | --: | --- |"
     );
     for kind in ["tactical diameter", "advance", "first overshoot", "second overshoot"] {
         row(kind, &all.iter().copied().filter(|held| held.kind == kind).collect::<Vec<_>>());

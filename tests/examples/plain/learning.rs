@@ -83,10 +83,12 @@ fn row(name: &str, ships: &[[Outcome; 5]], of: impl Fn(&Outcome) -> Option<f64>)
 /// The plain call by the unrefined nearest source, ship by ship.
 fn against_the_source(ships: &[[Outcome; 5]]) {
     println!(
-        "\nThe plain call's error by that of the nearest source, unrefined, of ships that have one:\n"
+        "\nThe plain call's error by that of the nearest source, unrefined, of ships that have \
+         one:\n"
     );
     println!(
-        "| trials | ships | median | largest | worse by more than 5 % |\n| --: | --: | --: | --: | --: |"
+        "| trials | ships | median | largest | worse by more than 5 % |\n| --: | --: | --: | --: | \
+         --: |"
     );
     for (place, count) in COUNTS.iter().enumerate() {
         let ratio = |outcomes: &[Outcome; 5]| {

@@ -14,7 +14,8 @@ pub fn print(outcomes: &[Outcome]) {
         "\nWidths of bands: planned by IMO's, by those on the first trials, and as expected.\n"
     );
     println!(
-        "| figure | planned / IMO's | ships narrower | planned / first | expected | IMO's / first | expected |"
+        "| figure | planned / IMO's | ships narrower | planned / first | expected | IMO's / first \
+         | expected |"
     );
     println!("| --- | --: | --: | --: | --: | --: | --: |");
     KINDS.iter().for_each(|kind| of_kind(outcomes, kind));

@@ -127,7 +127,8 @@ fn print_stranger(stranger: &Stranger) {
 /// Does a measure choose well?
 fn measures(strangers: &[Stranger]) {
     println!(
-        "\n| measure | strangers | median error of the chosen | of its category | rank correlation with the benefit | chosen within 10 % of the best |"
+        "\n| measure | strangers | median error of the chosen | of its category | rank correlation \
+         with the benefit | chosen within 10 % of the best |"
     );
     println!("| --- | --- | --- | --- | --- | --- |");
     for (k, name) in MEASURES.iter().enumerate() {

@@ -27,7 +27,8 @@ pub struct Errors(pub [[f64; 3]; 3]);
 pub fn run() {
     let (zoo, library) = (Zoo::embedded().unwrap(), Library::embedded().unwrap());
     println!(
-        "| ship | for | source | X: source | estimate | common | Y: source | estimate | common | N: source | estimate | common |"
+        "| ship | for | source | X: source | estimate | common | Y: source | estimate | common | \
+         N: source | estimate | common |"
     );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     let mut all = [Vec::new(), Vec::new()];

@@ -140,7 +140,8 @@ fn unseen(zoo: &Zoo, stranger: &Sailed, model: &Model) -> Option<f64> {
 
 fn each(rows: &[Row]) {
     println!(
-        "| stranger | category | its law | estimate | source (Mei) | mixture | source (difference) | mixture |"
+        "| stranger | category | its law | estimate | source (Mei) | mixture | source (difference) \
+         | mixture |"
     );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
     for row in rows {
@@ -164,7 +165,8 @@ fn each(rows: &[Row]) {
 /// By measure: source alone, estimate alone and mixture, and by what factor the mixture is better.
 fn priors(rows: &[Row], k: usize) {
     println!(
-        "| source chosen by | of | strangers | source: median | estimate | mixture | source by mixture | estimate by mixture |"
+        "| source chosen by | of | strangers | source: median | estimate | mixture | source by \
+         mixture | estimate by mixture |"
     );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
     for (measure, name) in MEASURES.iter().enumerate() {

@@ -4,7 +4,8 @@
 //! Each ship is an ordinary differential equation of this crate, integrated with Runge-Kutta at 0.1
 //! s; nothing of it is lowered from a law file. The hull is linear (regression, or slender-body
 //! theory) with a strip-wise cross-flow drag, the rudder a wing with lift and drag in a slipstream,
-//! and the resistance that of the ITTC friction line. `causes` has what may be hidden in their trials.
+//! and the resistance that of the ITTC friction line. `causes` has what may be hidden in their
+//! trials.
 
 pub mod causes;
 pub mod clarke;

@@ -1,6 +1,7 @@
-//! Roll in regular waves by its natural period and damping: Jensen, Mansour and Olsen 2004 (not seen;
-//! read through MSS waveresponse345.m). That file takes all of the damping for what makes waves, and
-//! leaves out the length under the root and the wave's phase along the ship; here are both.
+//! Roll in regular waves by its natural period and damping: Jensen, Mansour and Olsen 2004 (not
+//! seen; read through MSS waveresponse345.m). That file takes all of the damping for what makes
+//! waves, and leaves out the length under the root and the wave's phase along the ship; here are
+//! both.
 
 use super::heave_pitch::GRAVITY;
 use super::hull::WaveHull;
@@ -8,9 +9,9 @@ use super::hull::WaveHull;
 /// Density of sea water, kg/m3.
 const DENSITY: f64 = 1025.0;
 
-/// rad/m. The moment follows from the damping by waves, by Haskind's relation: a section that radiates waves
-/// when it rolls is rolled by them, M^2 = (rho g^2/omega) b44; over the length the sections' moments
-/// add up as sin(sigma)/sigma.
+/// rad/m. The moment follows from the damping by waves, by Haskind's relation: a section that
+/// radiates waves when it rolls is rolled by them, M^2 = (rho g^2/omega) b44; over the length the
+/// sections' moments add up as sin(sigma)/sigma.
 pub fn roll(hull: &WaveHull, omega: f64, beta: f64) -> f64 {
     let WaveHull { lpp_m, beam_m, draught_m, .. } = *hull;
     if omega <= 0.0 {

@@ -14,16 +14,17 @@ Examples:
   sistership backup /backup/2026-11-21 --data-dir /var/lib/sistership
   sistership backup /backup/2026-11-21 --database-url postgres://user@host/sistership --data-dir /mnt/shared/sistership
 
-Servers and workers may go on: the backup holds the database as it was at one moment after the command began, and the
-samples that it refers to. Exit status 1 where samples were missing or damaged; the rest is copied all the same.";
+Servers and workers may go on: the backup holds the database as it was at one moment after the
+command began, and the samples that it refers to. Exit status 1 where samples were missing or
+damaged; the rest is copied all the same.";
 
 const RESTORE_EXAMPLES: &str = "\
 Examples:
   sistership restore /backup/2026-11-21 --data-dir /var/lib/sistership-2
   sistership restore /backup/2026-11-21 --database-url postgres://user@host/empty --data-dir /mnt/shared/sistership-2
 
-The place must be empty: no database file, or a database without tables, and no samples. `sistership fsck` then checks
-all of it.";
+The place must be empty: no database file, or a database without tables, and no samples.
+`sistership fsck` then checks all of it.";
 
 /// Copy a store, while it is written, into a folder.
 #[derive(Debug, Args)]

@@ -25,9 +25,9 @@ Examples:
   sistership branch --model my-model.yaml --trials trials.yaml --out with-branch.yaml
   sistership branch --model mariner --trials a.csv b.csv c.csv --kind forest --mode parallel --out m.yaml --json
 
-Weights are written beside the model: with-branch.weights.json for with-branch.yaml. Without --kind, every kind is tried
-on trials left out of its training, and none is taken that does not win by more than its uncertainty: then --out writes
-nothing, which is a result (exit status 0).";
+Weights are written beside the model: with-branch.weights.json for with-branch.yaml. Without
+--kind, every kind is tried on trials left out of its training, and none is taken that does not
+win by more than its uncertainty: then --out writes nothing, which is a result (exit status 0).";
 
 /// Train a learned branch beside a model, on what it leaves of trials.
 #[derive(Debug, Args)]

@@ -121,8 +121,9 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    const DECLARATION: &str = "kind: hybrid\nname: ferry\ntitle: A ferry\norder: 2\nactuators: { n: { kind: propeller }, delta: \
-                               { kind: vectwin } }\nsubmodels: ahead_astern\neffects: [{ effect: wind, form: measured }]\n";
+    const DECLARATION: &str = "kind: hybrid\nname: ferry\ntitle: A ferry\norder: 2\nactuators: { \
+                               n: { kind: propeller }, delta: { kind: vectwin } }\nsubmodels: \
+                               ahead_astern\neffects: [{ effect: wind, form: measured }]\n";
 
     fn asked(folder: &Path, text: &str) -> DeriveArguments {
         let declaration = folder.join("ferry.yaml");

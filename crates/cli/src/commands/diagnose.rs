@@ -26,8 +26,9 @@ Examples:
   sistership diagnose --model my-model.yaml --trials a.csv b.csv c.csv --out with-effects.yaml --json
   sistership diagnose --zoo my-effects --model kvlcc2 --trials trials.yaml
 
-Give trials that the model was not fitted on, several of them and on several headings: what a current does and what a
-wind does look alike on one. The verdict is `complete`, `effects` or `unexplained`; each is a result (exit status 0).";
+Give trials that the model was not fitted on, several of them and on several headings: what a
+current does and what a wind does look alike on one. The verdict is `complete`, `effects` or
+`unexplained`; each is a result (exit status 0).";
 
 /// Find what a model lacks, by trials that it has not seen.
 #[derive(Debug, Args)]

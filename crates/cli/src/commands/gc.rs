@@ -15,8 +15,8 @@ Examples:
   sistership gc --dry-run
   sistership gc --grace-h 72 --data-dir /var/lib/sistership
 
-Removes the samples that no trial (deleted ones count) and no version refers to, as refused and broken uploads leave them.
-Servers and workers may go on.";
+Removes the samples that no trial (deleted ones count) and no version refers to, as refused and
+broken uploads leave them. Servers and workers may go on.";
 
 /// Remove objects that nothing refers to.
 #[derive(Debug, Args)]

@@ -27,7 +27,8 @@ Examples:
   sistership manoeuvre --model esso-tanker --pull-out 20 --pull-out -20 --spiral
 
 Positive rudder turns to starboard. A criterion that is not met is a result: the exit status is 0.
-Exit status 1 when a manoeuvre leaves the physical range, or the law cannot sail what was asked for.";
+Exit status 1 when a manoeuvre leaves the physical range, or the law cannot sail what was asked
+for.";
 
 /// Sail turning circles, zigzags, stops, pull-outs and spirals with a model and judge them by the
 /// IMO criteria.
@@ -45,8 +46,8 @@ pub struct ManoeuvreArguments {
     zigzag: Vec<(f64, f64)>,
     #[command(flatten)]
     further: FurtherArguments,
-    /// Turns at 35 deg, zigzags 10/10 and 20/20 to both sides, initial turning, a stop where the law
-    /// can, pull-outs, spirals of an unstable ship, IMO criteria: the default.
+    /// Turns at 35 deg, zigzags 10/10 and 20/20 to both sides, initial turning, a stop where the
+    /// law can, pull-outs, spirals of an unstable ship, IMO criteria: the default.
     #[arg(long)]
     all: bool,
     /// Approach speed; the model's own where absent.

@@ -49,7 +49,6 @@ pub mod verify;
 pub mod work;
 mod written;
 pub mod zoo;
-mod zoo_page;
 mod zoo_text;
 
 use sistership_dynamics::Ship;

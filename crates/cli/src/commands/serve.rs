@@ -25,9 +25,10 @@ Examples:
   sistership serve --listen 127.0.0.1:9000 --data-dir /var/lib/sistership
   sistership serve --listen 0.0.0.0:8080 --database-url postgres://user@host/sistership --api-key-file /run/secrets/key
 
-The API key is read from SISTERSHIP_API_KEY or --api-key-file, never from a flag that others could see; requests carry
-it as `Authorization: Bearer KEY`. Without a key or --accounts the server listens on loopback only. Stop it with Ctrl-C or SIGTERM: jobs
-under way get --drain-s to end and then go back to the queue.";
+The API key is read from SISTERSHIP_API_KEY or --api-key-file, never from a flag that others could
+see; requests carry it as `Authorization: Bearer KEY`. Without a key or --accounts the server
+listens on loopback only. Stop it with Ctrl-C or SIGTERM: jobs under way get --drain-s to end and
+then go back to the queue.";
 
 /// Run the REST server.
 #[derive(Debug, Args)]
@@ -85,7 +86,9 @@ pub struct ServeArguments {
 pub fn run(serve: &ServeArguments, zoo: &[PathBuf]) -> Result<(), Failure> {
     if !zoo.is_empty() {
         return Err(Failure::Call(
-            "a server keeps its ships and laws in its database: send them to /v1/ships and /v1/laws, not by --zoo; it diagnoses with the effects of the program".into(),
+            "a server keeps its ships and laws in its database: send them to /v1/ships and \
+             /v1/laws, not by --zoo; it diagnoses with the effects of the program"
+                .into(),
         ));
     }
     let file = serve.store.file()?;
@@ -167,7 +170,8 @@ fn key_of(file: &Path) -> Result<String, Failure> {
 fn refused(error: StartError) -> Failure {
     match error {
         StartError::OpenWithoutKey(listen) => Failure::Call(format!(
-            "refusing to listen on {listen} without an API key: set {KEY} or --api-key-file, let people sign in with --accounts, or listen on 127.0.0.1"
+            "refusing to listen on {listen} without an API key: set {KEY} or --api-key-file, let \
+             people sign in with --accounts, or listen on 127.0.0.1"
         )),
         StartError::Key | StartError::OpenIdWithoutAccounts => Failure::Call(error.to_string()),
         other => Failure::Refused(other.to_string()),

@@ -20,8 +20,9 @@ Examples:
   sistership ships --particular lpp_m:100..200 --metric turn_35.tactical_diameter_m:..900
   sistership ships --similar-to kvlcc2 --limit 10 --json
 
-Without ranges ships come by name, with ranges by the first of them (particulars before metrics), with --similar-to the most
-similar first. Values are SI; metrics are those of the champion's standard manoeuvres, the greater of both sides.";
+Without ranges ships come by name, with ranges by the first of them (particulars before metrics),
+with --similar-to the most similar first. Values are SI; metrics are those of the champion's
+standard manoeuvres, the greater of both sides.";
 
 /// Find ships of a store.
 #[derive(Debug, Args)]
@@ -78,7 +79,8 @@ pub fn run(ships: &ShipsArguments) -> Result<(), Failure> {
 fn document(ships: &[FoundShip], more: bool) -> Value {
     let one = |ship: &FoundShip| {
         let FoundShip { name, title, category, revision, value, .. } = ship;
-        json!({ "ship": name, "title": title, "category": category, "revision": revision, "value": value })
+        json!({ "ship": name, "title": title, "category": category, "revision": revision,
+            "value": value })
     };
     json!({ "ships": ships.iter().map(one).collect::<Vec<_>>(), "more": more })
 }

@@ -24,8 +24,9 @@ Examples:
   sistership simulate --model my-model.yaml --trials trials.yaml --restart-s 100 --json
   sistership simulate --model sr108 --trials trials.yaml --out simulated
 
-Errors are root mean squares; `std. MSE` adds up the squares of those of u, v, r, psi, x and y, each divided by the
-standard deviation of the channel over the trials given. Exit status 1 when a simulation leaves the physical range.";
+Errors are root mean squares; `std. MSE` adds up the squares of those of u, v, r, psi, x and y,
+each divided by the standard deviation of the channel over the trials given. Exit status 1 when a
+simulation leaves the physical range.";
 
 /// Simulate recorded trials with a model and measure its errors.
 #[derive(Debug, Args)]

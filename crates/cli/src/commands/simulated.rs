@@ -90,7 +90,8 @@ impl TrialSimulator<'_> {
             Some(depth_m) => {
                 let law = &self.law.name;
                 note(&format!(
-                    "warning: {}: sailed in {depth_m} m of water; law `{law}` knows deep water only",
+                    "warning: {}: sailed in {depth_m} m of water; law `{law}` knows deep water \
+                     only",
                     trial.name
                 ));
             }

@@ -23,8 +23,9 @@ Examples:
   sistership users disable ann
   sistership users second-person on
 
-Roles are reader, engineer, approver and admin, each with the rights of those before it; @ship:NAME and @family:NAME
-limit one. Without --password-file a password is drawn and printed. Servers go on; they notice within a second.";
+Roles are reader, engineer, approver and admin, each with the rights of those before it;
+@ship:NAME and @family:NAME limit one. Without --password-file a password is drawn and printed.
+Servers go on; they notice within a second.";
 
 /// Users of the servers on a store: add, list, give roles, disable.
 #[derive(Debug, Args)]
@@ -228,7 +229,8 @@ async fn list(archive: &Archive) -> UsersResult {
             let roles = words(&archive.store.grants().of(&User::principal(&user.name)).await?);
             let state = if user.is_enabled() { "enabled" } else { "disabled" };
             table.row([user.name.clone(), user.title.clone(), roles.join(" "), state.to_owned()]);
-            all.push(json!({ "name": user.name, "title": user.title, "roles": roles, "enabled": user.is_enabled() }));
+            all.push(json!({ "name": user.name, "title": user.title, "roles": roles,
+                "enabled": user.is_enabled() }));
         }
         let Some(next) = users.next else { break };
         page = Page::after(next, MAX_LIMIT);

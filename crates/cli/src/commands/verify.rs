@@ -73,7 +73,8 @@ fn text(verification: &Verification) -> String {
         format!("{model}/{number}: derived again, identical byte for byte\n  sha256 {sha256}\n")
     } else {
         format!(
-            "{model}/{number}: DIFFERS from what its recipe gives\n  recorded sha256 {sha256}\n  derived sha256  {derived_sha256}\n"
+            "{model}/{number}: DIFFERS from what its recipe gives\n  recorded sha256 {sha256}\n  \
+             derived sha256  {derived_sha256}\n"
         )
     };
     head + &remarks.iter().map(|remark| format!("remark: {remark}\n")).collect::<String>()

@@ -15,10 +15,10 @@ Examples:
   sistership work --data-dir /var/lib/sistership
   sistership work --workers 8 --database-url postgres://user@host/sistership --data-dir /mnt/shared/sistership
 
-Any number of such processes may run beside `sistership serve` (which leaves all work to them with --no-worker), on any
-machines that reach the same database and the same samples. A job belongs to one of them at a time; when that one dies,
-its job goes to another after --lease-s. Stop it with Ctrl-C or SIGTERM: jobs under way get --drain-s
-to end and then go back to the queue.";
+Any number of such processes may run beside `sistership serve` (which leaves all work to them with
+--no-worker), on any machines that reach the same database and the same samples. A job belongs to
+one of them at a time; when that one dies, its job goes to another after --lease-s. Stop it with
+Ctrl-C or SIGTERM: jobs under way get --drain-s to end and then go back to the queue.";
 
 /// Work on the jobs that servers queue, without serving.
 #[derive(Debug, Args)]

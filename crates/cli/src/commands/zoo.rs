@@ -8,7 +8,7 @@ use serde::Serialize;
 use sistership_model::{Vessel, Zoo};
 use sistership_validation::{Appraisal, Dataset, Review, Severity, appraise_vessel, review};
 
-use super::{zoo_page, zoo_text};
+use super::zoo_text;
 use crate::failure::{Failure, about_file};
 use crate::files::PromisedFile;
 use crate::zoo::text_of;
@@ -129,7 +129,7 @@ fn add(
     let vessel = named::vessel_file(zoo, file)?;
     let review = review(zoo, &vessel)?;
     if let Some(page) = page {
-        page.write(zoo_page::page(&vessel, &review).as_bytes())?;
+        page.write(sistership_report::contributed_ship(&vessel, &review).as_bytes())?;
     }
     let taken = review.is_taken();
     let written = match into.filter(|_| taken) {

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use sistership_dynamics::metrics::TurningMetrics;
 use sistership_validation::{Appraisal, Comparison, Dataset, Review, Severity, Work};
 
 use crate::table::TextTable;
@@ -27,29 +26,17 @@ fn table(models: &[Appraisal]) -> String {
             model.model.clone(),
             model.law.clone(),
             model.standing.word().to_owned(),
-            turn(model, |turn| turn.advance_m),
-            turn(model, |turn| turn.tactical_diameter_m),
-            overshoot(model, 10.0),
-            overshoot(model, 20.0),
+            number(model.turn_lengths(|turn| turn.advance_m)),
+            number(model.turn_lengths(|turn| turn.tactical_diameter_m)),
+            number(model.first_overshoot_deg(10.0)),
+            number(model.first_overshoot_deg(20.0)),
         ]);
     }
     table.to_string()
 }
 
-/// A figure of the turn to starboard in ship lengths.
-pub(super) fn turn(model: &Appraisal, of: impl Fn(&TurningMetrics) -> Option<f64>) -> String {
-    let starboard = model.manoeuvres.turns.iter().find(|turn| turn.rudder_deg > 0.0);
-    number(starboard.and_then(of).map(|metres| metres / model.lpp_m))
-}
-
-/// The first overshoot of the zigzag to starboard at this rudder, deg.
-pub(super) fn overshoot(model: &Appraisal, rudder_deg: f64) -> String {
-    let zigzag = model.manoeuvres.zigzags.iter().find(|zigzag| zigzag.rudder_deg == rudder_deg);
-    number(zigzag.and_then(|zigzag| zigzag.first_overshoot_deg))
-}
-
 /// Two decimals, or a dash.
-pub(super) fn number(value: Option<f64>) -> String {
+fn number(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"))
 }
 

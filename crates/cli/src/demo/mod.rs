@@ -44,9 +44,10 @@ const PROGRAMME: [TrialManoeuvre; 8] = [
 const JUDGED: usize = 2;
 
 const ABOUT: &str = "\
-Starts the server on a database in FOLDER, creates a ship, uploads trials, selects a source, refines, queries the champion,
-prints the errors before and after, and writes FOLDER/report.html. The trials are sailed by the four-degree-of-freedom ship
-SR108 with sensor noise; it is taken out of the zoo first, so that no model of its law can be chosen.";
+Starts the server on a database in FOLDER, creates a ship, uploads trials, selects a source,
+refines, queries the champion, prints the errors before and after, and writes FOLDER/report.html.
+The trials are sailed by the four-degree-of-freedom ship SR108 with sensor noise; it is taken out
+of the zoo first, so that no model of its law can be chosen.";
 
 /// Show the whole loop: ship, trials, source, refinement, champion, report.
 #[derive(Debug, Args)]
@@ -119,7 +120,8 @@ async fn tell(running: &Running, trials: &[Trial], out: &Path) -> Result<(), Fai
     ));
     api.delete(&format!("/v1/ships/{TRUTH}")).await?;
     output::note(
-        "3/8  creating the ship northern-star; SR108 is taken out of the zoo, as it made the trials",
+        "3/8  creating the ship northern-star; SR108 is taken out of the zoo, as it made the \
+         trials",
     );
     api.post_yaml("/v1/ships", SHIP.to_owned()).await?;
     upload(&api, trials).await?;

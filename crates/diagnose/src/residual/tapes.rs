@@ -6,9 +6,9 @@ use sistership_dynamics::equations::{Attitude, Coefficients, EquationsOfMotion, 
 use sistership_dynamics::instruments::{input_names, readings};
 use sistership_dynamics::state::RECORDED;
 use sistership_dynamics::tape::Tape;
+use sistership_formula::Expr;
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
-use sistership_model::formula::Expr;
 use sistership_model::law::Law;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;

@@ -3,9 +3,9 @@
 
 use std::borrow::Cow;
 
+use sistership_formula::{Expr, parse};
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
-use sistership_model::formula::{Expr, parse};
 use sistership_model::law::{Law, STATES};
 use sistership_model::particulars;
 

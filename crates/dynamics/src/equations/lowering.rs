@@ -1,7 +1,7 @@
 //! Formulas of the equations of motion on a tape.
 
+use sistership_formula::Expr;
 use sistership_model::coefficient::Axis;
-use sistership_model::formula::Expr;
 
 use super::definition::EquationsOfMotion;
 use super::refusal::PlantError;

@@ -1,6 +1,6 @@
 //! Why the equations of motion cannot be used.
 
-use sistership_model::formula::FormulaError;
+use sistership_formula::FormulaError;
 use sistership_model::law::TermError;
 
 /// Why a model cannot be made ready.

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use sistership_model::formula::Expr;
+use sistership_formula::Expr;
 use sistership_model::law::Law;
 use sistership_model::{Model, particulars};
 

@@ -52,8 +52,8 @@ impl SpiralMetrics {
     }
 }
 
-/// What is no loop, deg of rudder: five times what a held rate leaves open of its rudder (0.02 deg).
-/// At half and double of it the verdicts of docs/evidence/manoeuvres.md are the same.
+/// What is no loop, deg of rudder: five times what a held rate leaves open of its rudder (0.02
+/// deg). At half and double of it the verdicts of docs/evidence/manoeuvres.md are the same.
 const NO_LOOP_DEG: f64 = 0.1;
 
 /// The width of the loop that is acceptable, deg: none below L/V = 9 s, 12 deg above 45 s,

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
+use sistership_formula::Expr;
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
-use sistership_model::formula::Expr;
 use sistership_model::law::Law;
 
 use crate::equations::{

@@ -1,7 +1,7 @@
 //! Derivatives as further operations on the same tape: what they share with the values is computed
 //! once, and all of it runs for a block of lanes.
 
-use sistership_model::formula::{Comparison, Function};
+use sistership_formula::{Comparison, Function};
 
 use super::{Op, Slot, TapeBuilder};
 
@@ -186,7 +186,7 @@ impl TapeBuilder<'_> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::super::{Tape, TapeBuilder};
-    use sistership_model::formula::parse;
+    use sistership_formula::parse;
 
     fn with_slopes(text: &str) -> (Tape, [Option<usize>; 2]) {
         let mut builder = TapeBuilder::new(&["u", "v"], |_| None);
@@ -224,7 +224,7 @@ mod tests {
     /// of what a thread has.
     #[test]
     fn a_long_sum_is_lowered_and_differentiated_on_a_small_stack() {
-        use sistership_model::formula::Expr;
+        use sistership_formula::Expr;
         let small = std::thread::Builder::new().stack_size(1 << 20);
         let tried = small.spawn(|| {
             let term = |k: usize| parse(&format!("{k}.5*u*v")).unwrap();
@@ -250,7 +250,7 @@ mod tests {
     #[test]
     fn values_of_values_are_lowered_on_a_small_stack() {
         use super::super::Binding;
-        let deepest = sistership_model::formula::MAX_DEPTH;
+        let deepest = sistership_formula::MAX_DEPTH;
         let small = std::thread::Builder::new().stack_size(1 << 20);
         let bind = move |name: &str| {
             let number: usize = name.strip_prefix('a')?.parse().ok()?;

@@ -1,6 +1,6 @@
 //! Evaluation of a tape for a block of lanes.
 
-use sistership_model::formula::Function;
+use sistership_formula::Function;
 
 use super::{Instruction, Lanes, Op, Slot, Slots, Tape};
 use crate::wide::{Wide, widest};
@@ -137,7 +137,7 @@ mod tests {
     use super::super::TapeBuilder;
     use super::super::testing::tape;
     use super::*;
-    use sistership_model::formula::parse;
+    use sistership_formula::parse;
 
     #[test]
     fn shared_subexpressions_and_constants_cost_one_operation() {
@@ -159,7 +159,8 @@ mod tests {
     #[test]
     fn wide_instructions_round_as_plain_ones() {
         let tape = tape(
-            "if(u > v, sqrt(u^2 + v^2), atan2(v, u))*exp(-v)/(u*v + 3) - abs(u)^2.5 + tanh(u)*max(u, v)",
+            "if(u > v, sqrt(u^2 + v^2), atan2(v, u))*exp(-v)/(u*v + 3) - abs(u)^2.5 + \
+             tanh(u)*max(u, v)",
         );
         let lane = |from: f64| std::array::from_fn::<f64, 8, _>(|k| from + 0.37 * k as f64);
         let inputs = [lane(-1.1), lane(-0.8)];
@@ -174,7 +175,7 @@ mod tests {
         let mut builder = TapeBuilder::new(&["u", "v"], |_| None);
         builder
             .output(
-                &sistership_model::formula::parse_condition("u*v < 1")
+                &sistership_formula::parse_condition("u*v < 1")
                     .unwrap()
                     .times(parse("u^2").unwrap()),
             )

@@ -90,7 +90,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::super::{Slots, TapeBuilder};
     use super::*;
-    use sistership_model::formula::parse;
+    use sistership_formula::parse;
 
     /// As a tape, and with every operation by itself.
     fn both(texts: &[&str]) -> [Tape; 2] {

@@ -39,7 +39,7 @@ impl Listing {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::super::TapeBuilder;
-    use sistership_model::formula::parse;
+    use sistership_formula::parse;
 
     #[test]
     fn what_is_done_ahead_changes_nothing() {

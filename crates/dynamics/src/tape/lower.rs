@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use sistership_model::formula::{Comparison, Expr, Function, builtin};
+use sistership_formula::{Comparison, Expr, Function, builtin};
 
 use super::listing::Listing;
 use super::{Op, Slot, Tape};

@@ -1,6 +1,6 @@
 //! One operation of the tape.
 
-use sistership_model::formula::{Comparison, Function};
+use sistership_formula::{Comparison, Function};
 
 /// Index of an operation's result.
 pub type Slot = u32;

@@ -1,6 +1,6 @@
 //! Derivatives along a tape that has been evaluated: in several directions at once, forwards.
 
-use sistership_model::formula::Function;
+use sistership_formula::Function;
 
 use super::eval::{each, zip};
 use super::{Instruction, Lanes, Op, Slot, Slots, Tape};

@@ -1,7 +1,7 @@
 //! Tapes for tests.
 #![allow(clippy::unwrap_used)]
 
-use sistership_model::formula::parse;
+use sistership_formula::parse;
 
 use super::{Tape, TapeBuilder};
 

@@ -79,7 +79,9 @@ fn held_out(
 ) -> Result<HeldOut, RefineError> {
     if problem.judged.is_empty() {
         let how = if problem.training.len() == 1 {
-            "nothing could be left out of a single trial: these are errors on the trial that was fitted".to_owned()
+            "nothing could be left out of a single trial: these are errors on the trial that was \
+             fitted"
+                .to_owned()
         } else {
             let what = match problem.whole.len() {
                 whole if whole == problem.training.len() => format!("{whole} trials"),
@@ -135,7 +137,8 @@ fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
     let strongest =
         problem.settings.ranges.iter().map(|range| range.lambda_max).fold(0.0, f64::max);
     if lambdas.iter().any(|lambda| *lambda > SELECTION.strongest_share * strongest) {
-        let what = "an acceleration took the strongest prior allowed: its coefficients are the source's, scaled as a whole by 1 - alpha";
+        let what = "an acceleration took the strongest prior allowed: its coefficients are the \
+            source's, scaled as a whole by 1 - alpha";
         remarks.push(format!("{what}, and their standard errors say nothing"));
     }
     remarks.extend(problem.measure.words(&problem.transferred, problem.law));
@@ -164,5 +167,6 @@ fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
 }
 
 /// What a search leaves out.
-const SEARCHED: &str = "a search gives no standard errors and no confidence bands; its fits with trials left out start at the \
-     optimum for all of them, so that errors on trials left out are somewhat too small unless the budget is large";
+const SEARCHED: &str = "a search gives no standard errors and no confidence bands; its fits with \
+     trials left out start at the optimum for all of them, so that errors on trials left out are \
+     somewhat too small unless the budget is large";

@@ -71,8 +71,8 @@ impl PriorMeasure {
         match self {
             Self::Trials => None,
             Self::Envelope(_) => Some(
-                "few trials of a ship that rolls: they were left out part by part, and the prior measures each term by its size \
-                 in the source's standard manoeuvres too"
+                "few trials of a ship that rolls: they were left out part by part, and the prior \
+                 measures each term by its size in the source's standard manoeuvres too"
                     .to_owned(),
             ),
             Self::Mixture(envelope) => envelope.mixed.clone(),
@@ -80,7 +80,13 @@ impl PriorMeasure {
                 let blocks = Blocks::new(model, law).ok()?;
                 let regression = SourceRegression::new(envelope, &blocks, model).ok()?;
                 let words = regression.words(&blocks, &law.name);
-                Some([words].into_iter().chain(envelope.mixed.clone()).collect::<Vec<_>>().join("; "))
+                Some(
+                    [words]
+                        .into_iter()
+                        .chain(envelope.mixed.clone())
+                        .collect::<Vec<_>>()
+                        .join("; "),
+                )
             }
         }
     }

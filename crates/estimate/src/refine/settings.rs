@@ -183,8 +183,8 @@ pub struct Settings {
     /// it; else it is the source's, scaled. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub steering_from_trials: bool,
-    /// That rate is taken over as long a time as the noise of the rudder's readings asks for, not by
-    /// the ship's length alone. The default search sets it.
+    /// That rate is taken over as long a time as the noise of the rudder's readings asks for, not
+    /// by the ship's length alone. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub steering_above_noise: bool,
     /// Terms of an input that no trial records, such as the wind, are left out where the source has
@@ -195,8 +195,8 @@ pub struct Settings {
     /// is wider than the noise of the readings makes it. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub posterior_by_folds: bool,
-    /// That width is taken by the normal's quantile, not by Student's: it is a mean over the figures
-    /// of all standard manoeuvres. The default search sets it.
+    /// That width is taken by the normal's quantile, not by Student's: it is a mean over the
+    /// figures of all standard manoeuvres. The default search sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub folds_pooled: bool,
     /// The noise model of what the trials leave open is learned on whole trials of about so many

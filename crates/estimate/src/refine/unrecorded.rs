@@ -8,8 +8,8 @@
 
 use std::collections::BTreeSet;
 
+use sistership_formula::Expr;
 use sistership_model::effect::input_channel;
-use sistership_model::formula::Expr;
 use sistership_model::law::Law;
 use sistership_model::{Model, Trial};
 

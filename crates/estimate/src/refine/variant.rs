@@ -224,7 +224,8 @@ fn moments(
     let least = if problem.measure.is_source() { 1.0 } else { equations.least_samples(widest) };
     if samples < least {
         let message = format!(
-            "{samples:.0} samples are too few for {widest} coefficients an axis; give at least {least}"
+            "{samples:.0} samples are too few for {widest} coefficients an axis; give at least \
+             {least}"
         );
         return Err(RefineError::Data(message));
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use sistership_dynamics::tape::{Instruction, Op, Slot};
-use sistership_model::formula::{Comparison, Function};
+use sistership_formula::{Comparison, Function};
 
 use super::variables::{self, FIRST_OUTSIDE, FIRST_STATE};
 use crate::plan::{Operand, Plan};

@@ -18,8 +18,8 @@ pub fn description(plan: &Plan) -> String {
     let can = "canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\"";
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
-         <fmiModelDescription fmiVersion=\"3.0\" modelName=\"{name}\" instantiationToken=\"{token}\"\n  \
-         description=\"{summary}\"\n  \
+         <fmiModelDescription fmiVersion=\"3.0\" modelName=\"{name}\" \
+         instantiationToken=\"{token}\"\n  description=\"{summary}\"\n  \
          generationTool=\"sistership {tool}\" variableNamingConvention=\"flat\">\n  \
          <ModelExchange modelIdentifier=\"{model}\" {can}/>\n  \
          <CoSimulation modelIdentifier=\"{model}\" canHandleVariableCommunicationStepSize=\"true\" \
@@ -54,7 +54,8 @@ fn variable(variable: &Variable, all: &[Variable]) -> String {
     let derivative =
         of.map_or(String::new(), |state| format!(" derivative=\"{}\"", state.reference));
     format!(
-        "    <Float64 name=\"{}\" valueReference=\"{}\" description=\"{}\" {kind}{}{derivative}/>\n",
+        "    <Float64 name=\"{}\" valueReference=\"{}\" description=\"{}\" \
+         {kind}{}{derivative}/>\n",
         variable.name,
         variable.reference,
         escaped(&variable.description),

@@ -43,7 +43,7 @@ pub fn documentation(plan: &Plan) -> String {
     let lines: String = header::lines(plan).iter().map(|line| escaped(line) + "\n").collect();
     let name = escaped(&plan.name);
     format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{name}</title></head>\n\
-         <body><h1>{name}</h1>\n<pre>\n{lines}</pre></body></html>\n"
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta \
+         charset=\"utf-8\"><title>{name}</title></head>\n<body><h1>{name}</h1>\n<pre>\n{lines}</pre></body></html>\n"
     )
 }

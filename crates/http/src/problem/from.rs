@@ -55,7 +55,8 @@ impl From<Vec<Refusal>> for Problem {
     fn from(refusals: Vec<Refusal>) -> Self {
         let names: Vec<&str> = refusals.iter().map(|refusal| refusal.file.as_str()).collect();
         let detail = format!(
-            "nothing was kept, because of {}: see `errors`, mend the files and upload all of them again",
+            "nothing was kept, because of {}: see `errors`, mend the files and upload all of them \
+             again",
             names.join(", ")
         );
         let errors = refusals.iter().flat_map(|refusal| {

@@ -124,7 +124,8 @@ impl Problem {
     /// There is no space left where it would be kept.
     pub fn no_room(reason: impl std::fmt::Display) -> Self {
         tracing::error!(%reason, "no room");
-        let detail = "there is no room left where the server keeps this; nothing was kept. Reading goes on; make room and send it again";
+        let detail = "there is no room left where the server keeps this; nothing was kept. Reading \
+            goes on; make room and send it again";
         Self::new(StatusCode::INSUFFICIENT_STORAGE, detail)
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use sistership_store::Spool;
+use crate::spool::Spool;
 
 /// Where uploads lie until they have been read, and how large they may be.
 #[derive(Debug, Clone)]

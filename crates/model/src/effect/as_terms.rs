@@ -11,9 +11,9 @@ use super::dress::qualified;
 use super::probe::{Probe, SEEDS};
 use crate::Model;
 use crate::coefficient::Axis;
-use crate::formula::Expr;
 use crate::law::{Dressing, Law};
 use crate::quantity::Quantity;
+use sistership_formula::Expr;
 
 /// A model and its law with the parameters of all its effects among the coefficients.
 #[derive(Debug, Clone)]

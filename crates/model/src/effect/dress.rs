@@ -2,10 +2,10 @@
 //! one.
 
 use super::form::Form;
-use crate::formula::Expr;
 use crate::law::{Input, Law, Parameter, STATES};
 use crate::particulars::{self, Particulars};
 use crate::trial::Channel;
+use sistership_formula::Expr;
 
 /// The name of an effect's parameter (or value) in a dressed law.
 pub fn qualified(effect: &str, form: &str, name: &str) -> String {
@@ -117,7 +117,7 @@ impl Dresser<'_> {
             let input = self.input(&name);
             let channel = input_channel(&input);
             let dimension = if input == TIME {
-                Some(crate::units::Dimension::TIME)
+                Some(sistership_formula::units::Dimension::TIME)
             } else {
                 channel.map(Channel::dimension)
             };

@@ -45,7 +45,8 @@ pub struct PriorOddsFile {
     /// In all forms together.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub odds: f64,
-    /// The same where trials record the cause, such as the wind: for forms that need such a channel.
+    /// The same where trials record the cause, such as the wind: for forms that need such a
+    /// channel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub odds_where_recorded: Option<f64>,
@@ -90,8 +91,8 @@ pub struct FormFile {
     /// Whether the form is meant only for laws without roll.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub only_without_roll: bool,
-    /// How far one author's form of it is from another's: root mean square of the difference by that
-    /// of the response, where the sizes suit each other best. Where absent, a few per cent.
+    /// How far one author's form of it is from another's: root mean square of the difference by
+    /// that of the response, where the sizes suit each other best. Where absent, a few per cent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1), extend("exclusiveMinimum" = 0))]
     pub misfit: Option<f64>,

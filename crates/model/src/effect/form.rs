@@ -6,9 +6,9 @@ use indexmap::IndexMap;
 
 use super::file::{FormFile, Mirror};
 use crate::coefficient::Axis;
-use crate::formula::Expr;
 use crate::trial::Channel;
-use crate::units::Dimension;
+use sistership_formula::Expr;
+use sistership_formula::units::Dimension;
 
 /// One form of an effect, read and checked. Formulas mention states, inputs, particulars, the
 /// form's parameters and values by their plain names.

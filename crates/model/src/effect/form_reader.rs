@@ -7,12 +7,12 @@ use super::form::{EffectParameter, Form, Report};
 use super::scope::{Refusal, Scope};
 use super::{names, symmetry};
 use crate::coefficient::Axis;
-use crate::formula::Expr;
 use crate::law::limits::{Depths, most};
 use crate::law::{acceleration_dimension, axis_dimension};
 use crate::particulars;
 use crate::trial::Channel;
-use crate::units::{Dimension, Unit};
+use sistership_formula::Expr;
+use sistership_formula::units::{Dimension, Unit};
 
 /// Endings of reported names: dimension of the formula, and what converts its value from SI and
 /// radians.

@@ -11,11 +11,11 @@ use super::scope::{Refusal, Scope};
 use super::symmetry;
 use super::term::{Factor, Term};
 use crate::coefficient::{Axis, STANDARD_FACTORS};
-use crate::formula::Expr;
 use crate::law::axis_dimension;
 use crate::law::limits::most;
 use crate::trial::Channel;
-use crate::units::Dimension;
+use sistership_formula::Expr;
+use sistership_formula::units::Dimension;
 
 /// Most factors of a grammar: to the fourth order they make some 5000 terms.
 const MOST_FACTORS: usize = 16;
@@ -143,7 +143,8 @@ fn ordered(file: &GrammarFile, formulas: &IndexMap<String, Expr>) -> Result<Vec<
     for (symbol, formula) in formulas {
         let is = |odd| symmetry::has_parity(&IndexMap::new(), &IndexMap::new(), formula, odd);
         if is(true) == is(false) {
-            let message = "breaks the port/starboard symmetry: mirrored it should stay as it is, or change its sign";
+            let message = "breaks the port/starboard symmetry: mirrored it should stay as it is, \
+                or change its sign";
             return Err((format!("factors.{symbol}"), message.into()));
         }
         let (text, absolute) = (file.factors[symbol].clone(), file.absolute.contains(symbol));

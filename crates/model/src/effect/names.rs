@@ -1,10 +1,10 @@
 //! What formulas of effects may mention, and with what dimension.
 
-use crate::formula;
 use crate::law::STATES;
 use crate::particulars;
 use crate::trial::Channel;
-use crate::units::Dimension;
+use sistership_formula as formula;
+use sistership_formula::units::Dimension;
 
 /// The speed at which the model's trials approach, which belongs to the model and not to the ship.
 pub const APPROACH_SPEED: &str = "approach_speed_m_s";

@@ -8,7 +8,7 @@ use indexmap::IndexMap;
 
 use super::file::Mirror;
 use super::form::EffectParameter;
-use crate::formula::{self, Expr};
+use sistership_formula::{self as formula, Expr};
 
 /// What changes its sign in the mirror.
 const ODD: [&str; 15] = [

@@ -7,9 +7,9 @@ use std::fmt::Display;
 use indexmap::IndexMap;
 
 use super::names;
-use crate::formula::{self, Expr};
 use crate::trial::Channel;
-use crate::units::Dimension;
+use sistership_formula::units::Dimension;
+use sistership_formula::{self as formula, Expr};
 
 /// A field at fault and why.
 pub type Refusal = (String, String);

@@ -6,7 +6,7 @@ use indexmap::IndexMap;
 
 use super::form::{EffectParameter, Form};
 use super::probe::{Probe, SEEDS, is_odd};
-use crate::formula::Expr;
+use sistership_formula::Expr;
 
 /// A formula that acts: its field, whether it is odd in the mirror, and what it is while the effect
 /// is absent.
@@ -100,7 +100,8 @@ fn probe(form: &Form, seed: u32, absent: bool) -> Probe<'_> {
 pub fn broken(odd: bool) -> String {
     let wanted = if odd { "change its sign" } else { "stay as it is" };
     format!(
-        "breaks the port/starboard symmetry: mirrored (v, r, p, phi, psi, delta and `mirror: opposite`) it should {wanted}"
+        "breaks the port/starboard symmetry: mirrored (v, r, p, phi, psi, delta and `mirror: \
+         opposite`) it should {wanted}"
     )
 }
 

@@ -7,8 +7,8 @@ use indexmap::IndexMap;
 use super::file::{EffectParameterFile, FormFile, GrammarFile, Mirror, PriorFile};
 use super::names;
 use crate::coefficient::Axis;
-use crate::formula::{self, Expr};
 use crate::trial::Channel;
+use sistership_formula::{self as formula, Expr};
 
 /// What a factor of a coefficient's name stands for.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,8 @@ use crate::coefficient::STANDARD_FACTORS;
 use crate::law::STATES;
 use crate::law::limits::most;
 use crate::name::check_slug;
-use crate::{formula, particulars};
+use crate::particulars;
+use sistership_formula as formula;
 
 /// Most terms that an expansion may have.
 const MOST_TERMS: usize = 5000;
@@ -48,7 +49,11 @@ pub fn check(file: &HybridFile) -> Result<(), Fault> {
 fn check_name(name: &str) -> Result<(), String> {
     let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
     if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(letters) {
-        return Err("an actuator's name is made of letters, digits and underscores and starts with a letter".into());
+        return Err(
+            "an actuator's name is made of letters, digits and underscores and starts with \
+            a letter"
+                .into(),
+        );
     }
     let state = STATES.iter().any(|(state, _)| *state == name);
     let known = state
@@ -160,7 +165,8 @@ fn check_size(file: &HybridFile, variables: usize) -> Result<(), Fault> {
         .fold(1, |product, i| product * (variables + file.order as usize - i) / (i + 1));
     if terms > MOST_TERMS {
         let message = format!(
-            "{variables} variables to order {} make {terms} terms on an axis; {MOST_TERMS} are the most",
+            "{variables} variables to order {} make {terms} terms on an axis; {MOST_TERMS} are the \
+             most",
             file.order
         );
         return Err(("order".into(), message));

@@ -51,8 +51,9 @@ impl Writer<'_> {
     }
 
     fn sources(&self) -> BTreeMap<String, Source> {
-        let citation = "Miyauchi, Y., Akimoto, Y. and Maki, A. (2024). Development of a mathematical model for harbor maneuvers \
-                        to realize modeling automation. J Mar Sci Technol 29, 975-999, sec. 2.2";
+        let citation = "Miyauchi, Y., Akimoto, Y. and Maki, A. (2024). Development of a \
+                        mathematical model for harbor maneuvers to realize modeling automation. J \
+                        Mar Sci Technol 29, 975-999, sec. 2.2";
         let hybrid = Source { citation: citation.into(), doi: None, note: None };
         let mut sources = self.file.sources.clone();
         sources.entry("miyauchi-2024".into()).or_insert(hybrid);

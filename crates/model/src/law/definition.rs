@@ -9,11 +9,11 @@ use super::dimension::{STATES, axis_dimension};
 use super::dressing::Dressing;
 use super::error::TermError;
 use crate::coefficient::{Axis, CoefficientName, split_submodel};
-use crate::formula::Expr;
 use crate::particulars;
 use crate::quantity::Quantity;
 use crate::source::Source;
-use crate::units::Dimension;
+use sistership_formula::Expr;
+use sistership_formula::units::Dimension;
 
 /// A law, read and checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -183,7 +183,7 @@ impl Law {
             })?;
             let of = of.clone();
             let of = if factor.absolute {
-                Expr::Call(crate::formula::Function::Abs, vec![of])
+                Expr::Call(sistership_formula::Function::Abs, vec![of])
             } else {
                 of
             };
@@ -207,7 +207,8 @@ impl Law {
     /// As [`Law::regressor`].
     pub fn coefficient_dimension(&self, name: &str) -> Result<Dimension, TermError> {
         let (axis, regressor) = self.regressor(name)?;
-        Ok(axis_dimension(axis) - crate::formula::dimension_of(&regressor, &|n| self.dimension(n))?)
+        Ok(axis_dimension(axis)
+            - sistership_formula::dimension_of(&regressor, &|n| self.dimension(n))?)
     }
 
     /// The dimension of any name that a formula of this law may mention.
@@ -215,7 +216,7 @@ impl Law {
         let state =
             STATES.iter().find(|(state, _)| *state == name).map(|&(_, dimension)| dimension);
         state
-            .or_else(|| crate::formula::builtin(name).map(|(_, dimension)| dimension))
+            .or_else(|| sistership_formula::builtin(name).map(|(_, dimension)| dimension))
             .or_else(|| self.inputs.get(name).map(|input| input.dimension))
             .or_else(|| self.parameters.get(name).map(|parameter| parameter.dimension))
             .or_else(|| self.value_dimensions.get(name).copied())
@@ -224,7 +225,7 @@ impl Law {
 
     /// Adds a value that needs only earlier ones.
     pub fn add_value(&mut self, name: String, expr: Expr) {
-        if let Ok(dimension) = crate::formula::dimension_of(&expr, &|n| self.dimension(n)) {
+        if let Ok(dimension) = sistership_formula::dimension_of(&expr, &|n| self.dimension(n)) {
             self.value_dimensions.insert(name.clone(), dimension);
         }
         self.values.insert(name, expr);

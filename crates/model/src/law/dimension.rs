@@ -1,7 +1,7 @@
 //! Dimensions of states, of what acts on an axis and of what that causes.
 
 use crate::coefficient::Axis;
-use crate::units::Dimension;
+use sistership_formula::units::Dimension;
 
 /// The states that formulas may use, with their dimensions.
 pub const STATES: [(&str, Dimension); 6] = [

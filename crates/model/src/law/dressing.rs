@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::coefficient::Axis;
-use crate::formula::Expr;
 use crate::trial::Channel;
+use sistership_formula::Expr;
 
 /// What effects add to a law, beside the formulas of its own that they change.
 #[derive(Debug, Clone, PartialEq, Default)]

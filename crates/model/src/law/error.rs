@@ -1,7 +1,7 @@
 //! Why a law has no term for a coefficient.
 
 use crate::coefficient::{Axis, NameError};
-use crate::formula::FormulaError;
+use sistership_formula::FormulaError;
 
 /// Why a law has no term for a coefficient.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use super::definition::Law;
 use super::file::LawFile;
-use crate::formula::{Expr, MAX_DEPTH};
+use sistership_formula::{Expr, MAX_DEPTH};
 
 /// Terms of all axes; with the deviations of submodels, see [`MAX_COEFFICIENTS`]. The largest law
 /// of the zoo has 189, and none more than 189 coefficients.

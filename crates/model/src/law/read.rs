@@ -12,10 +12,10 @@ use super::submodel::read_submodels;
 use super::{limits, symmetry};
 use crate::coefficient::{Axis, CoefficientName};
 use crate::error::{Blame, FileError};
-use crate::formula::{self, Expr};
 use crate::name::check_slug;
 use crate::particulars;
-use crate::units::{Dimension, Unit};
+use sistership_formula::units::{Dimension, Unit};
+use sistership_formula::{self as formula, Expr};
 
 impl Law {
     /// Reads and checks a law; `file` is the name that errors give it.

@@ -10,8 +10,8 @@ use indexmap::IndexMap;
 use super::definition::{AxisLaw, Law, Submodel, indicator};
 use super::file::SubmodelFile;
 use crate::coefficient::split_submodel;
-use crate::formula::{self, Expr};
 use crate::name::check_slug;
+use sistership_formula::{self as formula, Expr};
 
 /// Reads submodels into `law`, whose inputs, parameters and values are there already.
 pub fn read_submodels(

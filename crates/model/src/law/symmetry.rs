@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::definition::{Law, indicator};
 use crate::coefficient::{Axis, CoefficientName};
-use crate::formula::Expr;
+use sistership_formula::Expr;
 
 /// States and inputs that change sign in the mirror.
 const ODD: [&str; 6] = ["v", "r", "p", "phi", "psi", "delta"];
@@ -88,7 +88,8 @@ fn check_parity(
     }
     let wanted = if odd { "change its sign" } else { "stay as it is" };
     let message = format!(
-        "breaks the port/starboard symmetry: mirrored (v, r, p, phi, delta with other signs) it should {wanted}"
+        "breaks the port/starboard symmetry: mirrored (v, r, p, phi, delta with other signs) it \
+         should {wanted}"
     );
     Err((field.to_owned(), message))
 }
@@ -211,7 +212,7 @@ impl<'a> Places<'a> {
 /// Any number will do for particulars and parameters, as long as different names have different
 /// ones.
 fn stand_in(law: &Law, name: &str, mirrored: bool) -> f64 {
-    if let Some((value, _)) = crate::formula::builtin(name) {
+    if let Some((value, _)) = sistership_formula::builtin(name) {
         return value;
     }
     let twin = if mirrored { twin(law, name) } else { None };

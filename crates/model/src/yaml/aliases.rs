@@ -10,7 +10,7 @@ pub fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
         marks.iter().filter(|(at, _)| bytes[*at] == b'&').map(|(_, name)| *name).collect();
     let alias = marks.iter().find(|(at, name)| bytes[*at] == b'*' && anchors.contains(name));
     if let Some((at, name)) = alias {
-        let name = crate::formula::head(&String::from_utf8_lossy(name));
+        let name = sistership_formula::head(&String::from_utf8_lossy(name));
         return Err((*at, format!("`*{name}` is an alias: write out what `&{name}` stands for")));
     }
     match (0..bytes.len()).find(|&at| begins_line(bytes, at) && bytes[at..].starts_with(b"%TAG")) {

@@ -35,7 +35,8 @@ pub fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
             return Err((
                 at,
                 format!(
-                    "brackets nest too deep or are not closed: {MAX_PASSES} are the most in a long document"
+                    "brackets nest too deep or are not closed: {MAX_PASSES} are the most in a long \
+                     document"
                 ),
             ));
         };

@@ -266,7 +266,8 @@ async fn served(mut stream: TcpStream, url: String, told: Arc<Mutex<Told>>) -> s
         let (status, answer) =
             told.lock().expect("a provider for tests").answer(&url, &path, &head, body);
         let answer = format!(
-            "HTTP/1.1 {status} x\r\nContent-Type: application/json\r\nContent-Length: {}\r\nConnection: close\r\n\r\n{answer}",
+            "HTTP/1.1 {status} x\r\nContent-Type: application/json\r\nContent-Length: \
+             {}\r\nConnection: close\r\n\r\n{answer}",
             answer.len()
         );
         return stream.write_all(answer.as_bytes()).await;

@@ -34,8 +34,8 @@ pub(super) fn sailed(ship: &mut Ship, orders: &Orders, most: usize) -> Result<Ru
     let mut notes = Vec::new();
     if let Some(outside) = ship.leaves(&track) {
         notes.push(format!(
-            "{:.0} % of this run lies outside what the model's trials covered, first after {:.0} s, \
-             by {}.",
+            "{:.0} % of this run lies outside what the model's trials covered, first after {:.0} \
+             s, by {}.",
             100.0 * outside.share,
             outside.first_s,
             outside.along

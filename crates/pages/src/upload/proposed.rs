@@ -50,8 +50,8 @@ pub struct Proposed {
 }
 
 impl Proposed {
-    /// Whether the manifest maps the columns of a file: of the first, which the other trials share, and
-    /// of further sensors.
+    /// Whether the manifest maps the columns of a file: of the first, which the other trials share,
+    /// and of further sensors.
     pub(super) fn is_mapped(&self, file: &str) -> bool {
         let first = self.manifest.manifest.trials.first();
         let sensors = self.manifest.sensors.iter().flatten();

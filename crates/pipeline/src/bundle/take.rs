@@ -1,7 +1,7 @@
 //! From a bundle into an archive.
 //!
-//! Everything is looked at before anything is written. Rows are only added, and one that is there is
-//! left as it is, so that a bundle whose taking was interrupted is taken again.
+//! Everything is looked at before anything is written. Rows are only added, and one that is there
+//! is left as it is, so that a bundle whose taking was interrupted is taken again.
 
 use serde::Serialize;
 use sistership_model::version::sha256;

@@ -76,7 +76,8 @@ impl Frames<'_> {
         {
             let (own, family) = (&model.name, &self.model.name);
             let message = format!(
-                "`{own}` does not have the law and coefficients of the foundation `{family}`; start at the foundation"
+                "`{own}` does not have the law and coefficients of the foundation `{family}`; \
+                 start at the foundation"
             );
             return Err(DeriveError::Lost(message));
         }

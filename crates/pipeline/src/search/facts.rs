@@ -68,7 +68,8 @@ async fn read(archive: &Archive, laws: &Zoo, waiting: Waiting) -> Result<Read, S
     let vessel = match vessel(&ship.name, &ship.document) {
         Ok(vessel) => vessel,
         Err(error) => {
-            tracing::error!(ship = %ship.name, %error, "a ship does not read and is found by name and category only");
+            tracing::error!(ship = %ship.name, %error, "a ship does not read and is found by name \
+                and category only");
             return Ok(nothing(waiting, ship.category));
         }
     };
@@ -101,7 +102,8 @@ async fn published(
     ship: &Ship,
 ) -> Result<(), StoreError> {
     if let Err(error) = publish(&archive.store, laws, vessel, &ship.document).await {
-        tracing::error!(ship = %ship.name, %error, "the published models of a ship could not be made versions");
+        tracing::error!(ship = %ship.name, %error, "the published models of a ship could not be \
+            made versions");
     }
     Ok(())
 }

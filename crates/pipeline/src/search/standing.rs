@@ -81,8 +81,8 @@ fn order(class: Class, error: Option<f64>) -> f64 {
     f64::from(class as u8) + WIDTH / (1.0 + error.unwrap_or(0.0).max(0.0))
 }
 
-/// The error of a refined model on manoeuvres left out, as its report has it: the mean squared error
-/// of what was simulated, by the variance of what was measured.
+/// The error of a refined model on manoeuvres left out, as its report has it: the mean squared
+/// error of what was simulated, by the variance of what was measured.
 pub fn error(version: &VersionDocument) -> Option<f64> {
     let options = version.report["options"].as_array()?;
     let chosen = options.iter().find(|step| step["chosen"] == Value::Bool(true))?;
@@ -111,7 +111,8 @@ pub(super) async fn facts(
 async fn left(archive: &Archive, champion: &VersionDocument) -> Vec<f64> {
     let left = left_of_newest(archive, champion, TRIALS).await;
     left.unwrap_or_else(|error| {
-        tracing::error!(ship = %champion.ship, %error, "what a champion leaves of trials is not known");
+        tracing::error!(ship = %champion.ship, %error, "what a champion leaves of trials is not \
+            known");
         Vec::new()
     })
 }

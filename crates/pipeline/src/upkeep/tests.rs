@@ -219,7 +219,8 @@ const DELIVERY: &str =
 const CUT: &str = "DELETE FROM audit WHERE number = (SELECT MAX(number) FROM audit)";
 const FACT: &str = "INSERT INTO ship_facts VALUES ('nobody', 'particular lpp_m', 1)";
 const JOB: &str = "INSERT INTO jobs VALUES ('j', 'refinement', 'nobody', '{}', 'succeeded', 1, '', \
-    '{\"model\": \"mariner\", \"version\": 1, \"sha256\": \"x\", \"report\": \"none\"}', NULL, 1, 1, 5, NULL, 0, 0, NULL, 0, 0, NULL)";
+    '{\"model\": \"mariner\", \"version\": 1, \"sha256\": \"x\", \"report\": \"none\"}', NULL, 1, \
+    1, 5, NULL, 0, 0, NULL, 0, 0, NULL)";
 
 #[tokio::test(flavor = "multi_thread")]
 async fn each_damage_to_rows_is_named_on_sqlite() {
@@ -322,9 +323,11 @@ async fn a_source_that_has_changed_is_named() {
     let mariner = archive.store.versions().get("mariner", 1).await.unwrap();
     let mut document: serde_json::Value = serde_json::from_str(&mariner.document).unwrap();
     let recipe = &document["recipe"];
-    document["recipe"] = json!({ "kind": "refinement", "source": { "ship": "mariner", "number": 1, "sha256": "00" },
+    document["recipe"] = json!({ "kind": "refinement",
+        "source": { "ship": "mariner", "number": 1, "sha256": "00" },
         "ship_sha256": recipe["ship_sha256"], "law_sha256": recipe["law_sha256"],
-        "trials": [{ "name": "gone.csv", "sha256": sha256_hex(b"gone") }], "settings": {}, "code_revision": "1" });
+        "trials": [{ "name": "gone.csv", "sha256": sha256_hex(b"gone") }], "settings": {},
+        "code_revision": "1" });
     let new = sistership_store::NewVersion {
         model: "mariner".into(),
         parent: None,

@@ -65,8 +65,8 @@ impl SessionRequest {
         let none = || {
             PredictError::invalid(
                 "draws",
-                "the model has no posterior to draw from; only a refined one whose coefficients are \
-                 those that were estimated has one",
+                "the model has no posterior to draw from; only a refined one whose coefficients \
+                 are those that were estimated has one",
             )
         };
         let drawn = draws(model, Sampling { samples, seed, ..Sampling::default() });

@@ -182,7 +182,8 @@ fn orders_of_any_size_never_end_in_something_else_than_an_answer() {
         let ship = vessel.name();
         let mut session = session(&of(ship), json!({})).unwrap();
         for n_rps in [0.0, -1e3, 1e150, -1e300] {
-            let asked = json!({ "orders": { "delta_rad": n_rps, "n_rps": n_rps }, "dt_s": 60.0, "steps": 5 });
+            let asked = json!({ "orders": { "delta_rad": n_rps, "n_rps": n_rps }, "dt_s": 60.0,
+                "steps": 5 });
             let answer = session.sail(&steps(asked), MOST).unwrap();
             assert!(serde_json::to_string(&answer).unwrap().len() > 10, "{ship}");
         }
@@ -190,8 +191,8 @@ fn orders_of_any_size_never_end_in_something_else_than_an_answer() {
 }
 
 /// Issue 22: one step under 0.2 ms of server time. The least of many, as this machine has others to
-/// serve; reading the request and writing the answer are in it. This crate is not optimised in tests;
-/// decision 25 has the figures with more draws.
+/// serve; reading the request and writing the answer are in it. This crate is not optimised in
+/// tests; decision 25 has the figures with more draws.
 #[test]
 fn a_step_takes_less_than_a_fifth_of_a_millisecond() {
     let asked = br#"{ "orders": { "delta_rad": 0.3, "n_rps": 1.2 }, "dt_s": 0.1 }"#;

@@ -171,7 +171,8 @@ pub(crate) fn confounded(found: &Found) -> Table {
 pub(crate) fn next_trial(next: &NextTrial) -> String {
     let names: Vec<String> = next.separates.iter().map(|name| name.replace('-', " ")).collect();
     format!(
-        "Sail a {} at {} m/s ({} kn) on a heading of {:.0} deg. It is expected to tell {} apart (by {} in the logarithm of the evidence).",
+        "Sail a {} at {} m/s ({} kn) on a heading of {:.0} deg. It is expected to tell {} apart \
+         (by {} in the logarithm of the evidence).",
         next.manoeuvre,
         significant(next.speed_m_s, 3),
         fixed(next.speed_m_s / KNOT_M_S, 1),

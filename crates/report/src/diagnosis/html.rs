@@ -186,7 +186,8 @@ fn caption(replayed: &ReplayedTrial<'_>) -> String {
     let errors: Vec<String> = words::CHANNELS.iter().filter(wanted).filter_map(error).collect();
     let dots = stated(plots::mark_interval_s(shown.duration_s), 3);
     format!(
-        "Outlines of the ship (dots where they would be too small to see) every {dots} s. RMS error over the whole run, before → after: {}.",
+        "Outlines of the ship (dots where they would be too small to see) every {dots} s. RMS \
+         error over the whole run, before → after: {}.",
         list(&errors)
     )
 }

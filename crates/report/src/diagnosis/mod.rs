@@ -1,9 +1,9 @@
 //! The report of a diagnosis: one HTML page that a stranger can read and print, and the diagnosis
 //! as JSON.
 //!
-//! [`render_diagnosis`] says in one sentence what was found (`sentence`), in two more what to do and
-//! what could not be told (`summary`), puts the figures into tables (`evidence`, `errors`, `limits`,
-//! `remaining`, `provenance`) and simulates the trials with the model
+//! [`render_diagnosis`] says in one sentence what was found (`sentence`), in two more what to do
+//! and what could not be told (`summary`), puts the figures into tables (`evidence`, `errors`,
+//! `limits`, `remaining`, `provenance`) and simulates the trials with the model
 //! before and after (`replays`) for the plots. Nothing depends on the clock.
 
 mod distinct;

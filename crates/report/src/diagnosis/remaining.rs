@@ -81,7 +81,8 @@ pub(crate) fn coefficients(before: &Model, after: &Model) -> Option<Table> {
 const MEANINGS: [(&str, &str); 6] = [
     (
         "restart_s",
-        "simulations that judge start anew from the measured state every so often, s; by default ten times L/U",
+        "simulations that judge start anew from the measured state every so often, s; by default \
+         ten times L/U",
     ),
     (
         "least_step_s",
@@ -89,7 +90,8 @@ const MEANINGS: [(&str, &str); 6] = [
     ),
     (
         "slack",
-        "how far a published coefficient may be from the truth, as a share of its value, where the model does not say",
+        "how far a published coefficient may be from the truth, as a share of its value, where the \
+         model does not say",
     ),
     ("least_evidence", "least evidence for an effect to be named"),
     ("most_effects", "most effects that are named together"),

@@ -20,7 +20,8 @@ fn advice(diagnosis: &Diagnosis) -> String {
                 .into()
         }
         (None, Verdict::Effects) if diagnosis.model.is_some() => {
-            "Use the model with what was found: it simulates trials better that its fit had not seen."
+            "Use the model with what was found: it simulates trials better that its fit had not \
+             seen."
                 .into()
         }
         (None, Verdict::Effects) => {

@@ -23,7 +23,8 @@ impl Hull {
         Some(Self { lpp_m: known("lpp_m")?, beam_m: known("beam_m")? })
     }
 
-    /// The corners of the outline at a place `(north, east)` and heading, m: clockwise from the bow.
+    /// The corners of the outline at a place `(north, east)` and heading, m: clockwise from the
+    /// bow.
     pub fn outline(&self, (north, east): (f64, f64), psi_rad: f64) -> Vec<(f64, f64)> {
         let (sin, cos) = psi_rad.sin_cos();
         let starboard = HALF.iter().map(|&(x, y)| (x, y));

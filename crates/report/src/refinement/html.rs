@@ -157,7 +157,8 @@ fn caption(shown: &ReplaySummary<'_>) -> String {
     let dots = stated(plots::mark_interval_s(shown.duration_s), 3);
     let part = if shown.fitted { "was fitted with" } else { "has not seen" };
     format!(
-        "Outlines of the ship (dots where they would be too small to see) every {dots} s. The refined model {part} this trial. RMS error over the whole run, source → refined: {}.",
+        "Outlines of the ship (dots where they would be too small to see) every {dots} s. The \
+         refined model {part} this trial. RMS error over the whole run, source → refined: {}.",
         list(&errors)
     )
 }

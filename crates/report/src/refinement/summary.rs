@@ -88,7 +88,8 @@ const WITHOUT_SOURCE: &str = " No ship was the source: the comparison is with th
 
 fn verdict(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
     if input.is_source_kept() {
-        return "No refinement beat the source on manoeuvres left out: the source model is kept as it is.".into();
+        return "No refinement beat the source on manoeuvres left out: the source model is kept as \
+            it is.".into();
     }
     let phrases: Vec<String> =
         ["fell", "rose", "unchanged"].into_iter().filter_map(|word| phrase(errors, word)).collect();

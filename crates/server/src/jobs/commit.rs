@@ -69,7 +69,8 @@ impl Made {
             weights: None,
         };
         let ranking = prepared.start.similarity.as_ref().map(|similarity| &similarity.ranking);
-        let mut result = json!({ "source": source, "held_out": refined.refinement.held_out, "ranking": ranking });
+        let mut result = json!({ "source": source, "held_out": refined.refinement.held_out,
+            "ranking": ranking });
         if let Some(ladder) = &prepared.start.ladder {
             result["ladder"] = serde_json::to_value(ladder).map_err(failed)?;
         }

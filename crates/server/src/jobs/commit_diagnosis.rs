@@ -124,8 +124,10 @@ impl Made<'_> {
     fn result(&self, version: Option<&VersionHead>, report: &ReportHead) -> String {
         let diagnosis = &self.diagnosed.diagnosis;
         let mut result = json!({
-            "diagnosed": self.name(), "verdict": self.verdict(), "effects": self.effects(), "report": report.id,
-            "before": diagnosis.before, "after": diagnosis.after, "next_trial": diagnosis.next_trial,
+            "diagnosed": self.name(), "verdict": self.verdict(), "effects": self.effects(),
+            "report": report.id,
+            "before": diagnosis.before, "after": diagnosis.after,
+            "next_trial": diagnosis.next_trial,
         });
         if let Some(version) = version {
             result["model"] = json!(version.model);

@@ -15,7 +15,8 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
     let prior = learn(app.archive(), &asked.family, &told).await?;
     let document = serde_json::to_string(&prior).map_err(failed)?;
     let result = |kept: &sistership_store::FamilyPrior| {
-        json!({ "family": kept.family, "revision": kept.revision, "sha256": kept.sha256, "members": prior.members.len(),
+        json!({ "family": kept.family, "revision": kept.revision, "sha256": kept.sha256,
+            "members": prior.members.len(),
             "design_effect": prior.design_effect })
         .to_string()
     };

@@ -104,10 +104,10 @@ fn the_table_has_every_route() {
 /// The table as people read it.
 fn written() -> String {
     let mut text = "# Who may do what\n\nGenerated from `crates/server/src/rights/table.rs` by \
-        `UPDATE_RIGHTS=1 cargo test -p sistership-server --lib the_table_is_written_down`. Each role \
-        has the rights of those before it. A role may be given for the whole server, or for one ship \
-        or family; then it opens what the last column names. What is moved to the alias `champion` \
-        needs the role approver where a second person is asked for.\n\n\
+        `UPDATE_RIGHTS=1 cargo test -p sistership-server --lib the_table_is_written_down`. Each \
+        role has the rights of those before it. A role may be given for the whole server, or for \
+        one ship or family; then it opens what the last column names. What is moved to the alias \
+        `champion` needs the role approver where a second person is asked for.\n\n\
         | method | route | reader | engineer | approver | admin | given for |\n\
         | --- | --- | --- | --- | --- | --- | --- |\n"
         .to_owned();
@@ -202,7 +202,8 @@ async fn a_role_for_a_ship_goes_no_further(database: TestDatabase) {
     let family = json!({ "name": "tankers", "foundation": "kvlcc2/1", "members": ["kvlcc2"] });
     let (status, made) = harness.sends(OWNER, Method::POST, "/v1/families", &family).await;
     assert_eq!(status, StatusCode::CREATED, "{made}");
-    let roles = json!([{ "role": "engineer", "ship": "mariner" }, { "role": "reader", "family": "tankers" }]);
+    let roles = json!([{ "role": "engineer", "ship": "mariner" },
+        { "role": "reader", "family": "tankers" }]);
     let key = harness.key(&json!({ "title": "limited", "roles": roles })).await;
     let ask = async |method: Method, path: &str, body: Value| {
         let (status, problem) = harness.sends(&key, method, path, &body).await;

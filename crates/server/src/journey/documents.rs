@@ -16,9 +16,10 @@ fn around(open: &str, count: usize, close: &str) -> String {
 
 fn law(rest: &str, terms: &str) -> String {
     format!(
-        "kind: law\nname: tried\ntitle: tried\nsources: {{}}\nvalues: {{ U: '{rest}' }}\nfactors: {{ u: u, v: v, r: r }}\naxes:\n  \
-         X: {{ terms: [{terms}] }}\n  Y: {{ terms: [Y_v] }}\n  N: {{ terms: [N_r] }}\n\
-         mass: {{ X: {{ X: mass_kg }}, Y: {{ Y: mass_kg }}, N: {{ N: mass_kg*lpp_m^2 }} }}\n"
+        "kind: law\nname: tried\ntitle: tried\nsources: {{}}\nvalues: {{ U: '{rest}' }}\nfactors: \
+         {{ u: u, v: v, r: r }}\naxes:\n  X: {{ terms: [{terms}] }}\n  Y: {{ terms: [Y_v] }}\n  N: \
+         {{ terms: [N_r] }}\nmass: {{ X: {{ X: mass_kg }}, Y: {{ Y: mass_kg }}, N: {{ N: \
+         mass_kg*lpp_m^2 }} }}\n"
     )
 }
 
@@ -90,9 +91,11 @@ fn deep(terms: usize) -> String {
         .flat_map(|(n, a)| symbols[n..].iter().map(move |b| format!("X_{a}{b}")));
     let terms: Vec<String> = pairs.take(terms).collect();
     format!(
-        "kind: law\nname: deep\ntitle: deep\nsources: {{}}\nvalues: {{ a0: '1'{values} }}\nfactors: {{ u: u, v: v, r: r{factors} }}\n\
-         axes:\n  X: {{ terms: [{}], rest: 'a240*0.0*mass_kg*g' }}\n  Y: {{ terms: [Y_v, Y_r] }}\n  N: {{ terms: [N_v, N_r] }}\n\
-         mass: {{ X: {{ X: mass_kg }}, Y: {{ Y: mass_kg }}, N: {{ N: 0.06*mass_kg*lpp_m^2 }} }}\n",
+        "kind: law\nname: deep\ntitle: deep\nsources: {{}}\nvalues: {{ a0: '1'{values} \
+         }}\nfactors: {{ u: u, v: v, r: r{factors} }}\naxes:\n  X: {{ terms: [{}], rest: \
+         'a240*0.0*mass_kg*g' }}\n  Y: {{ terms: [Y_v, Y_r] }}\n  N: {{ terms: [N_v, N_r] \
+         }}\nmass: {{ X: {{ X: mass_kg }}, Y: {{ Y: mass_kg }}, N: {{ N: 0.06*mass_kg*lpp_m^2 }} \
+         }}\n",
         terms.join(", ")
     )
 }
@@ -121,7 +124,8 @@ async fn jobs_on_a_law_of(terms: usize) {
     let (status, said) = read(post.send().await.unwrap()).await;
     assert_eq!(status, 201, "{said}");
     for method in ["weak", "trajectory"] {
-        let asked = json!({ "ship": "demo-ship", "source": "auto", "law": "deep", "settings": { "method": method } });
+        let asked = json!({ "ship": "demo-ship", "source": "auto", "law": "deep",
+            "settings": { "method": method } });
         let (status, job) = harness.post("/v1/refinements", &asked).await;
         assert_eq!(status, 202, "{job}");
         let job = harness.follow(job["id"].as_str().unwrap()).await;

@@ -91,7 +91,8 @@ async fn ended_at(harness: &Harness, moment: Moment, request: RequestBuilder) {
 
 /// As when a minute has gone by.
 async fn later(harness: &Harness) {
-    let later = "UPDATE idempotency_keys SET created_us = created_us - 61000000, alive_us = NULL WHERE status IS NULL";
+    let later = "UPDATE idempotency_keys SET created_us = created_us - 61000000, alive_us = NULL \
+        WHERE status IS NULL";
     harness.database.damage(later).await;
 }
 

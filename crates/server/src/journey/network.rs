@@ -11,7 +11,8 @@ use tokio::net::TcpStream;
 use super::harness::{Harness, config};
 use crate::{Config, Server};
 
-const STALLED: &str = "POST /v1/ships HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 9000\r\n\r\n{";
+const STALLED: &str = "POST /v1/ships HTTP/1.1\r\nHost: localhost\r\nContent-Type: \
+    application/json\r\nContent-Length: 9000\r\n\r\n{";
 
 async fn harness(change: impl FnOnce(&mut Config)) -> Harness {
     let database = TestDatabase::sqlite();
@@ -75,7 +76,8 @@ async fn a_body_that_does_not_come_is_given_up_and_a_slow_one_is_not() {
 #[tokio::test]
 async fn who_sends_too_much_is_told_so() {
     let harness = harness(|_| ()).await;
-    let head = "POST /v1/laws HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/yaml\r\nConnection: close\r\n";
+    let head = "POST /v1/laws HTTP/1.1\r\nHost: localhost\r\nContent-Type: \
+        application/yaml\r\nConnection: close\r\n";
     for bytes in [2 << 20, 12 << 20] {
         let mut stream = harness.connect(&format!("{head}Content-Length: {bytes}\r\n\r\n")).await;
         stream.write_all(&vec![b'a'; bytes]).await.unwrap();
@@ -244,7 +246,8 @@ async fn requests_are_addressed_to_this_server_and_to_no_other() {
     let host = format!("Host: {}\r\n", harness.server.addr());
     let post = |headers: &str| {
         format!(
-            "POST /v1/refinements HTTP/1.1\r\nConnection: close\r\nContent-Length: 0\r\n{headers}\r\n"
+            "POST /v1/refinements HTTP/1.1\r\nConnection: close\r\nContent-Length: \
+             0\r\n{headers}\r\n"
         )
     };
     let get = |version: &str, headers: &str| {

@@ -47,7 +47,8 @@ async fn say(socket: &mut Socket, asked: &Value) {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_ship_sails_on_by_requests_and_by_a_stream() {
     let harness = Harness::on(TestDatabase::sqlite()).await;
-    let asked = json!({ "model": "mariner", "start": { "u_m_s": 7.0, "psi_rad": 1.0 }, "wind": { "speed_m_s": 5.0, "from_rad": 0.5 } });
+    let asked = json!({ "model": "mariner", "start": { "u_m_s": 7.0, "psi_rad": 1.0 },
+        "wind": { "speed_m_s": 5.0, "from_rad": 0.5 } });
     let (one, two) = (harness.under_way(&asked).await, harness.under_way(&asked).await);
     assert_eq!(harness.get("/v1/sessions").await["items"].as_array().unwrap().len(), 2);
     let turn = json!({ "orders": { "delta_rad": 0.3 }, "dt_s": 0.5, "steps": 100 });

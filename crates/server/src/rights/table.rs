@@ -145,7 +145,8 @@ pub(crate) const TABLE: &[Row] = &[
     ("GET", "/v1/laws/{law}", Reader, Of::Anything),
     ("GET", "/v1/effects", Reader, Of::Anything),
     ("GET", "/v1/effects/{sha256}", Reader, Of::Anything),
-    // Families. Who puts a ship into a family gives rights on it to those who have some on the family.
+    // Families. Who puts a ship into a family gives rights on it to those who have some on the
+    // family.
     ("GET", "/v1/families", Reader, Of::Server),
     ("POST", "/v1/families", Engineer, Of::Server),
     ("GET", "/v1/families/{family}", Reader, Of::Family),

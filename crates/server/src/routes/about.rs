@@ -10,8 +10,9 @@ use crate::problem::{Fault, Problem};
 #[openapi(
     info(
         title = "Sistership",
-        description = "A model zoo and refinement server for ship manoeuvring models. Every error is a problem (RFC 9457); \
-                       times are microseconds since 1970; other figures carry their unit in their name.",
+        description = "A model zoo and refinement server for ship manoeuvring models. Every error \
+                       is a problem (RFC 9457); times are microseconds since 1970; other figures \
+                       carry their unit in their name.",
         license(name = "MIT OR Apache-2.0"),
         version = "1"
     ),
@@ -22,9 +23,11 @@ use crate::problem::{Fault, Problem};
         (name = "refinements", description = "Refining a model against trials, as a job."),
         (name = "diagnoses", description = "Finding what a model lacks, as a job."),
         (name = "jobs", description = "Long work."),
-        (name = "models", description = "Versions of models, insert-only, and the aliases that move between them."),
+        (name = "models", description = "Versions of models, insert-only, and the aliases that \
+            move between them."),
         (name = "predictions", description = "Simulations with a version."),
-        (name = "branches", description = "What is learned beside a law of motion, and its weights."),
+        (name = "branches", description = "What is learned beside a law of motion, and its \
+            weights."),
         (name = "reports", description = "What a refinement, a diagnosis or a training reported."),
         (name = "laws", description = "Laws of motion."),
         (name = "effects", description = "Libraries of effects, as recipes name them."),

@@ -81,7 +81,8 @@ impl AliasStep {
 
 /// List the aliases of a model
 #[utoipa::path(
-    get, path = "/v1/models/{model}/aliases", tag = "models", params(("model" = inline(Name), Path), Paged),
+    get, path = "/v1/models/{model}/aliases", tag = "models",
+    params(("model" = inline(Name), Path), Paged),
     responses((status = 200, body = Listing<AliasView>))
 )]
 async fn list(
@@ -96,7 +97,8 @@ async fn list(
 
 /// Where an alias stands; its ETag is what a move must present
 #[utoipa::path(
-    get, path = "/v1/models/{model}/aliases/{alias}", tag = "models", params(("model" = inline(Name), Path), ("alias" = inline(Name), Path)),
+    get, path = "/v1/models/{model}/aliases/{alias}", tag = "models",
+    params(("model" = inline(Name), Path), ("alias" = inline(Name), Path)),
     responses((status = 200, body = AliasView, headers(("ETag" = String))))
 )]
 async fn get(
@@ -111,11 +113,13 @@ async fn get(
     put, path = "/v1/models/{model}/aliases/{alias}", tag = "models",
     params(
         ("model" = inline(Name), Path), ("alias" = inline(Name), Path),
-        ("If-Match" = inline(Option<EntityTags>), Header, description = "The ETag of the alias as you last read it, to move it"),
+        ("If-Match" = inline(Option<EntityTags>), Header, description = "The ETag of the alias as \
+            you last read it, to move it"),
         ("If-None-Match" = inline(Option<EntityTags>), Header, description = "`*`, to create it")
     ),
     request_body = AliasRequest,
-    responses((status = 200, body = AliasView, headers(("ETag" = String))), (status = 201, body = AliasView, headers(("ETag" = String))))
+    responses((status = 200, body = AliasView, headers(("ETag" = String))),
+    (status = 201, body = AliasView, headers(("ETag" = String))))
 )]
 async fn put(
     State(app): State<App>,

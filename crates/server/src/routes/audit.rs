@@ -104,7 +104,8 @@ impl EntryView {
 }
 
 /// What has been done by whom, the latest first
-#[utoipa::path(get, path = "/v1/audit", tag = "access", params(Query), responses((status = 200, body = Listing<EntryView>)))]
+#[utoipa::path(get, path = "/v1/audit", tag = "access", params(Query),
+    responses((status = 200, body = Listing<EntryView>)))]
 async fn list(
     State(app): State<App>,
     Params(query): Params<Query>,
@@ -125,21 +126,24 @@ async fn list(
 }
 
 /// The number and the hash of the last entry of the audit
-#[utoipa::path(get, path = "/v1/audit/head", tag = "access", responses((status = 200, body = HeadView)))]
+#[utoipa::path(get, path = "/v1/audit/head", tag = "access",
+    responses((status = 200, body = HeadView)))]
 async fn head(State(app): State<App>) -> Result<Json<HeadView>> {
     let head = app.store().audit().head().await?;
     Ok(Json(HeadView { number: head.number, sha256: head.sha256 }))
 }
 
 /// Settings that hold for every process on the store
-#[utoipa::path(get, path = "/v1/settings", tag = "access", responses((status = 200, body = Settings)))]
+#[utoipa::path(get, path = "/v1/settings", tag = "access",
+    responses((status = 200, body = Settings)))]
 async fn settings(State(app): State<App>) -> Result<Json<Settings>> {
     Ok(Json(Settings { second_person: app.store().settings().second_person().await? }))
 }
 
 /// Change the settings
 #[utoipa::path(
-    put, path = "/v1/settings", tag = "access", request_body = Settings, responses((status = 200, body = Settings))
+    put, path = "/v1/settings", tag = "access", request_body = Settings,
+    responses((status = 200, body = Settings))
 )]
 async fn set_settings(State(app): State<App>, payload: Payload) -> Result<Json<Settings>> {
     let asked: Settings = payload.json()?;

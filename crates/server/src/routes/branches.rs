@@ -53,7 +53,8 @@ struct BranchRequest {
 /// branch wins.
 #[utoipa::path(
     post, path = "/v1/branches", tag = "branches",
-    params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
+    description = "Repeat the request safely under this key")),
     request_body = BranchRequest,
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]

@@ -159,7 +159,8 @@ impl OutcomeView {
 /// by the rule given here, or by a person's word afterwards.
 #[utoipa::path(
     post, path = "/v1/families/{family}/refinements", tag = "families",
-    params(("family" = inline(Word), Path), ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
+    params(("family" = inline(Word), Path),
+    ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
     request_body = Asked, responses((status = 202, body = BulkView, headers(("Location" = String))))
 )]
 async fn refine(
@@ -181,7 +182,8 @@ async fn refine(
 
 /// List the refinements of families, the latest first
 #[utoipa::path(
-    get, path = "/v1/bulk-refinements", tag = "families", params(ListQuery), responses((status = 200, body = Listing<BulkView>))
+    get, path = "/v1/bulk-refinements", tag = "families", params(ListQuery),
+    responses((status = 200, body = Listing<BulkView>))
 )]
 async fn list(
     State(app): State<App>,
@@ -201,7 +203,8 @@ async fn list(
 
 /// How far a refinement of a family is
 #[utoipa::path(
-    get, path = "/v1/bulk-refinements/{id}", tag = "families", params(("id" = inline(Id), Path)), responses((status = 200, body = BulkView))
+    get, path = "/v1/bulk-refinements/{id}", tag = "families", params(("id" = inline(Id), Path)),
+    responses((status = 200, body = BulkView))
 )]
 async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<BulkView>> {
     let bulk = app.store().bulks().get(&id).await?;
@@ -221,7 +224,8 @@ async fn cancel(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Bul
 
 /// Go on with the chunks that failed or were cancelled
 #[utoipa::path(
-    post, path = "/v1/bulk-refinements/{id}/retry", tag = "families", params(("id" = inline(Id), Path)),
+    post, path = "/v1/bulk-refinements/{id}/retry", tag = "families",
+    params(("id" = inline(Id), Path)),
     responses((status = 200, body = BulkView))
 )]
 async fn retry(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<BulkView>> {
@@ -233,7 +237,8 @@ async fn retry(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Bulk
 
 /// Every ship of a refinement, before and after
 #[utoipa::path(
-    get, path = "/v1/bulk-refinements/{id}/ships", tag = "families", params(("id" = inline(Id), Path), ShipQuery),
+    get, path = "/v1/bulk-refinements/{id}/ships", tag = "families",
+    params(("id" = inline(Id), Path), ShipQuery),
     responses((status = 200, body = Listing<OutcomeView>))
 )]
 async fn ships(
@@ -250,7 +255,8 @@ async fn ships(
 
 /// Make candidates of a refinement champions, by a person's word
 #[utoipa::path(
-    post, path = "/v1/bulk-refinements/{id}/champions", tag = "families", params(("id" = inline(Id), Path)), request_body = Promotion,
+    post, path = "/v1/bulk-refinements/{id}/champions", tag = "families",
+    params(("id" = inline(Id), Path)), request_body = Promotion,
     responses((status = 200, body = Promoted))
 )]
 async fn promote(

@@ -60,10 +60,13 @@ enum Format {
 ///
 /// As YAML it is a file that `sistership simulate --model` takes.
 #[utoipa::path(
-    get, path = "/v1/ships/{ship}/model", tag = "ships", params(("ship" = inline(Name), Path), Query,
-        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you have")),
+    get, path = "/v1/ships/{ship}/model", tag = "ships",
+    params(("ship" = inline(Name), Path), Query,
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you \
+            have")),
     responses(
-        (status = 200, content((Champion = "application/json"), (String = "application/yaml")), headers(("ETag" = String))),
+        (status = 200, content((Champion = "application/json"), (String = "application/yaml")),
+        headers(("ETag" = String))),
         (status = 304, description = "As you have it")
     )
 )]

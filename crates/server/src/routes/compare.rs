@@ -35,7 +35,8 @@ struct Query {
 ///
 /// Coefficients with their standard errors, errors on the same trials, each simulated once from its
 /// first sample, figures of the standard manoeuvres, and the IMO criteria.
-#[utoipa::path(get, path = "/v1/compare", tag = "models", params(Query), responses((status = 200, body = Comparison)))]
+#[utoipa::path(get, path = "/v1/compare", tag = "models", params(Query),
+    responses((status = 200, body = Comparison)))]
 async fn compare(
     State(app): State<App>,
     Params(pairs): Params<Vec<(String, String)>>,

@@ -55,7 +55,8 @@ struct DiagnosisRequest {
 /// parent is the version diagnosed.
 #[utoipa::path(
     post, path = "/v1/diagnoses", tag = "diagnoses",
-    params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
+    description = "Repeat the request safely under this key")),
     request_body = DiagnosisRequest,
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]

@@ -29,7 +29,8 @@ struct Query {
 
 /// What a ship's champion leaves of each of its trials, over time
 #[utoipa::path(
-    get, path = "/v1/ships/{ship}/drift", tag = "ships", params(("ship" = inline(Name), Path)), responses((status = 200, body = Drift))
+    get, path = "/v1/ships/{ship}/drift", tag = "ships", params(("ship" = inline(Name), Path)),
+    responses((status = 200, body = Drift))
 )]
 async fn of_ship(State(app): State<App>, Place(ship): Place<Name>) -> Result<Json<Drift>> {
     app.store().ships().get(&ship).await?;
@@ -45,7 +46,8 @@ async fn of_ship(State(app): State<App>, Place(ship): Place<Name>) -> Result<Jso
 /// Ships of a family whose model no longer holds, the worst first, with the effects that their
 /// diagnosis names
 #[utoipa::path(
-    get, path = "/v1/families/{family}/drift", tag = "families", params(("family" = inline(Word), Path), Query),
+    get, path = "/v1/families/{family}/drift", tag = "families",
+    params(("family" = inline(Word), Path), Query),
     responses((status = 200, body = FamilyDrift))
 )]
 async fn of_family(

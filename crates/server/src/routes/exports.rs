@@ -33,7 +33,8 @@ struct Query {
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions/{number}/export", tag = "models",
     params(("model" = inline(Name), Path), ("number" = inline(Number), Path), Query),
-    responses((status = 200, description = "The file", content((Binary = "application/octet-stream")), headers(("Content-Disposition" = String))))
+    responses((status = 200, description = "The file",
+    content((Binary = "application/octet-stream")), headers(("Content-Disposition" = String))))
 )]
 async fn export(
     State(app): State<App>,

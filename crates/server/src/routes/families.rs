@@ -142,7 +142,8 @@ impl MemberView {
 }
 
 /// List the families by name
-#[utoipa::path(get, path = "/v1/families", tag = "families", params(Paged), responses((status = 200, body = Listing<FamilyView>)))]
+#[utoipa::path(get, path = "/v1/families", tag = "families", params(Paged),
+    responses((status = 200, body = Listing<FamilyView>)))]
 async fn list(
     State(app): State<App>,
     Params(query): Params<Paged>,
@@ -158,8 +159,10 @@ async fn list(
 /// Make a family on a foundation
 #[utoipa::path(
     post, path = "/v1/families", tag = "families",
-    params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
-    request_body = NewFamily, responses((status = 201, body = FamilyView, headers(("Location" = String))))
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
+    description = "Repeat the request safely under this key")),
+    request_body = NewFamily,
+    responses((status = 201, body = FamilyView, headers(("Location" = String))))
 )]
 async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
     let new: NewFamily = payload.json()?;
@@ -203,7 +206,8 @@ async fn found(
 
 /// List the members of a family by name
 #[utoipa::path(
-    get, path = "/v1/families/{family}/members", tag = "families", params(("family" = inline(Word), Path), Paged),
+    get, path = "/v1/families/{family}/members", tag = "families",
+    params(("family" = inline(Word), Path), Paged),
     responses((status = 200, body = Listing<MemberView>))
 )]
 async fn members(
@@ -218,7 +222,8 @@ async fn members(
 
 /// Add ships to a family, all or none; those that are members already stay so
 #[utoipa::path(
-    post, path = "/v1/families/{family}/members", tag = "families", params(("family" = inline(Word), Path)),
+    post, path = "/v1/families/{family}/members", tag = "families",
+    params(("family" = inline(Word), Path)),
     request_body = NewMembers, responses((status = 200, body = FamilyView))
 )]
 async fn add(
@@ -235,7 +240,8 @@ async fn add(
 /// Take a ship out of a family
 #[utoipa::path(
     delete, path = "/v1/families/{family}/members/{ship}", tag = "families",
-    params(("family" = inline(Word), Path), ("ship" = inline(Name), Path)), responses((status = 200, body = FamilyView))
+    params(("family" = inline(Word), Path), ("ship" = inline(Name), Path)),
+    responses((status = 200, body = FamilyView))
 )]
 async fn remove(
     State(app): State<App>,
@@ -249,7 +255,8 @@ async fn remove(
 
 /// What a family has taught: how each coefficient varies over its members
 #[utoipa::path(
-    get, path = "/v1/families/{family}/prior", tag = "families", params(("family" = inline(Word), Path), Revision),
+    get, path = "/v1/families/{family}/prior", tag = "families",
+    params(("family" = inline(Word), Path), Revision),
     responses((status = 200, body = PriorView))
 )]
 async fn prior(
@@ -265,7 +272,8 @@ async fn prior(
 
 /// Learn from the members' trials how their coefficients vary; the work is a job
 #[utoipa::path(
-    post, path = "/v1/families/{family}/prior", tag = "families", params(("family" = inline(Word), Path)),
+    post, path = "/v1/families/{family}/prior", tag = "families",
+    params(("family" = inline(Word), Path)),
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]
 async fn learn(State(app): State<App>, Place(name): Place<Word>) -> Result<Reply> {

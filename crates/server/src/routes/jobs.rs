@@ -133,7 +133,8 @@ impl JobView {
 }
 
 /// List the jobs, the latest first
-#[utoipa::path(get, path = "/v1/jobs", tag = "jobs", params(Query), responses((status = 200, body = Listing<JobView>)))]
+#[utoipa::path(get, path = "/v1/jobs", tag = "jobs", params(Query),
+    responses((status = 200, body = Listing<JobView>)))]
 async fn list(
     State(app): State<App>,
     Params(query): Params<Query>,
@@ -148,20 +149,23 @@ async fn list(
 }
 
 /// A job
-#[utoipa::path(get, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = inline(Id), Path)), responses((status = 200, body = JobView)))]
+#[utoipa::path(get, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = inline(Id), Path)),
+    responses((status = 200, body = JobView)))]
 async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<JobView>> {
     Ok(Json(JobView::of(app.store().jobs().get(&id).await?)))
 }
 
 /// Cancel a job; one that runs stops at its next step
-#[utoipa::path(delete, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = inline(Id), Path)), responses((status = 200, body = JobView)))]
+#[utoipa::path(delete, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = inline(Id), Path)),
+    responses((status = 200, body = JobView)))]
 async fn cancel(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<JobView>> {
     Ok(Json(JobView::of(app.store().jobs().request_cancel(&id).await?)))
 }
 
 /// Do a job again that failed or was cancelled
 #[utoipa::path(
-    post, path = "/v1/jobs/{id}/retry", tag = "jobs", params(("id" = inline(Id), Path)), responses((status = 200, body = JobView))
+    post, path = "/v1/jobs/{id}/retry", tag = "jobs", params(("id" = inline(Id), Path)),
+    responses((status = 200, body = JobView))
 )]
 async fn retry(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<JobView>> {
     let job = app.store().jobs().retry(&id).await?;

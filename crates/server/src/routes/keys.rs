@@ -86,7 +86,8 @@ impl KeyView {
 }
 
 /// List the service keys by prefix, those that have ended too
-#[utoipa::path(get, path = "/v1/keys", tag = "access", params(Paged), responses((status = 200, body = Listing<KeyView>)))]
+#[utoipa::path(get, path = "/v1/keys", tag = "access", params(Paged),
+    responses((status = 200, body = Listing<KeyView>)))]
 async fn list(
     State(app): State<App>,
     Params(query): Params<Paged>,
@@ -120,14 +121,16 @@ async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
 }
 
 /// A service key
-#[utoipa::path(get, path = "/v1/keys/{prefix}", tag = "access", params(("prefix" = inline(KeyPrefix), Path)), responses((status = 200, body = KeyView)))]
+#[utoipa::path(get, path = "/v1/keys/{prefix}", tag = "access",
+    params(("prefix" = inline(KeyPrefix), Path)), responses((status = 200, body = KeyView)))]
 async fn get(State(app): State<App>, Place(prefix): Place<KeyPrefix>) -> Result<Json<KeyView>> {
     let key = app.store().service_keys().get(&prefix).await?;
     Ok(Json(KeyView::of(&app, key).await?))
 }
 
 /// Revoke a service key, for ever
-#[utoipa::path(delete, path = "/v1/keys/{prefix}", tag = "access", params(("prefix" = inline(KeyPrefix), Path)), responses((status = 200, body = KeyView)))]
+#[utoipa::path(delete, path = "/v1/keys/{prefix}", tag = "access",
+    params(("prefix" = inline(KeyPrefix), Path)), responses((status = 200, body = KeyView)))]
 async fn revoke(State(app): State<App>, Place(prefix): Place<KeyPrefix>) -> Result<Json<KeyView>> {
     let key = app.accounts().revoke(&prefix).await?;
     Ok(Json(KeyView::of(&app, key).await?))
@@ -135,7 +138,8 @@ async fn revoke(State(app): State<App>, Place(prefix): Place<KeyPrefix>) -> Resu
 
 /// Give a service key these roles instead of all others
 #[utoipa::path(
-    put, path = "/v1/keys/{prefix}/roles", tag = "access", params(("prefix" = inline(KeyPrefix), Path)),
+    put, path = "/v1/keys/{prefix}/roles", tag = "access",
+    params(("prefix" = inline(KeyPrefix), Path)),
     request_body = RolesRequest, responses((status = 200, body = KeyView))
 )]
 async fn set_roles(

@@ -46,7 +46,8 @@ impl LawHead {
 }
 
 /// List the laws
-#[utoipa::path(get, path = "/v1/laws", tag = "laws", params(Paged), responses((status = 200, body = Listing<LawHead>)))]
+#[utoipa::path(get, path = "/v1/laws", tag = "laws", params(Paged),
+    responses((status = 200, body = Listing<LawHead>)))]
 async fn list(
     State(app): State<App>,
     Params(query): Params<Paged>,
@@ -60,7 +61,8 @@ async fn list(
 /// The body is the law's YAML file. Its formulas, units and symmetry are checked before it is kept.
 #[utoipa::path(
     post, path = "/v1/laws", tag = "laws",
-    params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
+    description = "Repeat the request safely under this key")),
     request_body(content = String, content_type = "application/yaml"),
     responses((status = 201, body = LawHead))
 )]
@@ -78,7 +80,8 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
 /// A law, as JSON or as its YAML file
 #[utoipa::path(
     get, path = "/v1/laws/{law}", tag = "laws", params(("law" = inline(Name), Path)),
-    responses((status = 200, content((LawText = "application/json"), (String = "application/yaml"))))
+    responses((status = 200,
+    content((LawText = "application/json"), (String = "application/yaml"))))
 )]
 async fn get(
     State(app): State<App>,

@@ -28,7 +28,8 @@ fn nothing(field: &str, name: &str) -> Problem {
     Problem::invalid(
         field,
         format!(
-            "there is no model `{name}`; {forms}; GET /v1/ships lists the ships, /v1/models/SHIP/versions their versions"
+            "there is no model `{name}`; {forms}; GET /v1/ships lists the ships, \
+             /v1/models/SHIP/versions their versions"
         ),
     )
 }

@@ -21,9 +21,13 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 /// Simulate a manoeuvre, recorded inputs, or orders to come, with a version of a model
 #[utoipa::path(
     post, path = "/v1/predictions", tag = "predictions", request_body = PredictionRequest,
-    responses((status = 200, body = Object, description = "`model`, `version`, `sha256`, `law`; `trajectory` under canonical names; `metrics`; \
-        `stopped` where recorded inputs led out of the physical range; for all standard manoeuvres `turns`, `zigzags`, `imo` and, where asked for, `bands`; `outside` where the motion left \
-        what the model's trials covered; over a horizon `foundation`, the track without the learned branch, and `band`, of each state `low` and `high`, where draws were asked for; `branch` of a version with a learned branch: its kind and mode, and `branch_share`: what it counted for, 0 to 1"))
+    responses((status = 200, body = Object, description = "`model`, `version`, `sha256`, `law`; \
+        `trajectory` under canonical names; `metrics`; `stopped` where recorded inputs led out of \
+        the physical range; for all standard manoeuvres `turns`, `zigzags`, `imo` and, where asked \
+        for, `bands`; `outside` where the motion left what the model's trials covered; over a \
+        horizon `foundation`, the track without the learned branch, and `band`, of each state \
+        `low` and `high`, where draws were asked for; `branch` of a version with a learned branch: \
+        its kind and mode, and `branch_share`: what it counted for, 0 to 1"))
 )]
 async fn create(State(app): State<App>, payload: Payload) -> Result<Json<Value>> {
     let request: PredictionRequest = payload.json()?;

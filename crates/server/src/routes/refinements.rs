@@ -64,7 +64,8 @@ const AUTO: &str = "auto";
 /// ship's line, champion where it has none and else `candidate`, with a report.
 #[utoipa::path(
     post, path = "/v1/refinements", tag = "refinements",
-    params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
+    description = "Repeat the request safely under this key")),
     request_body = RefinementRequest,
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]
@@ -146,7 +147,8 @@ fn repeatable(settings: &Settings) -> Result<()> {
         .cma_es
         .as_ref()
         .is_some_and(|search| search.wall_s.is_some() || search.cpu_s.is_some());
-    let message = "a search that time ends cannot be derived again; limit `evaluations` in place of wall_s and cpu_s";
+    let message = "a search that time ends cannot be derived again; limit `evaluations` in place \
+        of wall_s and cpu_s";
     if timed { Err(Problem::invalid("settings.cma_es", message)) } else { Ok(()) }
 }
 

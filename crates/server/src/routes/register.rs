@@ -52,7 +52,8 @@ struct RegisterRequest {
     post, path = "/v1/models/{model}/versions", tag = "models",
     params(
         ("model" = inline(Name), Path, description = "The ship"),
-        ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")
+        ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request \
+            safely under this key")
     ),
     request_body = RegisterRequest,
     responses((status = 201, body = VersionHead, headers(("Location" = String))))

@@ -13,7 +13,8 @@ use crate::problem::Result;
 use crate::web::{Id, Params, Place, accept};
 
 /// What a report may load: nothing but its own styles and pictures.
-pub(super) const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; form-action 'none'; frame-ancestors 'none'";
+pub(super) const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; \
+    form-action 'none'; frame-ancestors 'none'";
 
 const JSON: &str = "application/json";
 const HTML: &str = "text/html";

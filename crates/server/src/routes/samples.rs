@@ -36,7 +36,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 /// The samples of a trial, as CSV or as Parquet, under canonical names
 #[utoipa::path(
     get, path = "/v1/trials/{id}/samples", tag = "trials", params(("id" = inline(Id), Path)),
-    responses((status = 200, content((String = "text/csv"), (Binary = "application/vnd.apache.parquet"))))
+    responses((status = 200,
+    content((String = "text/csv"), (Binary = "application/vnd.apache.parquet"))))
 )]
 async fn samples(
     State(app): State<App>,

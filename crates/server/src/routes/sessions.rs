@@ -82,8 +82,8 @@ async fn list(State(app): State<App>) -> Result<Json<Value>> {
     get, path = "/v1/sessions/{id}", tag = "predictions", params(("id" = inline(Id), Path)),
     responses((status = 200, body = Object,
         description = "`id`, `model`, `version`, `sha256`, `law`; the state under canonical names, \
-        `t_s`; `orders`; `draws`, and with them `band`: of each state `low` and `high`, between which \
-        95 % of the draws are; `stopped` where the motion has left the physical range, with \
+        `t_s`; `orders`; `draws`, and with them `band`: of each state `low` and `high`, between \
+        which 95 % of the draws are; `stopped` where the motion has left the physical range, with \
         `reason`; `outside` where it is outside what the model's trials covered"))
 )]
 async fn show(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Value>> {

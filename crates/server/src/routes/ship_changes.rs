@@ -44,7 +44,8 @@ async fn vessel(app: &App, payload: &Payload) -> Result<Vessel> {
 /// its first model from a refinement.
 #[utoipa::path(
     post, path = "/v1/ships", tag = "ships",
-    params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
+    description = "Repeat the request safely under this key")),
     request_body(content((VesselBody = "application/json"), (String = "application/yaml"))),
     responses((status = 201, body = ShipDetail, headers(("ETag" = String), ("Location" = String))))
 )]
@@ -72,7 +73,8 @@ async fn created(app: &App, vessel: &Vessel) -> Result<Reply> {
 /// Replace a ship's document, as you last read it
 #[utoipa::path(
     put, path = "/v1/ships/{ship}", tag = "ships",
-    params(("ship" = inline(Name), Path), ("If-Match" = inline(EntityTags), Header, description = "The ETag of the ship as you last read it")),
+    params(("ship" = inline(Name), Path),
+    ("If-Match" = inline(EntityTags), Header, description = "The ETag of the ship as you last read it")),
     request_body(content((VesselBody = "application/json"), (String = "application/yaml"))),
     responses((status = 200, body = ShipDetail, headers(("ETag" = String))))
 )]
@@ -102,7 +104,8 @@ async fn replace(
 /// Delete a ship; its versions stay, and `undelete` brings it back
 #[utoipa::path(
     delete, path = "/v1/ships/{ship}", tag = "ships",
-    params(("ship" = inline(Name), Path), ("If-Match" = inline(Option<EntityTags>), Header, description = "Only if it is still as you last read it")),
+    params(("ship" = inline(Name), Path),
+    ("If-Match" = inline(Option<EntityTags>), Header, description = "Only if it is still as you last read it")),
     responses((status = 204, description = "Deleted"))
 )]
 async fn delete(

@@ -92,7 +92,8 @@ impl ShipDetail {
 ///
 /// By name; with ranges by the first of them, rising; with `similar_to` the most similar first.
 /// Particulars and metrics follow a change of ship or champion within a second or so.
-#[utoipa::path(get, path = "/v1/ships", tag = "ships", params(Query), responses((status = 200, body = Listing<ShipHead>)))]
+#[utoipa::path(get, path = "/v1/ships", tag = "ships", params(Query),
+    responses((status = 200, body = Listing<ShipHead>)))]
 async fn list(
     State(app): State<App>,
     Params(query): Params<Vec<(String, String)>>,
@@ -110,8 +111,10 @@ async fn list(
 /// A ship; its ETag is what a change must present
 #[utoipa::path(
     get, path = "/v1/ships/{ship}", tag = "ships", params(("ship" = inline(Name), Path),
-        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you have")),
-    responses((status = 200, body = ShipDetail, headers(("ETag" = String))), (status = 304, description = "As you have it"))
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you \
+            have")),
+    responses((status = 200, body = ShipDetail, headers(("ETag" = String))),
+    (status = 304, description = "As you have it"))
 )]
 async fn get(
     State(app): State<App>,

@@ -46,8 +46,10 @@ fn yes() -> bool {
 /// Of a zoo of more than 250 ships only the 250 of its category that are most similar to it are
 /// ranked; `GET /v1/ships?similar_to=` has all of them.
 #[utoipa::path(
-    get, path = "/v1/ships/{ship}/similar", tag = "ships", params(("ship" = inline(Name), Path), Query),
-    responses((status = 200, body = Object, description = "`target`, `definition`, `vector` and `ranking`, as `sistership similar --json`"))
+    get, path = "/v1/ships/{ship}/similar", tag = "ships",
+    params(("ship" = inline(Name), Path), Query),
+    responses((status = 200, body = Object, description = "`target`, `definition`, `vector` and \
+        `ranking`, as `sistership similar --json`"))
 )]
 async fn similar(
     State(app): State<App>,

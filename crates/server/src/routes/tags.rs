@@ -40,7 +40,8 @@ async fn put(
 
 /// Take a tag off a ship
 #[utoipa::path(
-    delete, path = "/v1/ships/{ship}/tags/{tag}", tag = "ships", params(("ship" = inline(Name), Path), ("tag" = inline(Word), Path)),
+    delete, path = "/v1/ships/{ship}/tags/{tag}", tag = "ships",
+    params(("ship" = inline(Name), Path), ("tag" = inline(Word), Path)),
     responses((status = 204, description = "The ship no longer has it"))
 )]
 async fn remove(

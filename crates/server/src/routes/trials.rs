@@ -81,7 +81,8 @@ impl TrialView {
 }
 
 /// List the trials of a ship, in the order of their upload
-#[utoipa::path(get, path = "/v1/trials", tag = "trials", params(Query), responses((status = 200, body = Listing<TrialView>)))]
+#[utoipa::path(get, path = "/v1/trials", tag = "trials", params(Query),
+    responses((status = 200, body = Listing<TrialView>)))]
 async fn list(
     State(app): State<App>,
     Params(query): Params<Query>,
@@ -97,7 +98,8 @@ async fn list(
 
 /// A trial
 #[utoipa::path(
-    get, path = "/v1/trials/{id}", tag = "trials", params(("id" = inline(Id), Path)), responses((status = 200, body = TrialView))
+    get, path = "/v1/trials/{id}", tag = "trials", params(("id" = inline(Id), Path)),
+    responses((status = 200, body = TrialView))
 )]
 async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<TrialView>> {
     Ok(Json(TrialView::of(app.store().trials().get(&id).await?)))

@@ -56,8 +56,10 @@ struct Form {
 /// `diagnose=false`.
 #[utoipa::path(
     post, path = "/v1/trials", tag = "trials",
-    params(RawQuery, ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
-    request_body(content((Form = "multipart/form-data"), (String = "text/csv"), (Binary = "application/vnd.apache.parquet"))),
+    params(RawQuery,
+    ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
+    request_body(content((Form = "multipart/form-data"), (String = "text/csv"),
+    (Binary = "application/vnd.apache.parquet"))),
     responses((status = 201, body = Uploaded, headers(("Location" = String))))
 )]
 async fn upload(State(app): State<App>, key: Key, upload: Upload) -> Result<Response> {
@@ -88,8 +90,10 @@ async fn kept(app: &App, upload: Upload) -> Result<Reply> {
 /// --json`.
 #[utoipa::path(
     post, path = "/v1/trials/check", tag = "trials", params(RawQuery),
-    request_body(content((Form = "multipart/form-data"), (String = "text/csv"), (Binary = "application/vnd.apache.parquet"))),
-    responses((status = 200, body = Object, description = "`trials`: `file`, `rows`, `duration_s`, `errors`, `warnings` of each"))
+    request_body(content((Form = "multipart/form-data"), (String = "text/csv"),
+    (Binary = "application/vnd.apache.parquet"))),
+    responses((status = 200, body = Object, description = "`trials`: `file`, `rows`, `duration_s`, \
+        `errors`, `warnings` of each"))
 )]
 async fn check(State(app): State<App>, upload: Upload) -> Result<Json<Value>> {
     let outcomes = checked(&upload, &app).await?;

@@ -31,8 +31,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 /// Whoever asks.
 #[derive(Debug, Serialize, ToSchema)]
 struct Me {
-    /// As the audit names them: a user, `key:PREFIX`, `server-key`, or `local` on a server that asks
-    /// nobody who they are.
+    /// As the audit names them: a user, `key:PREFIX`, `server-key`, or `local` on a server that
+    /// asks nobody who they are.
     name: String,
     /// `user`, `key`, `server-key` or `local`.
     kind: &'static str,
@@ -144,7 +144,8 @@ async fn me() -> Result<Json<Me>> {
 }
 
 /// List the users by name
-#[utoipa::path(get, path = "/v1/users", tag = "access", params(Paged), responses((status = 200, body = Listing<UserView>)))]
+#[utoipa::path(get, path = "/v1/users", tag = "access", params(Paged),
+    responses((status = 200, body = Listing<UserView>)))]
 async fn list(
     State(app): State<App>,
     Params(query): Params<Paged>,
@@ -161,7 +162,8 @@ async fn list(
 /// Create a user
 #[utoipa::path(
     post, path = "/v1/users", tag = "access",
-    params(("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
+    params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
+    description = "Repeat the request safely under this key")),
     request_body = UserRequest,
     responses((status = 201, body = UserView, headers(("Location" = String))))
 )]
@@ -180,21 +182,24 @@ async fn created(app: &App, request: UserRequest) -> Result<Reply> {
 }
 
 /// A user
-#[utoipa::path(get, path = "/v1/users/{user}", tag = "access", params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
+#[utoipa::path(get, path = "/v1/users/{user}", tag = "access",
+    params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
 async fn get(State(app): State<App>, Place(name): Place<UserName>) -> Result<Json<UserView>> {
     let user = app.store().users().get(&name).await?;
     Ok(Json(UserView::of(&app, user).await?))
 }
 
 /// Disable a user: signed out everywhere, with no rights; the name stays taken
-#[utoipa::path(delete, path = "/v1/users/{user}", tag = "access", params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
+#[utoipa::path(delete, path = "/v1/users/{user}", tag = "access",
+    params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
 async fn disable(State(app): State<App>, Place(name): Place<UserName>) -> Result<Json<UserView>> {
     let user = app.accounts().enable(&name, false).await?;
     Ok(Json(UserView::of(&app, user).await?))
 }
 
 /// Give a disabled user the rights again that they had
-#[utoipa::path(post, path = "/v1/users/{user}/enable", tag = "access", params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
+#[utoipa::path(post, path = "/v1/users/{user}/enable", tag = "access",
+    params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
 async fn enable(State(app): State<App>, Place(name): Place<UserName>) -> Result<Json<UserView>> {
     let user = app.accounts().enable(&name, true).await?;
     Ok(Json(UserView::of(&app, user).await?))
@@ -202,7 +207,8 @@ async fn enable(State(app): State<App>, Place(name): Place<UserName>) -> Result<
 
 /// Set the password of a user, who is signed out everywhere
 #[utoipa::path(
-    put, path = "/v1/users/{user}/password", tag = "access", params(("user" = inline(UserName), Path)),
+    put, path = "/v1/users/{user}/password", tag = "access",
+    params(("user" = inline(UserName), Path)),
     request_body = PasswordRequest, responses((status = 204, description = "It is set"))
 )]
 async fn set_password(
@@ -233,7 +239,8 @@ async fn set_roles(
 
 /// Let OpenID providers know a user as these instead of all others
 #[utoipa::path(
-    put, path = "/v1/users/{user}/identities", tag = "access", params(("user" = inline(UserName), Path)),
+    put, path = "/v1/users/{user}/identities", tag = "access",
+    params(("user" = inline(UserName), Path)),
     request_body = IdentitiesRequest, responses((status = 200, body = UserView))
 )]
 async fn set_identities(

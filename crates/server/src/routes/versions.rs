@@ -87,7 +87,8 @@ impl VersionHead {
 
 /// List the versions of a model, the latest first
 #[utoipa::path(
-    get, path = "/v1/models/{model}/versions", tag = "models", params(("model" = inline(Name), Path), Paged),
+    get, path = "/v1/models/{model}/versions", tag = "models",
+    params(("model" = inline(Name), Path), Paged),
     responses((status = 200, body = Listing<VersionHead>))
 )]
 async fn list(
@@ -110,7 +111,8 @@ pub(super) async fn exists(app: &App, model: &str) -> Result<()> {
 
 /// A version with its document
 #[utoipa::path(
-    get, path = "/v1/models/{model}/versions/{number}", tag = "models", params(("model" = inline(Name), Path), ("number" = inline(Number), Path)),
+    get, path = "/v1/models/{model}/versions/{number}", tag = "models",
+    params(("model" = inline(Name), Path), ("number" = inline(Number), Path)),
     responses((status = 200, body = VersionDetail))
 )]
 async fn get(
@@ -129,8 +131,10 @@ async fn get(
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions/{number}/document", tag = "models",
     params(("model" = inline(Name), Path), ("number" = inline(Number), Path),
-        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you have")),
-    responses((status = 200, body = Object, headers(("ETag" = String))), (status = 304, description = "As you have it"))
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you \
+            have")),
+    responses((status = 200, body = Object, headers(("ETag" = String))),
+    (status = 304, description = "As you have it"))
 )]
 async fn bytes(
     State(app): State<App>,
@@ -151,7 +155,8 @@ async fn bytes(
 #[utoipa::path(
     post, path = "/v1/models/{model}/versions/{number}/verify", tag = "models",
     params(("model" = inline(Name), Path), ("number" = inline(Number), Path)),
-    responses((status = 200, body = Verification, description = "`identical` tells whether they are the same"))
+    responses((status = 200, body = Verification, description = "`identical` tells whether they \
+        are the same"))
 )]
 async fn verify_again(
     State(app): State<App>,

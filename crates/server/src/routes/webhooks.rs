@@ -139,7 +139,8 @@ impl DeliveryView {
 }
 
 /// List the webhooks by id, those that have ended too
-#[utoipa::path(get, path = "/v1/webhooks", tag = "webhooks", params(Paged), responses((status = 200, body = Listing<WebhookView>)))]
+#[utoipa::path(get, path = "/v1/webhooks", tag = "webhooks", params(Paged),
+    responses((status = 200, body = Listing<WebhookView>)))]
 async fn list(
     State(app): State<App>,
     Params(query): Params<Paged>,
@@ -184,14 +185,16 @@ async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
 }
 
 /// A webhook
-#[utoipa::path(get, path = "/v1/webhooks/{id}", tag = "webhooks", params(("id" = inline(Id), Path)), responses((status = 200, body = WebhookView)))]
+#[utoipa::path(get, path = "/v1/webhooks/{id}", tag = "webhooks",
+    params(("id" = inline(Id), Path)), responses((status = 200, body = WebhookView)))]
 async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<WebhookView>> {
     let webhook = app.store().webhooks().get(&id).await?;
     Ok(Json(WebhookView::of(&app, webhook).await?))
 }
 
 /// End a webhook, for ever
-#[utoipa::path(delete, path = "/v1/webhooks/{id}", tag = "webhooks", params(("id" = inline(Id), Path)), responses((status = 200, body = WebhookView)))]
+#[utoipa::path(delete, path = "/v1/webhooks/{id}", tag = "webhooks",
+    params(("id" = inline(Id), Path)), responses((status = 200, body = WebhookView)))]
 async fn end(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<WebhookView>> {
     let webhook = app.store().webhooks().end(&id).await?;
     Ok(Json(WebhookView::of(&app, webhook).await?))
@@ -199,7 +202,8 @@ async fn end(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Webhoo
 
 /// What a webhook was told and is to be told, the latest first
 #[utoipa::path(
-    get, path = "/v1/webhooks/{id}/deliveries", tag = "webhooks", params(("id" = inline(Id), Path), Paged),
+    get, path = "/v1/webhooks/{id}/deliveries", tag = "webhooks",
+    params(("id" = inline(Id), Path), Paged),
     responses((status = 200, body = Listing<DeliveryView>))
 )]
 async fn deliveries(
@@ -215,7 +219,8 @@ async fn deliveries(
 /// Send a delivery that has not arrived once more
 #[utoipa::path(
     post, path = "/v1/webhooks/{id}/deliveries/{delivery}/retry", tag = "webhooks",
-    params(("id" = inline(Id), Path), ("delivery" = inline(Id), Path)), responses((status = 200, body = DeliveryView))
+    params(("id" = inline(Id), Path), ("delivery" = inline(Id), Path)),
+    responses((status = 200, body = DeliveryView))
 )]
 async fn again(
     State(app): State<App>,

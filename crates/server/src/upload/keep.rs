@@ -4,7 +4,7 @@ use std::io::BufWriter;
 
 use bytes::Bytes;
 use sistership_store::{
-    Inserted, Job, NewJob, NewTrial, Objects, Spool, StoreError, Trial, is_out_of_space,
+    Inserted, Job, NewJob, NewTrial, Objects, StoreError, Trial, is_out_of_space,
 };
 use sistership_trials::samples::{self, SamplesError};
 use sistership_trials::{ManifestFile, Refusal, read_trial};
@@ -17,7 +17,7 @@ use crate::jobs::{DIAGNOSIS, DiagnosisJob};
 use crate::problem::{Problem, Result};
 use crate::rights::on_ship;
 use sistership_access::Role;
-use sistership_http::spool::temporary;
+use sistership_http::spool::{Spool, temporary};
 use sistership_http::upload::{Arrived, Upload};
 use sistership_pipeline::budget;
 use sistership_pipeline::line::{CHAMPION, alias};

@@ -31,7 +31,8 @@ pub(crate) async fn guard(State(app): State<App>, mut request: Request, next: Ne
         Err(Refusal::WrongKey(problem)) => {
             match peer.and_then(|peer| app.throttle().wrong(peer.party)) {
                 Some(wait) => {
-                    let why = "too many wrong API keys from your address; check the key, and try again later";
+                    let why = "too many wrong API keys from your address; check the key, and try \
+                        again later";
                     later(Problem::new(StatusCode::TOO_MANY_REQUESTS, why), wait.as_secs().max(1))
                 }
                 None => problem.into_response(),

@@ -56,15 +56,16 @@ impl TestDatabase {
         let mut connection = self.sqlite_connection().await?;
         let path = other.url.trim_start_matches("sqlite://");
         connection.execute(AssertSqlSafe(format!("ATTACH DATABASE '{path}' AS other"))).await?;
-        let tables = "SELECT name FROM main.sqlite_master WHERE type = 'table' AND name NOT LIKE '%sql%' \
-            AND name IN (SELECT name FROM other.sqlite_master)";
+        let tables = "SELECT name FROM main.sqlite_master WHERE type = 'table' AND name NOT LIKE \
+            '%sql%' AND name IN (SELECT name FROM other.sqlite_master)";
         for table in sqlx::query_scalar::<_, String>(tables).fetch_all(&mut connection).await? {
             let columns = "SELECT group_concat(name) FROM pragma_table_info($1, 'main') \
                 WHERE name IN (SELECT name FROM pragma_table_info($1, 'other'))";
             let columns: String =
                 sqlx::query_scalar(columns).bind(&table).fetch_one(&mut connection).await?;
             let taken = format!(
-                "DELETE FROM main.{table}; INSERT INTO main.{table} ({columns}) SELECT {columns} FROM other.{table}"
+                "DELETE FROM main.{table}; INSERT INTO main.{table} ({columns}) SELECT {columns} \
+                 FROM other.{table}"
             );
             connection.execute(AssertSqlSafe(taken)).await?;
         }
@@ -75,8 +76,8 @@ impl TestDatabase {
         let (mut to, mut from) =
             (PgConnection::connect(&self.url).await?, PgConnection::connect(&other.url).await?);
         to.execute("SET session_replication_role = replica").await?;
-        let tables = "SELECT table_name::text FROM information_schema.tables WHERE table_schema = 'public' \
-            AND table_name NOT LIKE '%sqlx%'";
+        let tables = "SELECT table_name::text FROM information_schema.tables WHERE table_schema = \
+            'public' AND table_name NOT LIKE '%sqlx%'";
         for table in sqlx::query_scalar::<_, String>(tables).fetch_all(&mut to).await? {
             let rows =
                 AssertSqlSafe(format!("SELECT coalesce(json_agg(t), '[]')::text FROM {table} t"));

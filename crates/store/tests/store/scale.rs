@@ -48,23 +48,28 @@ async fn fill(on: &TestStore, ships: usize) {
     let (of_ship, of_version) = (document(on, 2000), document(on, 4000));
     unpacked(on).await;
     for sql in [
-        format!("INSERT INTO ships SELECT name, 'Ship ' || name, 'category-' || (created_us % 10), {of_ship}, 1, created_us, \
-            created_us, NULL FROM ({n} SELECT i AS created_us, 'ship-' || (1000000 + i) AS name FROM n) AS k"),
-        "INSERT INTO ship_facts SELECT name, 'lpp_m', 1.0 * ((created_us * 7919) % 100003) FROM ships".into(),
-        "INSERT INTO ship_facts SELECT name, 'beam_m', 1.0 * ((created_us * 104729) % 100003) FROM ships".into(),
-        "INSERT INTO ship_facts SELECT name, 'diameter_m', 1.0 * ((created_us * 1299709) % 100003) FROM ships".into(),
-        "INSERT INTO ship_facts SELECT name, 'overshoot_deg', 1.0 * ((created_us * 15485863) % 100003) FROM ships".into(),
-        "INSERT INTO ship_vectors SELECT name, category, '{\"mei-2019\":{\"C_b\":0.8,\"L/B\":5.5,\"B/T\":2.8,\"L/V0\":40.1}}' \
-            FROM ships".into(),
+        format!("INSERT INTO ships SELECT name, 'Ship ' || name, 'category-' || (created_us % 10), \
+            {of_ship}, 1, created_us, created_us, NULL FROM ({n} SELECT i AS created_us, 'ship-' \
+            || (1000000 + i) AS name FROM n) AS k"),
+        "INSERT INTO ship_facts SELECT name, 'lpp_m', 1.0 * ((created_us * 7919) % 100003) FROM \
+         ships".into(),
+        "INSERT INTO ship_facts SELECT name, 'beam_m', 1.0 * ((created_us * 104729) % 100003) FROM \
+         ships".into(),
+        "INSERT INTO ship_facts SELECT name, 'diameter_m', 1.0 * ((created_us * 1299709) % 100003) \
+         FROM ships".into(),
+        "INSERT INTO ship_facts SELECT name, 'overshoot_deg', 1.0 * ((created_us * 15485863) % \
+         100003) FROM ships".into(),
+        "INSERT INTO ship_vectors SELECT name, category, \
+            '{\"mei-2019\":{\"C_b\":0.8,\"L/B\":5.5,\"B/T\":2.8,\"L/V0\":40.1}}' FROM ships".into(),
         "INSERT INTO ship_tags SELECT name, 'own' FROM ships WHERE created_us % 100 = 0".into(),
         "INSERT INTO models SELECT name, 11 FROM ships".into(),
-        format!("INSERT INTO versions SELECT name || '-' || (10 + i), name, i, NULL, 'law', 'published', {of_version}, 'x', created_us \
-            FROM ships, ({ten} SELECT i FROM n) AS k"),
+        format!("INSERT INTO versions SELECT name || '-' || (10 + i), name, i, NULL, 'law', \
+            'published', {of_version}, 'x', created_us FROM ships, ({ten} SELECT i FROM n) AS k"),
         "INSERT INTO aliases SELECT name, 'champion', 10, 1 FROM ships".into(),
-        "INSERT INTO jobs SELECT name || '-a', 'refinement', name, '{}', 'succeeded', 1, '', '{}', NULL, 1, 1, NULL, NULL, 0, 0, 0, 0 \
-            FROM ships".into(),
-        "INSERT INTO jobs SELECT name || '-b', 'diagnosis', name, '{}', 'failed', 1, '', NULL, 'x', 1, 1, NULL, NULL, 0, 0, 0, 0 \
-            FROM ships".into(),
+        "INSERT INTO jobs SELECT name || '-a', 'refinement', name, '{}', 'succeeded', 1, '', '{}', \
+            NULL, 1, 1, NULL, NULL, 0, 0, 0, 0 FROM ships".into(),
+        "INSERT INTO jobs SELECT name || '-b', 'diagnosis', name, '{}', 'failed', 1, '', NULL, \
+            'x', 1, 1, NULL, NULL, 0, 0, 0, 0 FROM ships".into(),
         "ANALYZE".into(),
     ] {
         on.database.damage(&sql).await;

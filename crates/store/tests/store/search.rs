@@ -119,7 +119,8 @@ async fn many(on: &TestStore) {
     let n = "WITH RECURSIVE n (i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 3000)";
     for sql in [
         format!(
-            "INSERT INTO ships SELECT 'm-' || (10000 + i), '', 'barge', '{{}}', 1, i, i, NULL FROM ({n} SELECT i FROM n) AS k"
+            "INSERT INTO ships SELECT 'm-' || (10000 + i), '', 'barge', '{{}}', 1, i, i, NULL FROM \
+             ({n} SELECT i FROM n) AS k"
         ),
         "INSERT INTO ship_facts SELECT name, 'lpp_m', 1.0 * created_us FROM ships".into(),
         "INSERT INTO ship_facts SELECT name, 'beam_m', 3000.0 - created_us FROM ships".into(),

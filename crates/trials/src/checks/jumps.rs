@@ -59,7 +59,8 @@ fn unusual(recording: &Recording, step: impl Fn(usize) -> f64, findings: &mut Fi
         unusual.inspect(|_| count += 1).max_by(|&a, &b| step(a).total_cmp(&step(b)))
     {
         let message = format!(
-            "the position steps {:.2} m here where 95 % of steps are below {typical:.3} m ({count} such steps); satellite fixes do so",
+            "the position steps {:.2} m here where 95 % of steps are below {typical:.3} m ({count} \
+             such steps); satellite fixes do so",
             step(largest)
         );
         findings.warning(Some(recording.row(largest)), Some(recording.header(Channel::X)), message);
@@ -75,7 +76,8 @@ fn heading(recording: &Recording, findings: &mut Findings) {
     findings.rows(Severity::Error, header, &hits, |k| {
         let degrees = (psi[k] - psi[k - 1]) * 180.0 / PI;
         format!(
-            "the heading steps {degrees:.0} deg in {:.3} s; if its unit is degrees declare `deg`, otherwise remove the row",
+            "the heading steps {degrees:.0} deg in {:.3} s; if its unit is degrees declare `deg`, \
+             otherwise remove the row",
             t[k] - t[k - 1]
         )
     });

@@ -107,7 +107,8 @@ fn fast_propeller(recording: &Recording, findings: &mut Findings) {
     let typical = quantile(values.iter().map(|value| value.abs()), 0.5);
     if typical > 40.0 {
         let message = format!(
-            "the propeller typically makes {typical:.0} turns per second; if these are per minute declare `rpm`"
+            "the propeller typically makes {typical:.0} turns per second; if these are per minute \
+             declare `rpm`"
         );
         findings.warning(None, Some(recording.header(Channel::N)), message);
     }

@@ -41,8 +41,9 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
     let (lagged, fitted) = (lagged(r, delta, &ahead), fitted(recording, &blocks, r, delta));
     if lagged < EACH && fitted < EACH && lagged + fitted < BOTH {
         let message = format!(
-            "positive rudder turns the ship to port in this file (the yaw rate correlates with it by {lagged:.2}); \
-             set `rudder_positive: port_turn` in the manifest's conventions, or starboard_turn if port_turn is set"
+            "positive rudder turns the ship to port in this file (the yaw rate correlates with it \
+             by {lagged:.2}); set `rudder_positive: port_turn` in the manifest's conventions, or \
+             starboard_turn if port_turn is set"
         );
         findings.error(None, Some(recording.header(Channel::Delta)), message);
     }

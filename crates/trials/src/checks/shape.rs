@@ -58,7 +58,8 @@ fn short_turn(recording: &Recording, findings: &mut Findings) {
     };
     if turned < ALMOST * TAU {
         let message = format!(
-            "the turn is too short: {:.0} deg of heading, where a turning circle takes 360 deg or more",
+            "the turn is too short: {:.0} deg of heading, where a turning circle takes 360 deg or \
+             more",
             turned.to_degrees()
         );
         findings.warning(None, Some(recording.header(Channel::Psi)), message);

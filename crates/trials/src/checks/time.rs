@@ -13,7 +13,8 @@ pub(crate) fn in_order(recording: &Recording, findings: &mut Findings) -> bool {
     findings.rows(Severity::Error, &recording.time, &hits, |k| match t[k] == t[k - 1] {
         true => format!("time {} s stands twice; remove one of the rows", t[k]),
         false => format!(
-            "time goes back from {} s to {} s; sort the rows, or split the file if two runs follow each other",
+            "time goes back from {} s to {} s; sort the rows, or split the file if two runs follow \
+             each other",
             t[k - 1],
             t[k]
         ),

@@ -27,7 +27,8 @@ const DECLARED: Axes = |u, v, c, s| (u * c - v * s, u * s + v * c);
 const MISTAKES: [(Axes, &str); 4] = [
     (
         |u, v, _, _| (u, v),
-        "u and v are the velocities north and east, not along the ship; rotate them by the heading first",
+        "u and v are the velocities north and east, not along the ship; rotate them by the heading \
+         first",
     ),
     (
         |u, v, c, s| (u * s + v * c, u * c - v * s),
@@ -35,7 +36,8 @@ const MISTAKES: [(Axes, &str); 4] = [
     ),
     (
         |u, v, c, s| (u * c - v * s, -u * s - v * c),
-        "y points west, or the heading counts anticlockwise; y points east and the heading counts clockwise: change the sign",
+        "y points west, or the heading counts anticlockwise; y points east and the heading counts \
+         clockwise: change the sign",
     ),
     (
         |u, v, c, s| (u * c + v * s, u * s - v * c),
@@ -141,7 +143,8 @@ impl<'a> Track<'a> {
         let found = proportion(&pairs).filter(|found| found.correlation > 0.98)?;
         let unit = SCALES.iter().find(|(factor, _)| (found.slope / factor - 1.0).abs() < 0.03)?.1;
         Some(format!(
-            "the positions move {:.4} times as fast as u and v say; the velocities are likely {unit}",
+            "the positions move {:.4} times as fast as u and v say; the velocities are likely \
+             {unit}",
             found.slope
         ))
     }
@@ -158,13 +161,15 @@ impl<'a> Track<'a> {
             let towards =
                 rest.drift.1.atan2(rest.drift.0).to_degrees().rem_euclid(360.0).round() % 360.0;
             let message = format!(
-                "the positions drift {drift:.3} m/s towards {towards:.0} deg beyond what u and v say: a current with speeds through the water, or a speed sensor's error"
+                "the positions drift {drift:.3} m/s towards {towards:.0} deg beyond what u and v \
+                 say: a current with speeds through the water, or a speed sensor's error"
             );
             findings.warning(None, Some(header), message);
         }
         if scatter > UNSTEADY * speed {
             let message = format!(
-                "positions and velocities disagree by {scatter:.3} m/s (mean speed {speed:.3} m/s); check reference points and sensors"
+                "positions and velocities disagree by {scatter:.3} m/s (mean speed {speed:.3} \
+                 m/s); check reference points and sensors"
             );
             findings.warning(None, Some(header), message);
         }

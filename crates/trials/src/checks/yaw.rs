@@ -42,18 +42,21 @@ fn fault(recording: &Recording, slope: f64) -> Option<String> {
     let (psi_unit, r_unit) = (recording.unit(Channel::Psi), recording.unit(Channel::R));
     if near(DEGREES) {
         return Some(format!(
-            "the heading `{psi}` turns 57.3 times as fast as the yaw rate: declare `{psi}` in `deg` if its `{psi_unit}` is wrong, \
-             or the yaw rate in `rad/s` if its `{r_unit}` is"
+            "the heading `{psi}` turns 57.3 times as fast as the yaw rate: declare `{psi}` in \
+             `deg` if its `{psi_unit}` is wrong, or the yaw rate in `rad/s` if its `{r_unit}` is"
         ));
     }
     if near(1.0 / DEGREES) {
         return Some(format!(
-            "the yaw rate is 57.3 times the rate of the heading `{psi}`: declare `{r}` in `deg/s` if its `{r_unit}` is wrong, \
-             or the heading in `rad` if its `{psi_unit}` is"
+            "the yaw rate is 57.3 times the rate of the heading `{psi}`: declare `{r}` in `deg/s` \
+             if its `{r_unit}` is wrong, or the heading in `rad` if its `{psi_unit}` is"
         ));
     }
     near(-1.0).then(|| {
-        format!("the yaw rate and the heading `{psi}` turn opposite ways; heading counts clockwise from north and yaw rate to starboard: change the sign of one")
+        format!(
+            "the yaw rate and the heading `{psi}` turn opposite ways; heading counts clockwise \
+            from north and yaw rate to starboard: change the sign of one"
+        )
     })
 }
 
@@ -61,7 +64,8 @@ fn remark(recording: &Recording, found: Proportion, findings: &mut Findings) {
     if (found.slope - 1.0).abs() > MODERATE {
         let psi = recording.header(Channel::Psi);
         let message = format!(
-            "the heading `{psi}` turns {:.2} times as fast as the yaw rate says; check both sensors",
+            "the heading `{psi}` turns {:.2} times as fast as the yaw rate says; check both \
+             sensors",
             found.slope
         );
         findings.warning(None, Some(recording.header(Channel::R)), message);

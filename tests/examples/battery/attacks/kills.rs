@@ -139,8 +139,8 @@ async fn until_known(
 /// received.
 async fn leftovers(place: &Place, server: Server) -> Result<(), Failure> {
     let mut stream = tokio::net::TcpStream::connect(server.client.address).await?;
-    let head = "POST /v1/trials?ship=writer-0-0&name=cut.csv HTTP/1.1\r\nhost: localhost\r\ncontent-type: text/csv\r\n\
-        content-length: 10000000\r\n\r\nt_s,u_m_s\n";
+    let head = "POST /v1/trials?ship=writer-0-0&name=cut.csv HTTP/1.1\r\nhost: \
+        localhost\r\ncontent-type: text/csv\r\ncontent-length: 10000000\r\n\r\nt_s,u_m_s\n";
     stream.write_all(head.as_bytes()).await?;
     stream.write_all("0.0,1.0\n".repeat(1000).as_bytes()).await?;
     let mut received = Vec::new();

@@ -102,7 +102,8 @@ async fn one(kind: Kind, address: SocketAddr) -> std::io::Result<TcpStream> {
 fn words(kind: Kind) -> String {
     let body = |path: &str, media: &str| {
         format!(
-            "POST {path} HTTP/1.1\r\nhost: localhost\r\ncontent-type: {media}\r\ncontent-length: 1000000\r\n\r\nt_s,u_m_s\n"
+            "POST {path} HTTP/1.1\r\nhost: localhost\r\ncontent-type: {media}\r\ncontent-length: \
+             1000000\r\n\r\nt_s,u_m_s\n"
         )
     };
     match kind {

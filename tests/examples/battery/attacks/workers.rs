@@ -166,7 +166,10 @@ async fn set_aside(field: &Field, place: &Place, client: &Client) -> Result<(), 
         deaths += 1;
     }
     if deaths != DEATHS {
-        field.tally.wrong(format!("a job that ends its process was begun {deaths} times, not {DEATHS}, until it was set aside"));
+        field.tally.wrong(format!(
+            "a job that ends its process was begun {deaths} times, not \
+            {DEATHS}, until it was set aside"
+        ));
     }
     Ok(())
 }

@@ -6,7 +6,8 @@ use super::hull::Hull;
 const AIR: f64 = 1.225;
 const WATER: f64 = 1025.0;
 const GRAVITY: f64 = 9.80665;
-/// Areas above water, m2, and length over all, m, chosen for a research vessel of 36 m over all with a high forecastle.
+/// Areas above water, m2, and length over all, m, chosen for a research vessel of 36 m over all
+/// with a high forecastle.
 const FRONTAL_M2: f64 = 70.0;
 const LATERAL_M2: f64 = 180.0;
 const OVER_ALL_M: f64 = 36.25;

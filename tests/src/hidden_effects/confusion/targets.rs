@@ -78,7 +78,8 @@ fn ratios(outcomes: &[Outcome]) -> Option<String> {
         |share: f64| ratios.get(((ratios.len() as f64 - 1.0) * share).round() as usize).copied();
     let (median, ninetieth) = (at(0.5)?, at(0.9)?);
     let line = format!(
-        "error after by that with the effect known: median {median:.2}, 90 % below {ninetieth:.2} (target 1.3)"
+        "error after by that with the effect known: median {median:.2}, 90 % below {ninetieth:.2} \
+         (target 1.3)"
     );
     println!("{line}");
     (ninetieth > 1.3).then_some(line)

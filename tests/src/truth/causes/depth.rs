@@ -1,7 +1,8 @@
-//! Shallow water by factors on the hull's forces after Taimuri et al. (2020), Ocean Engineering, doi
-//! 10.1016/j.oceaneng.2020.108103 (not seen; read through pymaneuvering, `_shallow_water_hdm`, where
-//! those of the drag stand; here they serve the linear forces too): polynomials of the depth below
-//! the keel and of `C_B B (1 + B/L)^2 / T`. The library's forms are other formulas.
+//! Shallow water by factors on the hull's forces after Taimuri et al. (2020), Ocean Engineering,
+//! doi
+//! 10.1016/j.oceaneng.2020.108103 (not seen; read through pymaneuvering, `_shallow_water_hdm`,
+//! where those of the drag stand; here they serve the linear forces too): polynomials of the depth
+//! below the keel and of `C_B B (1 + B/L)^2 / T`. The library's forms are other formulas.
 
 use super::super::clarke::derivatives;
 use super::super::cross_flow::CrossFlow;

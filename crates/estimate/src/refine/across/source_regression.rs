@@ -120,8 +120,9 @@ impl<'a> SourceRegression<'a> {
             .join(", ");
         let (source, own) = (&self.envelope.source, &self.envelope.law);
         format!(
-            "the source `{source}` is of law `{own}`: what it says in {samples} states of the trials and of its standard \
-             manoeuvres is the prior; law `{law}` leaves {left} of the mean square of those accelerations unsaid"
+            "the source `{source}` is of law `{own}`: what it says in {samples} states of the \
+             trials and of its standard manoeuvres is the prior; law `{law}` leaves {left} of the \
+             mean square of those accelerations unsaid"
         )
     }
 

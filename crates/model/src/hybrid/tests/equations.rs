@@ -13,15 +13,17 @@ use crate::coefficient::Axis;
 const EVEN_2: &str = "u C c n u|u| uC uc un vv vr vS vs rr rS rs Ss Cc Cn cn n|n|";
 
 /// The third order of Eqs. 13 and 14, in their order.
-const EVEN_3: &str = "uuu uvv uvr urr uvS urS u|u|C vvC vrC vSC rrC rSC uvs urs uSs vCs rCs SCs u|u|c uCc vvc vrc vSc vsc rrc \
-                      rSc rsc Ssc u|u|n uCn ucn un|n| vvn vrn vSn vsn rrn rSn rsn Ssn Ccn Cn|n| cn|n| nnn";
+const EVEN_3: &str = "uuu uvv uvr urr uvS urS u|u|C vvC vrC vSC rrC rSC uvs urs uSs vCs rCs SCs \
+                      u|u|c uCc vvc vrc vSc vsc rrc rSc rsc Ssc u|u|n uCn ucn un|n| vvn vrn vSn \
+                      vsn rrn rSn rsn Ssn Ccn Cn|n| cn|n| nnn";
 
 /// Eqs. 15 and 16 up to the second order.
 const ODD_2: &str = "v r S s uv ur uS us vC vc vn rC rc rn SC Sc Sn Cs sc sn";
 
 /// The third order of Eqs. 15 and 16, in their order.
-const ODD_3: &str = "uuv vvv uur v|v|r vr|r| rrr uuS v|v|S vrS r|r|S uvC urC uSC vCC rCC SCC uus uCs v|v|s vrs vSs r|r|s rSs CCs \
-                     uvc urc uSc usc vCc rCc SCc Csc uvn urn uSn usn vCn vcn vnn rCn rcn rnn SCn Scn Snn Csn scn snn";
+const ODD_3: &str = "uuv vvv uur v|v|r vr|r| rrr uuS v|v|S vrS r|r|S uvC urC uSC vCC rCC SCC uus \
+                     uCs v|v|s vrs vSs r|r|s rSs CCs uvc urc uSc usc vCc rCc SCc Csc uvn urn uSn \
+                     usn vCn vcn vnn rCn rcn rnn SCn Scn Snn Csn scn snn";
 
 /// The printed terms in this project's spelling.
 fn spelled(printed: &str) -> BTreeSet<String> {

@@ -8,9 +8,11 @@ use crate::coefficient::Axis;
 /// Ships that are symmetric under `symmetry: mirror`, with any coefficients.
 const SHIPS: [&str; 4] = [
     "actuators: { n: { kind: propeller }, delta: { kind: vectwin } }",
-    "actuators: { n: { kind: propeller, pair: true }, delta: { kind: rudder, pair: true }, bow: { kind: tunnel_thruster } }",
+    "actuators: { n: { kind: propeller, pair: true }, delta: { kind: rudder, pair: true }, bow: { \
+     kind: tunnel_thruster } }",
     "actuators: { pod: { kind: azimuth, pair: true } }",
-    "actuators: { n: { kind: propeller }, delta: { kind: rudder, angle: plain }, bow: { kind: tunnel_thruster, couples: hull } }",
+    "actuators: { n: { kind: propeller }, delta: { kind: rudder, angle: plain }, bow: { kind: \
+     tunnel_thruster, couples: hull } }",
 ];
 
 /// Numbers between -1 and 1 that are the same every time.
@@ -90,7 +92,8 @@ fn mirrored_motion_has_mirrored_forces() {
             [(2, ""), (3, ""), (2, ", signed_squares: true"), (3, ", squares: plain")]
         {
             let body = format!(
-                "order: {order}\n{ship}\nsubmodels: ahead_astern\nrules: {{ symmetry: mirror{rules} }}\n"
+                "order: {order}\n{ship}\nsubmodels: ahead_astern\nrules: {{ symmetry: \
+                 mirror{rules} }}\n"
             );
             let (worst, largest) = asymmetry(&declared(&body));
             assert!(worst < 1e-12 * largest && largest > 0.1, "{body}: {worst} of {largest}");
@@ -102,7 +105,8 @@ fn mirrored_motion_has_mirrored_forces() {
 fn parity_is_enough_where_nothing_is_paired() {
     let body = |squares: &str| {
         format!(
-            "order: 3\nactuators: {{ n: {{ kind: propeller }}, delta: {{ kind: rudder }} }}\nrules: {{ squares: {squares} }}\n"
+            "order: 3\nactuators: {{ n: {{ kind: propeller }}, delta: {{ kind: rudder }} \
+             }}\nrules: {{ squares: {squares} }}\n"
         )
     };
     let (worst, largest) = asymmetry(&declared(&body("as_described")));
@@ -115,7 +119,8 @@ fn parity_is_enough_where_nothing_is_paired() {
 #[test]
 fn the_mirror_keeps_what_differs_between_the_sides() {
     let twin = declared(
-        "order: 1\nactuators: { n: { kind: propeller, pair: true } }\nrules: { symmetry: mirror }\n",
+        "order: 1\nactuators: { n: { kind: propeller, pair: true } }\nrules: { symmetry: mirror \
+         }\n",
     );
     let of = |axis: Axis| {
         twin.law_file.axes[&axis].terms.iter().map(|term| format!("{term:?}")).collect::<String>()

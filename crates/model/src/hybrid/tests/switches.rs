@@ -7,7 +7,8 @@ use crate::coefficient::Axis;
 /// A single screw and rudder of second order.
 fn single(rules: &str) -> super::Derivation {
     declared(&format!(
-        "order: 2\nactuators: {{ n: {{ kind: propeller }}, delta: {{ kind: rudder }} }}\nrules: {{ {rules} }}\n"
+        "order: 2\nactuators: {{ n: {{ kind: propeller }}, delta: {{ kind: rudder }} }}\nrules: {{ \
+         {rules} }}\n"
     ))
 }
 
@@ -59,8 +60,8 @@ fn one_screw_and_one_rudder_at_second_order() {
 fn actuators_meet_what_they_couple_with() {
     let with = |couples: &str| {
         declared(&format!(
-            "order: 2\nactuators:\n  n: {{ kind: propeller }}\n  bow: {{ kind: tunnel_thruster, axes: [Y, N], couples: {couples} }}\n\
-             rules: {{ signed_squares: true }}\n"
+            "order: 2\nactuators:\n  n: {{ kind: propeller }}\n  bow: {{ kind: tunnel_thruster, \
+             axes: [Y, N], couples: {couples} }}\nrules: {{ signed_squares: true }}\n"
         ))
     };
     let of_bow = |couples: &str, axis| {
@@ -76,8 +77,9 @@ fn actuators_meet_what_they_couple_with() {
 #[test]
 fn every_kind_of_actuator_has_its_variables() {
     let ship = declared(
-        "order: 1\nactuators:\n  pod: { kind: azimuth, pair: true }\n  delta: { kind: rudder, angle: plain }\n  \
-         flap: { kind: rudder, angle: sine_versine }\nrules: { symmetry: none }\n",
+        "order: 1\nactuators:\n  pod: { kind: azimuth, pair: true }\n  delta: { kind: rudder, \
+         angle: plain }\n  flap: { kind: rudder, angle: sine_versine }\nrules: { symmetry: none \
+         }\n",
     );
     let factors: Vec<&str> = ship.law.factors.keys().map(String::as_str).collect();
     assert_eq!(

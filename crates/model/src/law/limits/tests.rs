@@ -2,14 +2,15 @@
 use std::time::{Duration, Instant};
 
 use super::*;
-use crate::formula::{MAX_NESTING, MAX_OPERATORS};
+use sistership_formula::{MAX_NESTING, MAX_OPERATORS};
 
 /// A law with some formula as the rest of X, values and terms.
 fn law(rest: &str, values: &str, terms: &str) -> String {
     format!(
-        "kind: law\nname: tried\ntitle: tried\nsources: {{}}\nvalues:\n  one: '1'\n{values}\nfactors: {{ u: u, v: v, r: r, {} }}\n\
-         axes:\n  X: {{ terms: [{terms}], rest: '({rest})*mass_kg*g' }}\n  Y: {{ terms: [Y_v], open: true }}\n  N: {{ terms: [N_r] }}\n\
-         mass: {{ X: {{ X: mass_kg }}, Y: {{ Y: mass_kg }}, N: {{ N: mass_kg*lpp_m^2 }} }}\n",
+        "kind: law\nname: tried\ntitle: tried\nsources: {{}}\nvalues:\n  one: \
+         '1'\n{values}\nfactors: {{ u: u, v: v, r: r, {} }}\naxes:\n  X: {{ terms: [{terms}], \
+         rest: '({rest})*mass_kg*g' }}\n  Y: {{ terms: [Y_v], open: true }}\n  N: {{ terms: [N_r] \
+         }}\nmass: {{ X: {{ X: mass_kg }}, Y: {{ Y: mass_kg }}, N: {{ N: mass_kg*lpp_m^2 }} }}\n",
         factors()
     )
 }

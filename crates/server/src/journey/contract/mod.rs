@@ -115,7 +115,8 @@ impl Operation {
             let place = format!("{} {}: `{field}`", self.method, self.path);
             let short: String = shown.chars().take(300).collect();
             faults.push(format!(
-                "{place} should be refused as {allowed:?} (documented: {documented}): {status} {problem}\n    {short}"
+                "{place} should be refused as {allowed:?} (documented: {documented}): {status} \
+                 {problem}\n    {short}"
             ));
         }
     }

@@ -131,7 +131,8 @@ impl Grammar {
                 String::new()
             };
             form += &format!(
-                "--{BOUNDARY}\r\nContent-Disposition: form-data; name=\"{name}\"{file}\r\n\r\n{text}\r\n"
+                "--{BOUNDARY}\r\nContent-Disposition: form-data; \
+                 name=\"{name}\"{file}\r\n\r\n{text}\r\n"
             );
         }
         if self.chance(0.8) {

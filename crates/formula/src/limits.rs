@@ -5,7 +5,7 @@
 //! walk over the tree that comes out recurses at most as deep as there are operators. The largest
 //! formula of the zoo has 22 operators, and none nests more than 5 deep.
 
-use super::error::FormulaError;
+use crate::error::FormulaError;
 
 /// Bytes of one formula.
 pub const MAX_LENGTH: usize = 8192;
@@ -39,7 +39,7 @@ pub fn check(text: &str) -> Result<(), FormulaError> {
 }
 
 /// The beginning of a long text, for a message.
-pub(crate) fn head(text: &str) -> String {
+pub fn head(text: &str) -> String {
     text.chars().take(24).collect()
 }
 
@@ -105,8 +105,8 @@ fn in_number(text: &[u8], at: usize) -> bool {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::parse;
     use super::*;
+    use crate::parse;
 
     /// What it is called, how to write it so many times, and the most of it.
     type Way = (&'static str, fn(usize) -> String, usize);

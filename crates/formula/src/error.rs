@@ -1,6 +1,6 @@
 //! What is wrong with a formula.
 
-use super::syntax::Function;
+use crate::syntax::Function;
 use crate::units::Dimension;
 
 /// What is wrong with a formula.
@@ -29,7 +29,8 @@ pub enum FormulaError {
     },
     /// It has too many operators.
     #[error(
-        "formula `{head}...` has {found} operators; {most} are the most: write parts of it as values"
+        "formula `{head}...` has {found} operators; {most} are the most: write parts of it as \
+         values"
     )]
     Operators {
         /// How it begins.

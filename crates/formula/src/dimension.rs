@@ -1,7 +1,7 @@
 //! The dimension of a formula, or what is wrong with it.
 
-use super::error::FormulaError;
-use super::syntax::{Expr, Function};
+use crate::error::FormulaError;
+use crate::syntax::{Expr, Function};
 use crate::units::Dimension;
 
 /// The dimension of `expr` when `lookup` knows that of every name.
@@ -79,8 +79,8 @@ fn same(a: &Expr, of_a: Dimension, b: &Expr, of_b: Dimension) -> Result<Dimensio
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::parse;
     use super::*;
+    use crate::parse;
 
     fn check(text: &str) -> Result<Dimension, FormulaError> {
         let lookup = |name: &str| match name {

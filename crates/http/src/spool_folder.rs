@@ -10,7 +10,7 @@ use std::time::{Duration, SystemTime};
 use tempfile::{Builder, NamedTempFile, TempDir};
 use uuid::Uuid;
 
-use crate::error::is_out_of_space;
+use sistership_store::is_out_of_space;
 
 /// Files that earlier programs left beside the folders, and that are older than this, belong to a
 /// process that was killed.

@@ -9,8 +9,8 @@ use winnow::error::{ContextError, ErrMode, StrContext, StrContextValue};
 use winnow::prelude::*;
 use winnow::token::{any, one_of, take_while};
 
-use super::error::FormulaError;
-use super::syntax::{Comparison, Expr, Function};
+use crate::error::FormulaError;
+use crate::syntax::{Comparison, Expr, Function};
 
 type Result<T> = winnow::Result<T, ErrMode<ContextError>>;
 
@@ -18,10 +18,10 @@ type Result<T> = winnow::Result<T, ErrMode<ContextError>>;
 ///
 /// # Errors
 /// Says at which character the formula stops making sense, and what was expected there; or that it
-/// is longer or deeper than [`super::MAX_LENGTH`], [`super::MAX_NESTING`] and
-/// [`super::MAX_OPERATORS`] allow.
+/// is longer or deeper than [`crate::MAX_LENGTH`], [`crate::MAX_NESTING`] and
+/// [`crate::MAX_OPERATORS`] allow.
 pub fn parse(text: &str) -> std::result::Result<Expr, FormulaError> {
-    super::limits::check(text)?;
+    crate::limits::check(text)?;
     let parsed = delimited(multispace0, sum, multispace0).parse(text);
     parsed.map_err(|error| {
         let rest: String =
@@ -41,7 +41,7 @@ pub fn parse(text: &str) -> std::result::Result<Expr, FormulaError> {
 pub fn parse_condition(text: &str) -> std::result::Result<Expr, FormulaError> {
     match text.find(['<', '>']) {
         Some(_) => {
-            super::limits::check(text)?;
+            crate::limits::check(text)?;
             parse(&format!("if({text}, 1, 0)"))
                 .map_err(|_| FormulaError::Condition(text.to_owned()))
         }

@@ -1,4 +1,6 @@
 //! Formulas of laws and effects: parsed once, checked for units, lowered later by the dynamics.
+//!
+//! No ship and no file: text goes in, an expression or a refusal comes out.
 
 mod constant;
 mod dimension;
@@ -6,11 +8,11 @@ mod error;
 mod limits;
 mod parse;
 mod syntax;
+pub mod units;
 
 pub use constant::constant;
 pub use dimension::dimension_of;
 pub use error::FormulaError;
-pub(crate) use limits::head;
-pub use limits::{MAX_DEPTH, MAX_LENGTH, MAX_NESTING, MAX_OPERATORS};
+pub use limits::{MAX_DEPTH, MAX_LENGTH, MAX_NESTING, MAX_OPERATORS, head};
 pub use parse::{parse, parse_condition};
 pub use syntax::{Comparison, Expr, Function, builtin};

@@ -1,7 +1,7 @@
 //! Formulas of numbers alone.
 
-use super::error::FormulaError;
-use super::parse::parse;
+use crate::error::FormulaError;
+use crate::parse::parse;
 
 /// The value of a formula without names, such as `0.605/304.8`.
 ///

@@ -5,10 +5,8 @@ use std::fmt::Write as _;
 use sistership_model::Vessel;
 use sistership_validation::{Appraisal, Dataset, Review, Severity};
 
-use super::zoo_text::{number, overshoot, turn};
-
 /// Particulars, models, published trials, findings and sources of a ship.
-pub fn page(vessel: &Vessel, review: &Review) -> String {
+pub fn contributed_ship(vessel: &Vessel, review: &Review) -> String {
     [
         format!("# {}\n\n{}\n\n", review.ship, review.title),
         findings(review),
@@ -18,6 +16,11 @@ pub fn page(vessel: &Vessel, review: &Review) -> String {
         sources(vessel),
     ]
     .concat()
+}
+
+/// Two decimals, or a dash.
+fn number(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"))
 }
 
 fn table(head: &str, columns: &[&str], rows: Vec<Vec<String>>) -> String {
@@ -71,10 +74,10 @@ fn model(model: &Appraisal) -> Vec<String> {
         format!("`{name}`"),
         format!("`{}`", model.law),
         model.standing.word().to_owned(),
-        turn(model, |turn| turn.advance_m),
-        turn(model, |turn| turn.tactical_diameter_m),
-        overshoot(model, 10.0),
-        overshoot(model, 20.0),
+        number(model.turn_lengths(|turn| turn.advance_m)),
+        number(model.turn_lengths(|turn| turn.tactical_diameter_m)),
+        number(model.first_overshoot_deg(10.0)),
+        number(model.first_overshoot_deg(20.0)),
     ]
 }
 
