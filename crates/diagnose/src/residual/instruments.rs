@@ -1,61 +1,80 @@
 //! How what instruments say goes with the states and with the effects on them.
 
-use sistership_dynamics::tape::{Lanes, Slots};
+use sistership_dynamics::tape::{Direction, Lanes, Slopes, Slots};
 
 use super::ResidualSystem;
+use super::lanes::LANES;
 use super::linearised::Detail;
 use super::path::of_instruments;
+use super::sample_block::SampleBlock;
 
-/// Directions differentiated at a time.
-pub(super) const LANES: usize = 8;
-
-/// Derivatives of what instruments say, by output: states, then columns.
-pub(super) struct InstrumentJacobian {
-    outputs: Vec<Vec<f64>>,
+/// What instruments say at the samples of a block, and its derivatives.
+pub(super) struct InstrumentBlock {
+    /// By states, then by columns.
+    directions: Vec<Direction<LANES>>,
+    /// How many of the directions are states.
     states: usize,
-    columns: usize,
+    primal: Slots<LANES>,
+    slopes: Slopes<LANES>,
 }
 
-impl InstrumentJacobian {
-    pub fn new(
-        system: &ResidualSystem,
-        primal: &[Lanes<1>],
-        inputs: usize,
-        measured: &[usize],
-        detail: Detail,
-    ) -> Self {
-        let of_state = |&state: &usize| of_instruments(state);
-        let first = inputs - system.lagged.len();
+impl InstrumentBlock {
+    pub fn new(system: &ResidualSystem, measured: &[usize], detail: Detail) -> Self {
+        let tape = &system.instruments;
+        let first = tape.inputs().len() - system.lagged.len();
         let of_column = |column: &usize| first + column - system.columns.nuisance.len();
         let states = if detail == Detail::Whole { system.states } else { &[] };
-        let seeds: Vec<usize> =
-            states.iter().map(of_state).chain(measured.iter().map(of_column)).collect();
-        let mut outputs = vec![Vec::new(); system.says.len()];
-        let mut work = Slots::default();
-        for chunk in seeds.chunks(LANES) {
-            let mut moved = vec![[0.0; LANES]; inputs];
-            chunk.iter().enumerate().for_each(|(lane, &input)| moved[input][lane] = 1.0);
-            system.instruments.tangents(primal, &moved, &mut work);
-            for (output, row) in outputs.iter_mut().enumerate() {
-                row.extend(&system.instruments.read(output, &work)[..chunk.len()]);
-            }
-        }
-        Self { outputs, states: states.len(), columns: measured.len() }
-    }
-
-    pub fn by_state(&self, system: &ResidualSystem, channel: usize) -> Vec<f64> {
-        match system.says.iter().position(|&place| place == channel) {
-            Some(output) => self.outputs[output][..self.states].to_vec(),
-            None => (0..self.states)
-                .map(|state| f64::from(u8::from(state == system.channels[channel].1)))
-                .collect(),
+        let inputs = states.iter().map(|&state| of_instruments(state));
+        let directions = inputs.chain(measured.iter().map(of_column));
+        Self {
+            directions: directions.map(|input| tape.along(input)).collect(),
+            states: states.len(),
+            primal: Slots::default(),
+            slopes: Slopes::default(),
         }
     }
 
-    pub fn by_column(&self, system: &ResidualSystem, channel: usize) -> Vec<f64> {
-        match system.says.iter().position(|&place| place == channel) {
-            Some(output) => self.outputs[output][self.states..].to_vec(),
-            None => vec![0.0; self.columns],
+    /// Evaluates them where a block is.
+    pub fn at(&mut self, block: &SampleBlock<'_>) {
+        let tape = &block.system.instruments;
+        tape.run(&block.instrument_inputs(), &mut self.primal);
+        tape.slopes(&self.primal, &mut self.slopes);
+        for direction in &mut self.directions {
+            tape.differentiate(direction, &self.primal, &self.slopes);
         }
+    }
+
+    /// What the instrument of an output says.
+    pub fn says(&self, system: &ResidualSystem, output: usize) -> Lanes<LANES> {
+        system.instruments.read(output, &self.primal)
+    }
+
+    /// What a channel says more by each state; a channel that says a state follows that alone.
+    pub fn by_state<'s>(
+        &'s self,
+        system: &'s ResidualSystem,
+        channel: usize,
+        lane: usize,
+    ) -> impl Iterator<Item = f64> + 's {
+        let output = system.says.iter().position(|&place| place == channel);
+        let own = system.channels[channel].1;
+        self.directions[..self.states].iter().enumerate().map(move |(state, direction)| {
+            output.map_or(f64::from(u8::from(state == own)), |output| {
+                system.instruments.read(output, direction.tangents())[lane]
+            })
+        })
+    }
+
+    /// What a channel says more by each measured column.
+    pub fn by_column<'s>(
+        &'s self,
+        system: &'s ResidualSystem,
+        channel: usize,
+        lane: usize,
+    ) -> impl Iterator<Item = f64> + 's {
+        let output = system.says.iter().position(|&place| place == channel);
+        self.directions[self.states..].iter().map(move |direction| {
+            output.map_or(0.0, |output| system.instruments.read(output, direction.tangents())[lane])
+        })
     }
 }

@@ -1,48 +1,36 @@
-//! Along a path, sample by sample.
+//! Along a path, block by block of samples.
 
-use nalgebra::DMatrix;
-use sistership_dynamics::tape::{Lanes, Slots};
 use sistership_model::coefficient::Axis;
-use sistership_model::effect::EffectParameter;
-use sistership_model::law::STATES;
+use sistership_model::manifest::VelocityFrame;
 
-use super::instruments::{InstrumentJacobian, LANES};
+use super::instruments::InstrumentBlock;
+use super::lanes::LANES;
 use super::linearised::{Detail, Sizes};
 use super::path::RecordedPath;
 use super::regressor_block::RegressorBlock;
-use super::tangents::{TangentSeed, TangentSweep, place_of, sweeps};
+use super::sample_block::SampleBlock;
+use super::secants::Secants;
+use super::tangents::{Place, Tangent, tangents};
 use super::{Linearised, NuisanceKind, ResidualSystem};
 
-/// Where the tapes stand at a sample.
+/// Where the tapes stand at a block of samples.
 pub(super) struct PathLineariser<'a> {
     system: &'a ResidualSystem,
     path: &'a RecordedPath<'a>,
     detail: Detail,
     sizes: Sizes,
-    /// Of each state that laws know, its place among the path's.
-    states: Vec<Option<usize>>,
-    point: Vec<f64>,
-    inputs: Vec<Lanes<1>>,
-    primal: Slots<1>,
+    block: SampleBlock<'a>,
+    tangents: Vec<Tangent>,
+    secants: Secants,
     regressors: RegressorBlock,
-    moved: Vec<Lanes<LANES>>,
-    there: Slots<LANES>,
-    sweeps: Vec<TangentSweep>,
 }
 
 /// The model at a sample.
+#[derive(Debug, Clone)]
 struct SampleLinearisation {
     rate: Vec<f64>,
     jacobian: Vec<f64>,
     accelerations: Vec<f64>,
-}
-
-/// An input of the tape moved, and by how much a column's parameter is moved with it.
-struct Secant {
-    input: usize,
-    moved: f64,
-    by: f64,
-    column: usize,
 }
 
 impl<'a> PathLineariser<'a> {
@@ -52,30 +40,49 @@ impl<'a> PathLineariser<'a> {
             axes: system.axes.len(),
             columns: system.columns.len(),
         };
-        let place = |name| system.states.iter().position(|&state| state == place_of(name));
+        let secants = Secants::new(system, path);
         Self {
             system,
             path,
             detail,
             sizes,
-            states: STATES.iter().map(|(name, _)| place(name)).collect(),
-            point: Vec::new(),
-            inputs: Vec::new(),
-            primal: Slots::default(),
+            block: SampleBlock::new(system, path),
+            tangents: tangents(system, detail, |parameter| !secants.has(parameter)),
+            secants,
             regressors: RegressorBlock::new(system),
-            moved: Vec::new(),
-            there: Slots::default(),
-            sweeps: sweeps(system, detail),
         }
     }
 
     pub fn walk(mut self, part: &[usize]) -> Linearised {
-        let trial = self.path.record.trial;
         let recorded: Vec<usize> =
             (0..self.system.channels.len()).filter(|&c| self.path.said[c].is_some()).collect();
-        let channels = recorded.iter().map(|&c| self.system.channels[c]).collect();
+        let mut out = self.empty(part, &recorded);
+        let mut instruments = (!self.system.says.is_empty())
+            .then(|| InstrumentBlock::new(self.system, &out.measured, self.detail));
+        let mut before: Option<SampleLinearisation> = None;
+        let mut here = vec![self.nothing(); LANES];
+        for (block, samples) in part.chunks(LANES).enumerate() {
+            self.linearise(samples, &mut here);
+            if let Some(instruments) = &mut instruments {
+                instruments.at(&self.block);
+            }
+            for (lane, &k) in samples.iter().enumerate() {
+                let last = if lane > 0 { Some(&here[lane - 1]) } else { before.as_ref() };
+                if let Some(last) = last {
+                    let from = part[block * LANES + lane - 1];
+                    self.interval(last, &here[lane], (from, k), &mut out);
+                }
+                self.readings((k, lane), instruments.as_ref(), &recorded, &mut out);
+            }
+            std::mem::swap(before.get_or_insert_with(|| here[0].clone()), &mut here[LANES - 1]);
+        }
+        out
+    }
+
+    fn empty(&self, part: &[usize], recorded: &[usize]) -> Linearised {
+        let trial = self.path.record.trial;
         let (Sizes { states, axes, columns }, steps) = (self.sizes, part.len().saturating_sub(1));
-        let mut out = Linearised {
+        Linearised {
             samples: part.to_vec(),
             t_s: part.iter().map(|&k| trial.t_s[k]).collect(),
             sizes: self.sizes,
@@ -87,22 +94,9 @@ impl<'a> PathLineariser<'a> {
             by_state: (!self.system.says.is_empty()).then(Vec::new),
             by_column: Vec::new(),
             measured: self.measuring(),
-            channels,
+            channels: recorded.iter().map(|&c| self.system.channels[c]).collect(),
             every: self.path.record.every,
-        };
-        let mut before: Option<SampleLinearisation> = None;
-        for (i, &k) in part.iter().enumerate() {
-            if i.is_multiple_of(LANES) {
-                self.next_regressors(&part[i..part.len().min(i + LANES)]);
-            }
-            let instant = self.instant(k, i % LANES);
-            if let Some(before) = before {
-                self.interval(&before, &instant, (part[i - 1], k), &mut out);
-            }
-            self.readings(k, &instant.rate, &recorded, &mut out);
-            before = Some(instant);
         }
-        out
     }
 
     /// Columns of candidates that act on instruments.
@@ -110,211 +104,105 @@ impl<'a> PathLineariser<'a> {
         let columns = &self.system.columns;
         let acting = (0..columns.candidates.len())
             .filter(|&c| !columns.candidates[c].form.measures.is_empty());
-        let water = self.system.frame == sistership_model::manifest::VelocityFrame::Water;
+        let water = self.system.frame == VelocityFrame::Water;
         let seeing = (0..columns.candidates.len())
             .filter(|&c| water && !columns.candidates[c].form.sees.is_empty());
         acting.chain(seeing).flat_map(|c| columns.places(c)).collect()
     }
 
-    fn load(&mut self, k: usize) {
-        self.point.clear();
-        for ((name, _), state) in STATES.iter().zip(&self.states) {
-            let value = match *state {
-                Some(state) => self.path.states[state][k],
-                None => self.path.roll(name, k),
-            };
-            self.point.push(value);
-        }
-        self.point.extend(self.path.inputs.iter().map(|input| input[k]));
-        self.point.extend(self.system.parameters());
-    }
-
-    fn run(&mut self) {
-        self.inputs.clear();
-        self.inputs.extend(self.point.iter().map(|&value| [value]));
-        self.system.motion.tape.run(&self.inputs, &mut self.primal);
-    }
-
-    /// The regressors of samples that follow each other.
-    fn next_regressors(&mut self, samples: &[usize]) {
-        if self.system.columns.nuisance.is_empty() {
-            return;
-        }
-        for (lane, &k) in samples.iter().enumerate() {
-            self.load(k);
-            self.regressors.place(lane, &self.point);
-        }
-        self.regressors.run(&self.system.regressors);
-    }
-
-    fn read(&self, output: usize) -> f64 {
-        self.system.motion.tape.read(output, &self.primal)[0]
-    }
-
-    /// Accelerations of what a lane holds, by the inverse of the mass matrix.
-    fn solve<const N: usize>(
-        &self,
-        inverse: &DMatrix<f64>,
-        work: &Slots<N>,
-        lane: usize,
-    ) -> Vec<f64> {
-        let motion = &self.system.motion;
-        let read = |output: usize| motion.tape.read(output, work)[lane];
-        let force: Vec<f64> = motion.forces.iter().map(|&output| read(output)).collect();
-        let added = |axis: usize| motion.additions[axis].map_or(0.0, read);
-        (0..self.sizes.axes)
-            .map(|row| {
-                (0..self.sizes.axes).map(|c| inverse[(row, c)] * force[c]).sum::<f64>() + added(row)
-            })
-            .collect()
-    }
-
-    fn inverse_mass(&self) -> DMatrix<f64> {
-        let axes = self.sizes.axes;
-        let entry = |output: &Option<usize>| output.map_or(0.0, |output| self.read(output));
-        let mass =
-            DMatrix::from_row_iterator(axes, axes, self.system.motion.mass.iter().map(entry));
-        mass.try_inverse().unwrap_or_else(|| DMatrix::from_element(axes, axes, f64::NAN))
-    }
-
-    /// At a sample, which is one of those whose regressors are there.
-    fn instant(&mut self, k: usize, lane: usize) -> SampleLinearisation {
-        self.load(k);
-        self.run();
-        let inverse = self.inverse_mass();
-        let mut rate = self.solve(&inverse, &self.primal, 0);
-        rate.extend(self.system.motion.kinematics.iter().map(|&output| self.read(output)));
+    fn nothing(&self) -> SampleLinearisation {
         let Sizes { states, axes, columns } = self.sizes;
-        let mut instant = SampleLinearisation {
-            rate,
+        SampleLinearisation {
+            rate: vec![0.0; states],
             jacobian: vec![0.0; states * states],
             accelerations: vec![0.0; axes * columns],
-        };
-        self.differentiate(&inverse, &mut instant);
-        self.add_regressors(lane, &inverse, &mut instant);
-        self.secants(k, &inverse, &mut instant);
-        instant
+        }
     }
 
-    fn differentiate(&mut self, inverse: &DMatrix<f64>, instant: &mut SampleLinearisation) {
+    /// At samples that follow each other.
+    fn linearise(&mut self, samples: &[usize], out: &mut [SampleLinearisation]) {
+        self.block.at(samples);
+        if !self.system.columns.nuisance.is_empty() {
+            self.regressors.run(&self.system.regressors, &self.block.inputs);
+        }
+        for (lane, out) in out.iter_mut().enumerate() {
+            out.jacobian.fill(0.0);
+            out.accelerations.fill(0.0);
+            self.block.rate.iter().zip(&mut out.rate).for_each(|(from, to)| *to = from[lane]);
+        }
+        self.differentiate(out);
+        for (lane, out) in out.iter_mut().enumerate() {
+            self.add_regressors(lane, out);
+        }
+        let columns = self.sizes.columns;
+        self.secants.along(&self.block, |column, slopes| {
+            for (lane, out) in out.iter_mut().enumerate() {
+                for (row, slope) in slopes.iter().enumerate() {
+                    out.accelerations[row * columns + column] = slope[lane];
+                }
+            }
+        });
+    }
+
+    fn differentiate(&mut self, out: &mut [SampleLinearisation]) {
         let motion = &self.system.motion;
         let Sizes { states, axes, columns } = self.sizes;
-        for sweep in &mut self.sweeps {
-            motion.tape.tangents_among(
-                &sweep.reached,
-                &self.primal,
-                &sweep.lanes,
-                &mut sweep.tangents,
-            );
-            let read = |output: usize| motion.tape.read(output, &sweep.tangents);
-            let forces: Vec<Lanes<LANES>> =
-                motion.forces.iter().map(|&output| read(output)).collect();
-            for (lane, seed) in sweep.seeds.iter().enumerate() {
-                for row in 0..axes {
-                    let of_forces: f64 =
-                        (0..axes).map(|c| inverse[(row, c)] * forces[c][lane]).sum();
-                    let value =
-                        of_forces + motion.additions[row].map_or(0.0, |output| read(output)[lane]);
-                    match *seed {
-                        TangentSeed::State(_, state) => {
-                            instant.jacobian[row * states + state] = value
-                        }
-                        TangentSeed::Parameter(_, column) => {
-                            instant.accelerations[row * columns + column] = value
+        for Tangent { place, direction } in &mut self.tangents {
+            motion.tape.differentiate(direction, &self.block.primal, &self.block.slopes);
+            let rows = self.block.accelerations(direction.tangents());
+            match *place {
+                Place::Column(column) => {
+                    for (lane, out) in out.iter_mut().enumerate() {
+                        for (row, value) in rows.iter().enumerate() {
+                            out.accelerations[row * columns + column] = value[lane];
                         }
                     }
                 }
-                if let TangentSeed::State(_, state) = *seed {
-                    for (place, &output) in motion.kinematics.iter().enumerate() {
-                        instant.jacobian[(axes + place) * states + state] = read(output)[lane];
+                Place::State(state) => {
+                    let read = |&output: &usize| motion.tape.read(output, direction.tangents());
+                    let rows = rows.into_iter().chain(motion.kinematics.iter().map(read));
+                    for (row, value) in rows.enumerate().take(axes + motion.kinematics.len()) {
+                        for (lane, out) in out.iter_mut().enumerate() {
+                            out.jacobian[row * states + state] = value[lane];
+                        }
                     }
                 }
             }
         }
     }
 
-    fn add_regressors(
-        &self,
-        lane: usize,
-        inverse: &DMatrix<f64>,
-        instant: &mut SampleLinearisation,
-    ) {
+    fn add_regressors(&self, lane: usize, out: &mut SampleLinearisation) {
         let Sizes { axes, columns, .. } = self.sizes;
+        let inverse = |row: usize, axis: usize| self.block.inverse[row * axes + axis][lane];
         for (range, axis) in self.regressors.alike() {
             let forces = &self.regressors.of_sample(lane)[range.clone()];
             for row in 0..axes {
-                let weight = inverse[(row, *axis)];
-                let to = &mut instant.accelerations[row * columns..][range.clone()];
+                let weight = inverse(row, *axis);
+                let to = &mut out.accelerations[row * columns..][range.clone()];
                 to.iter_mut().zip(forces).for_each(|(to, force)| *to += weight * force);
             }
         }
         for (column, nuisance) in self.system.columns.nuisance.iter().enumerate() {
             let NuisanceKind::Mass(row, other) = nuisance.kind else { continue };
-            for (axis, force) in self.heavier((row, other), &instant.rate) {
-                let axis = self.system.axes.iter().position(|&known| known == axis);
-                let Some(axis) = axis else { continue };
+            for (axis, force) in self.heavier((row, other), lane) {
                 for row in 0..axes {
-                    instant.accelerations[row * columns + column] += inverse[(row, axis)] * force;
+                    out.accelerations[row * columns + column] += inverse(row, axis) * force;
                 }
             }
         }
     }
 
-    /// The forces that a larger entry of the mass matrix takes.
-    fn heavier(&self, (row, column): (Axis, Axis), rate: &[f64]) -> Vec<(Axis, f64)> {
+    /// The forces that a larger entry of the mass matrix takes, by place of the axis.
+    fn heavier(&self, (row, column): (Axis, Axis), lane: usize) -> Vec<(usize, f64)> {
         let place = |axis: Axis| self.system.axes.iter().position(|&known| known == axis);
         let (Some(i), Some(j)) = (place(row), place(column)) else { return Vec::new() };
-        let diagonal = |i: usize| {
-            self.system.motion.mass[i * (self.sizes.axes + 1)]
-                .map_or(0.0, |output| self.read(output))
-        };
-        let unit = (diagonal(i) * diagonal(j)).sqrt();
+        let rate = |axis: usize| self.block.rate[axis][lane];
+        let unit = (self.block.mass(i)[lane] * self.block.mass(j)[lane]).sqrt();
         if i == j {
-            vec![(row, -unit * rate[i])]
+            vec![(i, -unit * rate(i))]
         } else {
-            vec![(row, -unit * rate[j]), (column, -unit * rate[i])]
+            vec![(i, -unit * rate(j)), (j, -unit * rate(i))]
         }
-    }
-
-    /// Parameters whose derivative at their absence says nothing, and lags: what they change at a
-    /// distance, by it.
-    fn secants(&mut self, k: usize, inverse: &DMatrix<f64>, instant: &mut SampleLinearisation) {
-        for secants in self.wanted_secants(k).chunks(LANES) {
-            self.moved.clear();
-            self.moved.extend(self.point.iter().map(|&value| [value; LANES]));
-            for (lane, secant) in secants.iter().enumerate() {
-                self.moved[secant.input][lane] = secant.moved;
-            }
-            self.system.motion.tape.run(&self.moved, &mut self.there);
-            for (lane, secant) in secants.iter().enumerate() {
-                let there = self.solve(inverse, &self.there, lane);
-                for (row, there) in there.iter().enumerate() {
-                    instant.accelerations[row * self.sizes.columns + secant.column] =
-                        (there - instant.rate[row]) / secant.by;
-                }
-            }
-        }
-    }
-
-    fn wanted_secants(&self, k: usize) -> Vec<Secant> {
-        let first = STATES.len() + self.system.inputs.len();
-        let parameters = self
-            .system
-            .columns
-            .candidates
-            .iter()
-            .flat_map(|c| c.at.iter().zip(c.form.parameters.values()));
-        let one = |(j, (&value, parameter)): (usize, (&f64, &EffectParameter))| {
-            let (input, moved, by) = match (&self.path.delayed[j], self.system.lagged[j]) {
-                (Some((longer, by)), Some(input)) => (STATES.len() + input, longer[k], *by),
-                _ if value == parameter.absent && parameter.start != parameter.absent => {
-                    (first + j, parameter.start, parameter.start - parameter.absent)
-                }
-                _ => return None,
-            };
-            Some(Secant { input, moved, by, column: self.system.columns.nuisance.len() + j })
-        };
-        parameters.enumerate().filter_map(one).collect()
     }
 
     /// From a sample to the next, by the mean of both ends.
@@ -334,24 +222,26 @@ impl<'a> PathLineariser<'a> {
         }
     }
 
-    fn readings(&mut self, k: usize, rate: &[f64], recorded: &[usize], out: &mut Linearised) {
+    /// What is read at a sample, which stands in a lane of the block.
+    fn readings(
+        &self,
+        (k, lane): (usize, usize),
+        instruments: Option<&InstrumentBlock>,
+        recorded: &[usize],
+        out: &mut Linearised,
+    ) {
         let system = self.system;
         let mut says: Vec<f64> =
             system.channels.iter().map(|&(_, place)| self.path.states[place][k]).collect();
-        if let Some(by_state) = &mut out.by_state {
-            let inputs = self.path.instrument_inputs(system, k, &|state| rate[state]);
-            let mut work = Slots::default();
-            system.instruments.run(&inputs, &mut work);
-            system.says.iter().enumerate().for_each(|(output, &place)| {
-                says[place] = system.instruments.read(output, &work)[0]
-            });
-            let jacobian =
-                InstrumentJacobian::new(system, &work, inputs.len(), &out.measured, self.detail);
+        if let (Some(by_state), Some(instruments)) = (&mut out.by_state, instruments) {
+            system
+                .says
+                .iter()
+                .enumerate()
+                .for_each(|(output, &place)| says[place] = instruments.says(system, output)[lane]);
             for &channel in recorded {
-                if self.detail == Detail::Whole {
-                    by_state.extend(jacobian.by_state(system, channel));
-                }
-                out.by_column.extend(jacobian.by_column(system, channel));
+                by_state.extend(instruments.by_state(system, channel, lane));
+                out.by_column.extend(instruments.by_column(system, channel, lane));
             }
         }
         for &channel in recorded {

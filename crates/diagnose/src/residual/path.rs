@@ -5,6 +5,7 @@ use sistership_dynamics::state::at;
 use sistership_dynamics::tape::{Lanes, Slots};
 use sistership_model::trial::Channel;
 
+use super::lanes::{LANES, lanes};
 use super::record::smoothed;
 use super::thresholds::RESIDUAL;
 use super::{ResidualSystem, TrialReadings};
@@ -62,16 +63,21 @@ impl<'a> RecordedPath<'a> {
         let t_s = &self.record.trial.t_s;
         let smooth = self.states.clone();
         let mut work = Slots::default();
-        for k in 0..t_s.len() {
-            let inputs = self.instrument_inputs(system, k, &|state| slope(t_s, &smooth[state], k));
+        for first in (0..t_s.len()).step_by(LANES) {
+            let samples = std::array::from_fn(|k| (first + k).min(t_s.len() - 1));
+            let slopes = |state: usize| lanes(|k| slope(t_s, &smooth[state], samples[k]));
+            let inputs = self.instrument_inputs(system, &samples, &slopes);
             system.instruments.run(&inputs, &mut work);
             for (output, &channel) in
                 system.says.iter().enumerate().filter(|(_, channel)| self.said[**channel].is_some())
             {
                 let state = system.channels[channel].1;
-                let beside = system.instruments.read(output, &work)[0]
-                    - inputs[of_instruments(system.states[state])][0];
-                self.states[state][k] -= beside;
+                let says = system.instruments.read(output, &work);
+                let here = inputs[of_instruments(system.states[state])];
+                for (k, value) in self.states[state].iter_mut().skip(first).take(LANES).enumerate()
+                {
+                    *value -= says[k] - here[k];
+                }
             }
         }
     }
@@ -79,18 +85,18 @@ impl<'a> RecordedPath<'a> {
     pub fn instrument_inputs(
         &self,
         system: &ResidualSystem,
-        k: usize,
-        rate: &dyn Fn(usize) -> f64,
-    ) -> Vec<Lanes<1>> {
-        let by_place = |values: &dyn Fn(usize) -> f64| {
-            let of =
-                |place: usize| system.states.iter().position(|&s| s == place).map_or(0.0, values);
-            INSTRUMENTS.map(of).map(|value| [value])
+        samples: &[usize; LANES],
+        rate: &dyn Fn(usize) -> Lanes<LANES>,
+    ) -> Vec<Lanes<LANES>> {
+        let of = |values: &[f64]| lanes(|k| values[samples[k]]);
+        let by_place = |values: &dyn Fn(usize) -> Lanes<LANES>| {
+            let state = |place: usize| system.states.iter().position(|&state| state == place);
+            INSTRUMENTS.map(|place| state(place).map_or([0.0; LANES], values))
         };
-        let mut inputs: Vec<Lanes<1>> = by_place(&|state| self.states[state][k]).to_vec();
+        let mut inputs = by_place(&|state| of(&self.states[state])).to_vec();
         inputs.extend(by_place(rate));
-        inputs.extend(self.inputs.iter().map(|input| [input[k]]));
-        inputs.extend(system.parameters().map(|value| [value]));
+        inputs.extend(self.inputs.iter().map(|input| of(input)));
+        inputs.extend(system.parameters().map(|value| [value; LANES]));
         inputs
     }
 }
@@ -108,11 +114,11 @@ fn slope(t_s: &[f64], values: &[f64], k: usize) -> f64 {
     (values[after] - values[before]) / (t_s[after] - t_s[before]).max(1e-9)
 }
 
-impl RecordedPath<'_> {
+impl<'a> RecordedPath<'a> {
     /// Roll of a law without it is what was recorded, if anything was.
-    pub fn roll(&self, name: &str, k: usize) -> f64 {
-        let channel = Channel::by_name(name).and_then(|channel| self.record.trial.channel(channel));
-        channel.map_or(0.0, |values| values[k])
+    pub fn roll(&self, name: &str) -> Option<&'a [f64]> {
+        let trial = self.record.trial;
+        Channel::by_name(name).and_then(|channel| trial.channel(channel))
     }
 }
 

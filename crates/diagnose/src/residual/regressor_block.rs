@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use sistership_dynamics::tape::{Lanes, Slots, Tape};
 
-use super::instruments::LANES;
+use super::lanes::LANES;
 use super::{NuisanceKind, ResidualSystem};
 
 /// Regressors at up to [`LANES`] samples together: there are hundreds of them, and in lanes they
@@ -14,7 +14,6 @@ pub(super) struct RegressorBlock {
     /// Columns that follow each other and act on one axis of the filter, with its place; masses and
     /// what acts on another axis are left out.
     alike: Vec<(Range<usize>, usize)>,
-    inputs: Vec<Lanes<LANES>>,
     forces: Slots<LANES>,
     /// N or N m per unit: sample by sample, column by column.
     by_sample: Vec<f64>,
@@ -22,24 +21,14 @@ pub(super) struct RegressorBlock {
 
 impl RegressorBlock {
     pub fn new(system: &ResidualSystem) -> Self {
-        let (inputs, forces, by_sample) = (Vec::new(), Slots::default(), Vec::new());
         let columns = system.columns.nuisance.len();
-        Self { columns, alike: alike(system), inputs, forces, by_sample }
+        let (forces, by_sample) = (Slots::default(), Vec::new());
+        Self { columns, alike: alike(system), forces, by_sample }
     }
 
-    /// The point of a sample. The first fills all lanes: what follows the last sample of a part is
-    /// the same again.
-    pub fn place(&mut self, lane: usize, point: &[f64]) {
-        if lane == 0 {
-            self.inputs.clear();
-            self.inputs.extend(point.iter().map(|&value| [value; LANES]));
-        } else {
-            self.inputs.iter_mut().zip(point).for_each(|(lanes, &value)| lanes[lane] = value);
-        }
-    }
-
-    pub fn run(&mut self, regressors: &Tape) {
-        regressors.run(&self.inputs, &mut self.forces);
+    /// At the points of a block, given as the tape of motion takes them.
+    pub fn run(&mut self, regressors: &Tape, inputs: &[Lanes<LANES>]) {
+        regressors.run(inputs, &mut self.forces);
         self.by_sample.resize(LANES * self.columns, 0.0);
         for column in 0..self.columns {
             let forces = regressors.read(column, &self.forces);

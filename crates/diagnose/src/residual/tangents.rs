@@ -1,68 +1,45 @@
-//! In which directions a model is differentiated at a sample, eight of them together.
+//! In which directions a model is differentiated.
 
 use sistership_dynamics::state::at;
-use sistership_dynamics::tape::{Lanes, Slot, Slots};
+use sistership_dynamics::tape::Direction;
 use sistership_model::law::STATES;
 
 use super::ResidualSystem;
-use super::instruments::LANES;
+use super::lanes::LANES;
 use super::linearised::Detail;
 
-/// What a direction of differentiation moves, and where its derivative goes.
+/// Where a derivative goes.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum TangentSeed {
-    /// Input of the tape; state of the filter.
-    State(usize, usize),
-    /// Input of the tape; column.
-    Parameter(usize, usize),
+pub(super) enum Place {
+    /// A state of the filter.
+    State(usize),
+    /// A column.
+    Column(usize),
 }
 
-impl TangentSeed {
-    fn input(self) -> usize {
-        let (Self::State(input, _) | Self::Parameter(input, _)) = self;
-        input
-    }
+/// A direction of differentiation, and where its derivative goes.
+pub(super) struct Tangent {
+    pub place: Place,
+    pub direction: Direction<LANES>,
 }
 
-/// Directions that are differentiated together, with the part of the tape that they reach.
-pub(super) struct TangentSweep {
-    pub seeds: Vec<TangentSeed>,
-    pub lanes: Vec<Lanes<LANES>>,
-    pub reached: Vec<Slot>,
-    pub tangents: Slots<LANES>,
-}
-
-impl TangentSweep {
-    fn new(system: &ResidualSystem, seeds: &[TangentSeed]) -> Self {
-        let tape = &system.motion.tape;
-        let mut lanes = vec![[0.0; LANES]; tape.inputs().len()];
-        seeds.iter().enumerate().for_each(|(lane, seed)| lanes[seed.input()][lane] = 1.0);
-        let inputs: Vec<usize> = seeds.iter().map(|seed| seed.input()).collect();
-        Self {
-            seeds: seeds.to_vec(),
-            lanes,
-            reached: tape.depending_on(&inputs),
-            tangents: Slots::default(),
-        }
-    }
-}
-
-/// States, where everything is wanted, and the parameters of candidates.
-pub(super) fn sweeps(system: &ResidualSystem, detail: Detail) -> Vec<TangentSweep> {
+/// States, where everything is wanted, and those parameters of candidates whose derivative says
+/// something (`by_derivative`).
+pub(super) fn tangents(
+    system: &ResidualSystem,
+    detail: Detail,
+    by_derivative: impl Fn(usize) -> bool,
+) -> Vec<Tangent> {
     let states = STATES.iter().enumerate().filter_map(|(input, (name, _))| {
         let place = place_of(name);
-        Some(TangentSeed::State(input, system.states.iter().position(|&state| state == place)?))
+        let state = system.states.iter().position(|&state| state == place)?;
+        Some((Place::State(state), input))
     });
-    let states: Vec<TangentSeed> = states.filter(|_| detail == Detail::Whole).collect();
     let first = STATES.len() + system.inputs.len();
-    let parameters = (0..system.lagged.len())
-        .map(|j| TangentSeed::Parameter(first + j, system.columns.nuisance.len() + j));
-    let parameters: Vec<TangentSeed> = parameters.collect();
-    states
-        .chunks(LANES)
-        .chain(parameters.chunks(LANES))
-        .map(|seeds| TangentSweep::new(system, seeds))
-        .collect()
+    let column = |j: usize| (Place::Column(system.columns.nuisance.len() + j), first + j);
+    let parameters = (0..system.lagged.len()).filter(|&j| by_derivative(j)).map(column);
+    let tangent = |(place, input)| Tangent { place, direction: system.motion.tape.along(input) };
+    states.filter(|_| detail == Detail::Whole).chain(parameters).map(tangent).collect()
 }
 
 /// The place in the state vector of a state that laws know.

@@ -13,6 +13,17 @@ impl Tape {
         widest(Evaluation { tape: self, inputs, work });
     }
 
+    /// Evaluates some of the operations, in this order; the others keep what `work` holds after a
+    /// [`Tape::run`].
+    pub fn run_among<const N: usize>(
+        &self,
+        among: &[Slot],
+        inputs: &[Lanes<N>],
+        work: &mut Slots<N>,
+    ) {
+        widest(PartialEvaluation { tape: self, among, inputs, work });
+    }
+
     /// An output after [`Tape::run`].
     pub fn read<const N: usize>(&self, output: usize, work: &[Lanes<N>]) -> Lanes<N> {
         work[self.outputs[output] as usize]
@@ -47,13 +58,42 @@ struct Evaluation<'a, const N: usize> {
 impl<const N: usize> Wide for Evaluation<'_, N> {
     #[inline(always)]
     fn go(self) {
-        for (index, instruction) in self.tape.instructions.iter().enumerate() {
-            self.work[index] = match instruction {
-                Instruction::Op(op) => step(op, self.inputs, self.work),
-                &Instruction::Products { first, from, to } => {
-                    products(first, &self.tape.terms[from as usize..to as usize], self.work)
-                }
-            };
+        for index in 0..self.tape.instructions.len() {
+            self.work[index] = self.tape.result(index, self.inputs, self.work);
+        }
+    }
+}
+
+/// Some instructions in turn.
+struct PartialEvaluation<'a, const N: usize> {
+    tape: &'a Tape,
+    among: &'a [Slot],
+    inputs: &'a [Lanes<N>],
+    work: &'a mut [Lanes<N>],
+}
+
+impl<const N: usize> Wide for PartialEvaluation<'_, N> {
+    #[inline(always)]
+    fn go(self) {
+        for &slot in self.among {
+            self.work[slot as usize] = self.tape.result(slot as usize, self.inputs, self.work);
+        }
+    }
+}
+
+impl Tape {
+    #[inline(always)]
+    fn result<const N: usize>(
+        &self,
+        index: usize,
+        inputs: &[Lanes<N>],
+        work: &[Lanes<N>],
+    ) -> Lanes<N> {
+        match &self.instructions[index] {
+            Instruction::Op(op) => step(op, inputs, work),
+            &Instruction::Products { first, from, to } => {
+                products(first, &self.terms[from as usize..to as usize], work)
+            }
         }
     }
 }

@@ -21,3 +21,4 @@ pub use instruction::{Instruction, Tape};
 pub use lower::{Binding, TapeBuilder, Unbound};
 pub use op::{Op, Slot};
 pub use slots::{Lanes, Slots};
+pub use tangent::{Direction, Slopes};

@@ -1,30 +1,54 @@
-//! Derivatives along a tape that has been evaluated: in several directions at once, forwards.
+//! Derivatives along a tape that has been evaluated for a block of lanes: forwards, along one input
+//! at a time, at the points of all lanes together.
 
 use sistership_formula::Function;
 
 use super::eval::{each, zip};
 use super::{Instruction, Lanes, Op, Slot, Slots, Tape};
+use crate::wide::{Wide, widest};
 
-impl Tape {
-    /// Directional derivatives at the point that `primal` holds after a [`Tape::run`] of one lane:
-    /// lane `k` of `seeds[i]` is the change of input `i` in direction `k`.
-    pub fn tangents<const N: usize>(
-        &self,
-        primal: &[Lanes<1>],
-        seeds: &[Lanes<N>],
-        work: &mut Slots<N>,
-    ) {
-        work.resize(self.len());
-        (0..self.len()).for_each(|index| work[index] = self.tangent(index, primal, seeds, work));
+/// An input along which a tape is differentiated, and the derivatives.
+#[derive(Debug, Clone)]
+pub struct Direction<const N: usize> {
+    input: u32,
+    /// The instructions that depend on it, in their order.
+    reached: Vec<Slot>,
+    /// Nothing where an instruction does not depend on it.
+    tangents: Slots<N>,
+}
+
+impl<const N: usize> Direction<N> {
+    /// The instructions that depend on the input, in their order.
+    pub fn reached(&self) -> &[Slot] {
+        &self.reached
     }
 
-    /// The instructions that depend on some of the inputs.
-    pub fn depending_on(&self, inputs: &[usize]) -> Vec<Slot> {
+    /// The derivatives after [`Tape::differentiate`], to be read as values are.
+    pub fn tangents(&self) -> &[Lanes<N>] {
+        &self.tangents
+    }
+}
+
+/// By what the derivative of an operation follows those of its operands, the first and the second,
+/// where that takes more than looking at their values.
+#[derive(Debug, Clone, Default)]
+pub struct Slopes<const N: usize>([Slots<N>; 2]);
+
+impl Tape {
+    /// What is to be differentiated along an input.
+    pub fn along<const N: usize>(&self, input: usize) -> Direction<N> {
+        let mut tangents = Slots::default();
+        tangents.resize(self.len());
+        let input = input as u32;
+        Direction { input, reached: self.depending_on(input), tangents }
+    }
+
+    fn depending_on(&self, input: u32) -> Vec<Slot> {
         let mut depends = vec![false; self.len()];
         for (index, instruction) in self.instructions.iter().enumerate() {
             let reads = |slot: Slot| depends[slot as usize];
             depends[index] = match *instruction {
-                Instruction::Op(Op::Input(input)) => inputs.contains(&(input as usize)),
+                Instruction::Op(Op::Input(own)) => own == input,
                 Instruction::Op(op) => op.operands().into_iter().flatten().any(reads),
                 Instruction::Products { first, from, to } => {
                     reads(first)
@@ -38,107 +62,135 @@ impl Tape {
         (0..self.len()).filter(|&index| depends[index]).map(|index| index as Slot).collect()
     }
 
-    /// As [`Tape::tangents`], where nothing but what [`depends`](Tape::depending_on) on the seeded
-    /// inputs is visited; `work` is kept from call to call for the same inputs, empty at first.
-    pub fn tangents_among<const N: usize>(
-        &self,
-        depending: &[Slot],
-        primal: &[Lanes<1>],
-        seeds: &[Lanes<N>],
-        work: &mut Slots<N>,
-    ) {
-        work.resize(self.len());
-        for &slot in depending {
-            let index = slot as usize;
-            work[index] = self.tangent(index, primal, seeds, work);
+    /// The slopes at the points that `primal` holds after a [`Tape::run`], for all directions.
+    pub fn slopes<const N: usize>(&self, primal: &[Lanes<N>], slopes: &mut Slopes<N>) {
+        let [by_a, by_b] = &mut slopes.0;
+        by_a.resize(self.len());
+        by_b.resize(self.len());
+        for (index, instruction) in self.instructions.iter().enumerate() {
+            let Instruction::Op(op) = instruction else { continue };
+            if let Some([a, b]) = self.slopes_of(op, index, primal) {
+                (by_a[index], by_b[index]) = (a, b);
+            }
         }
     }
 
-    #[inline(always)]
-    fn tangent<const N: usize>(
+    fn slopes_of<const N: usize>(
         &self,
+        op: &Op,
         index: usize,
-        primal: &[Lanes<1>],
-        seeds: &[Lanes<N>],
-        work: &[Lanes<N>],
-    ) -> Lanes<N> {
-        match &self.instructions[index] {
-            Instruction::Op(op) => tangent(op, index, primal, seeds, work),
-            &Instruction::Products { first, from, to } => {
-                let mut sum = work[first as usize];
-                for &[a, b] in &self.terms[from as usize..to as usize] {
-                    let term = tangent(&Op::Multiply(a, b), index, primal, seeds, work);
-                    sum = zip(&sum, &term, |x, y| x + y);
-                }
-                sum
+        primal: &[Lanes<N>],
+    ) -> Option<[Lanes<N>; 2]> {
+        let at = |slot: Slot| &primal[slot as usize];
+        Some(match *op {
+            Op::Divide(a, b) => [each(at(b), |y| 1.0 / y), zip(at(a), at(b), |x, y| -x / (y * y))],
+            Op::Power(a, b) => {
+                let by_exponent = match self.instructions[b as usize] {
+                    Instruction::Op(Op::Constant(_)) => [0.0; N],
+                    _ => zip(&primal[index], at(a), |z, x| z * x.ln()),
+                };
+                [zip(at(a), at(b), |x, y| y * x.powf(y - 1.0)), by_exponent]
             }
-        }
+            Op::Call1(function, a) => [each(at(a), |x| slope(function, x)), [0.0; N]],
+            Op::Call2(function, a, b) => [
+                zip(at(a), at(b), |x, y| slopes(function, x, y).0),
+                zip(at(a), at(b), |x, y| slopes(function, x, y).1),
+            ],
+            _ => return None,
+        })
+    }
+
+    /// The derivatives along the input of a direction at the points that `primal` holds after a
+    /// [`Tape::run`], by the slopes there.
+    pub fn differentiate<const N: usize>(
+        &self,
+        direction: &mut Direction<N>,
+        primal: &[Lanes<N>],
+        slopes: &Slopes<N>,
+    ) {
+        widest(Differentiation { tape: self, direction, primal, slopes });
     }
 
     /// The derivative of every output with respect to every input: rows are outputs.
     pub fn jacobian(&self, inputs: &[f64]) -> Vec<Vec<f64>> {
         let point: Vec<Lanes<1>> = inputs.iter().map(|&value| [value]).collect();
-        let (mut primal, mut work) = (Slots::default(), Slots::default());
+        let (mut primal, mut slopes) = (Slots::default(), Slopes::default());
         self.run(&point, &mut primal);
-        let column = |direction: usize, work: &mut Slots<1>| {
-            let seeds: Vec<Lanes<1>> =
-                (0..inputs.len()).map(|i| [f64::from(u8::from(i == direction))]).collect();
-            self.tangents(&primal, &seeds, work);
-            (0..self.outputs.len()).map(|output| self.read(output, work)[0]).collect::<Vec<f64>>()
-        };
-        let columns: Vec<Vec<f64>> =
-            (0..inputs.len()).map(|direction| column(direction, &mut work)).collect();
-        (0..self.outputs.len())
-            .map(|row| columns.iter().map(|column| column[row]).collect())
-            .collect()
-    }
-}
-
-#[inline(always)]
-fn times<const N: usize>(lanes: &Lanes<N>, factor: f64) -> Lanes<N> {
-    // No direction is moved by an infinite slope that it does not meet.
-    each(lanes, |x| if x == 0.0 { 0.0 } else { x * factor })
-}
-
-#[inline(always)]
-fn tangent<const N: usize>(
-    op: &Op,
-    index: usize,
-    primal: &[Lanes<1>],
-    seeds: &[Lanes<N>],
-    work: &[Lanes<N>],
-) -> Lanes<N> {
-    let value = |slot: u32| primal[slot as usize][0];
-    let d = |slot: u32| &work[slot as usize];
-    let scaled = |slot: u32, factor: f64| times(d(slot), factor);
-    let both = |a: u32, by_a: f64, b: u32, by_b: f64| {
-        zip(&times(d(a), by_a), &times(d(b), by_b), |x, y| x + y)
-    };
-    match *op {
-        Op::Constant(_) => [0.0; N],
-        Op::Input(input) => seeds[input as usize],
-        Op::Negate(a) => scaled(a, -1.0),
-        Op::Add(a, b) => both(a, 1.0, b, 1.0),
-        Op::Subtract(a, b) => both(a, 1.0, b, -1.0),
-        Op::Multiply(a, b) => both(a, value(b), b, value(a)),
-        Op::Divide(a, b) => both(a, 1.0 / value(b), b, -value(a) / (value(b) * value(b))),
-        Op::Power(a, b) => {
-            let (x, y) = (value(a), value(b));
-            both(a, y * x.powf(y - 1.0), b, primal[index][0] * x.ln())
-        }
-        Op::Call1(function, a) => scaled(a, slope(function, value(a))),
-        Op::Call2(function, a, b) => {
-            let (by_a, by_b) = slopes(function, value(a), value(b));
-            both(a, by_a, b, by_b)
-        }
-        Op::Select(comparison, a, b, then, otherwise) => {
-            if comparison.holds(value(a), value(b)) {
-                *d(then)
-            } else {
-                *d(otherwise)
+        self.slopes(&primal, &mut slopes);
+        let mut rows = vec![Vec::with_capacity(inputs.len()); self.outputs.len()];
+        for input in 0..inputs.len() {
+            let mut direction = self.along(input);
+            self.differentiate(&mut direction, &primal, &slopes);
+            for (output, row) in rows.iter_mut().enumerate() {
+                row.push(self.read(output, direction.tangents())[0]);
             }
         }
+        rows
     }
+}
+
+/// All that a direction reaches, in turn.
+struct Differentiation<'a, const N: usize> {
+    tape: &'a Tape,
+    direction: &'a mut Direction<N>,
+    primal: &'a [Lanes<N>],
+    slopes: &'a Slopes<N>,
+}
+
+impl<const N: usize> Wide for Differentiation<'_, N> {
+    #[inline(always)]
+    fn go(self) {
+        let Self { tape, direction: Direction { input, reached, tangents }, primal, slopes } = self;
+        let [by_a, by_b] = [&*slopes.0[0], &*slopes.0[1]];
+        let tangents = &mut **tangents;
+        for &slot in reached.iter() {
+            let index = slot as usize;
+            let d = |slot: Slot| &tangents[slot as usize];
+            let value = |slot: Slot| &primal[slot as usize];
+            let product = |a: Slot, b: Slot| sum(&times(d(a), value(b)), &times(d(b), value(a)));
+            tangents[index] = match tape.instructions[index] {
+                Instruction::Products { first, from, to } => {
+                    let mut out = *d(first);
+                    for &[a, b] in &tape.terms[from as usize..to as usize] {
+                        out = sum(&out, &product(a, b));
+                    }
+                    out
+                }
+                Instruction::Op(op) => match op {
+                    Op::Constant(_) => [0.0; N],
+                    Op::Input(own) => [f64::from(u8::from(own == *input)); N],
+                    Op::Negate(a) => each(d(a), |x| -x),
+                    Op::Add(a, b) => sum(d(a), d(b)),
+                    Op::Subtract(a, b) => zip(d(a), d(b), |x, y| x - y),
+                    Op::Multiply(a, b) => product(a, b),
+                    Op::Call1(_, a) => times(d(a), &by_a[index]),
+                    Op::Divide(a, b) | Op::Power(a, b) | Op::Call2(_, a, b) => {
+                        sum(&times(d(a), &by_a[index]), &times(d(b), &by_b[index]))
+                    }
+                    Op::Select(comparison, a, b, then, otherwise) => {
+                        let (mut out, other) = (*d(then), d(otherwise));
+                        for k in 0..N {
+                            if !comparison.holds(value(a)[k], value(b)[k]) {
+                                out[k] = other[k];
+                            }
+                        }
+                        out
+                    }
+                },
+            };
+        }
+    }
+}
+
+#[inline(always)]
+fn sum<const N: usize>(a: &Lanes<N>, b: &Lanes<N>) -> Lanes<N> {
+    zip(a, b, |x, y| x + y)
+}
+
+#[inline(always)]
+fn times<const N: usize>(lanes: &Lanes<N>, factors: &Lanes<N>) -> Lanes<N> {
+    // No direction is moved by an infinite slope that it does not meet.
+    zip(lanes, factors, |x, factor| if x == 0.0 { 0.0 } else { x * factor })
 }
 
 /// The derivative of a function of one argument; at a kink, that of the side towards larger
@@ -183,18 +235,28 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_does_not_depend_on_a_direction_is_not_visited() {
-        let tape = tape("u^2*sin(u) + sqrt(1 + v^2)*exp(v)");
-        let point = [[1.3], [0.4]];
-        let (mut primal, mut all, mut some) =
-            (Slots::default(), Slots::default(), Slots::default());
+    fn what_does_not_depend_on_an_input_is_not_visited() {
+        let both = tape("u^2*sin(u) + sqrt(1 + v^2)*exp(v)");
+        assert!(both.along::<1>(1).reached().len() < both.len());
+        let other = tape("u^2").along::<1>(1);
+        assert!(other.reached().is_empty(), "{other:?}");
+    }
+
+    #[test]
+    fn every_lane_has_the_derivatives_at_its_own_point() {
+        let tape = tape("if(u > v, u^2*v, atan2(v, u))*exp(-v)/(u*v + 3) + u^2.5*v + max(u, v)");
+        let at = |lane: usize| [0.3 + 0.4 * lane as f64, 2.0 - 0.5 * lane as f64];
+        let point: [Lanes<5>; 2] = [0, 1].map(|input| std::array::from_fn(|k| at(k)[input]));
+        let (mut primal, mut slopes) = (Slots::default(), Slopes::default());
         tape.run(&point, &mut primal);
-        let seeds = [[0.0], [1.0]];
-        let depending = tape.depending_on(&[1]);
-        assert!(depending.len() < tape.len());
-        tape.tangents(&primal, &seeds, &mut all);
-        tape.tangents_among(&depending, &primal, &seeds, &mut some);
-        assert_eq!(tape.read(0, &all), tape.read(0, &some));
+        tape.slopes(&primal, &mut slopes);
+        for input in 0..2 {
+            let mut direction = tape.along(input);
+            tape.differentiate(&mut direction, &primal, &slopes);
+            for (lane, slope) in tape.read(0, direction.tangents()).into_iter().enumerate() {
+                assert_eq!(slope, tape.jacobian(&at(lane))[0][input], "{input} {lane}");
+            }
+        }
     }
 
     #[test]
